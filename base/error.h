@@ -1,0 +1,31 @@
+// What went wrong, where, in words a user can act on; and the result type that carries it.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include <tl/expected.hpp>
+
+namespace prismesh {
+
+/// A recoverable failure. `file` is the user's file (or a device's or socket's name, or "expression"); `line` counts
+/// from 1, is a column for expressions, and is 0 where no line applies.
+struct Error {
+  std::string file;
+  long line = 0;
+  std::string message;
+
+  /// "file:line: message", without the parts that are absent.
+  std::string text() const;
+};
+
+template <class T>
+using Result = tl::expected<T, Error>;
+
+inline tl::unexpected<Error> fail(std::string file, long line, std::string message) {
+  return tl::unexpected<Error>(Error{std::move(file), line, std::move(message)});
+}
+inline tl::unexpected<Error> fail(std::string file, std::string message) { return fail(std::move(file), 0, std::move(message)); }
+inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
+
+}  // namespace prismesh

@@ -1,0 +1,25 @@
+// Content hashes: for pinning a deck and for telling a whole record from a torn one. Not for secrets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace prismesh {
+
+struct Hash128 {
+  std::uint64_t low = 0;
+  std::uint64_t high = 0;
+  bool operator==(const Hash128&) const = default;
+
+  /// 32 lower-case hexadecimal digits.
+  std::string hex() const;
+};
+
+/// XXH3-128 of the bytes.
+Hash128 hash128(std::span<const std::byte> bytes);
+/// XXH3-64 of the bytes.
+std::uint64_t hash64(std::span<const std::byte> bytes);
+
+}  // namespace prismesh

@@ -1,0 +1,55 @@
+// A client of modeld: one connection, requests with answers, events in between. Never blocks longer than the caller allows.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "ipc/messages.h"
+#include "ipc/preview.h"
+#include "ipc/snapshot.h"
+
+namespace prismesh::ipc {
+
+/// Where modeld's socket is: `override`, else $RUNTIME_DIRECTORY, else $XDG_RUNTIME_DIR/prismesh, else a per-user folder in /tmp.
+std::filesystem::path model_socket_path(const std::optional<std::filesystem::path>& override = {});
+
+class Client {
+ public:
+  /// Connects and exchanges hellos. Errors: nobody listens (names the socket and says how to start), other protocol version.
+  static Result<Client> connect(const std::filesystem::path& socket, const std::string& program);
+  Client(Client&&) noexcept;
+  Client& operator=(Client&&) noexcept;
+  ~Client();
+
+  /// Sends without waiting; returns the request's number. Fails when the daemon is gone.
+  Result<std::uint64_t> send(const Request& request);
+  /// Sends and waits for the answer; events that come meanwhile are kept for `next_event`. A Failed answer is an Error.
+  Result<Answer> call(const Request& request, std::chrono::milliseconds patience = std::chrono::minutes(10));
+
+  struct Reply {
+    std::uint64_t request = 0;
+    Answer answer;
+  };
+  /// Reads what has arrived, at most `patience` waiting for the first byte. Errors: the daemon is gone.
+  Result<void> poll(std::chrono::milliseconds patience = std::chrono::milliseconds(0));
+  std::optional<Event> next_event();
+  std::optional<Reply> next_reply();  ///< answers to `send`
+
+  /// The current generation; keeps mapped what is shared with earlier ones. The lease goes back when the view dies.
+  Result<std::shared_ptr<const SnapshotView>> snapshot();
+  /// The preview that came with a DragBegun answer.
+  Result<PreviewReader> take_preview(const DragBegun& begun);
+
+  int descriptor() const;  ///< for poll(2)
+
+ private:
+  struct State;
+  explicit Client(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prismesh::ipc

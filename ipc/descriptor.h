@@ -1,0 +1,52 @@
+// File descriptors and mappings that close themselves.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "base/error.h"
+
+namespace prismesh::ipc {
+
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept;
+  ~Descriptor();
+
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+  int release() { return std::exchange(fd_, -1); }
+
+ private:
+  int fd_ = -1;
+};
+
+/// A shared-memory mapping.
+class Mapping {
+ public:
+  /// Maps the whole descriptor; read-only unless `writable`. Refuses a read-only mapping of memory that could shrink under
+  /// the reader (not sealed with F_SEAL_SHRINK).
+  static Result<Mapping> map(const Descriptor& descriptor, bool writable);
+  Mapping() = default;
+  Mapping(Mapping&& other) noexcept : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  Mapping& operator=(Mapping&& other) noexcept;
+  ~Mapping();
+
+  std::span<const std::byte> bytes() const { return {data_, size_}; }
+  std::span<std::byte> writable_bytes() { return {data_, size_}; }
+
+ private:
+  std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// Anonymous shared memory of a fixed size, sealed against shrinking and growing.
+Result<Descriptor> make_shared_memory(const char* name, std::size_t size);
+/// Adds F_SEAL_FUTURE_WRITE: mappings made before can write, later ones only read.
+Result<void> seal_for_readers(const Descriptor& descriptor);
+
+}  // namespace prismesh::ipc

@@ -1,0 +1,105 @@
+// A generation in shared memory, for views: what a picture needs, in the model's own chunks. A view sees which chunks changed since the
+// last snapshot by their versions, so that it uploads only those.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "ipc/descriptor.h"
+#include "mesh/document/document.h"
+
+namespace prismesh::ipc {
+
+/// The arrays of a snapshot. Element types are those of mesh::Model and mesh::document::Generation.
+enum class SnapshotArray : std::uint8_t {
+  positions,
+  node_ids,
+  node_marks,
+  shell_nodes,
+  shell_ids,
+  shell_parts,
+  shell_marks,
+  shell_quality,
+  line_nodes
+};
+inline constexpr int kSnapshotArrayCount = 9;
+
+struct SnapshotPart {
+  std::int64_t id = 0;
+  std::string name;
+  bool hidden = false;
+  bool locked = false;
+  std::uint32_t shells = 0;
+};
+
+struct SnapshotInfo {
+  std::uint64_t generation = 0;
+  std::string document;     ///< path
+  std::string length_unit;  ///< "mm", ...
+  double target_size = 1;
+  mesh::quality::Counts counts;
+  std::uint64_t selected_nodes = 0;
+  std::uint64_t selected_shells = 0;
+  bool can_undo = false;
+  bool can_redo = false;
+  bool changed = false;             ///< differs from what was last opened or saved
+  std::vector<SnapshotPart> parts;  ///< by PartIndex
+};
+
+/// A snapshot as a view maps it: read-only, checked against the descriptors' sizes before anything is read.
+class SnapshotView {
+ public:
+  /// `table` is the snapshot's table of contents, `segments` the shared memory it points into, in the table's order.
+  static Result<std::shared_ptr<const SnapshotView>> map(const Descriptor& table, std::span<const std::shared_ptr<const Mapping>> segments);
+
+  const SnapshotInfo& info() const { return info_; }
+  std::size_t size(SnapshotArray array) const;  ///< elements
+  std::size_t chunk_count(SnapshotArray array) const;
+  /// Two chunks with one version have the same content, whatever snapshots of one document they come from.
+  std::uint64_t chunk_version(SnapshotArray array, std::size_t chunk) const;
+  /// The used bytes of a chunk (kChunkSize elements but for the last).
+  std::span<const std::byte> chunk_bytes(SnapshotArray array, std::size_t chunk) const;
+
+  template <class T>
+  std::span<const T> chunk(SnapshotArray array, std::size_t chunk) const {
+    const std::span<const std::byte> bytes = chunk_bytes(array, chunk);
+    return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+  }
+  template <class T>
+  const T& at(SnapshotArray array, std::size_t i) const {
+    return chunk<T>(array, i / mesh::kChunkSize)[i % mesh::kChunkSize];
+  }
+
+  std::size_t node_count() const { return size(SnapshotArray::positions); }
+  std::size_t shell_count() const { return size(SnapshotArray::shell_nodes); }
+  const mesh::Vec3& position(std::size_t node) const { return at<mesh::Vec3>(SnapshotArray::positions, node); }
+  std::int64_t node_id(std::size_t node) const { return at<std::int64_t>(SnapshotArray::node_ids, node); }
+  bool selected(std::size_t node) const { return (at<std::uint8_t>(SnapshotArray::node_marks, node) & mesh::document::kSelected) != 0; }
+  const mesh::ShellNodes& shell(std::size_t shell) const { return at<mesh::ShellNodes>(SnapshotArray::shell_nodes, shell); }
+  std::int64_t shell_id(std::size_t shell) const { return at<std::int64_t>(SnapshotArray::shell_ids, shell); }
+  mesh::PartIndex shell_part(std::size_t shell) const { return at<mesh::PartIndex>(SnapshotArray::shell_parts, shell); }
+  mesh::quality::ShellState shell_quality(std::size_t shell) const {
+    return at<mesh::quality::ShellState>(SnapshotArray::shell_quality, shell);
+  }
+  // line_nodes: pairs of NodeIndex, what is drawn as lines: beams, discrete elements and the outlines of solids' outer faces.
+
+ private:
+  struct Piece {
+    const std::byte* data = nullptr;
+    std::uint64_t version = 0;
+  };
+  struct ArrayTable {
+    std::size_t count = 0;
+    std::size_t element_size = 0;
+    std::vector<Piece> chunks;
+  };
+  SnapshotInfo info_;
+  std::vector<ArrayTable> arrays_;
+  std::vector<std::shared_ptr<const Mapping>> keep_;
+};
+
+}  // namespace prismesh::ipc

@@ -1,0 +1,104 @@
+// A document: a deck, its settings, and generations of (model + selection + part states). See docs/architecture.md.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "mesh/deck/deck.h"
+#include "mesh/document/edit.h"
+#include "mesh/quality/report.h"
+
+namespace prismesh::mesh::document {
+
+struct Settings {
+  LengthUnit length_unit = LengthUnit::mm;
+  bool length_unit_guessed = true;
+  double target_size = 1;
+  bool target_size_guessed = true;
+  quality::Criteria criteria;
+};
+
+struct OpenOptions {
+  std::optional<LengthUnit> length_unit;
+  std::optional<double> target_size;
+  std::optional<std::filesystem::path> criteria;
+  std::size_t history_bytes = std::size_t{2} << 30;  ///< cap on what old generations hold for themselves
+  Progress progress;
+};
+
+struct PartState {
+  bool hidden = false;
+  bool locked = false;  ///< its nodes don't move
+  bool operator==(const PartState&) const = default;
+};
+
+enum NodeMark : std::uint8_t { kSelected = 1 };
+
+/// The document after an edit. A value that shares what it didn't change with its neighbours.
+struct Generation {
+  Model model;
+  ChunkedArray<std::uint8_t> node_marks;   ///< NodeMark bits
+  ChunkedArray<std::uint8_t> shell_marks;  ///< selected shells, when elements or parts were selected
+  select::Kind selection_kind = select::Kind::node;
+  std::size_t selected_nodes = 0;
+  std::size_t selected_shells = 0;
+  std::shared_ptr<const std::vector<PartState>> parts;  ///< by PartIndex
+  ChunkedArray<quality::ShellState> quality;
+  quality::Counts counts;    ///< all shells
+  std::uint64_t number = 0;  ///< counts up over the document's life, never reused
+  std::string made_by;       ///< the edit's name; "open" for the first
+};
+
+NodeSet selection(const Generation& generation);
+
+struct EditReport {
+  std::string edit;
+  std::size_t nodes_moved = 0;
+  std::size_t elements_added = 0;
+  std::size_t elements_removed = 0;
+  quality::Counts before;
+  quality::Counts after;
+  std::vector<std::string> notes;
+  double milliseconds = 0;
+};
+
+struct Document {
+  std::filesystem::path path;
+  std::shared_ptr<const deck::Deck> deck;
+  Settings settings;
+  std::size_t history_bytes = std::size_t{2} << 30;
+  std::vector<std::shared_ptr<const Generation>> generations;  ///< oldest first; what undo and redo walk
+  std::size_t cursor = 0;                                      ///< the current one
+  std::shared_ptr<const Generation> opened;                    ///< as read from the deck; what saving compares with
+  std::uint64_t next_number = 1;
+
+  const Generation& current() const { return *generations[cursor]; }
+  bool can_undo() const { return cursor > 0; }
+  bool can_redo() const { return cursor + 1 < generations.size(); }
+};
+
+Result<Document> open(const std::filesystem::path& path, const OpenOptions& options);
+
+/// What an edit would do, before anyone knows of it: so that it can be journalled first.
+struct Prepared {
+  std::shared_ptr<const Generation> next;  ///< for undo and redo: the generation gone to
+  enum class Step : std::uint8_t { push, undo, redo } step = Step::push;
+  EditReport report;
+};
+
+/// Works the edit out on the current generation; the document doesn't change. Deterministic. Errors: expression:column,
+/// nothing selected, a locked or held node would move (named), nothing to undo.
+Result<Prepared> prepare(const Document& document, const Edit& edit);
+/// Makes it the current generation; drops redo and, over the byte cap, the oldest generations. Can't fail.
+void commit(Document& document, Prepared prepared);
+/// prepare, then commit.
+Result<EditReport> apply(Document& document, const Edit& edit);
+
+/// Saves the current generation (deck::save).
+Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target);
+
+}  // namespace prismesh::mesh::document

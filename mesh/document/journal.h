@@ -1,0 +1,59 @@
+// The journal: for each edit its intent (a line of JSON) and its delta, each record checksummed, on disk before anyone is told
+// "done". After a crash the document is rebuilt from deck + deltas; only `replay` executes intents again.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "mesh/document/document.h"
+
+namespace prismesh::mesh::document {
+
+struct ReplayStep {
+  long line = 0;  ///< of the record in the journal, from 1
+  std::string edit;
+  bool applied = false;
+  std::string message;  ///< why not
+  EditReport report;
+};
+
+/// What a journal holds that can be read by people and scripts.
+struct JournalIntents {
+  std::string deck_path;
+  std::string deck_hash;
+  std::vector<Edit> edits;
+  std::vector<long> lines;
+  bool torn_tail = false;  ///< the last record was incomplete: a crash in the middle of an edit that was never acknowledged
+};
+
+class Journal {
+ public:
+  /// Starts a new journal for a document that has no edits yet. Errors: the file exists, can't be written.
+  static Result<Journal> create(const std::filesystem::path& path, const Document& document);
+  /// Opens a journal and brings `document` (freshly opened from the same deck) to its last acknowledged state. A torn tail
+  /// is cut off. Errors: another deck's journal (both hashes named), a damaged record (line named).
+  static Result<Journal> recover(const std::filesystem::path& path, Document& document);
+
+  Journal(Journal&&) noexcept;
+  Journal& operator=(Journal&&) noexcept;
+  ~Journal();
+
+  /// Writes intent and delta of a prepared edit and flushes them to disk. After an error the edit must not be committed, and
+  /// the journal is as before.
+  Result<void> append(const Document& document, const Edit& edit, const Prepared& prepared);
+
+  const std::filesystem::path& path() const;
+
+ private:
+  struct State;
+  explicit Journal(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Reads the intents. Plain JSON Lines files of edits (a script) are read as well.
+Result<JournalIntents> read_intents(const std::filesystem::path& path);
+
+/// Executes the intents on a document, going on after an edit that can't be applied.
+std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents);
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,71 @@
+// An array in fixed-size chunks, copied on write: a copy shares every chunk that neither side changed since.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace prismesh::mesh {
+
+inline constexpr std::size_t kChunkSize = 4096;  ///< elements of a chunk, whatever their type
+
+/// Copying costs a pointer a chunk; writing to a shared chunk copies that chunk first. Reading is safe from any number of
+/// threads; writing to distinct chunks of one array from several threads is safe after `own_chunk` of each.
+/// A chunk's address stands for its content as long as any array holds it: equal addresses mean equal content.
+template <class T>
+class ChunkedArray {
+ public:
+  using Chunk = std::array<T, kChunkSize>;
+
+  ChunkedArray() = default;
+  explicit ChunkedArray(std::size_t size, const T& value = T()) { resize(size, value); }
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  std::size_t chunk_count() const { return chunks_.size(); }
+
+  const T& operator[](std::size_t i) const { return (*chunks_[i / kChunkSize])[i % kChunkSize]; }
+
+  /// The used elements of a chunk.
+  std::span<const T> chunk(std::size_t c) const { return {chunks_[c]->data(), std::min(kChunkSize, size_ - c * kChunkSize)}; }
+  /// What stands for a chunk's content; keep it alive to keep that meaning.
+  const std::shared_ptr<Chunk>& chunk_owner(std::size_t c) const { return chunks_[c]; }
+  bool shares_chunk(const ChunkedArray& other, std::size_t c) const {
+    return c < other.chunks_.size() && chunks_[c] == other.chunks_[c] && size_ == other.size_;
+  }
+
+  /// The chunk for writing, copied first if another array shares it.
+  std::span<T> own_chunk(std::size_t c) {
+    if (chunks_[c].use_count() > 1) chunks_[c] = std::make_shared<Chunk>(*chunks_[c]);
+    return {chunks_[c]->data(), std::min(kChunkSize, size_ - c * kChunkSize)};
+  }
+  void set(std::size_t i, const T& value) { own_chunk(i / kChunkSize)[i % kChunkSize] = value; }
+
+  /// New elements get `value`.
+  void resize(std::size_t size, const T& value = T()) {
+    const std::size_t old = size_;
+    if (size > old && old % kChunkSize != 0) {
+      size_ = std::min(size, (old / kChunkSize + 1) * kChunkSize);
+      std::span<T> last = own_chunk(old / kChunkSize);
+      std::fill(last.begin() + static_cast<std::ptrdiff_t>(old % kChunkSize), last.end(), value);
+    }
+    chunks_.resize((size + kChunkSize - 1) / kChunkSize);
+    for (auto& chunk : chunks_)
+      if (!chunk) {
+        chunk = std::make_shared<Chunk>();
+        chunk->fill(value);
+      }
+    size_ = size;
+  }
+
+ private:
+  std::vector<std::shared_ptr<Chunk>> chunks_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace prismesh::mesh

@@ -1,0 +1,113 @@
+// The finite-element model as plain arrays. A Model is a value: copying it shares every chunk (see chunked_array.h).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "mesh/model/chunked_array.h"
+#include "mesh/model/id_index.h"
+#include "mesh/model/index.h"
+
+namespace prismesh::mesh {
+
+using Vec3 = Eigen::Vector3d;
+
+struct Adjacency;  // mesh/model/adjacency.h
+
+/// Corner nodes of a shell in the deck's order; a triangle repeats its third node.
+struct ShellNodes {
+  std::array<NodeIndex, 4> node;
+
+  bool is_triangle() const { return node[3] == node[2]; }
+  int corners() const { return is_triangle() ? 3 : 4; }
+  bool operator==(const ShellNodes&) const = default;
+};
+
+/// Mid-side nodes of an 8-node (or 6-node) shell; they are kept and shown, metrics use the corners.
+struct MidsideNodes {
+  ShellIndex shell;
+  std::array<NodeIndex, 4> node;  ///< between corner i and i+1; invalid where the element has none
+};
+
+/// Elements that are shown and whose nodes count, but that aren't edited themselves.
+enum class ElementClass : std::uint8_t { shell, beam, solid, tshell, discrete, mass, sph, other };
+inline constexpr int kElementClassCount = 8;
+std::string_view name(ElementClass element_class);
+
+/// All elements of one class other than shells: the nodes of element e are nodes[first_node[e] .. first_node[e+1]).
+struct ElementBlock {
+  std::vector<std::int64_t> id;
+  std::vector<PartIndex> part;  ///< invalid where the card names no part
+  std::vector<std::uint32_t> first_node{0};
+  std::vector<NodeIndex> nodes;
+
+  std::size_t size() const { return id.size(); }
+};
+
+/// A part with what its section and material say; absent values are unknown, not zero.
+struct Part {
+  std::int64_t id = 0;
+  std::string name;
+  bool defined = false;  ///< false: elements use the id, no *PART defines it
+  std::optional<std::int64_t> section;
+  std::optional<std::int64_t> material;
+  std::optional<double> thickness;       ///< shell thickness of the section (mean of the corners), deck's length unit
+  std::optional<double> density;         ///< deck's units
+  std::optional<double> youngs_modulus;  ///< deck's units
+  std::optional<double> poissons_ratio;
+  bool limits_time_step = true;  ///< false for rigid and null materials
+};
+
+/// How the deck wants its time step: *CONTROL_TIMESTEP.
+struct TimeStepControl {
+  double scale = 0.9;      ///< TSSFAC
+  int shell_option = 0;    ///< ISDO
+  double mass_scaled = 0;  ///< DT2MS; < 0: mass is added
+};
+
+/// Why a node must not be moved; bits of Model::node_holds.
+enum NodeHold : std::uint8_t {
+  kHeldByParameter = 1,  ///< its coordinates are given by &parameters
+  kHeldByInclude = 2,    ///< it stands in an include that is transformed or used twice
+  kHeldUndefined = 4,    ///< a shell names it but the deck doesn't define it: it has no position
+};
+
+/// Nodes, shells, everything else, parts; in the deck's order. Nodes that elements name but nobody defines are not in
+/// the arrays; an element with such a node is left out of the arrays and counted in `skipped`.
+struct Model {
+  ChunkedArray<std::int64_t> node_ids;
+  ChunkedArray<Vec3> positions;           ///< deck's length unit
+  ChunkedArray<std::uint8_t> node_holds;  ///< NodeHold bits
+  ChunkedArray<std::int64_t> shell_ids;
+  ChunkedArray<ShellNodes> shell_nodes;
+  ChunkedArray<PartIndex> shell_parts;
+  ChunkedArray<float> shell_thickness;                       ///< of the element's own card; 0 where the section's counts
+  std::shared_ptr<const std::vector<MidsideNodes>> midside;  ///< ascending by shell; never null after loading
+  std::array<std::shared_ptr<const ElementBlock>, kElementClassCount> elements;  ///< [shell] stays null; others never
+  std::shared_ptr<const std::vector<Part>> parts;                                ///< ascending by id
+  std::shared_ptr<const IdIndex> node_index;                                     ///< deck's id -> NodeIndex value
+  std::shared_ptr<const IdIndex> shell_index;
+  std::shared_ptr<const Adjacency> adjacency;  ///< of the shells; built by build_adjacency
+
+  std::size_t node_count() const { return positions.size(); }
+  std::size_t shell_count() const { return shell_nodes.size(); }
+  const Vec3& position(NodeIndex node) const { return positions[node.value]; }
+  const ShellNodes& shell(ShellIndex shell) const { return shell_nodes[shell.value]; }
+
+  NodeIndex find_node(std::int64_t id) const { return NodeIndex(node_index->find(id)); }
+  ShellIndex find_shell(std::int64_t id) const { return ShellIndex(shell_index->find(id)); }
+  PartIndex find_part(std::int64_t id) const;
+};
+
+/// Nodes in which a and b differ in position, ascending. Costs what differs: shared chunks are passed over.
+/// Precondition: equal node counts.
+std::vector<NodeIndex> moved_nodes(const Model& a, const Model& b);
+
+}  // namespace prismesh::mesh

@@ -1,0 +1,52 @@
+// Quality of a whole model or a part of it: states kept per shell, figures for people.
+#pragma once
+
+#include <optional>
+
+#include "mesh/model/node_set.h"
+#include "mesh/quality/criteria.h"
+
+namespace prismesh::mesh::quality {
+
+struct Counts {
+  std::size_t ok = 0;
+  std::size_t warn = 0;  ///< shells whose worst grade is warn
+  std::size_t fail = 0;
+  bool operator==(const Counts&) const = default;
+};
+
+/// State of every shell.
+ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteria, double target_size);
+/// Re-judges only the given shells; `counts` follows.
+void rejudge(const Model& model, const Criteria& criteria, double target_size, const ShellSet& shells, ChunkedArray<ShellState>& states,
+             Counts& counts);
+Counts count(const ChunkedArray<ShellState>& states);
+
+struct MetricSummary {
+  double min = 0, mean = 0, max = 0;
+  std::size_t measured = 0;  ///< shells the metric applies to
+  std::size_t warn = 0, fail = 0;
+  std::optional<ShellIndex> worst;
+};
+struct TimeStep {
+  double seconds = 0;  ///< in the deck's time unit
+  ShellIndex shell;
+};
+struct Report {
+  std::size_t elements = 0;
+  Counts counts;
+  double triangles_percent = 0;
+  std::array<MetricSummary, kMetricCount> metrics;
+  std::optional<double> mass;             ///< of the shells whose thickness and density are known; absent if none is
+  std::optional<Vec3> centre_of_gravity;  ///< of that mass
+  std::optional<TimeStep> time_step;
+};
+
+/// Figures of the given shells (all shells: pass nullptr).
+Report report(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
+              const ShellSet* shells = nullptr);
+
+/// A target size for a model that states none: the median edge length, rounded to two digits; 1 for a model without shells.
+double guess_target_size(const Model& model);
+
+}  // namespace prismesh::mesh::quality

@@ -1,0 +1,28 @@
+// Id expressions: `1-100,205,!17,part:3,1-1000:10`, left to right. Grammar: docs/selecting.md.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
+
+namespace prismesh::mesh::select {
+
+enum class Kind : std::uint8_t { node, element, part };
+
+/// What an expression names. Bare numbers are ids of the kind in hand; `node:`, `shell:`, `part:` change it for one item.
+struct Chosen {
+  NodeSet nodes;    ///< kind node: the nodes; else the nodes of `shells`
+  ShellSet shells;  ///< kind element or part: the shells; else empty
+};
+
+/// Evaluates an expression. An item that names nothing is an error: file "expression", line the column (from 1), and the
+/// nearest id that exists.
+Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind);
+
+/// The shortest expression of these ids in ascending ranges: "1-100,205". For tools that send what they picked.
+std::string to_expression(std::vector<std::int64_t> ids);
+
+}  // namespace prismesh::mesh::select
