@@ -1,0 +1,57 @@
+#include "mesh/model/features.h"
+
+#include <cmath>
+
+#include "base/deterministic_math.h"
+#include "base/parallel_for.h"
+
+namespace prismesh::mesh {
+
+namespace {
+
+/// The direction in which a shell leaves an edge, square to it. It depends on where the shell lies, not on the order of its
+/// nodes, so two shells of one sheet leave in opposite directions whatever their normals say.
+Vec3 away_from_edge(const Model& model, ShellIndex shell, const Vec3& middle, const Vec3& along) {
+  const ShellNodes& nodes = model.shell(shell);
+  Vec3 centre = Vec3::Zero();
+  for (int i = 0; i < nodes.corners(); ++i) centre += model.position(nodes.node[i]);
+  const Vec3 out = centre / nodes.corners() - middle;
+  const double length2 = along.squaredNorm();
+  return length2 > 0 ? Vec3(out - along * (out.dot(along) / length2)) : out;
+}
+
+EdgeKind classify(const Model& model, EdgeIndex edge, Edge ends, double cos_limit) {
+  const auto shells = model.adjacency->shells_of(edge);
+  if (shells.size() == 1) return EdgeKind::free;
+  if (shells.size() > 2) return EdgeKind::junction;
+  const Vec3& a = model.position(ends.low);
+  const Vec3& b = model.position(ends.high);
+  const Vec3 middle = 0.5 * (a + b);
+  const Vec3 along = b - a;
+  const Vec3 first = away_from_edge(model, shells[0], middle, along);
+  const Vec3 second = away_from_edge(model, shells[1], middle, along);
+  // a shell without width says nothing about a plane
+  const double size = std::sqrt(first.squaredNorm() * second.squaredNorm());
+  if (!(size > 1e-12 * along.squaredNorm())) return EdgeKind::smooth;
+  return -first.dot(second) < cos_limit * size ? EdgeKind::crease : EdgeKind::smooth;
+}
+
+}  // namespace
+
+EdgeKind classify_edge(const Model& model, EdgeIndex edge, Edge ends, double angle_degrees) {
+  return classify(model, edge, ends, deterministic_cos_degrees(angle_degrees));
+}
+
+std::vector<EdgeKind> classify_edges(const Model& model, double angle_degrees) {
+  const Adjacency& adjacency = *model.adjacency;
+  const double cos_limit = deterministic_cos_degrees(angle_degrees);
+  std::vector<EdgeKind> kinds(adjacency.edge_count());
+  parallel_for(model.node_count(), 16384, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t low = begin; low < end; ++low)
+      for (std::size_t e = adjacency.edge_first[low]; e < adjacency.edge_first[low + 1]; ++e)
+        kinds[e] = classify(model, EdgeIndex(e), {NodeIndex(low), adjacency.edge_high[e]}, cos_limit);
+  });
+  return kinds;
+}
+
+}  // namespace prismesh::mesh
