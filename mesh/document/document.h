@@ -1,8 +1,10 @@
 // A document: a deck, its settings, and generations of (model + selection + part states). See docs/architecture.md.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +38,12 @@ struct PartState {
   bool operator==(const PartState&) const = default;
 };
 
-enum NodeMark : std::uint8_t { kSelected = 1 };
+/// Bits of Generation::node_marks. The last two follow from the part states.
+enum NodeMark : std::uint8_t {
+  kSelected = 1,
+  kLocked = 2,  ///< an element of a locked part uses the node
+  kHidden = 4,  ///< elements use the node, all of hidden parts
+};
 
 /// The document after an edit. A value that shares what it didn't change with its neighbours.
 struct Generation {
@@ -48,9 +55,10 @@ struct Generation {
   std::size_t selected_shells = 0;
   std::shared_ptr<const std::vector<PartState>> parts;  ///< by PartIndex
   ChunkedArray<quality::ShellState> quality;
-  quality::Counts counts;    ///< all shells
-  std::uint64_t number = 0;  ///< counts up over the document's life, never reused
-  std::string made_by;       ///< the edit's name; "open" for the first
+  quality::Counts counts;     ///< all shells
+  std::uint64_t number = 0;   ///< counts up over the document's life, never reused
+  std::string made_by;        ///< the edit's name; "open" for the first
+  std::size_t own_bytes = 0;  ///< of chunks that the generation before doesn't share: what keeping that one costs
 };
 
 NodeSet selection(const Generation& generation);
@@ -66,6 +74,17 @@ struct EditReport {
   double milliseconds = 0;
 };
 
+/// Elements other than shells at each node: what moves along when the node is moved. Ascending by node.
+struct Attached {
+  struct Use {
+    NodeIndex node;
+    ElementClass element_class = ElementClass::other;
+    std::uint32_t element = 0;  ///< index in Model::elements[element_class]
+    auto operator<=>(const Use&) const = default;
+  };
+  std::vector<Use> uses;
+};
+
 struct Document {
   std::filesystem::path path;
   std::shared_ptr<const deck::Deck> deck;
@@ -75,18 +94,24 @@ struct Document {
   std::size_t cursor = 0;                                      ///< the current one
   std::shared_ptr<const Generation> opened;                    ///< as read from the deck; what saving compares with
   std::uint64_t next_number = 1;
+  std::shared_ptr<const Attached> attached;  ///< never null once opened
 
   const Generation& current() const { return *generations[cursor]; }
   bool can_undo() const { return cursor > 0; }
   bool can_redo() const { return cursor + 1 < generations.size(); }
 };
 
+/// Opens a deck: model, guessed or given settings, quality of every shell. Errors: those of deck::open and load_criteria, a
+/// target size that isn't positive.
 Result<Document> open(const std::filesystem::path& path, const OpenOptions& options);
+/// A document of a deck that is open already.
+Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened, const OpenOptions& options);
 
 /// What an edit would do, before anyone knows of it: so that it can be journalled first.
 struct Prepared {
   std::shared_ptr<const Generation> next;  ///< for undo and redo: the generation gone to
   enum class Step : std::uint8_t { push, undo, redo } step = Step::push;
+  std::size_t drop_oldest = 0;  ///< generations that go when this one comes, so that the history keeps its byte cap
   EditReport report;
 };
 

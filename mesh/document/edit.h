@@ -45,15 +45,20 @@ struct Shrink {
 struct Invert {};
 
 enum class VisibilityAction : std::uint8_t { hide, show, only, lock, unlock };
-/// Parts named by `on` (an expression of kind part); without it, the parts of the selection.
+/// Parts named by `on` (an expression of kind part); without it, the parts of the selection; show and unlock with nothing
+/// selected: all parts.
 struct SetParts {
   VisibilityAction action = VisibilityAction::hide;
   std::optional<std::string> on;
 };
 
+/// What an edit acts on: an expression of kind node, or a recipe, worked out on the model as it is when the edit is applied; its
+/// mode is ignored. A recipe of a region by coordinates means the same place on a remeshed variant.
+using Where = std::variant<std::string, Select, SelectRegion, SelectLasso>;
+
 /// What a shaping edit acts on and how it fades out.
 struct Shaping {
-  std::optional<std::string> on;  ///< expression; without it the selection
+  std::optional<Where> on;  ///< without it the selection
   std::optional<Place> grab;
   shape::WeightOptions weights;
   std::optional<double> max_move;  ///< no node moves farther; deck's length unit

@@ -25,6 +25,18 @@ class ChunkedArray {
   ChunkedArray() = default;
   explicit ChunkedArray(std::size_t size, const T& value = T()) { resize(size, value); }
 
+  /// All chunks shared with each other: costs one chunk and a pointer for each, until they are written to (then as any
+  /// shared chunk). For arrays that are mostly one value.
+  static ChunkedArray filled(std::size_t size, const T& value = T()) {
+    ChunkedArray array;
+    if (size == 0) return array;
+    const auto chunk = std::make_shared<Chunk>();
+    chunk->fill(value);
+    array.chunks_.assign((size + kChunkSize - 1) / kChunkSize, chunk);
+    array.size_ = size;
+    return array;
+  }
+
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   std::size_t chunk_count() const { return chunks_.size(); }
