@@ -1,0 +1,39 @@
+// What the renderer draws: a snapshot's arrays in chunks with versions, whoever holds them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "ipc/snapshot.h"
+
+namespace prismesh::kiosk::render {
+
+/// Arrays as ipc::SnapshotView has them. Nothing in them is trusted: an index may be out of range and is then not drawn.
+class ModelSource {
+ public:
+  virtual ~ModelSource() = default;
+  virtual std::size_t size(ipc::SnapshotArray array) const = 0;  ///< elements
+  /// Equal versions mean equal content, also across sources of one document.
+  virtual std::uint64_t chunk_version(ipc::SnapshotArray array, std::size_t chunk) const = 0;
+  virtual std::span<const std::byte> chunk_bytes(ipc::SnapshotArray array, std::size_t chunk) const = 0;
+  virtual std::size_t part_count() const = 0;
+  virtual bool part_hidden(std::size_t part) const = 0;
+  /// Changes with the document; versions of two documents aren't compared.
+  virtual std::uint64_t document_key() const = 0;
+
+  std::size_t chunk_count(ipc::SnapshotArray array) const { return (size(array) + mesh::kChunkSize - 1) / mesh::kChunkSize; }
+  template <class T>
+  std::span<const T> chunk(ipc::SnapshotArray array, std::size_t chunk) const {
+    const std::span<const std::byte> bytes = chunk_bytes(array, chunk);
+    return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+  }
+  template <class T>
+  T at(ipc::SnapshotArray array, std::size_t i) const {
+    return chunk<T>(array, i / mesh::kChunkSize)[i % mesh::kChunkSize];
+  }
+};
+
+std::shared_ptr<const ModelSource> snapshot_source(std::shared_ptr<const ipc::SnapshotView> view);
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,121 @@
+// Draws the model for both eyes and weaves the display's picture. Needs a current OpenGL ES 3.1 context for all of its life
+// (display/headless.h, or a window's).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "ipc/preview.h"
+#include "kiosk/render/model_source.h"
+#include "kiosk/stereo/pointer.h"
+#include "kiosk/stereo/profile.h"
+#include "kiosk/stereo/view.h"
+
+namespace prismesh::kiosk::render {
+
+using mesh::Vec3;
+
+enum class ColourMode : std::uint8_t { parts, quality };
+inline constexpr std::array<std::string_view, 2> kColourModeNames{"parts", "quality"};
+std::optional<ColourMode> colour_mode_from(std::string_view name);
+
+/// The arrow that is dragged: white, green while active.
+struct Handle {
+  Vec3 at = Vec3::Zero();  ///< deck coordinates
+  Vec3 direction = Vec3::UnitZ();
+  bool active = false;
+};
+
+/// One eye's image while it is being drawn: its framebuffer is bound, its viewport set, blending and depth test off.
+struct EyeImage {
+  std::optional<stereo::Eye> eye;  ///< empty: the picture from between the eyes
+  int width = 0;                   ///< of the image, pixels
+  int height = 0;
+  int display_width = 0;  ///< what the image stands for on the display: twice `width` for half-width images
+  int display_height = 0;
+};
+
+/// A rectangle in display pixels from the upper left corner.
+struct PixelRect {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// All that a picture depends on, but for the model and the preview.
+struct Picture {
+  stereo::View view;
+  stereo::Profile profile;
+  Vec3 between_eyes_mm = Vec3(0, 0, 650);
+  double eye_separation_mm = stereo::kMeanEyeSeparationMm;
+  ColourMode colour = ColourMode::parts;
+  bool element_edges = true;
+  bool quality_glyphs = true;
+  bool selected_nodes = true;
+  std::optional<Handle> handle;
+  std::optional<PixelRect> rubber_band;
+  /// Panels, cursor and all else that lies in the screen's plane: called once per eye image, after the scene and before weaving.
+  /// Nothing may be drawn into the target after `draw`. May change any GL state.
+  std::function<void(const EyeImage&)> overlay;
+};
+
+struct RendererOptions {
+  int samples = 4;                ///< 4 or 1 (no multisampling)
+  std::size_t glyph_cap = 20000;  ///< quality glyphs drawn at most: failures first
+};
+
+/// What a picture had to leave out, to be said in words beside it.
+struct DrawReport {
+  std::size_t glyphs = 0;
+  std::size_t glyphs_left_out = 0;
+};
+
+class Renderer {
+ public:
+  /// Errors: no context or one below OpenGL ES 3.1 (named), a shader that the driver refuses (its words).
+  static Result<std::unique_ptr<Renderer>> create(const RendererOptions& options);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Shows a model: uploads the chunks whose versions it doesn't have yet. Null: an empty screen. Errors: too large for the GPU.
+  Result<void> set_model(std::shared_ptr<const ModelSource> model);
+  const ModelSource* model() const;
+  /// Box around the nodes of visible shells' chunks and lines, finite coordinates only; what `fit` frames.
+  stereo::Box bounds() const;
+
+  /// A drag's preview over the model: nodes that move and shells they touch, as PreviewReader gives them.
+  void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
+  /// A frame: one position per node, one state per shell; other sizes are ignored. No frame yet: nothing is drawn.
+  void update_preview(const ipc::PreviewFrame& frame);
+  void end_preview();
+
+  /// Draws into `framebuffer` (0: the window's), width x height pixels. Lower rows are first, as OpenGL counts.
+  Result<DrawReport> draw(const Picture& picture, unsigned framebuffer, int width, int height);
+
+  /// What lies where on the picture, for `aim`; drawn again only when the aim, the model or the visible parts changed. The pixels of a
+  /// preview are those of the model underneath.
+  std::optional<mesh::ShellIndex> shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel);
+  /// The visible node nearest to the pixel, at most `radius` pixels away.
+  std::optional<mesh::NodeIndex> node_near(const stereo::Aim& aim, const Eigen::Vector2d& pixel, double radius);
+  /// Nodes of visible parts inside a rectangle, ascending: those that can be seen, or all of them (`through`).
+  mesh::NodeSet nodes_in(const stereo::Aim& aim, const PixelRect& rect, bool through);
+
+  struct Figures {
+    std::size_t chunks_uploaded = 0;  ///< over the renderer's life; for tests and figures
+    std::size_t item_buffers_drawn = 0;
+  };
+  Figures figures() const;
+
+ private:
+  struct State;
+  explicit Renderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,55 @@
+// From the pointer's pixel to the scene and back: the ray an eye aims along, and how far something is dragged. Pure.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "kiosk/stereo/frustum.h"
+#include "kiosk/stereo/profile.h"
+#include "kiosk/stereo/view.h"
+
+namespace prismesh::kiosk::stereo {
+
+/// One view of the model on a picture of width x height pixels: what the pointer aims with. Pixels count from the upper left corner;
+/// the centre of the first is (0.5, 0.5).
+struct Aim {
+  View view;
+  Vec3 eye_mm = Vec3(0, 0, 650);
+  Eigen::Vector2d screen_mm = Eigen::Vector2d(1, 1);
+  int width = 1;
+  int height = 1;
+
+  Eigen::Matrix4d clip_from_deck() const;
+  double mm_per_pixel() const { return screen_mm.x() / width; }
+};
+/// The aim of a profile's pointer eye (from between the eyes for Weave::centre).
+Aim aim_for(const View& view, const Profile& profile, const Vec3& between_eyes_mm, double separation_mm, int width, int height);
+
+/// Pixel of a deck point; empty when it lies behind the eye.
+std::optional<Eigen::Vector2d> pixel_of(const Aim& aim, const Vec3& deck_point);
+/// Millimetres on the screen of a pixel position.
+Eigen::Vector2d mm_of_pixel(const Aim& aim, const Eigen::Vector2d& pixel);
+
+/// A ray in deck coordinates; direction is not of unit length where depth is compressed.
+struct Ray {
+  Vec3 origin = Vec3::Zero();
+  Vec3 direction = Vec3::UnitZ();
+};
+Ray ray_through(const Aim& aim, const Eigen::Vector2d& pixel);
+
+/// Distance along the unit vector `direction` from `point` (deck coordinates) at which the axis comes nearest to the pointer
+/// on the screen; empty while the axis points at the eye (nothing sensible can be said).
+std::optional<double> distance_along(const Aim& aim, const Vec3& point, const Vec3& direction, const Eigen::Vector2d& pixel);
+/// The displacement, parallel to the screen, that brings `point` under the pixel (deck coordinates).
+Vec3 displacement_in_screen_plane(const Aim& aim, const Vec3& point, const Eigen::Vector2d& pixel);
+
+/// The handle's arrow on the screen: it always has this length, in pixels, unless it points at the viewer.
+inline constexpr double kHandleLengthPixels = 96;
+/// The point (deck coordinates) where the tip of a handle at `point` with unit `direction` is drawn.
+Vec3 handle_tip(const Aim& aim, const Vec3& point, const Vec3& direction);
+/// Whether a pixel is on the handle, with `slack` pixels around it.
+bool on_handle(const Aim& aim, const Vec3& point, const Vec3& direction, const Eigen::Vector2d& pixel, double slack = 8);
+
+}  // namespace prismesh::kiosk::stereo

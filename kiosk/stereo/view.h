@@ -1,0 +1,82 @@
+// Where the model stands before the screen. Screen space is in millimetres: the origin is the screen's centre, x to the right,
+// y up, z toward the viewer. All functions are pure.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "mesh/model/model.h"
+
+namespace prismesh::kiosk::stereo {
+
+using mesh::Vec3;
+
+/// Depth in which both eyes rest, in mm before (+) and behind (-) a screen 650 mm away: parallax within one degree.
+inline constexpr double kComfortBeforeMm = 99;
+inline constexpr double kComfortBehindMm = 143;
+/// Share of the comfort box that a model may fill.
+inline constexpr double kComfortMargin = 0.8;
+
+struct Sphere {
+  Vec3 centre = Vec3::Zero();
+  double radius = 1;
+};
+
+/// An axis-parallel box in deck coordinates; empty when low > high.
+struct Box {
+  Vec3 low = Vec3::Constant(1e300);
+  Vec3 high = Vec3::Constant(-1e300);
+
+  bool empty() const { return !(low.array() <= high.array()).all(); }
+  void add(const Vec3& point) {
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  void add(const Box& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
+};
+Sphere sphere_around(const Box& box);  ///< radius 1 at the origin for an empty box
+
+struct View {
+  Vec3 pivot = Vec3::Zero();                                     ///< deck coordinates; lies in the screen's plane, rotations turn about it
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< deck axes to screen axes
+  double mm_per_unit = 1;                                        ///< mm on the screen for one deck length unit
+  Eigen::Vector2d pan_mm = Eigen::Vector2d::Zero();              ///< where the pivot stands on the screen
+  Sphere bounds;                                                 ///< the whole model, deck coordinates: what must stay in the comfort box
+};
+
+/// Factor (<= 1) on depth alone that keeps `bounds` within the comfort box however the view is turned.
+double depth_scale(const View& view);
+/// Deck coordinates to screen millimetres, depth compressed: affine.
+Eigen::Matrix4d screen_from_deck(const View& view);
+Vec3 to_screen(const View& view, const Vec3& deck_point);
+Vec3 to_deck(const View& view, const Vec3& screen_mm);
+/// The depths that the bounds can reach in screen space: [behind, before] in mm.
+std::array<double, 2> depth_extent(const View& view);
+
+/// Turns the model about the pivot: `right` about the screen's vertical, `up` about its horizontal axis, in radians. Follows the hand:
+/// a positive `right` moves what is near the viewer to the right.
+View orbit(const View& view, double right, double up);
+/// Turns about the axis toward the viewer, counterclockwise, in radians.
+View roll(const View& view, double angle);
+View pan(const View& view, const Eigen::Vector2d& by_mm);
+/// Scales by `factor`; what is seen at `at_mm` on the screen stays there.
+View zoom(const View& view, double factor, const Eigen::Vector2d& at_mm);
+/// Turns about another point from now on, without moving anything sideways; depth follows the new pivot.
+View with_pivot(const View& view, const Vec3& deck_point);
+/// Centres the box and scales it to fill the screen (w x h mm) with a margin, as an eye at `eye_distance_mm` sees it. Keeps the rotation.
+View fit(const View& view, const Box& box, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650);
+
+/// front, back, left, right, top, bottom, iso. Deck z is up; front looks along +y, right along -x, top along -z; iso looks from the
+/// right, front and above.
+inline constexpr std::array<std::string_view, 7> kViewNames{"front", "back", "left", "right", "top", "bottom", "iso"};
+std::optional<Eigen::Quaterniond> named_rotation(std::string_view name);
+
+}  // namespace prismesh::kiosk::stereo
