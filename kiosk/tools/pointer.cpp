@@ -33,9 +33,12 @@ std::vector<Gesture> Pointer::moved(const display::PointerMoved& event) {
 
 void Pointer::begin_drag() {
   last_click_.reset();
-  if (button_ == MouseButton::middle || (button_ == MouseButton::right && modifiers_.alt)) drag_ = Drag::pan;
-  else if (button_ == MouseButton::right || modifiers_.alt) drag_ = Drag::orbit;
-  else drag_ = Drag::rectangle;
+  if (button_ == MouseButton::middle || (button_ == MouseButton::right && modifiers_.alt))
+    drag_ = Drag::pan;
+  else if (button_ == MouseButton::right || modifiers_.alt)
+    drag_ = Drag::orbit;
+  else
+    drag_ = Drag::rectangle;
   last_ = down_;
 }
 

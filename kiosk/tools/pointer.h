@@ -58,8 +58,8 @@ struct HandleReleased {
   ScreenPoint at;
 };
 
-using Gesture = std::variant<NodeClicked, RegionClicked, TakeBackClicked, RectangleStretched, RectangleDone, Orbited, Panned, Zoomed, HandleTaken,
-                             HandleMoved, HandleReleased>;
+using Gesture = std::variant<NodeClicked, RegionClicked, TakeBackClicked, RectangleStretched, RectangleDone, Orbited, Panned, Zoomed,
+                             HandleTaken, HandleMoved, HandleReleased>;
 
 /// How far a pressed pointer may wander and still be a click, in pixels; and how quickly a second click must follow.
 inline constexpr double kClickRadius = 4;

@@ -1,0 +1,35 @@
+// Draws Dear ImGui's triangles with OpenGL ES 3, into an eye's image that may be narrower than the picture it stands for.
+// (The backend shipped with the library is built for desktop OpenGL.)
+#pragma once
+
+#include <memory>
+
+#include "base/error.h"
+#include "kiosk/display/window.h"
+
+struct ImDrawData;
+
+namespace prismesh::kiosk::panels {
+
+class GuiRenderer {
+ public:
+  /// Needs a current GL context and a current ImGui context. Errors: the driver refuses a shader.
+  static Result<GuiRenderer> create();
+  GuiRenderer(GuiRenderer&&) noexcept;
+  GuiRenderer& operator=(GuiRenderer&&) noexcept;
+  ~GuiRenderer();
+
+  /// Takes the font atlas of the current ImGui context, which must have been built or changed since.
+  void upload_fonts();
+
+  /// Draws into the bound framebuffer's lower left `target` pixels; data.DisplaySize is squeezed or stretched to fill them.
+  /// `shift_x` (normalised device coordinates) moves everything sideways: the half-pixel correction of an eye's columns.
+  void draw(const ImDrawData& data, display::PixelSize target, double shift_x) const;
+
+ private:
+  struct State;
+  explicit GuiRenderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace prismesh::kiosk::panels
