@@ -1,6 +1,7 @@
 // From a deck's id to an index. Ids are sparse, up to 19 digits, and mostly ascending.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -8,6 +9,8 @@
 
 namespace prismesh::mesh {
 
+/// Costs nothing for ids that count up by one, 8 bytes an id for other ascending ids, and 12 for ids in any order, plus a
+/// direct table where the ids lie densely enough for it.
 class IdIndex {
  public:
   static constexpr std::uint32_t kNotFound = 0xffffffffu;
@@ -17,19 +20,34 @@ class IdIndex {
   explicit IdIndex(std::span<const std::int64_t> ids);
 
   /// The index, or kNotFound.
-  std::uint32_t find(std::int64_t id) const;
+  std::uint32_t find(std::int64_t id) const {
+    if (size_ == 0 || id < first_) return kNotFound;
+    const std::uint64_t offset = static_cast<std::uint64_t>(id) - static_cast<std::uint64_t>(first_);
+    if (contiguous_) return offset < size_ ? static_cast<std::uint32_t>(offset) : kNotFound;
+    if (!dense_.empty()) return offset < dense_.size() ? dense_[offset] : kNotFound;
+    return find_sorted(id);
+  }
   /// Ids and indices ascending by id, each id once.
-  std::size_t size() const { return sorted_.size(); }
-  std::pair<std::int64_t, std::uint32_t> at(std::size_t rank) const { return {sorted_[rank].first, sorted_[rank].second}; }
+  std::size_t size() const { return size_; }
+  std::pair<std::int64_t, std::uint32_t> at(std::size_t rank) const { return {id_at(rank), index_at(rank)}; }
   /// Rank of the first id >= `id`.
   std::size_t lower_bound(std::int64_t id) const;
   /// Ids that occur more than once, ascending, each once.
   const std::vector<std::int64_t>& duplicates() const { return duplicates_; }
 
  private:
-  std::vector<std::pair<std::int64_t, std::uint32_t>> sorted_;
-  std::vector<std::uint32_t> dense_;  ///< id - first_ -> index, where the ids are dense enough
+  std::int64_t id_at(std::size_t rank) const { return contiguous_ ? first_ + static_cast<std::int64_t>(rank) : ids_[rank]; }
+  std::uint32_t index_at(std::size_t rank) const { return order_.empty() ? static_cast<std::uint32_t>(rank) : order_[rank]; }
+  std::uint32_t find_sorted(std::int64_t id) const;
+  void build_dense(std::span<const std::int64_t> ids, std::uint64_t range);
+  void build_sorted(std::span<const std::int64_t> ids);
+
+  std::size_t size_ = 0;
   std::int64_t first_ = 0;
+  bool contiguous_ = false;           ///< index i has id first_ + i: nothing else is stored
+  std::vector<std::int64_t> ids_;     ///< ascending
+  std::vector<std::uint32_t> order_;  ///< rank -> index; empty where both are the same
+  std::vector<std::uint32_t> dense_;  ///< id - first_ -> index, where the ids are dense enough
   std::vector<std::int64_t> duplicates_;
 };
 

@@ -1,0 +1,248 @@
+#include "base/file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <cstring>
+#include <set>
+#include <string>
+#include <system_error>
+
+#include "base/parallel_for.h"
+
+namespace prismesh {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kReadPiece = std::size_t{8} << 20;
+constexpr int kLinkDepth = 40;  // as many links in a row as the kernel follows
+
+std::string reason(int error) { return std::generic_category().message(error); }
+
+/// A descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int get() const { return fd_; }
+  /// Closes now: some file systems tell of a failed write only here. 0 or an errno.
+  int close() {
+    const int fd = std::exchange(fd_, -1);
+    return ::close(fd) == 0 ? 0 : errno;
+  }
+
+ private:
+  int fd_;
+};
+
+FileIdentity identity_of(const struct stat& status) {
+  return {static_cast<std::uint64_t>(status.st_dev), static_cast<std::uint64_t>(status.st_ino), static_cast<std::uint64_t>(status.st_size),
+          static_cast<std::int64_t>(status.st_mtim.tv_sec) * 1'000'000'000 + status.st_mtim.tv_nsec};
+}
+
+/// Fills [data, data + size) from `offset` on. 0, an errno, or -1 where the file ended early.
+int read_range(int fd, char* data, std::size_t size, std::size_t offset) {
+  while (size > 0) {
+    const ssize_t got = ::pread(fd, data, size, static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno;
+    if (got == 0) return -1;
+    data += got;
+    offset += static_cast<std::size_t>(got);
+    size -= static_cast<std::size_t>(got);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Result<FileIdentity> identify_file(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return fail(path.string(), "can't be found: " + reason(errno));
+  return identity_of(status);
+}
+
+Result<FileBytes> read_file(const fs::path& path) {
+  // O_NONBLOCK: opening a pipe that nobody writes to must not hang.
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.get() < 0) return fail(path.string(), "can't be opened: " + reason(errno));
+  struct stat before {};
+  if (::fstat(file.get(), &before) != 0) return fail(path.string(), "can't be read: " + reason(errno));
+  if (S_ISDIR(before.st_mode)) return fail(path.string(), "is a folder, not a file");
+  if (!S_ISREG(before.st_mode)) return fail(path.string(), "is not a regular file");
+
+  FileBytes bytes;
+  bytes.size_ = static_cast<std::size_t>(before.st_size);
+  bytes.data_.reset(new (std::nothrow) char[bytes.size_ + 1]);
+  if (!bytes.data_) return fail(path.string(), "is too large for this machine's memory (" + std::to_string(bytes.size_) + " bytes)");
+  bytes.data_[bytes.size_] = '\0';
+  std::atomic<int> error = 0;
+  parallel_for(bytes.size_, kReadPiece, [&](std::size_t begin, std::size_t end) {
+    if (const int failed = read_range(file.get(), bytes.data_.get() + begin, end - begin, begin); failed != 0) error = failed;
+  });
+  if (error > 0) return fail(path.string(), "can't be read: " + reason(error));
+  struct stat after {};
+  if (::fstat(file.get(), &after) != 0) return fail(path.string(), "can't be read: " + reason(errno));
+  if (error != 0 || identity_of(before) != identity_of(after)) return fail(path.string(), "changed while it was being read; open it again");
+  bytes.identity_ = identity_of(after);
+  return bytes;
+}
+
+namespace {
+
+/// Where a write to `path` must go: what a chain of symbolic links points to, so that the link stays a link.
+Result<fs::path> follow_links(const fs::path& path) {
+  fs::path target = path;
+  for (int depth = 0; depth < kLinkDepth; ++depth) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) return fail(path.string(), "can't follow the symbolic link: " + error.message());
+    target = next.is_absolute() ? next : target.parent_path() / next;
+  }
+  return fail(path.string(), "can't follow the symbolic link: too many links in a row");
+}
+
+/// A file written beside its target, waiting to be renamed; removed when it goes out of scope before that.
+struct Staged {
+  fs::path shown;   ///< as the caller named it
+  fs::path target;  ///< what it points to
+  fs::path temporary;
+
+  Staged() = default;
+  Staged(Staged&& other) noexcept
+      : shown(std::move(other.shown)), target(std::move(other.target)), temporary(std::exchange(other.temporary, {})) {}
+  Staged& operator=(Staged&&) = delete;
+  ~Staged() {
+    if (!temporary.empty()) ::unlink(temporary.c_str());
+  }
+};
+
+fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+/// 0 or an errno.
+int write_pieces(int fd, const std::vector<std::string_view>& pieces) {
+  std::vector<iovec> batch;
+  std::size_t next = 0;
+  while (next < pieces.size()) {
+    batch.clear();
+    for (; next < pieces.size() && batch.size() < IOV_MAX; ++next)
+      if (!pieces[next].empty()) batch.push_back({const_cast<char*>(pieces[next].data()), pieces[next].size()});
+    std::size_t first = 0;
+    while (first < batch.size()) {
+      const ssize_t wrote = ::writev(fd, batch.data() + first, static_cast<int>(batch.size() - first));
+      if (wrote < 0 && errno == EINTR) continue;
+      if (wrote < 0) return errno;
+      if (wrote == 0) return EIO;
+      // A short write goes on where it stopped; the reason for it shows as an error then.
+      auto left = static_cast<std::size_t>(wrote);
+      while (first < batch.size() && left >= batch[first].iov_len) left -= batch[first++].iov_len;
+      if (left > 0) {
+        batch[first].iov_base = static_cast<char*>(batch[first].iov_base) + left;
+        batch[first].iov_len -= left;
+      }
+    }
+  }
+  return 0;
+}
+
+tl::unexpected<Error> write_failure(const fs::path& path, int error) {
+  if (error == ENOSPC || error == EDQUOT)
+    return fail(path.string(), "can't be written: the disk is full (" + reason(error) + "); nothing was changed");
+  return fail(path.string(), "can't be written: " + reason(error) + "; nothing was changed");
+}
+
+/// The permissions the new file gets: those of the target it replaces.
+Result<void> take_permissions(int fd, const Staged& staged) {
+  struct stat old {};
+  if (::stat(staged.target.c_str(), &old) != 0) {
+    if (errno == ENOENT) return {};
+    return write_failure(staged.shown, errno);
+  }
+  if (S_ISDIR(old.st_mode)) return fail(staged.shown.string(), "is a folder; a file can't take its place");
+  if (!S_ISREG(old.st_mode)) return fail(staged.shown.string(), "is not a regular file; it isn't replaced");
+  if (::access(staged.target.c_str(), W_OK) != 0) return fail(staged.shown.string(), "is read-only; nothing was changed");
+  // Only root may give a file away; keeping the group is worth a try, failing to isn't worth refusing for.
+  if (::fchown(fd, old.st_uid, old.st_gid) != 0 && ::fchown(fd, static_cast<uid_t>(-1), old.st_gid) != 0) errno = 0;
+  if (::fchmod(fd, old.st_mode & 07777) != 0) return write_failure(staged.shown, errno);
+  return {};
+}
+
+Result<Staged> stage(const PendingFile& file) {
+  Staged staged;
+  staged.shown = file.path;
+  Result<fs::path> target = follow_links(file.path);
+  if (!target) return fail(target.error());
+  staged.target = *target;
+  std::error_code made;
+  fs::create_directories(folder_of(staged.target), made);
+  if (made) return fail(file.path.string(), "its folder can't be made: " + made.message());
+
+  std::string name = (folder_of(staged.target) / ("." + staged.target.filename().string() + ".XXXXXX")).string();
+  Descriptor fd(::mkostemp(name.data(), O_CLOEXEC));
+  if (fd.get() < 0) {
+    const int error = errno;
+    if (error == EACCES || error == EROFS || error == EPERM)
+      return fail(file.path.string(),
+                  "can't be written: the folder " + folder_of(staged.target).string() + " is read-only (" + reason(error) + ")");
+    return write_failure(file.path, error);
+  }
+  staged.temporary = name;
+  // mkstemp makes private files; a new deck is as readable as any file its user makes.
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  if (::fchmod(fd.get(), 0666 & ~mask) != 0) return write_failure(file.path, errno);
+  if (Result<void> taken = take_permissions(fd.get(), staged); !taken) return fail(taken.error());
+  if (const int error = write_pieces(fd.get(), file.pieces); error != 0) return write_failure(file.path, error);
+  if (::fsync(fd.get()) != 0) return write_failure(file.path, errno);
+  if (const int error = fd.close(); error != 0) return write_failure(file.path, error);
+  return staged;
+}
+
+Result<void> flush_folder(const fs::path& folder) {
+  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.get() < 0) return fail(folder.string(), "can't be flushed to disk: " + reason(errno));
+  // Some file systems have no way to flush a folder, and say EINVAL.
+  if (::fsync(fd.get()) != 0 && errno != EINVAL) return fail(folder.string(), "can't be flushed to disk: " + reason(errno));
+  return {};
+}
+
+}  // namespace
+
+Result<void> replace_files(std::span<const PendingFile> files) {
+  std::vector<Staged> staged;
+  staged.reserve(files.size());
+  for (const PendingFile& file : files) {
+    Result<Staged> one = stage(file);
+    if (!one) return fail(one.error());
+    staged.push_back(std::move(*one));
+  }
+  std::set<fs::path> folders;
+  for (std::size_t i = 0; i < staged.size(); ++i) {
+    if (::rename(staged[i].temporary.c_str(), staged[i].target.c_str()) != 0) {
+      const int error = errno;
+      if (i == 0) return write_failure(staged[i].shown, error);
+      return fail(staged[i].shown.string(), "can't be replaced: " + reason(error) + "; " + std::to_string(i) + " of " +
+                                                std::to_string(staged.size()) + " files were already replaced, the last of them " +
+                                                staged[i - 1].shown.string());
+    }
+    staged[i].temporary.clear();
+    folders.insert(folder_of(staged[i].target));
+  }
+  for (const fs::path& folder : folders)
+    if (Result<void> flushed = flush_folder(folder); !flushed) return flushed;
+  return {};
+}
+
+}  // namespace prismesh
