@@ -1,0 +1,84 @@
+// The fields of each edit, named once: reading and writing JSON both walk these lists. Private to mesh/document.
+#pragma once
+
+#include "mesh/document/edit.h"
+
+namespace prismesh::mesh::document {
+
+// A visitor has required(name, value), optional(name, value), nested(name, object) and not_built(name, sentence).
+// Numbers carry their limits as a Limit argument, so that the error can name them.
+struct Limit {
+  double low;
+  double high;
+  bool low_open = false;  ///< low itself is refused
+};
+
+inline constexpr double kLargest = 1e300;  ///< coordinates: finite, with room for arithmetic
+inline constexpr Limit kAnyLength{-kLargest, kLargest};
+
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Select*) {
+  v.required("expr", edit.expr);
+  v.optional("kind", edit.kind);
+  v.optional("mode", edit.mode);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const SelectRegion*) {
+  v.required("at", edit.at);
+  v.optional("angle", edit.angle, Limit{0, 180});
+  v.optional("mode", edit.mode);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const SelectLasso*) {
+  v.required("outline", edit.outline);
+  v.required("view", edit.view);
+  v.optional("visible", edit.visible);
+  v.optional("mode", edit.mode);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Grow*) {
+  v.optional("rings", edit.rings);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Shrink*) {
+  v.optional("rings", edit.rings);
+}
+template <class Visitor>
+void fields(Visitor&, auto&, const Invert*) {}
+template <class Visitor>
+void fields(Visitor&, auto&, const Undo*) {}
+template <class Visitor>
+void fields(Visitor&, auto&, const Redo*) {}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const SetParts*) {
+  v.optional("on", edit.on);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& falloff, const shape::Falloff*) {
+  v.optional("profile", falloff.profile);
+  v.optional("flat", falloff.flat, Limit{0, 1});
+  v.optional("along", falloff.along);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& shaping, const Shaping*) {
+  v.optional("on", shaping.on);
+  v.optional("grab", shaping.grab);
+  v.nested("falloff", shaping.weights.falloff);
+  v.optional("free_ends", shaping.weights.free_ends);
+  v.optional("origin", shaping.weights.origin);
+  v.optional("max_move", shaping.max_move, Limit{0, kLargest, true});
+  v.not_built("symmetry", "this version doesn't mirror an edit at a plane");
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Translate*) {
+  v.required("by", edit.by);
+  fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Lift*) {
+  v.required("distance", edit.distance, kAnyLength);
+  v.normals("normals", edit.each_normal);
+  fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
+}
+
+}  // namespace prismesh::mesh::document
