@@ -19,13 +19,13 @@ double power_of_two(int n) { return std::bit_cast<double>(static_cast<std::uint6
 double small_sin(double x) {
   const double z = x * x;
   double sum = 0;
-  for (int n = 17; n >= 3; n -= 2) sum = z / (n * (n - 1)) * (sum - 1.0);
+  for (int n = 17; n >= 3; n -= 2) sum = -z / (n * (n - 1)) * (sum + 1.0);
   return x + x * sum;
 }
 double small_cos(double x) {
   const double z = x * x;
   double sum = 0;
-  for (int n = 18; n >= 2; n -= 2) sum = z / (n * (n - 1)) * (sum - 1.0);
+  for (int n = 18; n >= 2; n -= 2) sum = -z / (n * (n - 1)) * (sum + 1.0);
   return 1.0 + sum;
 }
 

@@ -106,6 +106,16 @@ inline mesh::Model make_model(const std::vector<NodeSpec>& nodes, const std::vec
   return model;
 }
 
+/// A model of points and shells that name them by position, from 0; ids are positions + 1. A triangle repeats its third.
+inline mesh::Model make_shells(const std::vector<mesh::Vec3>& points, const std::vector<std::array<int, 4>>& corners) {
+  std::vector<NodeSpec> nodes;
+  std::vector<ShellSpec> shells;
+  for (const mesh::Vec3& point : points) nodes.push_back({static_cast<std::int64_t>(nodes.size()) + 1, point});
+  for (const std::array<int, 4>& c : corners)
+    shells.push_back({static_cast<std::int64_t>(shells.size()) + 1, 1, {c[0] + 1, c[1] + 1, c[2] + 1, c[3] + 1}});
+  return make_model(nodes, shells);
+}
+
 /// A grid of columns × rows quads, its node (i, j) at place(i, j). Node ids are 1 + i + j·(columns+1), shell ids
 /// 1 + i + j·columns, all in part 1. `keep(i, j)` false leaves a shell out; its nodes stay.
 inline mesh::Model make_grid(int columns, int rows, const std::function<mesh::Vec3(int i, int j)>& place,
