@@ -6,56 +6,56 @@
 #include <variant>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "kiosk/display/window.h"
 #include "mesh/document/edit.h"
 
 namespace prismesh::kiosk::tools {
 
-/// A point of the picture, pixels from its upper left corner.
-struct ScreenPoint {
-  double x = 0, y = 0;
-};
+/// A point of the picture: x right, y down, from its upper left corner.
+using Pixel = Eigen::Vector2d;
 
 /// What lies under the pointer when a button goes down.
 enum class Under : std::uint8_t { picture, panel, lift_handle, move_handle };
 
 struct NodeClicked {
-  ScreenPoint at;
+  Pixel at = Pixel::Zero();
   mesh::document::SelectMode mode = mesh::document::SelectMode::set;
 };
 struct RegionClicked {
-  ScreenPoint at;  ///< of the first of the two clicks
+  Pixel at = Pixel::Zero();  ///< of the first of the two clicks
   mesh::document::SelectMode mode = mesh::document::SelectMode::set;
 };
 struct TakeBackClicked {};
 struct RectangleStretched {
-  ScreenPoint from, to;
+  Pixel from = Pixel::Zero(), to = Pixel::Zero();
 };
 struct RectangleDone {
-  ScreenPoint from, to;
+  Pixel from = Pixel::Zero(), to = Pixel::Zero();
   mesh::document::SelectMode mode = mesh::document::SelectMode::set;
 };
 struct Orbited {
-  double dx = 0, dy = 0;  ///< pixels since the last one
-  ScreenPoint from;       ///< where the drag began
+  double dx = 0, dy = 0;       ///< pixels since the last one
+  Pixel from = Pixel::Zero();  ///< where the drag began
 };
 struct Panned {
   double dx = 0, dy = 0;
-  ScreenPoint from;
+  Pixel from = Pixel::Zero();
 };
 struct Zoomed {
-  ScreenPoint at;
+  Pixel at = Pixel::Zero();
   double steps = 0;  ///< positive: nearer
 };
 struct HandleTaken {
   Under handle = Under::lift_handle;
-  ScreenPoint at;
+  Pixel at = Pixel::Zero();
 };
 struct HandleMoved {
-  ScreenPoint at;
+  Pixel at = Pixel::Zero();
 };
 struct HandleReleased {
-  ScreenPoint at;
+  Pixel at = Pixel::Zero();
 };
 
 using Gesture = std::variant<NodeClicked, RegionClicked, TakeBackClicked, RectangleStretched, RectangleDone, Orbited, Panned, Zoomed,
@@ -66,7 +66,7 @@ inline constexpr double kClickRadius = 4;
 inline constexpr std::int64_t kDoubleClickMs = 400;
 
 /// Follows one mouse. A button pressed over a panel belongs to the panel until it is released.
-class Pointer {
+class Gestures {
  public:
   std::vector<Gesture> moved(const display::PointerMoved& event);
   /// `under` is looked at when the button goes down only.
@@ -76,7 +76,7 @@ class Pointer {
   /// Gives up what is under way: releasing the button will do nothing. True if a rectangle or a handle was being dragged.
   bool cancel();
 
-  std::optional<ScreenPoint> position() const { return position_; }
+  std::optional<Pixel> position() const { return position_; }
   void left() { position_.reset(); }
   /// Whether moves belong to a drag in the picture.
   bool dragging() const { return drag_ != Drag::none && drag_ != Drag::panel && drag_ != Drag::dead; }
@@ -92,10 +92,10 @@ class Pointer {
   Drag drag_ = Drag::none;
   display::MouseButton button_ = display::MouseButton::left;
   display::Modifiers modifiers_;
-  ScreenPoint down_;
-  ScreenPoint last_;
-  std::optional<ScreenPoint> position_;
-  std::optional<ScreenPoint> last_click_;
+  Pixel down_ = Pixel::Zero();
+  Pixel last_ = Pixel::Zero();
+  std::optional<Pixel> position_;
+  std::optional<Pixel> last_click_;
   std::int64_t last_click_ms_ = 0;
 };
 

@@ -1,6 +1,4 @@
-#include "kiosk/tools/pointer.h"
-
-#include <cmath>
+#include "kiosk/tools/gestures.h"
 
 namespace prismesh::kiosk::tools {
 namespace {
@@ -8,7 +6,7 @@ namespace {
 using display::MouseButton;
 using mesh::document::SelectMode;
 
-double distance(const ScreenPoint& a, const ScreenPoint& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double distance(const Pixel& a, const Pixel& b) { return (a - b).norm(); }
 
 SelectMode mode_for(const display::Modifiers& modifiers) {
   return modifiers.ctrl ? SelectMode::subtract : modifiers.shift ? SelectMode::add : SelectMode::set;
@@ -16,22 +14,22 @@ SelectMode mode_for(const display::Modifiers& modifiers) {
 
 }  // namespace
 
-std::vector<Gesture> Pointer::moved(const display::PointerMoved& event) {
-  const ScreenPoint at{event.x, event.y};
+std::vector<Gesture> Gestures::moved(const display::PointerMoved& event) {
+  const Pixel at(event.x, event.y);
   position_ = at;
   if (drag_ == Drag::pressed && distance(at, down_) > kClickRadius) begin_drag();
-  const ScreenPoint before = last_;
+  const Pixel before = last_;
   last_ = at;
   switch (drag_) {
     case Drag::rectangle: return {RectangleStretched{down_, at}};
-    case Drag::orbit: return {Orbited{at.x - before.x, at.y - before.y, down_}};
-    case Drag::pan: return {Panned{at.x - before.x, at.y - before.y, down_}};
+    case Drag::orbit: return {Orbited{at.x() - before.x(), at.y() - before.y(), down_}};
+    case Drag::pan: return {Panned{at.x() - before.x(), at.y() - before.y(), down_}};
     case Drag::handle: return {HandleMoved{at}};
     default: return {};
   }
 }
 
-void Pointer::begin_drag() {
+void Gestures::begin_drag() {
   last_click_.reset();
   if (button_ == MouseButton::middle || (button_ == MouseButton::right && modifiers_.alt))
     drag_ = Drag::pan;
@@ -42,16 +40,16 @@ void Pointer::begin_drag() {
   last_ = down_;
 }
 
-std::vector<Gesture> Pointer::button(const display::ButtonChanged& event, Under under) {
-  position_ = ScreenPoint{event.x, event.y};
+std::vector<Gesture> Gestures::button(const display::ButtonChanged& event, Under under) {
+  position_ = Pixel(event.x, event.y);
   if (event.down) return drag_ == Drag::none ? pressed(event, under) : std::vector<Gesture>{};  // a second button changes nothing
   return event.button == button_ ? released(event) : std::vector<Gesture>{};
 }
 
-std::vector<Gesture> Pointer::pressed(const display::ButtonChanged& event, Under under) {
+std::vector<Gesture> Gestures::pressed(const display::ButtonChanged& event, Under under) {
   button_ = event.button;
   modifiers_ = event.modifiers;
-  down_ = last_ = {event.x, event.y};
+  down_ = last_ = Pixel(event.x, event.y);
   const bool handle = under == Under::lift_handle || under == Under::move_handle;
   if (under == Under::panel) {
     drag_ = Drag::panel;
@@ -64,10 +62,10 @@ std::vector<Gesture> Pointer::pressed(const display::ButtonChanged& event, Under
   return {};
 }
 
-std::vector<Gesture> Pointer::released(const display::ButtonChanged& event) {
+std::vector<Gesture> Gestures::released(const display::ButtonChanged& event) {
   const Drag was = drag_;
   drag_ = Drag::none;
-  const ScreenPoint at{event.x, event.y};
+  const Pixel at(event.x, event.y);
   switch (was) {
     case Drag::pressed: return clicked(event);
     case Drag::rectangle: return {RectangleDone{down_, at, mode_for(modifiers_)}};
@@ -76,14 +74,14 @@ std::vector<Gesture> Pointer::released(const display::ButtonChanged& event) {
   }
 }
 
-std::vector<Gesture> Pointer::clicked(const display::ButtonChanged& event) {
+std::vector<Gesture> Gestures::clicked(const display::ButtonChanged& event) {
   if (modifiers_.alt) return {};
   if (event.button == MouseButton::middle) return {TakeBackClicked{}};
   if (event.button == MouseButton::right) return {NodeClicked{down_, SelectMode::subtract}};
   const SelectMode mode = mode_for(modifiers_);
   const bool second = last_click_ && distance(*last_click_, down_) <= kClickRadius && event.time_ms - last_click_ms_ <= kDoubleClickMs;
   if (second) {
-    const ScreenPoint first = *last_click_;
+    const Pixel first = *last_click_;
     last_click_.reset();
     return {RegionClicked{first, mode}};
   }
@@ -92,13 +90,13 @@ std::vector<Gesture> Pointer::clicked(const display::ButtonChanged& event) {
   return {NodeClicked{down_, mode}};
 }
 
-std::vector<Gesture> Pointer::wheel(const display::WheelTurned& event, Under under) {
-  position_ = ScreenPoint{event.x, event.y};
+std::vector<Gesture> Gestures::wheel(const display::WheelTurned& event, Under under) {
+  position_ = Pixel(event.x, event.y);
   if (under == Under::panel) return {};
-  return {Zoomed{{event.x, event.y}, event.steps}};
+  return {Zoomed{Pixel(event.x, event.y), event.steps}};
 }
 
-bool Pointer::cancel() {
+bool Gestures::cancel() {
   const bool something = drag_ == Drag::rectangle || drag_ == Drag::handle;
   if (drag_ != Drag::none) drag_ = Drag::dead;
   return something;

@@ -1,0 +1,68 @@
+// The handle of a selection: where its arrow stands before anyone pulls it, and how far the pointer pulls it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "kiosk/render/model_source.h"
+#include "kiosk/stereo/pointer.h"
+#include "kiosk/tools/gestures.h"
+
+namespace prismesh::kiosk::tools {
+
+using mesh::Vec3;
+
+/// The node by which a selection is taken, deck coordinates.
+struct Anchor {
+  mesh::NodeIndex node;
+  std::int64_t id = 0;
+  Vec3 at = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();  ///< unit; the sense of the first shell at the node
+  bool operator==(const Anchor&) const = default;
+};
+
+/// The anchor of the model's selection: `preferred` if it is selected, else the selected node nearest to the selection's centre.
+/// Nothing if no node is selected. Costs a pass over the marks, and over the shells' nodes for the normal.
+std::optional<Anchor> anchor_of_selection(const render::ModelSource& model, std::optional<mesh::NodeIndex> preferred);
+
+/// Which part of a handle a pixel is on: the ring about its foot, its arrow, or (picture) neither. `direction` is the arrow's.
+Under part_of_handle(const stereo::Aim& aim, const Vec3& at, const Vec3& direction, const Pixel& pixel);
+inline constexpr double kRingRadiusPixels = 12;
+
+/// The arrow's direction: along the normal, on the viewer's side of the surface, so that the model never hides it.
+Vec3 arrow_direction(const stereo::Aim& aim, const Anchor& anchor);
+
+/// How far a handle has been pulled, in the deck's length unit.
+struct Pull {
+  Vec3 by = Vec3::Zero();  ///< of the ring
+  double distance = 0;     ///< of the arrow, along the normal (see HandlePull::set_axis)
+};
+
+/// One pull, from taking the handle to letting it go. The view may change meanwhile.
+class HandlePull {
+ public:
+  HandlePull(Under handle, const Vec3& at, const Vec3& direction, const stereo::Aim& aim, const Pixel& pixel);
+  Pull at(const stereo::Aim& aim, const Pixel& pixel) const;
+  /// Where a pull has brought the handle's foot.
+  Vec3 foot(const Pull& pull) const;
+  /// The grab and the unit normal that the model server works with; the normal's sense may differ from the arrow's.
+  void set_axis(const Vec3& at, const Vec3& normal);
+
+  Under handle() const { return handle_; }
+  const Vec3& start() const { return start_; }
+  const Vec3& direction() const { return direction_; }
+
+ private:
+  double along(const stereo::Aim& aim, const Pixel& pixel) const;
+
+  Under handle_;
+  Vec3 start_;
+  Vec3 direction_;
+  Pixel taken_;
+  double sense_ = 1;     ///< of the normal against the arrow
+  bool upward_ = false;  ///< the arrow pointed at the eye when it was taken: upward on the screen counts
+  double along_when_taken_ = 0;
+  Vec3 offset_when_taken_ = Vec3::Zero();
+};
+
+}  // namespace prismesh::kiosk::tools
