@@ -20,6 +20,7 @@ class Descriptor {
   int get() const { return fd_; }
   explicit operator bool() const { return fd_ >= 0; }
   int release() { return std::exchange(fd_, -1); }
+  Result<Descriptor> duplicate() const;
 
  private:
   int fd_ = -1;
@@ -46,7 +47,11 @@ class Mapping {
 
 /// Anonymous shared memory of a fixed size, sealed against shrinking and growing.
 Result<Descriptor> make_shared_memory(const char* name, std::size_t size);
+/// Anonymous shared memory with this content, sealed against any change.
+Result<Descriptor> make_sealed_memory(const char* name, std::span<const std::byte> content);
 /// Adds F_SEAL_FUTURE_WRITE: mappings made before can write, later ones only read.
 Result<void> seal_for_readers(const Descriptor& descriptor);
+/// Backs a range with memory now, so that lack of memory is an error here and no SIGBUS at the first write.
+Result<void> reserve(const Descriptor& descriptor, std::size_t offset, std::size_t size);
 
 }  // namespace prismesh::ipc

@@ -24,9 +24,13 @@ enum class SnapshotArray : std::uint8_t {
   shell_parts,
   shell_marks,
   shell_quality,
-  line_nodes
+  line_nodes,
+  line_parts
 };
-inline constexpr int kSnapshotArrayCount = 9;
+inline constexpr int kSnapshotArrayCount = 10;
+
+/// Bytes of one element of an array.
+std::size_t element_size(SnapshotArray array);
 
 struct SnapshotPart {
   std::int64_t id = 0;
@@ -85,7 +89,9 @@ class SnapshotView {
   mesh::quality::ShellState shell_quality(std::size_t shell) const {
     return at<mesh::quality::ShellState>(SnapshotArray::shell_quality, shell);
   }
-  // line_nodes: pairs of NodeIndex, what is drawn as lines: beams, discrete elements and the outlines of solids' outer faces.
+  // line_nodes: pairs of NodeIndex, what is drawn as lines: beams, discrete elements and the outlines of solids' outer faces;
+  // line_parts: the PartIndex of each pair (invalid where the card names none).
+  // Indices inside the arrays aren't checked here: whoever follows one compares it with node_count() or info().parts.size().
 
  private:
   struct Piece {

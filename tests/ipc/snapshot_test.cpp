@@ -1,0 +1,236 @@
+#include <cerrno>
+#include <map>
+#include <random>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+
+#include "ipc/snapshot_publisher.h"
+#include "ipc/snapshot_table.h"
+#include "small_document.h"
+
+namespace prismesh::ipc {
+namespace {
+
+using test::grid_document;
+using test::move_node;
+
+/// What a client does with a published snapshot: maps the segments it lacks, then the table.
+class Reader {
+ public:
+  explicit Reader(SnapshotPublisher& publisher) : publisher_(publisher) {}
+
+  std::shared_ptr<const SnapshotView> map(const PublishedSnapshot& snapshot) {
+    std::vector<std::shared_ptr<const Mapping>> segments;
+    for (const std::uint64_t id : snapshot.segments) {
+      if (!known_.contains(id)) {
+        const Result<Descriptor> descriptor = publisher_.segment(id);
+        known_[id] = std::make_shared<const Mapping>(std::move(Mapping::map(*descriptor, false).value()));
+      }
+      segments.push_back(known_[id]);
+    }
+    Result<std::shared_ptr<const SnapshotView>> view = SnapshotView::map(snapshot.table, segments);
+    if (!view) ADD_FAILURE() << view.error().text();
+    return view.value_or(nullptr);
+  }
+
+ private:
+  SnapshotPublisher& publisher_;
+  std::map<std::uint64_t, std::shared_ptr<const Mapping>> known_;
+};
+
+TEST(Snapshot, HoldsWhatThePictureNeeds) {
+  mesh::document::Document document = grid_document(100, 90);
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto view = reader.map(publisher.publish(document, true).value());
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->node_count(), 101u * 91);
+  EXPECT_EQ(view->shell_count(), 9000u);
+  EXPECT_EQ(view->position(9000), document.current().model.positions[9000]);
+  EXPECT_EQ(view->node_id(9000), 9001);
+  EXPECT_EQ(view->shell(8999), document.current().model.shell_nodes[8999]);
+  EXPECT_EQ(view->shell_part(8999).value, 0u);
+  EXPECT_EQ(view->info().parts.at(0).name, "panel");
+  EXPECT_EQ(view->info().parts.at(0).shells, 9000u);
+  EXPECT_TRUE(view->info().changed);
+}
+
+TEST(Snapshot, CopiesOnlyTheChunksThatChanged) {
+  mesh::document::Document document = grid_document(300, 300);
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const PublishedSnapshot first = publisher.publish(document, false).value();
+  const auto before = reader.map(first);
+  const std::size_t copied = publisher.bytes_copied();
+  move_node(document, 5000, {1, 2, 3});
+  const auto after = reader.map(publisher.publish(document, true).value());
+
+  EXPECT_EQ(publisher.bytes_copied() - copied, mesh::kChunkSize * sizeof(mesh::Vec3));
+  EXPECT_EQ(after->position(5000), mesh::Vec3(1, 2, 3));
+  EXPECT_NE(before->position(5000), mesh::Vec3(1, 2, 3)) << "a leased snapshot changed under its reader";
+  for (std::size_t c = 0; c < after->chunk_count(SnapshotArray::positions); ++c)
+    EXPECT_EQ(after->chunk_version(SnapshotArray::positions, c) == before->chunk_version(SnapshotArray::positions, c),
+              c != 5000 / mesh::kChunkSize);
+  EXPECT_EQ(after->chunk_version(SnapshotArray::shell_nodes, 3), before->chunk_version(SnapshotArray::shell_nodes, 3));
+}
+
+TEST(Snapshot, PublishingTheSameAgainCopiesNothing) {
+  mesh::document::Document document = grid_document(100, 100);
+  SnapshotPublisher publisher;
+  const PublishedSnapshot first = publisher.publish(document, false).value();
+  const std::size_t copied = publisher.bytes_copied();
+  const PublishedSnapshot second = publisher.publish(document, false).value();
+  EXPECT_EQ(publisher.bytes_copied(), copied);
+  EXPECT_NE(first.lease, second.lease);
+}
+
+TEST(Snapshot, ReturnedMemoryIsUsedAgain) {
+  mesh::document::Document document = grid_document(200, 200);
+  SnapshotPublisher publisher;
+  std::uint64_t lease = publisher.publish(document, false)->lease;
+  std::size_t held = 0;
+  for (int i = 0; i < 500; ++i) {
+    move_node(document, static_cast<std::size_t>(i * 37 % 40000), {1.0 * i, 0, 1});
+    document.generations.erase(document.generations.begin(), document.generations.end() - 1);
+    document.cursor = 0;
+    const std::uint64_t next = publisher.publish(document, true)->lease;
+    publisher.release(lease);
+    lease = next;
+    if (i == 10) held = publisher.bytes_held();
+  }
+  EXPECT_EQ(publisher.bytes_held(), held);
+}
+
+TEST(Snapshot, LeasedMemoryIsNotUsedAgain) {
+  mesh::document::Document document = grid_document(200, 200);
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  std::vector<std::shared_ptr<const SnapshotView>> views;
+  for (int i = 0; i < 40; ++i) {
+    move_node(document, 17, {1.0 * i, 0, 1});
+    views.push_back(reader.map(publisher.publish(document, true).value()));
+  }
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(views[static_cast<std::size_t>(i)]->position(17).x(), i);
+}
+
+TEST(Snapshot, ClosingGivesTheMemoryBack) {
+  mesh::document::Document document = grid_document(100, 100);
+  SnapshotPublisher publisher;
+  const std::uint64_t lease = publisher.publish(document, false)->lease;
+  publisher.forget();
+  EXPECT_GT(publisher.bytes_held(), 0u) << "a view still holds the lease";
+  publisher.release(lease);
+  EXPECT_EQ(publisher.bytes_held(), 0u);
+}
+
+TEST(Snapshot, VersionsOfTwoStartsDiffer) {
+  mesh::document::Document document = grid_document(10, 10);
+  SnapshotPublisher one(1);
+  SnapshotPublisher two(1'000'000);
+  Reader reader_one(one);
+  Reader reader_two(two);
+  EXPECT_NE(reader_one.map(one.publish(document, false).value())->chunk_version(SnapshotArray::positions, 0),
+            reader_two.map(two.publish(document, false).value())->chunk_version(SnapshotArray::positions, 0));
+}
+
+TEST(Snapshot, AReaderCannotWrite) {
+  mesh::document::Document document = grid_document(10, 10);
+  SnapshotPublisher publisher;
+  const PublishedSnapshot snapshot = publisher.publish(document, false).value();
+  const Descriptor segment = publisher.segment(snapshot.segments.at(0)).value();
+  EXPECT_FALSE(Mapping::map(segment, true));
+  EXPECT_EQ(::pwrite(segment.get(), "x", 1, 0), -1);
+  EXPECT_EQ(::ftruncate(segment.get(), 0), -1);
+  EXPECT_FALSE(Mapping::map(snapshot.table, true));
+}
+
+TEST(Snapshot, DrawsBeamsAndTheOutlineOfSolids) {
+  mesh::document::Document document = grid_document(9, 9);
+  auto generation = std::make_shared<mesh::document::Generation>(document.current());
+  auto beams = std::make_shared<mesh::ElementBlock>();
+  beams->id = {1};
+  beams->part = {mesh::PartIndex(0)};
+  beams->first_node = {0, 3};
+  beams->nodes = {mesh::NodeIndex(80), mesh::NodeIndex(70), mesh::NodeIndex(3)};
+  // Two bricks side by side share the face 1-3-7-5; a collapsed brick is a tetrahedron apart from them.
+  auto solids = std::make_shared<mesh::ElementBlock>();
+  const auto add = [&](std::initializer_list<std::size_t> nodes) {
+    solids->id.push_back(static_cast<std::int64_t>(solids->id.size() + 1));
+    solids->part.push_back(mesh::PartIndex(0));
+    for (const std::size_t node : nodes) solids->nodes.push_back(mesh::NodeIndex(node));
+    solids->first_node.push_back(static_cast<std::uint32_t>(solids->nodes.size()));
+  };
+  add({0, 1, 3, 2, 4, 5, 7, 6});
+  add({1, 8, 9, 3, 5, 10, 11, 7});
+  add({20, 21, 22, 23, 23, 23, 23, 23});
+  generation->model.elements[static_cast<std::size_t>(mesh::ElementClass::beam)] = beams;
+  generation->model.elements[static_cast<std::size_t>(mesh::ElementClass::solid)] = solids;
+  document.generations = {generation};
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto view = reader.map(publisher.publish(document, false).value());
+  // 1 beam, 6 edges of the tetrahedron, 20 edges of two bricks together.
+  EXPECT_EQ(view->size(SnapshotArray::line_parts), 1u + 6 + 20);
+  EXPECT_EQ(view->size(SnapshotArray::line_nodes), 2 * (1u + 6 + 20));
+}
+
+SnapshotTable sound_table() {
+  SnapshotTable table;
+  table.arrays[0].count = table.arrays[1].count = table.arrays[2].count = 5;
+  for (std::size_t i = 0; i < 3; ++i) table.arrays[i].pieces.push_back({0, 64 * i * 2, i});
+  table.info.parts.push_back({3, "a", true, false, 4});
+  return table;
+}
+
+TEST(SnapshotTable, SurvivesARoundTrip) {
+  const Result<SnapshotTable> table = decode_table(encode_table(sound_table()));
+  ASSERT_TRUE(table) << table.error().text();
+  EXPECT_EQ(table->info.parts.at(0).name, "a");
+  EXPECT_EQ(table->arrays[1].pieces.at(0).offset, 128u);
+}
+
+TEST(SnapshotTable, ABrokenOneIsRefusedOrHarmless) {
+  std::vector<std::byte> bytes = encode_table(sound_table());
+  Descriptor memory = make_shared_memory("test", 4096).value();
+  const auto segment = std::make_shared<const Mapping>(std::move(Mapping::map(memory, false).value()));
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<std::byte> broken = bytes;
+    broken[random() % broken.size()] ^= static_cast<std::byte>(1u << random() % 8);
+    if (i % 3 == 0) broken.resize(random() % broken.size() + 1);
+    const auto view = SnapshotView::map(make_sealed_memory("test", broken).value(), std::vector{segment});
+    if (!view) {
+      ++refused;
+      continue;
+    }
+    unsigned sum = 0;
+    for (int a = 0; a < kSnapshotArrayCount; ++a)
+      for (std::size_t c = 0; c < (*view)->chunk_count(static_cast<SnapshotArray>(a)); ++c)
+        for (const std::byte byte : (*view)->chunk_bytes(static_cast<SnapshotArray>(a), c)) sum += static_cast<unsigned>(byte);
+    EXPECT_EQ(sum, 0u);
+  }
+  EXPECT_GT(refused, 1000);
+}
+
+TEST(SnapshotTable, ChunksOutsideTheirSegmentAreRefused) {
+  Descriptor memory = make_shared_memory("test", 4096).value();
+  const auto segment = std::make_shared<const Mapping>(std::move(Mapping::map(memory, false).value()));
+  SnapshotTable table = sound_table();
+  table.arrays[0].pieces[0].offset = 4096 - 64;  // five positions take 120 bytes
+  EXPECT_FALSE(SnapshotView::map(make_sealed_memory("test", encode_table(table)).value(), std::vector{segment}));
+  table = sound_table();
+  table.arrays[0].pieces[0].offset = ~std::uint64_t{63};
+  EXPECT_FALSE(SnapshotView::map(make_sealed_memory("test", encode_table(table)).value(), std::vector{segment}));
+  table = sound_table();
+  table.arrays[0].pieces[0].segment = 1;
+  EXPECT_FALSE(SnapshotView::map(make_sealed_memory("test", encode_table(table)).value(), std::vector{segment}));
+  table = sound_table();
+  table.arrays[1].count = 6;
+  EXPECT_FALSE(SnapshotView::map(make_sealed_memory("test", encode_table(table)).value(), std::vector{segment}));
+}
+
+}  // namespace
+}  // namespace prismesh::ipc
