@@ -1,0 +1,102 @@
+# Everything `./station test` runs, and the counting. Sourced by ./station after steps.sh.
+
+passed=0 failed=0 skipped=0
+failures=()
+
+count_one() {  # count_one NAME STATUS: a check that isn't a CTest test
+  if [ "$2" -eq 0 ]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    failures+=("$1")
+  fi
+}
+
+attribute() { sed -n "s/.*<testsuite.*[[:space:]]$2=\"\([0-9]*\)\".*/\1/p; t" "$1" | head -n 1; }
+
+# run_ctest NAME BUILD_FOLDER [ctest arguments]
+run_ctest() {
+  local name=$1 folder=$2 status=0 junit=out/test/$1.xml total=0 bad=0 left=0
+  shift 2
+  say "Tests: $name"
+  rm -f "$junit"
+  ctest --test-dir "$folder" --parallel 2 --timeout 300 --no-tests=error --output-on-failure --output-junit "$PWD/$junit" "$@" </dev/null ||
+    status=$?
+  if [ -f "$junit" ]; then
+    # JUnit's element spreads over lines; put it on one for the counting.
+    tr '\n' ' ' <"$junit" | sed 's/>/>\n/g' >"$junit.flat"
+    total=$(attribute "$junit.flat" tests)
+    bad=$(attribute "$junit.flat" failures)
+    left=$(($(attribute "$junit.flat" skipped) + $(attribute "$junit.flat" disabled)))
+    rm -f "$junit.flat"
+  fi
+  # A run that ended badly without a failed test (no test found, a crash of the runner) is a failure all the same.
+  if [ "$status" -ne 0 ] && [ "$bad" -eq 0 ]; then
+    bad=1
+    total=$((total + 1))
+  fi
+  passed=$((passed + total - bad - left))
+  failed=$((failed + bad))
+  skipped=$((skipped + left))
+  [ "$bad" -gt 0 ] && failures+=("$name: $bad")
+  return 0
+}
+
+# step NAME command..: a build or check that counts as one test when it fails, and tells whether the rest makes sense.
+step() {
+  local name=$1
+  shift
+  if "$@"; then return 0; fi
+  count_one "$name" 1
+  return 1
+}
+
+check_format() {
+  say "clang-format"
+  local status=0
+  sources | xargs -r clang-format-14 --dry-run -Werror || status=1
+  count_one "clang-format" "$status"
+}
+
+# run_fuzzers SECONDS: every target from its seeds; what it finds stays in build/fuzz/corpus, what breaks it in out/fuzz.
+run_fuzzers() {
+  step "build: fuzz" configure_and_build fuzz || return 0
+  local target name seeds status
+  mkdir -p out/fuzz
+  for target in build/fuzz/bin/*_fuzz; do
+    [ -x "$target" ] || continue
+    name=$(basename "$target")
+    say "Fuzzing $name for $1 s"
+    seeds=()
+    [ -d "tests/fuzz/seeds/$name" ] && seeds=("tests/fuzz/seeds/$name")
+    mkdir -p "build/fuzz/corpus/$name"
+    status=0
+    "$target" -max_total_time="$1" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="out/fuzz/$name-" -print_final_stats=0 -verbosity=0 \
+      "build/fuzz/corpus/$name" "${seeds[@]}" </dev/null >"out/fuzz/$name.log" 2>&1 || status=$?
+    [ "$status" -eq 0 ] || tail -n 40 "out/fuzz/$name.log"
+    count_one "$name" "$status"
+  done
+}
+
+closing_line() {
+  local failure
+  printf '\n'
+  for failure in "${failures[@]}"; do echo "FAILED  $failure"; done
+  [ "$skipped" -eq 0 ] || [ -n "${PRISMESH_MODELS:-}" ] || echo "PRISMESH_MODELS is not set: the tests on real decks were skipped."
+  echo "$passed passed, $failed failed, $skipped skipped"
+  [ "$failed" -eq 0 ]
+}
+
+run_all_tests() {
+  mkdir -p out/test
+  step "build: release" build_release ON && run_ctest release build
+  say "Building with AddressSanitizer and UndefinedBehaviorSanitizer"
+  step "build: asan" configure_and_build asan &&
+    UBSAN_OPTIONS=print_stacktrace=1 run_ctest asan build/asan -L 'unit|threads'
+  say "Building with ThreadSanitizer"
+  step "build: tsan" configure_and_build tsan -- ipc_test modeld_test &&
+    run_ctest tsan build/tsan -L threads
+  run_fuzzers 10
+  check_format
+  closing_line
+}
