@@ -45,7 +45,7 @@ std::optional<double> distance_along(const Aim& aim, const Vec3& point, const Ve
 /// The displacement, parallel to the screen, that brings `point` under the pixel (deck coordinates).
 Vec3 displacement_in_screen_plane(const Aim& aim, const Vec3& point, const Eigen::Vector2d& pixel);
 
-/// The handle's arrow on the screen: it always has this length, in pixels, unless it points at the viewer.
+/// Length of the handle's arrow on the screen, in pixels, while it lies parallel to the screen.
 inline constexpr double kHandleLengthPixels = 96;
 /// The point (deck coordinates) where the tip of a handle at `point` with unit `direction` is drawn.
 Vec3 handle_tip(const Aim& aim, const Vec3& point, const Vec3& direction);

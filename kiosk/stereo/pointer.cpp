@@ -1,0 +1,97 @@
+#include "kiosk/stereo/pointer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prismesh::kiosk::stereo {
+
+namespace {
+
+constexpr double kHandleHalfWidthPixels = 8;  ///< of the arrow's head, its widest place
+constexpr double kLeastSlope = 0.06;          ///< of an axis' length on the screen to its true length: under it nothing can be aimed
+
+/// Homogeneous pixel coordinates: divide the first two by the third.
+Vec3 pixel_homogeneous(const Aim& aim, const Eigen::Matrix4d& clip, const Eigen::Vector4d& point) {
+  const Eigen::Vector4d c = clip * point;
+  return {0.5 * (c.x() + c.w()) * aim.width, 0.5 * (c.w() - c.y()) * aim.height, c.w()};
+}
+
+/// The eye's depth over the point's, relative to the screen's plane: how much larger the point's surroundings look.
+double magnification(const Aim& aim, const Vec3& deck_point) {
+  const double depth = std::max(aim.eye_mm.z() - to_screen(aim.view, deck_point).z(), 1.0);
+  return aim.eye_mm.z() / depth;
+}
+
+}  // namespace
+
+Eigen::Matrix4d Aim::clip_from_deck() const {
+  return clip_from_screen(eye_mm, screen_mm, depth_range(view, eye_mm)) * screen_from_deck(view);
+}
+
+Aim aim_for(const View& view, const Profile& profile, const Vec3& between_eyes_mm, double separation_mm, int width, int height) {
+  Aim aim;
+  aim.view = view;
+  aim.eye_mm = profile.weave == Weave::centre ? between_eyes_mm : eyes_from(between_eyes_mm, separation_mm).of(profile.eye);
+  aim.screen_mm = screen_size_mm(profile, width, height);
+  aim.width = width;
+  aim.height = height;
+  return aim;
+}
+
+std::optional<Eigen::Vector2d> pixel_of(const Aim& aim, const Vec3& deck_point) {
+  const Vec3 pixel = pixel_homogeneous(aim, aim.clip_from_deck(), deck_point.homogeneous());
+  if (!(pixel.z() > 0)) return std::nullopt;
+  return Eigen::Vector2d(pixel.head<2>() / pixel.z());
+}
+
+Eigen::Vector2d mm_of_pixel(const Aim& aim, const Eigen::Vector2d& pixel) {
+  return {(pixel.x() / aim.width - 0.5) * aim.screen_mm.x(), (0.5 - pixel.y() / aim.height) * aim.screen_mm.y()};
+}
+
+Ray ray_through(const Aim& aim, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector2d mm = mm_of_pixel(aim, pixel);
+  const Vec3 eye = to_deck(aim.view, aim.eye_mm);
+  return {eye, to_deck(aim.view, Vec3(mm.x(), mm.y(), 0)) - eye};
+}
+
+std::optional<double> distance_along(const Aim& aim, const Vec3& point, const Vec3& direction, const Eigen::Vector2d& pixel) {
+  const Eigen::Matrix4d clip = aim.clip_from_deck();
+  const Vec3 start = pixel_homogeneous(aim, clip, point.homogeneous());
+  const Vec3 step = pixel_homogeneous(aim, clip, Eigen::Vector4d(direction.x(), direction.y(), direction.z(), 0));
+  if (!(start.z() > 0)) return std::nullopt;
+  const Eigen::Vector2d at = start.head<2>() / start.z();
+  const Eigen::Vector2d tangent = (step.head<2>() - at * step.z()) / start.z();  // pixels per deck unit
+  const double full_length = aim.view.mm_per_unit / aim.mm_per_pixel();
+  if (!(tangent.norm() > kLeastSlope * full_length)) return std::nullopt;
+  // A line stays a line in the picture: go to the pixel's foot on it, then solve (start + t step) for that place.
+  const Eigen::Vector2d along = tangent.normalized();
+  const double wanted = along.dot(pixel);
+  const double slope = along.dot(step.head<2>()) - wanted * step.z();
+  const double distance = (wanted * start.z() - along.dot(start.head<2>())) / slope;
+  if (!std::isfinite(distance) || !(start.z() + distance * step.z() > 0)) return std::nullopt;
+  return distance;
+}
+
+Vec3 displacement_in_screen_plane(const Aim& aim, const Vec3& point, const Eigen::Vector2d& pixel) {
+  const Vec3 mm = to_screen(aim.view, point);
+  const Eigen::Vector2d on_screen = mm_of_pixel(aim, pixel);
+  const double along = (aim.eye_mm.z() - mm.z()) / std::max(aim.eye_mm.z(), 1.0);
+  const Eigen::Vector2d target = aim.eye_mm.head<2>() + along * (on_screen - aim.eye_mm.head<2>());
+  return to_deck(aim.view, Vec3(target.x(), target.y(), mm.z())) - point;
+}
+
+Vec3 handle_tip(const Aim& aim, const Vec3& point, const Vec3& direction) {
+  const double length = kHandleLengthPixels * aim.mm_per_pixel() / (aim.view.mm_per_unit * magnification(aim, point));
+  return point + direction.normalized() * length;
+}
+
+bool on_handle(const Aim& aim, const Vec3& point, const Vec3& direction, const Eigen::Vector2d& pixel, double slack) {
+  const auto foot = pixel_of(aim, point), tip = pixel_of(aim, handle_tip(aim, point, direction));
+  if (!foot || !tip) return false;
+  const Eigen::Vector2d axis = *tip - *foot;
+  const double length = axis.squaredNorm();
+  const double at = length > 0 ? std::clamp((pixel - *foot).dot(axis) / length, 0.0, 1.0) : 0;
+  return (pixel - (*foot + at * axis)).norm() <= kHandleHalfWidthPixels + slack;
+}
+
+}  // namespace prismesh::kiosk::stereo
