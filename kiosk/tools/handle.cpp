@@ -119,10 +119,12 @@ Pull HandlePull::at(const stereo::Aim& aim, const Pixel& pixel) const {
 
 Vec3 HandlePull::foot(const Pull& pull) const { return start_ + pull.by + direction_ * (sense_ * pull.distance); }
 
-void HandlePull::set_axis(const Vec3& at, const Vec3& normal) {
+void HandlePull::set_axis(const stereo::Aim& aim, const Vec3& at, const Vec3& normal) {
   sense_ = normal.dot(direction_) < 0 ? -1 : 1;
   start_ = at;
   direction_ = sense_ * normal;
+  if (!upward_) along_when_taken_ = stereo::distance_along(aim, start_, direction_, taken_).value_or(along_when_taken_);
+  offset_when_taken_ = stereo::displacement_in_screen_plane(aim, start_, taken_);
 }
 
 }  // namespace prismesh::kiosk::tools

@@ -46,7 +46,7 @@ class HandlePull {
   /// Where a pull has brought the handle's foot.
   Vec3 foot(const Pull& pull) const;
   /// The grab and the unit normal that the model server works with; the normal's sense may differ from the arrow's.
-  void set_axis(const Vec3& at, const Vec3& normal);
+  void set_axis(const stereo::Aim& aim, const Vec3& at, const Vec3& normal);
 
   Under handle() const { return handle_; }
   const Vec3& start() const { return start_; }

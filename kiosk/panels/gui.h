@@ -1,0 +1,69 @@
+// The panels' ground: one ImGui context with our type and colours, fed with window events, drawn into each eye's image.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "base/error.h"
+#include "kiosk/display/window.h"
+
+struct ImFont;
+
+namespace prismesh::kiosk::panels {
+
+/// Sizes of the one type family, in pixels of the picture.
+struct TypeSizes {
+  float small = 14;
+  float body = 16;
+  float title = 21;
+  bool operator==(const TypeSizes&) const = default;
+};
+/// Sizes for an ordinary picture and for one whose eyes see half the columns each.
+inline constexpr TypeSizes kFlatType{14, 16, 21};
+inline constexpr TypeSizes kStereoType{24, 24, 30};
+
+class Gui {
+ public:
+  /// Needs a current GL context. Errors: the font isn't installed (names the package).
+  static Result<Gui> create();
+  Gui(Gui&&) noexcept;
+  Gui& operator=(Gui&&) noexcept;
+  ~Gui();
+
+  Result<void> set_type(const TypeSizes& sizes);
+  const TypeSizes& type() const;
+
+  void feed(const display::WindowEvent& event);
+  /// Whether a pixel lay on a panel when they were last laid out.
+  bool on_panel(double x, double y) const;
+  /// A text field has the keyboard.
+  bool wants_keys() const;
+
+  /// Lays the panels out: `build` calls ImGui. `seconds`: since the last time.
+  void layout(display::PixelSize picture, double seconds, const std::function<void()>& build);
+  /// Draws what was laid out into the bound framebuffer (see GuiRenderer::draw).
+  void draw(display::PixelSize target, double shift_x) const;
+
+ private:
+  struct State;
+  explicit Gui(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Inside `build`: the fonts of the three sizes. Body is the default.
+ImFont* small_font();
+ImFont* title_font();
+
+/// Colours with a meaning, 0xAABBGGRR as ImGui packs them. They are never a part's.
+inline constexpr unsigned kInk = 0xffe6e4e2;
+inline constexpr unsigned kFaintInk = 0xffaaa6a2;
+inline constexpr unsigned kWarnColour = 0xff3cc8f0;
+inline constexpr unsigned kFailColour = 0xff4a54ee;
+inline constexpr unsigned kInformationColour = 0xffecb468;
+inline constexpr unsigned kActiveColour = 0xff7ad65a;
+
+/// The grid that panels keep to, in pixels.
+inline constexpr float kGrid = 8;
+
+}  // namespace prismesh::kiosk::panels

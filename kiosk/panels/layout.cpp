@@ -1,0 +1,50 @@
+#include "kiosk/panels/layout.h"
+
+#include "kiosk/panels/text.h"
+
+namespace prismesh::kiosk::panels {
+
+void draw_signal(Signal signal, float size) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float line = ImGui::GetTextLineHeight(), half = size / 2;
+  const ImVec2 middle(at.x + half, at.y + line / 2);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  switch (signal) {
+    case Signal::ok: list.AddCircleFilled(middle, half * 0.9f, kFaintInk); break;
+    case Signal::information: list.AddCircleFilled(middle, half * 0.9f, kInformationColour); break;
+    case Signal::warn:
+      list.AddTriangleFilled(ImVec2(middle.x, middle.y - half), ImVec2(middle.x + half, middle.y + half * 0.9f),
+                             ImVec2(middle.x - half, middle.y + half * 0.9f), kWarnColour);
+      break;
+    case Signal::fail:
+      list.AddRectFilled(ImVec2(middle.x - half * 0.9f, middle.y - half * 0.9f), ImVec2(middle.x + half * 0.9f, middle.y + half * 0.9f),
+                         kFailColour);
+      break;
+  }
+  ImGui::Dummy(ImVec2(size, line));
+}
+
+void elided_text(const std::string& text, float width) {
+  const std::string shown = elide_middle(text, static_cast<double>(width), [](std::string_view piece) {
+    return static_cast<double>(ImGui::CalcTextSize(piece.data(), piece.data() + piece.size()).x);
+  });
+  ImGui::TextUnformatted(shown.c_str());
+  if (shown != text && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
+}
+
+void fact(const char* label, const std::string& value) {
+  ImGui::TextDisabled("%s", label);
+  const float width = ImGui::CalcTextSize(value.c_str()).x;
+  ImGui::SameLine();
+  const float left = ImGui::GetCursorPosX(), right = ImGui::GetWindowContentRegionMax().x - width;
+  ImGui::SetCursorPosX(right > left ? right : left);
+  ImGui::TextUnformatted(value.c_str());
+}
+
+void section(const char* title) {
+  ImGui::Dummy(ImVec2(0, kGrid / 2));
+  ImGui::Separator();
+  ImGui::TextUnformatted(title);
+}
+
+}  // namespace prismesh::kiosk::panels

@@ -1,0 +1,103 @@
+// The panels' content: document and tools on the left, quality and parts on the right, a sentence at the bottom. They show plain
+// data and give back what was asked for; they know neither the model server nor the renderer.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "kiosk/display/window.h"
+#include "kiosk/tools/command.h"
+#include "mesh/document/edit.h"
+#include "mesh/quality/report.h"
+
+namespace prismesh::kiosk::panels {
+
+struct PartRow {
+  std::int64_t id = 0;
+  std::string name;
+  std::uint64_t shells = 0;
+  unsigned colour = 0;  ///< 0xAABBGGRR, as the picture shows it
+  bool hidden = false;
+  bool locked = false;
+};
+
+struct DocumentFacts {
+  std::string path;
+  std::uint64_t nodes = 0, shells = 0;
+  std::uint64_t generation = 0;
+  std::string length_unit;
+  bool length_unit_guessed = false;
+  double target_size = 0;
+  bool target_size_guessed = false;
+  bool changed = false;
+  std::uint64_t selected_nodes = 0;
+  std::uint64_t selected_shells = 0;
+  mesh::quality::Counts counts;
+  std::vector<PartRow> parts;
+};
+
+struct Notice {
+  enum class Kind : std::uint8_t { information, warning, error };
+  Kind kind = Kind::information;
+  std::string text;
+};
+
+/// What is being dragged, while it is.
+struct PullFacts {
+  std::string what;   ///< "Lift", "Move"
+  double length = 0;  ///< deck's length unit
+  std::uint64_t nodes = 0;
+  std::optional<mesh::quality::Counts> counts;  ///< of the whole document as it would become
+};
+
+enum class Dialog : std::uint8_t { none, open, save_as };
+
+struct PanelData {
+  bool connected = false;
+  std::string socket;
+  std::optional<DocumentFacts> document;
+  std::optional<PullFacts> pull;
+  bool through = false;
+  bool colour_by_quality = false;
+  std::string profile;
+  std::uint64_t glyphs_left_out = 0;
+  std::optional<Notice> notice;
+  std::size_t more_notices = 0;
+  std::string busy;  ///< what the model server is at; empty: nothing
+  double busy_fraction = 0;
+  bool help = false;
+  Dialog dialog = Dialog::none;
+};
+
+struct AskPart {
+  std::int64_t part = 0;
+  mesh::document::VisibilityAction action = mesh::document::VisibilityAction::hide;
+};
+struct AskOpen {
+  std::string path;
+};
+struct AskSaveAs {
+  std::string path;
+};
+struct NoticeRead {};
+struct DialogClosed {};
+using PanelAction = std::variant<tools::Command, AskPart, AskOpen, AskSaveAs, NoticeRead, DialogClosed>;
+
+/// Lays out all panels (inside Gui::layout) and says what the user asked of them.
+class Panels {
+ public:
+  std::vector<PanelAction> build(const PanelData& data, display::PixelSize picture);
+
+ private:
+  void build_dialog(const PanelData& data, display::PixelSize picture, std::vector<PanelAction>& actions);
+
+  Dialog shown_dialog_ = Dialog::none;
+  std::string typed_;
+  std::vector<std::string> offered_;
+  std::string offered_for_;
+};
+
+}  // namespace prismesh::kiosk::panels

@@ -1,0 +1,33 @@
+// Numbers, names and paths as people read them on a panel.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace prismesh::kiosk::panels {
+
+/// "26 048": groups of three, divided by a no-break space.
+std::string grouped(std::uint64_t number);
+
+/// A length with four significant digits at most and its unit: "12.4 mm", "-0.052 mm".
+std::string length_text(double length, std::string_view unit);
+
+/// Valid UTF-8 from any bytes: what isn't becomes \xNN, control characters too.
+std::string printable(std::string_view bytes);
+
+/// The text with its middle replaced by an ellipsis so that `width(text)` <= `available`; whole characters are dropped. `width`
+/// grows with the text.
+std::string elide_middle(const std::string& text, double available, const std::function<double(std::string_view)>& width);
+
+/// What a path being typed may become: the entries of its folder that begin with its last piece, folders with a closing
+/// '/', ascending; hidden entries only when the piece begins with '.'. At most `limit`.
+std::vector<std::string> completions(const std::string& typed, std::size_t limit);
+
+/// The longest beginning that all completions share.
+std::string common_beginning(const std::vector<std::string>& texts);
+
+}  // namespace prismesh::kiosk::panels
