@@ -2,9 +2,16 @@
 // the edit it stands for is applied.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
 #include "mesh/document/document.h"
 
 namespace prismesh::mesh::document {
+
+struct Motion;
 
 class Drag {
  public:
@@ -12,11 +19,11 @@ class Drag {
   static Result<Drag> begin(std::shared_ptr<const Generation> base, const Settings& settings, const Edit& edit);
 
   /// Nodes that can move (weight > 0) and the shells that touch them; fixed for the whole drag.
-  const NodeSet& nodes() const { return nodes_; }
+  const NodeSet& nodes() const;
   const ShellSet& shells() const { return shells_; }
-  NodeIndex grab() const { return grab_; }
+  NodeIndex grab() const;
   /// The unit normal at the grab: the direction of a lift.
-  const Vec3& normal() const { return normal_; }
+  const Vec3& normal() const;
 
   /// Moves to a displacement: `by` for a translate, `distance` for a lift. Bit for bit what applying the edit will give.
   void step(const Vec3& by, double distance);
@@ -24,25 +31,22 @@ class Drag {
   const std::vector<quality::ShellState>& states() const { return states_; }  ///< of shells()
   const quality::Counts& counts() const { return counts_; }                   ///< of the whole document at this step
 
-  /// The edit at the last step's displacement, with the grab as coordinates and id resolved.
+  /// The edit at the last step's displacement, with the grab's id and coordinates filled in.
   Edit edit() const;
 
  private:
   std::shared_ptr<const Generation> base_;
+  std::shared_ptr<const Motion> motion_;  ///< nodes, weights, where from: what applying the edit uses too
   Settings settings_;
   Edit edit_;
-  NodeSet nodes_;
   ShellSet shells_;
-  NodeIndex grab_;
-  Vec3 normal_ = Vec3::Zero();
-  std::vector<double> weight_;
-  std::vector<Vec3> start_;
-  std::vector<Vec3> normals_;
+  Vec3 by_ = Vec3::Zero();
+  double distance_ = 0;
   std::vector<Vec3> positions_;
-  std::vector<std::array<std::int32_t, 4>> corners_;  ///< of shells_: >= 0 index into nodes_, < 0: ~index into fixed_
+  std::vector<std::array<std::int32_t, 4>> corners_;  ///< of shells_: >= 0 index into nodes(), < 0: ~index into fixed_
   std::vector<Vec3> fixed_;
   std::vector<quality::ShellState> states_;
-  quality::Counts base_counts_;
+  quality::Counts counts_elsewhere_;  ///< of the shells that don't change
   quality::Counts counts_;
 };
 

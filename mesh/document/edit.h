@@ -58,8 +58,9 @@ using Where = std::variant<std::string, Select, SelectRegion, SelectLasso>;
 
 /// What a shaping edit acts on and how it fades out.
 struct Shaping {
-  std::optional<Where> on;  ///< without it the selection
-  std::optional<Place> grab;
+  std::optional<Where> on;    ///< without it the selection
+  std::optional<Place> grab;  ///< coordinates: the nearest node of those acted on; absent: the node farthest from the border
+  std::optional<std::array<double, 3>> grab_at;  ///< where the node `grab` was: used where no such node is acted on (a variant)
   shape::WeightOptions weights;
   std::optional<double> max_move;  ///< no node moves farther; deck's length unit
 };

@@ -63,6 +63,7 @@ template <class Visitor>
 void fields(Visitor& v, auto& shaping, const Shaping*) {
   v.optional("on", shaping.on);
   v.optional("grab", shaping.grab);
+  v.optional("grab_at", shaping.grab_at);
   v.nested("falloff", shaping.weights.falloff);
   v.optional("free_ends", shaping.weights.free_ends);
   v.optional("origin", shaping.weights.origin);

@@ -1,0 +1,22 @@
+// The edits themselves: each turns a copy of the current generation into the next one. Private to mesh/document.
+#pragma once
+
+#include "mesh/document/document.h"
+
+namespace prismesh::mesh::document {
+
+/// `next` starts as a copy of `document.current()`. Notes and figures go to `report`; counts before and after don't.
+Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const SelectRegion& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const SelectLasso& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Grow& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Shrink& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Invert& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const SetParts& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Lift& edit, Generation& next, EditReport& report);
+
+/// "1 node", "12 nodes".
+std::string counted(std::size_t count, std::string_view noun);
+
+}  // namespace prismesh::mesh::document

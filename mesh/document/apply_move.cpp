@@ -1,0 +1,73 @@
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "mesh/document/apply.h"
+#include "mesh/document/motion.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.data(), sizeof(Vec3)) == 0; }
+
+/// Writes the positions that differ; returns the nodes that moved.
+NodeSet put_positions(const NodeSet& nodes, const std::vector<Vec3>& positions, ChunkedArray<Vec3>& into) {
+  NodeSet moved;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (!same_bits(into[nodes[i].value], positions[i])) {
+      moved.push_back(nodes[i]);
+      into.set(nodes[i].value, positions[i]);
+    }
+  return moved;
+}
+
+/// Says what else hangs on the moved nodes.
+void note_attached(const Attached& attached, const NodeSet& moved, EditReport& report) {
+  std::array<std::vector<std::uint32_t>, kElementClassCount> elements;
+  auto use = attached.uses.begin();
+  for (const NodeIndex node : moved) {
+    use = std::lower_bound(use, attached.uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
+    for (; use != attached.uses.end() && use->node == node; ++use)
+      elements[static_cast<std::size_t>(use->element_class)].push_back(use->element);
+  }
+  for (int c = 0; c < kElementClassCount; ++c) {
+    auto& of_class = elements[static_cast<std::size_t>(c)];
+    std::sort(of_class.begin(), of_class.end());
+    of_class.erase(std::unique(of_class.begin(), of_class.end()), of_class.end());
+    if (of_class.empty()) continue;
+    std::string noun(mesh::name(static_cast<ElementClass>(c)));
+    if (static_cast<ElementClass>(c) == ElementClass::other || static_cast<ElementClass>(c) == ElementClass::discrete) noun += " element";
+    report.notes.push_back(counted(of_class.size(), noun) + " moved along at shared nodes");
+  }
+}
+
+Result<void> move(const Document& document, const Edit& edit, const Vec3& by, double distance, Generation& next, EditReport& report) {
+  const Result<Motion> motion = plan_motion(document.current(), edit, &document);
+  if (!motion) return fail(motion.error());
+  std::vector<Vec3> positions(motion->nodes.size());
+  const std::size_t held_back = positions_at(*motion, by, distance, positions);
+  for (const Vec3& position : positions)
+    if (!position.allFinite()) return fail("", std::string(name(edit)) + ": the displacement is too large to be a coordinate");
+  const NodeSet moved = put_positions(motion->nodes, positions, next.model.positions);
+  report.nodes_moved = moved.size();
+  quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, shells_touching(next.model, moved), next.quality,
+                   next.counts);
+  if (motion->unreached > 0)
+    report.notes.push_back(counted(motion->unreached, "node") + " can't be reached from the grab along what is moved; left in place");
+  if (held_back > 0) report.notes.push_back(counted(held_back, "node") + " held back by max_move");
+  note_attached(*document.attached, moved, report);
+  return {};
+}
+
+}  // namespace
+
+Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report) {
+  return move(document, edit, edit.by, 0, next, report);
+}
+
+Result<void> apply_edit(const Document& document, const Lift& edit, Generation& next, EditReport& report) {
+  return move(document, edit, Vec3::Zero(), edit.distance, next, report);
+}
+
+}  // namespace prismesh::mesh::document

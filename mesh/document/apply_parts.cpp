@@ -1,0 +1,108 @@
+#include <algorithm>
+
+#include "mesh/document/apply.h"
+#include "mesh/document/selecting.h"
+#include "mesh/model/adjacency.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+using PartFlags = std::vector<std::uint8_t>;  ///< by PartIndex: 1 if the edit names the part
+
+void flag_parts_of(const Model& model, const ShellSet& shells, PartFlags& flags) {
+  for (const ShellIndex shell : shells)
+    if (const PartIndex part = model.shell_parts[shell.value]; part.valid()) flags[part.value] = 1;
+}
+
+/// Parts of what is selected: of the selected shells; for nodes, of the shells that lie inside the selection, or, if it is thinner
+/// than a shell, of all that touch it; and of other elements at nodes that no shell uses.
+PartFlags parts_of_selection(const Document& document) {
+  const Generation& current = document.current();
+  const Model& model = current.model;
+  PartFlags flags(model.parts->size(), 0);
+  const Picked selected = picked(current);
+  if (selected.kind != select::Kind::node) {
+    flag_parts_of(model, selected.shells, flags);
+    return flags;
+  }
+  const ShellSet inside = shells_inside(model, selected.nodes);
+  flag_parts_of(model, inside.empty() ? shells_touching(model, selected.nodes) : inside, flags);
+  for (const NodeIndex node : selected.nodes) {
+    if (!model.adjacency->shells_of(node).empty()) continue;
+    const auto& uses = document.attached->uses;
+    auto use = std::lower_bound(uses.begin(), uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
+    for (; use != uses.end() && use->node == node; ++use) {
+      const PartIndex part = model.elements[static_cast<std::size_t>(use->element_class)]->part[use->element];
+      if (part.valid()) flags[part.value] = 1;
+    }
+  }
+  return flags;
+}
+
+Result<PartFlags> parts_named(const Document& document, const SetParts& edit) {
+  const Model& model = document.current().model;
+  if (edit.on) {
+    const Result<select::Chosen> chosen = select::evaluate(model, *edit.on, select::Kind::part);
+    if (!chosen) return fail(chosen.error());
+    PartFlags flags(model.parts->size(), 0);
+    flag_parts_of(model, chosen->shells, flags);
+    return flags;
+  }
+  const bool reveals = edit.action == VisibilityAction::show || edit.action == VisibilityAction::unlock;
+  if (document.current().selected_nodes == 0) {
+    if (reveals) return PartFlags(model.parts->size(), 1);
+    return fail("", std::string(name(Edit(edit))) + ": nothing is selected, and \"on\" names no part");
+  }
+  return parts_of_selection(document);
+}
+
+void set_state(PartState& state, VisibilityAction action, bool is_named) {
+  switch (action) {
+    case VisibilityAction::hide: state.hidden = state.hidden || is_named; break;
+    case VisibilityAction::show: state.hidden = state.hidden && !is_named; break;
+    case VisibilityAction::only: state.hidden = !is_named; break;
+    case VisibilityAction::lock: state.locked = state.locked || is_named; break;
+    case VisibilityAction::unlock: state.locked = state.locked && !is_named; break;
+  }
+}
+
+/// What goes out of sight is no longer selected: nobody should move what they can't see.
+void deselect_hidden(const Document& document, Generation& next, EditReport& report) {
+  const Picked before = picked(document.current());
+  Picked after = before;
+  std::erase_if(after.shells, [&](ShellIndex shell) {
+    const PartIndex part = next.model.shell_parts[shell.value];
+    return part.valid() && (*next.parts)[part.value].hidden;
+  });
+  if (before.kind == select::Kind::node)
+    std::erase_if(after.nodes, [&](NodeIndex node) { return (next.node_marks[node.value] & kHidden) != 0; });
+  else if (after.shells.size() != before.shells.size())
+    after.nodes = nodes_of(next.model, after.shells);
+  if (after.nodes.size() == before.nodes.size() && after.shells.size() == before.shells.size()) return;
+  put_selection(next, before, after);
+  report.notes.push_back(counted(before.nodes.size() - after.nodes.size(), "hidden node") + " deselected");
+}
+
+}  // namespace
+
+Result<void> apply_edit(const Document& document, const SetParts& edit, Generation& next, EditReport& report) {
+  const Result<PartFlags> named = parts_named(document, edit);
+  if (!named) return fail(named.error());
+  auto states = std::make_shared<std::vector<PartState>>(*next.parts);
+  std::size_t changed = 0;
+  for (std::size_t p = 0; p < states->size(); ++p) {
+    set_state((*states)[p], edit.action, (*named)[p] != 0);
+    if (!((*states)[p] == (*next.parts)[p])) ++changed;
+  }
+  if (changed == 0) {
+    report.notes.push_back("no part changed");
+    return {};
+  }
+  next.parts = std::move(states);
+  mark_parts(next.model, *next.parts, next.node_marks);
+  if (edit.action == VisibilityAction::hide || edit.action == VisibilityAction::only) deselect_hidden(document, next, report);
+  return {};
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,167 @@
+#include "mesh/document/document.h"
+
+#include <algorithm>
+
+#include "base/clock.h"
+#include "mesh/document/apply.h"
+#include "mesh/document/history.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+std::shared_ptr<const Attached> find_attached(const Model& model) {
+  auto attached = std::make_shared<Attached>();
+  std::size_t count = 0;
+  for (const auto& block : model.elements)
+    if (block) count += block->nodes.size();
+  attached->uses.reserve(count);
+  for (std::size_t c = 0; c < model.elements.size(); ++c) {
+    if (!model.elements[c]) continue;
+    const ElementBlock& block = *model.elements[c];
+    for (std::size_t e = 0; e < block.size(); ++e)
+      for (std::size_t n = block.first_node[e]; n < block.first_node[e + 1]; ++n)
+        if (block.nodes[n].valid()) attached->uses.push_back({block.nodes[n], static_cast<ElementClass>(c), static_cast<std::uint32_t>(e)});
+  }
+  std::sort(attached->uses.begin(), attached->uses.end());
+  attached->uses.erase(std::unique(attached->uses.begin(), attached->uses.end()), attached->uses.end());
+  return attached;
+}
+
+Result<Settings> find_settings(const Model& model, const OpenOptions& options) {
+  Settings settings;
+  settings.length_unit_guessed = !options.length_unit;
+  settings.length_unit = options.length_unit ? *options.length_unit : deck::guess_length_unit(model);
+  settings.target_size_guessed = !options.target_size;
+  settings.target_size = options.target_size ? *options.target_size : quality::guess_target_size(model);
+  if (!(settings.target_size > 0 && settings.target_size < 1e300)) return fail("", "the target size must be greater than 0");
+  settings.criteria = quality::default_criteria();
+  if (options.criteria) {
+    Result<quality::Criteria> criteria = quality::load_criteria(*options.criteria);
+    if (!criteria) return fail(criteria.error());
+    settings.criteria = std::move(*criteria);
+  }
+  return settings;
+}
+
+std::shared_ptr<const Generation> first_generation(Model model, const Settings& settings) {
+  auto first = std::make_shared<Generation>();
+  first->node_marks = ChunkedArray<std::uint8_t>::filled(model.node_count());
+  first->shell_marks = ChunkedArray<std::uint8_t>::filled(model.shell_count());
+  first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
+  first->quality = quality::judge_model(model, settings.criteria, settings.target_size);
+  first->counts = quality::count(first->quality);
+  first->model = std::move(model);
+  first->made_by = "open";
+  return first;
+}
+
+}  // namespace
+
+std::string counted(std::size_t count, std::string_view noun) {
+  return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
+}
+
+Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened, const OpenOptions& options) {
+  Result<Settings> settings = find_settings(opened.model, options);
+  if (!settings) return fail(settings.error());
+  Document document;
+  document.path = path;
+  document.deck = std::move(opened.deck);
+  document.settings = std::move(*settings);
+  document.history_bytes = options.history_bytes;
+  document.attached = find_attached(opened.model);
+  document.opened = first_generation(std::move(opened.model), document.settings);
+  document.generations = {document.opened};
+  return document;
+}
+
+Result<Document> open(const std::filesystem::path& path, const OpenOptions& options) {
+  Result<deck::OpenedDeck> opened = deck::open(path, options.progress);
+  if (!opened) return fail(opened.error());
+  return open(path, std::move(*opened), options);
+}
+
+namespace {
+
+Result<Prepared> prepare_step(const Document& document, bool back) {
+  if (back ? !document.can_undo() : !document.can_redo()) {
+    const bool dropped = back && document.generations.front() != document.opened;
+    return fail("", std::string("there is nothing to ") + (back ? "undo" : "redo") +
+                        (dropped ? " any more: the oldest steps went to keep the history within its size" : ""));
+  }
+  Prepared prepared;
+  prepared.step = back ? Prepared::Step::undo : Prepared::Step::redo;
+  prepared.next = document.generations[back ? document.cursor - 1 : document.cursor + 1];
+  prepared.report.nodes_moved = moved_nodes(document.current().model, prepared.next->model).size();
+  prepared.report.notes.push_back((back ? "undid " : "did again: ") + (back ? document.current() : *prepared.next).made_by);
+  return prepared;
+}
+
+template <class E>
+Result<Prepared> prepare_push(const Document& document, const E& edit, std::string_view edit_name) {
+  const Generation& current = document.current();
+  auto next = std::make_shared<Generation>(current);
+  Prepared prepared;
+  if (const Result<void> applied = apply_edit(document, edit, *next, prepared.report); !applied) return fail(applied.error());
+  next->number = document.next_number;
+  next->made_by = edit_name;
+  next->own_bytes = own_bytes(current, *next);
+  prepared.drop_oldest = generations_over_cap(document, *next);
+  if (prepared.drop_oldest > 0)
+    prepared.report.notes.push_back("the oldest " + counted(prepared.drop_oldest, "step") +
+                                    " can't be undone any more: the history is kept within " + counted(document.history_bytes, "byte"));
+  prepared.next = std::move(next);
+  return prepared;
+}
+
+}  // namespace
+
+Result<Prepared> prepare(const Document& document, const Edit& edit) {
+  MonotonicClock clock;
+  const std::int64_t start_ns = clock.now_ns();
+  Result<Prepared> prepared = std::visit(
+      [&](const auto& each) -> Result<Prepared> {
+        using E = std::decay_t<decltype(each)>;
+        if constexpr (std::is_same_v<E, Undo> || std::is_same_v<E, Redo>)
+          return prepare_step(document, std::is_same_v<E, Undo>);
+        else
+          return prepare_push(document, each, name(edit));
+      },
+      edit);
+  if (!prepared) return prepared;
+  prepared->report.edit = name(edit);
+  prepared->report.before = document.current().counts;
+  prepared->report.after = prepared->next->counts;
+  prepared->report.milliseconds = static_cast<double>(clock.now_ns() - start_ns) * 1e-6;
+  return prepared;
+}
+
+void commit(Document& document, Prepared prepared) {
+  switch (prepared.step) {
+    case Prepared::Step::undo: --document.cursor; return;
+    case Prepared::Step::redo: ++document.cursor; return;
+    case Prepared::Step::push: break;
+  }
+  auto& generations = document.generations;
+  generations.resize(document.cursor + 1);
+  document.next_number = prepared.next->number + 1;
+  generations.push_back(std::move(prepared.next));
+  generations.erase(generations.begin(),
+                    generations.begin() + static_cast<std::ptrdiff_t>(std::min(prepared.drop_oldest, generations.size() - 1)));
+  document.cursor = generations.size() - 1;
+}
+
+Result<EditReport> apply(Document& document, const Edit& edit) {
+  Result<Prepared> prepared = prepare(document, edit);
+  if (!prepared) return fail(prepared.error());
+  EditReport report = prepared->report;
+  commit(document, std::move(*prepared));
+  return report;
+}
+
+Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target) {
+  return deck::save(*document.deck, document.opened->model, document.current().model, target);
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,128 @@
+#include "mesh/document/drag.h"
+
+#include <algorithm>
+
+#include "base/parallel_for.h"
+#include "mesh/document/motion.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+constexpr std::size_t kShellsAtATime = 512;  ///< of a parallel range: some 50 microseconds
+
+/// Where each corner's coordinates come from: >= 0 the moving node of that number, < 0 the fixed point of the number's complement.
+class Corners {
+ public:
+  Corners(const Model& model, const NodeSet& moving) : model_(model), moving_(moving) {
+    if (moving.size() < model.node_count() / 16) return;
+    table_.assign(model.node_count(), -1);
+    for (std::size_t i = 0; i < moving.size(); ++i) table_[moving[i].value] = static_cast<std::int32_t>(i);
+  }
+
+  std::int32_t operator()(NodeIndex node, std::vector<Vec3>& fixed) const {
+    const std::int32_t found = find(node);
+    if (found >= 0) return found;
+    fixed.push_back(model_.position(node));
+    return ~static_cast<std::int32_t>(fixed.size() - 1);
+  }
+
+ private:
+  std::int32_t find(NodeIndex node) const {
+    if (!table_.empty()) return table_[node.value];
+    const auto found = std::lower_bound(moving_.begin(), moving_.end(), node);
+    return found != moving_.end() && *found == node ? static_cast<std::int32_t>(found - moving_.begin()) : -1;
+  }
+
+  const Model& model_;
+  const NodeSet& moving_;
+  std::vector<std::int32_t> table_;  ///< by NodeIndex, where most of the model moves
+};
+
+void add(quality::Counts& counts, quality::ShellState state, std::size_t one) {
+  switch (state.grade()) {
+    case quality::Grade::ok: counts.ok += one; break;
+    case quality::Grade::warn: counts.warn += one; break;
+    case quality::Grade::fail: counts.fail += one; break;
+  }
+}
+
+quality::Counts total(quality::Counts sum, const std::vector<quality::Counts>& parts) {
+  for (const quality::Counts& part : parts) {
+    sum.ok += part.ok;
+    sum.warn += part.warn;
+    sum.fail += part.fail;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const Settings& settings, const Edit& edit) {
+  Result<Motion> motion = plan_motion(*base, edit, nullptr);
+  if (!motion) return fail(motion.error());
+  Drag drag;
+  drag.motion_ = std::make_shared<const Motion>(std::move(*motion));
+  drag.settings_ = settings;
+  drag.edit_ = edit;
+  drag.positions_ = drag.motion_->start;
+  const Model& model = base->model;
+  drag.shells_ = shells_touching(model, drag.nodes());
+  drag.counts_elsewhere_ = base->counts;
+  const Corners corners(model, drag.nodes());
+  for (const ShellIndex shell : drag.shells_) {
+    std::array<std::int32_t, 4> from{};
+    const ShellNodes& nodes = model.shell(shell);
+    for (std::size_t i = 0; i < 4; ++i) from[i] = i == 3 && nodes.is_triangle() ? from[2] : corners(nodes.node[i], drag.fixed_);
+    drag.corners_.push_back(from);
+    drag.states_.push_back(base->quality[shell.value]);
+    add(drag.counts_elsewhere_, drag.states_.back(), static_cast<std::size_t>(-1));
+  }
+  drag.counts_ = base->counts;
+  drag.base_ = std::move(base);
+  return drag;
+}
+
+const NodeSet& Drag::nodes() const { return motion_->nodes; }
+NodeIndex Drag::grab() const { return motion_->grab; }
+const Vec3& Drag::normal() const { return motion_->normal; }
+
+void Drag::step(const Vec3& by, double distance) {
+  by_ = by;
+  distance_ = distance;
+  positions_at(*motion_, by, distance, positions_);
+  std::vector<quality::Counts> counts((corners_.size() + kShellsAtATime - 1) / kShellsAtATime);
+  parallel_for(corners_.size(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
+    quality::Counts sum;
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::array<std::int32_t, 4>& from = corners_[s];
+      std::array<Vec3, 4> at;
+      for (std::size_t i = 0; i < 4; ++i)
+        at[i] = from[i] >= 0 ? positions_[static_cast<std::size_t>(from[i])] : fixed_[static_cast<std::size_t>(~from[i])];
+      const std::size_t size = from[3] == from[2] ? 3 : 4;
+      states_[s] = quality::judge(quality::measure({at.data(), size}), settings_.criteria, settings_.target_size);
+      add(sum, states_[s], 1);
+    }
+    counts[begin / kShellsAtATime] = sum;
+  });
+  counts_ = total(counts_elsewhere_, counts);
+}
+
+Edit Drag::edit() const {
+  Edit edit = edit_;
+  Shaping* shaping = nullptr;
+  if (auto* translate = std::get_if<Translate>(&edit)) {
+    translate->by = by_;
+    shaping = &translate->shaping;
+  } else {
+    auto& lift = std::get<Lift>(edit);
+    lift.distance = distance_;
+    shaping = &lift.shaping;
+  }
+  const Vec3& at = base_->model.position(grab());
+  shaping->grab = base_->model.node_ids[grab().value];
+  shaping->grab_at = std::array<double, 3>{at.x(), at.y(), at.z()};
+  return edit;
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,44 @@
+#include "mesh/document/history.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+template <class T>
+std::size_t own_bytes(const ChunkedArray<T>& before, const ChunkedArray<T>& next) {
+  std::size_t chunks = 0;
+  for (std::size_t c = 0; c < next.chunk_count(); ++c)
+    if (!next.shares_chunk(before, c)) ++chunks;
+  return chunks * sizeof(typename ChunkedArray<T>::Chunk);
+}
+
+}  // namespace
+
+std::size_t own_bytes(const Generation& before, const Generation& next) {
+  const Model& a = before.model;
+  const Model& b = next.model;
+  // The generation itself and its chunk pointers: what even an edit that changes nothing costs.
+  const std::size_t pointers = b.positions.chunk_count() * 4 + b.shell_nodes.chunk_count() * 6;
+  std::size_t bytes = sizeof(Generation) + pointers * sizeof(std::shared_ptr<void>);
+  bytes += own_bytes(a.node_ids, b.node_ids) + own_bytes(a.positions, b.positions) + own_bytes(a.node_holds, b.node_holds);
+  bytes += own_bytes(a.shell_ids, b.shell_ids) + own_bytes(a.shell_nodes, b.shell_nodes) + own_bytes(a.shell_parts, b.shell_parts);
+  bytes += own_bytes(a.shell_thickness, b.shell_thickness);
+  bytes += own_bytes(before.node_marks, next.node_marks) + own_bytes(before.shell_marks, next.shell_marks);
+  bytes += own_bytes(before.quality, next.quality);
+  if (before.parts != next.parts) bytes += next.parts->size() * sizeof(PartState);
+  return bytes;
+}
+
+std::size_t generations_over_cap(const Document& document, const Generation& next) {
+  // generations[i].own_bytes is what keeping generations[i - 1] beside it costs.
+  std::size_t total = next.own_bytes;
+  for (std::size_t i = 1; i <= document.cursor; ++i) total += document.generations[i]->own_bytes;
+  std::size_t drop = 0;
+  while (total > document.history_bytes && drop <= document.cursor) {
+    total -= drop < document.cursor ? document.generations[drop + 1]->own_bytes : next.own_bytes;
+    ++drop;
+  }
+  return drop;
+}
+
+}  // namespace prismesh::mesh::document

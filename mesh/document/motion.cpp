@@ -1,0 +1,123 @@
+#include "mesh/document/motion.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "mesh/document/apply.h"
+#include "mesh/document/refusal.h"
+#include "mesh/document/selecting.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/shape/move.h"
+#include "mesh/shape/normals.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+NodeIndex nearest_of(const Model& model, const NodeSet& nodes, const Vec3& point) {
+  NodeIndex best = nodes.front();
+  double least = std::numeric_limits<double>::infinity();
+  for (const NodeIndex node : nodes) {
+    const double distance = (model.position(node) - point).squaredNorm();
+    if (distance < least) {
+      least = distance;
+      best = node;
+    }
+  }
+  return best;
+}
+
+/// The grab among the nodes acted on; nothing if the edit leaves it open.
+Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& nodes, const Shaping& shaping) {
+  const auto point_of = [](const std::array<double, 3>& point) { return Vec3(point[0], point[1], point[2]); };
+  if (shaping.grab) {
+    if (const auto* point = std::get_if<std::array<double, 3>>(&*shaping.grab)) return nearest_of(model, nodes, point_of(*point));
+    const NodeIndex node = model.find_node(std::get<std::int64_t>(*shaping.grab));
+    if (node.valid() && std::binary_search(nodes.begin(), nodes.end(), node)) return node;
+    if (!shaping.grab_at) {
+      const Result<NodeIndex> found = find_place(model, *shaping.grab);
+      if (!found) return fail("", "grab: " + found.error().message);
+      return fail("", "the grabbed node " + std::to_string(model.node_ids[found->value]) + " isn't among the nodes to be moved");
+    }
+  }
+  if (shaping.grab_at) return nearest_of(model, nodes, point_of(*shaping.grab_at));
+  return std::optional<NodeIndex>();
+}
+
+void keep_moving(const shape::Weights& weights, const Model& model, Motion& motion) {
+  for (std::size_t i = 0; i < weights.nodes.size(); ++i) {
+    if (!(weights.weight[i] > 0)) continue;
+    motion.nodes.push_back(weights.nodes[i]);
+    motion.weight.push_back(weights.weight[i]);
+    motion.start.push_back(model.position(weights.nodes[i]));
+  }
+}
+
+Result<void> find_normals(const Model& model, bool each, Motion& motion) {
+  motion.normal = shape::oriented_normals(model, {motion.grab}, motion.grab).front();
+  if (!motion.is_lift) return {};
+  if (!(motion.normal.squaredNorm() > 0))
+    return fail("", "no shell touches the grabbed node " + std::to_string(model.node_ids[motion.grab.value]) +
+                        ", so there is no normal to lift along; use translate");
+  if (each)
+    motion.normals = shape::oriented_normals(model, motion.nodes, motion.grab);
+  else
+    motion.normals = {motion.normal};
+  return {};
+}
+
+}  // namespace
+
+Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const Document* document) {
+  const auto* translate = std::get_if<Translate>(&edit);
+  const auto* lift = std::get_if<Lift>(&edit);
+  if (translate == nullptr && lift == nullptr)
+    return fail("", std::string(name(edit)) + " moves no nodes: only translate and lift can be dragged");
+  const Shaping& shaping = translate != nullptr ? translate->shaping : lift->shaping;
+  const Model& model = generation.model;
+
+  NodeSet nodes;
+  if (shaping.on) {
+    Result<NodeSet> on = nodes_at(generation, *shaping.on);
+    if (!on) return fail(on.error());
+    nodes = std::move(*on);
+  } else {
+    nodes = selection(generation);
+  }
+  if (nodes.empty())
+    return fail("", std::string(name(edit)) + (shaping.on ? ": \"on\" names no node" : ": nothing is selected, and \"on\" names nothing"));
+
+  const Result<std::optional<NodeIndex>> grab = find_grab(model, nodes, shaping);
+  if (!grab) return fail(grab.error());
+  const Result<shape::Weights> weights = shape::compute_weights(model, nodes, *grab, shaping.weights);
+  if (!weights) return fail(weights.error());
+
+  Motion motion;
+  motion.is_lift = lift != nullptr;
+  motion.grab = weights->grab;
+  motion.unreached = weights->unreached;
+  motion.max_move = shaping.max_move;
+  keep_moving(*weights, model, motion);
+  if (const Result<void> free = refuse_held(generation, motion.nodes, document); !free) return fail(free.error());
+  if (const Result<void> found = find_normals(model, lift != nullptr && lift->each_normal, motion); !found) return fail(found.error());
+  return motion;
+}
+
+std::size_t positions_at(const Motion& motion, const Vec3& by, double distance, std::span<Vec3> out) {
+  if (motion.is_lift)
+    shape::lift(motion.start, motion.weight, motion.normals, distance, out);
+  else
+    shape::translate(motion.start, motion.weight, by, out);
+  if (!motion.max_move) return 0;
+  std::size_t held_back = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Vec3 move = out[i] - motion.start[i];
+    const double length = move.norm();
+    if (!(length > *motion.max_move)) continue;
+    out[i] = motion.start[i] + move * (*motion.max_move / length);
+    ++held_back;
+  }
+  return held_back;
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,33 @@
+// Where nodes go for a displacement: the one arithmetic that applying an edit and dragging share, so that a drag shows bit for
+// bit what its edit will do. Private to mesh/document.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mesh/document/document.h"
+
+namespace prismesh::mesh::document {
+
+/// What a translate or lift moves, before its displacement is known.
+struct Motion {
+  bool is_lift = false;
+  NodeSet nodes;               ///< those with weight > 0
+  std::vector<double> weight;  ///< of each
+  std::vector<Vec3> start;     ///< of each
+  std::vector<Vec3> normals;   ///< lift: of each, or one for all
+  NodeIndex grab;
+  Vec3 normal = Vec3::Zero();  ///< unit normal at the grab; zero where no shell is
+  std::size_t unreached = 0;   ///< nodes acted on with no way from the grab
+  std::optional<double> max_move;
+};
+
+/// Works out what moves. `document` may be null: it only helps to name the place of what refuses.
+/// Errors: nothing acted on, no such grab, a locked or held node would move, no normal at the grab of a lift.
+Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const Document* document);
+
+/// Positions of motion.nodes at a displacement: `by` for a translate, `distance` for a lift. `out` has one entry each.
+/// Returns how many nodes max_move held back.
+std::size_t positions_at(const Motion& motion, const Vec3& by, double distance, std::span<Vec3> out);
+
+}  // namespace prismesh::mesh::document
