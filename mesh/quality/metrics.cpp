@@ -1,0 +1,54 @@
+#include "mesh/quality/metrics.h"
+
+#include <algorithm>
+
+#include "mesh/quality/shell_batch.h"
+
+namespace prismesh::mesh::quality {
+
+std::string_view name(Metric metric) {
+  switch (metric) {
+    case Metric::warpage: return "warpage";
+    case Metric::aspect: return "aspect";
+    case Metric::skew: return "skew";
+    case Metric::jacobian: return "jacobian";
+    case Metric::taper: return "taper";
+    case Metric::min_angle_quad: return "min_angle_quad";
+    case Metric::max_angle_quad: return "max_angle_quad";
+    case Metric::min_angle_tri: return "min_angle_tri";
+    case Metric::max_angle_tri: return "max_angle_tri";
+    case Metric::min_length: return "min_length";
+    case Metric::max_length: break;
+  }
+  return "max_length";
+}
+
+Values measure(std::span<const Vec3> corners) {
+  Values out{};
+  measure_in_batches(
+      1,
+      [&](std::size_t, const Vec3*(&corner)[4]) {
+        for (std::size_t c = 0; c < 4; ++c) corner[c] = &corners[std::min(c, corners.size() - 1)];
+        return corners.size() == 3;
+      },
+      [&](const ShellBatch&, const BatchValues& values) { out = values.at(0); });
+  return out;
+}
+
+void measure_range(const Model& model, std::size_t begin, std::size_t end, std::span<Values> out) {
+  measure_in_batches(
+      end - begin, [&](std::size_t i, const Vec3*(&corner)[4]) { return corners_of(model, begin + i, corner); },
+      [&](const ShellBatch& batch, const BatchValues& values) {
+        for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = values.at(lane);
+      });
+}
+
+void measure_shells(const Model& model, std::span<const ShellIndex> shells, std::span<Values> out) {
+  measure_in_batches(
+      shells.size(), [&](std::size_t i, const Vec3*(&corner)[4]) { return corners_of(model, shells[i].value, corner); },
+      [&](const ShellBatch& batch, const BatchValues& values) {
+        for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = values.at(lane);
+      });
+}
+
+}  // namespace prismesh::mesh::quality
