@@ -60,7 +60,7 @@ check_format() {
 
 # run_fuzzers SECONDS: every target from its seeds; what it finds stays in build/fuzz/corpus, what breaks it in out/fuzz.
 run_fuzzers() {
-  step "build: fuzz" configure_and_build fuzz || return 0
+  step "build: fuzz" configure_and_build fuzz -- fuzz_targets || return 0
   local target name seeds status
   mkdir -p out/fuzz
   for target in build/fuzz/bin/*_fuzz; do

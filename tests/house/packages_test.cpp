@@ -1,0 +1,65 @@
+// packages.txt is the one list of packages: sections that are known, names that are names, nothing twice.
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/house/tree.h"
+
+namespace prismesh::house {
+namespace {
+
+using Sections = std::map<std::string, std::vector<std::string>>;
+
+Sections read_packages() {
+  Sections sections;
+  std::istringstream lines(read_text(project_root() / "packages.txt"));
+  std::string line, section;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string word;
+    if (!(words >> word)) continue;
+    if (word.starts_with('['))
+      section = word;
+    else
+      sections[section].push_back(word);
+    EXPECT_FALSE(words >> word) << "two words in: " << line;
+  }
+  return sections;
+}
+
+TEST(Packages, have_the_four_sections) {
+  std::vector<std::string> names;
+  for (const auto& [name, packages] : read_packages()) names.push_back(name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre("[run]", "[build]", "[test]", "[image]"));
+}
+
+TEST(Packages, are_named_as_debian_names_them_and_stand_once) {
+  std::set<std::string> seen;
+  const std::regex debian_name("[a-z0-9][a-z0-9.+-]+");
+  for (const auto& [section, packages] : read_packages())
+    for (const std::string& package : packages) {
+      EXPECT_TRUE(std::regex_match(package, debian_name)) << section << " " << package;
+      EXPECT_TRUE(seen.insert(package).second) << package << " stands twice";
+    }
+}
+
+TEST(Packages, running_needs_no_headers_and_no_compiler) {
+  for (const std::string& package : read_packages()["[run]"]) {
+    EXPECT_FALSE(package.ends_with("-dev")) << package;
+    EXPECT_FALSE(package.starts_with("clang") || package == "g++") << package;
+  }
+}
+
+TEST(Packages, are_installed_in_one_place_that_removes_nothing) {
+  EXPECT_THAT(read_text(project_root() / "scripts/steps.sh"),
+              testing::HasSubstr("apt-get install -y -qq --no-install-recommends --no-remove"));
+  for (const char* script : {"station", "scripts/test.sh", ".ci/run", "demo/play", "demo/station"})
+    EXPECT_THAT(read_text(project_root() / script), testing::Not(testing::HasSubstr("apt-get"))) << script;
+}
+
+}  // namespace
+}  // namespace prismesh::house
