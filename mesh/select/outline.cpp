@@ -1,0 +1,115 @@
+// What lies inside a freehand outline: crossings counted in bands of height, so that a node meets a few edges of the outline
+// however many it has.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "base/parallel_for.h"
+#include "mesh/select/region.h"
+
+namespace prismesh::mesh::select {
+
+namespace {
+
+/// An edge of the outline from low to high; it crosses the heights low_y <= y < high_y.
+struct OutlineEdge {
+  double low_x = 0;
+  double low_y = 0;
+  double high_y = 0;
+  double slope = 0;  ///< dx/dy
+  int sense = 0;     ///< +1 drawn upwards, -1 downwards
+};
+
+/// A point is inside where the outline winds around it: a lasso that crosses its own line keeps what it went round twice.
+class Outline {
+ public:
+  explicit Outline(const std::vector<std::array<double, 2>>& points) {
+    for (std::size_t i = 0; i < points.size(); ++i) add(points[i], points[(i + 1) % points.size()]);
+    if (edges_.empty()) return;
+    for (const auto& point : points) {
+      low_y_ = std::min(low_y_, point[1]);
+      high_y_ = std::max(high_y_, point[1]);
+      low_x_ = std::min(low_x_, point[0]);
+      high_x_ = std::max(high_x_, point[0]);
+    }
+    fill_bands();
+  }
+
+  bool contains(double x, double y) const {
+    if (!(y >= low_y_ && y < high_y_ && x >= low_x_ && x <= high_x_)) return false;
+    const std::size_t band = band_of(y);
+    int winding = 0;
+    for (std::uint32_t k = band_first_[band]; k < band_first_[band + 1]; ++k) {
+      const OutlineEdge& edge = band_edges_[k];
+      if (y >= edge.low_y && y < edge.high_y && x < edge.low_x + (y - edge.low_y) * edge.slope) winding += edge.sense;
+    }
+    return winding != 0;
+  }
+
+ private:
+  void add(const std::array<double, 2>& from, const std::array<double, 2>& to) {
+    if (from[1] == to[1]) return;  // level edges are crossed by no height
+    const bool up = from[1] < to[1];
+    const auto& low = up ? from : to;
+    const auto& high = up ? to : from;
+    edges_.push_back({low[0], low[1], high[1], (high[0] - low[0]) / (high[1] - low[1]), up ? 1 : -1});
+  }
+
+  std::size_t band_of(double y) const {
+    const double band = (y - low_y_) * bands_per_height_;
+    return std::min(static_cast<std::size_t>(band), band_first_.size() - 2);
+  }
+
+  void fill_bands() {
+    std::size_t bands = std::min<std::size_t>(4 * edges_.size(), 4096);
+    bands_per_height_ = static_cast<double>(bands) / (high_y_ - low_y_);
+    if (!std::isfinite(bands_per_height_)) bands_per_height_ = 0, bands = 1;  // a height of next to nothing
+    band_first_.assign(bands + 1, 0);
+    const auto each = [&](const auto& body) {
+      for (const OutlineEdge& edge : edges_)
+        for (std::size_t band = band_of(edge.low_y); band <= band_of(edge.high_y); ++band) body(edge, band);
+    };
+    each([&](const OutlineEdge&, std::size_t band) { ++band_first_[band + 1]; });
+    for (std::size_t band = 0; band < bands; ++band) band_first_[band + 1] += band_first_[band];
+    band_edges_.resize(band_first_.back());
+    std::vector<std::uint32_t> next(band_first_.begin(), band_first_.end() - 1);
+    each([&](const OutlineEdge& edge, std::size_t band) { band_edges_[next[band]++] = edge; });
+  }
+
+  std::vector<OutlineEdge> edges_;
+  double low_x_ = std::numeric_limits<double>::infinity();
+  double high_x_ = -std::numeric_limits<double>::infinity();
+  double low_y_ = std::numeric_limits<double>::infinity();
+  double high_y_ = -std::numeric_limits<double>::infinity();
+  double bands_per_height_ = 0;
+  std::vector<std::uint32_t> band_first_;
+  std::vector<OutlineEdge> band_edges_;
+};
+
+}  // namespace
+
+NodeSet inside_outline(const Model& model, const std::array<double, 16>& view, const std::vector<std::array<double, 2>>& outline) {
+  const bool finite = std::all_of(outline.begin(), outline.end(), [](const auto& p) { return std::isfinite(p[0]) && std::isfinite(p[1]); });
+  if (outline.size() < 3 || !finite) return {};
+  const Outline inside(outline);
+  const auto row = [&](std::size_t r, const Vec3& p) { return view[r] * p.x() + view[4 + r] * p.y() + view[8 + r] * p.z() + view[12 + r]; };
+  std::vector<NodeSet> of_chunk(model.positions.chunk_count());
+  parallel_for(model.positions.chunk_count(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const auto positions = model.positions.chunk(c);
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        const double w = row(3, positions[i]);
+        if (!(w > 0)) continue;  // behind the eye
+        if (!inside.contains(row(0, positions[i]) / w, row(1, positions[i]) / w)) continue;
+        const std::size_t node = c * kChunkSize + i;
+        if ((model.node_holds[node] & kHeldUndefined) == 0) of_chunk[c].push_back(NodeIndex(node));
+      }
+    }
+  });
+  NodeSet nodes;
+  for (const NodeSet& part : of_chunk) nodes.insert(nodes.end(), part.begin(), part.end());
+  return nodes;
+}
+
+}  // namespace prismesh::mesh::select

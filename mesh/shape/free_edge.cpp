@@ -1,0 +1,82 @@
+#include "mesh/shape/free_edge.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/deterministic_math.h"
+#include "mesh/model/adjacency.h"
+
+namespace prismesh::mesh::shape {
+
+namespace {
+
+constexpr double kConvexCorner = 135 / kDegreesPerRadian;
+constexpr double kReflexCorner = 250 / kDegreesPerRadian;  // a node of a six-node hole has 240 degrees and is none
+
+/// How much of the surface surrounds a node: a straight boundary has 180 degrees, however the sheet is bent in space.
+double surrounding_angle(const Model& model, NodeIndex node) {
+  double angle = 0;
+  for (const ShellIndex index : model.adjacency->shells_of(node)) {
+    const ShellNodes& shell = model.shell(index);
+    const int corners = shell.corners();
+    const int at = static_cast<int>(std::find(shell.node.begin(), shell.node.begin() + corners, node) - shell.node.begin());
+    const Vec3 next = model.position(shell.node[(at + 1) % corners]) - model.position(node);
+    const Vec3 previous = model.position(shell.node[(at + corners - 1) % corners]) - model.position(node);
+    angle += deterministic_atan2(next.cross(previous).norm(), next.dot(previous));
+  }
+  return angle;
+}
+
+}  // namespace
+
+FreeEdges::FreeEdges(const Model& model, const NodeSet& selection) : model_(model), selection_(selection) {
+  const Adjacency& adjacency = *model.adjacency;
+  std::vector<std::array<std::uint32_t, 2>> ends;
+  for (std::size_t i = 0; i < selection.size(); ++i) {
+    const std::uint32_t node = selection[i].value;
+    for (std::uint32_t e = adjacency.edge_first[node]; e < adjacency.edge_first[node + 1]; ++e) {
+      if (adjacency.edge_shell_first[e + 1] - adjacency.edge_shell_first[e] != 1) continue;
+      const auto high = std::lower_bound(selection.begin(), selection.end(), adjacency.edge_high[e]);
+      if (high == selection.end() || *high != adjacency.edge_high[e]) continue;
+      const auto low = static_cast<std::uint32_t>(i);
+      const auto other = static_cast<std::uint32_t>(high - selection.begin());
+      ends.push_back({low, other});
+      ends.push_back({other, low});
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  first_.assign(selection.size() + 1, 0);
+  for (const auto& end : ends) ++first_[end[0] + 1];
+  for (std::size_t i = 0; i < selection.size(); ++i) first_[i + 1] += first_[i];
+  neighbours_.reserve(ends.size());
+  for (const auto& end : ends) neighbours_.push_back(end[1]);
+}
+
+bool FreeEdges::is_corner(std::uint32_t node) const {
+  if (neighbours(node).size() != 2) return true;
+  const double angle = surrounding_angle(model_, selection_[node]);
+  return angle < kConvexCorner || angle > kReflexCorner;
+}
+
+std::vector<std::uint32_t> FreeEdges::walk(std::uint32_t from, std::uint32_t to, std::span<const std::uint8_t> border) const {
+  std::vector<std::uint32_t> nodes{from, to};
+  while (nodes.back() != from && border[nodes.back()] == 0 && !is_corner(nodes.back())) {
+    const auto both = neighbours(nodes.back());
+    nodes.push_back(both[0] == nodes[nodes.size() - 2] ? both[1] : both[0]);
+  }
+  return nodes;
+}
+
+std::vector<std::uint32_t> FreeEdges::through(std::uint32_t node, std::span<const std::uint8_t> border) const {
+  std::vector<std::vector<std::uint32_t>> ways;
+  for (const std::uint32_t next : neighbours(node)) ways.push_back(walk(node, next, border));
+  const auto reaches_border = [&](const auto& way) { return border[way.back()] != 0; };
+  if (is_corner(node) && !std::all_of(ways.begin(), ways.end(), reaches_border)) std::erase_if(ways, reaches_border);
+  std::vector<std::uint32_t> nodes{node};
+  for (const auto& way : ways) nodes.insert(nodes.end(), way.begin(), way.end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+}  // namespace prismesh::mesh::shape

@@ -1,0 +1,39 @@
+// The part's own boundary within a selection, and the piece of it that belongs to one node.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
+
+namespace prismesh::mesh::shape {
+
+/// The free edges (edges of exactly one shell) with both ends in a selection. Nodes are positions in the selection.
+class FreeEdges {
+ public:
+  FreeEdges(const Model& model, const NodeSet& selection);
+
+  bool touches(std::uint32_t node) const { return first_[node] != first_[node + 1]; }
+
+  /// The nodes of the free edge through `node`, ascending: along the boundary both ways up to its corners (where the surface
+  /// around a node spans less than 135 or more than 250 degrees), its forks, and the nodes marked in `border`, all of which
+  /// belong to it. A node that is a corner itself has several; those that reach the border are left out if another doesn't.
+  std::vector<std::uint32_t> through(std::uint32_t node, std::span<const std::uint8_t> border) const;
+
+ private:
+  std::span<const std::uint32_t> neighbours(std::uint32_t node) const {
+    return std::span(neighbours_).subspan(first_[node], first_[node + 1] - first_[node]);
+  }
+  bool is_corner(std::uint32_t node) const;
+  std::vector<std::uint32_t> walk(std::uint32_t from, std::uint32_t to, std::span<const std::uint8_t> border) const;
+
+  const Model& model_;
+  const NodeSet& selection_;
+  std::vector<std::uint32_t> first_;
+  std::vector<std::uint32_t> neighbours_;
+};
+
+}  // namespace prismesh::mesh::shape

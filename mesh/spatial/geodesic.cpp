@@ -1,0 +1,229 @@
+#include "mesh/spatial/geodesic.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "mesh/spatial/unfold.h"
+
+namespace prismesh::mesh::spatial {
+
+namespace {
+
+constexpr std::uint32_t kNowhere = 0xffffffffu;
+
+/// Nodes by distance, the nearest on top; of equals the lower number, so that the order never depends on history.
+class NearestFirst {
+ public:
+  explicit NearestFirst(const std::vector<double>& distance) : distance_(distance), place_(distance.size(), kNowhere) {}
+
+  bool empty() const { return heap_.empty(); }
+
+  /// Puts a node in, or moves it up after its distance fell.
+  void raise(std::uint32_t node) {
+    if (place_[node] == kNowhere) {
+      place_[node] = static_cast<std::uint32_t>(heap_.size());
+      heap_.push_back(node);
+    }
+    std::size_t at = place_[node];
+    while (at > 0) {
+      const std::size_t parent = (at - 1) / 2;
+      if (!before(node, heap_[parent])) break;
+      settle(heap_[parent], at);
+      at = parent;
+    }
+    settle(node, at);
+  }
+
+  std::uint32_t pop() {
+    const std::uint32_t top = heap_.front();
+    const std::uint32_t last = heap_.back();
+    heap_.pop_back();
+    place_[top] = kNowhere;
+    if (!heap_.empty()) sink(last);
+    return top;
+  }
+
+ private:
+  bool before(std::uint32_t a, std::uint32_t b) const { return distance_[a] < distance_[b] || (distance_[a] == distance_[b] && a < b); }
+  void settle(std::uint32_t node, std::size_t at) {
+    heap_[at] = node;
+    place_[node] = static_cast<std::uint32_t>(at);
+  }
+  void sink(std::uint32_t node) {
+    std::size_t at = 0;
+    for (std::size_t child = 1; child < heap_.size(); child = 2 * at + 1) {
+      if (child + 1 < heap_.size() && before(heap_[child + 1], heap_[child])) ++child;
+      if (!before(heap_[child], node)) break;
+      settle(heap_[child], at);
+      at = child;
+    }
+    settle(node, at);
+  }
+
+  const std::vector<double>& distance_;
+  std::vector<std::uint32_t> heap_;
+  std::vector<std::uint32_t> place_;
+};
+
+class March {
+ public:
+  explicit March(const Patch& patch)
+      : patch_(patch),
+        distance_(patch.nodes.size(), kUnreached),
+        centre_(patch.nodes.size(), kNowhere),
+        source_(patch.nodes.size(), kNowhere),
+        done_(patch.nodes.size(), 0),
+        queue_(distance_) {}
+
+  std::vector<double> run(std::span<const std::uint32_t> sources, double radius) {
+    for (const std::uint32_t source : sources)
+      if (source < distance_.size() && centre_[source] == kNowhere) {
+        distance_[source] = 0;
+        centre_[source] = source_[source] = source;
+        queue_.raise(source);
+      }
+    while (!queue_.empty()) {
+      const std::uint32_t node = queue_.pop();
+      if (distance_[node] > radius) break;
+      done_[node] = 1;
+      spread_from(node);
+    }
+    for (std::size_t i = 0; i < distance_.size(); ++i)
+      if (done_[i] == 0) distance_[i] = kUnreached;
+    return std::move(distance_);
+  }
+
+ private:
+  /// A triangle that distance crosses: from its base, between the nodes a and b, to its tip.
+  struct Triangle {
+    std::uint32_t a;
+    std::uint32_t b;
+    std::uint32_t tip;
+    double base;
+    double a_tip;
+    double b_tip;
+  };
+
+  void spread_from(std::uint32_t node) {
+    for (std::uint32_t k = patch_.node_first[node]; k < patch_.node_first[node + 1]; ++k) {
+      const std::uint32_t shell = patch_.node_shells[k];
+      const auto& corner = patch_.shells[shell];
+      if (corner[3] != corner[2])
+        spread_over_quad(node, corner, patch_.lengths[shell]);
+      else if (corner[2] != corner[1])
+        spread_over_triangle(node, corner, patch_.lengths[shell]);
+      else
+        go_straight(node, corner[0] == node ? corner[1] : corner[0], patch_.lengths[shell][0]);
+    }
+    for (std::uint32_t k = patch_.unfolded_first[node]; k < patch_.unfolded_first[node + 1]; ++k) {
+      const UnfoldedTriangle& t = patch_.unfolded[patch_.unfolded_of[k]];
+      cross({t.support[0], t.support[1], t.target, t.base, t.side[0], t.side[1]});
+      go_straight(node, t.target, t.side[t.support[0] == node ? 0 : 1]);
+    }
+  }
+
+  /// Each corner is reached over the two triangles at its own diagonal, so the quad is seen split both ways.
+  void spread_over_quad(std::uint32_t node, const std::array<std::uint32_t, 4>& corner, const std::array<double, 6>& length) {
+    std::size_t k = 0;
+    while (corner[k] != node) ++k;
+    const std::uint32_t next = corner[(k + 1) % 4];
+    const std::uint32_t opposite = corner[(k + 2) % 4];
+    const std::uint32_t previous = corner[(k + 3) % 4];
+    const double to_next = length[k];
+    const double next_to_opposite = length[(k + 1) % 4];
+    const double opposite_to_previous = length[(k + 2) % 4];
+    const double to_previous = length[(k + 3) % 4];
+    const double to_opposite = length[4 + k % 2];
+    const double next_to_previous = length[5 - k % 2];
+    go_straight(node, next, to_next);
+    go_straight(node, previous, to_previous);
+    go_straight(node, opposite, to_opposite);
+    cross({node, previous, next, to_previous, to_next, next_to_previous});
+    cross({node, next, previous, to_next, to_previous, next_to_previous});
+    cross({node, previous, opposite, to_previous, to_opposite, opposite_to_previous});
+    cross({node, next, opposite, to_next, to_opposite, next_to_opposite});
+  }
+
+  void spread_over_triangle(std::uint32_t node, const std::array<std::uint32_t, 4>& corner, const std::array<double, 6>& length) {
+    const std::array<double, 3> side{length[0], length[1], length[4]};  // 01 12 20
+    std::size_t k = 0;
+    while (corner[k] != node) ++k;
+    const std::uint32_t next = corner[(k + 1) % 3];
+    const std::uint32_t previous = corner[(k + 2) % 3];
+    const double to_next = side[k];
+    const double next_to_previous = side[(k + 1) % 3];
+    const double to_previous = side[(k + 2) % 3];
+    go_straight(node, next, to_next);
+    go_straight(node, previous, to_previous);
+    cross({node, previous, next, to_previous, to_next, next_to_previous});
+    cross({node, next, previous, to_next, to_previous, next_to_previous});
+  }
+
+  void go_straight(std::uint32_t from, std::uint32_t to, double length) {
+    if (done_[to] != 0) return;
+    offer(to, distance_[from] + length, patch_.bends[from] != 0 ? from : centre_[from], source_[from]);
+  }
+
+  void cross(const Triangle& t) {
+    if (done_[t.a] == 0 || done_[t.b] == 0 || done_[t.tip] != 0 || !(t.base > 0)) return;
+    // the base lies on the x axis from 0 to t.base, the tip above it
+    const double x = (t.a_tip * t.a_tip + t.base * t.base - t.b_tip * t.b_tip) / (2 * t.base);
+    const double y = std::sqrt(std::max(0.0, t.a_tip * t.a_tip - x * x));
+    if (source_[t.a] != source_[t.b] || !cross_from_centre(t, x, y)) cross_as_plane(t, x, y);
+  }
+
+  /// The wave comes from one source: its centre is where the two distances meet below the base. False if they don't meet.
+  bool cross_from_centre(const Triangle& t, double x, double y) {
+    // a way that turned later has its centre nearer
+    const bool from_a = distance_[centre_[t.a]] >= distance_[centre_[t.b]];
+    const std::uint32_t centre = from_a ? centre_[t.a] : centre_[t.b];
+    const double before = distance_[centre];
+    const double a = distance_[t.a] - before;
+    const double b = distance_[t.b] - before;
+    const double centre_x = (a * a - b * b + t.base * t.base) / (2 * t.base);
+    const double depth2 = a * a - centre_x * centre_x;
+    if (depth2 < 0) return centre_[t.a] == centre_[t.b];  // along the base: its ends go straight
+    const double depth = std::sqrt(depth2);
+    // the straight way must pass between the ends of the base; another way goes over another triangle
+    const double crossing = centre_x * y + x * depth;
+    if (crossing < 0 || crossing > t.base * (depth + y)) return true;
+    const double dx = x - centre_x;
+    const double dy = y + depth;
+    offer(t.tip, before + std::sqrt(dx * dx + dy * dy), centre, source_[t.a]);
+    return true;
+  }
+
+  void cross_as_plane(const Triangle& t, double x, double y) {
+    const double slope_x = (distance_[t.b] - distance_[t.a]) / t.base;
+    if (!(std::abs(slope_x) < 1)) return;
+    const double slope_y = std::sqrt(1 - slope_x * slope_x);
+    const double crossing = x * slope_y - y * slope_x;
+    if (crossing < 0 || crossing > t.base * slope_y) return;
+    const std::uint32_t nearer = crossing < 0.5 * t.base * slope_y ? t.a : t.b;
+    offer(t.tip, distance_[t.a] + x * slope_x + y * slope_y, centre_[nearer], source_[nearer]);
+  }
+
+  void offer(std::uint32_t node, double distance, std::uint32_t centre, std::uint32_t source) {
+    if (!(distance < distance_[node])) return;
+    distance_[node] = distance;
+    centre_[node] = centre;
+    source_[node] = source;
+    queue_.raise(node);
+  }
+
+  const Patch& patch_;
+  std::vector<double> distance_;
+  std::vector<std::uint32_t> centre_;  ///< node the wave spreads from in circles: a source, or where the way turned last
+  std::vector<std::uint32_t> source_;
+  std::vector<std::uint8_t> done_;
+  NearestFirst queue_;
+};
+
+}  // namespace
+
+std::vector<double> geodesic_distance(const Patch& patch, std::span<const std::uint32_t> sources, double radius) {
+  return March(patch).run(sources, radius);
+}
+
+}  // namespace prismesh::mesh::spatial
