@@ -4,7 +4,9 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 #include "mesh/quality/metrics.h"
@@ -24,13 +26,19 @@ struct Threshold {
 
 struct Criteria {
   std::string name;
-  std::array<Threshold, kMetricCount> thresholds;  ///< indexed by Metric
-  double warn_triangles_percent = 100;
+  std::array<Threshold, kMetricCount> quad;      ///< indexed by Metric
+  std::array<Threshold, kMetricCount> triangle;  ///< the same, where a file sets triangles apart
+  /// Least min_length as a multiple of the shell's thickness, where that is more than the fraction of the target size says.
+  float warn_min_length_thicknesses = 0;
+  float fail_min_length_thicknesses = 0;
+  double warn_triangles_percent = 100;  ///< of the elements of a model or part
   double fail_triangles_percent = 100;
 };
 
 /// Reads a TOML criteria file. Errors name the line and, for an unknown metric, the nearest known one.
 Result<Criteria> load_criteria(const std::filesystem::path& path);
+/// The same from text; `file` names it in errors.
+Result<Criteria> parse_criteria(std::string_view text, const std::string& file);
 /// The criteria built in: the same text as mesh/quality/criteria/default.toml, compiled into the program.
 const Criteria& default_criteria();
 
@@ -42,6 +50,12 @@ struct ShellState {
   bool operator==(const ShellState&) const = default;
 };
 
-ShellState judge(const Values& values, const Criteria& criteria, double target_size);
+/// Judges one shell's values. `thickness` (deck's length unit) counts where the criteria look at it; 0 if unknown.
+ShellState judge(const Values& values, const Criteria& criteria, double target_size, double thickness = 0);
+
+/// Measures and judges shells given by points, for a drag: corner >= 0 is moving[corner], < 0 is fixed[~corner]; a triangle
+/// repeats its third. `thickness` has one entry a shell, or is empty if unknown. `out` has one entry a shell.
+void judge_points(std::span<const Vec3> moving, std::span<const Vec3> fixed, std::span<const std::array<std::int32_t, 4>> corners,
+                  std::span<const float> thickness, const Criteria& criteria, double target_size, std::span<ShellState> out);
 
 }  // namespace prismesh::mesh::quality

@@ -24,8 +24,8 @@ Counts count(const ChunkedArray<ShellState>& states);
 
 struct MetricSummary {
   double min = 0, mean = 0, max = 0;
-  std::size_t measured = 0;  ///< shells the metric applies to
-  std::size_t warn = 0, fail = 0;
+  std::size_t measured = 0;        ///< shells the metric applies to
+  std::size_t warn = 0, fail = 0;  ///< a shell counts in one of them
   std::optional<ShellIndex> worst;
 };
 struct TimeStep {
@@ -39,7 +39,8 @@ struct Report {
   std::array<MetricSummary, kMetricCount> metrics;
   std::optional<double> mass;             ///< of the shells whose thickness and density are known; absent if none is
   std::optional<Vec3> centre_of_gravity;  ///< of that mass
-  std::optional<TimeStep> time_step;
+  std::optional<TimeStep> time_step;      ///< the smallest, with TSSFAC, before any mass scaling
+  std::optional<double> added_mass;       ///< what DT2MS adds to these shells at the start; absent without mass scaling
 };
 
 /// Figures of the given shells (all shells: pass nullptr).
