@@ -29,6 +29,22 @@ struct Warning {
   std::size_t count = 1;
 };
 
+/// Element cards of the deck by kind, those included whose nodes lack and that the model therefore leaves out. A shell
+/// card with fewer than three nodes counts as the four-node form.
+struct ElementCounts {
+  std::size_t quad = 0;
+  std::size_t tri = 0;
+  std::size_t quad8 = 0;
+  std::size_t tri6 = 0;
+  std::size_t beam = 0;
+  std::size_t solid = 0;
+  std::size_t tshell = 0;
+  std::size_t other = 0;  ///< springs, masses, particles, belts, ...
+
+  std::size_t shells() const { return quad + tri + quad8 + tri6; }
+  ElementCounts& operator+=(const ElementCounts& more);
+};
+
 /// One file of the deck.
 struct SourceFile {
   std::filesystem::path path;      ///< as opened
@@ -53,6 +69,7 @@ struct Deck {
   std::vector<NodeRun> node_runs;
   std::vector<std::uint64_t> node_line;  ///< byte offset in its file of each node's card
   Hash128 content;                       ///< of all files' bytes and relative names
+  ElementCounts element_cards;
   TimeStepControl time_step;
   std::vector<Warning> warnings;
   std::vector<std::string> missing_files;  ///< includes that weren't found, as written

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "mesh/document/apply.h"
 #include "mesh/document/motion.h"
@@ -9,13 +8,11 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.data(), sizeof(Vec3)) == 0; }
-
 /// Writes the positions that differ; returns the nodes that moved.
 NodeSet put_positions(const NodeSet& nodes, const std::vector<Vec3>& positions, ChunkedArray<Vec3>& into) {
   NodeSet moved;
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (!same_bits(into[nodes[i].value], positions[i])) {
+    if (into[nodes[i].value] != positions[i]) {
       moved.push_back(nodes[i]);
       into.set(nodes[i].value, positions[i]);
     }

@@ -108,9 +108,10 @@ std::size_t positions_at(const Motion& motion, const Vec3& by, double distance, 
     shape::lift(motion.start, motion.weight, motion.normals, distance, out);
   else
     shape::translate(motion.start, motion.weight, by, out);
-  if (!motion.max_move) return 0;
   std::size_t held_back = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i] == motion.start[i]) out[i] = motion.start[i];  // -0 stays -0: what hasn't moved keeps its bits
+    if (!motion.max_move) continue;
     const Vec3 move = out[i] - motion.start[i];
     const double length = move.norm();
     if (!(length > *motion.max_move)) continue;

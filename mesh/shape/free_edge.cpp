@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include <Eigen/Geometry>
+
 #include "base/deterministic_math.h"
 #include "mesh/model/adjacency.h"
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <Eigen/Geometry>
+
 #include "mesh/spatial/geodesic.h"
 
 namespace prismesh::mesh::shape {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "base/deterministic_math.h"
 #include "mesh/spatial/geodesic.h"
 #include "mesh/spatial/unfold.h"
