@@ -11,10 +11,13 @@
 #include "ipc/messages.h"
 #include "ipc/preview.h"
 #include "ipc/snapshot.h"
+#include "ipc/state_page.h"
 
 namespace prismesh::ipc {
 
-/// Where modeld's socket is: `override`, else $RUNTIME_DIRECTORY, else $XDG_RUNTIME_DIR/prismesh, else a per-user folder in /tmp.
+/// The folder for sockets: `override`, else $RUNTIME_DIRECTORY, else $XDG_RUNTIME_DIR/prismesh, else a per-user folder in /tmp.
+std::filesystem::path runtime_directory(const std::optional<std::filesystem::path>& override = {});
+/// modeld's socket in that folder.
 std::filesystem::path model_socket_path(const std::optional<std::filesystem::path>& override = {});
 
 class Client {
@@ -41,8 +44,16 @@ class Client {
 
   /// The current generation; keeps mapped what is shared with earlier ones. The lease goes back when the view dies.
   Result<std::shared_ptr<const SnapshotView>> snapshot();
+  /// What `snapshot` puts into GetSnapshot::have_segments; for those who `send` it.
+  std::vector<std::uint64_t> segments() const;
+  /// The snapshot that came with a Snapshot answer to `send`.
+  Result<std::shared_ptr<const SnapshotView>> take_snapshot(const Snapshot& answer);
   /// The preview that came with a DragBegun answer.
   Result<PreviewReader> take_preview(const DragBegun& begun);
+
+  const Welcome& welcome() const;
+  /// How modeld is, without asking it; nothing before its first heartbeat.
+  std::optional<Health> health() const;
 
   int descriptor() const;  ///< for poll(2)
 

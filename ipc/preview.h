@@ -1,5 +1,5 @@
 // What a drag changes, frame by frame, in shared memory: positions of the nodes that move, states of the shells they touch.
-// One writer (modeld), any number of readers; neither waits for the other (a sequence lock over two buffers).
+// One writer (modeld), any number of readers; neither waits for the other (ipc/seqlock.h).
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,18 @@
 
 namespace prismesh::ipc {
 
+/// Where things lie in a preview's memory; worked out from the two counts by writer and reader alike.
+struct PreviewLayout {
+  std::size_t nodes = 0;
+  std::size_t shells = 0;
+
+  std::size_t nodes_at() const;    ///< bytes from the start
+  std::size_t shells_at() const;   ///< bytes from the start
+  std::size_t frame_words() const;  ///< 8-byte words of a frame
+  std::size_t frame_at(std::uint64_t turn) const;  ///< bytes from the start
+  std::size_t total() const;
+};
+
 class PreviewWriter {
  public:
   static Result<PreviewWriter> create(std::uint64_t drag, std::uint64_t base_generation, std::span<const mesh::NodeIndex> nodes,
@@ -25,6 +37,8 @@ class PreviewWriter {
  private:
   Descriptor descriptor_;
   Mapping mapping_;
+  PreviewLayout layout_;
+  std::vector<std::uint64_t> frame_;  ///< the next frame, laid out as it lies in memory
 };
 
 /// A frame as a reader copied it out whole.
@@ -40,6 +54,7 @@ class PreviewReader {
   static Result<PreviewReader> map(const Descriptor& descriptor);
   std::uint64_t drag() const;
   std::uint64_t base_generation() const;
+  /// The indices are the writer's word: whoever follows one compares it with the model's counts.
   std::span<const mesh::NodeIndex> nodes() const;
   std::span<const mesh::ShellIndex> shells() const;
   /// Copies the newest frame if it is newer than frame.sequence; false if there is none or the writer was faster (try at the
@@ -48,6 +63,9 @@ class PreviewReader {
 
  private:
   Mapping mapping_;
+  PreviewLayout layout_;
+  std::uint64_t drag_ = 0;
+  std::uint64_t base_generation_ = 0;
 };
 
 }  // namespace prismesh::ipc

@@ -1,0 +1,42 @@
+// Messages as lines of JSON, one message a line: {"request": "open", "number": 5, "path": "car.k"}, {"answer": "done", "to": 5},
+// {"event": "document_closed"}. docs/protocol.md lists them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "base/error.h"
+#include "ipc/messages.h"
+
+namespace prismesh::ipc {
+
+/// Without the line's end. Errors: text in the request isn't UTF-8.
+Result<std::string> encode_request(std::uint64_t number, const Request& request);
+/// `descriptors` is how many ride with the line. Text that isn't UTF-8 (names in decks) arrives with replacement characters.
+std::string encode_answer(std::uint64_t to, const Answer& answer, std::size_t descriptors = 0);
+std::string encode_event(const Event& event);
+
+struct NumberedRequest {
+  std::uint64_t number = 0;
+  Request request;
+};
+/// A request that can't be read; `number` is 0 where not even that can.
+struct BadRequest {
+  std::uint64_t number = 0;
+  std::string message;
+};
+/// Errors name the field and, for an unknown one, the nearest known.
+tl::expected<NumberedRequest, BadRequest> decode_request(std::string_view line);
+
+struct FromDaemon {
+  std::uint64_t to = 0;         ///< the request that is answered
+  std::size_t descriptors = 0;  ///< that ride with the line
+  std::variant<Answer, Event> message;
+};
+Result<FromDaemon> decode_from_daemon(std::string_view line);
+
+}  // namespace prismesh::ipc
