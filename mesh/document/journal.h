@@ -2,8 +2,11 @@
 // "done". After a crash the document is rebuilt from deck + deltas; only `replay` executes intents again.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "mesh/document/document.h"
 
@@ -31,7 +34,9 @@ class Journal {
   /// Starts a new journal for a document that has no edits yet. Errors: the file exists, can't be written.
   static Result<Journal> create(const std::filesystem::path& path, const Document& document);
   /// Opens a journal and brings `document` (freshly opened from the same deck) to its last acknowledged state. A torn tail
-  /// is cut off. Errors: another deck's journal (both hashes named), a damaged record (line named).
+  /// is cut off. A length unit or target size that `document` only guessed is taken from the journal.
+  /// Errors: another deck's journal (both hashes named), a damaged record (line named), in use by another process; then
+  /// `document` is as it was.
   static Result<Journal> recover(const std::filesystem::path& path, Document& document);
 
   Journal(Journal&&) noexcept;
@@ -39,10 +44,13 @@ class Journal {
   ~Journal();
 
   /// Writes intent and delta of a prepared edit and flushes them to disk. After an error the edit must not be committed, and
-  /// the journal is as before.
+  /// the journal is as before. If even that can't be had (a disk that failed to flush, and no room for a new file), this and every
+  /// later append is refused with the reason.
   Result<void> append(const Document& document, const Edit& edit, const Prepared& prepared);
 
   const std::filesystem::path& path() const;
+  std::uint64_t records() const;  ///< edits held, undo and redo included
+  bool cut_torn_tail() const;     ///< recover found an edit that was never acknowledged
 
  private:
   struct State;
@@ -50,8 +58,9 @@ class Journal {
   std::unique_ptr<State> state_;
 };
 
-/// Reads the intents. Plain JSON Lines files of edits (a script) are read as well.
-Result<JournalIntents> read_intents(const std::filesystem::path& path);
+/// Reads the intents. Plain JSON Lines files of edits (a script) are read as well. `syntax_error` (optional) is set when a line of
+/// a script isn't JSON at all. Errors: file and line of the first that can't be read, damage in a journal.
+Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syntax_error = nullptr);
 
 /// Executes the intents on a document, going on after an edit that can't be applied.
 std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents);

@@ -1,0 +1,222 @@
+#include "mesh/document/delta.h"
+
+#include <bit>
+#include <cstring>
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+constexpr std::uint8_t kVersion = 1;
+
+// --- writing ---
+
+class Writer {
+ public:
+  void byte(std::uint8_t value) { bytes_.push_back(static_cast<std::byte>(value)); }
+  /// Seven bits a byte, lowest first; the top bit says that more follow.
+  void number(std::uint64_t value) {
+    for (; value >= 0x80; value >>= 7) byte(static_cast<std::uint8_t>(value | 0x80));
+    byte(static_cast<std::uint8_t>(value));
+  }
+  void bits(double value) {
+    const std::uint64_t word = std::bit_cast<std::uint64_t>(value);
+    for (int shift = 0; shift < 64; shift += 8) byte(static_cast<std::uint8_t>(word >> shift));
+  }
+  std::vector<std::byte> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+void write_moved(const Generation& before, const Generation& after, Writer& out) {
+  const std::vector<NodeIndex> moved = moved_nodes(before.model, after.model);
+  out.number(moved.size());
+  std::size_t next = 0;
+  for (const NodeIndex node : moved) {
+    out.number(node.value - next);
+    next = node.value + 1;
+    const Vec3& position = after.model.position(node);
+    for (int k = 0; k < 3; ++k) out.bits(position[k]);
+  }
+}
+
+struct Run {
+  std::size_t first = 0;
+  std::size_t count = 0;
+  std::uint8_t mark = 0;
+};
+
+/// Runs of entries that differ and got the same mark.
+std::vector<Run> changed_runs(const ChunkedArray<std::uint8_t>& before, const ChunkedArray<std::uint8_t>& after) {
+  std::vector<Run> runs;
+  for (std::size_t c = 0; c < after.chunk_count(); ++c) {
+    if (after.shares_chunk(before, c)) continue;
+    const std::span<const std::uint8_t> a = before.chunk(c);
+    const std::span<const std::uint8_t> b = after.chunk(c);
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      if (a[i] == b[i]) continue;
+      const std::size_t at = c * kChunkSize + i;
+      if (!runs.empty() && runs.back().first + runs.back().count == at && runs.back().mark == b[i])
+        ++runs.back().count;
+      else
+        runs.push_back({at, 1, b[i]});
+    }
+  }
+  return runs;
+}
+
+void write_runs(const std::vector<Run>& runs, Writer& out) {
+  out.number(runs.size());
+  std::size_t next = 0;
+  for (const Run& run : runs) {
+    out.number(run.first - next);
+    out.number(run.count);
+    out.byte(run.mark);
+    next = run.first + run.count;
+  }
+}
+
+std::uint8_t packed(const PartState& state) { return static_cast<std::uint8_t>((state.hidden ? 1 : 0) | (state.locked ? 2 : 0)); }
+
+void write_parts(const Generation& before, const Generation& after, Writer& out) {
+  std::vector<std::size_t> changed;
+  if (before.parts != after.parts)
+    for (std::size_t p = 0; p < after.parts->size(); ++p)
+      if (!((*before.parts)[p] == (*after.parts)[p])) changed.push_back(p);
+  out.number(changed.size());
+  for (const std::size_t p : changed) {
+    out.number(p);
+    out.byte(packed((*after.parts)[p]));
+  }
+}
+
+// --- reading ---
+
+/// Reads numbers; after the end or a bad one everything is 0 and ok() is false.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  bool ok() const { return ok_; }
+  bool at_end() const { return ok_ && next_ == bytes_.size(); }
+  std::size_t left() const { return bytes_.size() - next_; }
+
+  std::uint8_t byte() {
+    if (next_ >= bytes_.size()) ok_ = false;
+    return ok_ ? std::to_integer<std::uint8_t>(bytes_[next_++]) : std::uint8_t{0};
+  }
+  std::uint64_t number() {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 63; shift += 7) {
+      const std::uint8_t part = byte();
+      value |= static_cast<std::uint64_t>(part & 0x7f) << shift;
+      if (part < 0x80) return ok_ ? value : 0;
+    }
+    ok_ = false;
+    return 0;
+  }
+  double bits() {
+    std::uint64_t word = 0;
+    for (int shift = 0; shift < 64; shift += 8) word |= static_cast<std::uint64_t>(byte()) << shift;
+    return std::bit_cast<double>(word);
+  }
+  /// A count of things of at least `bytes_each` bytes: never more than can follow, so that nobody reserves for an absurd one.
+  std::uint64_t count(std::size_t bytes_each) {
+    const std::uint64_t value = number();
+    if (value > left() / bytes_each) ok_ = false;
+    return ok_ ? value : 0;
+  }
+  void refuse() { ok_ = false; }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t next_ = 0;
+  bool ok_ = true;
+};
+
+NodeSet read_moved(Reader& in, Model& model) {
+  NodeSet moved;
+  const std::uint64_t count = in.count(25);
+  moved.reserve(count);
+  std::uint64_t next = 0;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t gap = in.number();
+    Vec3 position;
+    for (int k = 0; k < 3; ++k) position[k] = in.bits();
+    if (!in.ok() || gap >= model.node_count() - next || !position.allFinite()) {
+      in.refuse();
+      return moved;
+    }
+    moved.emplace_back(static_cast<std::size_t>(next + gap));
+    model.positions.set(moved.back().value, position);
+    next += gap + 1;
+  }
+  return moved;
+}
+
+/// Returns by how many the selected entries grew.
+std::int64_t read_runs(Reader& in, std::uint8_t known_bits, ChunkedArray<std::uint8_t>& marks) {
+  std::int64_t selected = 0;
+  const std::uint64_t count = in.count(3);
+  std::uint64_t next = 0;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t gap = in.number();
+    const std::uint64_t length = in.number();
+    const std::uint8_t mark = in.byte();
+    if (!in.ok() || gap > marks.size() - next || length == 0 || length > marks.size() - next - gap || (mark & ~known_bits) != 0) {
+      in.refuse();
+      return 0;
+    }
+    const std::size_t first = static_cast<std::size_t>(next + gap);
+    next = first + length;
+    for (std::size_t at = first; at < next; ++at) {
+      selected += ((mark & kSelected) != 0 ? 1 : 0) - ((marks[at] & kSelected) != 0 ? 1 : 0);
+      marks.set(at, mark);
+    }
+  }
+  return selected;
+}
+
+void read_parts(Reader& in, Generation& generation) {
+  const std::uint64_t count = in.count(2);
+  if (count == 0) return;
+  auto parts = std::make_shared<std::vector<PartState>>(*generation.parts);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t part = in.number();
+    const std::uint8_t state = in.byte();
+    if (!in.ok() || part >= parts->size() || state > 3) return in.refuse();
+    (*parts)[part] = {(state & 1) != 0, (state & 2) != 0};
+  }
+  generation.parts = std::move(parts);
+}
+
+std::size_t grown(std::size_t size, std::int64_t by) { return static_cast<std::size_t>(static_cast<std::int64_t>(size) + by); }
+
+}  // namespace
+
+std::vector<std::byte> encode_delta(const Generation& before, const Generation& after) {
+  Writer out;
+  out.byte(kVersion);
+  write_moved(before, after, out);
+  write_runs(changed_runs(before.node_marks, after.node_marks), out);
+  write_runs(changed_runs(before.shell_marks, after.shell_marks), out);
+  out.byte(static_cast<std::uint8_t>(after.selection_kind));
+  write_parts(before, after, out);
+  return out.take();
+}
+
+Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& generation) {
+  Reader in(delta);
+  if (in.byte() != kVersion) return fail("", "its delta is of another version");
+  NodeSet moved = read_moved(in, generation.model);
+  generation.selected_nodes = grown(generation.selected_nodes, read_runs(in, kSelected | kLocked | kHidden, generation.node_marks));
+  generation.selected_shells = grown(generation.selected_shells, read_runs(in, kSelected, generation.shell_marks));
+  const std::uint8_t kind = in.byte();
+  if (kind > static_cast<std::uint8_t>(select::Kind::part)) in.refuse();
+  generation.selection_kind = static_cast<select::Kind>(kind);
+  read_parts(in, generation);
+  if (!in.at_end()) return fail("", "its delta doesn't fit the model");
+  return moved;
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,183 @@
+#include "mesh/document/journal_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason_of(int error) { return std::generic_category().message(error); }
+
+/// 0 or an errno.
+int write_all(int fd, std::string_view text, std::size_t offset) {
+  while (!text.empty()) {
+    const ssize_t written = ::pwrite(fd, text.data(), text.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    if (written == 0) return ENOSPC;
+    text.remove_prefix(static_cast<std::size_t>(written));
+    offset += static_cast<std::size_t>(written);
+  }
+  return 0;
+}
+
+/// 0 or an errno; EIO where the file ends early.
+int read_all(int fd, std::string& text, std::size_t size) {
+  text.resize(size);
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t got = ::pread(fd, text.data() + done, size - done, static_cast<off_t>(done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno;
+    if (got == 0) return EIO;
+    done += static_cast<std::size_t>(got);
+  }
+  return 0;
+}
+
+int flush_folder(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return errno;
+  const int error = ::fsync(fd) == 0 ? 0 : errno;
+  ::close(fd);
+  return error;
+}
+
+/// A new file beside `path`, written and flushed; its descriptor, or -1 and an errno.
+int write_beside(const fs::path& path, std::string_view text, fs::path& made, int& error) {
+  made = path;
+  made += ".new-" + std::to_string(::getpid());
+  const int fd = ::open(made.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (fd < 0) {
+    error = errno;
+    return -1;
+  }
+  error = write_all(fd, text, 0);
+  if (error == 0 && ::fsync(fd) != 0) error = errno;
+  if (error == 0 && ::flock(fd, LOCK_EX | LOCK_NB) != 0) error = errno;
+  if (error == 0) return fd;
+  ::close(fd);
+  ::unlink(made.c_str());
+  return -1;
+}
+
+}  // namespace
+
+JournalFile::JournalFile(fs::path path, int fd, std::size_t size) : path_(std::move(path)), fd_(fd), size_(size) {}
+
+JournalFile::JournalFile(JournalFile&& other) noexcept
+    : path_(std::move(other.path_)), fd_(std::exchange(other.fd_, -1)), size_(other.size_), broken_(std::move(other.broken_)) {}
+
+JournalFile& JournalFile::operator=(JournalFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(fd_, other.fd_);
+  std::swap(size_, other.size_);
+  std::swap(broken_, other.broken_);
+  return *this;
+}
+
+JournalFile::~JournalFile() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+Result<JournalFile> JournalFile::create(const fs::path& path, std::string_view text) {
+  fs::path made;
+  int error = 0;
+  const int fd = write_beside(path, text, made, error);
+  if (fd < 0) return fail(path.string(), "the journal can't be written: " + reason_of(error));
+  JournalFile file(path, fd, text.size());
+  // Linked rather than renamed: a link never replaces what is there, so the journal appears whole or not at all.
+  if (::link(made.c_str(), path.c_str()) != 0) error = errno;
+  if (error == EPERM || error == EOPNOTSUPP)
+    error = ::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0 ? 0 : errno;
+  ::unlink(made.c_str());
+  if (error == EEXIST) return fail(path.string(), "there is a journal (or another file) already; recover it or choose another name");
+  if (error == 0) error = flush_folder(path);
+  if (error != 0) return fail(path.string(), "the journal can't be made: " + reason_of(error));
+  return file;
+}
+
+Result<JournalFile> JournalFile::open(const fs::path& path, std::string& text) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) return fail(path.string(), "the journal can't be opened: " + reason_of(errno));
+  JournalFile file(path, fd, 0);
+  struct stat status {};
+  if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) return fail(path.string(), "the journal isn't a regular file");
+  if (::flock(fd, LOCK_EX | LOCK_NB) != 0)
+    return fail(path.string(),
+                errno == EWOULDBLOCK ? "the journal is in use by another process" : "the journal can't be locked: " + reason_of(errno));
+  if (const int error = read_all(fd, text, static_cast<std::size_t>(status.st_size)); error != 0)
+    return fail(path.string(), "the journal can't be read: " + reason_of(error));
+  file.size_ = text.size();
+  return file;
+}
+
+Result<void> JournalFile::check_untouched() const {
+  struct stat status {};
+  if (::fstat(fd_, &status) != 0) return fail(path_.string(), "the journal can't be reached: " + reason_of(errno));
+  if (status.st_nlink == 0) return fail(path_.string(), "the journal has been deleted; edits can't be kept any more, save the deck");
+  if (static_cast<std::size_t>(status.st_size) != size_)
+    return fail(path_.string(), "the journal has been changed by another program; edits can't be kept any more, save the deck");
+  return {};
+}
+
+Result<void> JournalFile::append(std::string_view text) {
+  if (!broken_.empty())
+    return fail(path_.string(),
+                "the journal takes no more edits since an earlier failure (" + broken_ + "); save the deck and open it again");
+  if (const Result<void> untouched = check_untouched(); !untouched) return untouched;
+  if (const int error = write_all(fd_, text, size_); error != 0)
+    return take_back("the edit can't be written to the journal: " + reason_of(error));
+  if (::fdatasync(fd_) != 0) return start_afresh("the journal can't be flushed to disk: " + reason_of(errno));
+  size_ += text.size();
+  return {};
+}
+
+Result<void> JournalFile::truncate(std::size_t size) {
+  if (::ftruncate(fd_, static_cast<off_t>(size)) != 0 || ::fdatasync(fd_) != 0)
+    return fail(path_.string(), "the journal's incomplete last record can't be cut off: " + reason_of(errno));
+  size_ = size;
+  return {};
+}
+
+/// After a failed write: what was written of the record goes again.
+Result<void> JournalFile::take_back(std::string reason) {
+  if (::ftruncate(fd_, static_cast<off_t>(size_)) != 0) return start_afresh(std::move(reason));
+  return fail(path_.string(), reason + "; the edit wasn't made");
+}
+
+/// After a failed flush: the kernel has marked the pages clean, so this file's state on disk is unknown and flushing again would
+/// prove nothing. What was acknowledged goes into a new file that takes its place.
+Result<void> JournalFile::start_afresh(std::string reason) {
+  broken_ = reason;
+  std::string kept;
+  int error = read_all(fd_, kept, size_);
+  if (error == 0) {
+    fs::path made;
+    const int fresh = write_beside(path_, kept, made, error);
+    if (fresh >= 0) {
+      if (::rename(made.c_str(), path_.c_str()) == 0) {
+        ::close(std::exchange(fd_, fresh));
+        error = flush_folder(path_);
+        if (error == 0) broken_.clear();
+      } else {
+        ::close(fresh);
+        ::unlink(made.c_str());
+      }
+    }
+  }
+  // Best effort: should the file be read again after all, the refused record must not be in it.
+  if (!broken_.empty()) static_cast<void>(::ftruncate(fd_, static_cast<off_t>(size_)) == 0);
+  return fail(path_.string(), reason + "; the edit wasn't made");
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,109 @@
+#include <algorithm>
+
+#include "base/file.h"
+#include "mesh/document/edit_json.h"
+#include "mesh/document/journal.h"
+#include "mesh/document/journal_records.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+/// A script: one edit a line; empty lines are passed over.
+Result<JournalIntents> read_script(std::string_view text, const std::string& file, bool* syntax_error) {
+  JournalIntents intents;
+  long line = 0;
+  while (!text.empty()) {
+    ++line;
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view edit_text = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (edit_text.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    Result<Edit> edit = parse_edit(edit_text, syntax_error);
+    if (!edit) return fail(file, line, edit.error().message);
+    intents.edits.push_back(std::move(*edit));
+    intents.lines.push_back(line);
+  }
+  return intents;
+}
+
+}  // namespace
+
+Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syntax_error) {
+  if (syntax_error != nullptr) *syntax_error = false;
+  const Result<FileBytes> bytes = read_file(path);
+  if (!bytes) return fail(bytes.error());
+  const std::string file = path.string();
+  if (!looks_like_journal(bytes->text())) return read_script(bytes->text(), file, syntax_error);
+
+  JournalIntents intents;
+  const auto on_header = [&](const JournalHeader& header) -> Result<void> {
+    intents.deck_path = header.deck_path;
+    intents.deck_hash = header.deck_hash;
+    return {};
+  };
+  const auto on_record = [&](const JournalRecord& record) -> Result<void> {
+    Result<Edit> edit = parse_edit(record.intent);
+    if (!edit) return fail(file, record.line, edit.error().message);
+    intents.edits.push_back(std::move(*edit));
+    intents.lines.push_back(record.line);
+    return {};
+  };
+  const Result<JournalEnd> end = read_journal(bytes->text(), file, on_header, on_record);
+  if (!end) return fail(end.error());
+  intents.torn_tail = end->torn_tail;
+  return intents;
+}
+
+namespace {
+
+/// The history as the intents meant it, so that an undo of an edit that couldn't be applied doesn't take back another one.
+class MeantHistory {
+ public:
+  void push(bool applied) {
+    applied_.resize(cursor_);
+    applied_.push_back(applied);
+    ++cursor_;
+  }
+  /// Whether the undo (or redo) stands for an edit that wasn't applied; moves past it.
+  bool skips(bool back) {
+    if (back ? cursor_ == 0 : cursor_ == applied_.size()) return false;
+    const std::size_t edit = back ? --cursor_ : cursor_++;
+    return !applied_[edit];
+  }
+
+ private:
+  std::vector<bool> applied_;
+  std::size_t cursor_ = 0;
+};
+
+}  // namespace
+
+std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents) {
+  std::vector<ReplayStep> steps;
+  MeantHistory meant;
+  for (std::size_t i = 0; i < intents.edits.size(); ++i) {
+    const Edit& edit = intents.edits[i];
+    ReplayStep step;
+    step.line = i < intents.lines.size() ? intents.lines[i] : 0;
+    step.edit = name(edit);
+    const bool back = std::holds_alternative<Undo>(edit);
+    const bool is_step = back || std::holds_alternative<Redo>(edit);
+    if (is_step && meant.skips(back)) {
+      step.message = "the edit that it stands for wasn't applied";
+      steps.push_back(std::move(step));
+      continue;
+    }
+    Result<EditReport> report = apply(document, edit);
+    step.applied = report.has_value();
+    if (report)
+      step.report = std::move(*report);
+    else
+      step.message = report.error().text();
+    if (!is_step) meant.push(step.applied);
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
+}  // namespace prismesh::mesh::document
