@@ -200,6 +200,15 @@ void Gui::draw(display::PixelSize target, double shift_x) const {
   if (state_->laid_out) state_->renderer->draw(*ImGui::GetDrawData(), target, shift_x);
 }
 
+void draw_pointer(double x, double y) {
+  const auto at = [&](float dx, float dy) { return ImVec2(static_cast<float>(x) + dx, static_cast<float>(y) + dy); };
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const std::array<ImVec2, 4> arrow{at(0, 0), at(0, 26), at(7, 19), at(18, 18)};
+  list.AddTriangleFilled(arrow[0], arrow[1], arrow[2], kInk);
+  list.AddTriangleFilled(arrow[0], arrow[2], arrow[3], kInk);
+  list.AddPolyline(arrow.data(), static_cast<int>(arrow.size()), 0xff262422, ImDrawFlags_Closed, 2);
+}
+
 ImFont* small_font() { return ImGui::GetIO().Fonts->Fonts[1]; }
 ImFont* title_font() { return ImGui::GetIO().Fonts->Fonts[2]; }
 

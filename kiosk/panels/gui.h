@@ -51,6 +51,9 @@ class Gui {
   std::unique_ptr<State> state_;
 };
 
+/// Inside `build`: an arrow whose tip is at the pixel, over everything else.
+void draw_pointer(double x, double y);
+
 /// Inside `build`: the fonts of the three sizes. Body is the default.
 ImFont* small_font();
 ImFont* title_font();

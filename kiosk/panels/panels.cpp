@@ -285,6 +285,7 @@ int complete(ImGuiInputTextCallbackData* data) {
 
 Actions Panels::build(const PanelData& data, display::PixelSize picture) {
   Actions actions;
+  covered_width_ = 2.0 * static_cast<double>(side_width(picture) + kMargin);
   if (data.document && data.connected) {
     document_panel(data, picture, actions);
     model_panel(data, picture, actions);

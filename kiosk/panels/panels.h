@@ -90,6 +90,8 @@ using PanelAction = std::variant<tools::Command, AskPart, AskOpen, AskSaveAs, No
 class Panels {
  public:
   std::vector<PanelAction> build(const PanelData& data, display::PixelSize picture);
+  /// Pixels of the picture's width that the side panels take.
+  double covered_width() const { return covered_width_; }
 
  private:
   void build_dialog(const PanelData& data, display::PixelSize picture, std::vector<PanelAction>& actions);
@@ -98,6 +100,7 @@ class Panels {
   std::string typed_;
   std::vector<std::string> offered_;
   std::string offered_for_;
+  double covered_width_ = 0;
 };
 
 }  // namespace prismesh::kiosk::panels

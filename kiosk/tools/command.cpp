@@ -57,6 +57,10 @@ constexpr std::array kMouse = {
 std::span<const KeyBinding> key_bindings() { return kKeys; }
 std::span<const MouseBinding> mouse_bindings() { return kMouse; }
 
+bool repeats(Command command) {
+  return command == Command::undo || command == Command::redo || command == Command::grow || command == Command::shrink;
+}
+
 std::optional<Command> command_for(Key key, const display::Modifiers& modifiers) {
   if (modifiers.alt) return std::nullopt;
   for (const KeyBinding& binding : kKeys)

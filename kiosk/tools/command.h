@@ -54,6 +54,9 @@ std::span<const KeyBinding> key_bindings();
 /// The command of a key, if it has one. Shift must match for keys with Ctrl; elsewhere it is ignored.
 std::optional<Command> command_for(display::Key key, const display::Modifiers& modifiers);
 
+/// Whether a key held down asks for it again and again.
+bool repeats(Command command);
+
 struct MouseBinding {
   std::string_view gesture;
   std::string_view meaning;

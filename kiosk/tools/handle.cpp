@@ -82,11 +82,18 @@ std::optional<Anchor> anchor_of_selection(const ModelSource& model, std::optiona
                 normal_at(model, *node)};
 }
 
+bool points_at_viewer(const stereo::Aim& aim, const Vec3& at, const Vec3& direction) {
+  const std::optional<Pixel> foot = stereo::pixel_of(aim, at), tip = stereo::pixel_of(aim, stereo::handle_tip(aim, at, direction));
+  return !foot || !tip || (*tip - *foot).norm() < 2 * kRingRadiusPixels;
+}
+
 Under part_of_handle(const stereo::Aim& aim, const Vec3& at, const Vec3& direction, const Pixel& pixel) {
   const std::optional<Pixel> foot = stereo::pixel_of(aim, at);
   if (!foot) return Under::picture;
+  const bool on_arrow = stereo::on_handle(aim, at, direction, pixel);
+  if (on_arrow && points_at_viewer(aim, at, direction)) return Under::lift_handle;
   if ((*foot - pixel).norm() <= kRingRadiusPixels) return Under::move_handle;
-  return stereo::on_handle(aim, at, direction, pixel) ? Under::lift_handle : Under::picture;
+  return on_arrow ? Under::lift_handle : Under::picture;
 }
 
 Vec3 arrow_direction(const stereo::Aim& aim, const Anchor& anchor) {
@@ -98,7 +105,7 @@ Vec3 arrow_direction(const stereo::Aim& aim, const Anchor& anchor) {
 HandlePull::HandlePull(Under handle, const Vec3& at, const Vec3& direction, const stereo::Aim& aim, const Pixel& pixel)
     : handle_(handle), start_(at), direction_(direction), taken_(pixel) {
   const std::optional<double> along_axis = stereo::distance_along(aim, start_, direction_, pixel);
-  upward_ = !along_axis;
+  upward_ = !along_axis || points_at_viewer(aim, start_, direction_);
   along_when_taken_ = along_axis.value_or(0);
   offset_when_taken_ = stereo::displacement_in_screen_plane(aim, start_, pixel);
 }

@@ -25,7 +25,11 @@ struct Anchor {
 /// Nothing if no node is selected. Costs a pass over the marks, and over the shells' nodes for the normal.
 std::optional<Anchor> anchor_of_selection(const render::ModelSource& model, std::optional<mesh::NodeIndex> preferred);
 
-/// Which part of a handle a pixel is on: the ring about its foot, its arrow, or (picture) neither. `direction` is the arrow's.
+/// Whether the arrow is so foreshortened that it can't be followed along its length: then it is pulled by moving upward.
+bool points_at_viewer(const stereo::Aim& aim, const Vec3& at, const Vec3& direction);
+
+/// Which part of a handle a pixel is on: the ring about its foot, its arrow, or (picture) neither. `direction` is the arrow's. An
+/// arrow that points at the viewer stands in the ring and goes first.
 Under part_of_handle(const stereo::Aim& aim, const Vec3& at, const Vec3& direction, const Pixel& pixel);
 inline constexpr double kRingRadiusPixels = 12;
 
@@ -60,7 +64,7 @@ class HandlePull {
   Vec3 direction_;
   Pixel taken_;
   double sense_ = 1;     ///< of the normal against the arrow
-  bool upward_ = false;  ///< the arrow pointed at the eye when it was taken: upward on the screen counts
+  bool upward_ = false;  ///< the arrow pointed at the viewer when it was taken
   double along_when_taken_ = 0;
   Vec3 offset_when_taken_ = Vec3::Zero();
 };

@@ -1,0 +1,117 @@
+// What the hand's gestures and keys mean for the model and the view: they become edits sent to the model server, or another view.
+// Knows the renderer (for what lies under the pointer) but no window.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kiosk/display/window.h"
+#include "kiosk/model_link.h"
+#include "kiosk/panels/panels.h"
+#include "kiosk/render/renderer.h"
+#include "kiosk/tools/command.h"
+#include "kiosk/tools/gestures.h"
+#include "kiosk/tools/handle.h"
+
+namespace prismesh::kiosk {
+
+struct EditorOptions {
+  stereo::Profile profile;
+  mesh::Vec3 between_eyes_mm = mesh::Vec3(0, 0, 650);
+};
+
+class Editor {
+ public:
+  Editor(const EditorOptions& options, ModelLink& link, render::Renderer& renderer, Trace trace);
+
+  void set_picture_size(display::PixelSize size);
+  /// Width at the left and right that panels cover: `fit` leaves it free.
+  void set_covered_width(double pixels) { covered_width_ = pixels; }
+  /// Follows the model server: its generation, its drag, its words. Errors: a model too large for the GPU.
+  Result<void> follow();
+
+  tools::Under under(const tools::Pixel& pixel) const;  ///< of the handle; panels are not its matter
+  void gesture(const tools::Gesture& gesture);
+  /// `pointer`: where it is, if it is on the picture and on no panel. False: a command that isn't the editor's (fullscreen, help).
+  bool command(tools::Command command, std::optional<tools::Pixel> pointer);
+  void panel_action(const panels::PanelAction& action);
+
+  bool dialog_open() const { return dialog_ != panels::Dialog::none; }
+  /// What the pointer was dragging is let go without effect.
+  void cancel_gesture();
+
+  render::Picture picture() const;
+  panels::PanelData panel_data() const;
+  void set_report(const render::DrawReport& report) { report_ = report; }
+  const stereo::Profile& profile() const { return profile_; }
+  /// Counts up with everything that changes the picture or the panels.
+  std::uint64_t changes() const { return changes_; }
+  std::uint64_t shown_generation() const { return shown_ ? shown_->info().generation : 0; }
+  /// Writes what a watching program needs to aim: the projection and the handle's place, when they changed.
+  void trace_picture();
+
+ private:
+  void handle(const tools::NodeClicked& click);
+  void handle(const tools::RegionClicked& click);
+  void handle(const tools::TakeBackClicked& click);
+  void handle(const tools::RectangleStretched& rectangle);
+  void handle(const tools::RectangleDone& rectangle);
+  void handle(const tools::Orbited& orbit);
+  void handle(const tools::Panned& pan);
+  void handle(const tools::Zoomed& zoom);
+  void handle(const tools::HandleTaken& taken);
+  void handle(const tools::HandleMoved& moved);
+  void handle(const tools::HandleReleased& released);
+
+  stereo::Aim aim() const;
+  std::optional<mesh::NodeIndex> node_at(const tools::Pixel& pixel);
+  void clear_selection();
+  void select_nodes(const mesh::NodeSet& nodes, mesh::document::SelectMode mode);
+  void set_parts(mesh::document::VisibilityAction action, std::optional<tools::Pixel> pointer);
+  void show_all();
+  void look(std::string_view view_name);
+  void fit();
+  void next_profile();
+  void cancel();
+  void cancel_pull();
+  void take_model();
+  void follow_drag();
+  void follow_notices();
+  std::optional<render::Handle> shown_handle() const;
+
+  ModelLink& link_;
+  render::Renderer& renderer_;
+  Trace trace_;
+  display::PixelSize size_{1, 1};
+  double covered_width_ = 0;
+  stereo::Profile profile_;
+  mesh::Vec3 between_eyes_mm_;
+  stereo::View view_;
+  render::ColourMode colour_ = render::ColourMode::parts;
+  bool through_ = false;
+  panels::Dialog dialog_ = panels::Dialog::none;
+  bool help_ = false;
+
+  std::shared_ptr<const ipc::SnapshotView> shown_;
+  std::uint64_t link_changes_ = 0;
+  std::optional<mesh::NodeIndex> last_clicked_;
+  std::optional<tools::Anchor> anchor_;
+  std::optional<tools::HandlePull> pull_;
+  tools::Pull pulled_;
+  bool preview_shown_ = false;
+  std::uint64_t preview_sequence_ = 0;
+  bool axis_taken_ = false;
+  std::optional<render::PixelRect> rubber_band_;
+  bool pivot_found_ = false;
+  tools::Pixel orbit_from_ = tools::Pixel::Zero();
+  std::deque<panels::Notice> notices_;
+  render::DrawReport report_;
+  std::uint64_t changes_ = 0;
+  std::string traced_aim_;
+  std::string traced_handle_;
+};
+
+}  // namespace prismesh::kiosk

@@ -1,0 +1,335 @@
+#include "kiosk/model_link.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+#include <fmt/format.h>
+
+namespace prismesh::kiosk {
+namespace {
+
+using panels::Notice;
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kFirstBackOff = 100 * kMillisecond;
+constexpr std::int64_t kLongestBackOff = 2000 * kMillisecond;
+/// A step whose picture hasn't come after this long is taken for lost.
+constexpr std::int64_t kStepPatience = 250 * kMillisecond;
+
+template <class... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <class... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+std::string text_of(const ipc::Failed& failed) { return Error{failed.file, failed.line, failed.message}.text(); }
+
+}  // namespace
+
+bool is_selecting(std::string_view edit) {
+  constexpr std::array<std::string_view, 6> kSelecting{"select", "select_region", "select_lasso", "grow", "shrink", "invert"};
+  return std::find(kSelecting.begin(), kSelecting.end(), edit) != kSelecting.end();
+}
+
+ModelLink::ModelLink(std::filesystem::path socket, std::optional<std::filesystem::path> deck, Clock& clock, Trace trace)
+    : socket_(std::move(socket)), deck_(std::move(deck)), clock_(clock), trace_(trace) {}
+
+void ModelLink::turn() {
+  if (!client_) try_connect();
+  // Fetching may bring events along, which no descriptor will announce.
+  while (client_) {
+    read();
+    if (!client_ || !stale_) break;
+    fetch_snapshot();
+  }
+  if (client_ && drag_) turn_drag();
+}
+
+int ModelLink::patience_ms() const {
+  if (!client_) return static_cast<int>(std::max<std::int64_t>(0, (next_attempt_ns_ - clock_.now_ns() + kMillisecond - 1) / kMillisecond));
+  // Nothing announces a preview's next picture: while one is on its way, look again soon.
+  const bool awaiting = drag_ && drag_->begun() && !drag_->end_sent_ && drag_->frame_.sequence < drag_->sequence_;
+  return awaiting ? 2 : -1;
+}
+
+void ModelLink::try_connect() {
+  const std::int64_t now = clock_.now_ns();
+  if (now < next_attempt_ns_) return;
+  Result<ipc::Client> client = ipc::Client::connect(socket_, "prismesh-kiosk");
+  if (!client) {
+    back_off_ns_ = std::clamp(back_off_ns_ * 2, kFirstBackOff, kLongestBackOff);
+    next_attempt_ns_ = now + back_off_ns_;
+    return;
+  }
+  client_ = std::move(*client);
+  back_off_ns_ = 0;
+  ++changes_;
+  trace_.line("connected");
+  ask_state();
+}
+
+void ModelLink::lost(const Error& error) {
+  client_.reset();
+  waiting_.clear();
+  busy_.clear();
+  stale_ = false;
+  if (drag_) drop_drag("lost");
+  next_attempt_ns_ = clock_.now_ns();
+  ++changes_;
+  trace_.line("disconnected " + error.text());
+}
+
+void ModelLink::ask(const ipc::Request& request, Then then) {
+  if (!client_) return say(Notice::Kind::error, "The model server is not running: nothing was done. It will be tried again.");
+  const Result<std::uint64_t> sent = client_->send(request);
+  if (!sent) return lost(sent.error());
+  waiting_.emplace(*sent, std::move(then));
+}
+
+void ModelLink::read() {
+  if (Result<void> polled = client_->poll(); !polled) return lost(polled.error());
+  while (client_) {
+    if (const std::optional<ipc::Event> event = client_->next_event()) {
+      heard(*event);
+      continue;
+    }
+    const std::optional<ipc::Client::Reply> reply = client_->next_reply();
+    if (!reply) break;
+    auto node = waiting_.extract(reply->request);
+    if (node.empty()) continue;
+    ++changes_;
+    if (node.mapped()) node.mapped()(reply->answer);
+  }
+}
+
+void ModelLink::heard(const ipc::Event& event) {
+  ++changes_;
+  std::visit(Overloaded{
+                 [&](const ipc::GenerationPublished& published) {
+                   made_by_ = published.made_by;
+                   stale_ = true;
+                 },
+                 [&](const ipc::DocumentOpened& opened) {
+                   deck_ = opened.path;
+                   busy_.clear();
+                   stale_ = true;
+                   ask_state();
+                 },
+                 [&](const ipc::DocumentClosed&) {
+                   deck_.reset();
+                   snapshot_.reset();
+                   ask_state();
+                 },
+                 [&](const ipc::ProgressMade& progress) {
+                   busy_ = progress.fraction < 1 ? progress.what : std::string();
+                   busy_fraction_ = progress.fraction;
+                 },
+                 [&](const ipc::DragEnded& ended) {
+                   if (!drag_ || !drag_->begun() || drag_->facts().drag != ended.drag) return;
+                   if (!ended.committed && !drag_->end_sent_) say(Notice::Kind::warning, "The drag has ended: " + ended.why);
+                   stale_ = stale_ || ended.committed;
+                   drop_drag(ended.committed ? "committed" : "cancelled");
+                 },
+             },
+             event);
+}
+
+void ModelLink::ask_state() {
+  ask(ipc::GetState{}, [this](const ipc::Answer& answer) {
+    if (const auto* state = std::get_if<ipc::State>(&answer)) took_state(*state);
+  });
+}
+
+void ModelLink::took_state(const ipc::State& state) {
+  const bool first = !state_ || state_->path != state.path;
+  state_ = state;
+  if (!state.open) {
+    if (deck_ && !state.busy) open(*deck_);  // the server is new: it brings the journal's edits back when it opens the deck
+    return;
+  }
+  if (deck_ && deck_->string() != state.path && !snapshot_) {
+    const std::filesystem::path wanted = *deck_;
+    deck_ = state.path;
+    open(wanted);
+    return;
+  }
+  deck_ = state.path;
+  if (first && !state.warnings.empty()) {
+    const auto& warning = state.warnings.front();
+    std::string text = Error{warning.file, warning.line, warning.message}.text();
+    if (state.warnings.size() > 1) text += fmt::format(" (and {} more warnings: prismesh info lists them)", state.warnings.size() - 1);
+    say(Notice::Kind::warning, std::move(text));
+  }
+  if (!snapshot_ || snapshot_->info().generation != state.generation || snapshot_->info().document != state.path) stale_ = true;
+}
+
+void ModelLink::fetch_snapshot() {
+  stale_ = false;
+  Result<std::shared_ptr<const ipc::SnapshotView>> view = client_->snapshot();
+  ++changes_;
+  if (!view) {
+    // An error here is either the connection's end, which the next read will tell, or no document.
+    if (state_ && state_->open) say(Notice::Kind::error, view.error().text());
+    return;
+  }
+  snapshot_ = std::move(*view);
+  const ipc::SnapshotInfo& info = snapshot_->info();
+  trace_.line(fmt::format("generation {} selected {} warn {} fail {} changed {}", info.generation, info.selected_nodes, info.counts.warn,
+                          info.counts.fail, info.changed ? 1 : 0));
+}
+
+void ModelLink::open(const std::filesystem::path& deck) {
+  std::error_code ignored;
+  const std::filesystem::path whole = std::filesystem::absolute(deck, ignored);
+  busy_ = "Opening " + whole.filename().string();
+  busy_fraction_ = 0;
+  ipc::Open request;
+  request.path = whole.string();
+  ask(request, [this, whole](const ipc::Answer& answer) {
+    busy_.clear();
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
+      if (!snapshot_) deck_.reset();
+      say(Notice::Kind::error, text_of(*failed));
+      return;
+    }
+    deck_ = whole;
+    stale_ = true;
+    trace_.line("document " + whole.string());
+    if (const auto* state = std::get_if<ipc::State>(&answer)) {
+      if (state->recovered_edits > 0)
+        say(Notice::Kind::information,
+            fmt::format("{} edits that had not been saved were brought back from the journal.", state->recovered_edits));
+      took_state(*state);
+    } else {
+      ask_state();
+    }
+  });
+}
+
+void ModelLink::save(const std::optional<std::filesystem::path>& path) {
+  ipc::Save request;
+  std::error_code ignored;
+  if (path) request.path = std::filesystem::absolute(*path, ignored).string();
+  ask(request, [this](const ipc::Answer& answer) {
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say(Notice::Kind::error, text_of(*failed));
+    const auto* saved = std::get_if<ipc::Saved>(&answer);
+    if (saved == nullptr) return;
+    trace_.line(fmt::format("saved {} {}", saved->lines_changed, saved->path));
+    std::string text = fmt::format("Saved {}: {} lines changed.", saved->path, saved->lines_changed);
+    for (const std::string& note : saved->notes) text += "\n" + note;
+    say(saved->notes.empty() ? Notice::Kind::information : Notice::Kind::warning, std::move(text));
+    stale_ = true;
+    ask_state();
+  });
+}
+
+void ModelLink::edit(mesh::document::Edit edit) {
+  const bool selecting = is_selecting(mesh::document::name(edit));
+  ask(ipc::ApplyEdit{std::move(edit)}, [this, selecting](const ipc::Answer& answer) {
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say(Notice::Kind::error, text_of(*failed));
+    const auto* edited = std::get_if<ipc::Edited>(&answer);
+    if (edited == nullptr) return;
+    if (!snapshot_ || snapshot_->info().generation != edited->generation) stale_ = true;
+    if (selecting || edited->report.notes.empty()) return;  // what a selection did is in the picture
+    std::string text;
+    for (const std::string& note : edited->report.notes) text += (text.empty() ? "" : "\n") + note;
+    say(Notice::Kind::information, std::move(text));
+  });
+}
+
+void ModelLink::begin_drag(mesh::document::Edit edit) {
+  drag_.emplace(edit);
+  ask(ipc::BeginDrag{std::move(edit)}, [this](const ipc::Answer& answer) { drag_began(answer); });
+  if (!client_) drag_.reset();
+}
+
+void ModelLink::drag_began(const ipc::Answer& answer) {
+  if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
+    say(Notice::Kind::error, text_of(*failed));
+    return drop_drag("refused");
+  }
+  const auto* begun = std::get_if<ipc::DragBegun>(&answer);
+  if (begun == nullptr || !drag_) return;
+  Result<ipc::PreviewReader> reader = client_->take_preview(*begun);
+  drag_->begun_ = *begun;
+  if (!reader) {
+    say(Notice::Kind::error, reader.error().text());
+    drag_->wish_ = RemoteDrag::Wish::cancel;
+    return;
+  }
+  drag_->reader_ = std::move(*reader);
+  trace_.line(fmt::format("drag begun {} nodes {} grab {}", begun->drag, begun->nodes, begun->grab));
+}
+
+void ModelLink::pull(const mesh::Vec3& by, double distance) {
+  if (!drag_ || drag_->wish_ != RemoteDrag::Wish::hold) return;
+  if (drag_->by_ == by && drag_->distance_ == distance) return;
+  drag_->by_ = by;
+  drag_->distance_ = distance;
+  drag_->moved_ = true;
+}
+
+void ModelLink::commit_drag() {
+  if (drag_ && drag_->wish_ == RemoteDrag::Wish::hold) drag_->wish_ = RemoteDrag::Wish::commit;
+}
+
+void ModelLink::cancel_drag() {
+  if (drag_ && !drag_->end_sent_) drag_->wish_ = RemoteDrag::Wish::cancel;
+}
+
+void ModelLink::turn_drag() {
+  RemoteDrag& drag = *drag_;
+  if (!drag.begun() || drag.end_sent_) return;
+  if (drag.reader_ && drag.reader_->latest(drag.frame_)) ++changes_;
+  const std::uint64_t id = drag.facts().drag;
+  if (drag.wish_ == RemoteDrag::Wish::cancel || (drag.wish_ == RemoteDrag::Wish::commit && drag.sequence_ == 0 && !drag.moved_)) {
+    drag.end_sent_ = true;
+    ask(ipc::CancelDrag{id}, [this](const ipc::Answer&) { drop_drag("cancelled"); });
+    return;
+  }
+  const bool seen = drag.frame_.sequence >= drag.sequence_ || clock_.now_ns() - drag.sent_ns_ > kStepPatience;
+  if (drag.moved_ && (seen || drag.wish_ == RemoteDrag::Wish::commit)) send_step();
+  if (!client_ || !drag_ || drag_->wish_ != RemoteDrag::Wish::commit) return;
+  drag.end_sent_ = true;
+  ask(ipc::CommitDrag{id}, [this](const ipc::Answer& answer) {
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
+      say(Notice::Kind::error, text_of(*failed));
+      return drop_drag("refused");
+    }
+    stale_ = true;
+    drop_drag("committed");
+  });
+}
+
+void ModelLink::send_step() {
+  RemoteDrag& drag = *drag_;
+  ipc::DragStep step;
+  step.drag = drag.facts().drag;
+  step.sequence = ++drag.sequence_;
+  step.by = {drag.by_.x(), drag.by_.y(), drag.by_.z()};
+  step.distance = drag.distance_;
+  drag.moved_ = false;
+  drag.sent_ns_ = clock_.now_ns();
+  if (const Result<std::uint64_t> sent = client_->send(step); !sent) lost(sent.error());
+}
+
+void ModelLink::drop_drag(const char* how) {
+  if (!drag_) return;
+  drag_.reset();
+  ++changes_;
+  trace_.line(std::string("drag ") + how);
+}
+
+void ModelLink::say(Notice::Kind kind, std::string text) {
+  ++changes_;
+  trace_.line(fmt::format("notice {} {}",
+                          kind == Notice::Kind::error     ? "error"
+                          : kind == Notice::Kind::warning ? "warning"
+                                                          : "information",
+                          text));
+  notices_.push_back({kind, std::move(text)});
+}
+
+}  // namespace prismesh::kiosk

@@ -1,0 +1,128 @@
+// The kiosk's end of the line to the model server: connects and connects again, asks without waiting, keeps the current
+// generation, and carries one drag. It owns nothing that would be lost with it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/clock.h"
+#include "ipc/client.h"
+#include "kiosk/panels/panels.h"
+#include "kiosk/trace.h"
+
+namespace prismesh::kiosk {
+
+/// Whether an edit of this name changes the selection only.
+bool is_selecting(std::string_view edit);
+
+/// A drag as the model server works on it.
+class RemoteDrag {
+ public:
+  explicit RemoteDrag(mesh::document::Edit edit) : edit_(std::move(edit)) {}
+
+  bool begun() const { return begun_.has_value(); }
+  const ipc::DragBegun& facts() const { return *begun_; }
+  const ipc::PreviewReader& preview() const { return *reader_; }
+  /// The newest picture of it; sequence 0: none yet.
+  const ipc::PreviewFrame& frame() const { return frame_; }
+
+ private:
+  friend class ModelLink;
+  enum class Wish : std::uint8_t { hold, commit, cancel };
+
+  mesh::document::Edit edit_;
+  std::optional<ipc::DragBegun> begun_;
+  std::optional<ipc::PreviewReader> reader_;
+  ipc::PreviewFrame frame_;
+  mesh::Vec3 by_ = mesh::Vec3::Zero();  ///< what the hand wants
+  double distance_ = 0;
+  bool moved_ = false;          ///< since the last step was sent
+  std::uint64_t sequence_ = 0;  ///< of the last step sent
+  std::int64_t sent_ns_ = 0;
+  Wish wish_ = Wish::hold;
+  bool end_sent_ = false;
+};
+
+class ModelLink {
+ public:
+  /// `deck`: opened as soon as there is a server, unless it has it open already.
+  ModelLink(std::filesystem::path socket, std::optional<std::filesystem::path> deck, Clock& clock, Trace trace);
+
+  /// Connects when it is time to, reads what has come, fetches a new generation, sends the drag's next step.
+  void turn();
+  /// For poll(2); negative while there is no connection.
+  int descriptor() const { return client_ ? client_->descriptor() : -1; }
+  /// How long nothing needs to be done unless the descriptor is readable; negative: for ever.
+  int patience_ms() const;
+  /// Counts up with everything that could change what is shown.
+  std::uint64_t changes() const { return changes_; }
+
+  bool connected() const { return client_.has_value(); }
+  const std::filesystem::path& socket() const { return socket_; }
+  const std::optional<ipc::State>& state() const { return state_; }
+  /// The current generation; null while no document is open. Stays while the server is away.
+  const std::shared_ptr<const ipc::SnapshotView>& snapshot() const { return snapshot_; }
+  /// The edit that made the current generation, as far as this client heard of it.
+  const std::string& made_by() const { return made_by_; }
+  const std::string& busy() const { return busy_; }
+  double busy_fraction() const { return busy_fraction_; }
+
+  void open(const std::filesystem::path& deck);
+  void save(const std::optional<std::filesystem::path>& path);
+  void edit(mesh::document::Edit edit);
+
+  /// A drag from taking the handle until the server's last word on it. Steps that the hand outruns are left out, the last
+  /// one never is.
+  void begin_drag(mesh::document::Edit edit);
+  void pull(const mesh::Vec3& by, double distance);
+  void commit_drag();
+  void cancel_drag();
+  const RemoteDrag* drag() const { return drag_ ? &*drag_ : nullptr; }
+
+  std::vector<panels::Notice> take_notices() { return std::exchange(notices_, {}); }
+
+ private:
+  using Then = std::function<void(const ipc::Answer&)>;
+
+  void try_connect();
+  void lost(const Error& error);
+  void ask(const ipc::Request& request, Then then);
+  void read();
+  void heard(const ipc::Event& event);
+  void ask_state();
+  void took_state(const ipc::State& state);
+  void fetch_snapshot();
+  void drag_began(const ipc::Answer& answer);
+  void turn_drag();
+  void send_step();
+  void drop_drag(const char* how);
+  void say(panels::Notice::Kind kind, std::string text);
+
+  std::filesystem::path socket_;
+  std::optional<std::filesystem::path> deck_;  ///< what should be open
+  Clock& clock_;
+  Trace trace_;
+  std::optional<ipc::Client> client_;
+  std::map<std::uint64_t, Then> waiting_;
+  std::int64_t next_attempt_ns_ = 0;
+  std::int64_t back_off_ns_ = 0;
+  std::optional<ipc::State> state_;
+  std::shared_ptr<const ipc::SnapshotView> snapshot_;
+  std::string made_by_;
+  bool stale_ = false;  ///< a newer generation exists
+  std::string busy_;
+  double busy_fraction_ = 0;
+  std::optional<RemoteDrag> drag_;
+  std::vector<panels::Notice> notices_;
+  std::uint64_t changes_ = 0;
+};
+
+}  // namespace prismesh::kiosk

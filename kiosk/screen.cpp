@@ -1,0 +1,45 @@
+#include "kiosk/screen.h"
+
+#include <utility>
+
+namespace prismesh::kiosk {
+
+Screen::Screen(panels::Gui gui, render::Renderer& renderer, Editor& editor, Clock& clock)
+    : gui_(std::move(gui)), renderer_(renderer), editor_(editor), clock_(clock), laid_out_ns_(clock.now_ns()) {}
+
+void Screen::set_size(display::PixelSize size) {
+  size_ = size;
+  editor_.set_picture_size(size);
+}
+
+Result<void> Screen::lay_out() {
+  if (Result<void> type = gui_.set_type(editor_.profile().stereo() ? panels::kStereoType : panels::kFlatType); !type) return type;
+  const std::int64_t now = clock_.now_ns();
+  std::vector<panels::PanelAction> actions;
+  gui_.layout(size_, static_cast<double>(now - std::exchange(laid_out_ns_, now)) * 1e-9, [&] {
+    actions = panels_.build(editor_.panel_data(), size_);
+    if (pointer_ && editor_.profile().stereo()) panels::draw_pointer(pointer_->x(), pointer_->y());
+  });
+  editor_.set_covered_width(panels_.covered_width());
+  for (const panels::PanelAction& action : actions) editor_.panel_action(action);
+  return {};
+}
+
+Result<void> Screen::draw(unsigned framebuffer, std::optional<tools::Pixel> pointer) {
+  pointer_ = pointer;
+  // Panels that fit their content have their size after the second time.
+  for (int round = 0; round < 2; ++round)
+    if (Result<void> laid_out = lay_out(); !laid_out) return laid_out;
+  render::Picture picture = editor_.picture();
+  picture.overlay = [&](const render::EyeImage& image) {
+    const bool columns = picture.profile.weave == stereo::Weave::columns && image.eye;
+    const double shift = columns ? stereo::half_pixel_shift(*image.eye, image.display_width, picture.profile.swap_eyes) : 0;
+    gui_.draw({image.width, image.height}, shift);
+  };
+  const Result<render::DrawReport> report = renderer_.draw(picture, framebuffer, size_.width, size_.height);
+  if (!report) return fail(report.error());
+  editor_.set_report(*report);
+  return {};
+}
+
+}  // namespace prismesh::kiosk
