@@ -1,7 +1,8 @@
 #include "mesh/deck/sample/loft.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "base/deterministic_math.h"
 
 namespace prismesh::mesh::deck::sample {
 namespace {
@@ -95,20 +96,6 @@ void stitch(int left, int right, const Emit& emit) {
   }
 }
 
-/// Cosine and sine of `eighths` / 8 of a turn plus a rest, by series: libm's may differ between processors.
-std::array<double, 2> direction(double turn) {
-  constexpr double kTau = 6.283185307179586476925;
-  const double eighths = std::floor(turn * 8.0 + 0.5);
-  const double x = (turn - eighths / 8.0) * kTau;
-  const double x2 = x * x;
-  const double c = 1 - x2 / 2 * (1 - x2 / 12 * (1 - x2 / 30 * (1 - x2 / 56 * (1 - x2 / 90 * (1 - x2 / 132)))));
-  const double s = x * (1 - x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72 * (1 - x2 / 110 * (1 - x2 / 156))))));
-  const double r = std::sqrt(0.5);
-  const std::array<std::array<double, 2>, 8> octant{{{1, 0}, {r, r}, {0, 1}, {-r, r}, {-1, 0}, {-r, -r}, {0, -1}, {r, -r}}};
-  const auto& o = octant[static_cast<std::size_t>(static_cast<long>(eighths) & 7)];
-  return {o[0] * c - o[1] * s, o[1] * c + o[0] * s};
-}
-
 class Mesher {
  public:
   Mesher(const Part& part, const Plan& plan) : part_(part), plan_(plan) {}
@@ -196,9 +183,9 @@ class Mesher {
       std::vector<std::uint32_t> inner(4 * k);
       for (std::size_t i = 0; i < 4 * k; ++i) {
         // The border starts at the corner an eighth of a turn before the direction of the line.
-        const std::array<double, 2> d = direction(static_cast<double>(i) / static_cast<double>(4 * k) - 0.125);
-        const double at = border[i][0] + inward * (block.hole.radius * d[0] - border[i][0]);
-        const double across = border[i][1] + inward * (block.hole.radius * d[1] - border[i][1]);
+        const double degrees = 360.0 * static_cast<double>(i) / static_cast<double>(4 * k) - 45.0;
+        const double at = border[i][0] + inward * (block.hole.radius * deterministic_cos_degrees(degrees) - border[i][0]);
+        const double across = border[i][1] + inward * (block.hole.radius * deterministic_sin_degrees(degrees) - border[i][1]);
         inner[i] = add(block.hole.face, centre_across + across / width, centre_along + at);
       }
       for (std::size_t i = 0; i < 4 * k; ++i) {

@@ -1,5 +1,5 @@
 // Meshing a part that is swept along a line: strips of quads between stations, triangles where the number of quads across
-// changes, round holes set into blocks of the grid. All arithmetic is + - * / and sqrt, so the mesh is the same everywhere.
+// changes, round holes set into blocks of the grid. No transcendental function of the C library: one mesh on every machine.
 #pragma once
 
 #include <array>
