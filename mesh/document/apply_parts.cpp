@@ -46,7 +46,7 @@ Result<PartFlags> parts_named(const Document& document, const SetParts& edit) {
     const Result<select::Chosen> chosen = select::evaluate(model, *edit.on, select::Kind::part);
     if (!chosen) return fail(chosen.error());
     PartFlags flags(model.parts->size(), 0);
-    flag_parts_of(model, chosen->shells, flags);
+    for (const PartIndex part : chosen->parts) flags[part.value] = 1;
     return flags;
   }
   const bool reveals = edit.action == VisibilityAction::show || edit.action == VisibilityAction::unlock;

@@ -29,10 +29,13 @@ Picked combine(const Model& model, const Picked& old, Picked added, SelectMode m
   const bool nothing_yet = old.nodes.empty();
   const bool as_nodes = added.kind == Kind::node || (old.kind == Kind::node && !nothing_yet);
   if (as_nodes) return {combined(old.nodes, added.nodes, mode), {}, Kind::node};
+  // Nodes of a selected part's beams and solids belong to no selected shell; they are combined by themselves, since a shell that
+  // stays keeps all its nodes.
+  const auto beyond_shells = [&](const Picked& set) { return combined(set.nodes, nodes_of(model, set.shells), SelectMode::subtract); };
   Picked out;
   out.kind = nothing_yet || old.kind == added.kind ? added.kind : Kind::element;
   out.shells = combined(old.shells, added.shells, mode);
-  out.nodes = nodes_of(model, out.shells);
+  out.nodes = combined(nodes_of(model, out.shells), combined(beyond_shells(old), beyond_shells(added), mode), SelectMode::add);
   return out;
 }
 

@@ -4,12 +4,13 @@
 
 #include "base/parallel_for.h"
 #include "mesh/document/motion.h"
+#include "mesh/quality/judging.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr std::size_t kShellsAtATime = 512;  ///< of a parallel range: some 50 microseconds
+constexpr std::size_t kShellsAtATime = 1024;  ///< of a parallel range: some 100 microseconds
 
 /// Where each corner's coordinates come from: >= 0 the moving node of that number, < 0 the fixed point of the number's complement.
 class Corners {
@@ -75,6 +76,7 @@ Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const Settings&
     const ShellNodes& nodes = model.shell(shell);
     for (std::size_t i = 0; i < 4; ++i) from[i] = i == 3 && nodes.is_triangle() ? from[2] : corners(nodes.node[i], drag.fixed_);
     drag.corners_.push_back(from);
+    drag.thickness_.push_back(quality::thickness_of(model, shell.value));
     drag.states_.push_back(base->quality[shell.value]);
     add(drag.counts_elsewhere_, drag.states_.back(), static_cast<std::size_t>(-1));
   }
@@ -93,16 +95,11 @@ void Drag::step(const Vec3& by, double distance) {
   positions_at(*motion_, by, distance, positions_);
   std::vector<quality::Counts> counts((corners_.size() + kShellsAtATime - 1) / kShellsAtATime);
   parallel_for(corners_.size(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
+    const std::size_t count = end - begin;
+    quality::judge_points(positions_, fixed_, std::span(corners_).subspan(begin, count), std::span(thickness_).subspan(begin, count),
+                          settings_.criteria, settings_.target_size, std::span(states_).subspan(begin, count));
     quality::Counts sum;
-    for (std::size_t s = begin; s < end; ++s) {
-      const std::array<std::int32_t, 4>& from = corners_[s];
-      std::array<Vec3, 4> at;
-      for (std::size_t i = 0; i < 4; ++i)
-        at[i] = from[i] >= 0 ? positions_[static_cast<std::size_t>(from[i])] : fixed_[static_cast<std::size_t>(~from[i])];
-      const std::size_t size = from[3] == from[2] ? 3 : 4;
-      states_[s] = quality::judge(quality::measure({at.data(), size}), settings_.criteria, settings_.target_size);
-      add(sum, states_[s], 1);
-    }
+    for (std::size_t s = begin; s < end; ++s) add(sum, states_[s], 1);
     counts[begin / kShellsAtATime] = sum;
   });
   counts_ = total(counts_elsewhere_, counts);

@@ -44,12 +44,61 @@ Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& no
   return std::optional<NodeIndex>();
 }
 
+/// The mid-side nodes among the nodes acted on, with the ends of their edges; ascending, each once.
+struct EdgeMiddle {
+  NodeIndex node;
+  std::array<NodeIndex, 2> end;
+};
+std::vector<EdgeMiddle> middles_in(const Model& model, const NodeSet& nodes, const ShellSet& shells) {
+  std::vector<EdgeMiddle> middles;
+  if (!model.midside || model.midside->empty()) return middles;
+  const auto& all = *model.midside;
+  auto entry = all.begin();
+  for (const ShellIndex shell : shells) {
+    entry = std::lower_bound(entry, all.end(), shell, [](const MidsideNodes& m, ShellIndex s) { return m.shell < s; });
+    if (entry == all.end()) break;
+    if (entry->shell != shell) continue;
+    const ShellNodes& corners = model.shell(shell);
+    const int count = corners.corners();
+    for (int i = 0; i < count; ++i)
+      if (const NodeIndex node = entry->node[i]; node.valid() && std::binary_search(nodes.begin(), nodes.end(), node))
+        middles.push_back({node, {corners.node[i], corners.node[(i + 1) % count]}});
+  }
+  std::stable_sort(middles.begin(), middles.end(), [](const EdgeMiddle& a, const EdgeMiddle& b) { return a.node < b.node; });
+  middles.erase(std::unique(middles.begin(), middles.end(), [](const EdgeMiddle& a, const EdgeMiddle& b) { return a.node == b.node; }),
+                middles.end());
+  return middles;
+}
+
+/// Position of a node in motion.nodes, or kStays.
+std::uint32_t place_in(const NodeSet& nodes, NodeIndex node) {
+  const auto at = std::lower_bound(nodes.begin(), nodes.end(), node);
+  return at != nodes.end() && *at == node ? static_cast<std::uint32_t>(at - nodes.begin()) : Motion::Midside::kStays;
+}
+
+/// Keeps what moves: nodes with a weight, and middles of edges of which an end has one.
 void keep_moving(const shape::Weights& weights, const Model& model, Motion& motion) {
+  const auto weight_of = [&](NodeIndex node) {
+    const std::uint32_t at = place_in(weights.nodes, node);
+    return at == Motion::Midside::kStays ? 0.0 : weights.weight[at];
+  };
+  const std::vector<EdgeMiddle> middles = middles_in(model, weights.nodes, shells_touching(model, weights.nodes));
+  auto middle = middles.begin();
   for (std::size_t i = 0; i < weights.nodes.size(); ++i) {
-    if (!(weights.weight[i] > 0)) continue;
-    motion.nodes.push_back(weights.nodes[i]);
-    motion.weight.push_back(weights.weight[i]);
-    motion.start.push_back(model.position(weights.nodes[i]));
+    const NodeIndex node = weights.nodes[i];
+    const bool is_middle = middle != middles.end() && middle->node == node && model.adjacency->shells_of(node).empty();
+    const bool moves = is_middle ? weight_of(middle->end[0]) > 0 || weight_of(middle->end[1]) > 0 : weights.weight[i] > 0;
+    if (middle != middles.end() && middle->node == node) ++middle;
+    if (is_middle && motion.unreached > 0) --motion.unreached;
+    if (!moves) continue;
+    motion.nodes.push_back(node);
+    motion.weight.push_back(is_middle ? 0.0 : weights.weight[i]);
+    motion.start.push_back(model.position(node));
+  }
+  for (const EdgeMiddle& each : middles) {
+    const std::uint32_t at = place_in(motion.nodes, each.node);
+    if (at == Motion::Midside::kStays || !model.adjacency->shells_of(each.node).empty()) continue;
+    motion.midside.push_back({at, {place_in(motion.nodes, each.end[0]), place_in(motion.nodes, each.end[1])}});
   }
 }
 
@@ -108,6 +157,12 @@ std::size_t positions_at(const Motion& motion, const Vec3& by, double distance, 
     shape::lift(motion.start, motion.weight, motion.normals, distance, out);
   else
     shape::translate(motion.start, motion.weight, by, out);
+  for (const Motion::Midside& middle : motion.midside) {
+    Vec3 move = Vec3::Zero();
+    for (const std::uint32_t end : middle.end)
+      if (end != Motion::Midside::kStays) move += 0.5 * (out[end] - motion.start[end]);
+    out[middle.node] = motion.start[middle.node] + move;
+  }
   std::size_t held_back = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out[i] == motion.start[i]) out[i] = motion.start[i];  // -0 stays -0: what hasn't moved keeps its bits

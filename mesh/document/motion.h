@@ -2,7 +2,10 @@
 // bit what its edit will do. Private to mesh/document.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mesh/document/document.h"
@@ -11,6 +14,13 @@ namespace prismesh::mesh::document {
 
 /// What a translate or lift moves, before its displacement is known.
 struct Motion {
+  /// A mid-side node: it follows the ends of its edge, half each, since no distance is known for it. Positions in `nodes`.
+  struct Midside {
+    static constexpr std::uint32_t kStays = 0xffffffffu;
+    std::uint32_t node = 0;
+    std::array<std::uint32_t, 2> end{kStays, kStays};
+  };
+
   bool is_lift = false;
   NodeSet nodes;               ///< those with weight > 0
   std::vector<double> weight;  ///< of each
@@ -18,7 +28,8 @@ struct Motion {
   std::vector<Vec3> normals;   ///< lift: of each, or one for all
   NodeIndex grab;
   Vec3 normal = Vec3::Zero();  ///< unit normal at the grab; zero where no shell is
-  std::size_t unreached = 0;   ///< nodes acted on with no way from the grab
+  std::vector<Midside> midside;
+  std::size_t unreached = 0;  ///< nodes acted on with no way from the grab
   std::optional<double> max_move;
 };
 
