@@ -11,6 +11,8 @@ namespace prismesh::mesh::spatial {
 namespace {
 
 constexpr std::uint32_t kNowhere = 0xffffffffu;
+constexpr double kWorthwhile = 1e-9;      ///< share of its distance that takes up a done node again
+constexpr std::uint8_t kMostTimes = 200;  ///< a node is taken up again; a bound on the work, far above what meshes need
 
 /// Nodes by distance, the nearest on top; of equals the lower number, so that the order never depends on history.
 class NearestFirst {
@@ -74,6 +76,7 @@ class March {
         centre_(patch.nodes.size(), kNowhere),
         source_(patch.nodes.size(), kNowhere),
         done_(patch.nodes.size(), 0),
+        again_(patch.nodes.size(), 0),
         queue_(distance_) {}
 
   std::vector<double> run(std::span<const std::uint32_t> sources, double radius) {
@@ -161,12 +164,12 @@ class March {
   }
 
   void go_straight(std::uint32_t from, std::uint32_t to, double length) {
-    if (done_[to] != 0) return;
     offer(to, distance_[from] + length, patch_.bends[from] != 0 ? from : centre_[from], source_[from]);
   }
 
   void cross(const Triangle& t) {
-    if (done_[t.a] == 0 || done_[t.b] == 0 || done_[t.tip] != 0 || !(t.base > 0)) return;
+    if (done_[t.a] == 0 || done_[t.b] == 0 || !(t.base > 0)) return;
+    if (done_[t.tip] != 0 && distance_[t.tip] <= std::min(distance_[t.a], distance_[t.b])) return;
     // the base lies on the x axis from 0 to t.base, the tip above it
     const double x = (t.a_tip * t.a_tip + t.base * t.base - t.b_tip * t.b_tip) / (2 * t.base);
     const double y = std::sqrt(std::max(0.0, t.a_tip * t.a_tip - x * x));
@@ -204,8 +207,16 @@ class March {
     offer(t.tip, distance_[t.a] + x * slope_x + y * slope_y, centre_[nearer], source_[nearer]);
   }
 
+  /// A node that was done is taken up again when its support came late: a base may reach farther than its tip where corners
+  /// are obtuse or the source is near.
   void offer(std::uint32_t node, double distance, std::uint32_t centre, std::uint32_t source) {
-    if (!(distance < distance_[node])) return;
+    if (done_[node] != 0) {
+      if (!(distance < distance_[node] * (1 - kWorthwhile)) || again_[node] == kMostTimes) return;
+      ++again_[node];
+    } else if (!(distance < distance_[node])) {
+      return;
+    }
+    done_[node] = 0;
     distance_[node] = distance;
     centre_[node] = centre;
     source_[node] = source;
@@ -217,6 +228,7 @@ class March {
   std::vector<std::uint32_t> centre_;  ///< node the wave spreads from in circles: a source, or where the way turned last
   std::vector<std::uint32_t> source_;
   std::vector<std::uint8_t> done_;
+  std::vector<std::uint8_t> again_;  ///< how often each node was taken up again
   NearestFirst queue_;
 };
 

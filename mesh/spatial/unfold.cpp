@@ -9,7 +9,7 @@ namespace prismesh::mesh::spatial {
 
 namespace {
 
-constexpr int kFarthest = 8;  ///< shells laid flat before a corner is given up; it then relies on its sides alone
+constexpr int kFarthest = 20;  ///< shells laid flat before a corner is given up; it then relies on its sides alone
 
 struct FlatPoint {
   double x = 0;
