@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace prismesh {
 
@@ -19,6 +20,8 @@ struct Hash128 {
 
 /// XXH3-128 of the bytes.
 Hash128 hash128(std::span<const std::byte> bytes);
+/// The same of the pieces one after the other.
+Hash128 hash128(std::span<const std::string_view> pieces);
 /// XXH3-64 of the bytes.
 std::uint64_t hash64(std::span<const std::byte> bytes);
 

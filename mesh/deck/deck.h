@@ -62,6 +62,8 @@ struct NodeRun {
   Columns columns = Columns::standard;
 };
 
+struct OnDisk;  // mesh/deck/on_disk.h
+
 /// Everything about the text that editing and saving need.
 struct Deck {
   Format format = Format::ls_dyna;
@@ -73,6 +75,7 @@ struct Deck {
   TimeStepControl time_step;
   std::vector<Warning> warnings;
   std::vector<std::string> missing_files;  ///< includes that weren't found, as written
+  std::shared_ptr<OnDisk> on_disk;         ///< what saving in place has left on disk; never null after opening
 
   std::uint32_t run_of(NodeIndex node) const;  ///< index into node_runs
 };

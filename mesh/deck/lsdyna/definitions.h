@@ -1,0 +1,56 @@
+// Parts, sections, materials and the time step: what a deck says about its elements besides their shape.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mesh/deck/deck.h"
+#include "mesh/deck/lsdyna/keyword.h"
+#include "mesh/deck/lsdyna/parameters.h"
+
+namespace prismesh::mesh::deck::lsdyna {
+
+struct Material {
+  std::optional<double> density;
+  std::optional<double> youngs_modulus;
+  std::optional<double> poissons_ratio;
+  bool limits_time_step = true;
+};
+
+/// Collects definitions block by block; of equal ids the first counts.
+class Definitions {
+ public:
+  /// Reads the block if its keyword is one of those; false: it isn't.
+  bool read(std::string_view text, const Block& block, const Parameters& parameters);
+
+  /// Defined parts with section and material put in, ascending by id.
+  std::vector<Part> parts() const;
+  const TimeStepControl& time_step() const { return time_step_; }
+
+ private:
+  void read_parts(std::string_view text, const Block& block, const Parameters& parameters);
+  void read_composite_part(std::string_view text, const Block& block, const Parameters& parameters);
+  void read_shell_sections(std::string_view text, const Block& block, const Parameters& parameters);
+  void read_material(std::string_view text, const Block& block, const Parameters& parameters);
+  void read_time_step(std::string_view text, const Block& block, const Parameters& parameters);
+
+  std::map<std::int64_t, Part> parts_;
+  std::map<std::int64_t, double> section_thickness_;
+  std::map<std::int64_t, Material> materials_;
+  TimeStepControl time_step_;
+};
+
+/// Where a material keyword ("MAT_ELASTIC", "MAT_024_TITLE") keeps its constants, as fields of its first card from 1; 0
+/// where it has none.
+struct MaterialFields {
+  int density = 2;
+  int youngs_modulus = 0;
+  int poissons_ratio = 0;
+  bool limits_time_step = true;
+};
+MaterialFields material_fields(std::string_view keyword);
+
+}  // namespace prismesh::mesh::deck::lsdyna

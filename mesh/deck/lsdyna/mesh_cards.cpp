@@ -1,0 +1,379 @@
+#include "mesh/deck/lsdyna/mesh_cards.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "mesh/deck/lsdyna/card.h"
+#include "mesh/deck/lsdyna/number.h"
+
+namespace prismesh::mesh::deck::lsdyna {
+namespace {
+
+constexpr std::array<int, 4> kNodeWidths = {8, 16, 16, 16};
+constexpr std::array<int, 10> kElementWidths = {8, 8, 8, 8, 8, 8, 8, 8, 8, 8};
+constexpr std::array<int, 5> kThicknessWidths = {16, 16, 16, 16, 16};
+constexpr std::array<int, 4> kMassWidths = {8, 8, 16, 8};
+constexpr std::size_t kMostElementFields = 10;
+
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text.substr(0, 40)) out += c >= ' ' && c != 127 ? c : '?';
+  return out + (text.size() > 40 ? "...\"" : "\"");
+}
+
+/// Digits with blanks around them; anything else is for the slow way.
+inline bool plain_integer(const char* at, const char* end, std::int64_t& value) {
+  while (at < end && *at == ' ') ++at;
+  std::int64_t sum = 0;
+  const char* first = at;
+  while (at < end && static_cast<unsigned char>(*at - '0') < 10) sum = sum * 10 + (*at++ - '0');
+  if (at - first > 18) return false;
+  while (at < end && *at == ' ') ++at;
+  value = sum;
+  return at == end;
+}
+
+class PieceReader {
+ public:
+  PieceReader(std::string_view text, const std::vector<Parameters>& tables, PieceCards& out) : text_(text), tables_(tables), out_(out) {}
+
+  bool read(const Segment& segment) {
+    segment_ = &segment;
+    parameters_ = &tables_[segment.parameters];
+    Lines lines(text_, segment.begin, segment.end);
+    lines_ = &lines;
+    if (segment.form.kind == CardKind::node) return read_nodes();
+    return read_elements();
+  }
+
+ private:
+  bool fail_at(std::size_t offset, std::string message) {
+    out_.error = {offset, std::move(message)};
+    return false;
+  }
+  /// A field that is no number: an unknown parameter only costs its card; anything else is an error.
+  bool refuse(const Line& line, std::string_view field, std::string_view what, std::int64_t id) {
+    if (line.text.substr(0, kEncryptedBegin.size()) == kEncryptedBegin) {
+      out_.encrypted = true;
+      return false;
+    }
+    if (field.find('&') != std::string_view::npos) {
+      out_.note("undefined-parameter", line.offset, id);
+      return true;
+    }
+    return fail_at(line.offset, "expected " + std::string(what) + " but found " + quoted(field));
+  }
+
+  bool read_nodes() {
+    out_.runs.push_back({static_cast<std::uint32_t>(out_.node_id.size()), segment_->columns});
+    const auto id_width = static_cast<std::size_t>(field_width(8, segment_->columns));
+    const auto width = static_cast<std::size_t>(field_width(16, segment_->columns));
+    Line line;
+    while (lines_->next(line)) {
+      const std::string_view text = line.text;
+      std::int64_t id = 0;
+      Vec3 position;
+      const char* begin = text.data();
+      const bool fixed = text.size() > id_width && plain_integer(begin, begin + id_width, id) && id > 0 &&
+                         parse_real(text.substr(id_width, width), position[0]) &&
+                         parse_real(text.substr(std::min(id_width + width, text.size()), width), position[1]) &&
+                         parse_real(text.substr(std::min(id_width + 2 * width, text.size()), width), position[2]);
+      if (fixed)
+        add_node(id, position, line.offset);
+      else if (!read_node_slowly(line))
+        return false;
+    }
+    return true;
+  }
+
+  void add_node(std::int64_t id, const Vec3& position, std::size_t offset) {
+    out_.node_id.push_back(id);
+    out_.position.push_back(position);
+    out_.node_offset.push_back(offset);
+  }
+
+  bool read_node_slowly(const Line& line) {
+    card_.cut(line.text, kNodeWidths, segment_->columns);
+    const std::optional<std::int64_t> id = card_.integer(0, *parameters_);
+    if (!id) return refuse(line, card_.text(0), "a node id", 0);
+    if (*id <= 0 && trim(line.text).find_first_not_of(", \t") == std::string_view::npos) return true;
+    if (*id <= 0) return fail_at(line.offset, "a node needs an id above 0, but this card has " + quoted(card_.text(0)));
+    Vec3 position;
+    bool by_parameter = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view field = card_.text(static_cast<std::size_t>(axis) + 1);
+      const std::optional<double> value = parameters_->real(field);
+      if (!value) return refuse(line, field, std::string("the ") + "xyz"[axis] + " coordinate of node " + std::to_string(*id), *id);
+      position[axis] = *value;
+      by_parameter |= field.find('&') != std::string_view::npos;
+    }
+    if (by_parameter) out_.by_parameter.push_back(static_cast<std::uint32_t>(out_.node_id.size()));
+    add_node(*id, position, line.offset);
+    return true;
+  }
+
+  /// The integers of an element's card into fields_; those that lack are 0. False: stop (an error is noted) or leave the
+  /// card out (none is).
+  bool cut_integers(const Line& line, std::size_t wanted, bool& usable) {
+    const auto width = static_cast<std::size_t>(field_width(8, segment_->columns));
+    const char* at = line.text.data();
+    const char* end = at + line.text.size();
+    fields_.fill(0);
+    usable = true;
+    std::size_t f = 0;
+    for (; f < wanted && at < end; ++f) {
+      const char* next = at + std::min(width, static_cast<std::size_t>(end - at));
+      if (!plain_integer(at, next, fields_[f])) break;
+      at = next;
+    }
+    if (f == wanted || at >= end) return true;
+    card_.cut(line.text, kElementWidths, segment_->columns);
+    fields_.fill(0);
+    for (f = 0; f < std::min(wanted, card_.count()); ++f) {
+      const std::optional<std::int64_t> value = card_.integer(f, *parameters_);
+      if (!value) {
+        usable = false;
+        return refuse(line, card_.text(f), f == 0 ? "an element id" : "an id", fields_[0]);
+      }
+      fields_[f] = *value;
+    }
+    return true;
+  }
+
+  bool read_elements() {
+    Line line;
+    while (pending_ ? (line = *pending_, pending_.reset(), true) : lines_->next(line)) {
+      if (line.text.empty() || trim(line.text).empty()) continue;
+      bool read = true;
+      switch (segment_->form.kind) {
+        case CardKind::shell: read = read_shell(line); break;
+        case CardKind::solid: read = read_solid(line); break;
+        case CardKind::mass:
+        case CardKind::mass_of_set:
+        case CardKind::mass_of_part:
+        case CardKind::sph: read = read_point(line); break;
+        default: read = read_plain(line); break;
+      }
+      if (!read) return false;
+      Line skipped;
+      for (int i = 0; i < segment_->form.extra_lines; ++i)
+        if (!lines_->next(skipped)) break;
+      if (segment_->form.composite && !read_layers()) return false;
+    }
+    return true;
+  }
+
+  bool element_id_is_bad(const Line& line) {
+    if (fields_[0] > 0) return false;
+    fail_at(line.offset, "an element needs an id above 0");
+    return true;
+  }
+
+  bool read_shell(const Line& line) {
+    bool usable = true;
+    if (!cut_integers(line, kMostElementFields, usable)) return false;
+    if (usable && element_id_is_bad(line)) return false;
+    const std::array<std::int64_t, 4> midside = {fields_[6], fields_[7], fields_[8], fields_[9]};
+    const bool has_midside = std::any_of(midside.begin(), midside.end(), [](std::int64_t n) { return n > 0; });
+    shell_is_kept_ = usable && add_shell(line, midside, has_midside);
+    if (!segment_->form.thickness) return true;
+    Line card;
+    if (lines_->next(card)) read_thickness(card);
+    if (has_midside) lines_->next(card);  // the thicknesses at the mid-side nodes
+    return true;
+  }
+
+  bool add_shell(const Line& line, const std::array<std::int64_t, 4>& midside, bool has_midside) {
+    const std::int64_t n3 = fields_[4];
+    const std::int64_t n4 = fields_[5] == 0 ? n3 : fields_[5];
+    const bool complete = fields_[2] > 0 && fields_[3] > 0 && n3 > 0 && n4 > 0;
+    ElementCounts& counts = out_.counts;
+    if (complete && n3 == n4)
+      ++(has_midside ? counts.tri6 : counts.tri);
+    else
+      ++(has_midside ? counts.quad8 : counts.quad);
+    if (!complete) {
+      out_.note("incomplete-element", line.offset, fields_[0]);
+      return false;
+    }
+    RawShells& shells = out_.shells;
+    if (has_midside) shells.midside.push_back({static_cast<std::uint32_t>(shells.id.size()), midside});
+    shells.id.push_back(fields_[0]);
+    shells.part.push_back(fields_[1]);
+    shells.nodes.push_back({fields_[2], fields_[3], n3, n4});
+    shells.offset.push_back(line.offset);
+    if (!shells.thickness.empty()) shells.thickness.push_back(0);
+    return true;
+  }
+
+  /// The mean of the corners that have one.
+  void read_thickness(const Line& line) {
+    card_.cut(line.text, kThicknessWidths, segment_->columns);
+    double sum = 0;
+    int given = 0;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const double value = card_.real(corner, *parameters_).value_or(0);
+      if (value > 0) sum += value, ++given;
+    }
+    if (given > 0) set_thickness(sum / given);
+  }
+
+  void set_thickness(double thickness) {
+    RawShells& shells = out_.shells;
+    if (!shell_is_kept_ || shells.id.empty()) return;
+    shells.thickness.resize(shells.id.size(), 0.0f);
+    shells.thickness.back() = static_cast<float>(thickness);
+  }
+
+  /// Layers go on until the next keyword or a line that only an element's card can be: whole numbers alone, at least
+  /// five, where eight-column fields begin.
+  bool looks_like_element(std::string_view line) {
+    if (line.find_first_not_of("0123456789 ,\t") != std::string_view::npos) return false;
+    card_.cut(line, kElementWidths, segment_->columns);
+    for (std::size_t f = 0; f < 5; ++f) {
+      std::int64_t value = 0;
+      if (!parse_integer(card_.text(f), value) || value <= 0) return false;
+    }
+    return true;
+  }
+
+  bool read_layers() {
+    double thickness = 0;
+    Line line;
+    while (lines_->next(line)) {
+      if (looks_like_element(line.text)) {
+        pending_ = line;
+        break;
+      }
+      card_.cut(line.text, segment_->columns);
+      thickness += card_.real(1, *parameters_).value_or(0);
+      if (!segment_->form.composite_long) thickness += card_.real(5, *parameters_).value_or(0);
+    }
+    if (segment_->form.kind == CardKind::shell && thickness > 0) set_thickness(thickness);
+    return true;
+  }
+
+  void add_element(ElementClass element_class, const Line& line, std::int64_t id, std::int64_t part, std::span<const std::int64_t> nodes) {
+    RawElements& elements = out_.elements[static_cast<std::size_t>(element_class)];
+    elements.id.push_back(id);
+    elements.part.push_back(part);
+    elements.nodes.insert(elements.nodes.end(), nodes.begin(), nodes.end());
+    elements.first_node.push_back(static_cast<std::uint32_t>(elements.nodes.size()));
+    elements.offset.push_back(line.offset);
+  }
+
+  bool read_plain(const Line& line) {
+    const CardKind kind = segment_->form.kind;
+    const bool plotel = kind == CardKind::other && segment_->form.node_fields == 0;
+    const std::size_t first = plotel ? 1 : 2;
+    const std::size_t nodes = plotel ? 2 : static_cast<std::size_t>(segment_->form.node_fields);
+    bool usable = true;
+    if (!cut_integers(line, first + nodes, usable)) return false;
+    if (!usable) return true;
+    if (element_id_is_bad(line)) return false;
+    const ElementClass element_class = kind == CardKind::beam       ? ElementClass::beam
+                                       : kind == CardKind::tshell   ? ElementClass::tshell
+                                       : kind == CardKind::discrete ? ElementClass::discrete
+                                                                    : ElementClass::other;
+    ++(kind == CardKind::beam ? out_.counts.beam : kind == CardKind::tshell ? out_.counts.tshell : out_.counts.other);
+    std::vector<std::int64_t>& list = nodes_;
+    list.assign(fields_.begin() + static_cast<std::ptrdiff_t>(first), fields_.begin() + static_cast<std::ptrdiff_t>(first + nodes));
+    // A spring's second end may be the ground.
+    if (element_class == ElementClass::discrete) std::erase(list, 0);
+    if (std::any_of(list.begin(), list.end(), [](std::int64_t n) { return n <= 0; }) || list.empty()) {
+      out_.note("incomplete-element", line.offset, fields_[0]);
+      return true;
+    }
+    add_element(element_class, line, fields_[0], plotel ? 0 : fields_[1], list);
+    return true;
+  }
+
+  /// Ids and nodes on one card, or ids on the first and nodes on those that follow.
+  bool read_solid(const Line& line) {
+    bool usable = true;
+    if (!cut_integers(line, kMostElementFields, usable)) return false;
+    if (usable && element_id_is_bad(line)) return false;
+    const std::int64_t id = fields_[0];
+    const std::int64_t part = fields_[1];
+    nodes_.assign(fields_.begin() + 2, fields_.end());
+    const bool ids_only = std::all_of(nodes_.begin(), nodes_.end(), [](std::int64_t n) { return n == 0; });
+    const int node_lines = segment_->form.node_lines > 0 ? segment_->form.node_lines : ids_only ? 1 : 0;
+    if (node_lines > 0) nodes_.clear();
+    Line card;
+    for (int i = 0; i < node_lines && lines_->next(card); ++i) {
+      bool card_usable = true;
+      if (!cut_integers(card, kMostElementFields, card_usable)) return false;
+      usable &= card_usable;
+      nodes_.insert(nodes_.end(), fields_.begin(), fields_.end());
+    }
+    ++out_.counts.solid;
+    if (!usable) return true;
+    add_solid(line, id, part);
+    return true;
+  }
+
+  /// Trailing zeros go; a corner left blank means the last one again (the short forms of tetrahedra and wedges).
+  void add_solid(const Line& line, std::int64_t id, std::int64_t part) {
+    if (nodes_.size() > 8 && std::all_of(nodes_.begin() + 8, nodes_.end(), [](std::int64_t n) { return n == 0; })) nodes_.resize(8);
+    while (nodes_.size() > 10 && nodes_.back() == 0) nodes_.pop_back();
+    for (std::size_t i = 4; i < std::min<std::size_t>(nodes_.size(), 8); ++i)
+      if (nodes_[i] == 0) nodes_[i] = nodes_[i - 1];
+    if (nodes_.size() < 4 || std::any_of(nodes_.begin(), nodes_.end(), [](std::int64_t n) { return n <= 0; })) {
+      out_.note("incomplete-element", line.offset, id);
+      return;
+    }
+    add_element(ElementClass::solid, line, id, part, nodes_);
+  }
+
+  /// Masses and particles: one node, or a set or part.
+  bool read_point(const Line& line) {
+    const CardKind kind = segment_->form.kind;
+    card_.cut(line.text, kMassWidths, segment_->columns);
+    const std::optional<std::int64_t> id = card_.integer(0, *parameters_);
+    const std::optional<std::int64_t> second = kind == CardKind::mass_of_part ? 0 : card_.integer(1, *parameters_);
+    if (!id) return refuse(line, card_.text(0), "an element id", 0);
+    if (!second) return refuse(line, card_.text(1), "an id", *id);
+    ++out_.counts.other;
+    if (kind == CardKind::sph) {
+      add_element(ElementClass::sph, line, *id, *second, std::array{*id});
+    } else if (kind == CardKind::mass) {
+      const std::int64_t part = card_.integer(3, *parameters_).value_or(0);
+      add_element(ElementClass::mass, line, *id, part, std::array{*second});
+    } else {
+      add_element(ElementClass::mass, line, *id, 0, {});
+    }
+    return true;
+  }
+
+  std::string_view text_;
+  const std::vector<Parameters>& tables_;
+  PieceCards& out_;
+  const Segment* segment_ = nullptr;
+  const Parameters* parameters_ = nullptr;
+  Lines* lines_ = nullptr;
+  std::optional<Line> pending_;
+  bool shell_is_kept_ = false;
+  Card card_;
+  std::array<std::int64_t, kMostElementFields> fields_{};
+  std::vector<std::int64_t> nodes_;
+};
+
+}  // namespace
+
+void PieceCards::note(std::string_view kind, std::size_t offset, std::int64_t id) {
+  const auto at = std::find_if(oddities.begin(), oddities.end(), [&](const Oddity& o) { return o.kind == kind; });
+  if (at != oddities.end())
+    ++at->count;
+  else
+    oddities.push_back({std::string(kind), offset, id, 1});
+}
+
+PieceCards read_piece(std::string_view text, const Piece& piece, const std::vector<Parameters>& parameters) {
+  PieceCards out;
+  PieceReader reader(text, parameters, out);
+  for (const Segment& segment : piece.segments)
+    if (!reader.read(segment)) break;
+  return out;
+}
+
+}  // namespace prismesh::mesh::deck::lsdyna
