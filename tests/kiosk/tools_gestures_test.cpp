@@ -1,0 +1,147 @@
+// What the mouse means: clicks, double clicks, drags, and whose they are.
+#include "kiosk/tools/gestures.h"
+
+#include <gtest/gtest.h>
+
+namespace prismesh::kiosk::tools {
+namespace {
+
+using display::ButtonChanged;
+using display::Modifiers;
+using display::MouseButton;
+using display::PointerMoved;
+using mesh::document::SelectMode;
+
+class GesturesTest : public ::testing::Test {
+ protected:
+  std::vector<Gesture> press(double x, double y, MouseButton button = MouseButton::left, Modifiers modifiers = {},
+                             Under under = Under::picture) {
+    return gestures_.button(ButtonChanged{button, true, x, y, modifiers, time_ms_}, under);
+  }
+  std::vector<Gesture> release(double x, double y, MouseButton button = MouseButton::left, Modifiers modifiers = {}) {
+    return gestures_.button(ButtonChanged{button, false, x, y, modifiers, time_ms_}, Under::picture);
+  }
+  std::vector<Gesture> move(double x, double y) { return gestures_.moved(PointerMoved{x, y, {}}); }
+  std::vector<Gesture> click(double x, double y, MouseButton button = MouseButton::left, Modifiers modifiers = {}) {
+    EXPECT_TRUE(press(x, y, button, modifiers).empty());
+    return release(x, y, button, modifiers);
+  }
+  template <class Kind>
+  Kind only(const std::vector<Gesture>& made) {
+    EXPECT_EQ(made.size(), 1u);
+    if (made.size() != 1 || !std::holds_alternative<Kind>(made[0])) {
+      ADD_FAILURE() << "another gesture than expected";
+      return {};
+    }
+    return std::get<Kind>(made[0]);
+  }
+
+  Gestures gestures_;
+  std::int64_t time_ms_ = 1000;
+};
+
+TEST_F(GesturesTest, a_click_selects_the_node_under_it) {
+  const auto made = only<NodeClicked>(click(100, 50));
+  EXPECT_EQ(made.at, Pixel(100, 50));
+  EXPECT_EQ(made.mode, SelectMode::set);
+}
+
+TEST_F(GesturesTest, shift_adds_ctrl_removes_and_so_does_the_right_button) {
+  EXPECT_EQ(only<NodeClicked>(click(1, 1, MouseButton::left, {true, false, false})).mode, SelectMode::add);
+  time_ms_ += 5000;
+  EXPECT_EQ(only<NodeClicked>(click(1, 1, MouseButton::left, {false, true, false})).mode, SelectMode::subtract);
+  EXPECT_EQ(only<NodeClicked>(click(1, 1, MouseButton::right)).mode, SelectMode::subtract);
+}
+
+TEST_F(GesturesTest, a_middle_click_takes_back) { only<TakeBackClicked>(click(9, 9, MouseButton::middle)); }
+
+TEST_F(GesturesTest, a_second_click_soon_after_takes_the_region_at_the_first) {
+  only<NodeClicked>(click(100, 50));
+  time_ms_ += kDoubleClickMs;
+  const auto region = only<RegionClicked>(click(102, 51));
+  EXPECT_EQ(region.at, Pixel(100, 50));
+  time_ms_ += 10;
+  only<NodeClicked>(click(102, 51));  // a third click begins anew
+}
+
+TEST_F(GesturesTest, a_late_or_distant_second_click_is_a_click) {
+  only<NodeClicked>(click(100, 50));
+  time_ms_ += kDoubleClickMs + 1;
+  only<NodeClicked>(click(100, 50));
+  time_ms_ += 10;
+  only<NodeClicked>(click(100 + kClickRadius + 1, 50));
+}
+
+TEST_F(GesturesTest, a_hand_that_trembles_still_clicks) {
+  press(100, 50);
+  EXPECT_TRUE(move(100 + kClickRadius, 50).empty());
+  only<NodeClicked>(release(102, 50));
+}
+
+TEST_F(GesturesTest, a_left_drag_is_a_rectangle_from_where_the_button_went_down) {
+  press(100, 50, MouseButton::left, {true, false, false});
+  const auto stretched = only<RectangleStretched>(move(160, 90));
+  EXPECT_EQ(stretched.from, Pixel(100, 50));
+  EXPECT_EQ(stretched.to, Pixel(160, 90));
+  const auto done = only<RectangleDone>(release(170, 95));
+  EXPECT_EQ(done.from, Pixel(100, 50));
+  EXPECT_EQ(done.to, Pixel(170, 95));
+  EXPECT_EQ(done.mode, SelectMode::add);
+}
+
+TEST_F(GesturesTest, a_right_drag_orbits_by_what_the_pointer_moved_and_selects_nothing) {
+  press(100, 50, MouseButton::right);
+  const auto first = only<Orbited>(move(110, 53));
+  EXPECT_EQ(first.dx, 10);
+  EXPECT_EQ(first.dy, 3);
+  const auto second = only<Orbited>(move(111, 53));
+  EXPECT_EQ(second.dx, 1);
+  EXPECT_EQ(second.from, Pixel(100, 50));
+  EXPECT_TRUE(release(111, 53, MouseButton::right).empty());
+}
+
+TEST_F(GesturesTest, a_middle_drag_pans_and_alt_makes_a_left_drag_orbit) {
+  press(0, 0, MouseButton::middle);
+  only<Panned>(move(20, 0));
+  release(20, 0, MouseButton::middle);
+  press(0, 0, MouseButton::left, {false, false, true});
+  only<Orbited>(move(20, 0));
+  release(20, 0);
+  press(0, 0, MouseButton::right, {false, false, true});
+  only<Panned>(move(20, 0));
+}
+
+TEST_F(GesturesTest, a_press_on_the_handle_takes_it_at_once) {
+  const auto taken = only<HandleTaken>(press(100, 50, MouseButton::left, {}, Under::lift_handle));
+  EXPECT_EQ(taken.handle, Under::lift_handle);
+  only<HandleMoved>(move(101, 50));  // no trembling allowance: the hand pulls
+  EXPECT_EQ(only<HandleReleased>(release(120, 40)).at, Pixel(120, 40));
+}
+
+TEST_F(GesturesTest, a_press_on_a_panel_is_the_panels_until_it_is_released) {
+  EXPECT_TRUE(press(10, 10, MouseButton::left, {}, Under::panel).empty());
+  EXPECT_TRUE(move(500, 500).empty());
+  EXPECT_TRUE(release(500, 500).empty());
+  EXPECT_TRUE(gestures_.wheel(display::WheelTurned{1, 10, 10, {}}, Under::panel).empty());
+  only<Zoomed>(gestures_.wheel(display::WheelTurned{1, 10, 10, {}}, Under::picture));
+}
+
+TEST_F(GesturesTest, a_second_button_does_not_disturb_a_drag) {
+  press(100, 50, MouseButton::left, {}, Under::lift_handle);
+  EXPECT_TRUE(press(100, 50, MouseButton::right).empty());
+  EXPECT_TRUE(release(100, 50, MouseButton::right).empty());
+  only<HandleMoved>(move(120, 50));
+}
+
+TEST_F(GesturesTest, cancelling_makes_the_release_do_nothing) {
+  press(100, 50, MouseButton::left, {}, Under::lift_handle);
+  move(120, 50);
+  EXPECT_TRUE(gestures_.cancel());
+  EXPECT_TRUE(move(130, 50).empty());
+  EXPECT_TRUE(release(130, 50).empty());
+  only<NodeClicked>(click(130, 50));
+  EXPECT_FALSE(gestures_.cancel());
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::tools
