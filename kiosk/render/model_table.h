@@ -1,13 +1,17 @@
 // Fast, checked access to a source's arrays on the CPU: nothing in a snapshot can lead outside it.
 #pragma once
 
+#include <cmath>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "kiosk/render/model_source.h"
 #include "kiosk/stereo/view.h"
 
 namespace prismesh::kiosk::render {
+
+inline constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
 class ModelTable {
  public:
@@ -21,22 +25,29 @@ class ModelTable {
 
   /// Precondition: node < node_count().
   mesh::Vec3 position(std::size_t node) const { return positions_[node / mesh::kChunkSize][node % mesh::kChunkSize]; }
-  /// A copy whose nodes are all within range; false where the shell's aren't. A shell of another process could change between a check
-  /// and a second read: so it is read once.
+  /// A copy of a shell whose nodes are all within range; false where they aren't. It is read once: memory of another process could
+  /// change between a check and a second read. Precondition: shell < shell_count().
   bool shell(std::size_t shell, mesh::ShellNodes& nodes) const {
     nodes = shells_[shell / mesh::kChunkSize][shell % mesh::kChunkSize];
     for (const mesh::NodeIndex node : nodes.node)
       if (node.value >= node_count_) return false;
     return true;
   }
-  bool shell_visible(std::size_t shell) const {
-    const std::uint32_t part = parts_[shell / mesh::kChunkSize][shell % mesh::kChunkSize].value;
-    return part >= hidden_.size() || hidden_[part] == 0;
-  }
+  mesh::PartIndex shell_part(std::size_t shell) const { return parts_[shell / mesh::kChunkSize][shell % mesh::kChunkSize]; }
+  bool shell_visible(std::size_t shell) const { return !part_hidden(shell_part(shell).value); }
   bool part_hidden(std::size_t part) const { return part < hidden_.size() && hidden_[part] != 0; }
+  /// By PartIndex, 1 = hidden.
   const std::vector<std::uint8_t>& hidden_parts() const { return hidden_; }
-  /// Both ends of a line; false where they are out of range.
-  bool line(std::size_t line, std::uint32_t& a, std::uint32_t& b) const;
+  bool any_hidden() const { return any_hidden_; }
+
+  /// Both ends of a line of a visible part; false where they are out of range, or the part is hidden.
+  bool line(std::size_t line, std::array<std::uint32_t, 2>& ends) const;
+  /// Mean of a shell's corners; false where the shell isn't whole or stands nowhere.
+  bool shell_centre(std::size_t shell, mesh::Vec3& centre) const;
+  /// 1 for each node that a visible shell or line names.
+  std::vector<std::uint8_t> visible_nodes() const;
+  /// Around those nodes; finite coordinates only.
+  stereo::Box visible_box() const;
 
  private:
   std::shared_ptr<const ModelSource> source_;
@@ -46,7 +57,12 @@ class ModelTable {
   std::vector<const mesh::Vec3*> positions_;
   std::vector<const mesh::ShellNodes*> shells_;
   std::vector<const mesh::PartIndex*> parts_;
+  std::vector<const mesh::NodeIndex*> lines_;
+  std::vector<std::span<const mesh::PartIndex>> line_parts_;
   std::vector<std::uint8_t> hidden_;
+  bool any_hidden_ = false;
 };
+
+inline bool finite(const mesh::Vec3& point) { return std::isfinite(point.x()) && std::isfinite(point.y()) && std::isfinite(point.z()); }
 
 }  // namespace prismesh::kiosk::render

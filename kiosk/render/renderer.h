@@ -86,13 +86,14 @@ class Renderer {
   /// Shows a model: uploads the chunks whose versions it doesn't have yet. Null: an empty screen. Errors: too large for the GPU.
   Result<void> set_model(std::shared_ptr<const ModelSource> model);
   const ModelSource* model() const;
-  /// Box around the nodes of visible shells' chunks and lines, finite coordinates only; what `fit` frames.
+  /// Around the nodes of visible shells and lines: what `fit` frames. Costs the model.
   stereo::Box bounds() const;
 
   /// A drag's preview over the model: nodes that move and shells they touch, as PreviewReader gives them.
   void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
-  /// A frame: one position per node, one state per shell; other sizes are ignored. No frame yet: nothing is drawn.
-  void update_preview(const ipc::PreviewFrame& frame);
+  /// A frame: one position per node, one state per shell; other sizes are ignored. Until the first, nothing is drawn. Errors: no graphics
+  /// memory.
+  Result<void> update_preview(const ipc::PreviewFrame& frame);
   void end_preview();
 
   /// Draws into `framebuffer` (0: the window's), width x height pixels. Lower rows are first, as OpenGL counts.

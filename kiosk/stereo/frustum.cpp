@@ -45,10 +45,18 @@ double half_pixel_shift(Eye eye, int display_columns, bool swap) {
   return (even_columns ? 1.0 : -1.0) / display_columns;
 }
 
-Eigen::Matrix4d shift_x(const Eigen::Matrix4d& clip, double by) {
+Eigen::Matrix4d clip_for_columns(const Eigen::Matrix4d& clip, Eye eye, int display_columns, bool swap) {
   Eigen::Matrix4d shifted = clip;
-  shifted.row(0) += by * clip.row(3);
-  return shifted;
+  shifted.row(0) += half_pixel_shift(eye, display_columns, swap) * clip.row(3);
+  return clip_for_half_width(shifted, display_columns);
+}
+
+Eigen::Matrix4d clip_for_half_width(const Eigen::Matrix4d& clip, int display_columns) {
+  const double covered = 2 * ((display_columns + 1) / 2);  // columns that the image stands for
+  const double share = display_columns / covered;
+  Eigen::Matrix4d widened = clip;
+  widened.row(0) = share * clip.row(0) + (share - 1) * clip.row(3);
+  return widened;
 }
 
 }  // namespace prismesh::kiosk::stereo

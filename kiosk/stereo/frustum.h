@@ -36,7 +36,10 @@ Eigen::Matrix4d clip_from_screen(const Vec3& eye_mm, const Eigen::Vector2d& scre
 /// of one eye are centred at 2i + 0.5, the other's at 2i + 1.5, while both images have their texel centres at 2i + 1.
 /// `display_columns`: width of the display; `swap`: the right eye has the even columns.
 double half_pixel_shift(Eye eye, int display_columns, bool swap);
-/// `clip` with normalised x moved by `by`.
-Eigen::Matrix4d shift_x(const Eigen::Matrix4d& clip, double by);
+/// The projection for an eye's half-width image, ceil(display_columns / 2) texels wide, whose texels are dealt out to alternate columns:
+/// the half-pixel shift, and for an odd width the one column that the image is too wide.
+Eigen::Matrix4d clip_for_columns(const Eigen::Matrix4d& clip, Eye eye, int display_columns, bool swap);
+/// The same for half-width images whose texels stay together, each as wide as two columns.
+Eigen::Matrix4d clip_for_half_width(const Eigen::Matrix4d& clip, int display_columns);
 
 }  // namespace prismesh::kiosk::stereo

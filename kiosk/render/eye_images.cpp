@@ -1,0 +1,67 @@
+#include "kiosk/render/eye_images.h"
+
+#include <string>
+
+namespace prismesh::kiosk::render {
+
+Result<void> EyeImages::resize(int width, int height, int samples) {
+  if (width == width_ && height == height_ && samples == samples_) return {};
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
+  if (width < 1 || height < 1 || width > largest || height > largest)
+    return fail("OpenGL", "an eye's image of " + std::to_string(width) + "x" + std::to_string(height) +
+                              " pixels can't be drawn here; each side may be 1 to " + std::to_string(largest));
+  *this = EyeImages();
+  scene_ = gl::Framebuffer::make();
+  scene_colour_ = gl::Renderbuffer::make();
+  depth_ = gl::Renderbuffer::make();
+  const GLsizei multi = samples > 1 ? samples : 0;
+  glBindRenderbuffer(GL_RENDERBUFFER, scene_colour_.get());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_RGBA8, width, height);
+  glBindRenderbuffer(GL_RENDERBUFFER, depth_.get());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_DEPTH_COMPONENT24, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, scene_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, scene_colour_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.get());
+  bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  for (Flat& flat : flat_) {
+    flat.colour = gl::Texture::make();
+    glBindTexture(GL_TEXTURE_2D, flat.colour.get());
+    glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, width, height);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    flat.framebuffer = gl::Framebuffer::make();
+    glBindFramebuffer(GL_FRAMEBUFFER, flat.framebuffer.get());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, flat.colour.get(), 0);
+    complete = complete && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  }
+  if (!complete) {
+    *this = EyeImages();
+    return fail("OpenGL",
+                "there is no graphics memory for the eyes' images of " + std::to_string(width) + "x" + std::to_string(height) + " pixels");
+  }
+  width_ = width;
+  height_ = height;
+  samples_ = samples;
+  return {};
+}
+
+void EyeImages::bind_scene() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, scene_.get());
+  glViewport(0, 0, width_, height_);
+}
+
+void EyeImages::bind_flat(int eye) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, scene_.get());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, flat_[static_cast<std::size_t>(eye)].framebuffer.get());
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, flat_[static_cast<std::size_t>(eye)].framebuffer.get());
+  glViewport(0, 0, width_, height_);
+}
+
+void EyeImages::bind_texture(int eye, unsigned unit) const {
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_2D, flat_[static_cast<std::size_t>(eye)].colour.get());
+}
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,90 @@
+// Everything that is drawn of a model, on the GPU and beside it, kept in step with the snapshots.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "kiosk/render/glyphs.h"
+#include "kiosk/render/model_textures.h"
+#include "kiosk/render/outline.h"
+#include "kiosk/render/preview_patch.h"
+
+namespace prismesh::kiosk::render {
+
+/// Lines as a texture of node pairs.
+struct LineSet {
+  RowTexture texture{kTwoIndices};
+  std::size_t count = 0;
+  Result<void> upload(const std::vector<NodePair>& lines, const char* what);
+};
+
+/// Instances for one draw call.
+struct Instances {
+  gl::VertexArray array;
+  gl::Buffer buffer;
+  std::size_t count = 0;
+};
+
+class ModelLayer {
+ public:
+  ModelLayer();
+
+  Result<void> set_model(std::shared_ptr<const ModelSource> source);
+  bool empty() const { return !table_; }
+  const ModelTable& table() const { return *table_; }
+  const ModelTextures& textures() const { return textures_; }
+  /// Counts up whenever the shells' picture may have changed in place or shape.
+  std::uint64_t shape_version() const { return shape_version_; }
+  std::size_t chunks_uploaded() const { return chunks_uploaded_; }
+
+  const LineSet& borders() const { return borders_; }
+  const LineSet& creases() const { return creases_; }
+  const LineSet& line_elements() const { return line_elements_; }
+  const Instances& selected() const { return selected_; }
+
+  void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
+  Result<void> update_preview(const ipc::PreviewFrame& frame);
+  void end_preview();
+  bool previewing() const { return preview_ && preview_->any_frame(); }
+  const RowTexture& preview_positions() const { return preview_positions_; }
+  const LineSet& preview_edges() const { return preview_edges_; }
+
+  /// The signs to draw now: the model's, or the preview's in their place. Rebuilt only after a change.
+  const Instances& glyphs(std::size_t cap);
+  std::size_t glyphs_left_out() const { return glyphs_left_out_; }
+
+  const std::vector<std::uint8_t>& visible_nodes();
+  const std::vector<std::uint32_t>& line_nodes() const { return line_nodes_; }
+
+ private:
+  struct MarkChunk {
+    std::uint64_t version = 0;
+    bool known = false;
+    std::vector<std::uint32_t> selected;
+  };
+  Result<void> update_line_elements(bool changed);
+  void update_selected(bool visibility_changed);
+
+  std::optional<ModelTable> table_;
+  ModelTextures textures_;
+  Outline outline_;
+  GlyphList glyph_list_;
+  LineSet borders_, creases_, line_elements_;
+  std::vector<std::uint32_t> line_nodes_;
+  std::vector<std::uint64_t> line_versions_;
+  std::vector<MarkChunk> marks_;
+  Instances selected_;
+  std::optional<PreviewPatch> preview_;
+  RowTexture preview_positions_{kPositionTexel};
+  LineSet preview_edges_;
+  Instances glyphs_;
+  std::size_t glyphs_left_out_ = 0;
+  std::size_t glyph_cap_ = 0;
+  bool glyphs_stale_ = true;
+  std::optional<std::vector<std::uint8_t>> visible_nodes_;
+  std::uint64_t shape_version_ = 0;
+  std::size_t chunks_uploaded_ = 0;
+};
+
+}  // namespace prismesh::kiosk::render

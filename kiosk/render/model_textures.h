@@ -1,0 +1,80 @@
+// The model on the GPU: what changed since the last snapshot is uploaded, nothing else.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "kiosk/render/model_table.h"
+#include "kiosk/render/row_texture.h"
+
+namespace prismesh::kiosk::render {
+
+/// What an update found to be different.
+struct ModelChanges {
+  bool topology = false;    ///< shells, or the number of nodes
+  bool visibility = false;  ///< hidden parts
+  std::vector<std::uint32_t> moved_chunks;
+  std::size_t uploaded = 0;  ///< rows
+};
+
+/// One word per shell for the shaders: colour, grade, marks. And its normal in a second.
+namespace shell_word {
+inline constexpr std::uint32_t kColourMask = 31;
+inline constexpr std::uint32_t kGradeShift = 5;  ///< two bits
+inline constexpr std::uint32_t kSelected = 1U << 7;
+inline constexpr std::uint32_t kGone = 1U << 8;  ///< of a hidden part, or not whole
+}  // namespace shell_word
+
+class ModelTextures {
+ public:
+  /// Shells of one chunk: where they are, and whether any is shown.
+  struct ShellChunk {
+    stereo::Box box;  ///< of those shown
+    bool shown = false;
+  };
+
+  Result<ModelChanges> update(const ModelTable& table);
+
+  /// Positions are uploaded relative to this, so that far-away models keep their digits.
+  const mesh::Vec3& origin() const { return origin_; }
+  const RowTexture& positions() const { return positions_; }
+  const RowTexture& connectivity() const { return connectivity_; }
+  const RowTexture& surface() const { return surface_; }
+  const std::vector<ShellChunk>& shell_chunks() const { return shell_chunks_; }
+  std::size_t shell_count() const { return shell_count_; }
+
+ private:
+  struct ShellVersions {
+    std::uint64_t nodes = 0;
+    std::array<std::uint64_t, 3> look{};  ///< parts, marks, quality
+    bool known = false;
+    std::vector<std::uint32_t> depends_on;  ///< chunks of positions
+  };
+  struct ShellRow;
+
+  void forget();
+  void choose_origin(const ModelTable& table);
+  void update_positions(const ModelTable& table, ModelChanges& changes);
+  void update_shells(const ModelTable& table, ModelChanges& changes);
+  ShellRow build_row(const ModelTable& table, std::size_t chunk) const;
+
+  std::uint64_t document_ = 0;
+  bool any_document_ = false;
+  mesh::Vec3 origin_ = mesh::Vec3::Zero();
+  std::size_t node_count_ = 0;
+  std::size_t shell_count_ = 0;
+  std::vector<std::uint8_t> hidden_;
+  std::vector<std::uint64_t> position_versions_;
+  std::vector<bool> position_known_;
+  std::vector<ShellVersions> shell_versions_;
+  std::vector<ShellChunk> shell_chunks_;
+  RowTexture positions_{kPositionTexel};
+  RowTexture connectivity_{kFourIndices};
+  RowTexture surface_{kTwoIndices};
+};
+
+/// Two 16-bit halves of a unit normal on an octahedron (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
+/// Vectors", 2014).
+std::uint32_t pack_normal(const mesh::Vec3& normal);
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,50 @@
+// The lines that make a model readable: where visible sheets end, meet a third one, or bend. Kept in step with the change, not the model.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kiosk/render/model_table.h"
+
+namespace prismesh::kiosk::render {
+
+using NodePair = std::array<std::uint32_t, 2>;
+
+class Outline {
+ public:
+  static constexpr double kCreaseDegrees = 30;
+
+  /// Takes over a model. `topology_changed`: shells or nodes are others than before; `visibility_changed`: hidden parts are;
+  /// `moved_chunks`: chunks of positions that differ.
+  void update(const ModelTable& table, bool topology_changed, bool visibility_changed, std::span<const std::uint32_t> moved_chunks);
+
+  /// Edges of one visible shell, and of three or more.
+  std::vector<NodePair> borders() const { return gather(&Chunk::borders); }
+  /// Edges of two visible shells whose planes differ by more than kCreaseDegrees, whatever sense their normals have.
+  std::vector<NodePair> creases() const { return gather(&Chunk::creases); }
+
+ private:
+  struct HalfEdge {
+    std::uint32_t high = 0;
+    std::uint32_t shell = 0;
+  };
+  /// The edges whose lower node lies in one chunk of nodes.
+  struct Chunk {
+    std::vector<std::uint32_t> depends_on;  ///< chunks of positions that its shells use, ascending
+    std::vector<NodePair> borders;
+    std::vector<NodePair> creases;
+  };
+
+  void build_half_edges(const ModelTable& table);
+  void find_dependencies(const ModelTable& table);
+  void classify(const ModelTable& table, std::size_t chunk);
+  std::vector<NodePair> gather(std::vector<NodePair> Chunk::*lines) const;
+
+  std::vector<std::uint32_t> first_;  ///< node n is the lower end of half_edges_[first_[n] .. first_[n+1])
+  std::vector<HalfEdge> half_edges_;  ///< by lower node, then higher node, then shell
+  std::vector<Chunk> chunks_;
+};
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,79 @@
+#include "kiosk/render/preview_patch.h"
+
+#include <algorithm>
+
+namespace prismesh::kiosk::render {
+
+using mesh::Vec3;
+
+namespace {
+
+std::array<float, 4> texel(const Vec3& point) {
+  const Eigen::Vector3f at = point.cast<float>();
+  if (!at.allFinite()) return {};
+  return {at.x(), at.y(), at.z(), 1};
+}
+
+}  // namespace
+
+PreviewPatch::PreviewPatch(const ModelTable& table, const Vec3& origin, std::span<const mesh::NodeIndex> nodes,
+                           std::span<const mesh::ShellIndex> shells)
+    : origin_(origin), node_count_(nodes.size()), shell_count_(shells.size()) {
+  std::vector<std::pair<mesh::ShellNodes, std::uint32_t>> shown;
+  std::vector<std::uint32_t> used;
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    mesh::ShellNodes corners;
+    if (shells[i].value >= table.shell_count() || !table.shell(shells[i].value, corners)) continue;
+    touched_.insert(shells[i].value);
+    if (!table.shell_visible(shells[i].value)) continue;
+    shown.emplace_back(corners, static_cast<std::uint32_t>(i));
+    for (const mesh::NodeIndex node : corners.node) used.push_back(node.value);
+  }
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const auto local = [&](std::uint32_t node) {
+    const auto place = std::lower_bound(used.begin(), used.end(), node);
+    return place != used.end() && *place == node ? static_cast<std::uint32_t>(place - used.begin()) : kNoIndex;
+  };
+  for (const std::uint32_t node : used) positions_.push_back(texel(table.position(node) - origin));
+  for (const mesh::NodeIndex node : nodes) local_of_moving_.push_back(local(node.value));
+  for (const auto& [corners, state] : shown) {
+    Shell shell;
+    shell.state = state;
+    for (std::size_t k = 0; k < 4; ++k) shell.corner[k] = local(corners.node[k].value);
+    shells_.push_back(shell);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint32_t a = shell.corner[k], b = shell.corner[(k + 1) % 4];
+      if (a != b) edges_.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(edges_.begin(), edges_.end());
+  edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+}
+
+bool PreviewPatch::update(const ipc::PreviewFrame& frame) {
+  if (frame.positions.size() != node_count_ || frame.states.size() != shell_count_) return false;
+  for (std::size_t i = 0; i < node_count_; ++i)
+    if (local_of_moving_[i] != kNoIndex) positions_[local_of_moving_[i]] = texel(frame.positions[i] - origin_);
+  states_ = frame.states;
+  any_frame_ = true;
+  return true;
+}
+
+std::vector<Glyph> PreviewPatch::glyphs() const {
+  std::vector<Glyph> glyphs;
+  if (!any_frame_) return glyphs;
+  for (const bool failing : {false, true})
+    for (const Shell& shell : shells_) {
+      const mesh::quality::ShellState& state = states_[shell.state];
+      if ((state.warn | state.fail) == 0 || (state.fail != 0) != failing) continue;
+      const std::size_t corners = shell.corner[3] == shell.corner[2] ? 3 : 4;
+      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+      for (std::size_t k = 0; k < corners; ++k) sum += Eigen::Vector4f(positions_[shell.corner[k]].data());
+      if (sum.w() != static_cast<float>(corners)) continue;  // a corner that stands nowhere
+      glyphs.push_back({{sum.x() / sum.w(), sum.y() / sum.w(), sum.z() / sum.w()}, glyph_kind(state)});
+    }
+  return glyphs;
+}
+
+}  // namespace prismesh::kiosk::render

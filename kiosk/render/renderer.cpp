@@ -1,0 +1,236 @@
+#include "kiosk/render/renderer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "kiosk/render/eye_images.h"
+#include "kiosk/render/item_image.h"
+#include "kiosk/render/model_layer.h"
+#include "kiosk/render/scene_pass.h"
+#include "kiosk/render/shaders.h"
+
+namespace prismesh::kiosk::render {
+
+using stereo::Eye;
+using stereo::Weave;
+
+std::optional<ColourMode> colour_mode_from(std::string_view name) {
+  for (std::size_t i = 0; i < kColourModeNames.size(); ++i)
+    if (kColourModeNames[i] == name) return static_cast<ColourMode>(i);
+  return std::nullopt;
+}
+
+namespace {
+
+/// The eyes whose images a weave needs, the left one first; empty: the one between.
+std::vector<std::optional<Eye>> eyes_for(const stereo::Profile& profile) {
+  if (profile.weave == Weave::one_eye) return {profile.eye};
+  if (profile.weave == Weave::centre) return {std::nullopt};
+  return {Eye::left, Eye::right};
+}
+
+int weave_code(Weave weave) {
+  switch (weave) {
+    case Weave::columns: return 0;
+    case Weave::one_eye:
+    case Weave::centre: return 1;
+    case Weave::anaglyph: return 2;
+    case Weave::side_by_side: return 3;
+  }
+  return 1;
+}
+
+EyeView eye_view(const Picture& picture, std::optional<Eye> eye, int width, int height) {
+  EyeView view;
+  const Eigen::Vector2d screen = stereo::screen_size_mm(picture.profile, width, height);
+  view.eye_mm = eye ? stereo::eyes_from(picture.between_eyes_mm, picture.eye_separation_mm).of(*eye) : picture.between_eyes_mm;
+  view.range = stereo::depth_range(picture.view, view.eye_mm);
+  view.clip_from_screen = stereo::clip_from_screen(view.eye_mm, screen, view.range);
+  view.mm_per_pixel = screen.x() / width;
+  view.image = {eye, width, height, width, height};
+  if (picture.profile.half_width()) {
+    view.image.width = (width + 1) / 2;
+    view.image.display_width = 2 * view.image.width;
+    view.clip_from_screen = picture.profile.weave == Weave::columns
+                                ? stereo::clip_for_columns(view.clip_from_screen, eye.value_or(Eye::left), width, picture.profile.swap_eyes)
+                                : stereo::clip_for_half_width(view.clip_from_screen, width);
+  }
+  return view;
+}
+
+}  // namespace
+
+struct Renderer::State {
+  RendererOptions options;
+  Shaders shaders;
+  ScenePass scene;
+  ModelLayer layer;
+  std::shared_ptr<const ModelSource> model;
+  EyeImages images;
+  gl::VertexArray no_attributes = gl::VertexArray::make();
+
+  // The item picture and what it is of.
+  gl::Framebuffer item_framebuffer;
+  gl::Texture item_colour;
+  gl::Renderbuffer item_depth;
+  ItemImage items;
+  Eigen::Matrix4d items_clip = Eigen::Matrix4d::Zero();
+  std::uint64_t items_version = 0;
+  Figures figures;
+
+  State(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void weave(const Picture& picture, unsigned framebuffer, int width, int height) const;
+  bool make_item_buffer(int width, int height);
+  void read_items(int width, int height);
+  const ItemImage& items_for(const stereo::Aim& aim);
+};
+
+Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
+  if (const auto context = gl::check_context(); !context) return fail(context.error());
+  Result<Shaders> shaders = Shaders::link();
+  if (!shaders) return fail(shaders.error());
+  return std::unique_ptr<Renderer>(new Renderer(std::make_unique<State>(options, std::move(*shaders))));
+}
+
+Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
+  const Result<void> done = state_->layer.set_model(model);
+  state_->model = done ? std::move(model) : nullptr;
+  state_->figures.chunks_uploaded = state_->layer.chunks_uploaded();
+  return done;
+}
+
+const ModelSource* Renderer::model() const { return state_->model.get(); }
+
+stereo::Box Renderer::bounds() const { return state_->layer.empty() ? stereo::Box() : state_->layer.table().visible_box(); }
+
+void Renderer::begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells) {
+  state_->layer.begin_preview(nodes, shells);
+}
+
+Result<void> Renderer::update_preview(const ipc::PreviewFrame& frame) { return state_->layer.update_preview(frame); }
+
+void Renderer::end_preview() { state_->layer.end_preview(); }
+
+Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, int width, int height) {
+  const auto eyes = eyes_for(picture.profile);
+  const EyeView first = eye_view(picture, eyes.front(), width, height);
+  if (const auto sized = state_->images.resize(first.image.width, first.image.height, state_->options.samples); !sized)
+    return fail(sized.error());
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    const EyeView eye = eye_view(picture, eyes[i], width, height);
+    state_->images.bind_scene();
+    state_->scene.draw(picture, state_->layer, eye, state_->options.glyph_cap);
+    state_->images.bind_flat(static_cast<int>(i));
+    state_->scene.draw_flat(picture, eye);
+  }
+  state_->weave(picture, framebuffer, width, height);
+  DrawReport report;
+  if (picture.quality_glyphs && !state_->layer.empty()) {
+    report.glyphs = state_->layer.glyphs(state_->options.glyph_cap).count;
+    report.glyphs_left_out = state_->layer.glyphs_left_out();
+  }
+  return report;
+}
+
+void Renderer::State::weave(const Picture& picture, unsigned framebuffer, int width, int height) const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+  glViewport(0, 0, width, height);
+  // An overlay may have left anything switched on.
+  for (const GLenum capability : {GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_STENCIL_TEST, GL_DITHER})
+    glDisable(capability);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  images.bind_texture(0, unit::kLeft);
+  images.bind_texture(1, unit::kRight);
+  shaders.weave.use();
+  shaders.weave.set("left_eye", static_cast<int>(unit::kLeft));
+  shaders.weave.set("right_eye", static_cast<int>(unit::kRight));
+  shaders.weave.set("weave", weave_code(picture.profile.weave));
+  shaders.weave.set("swap", picture.profile.swap_eyes ? 1 : 0);
+  shaders.weave.set("half_columns", images.width());
+  glBindVertexArray(no_attributes.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+bool Renderer::State::make_item_buffer(int width, int height) {
+  if (item_framebuffer && items.width == width && items.height == height) return true;
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  if (width < 1 || height < 1 || width > largest || height > largest) return false;
+  item_colour = gl::Texture::make();
+  item_depth = gl::Renderbuffer::make();
+  item_framebuffer = gl::Framebuffer::make();
+  glBindTexture(GL_TEXTURE_2D, item_colour.get());
+  glTexStorage2D(GL_TEXTURE_2D, 1, GL_R32UI, width, height);
+  glBindRenderbuffer(GL_RENDERBUFFER, item_depth.get());
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, item_framebuffer.get());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, item_colour.get(), 0);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, item_depth.get());
+  items = {width, height, {}};
+  items_version = 0;
+  return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+void Renderer::State::read_items(int width, int height) {
+  const std::size_t pixels = static_cast<std::size_t>(width) * height;
+  items.items.resize(pixels);
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  // Every driver can give all four channels; one that offers the only channel there is saves three quarters.
+  GLint format = 0, type = 0;
+  glGetIntegerv(GL_IMPLEMENTATION_COLOR_READ_FORMAT, &format);
+  glGetIntegerv(GL_IMPLEMENTATION_COLOR_READ_TYPE, &type);
+  if (format == GL_RED_INTEGER && type == GL_UNSIGNED_INT) {
+    glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, items.items.data());
+    return;
+  }
+  std::vector<std::array<std::uint32_t, 4>> all(pixels);
+  glReadPixels(0, 0, width, height, GL_RGBA_INTEGER, GL_UNSIGNED_INT, all.data());
+  for (std::size_t i = 0; i < pixels; ++i) items.items[i] = all[i][0];
+}
+
+const ItemImage& Renderer::State::items_for(const stereo::Aim& aim) {
+  const Eigen::Matrix4d clip = aim.clip_from_deck();
+  if (!make_item_buffer(aim.width, aim.height)) {
+    items = {};
+    return items;
+  }
+  if (items_version == layer.shape_version() && items_clip == clip && !items.items.empty()) return items;
+  glBindFramebuffer(GL_FRAMEBUFFER, item_framebuffer.get());
+  glViewport(0, 0, aim.width, aim.height);
+  scene.draw_items(layer, clip);
+  read_items(aim.width, aim.height);
+  items_clip = clip;
+  items_version = layer.shape_version();
+  ++figures.item_buffers_drawn;
+  return items;
+}
+
+std::optional<mesh::ShellIndex> Renderer::shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel) {
+  if (state_->layer.empty() || !(pixel.minCoeff() >= 0 && pixel.maxCoeff() < 1e6)) return std::nullopt;
+  const std::uint32_t shell = state_->items_for(aim).shell_at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+  if (shell >= state_->layer.table().shell_count()) return std::nullopt;
+  return mesh::ShellIndex(shell);
+}
+
+std::optional<mesh::NodeIndex> Renderer::node_near(const stereo::Aim& aim, const Eigen::Vector2d& pixel, double radius) {
+  if (state_->layer.empty()) return std::nullopt;
+  return NodeSight(state_->layer.table(), state_->items_for(aim), aim).nearest(pixel, radius, state_->layer.line_nodes());
+}
+
+mesh::NodeSet Renderer::nodes_in(const stereo::Aim& aim, const PixelRect& rect, bool through) {
+  if (state_->layer.empty()) return {};
+  const ItemImage none;
+  const ItemImage& image = through ? none : state_->items_for(aim);
+  return NodeSight(state_->layer.table(), image, aim).inside(rect, through, state_->layer.visible_nodes());
+}
+
+Renderer::Figures Renderer::figures() const { return state_->figures; }
+
+}  // namespace prismesh::kiosk::render

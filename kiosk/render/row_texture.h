@@ -1,0 +1,45 @@
+// An array of the model as a texture: one row per chunk, so that a changed chunk is one upload.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "kiosk/render/gl.h"
+#include "mesh/model/chunked_array.h"
+
+namespace prismesh::kiosk::render {
+
+/// How one element is stored.
+struct TexelFormat {
+  GLenum internal;
+  GLenum format;
+  GLenum type;
+  std::size_t bytes;
+};
+inline constexpr TexelFormat kPositionTexel{GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+inline constexpr TexelFormat kFourIndices{GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
+inline constexpr TexelFormat kTwoIndices{GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8};
+
+/// Shaders find element i at (i & 4095, i >> 12).
+class RowTexture {
+ public:
+  static constexpr std::size_t kWidth = mesh::kChunkSize;
+
+  explicit RowTexture(const TexelFormat& format) : format_(format) {}
+
+  /// Makes room for `elements`. True if the texture is a new one, whose content is undefined. Errors: larger than the GPU allows;
+  /// `what` names the array.
+  Result<bool> reserve(std::size_t elements, const char* what);
+  /// Replaces the first elements of a row.
+  void upload_row(std::size_t row, std::span<const std::byte> texels);
+  /// Replaces everything from the start.
+  void upload(std::span<const std::byte> texels);
+  void bind(unsigned unit) const;
+
+ private:
+  TexelFormat format_;
+  gl::Texture texture_;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,335 @@
+#include "kiosk/render/scene_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kiosk/render/handle_mesh.h"
+#include "kiosk/render/palette.h"
+
+namespace prismesh::kiosk::render {
+
+namespace {
+
+// Widths and sizes in display pixels.
+constexpr float kBorderHalfWidth = 1.0F;
+constexpr float kCreaseHalfWidth = 0.7F;
+constexpr float kLineElementHalfWidth = 1.2F;
+constexpr float kPreviewHalfWidth = 0.65F;
+constexpr float kNodeRadius = 4.5F;
+constexpr float kCrowdedNodeRadius = 2.2F;
+constexpr std::size_t kCrowdedNodes = 20000;  ///< from here on nodes are drawn smaller and without their rim
+constexpr float kGlyphRadius = 9.0F;
+constexpr double kLinesTowardEye = 1.3;  ///< pixels: what lifts lines off the surface they lie on
+constexpr float kHiddenLight = 0.90F;    ///< selected nodes behind a surface: lighter than any part, darker than white
+
+Eigen::Vector4f ink(const Colour& colour, float alpha) { return {colour.x(), colour.y(), colour.z(), alpha}; }
+
+}  // namespace
+
+struct ScenePass::Frame {
+  const EyeView& eye;
+  Eigen::Matrix4d clip_from_deck;
+  Eigen::Matrix4f clip_from_model;  ///< the model's coordinates count from its origin
+  Eigen::Matrix3f screen_from_normal;
+  Eigen::Vector3f eye_in_model;
+  const stereo::View& view;
+
+  Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& model) : eye(eye_view), view(picture.view) {
+    const Eigen::Matrix4d screen_from_deck = stereo::screen_from_deck(view);
+    clip_from_deck = eye.clip_from_screen * screen_from_deck;
+    Eigen::Matrix4d deck_from_model = Eigen::Matrix4d::Identity();
+    deck_from_model.topRightCorner<3, 1>() = model.textures().origin();
+    clip_from_model = (clip_from_deck * deck_from_model).cast<float>();
+    screen_from_normal = view.rotation.toRotationMatrix().cast<float>();
+    eye_in_model = (stereo::to_deck(view, eye.eye_mm) - model.textures().origin()).cast<float>();
+  }
+
+  float columns_per_pixel() const { return static_cast<float>(eye.image.display_width) / static_cast<float>(eye.image.width); }
+
+  /// What every program that pulls the model needs.
+  void set(const gl::Program& program) const {
+    program.use();
+    const double n = eye.range.near_mm, f = eye.range.far_mm;
+    program.set("clip_from_model", clip_from_model);
+    program.set("depth_terms", static_cast<float>((f + n) / (f - n)), static_cast<float>(2 * f * n / (f - n)));
+    program.set("positions", static_cast<int>(unit::kPositions));
+    program.set("connectivity", static_cast<int>(unit::kConnectivity));
+    program.set("surface", static_cast<int>(unit::kSurface));
+    program.set("lines", static_cast<int>(unit::kLines));
+    program.set("display_pixels", static_cast<float>(eye.image.display_width), static_cast<float>(eye.image.display_height));
+    program.set("columns_per_pixel", columns_per_pixel());
+    program.set("mm_per_pixel", static_cast<float>(eye.mm_per_pixel));
+    program.set("screen_from_normal", screen_from_normal);
+  }
+};
+
+bool may_be_seen(const stereo::Box& box, const Eigen::Matrix4d& clip_from_deck) {
+  if (box.empty()) return false;
+  unsigned outside_of_all = 0x3f;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector4d at((corner & 1 ? box.high : box.low).x(), (corner & 2 ? box.high : box.low).y(),
+                             (corner & 4 ? box.high : box.low).z(), 1);
+    const Eigen::Vector4d clip = clip_from_deck * at;
+    unsigned outside = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (clip[axis] < -clip.w()) outside |= 1U << (2 * axis);
+      if (clip[axis] > clip.w()) outside |= 2U << (2 * axis);
+    }
+    outside_of_all &= outside;
+  }
+  return outside_of_all == 0;
+}
+
+ScenePass::ScenePass(const Shaders& shaders)
+    : shaders_(shaders),
+      no_attributes_(gl::VertexArray::make()),
+      handle_array_(gl::VertexArray::make()),
+      handle_buffer_(gl::Buffer::make()) {
+  const std::vector<HandleVertex> mesh = handle_mesh();
+  handle_vertices_ = static_cast<GLsizei>(mesh.size());
+  glBindVertexArray(handle_array_.get());
+  glBindBuffer(GL_ARRAY_BUFFER, handle_buffer_.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.size() * sizeof(HandleVertex)), mesh.data(), GL_STATIC_DRAW);
+  for (GLuint attribute = 0; attribute < 3; ++attribute) {
+    glEnableVertexAttribArray(attribute);
+    glVertexAttribPointer(attribute, 2, GL_FLOAT, GL_FALSE, sizeof(HandleVertex),
+                          reinterpret_cast<const void*>(attribute * 2 * sizeof(float)));
+  }
+  glBindVertexArray(0);
+}
+
+void ScenePass::draw(const Picture& picture, ModelLayer& model, const EyeView& eye, std::size_t glyph_cap) const {
+  const Frame frame(eye, picture, model);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_STENCIL_TEST);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glClearDepthf(1);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  draw_ground(eye);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  if (!model.empty()) {
+    model.textures().positions().bind(unit::kPositions);
+    model.textures().connectivity().bind(unit::kConnectivity);
+    model.textures().surface().bind(unit::kSurface);
+    draw_shells(picture, model, frame);
+    draw_model_lines(model, frame);
+    if (model.previewing()) draw_preview(model, frame);
+    model.textures().positions().bind(unit::kPositions);
+    if (picture.selected_nodes) draw_selected(model, frame);
+    if (picture.quality_glyphs) draw_glyphs(model.glyphs(glyph_cap), frame);
+  }
+  if (picture.handle) draw_handle(*picture.handle, frame);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+}
+
+void ScenePass::draw_ground(const EyeView& eye) const {
+  glDisable(GL_DEPTH_TEST);
+  shaders_.ground.use();
+  shaders_.ground.set("top", kGroundTop);
+  shaders_.ground.set("bottom", kGroundBottom);
+  shaders_.ground.set("height", static_cast<float>(eye.image.height));
+  glBindVertexArray(no_attributes_.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void ScenePass::draw_shells(const Picture& picture, const ModelLayer& model, const Frame& frame) const {
+  frame.set(shaders_.shells);
+  const auto& palette = part_colours();
+  for (std::size_t i = 0; i < palette.size(); ++i) shaders_.shells.set(("palette[" + std::to_string(i) + "]").c_str(), palette[i]);
+  const auto& grades = grade_colours();
+  for (std::size_t i = 0; i < grades.size(); ++i) shaders_.shells.set(("grades[" + std::to_string(i) + "]").c_str(), grades[i]);
+  shaders_.shells.set("by_grade", picture.colour == ColourMode::quality ? 1 : 0);
+  shaders_.shells.set("eye_in_model", frame.eye_in_model);
+  shaders_.shells.set("edge_strength", picture.element_edges ? 0.42F : 0.0F);
+  draw_chunks(model, frame.clip_from_deck);
+}
+
+void ScenePass::draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const {
+  glBindVertexArray(no_attributes_.get());
+  Eigen::Matrix4d clip_from_model = clip_from_deck;
+  clip_from_model.col(3) += clip_from_deck.leftCols<3>() * model.textures().origin();
+  const auto& chunks = model.textures().shell_chunks();
+  std::size_t first = 0, last = 0;  // neighbours that are seen go in one call
+  const auto flush = [&] {
+    const std::size_t end = std::min(last * mesh::kChunkSize, model.textures().shell_count());
+    const std::size_t begin = first * mesh::kChunkSize;
+    if (end > begin) glDrawArrays(GL_TRIANGLES, static_cast<GLint>(begin * 6), static_cast<GLsizei>((end - begin) * 6));
+  };
+  for (std::size_t c = 0; c < chunks.size(); ++c) {
+    if (!chunks[c].shown || !may_be_seen(chunks[c].box, clip_from_model)) continue;
+    if (c != last) {
+      flush();
+      first = c;
+    }
+    last = c + 1;
+  }
+  flush();
+}
+
+void ScenePass::draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const {
+  const GLuint ground[4] = {0, 0, 0, 0};
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glClearBufferuiv(GL_COLOR, 0, ground);
+  glClearDepthf(1);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  if (model.empty()) return;
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  model.textures().positions().bind(unit::kPositions);
+  model.textures().connectivity().bind(unit::kConnectivity);
+  model.textures().surface().bind(unit::kSurface);
+  shaders_.items.use();
+  Eigen::Matrix4d clip_from_model = clip_from_deck;
+  clip_from_model.col(3) += clip_from_deck.leftCols<3>() * model.textures().origin();
+  shaders_.items.set("clip_from_model", Eigen::Matrix4f(clip_from_model.cast<float>()));
+  shaders_.items.set("positions", static_cast<int>(unit::kPositions));
+  shaders_.items.set("connectivity", static_cast<int>(unit::kConnectivity));
+  shaders_.items.set("surface", static_cast<int>(unit::kSurface));
+  draw_chunks(model, clip_from_deck);
+  glDisable(GL_DEPTH_TEST);
+}
+
+void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width,
+                           const Eigen::Vector4f& line_ink) const {
+  if (lines.count == 0) return;
+  positions.bind(unit::kPositions);
+  lines.texture.bind(unit::kLines);
+  frame.set(shaders_.lines);
+  shaders_.lines.set("half_width", half_width);
+  shaders_.lines.set("toward_eye_mm", static_cast<float>(kLinesTowardEye * frame.eye.mm_per_pixel));
+  shaders_.lines.set("ink", line_ink.x(), line_ink.y(), line_ink.z(), line_ink.w());
+  glBindVertexArray(no_attributes_.get());
+  glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(lines.count * 6));
+}
+
+void ScenePass::draw_model_lines(const ModelLayer& model, const Frame& frame) const {
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  const RowTexture& positions = model.textures().positions();
+  draw_lines(model.creases(), positions, frame, kCreaseHalfWidth, ink(kCreaseColour, 0.55F));
+  draw_lines(model.borders(), positions, frame, kBorderHalfWidth, ink(kBorderColour, 0.85F));
+  glDepthMask(GL_TRUE);
+  draw_lines(model.line_elements(), positions, frame, kLineElementHalfWidth, ink(kLineElementColour, 1.0F));
+}
+
+void ScenePass::draw_preview(const ModelLayer& model, const Frame& frame) const {
+  glEnable(GL_BLEND);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);  // what has been pushed behind the old surface shows through it
+  draw_lines(model.preview_edges(), model.preview_positions(), frame, kPreviewHalfWidth, ink(kSelectedColour, 0.45F));
+  glDepthFunc(GL_LEQUAL);
+  draw_lines(model.preview_edges(), model.preview_positions(), frame, kPreviewHalfWidth, ink(kSelectedColour, 1.0F));
+  glDepthMask(GL_TRUE);
+}
+
+void ScenePass::draw_selected(const ModelLayer& model, const Frame& frame) const {
+  const Instances& nodes = model.selected();
+  if (nodes.count == 0) return;
+  const bool crowded = nodes.count > kCrowdedNodes;
+  frame.set(shaders_.nodes);
+  shaders_.nodes.set("radius_pixels", crowded ? kCrowdedNodeRadius : kNodeRadius);
+  glBindVertexArray(nodes.array.get());
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);
+  const auto draw = [&](float grow, const Colour& colour) {
+    shaders_.nodes.set("grow", grow);
+    shaders_.nodes.set("ink", colour.x(), colour.y(), colour.z(), 1.0F);
+    glDrawArraysInstanced(GL_TRIANGLES, 0, 24, static_cast<GLsizei>(nodes.count));
+  };
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_MAX);
+  draw(0.85F, kHiddenLight * kSelectedColour);
+  glBlendEquation(GL_FUNC_ADD);
+  glDisable(GL_BLEND);
+  glDepthFunc(GL_LEQUAL);
+  if (!crowded) draw(1.35F, kBorderColour);  // a dark rim tells white nodes from a light part
+  glDepthMask(GL_TRUE);
+  draw(1.0F, kSelectedColour);
+  glDisable(GL_CULL_FACE);
+}
+
+void ScenePass::draw_glyphs(const Instances& glyphs, const Frame& frame) const {
+  if (glyphs.count == 0) return;
+  frame.set(shaders_.glyphs);
+  shaders_.glyphs.set("radius_pixels", kGlyphRadius);
+  shaders_.glyphs.set("warn_ink", kWarnColour);
+  shaders_.glyphs.set("fail_ink", kFailColour);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  glBindVertexArray(glyphs.array.get());
+  glDrawArraysInstanced(GL_TRIANGLES, 0, 6, static_cast<GLsizei>(glyphs.count));
+  glDepthMask(GL_TRUE);
+}
+
+void ScenePass::draw_handle(const Handle& handle, const Frame& frame) const {
+  if (!finite(handle.at) || !finite(handle.direction) || handle.direction.norm() == 0) return;
+  const Vec3 foot = stereo::to_screen(frame.view, handle.at);
+  const double eye_z = frame.eye.eye_mm.z();
+  const double pixel = frame.eye.mm_per_pixel * std::max(eye_z - foot.z(), 1.0) / std::max(eye_z, 1.0);  // mm at the foot's depth
+  const double length = stereo::kHandleLengthPixels * pixel / frame.view.mm_per_unit;
+  const Vec3 axis = stereo::to_screen(frame.view, handle.at + handle.direction.normalized() * length) - foot;
+  if (!(axis.norm() > 0)) return;
+  const Vec3 helper = std::abs(axis.normalized().z()) < 0.9 ? Vec3(Vec3::UnitZ()) : Vec3(Vec3::UnitX());
+  const Vec3 side_a = helper.cross(axis).normalized() * pixel, side_b = axis.normalized().cross(side_a);
+
+  const gl::Program& program = shaders_.handle;
+  program.use();
+  program.set("clip_from_screen", Eigen::Matrix4f(frame.eye.clip_from_screen.cast<float>()));
+  program.set("foot", Eigen::Vector3f(foot.cast<float>()));
+  program.set("axis", Eigen::Vector3f(axis.cast<float>()));
+  program.set("side_a", Eigen::Vector3f(side_a.cast<float>()));
+  program.set("side_b", Eigen::Vector3f(side_b.cast<float>()));
+  glBindVertexArray(handle_array_.get());
+  const Colour& colour = handle.active ? kActiveColour : kSelectedColour;
+  const auto draw = [&](float alpha) {
+    program.set("ink", colour.x(), colour.y(), colour.z(), alpha);
+    glDrawArrays(GL_TRIANGLES, 0, handle_vertices_);
+  };
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);  // behind a surface it stays visible, but says that it is behind
+  draw(0.35F);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LEQUAL);
+  draw(1.0F);
+  glDisable(GL_CULL_FACE);
+}
+
+void ScenePass::draw_flat(const Picture& picture, const EyeView& eye) const {
+  glDisable(GL_DEPTH_TEST);
+  if (picture.rubber_band) {
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    const PixelRect& band = *picture.rubber_band;
+    const gl::Program& program = shaders_.rectangle;
+    program.use();
+    program.set("rectangle", static_cast<float>(band.x0), static_cast<float>(band.y0), static_cast<float>(band.x1),
+                static_cast<float>(band.y1));
+    program.set("display_per_pixel", static_cast<float>(eye.image.display_width) / static_cast<float>(eye.image.width), 1.0F);
+    program.set("display_height", static_cast<float>(eye.image.display_height));
+    glBindVertexArray(no_attributes_.get());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  glDisable(GL_BLEND);
+  if (picture.overlay) picture.overlay(eye.image);
+}
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,32 @@
+// The shader programs, linked once.
+#pragma once
+
+#include "kiosk/render/gl.h"
+
+namespace prismesh::kiosk::render {
+
+/// Texture units that the programs read from.
+namespace unit {
+inline constexpr unsigned kPositions = 0;
+inline constexpr unsigned kConnectivity = 1;
+inline constexpr unsigned kSurface = 2;
+inline constexpr unsigned kLines = 3;
+inline constexpr unsigned kLeft = 4;
+inline constexpr unsigned kRight = 5;
+}  // namespace unit
+
+struct Shaders {
+  gl::Program ground;  ///< one triangle over the whole image
+  gl::Program shells;  ///< six vertices a shell, pulled from textures
+  gl::Program items;   ///< the same shells, their numbers as colours
+  gl::Program lines;   ///< six vertices a line, pulled, as broad as wished
+  gl::Program nodes;   ///< octahedra, 24 vertices an instance
+  gl::Program glyphs;  ///< flat signs, six vertices an instance
+  gl::Program handle;  ///< the arrow's mesh
+  gl::Program rectangle;
+  gl::Program weave;  ///< two images into one
+
+  static Result<Shaders> link();
+};
+
+}  // namespace prismesh::kiosk::render
