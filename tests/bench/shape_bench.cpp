@@ -1,0 +1,116 @@
+// Selecting and weighing on a million quads.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "mesh/model/adjacency.h"
+#include "mesh/select/expression.h"
+#include "mesh/select/region.h"
+#include "mesh/shape/move.h"
+#include "mesh/shape/normals.h"
+#include "mesh/shape/weights.h"
+#include "mesh/spatial/geodesic.h"
+#include "tests/bench/million_quads.h"
+
+namespace prismesh::mesh {
+namespace {
+
+constexpr std::size_t kStride = 1001;
+
+const Model& whole() {
+  static const Model model = [] {
+    Model m = bench::million_quads();
+    m.node_holds.resize(m.node_count());
+    std::vector<std::int64_t> ids(m.node_count());
+    for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<std::int64_t>(10 * i + 1);
+    m.node_index = std::make_shared<IdIndex>(ids);
+    ids.resize(m.shell_count());
+    m.shell_index = std::make_shared<IdIndex>(ids);
+    m.midside = std::make_shared<std::vector<MidsideNodes>>();
+    m.adjacency = std::make_shared<const Adjacency>(build_adjacency(m));
+    return m;
+  }();
+  return model;
+}
+
+/// A square of 100 x 100 nodes in the middle.
+NodeSet ten_thousand() {
+  NodeSet nodes;
+  for (std::size_t j = 450; j < 550; ++j)
+    for (std::size_t i = 450; i < 550; ++i) nodes.push_back(NodeIndex(j * kStride + i));
+  return nodes;
+}
+
+void weights_of_10000_nodes(benchmark::State& state) {
+  const Model& model = whole();
+  const NodeSet selection = ten_thousand();
+  for (auto _ : state) benchmark::DoNotOptimize(shape::compute_weights(model, selection, NodeIndex(500 * kStride + 500), {}));
+}
+BENCHMARK(weights_of_10000_nodes)->Unit(benchmark::kMillisecond);
+
+void weights_without_a_grab(benchmark::State& state) {
+  const Model& model = whole();
+  const NodeSet selection = ten_thousand();
+  for (auto _ : state) benchmark::DoNotOptimize(shape::compute_weights(model, selection, std::nullopt, {}));
+}
+BENCHMARK(weights_without_a_grab)->Unit(benchmark::kMillisecond);
+
+void cut_10000_nodes(benchmark::State& state) {
+  const Model& model = whole();
+  const NodeSet selection = ten_thousand();
+  for (auto _ : state) benchmark::DoNotOptimize(spatial::cut_patch_between(model, selection));
+}
+BENCHMARK(cut_10000_nodes)->Unit(benchmark::kMillisecond);
+
+void geodesic_of_10000_nodes(benchmark::State& state) {
+  const spatial::Patch patch = spatial::cut_patch_between(whole(), ten_thousand());
+  const std::vector<std::uint32_t> source{5050};
+  for (auto _ : state) benchmark::DoNotOptimize(spatial::geodesic_distance(patch, source));
+}
+BENCHMARK(geodesic_of_10000_nodes)->Unit(benchmark::kMillisecond);
+
+void oriented_normals_of_10000_nodes(benchmark::State& state) {
+  const Model& model = whole();
+  const NodeSet selection = ten_thousand();
+  for (auto _ : state) benchmark::DoNotOptimize(shape::oriented_normals(model, selection, selection[5050]));
+}
+BENCHMARK(oriented_normals_of_10000_nodes)->Unit(benchmark::kMillisecond);
+
+void lasso_of_256_points_over_a_million(benchmark::State& state) {
+  const Model& model = whole();
+  std::vector<std::array<double, 2>> outline;
+  for (int k = 0; k < 256; ++k) {
+    const double t = 2 * 3.14159265358979 * k / 256;
+    const double r = 0.5 + 0.2 * std::sin(5 * t) + 0.05 * std::cos(31 * t);
+    outline.push_back({r * std::cos(t), r * std::sin(t)});
+  }
+  // the plate of 5 m fills the picture
+  const double s = 1.0 / 2500;
+  const std::array<double, 16> view{s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, -1, -1, 0, 1};
+  for (auto _ : state) benchmark::DoNotOptimize(select::inside_outline(model, view, outline));
+}
+BENCHMARK(lasso_of_256_points_over_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void nearest_node_of_a_million(benchmark::State& state) {
+  const Model& model = whole();
+  for (auto _ : state) benchmark::DoNotOptimize(select::nearest_node(model, Vec3(2500, 2500, 0)));
+}
+BENCHMARK(nearest_node_of_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+void expression_over_a_million(benchmark::State& state) {
+  const Model& model = whole();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(select::evaluate(model, "1-9223372036854775807:10,!1-5000000:20,17-900000", select::Kind::node));
+}
+BENCHMARK(expression_over_a_million)->Unit(benchmark::kMillisecond);
+
+void region_of_a_million(benchmark::State& state) {
+  const Model& model = whole();
+  for (auto _ : state) benchmark::DoNotOptimize(select::region(model, NodeIndex(500 * kStride + 500), 60));
+}
+BENCHMARK(region_of_a_million)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace prismesh::mesh
