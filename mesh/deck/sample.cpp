@@ -68,7 +68,7 @@ class Cards {
 
 /// A thickness in tenths of a millimetre, as text.
 std::string tenths(double thickness) {
-  const auto value = static_cast<int>(thickness * 10 + 0.5);
+  const long value = std::lround(thickness * 10);
   return std::to_string(value / 10) + "." + std::to_string(value % 10);
 }
 

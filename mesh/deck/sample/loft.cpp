@@ -1,6 +1,7 @@
 #include "mesh/deck/sample/loft.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/deterministic_math.h"
 
@@ -9,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kNoNode = 0xffffffffu;
 
-std::size_t rounded(double value) { return value < 1.5 ? 1 : static_cast<std::size_t>(value + 0.5); }
+std::size_t rounded(double value) { return value < 1.5 ? 1 : static_cast<std::size_t>(std::lround(value)); }
 
 /// A hole's place in the grid: cells [station, station + cells) x [cell, cell + cells) of a face.
 struct Block {
@@ -48,7 +49,7 @@ std::vector<int> cells_along(const Part& part, std::size_t face, std::size_t sta
 bool place_block(const Plan& plan, const Part& part, const Hole& hole, double size, Block& block) {
   const double in_cells = hole.radius / size;
   if (in_cells < 0.5) return false;
-  const auto cells = static_cast<std::size_t>(std::max({2.0 * in_cells + 1.2, 2.6 * in_cells, 2.0}) + 0.5);
+  const auto cells = static_cast<std::size_t>(std::lround(std::max({2.0 * in_cells + 1.2, 2.6 * in_cells, 2.0})));
   const double centre = hole.along / plan.step;
   const double first = centre - 0.5 * static_cast<double>(cells) + 0.5;
   if (first < 1.0) return false;
