@@ -69,6 +69,7 @@ run_fuzzers() {
     say "Fuzzing $name for $1 s"
     seeds=()
     [ -d "tests/fuzz/seeds/$name" ] && seeds=("tests/fuzz/seeds/$name")
+    [ -f "tests/fuzz/${name%_fuzz}.dict" ] && seeds+=("-dict=tests/fuzz/${name%_fuzz}.dict")
     mkdir -p "build/fuzz/corpus/$name"
     status=0
     "$target" -max_total_time="$1" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="out/fuzz/$name-" -print_final_stats=0 -verbosity=0 \

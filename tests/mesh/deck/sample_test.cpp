@@ -9,9 +9,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/hash.h"
-#include "mesh/model/model.h"
+#include "mesh/deck/deck.h"
 
 namespace prismesh::mesh::deck {
 namespace {
@@ -99,6 +100,25 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SampleSize, testing::Values(2'000, 3'333, 5'000,
 TEST(Sample, is_the_same_bytes_on_every_machine) {
   const std::string text = sample_text(5'000);
   EXPECT_EQ(hash128(std::as_bytes(std::span(text))).hex(), "ec0c563215bc81d45fddc5a048c1f62b");
+}
+
+TEST(Sample, reads_and_saves_as_a_deck) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("prismesh_sample_test." + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  ASSERT_TRUE(write_sample(folder / "sample.k", 5'000));
+  const Result<OpenedDeck> opened = open(folder / "sample.k");
+  ASSERT_TRUE(opened) << opened.error().text();
+  EXPECT_THAT(opened->deck->warnings, testing::IsEmpty());
+  const Cards cards = read_cards(sample_text(5'000));
+  EXPECT_EQ(opened->model.node_count(), cards.nodes.size());
+  EXPECT_EQ(opened->model.shell_count(), cards.shells.size());
+  EXPECT_EQ(opened->model.parts->size(), 8u);
+  EXPECT_EQ(opened->model.elements[static_cast<std::size_t>(ElementClass::beam)]->size(), cards.beams.size());
+  EXPECT_EQ(guess_length_unit(opened->model), LengthUnit::mm);
+  ASSERT_TRUE(save(*opened->deck, opened->model, opened->model, folder / "again.k"));
+  std::ifstream again(folder / "again.k");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(again), {}), sample_text(5'000));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Sample, sizes_outside_the_limits_are_refused_with_the_limits) {
