@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/quality/judging.h"
