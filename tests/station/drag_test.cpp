@@ -1,0 +1,164 @@
+// The whole thread: a deck in the kiosk's window, a selection, a pull with the pointer, and what is in the file afterwards.
+#include <cmath>
+#include <csignal>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/station/station.h"
+
+namespace prismesh::test {
+namespace {
+
+class DragTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_programs(); !missing.empty())
+      GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
+    station_ = std::make_unique<Station>(::testing::UnitTest::GetInstance()->current_test_info()->name());
+    original_ = whole_file(station_->deck());
+    station_->start_kiosk();
+  }
+  void commit() {
+    station_->release();
+    ASSERT_FALSE(station_->kiosk().wait_for("drag committed").empty());
+    ASSERT_FALSE(station_->kiosk().wait_for("picture ").empty());
+  }
+  /// Only cards of `selected` nodes differ, and these moved outward along one direction: the normal at the node that moved most.
+  void expect_lifted(const std::string& saved, const std::vector<std::int64_t>& selected) const {
+    const DeckDifference difference = compare_decks(original_, saved);
+    EXPECT_TRUE(difference.same_line_count);
+    EXPECT_TRUE(difference.other_changes.empty()) << difference.other_changes.front();
+    const std::set<std::int64_t> allowed(selected.begin(), selected.end());
+    for (const std::int64_t id : difference.nodes) EXPECT_TRUE(allowed.contains(id)) << "node " << id << " moved but was not selected";
+    EXPECT_GT(difference.nodes.size(), selected.size() / 4);
+
+    const std::map<std::int64_t, Point> before = nodes_of_deck(original_), after = nodes_of_deck(saved);
+    Point farthest{};
+    std::int64_t grab = 0;
+    const auto moved = [&](std::int64_t id) {
+      Point by{};
+      for (std::size_t i = 0; i < 3; ++i) by[i] = after.at(id)[i] - before.at(id)[i];
+      return by;
+    };
+    const auto length = [](const Point& by) { return std::hypot(by[0], by[1], by[2]); };
+    for (const std::int64_t id : difference.nodes)
+      if (length(moved(id)) > length(farthest)) farthest = moved(id), grab = id;
+    ASSERT_GT(length(farthest), 1) << "nothing was lifted";
+    const Point normal = sheet_normal(before.at(grab));
+    for (const std::int64_t id : difference.nodes) {
+      const Point by = moved(id);
+      const double along = by[0] * normal[0] + by[1] * normal[1] + by[2] * normal[2];
+      EXPECT_GT(along, 0) << "node " << id;
+      EXPECT_NEAR(std::hypot(by[0] - along * normal[0], by[1] - along * normal[1], by[2] - along * normal[2]), 0, 1e-4) << "node " << id;
+    }
+  }
+
+  std::unique_ptr<Station> station_;
+  std::string original_;
+};
+
+TEST_F(DragTest, a_lift_by_the_pointer_changes_the_selected_nodes_lines_only) {
+  const std::vector<std::int64_t> selected = station_->select_middle();
+  station_->pull_arrow(60);
+  commit();
+  expect_lifted(station_->save_as("lifted.k"), selected);
+  EXPECT_EQ(whole_file(station_->deck()), original_) << "saving elsewhere must leave the deck alone";
+}
+
+TEST_F(DragTest, save_writes_the_deck_itself) {
+  const std::vector<std::int64_t> selected = station_->select_middle();
+  station_->pull_arrow(40);
+  commit();
+  station_->key("ctrl+s");
+  ASSERT_FALSE(station_->kiosk().wait_for("saved ").empty());
+  expect_lifted(whole_file(station_->deck()), selected);
+}
+
+TEST_F(DragTest, a_click_selects_the_node_and_a_double_click_its_region) {
+  const std::map<std::int64_t, Point> nodes = nodes_of_deck(original_);
+  const std::array<double, 2> pixel = station_->pixel_of(nodes.at(kFirstNode + 10 * kSheetSide + 12));
+  station_->kiosk().skip_lines();
+  station_->click(pixel[0], pixel[1]);
+  ASSERT_TRUE(station_->wait_for_selection(1));
+  const auto handle = station_->handle();
+  ASSERT_TRUE(handle.has_value());
+  EXPECT_NEAR(handle->foot_x, pixel[0], 1);
+  EXPECT_NEAR(handle->foot_y, pixel[1], 1);
+  station_->key("Escape");
+  ASSERT_TRUE(station_->wait_for_selection(0));
+  station_->move(pixel[0], pixel[1]);
+  station_->press();
+  station_->release();
+  station_->press();
+  station_->release();
+  EXPECT_TRUE(station_->wait_for_selection(nodes.size())) << "a smooth sheet is one region";
+}
+
+TEST_F(DragTest, escape_during_a_pull_leaves_everything_as_it_was) {
+  station_->select_middle();
+  station_->pull_arrow(60);
+  station_->key("Escape");
+  ASSERT_FALSE(station_->kiosk().wait_for("drag cancelled").empty());
+  station_->release();
+  EXPECT_EQ(station_->save_as("cancelled.k"), original_);
+}
+
+TEST_F(DragTest, undo_takes_the_lift_back_and_redo_brings_it_again) {
+  const std::vector<std::int64_t> selected = station_->select_middle();
+  station_->pull_arrow(60);
+  commit();
+  const std::string lifted = station_->save_as("lifted.k");
+  station_->key("ctrl+z");
+  ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  EXPECT_EQ(station_->save_as("undone.k"), original_);
+  station_->key("ctrl+y");
+  ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  EXPECT_EQ(station_->save_as("redone.k"), lifted);
+}
+
+TEST_F(DragTest, a_killed_model_server_loses_no_edit_and_the_kiosk_goes_on) {
+  const std::vector<std::int64_t> selected = station_->select_middle();
+  station_->pull_arrow(60);
+  commit();
+  station_->kill_model_server();
+  ASSERT_FALSE(station_->kiosk().wait_for("disconnected").empty());
+  EXPECT_TRUE(station_->kiosk().running());
+  station_->start_model_server();
+  ASSERT_FALSE(station_->kiosk().wait_for("connected").empty());
+  ASSERT_FALSE(station_->kiosk()
+                   .wait_until([](const std::string& line) { return line.starts_with("generation ") && line.ends_with("changed 1"); })
+                   .empty());
+  expect_lifted(station_->save_as("recovered.k"), selected);
+}
+
+TEST_F(DragTest, a_model_server_killed_in_the_middle_of_a_pull_undoes_the_pull_only) {
+  station_->select_middle();
+  station_->pull_arrow(60);
+  station_->kill_model_server();
+  ASSERT_FALSE(station_->kiosk().wait_for("drag lost").empty());
+  station_->start_model_server();
+  ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  station_->release();
+  EXPECT_EQ(station_->save_as("unpulled.k"), original_);
+}
+
+TEST_F(DragTest, two_stations_side_by_side_do_not_touch_each_other) {
+  Station other("other");
+  other.start_kiosk();
+  const std::vector<std::int64_t> here = station_->select_middle();
+  const std::vector<std::int64_t> there = other.select_middle();
+  station_->pull_arrow(60);
+  commit();
+  EXPECT_EQ(other.save_as("other.k"), original_) << "the second station's document changed with the first's";
+  other.pull_arrow(30);
+  other.release();
+  ASSERT_FALSE(other.kiosk().wait_for("drag committed").empty());
+  const std::string first = station_->save_as("first.k"), second = other.save_as("second.k");
+  expect_lifted(first, here);
+  expect_lifted(second, there);
+  EXPECT_NE(first, second);
+}
+
+}  // namespace
+}  // namespace prismesh::test

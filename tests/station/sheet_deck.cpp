@@ -1,0 +1,101 @@
+#include "tests/station/sheet_deck.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+namespace prismesh::test {
+namespace {
+
+constexpr double kRadius = 90;
+constexpr double kStep = 5;
+
+/// True inside *NODE blocks; follows the keywords line by line.
+class NodeBlocks {
+ public:
+  bool is_card(const std::string& line) {
+    if (!line.empty() && line[0] == '*') {
+      inside_ = line.rfind("*NODE", 0) == 0 && line.find('_') == std::string::npos;
+      return false;
+    }
+    return inside_ && !line.empty() && line[0] != '$';
+  }
+
+ private:
+  bool inside_ = false;
+};
+
+std::int64_t id_of(const std::string& card) { return std::stoll(card.substr(0, 8)); }
+
+}  // namespace
+
+void write_sheet(const std::filesystem::path& path) {
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  std::fprintf(file,
+               "$ a curved sheet for the station test\n*KEYWORD\n*TITLE\nCurved sheet   with   odd spacing\n*NODE\n$#   nid               "
+               "x               y               z\n");
+  std::int64_t id = kFirstNode;
+  for (int row = 0; row < kSheetSide; ++row)
+    for (int column = 0; column < kSheetSide; ++column) {
+      const double angle = (column - (kSheetSide - 1) / 2) * kStep / kRadius;
+      std::fprintf(file, "%8lld%16.6f%16.6f%16.6f%8d%8d\n", static_cast<long long>(id++), kRadius * std::sin(angle), row * kStep,
+                   kRadius * std::cos(angle), 0, 0);
+    }
+  std::fprintf(file, "*ELEMENT_SHELL\n$#   eid     pid      n1      n2      n3      n4\n");
+  std::int64_t element = 1;
+  for (int row = 0; row + 1 < kSheetSide; ++row)
+    for (int column = 0; column + 1 < kSheetSide; ++column) {
+      const long long n = kFirstNode + row * kSheetSide + column;
+      std::fprintf(file, "%8lld%8d%8lld%8lld%8lld%8lld\n", static_cast<long long>(element++), 7, n, n + 1, n + kSheetSide + 1,
+                   n + kSheetSide);
+    }
+  std::fprintf(file,
+               "*PART\nRoof panel, drawn\n%10d%10d%10d\n*SECTION_SHELL\n%10d%10d\n%10.2f%10.2f%10.2f%10.2f\n"
+               "*MAT_ELASTIC\n%10d%10.2e%10.1f%10.2f\n*SOME_CARD_NOBODY_KNOWS\n word for word,  1.0E0\n*END\n",
+               7, 1, 1, 1, 2, 0.8, 0.8, 0.8, 0.8, 1, 7.85e-9, 210000.0, 0.3);
+  std::fclose(file);
+}
+
+Point sheet_normal(const Point& point) { return {point[0] / kRadius, 0, point[2] / kRadius}; }
+
+std::string whole_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::stringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::map<std::int64_t, Point> nodes_of_deck(const std::string& text) {
+  std::map<std::int64_t, Point> nodes;
+  NodeBlocks blocks;
+  for (const std::string& line : lines_of(text))
+    if (blocks.is_card(line))
+      nodes[id_of(line)] = {std::stod(line.substr(8, 16)), std::stod(line.substr(24, 16)), std::stod(line.substr(40, 16))};
+  return nodes;
+}
+
+DeckDifference compare_decks(const std::string& before, const std::string& after) {
+  const std::vector<std::string> a = lines_of(before), b = lines_of(after);
+  DeckDifference difference;
+  difference.same_line_count = a.size() == b.size();
+  NodeBlocks blocks;
+  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) {
+    const bool card = blocks.is_card(a[i]);
+    if (a[i] == b[i]) continue;
+    if (card && b[i].size() > 56 && id_of(a[i]) == id_of(b[i]))
+      difference.nodes.push_back(id_of(a[i]));
+    else
+      difference.other_changes.push_back(b[i]);
+  }
+  return difference;
+}
+
+}  // namespace prismesh::test

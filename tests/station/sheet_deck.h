@@ -1,0 +1,35 @@
+// A small curved sheet as a deck, written and read back by the test itself: an independent witness of what was saved.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace prismesh::test {
+
+using Point = std::array<double, 3>;
+
+/// A cylinder's segment, axis along y, its ridge upward: 25 x 25 nodes, 24 x 24 shells, one part.
+void write_sheet(const std::filesystem::path& path);
+inline constexpr std::int64_t kFirstNode = 1001;
+inline constexpr int kSheetSide = 25;
+/// The outward normal of the sheet at a point of it.
+Point sheet_normal(const Point& point);
+
+std::string whole_file(const std::filesystem::path& path);
+std::vector<std::string> lines_of(const std::string& text);
+/// Node cards in fixed columns of 8 and 16 characters.
+std::map<std::int64_t, Point> nodes_of_deck(const std::string& text);
+
+/// What two decks differ in, line by line.
+struct DeckDifference {
+  bool same_line_count = false;
+  std::vector<std::int64_t> nodes;         ///< ids of node cards that differ
+  std::vector<std::string> other_changes;  ///< lines that differ and are no node cards of the same id
+};
+DeckDifference compare_decks(const std::string& before, const std::string& after);
+
+}  // namespace prismesh::test

@@ -1,0 +1,204 @@
+#include "tests/station/station.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace prismesh::test {
+namespace {
+
+const std::filesystem::path kPrograms = PRISMESH_PROGRAMS;
+constexpr int kWidth = 1280, kHeight = 800;
+
+std::string text_of(double value) { return std::to_string(static_cast<long>(std::lround(value))); }
+
+std::size_t word_after(const std::string& line, const std::string& word) {
+  const std::size_t at = line.find(word + " ");
+  return at == std::string::npos ? std::size_t(-1) : std::stoull(line.substr(at + word.size() + 1));
+}
+
+}  // namespace
+
+std::string missing_programs() {
+  std::string missing;
+  for (const char* program : {"Xvfb", "xdotool", "openbox"})
+    if (!program_exists(program)) missing += std::string(missing.empty() ? "" : ", ") + program;
+  return missing;
+}
+
+VirtualDisplay::VirtualDisplay(const std::filesystem::path& home, int width, int height) {
+  // The shell hands file descriptor 1 to the server as the place where it writes its number.
+  server_ =
+      std::make_unique<Process>(std::vector<std::string>{"Xvfb", "-displayfd", "1", "-screen", "0",
+                                                         std::to_string(width) + "x" + std::to_string(height) + "x24", "-nolisten", "tcp"},
+                                std::map<std::string, std::string>{});
+  const std::string number = server_->wait_for("");
+  EXPECT_FALSE(number.empty()) << "Xvfb did not start:\n" << server_->all_output();
+  name_ = ":" + number;
+  window_manager_ = std::make_unique<Process>(std::vector<std::string>{"openbox", "--sm-disable"},
+                                              std::map<std::string, std::string>{{"DISPLAY", name_}, {"HOME", home.string()}});
+}
+
+Station::Station(const std::string& name)
+    : folder_(std::filesystem::temp_directory_path() / ("prismesh_station_" + name + "_" + std::to_string(::getpid()))) {
+  std::filesystem::remove_all(folder_);
+  std::filesystem::create_directories(folder_ / "run");
+  std::filesystem::create_directories(folder_ / "state");
+  std::filesystem::permissions(folder_ / "run", std::filesystem::perms::owner_all);
+  write_sheet(deck());
+  display_ = std::make_unique<VirtualDisplay>(folder_, kWidth + 40, kHeight + 80);
+  start_model_server();
+}
+
+Station::~Station() {
+  if (::testing::Test::HasFailure() && kiosk_) {
+    kiosk_->last("");
+    std::fprintf(stderr, "--- what the kiosk said ---\n%s--- what the model server said ---\n%s", kiosk_->all_output().c_str(),
+                 model_server_->standard_error().c_str());
+  }
+  kiosk_.reset();
+  model_server_.reset();
+  display_.reset();
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+void Station::start_model_server() {
+  model_server_ = std::make_unique<Process>(std::vector<std::string>{(kPrograms / "prismesh-modeld").string()},
+                                            std::map<std::string, std::string>{{"RUNTIME_DIRECTORY", (folder_ / "run").string()},
+                                                                               {"STATE_DIRECTORY", (folder_ / "state").string()}});
+}
+
+void Station::kill_model_server() {
+  model_server_->kill(SIGKILL);
+  EXPECT_EQ(model_server_->wait_for_exit(), 128 + SIGKILL);
+}
+
+void Station::start_kiosk(const std::vector<std::string>& more_arguments) {
+  std::vector<std::string> command{(kPrograms / "prismesh-kiosk").string(),
+                                   "--trace",
+                                   "--runtime-dir",
+                                   (folder_ / "run").string(),
+                                   "--size",
+                                   std::to_string(kWidth) + "x" + std::to_string(kHeight),
+                                   "--open",
+                                   deck().string()};
+  command.insert(command.end(), more_arguments.begin(), more_arguments.end());
+  kiosk_ = std::make_unique<Process>(command, std::map<std::string, std::string>{{"DISPLAY", display_->name()}});
+  ASSERT_FALSE(kiosk_->wait_for("generation ").empty()) << "the kiosk showed no document\n" << kiosk_->all_output();
+  ASSERT_FALSE(
+      kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("generation 0"); }).empty());
+  Process search({"xdotool", "search", "--sync", "--name", "^Prismesh$"}, {{"DISPLAY", display_->name()}});
+  window_ = search.wait_for("");
+  ASSERT_FALSE(window_.empty());
+  xdotool({"windowfocus", "--sync", window_});
+}
+
+void Station::xdotool(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{"xdotool"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  Process process(command, {{"DISPLAY", display_->name()}});
+  EXPECT_EQ(process.wait_for_exit(), 0) << process.standard_error();
+}
+
+void Station::move(double x, double y) { xdotool({"mousemove", "--window", window_, text_of(x), text_of(y)}); }
+void Station::press(int button) { xdotool({"mousedown", std::to_string(button)}); }
+void Station::release(int button) { xdotool({"mouseup", std::to_string(button)}); }
+void Station::click(double x, double y, int button) {
+  move(x, y);
+  xdotool({"click", std::to_string(button)});
+}
+void Station::drag(double from_x, double from_y, double to_x, double to_y) {
+  move(from_x, from_y);
+  press();
+  move((from_x + to_x) / 2, (from_y + to_y) / 2);
+  move(to_x, to_y);
+  release();
+}
+void Station::key(const std::string& keys) { xdotool({"key", keys}); }
+void Station::type(const std::string& text) { xdotool({"type", "--delay", "2", text}); }
+
+std::array<double, 2> Station::pixel_of(const Point& point) {
+  std::stringstream line(kiosk_->last("aim "));
+  std::string word;
+  double width = 0, height = 0;
+  std::array<double, 16> m{};
+  line >> word >> width >> height;
+  for (double& value : m) line >> value;
+  EXPECT_TRUE(line) << "the kiosk has not said how it projects";
+  const auto row = [&](std::size_t r) { return m[r] * point[0] + m[4 + r] * point[1] + m[8 + r] * point[2] + m[12 + r]; };
+  return {(row(0) / row(3) + 1) / 2 * width, (1 - row(1) / row(3)) / 2 * height};
+}
+
+bool Station::wait_for_selection(std::size_t selected) {
+  const std::string line = kiosk_->wait_until(
+      [&](const std::string& said) { return said.starts_with("generation ") && word_after(said, "selected") == selected; });
+  if (line.empty()) return false;
+  return !kiosk_->wait_for("picture ").empty();
+}
+
+std::optional<Station::Handle> Station::handle() {
+  std::stringstream line(kiosk_->last("handle "));
+  std::string word;
+  Handle handle;
+  line >> word >> handle.foot_x >> handle.foot_y >> handle.tip_x >> handle.tip_y;
+  return line ? std::optional(handle) : std::nullopt;
+}
+
+std::string Station::save_as(const std::string& name) {
+  const std::filesystem::path target = folder_ / name;
+  kiosk_->skip_lines();
+  key("ctrl+shift+s");
+  key("ctrl+a");
+  type(target.string());
+  key("Return");
+  EXPECT_FALSE(kiosk_->wait_for("saved ").empty()) << "nothing was saved";
+  return whole_file(target);
+}
+
+std::vector<std::int64_t> Station::select_middle() {
+  const std::map<std::int64_t, Point> nodes = nodes_of_deck(whole_file(deck()));
+  const int middle = kSheetSide / 2;
+  const std::array<double, 2> centre = pixel_of(nodes.at(kFirstNode + middle * kSheetSide + middle));
+  const double half_width = 70, half_height = 50;
+  std::vector<std::int64_t> inside;
+  for (const auto& [id, point] : nodes) {
+    const std::array<double, 2> pixel = pixel_of(point);
+    if (std::abs(pixel[0] - std::round(centre[0])) < half_width && std::abs(pixel[1] - std::round(centre[1])) < half_height)
+      inside.push_back(id);
+  }
+  kiosk_->skip_lines();
+  const double x = std::round(centre[0]), y = std::round(centre[1]);
+  drag(x - half_width, y - half_height, x + half_width, y + half_height);
+  EXPECT_GT(inside.size(), 20u);
+  EXPECT_TRUE(wait_for_selection(inside.size())) << "expected " << inside.size() << " selected nodes, got: " << kiosk_->last("generation ");
+  return inside;
+}
+
+void Station::pull_arrow(double pixels) {
+  const std::optional<Handle> at = handle();
+  ASSERT_TRUE(at.has_value()) << "there is no handle";
+  const double length = std::hypot(at->tip_x - at->foot_x, at->tip_y - at->foot_y);
+  ASSERT_GT(length, 40) << "the arrow is too short to be followed";
+  const double x = (at->tip_x - at->foot_x) / length, y = (at->tip_y - at->foot_y) / length;
+  kiosk_->skip_lines();
+  move(at->tip_x, at->tip_y);
+  press();
+  for (const double part : {0.25, 0.5, 0.75, 1.0}) move(at->tip_x + part * pixels * x, at->tip_y + part * pixels * y);
+  ASSERT_FALSE(kiosk_->wait_for("drag begun").empty());
+  ASSERT_FALSE(kiosk_->wait_for("drag shown").empty());
+}
+
+void Station::screenshot(const std::filesystem::path& file) {
+  Process process({"import", "-window", "root", file.string()}, {{"DISPLAY", display_->name()}});
+  process.wait_for_exit();
+}
+
+}  // namespace prismesh::test

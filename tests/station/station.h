@@ -1,0 +1,86 @@
+// A whole station for tests: an X server of its own, the model server and the kiosk, and a hand that moves the pointer and types.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/station/process.h"
+#include "tests/station/sheet_deck.h"
+
+namespace prismesh::test {
+
+/// What a station needs and this machine lacks; empty: nothing.
+std::string missing_programs();
+
+/// An X server without a screen, with a window manager that gives windows the keyboard.
+class VirtualDisplay {
+ public:
+  VirtualDisplay(const std::filesystem::path& home, int width, int height);
+  const std::string& name() const { return name_; }
+  Process& server() { return *server_; }
+
+ private:
+  std::string name_;
+  std::unique_ptr<Process> server_;
+  std::unique_ptr<Process> window_manager_;
+};
+
+class Station {
+ public:
+  /// Starts display and model server in a new folder that goes with the station; deck() is written.
+  explicit Station(const std::string& name);
+  ~Station();
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path deck() const { return folder_ / "sheet.k"; }
+
+  void start_model_server();
+  /// As a crash would.
+  void kill_model_server();
+  Process& model_server() { return *model_server_; }
+  /// Opens the deck in a kiosk and waits until its picture is on the screen.
+  void start_kiosk(const std::vector<std::string>& more_arguments = {});
+  Process& kiosk() { return *kiosk_; }
+  VirtualDisplay& display() { return *display_; }
+
+  // --- the hand; pixels of the kiosk's picture ---
+  void move(double x, double y);
+  void press(int button = 1);
+  void release(int button = 1);
+  void click(double x, double y, int button = 1);
+  void drag(double from_x, double from_y, double to_x, double to_y);
+  void key(const std::string& keys);
+  void type(const std::string& text);
+
+  // --- what the kiosk says ---
+  /// Where a deck point is on the picture.
+  std::array<double, 2> pixel_of(const Point& point);
+  /// Waits until `selected` nodes are selected in the newest generation and the handle for them is on the picture.
+  bool wait_for_selection(std::size_t selected);
+  struct Handle {
+    double foot_x = 0, foot_y = 0, tip_x = 0, tip_y = 0;
+  };
+  std::optional<Handle> handle();
+  /// Saves under another name by keyboard, waits for it, and gives back what was written.
+  std::string save_as(const std::string& name);
+  /// Selects the nodes of the sheet's middle with a rectangle; their ids.
+  std::vector<std::int64_t> select_middle();
+  /// Takes the arrow at its tip and moves the pointer along it; the button stays down and a preview is seen.
+  void pull_arrow(double pixels);
+  void screenshot(const std::filesystem::path& file);
+
+ private:
+  void xdotool(const std::vector<std::string>& arguments);
+
+  std::filesystem::path folder_;
+  std::unique_ptr<VirtualDisplay> display_;
+  std::unique_ptr<Process> model_server_;
+  std::unique_ptr<Process> kiosk_;
+  std::string window_;
+};
+
+}  // namespace prismesh::test
