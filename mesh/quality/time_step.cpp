@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace prismesh::mesh::quality {
 
 double characteristic_length(std::span<const Vec3> corners, int shell_option) {
