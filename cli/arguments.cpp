@@ -1,0 +1,155 @@
+// The only file that knows the argument parser, which is heavy to compile.
+#include "cli/arguments.h"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <ostream>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "base/nearest_name.h"
+#include "cli/commands.h"
+#include "mesh/deck/sample.h"
+
+namespace prismesh::cli {
+
+namespace {
+
+/// The parser with what it fills; a command's options live as long as the action made of them.
+struct Parser {
+  CLI::App app{"Prismesh: edit finite-element shell models for crash simulation.", "prismesh"};
+  Common common;
+  Action chosen;
+};
+
+/// A subcommand whose options are of type Options and that runs `command` with them.
+template <class Options>
+std::pair<CLI::App*, Options*> add_command(Parser& parser, const std::string& name, const std::string& what,
+                                           int (*command)(const Options&, const Common&, const Surroundings&)) {
+  CLI::App* app = parser.app.add_subcommand(name, what);
+  app->fallthrough();  // options that every command takes may stand after it
+  auto options = std::make_shared<Options>();
+  app->callback([&parser, options, command] {
+    parser.chosen = [options, command, &common = parser.common](const Surroundings& surroundings) {
+      return command(*options, common, surroundings);
+    };
+  });
+  return {app, options.get()};
+}
+
+/// Makes a CLI11 transform that stores an std::optional path, text or number.
+template <class T>
+CLI::Option* add_optional(CLI::App* app, const std::string& name, std::optional<T>& target, const std::string& what) {
+  return app->add_option_function<std::string>(
+      name, [&target](const std::string& text) { target = T(text); }, what);
+}
+
+void add_common(Parser& parser) {
+  CLI::App& app = parser.app;
+  Common& common = parser.common;
+  app.add_option_function<std::string>(
+         "--length-unit", [&common](const std::string& text) { common.length_unit = length_unit_from(text); },
+         "the deck's length unit: mm, m or in (default: guessed, and said)")
+      ->check(CLI::IsMember({"mm", "m", "in"}));
+  app.add_option_function<double>(
+         "--target-size", [&common](double size) { common.target_size = size; },
+         "the wanted element size, in the deck's length unit (default: guessed, and said)")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            double size = 0;
+            const bool good = CLI::detail::lexical_cast(text, size) && std::isfinite(size) && size > 0;
+            return good ? std::string() : "must be a number greater than 0, not \"" + text + "\"";
+          },
+          "SIZE > 0"));
+  add_optional(&app, "--criteria", common.criteria, "a file of quality criteria (TOML)");
+  app.add_flag("--json", common.json, "print JSON and nothing else");
+}
+
+void add_reading_commands(Parser& parser) {
+  const auto [info_app, info_options] = add_command<InfoOptions>(parser, "info", "say what a deck holds", info);
+  info_app->add_option("DECK", info_options->deck, "the deck's main file")->required();
+
+  const auto [check_app, check_options] = add_command<CheckOptions>(parser, "check", "measure and judge the shells of a deck", check);
+  check_app->add_option("DECK", check_options->deck, "the deck's main file")->required();
+  add_optional(check_app, "--select", check_options->select, "only these shells, e.g. part:3,shell:100-200");
+
+  const auto [diff_app, diff_options] = add_command<DiffOptions>(parser, "diff", "compare two decks by ids and by lines", diff);
+  diff_app->add_option("A", diff_options->a, "a deck")->required();
+  diff_app->add_option("B", diff_options->b, "another deck")->required();
+
+  const auto [distance_app, distance_options] =
+      add_command<DistanceOptions>(parser, "distance", "shortest distance between two sets of nodes or shells", distance);
+  distance_app->add_option("DECK", distance_options->deck, "the deck's main file")->required();
+  distance_app->add_option("--from", distance_options->from, "an expression: node ids, shell:ID, part:ID")->required();
+  distance_app->add_option("--to", distance_options->to, "another expression")->required();
+}
+
+void add_writing_commands(Parser& parser) {
+  const auto [edit_app, edit_options] = add_command<EditOptions>(parser, "edit", "edit a deck and write the result", edit);
+  edit_app->add_option("DECK", edit_options->deck, "the deck's main file")->required();
+  edit_app->add_option("--edit", edit_options->edits, "an edit as JSON; may be given several times")->take_all()->allow_extra_args(false);
+  add_optional(edit_app, "--script", edit_options->script, "a file of edits, one JSON object a line, done after those of --edit");
+  edit_app->add_option("-o,--output", edit_options->output, "the main file to write")->required();
+  add_optional(edit_app, "--journal", edit_options->journal, "also write a journal of the edits here");
+
+  const auto [replay_app, replay_options] = add_command<ReplayOptions>(parser, "replay", "do a journal's edits again on a deck", replay);
+  replay_app->add_option("JOURNAL", replay_options->journal, "a journal, or a file of edits")->required();
+  replay_app->add_option("DECK", replay_options->deck, "the deck it was made on, or a variant")->required();
+  replay_app->add_option("-o,--output", replay_options->output, "the main file to write")->required();
+
+  const auto [sample_app, sample_options] =
+      add_command<SampleOptions>(parser, "sample", "write a sheet-metal assembly to try things on", sample);
+  sample_app
+      ->add_option_function<std::size_t>(
+          "--elements", [o = sample_options](std::size_t n) { o->elements = n; },
+          "about how many shells, " + std::to_string(mesh::deck::kSampleShellsMin) + " to " + std::to_string(mesh::deck::kSampleShellsMax) +
+              " (default " + std::to_string(mesh::deck::kSampleShellsDefault) + ")")
+      ->check(CLI::Range(mesh::deck::kSampleShellsMin, mesh::deck::kSampleShellsMax));
+  sample_app->add_option("-o,--output", sample_options->output, "the deck to write")->required();
+}
+
+/// Wrong usage as an Error that names the command and, for an unknown command, the nearest known one.
+tl::unexpected<Error> usage_error(const Parser& parser, std::span<const std::string> args, const CLI::ParseError& problem) {
+  std::string command = "prismesh";
+  std::vector<std::string> names;
+  for (const CLI::App* known : parser.app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(known->get_name());
+    if (known->parsed()) command += " " + known->get_name();
+  }
+  std::string message = problem.what();
+  if (command == "prismesh" && !args.empty() && !args[0].starts_with('-')) {
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    message = "there is no command \"" + args[0] + "\"; the nearest is \"" + std::string(nearest_name(args[0], known)) + "\"";
+  }
+  return fail(command, message + " (" + command + " --help says how it is used)");
+}
+
+}  // namespace
+
+Result<Action> parse_arguments(std::span<const std::string> args) {
+  const auto parser = std::make_shared<Parser>();
+  parser->app.require_subcommand(1);
+  parser->app.set_version_flag("--version", "prismesh " PRISMESH_VERSION);
+  add_common(*parser);
+  add_reading_commands(*parser);
+  add_writing_commands(*parser);
+  try {
+    std::vector<std::string> reversed(args.rbegin(), args.rend());
+    parser->app.parse(std::move(reversed));
+  } catch (const CLI::ParseError& problem) {
+    if (problem.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) return usage_error(*parser, args, problem);
+    std::ostringstream text;  // --help and --version come as exceptions too
+    parser->app.exit(problem, text, text);
+    return Action([text = text.str()](const Surroundings& surroundings) {
+      surroundings.out << text;
+      return kDone;
+    });
+  }
+  return Action([parser](const Surroundings& surroundings) { return parser->chosen(surroundings); });
+}
+
+}  // namespace prismesh::cli

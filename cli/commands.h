@@ -1,0 +1,72 @@
+// The commands: what each takes, and the function that does it. cli/run.cpp turns arguments into these structs.
+//
+// A new command: declare its options and function here, write it in a file of its own, and register it in
+// cli/arguments.cpp (one function there, next to its kind; it is the only file that knows the argument parser).
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/units.h"
+#include "cli/run.h"
+
+namespace prismesh::cli {
+
+/// Options that every command takes.
+struct Common {
+  std::optional<LengthUnit> length_unit;
+  std::optional<double> target_size;
+  std::optional<std::filesystem::path> criteria;
+  bool json = false;
+};
+
+struct InfoOptions {
+  std::filesystem::path deck;
+};
+int info(const InfoOptions& options, const Common& common, const Surroundings& surroundings);
+
+struct CheckOptions {
+  std::filesystem::path deck;
+  std::optional<std::string> select;  ///< an expression: judge the shells it names
+};
+int check(const CheckOptions& options, const Common& common, const Surroundings& surroundings);
+
+struct EditOptions {
+  std::filesystem::path deck;
+  std::vector<std::string> edits;               ///< JSON, done first
+  std::optional<std::filesystem::path> script;  ///< JSON Lines, done after them
+  std::filesystem::path output;
+  std::optional<std::filesystem::path> journal;
+};
+int edit(const EditOptions& options, const Common& common, const Surroundings& surroundings);
+
+struct ReplayOptions {
+  std::filesystem::path journal;
+  std::filesystem::path deck;
+  std::filesystem::path output;
+};
+int replay(const ReplayOptions& options, const Common& common, const Surroundings& surroundings);
+
+struct DiffOptions {
+  std::filesystem::path a;
+  std::filesystem::path b;
+};
+int diff(const DiffOptions& options, const Common& common, const Surroundings& surroundings);
+
+struct DistanceOptions {
+  std::filesystem::path deck;
+  std::string from;  ///< expressions
+  std::string to;
+};
+int distance(const DistanceOptions& options, const Common& common, const Surroundings& surroundings);
+
+struct SampleOptions {
+  std::optional<std::size_t> elements;
+  std::filesystem::path output;
+};
+int sample(const SampleOptions& options, const Common& common, const Surroundings& surroundings);
+
+}  // namespace prismesh::cli

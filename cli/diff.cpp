@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <ostream>
+
+#include "cli/commands.h"
+#include "cli/figures.h"
+#include "cli/json_output.h"
+#include "cli/line_diff.h"
+#include "cli/progress_bar.h"
+#include "cli/report_text.h"
+#include "mesh/deck/deck.h"
+
+namespace prismesh::cli {
+
+namespace {
+
+using mesh::deck::OpenedDeck;
+using mesh::deck::SourceFile;
+
+/// Walks two id indices together: `both(index in a, index in b)`, `only_a`, `only_b`.
+template <class Both>
+std::pair<std::size_t, std::size_t> walk(const mesh::IdIndex& a, const mesh::IdIndex& b, const Both& both) {
+  std::size_t added = 0, removed = 0;
+  for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
+    if (j == b.size() || (i < a.size() && a.at(i).first < b.at(j).first)) {
+      ++removed;
+      ++i;
+    } else if (i == a.size() || b.at(j).first < a.at(i).first) {
+      ++added;
+      ++j;
+    } else {
+      both(a.at(i++).second, b.at(j++).second);
+    }
+  }
+  return {added, removed};
+}
+
+void compare_elements(const mesh::Model& a, const mesh::Model& b, Difference& difference) {
+  const auto add = [&](const mesh::IdIndex& from, const mesh::IdIndex& to) {
+    const auto [added, removed] = walk(from, to, [](std::uint32_t, std::uint32_t) {});
+    difference.elements_added += added;
+    difference.elements_removed += removed;
+  };
+  add(*a.shell_index, *b.shell_index);
+  for (std::size_t c = 0; c < a.elements.size(); ++c)
+    if (a.elements[c] && b.elements[c]) add(mesh::IdIndex(a.elements[c]->id), mesh::IdIndex(b.elements[c]->id));
+}
+
+/// Files are matched by their path in the deck; the main files by being that.
+std::size_t compare_lines(const mesh::deck::Deck& a, const mesh::deck::Deck& b) {
+  std::size_t changed = lines_changed(a.files[0].bytes.text(), b.files[0].bytes.text());
+  std::vector<bool> seen(b.files.size(), false);
+  for (std::size_t i = 1; i < a.files.size(); ++i) {
+    const auto same =
+        std::find_if(b.files.begin() + 1, b.files.end(), [&](const SourceFile& f) { return f.relative == a.files[i].relative; });
+    if (same != b.files.end()) seen[static_cast<std::size_t>(same - b.files.begin())] = true;
+    changed += lines_changed(a.files[i].bytes.text(), same == b.files.end() ? std::string_view() : same->bytes.text());
+  }
+  for (std::size_t j = 1; j < b.files.size(); ++j)
+    if (!seen[j]) changed += lines_changed({}, b.files[j].bytes.text());
+  return changed;
+}
+
+Difference compare(const OpenedDeck& a, const OpenedDeck& b) {
+  Difference difference;
+  std::tie(difference.nodes_added, difference.nodes_removed) =
+      walk(*a.model.node_index, *b.model.node_index, [&](std::uint32_t in_a, std::uint32_t in_b) {
+        const mesh::Vec3& from = a.model.positions[in_a];
+        const mesh::Vec3& to = b.model.positions[in_b];
+        if (from == to) return;
+        ++difference.nodes_moved;
+        difference.max_displacement = std::max(difference.max_displacement, (to - from).norm());
+      });
+  compare_elements(a.model, b.model, difference);
+  difference.lines_changed = compare_lines(*a.deck, *b.deck);
+  return difference;
+}
+
+Result<OpenedDeck> open_one(const std::filesystem::path& path, const Surroundings& surroundings) {
+  MonotonicClock clock;
+  ProgressBar bar(surroundings, "reading " + path.filename().string(), clock);
+  return mesh::deck::open(path, bar.progress());
+}
+
+}  // namespace
+
+int diff(const DiffOptions& options, const Common& common, const Surroundings& surroundings) {
+  const Result<OpenedDeck> a = open_one(options.a, surroundings);
+  const Result<OpenedDeck> b = a ? open_one(options.b, surroundings) : a;
+  if (!b) {
+    say(surroundings, b.error());
+    return kFailed;
+  }
+  const Difference d = compare(*a, *b);
+  if (common.json) {
+    surroundings.out << diff_json(d) << '\n';
+    return kDone;
+  }
+  surroundings.out << "nodes: " << d.nodes_moved << " moved (at most " << shortest(d.max_displacement) << "), " << d.nodes_added
+                   << " added, " << d.nodes_removed << " removed\n"
+                   << "elements: " << d.elements_added << " added, " << d.elements_removed << " removed\n"
+                   << "lines: " << d.lines_changed << " changed\n";
+  return kDone;
+}
+
+}  // namespace prismesh::cli

@@ -1,0 +1,155 @@
+#include "mesh/document/edit.h"
+
+#include <ostream>
+
+#include "base/file.h"
+#include "cli/commands.h"
+#include "cli/json_output.h"
+#include "cli/open_deck.h"
+#include "cli/report_text.h"
+#include "mesh/document/edit_json.h"
+#include "mesh/document/journal.h"
+
+namespace prismesh::cli {
+
+namespace {
+
+namespace document = mesh::document;
+
+/// An edit and where the user wrote it.
+struct Wanted {
+  document::Edit edit;
+  std::string file;
+  long line = 0;
+};
+
+/// A reason and the exit status it leads to.
+struct Refusal {
+  Error error;
+  int status = kFailed;
+};
+
+/// Parses one edit onto the list.
+std::optional<Refusal> take(std::string_view text, const std::string& file, long line, std::vector<Wanted>& wanted) {
+  bool is_not_json = false;
+  Result<document::Edit> edit = document::parse_edit(text, &is_not_json);
+  if (!edit) return Refusal{{file, line, edit.error().message}, is_not_json ? kWrongUsage : kFailed};
+  wanted.push_back({std::move(*edit), file, line});
+  return std::nullopt;
+}
+
+std::optional<Refusal> read_edits(const EditOptions& options, std::vector<Wanted>& wanted) {
+  for (std::size_t i = 0; i < options.edits.size(); ++i)
+    if (auto refusal = take(options.edits[i], "--edit", static_cast<long>(i + 1), wanted)) return refusal;
+  if (!options.script) return std::nullopt;
+  const Result<FileBytes> script = read_file(*options.script);
+  if (!script) return Refusal{script.error()};
+  std::string_view rest = script->text();
+  for (long line = 1; !rest.empty(); ++line) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    if (auto refusal = take(rest.substr(0, end), options.script->string(), line, wanted)) return refusal;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return std::nullopt;
+}
+
+/// A journal that doesn't outlive a failure.
+class JournalGuard {
+ public:
+  Result<void> create(const std::filesystem::path& path, const document::Document& document) {
+    Result<document::Journal> created = document::Journal::create(path, document);
+    if (!created) return fail(created.error());
+    journal_.emplace(std::move(*created));
+    path_ = path;
+    return {};
+  }
+  ~JournalGuard() {
+    if (!journal_ || kept_) return;
+    journal_.reset();
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  Result<void> append(const document::Document& document, const document::Edit& edit, const document::Prepared& prepared) {
+    return journal_ ? journal_->append(document, edit, prepared) : Result<void>();
+  }
+  void keep() { kept_ = true; }
+
+ private:
+  std::optional<document::Journal> journal_;
+  std::filesystem::path path_;
+  bool kept_ = false;
+};
+
+void print_text(std::ostream& out, const document::EditReport& report) {
+  out << report.edit << ": " << report.nodes_moved << " nodes moved; warn " << report.before.warn << " -> " << report.after.warn
+      << ", fail " << report.before.fail << " -> " << report.after.fail << '\n';
+  for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
+}
+
+/// Says why an edit wasn't done: the reason itself, and the edit's place where the reason has one of its own.
+void refuse_edit(const Surroundings& surroundings, const Common& common, const Wanted& wanted, Error reason) {
+  const std::string edit(name(wanted.edit));
+  if (common.json) surroundings.out << failed_edit_json(edit, reason.text()) << '\n';
+  if (reason.file.empty()) {
+    say(surroundings, Error{wanted.file, wanted.line, std::move(reason.message)});
+    return;
+  }
+  say(surroundings, reason);
+  say(surroundings, Error{wanted.file, wanted.line, "this " + edit + " was not done, and nothing is written"});
+}
+
+/// Does the edits one after the other. False: one was refused, and said.
+bool apply_all(const std::vector<Wanted>& wanted, document::Document& document, JournalGuard& journal, const Common& common,
+               const Surroundings& surroundings) {
+  for (const Wanted& one : wanted) {
+    Result<document::Prepared> prepared = document::prepare(document, one.edit);
+    if (!prepared) {
+      refuse_edit(surroundings, common, one, prepared.error());
+      return false;
+    }
+    if (const Result<void> kept = journal.append(document, one.edit, *prepared); !kept) {
+      refuse_edit(surroundings, common, one, kept.error());
+      return false;
+    }
+    const document::EditReport report = prepared->report;
+    document::commit(document, std::move(*prepared));
+    if (common.json)
+      surroundings.out << edit_json(report) << '\n';
+    else
+      print_text(surroundings.out, report);
+    if (surroundings.stop()) {
+      say(surroundings, Error{one.file, one.line, "cancelled after this edit; nothing is written"});
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+int edit(const EditOptions& options, const Common& common, const Surroundings& surroundings) {
+  std::vector<Wanted> wanted;
+  if (const auto refusal = read_edits(options, wanted)) {
+    say(surroundings, refusal->error);
+    return refusal->status;
+  }
+  const auto refuse = [&](const Error& error) {
+    say(surroundings, error);
+    return kFailed;
+  };
+  Result<document::Document> document = open_deck(options.deck, common, surroundings);
+  if (!document) return refuse(document.error());
+  say_warnings(surroundings, *document);
+  if (!wanted.empty()) say_guesses(surroundings, *document);
+  JournalGuard journal;
+  if (options.journal)
+    if (const Result<void> created = journal.create(*options.journal, *document); !created) return refuse(created.error());
+  if (!apply_all(wanted, *document, journal, common, surroundings)) return kFailed;
+  const Result<mesh::deck::SaveReport> saved = document::save(*document, options.output);
+  if (!saved) return refuse(saved.error());
+  journal.keep();
+  for (const std::string& note : saved->notes) say(surroundings, Error{options.output.string(), 0, "note: " + note});
+  return kDone;
+}
+
+}  // namespace prismesh::cli

@@ -1,0 +1,70 @@
+#include <ostream>
+
+#include "cli/commands.h"
+#include "cli/figures.h"
+#include "cli/json_output.h"
+#include "cli/open_deck.h"
+#include "cli/report_text.h"
+
+namespace prismesh::cli {
+
+std::vector<PartFigures> part_figures(const mesh::Model& model) {
+  std::vector<PartFigures> figures;
+  for (const mesh::Part& part : *model.parts) figures.push_back({part.id, part.name, 0, 0, part.thickness});
+  for (std::size_t shell = 0; shell < model.shell_count(); ++shell) {
+    const mesh::PartIndex part = model.shell_parts[shell];
+    if (!part.valid()) continue;
+    PartFigures& of_part = figures[part.value];
+    ++(model.shell_nodes[shell].is_triangle() ? of_part.tris : of_part.quads);
+  }
+  return figures;
+}
+
+namespace {
+
+void print_text(std::ostream& out, const mesh::document::Document& document) {
+  const mesh::deck::Deck& deck = *document.deck;
+  const mesh::deck::ElementCounts& n = deck.element_cards;
+  const mesh::document::Settings& settings = document.settings;
+  const std::string unit(name(settings.length_unit));
+  const auto guessed = [](bool is) { return is ? " (guessed)" : ""; };
+  out << printable(document.path.string()) << ": " << name(deck.format) << ", " << deck.files.size()
+      << (deck.files.size() == 1 ? " file\n" : " files\n");
+  for (const mesh::deck::SourceFile& file : deck.files) out << "  " << printable(file.path.string()) << '\n';
+  out << "length unit  " << unit << guessed(settings.length_unit_guessed) << '\n';
+  out << "target size  " << shortest(settings.target_size) << ' ' << unit << guessed(settings.target_size_guessed) << '\n';
+  out << "nodes        " << document.current().model.node_index->size() << '\n';
+  out << "shells       " << n.quad << " quads, " << n.tri << " triangles, " << n.quad8 << " 8-node quads, " << n.tri6
+      << " 6-node triangles\n";
+  out << "others       " << n.beam << " beams, " << n.solid << " solids, " << n.tshell << " thick shells, " << n.other << " more\n";
+  const std::vector<PartFigures> parts = part_figures(document.current().model);
+  out << "parts        " << parts.size() << '\n';
+  for (const PartFigures& part : parts) {
+    out << "  part:" << part.id << "  " << printable(part.name) << "  " << part.quads << " quads, " << part.tris << " triangles";
+    if (part.thickness) out << ", " << shortest(*part.thickness) << ' ' << unit << " thick";
+    out << '\n';
+  }
+  out << "warnings     " << deck.warnings.size() << '\n';
+  for (const mesh::deck::Warning& warning : deck.warnings) {
+    out << "  " << printable(Error{warning.file, warning.line, warning.message}.text());
+    if (warning.count > 1) out << " (" << warning.count << " times)";
+    out << '\n';
+  }
+}
+
+}  // namespace
+
+int info(const InfoOptions& options, const Common& common, const Surroundings& surroundings) {
+  const Result<mesh::document::Document> document = open_deck(options.deck, common, surroundings);
+  if (!document) {
+    say(surroundings, document.error());
+    return kFailed;
+  }
+  if (common.json)
+    surroundings.out << info_json(*document, part_figures(document->current().model)) << '\n';
+  else
+    print_text(surroundings.out, *document);
+  return kDone;
+}
+
+}  // namespace prismesh::cli

@@ -1,0 +1,147 @@
+#include "cli/json_output.h"
+
+#include <nlohmann/json.hpp>
+
+#include "cli/report_text.h"
+
+namespace prismesh::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace deck = mesh::deck;
+namespace document = mesh::document;
+namespace quality = mesh::quality;
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json point(const mesh::Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); }
+
+std::string shell_name(const mesh::Model& model, mesh::ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
+
+Json counts_of_elements(const deck::ElementCounts& counts) {
+  return {{"quad", counts.quad}, {"tri", counts.tri},     {"quad8", counts.quad8},   {"tri6", counts.tri6},
+          {"beam", counts.beam}, {"solid", counts.solid}, {"tshell", counts.tshell}, {"other", counts.other}};
+}
+
+Json summary(const mesh::Model& model, const quality::MetricSummary& s) {
+  const bool measured = s.measured > 0;
+  const auto figure = [measured](double value) { return measured ? Json(value) : Json(nullptr); };
+  return {{"min", figure(as_written(static_cast<float>(s.min)))},
+          {"mean", figure(s.mean)},
+          {"max", figure(as_written(static_cast<float>(s.max)))},
+          {"warn", s.warn},
+          {"fail", s.fail},
+          {"worst", s.worst ? Json(shell_name(model, *s.worst)) : Json(nullptr)},
+          {"measured", s.measured}};
+}
+
+Json bad_shells(const quality::Counts& counts) { return {{"warn", counts.warn}, {"fail", counts.fail}}; }
+
+Json edit_object(const document::EditReport& report) {
+  Json notes = Json::array();
+  for (const std::string& note : report.notes) notes.push_back(printable(note));
+  return {{"edit", report.edit},
+          {"ok", true},
+          {"nodes_moved", report.nodes_moved},
+          {"elements_added", report.elements_added},
+          {"elements_removed", report.elements_removed},
+          {"before", bad_shells(report.before)},
+          {"after", bad_shells(report.after)},
+          {"notes", std::move(notes)},
+          {"ms", report.milliseconds}};
+}
+
+}  // namespace
+
+std::string info_json(const document::Document& document, const std::vector<PartFigures>& parts) {
+  const deck::Deck& deck = *document.deck;
+  Json files = Json::array();
+  for (const deck::SourceFile& file : deck.files) files.push_back(printable(file.path.string()));
+  Json listed = Json::array();
+  for (const PartFigures& part : parts)
+    listed.push_back({{"id", part.id},
+                      {"name", printable(part.name)},
+                      {"quads", part.quads},
+                      {"tris", part.tris},
+                      {"thickness", or_null(part.thickness)}});
+  Json warnings = Json::array();
+  for (const deck::Warning& w : deck.warnings)
+    warnings.push_back(
+        {{"file", printable(w.file)}, {"line", w.line}, {"kind", w.kind}, {"message", printable(w.message)}, {"count", w.count}});
+  const document::Settings& settings = document.settings;
+  const Json json = {{"format", name(deck.format)},
+                     {"files", std::move(files)},
+                     {"length_unit", name(settings.length_unit)},
+                     {"length_unit_guessed", settings.length_unit_guessed},
+                     {"target_size", settings.target_size},
+                     {"target_size_guessed", settings.target_size_guessed},
+                     {"nodes", document.current().model.node_index->size()},
+                     {"elements", counts_of_elements(deck.element_cards)},
+                     {"parts", std::move(listed)},
+                     {"warnings", std::move(warnings)}};
+  return json.dump();
+}
+
+std::string check_json(const document::Document& document, const quality::Report& report) {
+  const mesh::Model& model = document.current().model;
+  Json metrics = Json::object();
+  for (int m = 0; m < quality::kMetricCount; ++m)
+    metrics[std::string(name(static_cast<quality::Metric>(m)))] = summary(model, report.metrics[m]);
+  const Json time_step =
+      report.time_step ? Json{{"min", report.time_step->seconds}, {"element", shell_name(model, report.time_step->shell)}} : Json(nullptr);
+  const Json json = {{"elements", report.elements},
+                     {"ok", report.counts.ok},
+                     {"warn", report.counts.warn},
+                     {"fail", report.counts.fail},
+                     {"triangles_percent", report.triangles_percent},
+                     {"metrics", std::move(metrics)},
+                     {"mass", or_null(report.mass)},
+                     {"cog", report.centre_of_gravity ? point(*report.centre_of_gravity) : Json(nullptr)},
+                     {"time_step", time_step},
+                     {"added_mass", or_null(report.added_mass)},
+                     {"length_unit", name(document.settings.length_unit)},
+                     {"target_size", document.settings.target_size},
+                     {"target_size_guessed", document.settings.target_size_guessed},
+                     {"criteria", printable(document.settings.criteria.name)}};
+  return json.dump();
+}
+
+std::string edit_json(const document::EditReport& report) { return edit_object(report).dump(); }
+
+std::string failed_edit_json(const std::string& edit, const std::string& reason) {
+  return Json{{"edit", edit}, {"ok", false}, {"error", printable(reason)}}.dump();
+}
+
+std::string replay_json(const std::vector<document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck) {
+  Json listed = Json::array();
+  std::size_t applied = 0;
+  for (const document::ReplayStep& step : steps) {
+    Json entry = step.applied ? edit_object(step.report) : Json{{"edit", step.edit}, {"ok", false}, {"error", printable(step.message)}};
+    entry["line"] = step.line;
+    applied += step.applied;
+    listed.push_back(std::move(entry));
+  }
+  return Json{{"edits", steps.size()},     {"applied", applied},       {"not_applied", steps.size() - applied},
+              {"journal_deck", deck_hash}, {"other_deck", other_deck}, {"steps", std::move(listed)}}
+      .dump();
+}
+
+std::string diff_json(const Difference& d) {
+  return Json{{"nodes_moved", d.nodes_moved},     {"max_displacement", d.max_displacement}, {"nodes_added", d.nodes_added},
+              {"nodes_removed", d.nodes_removed}, {"elements_added", d.elements_added},     {"elements_removed", d.elements_removed},
+              {"lines_changed", d.lines_changed}}
+      .dump();
+}
+
+std::string distance_json(const Gap& gap) {
+  return Json{{"distance", gap.distance},
+              {"from", {{"entity", gap.from.entity}, {"point", point(gap.from.point)}}},
+              {"to", {{"entity", gap.to.entity}, {"point", point(gap.to.point)}}}}
+      .dump();
+}
+
+}  // namespace prismesh::cli

@@ -1,0 +1,18 @@
+#include "cli/open_deck.h"
+
+#include "cli/progress_bar.h"
+
+namespace prismesh::cli {
+
+Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, const Common& common, const Surroundings& surroundings) {
+  MonotonicClock clock;
+  ProgressBar bar(surroundings, "reading " + deck.filename().string(), clock);
+  mesh::document::OpenOptions options;
+  options.length_unit = common.length_unit;
+  options.target_size = common.target_size;
+  options.criteria = common.criteria;
+  options.progress = bar.progress();
+  return mesh::document::open(deck, options);
+}
+
+}  // namespace prismesh::cli

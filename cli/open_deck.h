@@ -1,0 +1,12 @@
+// Opening a deck for a command. Inner to cli.
+#pragma once
+
+#include "cli/commands.h"
+#include "mesh/document/document.h"
+
+namespace prismesh::cli {
+
+/// Opens with the common options, with a progress bar, stopping when the user asks for it.
+Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, const Common& common, const Surroundings& surroundings);
+
+}  // namespace prismesh::cli

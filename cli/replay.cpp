@@ -1,0 +1,65 @@
+#include <ostream>
+
+#include "cli/commands.h"
+#include "cli/json_output.h"
+#include "cli/open_deck.h"
+#include "cli/report_text.h"
+#include "mesh/document/journal.h"
+
+namespace prismesh::cli {
+
+namespace {
+
+namespace document = mesh::document;
+
+void print_text(std::ostream& out, const std::vector<document::ReplayStep>& steps) {
+  std::size_t applied = 0;
+  for (const document::ReplayStep& step : steps) {
+    applied += step.applied;
+    out << "line " << step.line << ": " << step.edit << (step.applied ? ": " : " not applied: ");
+    if (step.applied)
+      out << step.report.nodes_moved << " nodes moved\n";
+    else
+      out << printable(step.message) << '\n';
+  }
+  out << applied << " of " << steps.size() << " edits applied\n";
+}
+
+}  // namespace
+
+// An edit that doesn't fit a variant is a warning: the others still count. Only when none fits is nothing written.
+int replay(const ReplayOptions& options, const Common& common, const Surroundings& surroundings) {
+  const auto refuse = [&](const Error& error) {
+    say(surroundings, error);
+    return kFailed;
+  };
+  const Result<document::JournalIntents> intents = document::read_intents(options.journal);
+  if (!intents) return refuse(intents.error());
+  Result<document::Document> document = open_deck(options.deck, common, surroundings);
+  if (!document) return refuse(document.error());
+  say_warnings(surroundings, *document);
+  say_guesses(surroundings, *document);
+  const std::string journal = options.journal.string();
+  if (intents->torn_tail) say(surroundings, Error{journal, 0, "warning: the last record is incomplete and left out"});
+  const bool other_deck = !intents->deck_hash.empty() && intents->deck_hash != document->deck->content.hex();
+  if (other_deck) say(surroundings, Error{journal, 0, "note: made on another deck, " + intents->deck_path});
+
+  const std::vector<document::ReplayStep> steps = document::replay(*document, *intents);
+  std::size_t applied = 0;
+  for (const document::ReplayStep& step : steps) {
+    applied += step.applied;
+    if (!step.applied) say(surroundings, Error{journal, step.line, "warning: this " + step.edit + " was not applied: " + step.message});
+  }
+  if (common.json)
+    surroundings.out << replay_json(steps, intents->deck_hash, other_deck) << '\n';
+  else
+    print_text(surroundings.out, steps);
+  if (applied == 0 && !steps.empty()) return refuse({journal, 0, "no edit could be applied; nothing is written"});
+  if (surroundings.stop()) return refuse({journal, 0, "cancelled; nothing is written"});
+  const Result<mesh::deck::SaveReport> saved = document::save(*document, options.output);
+  if (!saved) return refuse(saved.error());
+  for (const std::string& note : saved->notes) say(surroundings, Error{options.output.string(), 0, "note: " + note});
+  return kDone;
+}
+
+}  // namespace prismesh::cli

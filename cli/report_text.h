@@ -1,0 +1,27 @@
+// What commands say to people. Inner to cli.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "cli/run.h"
+#include "mesh/document/document.h"
+
+namespace prismesh::cli {
+
+/// Bytes that aren't UTF-8, and control characters, as \xNN: what can be shown on a terminal and put into JSON.
+std::string printable(std::string_view text);
+
+/// A number in the fewest digits that give it back.
+std::string shortest(double value);
+/// The double that has a float's shortest digits: 8.07f as 8.07, not 8.06999969482422.
+double as_written(float value);
+
+/// A reason on standard error, as `file:line: message`.
+void say(const Surroundings& surroundings, const Error& error);
+/// The deck's warnings and guessed settings on standard error, for commands whose output has no room for them.
+void say_warnings(const Surroundings& surroundings, const mesh::document::Document& document);
+void say_guesses(const Surroundings& surroundings, const mesh::document::Document& document);
+
+}  // namespace prismesh::cli
