@@ -58,8 +58,8 @@ uniform vec3 eye_in_model;
 out vec2 place;
 flat out vec3 look;
 flat out float triangle;
-vec3 unpack_normal(uint packed) {
-  vec2 f = unpackSnorm2x16(packed);
+vec3 unpack_normal(uint halves) {
+  vec2 f = unpackSnorm2x16(halves);
   vec3 n = vec3(f, 1.0 - abs(f.x) - abs(f.y));
   float t = max(-n.z, 0.0);
   n.x += n.x >= 0.0 ? -t : t;
