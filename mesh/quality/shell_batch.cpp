@@ -1,7 +1,6 @@
 #include "mesh/quality/shell_batch.h"
 
-#include <cmath>
-#include <limits>
+#include "mesh/quality/shell_kernels.h"
 
 // The kernels are compiled once more for AVX2 and chosen when the program is loaded. Both give the same bits: the operations
 // are the same IEEE ones, none is contracted or reordered. Sanitizers can't follow that choice at load time.
@@ -10,164 +9,10 @@
 #else
 #define PRISMESH_CLONES
 #endif
-#define PRISMESH_INLINE inline __attribute__((always_inline))
 
 namespace prismesh::mesh::quality {
 
-namespace {
-
-constexpr float kNotApplicable = std::numeric_limits<float>::quiet_NaN();
-constexpr double kWorstAspect = 1e9;
-/// Added to divisors that may be zero; far below any product of lengths that means something.
-constexpr double kTiny = 1e-300;
-
-struct Vector {
-  double x, y, z;
-};
-PRISMESH_INLINE Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-PRISMESH_INLINE Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-PRISMESH_INLINE double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-PRISMESH_INLINE Vector cross(Vector a, Vector b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-PRISMESH_INLINE double norm(Vector a) { return __builtin_sqrt(dot(a, a)); }
-PRISMESH_INLINE double low(double a, double b) { return a < b ? a : b; }
-PRISMESH_INLINE double high(double a, double b) { return a > b ? a : b; }
-PRISMESH_INLINE double low(double a, double b, double c, double d) { return low(low(a, b), low(c, d)); }
-PRISMESH_INLINE double high(double a, double b, double c, double d) { return high(high(a, b), high(c, d)); }
-
-PRISMESH_INLINE Vector point(const ShellBatch& batch, std::size_t corner, std::size_t lane) {
-  return {batch.p[corner][0][lane], batch.p[corner][1][lane], batch.p[corner][2][lane]};
-}
-
-// An angle between 0 and 180 degrees is carried as its "turn" u = cos / (|cos| + sin): 1 at 0, 0 at 90, -1 at 180,
-// falling all the way and precise at both ends, where the cosine alone isn't. The smallest of several angles is the one
-// with the highest turn, so one polynomial serves them all.
-PRISMESH_INLINE double turn(double cosine, double sine) { return cosine / (__builtin_fabs(cosine) + sine + kTiny); }
-
-/// Degrees of a turn. With x = 1 - 2|u| the angle is 45 + atan(x) for u >= 0; the polynomial is the interpolation of atan(x) / x
-/// in x^2 at twelve Chebyshev points, in degrees, with 45 exactly at x = 1; its error is below 5e-9 degrees.
-PRISMESH_INLINE double degrees(double u) {
-  const double x = 1.0 - 2.0 * __builtin_fabs(u);
-  const double z = x * x;
-  double sum = -0.03800975984058245;
-  sum = sum * z + 0.2711513708954496;
-  sum = sum * z - 0.9068960902971699;
-  sum = sum * z + 1.938099582880123;
-  sum = sum * z - 3.0914900732751267;
-  sum = sum * z + 4.141498423359225;
-  sum = sum * z - 5.141821778389031;
-  sum = sum * z + 6.355203725032931;
-  sum = sum * z - 8.184022149071046;
-  sum = sum * z + 11.459099238334735;
-  sum = sum * z - 19.098592000793605;
-  sum = sum * z + 57.2957795111641;
-  const double angle = 45.0 + x * sum;
-  return u < 0 ? 180.0 - angle : angle;
-}
-
-/// Warpage about one diagonal as a turn, from the normals of the two triangles; 1 (no angle) where one has no plane.
-PRISMESH_INLINE double fold(Vector n, Vector m, double nn, double mm, double smallest) {
-  const double u = turn(dot(n, m), norm(cross(n, m)));
-  return low(nn, mm) > smallest ? u : 1.0;
-}
-
-/// Turn of an interior angle of a quad; a reentrant corner goes on from -1 (180 degrees) to -3 (360).
-PRISMESH_INLINE double corner_turn(Vector before, Vector after, double area, double side) {
-  const double u = turn(-dot(before, after), area);
-  return side < 0 ? -2.0 - u : u;
-}
-
-PRISMESH_CLONES void quads(const ShellBatch& batch, BatchValues& values) {
-  constexpr double kGauss = 0.57735026918962576;  // 1 / sqrt 3
-  const std::size_t lanes = batch.padded();
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const Vector p0 = point(batch, 0, lane), p1 = point(batch, 1, lane), p2 = point(batch, 2, lane), p3 = point(batch, 3, lane);
-    const Vector e0 = p1 - p0, e1 = p2 - p1, e2 = p3 - p2, e3 = p0 - p3;
-    const double l0 = dot(e0, e0), l1 = dot(e1, e1), l2 = dot(e2, e2), l3 = dot(e3, e3);
-    const double shortest2 = low(l0, l1, l2, l3), longest2 = high(l0, l1, l2, l3);
-    const double shortest = __builtin_sqrt(shortest2), longest = __builtin_sqrt(longest2);
-    // twice the corner triangles' areas as vectors, and twice the quad's
-    const Vector n0 = cross(e3, e0), n1 = cross(e0, e1), n2 = cross(e1, e2), n3 = cross(e2, e3);
-    const Vector whole = cross(p2 - p0, p3 - p1);
-    const double a0 = norm(n0), a1 = norm(n1), a2 = norm(n2), a3 = norm(n3), area = norm(whole);
-    const double j0 = dot(n0, whole), j1 = dot(n1, whole), j2 = dot(n2, whole), j3 = dot(n3, whole);
-
-    const double no_plane = 1e-10 * longest2;
-    const bool has_area = area > no_plane;
-    const bool has_edges = shortest2 > 1e-24 * longest2 && longest2 > kTiny;
-
-    const double folded = low(fold(n1, n3, a1, a3, no_plane), fold(n0, n2, a0, a2, no_plane));
-    const double warpage = degrees(folded);
-    values.value[int(Metric::warpage)][lane] = static_cast<float>(has_area ? warpage : 180.0);
-
-    const double aspect = longest / (shortest + kTiny);
-    values.value[int(Metric::aspect)][lane] = static_cast<float>(has_edges ? low(aspect, kWorstAspect) : kWorstAspect);
-
-    const double askew = 90.0 - degrees(turn(__builtin_fabs(dot(e0 - e2, e1 - e3)), 2.0 * area));
-    values.value[int(Metric::skew)][lane] = static_cast<float>(has_area ? askew : 90.0);
-
-    // the determinant runs linearly over the quad, so the Gauss points follow from the corners
-    const double mean = j0 + j1 + j2 + j3;
-    const double spread = kGauss * (__builtin_fabs(j1 + j2 - j0 - j3) + __builtin_fabs(j2 + j3 - j0 - j1));
-    const double jacobian = (mean - spread) / (mean + spread + kTiny);
-    values.value[int(Metric::jacobian)][lane] = static_cast<float>(has_area ? jacobian : -1.0);
-
-    const double smallest =
-        low(__builtin_copysign(a0, j0), __builtin_copysign(a1, j1), __builtin_copysign(a2, j2), __builtin_copysign(a3, j3));
-    const double taper = 1.0 - 2.0 * smallest / (area + kTiny);
-    values.value[int(Metric::taper)][lane] = static_cast<float>(has_area ? high(low(taper, 2.0), 0.0) : 2.0);
-
-    const double t0 = corner_turn(e3, e0, a0, j0), t1 = corner_turn(e0, e1, a1, j1);
-    const double t2 = corner_turn(e1, e2, a2, j2), t3 = corner_turn(e2, e3, a3, j3);
-    const double widest = low(t0, t1, t2, t3);
-    const double narrow = degrees(high(t0, t1, t2, t3));
-    const double wide = widest < -1.0 ? 360.0 - degrees(-2.0 - widest) : degrees(widest);
-    values.value[int(Metric::min_angle_quad)][lane] = static_cast<float>(has_edges ? narrow : 0.0);
-    values.value[int(Metric::max_angle_quad)][lane] = static_cast<float>(has_edges ? wide : 360.0);
-    values.value[int(Metric::min_angle_tri)][lane] = kNotApplicable;
-    values.value[int(Metric::max_angle_tri)][lane] = kNotApplicable;
-    values.value[int(Metric::min_length)][lane] = static_cast<float>(shortest);
-    values.value[int(Metric::max_length)][lane] = static_cast<float>(longest);
-  }
-}
-
-PRISMESH_CLONES void triangles(const ShellBatch& batch, BatchValues& values) {
-  const std::size_t lanes = batch.padded();
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const Vector p0 = point(batch, 0, lane), p1 = point(batch, 1, lane), p2 = point(batch, 2, lane);
-    const Vector e0 = p1 - p0, e1 = p2 - p1, e2 = p0 - p2;
-    const double l0 = dot(e0, e0), l1 = dot(e1, e1), l2 = dot(e2, e2);
-    const double shortest2 = low(low(l0, l1), l2), longest2 = high(high(l0, l1), l2);
-    const double shortest = __builtin_sqrt(shortest2), longest = __builtin_sqrt(longest2);
-    const double area = norm(cross(e0, e1));  // twice the triangle's
-    const double c0 = -dot(e2, e0), c1 = -dot(e0, e1), c2 = -dot(e1, e2);
-    // half the difference of two sides' squares: median times side, without its sine, which is `area` for all three
-    const double m0 = l0 - l2, m1 = l1 - l0, m2 = l2 - l1;
-
-    const bool has_area = area > 1e-10 * longest2;
-    const bool has_edges = shortest2 > 1e-24 * longest2 && longest2 > kTiny;
-
-    values.value[int(Metric::warpage)][lane] = kNotApplicable;
-    const double aspect = longest / (shortest + kTiny);
-    values.value[int(Metric::aspect)][lane] = static_cast<float>(has_edges ? low(aspect, kWorstAspect) : kWorstAspect);
-    const double flattest = 0.5 * high(high(__builtin_fabs(m0), __builtin_fabs(m1)), __builtin_fabs(m2));
-    const double askew = 90.0 - degrees(turn(flattest, area));
-    values.value[int(Metric::skew)][lane] = static_cast<float>(has_area ? askew : 90.0);
-    values.value[int(Metric::jacobian)][lane] = kNotApplicable;
-    values.value[int(Metric::taper)][lane] = kNotApplicable;
-    values.value[int(Metric::min_angle_quad)][lane] = kNotApplicable;
-    values.value[int(Metric::max_angle_quad)][lane] = kNotApplicable;
-    const double narrow = degrees(turn(high(high(c0, c1), c2), area));
-    const double wide = degrees(turn(low(low(c0, c1), c2), area));
-    values.value[int(Metric::min_angle_tri)][lane] = static_cast<float>(has_edges ? narrow : 0.0);
-    values.value[int(Metric::max_angle_tri)][lane] = static_cast<float>(has_edges ? wide : 180.0);
-    values.value[int(Metric::min_length)][lane] = static_cast<float>(area / (longest + kTiny));
-    values.value[int(Metric::max_length)][lane] = static_cast<float>(longest);
-  }
-}
-
-}  // namespace
-
-void measure_quads(const ShellBatch& batch, BatchValues& values) { quads(batch, values); }
-void measure_triangles(const ShellBatch& batch, BatchValues& values) { triangles(batch, values); }
+PRISMESH_CLONES void measure_quads(const ShellBatch& batch, BatchValues& values) { kernels::quads(batch, values); }
+PRISMESH_CLONES void measure_triangles(const ShellBatch& batch, BatchValues& values) { kernels::triangles(batch, values); }
 
 }  // namespace prismesh::mesh::quality

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Geometry>
+
 #include "mesh/spatial/distance.h"
 
 namespace prismesh::mesh::spatial {
