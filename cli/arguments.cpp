@@ -112,6 +112,23 @@ void add_writing_commands(Parser& parser) {
   sample_app->add_option("-o,--output", sample_options->output, "the deck to write")->required();
 }
 
+void add_render(Parser& parser) {
+  const auto [app, options] = add_command<RenderOptions>(parser, "render", "draw a deck into a picture, without a screen", render);
+  app->add_option("DECK", options->deck, "the deck's main file")->required();
+  app->add_option("-o,--output", options->output, "the PNG to write")->required();
+  add_optional(app, "--select", options->select, "show these nodes as selected, e.g. 1-100,part:3");
+  // The kiosk knows what these may be.
+  const auto pass_on = [app = app, o = options](const std::string& name, const std::string& what) {
+    app->add_option_function<std::string>(
+        name, [o, name](const std::string& value) { o->passed_on.insert(o->passed_on.end(), {name, value}); }, what);
+  };
+  pass_on("--size", "WxH in pixels (default 1920x1080)");
+  pass_on("--profile", "display profile: prism-mask (default), mono-left, mono-right, mono, anaglyph, side-by-side, or a file");
+  pass_on("--eye", "X,Y,Z: the point between the eyes, mm from the screen's centre (default 0,0,650)");
+  pass_on("--view", "front, back, left, right, top, bottom or iso (default)");
+  pass_on("--colour", "parts (default) or quality");
+}
+
 /// Wrong usage as an Error that names the command and, for an unknown command, the nearest known one.
 tl::unexpected<Error> usage_error(const Parser& parser, std::span<const std::string> args, const CLI::ParseError& problem) {
   std::string command = "prismesh";
@@ -137,6 +154,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_common(*parser);
   add_reading_commands(*parser);
   add_writing_commands(*parser);
+  add_render(*parser);
   try {
     std::vector<std::string> reversed(args.rbegin(), args.rend());
     parser->app.parse(std::move(reversed));

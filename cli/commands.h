@@ -69,4 +69,12 @@ struct SampleOptions {
 };
 int sample(const SampleOptions& options, const Common& common, const Surroundings& surroundings);
 
+struct RenderOptions {
+  std::filesystem::path deck;
+  std::filesystem::path output;
+  std::optional<std::string> select;   ///< an expression: these nodes are shown as selected
+  std::vector<std::string> passed_on;  ///< options and values that the kiosk reads: --size, --profile, --eye, --view, --colour
+};
+int render(const RenderOptions& options, const Common& common, const Surroundings& surroundings);
+
 }  // namespace prismesh::cli

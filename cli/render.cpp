@@ -1,0 +1,122 @@
+// A picture without a daemon: seals a snapshot in shared memory and lets the headless kiosk, which stands beside this program, draw it.
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <ostream>
+#include <system_error>
+#include <vector>
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/open_deck.h"
+#include "cli/report_text.h"
+#include "ipc/snapshot_publisher.h"
+
+namespace prismesh::cli {
+
+namespace {
+
+constexpr const char* kKiosk = "prismesh-kiosk";
+
+Result<std::filesystem::path> find_kiosk() {
+  std::error_code error;
+  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path kiosk = own.parent_path() / kKiosk;
+  if (error || access(kiosk.c_str(), X_OK) != 0)
+    return fail(kiosk.string(), "pictures are drawn by prismesh-kiosk, which isn't beside this program");
+  return kiosk;
+}
+
+/// The snapshot's descriptors as the kiosk takes them, kept open until it has ended.
+struct SealedSnapshot {
+  ipc::SnapshotPublisher publisher;
+  ipc::PublishedSnapshot published;
+  std::vector<ipc::Descriptor> segments;
+
+  std::vector<int> descriptors() const {
+    std::vector<int> all{published.table.get()};
+    for (const ipc::Descriptor& segment : segments) all.push_back(segment.get());
+    return all;
+  }
+};
+
+Result<std::unique_ptr<SealedSnapshot>> seal(const mesh::document::Document& document) {
+  auto sealed = std::make_unique<SealedSnapshot>();
+  Result<ipc::PublishedSnapshot> published = sealed->publisher.publish(document, false);
+  if (!published) return fail(published.error());
+  sealed->published = std::move(*published);
+  for (const std::uint64_t id : sealed->published.segments) {
+    Result<ipc::Descriptor> segment = sealed->publisher.segment(id);
+    if (!segment) return fail(segment.error());
+    sealed->segments.push_back(std::move(*segment));
+  }
+  return sealed;
+}
+
+/// Starts a program that inherits these descriptors under their numbers.
+Result<pid_t> start(const std::filesystem::path& program, const std::vector<std::string>& arguments, const std::vector<int>& descriptors) {
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int descriptor : descriptors) posix_spawn_file_actions_adddup2(&actions, descriptor, descriptor);  // without close-on-exec
+  pid_t child = 0;
+  const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) return fail(program.string(), std::string("could not be started: ") + std::strerror(error));
+  return child;
+}
+
+/// Waits for a child, ending it when the user wants to stop. Returns its wait status.
+int wait_for(pid_t child, const Surroundings& surroundings) {
+  int status = 0;
+  bool told = false;
+  while (true) {
+    if (surroundings.stop() && !told) told = kill(child, SIGTERM) == 0;
+    const pid_t ended = waitpid(child, &status, surroundings.interrupted != nullptr ? WNOHANG : 0);
+    if (ended == child) return status;
+    if (ended < 0 && errno != EINTR) return status;
+    if (ended == 0) usleep(5000);
+  }
+}
+
+}  // namespace
+
+int render(const RenderOptions& options, const Common& common, const Surroundings& surroundings) {
+  const auto refuse = [&](const Error& error) {
+    say(surroundings, error);
+    return kFailed;
+  };
+  const Result<std::filesystem::path> kiosk = find_kiosk();
+  if (!kiosk) return refuse(kiosk.error());
+  Result<mesh::document::Document> document = open_deck(options.deck, common, surroundings);
+  if (!document) return refuse(document.error());
+  if (options.select) {
+    mesh::document::Select select;
+    select.expr = *options.select;
+    if (const auto selected = mesh::document::apply(*document, select); !selected) return refuse(selected.error());
+  }
+  say_warnings(surroundings, *document);
+  const auto sealed = seal(*document);
+  if (!sealed) return refuse(sealed.error());
+  const std::vector<int> descriptors = (*sealed)->descriptors();
+  std::string list;
+  for (const int descriptor : descriptors) list += (list.empty() ? "" : ",") + std::to_string(descriptor);
+
+  std::vector<std::string> arguments{kKiosk, "--render", options.output.string(), "--snapshot-fds", list};
+  arguments.insert(arguments.end(), options.passed_on.begin(), options.passed_on.end());
+  surroundings.err.flush();
+  const Result<pid_t> child = start(*kiosk, arguments, descriptors);
+  if (!child) return refuse(child.error());
+  const int status = wait_for(*child, surroundings);
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  if (surroundings.stop()) return refuse(Error{options.output.string(), 0, "stopped; no picture was written"});
+  return refuse(Error{kiosk->string(), 0, "ended by signal " + std::to_string(WTERMSIG(status)) + "; no picture was written"});
+}
+
+}  // namespace prismesh::cli

@@ -1,0 +1,188 @@
+#include "kiosk/render_command.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "ipc/snapshot.h"
+#include "kiosk/display/headless.h"
+#include "kiosk/render/offscreen.h"
+#include "kiosk/render/renderer.h"
+
+namespace prismesh::kiosk {
+
+namespace {
+
+constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2;
+constexpr int kLargestSide = 16384;
+
+struct RenderOptions {
+  std::filesystem::path picture;
+  std::vector<int> descriptors;  ///< the snapshot's table, then its segments
+  int width = 1920;
+  int height = 1080;
+  std::string profile = "prism-mask";
+  mesh::Vec3 eye_mm = mesh::Vec3(0, 0, 650);
+  std::string view = "iso";
+  std::string colour = "parts";
+  int samples = 4;
+};
+
+/// Numbers separated by `separator`, nothing else; empty if the text is anything else.
+template <class T>
+std::vector<T> numbers(const std::string& text, char separator) {
+  std::vector<T> values;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    T value{};
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc()) return {};
+    values.push_back(value);
+    if (next == end) return values;
+    if (*next != separator) return {};
+    at = next + 1;
+  }
+}
+
+template <class Names>
+std::string list_of(const Names& names) {
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  return list;
+}
+
+tl::unexpected<Error> wrong(const std::string& option, const std::string& value, const std::string& wanted) {
+  return fail(option + " " + value, wanted);
+}
+
+Result<void> read_size(const std::string& text, RenderOptions& options) {
+  const std::vector<int> sides = numbers<int>(text, 'x');
+  if (sides.size() != 2 || sides[0] < 16 || sides[1] < 16 || sides[0] > kLargestSide || sides[1] > kLargestSide)
+    return wrong("--size", text,
+                 "write width and height in pixels, for example 1920x1080 (16 to " + std::to_string(kLargestSide) + " each)");
+  options.width = sides[0];
+  options.height = sides[1];
+  return {};
+}
+
+Result<void> read_eye(const std::string& text, RenderOptions& options) {
+  const std::vector<double> point = numbers<double>(text, ',');
+  const bool whole = point.size() == 3 && std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
+  if (!whole || point[2] < 100 || std::abs(point[0]) > 1e4 || std::abs(point[1]) > 1e4 || point[2] > 1e4)
+    return wrong("--eye", text,
+                 "write the point between the eyes as X,Y,Z in mm from the screen's centre, for example 0,0,650; Z from 100 to 10000");
+  options.eye_mm = mesh::Vec3(point[0], point[1], point[2]);
+  return {};
+}
+
+Result<void> read_descriptors(const std::string& text, RenderOptions& options) {
+  options.descriptors = numbers<int>(text, ',');
+  if (options.descriptors.empty()) return wrong("--snapshot-fds", text, "write the descriptors of a snapshot's table and segments: 3,4,5");
+  return {};
+}
+
+Result<void> read_samples(const std::string& text, RenderOptions& options) {
+  if (text != "1" && text != "4") return wrong("--samples", text, "samples per pixel are 1 or 4");
+  options.samples = text == "4" ? 4 : 1;
+  return {};
+}
+
+Result<void> read_view(const std::string& text, RenderOptions& options) {
+  options.view = text;
+  if (stereo::named_rotation(text)) return {};
+  return wrong("--view", text, "there is no view of this name; views are " + list_of(stereo::kViewNames));
+}
+
+Result<void> read_colour(const std::string& text, RenderOptions& options) {
+  options.colour = text;
+  if (render::colour_mode_from(text)) return {};
+  return wrong("--colour", text, "there is no colour mode of this name; modes are " + list_of(render::kColourModeNames));
+}
+
+Result<RenderOptions> parse(std::span<const std::string> arguments) {
+  RenderOptions options;
+  using Reader = std::function<Result<void>(const std::string&)>;
+  const std::map<std::string, Reader> readers{
+      {"--render", [&](const std::string& text) { return options.picture = text, Result<void>(); }},
+      {"--profile", [&](const std::string& text) { return options.profile = text, Result<void>(); }},
+      {"--snapshot-fds", [&](const std::string& text) { return read_descriptors(text, options); }},
+      {"--size", [&](const std::string& text) { return read_size(text, options); }},
+      {"--eye", [&](const std::string& text) { return read_eye(text, options); }},
+      {"--view", [&](const std::string& text) { return read_view(text, options); }},
+      {"--colour", [&](const std::string& text) { return read_colour(text, options); }},
+      {"--samples", [&](const std::string& text) { return read_samples(text, options); }}};
+  for (std::size_t i = 0; i < arguments.size(); i += 2) {
+    const auto reader = readers.find(arguments[i]);
+    if (reader == readers.end()) return fail("prismesh-kiosk --render", "there is no option " + arguments[i]);
+    if (i + 1 == arguments.size()) return fail("prismesh-kiosk --render", arguments[i] + " lacks its value");
+    if (const auto read = reader->second(arguments[i + 1]); !read) return fail(read.error());
+  }
+  if (options.picture.empty()) return fail("prismesh-kiosk --render", "--render needs the name of the picture");
+  if (options.descriptors.empty()) return fail("prismesh-kiosk --render", "--snapshot-fds is missing; `prismesh render` gives it");
+  return options;
+}
+
+Result<std::shared_ptr<const ipc::SnapshotView>> map_snapshot(const std::vector<int>& descriptors) {
+  const ipc::Descriptor table(descriptors.front());
+  std::vector<std::shared_ptr<const ipc::Mapping>> segments;
+  for (std::size_t i = 1; i < descriptors.size(); ++i) {
+    const ipc::Descriptor segment(descriptors[i]);
+    Result<ipc::Mapping> mapping = ipc::Mapping::map(segment, false);
+    if (!mapping) return fail(mapping.error());
+    segments.push_back(std::make_shared<const ipc::Mapping>(std::move(*mapping)));
+  }
+  return ipc::SnapshotView::map(table, segments);
+}
+
+Result<void> render_picture(const RenderOptions& options, const stereo::Profile& profile) {
+  const auto snapshot = map_snapshot(options.descriptors);
+  if (!snapshot) return fail(snapshot.error());
+  const Result<display::Headless> headless = display::Headless::create();
+  if (!headless) return fail(headless.error());
+  const Result<render::Offscreen> offscreen = render::Offscreen::create(options.width, options.height);
+  if (!offscreen) return fail(offscreen.error());
+  const auto renderer = render::Renderer::create({.samples = options.samples});
+  if (!renderer) return fail(renderer.error());
+  if (const auto shown = (*renderer)->set_model(render::snapshot_source(*snapshot)); !shown) return fail(shown.error());
+
+  render::Picture picture;
+  picture.profile = profile;
+  picture.between_eyes_mm = options.eye_mm;
+  picture.colour = *render::colour_mode_from(options.colour);
+  picture.view.rotation = *stereo::named_rotation(options.view);
+  const stereo::Box box = (*renderer)->bounds();
+  picture.view.bounds = stereo::sphere_around(box);
+  picture.view = stereo::fit(picture.view, box, stereo::screen_size_mm(profile, options.width, options.height), options.eye_mm.z());
+  const auto report = (*renderer)->draw(picture, offscreen->framebuffer(), options.width, options.height);
+  if (!report) return fail(report.error());
+  if (report->glyphs_left_out > 0)
+    std::fprintf(stderr, "%s: note: %zu quality signs found no room and aren't drawn; %zu are\n", options.picture.c_str(),
+                 report->glyphs_left_out, report->glyphs);
+  return render::write_png(options.picture, offscreen->read());
+}
+
+int complain(const Error& error, int status) {
+  std::fprintf(stderr, "%s\n", error.text().c_str());
+  return status;
+}
+
+}  // namespace
+
+int render_main(std::span<const std::string> arguments) {
+  const Result<RenderOptions> options = parse(arguments);
+  if (!options) return complain(options.error(), kWrongUsage);
+  std::error_code ignored;
+  const bool is_file = std::filesystem::exists(options->profile, ignored);
+  const Result<stereo::Profile> profile = stereo::find_profile(options->profile);
+  if (!profile) return complain(profile.error(), is_file ? kFailed : kWrongUsage);
+  const Result<void> done = render_picture(*options, *profile);
+  return done ? kDone : complain(done.error(), kFailed);
+}
+
+}  // namespace prismesh::kiosk
