@@ -48,14 +48,18 @@ std::filesystem::path runtime_directory(const std::optional<std::filesystem::pat
     const std::string all = folder;
     return all.substr(0, all.find(':'));
   }
-  if (const char* folder = std::getenv("XDG_RUNTIME_DIR"); folder != nullptr && *folder != 0) return std::filesystem::path(folder) / "prismesh";
+  if (const char* folder = std::getenv("XDG_RUNTIME_DIR"); folder != nullptr && *folder != 0)
+    return std::filesystem::path(folder) / "prismesh";
   return "/tmp/prismesh-" + std::to_string(::geteuid());
 }
 
-std::filesystem::path model_socket_path(const std::optional<std::filesystem::path>& override) { return runtime_directory(override) / "model.sock"; }
+std::filesystem::path model_socket_path(const std::optional<std::filesystem::path>& override) {
+  return runtime_directory(override) / "model.sock";
+}
 
 struct Client::State {
-  State(Descriptor descriptor, std::filesystem::path where) : path(std::move(where)), socket(std::move(descriptor), {std::size_t{64} << 20, 253}) {}
+  State(Descriptor descriptor, std::filesystem::path where)
+      : path(std::move(where)), socket(std::move(descriptor), {std::size_t{64} << 20, 253}) {}
 
   std::filesystem::path path;
   LineSocket socket;
@@ -137,7 +141,8 @@ struct Client::State {
 
   Result<std::vector<Descriptor>> take_riders(std::map<std::uint64_t, std::uint64_t>& requests, std::uint64_t key, const char* what) {
     const auto request = requests.find(key);
-    if (request == requests.end() || !riders.contains(request->second)) return fail(path.string(), std::string("no ") + what + " came, or it was taken before");
+    if (request == requests.end() || !riders.contains(request->second))
+      return fail(path.string(), std::string("no ") + what + " came, or it was taken before");
     std::vector<Descriptor> taken = std::move(riders[request->second]);
     riders.erase(request->second);
     requests.erase(request);
@@ -160,7 +165,8 @@ Result<Client> Client::connect(const std::filesystem::path& socket, const std::s
   if (welcome == nullptr) return fail(socket.string(), "what listens there isn't the document's daemon");
   State& state = *client.state_;
   state.welcome = *welcome;
-  if (state.riders.empty() || state.riders.begin()->second.empty()) return fail(socket.string(), "the daemon's welcome lacks the state page");
+  if (state.riders.empty() || state.riders.begin()->second.empty())
+    return fail(socket.string(), "the daemon's welcome lacks the state page");
   Result<StatePageReader> page = StatePageReader::map(state.riders.begin()->second.front());
   if (!page) return fail(std::move(page.error()));
   state.page = std::move(*page);
@@ -186,7 +192,8 @@ Result<Answer> Client::call(const Request& request, std::chrono::milliseconds pa
     }
     const Result<bool> turned = state_->turn(until);
     if (!turned) return fail(turned.error());
-    if (!*turned) return fail(state_->path.string(), "the document's daemon didn't answer in " + std::to_string(patience.count() / 1000) + " s");
+    if (!*turned)
+      return fail(state_->path.string(), "the document's daemon didn't answer in " + std::to_string(patience.count() / 1000) + " s");
   }
 }
 
@@ -236,7 +243,8 @@ Result<std::shared_ptr<const SnapshotView>> Client::take_snapshot(const Snapshot
     const std::lock_guard lock(alive->mutex);
     alive->leases.push_back(number);
   });
-  if (descriptors->size() != answer.new_segments.size() + 1) return fail(state_->path.string(), "a snapshot came with the wrong number of segments");
+  if (descriptors->size() != answer.new_segments.size() + 1)
+    return fail(state_->path.string(), "a snapshot came with the wrong number of segments");
   std::map<std::uint64_t, std::shared_ptr<const Mapping>> known = state_->segments;
   for (std::size_t i = 0; i < answer.new_segments.size(); ++i) {
     Result<Mapping> mapping = Mapping::map((*descriptors)[i + 1], false);

@@ -66,7 +66,8 @@ Result<void> LineSocket::keep_descriptors(const void* received) {
       descriptors_.emplace_back(number);
     }
   }
-  if ((message->msg_flags & MSG_CTRUNC) != 0) return fail("", limits_.descriptors == 0 ? "descriptors came that nobody asked for" : "descriptors were lost");
+  if ((message->msg_flags & MSG_CTRUNC) != 0)
+    return fail("", limits_.descriptors == 0 ? "descriptors came that nobody asked for" : "descriptors were lost");
   if (descriptors_.size() > limits_.descriptors) return fail("", "too many descriptors came");
   return {};
 }

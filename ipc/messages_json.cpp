@@ -73,12 +73,11 @@ template <>
 constexpr std::string_view kTag<DragEnded> = "drag_ended";
 
 // `m` is a message (const when it is written), `f` is called with each field's name and value.
-#define PRISMESH_FIELDS(Type, ...)                                                             \
-  template <class F>                                                                           \
-  void fields([[maybe_unused]] auto& m, [[maybe_unused]] F& f)                                 \
-    requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(m)>>, Type>   \
-  {                                                                                            \
-    __VA_ARGS__;                                                                               \
+#define PRISMESH_FIELDS(Type, ...)                                                                                              \
+  template <class F>                                                                                                            \
+  void fields([[maybe_unused]] auto& m,                                                                                         \
+              [[maybe_unused]] F& f) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(m)>>, Type> { \
+    __VA_ARGS__;                                                                                                                \
   }
 PRISMESH_FIELDS(Hello, f("protocol", m.protocol), f("program", m.program))
 PRISMESH_FIELDS(Open, f("path", m.path), f("length_unit", m.length_unit), f("target_size", m.target_size), f("criteria", m.criteria))
@@ -124,17 +123,13 @@ void write(Json& json, double value) { json = value; }
 void write(Json& json, const std::string& value) { json = value; }
 void write(Json& json, const mesh::document::Edit& value) { json = mesh::document::edit_to_json(value); }
 template <class T>
-  requires std::is_integral_v<T>
-void write(Json& json, T value) {
-  json = value;
-}
+requires std::is_integral_v<T>
+void write(Json& json, T value) { json = value; }
 template <class T>
 void write_object(Json& json, const T& value);
 template <class T>
-  requires std::is_class_v<T>
-void write(Json& json, const T& value) {
-  write_object(json, value);
-}
+requires std::is_class_v<T>
+void write(Json& json, const T& value) { write_object(json, value); }
 void write(Json& json, const std::array<double, 3>& value) { json = value; }
 template <class T>
 void write(Json& json, const std::vector<T>& values) {
@@ -182,8 +177,7 @@ Problem read(const Json& json, std::string& value) {
   return std::nullopt;
 }
 template <class T>
-  requires std::is_integral_v<T>
-Problem read(const Json& json, T& value) {
+requires std::is_integral_v<T> Problem read(const Json& json, T& value) {
   if (!json.is_number_integer()) return "must be a whole number";
   if (json.is_number_unsigned()) {
     const auto number = json.get<std::uint64_t>();
@@ -212,8 +206,7 @@ Problem read(const Json& json, mesh::document::Edit& value) {
 template <class T>
 Problem read_object(const Json& json, T& value);
 template <class T>
-  requires std::is_class_v<T>
-Problem read(const Json& json, T& value) {
+requires std::is_class_v<T> Problem read(const Json& json, T& value) {
   if (!json.is_object()) return "must be an object";
   return read_object(json, value);
 }

@@ -58,8 +58,8 @@ Result<PreviewWriter> PreviewWriter::create(std::uint64_t drag, std::uint64_t ba
   return writer;
 }
 
-void PreviewWriter::publish(std::uint64_t sequence, std::span<const mesh::Vec3> positions, std::span<const mesh::quality::ShellState> states,
-                            const mesh::quality::Counts& counts) {
+void PreviewWriter::publish(std::uint64_t sequence, std::span<const mesh::Vec3> positions,
+                            std::span<const mesh::quality::ShellState> states, const mesh::quality::Counts& counts) {
   frame_[0] = sequence;
   frame_[1] = counts.ok;
   frame_[2] = counts.warn;

@@ -19,9 +19,9 @@ struct PreviewLayout {
   std::size_t nodes = 0;
   std::size_t shells = 0;
 
-  std::size_t nodes_at() const;    ///< bytes from the start
-  std::size_t shells_at() const;   ///< bytes from the start
-  std::size_t frame_words() const;  ///< 8-byte words of a frame
+  std::size_t nodes_at() const;                    ///< bytes from the start
+  std::size_t shells_at() const;                   ///< bytes from the start
+  std::size_t frame_words() const;                 ///< 8-byte words of a frame
   std::size_t frame_at(std::uint64_t turn) const;  ///< bytes from the start
   std::size_t total() const;
 };

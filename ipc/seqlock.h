@@ -38,7 +38,7 @@ inline void load_words(std::uint64_t* to, const std::uint64_t* from, std::size_t
 
 /// A small value in shared memory. Memory that is all zero is a slot that was never written.
 template <class T>
-  requires std::is_trivially_copyable_v<T>
+requires std::is_trivially_copyable_v<T>
 class SeqlockSlot {
  public:
   void write(const T& value) {

@@ -31,7 +31,8 @@ Result<StatePageReader> StatePageReader::map(const Descriptor& descriptor) {
   StatePageReader reader;
   reader.mapping_ = std::move(*mapping);
   reader.layout_ = reinterpret_cast<const StatePageLayout*>(reader.mapping_.bytes().data());
-  if (reader.layout_->magic != kMagic || reader.layout_->version != kVersion) return fail("state page", "it is none, or of another version");
+  if (reader.layout_->magic != kMagic || reader.layout_->version != kVersion)
+    return fail("state page", "it is none, or of another version");
   return reader;
 }
 

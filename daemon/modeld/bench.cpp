@@ -1,0 +1,111 @@
+#include "daemon/modeld/bench.h"
+
+#include <utility>
+
+namespace prismesh::modeld {
+
+namespace {
+
+ipc::Failed failed(const Error& error) { return {error.file, error.line, error.message}; }
+
+}  // namespace
+
+/// Publishes the current generation for views and tells everyone. The edit counts whether or not there was memory for it.
+void Bench::show(const std::string& made_by, Outcome& outcome) {
+  const mesh::document::Document& document = keeper_.document();
+  const ipc::State state = keeper_.state();
+  if (Result<ipc::PublishedSnapshot> published = publisher_.publish(document, state.changed))
+    publisher_.release(published->lease);  // it stays current
+  else if (auto* edited = std::get_if<ipc::Edited>(&outcome.answer))
+    edited->report.notes.push_back("the views couldn't be given the new state: " + published.error().text());
+  outcome.events.emplace_back(ipc::GenerationPublished{state.generation, made_by});
+  outcome.face = Face{std::make_shared<const mesh::document::Document>(document), state};
+}
+
+Outcome Bench::opened() {
+  Outcome outcome;
+  show(keeper_.document().current().made_by, outcome);
+  outcome.events.insert(outcome.events.begin(), ipc::DocumentOpened{keeper_.document().path.string()});
+  outcome.answer = outcome.face->state;
+  return outcome;
+}
+
+Outcome Bench::open(const ipc::Open& request, const Progress& progress) {
+  if (const Result<void> done = keeper_.open(request, progress); !done) return {failed(done.error()), {}, {}, {}};
+  return opened();
+}
+
+Outcome Bench::reopen(const Progress& progress) {
+  const Result<bool> done = keeper_.reopen(progress);
+  if (!done) return {failed(done.error()), {}, {}, {}};
+  return *done ? opened() : Outcome{};
+}
+
+Outcome Bench::edit(const mesh::document::Edit& edit) {
+  Result<mesh::document::EditReport> report = keeper_.edit(edit);
+  if (!report) return {failed(report.error()), {}, {}, {}};
+  Outcome outcome;
+  const std::string made_by = report->edit;
+  outcome.answer = ipc::Edited{std::move(*report), keeper_.document().current().number};
+  show(made_by, outcome);
+  return outcome;
+}
+
+Outcome Bench::save(const ipc::Save& request) {
+  Result<ipc::Saved> saved = keeper_.save(request.path);
+  if (!saved) return {failed(saved.error()), {}, {}, {}};
+  Outcome outcome;
+  outcome.answer = std::move(*saved);
+  show("save", outcome);
+  return outcome;
+}
+
+Outcome Bench::close(const ipc::Close& request) {
+  if (const Result<void> done = keeper_.close(request.discard); !done) return {failed(done.error()), {}, {}, {}};
+  publisher_.forget();
+  Outcome outcome;
+  outcome.events.emplace_back(ipc::DocumentClosed{});
+  outcome.face = Face{};
+  return outcome;
+}
+
+Outcome Bench::begin_drag(std::uint64_t number, const mesh::document::Edit& edit) {
+  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  Result<DragSession> drag = DragSession::begin(number, keeper_.document(), edit);
+  if (!drag) return {failed(drag.error()), {}, {}, {}};
+  Result<ipc::Descriptor> preview = drag->preview().duplicate();
+  if (!preview) return {failed(preview.error()), {}, {}, {}};
+  drag_ = std::move(*drag);
+  drag_number_ = number;
+  Outcome outcome;
+  outcome.answer = drag_->begun();
+  outcome.descriptors.push_back(std::move(*preview));
+  return outcome;
+}
+
+void Bench::step_drag(const ipc::DragStep& step) {
+  if (drag_) drag_->step(step);
+}
+
+Outcome Bench::commit_drag() {
+  if (!drag_->moved()) {
+    Outcome outcome = cancel_drag("it moved nothing");
+    outcome.answer = ipc::Edited{{}, keeper_.document().current().number};
+    return outcome;
+  }
+  const mesh::document::Edit what = drag_->edit();
+  drag_.reset();
+  Outcome outcome = edit(what);
+  const auto* problem = std::get_if<ipc::Failed>(&outcome.answer);
+  outcome.events.emplace_back(ipc::DragEnded{drag_number_, problem == nullptr, problem != nullptr ? problem->message : ""});
+  return outcome;
+}
+
+Outcome Bench::cancel_drag(const std::string& why) {
+  drag_.reset();
+  Outcome outcome;
+  outcome.events.emplace_back(ipc::DragEnded{drag_number_, false, why});
+  return outcome;
+}
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,56 @@
+// Where the worker does what clients ask for: each call is one request from beginning to end, with its answer and what everyone
+// must hear. One thread; knows no clients.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/progress.h"
+#include "daemon/modeld/document_keeper.h"
+#include "daemon/modeld/drag_session.h"
+#include "ipc/messages.h"
+#include "ipc/snapshot_publisher.h"
+
+namespace prismesh::modeld {
+
+/// What may be shown of the document; a value that later work doesn't change.
+struct Face {
+  std::shared_ptr<const mesh::document::Document> document;  ///< null: none is open
+  ipc::State state;
+};
+
+struct Outcome {
+  ipc::Answer answer = ipc::Done{};
+  std::vector<ipc::Descriptor> descriptors;
+  std::vector<ipc::Event> events;
+  std::optional<Face> face;  ///< if it changed
+};
+
+class Bench {
+ public:
+  Bench(StateFolder folder, ipc::SnapshotPublisher& publisher) : keeper_(std::move(folder)), publisher_(publisher) {}
+
+  Outcome open(const ipc::Open& request, const Progress& progress);
+  /// What was open when the last life ended. The answer is Failed if that couldn't be opened.
+  Outcome reopen(const Progress& progress);
+  Outcome edit(const mesh::document::Edit& edit);
+  Outcome save(const ipc::Save& request);
+  Outcome close(const ipc::Close& request);
+  /// The answer is DragBegun, or Failed and there is no drag.
+  Outcome begin_drag(std::uint64_t number, const mesh::document::Edit& edit);
+  void step_drag(const ipc::DragStep& step);
+  Outcome commit_drag();
+  Outcome cancel_drag(const std::string& why);
+
+ private:
+  Outcome opened();
+  void show(const std::string& made_by, Outcome& outcome);
+
+  DocumentKeeper keeper_;
+  ipc::SnapshotPublisher& publisher_;
+  std::optional<DragSession> drag_;
+  std::uint64_t drag_number_ = 0;
+};
+
+}  // namespace prismesh::modeld

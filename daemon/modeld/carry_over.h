@@ -1,0 +1,16 @@
+// What a document is beyond its deck: the selection and the parts' states. After a save in place the new journal begins with it.
+#pragma once
+
+#include <vector>
+
+#include "base/error.h"
+#include "mesh/document/document.h"
+#include "mesh/document/journal.h"
+
+namespace prismesh::modeld {
+
+/// Journals the steps that lead from `recorded` (freshly opened from the saved deck) to the same selection and part states as
+/// `current`, and takes `recorded` there. Positions that the deck's columns couldn't hold to the last digit come along.
+Result<void> carry_over(const mesh::document::Generation& current, mesh::document::Document& recorded, mesh::document::Journal& journal);
+
+}  // namespace prismesh::modeld

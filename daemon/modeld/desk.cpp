@@ -1,0 +1,242 @@
+#include "daemon/modeld/desk.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "base/clock.h"
+
+namespace prismesh::modeld {
+
+namespace {
+
+constexpr std::size_t kMostWaiting = 256;
+constexpr std::size_t kMostWaitingBytes = std::size_t{32} << 20;
+constexpr std::size_t kMostLeases = 256;
+constexpr std::int64_t kProgressPeriod_ns = 100'000'000;
+
+}  // namespace
+
+void Desk::start(std::function<void(const ipc::Answer&)> when_done) {
+  run([this, progress = watch("open")] { return bench_.reopen(progress); },
+      [this, when_done = std::move(when_done)](Outcome& outcome) {
+        tell(outcome);
+        when_done(outcome.answer);
+      });
+}
+
+void Desk::arrived(ipc::ClientId client) { clients_.try_emplace(client); }
+
+void Desk::left(ipc::ClientId client) {
+  const auto found = clients_.find(client);
+  if (found == clients_.end()) return;
+  for (const std::uint64_t lease : found->second.leases) publisher_.release(lease);
+  clients_.erase(found);
+  std::erase_if(waiting_, [&](const Waiting& each) { return each.client == client; });
+  if (drag_ && drag_->owner == client) drag_->orphaned = true;
+  pump();
+}
+
+void Desk::request(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes) {
+  if (!clients_.contains(client)) return;
+  if (const auto* step = std::get_if<ipc::DragStep>(&request)) return take_step(client, *step);
+  if (const auto* commit = std::get_if<ipc::CommitDrag>(&request)) return end_drag(client, number, commit->drag, true);
+  if (const auto* cancel = std::get_if<ipc::CancelDrag>(&request)) return end_drag(client, number, cancel->drag, false);
+  if (const auto* returned = std::get_if<ipc::ReturnSnapshot>(&request)) return give_back(client, returned->lease);
+  if (const auto* snapshot = std::get_if<ipc::GetSnapshot>(&request)) return give_snapshot(client, number, *snapshot);
+  if (std::holds_alternative<ipc::GetState>(request)) return outlet_.answer(client, number, state(), {});
+  line_up(client, number, std::move(request), bytes);
+}
+
+void Desk::refuse(ipc::ClientId client, std::uint64_t number, const std::string& why) {
+  outlet_.answer(client, number, ipc::Failed{"", 0, why}, {});
+}
+
+void Desk::line_up(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes) {
+  Client& from = clients_[client];
+  if (from.waiting >= kMostWaiting || from.waiting_bytes + bytes > kMostWaitingBytes)
+    return refuse(client, number, "too many requests of yours are waiting; wait for some answers first");
+  if (std::holds_alternative<ipc::BeginDrag>(request)) {
+    const bool another_waits = std::any_of(waiting_.begin(), waiting_.end(),
+                                           [](const Waiting& each) { return std::holds_alternative<ipc::BeginDrag>(each.request); });
+    if (drag_ && drag_->owner == client) return refuse(client, number, "you are dragging already; commit or cancel that drag first");
+    if (drag_ || another_waits) return refuse(client, number, "another view is dragging; try again when it has let go");
+  }
+  ++from.waiting;
+  from.waiting_bytes += bytes;
+  waiting_.push_back({client, number, std::move(request), bytes});
+  pump();
+}
+
+void Desk::take_step(ipc::ClientId client, const ipc::DragStep& step) {
+  // A step has no answer; one that comes after the end of its drag is late, not wrong.
+  if (!drag_ || drag_->owner != client || drag_->number != step.drag || drag_->ending || step.sequence <= drag_->last_sequence) return;
+  drag_->last_sequence = step.sequence;
+  drag_->newest = step;
+  pump();
+}
+
+void Desk::end_drag(ipc::ClientId client, std::uint64_t number, std::uint64_t drag, bool commit) {
+  if (!drag_ || drag_->owner != client || drag_->number != drag || drag_->ending)
+    return refuse(client, number, "you hold no drag " + std::to_string(drag));
+  drag_->ending = Ending{number, commit};
+  if (!commit) drag_->newest.reset();
+  pump();
+}
+
+void Desk::give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::GetSnapshot& request) {
+  if (!face_.document) return refuse(client, number, running_ ? "the document is still being opened" : "no document is open");
+  Client& to = clients_[client];
+  if (to.leases.size() >= kMostLeases) return refuse(client, number, "you hold too many snapshots; return some first");
+  Result<ipc::PublishedSnapshot> published = publisher_.publish(*face_.document, face_.state.changed);
+  if (!published) return outlet_.answer(client, number, ipc::Failed{published.error().file, 0, published.error().message}, {});
+  ipc::Snapshot snapshot{published->lease, face_.state.generation, published->segments, {}};
+  std::vector<ipc::Descriptor> descriptors;
+  descriptors.push_back(std::move(published->table));
+  for (const std::uint64_t segment : snapshot.segments) {
+    if (std::find(request.have_segments.begin(), request.have_segments.end(), segment) != request.have_segments.end()) continue;
+    Result<ipc::Descriptor> descriptor = publisher_.segment(segment);
+    if (!descriptor) {
+      publisher_.release(snapshot.lease);
+      return refuse(client, number, descriptor.error().text());
+    }
+    snapshot.new_segments.push_back(segment);
+    descriptors.push_back(std::move(*descriptor));
+  }
+  to.leases.insert(snapshot.lease);
+  outlet_.answer(client, number, snapshot, std::move(descriptors));
+}
+
+void Desk::give_back(ipc::ClientId client, std::uint64_t lease) {
+  // Only what the client holds: nobody returns another one's.
+  if (clients_[client].leases.erase(lease) > 0) publisher_.release(lease);
+}
+
+ipc::State Desk::state() const {
+  ipc::State state = face_.state;
+  state.busy = running_ && !stepping_;
+  return state;
+}
+
+ipc::Health Desk::health() const {
+  ipc::Health health;
+  health.generation = face_.state.generation;
+  health.clients = clients_.size();
+  health.progress = progress_;
+  health.open = face_.state.open;
+  health.busy = running_ && !stepping_;
+  health.dragging = drag_.has_value();
+  return health;
+}
+
+void Desk::pump() {
+  if (running_) return;
+  if (drag_) return pump_drag();
+  if (waiting_.empty()) return;
+  Waiting next = std::move(waiting_.front());
+  waiting_.pop_front();
+  Client& from = clients_[next.client];
+  --from.waiting;
+  from.waiting_bytes -= next.bytes;
+  begin(std::move(next));
+}
+
+/// While a drag is under way nothing else is: its newest step first, then its end.
+void Desk::pump_drag() {
+  HeldDrag& drag = *drag_;
+  const auto over = [this](ipc::ClientId client, std::uint64_t number) {
+    return [this, client, number](Outcome& outcome) {
+      drag_.reset();
+      finish(client, number, outcome);
+    };
+  };
+  if (drag.orphaned) return run([this] { return bench_.cancel_drag("its client has gone"); }, over(0, 0));
+  if (drag.newest) {
+    const ipc::DragStep step = *std::exchange(drag.newest, std::nullopt);
+    stepping_ = true;
+    return run(
+        [this, step] {
+          bench_.step_drag(step);
+          return Outcome{};
+        },
+        [](Outcome&) {});
+  }
+  if (!drag.ending) return;
+  const Ending ending = *drag.ending;
+  run([this, ending] { return ending.commit ? bench_.commit_drag() : bench_.cancel_drag("it was cancelled"); },
+      over(drag.owner, ending.number));
+}
+
+void Desk::begin(Waiting next) {
+  const auto answer = [this, client = next.client, number = next.number](Outcome& outcome) { finish(client, number, outcome); };
+  if (auto* open = std::get_if<ipc::Open>(&next.request))
+    run([this, request = std::move(*open), progress = watch("open")] { return bench_.open(request, progress); }, answer);
+  else if (auto* edit = std::get_if<ipc::ApplyEdit>(&next.request))
+    run([this, request = std::move(*edit)] { return bench_.edit(request.edit); }, answer);
+  else if (auto* save = std::get_if<ipc::Save>(&next.request))
+    run([this, request = std::move(*save)] { return bench_.save(request); }, answer);
+  else if (auto* close = std::get_if<ipc::Close>(&next.request))
+    run([this, request = *close] { return bench_.close(request); }, answer);
+  else if (auto* drag = std::get_if<ipc::BeginDrag>(&next.request))
+    begin_drag(next, drag->edit);
+  else
+    refuse(next.client, next.number, "this can't be asked now");
+}
+
+void Desk::begin_drag(Waiting next, const mesh::document::Edit& edit) {
+  const std::uint64_t drag = next_drag_++;
+  run([this, drag, edit] { return bench_.begin_drag(drag, edit); },
+      [this, drag, client = next.client, number = next.number](Outcome& outcome) {
+        if (std::holds_alternative<ipc::DragBegun>(outcome.answer)) {
+          drag_ = HeldDrag{};
+          drag_->number = drag;
+          drag_->owner = client;
+          drag_->orphaned = !clients_.contains(client);
+        }
+        finish(client, number, outcome);
+      });
+}
+
+void Desk::run(std::function<Outcome()> work, std::function<void(Outcome&)> then) {
+  running_ = true;
+  worker_.run([this, work = std::move(work), then = std::move(then)] {
+    // Shared, since what is posted must be copyable and descriptors aren't.
+    auto outcome = std::make_shared<Outcome>(work());
+    outlet_.post([this, outcome, then] {
+      running_ = false;
+      stepping_ = false;
+      progress_ = 0;
+      then(*outcome);
+      pump();
+    });
+  });
+}
+
+void Desk::finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome) {
+  if (outcome.face) face_ = std::move(*outcome.face);
+  outcome.face.reset();
+  // The asker hears first: when others see the new generation, its edit is acknowledged.
+  if (clients_.contains(client)) outlet_.answer(client, number, outcome.answer, std::move(outcome.descriptors));
+  tell(outcome);
+}
+
+void Desk::tell(Outcome& outcome) {
+  if (outcome.face) face_ = std::move(*outcome.face);
+  for (const ipc::Event& event : outcome.events) outlet_.tell_all(event);
+}
+
+Progress Desk::watch(std::string what) {
+  return [this, what = std::move(what), last_ns = std::int64_t{0}](double fraction) mutable {
+    MonotonicClock clock;
+    if (const std::int64_t now_ns = clock.now_ns(); now_ns - last_ns > kProgressPeriod_ns) {
+      last_ns = now_ns;
+      outlet_.post([this, what, fraction] {
+        progress_ = fraction;
+        outlet_.tell_all(ipc::ProgressMade{what, fraction});
+      });
+    }
+    return !worker_.stopping();
+  };
+}
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,307 @@
+#include "daemon/modeld/document_keeper.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "daemon/modeld/carry_over.h"
+#include "daemon/modeld/save_intent.h"
+#include "mesh/deck/deck.h"
+
+namespace prismesh::modeld {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace mesh::document;
+using mesh::deck::OpenedDeck;
+using mesh::deck::Warning;
+
+/// A deck that ended so many lives of the daemon isn't opened by itself again.
+constexpr std::uint64_t kMostAttempts = 3;
+
+Result<OpenOptions> options_of(const ipc::Open& request) {
+  OpenOptions options;
+  if (request.length_unit) {
+    options.length_unit = length_unit_from(*request.length_unit);
+    if (!options.length_unit) return fail("", "unknown length unit \"" + *request.length_unit + "\": mm, m or in");
+  }
+  options.target_size = request.target_size;
+  if (request.criteria) options.criteria = *request.criteria;
+  return options;
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code problem;
+  return fs::exists(path, problem);
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code problem;
+  return fs::equivalent(a, b, problem) && !problem;
+}
+
+bool differs(const Generation& a, const Generation& b) { return &a != &b && !mesh::moved_nodes(a.model, b.model).empty(); }
+
+ipc::Saved report_of(const fs::path& target, const mesh::deck::SaveReport& report) {
+  return {target.string(), report.nodes_written, report.lines_changed, report.notes};
+}
+
+Result<Journal> start_journal(const StateFolder& folder, const fs::path& path, Document& document) {
+  if (!is_there(path)) return Journal::create(path, document);
+  // Edits of another time on a deck that looked just like this one were saved or given up since, or their journal would be in
+  // use. It isn't deleted.
+  if (const Result<fs::path> retired = folder.retire(path, ".old"); !retired) return fail(retired.error());
+  return Journal::create(path, document);
+}
+
+/// The journal's form of an undo or redo that its own history, shorter than the document's after a save, can't make.
+Prepared as_push(const Document& recorded, const Prepared& prepared, const Edit& edit) {
+  auto next = std::make_shared<Generation>(*prepared.next);
+  next->number = recorded.next_number;
+  next->made_by = name(edit);
+  Prepared push;
+  push.next = std::move(next);
+  push.drop_oldest = recorded.cursor + 1;
+  return push;
+}
+
+/// The generation that `recorded` would go to by itself; null if it has none.
+const Generation* own_step(const Document& recorded, Prepared::Step step) {
+  if (step == Prepared::Step::undo) return recorded.can_undo() ? recorded.generations[recorded.cursor - 1].get() : nullptr;
+  return recorded.can_redo() ? recorded.generations[recorded.cursor + 1].get() : nullptr;
+}
+
+}  // namespace
+
+Result<OpenedDeck> DocumentKeeper::read_deck(const fs::path& path, const Progress& progress, std::vector<Warning>& warnings) {
+  Result<OpenedDeck> opened = mesh::deck::open(path, progress);
+  if (!opened) return opened;
+  for (const fs::path& intent : folder_.save_intents(path)) {
+    const fs::path journal = fs::path(intent).replace_extension();  // "....journal.saving"
+    const Result<SaveOutcome> outcome = settle_save(intent, path, *opened);
+    if (!outcome) return fail(outcome.error());
+    if (*outcome == SaveOutcome::finished) {
+      warnings.push_back(
+          {path.string(), 0, "save-finished", "a save was cut off between the deck's files; the rest has been written now", 1});
+      opened = mesh::deck::open(path, progress);
+      if (!opened) return opened;
+    }
+    if ((*outcome == SaveOutcome::complete || *outcome == SaveOutcome::finished) && is_there(journal))
+      if (const Result<fs::path> retired = folder_.retire(journal, ".saved"); !retired) return fail(retired.error());
+    std::error_code problem;
+    fs::remove(intent, problem);
+  }
+  return opened;
+}
+
+Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& request, const Progress& progress) {
+  Result<OpenOptions> options = options_of(request);
+  if (!options) return fail(std::move(options.error()));
+  const fs::path path = request.path;
+  if (!path.is_absolute()) return fail(request.path, "the path must be absolute: the daemon has its own working folder");
+  std::vector<Warning> warnings;
+  Result<OpenedDeck> opened = read_deck(path, progress, warnings);
+  if (!opened) return fail(std::move(opened.error()));
+  Result<Document> document = mesh::document::open(path, std::move(*opened), *options);
+  if (!document) return fail(std::move(document.error()));
+
+  const Hash128 content = document->deck->content;
+  const fs::path journal_path = folder_.journal(path, content);
+  Result<Journal> journal = is_there(journal_path) ? Journal::recover(journal_path, *document) : Journal::create(journal_path, *document);
+  if (!journal) {
+    Error error = std::move(journal.error());
+    if (is_there(journal_path)) error.message += ". To open the deck without these edits, move that file away";
+    return fail(std::move(error));
+  }
+  if (journal->cut_torn_tail())
+    warnings.push_back({journal_path.string(), 0, "torn-journal",
+                        "the last edit was being written when the daemon ended; it had not been acknowledged and is left out", 1});
+  for (const fs::path& other : folder_.other_journals(path, content))
+    warnings.push_back(
+        {path.string(), 0, "deck-changed",
+         "the deck was changed by something else since it was last edited here; the unsaved edits of that time are kept in " +
+             other.string() + " (`prismesh replay` can apply them)",
+         1});
+  const std::uint64_t recovered = journal->records();
+  Document recorded = *document;
+  const std::shared_ptr<const Generation> saved = document->opened;
+  return OpenDocument{request,   std::move(*document), std::move(recorded), std::move(*journal), saved,
+                      recovered, std::move(warnings),  std::nullopt};
+}
+
+Result<void> DocumentKeeper::open(const ipc::Open& request, const Progress& progress) {
+  if (open_) {
+    if (same_file(open_->document.path, request.path)) return {};
+    if (changed())
+      return fail(open_->document.path.string(), "has unsaved edits: save it, or close it with discard, before another deck is opened");
+  }
+  Result<OpenDocument> loaded = load(request, progress);
+  if (!loaded) return fail(std::move(loaded.error()));
+  if (open_)
+    if (Result<void> gone = let_go(); !gone) return gone;
+  open_ = std::move(*loaded);
+  return folder_.write_session({request, 0});
+}
+
+Result<bool> DocumentKeeper::reopen(const Progress& progress) {
+  Result<std::optional<StateFolder::Session>> session = folder_.read_session();
+  if (!session) return fail(std::move(session.error()));
+  if (!*session) return false;
+  StateFolder::Session& last = **session;
+  if (last.attempts >= kMostAttempts)
+    return fail(last.open.path, "opening it ended the daemon " + std::to_string(last.attempts) + " times; open it by hand to try again");
+  ++last.attempts;
+  if (Result<void> noted = folder_.write_session(last); !noted) return fail(std::move(noted.error()));
+  const Result<void> opened = open(last.open, progress);
+  // An honest refusal is no crash.
+  if (!opened) {
+    --last.attempts;
+    (void)folder_.write_session(last);
+    return fail(opened.error());
+  }
+  return true;
+}
+
+Result<EditReport> DocumentKeeper::edit(const Edit& edit) {
+  if (!open_) return fail("", "no document is open");
+  OpenDocument& open = *open_;
+  if (open.stuck) return fail(*open.stuck);
+  Result<Prepared> prepared = prepare(open.document, edit);
+  if (!prepared) return fail(std::move(prepared.error()));
+  EditReport report = prepared->report;
+  const bool follows = prepared->step == Prepared::Step::push || own_step(open.recorded, prepared->step) == prepared->next.get();
+  Prepared recorded = follows ? *prepared : as_push(open.recorded, *prepared, edit);
+  if (Result<void> appended = open.journal.append(open.recorded, edit, recorded); !appended) return fail(std::move(appended.error()));
+  commit(open.recorded, std::move(recorded));
+  commit(open.document, std::move(*prepared));
+  return report;
+}
+
+Result<ipc::Saved> DocumentKeeper::save(const std::optional<std::string>& path) {
+  if (!open_) return fail("", "no document is open");
+  const fs::path own = open_->document.path;
+  if (!path || same_file(own, *path)) return save_in_place();
+  const fs::path target = *path;
+  if (!target.is_absolute()) return fail(*path, "the path must be absolute: the daemon has its own working folder");
+  return save_elsewhere(target);
+}
+
+Result<ipc::Saved> DocumentKeeper::save_elsewhere(const fs::path& target) {
+  const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, target);
+  if (!report) return fail(report.error());
+  open_->saved = open_->document.generations[open_->document.cursor];
+  return report_of(target, *report);
+}
+
+Result<ipc::Saved> DocumentKeeper::save_in_place() {
+  OpenDocument& open = *open_;
+  if (open.stuck) return fail(*open.stuck);
+  const fs::path intent = StateFolder::save_intent(open.journal.path());
+  if (Result<void> written = write_save_intent(intent, open.document); !written) return fail(std::move(written.error()));
+  const Result<mesh::deck::SaveReport> report = mesh::document::save(open.document, open.document.path);
+  std::error_code problem;
+  if (!report) {
+    // Some files may have been replaced before the error; then the next opening finishes the save.
+    std::vector<Warning> none;
+    const Result<OpenedDeck> now = mesh::deck::open(open.document.path);
+    if (now && now->deck->content == open.document.deck->content) fs::remove(intent, problem);
+    return fail(report.error());
+  }
+  open.saved = open.document.generations[open.document.cursor];
+  ipc::Saved saved = report_of(open.document.path, *report);
+  if (report->files_written.empty()) {
+    fs::remove(intent, problem);
+    return saved;
+  }
+  if (const Result<void> rebased = rebase(); !rebased) {
+    open.stuck = Error{rebased.error().file, rebased.error().line,
+                       "after saving, no new journal could be started: " + rebased.error().message +
+                           "; the deck is saved: close it and open it again to go on editing"};
+    saved.notes.push_back(open.stuck->text());
+  }
+  return saved;
+}
+
+/// After a save in place: the deck on disk is another one, so its text is read again and a new journal begins. The history stays.
+Result<void> DocumentKeeper::rebase() {
+  OpenDocument& open = *open_;
+  Result<OpenedDeck> opened = mesh::deck::open(open.document.path);
+  if (!opened) return fail(std::move(opened.error()));
+  if (opened->model.node_count() != open.document.opened->model.node_count() ||
+      opened->model.shell_count() != open.document.opened->model.shell_count())
+    return fail(open.document.path.string(), "something else changed the deck while it was saved");
+  OpenOptions options;
+  options.length_unit = open.document.settings.length_unit;
+  options.target_size = open.document.settings.target_size;
+  if (open.request.criteria) options.criteria = *open.request.criteria;
+  options.history_bytes = open.document.history_bytes;
+  Result<Document> fresh = mesh::document::open(open.document.path, std::move(*opened), options);
+  if (!fresh) return fail(std::move(fresh.error()));
+  fresh->next_number = open.document.next_number;
+  Result<Journal> journal = start_journal(folder_, folder_.journal(fresh->path, fresh->deck->content), *fresh);
+  if (!journal) return fail(std::move(journal.error()));
+  if (Result<void> carried = carry_over(open.document.current(), *fresh, *journal); !carried) return carried;
+
+  const fs::path old = open.journal.path();
+  open.journal = std::move(*journal);
+  open.document.deck = fresh->deck;
+  open.document.opened = fresh->opened;
+  open.document.next_number = std::max(open.document.next_number, fresh->next_number);
+  open.recorded = std::move(*fresh);
+  std::error_code problem;
+  if (const Result<fs::path> retired = folder_.retire(old, ".saved"); !retired) return fail(retired.error());
+  fs::remove(StateFolder::save_intent(old), problem);
+  return {};
+}
+
+Result<void> DocumentKeeper::close(bool discard) {
+  if (!open_) return fail("", "no document is open");
+  if (!discard && changed()) return fail(open_->document.path.string(), "has unsaved edits: save it, or close it with discard");
+  if (Result<void> gone = let_go(); !gone) return gone;
+  folder_.forget_session();
+  return {};
+}
+
+/// The journal of a document that is given up isn't in the way of the next opening.
+Result<void> DocumentKeeper::let_go() {
+  const fs::path path = open_->journal.path();
+  const bool empty = open_->journal.records() == 0;
+  const bool lost = changed();
+  std::error_code problem;
+  if (empty)
+    fs::remove(path, problem);
+  else if (const Result<fs::path> retired = folder_.retire(path, lost ? ".discarded" : ".closed"); !retired)
+    return fail(retired.error());
+  open_.reset();
+  return {};
+}
+
+bool DocumentKeeper::changed() const { return open_ && differs(*open_->saved, open_->document.current()); }
+
+ipc::State DocumentKeeper::state() const {
+  ipc::State state;
+  if (!open_) return state;
+  const Document& document = open_->document;
+  const Generation& current = document.current();
+  state.open = true;
+  state.path = document.path.string();
+  state.length_unit = std::string(name(document.settings.length_unit));
+  state.length_unit_guessed = document.settings.length_unit_guessed;
+  state.target_size = document.settings.target_size;
+  state.target_size_guessed = document.settings.target_size_guessed;
+  state.generation = current.number;
+  state.nodes = current.model.node_count();
+  state.shells = current.model.shell_count();
+  state.parts = current.model.parts->size();
+  state.selected_nodes = current.selected_nodes;
+  state.counts = current.counts;
+  state.can_undo = document.can_undo();
+  state.can_redo = document.can_redo();
+  state.changed = changed();
+  state.recovered_edits = open_->recovered;
+  state.warnings = document.deck->warnings;
+  state.warnings.insert(state.warnings.end(), open_->warnings.begin(), open_->warnings.end());
+  return state;
+}
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,63 @@
+// The open document, its journal and its deck on disk, kept in step: an edit is on disk before it counts, a save gives the
+// journal a new base, a restart brings everything back. One thread; no sockets.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "base/progress.h"
+#include "daemon/modeld/state_folder.h"
+#include "ipc/messages.h"
+#include "mesh/document/document.h"
+#include "mesh/document/journal.h"
+
+namespace prismesh::modeld {
+
+class DocumentKeeper {
+ public:
+  explicit DocumentKeeper(StateFolder folder) : folder_(std::move(folder)) {}
+
+  /// Opens a deck and brings back what its journal holds. A document that is open already is given up, which takes that it has
+  /// no unsaved edits; on an error it stays. Errors: those of the deck, of the journal, unsaved edits.
+  Result<void> open(const ipc::Open& request, const Progress& progress);
+  /// What was open when the last life ended; false if nothing was. Errors: as `open`; a deck that ended several lives is left.
+  Result<bool> reopen(const Progress& progress);
+  /// Prepares, journals, commits.
+  Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit);
+  Result<ipc::Saved> save(const std::optional<std::string>& path);
+  Result<void> close(bool discard);
+
+  bool is_open() const { return open_.has_value(); }
+  const mesh::document::Document& document() const { return open_->document; }
+  /// Whether positions differ from what was last opened or saved.
+  bool changed() const;
+  /// All but `busy`.
+  ipc::State state() const;
+
+ private:
+  struct OpenDocument {
+    ipc::Open request;
+    mesh::document::Document document;
+    /// What recovery from the deck on disk and the journal would give. The same as `document` until a save in place: then the
+    /// document keeps its history, while the journal's begins with the saved deck.
+    mesh::document::Document recorded;
+    mesh::document::Journal journal;
+    std::shared_ptr<const mesh::document::Generation> saved;  ///< what `changed` compares with
+    std::uint64_t recovered = 0;
+    std::vector<mesh::deck::Warning> warnings;  ///< beside the deck's
+    std::optional<Error> stuck;                 ///< why no edit can be journalled any more
+  };
+
+  Result<OpenDocument> load(const ipc::Open& request, const Progress& progress);
+  Result<mesh::deck::OpenedDeck> read_deck(const std::filesystem::path& path, const Progress& progress,
+                                           std::vector<mesh::deck::Warning>& warnings);
+  Result<ipc::Saved> save_elsewhere(const std::filesystem::path& target);
+  Result<ipc::Saved> save_in_place();
+  Result<void> rebase();
+  Result<void> let_go();
+
+  StateFolder folder_;
+  std::optional<OpenDocument> open_;
+};
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,35 @@
+// A drag as the worker carries it: the mesh's drag and the preview its frames go to.
+#pragma once
+
+#include "ipc/messages.h"
+#include "ipc/preview.h"
+#include "mesh/document/drag.h"
+
+namespace prismesh::modeld {
+
+class DragSession {
+ public:
+  /// Errors as mesh::document::Drag::begin; no memory for the preview.
+  static Result<DragSession> begin(std::uint64_t number, const mesh::document::Document& document, const mesh::document::Edit& edit);
+
+  ipc::DragBegun begun() const;
+  const ipc::Descriptor& preview() const { return preview_.descriptor(); }
+  /// Works the displacement out and publishes the frame.
+  void step(const ipc::DragStep& step);
+  bool moved() const { return moved_; }
+  /// What the drag stands for at its last step.
+  mesh::document::Edit edit() const { return drag_.edit(); }
+
+ private:
+  DragSession(std::uint64_t number, std::shared_ptr<const mesh::document::Generation> base, mesh::document::Drag drag,
+              ipc::PreviewWriter preview)
+      : number_(number), base_(std::move(base)), drag_(std::move(drag)), preview_(std::move(preview)) {}
+
+  std::uint64_t number_ = 0;
+  std::shared_ptr<const mesh::document::Generation> base_;
+  mesh::document::Drag drag_;
+  ipc::PreviewWriter preview_;
+  bool moved_ = false;
+};
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,40 @@
+// A connection that comes back: modeld may be restarted at any time, and whoever was connected goes on.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "ipc/client.h"
+
+namespace prismesh::ipc {
+
+/// For programs with a loop of their own: ask for the client in each turn, say when a call of it failed.
+class ReconnectingClient {
+ public:
+  ReconnectingClient(std::filesystem::path socket, std::string program) : socket_(std::move(socket)), program_(std::move(program)) {}
+
+  /// The connected client, or null. Tries to connect at most every so often: at once after a loss, then after 50 ms, twice
+  /// that, up to a second. A client that is new to the caller (`connections` has changed) knows no snapshots or drags of the old.
+  Client* client();
+  /// As `client`, trying again for up to `patience`. Errors: why the last try failed.
+  Result<Client*> wait(std::chrono::milliseconds patience);
+  /// A call failed because the daemon is gone: the connection is given up.
+  void lost(const Error& why);
+
+  std::size_t connections() const { return connections_; }
+  /// Why there is no client.
+  const Error& trouble() const { return trouble_; }
+
+ private:
+  std::filesystem::path socket_;
+  std::string program_;
+  std::optional<Client> client_;
+  std::size_t connections_ = 0;
+  Error trouble_{"", 0, "not connected yet"};
+  std::chrono::steady_clock::time_point next_try_{};
+  std::chrono::milliseconds pause_{0};
+};
+
+}  // namespace prismesh::ipc
