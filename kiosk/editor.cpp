@@ -69,8 +69,7 @@ Result<void> Editor::follow() {
     take_model();
     if (other_document) fit();
   }
-  follow_drag();
-  return {};
+  return follow_drag();
 }
 
 void Editor::take_model() {
@@ -83,7 +82,7 @@ void Editor::take_model() {
   anchor_ = shown_->info().selected_nodes > 0 ? tools::anchor_of_selection(*renderer_.model(), last_clicked_) : std::nullopt;
 }
 
-void Editor::follow_drag() {
+Result<void> Editor::follow_drag() {
   const RemoteDrag* drag = link_.drag();
   if (drag == nullptr) {
     if (preview_shown_) renderer_.end_preview();
@@ -91,21 +90,22 @@ void Editor::follow_drag() {
     preview_sequence_ = 0;
     axis_taken_ = false;
     pull_.reset();
-    return;
+    return {};
   }
-  if (!drag->begun()) return;
+  if (!drag->begun()) return {};
   if (pull_ && !axis_taken_) {
     const ipc::DragBegun& facts = drag->facts();
     pull_->set_axis(aim(), mesh::Vec3(facts.grab_position[0], facts.grab_position[1], facts.grab_position[2]),
                     mesh::Vec3(facts.normal[0], facts.normal[1], facts.normal[2]));
     axis_taken_ = true;
   }
-  if (drag->frame().sequence == preview_sequence_) return;
+  if (drag->frame().sequence == preview_sequence_) return {};
   if (!preview_shown_) renderer_.begin_preview(drag->preview().nodes(), drag->preview().shells());
   preview_shown_ = true;
   preview_sequence_ = drag->frame().sequence;
-  renderer_.update_preview(drag->frame());
+  if (Result<void> updated = renderer_.update_preview(drag->frame()); !updated) return updated;
   trace_.line(fmt::format("drag shown {} warn {} fail {}", preview_sequence_, drag->frame().counts.warn, drag->frame().counts.fail));
+  return {};
 }
 
 void Editor::follow_notices() {

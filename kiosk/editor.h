@@ -78,7 +78,7 @@ class Editor {
   void cancel();
   void cancel_pull();
   void take_model();
-  void follow_drag();
+  Result<void> follow_drag();
   void follow_notices();
   std::optional<render::Handle> shown_handle() const;
 

@@ -34,7 +34,7 @@ Result<void> Screen::draw(unsigned framebuffer, std::optional<tools::Pixel> poin
   picture.overlay = [&](const render::EyeImage& image) {
     const bool columns = picture.profile.weave == stereo::Weave::columns && image.eye;
     const double shift = columns ? stereo::half_pixel_shift(*image.eye, image.display_width, picture.profile.swap_eyes) : 0;
-    gui_.draw({image.width, image.height}, shift);
+    gui_.draw({image.width, image.height}, {image.display_width, image.display_height}, shift);
   };
   const Result<render::DrawReport> report = renderer_.draw(picture, framebuffer, size_.width, size_.height);
   if (!report) return fail(report.error());

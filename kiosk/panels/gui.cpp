@@ -196,8 +196,8 @@ void Gui::layout(display::PixelSize picture, double seconds, const std::function
   state_->laid_out = true;
 }
 
-void Gui::draw(display::PixelSize target, double shift_x) const {
-  if (state_->laid_out) state_->renderer->draw(*ImGui::GetDrawData(), target, shift_x);
+void Gui::draw(display::PixelSize target, display::PixelSize picture, double shift_x) const {
+  if (state_->laid_out) state_->renderer->draw(*ImGui::GetDrawData(), target, picture, shift_x);
 }
 
 void draw_pointer(double x, double y) {

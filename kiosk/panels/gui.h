@@ -43,7 +43,7 @@ class Gui {
   /// Lays the panels out: `build` calls ImGui. `seconds`: since the last time.
   void layout(display::PixelSize picture, double seconds, const std::function<void()>& build);
   /// Draws what was laid out into the bound framebuffer (see GuiRenderer::draw).
-  void draw(display::PixelSize target, double shift_x) const;
+  void draw(display::PixelSize target, display::PixelSize picture, double shift_x) const;
 
  private:
   struct State;

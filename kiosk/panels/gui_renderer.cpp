@@ -169,8 +169,8 @@ void GuiRenderer::upload_fonts() {
   fonts.TexID = reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(state_->atlas));
 }
 
-void GuiRenderer::draw(const ImDrawData& data, display::PixelSize target, double shift_x) const {
-  const ImVec2 size = data.DisplaySize, origin = data.DisplayPos;
+void GuiRenderer::draw(const ImDrawData& data, display::PixelSize target, display::PixelSize picture, double shift_x) const {
+  const ImVec2 size(static_cast<float>(picture.width), static_cast<float>(picture.height)), origin = data.DisplayPos;
   if (size.x <= 0 || size.y <= 0 || target.width <= 0 || target.height <= 0) return;
   const SavedState saved;
   glDisable(GL_DEPTH_TEST);

@@ -22,9 +22,9 @@ class GuiRenderer {
   /// Takes the font atlas of the current ImGui context, which must have been built or changed since.
   void upload_fonts();
 
-  /// Draws into the bound framebuffer's lower left `target` pixels; data.DisplaySize is squeezed or stretched to fill them.
-  /// `shift_x` (normalised device coordinates) moves everything sideways: the half-pixel correction of an eye's columns.
-  void draw(const ImDrawData& data, display::PixelSize target, double shift_x) const;
+  /// Draws into the bound framebuffer's lower left `target` pixels, which stand for `picture` pixels of the display: it is squeezed to
+  /// fit. `shift_x` (normalised device coordinates) moves everything sideways: the half-pixel correction of an eye's columns.
+  void draw(const ImDrawData& data, display::PixelSize target, display::PixelSize picture, double shift_x) const;
 
  private:
   struct State;
