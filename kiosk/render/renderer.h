@@ -55,6 +55,7 @@ struct Picture {
   double eye_separation_mm = stereo::kMeanEyeSeparationMm;
   ColourMode colour = ColourMode::parts;
   bool element_edges = true;
+  bool outlines = true;  ///< free edges and creases
   bool quality_glyphs = true;
   bool selected_nodes = true;
   std::optional<Handle> handle;

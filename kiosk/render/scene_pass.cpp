@@ -116,7 +116,7 @@ void ScenePass::draw(const Picture& picture, ModelLayer& model, const EyeView& e
     model.textures().connectivity().bind(unit::kConnectivity);
     model.textures().surface().bind(unit::kSurface);
     draw_shells(picture, model, frame);
-    draw_model_lines(model, frame);
+    draw_model_lines(picture, model, frame);
     if (model.previewing()) draw_preview(model, frame);
     model.textures().positions().bind(unit::kPositions);
     if (picture.selected_nodes) draw_selected(model, frame);
@@ -211,13 +211,15 @@ void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, co
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(lines.count * 6));
 }
 
-void ScenePass::draw_model_lines(const ModelLayer& model, const Frame& frame) const {
+void ScenePass::draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const {
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
   const RowTexture& positions = model.textures().positions();
-  draw_lines(model.creases(), positions, frame, kCreaseHalfWidth, ink(kCreaseColour, 0.55F));
-  draw_lines(model.borders(), positions, frame, kBorderHalfWidth, ink(kBorderColour, 0.85F));
+  if (picture.outlines) {
+    draw_lines(model.creases(), positions, frame, kCreaseHalfWidth, ink(kCreaseColour, 0.55F));
+    draw_lines(model.borders(), positions, frame, kBorderHalfWidth, ink(kBorderColour, 0.85F));
+  }
   glDepthMask(GL_TRUE);
   draw_lines(model.line_elements(), positions, frame, kLineElementHalfWidth, ink(kLineElementColour, 1.0F));
 }

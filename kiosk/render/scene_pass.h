@@ -36,7 +36,7 @@ class ScenePass {
   void draw_shells(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width,
                   const Eigen::Vector4f& ink) const;
-  void draw_model_lines(const ModelLayer& model, const Frame& frame) const;
+  void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_preview(const ModelLayer& model, const Frame& frame) const;
   void draw_selected(const ModelLayer& model, const Frame& frame) const;
   void draw_glyphs(const Instances& glyphs, const Frame& frame) const;
