@@ -1,0 +1,170 @@
+#include "mesh/quality/criteria.h"
+
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace prismesh::mesh::quality {
+namespace {
+
+using ::testing::HasSubstr;
+
+Criteria parsed(const std::string& text) {
+  const Result<Criteria> criteria = parse_criteria(text, "mine.toml");
+  EXPECT_TRUE(criteria) << (criteria ? "" : criteria.error().text());
+  return criteria.value_or(Criteria{});
+}
+
+Error refused(const std::string& text) {
+  const Result<Criteria> criteria = parse_criteria(text, "mine.toml");
+  EXPECT_FALSE(criteria) << text;
+  return criteria ? Error{} : criteria.error();
+}
+
+/// A quad's values that every criterion likes, for a target size of 10.
+Values good_quad() {
+  Values values;
+  values.fill(std::numeric_limits<float>::quiet_NaN());
+  const auto set = [&](Metric m, float value) { values[int(m)] = value; };
+  set(Metric::warpage, 0);
+  set(Metric::aspect, 1);
+  set(Metric::skew, 0);
+  set(Metric::jacobian, 1);
+  set(Metric::taper, 0);
+  set(Metric::min_angle_quad, 90);
+  set(Metric::max_angle_quad, 90);
+  set(Metric::min_length, 10);
+  set(Metric::max_length, 10);
+  return values;
+}
+Values good_triangle() {
+  Values values = good_quad();
+  for (const Metric m : {Metric::warpage, Metric::jacobian, Metric::taper, Metric::min_angle_quad, Metric::max_angle_quad})
+    values[int(m)] = std::numeric_limits<float>::quiet_NaN();
+  values[int(Metric::min_angle_tri)] = values[int(Metric::max_angle_tri)] = 60;
+  return values;
+}
+
+struct Case {
+  Metric metric;
+  float ok, warn, fail;
+};
+
+TEST(Criteria, the_default_has_the_thresholds_it_documents) {
+  const Case cases[] = {
+      {Metric::warpage, 12.9f, 14, 15.1f},     {Metric::aspect, 4.3f, 4.5f, 5.1f},       {Metric::skew, 33, 35, 41},
+      {Metric::jacobian, 0.71f, 0.65f, 0.59f}, {Metric::taper, 0.49f, 0.55f, 0.61f},     {Metric::min_angle_quad, 46.5f, 45, 39},
+      {Metric::max_angle_quad, 133, 135, 141}, {Metric::min_angle_tri, 34.5f, 33, 29},   {Metric::max_angle_tri, 111, 113, 121},
+      {Metric::min_length, 4.1f, 3.9f, 1.9f},  {Metric::max_length, 14.9f, 15.1f, 20.1f}};
+  for (const Case& one : cases) {
+    const bool triangle = one.metric == Metric::min_angle_tri || one.metric == Metric::max_angle_tri;
+    const auto grade = [&](float value) {
+      Values values = triangle ? good_triangle() : good_quad();
+      values[int(one.metric)] = value;
+      return judge(values, default_criteria(), 10.0);
+    };
+    const auto bit = static_cast<std::uint16_t>(1u << int(one.metric));
+    EXPECT_EQ(grade(one.ok), ShellState()) << name(one.metric);
+    EXPECT_EQ(grade(one.warn), (ShellState{bit, 0})) << name(one.metric);
+    EXPECT_EQ(grade(one.fail), (ShellState{bit, bit})) << name(one.metric);
+    EXPECT_EQ(grade(one.warn).grade(), Grade::warn);
+    EXPECT_EQ(grade(one.fail).grade(), Grade::fail);
+  }
+  EXPECT_EQ(default_criteria().warn_triangles_percent, 10);
+  EXPECT_EQ(default_criteria().fail_triangles_percent, 15);
+}
+
+TEST(Criteria, a_metric_that_is_not_named_is_not_judged) {
+  Values values = good_quad();
+  values[int(Metric::warpage)] = 170;
+  values[int(Metric::aspect)] = 1e9f;
+  EXPECT_EQ(judge(values, parsed("[metrics.skew]\nfail_above = 40"), 10.0), ShellState());
+}
+
+TEST(Criteria, what_fails_also_warns) {
+  Values values = good_quad();
+  values[int(Metric::skew)] = 41;
+  const ShellState state = judge(values, parsed("[metrics.skew]\nfail_above = 40"), 10.0);
+  EXPECT_EQ(state.warn, state.fail);
+  EXPECT_EQ(state.grade(), Grade::fail);
+}
+
+TEST(Criteria, quads_and_triangles_apart_and_lengths_by_thickness) {
+  const Criteria criteria = parsed(
+      "name = \"published\"\n[metrics.skew.quad]\nfail_above = 48\n[metrics.skew.triangle]\nfail_above = 60\n"
+      "[metrics.min_length]\nfail_below_thicknesses = 1.1\n");
+  EXPECT_EQ(criteria.name, "published");
+  Values quad = good_quad(), triangle = good_triangle();
+  quad[int(Metric::skew)] = triangle[int(Metric::skew)] = 50;
+  EXPECT_EQ(judge(quad, criteria, 10.0).grade(), Grade::fail);
+  EXPECT_EQ(judge(triangle, criteria, 10.0).grade(), Grade::ok);
+  triangle[int(Metric::skew)] = 61;
+  EXPECT_EQ(judge(triangle, criteria, 10.0).grade(), Grade::fail);
+  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 9.0).grade(), Grade::ok);
+  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 9.2).grade(), Grade::fail);
+  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 0.0).grade(), Grade::ok);  // unknown
+}
+
+TEST(Criteria, mistakes_are_named_with_their_line) {
+  EXPECT_EQ(refused("[metrics.warpag]\nwarn_above = 3").text(),
+            "mine.toml:1: the list of metrics has no \"warpag\"; the nearest known is \"warpage\"");
+  EXPECT_EQ(refused("\n[metrics.warpage]\nwarn_abov = 3").text(),
+            "mine.toml:3: metrics.warpage has no \"warn_abov\"; the nearest known is \"warn_above\"");
+  EXPECT_EQ(refused("name = \"x\"\n[metrics.skew]\nfail_above = \"40\"").text(), "mine.toml:3: metrics.skew: fail_above must be a number");
+  EXPECT_EQ(refused("[metrics.skew]\nfail_above = nan").line, 2);
+  EXPECT_THAT(refused("[metrics.skew]\nwarn_above = 50\nfail_above = 40").text(),
+              HasSubstr("mine.toml:2: metrics.skew: warn_above lies beyond"));
+  EXPECT_THAT(refused("[metrics.taper.triangel]\nfail_above = 1").text(), HasSubstr("\"triangle\""));
+  EXPECT_THAT(refused("metrics = 3").text(), HasSubstr("must be a table"));
+  const Error syntax = refused("[metrics.skew]\nfail_above = = 4");
+  EXPECT_EQ(syntax.line, 2);
+  EXPECT_THAT(syntax.message, HasSubstr("not TOML"));
+}
+
+TEST(Criteria, published_sets_load) {
+  EXPECT_FALSE(load_criteria("/nonexistent/criteria.toml"));
+  const std::filesystem::path folder = std::filesystem::path(PRISMESH_SOURCE_FOLDER) / "mesh/quality/criteria";
+  std::size_t sets = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".toml") continue;
+    const Result<Criteria> criteria = load_criteria(entry.path());
+    ASSERT_TRUE(criteria) << criteria.error().text();
+    EXPECT_FALSE(criteria->name.empty());
+    ++sets;
+  }
+  EXPECT_GE(sets, 2u);
+}
+
+TEST(Criteria, points_are_judged_as_shells_are) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(0, 2);
+  std::vector<Vec3> moving, fixed;
+  for (int i = 0; i < 60; ++i) {
+    moving.emplace_back(anywhere(random), anywhere(random), 0.2 * anywhere(random));
+    fixed.emplace_back(anywhere(random), anywhere(random), 0.2 * anywhere(random));
+  }
+  std::vector<std::array<std::int32_t, 4>> corners;
+  std::vector<float> thickness;
+  std::uniform_int_distribution<std::int32_t> pick(-60, 59);
+  for (int s = 0; s < 500; ++s) {
+    std::array<std::int32_t, 4> c = {pick(random), pick(random), pick(random), pick(random)};
+    if (s % 3 == 0) c[3] = c[2];
+    corners.push_back(c);
+    thickness.push_back(static_cast<float>(anywhere(random)));
+  }
+  const Criteria criteria = parsed("[metrics.min_length]\nfail_below_thicknesses = 0.5\n[metrics.aspect]\nwarn_above = 2\n");
+  std::vector<ShellState> states(corners.size());
+  judge_points(moving, fixed, corners, thickness, criteria, 1.0, states);
+  for (std::size_t s = 0; s < corners.size(); ++s) {
+    std::vector<Vec3> p;
+    for (std::size_t i = 0; i < (corners[s][3] == corners[s][2] ? 3u : 4u); ++i) {
+      const std::int32_t at = corners[s][i];
+      p.push_back(at >= 0 ? moving[static_cast<std::size_t>(at)] : fixed[static_cast<std::size_t>(~at)]);
+    }
+    EXPECT_EQ(states[s], judge(measure(p), criteria, 1.0, thickness[s])) << s;
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::quality
