@@ -54,6 +54,10 @@ Result<NewText> new_text(const Deck& deck, const Model& original, const Model& m
     const SourceFile& file = deck.files[run.file];
     const std::size_t offset = deck.node_line[node.value];
     const std::string_view line = line_at(file.bytes.text(), offset);
+    if (!model.position(node).allFinite())
+      return fail(
+          file.path.string(), lsdyna::line_number(file.bytes.text(), offset),
+          "node " + std::to_string(original.node_ids[node.value]) + " has been moved to a place that is no number; nothing was written");
     lsdyna::RewrittenCard card = lsdyna::rewrite_node_card(line, run.columns, original.position(node), model.position(node));
     if (card.by_parameter || original.node_holds[node.value] != 0)
       return fail(

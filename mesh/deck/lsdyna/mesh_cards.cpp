@@ -74,8 +74,9 @@ class PieceReader {
       std::int64_t id = 0;
       Vec3 position;
       const char* begin = text.data();
-      const bool fixed = text.size() > id_width && plain_integer(begin, begin + id_width, id) && id > 0 &&
-                         parse_real(text.substr(id_width, width), position[0]) &&
+      // A comma anywhere makes the card free format; inside the fields it fails to parse as columns anyway.
+      const bool fixed = text.size() > id_width && text.find(',', std::min(id_width + 3 * width, text.size())) == std::string_view::npos &&
+                         plain_integer(begin, begin + id_width, id) && id > 0 && parse_real(text.substr(id_width, width), position[0]) &&
                          parse_real(text.substr(std::min(id_width + width, text.size()), width), position[1]) &&
                          parse_real(text.substr(std::min(id_width + 2 * width, text.size()), width), position[2]);
       if (fixed)

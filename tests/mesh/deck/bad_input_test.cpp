@@ -1,0 +1,138 @@
+// What isn't a deck, or is a broken one: one clear sentence with file and line, and no harm done.
+#include <chrono>
+#include <thread>
+
+#include "tests/mesh/deck/deck_files.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+void expect_error(const Result<OpenedDeck>& opened, long line, std::string_view words) {
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().file.find("deck.k"), std::string::npos);
+  EXPECT_EQ(opened.error().line, line) << opened.error().text();
+  EXPECT_NE(opened.error().message.find(words), std::string::npos) << opened.error().text();
+}
+
+TEST(BadInput, NotThereOrAFolder) {
+  const DeckFolder folder;
+  expect_error(deck::open(folder / "deck.k"), 0, "can't be opened: No such file");
+  std::filesystem::create_directory(folder / "deck.k");
+  expect_error(deck::open(folder / "deck.k"), 0, "is a folder");
+}
+
+TEST(BadInput, SaysWhatItLooksLike) {
+  const DeckFolder folder;
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "an empty file"},
+      {" \n\n", "an empty file"},
+      {"Dear all,\nplease find attached\n", "text without a single keyword"},
+      {std::string("PK\x03\x04zip", 7), "a ZIP archive"},
+      {"\x1f\x8b\x08gz", "a gzip file"},
+      {"%PDF-1.4", "a PDF document"},
+      {"solid part\n facet normal 0 0 1\n", "an STL file"},
+      {std::string(1000, '\0'), "a binary file"},
+      {"\xff\xfe*\0N\0", "UTF-16"},
+      {"GRID,1,,0.,0.,0.\nCQUAD4,1,1,1,2,3,4\n", "looks like a Nastran deck; this version reads LS-DYNA"},
+      {"#RADIOSS STARTER\n/BEGIN\n", "looks like a Radioss deck; this version reads LS-DYNA"},
+      {"*HEADING\n** a comment\n*NODE, NSET=ALL\n1,0.,0.,0.\n", "looks like an Abaqus deck; this version reads LS-DYNA"}};
+  for (const auto& [text, words] : cases) expect_error(folder.open(text), 0, words);
+}
+
+TEST(BadInput, CardsThatCantBeReadAreNamed) {
+  const DeckFolder folder;
+  expect_error(folder.open("*KEYWORD\n*NODE\n       1             1.0\n       2             abc             0.0\n*END\n"), 4,
+               "expected the x coordinate of node 2 but found \"abc\"");
+  expect_error(folder.open("*NODE\n       x             1.0\n"), 2, "expected a node id but found \"x\"");
+  expect_error(folder.open("*NODE\n      -5             1.0\n"), 2, "a node needs an id above 0");
+  expect_error(folder.open("*NODE\n                     1.0\n"), 2, "a node needs an id above 0");
+  expect_error(folder.open("*NODE\n1,0.,1.2.3,0.\n"), 2, "expected the y coordinate of node 1 but found \"1.2.3\"");
+  expect_error(folder.open("*NODE\n1,0.,0.,1e999\n"), 2, "the z coordinate");
+  expect_error(folder.open("*NODE\n1,0.,0.,0.\n*ELEMENT_SHELL\n       1       1       1       y       1\n"), 4, "found \"y\"");
+  expect_error(folder.open("*ELEMENT_SOLID\n       1       1\n       1   &&*()       3\n*NODE\n1,0.,0.,0.\n*ELEMENT_MASS\nm,1\n"), 7,
+               "found \"m\"");
+}
+
+TEST(BadInput, AnErrorInAnIncludeNamesTheInclude) {
+  const DeckFolder folder;
+  folder.write("inc.k", "*NODE\n\n1,zero\n");
+  const auto opened = folder.open("*INCLUDE\ninc.k\n");
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().file.find("inc.k"), std::string::npos);
+  EXPECT_EQ(opened.error().line, 3);
+}
+
+TEST(BadInput, ACutOffDeckIsWarnedOf) {
+  const DeckFolder folder;
+  const auto opened = folder.open("*KEYWORD\n*NODE\n       1             1.0\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(warning(*opened->deck, "no-end").count, 1u);
+}
+
+TEST(BadInput, EncryptedBlocksPassThrough) {
+  const DeckFolder folder;
+  const std::string armor = "-----BEGIN PGP MESSAGE-----\nVersion: 1\n\njA0ECQMC7x3\n*=2Fab\n-----END PGP MESSAGE-----\n";
+  std::string body = armor;
+  body.erase(body.find("*=2Fab\n"), 7);
+  const std::string text = "*KEYWORD\n*NODE\n       1             1.0\n" + body + "       2             2.0\n*ELEMENT_SHELL\n" + body +
+                           "       1       1       1       2       3\n*NODE\n3,3.,0.,0.\n*END\n";
+  const auto opened = folder.open(text);
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->model.node_count(), 3u);
+  EXPECT_EQ(opened->model.shell_count(), 1u);
+  ASSERT_TRUE(save(*opened->deck, opened->model, opened->model, folder / "out/deck.k"));
+  EXPECT_EQ(content(folder / "out/deck.k"), text);
+  const auto open_ended = folder.open("*NODE\n1,1.,0.,0.\n-----BEGIN PGP MESSAGE-----\nabc\n*END\n");
+  ASSERT_OPENED(open_ended);
+  EXPECT_EQ(open_ended->model.node_count(), 1u);
+}
+
+TEST(BadInput, HostileTextIsReadInBoundedTimeAndMemory) {
+  const DeckFolder folder;
+  const std::string cases[] = {
+      "*KEYWORD\n*NODE\n" + std::string(10 << 20, '1') + "\n*END\n",
+      "*KEYWORD\n*NODE\n" + std::string(10 << 20, ',') + "\n*END\n",
+      "*KEYWORD\n" + std::string(10 << 20, '*') + "\n*END\n",
+      "*KEYWORD\n*INCLUDE\n" + std::string(1 << 20, 'x') + "\n*END\n",
+      "*KEYWORD\n*PARAMETER_EXPRESSION\nR       a (" + std::string(1 << 20, '(') + "\n*END\n",
+      "*KEYWORD\n*NODE\n" + std::string(1 << 20, '\0') + "\n*END\n",
+      "*KEYWORD\n*SECTION_SHELL\n         1         2       0.0   9.9E+99                   1\n*CONTROL_TIMESTEP\n "
+      "1e300,1e300,9e17\n*END\n",
+  };
+  for (const std::string& text : cases) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto opened = folder.open(text);
+    EXPECT_TRUE(opened || !opened.error().message.empty());
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << text.substr(0, 40);
+  }
+  std::string blocks = "*KEYWORD\n";
+  for (int i = 0; i < 300000; ++i) blocks += "*NODE\n";
+  EXPECT_TRUE(folder.open(blocks + "*END\n"));
+}
+
+TEST(Progress, GoesUpAndStopsWhenTold) {
+  const DeckFolder folder;
+  std::string text = "*NODE\n";
+  for (int i = 1; i < 60000; ++i) text += std::to_string(i) + ",1.,2.,3.,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n";
+  const auto path = folder.write("deck.k", text);
+  std::vector<double> told;
+  const auto thread = std::this_thread::get_id();
+  const auto opened = deck::open(path, [&](double fraction) {
+    EXPECT_EQ(std::this_thread::get_id(), thread);
+    told.push_back(fraction);
+    return true;
+  });
+  ASSERT_OPENED(opened);
+  ASSERT_GE(told.size(), 3u);
+  EXPECT_EQ(told.front(), 0.0);
+  EXPECT_EQ(told.back(), 1.0);
+  for (std::size_t stop_at = 0; stop_at < 4; ++stop_at) {
+    std::size_t calls = 0;
+    const auto stopped = deck::open(path, [&](double) { return calls++ < stop_at; });
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().message, cancelled().message);
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::deck

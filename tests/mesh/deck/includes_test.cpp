@@ -1,0 +1,179 @@
+// Includes: where they are looked for, what is held, what is said when one lacks; and parameters across them.
+#include "mesh/deck/lsdyna/parameters.h"
+#include "tests/mesh/deck/deck_files.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+std::string node(int id) { return "*NODE\n" + std::to_string(id) + "," + std::to_string(id) + ".,0.,0.\n"; }
+
+TEST(Includes, AreReadWhereTheyStand) {
+  const DeckFolder folder;
+  folder.write("a.k", "*KEYWORD\n" + node(2) + "*END\n" + node(99));
+  folder.write("sub/b.k", node(4) + "*INCLUDE\n../c.k\n");
+  folder.write("c.k", node(5));
+  const auto opened = folder.open("*KEYWORD\n" + node(1) + "*INCLUDE\na.k\n" + node(3) + "*include\nsub/b.k\n" + node(6) + "*END\n");
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  ASSERT_EQ(model.node_count(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(model.node_ids[i], static_cast<std::int64_t>(i + 1));
+  const Deck& deck = *opened->deck;
+  ASSERT_EQ(deck.files.size(), 4u);
+  EXPECT_EQ(deck.files[0].relative, "deck.k");
+  EXPECT_EQ(deck.files[1].relative, "a.k");
+  EXPECT_EQ(deck.files[2].relative, "sub/b.k");
+  EXPECT_EQ(deck.files[3].relative, "c.k");
+  EXPECT_EQ(deck.node_runs[deck.run_of(model.find_node(5))].file, 3u);
+  EXPECT_TRUE(deck.warnings.empty());
+}
+
+TEST(Includes, NamesGoOnAfterAPlusAndCommentsDontCount) {
+  const DeckFolder folder;
+  folder.write("a long name.k", node(1));
+  folder.write("win/b.k", node(2));
+  const auto opened = folder.open("*INCLUDE\n$ a comment\na lo +\nng name.k\n*INCLUDE\nwin\\b.k\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->model.node_count(), 2u);
+}
+
+TEST(Includes, AreFoundAlongThePaths) {
+  const DeckFolder folder;
+  folder.write("models/door.k", node(1));
+  folder.write("more/hood.k", node(2));
+  const auto opened = folder.open("*INCLUDE_PATH_RELATIVE\nmodels\n*INCLUDE_PATH\nnowhere\n" + (folder / "more").string() +
+                                  "\n*INCLUDE\ndoor.k\n*INCLUDE\nhood.k\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->model.node_count(), 2u);
+  EXPECT_EQ(opened->deck->files[1].relative, "models/door.k");
+}
+
+TEST(Includes, MissingOnesAreWarnedOf) {
+  const DeckFolder folder;
+  const auto opened = folder.open("*KEYWORD\n*INCLUDE\nlost.k\n*INCLUDE\ngone.k\n" + node(1) + "*END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->deck->missing_files, (std::vector<std::string>{"lost.k", "gone.k"}));
+  const Warning missing = warning(*opened->deck, "missing-include");
+  EXPECT_EQ(missing.count, 2u);
+  EXPECT_EQ(missing.line, 3);
+  EXPECT_EQ(missing.message, "the include file lost.k isn't there");
+}
+
+TEST(Includes, CirclesEndAndHoldTheirNodes) {
+  const DeckFolder folder;
+  folder.write("a.k", node(1) + "*INCLUDE\nb.k\n");
+  folder.write("b.k", node(2) + "*INCLUDE\na.k\n*INCLUDE\ndeck.k\n");
+  const auto opened = folder.open("*INCLUDE\na.k\n" + node(3));
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->model.node_count(), 3u);
+  EXPECT_EQ(warning(*opened->deck, "circular-include").count, 2u);
+}
+
+TEST(Includes, NodesOfAFileUsedTwiceAreHeld) {
+  const DeckFolder folder;
+  folder.write("twice.k", node(1) + "*INCLUDE\ninner.k\n");
+  folder.write("inner.k", node(2));
+  folder.write("once.k", node(3));
+  const auto opened = folder.open("*INCLUDE\ntwice.k\n*INCLUDE\nonce.k\n*INCLUDE\ntwice.k\n" + node(4));
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  ASSERT_EQ(model.node_count(), 4u);
+  EXPECT_EQ(model.node_holds[model.find_node(1).value], kHeldByInclude);
+  EXPECT_EQ(model.node_holds[model.find_node(2).value], kHeldByInclude);
+  EXPECT_EQ(model.node_holds[model.find_node(3).value], 0);
+  EXPECT_EQ(model.node_holds[model.find_node(4).value], 0);
+  EXPECT_EQ(warning(*opened->deck, "repeated-include").count, 1u);
+}
+
+TEST(Includes, DeepNestingEndsWithAWarning) {
+  const DeckFolder folder;
+  for (int i = 0; i < 100; ++i) folder.write("f" + std::to_string(i) + ".k", node(i + 2) + "*INCLUDE\nf" + std::to_string(i + 1) + ".k\n");
+  const auto opened = folder.open(node(1) + "*INCLUDE\nf0.k\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(warning(*opened->deck, "deep-include").count, 1u);
+  EXPECT_EQ(opened->model.node_count(), 65u);
+}
+
+TEST(Includes, TransformedOnesAreNotReadButKept) {
+  const DeckFolder folder;
+  folder.write("moved.k", node(1));
+  folder.write("same.k", node(2));
+  const auto opened = folder.open(
+      "*INCLUDE_TRANSFORM\nmoved.k\n         0         0         0\n         0\n       0.0       0.0       0.0                   0\n       "
+      "  1\n"
+      "*INCLUDE_TRANSFORM\nsame.k\n         0         0         0\n         0\n       1.0       1.0       1.0                   1\n        "
+      " 0\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->model.node_count(), 1u);
+  EXPECT_TRUE(opened->model.find_node(2).valid()) << "a transformation that does nothing is a plain include";
+  EXPECT_EQ(warning(*opened->deck, "transformed-include").count, 1u);
+  EXPECT_EQ(opened->deck->files.size(), 3u);
+}
+
+TEST(Parameters, StandWhereANumberIsExpected) {
+  const DeckFolder folder;
+  const auto opened = folder.open(
+      "*PARAMETER\n"
+      "R    width      12.5I    first         7\n"
+      "rheight,3.25,iPart,9\n"
+      "*NODE\n"
+      "  &first          &WIDTH         -&width             1.0\n"
+      "8,&height,0.,&width\n"
+      "       9             1.0\n"
+      "*ELEMENT_SHELL\n"
+      "       1   &part  &first       8       9\n");
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  EXPECT_EQ(position_of(model, 7), Vec3(12.5, -12.5, 1));
+  EXPECT_EQ(position_of(model, 8), Vec3(3.25, 0, 12.5));
+  EXPECT_EQ(model.node_holds[0], kHeldByParameter);
+  EXPECT_EQ(model.node_holds[2], 0);
+  EXPECT_EQ((*model.parts)[model.shell_parts[0].value].id, 9);
+}
+
+TEST(Parameters, LocalOnesEndWithTheirFile) {
+  const DeckFolder folder;
+  folder.write("a.k", "*PARAMETER_LOCAL\nRv          5.0\n*NODE\n1,&v,&g\n*PARAMETER\nRlate       8.0\n");
+  folder.write("b.k", "*NODE\n2,&v,&g,&late\n");
+  const auto opened = folder.open("*PARAMETER\nRg          2.0\nRv          1.0\n*INCLUDE\na.k\n*INCLUDE\nb.k\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(position_of(opened->model, 1), Vec3(5, 2, 0));
+  EXPECT_EQ(position_of(opened->model, 2), Vec3(1, 2, 8));
+}
+
+TEST(Parameters, ThatLackLeaveTheCardOutAndAreWarnedOf) {
+  const DeckFolder folder;
+  const auto opened = folder.open("*NODE\n1,&nowhere,0.,0.\n2,1.,0.,0.\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->model.node_count(), 1u);
+  EXPECT_EQ(warning(*opened->deck, "undefined-parameter").count, 1u);
+  EXPECT_EQ(warning(*opened->deck, "undefined-parameter").line, 2);
+}
+
+TEST(Parameters, ExpressionsAreArithmetic) {
+  const DeckFolder folder;
+  const auto opened = folder.open(
+      "*PARAMETER\nR    tEnd       5.0\n"
+      "*PARAMETER_EXPRESSION\n"
+      "R     one  TEnd/100.0\n"
+      "R     two  tEnd*2./3.\n"
+      "R   three  -(1.5+&one)**2 + max(2,\n"
+      "           sqrt(16.0))\n"
+      "*NODE\n1,&one,&two,&three\n");
+  ASSERT_OPENED(opened);
+  EXPECT_DOUBLE_EQ(position_of(opened->model, 1).x(), 0.05);
+  EXPECT_DOUBLE_EQ(position_of(opened->model, 1).y(), 10.0 / 3);
+  EXPECT_DOUBLE_EQ(position_of(opened->model, 1).z(), -1.55 * 1.55 + 4);
+}
+
+TEST(Expressions, ThatAreNoneHaveNoValue) {
+  const lsdyna::Parameters none;
+  for (const char* text : {"", "1+", "(1", "1)", "foo", "foo(1)", "1 2", "1/0", "sqrt(-1)", "&"})
+    EXPECT_FALSE(lsdyna::evaluate(text, none)) << text;
+  EXPECT_FALSE(lsdyna::evaluate(std::string(100000, '('), none));
+  EXPECT_FALSE(lsdyna::evaluate(std::string(100000, '-') + "1", none));
+  EXPECT_EQ(lsdyna::evaluate("2**3**2", none), 512);
+  EXPECT_EQ(lsdyna::evaluate(" 1.5E+1 - 2*3 ", none), 9);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::deck
