@@ -173,20 +173,20 @@ class March {
     // the base lies on the x axis from 0 to t.base, the tip above it
     const double x = (t.a_tip * t.a_tip + t.base * t.base - t.b_tip * t.b_tip) / (2 * t.base);
     const double y = std::sqrt(std::max(0.0, t.a_tip * t.a_tip - x * x));
-    if (source_[t.a] != source_[t.b] || !cross_from_centre(t, x, y)) cross_as_plane(t, x, y);
+    if (centre_[t.a] == centre_[t.b])
+      cross_from_centre(t, x, y, centre_[t.a]);
+    else
+      cross_between_waves(t, x, y);
   }
 
-  /// The wave comes from one source: its centre is where the two distances meet below the base. False if they don't meet.
-  bool cross_from_centre(const Triangle& t, double x, double y) {
-    // a way that turned later has its centre nearer
-    const bool from_a = distance_[centre_[t.a]] >= distance_[centre_[t.b]];
-    const std::uint32_t centre = from_a ? centre_[t.a] : centre_[t.b];
+  /// The wave's centre is where the distances from the base's two ends meet below it. False if they don't meet.
+  bool cross_from_centre(const Triangle& t, double x, double y, std::uint32_t centre) {
     const double before = distance_[centre];
     const double a = distance_[t.a] - before;
     const double b = distance_[t.b] - before;
     const double centre_x = (a * a - b * b + t.base * t.base) / (2 * t.base);
     const double depth2 = a * a - centre_x * centre_x;
-    if (depth2 < 0) return centre_[t.a] == centre_[t.b];  // along the base: its ends go straight
+    if (depth2 < 0) return false;  // the wave runs along the base: its ends go straight
     const double depth = std::sqrt(depth2);
     // the straight way must pass between the ends of the base; another way goes over another triangle
     const double crossing = centre_x * y + x * depth;
@@ -197,13 +197,16 @@ class March {
     return true;
   }
 
-  void cross_as_plane(const Triangle& t, double x, double y) {
+  /// Waves of different sources count as plane. Waves of one source with different centres meet behind a turn, where they
+  /// join without a fold: there the curvature of the nearer end's wave is right.
+  void cross_between_waves(const Triangle& t, double x, double y) {
     const double slope_x = (distance_[t.b] - distance_[t.a]) / t.base;
     if (!(std::abs(slope_x) < 1)) return;
     const double slope_y = std::sqrt(1 - slope_x * slope_x);
     const double crossing = x * slope_y - y * slope_x;
-    if (crossing < 0 || crossing > t.base * slope_y) return;
     const std::uint32_t nearer = crossing < 0.5 * t.base * slope_y ? t.a : t.b;
+    if (source_[t.a] == source_[t.b] && cross_from_centre(t, x, y, centre_[nearer])) return;
+    if (crossing < 0 || crossing > t.base * slope_y) return;
     offer(t.tip, distance_[t.a] + x * slope_x + y * slope_y, centre_[nearer], source_[nearer]);
   }
 
