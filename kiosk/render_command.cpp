@@ -156,9 +156,8 @@ Result<void> render_picture(const RenderOptions& options, const stereo::Profile&
   picture.between_eyes_mm = options.eye_mm;
   picture.colour = *render::colour_mode_from(options.colour);
   picture.view.rotation = *stereo::named_rotation(options.view);
-  const stereo::Box box = (*renderer)->bounds();
-  picture.view.bounds = stereo::sphere_around(box);
-  picture.view = stereo::fit(picture.view, box, stereo::screen_size_mm(profile, options.width, options.height), options.eye_mm.z());
+  picture.view.bounds = stereo::sphere_around((*renderer)->bounds());
+  picture.view = (*renderer)->fitted(picture.view, stereo::screen_size_mm(profile, options.width, options.height), options.eye_mm.z());
   const auto report = (*renderer)->draw(picture, offscreen->framebuffer(), options.width, options.height);
   if (!report) return fail(report.error());
   if (report->glyphs_left_out > 0)

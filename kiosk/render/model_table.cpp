@@ -65,12 +65,13 @@ std::vector<std::uint8_t> ModelTable::visible_nodes() const {
   return visible;
 }
 
-stereo::Box ModelTable::visible_box() const {
+stereo::Box ModelTable::visible_box(const Eigen::Quaterniond& rotation) const {
+  const Eigen::Matrix3d turn = rotation.toRotationMatrix();
   const std::vector<std::uint8_t> visible = visible_nodes();
   stereo::Box box;
   for (std::size_t n = 0; n < node_count_; ++n)
     if (visible[n] != 0)
-      if (const mesh::Vec3 point = position(n); finite(point)) box.add(point);
+      if (const mesh::Vec3 point = position(n); finite(point)) box.add(mesh::Vec3(turn * point));
   return box;
 }
 

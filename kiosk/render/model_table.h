@@ -46,8 +46,8 @@ class ModelTable {
   bool shell_centre(std::size_t shell, mesh::Vec3& centre) const;
   /// 1 for each node that a visible shell or line names.
   std::vector<std::uint8_t> visible_nodes() const;
-  /// Around those nodes; finite coordinates only.
-  stereo::Box visible_box() const;
+  /// Around those nodes, in axes turned by `rotation`; finite coordinates only.
+  stereo::Box visible_box(const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity()) const;
 
  private:
   std::shared_ptr<const ModelSource> source_;

@@ -109,6 +109,11 @@ const ModelSource* Renderer::model() const { return state_->model.get(); }
 
 stereo::Box Renderer::bounds() const { return state_->layer.empty() ? stereo::Box() : state_->layer.table().visible_box(); }
 
+stereo::View Renderer::fitted(const stereo::View& view, const Eigen::Vector2d& screen_mm, double eye_distance_mm) const {
+  const stereo::Box turned = state_->layer.empty() ? stereo::Box() : state_->layer.table().visible_box(view.rotation);
+  return stereo::fit_turned(view, turned, screen_mm, eye_distance_mm);
+}
+
 void Renderer::begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells) {
   state_->layer.begin_preview(nodes, shells);
 }

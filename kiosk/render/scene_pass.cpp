@@ -13,12 +13,13 @@ namespace {
 // Widths and sizes in display pixels.
 constexpr float kBorderHalfWidth = 1.0F;
 constexpr float kCreaseHalfWidth = 0.7F;
-constexpr float kLineElementHalfWidth = 1.2F;
+constexpr float kLineElementHalfWidth = 0.9F;
+constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels short
 constexpr float kPreviewHalfWidth = 0.65F;
 constexpr float kNodeRadius = 4.5F;
 constexpr float kCrowdedNodeRadius = 2.2F;
 constexpr std::size_t kCrowdedNodes = 20000;  ///< from here on nodes are drawn smaller and without their rim
-constexpr float kGlyphRadius = 9.0F;
+constexpr float kGlyphRadius = 8.0F;
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: what lifts lines off the surface they lie on
 constexpr float kHiddenLight = 0.90F;    ///< selected nodes behind a surface: lighter than any part, darker than white
 
@@ -199,12 +200,13 @@ void ScenePass::draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_
 }
 
 void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width,
-                           const Eigen::Vector4f& line_ink) const {
+                           const Eigen::Vector4f& line_ink, float least_alpha) const {
   if (lines.count == 0) return;
   positions.bind(unit::kPositions);
   lines.texture.bind(unit::kLines);
   frame.set(shaders_.lines);
   shaders_.lines.set("half_width", half_width);
+  shaders_.lines.set("least_alpha", least_alpha);
   shaders_.lines.set("toward_eye_mm", static_cast<float>(kLinesTowardEye * frame.eye.mm_per_pixel));
   shaders_.lines.set("ink", line_ink.x(), line_ink.y(), line_ink.z(), line_ink.w());
   glBindVertexArray(no_attributes_.get());
@@ -221,7 +223,7 @@ void ScenePass::draw_model_lines(const Picture& picture, const ModelLayer& model
     draw_lines(model.borders(), positions, frame, kBorderHalfWidth, ink(kBorderColour, 0.85F));
   }
   glDepthMask(GL_TRUE);
-  draw_lines(model.line_elements(), positions, frame, kLineElementHalfWidth, ink(kLineElementColour, 1.0F));
+  draw_lines(model.line_elements(), positions, frame, kLineElementHalfWidth, ink(kLineElementColour, 1.0F), kCrowdedLineAlpha);
 }
 
 void ScenePass::draw_preview(const ModelLayer& model, const Frame& frame) const {

@@ -34,8 +34,8 @@ class ScenePass {
 
   void draw_ground(const EyeView& eye) const;
   void draw_shells(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
-  void draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width,
-                  const Eigen::Vector4f& ink) const;
+  void draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width, const Eigen::Vector4f& ink,
+                  float least_alpha = 1) const;
   void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_preview(const ModelLayer& model, const Frame& frame) const;
   void draw_selected(const ModelLayer& model, const Frame& frame) const;

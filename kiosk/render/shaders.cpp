@@ -87,7 +87,7 @@ void main() {
   const vec3 kKey = vec3(-0.4369, 0.5825, 0.6854);
   const vec3 kFill = vec3(0.2747, -0.7325, 0.6229);
   float key = max(dot(normal, kKey), 0.0), fill = max(dot(normal, kFill), 0.0);
-  float light = 0.40 + 0.52 * key + 0.14 * fill + 0.06 * max(normal.z, 0.0);
+  float light = 0.48 + 0.40 * key + 0.12 * fill + 0.14 * max(normal.z, 0.0);
   vec3 base = by_grade != 0 ? grades[min((word.x >> 5) & 3u, 2u)] : palette[min(word.x & 31u, 21u)];
   if ((word.x & 128u) != 0u) base = mix(base, vec3(1.0), 0.55);
   look = base * light;
@@ -148,7 +148,9 @@ uniform vec2 display_pixels;
 uniform float half_width;
 uniform float columns_per_pixel;
 uniform float toward_eye_mm;
+uniform float least_alpha;
 out float across_pixels;
+flat out float presence;
 flat out float footprint;
 void main() {
   uvec2 ends = texelFetch(lines, texel(uint(gl_VertexID / 6)), 0).xy;
@@ -160,12 +162,14 @@ void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   across_pixels = 0.0;
   footprint = 1.0;
+  presence = 0.0;
   if (pa.w == 0.0 || pb.w == 0.0 || a.w <= 0.0 || b.w <= 0.0) return;
   vec2 along = (b.xy / b.w - a.xy / a.w) * display_pixels;
   float length_pixels = length(along);
   along = length_pixels > 1e-4 ? along / length_pixels : vec2(1.0, 0.0);
   vec2 across = vec2(-along.y, along.x);
   footprint = length(vec2(across.x * columns_per_pixel, across.y));
+  presence = mix(least_alpha, 1.0, smoothstep(3.0, 16.0, length_pixels));  // short lines stand close: they step back
   float reach = half_width + 0.5 * footprint + 0.5;
   across_pixels = side * reach;
   vec4 clip = nearer(second ? b : a, toward_eye_mm);
@@ -177,13 +181,14 @@ void main() {
 const char* const kLineFragment = R"(
 in float across_pixels;
 flat in float footprint;
+flat in float presence;
 uniform float half_width;
 uniform vec4 ink;
 out vec4 colour;
 void main() {
   float cover = min(clamp((half_width + 0.5 * footprint - abs(across_pixels)) / footprint, 0.0, 1.0), 2.0 * half_width / footprint);
   if (cover <= 0.004) discard;
-  colour = vec4(ink.rgb, ink.a * cover);
+  colour = vec4(ink.rgb, ink.a * presence * cover);
 }
 )";
 
@@ -276,7 +281,7 @@ void main() {
   float rim = 1.0 - smoothstep(-soft, soft, distance - 0.17);
   if (rim < 0.02) discard;
   vec3 ink = failing ? fail_ink : warn_ink;
-  vec3 outline = failing ? vec3(1.0, 0.95, 0.93) : vec3(0.16, 0.14, 0.05);
+  vec3 outline = failing ? vec3(0.25, 0.02, 0.02) : vec3(0.20, 0.16, 0.02);
   colour = vec4(mix(outline, ink, body), rim);
 }
 )";

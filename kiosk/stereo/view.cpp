@@ -10,6 +10,13 @@ namespace {
 /// Farthest that the bounds can reach from the pivot, before compression, in mm.
 double reach_mm(const View& view) { return ((view.bounds.centre - view.pivot).norm() + view.bounds.radius) * view.mm_per_unit; }
 
+std::array<Vec3, 8> corners_of(const Box& box) {
+  std::array<Vec3, 8> corners;
+  for (std::size_t i = 0; i < 8; ++i)
+    corners[i] = {(i & 1 ? box.high : box.low).x(), (i & 2 ? box.high : box.low).y(), (i & 4 ? box.high : box.low).z()};
+  return corners;
+}
+
 Eigen::Quaterniond from_screen_axes(const Vec3& right, const Vec3& up, const Vec3& toward_viewer) {
   Eigen::Matrix3d rows;
   rows.row(0) = right.normalized();
@@ -92,19 +99,25 @@ View with_pivot(const View& view, const Vec3& deck_point) {
 }
 
 View fit(const View& view, const Box& box, const Eigen::Vector2d& screen_mm, double eye_distance_mm) {
+  if (box.empty()) return fit_turned(view, box, screen_mm, eye_distance_mm);
+  Box turned;
+  for (const Vec3& corner : corners_of(box)) turned.add(view.rotation * corner);
+  return fit_turned(view, turned, screen_mm, eye_distance_mm);
+}
+
+View fit_turned(const View& view, const Box& turned, const Eigen::Vector2d& screen_mm, double eye_distance_mm) {
   constexpr double kFilled = 0.86;
   constexpr int kRounds = 12;  // the eye's distance makes the size depend on the scale a little: converges in a few
   View fitted = view;
-  const Sphere sphere = sphere_around(box);
-  fitted.pivot = sphere.centre;
+  const Sphere sphere = sphere_around(turned);
+  fitted.pivot = view.rotation.conjugate() * sphere.centre;
   fitted.pan_mm.setZero();
   fitted.mm_per_unit = 0.5 * screen_mm.minCoeff() / sphere.radius;
-  if (box.empty()) return fitted;
+  if (turned.empty()) return fitted;
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 point((corner & 1 ? box.high : box.low).x(), (corner & 2 ? box.high : box.low).y(), (corner & 4 ? box.high : box.low).z());
-      const Vec3 mm = to_screen(fitted, point);
+    for (const Vec3& corner : corners_of(turned)) {
+      const Vec3 mm = to_screen(fitted, view.rotation.conjugate() * corner);
       const Eigen::Vector2d seen = mm.head<2>() * eye_distance_mm / std::max(eye_distance_mm - mm.z(), 1.0);
       low = low.cwiseMin(seen);
       high = high.cwiseMax(seen);

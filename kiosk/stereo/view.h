@@ -73,6 +73,8 @@ View zoom(const View& view, double factor, const Eigen::Vector2d& at_mm);
 View with_pivot(const View& view, const Vec3& deck_point);
 /// Centres the box and scales it to fill the screen (w x h mm) with a margin, as an eye at `eye_distance_mm` sees it. Keeps the rotation.
 View fit(const View& view, const Box& box, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650);
+/// The same for a box whose axes are the screen's: `turned` holds rotation * point of everything. Fits closely from every side.
+View fit_turned(const View& view, const Box& turned, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650);
 
 /// front, back, left, right, top, bottom, iso. Deck z is up; front looks along +y, right along -x, top along -z; iso looks from the
 /// right, front and above.

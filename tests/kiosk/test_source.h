@@ -118,9 +118,8 @@ inline TestSource make_crash_box() {
     return mesh::Vec3((v - 0.5) * length, side * y, z + 6 * std::sin(v * 3 * std::numbers::pi) * (t < 36 ? 1 : 0));
   };
   const std::uint32_t hat_first = add_grid(source, 22, 30, 0, hat);
-  const std::uint32_t plate_first = add_grid(source, 15, 30, 1, [&](double u, double v) {
-    return mesh::Vec3((v - 0.5) * length, (u - 0.5) * 150, 0);
-  });
+  const std::uint32_t plate_first =
+      add_grid(source, 15, 30, 1, [&](double u, double v) { return mesh::Vec3((v - 0.5) * length, (u - 0.5) * 150, 0); });
   add_grid(source, 14, 12, 2, [&](double u, double v) {
     const double angle = (u - 0.5) * 1.6;
     return mesh::Vec3(length * 0.5 + 12 + 22 * std::cos(angle) - 22, 110 * std::sin(angle) / 1.0, 5 + (v - 0.2) * 110);

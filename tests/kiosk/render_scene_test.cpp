@@ -1,0 +1,292 @@
+// What is drawn of a model, what is found under the pointer, and that nothing in a snapshot can break either.
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/kiosk/render_test.h"
+
+namespace prismesh::kiosk::render {
+namespace {
+
+using ipc::SnapshotArray;
+using mesh::Vec3;
+using test::TestSource;
+
+constexpr int kWidth = 320, kHeight = 200;
+
+/// Two plates of 10 x 10 quads, 40 apart: part 0 before (z = 20), part 1 behind.
+TestSource two_plates() {
+  TestSource source;
+  for (const std::uint32_t part : {0U, 1U})
+    test::add_grid(source, 10, 10, part, [&](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, part == 0 ? 20 : -20); });
+  return source;
+}
+
+class Scene : public RenderTest {
+ protected:
+  Eigen::Vector2d pixel_of(const Picture& picture, const Vec3& point) const {
+    return *stereo::pixel_of(aim_of(picture, kWidth, kHeight), point);
+  }
+  static Vec3 centre(const TestSource& source, std::size_t shell) {
+    Vec3 sum = Vec3::Zero();
+    for (const mesh::NodeIndex node : source.shell_nodes[shell].node) sum += source.positions[node.value];
+    return sum / 4;
+  }
+  const std::uint8_t* at(const Image& image, const Eigen::Vector2d& pixel) const {
+    return image.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+  }
+};
+
+TEST_F(Scene, HiddenPartsAreGone) {
+  TestSource source = two_plates();
+  show(source);
+  const Picture picture = fitted("mono", "top", kWidth, kHeight);
+  const Eigen::Vector2d pixel = pixel_of(picture, centre(source, 44));
+  const auto aim = aim_of(picture, kWidth, kHeight);
+  EXPECT_EQ(renderer_->shell_at(aim, pixel), mesh::ShellIndex(44));
+  const Image both = draw(picture, kWidth, kHeight);
+  source.hidden[0] = true;
+  show(source);
+  const auto behind = renderer_->shell_at(aim, pixel);
+  ASSERT_TRUE(behind);
+  EXPECT_GE(behind->value, 100U) << "the plate behind shows";
+  const Image one = draw(picture, kWidth, kHeight);
+  EXPECT_NE(both.rgb, one.rgb);
+  source.hidden[1] = true;
+  show(source);
+  EXPECT_FALSE(renderer_->shell_at(aim, pixel));
+  EXPECT_TRUE(renderer_->bounds().empty());
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, [&] {
+    EXPECT_TRUE(renderer_->set_model(nullptr));
+    return draw(picture, kWidth, kHeight).rgb;
+  }()) << "nothing of them is left";
+}
+
+TEST_F(Scene, PickingFindsWhatIsSeen) {
+  const TestSource source = two_plates();
+  show(source);
+  for (const char* profile : {"mono", "prism-mask"}) {
+    const Picture picture = fitted(profile, "top", kWidth, kHeight);
+    const auto aim = aim_of(picture, kWidth, kHeight);
+    for (const std::size_t shell : {0U, 37U, 99U})
+      EXPECT_EQ(renderer_->shell_at(aim, pixel_of(picture, centre(source, shell))), mesh::ShellIndex(shell)) << profile;
+    const Eigen::Vector2d at_node = pixel_of(picture, source.positions[60]);
+    EXPECT_EQ(renderer_->node_near(aim, at_node + Eigen::Vector2d(2, -3), 6), mesh::NodeIndex(60)) << profile;
+    EXPECT_FALSE(renderer_->node_near(aim, {1, 1}, 5)) << profile;
+    EXPECT_FALSE(renderer_->shell_at(aim, {-5, 1e9})) << profile;
+  }
+}
+
+TEST_F(Scene, ARectangleTakesWhatIsSeenOrGoesThrough) {
+  const TestSource source = two_plates();
+  show(source);
+  const Picture picture = fitted("mono", "top", kWidth, kHeight);
+  const auto aim = aim_of(picture, kWidth, kHeight);
+  const Eigen::Vector2d a = pixel_of(picture, source.positions[12]), b = pixel_of(picture, source.positions[108]);
+  const PixelRect rect{a.x() - 1, a.y() + 1, b.x() + 1, b.y() - 1};  // the front plate's inner nodes
+  const mesh::NodeSet seen = renderer_->nodes_in(aim, rect, false);
+  EXPECT_EQ(seen.size(), 81U);
+  for (const mesh::NodeIndex node : seen) EXPECT_LT(node.value, 121U);
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  const mesh::NodeSet through = renderer_->nodes_in(aim, rect, true);
+  EXPECT_GT(through.size(), 81U + 80U);
+  EXPECT_EQ(renderer_->figures().item_buffers_drawn, 1U) << "drawn once for a view";
+  renderer_->shell_at(aim, a);
+  EXPECT_EQ(renderer_->figures().item_buffers_drawn, 1U);
+  show(source);
+  renderer_->shell_at(aim, a);
+  EXPECT_EQ(renderer_->figures().item_buffers_drawn, 2U);
+}
+
+TEST_F(Scene, NodesOfTinyElementsAreStillSeen) {
+  TestSource source;
+  test::add_grid(source, 400, 250, 0,
+                 [](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, 8 * std::sin(u * 6) * std::cos(v * 4)); });
+  show(source);
+  const auto aim = aim_of(fitted("mono", "top", kWidth, kHeight), kWidth, kHeight);
+  const mesh::NodeSet seen = renderer_->nodes_in(aim, {0, 0, kWidth, kHeight}, false);
+  EXPECT_GT(seen.size(), source.positions.size() * 99 / 100) << "elements smaller than a pixel hide nothing";
+}
+
+TEST_F(Scene, BeamsArePicked) {
+  TestSource source;
+  source.add_line(source.add_node({-10, 0, 0}), source.add_node({10, 0, 0}), 0);
+  show(source);
+  const Picture picture = fitted("mono", "top", kWidth, kHeight);
+  EXPECT_EQ(renderer_->node_near(aim_of(picture, kWidth, kHeight), pixel_of(picture, {10, 0, 0}), 5), mesh::NodeIndex(1));
+  source.hidden[0] = true;
+  show(source);
+  EXPECT_FALSE(renderer_->node_near(aim_of(picture, kWidth, kHeight), pixel_of(picture, {10, 0, 0}), 5));
+}
+
+TEST_F(Scene, SelectedNodesAreWhiteAndShowThrough) {
+  TestSource source = two_plates();
+  source.node_marks[60] = mesh::document::kSelected;        // front
+  source.node_marks[121 + 37] = mesh::document::kSelected;  // behind the front plate
+  show(source);
+  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  picture.element_edges = false;
+  const Image image = draw(picture, kWidth, kHeight);
+  const std::uint8_t* front = at(image, pixel_of(picture, source.positions[60]));
+  EXPECT_GT(std::min({front[0], front[1], front[2]}), 225);
+  const std::uint8_t* hidden = at(image, pixel_of(picture, source.positions[121 + 37]));
+  picture.selected_nodes = false;
+  const Image without = draw(picture, kWidth, kHeight);
+  const std::uint8_t* plain = at(without, pixel_of(picture, source.positions[121 + 37]));
+  EXPECT_GT(hidden[2], plain[2] + 20) << "shows through";
+  EXPECT_LT(hidden[2], front[2]) << "but dimmed";
+  source.hidden[1] = true;
+  show(source);
+  picture.selected_nodes = true;
+  const Image hidden_part = draw(picture, kWidth, kHeight);
+  EXPECT_EQ(at(hidden_part, pixel_of(picture, source.positions[121 + 37]))[2], plain[2]) << "nodes of hidden parts don't show";
+}
+
+TEST_F(Scene, QualityHasItsColoursAndSigns) {
+  TestSource source = two_plates();
+  source.shell_quality[44].fail = source.shell_quality[44].warn = 1;
+  source.shell_quality[46].warn = 2;
+  show(source);
+  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  picture.colour = ColourMode::quality;
+  picture.quality_glyphs = false;
+  Image image = draw(picture, kWidth, kHeight);
+  const std::uint8_t* fail = at(image, pixel_of(picture, centre(source, 44)));
+  const std::uint8_t* warn = at(image, pixel_of(picture, centre(source, 46)));
+  const std::uint8_t* ok = at(image, pixel_of(picture, centre(source, 48)));
+  EXPECT_GT(fail[0], 2 * fail[1]) << "red";
+  EXPECT_GT(warn[1], 2 * warn[2]) << "yellow";
+  EXPECT_NEAR(ok[0], ok[2], 12) << "grey";
+  picture.colour = ColourMode::parts;
+  picture.quality_glyphs = true;
+  image = draw(picture, kWidth, kHeight);
+  EXPECT_EQ(report_.glyphs, 2U);
+  const std::uint8_t* sign = at(image, pixel_of(picture, centre(source, 44)));
+  EXPECT_GT(sign[0], 2 * sign[1]) << "a red sign";
+}
+
+TEST_F(Scene, APreviewIsAWhiteWireframeWithLiveSigns) {
+  TestSource source = two_plates();
+  source.shell_quality[0].warn = 1;
+  source.shell_quality[44].warn = 1;
+  show(source);
+  Picture picture = fitted("mono", "front", kWidth, kHeight);
+  const Image before = draw(picture, kWidth, kHeight);
+  EXPECT_EQ(report_.glyphs, 2U);
+  const std::vector<mesh::NodeIndex> nodes{mesh::NodeIndex(60)};
+  const std::vector<mesh::ShellIndex> shells{mesh::ShellIndex(44), mesh::ShellIndex(45), mesh::ShellIndex(54), mesh::ShellIndex(55)};
+  renderer_->begin_preview(nodes, shells);
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, before.rgb) << "no frame yet";
+  ipc::PreviewFrame frame;
+  const Vec3 lifted = source.positions[60] + Vec3(0, 0, 10);
+  frame.positions = {lifted};
+  frame.states.resize(4);
+  frame.states[1].fail = frame.states[1].warn = 2;
+  frame.states[2].fail = frame.states[2].warn = 2;
+  ASSERT_TRUE(renderer_->update_preview(frame));
+  const Image during = draw(picture, kWidth, kHeight);
+  EXPECT_EQ(report_.glyphs, 3U) << "two live ones, and the untouched shell's";
+  const std::uint8_t* tip = at(during, pixel_of(picture, lifted) + Eigen::Vector2d(0, 2));
+  EXPECT_GT(std::min({tip[0], tip[1], tip[2]}), 180);
+  frame.positions.clear();
+  ASSERT_TRUE(renderer_->update_preview(frame)) << "a frame of another size is passed over";
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, during.rgb);
+  renderer_->end_preview();
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, before.rgb);
+}
+
+TEST_F(Scene, TheActiveHandleIsGreen) {
+  show(two_plates());
+  Picture picture = fitted("mono", "front", kWidth, kHeight);
+  const Vec3 foot(0, -30, 20);
+  picture.handle = Handle{foot, Vec3::UnitZ(), true};
+  const Eigen::Vector2d middle =
+      pixel_of(picture, stereo::handle_tip(aim_of(picture, kWidth, kHeight), foot, Vec3::UnitZ())) + Eigen::Vector2d(0, 12);
+  const Image image = draw(picture, kWidth, kHeight);
+  EXPECT_GT(at(image, middle)[1], at(image, middle)[0] * 3 / 2);
+  picture.handle->active = false;
+  const Image idle = draw(picture, kWidth, kHeight);
+  EXPECT_NEAR(at(idle, middle)[1], at(idle, middle)[0], 3);
+  picture.handle->direction = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  draw(picture, kWidth, kHeight);
+}
+
+TEST_F(Scene, OnlyWhatChangedIsUploaded) {
+  auto source = std::make_shared<TestSource>();
+  test::add_grid(*source, 200, 200, 0, [](double u, double v) { return Vec3(u, v, 0); });
+  show(source);
+  const std::size_t all = renderer_->figures().chunks_uploaded;
+  EXPECT_GE(all, 10U + 2 * 10U);
+  show(std::make_shared<TestSource>(*source));
+  EXPECT_EQ(renderer_->figures().chunks_uploaded, all) << "the same chunks again";
+  source->positions[0].z() = 0.1;
+  source->touch(SnapshotArray::positions, 0);
+  show(source);
+  const std::size_t moved = renderer_->figures().chunks_uploaded - all;
+  EXPECT_GE(moved, 1U);
+  EXPECT_LE(moved, 1U + 2 * 2U) << "one row of positions, and the rows of the shells on it";
+}
+
+TEST_F(Scene, ThePictureFollowsAChangeAsIfStartedAfresh) {
+  auto source = std::make_shared<TestSource>(test::make_crash_box());
+  show(source);
+  const Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
+  draw(picture, kWidth, kHeight);
+  for (std::size_t n = 100; n < 140; ++n) source->positions[n].z() += 9, source->node_marks[n] = 1;
+  source->touch(SnapshotArray::positions, 0);
+  source->touch(SnapshotArray::node_marks, 0);
+  show(source);
+  const Image followed = draw(picture, kWidth, kHeight);
+  make_renderer({.samples = 1});
+  show(source);
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, followed.rgb);
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, followed.rgb) << "and repeats bit for bit";
+}
+
+TEST_F(Scene, FarFromTheOriginNothingTrembles) {
+  TestSource near_source = test::make_crash_box(), far_source = near_source;
+  for (Vec3& at : far_source.positions) at += Vec3(4e6, -7e6, 1e6);
+  far_source.key = 2;
+  show(near_source);
+  const Image near_image = draw(fitted("mono", "iso", kWidth, kHeight), kWidth, kHeight);
+  show(far_source);
+  const Image far_image = draw(fitted("mono", "iso", kWidth, kHeight), kWidth, kHeight);
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < near_image.rgb.size(); ++i) differ += std::abs(near_image.rgb[i] - far_image.rgb[i]) > 24;
+  EXPECT_LT(differ, near_image.rgb.size() / 200);
+}
+
+TEST_F(Scene, AHostileSnapshotBreaksNothing) {
+  TestSource source = test::make_crash_box();
+  source.shell_nodes[3].node[1] = mesh::NodeIndex(4000000000U);
+  source.shell_nodes[4].node = {};
+  source.shell_parts[5] = mesh::PartIndex(4000000000U);
+  source.line_nodes[0] = mesh::NodeIndex(123456789U);
+  source.line_parts.resize(2);
+  source.positions[50] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  source.positions[51] = Vec3(1e300, 0, 0);
+  source.positions[52] = Vec3::Constant(std::numeric_limits<double>::infinity());
+  source.shell_quality.resize(100);
+  for (auto& state : source.shell_quality) state.fail = state.warn = 0xffff;
+  source.shell_marks.clear();
+  source.node_marks.resize(source.positions.size() + 5000, 255);
+  source.shell_parts.resize(source.shell_nodes.size() - 10);
+  show(source);
+  Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
+  EXPECT_TRUE(std::isfinite(picture.view.mm_per_unit));
+  draw(picture, kWidth, kHeight);
+  const auto aim = aim_of(picture, kWidth, kHeight);
+  renderer_->shell_at(aim, {100, 100});
+  renderer_->node_near(aim, {100, 100}, 50);
+  renderer_->nodes_in(aim, {0, 0, kWidth, kHeight}, false);
+  renderer_->begin_preview(std::array{mesh::NodeIndex(9999999)}, std::array{mesh::ShellIndex(9999999), mesh::ShellIndex(3)});
+  source.positions.resize(10);  // the next snapshot has fewer nodes than its shells name
+  source.touch(SnapshotArray::positions, 0);
+  show(source);
+  draw(picture, kWidth, kHeight);
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::render

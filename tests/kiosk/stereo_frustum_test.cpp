@@ -1,0 +1,144 @@
+// The screen is a window: its corners stay where they are whatever the eye, and each column samples the scene where it stands.
+#include <gtest/gtest.h>
+
+#include "kiosk/stereo/frustum.h"
+#include "kiosk/stereo/pointer.h"
+
+namespace prismesh::kiosk::stereo {
+namespace {
+
+constexpr double kWidth = 359, kHeight = 287;
+const Vec3 kEyes[] = {{0, 0, 650}, {-31.5, 20, 650}, {31.5, 20, 650}, {180, -60, 500}, {-400, 250, 300}};
+
+Eigen::Vector2d project(const Eigen::Matrix4d& clip, const Vec3& mm) {
+  const Eigen::Vector4d at = clip * mm.homogeneous();
+  return at.head<2>() / at.w();
+}
+
+TEST(Frustum, ScreenCornersLandOnThePicturesCornersForAnyEye) {
+  for (const Vec3& eye : kEyes) {
+    const Eigen::Matrix4d clip = clip_from_screen(eye, {kWidth, kHeight}, {50, 5000});
+    for (const double sx : {-1.0, 1.0})
+      for (const double sy : {-1.0, 1.0}) {
+        const Eigen::Vector2d corner = project(clip, Vec3(sx * kWidth / 2, sy * kHeight / 2, 0));
+        EXPECT_NEAR(corner.x(), sx, 1e-12);
+        EXPECT_NEAR(corner.y(), sy, 1e-12);
+      }
+  }
+}
+
+TEST(Frustum, ParallaxIsThatOfTheEyes) {
+  const EyePair eyes = eyes_from({0, 0, 650});
+  EXPECT_DOUBLE_EQ((eyes.right - eyes.left).x(), 63);
+  const Eigen::Matrix4d left = clip_from_screen(eyes.left, {kWidth, kHeight}, {50, 5000});
+  const Eigen::Matrix4d right = clip_from_screen(eyes.right, {kWidth, kHeight}, {50, 5000});
+  for (const double z : {0.0, 50.0, 99.0, -143.0, -300.0}) {
+    const double crossed_mm = (project(left, {0, 0, z}).x() - project(right, {0, 0, z}).x()) * kWidth / 2;
+    EXPECT_NEAR(crossed_mm, 63 * z / (650 - z), 1e-9) << z;
+  }
+}
+
+TEST(Frustum, NearAndFarHoldWhatTheViewShows) {
+  View view;
+  view.bounds = {{100, 0, 0}, 5000};
+  for (const Vec3& eye : kEyes) {
+    const DepthRange range = depth_range(view, eye);
+    EXPECT_GT(range.near_mm, 0);
+    const Eigen::Matrix4d clip = clip_from_screen(eye, {kWidth, kHeight}, range);
+    for (const double z : depth_extent(view)) {
+      const Eigen::Vector4d at = clip * Vec3(0, 0, z).homogeneous();
+      EXPECT_LT(std::abs(at.z()), at.w());
+    }
+  }
+}
+
+TEST(Frustum, AnEyeBehindTheScreenBreaksNothing) {
+  for (const double z : {0.0, -50.0})
+    EXPECT_TRUE(clip_from_screen({0, 0, z}, {kWidth, kHeight}, depth_range(View(), {0, 0, z})).allFinite());
+}
+
+/// Where a display column's centre lies in an eye's half-width image, in texels.
+double texel_of(double display_x, int columns, Eye eye, bool swap) {
+  Eigen::Matrix4d plain = Eigen::Matrix4d::Identity();
+  const Eigen::Matrix4d clip = clip_for_columns(plain, eye, columns, swap);
+  const int texels = (columns + 1) / 2;
+  return (project(clip, Vec3(display_x / columns * 2 - 1, 0, 0)).x() + 1) / 2 * texels;
+}
+
+TEST(Frustum, EveryColumnSamplesWhereItStands) {
+  for (const int columns : {1920, 641})
+    for (const bool swap : {false, true})
+      for (int column = 0; column < columns; ++column) {
+        const Eye owner = (column % 2 == 0) != swap ? Eye::left : Eye::right;
+        ASSERT_NEAR(texel_of(column + 0.5, columns, owner, swap), column / 2 + 0.5, 1e-9) << columns << " " << column;
+      }
+}
+
+Aim some_aim() {
+  Aim aim;
+  aim.view.rotation = *named_rotation("iso");
+  aim.view.pivot = {100, 200, 300};
+  aim.view.mm_per_unit = 0.4;
+  aim.view.bounds = {{100, 200, 300}, 600};
+  aim.eye_mm = {-31.5, 12, 640};
+  aim.screen_mm = {500, 280};
+  aim.width = 1000;
+  aim.height = 560;
+  return aim;
+}
+
+TEST(Pointer, PixelsCountFromTheUpperLeft) {
+  Aim aim = some_aim();
+  aim.view = View();
+  EXPECT_LT((*pixel_of(aim, Vec3::Zero()) - Eigen::Vector2d(500, 280)).norm(), 1e-9);
+  EXPECT_LT((*pixel_of(aim, Vec3(-250, 140, 0)) - Eigen::Vector2d(0, 0)).norm(), 1e-9);
+  EXPECT_LT((mm_of_pixel(aim, {0, 0}) - Eigen::Vector2d(-250, 140)).norm(), 1e-9);
+  EXPECT_FALSE(pixel_of(aim, Vec3(0, 0, 700))) << "behind the eye";
+}
+
+TEST(Pointer, ARayPassesThroughWhatItsPixelShows) {
+  const Aim aim = some_aim();
+  const Vec3 point(140, 260, 350);
+  const Ray ray = ray_through(aim, *pixel_of(aim, point));
+  const Vec3 to_point = point - ray.origin;
+  EXPECT_LT(to_point.cross(ray.direction.normalized()).norm(), 1e-7 * to_point.norm());
+  EXPECT_GT(to_point.dot(ray.direction), 0);
+}
+
+TEST(Pointer, DistanceAlongAnAxisIsExact) {
+  const Aim aim = some_aim();
+  const Vec3 point(90, 210, 330), direction = Vec3(0.2, -0.5, 0.9).normalized();
+  for (const double distance : {-120.0, 0.0, 3.0, 150.0}) {
+    const auto pixel = pixel_of(aim, point + distance * direction);
+    EXPECT_NEAR(distance_along(aim, point, direction, *pixel).value(), distance, 1e-7);
+  }
+}
+
+TEST(Pointer, AnAxisThatPointsAtTheEyeGivesNoDistance) {
+  const Aim aim = some_aim();
+  const Vec3 point(90, 210, 330);
+  const Vec3 direction = (ray_through(aim, *pixel_of(aim, point)).origin - point).normalized();
+  EXPECT_FALSE(distance_along(aim, point, direction, {500, 300}));
+}
+
+TEST(Pointer, ADisplacementBringsThePointUnderThePixel) {
+  const Aim aim = some_aim();
+  const Vec3 point(90, 210, 330);
+  const Eigen::Vector2d pixel(620, 111);
+  const Vec3 by = displacement_in_screen_plane(aim, point, pixel);
+  EXPECT_LT((*pixel_of(aim, point + by) - pixel).norm(), 1e-7);
+  EXPECT_NEAR(to_screen(aim.view, point + by).z(), to_screen(aim.view, point).z(), 1e-9);
+}
+
+TEST(Pointer, TheHandleIsWhereItIsDrawn) {
+  const Aim aim = some_aim();
+  const Vec3 point(90, 210, 330);
+  const Vec3 sideways = aim.view.rotation.conjugate() * Vec3::UnitX();
+  const Vec3 tip = handle_tip(aim, point, sideways);
+  EXPECT_NEAR((*pixel_of(aim, tip) - *pixel_of(aim, point)).norm(), kHandleLengthPixels, 1);
+  EXPECT_TRUE(on_handle(aim, point, sideways, 0.5 * (*pixel_of(aim, tip) + *pixel_of(aim, point))));
+  EXPECT_FALSE(on_handle(aim, point, sideways, *pixel_of(aim, point) + Eigen::Vector2d(0, 40)));
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::stereo

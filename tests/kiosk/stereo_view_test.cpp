@@ -1,0 +1,136 @@
+// Where the model stands before the screen, and that it stays where eyes can rest on it.
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "kiosk/stereo/view.h"
+
+namespace prismesh::kiosk::stereo {
+namespace {
+
+View some_view() {
+  View view;
+  view.pivot = {10, -20, 30};
+  view.rotation = *named_rotation("iso");
+  view.mm_per_unit = 0.25;
+  view.pan_mm = {12, -7};
+  view.bounds = {{12, -18, 33}, 400};
+  return view;
+}
+
+Vec3 on_screen(std::string_view name, const Vec3& deck) {
+  View view;
+  view.rotation = *named_rotation(name);
+  return to_screen(view, deck);
+}
+
+TEST(View, NamedViewsLookTheWayTheySay) {
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+  EXPECT_TRUE(on_screen("front", z).isApprox(y)) << "up is up";
+  EXPECT_TRUE(on_screen("front", y).isApprox(-z)) << "looking along +y";
+  EXPECT_TRUE(on_screen("back", y).isApprox(z));
+  EXPECT_TRUE(on_screen("right", x).isApprox(z));
+  EXPECT_TRUE(on_screen("right", z).isApprox(y));
+  EXPECT_TRUE(on_screen("left", x).isApprox(-z));
+  EXPECT_TRUE(on_screen("top", z).isApprox(z));
+  EXPECT_TRUE(on_screen("top", y).isApprox(y));
+  EXPECT_TRUE(on_screen("bottom", z).isApprox(-z));
+  for (const std::string_view name : kViewNames) EXPECT_NEAR(named_rotation(name)->toRotationMatrix().determinant(), 1, 1e-12) << name;
+  const Vec3 iso = on_screen("iso", Vec3(1, -1, 1));
+  EXPECT_NEAR(iso.z(), std::sqrt(3.0), 1e-12) << "from the right, front and above";
+  EXPECT_FALSE(named_rotation("sideways"));
+}
+
+TEST(View, ScreenAndBack) {
+  const View view = some_view();
+  const Vec3 point(123, 45, -6);
+  EXPECT_LT((to_deck(view, to_screen(view, point)) - point).norm(), 1e-9);
+  const Eigen::Vector4d by_matrix = screen_from_deck(view) * point.homogeneous();
+  EXPECT_LT((by_matrix.head<3>() - to_screen(view, point)).norm(), 1e-9);
+  EXPECT_LT((to_screen(view, view.pivot) - Vec3(12, -7, 0)).norm(), 1e-12) << "the pivot lies in the screen's plane";
+}
+
+TEST(View, EverythingStaysInTheComfortBoxHoweverItIsTurnedAndZoomed) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int round = 0; round < 2000; ++round) {
+    View view = some_view();
+    view = orbit(view, 3 * unit(random), 3 * unit(random));
+    view = zoom(view, std::exp(6 * unit(random)), {50 * unit(random), 50 * unit(random)});
+    const Vec3 direction = Vec3(unit(random), unit(random), unit(random)).normalized();
+    const double z = to_screen(view, view.bounds.centre + view.bounds.radius * direction).z();
+    ASSERT_LE(z, kComfortBeforeMm);
+    ASSERT_GE(z, -kComfortBehindMm);
+    const auto [behind, before] = depth_extent(view);
+    ASSERT_LE(z, before + 1e-9);
+    ASSERT_GE(z, behind - 1e-9);
+  }
+}
+
+TEST(View, SmallModelsKeepTheirTrueDepth) {
+  View view;
+  view.bounds = {Vec3::Zero(), 10};
+  EXPECT_EQ(depth_scale(view), 1);
+  view.mm_per_unit = 100;
+  EXPECT_LT(depth_scale(view), 0.1);
+}
+
+TEST(View, OrbitFollowsTheHand) {
+  View view;
+  const Vec3 near_point(0, 0, 5);
+  EXPECT_GT(to_screen(orbit(view, 0.1, 0), near_point).x(), 0);
+  EXPECT_GT(to_screen(orbit(view, 0, 0.1), near_point).y(), 0);
+  EXPECT_GT(to_screen(roll(view, 0.1), Vec3(5, 0, 0)).y(), 0);
+  const View there_and_back = orbit(orbit(some_view(), 0.3, 0), -0.3, 0);
+  EXPECT_TRUE(there_and_back.rotation.isApprox(some_view().rotation, 1e-12));
+}
+
+TEST(View, ZoomKeepsWhatIsUnderThePointer) {
+  const View view = some_view();
+  const Eigen::Vector2d at(33, -12);
+  const Vec3 under = to_deck(view, Vec3(at.x(), at.y(), 0));
+  EXPECT_LT((to_screen(zoom(view, 3.7, at), under).head<2>() - at).norm(), 1e-9);
+}
+
+TEST(View, ANewPivotMovesNothingSideways) {
+  const View view = some_view();
+  const Vec3 point(50, 60, 70);
+  const View moved = with_pivot(view, Vec3(-5, 8, 13));
+  EXPECT_LT((to_screen(moved, point).head<2>() - to_screen(view, point).head<2>()).norm(), 1e-9);
+}
+
+TEST(View, FitFillsTheScreenAndKeepsTheRotation) {
+  Box box;
+  box.add(Vec3(1000, -50, 3));
+  box.add(Vec3(1400, 80, 20));
+  for (const std::string_view name : kViewNames) {
+    View view;
+    view.rotation = *named_rotation(name);
+    view.bounds = sphere_around(box);
+    const Eigen::Vector2d screen(500, 300);
+    view = fit(view, box, screen);
+    EXPECT_TRUE(view.rotation.isApprox(*named_rotation(name)));
+    Eigen::Vector2d extent = Eigen::Vector2d::Zero();
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 mm = to_screen(view, Vec3(corner & 1 ? 1000 : 1400, corner & 2 ? -50 : 80, corner & 4 ? 3 : 20));
+      extent = extent.cwiseMax((mm.head<2>() * 650 / (650 - mm.z())).cwiseAbs());
+    }
+    EXPECT_LE(extent.x(), 250) << name;
+    EXPECT_LE(extent.y(), 150) << name;
+    EXPECT_GT(std::max(extent.x() / 250, extent.y() / 150), 0.8) << name;
+  }
+}
+
+TEST(View, FitOfNothingIsAView) {
+  const View view = fit(View(), Box(), {500, 300});
+  EXPECT_TRUE(std::isfinite(view.mm_per_unit));
+  EXPECT_GT(view.mm_per_unit, 0);
+  Box point;
+  point.add(Vec3(5, 5, 5));
+  EXPECT_TRUE(std::isfinite(fit(View(), point, {500, 300}).mm_per_unit));
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::stereo
