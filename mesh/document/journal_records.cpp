@@ -171,8 +171,10 @@ std::optional<std::string_view> intent_in(std::string_view open_line) {
   return open_line.substr(begin + kBefore.size(), end - begin - kBefore.size());
 }
 
-bool ends_unwritten(std::string_view text) {
-  return text.size() >= kUnwritten && text.substr(text.size() - kUnwritten).find_first_not_of('\0') == std::string_view::npos;
+/// Whether a record that should end at `end` is the last, and its last block never reached the disk: NULs from there on.
+bool is_unwritten(std::string_view text, std::size_t end) {
+  const std::size_t last = text.find_last_not_of('\0');
+  return end >= kUnwritten && last != std::string_view::npos && last < end - kUnwritten;
 }
 
 enum class Found : std::uint8_t { record, torn };
@@ -182,7 +184,7 @@ enum class Found : std::uint8_t { record, torn };
 Result<Found> read_record(Walker& walker, const std::function<Result<void>(const JournalRecord&)>& on_record) {
   const std::string_view text = walker.rest();
   const std::size_t newline = text.find('\n');
-  if (newline == std::string_view::npos || ends_unwritten(text.substr(0, newline))) return Found::torn;
+  if (newline == std::string_view::npos) return Found::torn;
   const std::string_view line = text.substr(0, newline);
   const std::optional<std::string_view> open_line = walker.unsealed(line);
   if (!open_line) return walker.damaged(0, "this line isn't as it was written");
@@ -190,7 +192,7 @@ Result<Found> read_record(Walker& walker, const std::function<Result<void>(const
   const std::optional<std::string_view> intent = intent_in(*open_line);
   if (!fields || !intent || fields->number != walker.end().records + 1) return walker.damaged(0, "this line is no record of an edit");
   if (text.size() - newline - 1 < fields->delta_size || text.size() - newline - 1 - fields->delta_size < 1) return Found::torn;
-  if (ends_unwritten(text)) return Found::torn;
+  if (is_unwritten(text, newline + 1 + fields->delta_size + 1)) return Found::torn;
   const std::string_view delta = text.substr(newline + 1, fields->delta_size);
   if (text[newline + 1 + fields->delta_size] != '\n' || check_of_delta(delta) != fields->delta_check)
     return walker.damaged(1, "the changes of edit " + std::to_string(fields->number) + " aren't as they were written");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "mesh/model/adjacency.h"
 #include "mesh/select/region.h"
 
 namespace prismesh::mesh::document {
@@ -83,10 +84,11 @@ Result<ShellSet> visible_region(const Generation& generation, const SelectRegion
   const Model& model = generation.model;
   const Result<NodeIndex> start = find_place(model, recipe.at);
   if (!start) return fail(start.error());
+  const auto around = model.adjacency->shells_of(*start);
+  if (std::none_of(around.begin(), around.end(), [&](ShellIndex shell) { return in_sight(generation, shell); }))
+    return fail("", "node " + std::to_string(model.node_ids[start->value]) + " lies on no shell in sight, so there is no region around it");
   ShellSet shells = select::region(model, *start, recipe.angle);
   std::erase_if(shells, [&](ShellIndex shell) { return !in_sight(generation, shell); });
-  if (shells.empty())
-    return fail("", "node " + std::to_string(model.node_ids[start->value]) + " lies on no shell in sight, so there is no region around it");
   return shells;
 }
 

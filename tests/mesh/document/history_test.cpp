@@ -1,0 +1,110 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/mesh/document/document_fixture.h"
+
+namespace prismesh::mesh::document {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+const std::vector<std::string> kEdits{
+    R"({"edit":"select","expr":"1-10"})", R"({"edit":"translate","by":[0,0,1.1]})",
+    R"({"edit":"grow","rings":2})",       R"({"edit":"lift","distance":0.3})",
+    R"({"edit":"lock","on":"1"})",
+};
+
+TEST(History, UndoAndRedoAreBitExact) {
+  Document document = make_sheet(30, 30);
+  std::vector<std::shared_ptr<const Generation>> states{document.generations[0]};
+  for (const std::string& edit : kEdits) {
+    must_apply(document, edit);
+    states.push_back(document.generations.back());
+  }
+  for (std::size_t i = states.size(); i-- > 1;) {
+    const EditReport report = must_apply(document, R"({"edit":"undo"})");
+    EXPECT_EQ(report.edit, "undo");
+    EXPECT_THAT(report.notes, Contains("undid " + states[i]->made_by));
+    EXPECT_EQ(&document.current(), states[i - 1].get());
+    EXPECT_EQ(report.after, states[i - 1]->counts);
+  }
+  EXPECT_THAT(refusal(document, R"({"edit":"undo"})"), HasSubstr("there is nothing to undo"));
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    must_apply(document, R"({"edit":"redo"})");
+    EXPECT_EQ(&document.current(), states[i].get());
+  }
+  EXPECT_THAT(refusal(document, R"({"edit":"redo"})"), HasSubstr("there is nothing to redo"));
+}
+
+TEST(History, UndoSaysHowManyNodesWentBack) {
+  Document document = make_sheet(10, 10);
+  must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5-20","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(must_apply(document, R"({"edit":"undo"})").nodes_moved, 16u);
+  EXPECT_EQ(must_apply(document, R"({"edit":"redo"})").nodes_moved, 16u);
+}
+
+TEST(History, ANewEditDropsRedoAndNumbersAreNeverReused) {
+  Document document = make_sheet(10, 10);
+  must_apply(document, kEdits[0]);
+  must_apply(document, kEdits[1]);
+  EXPECT_EQ(document.current().number, 2u);
+  must_apply(document, R"({"edit":"undo"})");
+  EXPECT_TRUE(document.can_redo());
+  must_apply(document, R"({"edit":"lift","distance":1})");
+  EXPECT_FALSE(document.can_redo());
+  EXPECT_EQ(document.current().number, 3u);
+  EXPECT_EQ(document.current().made_by, "lift");
+  EXPECT_EQ(document.generations.size(), 3u);
+}
+
+TEST(History, AFailedEditLeavesNoTrace) {
+  Document document = make_sheet(4, 4);
+  must_apply(document, kEdits[0]);
+  must_apply(document, R"({"edit":"undo"})");
+  EXPECT_NE(refusal(document, R"({"edit":"lift","distance":1})"), "");
+  EXPECT_TRUE(document.can_redo());
+  EXPECT_EQ(document.next_number, 2u);
+}
+
+TEST(History, PreparingChangesNothing) {
+  Document document = make_sheet(4, 4);
+  const Result<Prepared> prepared = prepare(document, edit_of(kEdits[0]));
+  ASSERT_TRUE(prepared);
+  EXPECT_EQ(prepared->next->number, 1u);
+  EXPECT_EQ(document.generations.size(), 1u);
+  EXPECT_TRUE(selected_ids(document).empty());
+}
+
+TEST(History, KeepsItsByteCapAndSaysSo) {
+  // each step owns a chunk or two of positions and quality: 5 steps fit, no more
+  Document probe = make_sheet(10, 10);
+  must_apply(probe, R"({"edit":"translate","by":[0,0,1],"on":"5"})");
+  const std::size_t step = probe.current().own_bytes;
+  Document document = make_sheet(10, 10);
+  document.history_bytes = 5 * step + step / 2;
+  for (int i = 0; i < 5; ++i) {
+    const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5"})");
+    EXPECT_THAT(report.notes, testing::Not(Contains(HasSubstr("can't be undone"))));
+  }
+  EXPECT_EQ(document.generations.size(), 6u);
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5"})");
+  EXPECT_THAT(report.notes, Contains(HasSubstr("the oldest 1 step can't be undone any more")));
+  EXPECT_EQ(document.generations.size(), 6u);
+  for (int i = 0; i < 5; ++i) must_apply(document, R"({"edit":"undo"})");
+  EXPECT_EQ(document.current().model.positions[4].z(), 1);
+  EXPECT_THAT(refusal(document, R"({"edit":"undo"})"), HasSubstr("nothing to undo any more: the oldest steps went"));
+}
+
+TEST(History, WithoutRoomForOneStepTheEditStillHappens) {
+  Document document = make_sheet(10, 10);
+  document.history_bytes = 0;
+  must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5"})");
+  must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5"})");
+  EXPECT_EQ(document.generations.size(), 1u);
+  EXPECT_EQ(document.current().model.positions[4].z(), 2);
+  EXPECT_EQ(document.opened->model.positions[4].z(), 0);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,460 @@
+#include "mesh/document/journal.h"
+
+#include <fcntl.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <bit>
+#include <cerrno>
+#include <functional>
+#include <system_error>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/mesh/document/document_fixture.h"
+
+namespace {
+
+/// The test's own disk: calls below go through it, so that each can be made to fail.
+struct FaultyDisk {
+  std::atomic<int> writes_left{-1};  ///< of whole pwrite calls before one fails; -1: none fails
+  std::atomic<int> write_error{0};
+  std::atomic<bool> short_write{false};   ///< the failing call first writes half
+  std::atomic<int> sync_error{0};         ///< of fdatasync
+  std::atomic<int> folder_sync_error{0};  ///< of fsync: new files and folders
+};
+FaultyDisk disk;
+
+}  // namespace
+
+// These stand before the C library's of the same name.
+extern "C" ssize_t pwrite(int fd, const void* data, size_t size, off_t offset) {
+  if (disk.writes_left >= 0 && disk.writes_left-- == 0) {
+    if (disk.short_write.exchange(false)) {
+      disk.writes_left = 0;
+      return ::syscall(SYS_pwrite64, fd, data, size / 2, offset);
+    }
+    errno = disk.write_error;
+    return -1;
+  }
+  return ::syscall(SYS_pwrite64, fd, data, size, offset);
+}
+extern "C" ssize_t pwrite64(int fd, const void* data, size_t size, off64_t offset) { return pwrite(fd, data, size, offset); }
+extern "C" int fdatasync(int fd) {
+  if (disk.sync_error == 0) return static_cast<int>(::syscall(SYS_fdatasync, fd));
+  errno = disk.sync_error;
+  return -1;
+}
+extern "C" int fsync(int fd) {
+  if (disk.folder_sync_error == 0) return static_cast<int>(::syscall(SYS_fsync, fd));
+  errno = disk.folder_sync_error;
+  return -1;
+}
+
+namespace prismesh::mesh::document {
+namespace {
+
+using testing::HasSubstr;
+
+const std::vector<std::string> kSession{
+    R"({"edit":"select","expr":"1-10"})",
+    R"({"edit":"translate","by":[0.1,0,1.1]})",
+    R"({"edit":"grow","rings":2})",
+    R"({"edit":"lift","distance":0.3})",
+    R"({"edit":"undo"})",
+    R"({"edit":"undo"})",
+    R"({"edit":"redo"})",
+    R"({"edit":"select","expr":"3","kind":"element","mode":"set"})",
+    R"({"edit":"lock","on":"1"})",
+};
+
+Document small() { return make_sheet(5, 4); }
+
+/// Applies and journals one edit, as modeld does.
+Result<EditReport> work(Document& document, Journal& journal, const std::string& json) {
+  const Edit edit = edit_of(json);
+  Result<Prepared> prepared = prepare(document, edit);
+  if (!prepared) return fail(prepared.error());
+  if (const Result<void> kept = journal.append(document, edit, *prepared); !kept) return fail(kept.error());
+  EditReport report = prepared->report;
+  commit(document, std::move(*prepared));
+  return report;
+}
+
+/// A journal of the whole session, and the document after each of its records.
+struct Session {
+  Folder folder;
+  std::filesystem::path path = folder / "session.journal";
+  std::vector<Document> after;     ///< [k]: after k records
+  std::vector<std::size_t> bytes;  ///< [k]: size of the journal then
+
+  explicit Session(const std::vector<std::string>& edits = kSession, Document document = small()) {
+    Result<Journal> journal = Journal::create(path, document);
+    EXPECT_TRUE(journal) << journal.error().text();
+    after.push_back(document);
+    bytes.push_back(std::filesystem::file_size(path));
+    for (const std::string& edit : edits) {
+      const Result<EditReport> report = work(document, *journal, edit);
+      EXPECT_TRUE(report) << edit << ": " << report.error().text();
+      after.push_back(document);
+      bytes.push_back(std::filesystem::file_size(path));
+    }
+    EXPECT_EQ(journal->records(), edits.size());
+  }
+};
+
+TEST(Journal, BringsBackEveryGeneration) {
+  const Session session;
+  Document document = small();
+  const Result<Journal> journal = Journal::recover(session.path, document);
+  ASSERT_TRUE(journal) << journal.error().text();
+  EXPECT_EQ(journal->records(), kSession.size());
+  EXPECT_FALSE(journal->cut_torn_tail());
+  expect_same(document, session.after.back());
+  while (document.can_undo()) must_apply(document, R"({"edit":"undo"})");
+  expect_same(document.current(), *session.after.front().opened);
+}
+
+TEST(Journal, GoesOnAfterRecovery) {
+  const Session session;
+  Document expected = session.after.back();
+  {
+    Document document = small();
+    Result<Journal> journal = Journal::recover(session.path, document);
+    ASSERT_TRUE(journal);
+    for (const char* edit : {R"({"edit":"undo"})", R"({"edit":"translate","by":[0,0,-1],"on":"all"})"}) {
+      ASSERT_TRUE(work(document, *journal, edit));
+      must_apply(expected, edit);
+    }
+  }
+  Document document = small();
+  ASSERT_TRUE(Journal::recover(session.path, document));
+  expect_same(document, expected);
+}
+
+TEST(Journal, CutAnywhereGivesExactlyTheAcknowledgedPrefix) {
+  const Session session;
+  const std::string whole = content_of(session.path);
+  const std::filesystem::path cut = session.folder / "cut.journal";
+  std::size_t records = 0;
+  for (std::size_t size = session.bytes.front(); size <= whole.size(); ++size) {
+    while (records + 1 < session.bytes.size() && session.bytes[records + 1] <= size) ++records;
+    put_content(cut, whole.substr(0, size));
+    Document document = small();
+    const Result<Journal> journal = Journal::recover(cut, document);
+    ASSERT_TRUE(journal) << "cut at " << size << ": " << journal.error().text();
+    ASSERT_EQ(journal->records(), records) << "cut at " << size;
+    ASSERT_EQ(journal->cut_torn_tail(), size != session.bytes[records]);
+    ASSERT_EQ(std::filesystem::file_size(cut), session.bytes[records]);
+    expect_same(document, session.after[records]);
+    if (HasFailure()) FAIL() << "cut at " << size;
+  }
+  EXPECT_EQ(records, kSession.size());
+}
+
+TEST(Journal, ACutHeaderIsDamage) {
+  const Session session;
+  const std::string whole = content_of(session.path);
+  for (std::size_t size = 0; size < session.bytes.front(); ++size) {
+    put_content(session.path, whole.substr(0, size));
+    Document document = small();
+    ASSERT_FALSE(Journal::recover(session.path, document)) << size;
+  }
+}
+
+TEST(Journal, EveryFlippedByteIsFound) {
+  const Session session({kSession[0], kSession[1], kSession[4]});
+  const std::string whole = content_of(session.path);
+  const std::filesystem::path bad = session.folder / "bad.journal";
+  const Document untouched = small();
+  for (std::size_t at = 0; at < whole.size(); ++at)
+    for (const int flip : {0x01, 0x0a, 0x20, 0xff}) {
+      std::string text = whole;
+      text[at] = static_cast<char>(text[at] ^ flip);
+      put_content(bad, text);
+      ASSERT_FALSE(read_intents(bad)) << "byte " << at << " ^ " << flip;
+      if (flip != 0x01 && whole[at] != '\n') continue;
+      Document document = untouched;
+      ASSERT_FALSE(Journal::recover(bad, document)) << "byte " << at << " ^ " << flip;
+      ASSERT_EQ(document.generations.size(), 1u);
+      ASSERT_EQ(content_of(bad), text) << "a damaged journal was changed";
+    }
+}
+
+TEST(Journal, DamageNamesItsLine) {
+  const Session session;
+  std::string text = content_of(session.path);
+  const std::size_t third = text.find("\"n\":3");
+  text[third + 5] = '!';
+  put_content(session.path, text);
+  Document document = small();
+  const Result<Journal> journal = Journal::recover(session.path, document);
+  ASSERT_FALSE(journal);
+  EXPECT_EQ(journal.error().file, session.path.string());
+  EXPECT_EQ(journal.error().line, 6);
+  EXPECT_THAT(journal.error().message, HasSubstr("nothing after line 5 can be trusted"));
+}
+
+TEST(Journal, LostDoubledOrSwappedRecordsAreFound) {
+  const Session session;
+  const std::string whole = content_of(session.path);
+  const auto record = [&](std::size_t k) { return whole.substr(session.bytes[k], session.bytes[k + 1] - session.bytes[k]); };
+  const std::string head = whole.substr(0, session.bytes[1]);
+  for (const std::string& text : {head + record(2), head + record(0), head + record(2) + record(1), record(0) + whole}) {
+    put_content(session.path, text);
+    Document document = small();
+    EXPECT_FALSE(Journal::recover(session.path, document));
+  }
+}
+
+TEST(Journal, BlocksThatNeverReachedTheDiskAreATornTail) {
+  const Session session;
+  const std::string whole = content_of(session.path);
+  const std::size_t last = session.bytes[session.bytes.size() - 2];
+  // in the middle of the intent, or of the delta: its last block is missing
+  for (const std::size_t written : {last + 40, whole.size() - 20}) {
+    put_content(session.path, whole.substr(0, written) + std::string(whole.size() - written, '\0'));
+    Document document = small();
+    const Result<Journal> journal = Journal::recover(session.path, document);
+    ASSERT_TRUE(journal) << journal.error().text();
+    EXPECT_EQ(journal->records(), kSession.size() - 1);
+    expect_same(document, session.after[kSession.size() - 1]);
+  }
+}
+
+TEST(Journal, IsPinnedToItsDeck) {
+  const Session session;
+  Document other = make_document(test::make_grid(5, 4, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); }), 1 << 30, 8);
+  const Result<Journal> journal = Journal::recover(session.path, other);
+  ASSERT_FALSE(journal);
+  EXPECT_EQ(journal.error().line, 1);
+  EXPECT_THAT(journal.error().message, HasSubstr(other.deck->content.hex()));
+  EXPECT_THAT(journal.error().message, HasSubstr(session.after[0].deck->content.hex()));
+}
+
+TEST(Journal, TakesOverGuessedSettingsOnly) {
+  const Session session;
+  Document guessed = small();
+  guessed.settings.target_size_guessed = true;
+  guessed.settings.target_size = 77;
+  ASSERT_TRUE(Journal::recover(session.path, guessed));
+  EXPECT_EQ(guessed.settings.target_size, 5.0);
+  EXPECT_EQ(guessed.current().counts, session.after.back().current().counts);
+  Document told = small();
+  told.settings.target_size = 1000;
+  ASSERT_TRUE(Journal::recover(session.path, told));
+  EXPECT_EQ(told.settings.target_size, 1000);
+}
+
+TEST(Journal, RefusesWhatExistsAndWhatIsInUse) {
+  Session session;
+  Document document = small();
+  Result<Journal> again = Journal::create(session.path, document);
+  ASSERT_FALSE(again);
+  EXPECT_THAT(again.error().message, HasSubstr("already"));
+  const std::string whole = content_of(session.path);
+  Result<Journal> first = Journal::recover(session.path, document);
+  ASSERT_TRUE(first);
+  Document other = small();
+  Result<Journal> second = Journal::recover(session.path, other);
+  ASSERT_FALSE(second);
+  EXPECT_THAT(second.error().message, HasSubstr("in use"));
+  EXPECT_EQ(content_of(session.path), whole);
+  EXPECT_FALSE(Journal::create(session.folder / "no" / "folder.journal", small()));
+  EXPECT_FALSE(Journal::create(session.folder / "late.journal", document)) << "an edited document";
+}
+
+TEST(Journal, RemembersWhichStepsTheHistoryDropped) {
+  Document document = small();
+  must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5"})");
+  Document capped = small();
+  capped.history_bytes = document.current().own_bytes * 2;
+  const Session session(std::vector<std::string>(6, R"({"edit":"translate","by":[0,0,1],"on":"5"})"), capped);
+  Document again = small();  // with a larger cap: what was dropped then is dropped now, so that later undos mean the same
+  ASSERT_TRUE(Journal::recover(session.path, again));
+  EXPECT_EQ(again.generations.size(), 3u);
+  expect_same(again, session.after.back());
+}
+
+class FaultTest : public testing::Test {
+ protected:
+  ~FaultTest() override {
+    disk.writes_left = -1;
+    disk.short_write = false;
+    disk.sync_error = 0;
+    disk.folder_sync_error = 0;
+  }
+  /// One edit that must fail, then one that must be kept; the journal must hold exactly what was acknowledged.
+  void fail_once(Session& session, const std::function<void()>& break_disk, const std::function<void()>& mend_disk,
+                 const std::string& words) {
+    Document document = small();
+    Result<Journal> journal = Journal::recover(session.path, document);
+    ASSERT_TRUE(journal);
+    const std::string before = content_of(session.path);
+    break_disk();
+    const Result<EditReport> failed = work(document, *journal, R"({"edit":"invert"})");
+    mend_disk();
+    ASSERT_FALSE(failed);
+    EXPECT_THAT(failed.error().message, HasSubstr(words));
+    EXPECT_EQ(failed.error().file, session.path.string());
+    EXPECT_EQ(content_of(session.path), before);
+    expect_same(document, session.after.back());
+    const Result<EditReport> kept = work(document, *journal, R"({"edit":"select","expr":"7"})");
+    ASSERT_TRUE(kept) << kept.error().text();
+    Document expected = session.after.back();
+    must_apply(expected, R"({"edit":"select","expr":"7"})");
+    journal = Journal::create(session.folder / "other.journal", small());  // lets go of the first
+    std::filesystem::remove(session.folder / "other.journal");
+    Document again = small();
+    ASSERT_TRUE(Journal::recover(session.path, again));
+    expect_same(again, expected);
+  }
+};
+
+TEST_F(FaultTest, AFailedWriteLeavesTheJournalAsItWas) {
+  for (const int error : {ENOSPC, EIO, EDQUOT})
+    for (const bool half : {false, true}) {
+      Session session;
+      fail_once(
+          session,
+          [&] {
+            disk.write_error = error;
+            disk.short_write = half;
+            disk.writes_left = 0;
+          },
+          [] { disk.writes_left = -1; }, std::generic_category().message(error));
+    }
+}
+
+TEST_F(FaultTest, AFailedFlushMovesWhatWasAcknowledgedToANewFile) {
+  Session session;
+  struct stat before {};
+  ASSERT_EQ(::stat(session.path.c_str(), &before), 0);
+  fail_once(
+      session, [] { disk.sync_error = EIO; }, [] { disk.sync_error = 0; }, "can't be flushed to disk");
+  struct stat after {};
+  ASSERT_EQ(::stat(session.path.c_str(), &after), 0);
+  EXPECT_NE(before.st_ino, after.st_ino);
+}
+
+TEST_F(FaultTest, WhenNothingCanBeFlushedNoMoreEditsAreTaken) {
+  Session session;
+  Document document = small();
+  {
+    Result<Journal> journal = Journal::recover(session.path, document);
+    ASSERT_TRUE(journal);
+    disk.sync_error = EIO;
+    disk.folder_sync_error = EIO;
+    EXPECT_FALSE(work(document, *journal, R"({"edit":"invert"})"));
+    disk.sync_error = 0;
+    disk.folder_sync_error = 0;
+    const Result<EditReport> later = work(document, *journal, R"({"edit":"invert"})");
+    ASSERT_FALSE(later);
+    EXPECT_THAT(later.error().message, HasSubstr("takes no more edits since an earlier failure"));
+  }
+  Document again = small();
+  ASSERT_TRUE(Journal::recover(session.path, again));
+  expect_same(again, session.after.back());
+}
+
+TEST_F(FaultTest, AJournalThatWasDeletedOrChangedTakesNoEdit) {
+  Session session;
+  Document document = small();
+  Result<Journal> journal = Journal::recover(session.path, document);
+  ASSERT_TRUE(journal);
+  const std::string whole = content_of(session.path);
+  put_content(session.path, whole + "{}\n");
+  EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("changed by another program"));
+  put_content(session.path, whole);
+  std::filesystem::remove(session.path);
+  EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("has been deleted"));
+}
+
+TEST(Journal, AFullDiskLosesNothing) {
+  Folder folder;
+  if (::mount("none", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0)
+    GTEST_SKIP() << "SKIPPED ALOUD: a full disk needs a small tmpfs, and mounting one needs root";
+  const std::filesystem::path path = folder / "full.journal";
+  Document document = make_sheet(20, 20);
+  std::size_t kept = 0;
+  {
+    Result<Journal> journal = Journal::create(path, document);
+    ASSERT_TRUE(journal) << journal.error().text();
+    Result<EditReport> report =
+        work(document, *journal, R"({"edit":"translate","by":[0,0,1],"on":"all","falloff":{"profile":"constant"}})");
+    while (report && kept < 1000) {
+      ++kept;
+      report = work(document, *journal, R"({"edit":"translate","by":[0,0,1],"on":"all","falloff":{"profile":"constant"}})");
+    }
+    ASSERT_FALSE(report);
+    EXPECT_THAT(report.error().message, HasSubstr("No space left on device"));
+    EXPECT_TRUE(work(document, *journal, R"({"edit":"undo"})")) << "a small record still fits";
+  }
+  Document again = make_sheet(20, 20);
+  const Result<Journal> journal = Journal::recover(path, again);
+  EXPECT_TRUE(journal) << journal.error().text();
+  EXPECT_GT(kept, 0u);
+  expect_same(again, document);
+  ::umount2(folder.path().c_str(), MNT_DETACH);
+}
+
+TEST(Replay, GoesOnAfterAFailure) {
+  const Session session({
+      R"({"edit":"select","expr":"1-3"})",
+      R"({"edit":"select","expr":"30"})",
+      R"({"edit":"undo"})",
+      R"({"edit":"translate","by":[0,0,1],"falloff":{"profile":"constant"}})",
+  });
+  const Result<JournalIntents> intents = read_intents(session.path);
+  ASSERT_TRUE(intents) << intents.error().text();
+  EXPECT_EQ(intents->deck_path, "model.k");
+  EXPECT_EQ(intents->edits.size(), 4u);
+  EXPECT_EQ(intents->lines, (std::vector<long>{2, 4, 6, 8}));
+  Document same = small();
+  for (const ReplayStep& step : replay(same, *intents)) EXPECT_TRUE(step.applied) << step.message;
+  expect_same(same.current(), session.after.back().current());
+  // a variant that lacks node 30: the undo of what failed must not take the first selection back
+  Document variant = make_sheet(3, 3);
+  const std::vector<ReplayStep> steps = replay(variant, *intents);
+  EXPECT_TRUE(steps[0].applied);
+  EXPECT_FALSE(steps[1].applied);
+  EXPECT_THAT(steps[1].message, HasSubstr("expression:1: "));
+  EXPECT_EQ(steps[1].line, 4);
+  EXPECT_FALSE(steps[2].applied);
+  EXPECT_TRUE(steps[3].applied);
+  EXPECT_EQ(steps[3].report.nodes_moved, 3u);
+}
+
+TEST(Replay, ReadsScripts) {
+  const Folder folder;
+  put_content(folder / "script.jsonl", "{\"edit\":\"select\",\"expr\":\"1\"}\r\n\n{\"edit\":\"undo\"}");
+  const Result<JournalIntents> intents = read_intents(folder / "script.jsonl");
+  ASSERT_TRUE(intents) << intents.error().text();
+  EXPECT_EQ(intents->lines, (std::vector<long>{1, 3}));
+  put_content(folder / "bad.jsonl", "{\"edit\":\"undo\"}\n{\"edit\":\"unod\"}\n");
+  bool syntax_error = true;
+  const Result<JournalIntents> bad = read_intents(folder / "bad.jsonl", &syntax_error);
+  ASSERT_FALSE(bad);
+  EXPECT_FALSE(syntax_error);
+  EXPECT_EQ(bad.error().line, 2);
+  put_content(folder / "bad.jsonl", "{\"edit\":\"undo\"}\n{\"edit\"\n");
+  EXPECT_FALSE(read_intents(folder / "bad.jsonl", &syntax_error));
+  EXPECT_TRUE(syntax_error);
+}
+
+TEST(Replay, ATornTailIsSaid) {
+  const Session session;
+  const std::string whole = content_of(session.path);
+  put_content(session.path, whole.substr(0, whole.size() - 1));
+  const Result<JournalIntents> intents = read_intents(session.path);
+  ASSERT_TRUE(intents);
+  EXPECT_TRUE(intents->torn_tail);
+  EXPECT_EQ(intents->edits.size(), kSession.size() - 1);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/mesh/document/document_fixture.h"
+
+namespace prismesh::mesh::document {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::int64_t> hidden_parts(const Document& document) {
+  std::vector<std::int64_t> ids;
+  for (std::size_t p = 0; p < document.current().parts->size(); ++p)
+    if ((*document.current().parts)[p].hidden) ids.push_back((*document.current().model.parts)[p].id);
+  return ids;
+}
+
+std::size_t marked(const Document& document, NodeMark mark) {
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < document.current().node_marks.size(); ++n) count += (document.current().node_marks[n] & mark) != 0;
+  return count;
+}
+
+TEST(Parts, HideShowOnly) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"hide","on":"2,4"})");
+  EXPECT_THAT(hidden_parts(document), ElementsAre(2, 4));
+  EXPECT_EQ(marked(document, kHidden), 20u + 7u);  // not the 5 that part 1 shares with part 2
+  must_apply(document, R"({"edit":"only","on":"2"})");
+  EXPECT_THAT(hidden_parts(document), ElementsAre(1, 3, 4));
+  must_apply(document, R"({"edit":"show","on":"1"})");
+  EXPECT_THAT(hidden_parts(document), ElementsAre(3, 4));
+  must_apply(document, R"({"edit":"show"})");  // nothing selected: all
+  EXPECT_TRUE(hidden_parts(document).empty());
+  EXPECT_EQ(marked(document, kHidden), 0u);
+}
+
+TEST(Parts, WithoutOnItIsTheSelectionsParts) {
+  Document document = make_document(make_assembly());
+  EXPECT_THAT(refusal(document, R"({"edit":"hide"})"), HasSubstr("nothing is selected"));
+  must_apply(document, R"({"edit":"select","expr":"100-101,110-111"})");
+  must_apply(document, R"({"edit":"hide"})");
+  EXPECT_THAT(hidden_parts(document), ElementsAre(1));
+  must_apply(document, R"({"edit":"show","on":"1"})");
+  must_apply(document, R"({"edit":"select","expr":"900"})");  // the beam's own end
+  must_apply(document, R"({"edit":"hide"})");
+  EXPECT_THAT(hidden_parts(document), ElementsAre(3));
+}
+
+TEST(Parts, WhatIsHiddenIsNoLongerSelected) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"select","expr":"103-106"})");
+  const EditReport report = must_apply(document, R"({"edit":"hide","on":"2"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(103, 104));
+  EXPECT_THAT(report.notes, ElementsAre("2 hidden nodes deselected"));
+  must_apply(document, R"({"edit":"undo"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(103, 104, 105, 106));
+}
+
+TEST(Parts, LockedNodesRefuseToMove) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"lock","on":"2"})");
+  EXPECT_EQ(marked(document, kLocked), 25u);
+  EXPECT_EQ(refusal(document, R"({"edit":"translate","by":[0,0,1],"on":"103-106","falloff":{"profile":"constant"}})"),
+            "node 104 would move but belongs to the locked part 2 (3 such nodes in all); unlock the part or deselect its nodes");
+  EXPECT_EQ(document.generations.size(), 2u);
+  must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"100-103","falloff":{"profile":"constant"}})");
+  must_apply(document, R"({"edit":"unlock","on":"2"})");
+  must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"103-106","falloff":{"profile":"constant"}})");
+}
+
+TEST(Parts, ALockedBeamOrSolidHoldsTheNodesItShares) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"lock","on":"3,4"})");
+  EXPECT_EQ(marked(document, kLocked), 10u);
+  EXPECT_THAT(refusal(document, R"({"edit":"translate","by":[0,0,1],"on":"100"})"),
+              HasSubstr("node 100 would move but belongs to the locked part 3"));
+  EXPECT_THAT(refusal(document, R"({"edit":"translate","by":[0,0,1],"on":"148"})"), HasSubstr("the locked part 4"));
+}
+
+TEST(Parts, UndoBringsBackStatesAndMarks) {
+  Document document = make_document(make_assembly());
+  const std::shared_ptr<const Generation> first = document.generations[0];
+  must_apply(document, R"({"edit":"lock","on":"1"})");
+  must_apply(document, R"({"edit":"only","on":"1"})");
+  must_apply(document, R"({"edit":"undo"})");
+  must_apply(document, R"({"edit":"undo"})");
+  expect_same(document.current(), *first);
+}
+
+TEST(Parts, AnEditThatChangesNoPartSaysSo) {
+  Document document = make_document(make_assembly());
+  EXPECT_THAT(must_apply(document, R"({"edit":"show","on":"1"})").notes, ElementsAre("no part changed"));
+  EXPECT_THAT(refusal(document, R"({"edit":"hide","on":"77"})"), testing::StartsWith("expression:1: "));
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,135 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/mesh/document/document_fixture.h"
+
+namespace prismesh::mesh::document {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(Select, ModesCombineNodes) {
+  Document document = make_sheet(4, 4);
+  must_apply(document, R"({"edit":"select","expr":"1-5"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 3, 4, 5));
+  must_apply(document, R"({"edit":"select","expr":"7","mode":"add"})");
+  must_apply(document, R"({"edit":"select","expr":"2-3","mode":"subtract"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 4, 5, 7));
+  must_apply(document, R"({"edit":"select","expr":"4-10","mode":"intersect"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(4, 5, 7));
+  EXPECT_EQ(document.current().selected_nodes, 3u);
+  must_apply(document, R"({"edit":"select","expr":"9"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(9));
+}
+
+TEST(Select, ElementsStayElementsUntilNodesCome) {
+  Document document = make_sheet(4, 4);
+  must_apply(document, R"({"edit":"select","expr":"1","kind":"element"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 6, 7));
+  EXPECT_EQ(document.current().selected_shells, 1u);
+  must_apply(document, R"({"edit":"select","expr":"2","kind":"element","mode":"add"})");
+  EXPECT_EQ(document.current().selected_shells, 2u);
+  // the border between the two stays: the shell that is left needs it
+  must_apply(document, R"({"edit":"select","expr":"2","kind":"element","mode":"subtract"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 6, 7));
+  must_apply(document, R"({"edit":"select","expr":"25","mode":"add"})");
+  EXPECT_EQ(document.current().selection_kind, select::Kind::node);
+  EXPECT_EQ(document.current().selected_shells, 0u);
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 6, 7, 25));
+}
+
+TEST(Select, APartBringsItsBeamsAndSolids) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"select","expr":"3","kind":"part"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(100, 900));
+  must_apply(document, R"({"edit":"select","expr":"1","kind":"part","mode":"add"})");
+  EXPECT_EQ(selected_ids(document).size(), 26u);
+  must_apply(document, R"({"edit":"select","expr":"3","kind":"part","mode":"subtract"})");
+  EXPECT_EQ(selected_ids(document).size(), 25u);  // node 100 is part 1's too
+}
+
+TEST(Select, RegionStopsAtACrease) {
+  // an L: 4 columns flat, then 4 upright
+  Document document = make_document(
+      test::make_grid(8, 2, [](int i, int j) { return i <= 4 ? Vec3(5.0 * i, 5.0 * j, 0) : Vec3(20, 5.0 * j, 5.0 * (i - 4)); }));
+  must_apply(document, R"({"edit":"select_region","at":[0,0,1]})");
+  EXPECT_EQ(document.current().selected_shells, 8u);
+  EXPECT_EQ(document.current().selection_kind, select::Kind::element);
+  must_apply(document, R"({"edit":"select_region","at":9,"mode":"add"})");
+  EXPECT_EQ(document.current().selected_shells, 16u);
+  must_apply(document, R"({"edit":"select_region","at":1,"angle":91})");
+  EXPECT_EQ(document.current().selected_shells, 16u);
+  EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":30})"), HasSubstr("there is no node 30; the nearest id is 27"));
+}
+
+TEST(Select, LassoSelectsThroughAndRefusesVisible) {
+  Document document = make_sheet(4, 4);
+  // orthographic along z: x and y from 0..20 to -1..1
+  const std::string view = R"("view":[0.1,0,0,0, 0,0.1,0,0, 0,0,0.1,0, -1,-1,0,1])";
+  must_apply(document, R"({"edit":"select_lasso","outline":[[-2,-2],[0.1,-2],[0.1,-0.4],[-2,-0.4]],)" + view + "}");
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 3, 6, 7, 8));
+  EXPECT_THAT(refusal(document, R"({"edit":"select_lasso","visible":true,"outline":[[0,0],[1,0],[0,1]],)" + view + "}"),
+              HasSubstr("only a view has"));
+}
+
+TEST(Select, GrowShrinkInvert) {
+  Document document = make_sheet(4, 4);
+  EXPECT_THAT(refusal(document, R"({"edit":"grow"})"), HasSubstr("nothing is selected"));
+  must_apply(document, R"({"edit":"select","expr":"13"})");
+  must_apply(document, R"({"edit":"grow"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(7, 8, 9, 12, 13, 14, 17, 18, 19));
+  must_apply(document, R"({"edit":"shrink"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(13));
+  must_apply(document, R"({"edit":"grow","rings":9})");
+  EXPECT_EQ(selected_ids(document).size(), 25u);
+  must_apply(document, R"({"edit":"invert"})");
+  EXPECT_THAT(selected_ids(document), IsEmpty());
+  must_apply(document, R"({"edit":"select","expr":"6","kind":"element"})");
+  must_apply(document, R"({"edit":"invert"})");
+  EXPECT_EQ(document.current().selected_shells, 15u);
+  EXPECT_EQ(selected_ids(document).size(), 25u);  // its corners all belong to others too
+  must_apply(document, R"({"edit":"invert"})");
+  EXPECT_THAT(selected_ids(document), ElementsAre(7, 8, 12, 13));
+}
+
+TEST(Select, HiddenPartsAreLeftAloneUnlessNamed) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"hide","on":"2,4"})");
+  must_apply(document, R"({"edit":"select_region","at":100})");
+  EXPECT_EQ(document.current().selected_shells, 16u);
+  must_apply(document, R"({"edit":"grow","rings":3})");
+  EXPECT_EQ(document.current().selected_shells, 16u);
+  must_apply(document, R"({"edit":"select","expr":"100"})");
+  must_apply(document, R"({"edit":"grow","rings":9})");
+  EXPECT_EQ(selected_ids(document).size(), 25u);
+  must_apply(document, R"({"edit":"select","expr":"118"})");  // by id, on purpose
+  EXPECT_THAT(selected_ids(document), ElementsAre(118));
+  EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":118})"), HasSubstr("no shell in sight"));
+}
+
+TEST(Select, ABadExpressionNamesItsColumn) {
+  Document document = make_sheet(2, 2);
+  EXPECT_THAT(refusal(document, R"({"edit":"select","expr":"1,99"})"), testing::StartsWith("expression:3: "));
+  EXPECT_EQ(document.generations.size(), 1u);
+}
+
+TEST(Select, SharesEveryChunkItDoesNotTouch) {
+  Document document = make_sheet(200, 200);
+  const auto untouched = document.current().model.positions.chunk_owner(0);
+  must_apply(document, R"({"edit":"select","expr":"1-10"})");
+  const Generation& before = *document.generations[0];
+  const Generation& after = document.current();
+  EXPECT_EQ(after.model.positions.chunk_owner(0), untouched);
+  std::size_t own = 0;
+  for (std::size_t c = 0; c < after.node_marks.chunk_count(); ++c) own += after.node_marks.shares_chunk(before.node_marks, c) ? 0 : 1;
+  EXPECT_EQ(own, 1u);
+  EXPECT_TRUE(after.quality.shares_chunk(before.quality, 0));
+  // selecting what is selected already changes no chunk at all
+  must_apply(document, R"({"edit":"select","expr":"1-10"})");
+  EXPECT_TRUE(document.current().node_marks.shares_chunk(after.node_marks, 0));
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::document
