@@ -66,6 +66,8 @@ Result<void> Editor::follow() {
     const bool other_document = next && (!shown_ || shown_->info().document != next->info().document);
     if (Result<void> set = renderer_.set_model(next ? render::snapshot_source(next) : nullptr); !set) return set;
     shown_ = next;
+    // What stays within comfortable depth is what is shown now.
+    if (const stereo::Box box = renderer_.bounds(); !box.empty()) view_.bounds = stereo::sphere_around(box);
     take_model();
     if (other_document) fit();
   }
@@ -336,12 +338,10 @@ void Editor::look(std::string_view view_name) {
 }
 
 void Editor::fit() {
-  const stereo::Box box = renderer_.bounds();
-  if (box.empty()) return;
-  view_.bounds = stereo::sphere_around(box);
+  if (renderer_.bounds().empty()) return;
   Eigen::Vector2d free = stereo::screen_size_mm(profile_, size_.width, size_.height);
   free.x() *= std::max(0.2, 1 - covered_width_ / std::max(size_.width, 1));
-  view_ = stereo::fit(view_, box, free, between_eyes_mm_.z());
+  view_ = renderer_.fitted(view_, free, between_eyes_mm_.z());
   ++changes_;
 }
 

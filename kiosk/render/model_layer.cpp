@@ -164,6 +164,19 @@ const Instances& ModelLayer::glyphs(std::size_t cap) {
   return glyphs_;
 }
 
+stereo::Box ModelLayer::shown_box() const {
+  stereo::Box box;
+  if (!table_) return box;
+  for (const ModelTextures::ShellChunk& chunk : textures_.shell_chunks())
+    if (chunk.shown) {
+      box.add(mesh::Vec3(chunk.box.low + textures_.origin()));
+      box.add(mesh::Vec3(chunk.box.high + textures_.origin()));
+    }
+  for (const std::uint32_t node : line_nodes_)
+    if (const mesh::Vec3 point = table_->position(node); finite(point)) box.add(point);
+  return box;
+}
+
 const std::vector<std::uint8_t>& ModelLayer::visible_nodes() {
   if (!visible_nodes_) visible_nodes_ = table_ ? table_->visible_nodes() : std::vector<std::uint8_t>();
   return *visible_nodes_;

@@ -54,6 +54,8 @@ class ModelLayer {
   const Instances& glyphs(std::size_t cap);
   std::size_t glyphs_left_out() const { return glyphs_left_out_; }
 
+  /// Around what is shown, deck coordinates. Costs the chunks and the line elements.
+  stereo::Box shown_box() const;
   const std::vector<std::uint8_t>& visible_nodes();
   const std::vector<std::uint32_t>& line_nodes() const { return line_nodes_; }
 

@@ -47,7 +47,7 @@ class ModelTable {
   /// 1 for each node that a visible shell or line names.
   std::vector<std::uint8_t> visible_nodes() const;
   /// Around those nodes, in axes turned by `rotation`; finite coordinates only.
-  stereo::Box visible_box(const Eigen::Quaterniond& rotation = Eigen::Quaterniond::Identity()) const;
+  stereo::Box visible_box(const Eigen::Quaterniond& rotation) const;
 
  private:
   std::shared_ptr<const ModelSource> source_;

@@ -107,7 +107,7 @@ Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
 
 const ModelSource* Renderer::model() const { return state_->model.get(); }
 
-stereo::Box Renderer::bounds() const { return state_->layer.empty() ? stereo::Box() : state_->layer.table().visible_box(); }
+stereo::Box Renderer::bounds() const { return state_->layer.shown_box(); }
 
 stereo::View Renderer::fitted(const stereo::View& view, const Eigen::Vector2d& screen_mm, double eye_distance_mm) const {
   const stereo::Box turned = state_->layer.empty() ? stereo::Box() : state_->layer.table().visible_box(view.rotation);

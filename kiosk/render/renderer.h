@@ -87,7 +87,7 @@ class Renderer {
   /// Shows a model: uploads the chunks whose versions it doesn't have yet. Null: an empty screen. Errors: too large for the GPU.
   Result<void> set_model(std::shared_ptr<const ModelSource> model);
   const ModelSource* model() const;
-  /// Around the nodes of visible shells and lines. Costs the model.
+  /// Around the nodes of visible shells and lines: what View::bounds should be, anew after each set_model. Costs the chunks only.
   stereo::Box bounds() const;
   /// The view that frames them closely, from the side that `view` is seen from. Costs the model.
   stereo::View fitted(const stereo::View& view, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650) const;

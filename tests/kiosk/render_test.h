@@ -46,7 +46,7 @@ class RenderTest : public testing::Test {
     picture.profile = *stereo::find_profile(profile);
     picture.view.rotation = *stereo::named_rotation(view);
     picture.view.bounds = stereo::sphere_around(renderer_->bounds());
-    picture.view = stereo::fit(picture.view, renderer_->bounds(), stereo::screen_size_mm(picture.profile, width, height));
+    picture.view = renderer_->fitted(picture.view, stereo::screen_size_mm(picture.profile, width, height));
     return picture;
   }
   stereo::Aim aim_of(const Picture& picture, int width, int height) const {

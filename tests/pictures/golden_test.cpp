@@ -1,0 +1,124 @@
+// Pictures kept beside the test, compared with what is drawn today. PRISMESH_UPDATE_PICTURES=1 draws them anew: look at them then.
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <GLES3/gl31.h>
+#include <gtest/gtest.h>
+#include <stb_image.h>
+
+#include "tests/kiosk/render_test.h"
+
+namespace prismesh::kiosk::render {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 360;
+constexpr const char* kDrawnWith = "Mesa 22.";  ///< another version may round otherwise
+
+class GoldenPicture : public RenderTest {
+ protected:
+  void SetUp() override {
+#ifndef NDEBUG
+    GTEST_SKIP() << "GOLDEN PICTURES ARE NOT COMPARED: release builds only, software rendering crawls in others";
+#endif
+    RenderTest::SetUp();
+    if (IsSkipped()) return;
+    const std::string version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+    const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    if (version.find(kDrawnWith) == std::string::npos || renderer.find("llvmpipe") == std::string::npos)
+      GTEST_SKIP() << "GOLDEN PICTURES ARE NOT COMPARED: they were drawn with " << kDrawnWith << "x llvmpipe, here are \"" << version
+                   << "\" and \"" << renderer << '"';
+    make_renderer({});
+  }
+
+  /// A crash box in the middle of being edited.
+  static test::TestSource model() {
+    test::TestSource source = test::make_crash_box();
+    for (std::size_t n = 23 * 12 + 7; n < 23 * 12 + 16; ++n)
+      for (std::size_t row = 0; row < 5; ++row) source.node_marks[n + 23 * row] = mesh::document::kSelected;
+    for (std::size_t i = 0; i < 12; ++i) {
+      auto& state = source.shell_quality[22 * 3 + 5 + 23 * i];
+      state.warn = static_cast<std::uint16_t>(1U << i % 11);
+      if (i % 2 == 0) state.fail = state.warn;
+    }
+    return source;
+  }
+
+  void compare(const std::string& name, const Image& image) {
+    const std::filesystem::path path = std::filesystem::path(PRISMESH_SOURCE_FOLDER) / "tests/pictures/golden" / (name + ".png");
+    if (std::getenv("PRISMESH_UPDATE_PICTURES") != nullptr) {
+      const auto written = write_png(path, image);
+      ASSERT_TRUE(written) << written.error().text();
+      return;
+    }
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> golden(stbi_load(path.c_str(), &width, &height, &channels, 3),
+                                                                      &stbi_image_free);
+    ASSERT_TRUE(golden) << path << " can't be read";
+    ASSERT_EQ(width, image.width);
+    ASSERT_EQ(height, image.height);
+    std::size_t off = 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+      const int difference = std::abs(image.rgb[i] - golden.get()[i]);
+      sum += difference;
+      off += difference > 12;
+    }
+    const auto values = static_cast<double>(image.rgb.size());
+    const bool same = sum / values < 0.2 && static_cast<double>(off) / values < 0.001;
+    if (!same) {
+      const std::string drawn = testing::TempDir() + "prismesh_" + name + ".png";
+      EXPECT_TRUE(write_png(drawn, image));
+      ADD_FAILURE() << name << " has changed: " << off << " values are off, " << sum / values << " levels on average; see " << drawn;
+    }
+  }
+};
+
+TEST_F(GoldenPicture, PrismMask) {
+  show(model());
+  compare("prism_mask", draw(fitted("prism-mask", "iso", kWidth, kHeight), kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, AnaglyphFromTheSide) {
+  show(model());
+  Picture picture = fitted("anaglyph", "iso", kWidth, kHeight);
+  picture.between_eyes_mm = {120, 60, 550};
+  compare("anaglyph_from_the_side", draw(picture, kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, Quality) {
+  show(model());
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  picture.colour = ColourMode::quality;
+  compare("quality", draw(picture, kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, Lifting) {
+  const test::TestSource source = model();
+  show(source);
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  std::vector<mesh::NodeIndex> nodes;
+  ipc::PreviewFrame frame;
+  for (std::uint32_t n = 0; n < source.positions.size(); ++n)
+    if (source.node_marks[n] != 0) {
+      nodes.push_back(mesh::NodeIndex(n));
+      frame.positions.push_back(source.positions[n] + mesh::Vec3(0, 0, 22));
+    }
+  std::vector<mesh::ShellIndex> shells;
+  for (std::uint32_t s = 0; s < source.shell_nodes.size(); ++s)
+    for (const mesh::NodeIndex node : source.shell_nodes[s].node)
+      if (source.node_marks[node.value] != 0) {
+        shells.push_back(mesh::ShellIndex(s));
+        break;
+      }
+  frame.states.resize(shells.size());
+  for (std::size_t i = 0; i < shells.size(); i += 7) frame.states[i].warn = frame.states[i].fail = 1;
+  renderer_->begin_preview(nodes, shells);
+  ASSERT_TRUE(renderer_->update_preview(frame));
+  picture.handle = Handle{frame.positions[frame.positions.size() / 2], mesh::Vec3::UnitZ(), true};
+  picture.rubber_band = PixelRect{420, 40, 600, 130};
+  compare("lifting", draw(picture, kWidth, kHeight));
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::render
