@@ -44,13 +44,13 @@ extern "C" ssize_t pwrite(int fd, const void* data, size_t size, off_t offset) {
   return ::syscall(SYS_pwrite64, fd, data, size, offset);
 }
 extern "C" ssize_t pwrite64(int fd, const void* data, size_t size, off64_t offset) { return pwrite(fd, data, size, offset); }
-extern "C" int fdatasync(int fd) {
-  if (disk.sync_error == 0) return static_cast<int>(::syscall(SYS_fdatasync, fd));
+extern "C" int fdatasync(int) {
+  if (disk.sync_error == 0) return 0;  // really flushing would only cost time: no test here cuts the power
   errno = disk.sync_error;
   return -1;
 }
-extern "C" int fsync(int fd) {
-  if (disk.folder_sync_error == 0) return static_cast<int>(::syscall(SYS_fsync, fd));
+extern "C" int fsync(int) {
+  if (disk.folder_sync_error == 0) return 0;
   errno = disk.folder_sync_error;
   return -1;
 }

@@ -1,0 +1,155 @@
+// What editing a million-shell document costs: everything here must follow the change, not the model.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <numeric>
+
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include "mesh/document/document.h"
+#include "mesh/document/drag.h"
+#include "mesh/document/edit_json.h"
+#include "mesh/document/journal.h"
+#include "mesh/model/adjacency.h"
+#include "tests/bench/million_quads.h"
+
+namespace prismesh::mesh::document {
+namespace {
+
+/// million_quads with everything a document needs.
+Model complete_million() {
+  Model model = bench::million_quads();
+  std::vector<std::int64_t> node_ids(model.node_count());
+  std::vector<std::int64_t> shell_ids(model.shell_count());
+  std::iota(node_ids.begin(), node_ids.end(), 1);
+  std::iota(shell_ids.begin(), shell_ids.end(), 1);
+  model.node_ids.resize(node_ids.size());
+  model.shell_ids.resize(shell_ids.size());
+  for (std::size_t i = 0; i < node_ids.size(); ++i) model.node_ids.set(i, node_ids[i]);
+  for (std::size_t i = 0; i < shell_ids.size(); ++i) model.shell_ids.set(i, shell_ids[i]);
+  model.node_holds = ChunkedArray<std::uint8_t>::filled(node_ids.size());
+  model.node_index = std::make_shared<IdIndex>(node_ids);
+  model.shell_index = std::make_shared<IdIndex>(shell_ids);
+  model.midside = std::make_shared<std::vector<MidsideNodes>>();
+  model.adjacency = std::make_shared<Adjacency>(build_adjacency(model));
+  return model;
+}
+
+Document open_million() {
+  auto deck = std::make_shared<deck::Deck>();
+  OpenOptions options;
+  options.target_size = 5.0;
+  options.history_bytes = std::size_t{1} << 30;
+  return open("million.k", {deck, complete_million()}, options).value();
+}
+
+/// A patch of 100 x 100 nodes in the middle of the sheet, 1001 nodes a row.
+std::string patch_expression() {
+  std::string expression;
+  for (int j = 450; j < 550; ++j) {
+    const int first = 450 + 1001 * j;
+    expression += (expression.empty() ? "" : ",") + std::to_string(first + 1) + "-" + std::to_string(first + 100);
+  }
+  return expression;
+}
+
+Document& million() {
+  static Document document = [] {
+    Document fresh = open_million();
+    const Result<EditReport> selected = document::apply(fresh, Edit(Select{patch_expression()}));
+    if (!selected || fresh.current().selected_nodes != 10'000) {
+      std::cerr << "the patch isn't 10,000 nodes: " << (selected ? "" : selected.error().text()) << '\n';
+      std::abort();
+    }
+    return fresh;
+  }();
+  return document;
+}
+
+Edit pull(double z) {
+  Translate translate;
+  translate.by = Vec3(0, 0, z);
+  return translate;
+}
+
+void generation_copy(benchmark::State& state) {
+  const Document& document = million();
+  for (auto _ : state) {
+    Generation copy = document.current();
+    benchmark::DoNotOptimize(copy);
+  }
+}
+BENCHMARK(generation_copy)->Unit(benchmark::kMicrosecond);
+
+void selection_of_10k(benchmark::State& state) {
+  const Document& document = million();
+  for (auto _ : state) benchmark::DoNotOptimize(selection(document.current()));
+}
+BENCHMARK(selection_of_10k)->Unit(benchmark::kMicrosecond);
+
+void translate_10k(benchmark::State& state) {
+  const Document& document = million();
+  for (auto _ : state) {
+    const Result<Prepared> prepared = prepare(document, pull(1.5));
+    if (!prepared) return state.SkipWithError(prepared.error().text().c_str());
+    benchmark::DoNotOptimize(prepared);
+  }
+}
+BENCHMARK(translate_10k)->Unit(benchmark::kMillisecond);
+
+void drag_step_10k(benchmark::State& state) {
+  const Document& document = million();
+  Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, pull(0));
+  if (!drag) return state.SkipWithError(drag.error().text().c_str());
+  double z = 0;
+  for (auto _ : state) {
+    drag->step(Vec3(0, 0, z), 0);
+    benchmark::DoNotOptimize(drag->states().data());
+    z += 0.01;
+  }
+  state.counters["shells"] = static_cast<double>(drag->shells().size());
+}
+BENCHMARK(drag_step_10k)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+void undo_redo_10k(benchmark::State& state) {
+  Document document = million();
+  if (const Result<EditReport> pulled = document::apply(document, pull(1.5)); !pulled) return state.SkipWithError("pull");
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(document::apply(document, Edit(Undo{})));
+    benchmark::DoNotOptimize(document::apply(document, Edit(Redo{})));
+  }
+}
+BENCHMARK(undo_redo_10k)->Unit(benchmark::kMicrosecond);
+
+void select_one(benchmark::State& state) {
+  const Document& document = million();
+  for (auto _ : state) benchmark::DoNotOptimize(prepare(document, Edit(Select{"500000"})));
+}
+BENCHMARK(select_one)->Unit(benchmark::kMicrosecond);
+
+void lock_a_part(benchmark::State& state) {
+  const Document& document = million();
+  for (auto _ : state) benchmark::DoNotOptimize(prepare(document, Edit(SetParts{VisibilityAction::lock, "all"})));
+}
+BENCHMARK(lock_a_part)->Unit(benchmark::kMillisecond);
+
+void journal_translate_10k(benchmark::State& state) {
+  Document document = open_million();
+  const auto path = std::filesystem::temp_directory_path() / ("document-bench-" + std::to_string(::getpid()) + ".journal");
+  Result<Journal> journal = Journal::create(path, document);
+  if (!journal) return state.SkipWithError(journal.error().text().c_str());
+  const Edit select = Select{patch_expression()};
+  document::apply(document, select).value();
+  const Edit edit = pull(1.5);
+  const Result<Prepared> prepared = prepare(document, edit);
+  for (auto _ : state)
+    if (!journal->append(document, edit, *prepared)) return state.SkipWithError("append");
+  state.counters["bytes"] = static_cast<double>(std::filesystem::file_size(path)) / static_cast<double>(state.iterations());
+  std::filesystem::remove(path);
+}
+BENCHMARK(journal_translate_10k)->Unit(benchmark::kMillisecond)->Iterations(50);
+
+}  // namespace
+}  // namespace prismesh::mesh::document
