@@ -120,13 +120,39 @@ void add_render(Parser& parser) {
   // The kiosk knows what these may be.
   const auto pass_on = [app = app, o = options](const std::string& name, const std::string& what) {
     app->add_option_function<std::string>(
-        name, [o, name](const std::string& value) { o->passed_on.insert(o->passed_on.end(), {name, value}); }, what);
+        name,
+        [o, name](const std::string& value) {
+          o->passed_on.insert(o->passed_on.end(), {name, value});
+        },
+        what);
   };
   pass_on("--size", "WxH in pixels (default 1920x1080)");
   pass_on("--profile", "display profile: prism-mask (default), mono-left, mono-right, mono, anaglyph, side-by-side, or a file");
   pass_on("--eye", "X,Y,Z: the point between the eyes, mm from the screen's centre (default 0,0,650)");
   pass_on("--view", "front, back, left, right, top, bottom or iso (default)");
   pass_on("--colour", "parts (default) or quality");
+}
+
+void add_session(Parser& parser) {
+  const auto [app, options] = add_command<SessionOptions>(parser, "session", "edit the document that is open in a running modeld", session);
+  app->require_subcommand(1);
+  add_optional(app, "--runtime-dir", options->runtime_directory, "the folder of modeld's socket");
+  using Action = SessionOptions::Action;
+  const auto add = [app = app, o = options](const std::string& name, Action action, const std::string& what) {
+    CLI::App* command = app->add_subcommand(name, what);
+    command->fallthrough();
+    command->parse_complete_callback([o, action] { o->action = action; });
+    return command;
+  };
+  add("open", Action::open, "open a deck")->add_option("DECK", options->deck, "the deck's main file")->required();
+  CLI::App* edit_app = add("edit", Action::edit, "edit the open document");
+  edit_app->add_option("EDIT", options->edits, "an edit as JSON; may be given several times");
+  add_optional(edit_app, "--script", options->script, "a file of edits, one JSON object a line, done after those");
+  add_optional(add("save", Action::save, "save the document"), "OUT", options->output, "where to (default: in place)");
+  add("state", Action::state, "say what is open");
+  add("undo", Action::undo, "take the last edit back");
+  add("redo", Action::redo, "do the edit that was taken back again");
+  add("close", Action::close, "close the document")->add_flag("--discard", options->discard, "give unsaved edits up");
 }
 
 /// Wrong usage as an Error that names the command and, for an unknown command, the nearest known one.
@@ -155,6 +181,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_reading_commands(*parser);
   add_writing_commands(*parser);
   add_render(*parser);
+  add_session(*parser);
   try {
     std::vector<std::string> reversed(args.rbegin(), args.rend());
     parser->app.parse(std::move(reversed));

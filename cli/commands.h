@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -76,5 +77,18 @@ struct RenderOptions {
   std::vector<std::string> passed_on;  ///< options and values that the kiosk reads: --size, --profile, --eye, --view, --colour
 };
 int render(const RenderOptions& options, const Common& common, const Surroundings& surroundings);
+
+/// Talks to a running modeld.
+struct SessionOptions {
+  enum class Action : std::uint8_t { open, edit, save, state, undo, redo, close };
+  Action action = Action::state;
+  std::optional<std::filesystem::path> runtime_directory;
+  std::filesystem::path deck;                   ///< open
+  std::vector<std::string> edits;               ///< edit: JSON, done first
+  std::optional<std::filesystem::path> script;  ///< edit: JSON Lines, done after them
+  std::optional<std::filesystem::path> output;  ///< save: elsewhere than in place
+  bool discard = false;                         ///< close: unsaved edits too
+};
+int session(const SessionOptions& options, const Common& common, const Surroundings& surroundings);
 
 }  // namespace prismesh::cli

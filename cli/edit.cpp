@@ -2,12 +2,11 @@
 
 #include <ostream>
 
-#include "base/file.h"
 #include "cli/commands.h"
+#include "cli/edit_list.h"
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
 #include "cli/report_text.h"
-#include "mesh/document/edit_json.h"
 #include "mesh/document/journal.h"
 
 namespace prismesh::cli {
@@ -15,43 +14,6 @@ namespace prismesh::cli {
 namespace {
 
 namespace document = mesh::document;
-
-/// An edit and where the user wrote it.
-struct Wanted {
-  document::Edit edit;
-  std::string file;
-  long line = 0;
-};
-
-/// A reason and the exit status it leads to.
-struct Refusal {
-  Error error;
-  int status = kFailed;
-};
-
-/// Parses one edit onto the list.
-std::optional<Refusal> take(std::string_view text, const std::string& file, long line, std::vector<Wanted>& wanted) {
-  bool is_not_json = false;
-  Result<document::Edit> edit = document::parse_edit(text, &is_not_json);
-  if (!edit) return Refusal{{file, line, edit.error().message}, is_not_json ? kWrongUsage : kFailed};
-  wanted.push_back({std::move(*edit), file, line});
-  return std::nullopt;
-}
-
-std::optional<Refusal> read_edits(const EditOptions& options, std::vector<Wanted>& wanted) {
-  for (std::size_t i = 0; i < options.edits.size(); ++i)
-    if (auto refusal = take(options.edits[i], "--edit", static_cast<long>(i + 1), wanted)) return refusal;
-  if (!options.script) return std::nullopt;
-  const Result<FileBytes> script = read_file(*options.script);
-  if (!script) return Refusal{script.error()};
-  std::string_view rest = script->text();
-  for (long line = 1; !rest.empty(); ++line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    if (auto refusal = take(rest.substr(0, end), options.script->string(), line, wanted)) return refusal;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return std::nullopt;
-}
 
 /// A journal that doesn't outlive a failure.
 class JournalGuard {
@@ -80,14 +42,8 @@ class JournalGuard {
   bool kept_ = false;
 };
 
-void print_text(std::ostream& out, const document::EditReport& report) {
-  out << report.edit << ": " << report.nodes_moved << " nodes moved; warn " << report.before.warn << " -> " << report.after.warn
-      << ", fail " << report.before.fail << " -> " << report.after.fail << '\n';
-  for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
-}
-
 /// Says why an edit wasn't done: the reason itself, and the edit's place where the reason has one of its own.
-void refuse_edit(const Surroundings& surroundings, const Common& common, const Wanted& wanted, Error reason) {
+void refuse_edit(const Surroundings& surroundings, const Common& common, const WantedEdit& wanted, Error reason) {
   const std::string edit(name(wanted.edit));
   if (common.json) surroundings.out << failed_edit_json(edit, reason.text()) << '\n';
   if (reason.file.empty()) {
@@ -99,9 +55,9 @@ void refuse_edit(const Surroundings& surroundings, const Common& common, const W
 }
 
 /// Does the edits one after the other. False: one was refused, and said.
-bool apply_all(const std::vector<Wanted>& wanted, document::Document& document, JournalGuard& journal, const Common& common,
+bool apply_all(const std::vector<WantedEdit>& wanted, document::Document& document, JournalGuard& journal, const Common& common,
                const Surroundings& surroundings) {
-  for (const Wanted& one : wanted) {
+  for (const WantedEdit& one : wanted) {
     Result<document::Prepared> prepared = document::prepare(document, one.edit);
     if (!prepared) {
       refuse_edit(surroundings, common, one, prepared.error());
@@ -116,7 +72,7 @@ bool apply_all(const std::vector<Wanted>& wanted, document::Document& document, 
     if (common.json)
       surroundings.out << edit_json(report) << '\n';
     else
-      print_text(surroundings.out, report);
+      print_edit(surroundings.out, report);
     if (surroundings.stop()) {
       say(surroundings, Error{one.file, one.line, "cancelled after this edit; nothing is written"});
       return false;
@@ -128,8 +84,8 @@ bool apply_all(const std::vector<Wanted>& wanted, document::Document& document, 
 }  // namespace
 
 int edit(const EditOptions& options, const Common& common, const Surroundings& surroundings) {
-  std::vector<Wanted> wanted;
-  if (const auto refusal = read_edits(options, wanted)) {
+  std::vector<WantedEdit> wanted;
+  if (const auto refusal = read_edits(options.edits, "--edit", options.script, wanted)) {
     say(surroundings, refusal->error);
     return refusal->status;
   }

@@ -78,4 +78,10 @@ void say_guesses(const Surroundings& surroundings, const mesh::document::Documen
                                 " is guessed from the median edge; --target-size sets it"});
 }
 
+void print_edit(std::ostream& out, const mesh::document::EditReport& report) {
+  out << report.edit << ": " << report.nodes_moved << " nodes moved; warn " << report.before.warn << " -> " << report.after.warn
+      << ", fail " << report.before.fail << " -> " << report.after.fail << '\n';
+  for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
+}
+
 }  // namespace prismesh::cli

@@ -1,6 +1,7 @@
 // What commands say to people. Inner to cli.
 #pragma once
 
+#include <iosfwd>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,9 @@ std::string printable(std::string_view text);
 std::string shortest(double value);
 /// The double that has a float's shortest digits: 8.07f as 8.07, not 8.06999969482422.
 double as_written(float value);
+
+/// What an edit did, in a line, and its notes.
+void print_edit(std::ostream& out, const mesh::document::EditReport& report);
 
 /// A reason on standard error, as `file:line: message`.
 void say(const Surroundings& surroundings, const Error& error);

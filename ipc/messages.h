@@ -88,7 +88,8 @@ struct State {
   std::uint64_t selected_nodes = 0;
   mesh::quality::Counts counts;
   bool can_undo = false, can_redo = false, changed = false;
-  std::uint64_t recovered_edits = 0;  ///< brought back from the journal when the document was opened
+  std::uint64_t recovered_edits = 0;   ///< brought back from the journal when the document was opened
+  std::uint64_t journalled_edits = 0;  ///< acknowledged since the deck was opened or last saved in place: what a restart brings back
   std::vector<mesh::deck::Warning> warnings;
 };
 struct Saved {

@@ -98,7 +98,8 @@ PRISMESH_FIELDS(State, f("open", m.open), f("busy", m.busy), f("path", m.path), 
                 f("length_unit_guessed", m.length_unit_guessed), f("target_size", m.target_size),
                 f("target_size_guessed", m.target_size_guessed), f("generation", m.generation), f("nodes", m.nodes), f("shells", m.shells),
                 f("parts", m.parts), f("selected_nodes", m.selected_nodes), f("counts", m.counts), f("can_undo", m.can_undo),
-                f("can_redo", m.can_redo), f("changed", m.changed), f("recovered_edits", m.recovered_edits), f("warnings", m.warnings))
+                f("can_redo", m.can_redo), f("changed", m.changed), f("recovered_edits", m.recovered_edits),
+                f("journalled_edits", m.journalled_edits), f("warnings", m.warnings))
 PRISMESH_FIELDS(Saved, f("path", m.path), f("nodes_written", m.nodes_written), f("lines_changed", m.lines_changed), f("notes", m.notes))
 PRISMESH_FIELDS(Edited, f("report", m.report), f("generation", m.generation))
 PRISMESH_FIELDS(DragBegun, f("drag", m.drag), f("base_generation", m.base_generation), f("nodes", m.nodes), f("grab", m.grab),
@@ -361,6 +362,12 @@ std::string encode_answer(std::uint64_t to, const Answer& answer, std::size_t de
   Json json = to_json("answer", answer);
   json["to"] = to;
   if (descriptors > 0) json["descriptors"] = descriptors;
+  return to_line(json);
+}
+
+std::string answer_fields(const Answer& answer) {
+  Json json = to_json("answer", answer);
+  json.erase("answer");
   return to_line(json);
 }
 

@@ -19,6 +19,8 @@ Result<std::string> encode_request(std::uint64_t number, const Request& request)
 /// `descriptors` is how many ride with the line. Text that isn't UTF-8 (names in decks) arrives with replacement characters.
 std::string encode_answer(std::uint64_t to, const Answer& answer, std::size_t descriptors = 0);
 std::string encode_event(const Event& event);
+/// An answer's fields alone, as an object in one line: for programs that print what they were told.
+std::string answer_fields(const Answer& answer);
 
 struct NumberedRequest {
   std::uint64_t number = 0;

@@ -299,6 +299,7 @@ ipc::State DocumentKeeper::state() const {
   state.can_redo = document.can_redo();
   state.changed = changed();
   state.recovered_edits = open_->recovered;
+  state.journalled_edits = open_->journal.records();
   state.warnings = document.deck->warnings;
   state.warnings.insert(state.warnings.end(), open_->warnings.begin(), open_->warnings.end());
   return state;

@@ -1,0 +1,214 @@
+// A thin client of modeld: what is open there, edited from scripts and by hand. Goes on when the daemon is restarted meanwhile.
+#include <filesystem>
+#include <ostream>
+#include <system_error>
+
+#include "cli/commands.h"
+#include "cli/edit_list.h"
+#include "cli/json_output.h"
+#include "cli/progress_bar.h"
+#include "cli/report_text.h"
+#include "ipc/messages_json.h"
+#include "ipc/reconnecting_client.h"
+
+namespace prismesh::cli {
+
+namespace {
+
+namespace document = mesh::document;
+using Action = SessionOptions::Action;
+
+/// How long a daemon may take to come back. systemd restarts it in well under a second; reading a large deck again takes longer,
+/// but then it answers already.
+constexpr std::chrono::seconds kPatience{15};
+constexpr std::chrono::milliseconds kTurn{100};
+
+class Session {
+ public:
+  Session(const SessionOptions& options, const Surroundings& surroundings)
+      : client_(ipc::model_socket_path(options.runtime_directory), "prismesh session"), surroundings_(surroundings) {}
+
+  /// Connects; a daemon that isn't there is an error at once, one that has gone is waited for.
+  Result<ipc::Client*> connected() {
+    if (client_.connections() > 0) return client_.wait(kPatience);
+    return client_.wait(std::chrono::milliseconds(0));
+  }
+
+  /// Sends and waits for the answer, showing progress, until the user stops. An error with `lost` set: the daemon has gone.
+  Result<ipc::Answer> ask(const ipc::Request& request, const std::string& what, bool* lost = nullptr) {
+    const Result<ipc::Client*> client = connected();
+    if (!client) return fail(client.error());
+    const auto gone = [&](const Error& error) -> tl::unexpected<Error> {
+      client_.lost(error);
+      if (lost != nullptr) *lost = true;
+      return fail(error);
+    };
+    const Result<std::uint64_t> number = (*client)->send(request);
+    if (!number) return gone(number.error());
+    MonotonicClock clock;
+    ProgressBar bar(surroundings_, what, clock);
+    const Progress progress = bar.progress();
+    for (;;) {
+      while (auto reply = (*client)->next_reply())
+        if (reply->request == *number) return unfailed(std::move(reply->answer));
+      while (const auto event = (*client)->next_event())
+        if (const auto* made = std::get_if<ipc::ProgressMade>(&*event); made != nullptr) progress(made->fraction);
+      if (surroundings_.stop()) return fail("", "stopped waiting; what was asked for may still be done");
+      if (const Result<void> polled = (*client)->poll(kTurn); !polled) return gone(polled.error());
+    }
+  }
+
+  /// As `ask`, for requests that may be asked twice.
+  Result<ipc::Answer> ask_again(const ipc::Request& request, const std::string& what) {
+    bool lost = false;
+    Result<ipc::Answer> answer = ask(request, what, &lost);
+    return !answer && lost ? ask(request, what) : answer;
+  }
+
+  /// The state, once what was open is open again.
+  Result<ipc::State> state() {
+    for (;;) {
+      const Result<ipc::Answer> answer = ask_again(ipc::GetState{}, "waiting");
+      if (!answer) return fail(answer.error());
+      const auto* state = std::get_if<ipc::State>(&*answer);
+      if (state == nullptr) return fail("", "the daemon answered something else than its state");
+      if (state->open || !state->busy) return *state;
+      if (surroundings_.stop()) return fail("", "stopped");
+      (void)(*connected())->poll(kTurn);
+    }
+  }
+
+  /// Does an edit once, even if the daemon goes in the middle: its journal then tells whether the edit counts.
+  Result<document::EditReport> edit(const document::Edit& edit) {
+    const Result<ipc::State> before = state();
+    if (!before) return fail(before.error());
+    bool lost = false;
+    Result<ipc::Answer> answer = ask(ipc::ApplyEdit{edit}, std::string(name(edit)), &lost);
+    if (!answer && lost) {
+      const Result<ipc::State> after = state();
+      if (!after) return fail(after.error());
+      if (after->path != before->path) return fail(after->path, "the daemon was restarted with another document");
+      if (after->journalled_edits == before->journalled_edits + 1) {
+        document::EditReport report;
+        report.edit = name(edit);
+        report.before = before->counts;
+        report.after = after->counts;
+        report.notes.push_back(
+            "the daemon ended after this edit and was started again; the edit counts, how many nodes it moved isn't known");
+        return report;
+      }
+      if (after->journalled_edits != before->journalled_edits)
+        return fail(after->path, "the daemon ended while others were editing too: look whether the edit was done");
+      answer = ask(ipc::ApplyEdit{edit}, std::string(name(edit)));
+    }
+    if (!answer) return fail(std::move(answer.error()));
+    auto* edited = std::get_if<ipc::Edited>(&*answer);
+    if (edited == nullptr) return fail("", "the daemon answered something else than a report");
+    return std::move(edited->report);
+  }
+
+ private:
+  static Result<ipc::Answer> unfailed(ipc::Answer answer) {
+    if (auto* failed = std::get_if<ipc::Failed>(&answer)) return fail(std::move(failed->file), failed->line, std::move(failed->message));
+    return answer;
+  }
+
+  ipc::ReconnectingClient client_;
+  const Surroundings& surroundings_;
+};
+
+void print_state(std::ostream& out, const ipc::State& state) {
+  if (!state.open) {
+    out << (state.busy ? "a deck is being opened\n" : "no document is open\n");
+    return;
+  }
+  out << printable(state.path) << ": " << state.nodes << " nodes, " << state.shells << " shells, " << state.parts << " parts; "
+      << state.selected_nodes << " nodes selected\n"
+      << "quality: " << state.counts.ok << " ok, " << state.counts.warn << " warn, " << state.counts.fail << " fail; length unit "
+      << state.length_unit << (state.length_unit_guessed ? " (guessed)" : "") << ", target size " << shortest(state.target_size)
+      << (state.target_size_guessed ? " (guessed)" : "") << '\n'
+      << (state.changed ? "unsaved edits" : "no unsaved edits") << (state.can_undo ? ", undo" : "") << (state.can_redo ? ", redo" : "")
+      << "; " << state.recovered_edits << " edits came back from the journal when it was opened\n";
+}
+
+void print_saved(std::ostream& out, const Surroundings& surroundings, const ipc::Saved& saved) {
+  out << "saved " << printable(saved.path) << ": " << saved.nodes_written << " nodes written, " << saved.lines_changed
+      << " lines changed\n";
+  for (const std::string& note : saved.notes) say(surroundings, Error{saved.path, 0, "note: " + note});
+}
+
+std::string whole_path(const std::filesystem::path& path) {
+  std::error_code problem;
+  const std::filesystem::path whole = std::filesystem::absolute(path, problem);
+  return (problem ? path : whole).string();
+}
+
+ipc::Open open_request(const SessionOptions& options, const Common& common) {
+  ipc::Open open;
+  open.path = whole_path(options.deck);
+  if (common.length_unit) open.length_unit = std::string(name(*common.length_unit));
+  open.target_size = common.target_size;
+  if (common.criteria) open.criteria = whole_path(*common.criteria);
+  return open;
+}
+
+int edit_all(Session& session, const std::vector<WantedEdit>& wanted, const Common& common, const Surroundings& surroundings) {
+  for (const WantedEdit& one : wanted) {
+    const Result<document::EditReport> report = session.edit(one.edit);
+    if (!report) {
+      if (common.json) surroundings.out << failed_edit_json(std::string(name(one.edit)), report.error().text()) << '\n';
+      say(surroundings, report.error().file.empty() ? Error{one.file, one.line, report.error().message} : report.error());
+      return kFailed;
+    }
+    if (common.json)
+      surroundings.out << edit_json(*report) << '\n';
+    else
+      print_edit(surroundings.out, *report);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int session(const SessionOptions& options, const Common& common, const Surroundings& surroundings) {
+  std::vector<WantedEdit> wanted;
+  if (options.action == Action::undo) wanted.push_back({document::Undo{}, "undo", 0});
+  if (options.action == Action::redo) wanted.push_back({document::Redo{}, "redo", 0});
+  if (const auto refusal = read_edits(options.edits, "EDIT", options.script, wanted)) {
+    say(surroundings, refusal->error);
+    return refusal->status;
+  }
+  Session session(options, surroundings);
+  Result<ipc::Answer> answer = ipc::Done{};
+  switch (options.action) {
+    case Action::edit:
+    case Action::undo:
+    case Action::redo: return edit_all(session, wanted, common, surroundings);
+    case Action::open: answer = session.ask_again(open_request(options, common), "reading " + options.deck.filename().string()); break;
+    case Action::state: {
+      Result<ipc::State> state = session.state();
+      answer = state ? Result<ipc::Answer>(std::move(*state)) : fail(state.error());
+      break;
+    }
+    case Action::save: {
+      ipc::Save save;
+      if (options.output) save.path = whole_path(*options.output);
+      answer = session.ask_again(save, "saving");
+      break;
+    }
+    case Action::close: answer = session.ask(ipc::Close{options.discard}, "closing"); break;
+  }
+  if (!answer) {
+    say(surroundings, answer.error());
+    return kFailed;
+  }
+  if (common.json)
+    surroundings.out << ipc::answer_fields(*answer) << '\n';
+  else if (const auto* state = std::get_if<ipc::State>(&*answer))
+    print_state(surroundings.out, *state);
+  else if (const auto* saved = std::get_if<ipc::Saved>(&*answer))
+    print_saved(surroundings.out, surroundings, *saved);
+  return kDone;
+}
+
+}  // namespace prismesh::cli

@@ -1,0 +1,115 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "ipc/messages_json.h"
+
+namespace prismesh::ipc {
+namespace {
+
+std::string refusal(std::string_view line) {
+  const auto request = decode_request(line);
+  return request ? "accepted" : request.error().message;
+}
+
+TEST(Messages, RequestsSurviveARoundTrip) {
+  Open open;
+  open.path = "/decks/car \"7\".k";
+  open.target_size = 0.1;
+  const auto back = decode_request(encode_request(12, open).value());
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->number, 12u);
+  EXPECT_EQ(std::get<Open>(back->request).path, open.path);
+  EXPECT_EQ(std::get<Open>(back->request).target_size, 0.1);
+  EXPECT_FALSE(std::get<Open>(back->request).length_unit);
+
+  const auto step = decode_request(encode_request(0, DragStep{3, 4, {1.0 / 3, -0.0, 1e-300}, 0.1}).value());
+  ASSERT_TRUE(step);
+  EXPECT_EQ(std::get<DragStep>(step->request).by[0], 1.0 / 3);
+  EXPECT_EQ(std::get<DragStep>(step->request).by[2], 1e-300);
+
+  mesh::document::Select select;
+  select.expr = "1-100";
+  const auto edit = decode_request(encode_request(5, ApplyEdit{select}).value());
+  ASSERT_TRUE(edit) << edit.error().message;
+  EXPECT_EQ(std::get<mesh::document::Select>(std::get<ApplyEdit>(edit->request).edit).expr, "1-100");
+}
+
+TEST(Messages, AnswersAndEventsSurviveARoundTrip) {
+  State state;
+  state.open = true;
+  state.generation = ~std::uint64_t{0};
+  state.counts = {1, 2, 3};
+  state.warnings.push_back({"a.k", 7, "missing-include", "it isn't there", 2});
+  const Result<FromDaemon> answer = decode_from_daemon(encode_answer(9, state, 1));
+  ASSERT_TRUE(answer) << answer.error().text();
+  EXPECT_EQ(answer->to, 9u);
+  EXPECT_EQ(answer->descriptors, 1u);
+  const State& back = std::get<State>(std::get<Answer>(answer->message));
+  EXPECT_EQ(back.generation, state.generation);
+  EXPECT_EQ(back.counts, state.counts);
+  ASSERT_EQ(back.warnings.size(), 1u);
+  EXPECT_EQ(back.warnings[0].line, 7);
+
+  const Result<FromDaemon> event = decode_from_daemon(encode_event(DragEnded{4, true, "why"}));
+  ASSERT_TRUE(event) << event.error().text();
+  EXPECT_EQ(std::get<DragEnded>(std::get<Event>(event->message)).drag, 4u);
+}
+
+TEST(Messages, ErrorsNameTheFieldAndTheNearestKnownOne) {
+  EXPECT_EQ(refusal(R"({"request": "opn", "number": 1})"), "unknown kind \"opn\"; the nearest is \"open\"");
+  EXPECT_EQ(refusal(R"({"request": "open", "pth": "a.k"})"), "\"open\": has no field \"pth\"; the nearest is \"path\"");
+  EXPECT_EQ(refusal(R"({"request": "open", "path": 7})"), "\"open\": field \"path\" must be a text in quotes");
+  EXPECT_EQ(refusal(R"({"request": "commit_drag", "drag": -1})"), "\"commit_drag\": field \"drag\" must not be negative");
+  EXPECT_EQ(refusal(R"({"request": "commit_drag", "drag": 1.5})"), "\"commit_drag\": field \"drag\" must be a whole number");
+  EXPECT_EQ(refusal(R"({"request": "drag_step", "by": [1, 2]})"), "\"drag_step\": field \"by\" must be a list of three numbers");
+  EXPECT_EQ(refusal(R"({"request": "close", "discard": 1})"), "\"close\": field \"discard\" must be true or false");
+  EXPECT_EQ(refusal(R"({"request": "hello", "protocol": 99999999999})"), "\"hello\": field \"protocol\" is too large");
+  EXPECT_EQ(refusal(R"({"number": 1})"), "field \"request\" is missing");
+  EXPECT_EQ(refusal("[1, 2]"), "it isn't a JSON object");
+  EXPECT_EQ(refusal("{"), "it isn't JSON");
+  EXPECT_NE(refusal(R"({"request": "apply_edit", "edit": {"edit": "tranlsate", "by": [0, 0, 1]}})").find("translate"), std::string::npos);
+}
+
+TEST(Messages, ARefusalKeepsTheRequestsNumber) {
+  const auto request = decode_request(R"({"request": "nothing", "number": 17})");
+  ASSERT_FALSE(request);
+  EXPECT_EQ(request.error().number, 17u);
+}
+
+TEST(Messages, UnknownFieldsOfANewerDaemonArePassedOver) {
+  const Result<FromDaemon> answer = decode_from_daemon(R"({"answer": "done", "to": 3, "mood": "sunny"})");
+  ASSERT_TRUE(answer) << answer.error().text();
+  EXPECT_TRUE(std::holds_alternative<Done>(std::get<Answer>(answer->message)));
+}
+
+TEST(Messages, ALineOfBracketsIsRefusedBeforeItIsParsed) {
+  EXPECT_EQ(refusal(std::string(1'000'000, '[')), "it is nested too deeply");
+  EXPECT_EQ(refusal(R"({"request": "open", "path": "[[[[[[[[[[[[[[[[[[[["})"), "accepted");
+}
+
+TEST(Messages, TextThatIsNotUtf8IsRefusedOneWayAndReplacedTheOther) {
+  Open open;
+  open.path = "/decks/caf\xe9.k";
+  EXPECT_FALSE(encode_request(1, open));
+  State state;
+  state.path = open.path;
+  EXPECT_TRUE(decode_from_daemon(encode_answer(1, state)));
+}
+
+TEST(Messages, BrokenLinesAreRefusedInWords) {
+  const std::string sound = encode_request(7, DragStep{3, 4, {1, 2, 3}, 0.5}).value();
+  std::mt19937 random(7);
+  for (int i = 0; i < 20'000; ++i) {
+    std::string broken = sound;
+    for (unsigned k = random() % 4; k-- > 0;) broken[random() % broken.size()] = static_cast<char>(random());
+    if (random() % 3 == 0) broken.resize(random() % broken.size());
+    const auto request = decode_request(broken);
+    if (!request) {
+      EXPECT_FALSE(request.error().message.empty());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::ipc

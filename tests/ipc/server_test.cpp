@@ -1,0 +1,244 @@
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "ipc/line_socket.h"
+#include "ipc/reconnecting_client.h"
+#include "ipc/server.h"
+
+namespace prismesh::ipc {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "prismesh-ipc-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() {
+    std::error_code problem;
+    fs::remove_all(path_, problem);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Answers "big N" with N bytes, everything else with itself, and remembers who left and why.
+class Echo final : public ServerHandler {
+ public:
+  void connected(ClientId) override {}
+  void line(ClientId client, std::string_view line) override {
+    if (line.starts_with("big "))
+      server->send(client, std::string(std::stoul(std::string(line.substr(4))), 'x'));
+    else if (line == "memory")
+      server->send(client, "memory", one_descriptor());
+    else
+      server->send(client, std::string(line));
+  }
+  void disconnected(ClientId, const std::string& why) override {
+    const std::lock_guard lock(mutex_);
+    left_.push_back(why);
+    changed_.notify_all();
+  }
+  std::string wait_for_leaving() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::seconds(20), [&] { return !left_.empty(); });
+    return left_.empty() ? "nobody left" : left_.front();
+  }
+  Server* server = nullptr;
+
+ private:
+  static std::vector<Descriptor> one_descriptor() {
+    std::vector<Descriptor> descriptors;
+    descriptors.push_back(make_sealed_memory("test", std::as_bytes(std::span("hello"))).value());
+    return descriptors;
+  }
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> left_;
+};
+
+class Running {
+ public:
+  explicit Running(const fs::path& socket, const ServerLimits& limits = {}) : server_(Server::listen(socket, echo_, limits).value()) {
+    echo_.server = &server_;
+    thread_ = std::thread([this] { server_.run(); });
+  }
+  ~Running() {
+    server_.stop();
+    thread_.join();
+  }
+  Echo& echo() { return echo_; }
+
+ private:
+  Echo echo_;
+  Server server_;
+  std::thread thread_;
+};
+
+/// Waits for a line; "closed: ..." when there is none any more.
+std::string next_line(LineSocket& socket) {
+  for (;;) {
+    if (const auto line = socket.next_line()) return std::string(*line);
+    pollfd ready{socket.descriptor(), POLLIN, 0};
+    if (::poll(&ready, 1, 20'000) <= 0) return "nothing came";
+    if (const Result<bool> received = socket.receive(); !received) return "closed: " + received.error().message;
+  }
+}
+
+void say(LineSocket& socket, std::string line) {
+  socket.queue(std::move(line));
+  while (true) {
+    const Result<bool> flushed = socket.flush();
+    if (!flushed || *flushed) return;
+    pollfd ready{socket.descriptor(), POLLOUT, 0};
+    if (::poll(&ready, 1, 20'000) <= 0) return;
+  }
+}
+
+TEST(Server, CarriesLinesAndDescriptors) {
+  const Folder folder;
+  Running running(folder.path() / "s");
+  LineSocket socket(connect_to(folder.path() / "s").value(), {});
+  say(socket, "one\nmemory\nthree");
+  EXPECT_EQ(next_line(socket), "one");
+  EXPECT_EQ(next_line(socket), "memory");
+  const auto descriptors = socket.take_descriptors(1);
+  ASSERT_TRUE(descriptors);
+  EXPECT_EQ(std::memcmp(Mapping::map(descriptors->front(), false)->bytes().data(), "hello", 5), 0);
+  EXPECT_EQ(next_line(socket), "three");
+  EXPECT_FALSE(socket.take_descriptors(1)) << "there was one only";
+}
+
+TEST(Server, LongLinesGoThroughWhole) {
+  const Folder folder;
+  Running running(folder.path() / "s");
+  LineSocket socket(connect_to(folder.path() / "s").value(), {});
+  const std::string line(5'000'000, 'y');
+  say(socket, line);
+  EXPECT_EQ(next_line(socket), line);
+}
+
+TEST(Server, AnOversizedLineIsCutOff) {
+  const Folder folder;
+  ServerLimits limits;
+  limits.line_bytes = 100'000;
+  Running running(folder.path() / "s", limits);
+  LineSocket fine(connect_to(folder.path() / "s").value(), {});
+  LineSocket socket(connect_to(folder.path() / "s").value(), {});
+  say(socket, std::string(300'000, 'y'));
+  EXPECT_EQ(next_line(socket).substr(0, 6), "closed");
+  EXPECT_EQ(running.echo().wait_for_leaving(), "a line is longer than 100000 bytes");
+  say(fine, "others go on");
+  EXPECT_EQ(next_line(fine), "others go on");
+}
+
+TEST(Server, AClientThatTakesNothingIsCutOff) {
+  const Folder folder;
+  ServerLimits limits;
+  limits.stall = std::chrono::milliseconds(200);
+  Running running(folder.path() / "s", limits);
+  LineSocket socket(connect_to(folder.path() / "s").value(), {});
+  say(socket, "big 4000000");
+  EXPECT_EQ(running.echo().wait_for_leaving(), "it took nothing for 200 ms");
+}
+
+TEST(Server, AClientThatAsksForMoreThanItTakesIsCutOff) {
+  const Folder folder;
+  ServerLimits limits;
+  limits.queue_bytes = 10'000'000;
+  Running running(folder.path() / "s", limits);
+  LineSocket socket(connect_to(folder.path() / "s").value(), {});
+  for (int i = 0; i < 5; ++i) say(socket, "big 4000000");
+  EXPECT_EQ(running.echo().wait_for_leaving(), "it reads too slowly");
+}
+
+TEST(Server, DescriptorsThatNobodyAskedForCutTheSenderOff) {
+  const Folder folder;
+  Running running(folder.path() / "s");
+  LineSocket socket(connect_to(folder.path() / "s").value(), {});
+  std::vector<Descriptor> descriptors;
+  descriptors.push_back(make_shared_memory("test", 1).value());
+  socket.queue("take this", std::move(descriptors));
+  ASSERT_TRUE(socket.flush());
+  EXPECT_EQ(running.echo().wait_for_leaving(), "descriptors came that nobody asked for");
+}
+
+TEST(Server, ALiveOneIsNamedAndAStaleSocketReplaced) {
+  const Folder folder;
+  Echo echo;
+  {
+    Running running(folder.path() / "s");
+    const Result<Server> second = Server::listen(folder.path() / "s", echo);
+    ASSERT_FALSE(second);
+    EXPECT_NE(second.error().message.find("already runs here (process " + std::to_string(::getpid())), std::string::npos)
+        << second.error().message;
+    Running beside(folder.path() / "other/s");
+    LineSocket socket(connect_to(folder.path() / "other/s").value(), {});
+    say(socket, "two stations");
+    EXPECT_EQ(next_line(socket), "two stations");
+  }
+  std::ofstream(folder.path() / "s") << "left by a daemon that was killed";
+  Running again(folder.path() / "s");
+  EXPECT_TRUE(connect_to(folder.path() / "s"));
+}
+
+TEST(Server, TheFolderMustBePrivate) {
+  const Folder folder;
+  Echo echo;
+  ASSERT_EQ(::chmod(folder.path().c_str(), 0777), 0);
+  const Result<Server> server = Server::listen(folder.path() / "s", echo);
+  ASSERT_FALSE(server);
+  EXPECT_NE(server.error().message.find("others may write to it"), std::string::npos);
+  fs::create_directory(folder.path() / "mine");
+  ::chmod((folder.path() / "mine").c_str(), 0700);
+  const Running running(folder.path() / "mine/run/s");
+  struct stat status {};
+  ASSERT_EQ(::stat((folder.path() / "mine/run").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0700u);
+}
+
+TEST(Server, ASocketPathThatIsTooLongIsSaid) {
+  const Folder folder;
+  Echo echo;
+  const Result<Server> server = Server::listen(folder.path() / std::string(120, 'd') / "s", echo);
+  ASSERT_FALSE(server);
+  EXPECT_NE(server.error().message.find("too long for a socket"), std::string::npos);
+  EXPECT_FALSE(connect_to(folder.path() / std::string(120, 'd') / "s"));
+}
+
+TEST(Client, ADaemonThatIsNotThereIsSaid) {
+  const Folder folder;
+  const Result<Client> client = Client::connect(folder.path() / "model.sock", "test");
+  ASSERT_FALSE(client);
+  EXPECT_EQ(client.error().file, (folder.path() / "model.sock").string());
+  EXPECT_NE(client.error().message.find("nobody listens there"), std::string::npos);
+  ReconnectingClient again(folder.path() / "model.sock", "test");
+  EXPECT_EQ(again.client(), nullptr);
+  EXPECT_FALSE(again.wait(std::chrono::milliseconds(150)));
+}
+
+TEST(Client, WhatIsNoDaemonIsSaid) {
+  const Folder folder;
+  Running running(folder.path() / "model.sock");
+  const Result<Client> client = Client::connect(folder.path() / "model.sock", "test");
+  EXPECT_FALSE(client) << "an echo isn't a welcome";
+}
+
+}  // namespace
+}  // namespace prismesh::ipc
