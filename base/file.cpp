@@ -172,7 +172,9 @@ Result<void> take_permissions(int fd, const Staged& staged) {
   }
   if (S_ISDIR(old.st_mode)) return fail(staged.shown.string(), "is a folder; a file can't take its place");
   if (!S_ISREG(old.st_mode)) return fail(staged.shown.string(), "is not a regular file; it isn't replaced");
-  if (::access(staged.target.c_str(), W_OK) != 0) return fail(staged.shown.string(), "is read-only; nothing was changed");
+  // Renaming over a file needs no right to write it, so whoever marked it read-only must be respected here; root as well.
+  if ((old.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, staged.target.c_str(), W_OK, AT_EACCESS) != 0)
+    return fail(staged.shown.string(), "is read-only; nothing was changed");
   // Only root may give a file away; keeping the group is worth a try, failing to isn't worth refusing for.
   if (::fchown(fd, old.st_uid, old.st_gid) != 0 && ::fchown(fd, static_cast<uid_t>(-1), old.st_gid) != 0) errno = 0;
   if (::fchmod(fd, old.st_mode & 07777) != 0) return write_failure(staged.shown, errno);

@@ -14,14 +14,14 @@ void expect_error(const Result<OpenedDeck>& opened, long line, std::string_view 
   EXPECT_NE(opened.error().message.find(words), std::string::npos) << opened.error().text();
 }
 
-TEST(BadInput, NotThereOrAFolder) {
+TEST(BadInput, not_there_or_a_folder) {
   const DeckFolder folder;
   expect_error(deck::open(folder / "deck.k"), 0, "can't be opened: No such file");
   std::filesystem::create_directory(folder / "deck.k");
   expect_error(deck::open(folder / "deck.k"), 0, "is a folder");
 }
 
-TEST(BadInput, SaysWhatItLooksLike) {
+TEST(BadInput, says_what_it_looks_like) {
   const DeckFolder folder;
   const std::pair<std::string, std::string> cases[] = {
       {"", "an empty file"},
@@ -39,7 +39,7 @@ TEST(BadInput, SaysWhatItLooksLike) {
   for (const auto& [text, words] : cases) expect_error(folder.open(text), 0, words);
 }
 
-TEST(BadInput, CardsThatCantBeReadAreNamed) {
+TEST(BadInput, cards_that_cant_be_read_are_named) {
   const DeckFolder folder;
   expect_error(folder.open("*KEYWORD\n*NODE\n       1             1.0\n       2             abc             0.0\n*END\n"), 4,
                "expected the x coordinate of node 2 but found \"abc\"");
@@ -53,7 +53,7 @@ TEST(BadInput, CardsThatCantBeReadAreNamed) {
                "found \"m\"");
 }
 
-TEST(BadInput, AnErrorInAnIncludeNamesTheInclude) {
+TEST(BadInput, an_error_in_an_include_names_the_include) {
   const DeckFolder folder;
   folder.write("inc.k", "*NODE\n\n1,zero\n");
   const auto opened = folder.open("*INCLUDE\ninc.k\n");
@@ -62,14 +62,14 @@ TEST(BadInput, AnErrorInAnIncludeNamesTheInclude) {
   EXPECT_EQ(opened.error().line, 3);
 }
 
-TEST(BadInput, ACutOffDeckIsWarnedOf) {
+TEST(BadInput, a_cut_off_deck_is_warned_of) {
   const DeckFolder folder;
   const auto opened = folder.open("*KEYWORD\n*NODE\n       1             1.0\n");
   ASSERT_OPENED(opened);
   EXPECT_EQ(warning(*opened->deck, "no-end").count, 1u);
 }
 
-TEST(BadInput, EncryptedBlocksPassThrough) {
+TEST(BadInput, encrypted_blocks_pass_through) {
   const DeckFolder folder;
   const std::string armor = "-----BEGIN PGP MESSAGE-----\nVersion: 1\n\njA0ECQMC7x3\n*=2Fab\n-----END PGP MESSAGE-----\n";
   std::string body = armor;
@@ -87,7 +87,7 @@ TEST(BadInput, EncryptedBlocksPassThrough) {
   EXPECT_EQ(open_ended->model.node_count(), 1u);
 }
 
-TEST(BadInput, HostileTextIsReadInBoundedTimeAndMemory) {
+TEST(BadInput, hostile_text_is_read_in_bounded_time_and_memory) {
   const DeckFolder folder;
   const std::string cases[] = {
       "*KEYWORD\n*NODE\n" + std::string(10 << 20, '1') + "\n*END\n",
@@ -110,7 +110,7 @@ TEST(BadInput, HostileTextIsReadInBoundedTimeAndMemory) {
   EXPECT_TRUE(folder.open(blocks + "*END\n"));
 }
 
-TEST(Progress, GoesUpAndStopsWhenTold) {
+TEST(Progress, goes_up_and_stops_when_told) {
   const DeckFolder folder;
   std::string text = "*NODE\n";
   for (int i = 1; i < 60000; ++i) text += std::to_string(i) + ",1.,2.,3.,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n";

@@ -22,7 +22,7 @@ void expect_square(const Result<OpenedDeck>& opened) {
   EXPECT_TRUE(opened->deck->warnings.empty()) << opened->deck->warnings[0].message;
 }
 
-TEST(Columns, Standard) {
+TEST(Columns, standard) {
   const DeckFolder folder;
   expect_square(folder.open(std::string("*KEYWORD\n*NODE\n"
                                         "$#   nid               x               y               z      tc      rc\n"
@@ -33,7 +33,7 @@ TEST(Columns, Standard) {
                             kShells + "*END\n"));
 }
 
-TEST(Columns, FilledToTheLastColumn) {
+TEST(Columns, filled_to_the_last_column) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*NODE\n"
@@ -48,7 +48,7 @@ TEST(Columns, FilledToTheLastColumn) {
   EXPECT_EQ((*opened->model.parts)[0].id, 10000001);
 }
 
-TEST(Columns, WideByKeyword) {
+TEST(Columns, wide_by_keyword) {
   const DeckFolder folder;
   expect_square(folder.open(
       "*KEYWORD LONG=Y\n*NODE\n"
@@ -60,7 +60,7 @@ TEST(Columns, WideByKeyword) {
       "                  10                   1                   1                   2                   3                   4\n*END\n"));
 }
 
-TEST(Columns, WideAndI10AndStandardBySuffix) {
+TEST(Columns, wide_and_i10_and_standard_by_suffix) {
   const DeckFolder folder;
   expect_square(
       folder.open("*KEYWORD LONG=S\n*NODE+\n"
@@ -75,7 +75,7 @@ TEST(Columns, WideAndI10AndStandardBySuffix) {
                   "        10         1         1         2         3         4\n*END\n"));
 }
 
-TEST(Columns, I10ByKeywordAndStandardBySuffix) {
+TEST(Columns, i10_by_keyword_and_standard_by_suffix) {
   const DeckFolder folder;
   expect_square(
       folder.open("*keyword  i10 = y\n*NODE\n"
@@ -88,7 +88,7 @@ TEST(Columns, I10ByKeywordAndStandardBySuffix) {
                   "      10       1       1       2       3       4\n*END\n"));
 }
 
-TEST(Columns, I10HoldsTenDigits) {
+TEST(Columns, i10_holds_ten_digits) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*KEYWORD I10=Y\n*NODE\n"
@@ -97,7 +97,7 @@ TEST(Columns, I10HoldsTenDigits) {
   EXPECT_EQ(position_of(opened->model, 9876543210), Vec3(1, 2, 3));
 }
 
-TEST(Columns, CommasMixedWithFixedAndTabsAndCrlf) {
+TEST(Columns, commas_mixed_with_fixed_and_tabs_and_crlf) {
   const DeckFolder folder;
   expect_square(
       folder.open("*KEYWORD\r\n*Node\r\n"
@@ -111,7 +111,7 @@ TEST(Columns, CommasMixedWithFixedAndTabsAndCrlf) {
                   "*END\r\n"));
 }
 
-TEST(Columns, CommaCardWithFewFieldsAndEmptyOnes) {
+TEST(Columns, comma_card_with_few_fields_and_empty_ones) {
   const DeckFolder folder;
   const auto opened = folder.open("*NODE\n7,1.5\n8,,2.5\n9,,,3.5,0,0\n");
   ASSERT_OPENED(opened);
@@ -120,7 +120,7 @@ TEST(Columns, CommaCardWithFewFieldsAndEmptyOnes) {
   EXPECT_EQ(position_of(opened->model, 9), Vec3(0, 0, 3.5));
 }
 
-TEST(Columns, BlankLinesAndAMissingLastLineEndDontMatter) {
+TEST(Columns, blank_lines_and_a_missing_last_line_end_dont_matter) {
   const DeckFolder folder;
   const auto opened = folder.open("*NODE\n\n       1     1.0\n   \n\t\n       2             2.0\n\n*NODE\n       3             3.0");
   ASSERT_OPENED(opened);
@@ -128,14 +128,14 @@ TEST(Columns, BlankLinesAndAMissingLastLineEndDontMatter) {
   EXPECT_EQ(position_of(opened->model, 3), Vec3(3, 0, 0));
 }
 
-TEST(Columns, AFragmentNeedsNeitherKeywordNorEnd) {
+TEST(Columns, a_fragment_needs_neither_keyword_nor_end) {
   const DeckFolder folder;
   const auto opened = folder.open("*NODE\n       1             1.0\n");
   ASSERT_OPENED(opened);
   EXPECT_TRUE(opened->deck->warnings.empty());
 }
 
-TEST(Columns, WhatFollowsEndIsNotRead) {
+TEST(Columns, what_follows_end_is_not_read) {
   const DeckFolder folder;
   const auto opened = folder.open("*KEYWORD\n*NODE\n       1             1.0\n*END\n*NODE\n       2 rubbish\n*NODE\n");
   ASSERT_OPENED(opened);
@@ -143,7 +143,7 @@ TEST(Columns, WhatFollowsEndIsNotRead) {
 }
 
 /// Blocks longer than a piece are read by several threads: the order must be the deck's all the same.
-TEST(Columns, LongBlocksKeepTheirOrder) {
+TEST(Columns, long_blocks_keep_their_order) {
   const DeckFolder folder;
   std::string text = "*KEYWORD\n*NODE\n";
   const int count = 100000;

@@ -13,7 +13,7 @@ const Part& part(const OpenedDeck& opened, std::int64_t id) {
   return index.valid() ? (*opened.model.parts)[index.value] : none;
 }
 
-TEST(Parts, TakeWhatTheirSectionAndMaterialSay) {
+TEST(Parts, take_what_their_section_and_material_say) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*KEYWORD\n"
@@ -40,7 +40,7 @@ TEST(Parts, TakeWhatTheirSectionAndMaterialSay) {
   EXPECT_TRUE(roof.limits_time_step);
 }
 
-TEST(Parts, SeveralInOneBlockWithBlankTitles) {
+TEST(Parts, several_in_one_block_with_blank_titles) {
   const DeckFolder folder;
   const auto opened = folder.open("*PART\n\n         3         1         1\n\n         4         2         2\n*PART\n \n         5\n");
   ASSERT_OPENED(opened);
@@ -49,7 +49,7 @@ TEST(Parts, SeveralInOneBlockWithBlankTitles) {
   EXPECT_FALSE(part(*opened, 5).section.has_value());
 }
 
-TEST(Parts, CardsOfTheirOptionsAreSkipped) {
+TEST(Parts, cards_of_their_options_are_skipped) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*PART_INERTIA\n"
@@ -78,7 +78,7 @@ TEST(Parts, CardsOfTheirOptionsAreSkipped) {
   EXPECT_EQ(part(*opened, 5).name, "fifth");
 }
 
-TEST(Parts, CompositeLayersAddUpToTheThickness) {
+TEST(Parts, composite_layers_add_up_to_the_thickness) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*MAT_ELASTIC\n         7    1.5e-9   70000.0      0.33\n"
@@ -94,7 +94,7 @@ TEST(Parts, CompositeLayersAddUpToTheThickness) {
   EXPECT_EQ(part(*opened, 12).thickness, 0.25);
 }
 
-TEST(Parts, UsedButNotDefinedOnesAreThereWithoutAName) {
+TEST(Parts, used_but_not_defined_ones_are_there_without_a_name) {
   const DeckFolder folder;
   const auto opened = folder.open("*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n3,1.,1.,0.\n*ELEMENT_SHELL\n1,42,1,2,3,3\n*PART\nunused\n         7\n");
   ASSERT_OPENED(opened);
@@ -104,7 +104,7 @@ TEST(Parts, UsedButNotDefinedOnesAreThereWithoutAName) {
   EXPECT_EQ(opened->model.shell_parts[0], opened->model.find_part(42));
 }
 
-TEST(Sections, CornersThatAreBlankTakeTheFirstThickness) {
+TEST(Sections, corners_that_are_blank_take_the_first_thickness) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*SECTION_SHELL\n"
@@ -117,7 +117,7 @@ TEST(Sections, CornersThatAreBlankTakeTheFirstThickness) {
   EXPECT_EQ(part(*opened, 2).thickness, 2.5);
 }
 
-TEST(Materials, KeepTheirConstantsWhereTheManualSays) {
+TEST(Materials, keep_their_constants_where_the_manual_says) {
   struct Case {
     const char* keyword;
     std::optional<double> density, modulus, poisson;
@@ -155,7 +155,7 @@ TEST(Materials, KeepTheirConstantsWhereTheManualSays) {
   }
 }
 
-TEST(Materials, AdditionsToAMaterialAreNone) {
+TEST(Materials, additions_to_a_material_are_none) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*mat_add_erosion\n         9       888\n*MAT_ELASTIC\n         9   7.85E-9  210000.0       0.3\n*PART\np\n         1         0      "
@@ -164,7 +164,7 @@ TEST(Materials, AdditionsToAMaterialAreNone) {
   EXPECT_EQ(part(*opened, 1).density, 7.85e-9);
 }
 
-TEST(TimeStep, IsWhatTheDeckSaysAndElseTheSolversDefault) {
+TEST(TimeStep, is_what_the_deck_says_and_else_the_solvers_default) {
   const DeckFolder folder;
   const auto said = folder.open("*CONTROL_TIMESTEP\n       0.0      0.67         1       0.0   -3.5E-4\n");
   ASSERT_OPENED(said);
@@ -176,7 +176,7 @@ TEST(TimeStep, IsWhatTheDeckSaysAndElseTheSolversDefault) {
   EXPECT_EQ(silent->deck->time_step.scale, 0.9);
 }
 
-TEST(LengthUnit, FollowsTheDensityAndElseTheEdges) {
+TEST(LengthUnit, follows_the_density_and_else_the_edges) {
   const DeckFolder folder;
   const auto guess = [&](const std::string& density, const std::string& size) {
     const auto opened = folder.open("*NODE\n1,0.,0.,0.\n2," + size + ",0.,0.\n3," + size + "," + size + ",0.\n4,0.," + size +

@@ -30,7 +30,7 @@ const ElementBlock& block_of(const Model& model, ElementClass element_class) {
 
 using Ids = std::vector<std::int64_t>;
 
-TEST(Shells, TrianglesRepeatTheirThirdNodeOrLeaveTheFourthBlank) {
+TEST(Shells, triangles_repeat_their_third_node_or_leave_the_fourth_blank) {
   const auto opened = open(
       "*ELEMENT_SHELL\n"
       "       1       5       1       2       3       4\n"
@@ -46,7 +46,7 @@ TEST(Shells, TrianglesRepeatTheirThirdNodeOrLeaveTheFourthBlank) {
   EXPECT_EQ(corners_of(model, 3), (std::array<std::int64_t, 4>{1, 2, 3, 3}));
 }
 
-TEST(Shells, SecondOrderOnesKeepTheirMidsideNodes) {
+TEST(Shells, second_order_ones_keep_their_midside_nodes) {
   const auto opened = open(
       "*ELEMENT_SHELL\n"
       "       1       5       1       2       3       4       5       6       7       8\n"
@@ -67,7 +67,7 @@ TEST(Shells, SecondOrderOnesKeepTheirMidsideNodes) {
   EXPECT_EQ(midside[2].node, (std::array{NodeIndex(4), NodeIndex(), NodeIndex(), NodeIndex()}));
 }
 
-TEST(Shells, ThicknessCardsBelongToTheirShell) {
+TEST(Shells, thickness_cards_belong_to_their_shell) {
   const auto opened = open(
       "*ELEMENT_SHELL_THICKNESS\n"
       "       1       5       1       2       3       4\n"
@@ -89,7 +89,7 @@ TEST(Shells, ThicknessCardsBelongToTheirShell) {
   EXPECT_EQ(model.shell_thickness[3], 1.5f);
 }
 
-TEST(Shells, SecondOrderOnesHaveASecondThicknessCard) {
+TEST(Shells, second_order_ones_have_a_second_thickness_card) {
   const auto opened = open(
       "*ELEMENT_SHELL_THICKNESS_OFFSET\n"
       "       1       5       1       2       3       4       5       6       7       8\n"
@@ -105,7 +105,7 @@ TEST(Shells, SecondOrderOnesHaveASecondThicknessCard) {
   EXPECT_EQ(opened->model.shell_thickness[1], 3.0f);
 }
 
-TEST(Shells, WideThicknessFieldsAreTwentyColumns) {
+TEST(Shells, wide_thickness_fields_are_twenty_columns) {
   const auto opened = open(
       "*ELEMENT_SHELL_THICKNESS+\n"
       "                   1                   5                   1                   2                   3                   4\n"
@@ -114,7 +114,7 @@ TEST(Shells, WideThicknessFieldsAreTwentyColumns) {
   EXPECT_EQ(opened->model.shell_thickness[0], 4.0f);
 }
 
-TEST(Shells, CompositeLayersAddUp) {
+TEST(Shells, composite_layers_add_up) {
   const auto opened = open(
       "*ELEMENT_SHELL_OFFSET_COMPOSITE\n"
       "     702       1       1       2       3       3\n"
@@ -137,7 +137,7 @@ TEST(Shells, CompositeLayersAddUp) {
   EXPECT_EQ(corners_of(model, 703), (std::array<std::int64_t, 4>{2, 3, 4, 5}));
 }
 
-TEST(Shells, AnOptionThatIsNotKnownIsLeftAloneAndSaid) {
+TEST(Shells, an_option_that_is_not_known_is_left_alone_and_said) {
   const auto opened = open("*ELEMENT_SHELL_NURBS_PATCH\n       1       5       1       2       3       4\n");
   ASSERT_OPENED(opened);
   EXPECT_EQ(opened->model.shell_count(), 0u);
@@ -145,7 +145,7 @@ TEST(Shells, AnOptionThatIsNotKnownIsLeftAloneAndSaid) {
   EXPECT_EQ(warning(*opened->deck, "unread-elements").line, 32);
 }
 
-TEST(Beams, HaveTwoEndsAndAnyOptions) {
+TEST(Beams, have_two_ends_and_any_options) {
   const auto opened = open(
       "*ELEMENT_BEAM\n"
       "       1       6       1       2       3       0       0       0       0       2\n"
@@ -162,7 +162,7 @@ TEST(Beams, HaveTwoEndsAndAnyOptions) {
   EXPECT_EQ(nodes_of_element(opened->model, ElementClass::beam, 2), (Ids{4, 5}));
 }
 
-TEST(Solids, OnOneCardOrTwo) {
+TEST(Solids, on_one_card_or_two) {
   const auto opened = open(
       "*ELEMENT_SOLID\n"
       "       1       4       1       2       3       4       5       6       7       8\n"
@@ -195,7 +195,7 @@ TEST(Solids, OnOneCardOrTwo) {
   EXPECT_EQ(nodes_of_element(model, ElementClass::solid, 7).size(), 20u);
 }
 
-TEST(OtherElements, AreWhatTheyAre) {
+TEST(OtherElements, are_what_they_are) {
   const auto opened = open(
       "*ELEMENT_TSHELL\n"
       "       1       4       1       2       3       4       5       6       7       8\n"
@@ -225,7 +225,7 @@ TEST(OtherElements, AreWhatTheyAre) {
   EXPECT_EQ(model.elements[static_cast<std::size_t>(ElementClass::shell)], nullptr);
 }
 
-TEST(Elements, IdsAreUniqueWithinTheirClassOnly) {
+TEST(Elements, ids_are_unique_within_their_class_only) {
   const auto opened = open(
       "*ELEMENT_SHELL\n       1       5       1       2       3       4\n"
       "*ELEMENT_BEAM\n       1       6       1       2\n");
@@ -235,7 +235,7 @@ TEST(Elements, IdsAreUniqueWithinTheirClassOnly) {
   EXPECT_TRUE(opened->deck->warnings.empty());
 }
 
-TEST(Elements, OfEqualIdsTheFirstCounts) {
+TEST(Elements, of_equal_ids_the_first_counts) {
   const auto opened = open(
       "*ELEMENT_SHELL_THICKNESS\n       1       5       1       2       3       4\n             1.0             1.0             1.0        "
       "     1.0\n"
@@ -254,7 +254,7 @@ TEST(Elements, OfEqualIdsTheFirstCounts) {
   EXPECT_EQ(duplicate.line, 35);
 }
 
-TEST(Elements, WithAnUndefinedNodeAreLeftOutAndCounted) {
+TEST(Elements, with_an_undefined_node_are_left_out_and_counted) {
   const auto opened = open(
       "*ELEMENT_SHELL\n"
       "       1       5       1       2       3       4\n"
@@ -275,14 +275,14 @@ TEST(Elements, WithAnUndefinedNodeAreLeftOutAndCounted) {
   EXPECT_EQ(undefined.message, "shell 2 names node 99, which isn't defined; it is left out");
 }
 
-TEST(Elements, WithTooFewNodesAreLeftOutAndCounted) {
+TEST(Elements, with_too_few_nodes_are_left_out_and_counted) {
   const auto opened = open("*ELEMENT_SHELL\n      10       1       1       2\n      11       1\n*ELEMENT_BEAM\n      12       1       4\n");
   ASSERT_OPENED(opened);
   EXPECT_EQ(opened->model.shell_count(), 0u);
   EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 3u);
 }
 
-TEST(Nodes, OfEqualIdsTheFirstCounts) {
+TEST(Nodes, of_equal_ids_the_first_counts) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*NODE\n3,1.,0.,0.\n1,2.,0.,0.\n3,9.,9.,9.\n2,3.,0.,0.\n*NODE+\n                   1                 9.0\n                   4       "

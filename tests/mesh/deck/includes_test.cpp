@@ -7,7 +7,7 @@ namespace {
 
 std::string node(int id) { return "*NODE\n" + std::to_string(id) + "," + std::to_string(id) + ".,0.,0.\n"; }
 
-TEST(Includes, AreReadWhereTheyStand) {
+TEST(Includes, are_read_where_they_stand) {
   const DeckFolder folder;
   folder.write("a.k", "*KEYWORD\n" + node(2) + "*END\n" + node(99));
   folder.write("sub/b.k", node(4) + "*INCLUDE\n../c.k\n");
@@ -27,7 +27,7 @@ TEST(Includes, AreReadWhereTheyStand) {
   EXPECT_TRUE(deck.warnings.empty());
 }
 
-TEST(Includes, NamesGoOnAfterAPlusAndCommentsDontCount) {
+TEST(Includes, names_go_on_after_a_plus_and_comments_dont_count) {
   const DeckFolder folder;
   folder.write("a long name.k", node(1));
   folder.write("win/b.k", node(2));
@@ -36,7 +36,7 @@ TEST(Includes, NamesGoOnAfterAPlusAndCommentsDontCount) {
   EXPECT_EQ(opened->model.node_count(), 2u);
 }
 
-TEST(Includes, AreFoundAlongThePaths) {
+TEST(Includes, are_found_along_the_paths) {
   const DeckFolder folder;
   folder.write("models/door.k", node(1));
   folder.write("more/hood.k", node(2));
@@ -47,7 +47,7 @@ TEST(Includes, AreFoundAlongThePaths) {
   EXPECT_EQ(opened->deck->files[1].relative, "models/door.k");
 }
 
-TEST(Includes, MissingOnesAreWarnedOf) {
+TEST(Includes, missing_ones_are_warned_of) {
   const DeckFolder folder;
   const auto opened = folder.open("*KEYWORD\n*INCLUDE\nlost.k\n*INCLUDE\ngone.k\n" + node(1) + "*END\n");
   ASSERT_OPENED(opened);
@@ -58,7 +58,7 @@ TEST(Includes, MissingOnesAreWarnedOf) {
   EXPECT_EQ(missing.message, "the include file lost.k isn't there");
 }
 
-TEST(Includes, CirclesEndAndHoldTheirNodes) {
+TEST(Includes, circles_end_and_hold_their_nodes) {
   const DeckFolder folder;
   folder.write("a.k", node(1) + "*INCLUDE\nb.k\n");
   folder.write("b.k", node(2) + "*INCLUDE\na.k\n*INCLUDE\ndeck.k\n");
@@ -68,7 +68,7 @@ TEST(Includes, CirclesEndAndHoldTheirNodes) {
   EXPECT_EQ(warning(*opened->deck, "circular-include").count, 2u);
 }
 
-TEST(Includes, NodesOfAFileUsedTwiceAreHeld) {
+TEST(Includes, nodes_of_a_file_used_twice_are_held) {
   const DeckFolder folder;
   folder.write("twice.k", node(1) + "*INCLUDE\ninner.k\n");
   folder.write("inner.k", node(2));
@@ -84,7 +84,7 @@ TEST(Includes, NodesOfAFileUsedTwiceAreHeld) {
   EXPECT_EQ(warning(*opened->deck, "repeated-include").count, 1u);
 }
 
-TEST(Includes, DeepNestingEndsWithAWarning) {
+TEST(Includes, deep_nesting_ends_with_a_warning) {
   const DeckFolder folder;
   for (int i = 0; i < 100; ++i) folder.write("f" + std::to_string(i) + ".k", node(i + 2) + "*INCLUDE\nf" + std::to_string(i + 1) + ".k\n");
   const auto opened = folder.open(node(1) + "*INCLUDE\nf0.k\n");
@@ -93,7 +93,7 @@ TEST(Includes, DeepNestingEndsWithAWarning) {
   EXPECT_EQ(opened->model.node_count(), 65u);
 }
 
-TEST(Includes, TransformedOnesAreNotReadButKept) {
+TEST(Includes, transformed_ones_are_not_read_but_kept) {
   const DeckFolder folder;
   folder.write("moved.k", node(1));
   folder.write("same.k", node(2));
@@ -109,7 +109,7 @@ TEST(Includes, TransformedOnesAreNotReadButKept) {
   EXPECT_EQ(opened->deck->files.size(), 3u);
 }
 
-TEST(Parameters, StandWhereANumberIsExpected) {
+TEST(Parameters, stand_where_a_number_is_expected) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*PARAMETER\n"
@@ -130,7 +130,7 @@ TEST(Parameters, StandWhereANumberIsExpected) {
   EXPECT_EQ((*model.parts)[model.shell_parts[0].value].id, 9);
 }
 
-TEST(Parameters, LocalOnesEndWithTheirFile) {
+TEST(Parameters, local_ones_end_with_their_file) {
   const DeckFolder folder;
   folder.write("a.k", "*PARAMETER_LOCAL\nRv          5.0\n*NODE\n1,&v,&g\n*PARAMETER\nRlate       8.0\n");
   folder.write("b.k", "*NODE\n2,&v,&g,&late\n");
@@ -140,7 +140,7 @@ TEST(Parameters, LocalOnesEndWithTheirFile) {
   EXPECT_EQ(position_of(opened->model, 2), Vec3(1, 2, 8));
 }
 
-TEST(Parameters, ThatLackLeaveTheCardOutAndAreWarnedOf) {
+TEST(Parameters, that_lack_leave_the_card_out_and_are_warned_of) {
   const DeckFolder folder;
   const auto opened = folder.open("*NODE\n1,&nowhere,0.,0.\n2,1.,0.,0.\n");
   ASSERT_OPENED(opened);
@@ -149,7 +149,7 @@ TEST(Parameters, ThatLackLeaveTheCardOutAndAreWarnedOf) {
   EXPECT_EQ(warning(*opened->deck, "undefined-parameter").line, 2);
 }
 
-TEST(Parameters, ExpressionsAreArithmetic) {
+TEST(Parameters, expressions_are_arithmetic) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*PARAMETER\nR    tEnd       5.0\n"
@@ -165,7 +165,7 @@ TEST(Parameters, ExpressionsAreArithmetic) {
   EXPECT_DOUBLE_EQ(position_of(opened->model, 1).z(), -1.55 * 1.55 + 4);
 }
 
-TEST(Expressions, ThatAreNoneHaveNoValue) {
+TEST(Expressions, that_are_none_have_no_value) {
   const lsdyna::Parameters none;
   for (const char* text : {"", "1+", "(1", "1)", "foo", "foo(1)", "1 2", "1/0", "sqrt(-1)", "&"})
     EXPECT_FALSE(lsdyna::evaluate(text, none)) << text;

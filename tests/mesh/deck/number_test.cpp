@@ -18,7 +18,7 @@ struct RealCase {
   double value;
 };
 
-TEST(ParseReal, KnowsFortransForms) {
+TEST(ParseReal, knows_fortrans_forms) {
   const RealCase cases[] = {{"", 0},
                             {"      ", 0},
                             {"1", 1},
@@ -53,7 +53,7 @@ TEST(ParseReal, KnowsFortransForms) {
   }
 }
 
-TEST(ParseReal, RefusesWhatIsNoNumber) {
+TEST(ParseReal, refuses_what_is_no_number) {
   for (const char* text : {"abc", "1.0.0", "--1", "1e", "1e+", "+", ".", "1 2", "0x10", "nan", "inf", "1e400", "&name", "1,0", "1.0E-3x"}) {
     double value = 0;
     EXPECT_FALSE(parse_real(text, value)) << text;
@@ -62,7 +62,7 @@ TEST(ParseReal, RefusesWhatIsNoNumber) {
   EXPECT_FALSE(parse_real(std::string(1000000, '1'), value));
 }
 
-TEST(ParseInteger, TakesWholeNumbersInAnyForm) {
+TEST(ParseInteger, takes_whole_numbers_in_any_form) {
   const std::pair<const char*, std::int64_t> cases[] = {
       {"", 0}, {"   12", 12}, {"-7", -7}, {"+3", 3}, {"12.", 12}, {"12.0", 12}, {"1.2E1", 12}, {"999999999999999999", 999999999999999999}};
   for (const auto& [text, wanted] : cases) {
@@ -76,14 +76,14 @@ TEST(ParseInteger, TakesWholeNumbersInAnyForm) {
   }
 }
 
-TEST(FormatCoordinate, TakesTheShortestTextThatReadsBack) {
+TEST(FormatCoordinate, takes_the_shortest_text_that_reads_back) {
   const std::pair<double, const char*> cases[] = {
       {0, "0.0"},       {-0.0, "0.0"},     {1, "1.0"},           {-12.5, "-12.5"}, {0.1, "0.1"},
       {1200, "1200.0"}, {1e-5, "0.00001"}, {1.5e-20, "1.5E-20"}, {3e30, "3.0E30"}, {-886.41901, "-886.41901"}};
   for (const auto& [value, wanted] : cases) EXPECT_EQ(format_coordinate(value, 16), wanted);
 }
 
-TEST(FormatCoordinate, IsAsPreciseAsTheFieldAllows) {
+TEST(FormatCoordinate, is_as_precise_as_the_field_allows) {
   EXPECT_EQ(format_coordinate(1.0 / 3, 16), ".333333333333333");
   EXPECT_EQ(format_coordinate(-1.0 / 3, 16), "-.33333333333333");
   EXPECT_EQ(format_coordinate(-123.456789012345678, 16), "-123.45678901235");
@@ -92,7 +92,7 @@ TEST(FormatCoordinate, IsAsPreciseAsTheFieldAllows) {
 }
 
 /// Whatever the width, no text of that width would be nearer than a unit in its last place.
-TEST(FormatCoordinate, ReadsBackWithinTheFieldsPrecision) {
+TEST(FormatCoordinate, reads_back_within_the_fields_precision) {
   std::mt19937_64 random(7);
   for (int i = 0; i < 200000; ++i) {
     const double magnitude = std::pow(10.0, static_cast<double>(random() % 24) - 12.0);
@@ -111,7 +111,7 @@ TEST(FormatCoordinate, ReadsBackWithinTheFieldsPrecision) {
   }
 }
 
-TEST(ParseReal, RoundsAsTheStandardLibraryDoes) {
+TEST(ParseReal, rounds_as_the_standard_library_does) {
   std::mt19937_64 random(11);
   for (int i = 0; i < 200000; ++i) {
     std::string text = std::to_string(random() % 1000000) + "." + std::to_string(random());

@@ -51,7 +51,7 @@ std::size_t lines_that_differ(const std::string& a, const std::string& b) {
   return differ;
 }
 
-TEST_F(RealDecks, HaveTheCountsOfTheIndependentCounter) {
+TEST_F(RealDecks, have_the_counts_of_the_independent_counter) {
   const auto all = decks("lsdyna");
   EXPECT_EQ(all.size(), 21u);
   for (const auto& [id, wanted] : all) {
@@ -85,7 +85,7 @@ TEST_F(RealDecks, HaveTheCountsOfTheIndependentCounter) {
   }
 }
 
-TEST_F(RealDecks, AreSavedByteForByte) {
+TEST_F(RealDecks, are_saved_byte_for_byte) {
   for (const auto& [id, wanted] : decks("lsdyna")) {
     SCOPED_TRACE(id);
     const auto opened = deck::open(path(wanted));
@@ -102,7 +102,7 @@ TEST_F(RealDecks, AreSavedByteForByte) {
   }
 }
 
-TEST_F(RealDecks, MovingOneNodeChangesOneLine) {
+TEST_F(RealDecks, moving_one_node_changes_one_line) {
   std::size_t edited = 0;
   for (const auto& [id, wanted] : decks("lsdyna")) {
     SCOPED_TRACE(id);
@@ -133,7 +133,7 @@ TEST_F(RealDecks, MovingOneNodeChangesOneLine) {
   EXPECT_EQ(edited, 19u);
 }
 
-TEST_F(RealDecks, OfOtherFormatsAreRefusedByName) {
+TEST_F(RealDecks, of_other_formats_are_refused_by_name) {
   for (const auto& [format, words] :
        {std::pair("nastran", "a Nastran deck"), std::pair("radioss", "a Radioss deck"), std::pair("abaqus", "an Abaqus deck")}) {
     const auto all = decks(format);
@@ -146,7 +146,7 @@ TEST_F(RealDecks, OfOtherFormatsAreRefusedByName) {
   }
 }
 
-TEST_F(RealDecks, KnowTheirTimeStepAndThickness) {
+TEST_F(RealDecks, know_their_time_step_and_thickness) {
   const auto time_step = [&](const char* id) {
     const auto opened = deck::open(path(counts_[id]));
     EXPECT_TRUE(opened);

@@ -17,7 +17,7 @@ struct CardCase {
   std::string wanted;
 };
 
-TEST(RewriteCard, KeepsColumnsAndWhatFollows) {
+TEST(RewriteCard, keeps_columns_and_what_follows) {
   const CardCase cases[] = {
       {"only the field that changes",
        "       1        1.000000             2.0            3.00       7       0",
@@ -64,12 +64,7 @@ TEST(RewriteCard, KeepsColumnsAndWhatFollows) {
        {-635, 0, 78.5},
        {-635, 0, 80},
        "       6 -635.0          0.0             80.0           "},
-      {"tabs",
-       "       1\t  1.0\t2.0",
-       Columns::standard,
-       {1, 2, 0},
-       {1, 2, 3},
-       "       1          1.0   2.0                          3.0"},
+      {"tabs", "       1\t  1.0\t2.0", Columns::standard, {1, 2, 0}, {1, 2, 3}, "       1          1.0   2.0                          3.0"},
   };
   for (const CardCase& c : cases) {
     const auto card = rewrite_node_card(c.card, c.columns, c.from, c.to);
@@ -78,7 +73,7 @@ TEST(RewriteCard, KeepsColumnsAndWhatFollows) {
   }
 }
 
-TEST(RewriteCard, SaysWhatItRounds) {
+TEST(RewriteCard, says_what_it_rounds) {
   const auto card =
       rewrite_node_card("       1             1.0             2.0             3.0", Columns::standard, {1, 2, 3}, {-100.0 / 3, 2, 3.5});
   EXPECT_EQ(card.text, "       1-33.333333333333             2.0             3.5");
@@ -99,7 +94,7 @@ const char kDeck[] =
     "*END\r\n"
     "what follows is kept";
 
-TEST(Save, WithoutEditsGivesTheSameBytes) {
+TEST(Save, without_edits_gives_the_same_bytes) {
   const DeckFolder folder;
   const auto opened = folder.open(kDeck);
   ASSERT_OPENED(opened);
@@ -110,7 +105,7 @@ TEST(Save, WithoutEditsGivesTheSameBytes) {
   EXPECT_EQ(saved->lines_changed, 0u);
 }
 
-TEST(Save, ChangesOnlyTheLinesOfMovedNodes) {
+TEST(Save, changes_only_the_lines_of_moved_nodes) {
   const DeckFolder folder;
   const auto opened = folder.open(kDeck);
   ASSERT_OPENED(opened);
@@ -130,7 +125,7 @@ TEST(Save, ChangesOnlyTheLinesOfMovedNodes) {
   EXPECT_TRUE(moved_nodes(again->model, model).empty());
 }
 
-TEST(Save, NotesWhereColumnsCantHoldThePrecision) {
+TEST(Save, notes_where_columns_cant_hold_the_precision) {
   const DeckFolder folder;
   const auto opened = folder.open(kDeck);
   ASSERT_OPENED(opened);
@@ -144,7 +139,7 @@ TEST(Save, NotesWhereColumnsCantHoldThePrecision) {
 }
 
 /// Whatever is saved reads back within what the columns hold, in every layout.
-TEST(Save, ReadsBackWithinTheFieldsPrecision) {
+TEST(Save, reads_back_within_the_fields_precision) {
   const DeckFolder folder;
   const auto opened = folder.open(
       "*NODE\n       1             0.0             0.0             0.0\n2,0.,0.,0.\n*NODE %\n         3             0.0\n"
@@ -163,7 +158,7 @@ TEST(Save, ReadsBackWithinTheFieldsPrecision) {
   }
 }
 
-TEST(Save, InPlaceWritesOnlyTheFilesThatChange) {
+TEST(Save, in_place_writes_only_the_files_that_change) {
   const DeckFolder folder;
   folder.write("a.k", "*NODE\n2,2.,0.,0.\n");
   folder.write("b.k", "*NODE\n3,3.,0.,0.\n");
@@ -188,7 +183,7 @@ TEST(Save, InPlaceWritesOnlyTheFilesThatChange) {
   EXPECT_NE(content(folder / "deck.k").find("1,1.,0.,0."), std::string::npos);
 }
 
-TEST(Save, InPlaceRefusesAFileThatIsNoLongerTheOneRead) {
+TEST(Save, in_place_refuses_a_file_that_is_no_longer_the_one_read) {
   const DeckFolder folder;
   const auto opened = folder.open(kDeck);
   ASSERT_OPENED(opened);
@@ -214,7 +209,7 @@ TEST(Save, InPlaceRefusesAFileThatIsNoLongerTheOneRead) {
   EXPECT_TRUE(save(*opened->deck, opened->model, model, folder / "other/deck.k"));
 }
 
-TEST(Save, IntoAnotherFolderTakesAllIncludesAlong) {
+TEST(Save, into_another_folder_takes_all_includes_along) {
   const DeckFolder folder;
   folder.write("src/sub/a.k", "*NODE\n2,2.,0.,0.\n*INCLUDE\nb.k\n");
   folder.write("src/sub/b.k", "*NODE\n3,3.,0.,0.\n");
@@ -237,7 +232,7 @@ TEST(Save, IntoAnotherFolderTakesAllIncludesAlong) {
   EXPECT_EQ(position_of(again->model, 3), Vec3(3.5, 0, 0));
 }
 
-TEST(Save, IntoAnotherFolderRefusesAnIncludeFromOutside) {
+TEST(Save, into_another_folder_refuses_an_include_from_outside) {
   const DeckFolder folder;
   folder.write("common.k", "*NODE\n2,2.,0.,0.\n");
   const auto main = folder.write("src/deck.k", "*INCLUDE\n../common.k\n*NODE\n1,1.,0.,0.\n");
@@ -254,7 +249,7 @@ TEST(Save, IntoAnotherFolderRefusesAnIncludeFromOutside) {
   EXPECT_EQ(content(folder / "common.k"), "*NODE\n2,5.0,0.,0.\n");
 }
 
-TEST(Save, BesideTheOldDeckLeavesItsIncludesAlone) {
+TEST(Save, beside_the_old_deck_leaves_its_includes_alone) {
   const DeckFolder folder;
   folder.write("a.k", "*NODE\n2,2.,0.,0.\n");
   const auto opened = folder.open("*INCLUDE\na.k\n*NODE\n1,1.,0.,0.\n");
@@ -269,7 +264,7 @@ TEST(Save, BesideTheOldDeckLeavesItsIncludesAlone) {
   EXPECT_FALSE(save(*opened->deck, opened->model, opened->model, folder / "a.k")) << "the main file over its own include";
 }
 
-TEST(Save, RefusesNodesThatMustNotMove) {
+TEST(Save, refuses_nodes_that_must_not_move) {
   const DeckFolder folder;
   const auto opened = folder.open("*PARAMETER\nRa,1.0\n*NODE\n1,&a,0.,0.\n2,2.,0.,0.\n");
   ASSERT_OPENED(opened);
@@ -284,7 +279,7 @@ TEST(Save, RefusesNodesThatMustNotMove) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
-TEST(Save, ASymbolicLinkStaysOne) {
+TEST(Save, a_symbolic_link_stays_one) {
   const DeckFolder folder;
   folder.write("real/deck.k", kDeck);
   std::filesystem::create_symlink("real/deck.k", folder / "link.k");

@@ -1,0 +1,64 @@
+// Errors, hashes, units and clocks.
+#include <array>
+
+#include <gtest/gtest.h>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/progress.h"
+#include "base/units.h"
+
+namespace prismesh {
+namespace {
+
+TEST(Error, text_leaves_out_what_is_absent) {
+  EXPECT_EQ((Error{"a.k", 12, "is wrong"}.text()), "a.k:12: is wrong");
+  EXPECT_EQ((Error{"a.k", 0, "is wrong"}.text()), "a.k: is wrong");
+  EXPECT_EQ((Error{"", 0, "is wrong"}.text()), "is wrong");
+  EXPECT_EQ(cancelled().text(), "cancelled");
+  const Result<int> failed = fail("expression", 7, "what is this");
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().text(), "expression:7: what is this");
+}
+
+TEST(Hash, is_the_same_in_pieces_and_tells_texts_apart) {
+  const std::string text(100000, 'q');
+  const std::string_view whole = text;
+  const Hash128 hash = hash128(std::as_bytes(std::span(text)));
+  const std::array<std::string_view, 4> pieces = {whole.substr(0, 1), whole.substr(1, 0), whole.substr(1, 70000), whole.substr(70001)};
+  EXPECT_EQ(hash128(std::span<const std::string_view>(pieces)), hash);
+  std::string other = text;
+  other[5000] = 'p';
+  EXPECT_FALSE(hash128(std::as_bytes(std::span(other))) == hash);
+  EXPECT_NE(hash64(std::as_bytes(std::span(other))), hash64(std::as_bytes(std::span(text))));
+  EXPECT_EQ(hash.hex().size(), 32u);
+  // The published XXH3-128 of nothing.
+  EXPECT_EQ(hash128(std::span<const std::byte>()).hex(), "99aa06d3014798d86001c324468d497f");
+}
+
+TEST(Units, have_names_and_sizes) {
+  for (const LengthUnit unit : {LengthUnit::mm, LengthUnit::m, LengthUnit::in}) EXPECT_EQ(length_unit_from(name(unit)), unit);
+  EXPECT_FALSE(length_unit_from("ft").has_value());
+  EXPECT_FALSE(length_unit_from("").has_value());
+  EXPECT_EQ(millimetres_per(LengthUnit::mm), 1.0);
+  EXPECT_EQ(millimetres_per(LengthUnit::m), 1000.0);
+  EXPECT_EQ(millimetres_per(LengthUnit::in), 25.4);
+}
+
+TEST(Clock, never_goes_back_and_stands_still_when_told) {
+  MonotonicClock monotonic;
+  std::int64_t last = monotonic.now_ns();
+  for (int i = 0; i < 1000; ++i) {
+    const std::int64_t now = monotonic.now_ns();
+    ASSERT_GE(now, last);
+    last = now;
+  }
+  ManualClock manual;
+  EXPECT_EQ(manual.now_ns(), 0);
+  manual.advance_ns(25);
+  EXPECT_EQ(manual.now_ns(), 25);
+}
+
+}  // namespace
+}  // namespace prismesh
