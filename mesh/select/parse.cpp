@@ -143,15 +143,15 @@ class Parser {
 
   Result<void> read_ids(Item& item) {
     const std::size_t begin = at_;
-    if (const auto read = read_number(item.first, "an id"); !read) return read;
+    if (auto read = read_number(item.first, "an id"); !read) return read;
     item.last = item.first;
     if (take('-')) {
-      if (const auto read = read_number(item.last, "the range's last id"); !read) return read;
+      if (auto read = read_number(item.last, "the range's last id"); !read) return read;
       if (item.last < item.first)
         return error_at(begin, "the range runs backwards: write " + std::to_string(item.last) + "-" + std::to_string(item.first));
       if (!take(':')) return {};
       const std::size_t place = at_;
-      if (const auto read = read_number(item.step, "the range's step"); !read) return read;
+      if (auto read = read_number(item.step, "the range's step"); !read) return read;
       if (item.step == 0) return error_at(place, "a range's step must be at least 1");
     } else if (at(':')) {
       return error("a step needs a range, as in 1-1000:10");

@@ -42,8 +42,12 @@ ShellSet region(const Model& model, NodeIndex start, double angle_degrees) {
       const auto [low, high] = std::minmax(nodes.node[i], nodes.node[(i + 1) % corners]);
       if (low == high) continue;
       const EdgeIndex edge = adjacency.find_edge(low, high);
-      if (!edge.valid() || classify_edge(model, edge, {low, high}, angle_degrees) != EdgeKind::smooth) continue;
-      for (const ShellIndex shell : adjacency.shells_of(edge)) reach(shell);
+      if (!edge.valid()) continue;
+      // most edges lead back to where the search came from: only those that lead on are worth classifying
+      const auto shells = adjacency.shells_of(edge);
+      if (shells.size() != 2 || (seen[shells[0].value] != 0 && seen[shells[1].value] != 0)) continue;
+      if (classify_edge(model, edge, {low, high}, angle_degrees) != EdgeKind::smooth) continue;
+      for (const ShellIndex shell : shells) reach(shell);
     }
   }
   std::sort(found.begin(), found.end());
