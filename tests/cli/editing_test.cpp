@@ -1,0 +1,177 @@
+// edit, replay, sample: the commands that write.
+#include "tests/cli/cli_fixture.h"
+
+namespace prismesh::cli {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kSelect = R"({"edit": "select", "expr": "101-135"})";
+constexpr const char* kLift = R"({"edit": "lift", "distance": 2, "on": "109-111,116-118,123-125", "grab": 117})";
+
+std::vector<json> lines(const std::string& text) {
+  std::vector<json> all;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) all.push_back(json::parse(line));
+  return all;
+}
+
+TEST_F(Cli, no_edits_write_the_same_bytes) {
+  std::string text = plate_text();
+  text.insert(text.find("*PART"), "*MAT_UNKNOWN_STRANGE\r\n\tanything \xff at all\n*INCLUDE\nsub/more.k\n");
+  write("in/sub/more.k", "*SET_NODE_LIST\r\n         1\r\n       101       102\r\n");
+  const std::string deck = write("in/plate.k", text);
+  const Outcome outcome = prismesh({"edit", deck, "-o", path("out/copy.k"), "--json"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(read(path("out/copy.k")), text);
+  EXPECT_EQ(read(path("out/sub/more.k")), read(path("in/sub/more.k")));
+}
+
+TEST_F(Cli, an_edit_is_a_line_of_json_and_moves_only_its_nodes) {
+  const std::string deck = write("plate.k", plate_text());
+  const Outcome outcome = prismesh({"edit", deck, "--edit", kSelect, "--edit", kLift, "-o", path("out.k"), "--json"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const std::vector<json> reports = lines(outcome.out);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(reports[0]["edit"], "select");
+  const json& lift = reports[1];
+  for (const char* field : {"edit", "ok", "nodes_moved", "elements_added", "elements_removed", "before", "after", "notes", "ms"})
+    EXPECT_TRUE(lift.contains(field)) << field;
+  EXPECT_EQ(lift["ok"], true);
+  EXPECT_EQ(lift["before"], (json{{"warn", 0}, {"fail", 0}}));
+  EXPECT_GT(lift["after"]["fail"].get<int>() + lift["after"]["warn"].get<int>(), 0);
+  const json difference = prismesh({"diff", deck, path("out.k"), "--json"}).json();
+  EXPECT_EQ(difference["nodes_moved"], lift["nodes_moved"]);
+  EXPECT_EQ(difference["lines_changed"], lift["nodes_moved"]);
+  EXPECT_DOUBLE_EQ(difference["max_displacement"].get<double>(), 2.0);
+  EXPECT_EQ(read(deck), plate_text());
+}
+
+TEST_F(Cli, edits_come_before_the_script_and_in_place_works) {
+  const std::string deck = write("plate.k", plate_text());
+  const std::string script =
+      write("moves.jsonl", R"({"edit": "translate", "by": [0, 0, 1], "grab": 101})"
+                           "\n"
+                           R"({"edit": "undo"})"
+                           "\n"
+                           R"({"edit": "translate", "by": [0, 0, 3], "falloff": {"profile": "constant"}, "grab": 101})");
+  const Outcome outcome = prismesh({"edit", deck, "--script", script, "--edit", kSelect, "-o", deck, "--json"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_EQ(lines(outcome.out).size(), 4u);
+  EXPECT_NE(read(deck), plate_text());
+  const std::string original = write("original.k", plate_text());
+  EXPECT_DOUBLE_EQ(prismesh({"diff", original, deck, "--json"}).json()["max_displacement"].get<double>(), 3.0);
+}
+
+TEST_F(Cli, a_failing_edit_writes_nothing_at_all) {
+  const std::string deck = write("plate.k", plate_text());
+  const auto before = names();
+  const Outcome outcome = prismesh({"edit", deck, "--edit", kLift, "--edit", R"({"edit": "select", "expr": "101,part:99"})", "-o",
+                                    path("new/out.k"), "--journal", path("journal.jsonl"), "--json"});
+  EXPECT_EQ(outcome.status, kFailed);
+  EXPECT_THAT(outcome.err, HasSubstr("expression:5: "));
+  EXPECT_THAT(outcome.err, HasSubstr("--edit:2: this select was not done, and nothing is written"));
+  const std::vector<json> reports = lines(outcome.out);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(reports[0]["ok"], true);
+  EXPECT_EQ(reports[1]["ok"], false);
+  EXPECT_EQ(names(), before);
+  // a target that can't be written leaves nothing either
+  const Outcome unwritable = prismesh({"edit", deck, "--edit", kLift, "-o", deck + "/out.k", "--journal", path("journal.jsonl")});
+  EXPECT_EQ(unwritable.status, kFailed);
+  EXPECT_THAT(unwritable.err, HasSubstr(deck));
+  EXPECT_EQ(names(), before);
+}
+
+TEST_F(Cli, nothing_to_undo_names_the_edit) {
+  const std::string deck = write("plate.k", plate_text());
+  const std::string script = write("undo.jsonl", "{\"edit\": \"invert\"}\n{\"edit\": \"undo\"}\n{\"edit\": \"undo\"}\n");
+  const Outcome outcome = prismesh({"edit", deck, "--script", script, "-o", path("out.k")});
+  EXPECT_EQ(outcome.status, kFailed);
+  EXPECT_THAT(outcome.err, HasSubstr(script + ":3: "));
+  EXPECT_FALSE(exists("out.k"));
+}
+
+TEST_F(Cli, unparsable_json_is_wrong_usage_and_names_the_line) {
+  const std::string deck = write("plate.k", plate_text());
+  const auto refused = [&](const std::string& script_text) {
+    return prismesh({"edit", deck, "--script", write("s.jsonl", script_text), "-o", path("out.k")});
+  };
+  const Outcome broken = refused(std::string(kSelect) + "\n{\"edit\": \n");
+  EXPECT_EQ(broken.status, kWrongUsage);
+  EXPECT_THAT(broken.err, StartsWith(path("s.jsonl") + ":2: "));
+  EXPECT_EQ(refused(std::string(kSelect) + "\n\n" + kSelect).status, kWrongUsage);
+  EXPECT_EQ(refused("# a comment\n").status, kWrongUsage);
+  const Outcome inline_edit = prismesh({"edit", deck, "--edit", kSelect, "--edit", "select all", "-o", path("out.k")});
+  EXPECT_EQ(inline_edit.status, kWrongUsage);
+  EXPECT_THAT(inline_edit.err, StartsWith("--edit:2: "));
+  // JSON that is no edit can't be done as asked
+  const Outcome unknown = refused(R"({"edit": "transalte", "by": [0, 0, 1]})");
+  EXPECT_EQ(unknown.status, kFailed);
+  EXPECT_THAT(unknown.err, HasSubstr("translate"));
+  EXPECT_EQ(prismesh({"edit", deck, "--script", path("absent.jsonl"), "-o", path("out.k")}).status, kFailed);
+  EXPECT_FALSE(exists("out.k"));
+}
+
+TEST_F(Cli, a_journal_replays_to_the_same_bytes) {
+  const std::string deck = write("plate.k", plate_text());
+  const std::string journal = path("journal.jsonl");
+  ASSERT_EQ(prismesh({"edit", deck, "--edit", kSelect, "--edit", kLift, "--edit", R"({"edit": "undo"})", "--edit", kLift, "-o",
+                      path("out.k"), "--journal", journal})
+                .status,
+            kDone);
+  const Outcome outcome = prismesh({"replay", journal, deck, "-o", path("again.k"), "--json"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_EQ(read(path("again.k")), read(path("out.k")));
+  const json replay = outcome.json();
+  EXPECT_EQ(replay["applied"], 4);
+  EXPECT_EQ(replay["not_applied"], 0);
+  EXPECT_EQ(replay["other_deck"], false);
+  EXPECT_EQ(replay["steps"].size(), 4u);
+  // a journal is never overwritten
+  const std::string kept = read(journal);
+  const Outcome again = prismesh({"edit", deck, "--edit", kLift, "-o", path("out2.k"), "--journal", journal});
+  EXPECT_EQ(again.status, kFailed);
+  EXPECT_THAT(again.err, HasSubstr(journal));
+  EXPECT_EQ(read(journal), kept);
+  EXPECT_FALSE(exists("out2.k"));
+}
+
+TEST_F(Cli, replay_on_a_variant_says_what_did_not_apply) {
+  const std::string script = write("s.jsonl", std::string(kLift) + "\n" + R"({"edit": "select", "expr": "part:99"})" + "\n");
+  const std::string deck = write("plate.k", plate_text());
+  const Outcome outcome = prismesh({"replay", script, deck, "-o", path("out.k"), "--json"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_EQ(outcome.json()["applied"], 1);
+  EXPECT_EQ(outcome.json()["steps"][1]["ok"], false);
+  EXPECT_THAT(outcome.err, HasSubstr(script + ":2: warning: this select was not applied"));
+  EXPECT_TRUE(exists("out.k"));
+  const std::string hopeless = write("h.jsonl", "{\"edit\": \"select\", \"expr\": \"part:99\"}\n");
+  EXPECT_EQ(prismesh({"replay", hopeless, deck, "-o", path("none.k")}).status, kFailed);
+  EXPECT_FALSE(exists("none.k"));
+}
+
+TEST_F(Cli, sample_is_the_same_bytes_and_opens) {
+  ASSERT_EQ(prismesh({"sample", "--elements", "2000", "-o", path("a.k")}).status, kDone);
+  ASSERT_EQ(prismesh({"sample", "--elements", "2000", "-o", path("b.k")}).status, kDone);
+  EXPECT_EQ(read(path("a.k")), read(path("b.k")));
+  const json info = prismesh({"info", path("a.k"), "--json"}).json();
+  EXPECT_NEAR(info["elements"]["quad"].get<int>() + info["elements"]["tri"].get<int>(), 2000, 60);
+  EXPECT_EQ(info["length_unit"], "mm");
+  EXPECT_EQ(prismesh({"check", path("a.k"), "--json"}).status, kDone);
+}
+
+TEST_F(Cli, stopped_work_leaves_nothing) {
+  const std::string deck = write("plate.k", plate_text());
+  const auto before = names();
+  const std::atomic<bool> interrupted{true};
+  std::ostringstream out, err;
+  const std::vector<std::string> args = {"edit", deck, "--edit", kLift, "-o", path("out.k"), "--journal", path("journal.jsonl")};
+  EXPECT_EQ(run(args, {out, err, false, &interrupted}), kFailed);
+  EXPECT_THAT(err.str(), HasSubstr("cancelled"));
+  EXPECT_EQ(names(), before);
+}
+
+}  // namespace
+}  // namespace prismesh::cli

@@ -1,0 +1,63 @@
+#include "tests/cli/cli_fixture.h"
+
+namespace prismesh::cli {
+namespace {
+
+TEST_F(Cli, version_and_help) {
+  EXPECT_EQ(prismesh({"--version"}).out, "prismesh " PRISMESH_VERSION "\n");
+  const Outcome help = prismesh({"--help"});
+  EXPECT_EQ(help.status, kDone);
+  for (const char* command : {"info", "check", "edit", "replay", "diff", "distance", "sample"}) EXPECT_THAT(help.out, HasSubstr(command));
+  const Outcome edit_help = prismesh({"edit", "--help"});
+  EXPECT_EQ(edit_help.status, kDone);
+  EXPECT_THAT(edit_help.out, HasSubstr("--journal"));
+  EXPECT_EQ(edit_help.err, "");
+}
+
+TEST_F(Cli, wrong_usage_is_status_2_and_a_sentence) {
+  struct Wrong {
+    std::vector<std::string> args;
+    const char* says;
+  };
+  const Wrong all[] = {
+      {{}, "subcommand"},
+      {{"chekc", "a.k"}, "there is no command \"chekc\"; the nearest is \"check\""},
+      {{"info"}, "prismesh info: DECK is required"},
+      {{"info", "a.k", "b.k"}, "b.k"},
+      {{"edit", "a.k"}, "--output is required"},
+      {{"edit", "a.k", "-o", "b.k", "--frobnicate"}, "--frobnicate"},
+      {{"info", "a.k", "--length-unit", "yard"}, "yard"},
+      {{"info", "a.k", "--target-size", "0"}, "greater than 0"},
+      {{"info", "a.k", "--target-size", "-3"}, "greater than 0"},
+      {{"info", "a.k", "--target-size", "5mm"}, "greater than 0"},
+      {{"info", "a.k", "--target-size", "nan"}, "greater than 0"},
+      {{"sample", "--elements", "1999", "-o", "s.k"}, "2000"},
+      {{"sample", "--elements", "5000001", "-o", "s.k"}, "5000000"},
+      {{"sample"}, "--output is required"},
+      {{"distance", "a.k", "--from", "1"}, "--to is required"},
+      {{"diff", "a.k"}, "B is required"},
+  };
+  for (const Wrong& wrong : all) {
+    const Outcome outcome = prismesh(wrong.args);
+    EXPECT_EQ(outcome.status, kWrongUsage) << wrong.says;
+    EXPECT_THAT(outcome.err, HasSubstr(wrong.says));
+    EXPECT_THAT(outcome.err, StartsWith("prismesh"));
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  }
+}
+
+TEST_F(Cli, common_options_stand_before_or_after_the_command) {
+  const std::string deck = write("plate.k", plate_text());
+  for (const auto& args : {std::vector<std::string>{"--target-size", "2.5", "--length-unit", "in", "--json", "info", deck},
+                           std::vector<std::string>{"info", deck, "--json", "--length-unit", "in", "--target-size", "2.5"}}) {
+    const Outcome outcome = prismesh(args);
+    ASSERT_EQ(outcome.status, kDone) << outcome.err;
+    EXPECT_EQ(outcome.json()["target_size"], 2.5);
+    EXPECT_EQ(outcome.json()["length_unit"], "in");
+    EXPECT_EQ(outcome.json()["target_size_guessed"], false);
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::cli
