@@ -21,7 +21,7 @@ constexpr float kCrowdedNodeRadius = 2.2F;
 constexpr std::size_t kCrowdedNodes = 20000;  ///< from here on nodes are drawn smaller and without their rim
 constexpr float kGlyphRadius = 8.0F;
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: what lifts lines off the surface they lie on
-constexpr float kHiddenLight = 0.90F;    ///< selected nodes behind a surface: lighter than any part, darker than white
+constexpr float kHiddenLight = 0.80F;    ///< selected nodes behind a surface: lighter than any part, darker than white
 
 Eigen::Vector4f ink(const Colour& colour, float alpha) { return {colour.x(), colour.y(), colour.z(), alpha}; }
 

@@ -24,9 +24,7 @@ uniform float height;
 out vec4 colour;
 void main() {
   float t = smoothstep(0.0, 1.0, gl_FragCoord.y / height);
-  // A grain of one level hides the steps of so slow a gradient.
-  float grain = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
-  colour = vec4(mix(bottom, top, t) + grain / 255.0, 1.0);
+  colour = vec4(mix(bottom, top, t), 1.0);
 }
 )";
 
@@ -207,7 +205,7 @@ void main() {
   bool upper = face < 4;
   int tip = k == 2 ? (upper ? 4 : 5) : ((k == 0) == upper ? quarter : (quarter + 1) & 3);
   vec3 normal = screen_from_normal * normalize(kTip[quarter] + kTip[(quarter + 1) & 3] + kTip[upper ? 4 : 5]);
-  light = 0.70 + 0.30 * clamp(dot(normal, vec3(-0.4369, 0.5825, 0.6854)), 0.0, 1.0);
+  light = 0.82 + 0.18 * clamp(dot(normal, vec3(-0.4369, 0.5825, 0.6854)), 0.0, 1.0);
   vec3 offset = screen_from_normal * kTip[tip] * radius_pixels * grow;
   vec4 at = texelFetch(positions, texel(node), 0);
   vec4 clip = clip_from_model * vec4(at.xyz, 1.0);
