@@ -179,35 +179,56 @@ class March {
       cross_between_waves(t, x, y);
   }
 
-  /// The wave's centre is where the distances from the base's two ends meet below it. False if they don't meet.
-  bool cross_from_centre(const Triangle& t, double x, double y, std::uint32_t centre) {
-    const double before = distance_[centre];
-    const double a = distance_[t.a] - before;
-    const double b = distance_[t.b] - before;
-    const double centre_x = (a * a - b * b + t.base * t.base) / (2 * t.base);
-    const double depth2 = a * a - centre_x * centre_x;
+  void cross_from_centre(const Triangle& t, double x, double y, std::uint32_t centre) {
+    cross_from_centre(t, x, y, centre, distance_[t.a] - distance_[centre], distance_[t.b] - distance_[centre]);
+  }
+
+  /// The wave's centre lies below the base, as far from its ends as the wave's radii there. False if no straight way leads
+  /// from it between the ends to the tip; such a way goes over another triangle.
+  bool cross_from_centre(const Triangle& t, double x, double y, std::uint32_t centre, double radius_a, double radius_b) {
+    const double centre_x = (radius_a * radius_a - radius_b * radius_b + t.base * t.base) / (2 * t.base);
+    const double depth2 = radius_a * radius_a - centre_x * centre_x;
     if (depth2 < 0) return false;  // the wave runs along the base: its ends go straight
     const double depth = std::sqrt(depth2);
-    // the straight way must pass between the ends of the base; another way goes over another triangle
     const double crossing = centre_x * y + x * depth;
-    if (crossing < 0 || crossing > t.base * (depth + y)) return true;
+    if (crossing < 0 || crossing > t.base * (depth + y)) return false;
     const double dx = x - centre_x;
     const double dy = y + depth;
-    offer(t.tip, before + std::sqrt(dx * dx + dy * dy), centre, source_[t.a]);
+    const double distance = distance_[centre] + std::sqrt(dx * dx + dy * dy);
+    // no way along the surface is shorter than the straight one
+    if (distance < distance_[t.tip]) offer(t.tip, std::max(distance, straight(centre, t.tip)), centre, source_[t.a]);
     return true;
   }
 
-  /// Waves of different sources count as plane. Waves of one source with different centres meet behind a turn, where they
-  /// join without a fold: there the curvature of the nearer end's wave is right.
+  /// Length of a way that goes straight from a centre, whatever is in between.
+  double straight(std::uint32_t centre, std::uint32_t node) const {
+    return distance_[centre] + (patch_.positions[node] - patch_.positions[centre]).norm();
+  }
+
+  /// Waves of different sources count as plane. Waves of one source with different centres meet behind a turn: one end of the
+  /// base was reached past the turn, the other, which the former centre still sees, wasn't.
   void cross_between_waves(const Triangle& t, double x, double y) {
     const double slope_x = (distance_[t.b] - distance_[t.a]) / t.base;
     if (!(std::abs(slope_x) < 1)) return;
     const double slope_y = std::sqrt(1 - slope_x * slope_x);
     const double crossing = x * slope_y - y * slope_x;
     const std::uint32_t nearer = crossing < 0.5 * t.base * slope_y ? t.a : t.b;
-    if (source_[t.a] == source_[t.b] && cross_from_centre(t, x, y, centre_[nearer])) return;
+    if (source_[t.a] == source_[t.b] && cross_behind_turn(t, x, y, nearer)) return;
     if (crossing < 0 || crossing > t.base * slope_y) return;
     offer(t.tip, distance_[t.a] + x * slope_x + y * slope_y, centre_[nearer], source_[nearer]);
+  }
+
+  bool cross_behind_turn(const Triangle& t, double x, double y, std::uint32_t nearer) {
+    const bool a_turned = distance_[centre_[t.a]] >= distance_[centre_[t.b]];
+    const std::uint32_t turn = centre_[a_turned ? t.a : t.b];
+    const std::uint32_t former = centre_[a_turned ? t.b : t.a];
+    // the end that the former centre sees is farther over the turn than the way it was reached
+    const double radius_a = std::max(distance_[t.a], straight(turn, t.a)) - distance_[turn];
+    const double radius_b = std::max(distance_[t.b], straight(turn, t.b)) - distance_[turn];
+    const bool over_turn = cross_from_centre(t, x, y, turn, radius_a, radius_b);
+    if (over_turn && centre_[nearer] == turn) return true;
+    const bool direct = cross_from_centre(t, x, y, former, distance_[t.a] - distance_[former], distance_[t.b] - distance_[former]);
+    return over_turn || direct;
   }
 
   /// A node that was done is taken up again when its support came late: a base may reach farther than its tip where corners
