@@ -21,17 +21,20 @@ using Action = SessionOptions::Action;
 /// How long a daemon may take to come back. systemd restarts it in well under a second; reading a large deck again takes longer,
 /// but then it answers already.
 constexpr std::chrono::seconds kPatience{15};
+constexpr std::chrono::seconds kFirstPatience{5};
 constexpr std::chrono::milliseconds kTurn{100};
 
 class Session {
  public:
   Session(const SessionOptions& options, const Surroundings& surroundings)
-      : client_(ipc::model_socket_path(options.runtime_directory), "prismesh session"), surroundings_(surroundings) {}
+      : socket_(ipc::model_socket_path(options.runtime_directory)), client_(socket_, "prismesh session"), surroundings_(surroundings) {}
 
-  /// Connects; a daemon that isn't there is an error at once, one that has gone is waited for.
+  /// Connects. A daemon that was never there is an error at once; one that has gone is waited for. A daemon that ends in order
+  /// takes its socket away, so a socket that nobody listens to belongs to one that may be on its way back.
   Result<ipc::Client*> connected() {
+    std::error_code problem;
     if (client_.connections() > 0) return client_.wait(kPatience);
-    return client_.wait(std::chrono::milliseconds(0));
+    return client_.wait(std::filesystem::exists(socket_, problem) ? kFirstPatience : std::chrono::seconds(0));
   }
 
   /// Sends and waits for the answer, showing progress, until the user stops. An error with `lost` set: the daemon has gone.
@@ -113,6 +116,7 @@ class Session {
     return answer;
   }
 
+  std::filesystem::path socket_;
   ipc::ReconnectingClient client_;
   const Surroundings& surroundings_;
 };

@@ -54,14 +54,23 @@ Result<Journal> start_journal(const StateFolder& folder, const fs::path& path, D
   return Journal::create(path, document);
 }
 
+/// How many of the oldest generations of `recorded` go when another comes, so that it keeps the document's cap too.
+std::size_t over_cap(const Document& recorded, const Generation& next) {
+  std::size_t total = next.own_bytes;
+  for (std::size_t i = 0; i <= recorded.cursor; ++i) total += recorded.generations[i]->own_bytes;
+  std::size_t drop = 0;
+  for (; total > recorded.history_bytes && drop <= recorded.cursor; ++drop) total -= recorded.generations[drop]->own_bytes;
+  return drop;
+}
+
 /// The journal's form of an undo or redo that its own history, shorter than the document's after a save, can't make.
 Prepared as_push(const Document& recorded, const Prepared& prepared, const Edit& edit) {
   auto next = std::make_shared<Generation>(*prepared.next);
   next->number = recorded.next_number;
   next->made_by = name(edit);
   Prepared push;
+  push.drop_oldest = over_cap(recorded, *next);
   push.next = std::move(next);
-  push.drop_oldest = recorded.cursor + 1;
   return push;
 }
 

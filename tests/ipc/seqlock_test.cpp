@@ -71,7 +71,7 @@ TEST(Seqlock, SurvivesAWriterThatIsKilled) {
     const pid_t writer = ::fork();
     if (writer == 0)
       for (std::uint64_t value = before + 1;; ++value) slot->write(sample_of(value));
-    ::usleep(500 + random() % 2000);
+    ::usleep(static_cast<useconds_t>(500 + random() % 2000));
     ::kill(writer, SIGKILL);
     ::waitpid(writer, nullptr, 0);
     const std::optional<Sample> left = slot->read();

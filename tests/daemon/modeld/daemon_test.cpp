@@ -1,0 +1,289 @@
+// The daemon as its clients see it, in this process: so that ThreadSanitizer sees both sides.
+#include "daemon/modeld/daemon.h"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include "folder.h"
+#include "ipc/client.h"
+#include "ipc/line_socket.h"
+#include "ipc/messages_json.h"
+
+namespace prismesh::modeld {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using namespace mesh::document;
+using ipc::Client;
+using test::Folder;
+
+constexpr auto kPatience = 60s;
+
+class Serving : public ::testing::Test {
+ protected:
+  void SetUp() override { start(); }
+  void TearDown() override { stop(); }
+
+  void start() {
+    daemon_.emplace(Daemon::start({folder_.path() / "run", folder_.state()}).value());
+    thread_ = std::thread([this] { daemon_->run(); });
+  }
+  void stop() {
+    if (!daemon_) return;
+    daemon_->stop();
+    thread_.join();
+    daemon_.reset();
+  }
+  Client client(const std::string& name = "test") { return Client::connect(ipc::model_socket_path(folder_.path() / "run"), name).value(); }
+
+  ipc::State open(Client& client, const fs::path& deck) {
+    ipc::Open request;
+    request.path = deck.string();
+    return std::get<ipc::State>(client.call(request, kPatience).value());
+  }
+
+  Folder folder_;
+  std::optional<Daemon> daemon_;
+  std::thread thread_;
+};
+
+Translate move_node(std::int64_t id, double by) {
+  Translate translate;
+  translate.by = {0, 0, by};
+  translate.shaping.on = std::to_string(id);
+  return translate;
+}
+Translate patch() {
+  Translate translate;
+  translate.shaping.on = "1001-1200";
+  return translate;
+}
+
+/// The next event of a kind; fails the test when none comes.
+template <class E>
+std::optional<E> next(Client& client) {
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (std::chrono::steady_clock::now() < until) {
+    while (const auto event = client.next_event())
+      if (const auto* wanted = std::get_if<E>(&*event)) return *wanted;
+    if (!client.poll(100ms)) break;
+  }
+  ADD_FAILURE() << "the event didn't come";
+  return std::nullopt;
+}
+
+double height(const ipc::SnapshotView& view, std::int64_t id) {
+  for (std::size_t n = 0; n < view.node_count(); ++n)
+    if (view.node_id(n) == id) return view.position(n).z();
+  ADD_FAILURE() << "no node " << id;
+  return 0;
+}
+
+TEST_F(Serving, TwoClientsWatchOneDocument) {
+  Client editor = client("editor");
+  Client watcher = client("watcher");
+  EXPECT_NE(editor.welcome().client, watcher.welcome().client);
+  EXPECT_EQ(open(editor, folder_.sheet()).nodes, 625u);
+  EXPECT_TRUE(next<ipc::DocumentOpened>(watcher));
+  const auto before = watcher.snapshot();
+  ASSERT_TRUE(before) << before.error().text();
+
+  const auto edited = editor.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kPatience);
+  ASSERT_TRUE(edited) << edited.error().text();
+  EXPECT_EQ(std::get<ipc::Edited>(*edited).report.nodes_moved, 1u);
+  std::optional<ipc::GenerationPublished> published = next<ipc::GenerationPublished>(watcher);
+  while (published && published->made_by != "translate") published = next<ipc::GenerationPublished>(watcher);
+  const auto after = watcher.snapshot();
+  ASSERT_TRUE(after);
+  EXPECT_EQ(height(**after, 1313), height(**before, 1313) + 0.25);
+  EXPECT_TRUE((*after)->info().changed);
+  EXPECT_EQ((*after)->chunk_version(ipc::SnapshotArray::shell_nodes, 0), (*before)->chunk_version(ipc::SnapshotArray::shell_nodes, 0));
+  EXPECT_NE((*after)->chunk_version(ipc::SnapshotArray::positions, 0), (*before)->chunk_version(ipc::SnapshotArray::positions, 0));
+}
+
+TEST_F(Serving, ADragIsPreviewedAndCommitted) {
+  Client owner = client();
+  open(owner, folder_.sheet());
+  const auto answer = owner.call(ipc::BeginDrag{patch()}, kPatience);
+  ASSERT_TRUE(answer) << answer.error().text();
+  const auto& begun = std::get<ipc::DragBegun>(*answer);
+  const ipc::PreviewReader preview = owner.take_preview(begun).value();
+  ASSERT_EQ(preview.nodes().size(), begun.nodes);
+  ASSERT_GT(begun.nodes, 0u);
+
+  // Hundreds of steps without a pause: only the newest count, and the last one arrives.
+  for (std::uint64_t i = 1; i <= 500; ++i) ASSERT_TRUE(owner.send(ipc::DragStep{begun.drag, i, {0, 0, 0.001 * static_cast<double>(i)}, 0}));
+  const auto committed = owner.call(ipc::CommitDrag{begun.drag}, kPatience);
+  ASSERT_TRUE(committed) << committed.error().text();
+  ipc::PreviewFrame frame;
+  ASSERT_TRUE(preview.latest(frame));
+  EXPECT_EQ(frame.sequence, 500u);
+  const auto view = owner.snapshot().value();
+  for (std::size_t i = 0; i < preview.nodes().size(); ++i) EXPECT_EQ(view->position(preview.nodes()[i].value), frame.positions[i]);
+  EXPECT_TRUE(next<ipc::DragEnded>(owner)->committed);
+}
+
+TEST_F(Serving, OnlyTheOwnerStepsAndEndsADrag) {
+  Client owner = client("owner");
+  Client other = client("other");
+  open(owner, folder_.sheet());
+  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kPatience).value());
+  const ipc::PreviewReader preview = owner.take_preview(begun).value();
+  const auto second = other.call(ipc::BeginDrag{patch()}, kPatience);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().message, "another view is dragging; try again when it has let go");
+  EXPECT_FALSE(other.call(ipc::CommitDrag{begun.drag}, kPatience));
+  EXPECT_FALSE(other.call(ipc::CancelDrag{begun.drag}, kPatience));
+  ASSERT_TRUE(other.send(ipc::DragStep{begun.drag, 9, {0, 0, 1}, 0}));
+  ASSERT_TRUE(other.call(ipc::GetState{}, kPatience));
+  ASSERT_TRUE(owner.call(ipc::CancelDrag{begun.drag}, kPatience));
+  ipc::PreviewFrame frame;
+  EXPECT_FALSE(preview.latest(frame)) << "a stranger's step was taken";
+  EXPECT_FALSE(next<ipc::DragEnded>(other)->committed);
+  EXPECT_FALSE(std::get<ipc::State>(owner.call(ipc::GetState{}, kPatience).value()).changed);
+}
+
+TEST_F(Serving, EditsWaitUntilTheDragEnds) {
+  Client owner = client("owner");
+  Client other = client("other");
+  open(owner, folder_.sheet());
+  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kPatience).value());
+  const std::uint64_t edit = other.send(ipc::ApplyEdit{move_node(1313, 0.25)}).value();
+  ASSERT_TRUE(other.call(ipc::GetState{}, kPatience)) << "states are told during a drag";
+  ASSERT_TRUE(other.snapshot()) << "and snapshots given";
+  EXPECT_FALSE(other.next_reply()) << "the edit didn't wait";
+  ASSERT_TRUE(owner.send(ipc::DragStep{begun.drag, 1, {0, 0, 1}, 0}));
+  ASSERT_TRUE(owner.call(ipc::CommitDrag{begun.drag}, kPatience));
+  std::optional<Client::Reply> reply;
+  while (!(reply = other.next_reply())) ASSERT_TRUE(other.poll(100ms));
+  EXPECT_EQ(reply->request, edit);
+  EXPECT_TRUE(std::holds_alternative<ipc::Edited>(reply->answer));
+}
+
+TEST_F(Serving, TheOwnersDeathCancelsItsDrag) {
+  Client watcher = client("watcher");
+  open(watcher, folder_.sheet());
+  {
+    Client owner = client("owner");
+    const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kPatience).value());
+    ASSERT_TRUE(owner.send(ipc::DragStep{begun.drag, 1, {0, 0, 1}, 0}));
+  }
+  const auto ended = next<ipc::DragEnded>(watcher);
+  ASSERT_TRUE(ended);
+  EXPECT_FALSE(ended->committed);
+  EXPECT_EQ(ended->why, "its client has gone");
+  EXPECT_FALSE(std::get<ipc::State>(watcher.call(ipc::GetState{}, kPatience).value()).changed);
+  EXPECT_TRUE(watcher.call(ipc::BeginDrag{patch()}, kPatience)) << "others may drag again";
+}
+
+TEST_F(Serving, ADragThatMovesNothingLeavesNothing) {
+  Client owner = client();
+  const std::uint64_t generation = open(owner, folder_.sheet()).generation;
+  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kPatience).value());
+  const auto committed = owner.call(ipc::CommitDrag{begun.drag}, kPatience);
+  ASSERT_TRUE(committed);
+  EXPECT_EQ(std::get<ipc::Edited>(*committed).generation, generation);
+  EXPECT_FALSE(next<ipc::DragEnded>(owner)->committed);
+}
+
+TEST_F(Serving, RefusalsAreSentences) {
+  Client one = client();
+  EXPECT_EQ(one.call(ipc::ApplyEdit{move_node(1, 0.25)}, kPatience).error().message, "no document is open");
+  EXPECT_EQ(one.snapshot().error().message, "no document is open");
+  EXPECT_EQ(one.call(ipc::BeginDrag{patch()}, kPatience).error().message, "no document is open");
+  EXPECT_EQ(one.call(ipc::CommitDrag{7}, kPatience).error().message, "you hold no drag 7");
+  ipc::Open nothing;
+  nothing.path = (folder_.path() / "nothing.k").string();
+  EXPECT_EQ(one.call(nothing, kPatience).error().file, nothing.path);
+  open(one, folder_.sheet());
+  const auto refused = one.call(ipc::ApplyEdit{move_node(99, 0.25)}, kPatience);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().file, "expression");
+  ASSERT_TRUE(one.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kPatience));
+  EXPECT_FALSE(one.call(ipc::Close{false}, kPatience)) << "unsaved edits";
+  EXPECT_TRUE(one.call(ipc::Close{true}, kPatience));
+  EXPECT_TRUE(next<ipc::DocumentClosed>(one));
+}
+
+TEST_F(Serving, AClientMustGreetInTheSameProtocol) {
+  const fs::path path = ipc::model_socket_path(folder_.path() / "run");
+  const auto first_answer = [&](const std::string& line) -> std::string {
+    ipc::LineSocket socket(ipc::connect_to(path).value(), {});
+    socket.queue(line);
+    EXPECT_TRUE(socket.flush());
+    for (;;) {
+      if (const auto answer = socket.next_line()) return std::string(*answer);
+      pollfd ready{socket.descriptor(), POLLIN, 0};
+      if (::poll(&ready, 1, 60'000) <= 0 || !socket.receive()) return "nothing";
+    }
+  };
+  EXPECT_NE(first_answer(R"({"request": "hello", "protocol": 99, "program": "old thing"})").find("speaks protocol 1, old thing protocol 99"),
+            std::string::npos);
+  EXPECT_NE(first_answer(R"({"request": "get_state", "number": 4})").find("must be a hello"), std::string::npos);
+  EXPECT_NE(first_answer(R"({"request": "hello", "protocl": 1, "number": 5})").find("the nearest is \\\"protocol\\\""), std::string::npos);
+  EXPECT_NE(first_answer("rubbish").find("it isn't JSON"), std::string::npos);
+}
+
+TEST_F(Serving, HealthIsThereWithoutAsking) {
+  Client one = client();
+  const auto first = one.health();
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(first->open);
+  open(one, folder_.sheet());
+  for (int i = 0; i < 600 && !one.health()->open; ++i) std::this_thread::sleep_for(10ms);
+  EXPECT_TRUE(one.health()->open);
+  const std::int64_t heartbeat = one.health()->heartbeat_ns;
+  for (int i = 0; i < 600 && one.health()->heartbeat_ns == heartbeat; ++i) std::this_thread::sleep_for(10ms);
+  EXPECT_GT(one.health()->heartbeat_ns, heartbeat) << "the heart beats by itself";
+}
+
+TEST_F(Serving, ARestartIsSeenAndTheDocumentIsBack) {
+  const fs::path deck = folder_.sheet();
+  Client one = client();
+  open(one, deck);
+  ASSERT_TRUE(one.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kPatience));
+  const double moved = height(**one.snapshot(), 1313);
+  stop();
+  EXPECT_FALSE(one.call(ipc::GetState{}, kPatience));
+  start();
+  Client again = client();
+  ipc::State state;
+  for (int i = 0; i < 6000 && !state.open; ++i) {
+    state = std::get<ipc::State>(again.call(ipc::GetState{}, kPatience).value());
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(state.path, deck.string());
+  EXPECT_EQ(state.recovered_edits, 1u);
+  EXPECT_EQ(height(**again.snapshot(), 1313), moved);
+}
+
+TEST_F(Serving, OneStateFolderHasOneDaemon) {
+  const auto second = Daemon::start({folder_.path() / "run2", folder_.state()});
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().message.find("already runs here"), std::string::npos);
+  const auto third = Daemon::start({folder_.path() / "run", folder_.path() / "state2"});
+  ASSERT_FALSE(third);
+  EXPECT_NE(third.error().message.find("already runs here"), std::string::npos);
+}
+
+TEST_F(Serving, SnapshotsOfAClientThatDiesAreReturned) {
+  Client editor = client("editor");
+  open(editor, folder_.sheet());
+  for (int i = 0; i < 20; ++i) {
+    Client viewer = client("viewer");
+    for (int k = 0; k < 20; ++k) {
+      ASSERT_TRUE(editor.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kPatience));
+      const auto view = viewer.snapshot();
+      ASSERT_TRUE(view) << view.error().text();
+    }
+  }
+  // The segments' number tells whether memory was used again: 400 generations would need dozens.
+  const auto last = editor.call(ipc::GetSnapshot{}, kPatience);
+  EXPECT_LE(std::get<ipc::Snapshot>(*last).segments.size(), 12u);
+}
+
+}  // namespace
+}  // namespace prismesh::modeld

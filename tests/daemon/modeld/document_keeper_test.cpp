@@ -1,0 +1,306 @@
+#include <csignal>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "daemon/modeld/document_keeper.h"
+#include "daemon/modeld/save_intent.h"
+#include "folder.h"
+
+namespace prismesh::modeld {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace mesh::document;
+using test::Folder;
+
+Edit move_node(std::int64_t id, double by) {
+  Translate translate;
+  translate.by = {0, 0, by};
+  translate.shaping.on = std::to_string(id);
+  return translate;
+}
+
+double height(const DocumentKeeper& keeper, std::int64_t id) {
+  const mesh::Model& model = keeper.document().current().model;
+  return model.position(model.find_node(id)).z();
+}
+
+class Keeping : public ::testing::Test {
+ protected:
+  DocumentKeeper keeper() const { return DocumentKeeper(StateFolder(folder_.state())); }
+  static ipc::Open request(const fs::path& deck) {
+    ipc::Open open;
+    open.path = deck.string();
+    return open;
+  }
+  std::vector<std::string> state_files(const std::string& ending) const {
+    std::vector<std::string> names;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_.state()))
+      if (entry.path().string().find(ending) != std::string::npos) names.push_back(entry.path().filename().string());
+    return names;
+  }
+  Folder folder_;
+};
+
+TEST_F(Keeping, ARestartBringsEveryEditBack) {
+  const fs::path deck = folder_.sheet();
+  double expected = 0;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    expected = height(first, 1313) + 0.5;
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_node(1001, 3)));
+    ASSERT_TRUE(first.edit(Undo{}));
+  }  // as if killed: nothing was closed
+  DocumentKeeper second = keeper();
+  const Result<bool> again = second.reopen({});
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_TRUE(*again);
+  EXPECT_EQ(height(second, 1313), expected);
+  EXPECT_EQ(second.state().recovered_edits, 4u);
+  EXPECT_TRUE(second.changed());
+  EXPECT_TRUE(second.state().can_redo);
+  ASSERT_TRUE(second.edit(Undo{}));
+  EXPECT_EQ(height(second, 1313), expected - 0.25);
+}
+
+TEST_F(Keeping, UndoReachesBackBeyondASaveInPlace) {
+  const fs::path deck = folder_.sheet();
+  const std::string original = test::whole_file(deck);
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  const double start = height(first, 1313);
+  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  const Result<ipc::Saved> saved = first.save(std::nullopt);
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(saved->lines_changed, 1u);
+  EXPECT_FALSE(first.changed());
+  ASSERT_TRUE(first.edit(Undo{}));
+  EXPECT_EQ(height(first, 1313), start);
+  EXPECT_TRUE(first.changed());
+  const Result<ipc::Saved> again = first.save(std::nullopt);
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(test::whole_file(deck).size(), original.size());
+  EXPECT_TRUE(test::compare_decks(original, test::whole_file(deck)).other_changes.empty());
+}
+
+TEST_F(Keeping, WhatWasUndoneBeyondASaveSurvivesARestart) {
+  const fs::path deck = folder_.sheet();
+  double start = 0;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    start = height(first, 1313);
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.save(std::nullopt));
+    ASSERT_TRUE(first.edit(Undo{}));
+    ASSERT_TRUE(first.edit(move_node(1314, 1)));
+    ASSERT_TRUE(first.edit(Undo{}));
+  }
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.reopen({}));
+  EXPECT_EQ(height(second, 1313), start);
+  EXPECT_TRUE(second.changed()) << "the deck on disk has the edit";
+}
+
+TEST_F(Keeping, SelectionAndHiddenPartsSurviveASaveAndARestart) {
+  const fs::path deck = folder_.sheet();
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    Select select;
+    select.expr = "1001-1010";
+    ASSERT_TRUE(first.edit(select));
+    SetParts hide;
+    hide.on = "1";
+    const auto hidden = first.edit(hide);
+    ASSERT_TRUE(hidden) << hidden.error().text();
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.save(std::nullopt));
+  }
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.reopen({}));
+  EXPECT_EQ(second.state().selected_nodes, 10u);
+  EXPECT_TRUE(second.document().current().parts->at(0).hidden);
+  EXPECT_FALSE(second.changed());
+}
+
+TEST_F(Keeping, ACrashBetweenSaveAndNewJournalLosesNothingAndAppliesNothingTwice) {
+  const fs::path deck = folder_.sheet();
+  double expected = 0;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    expected = height(first, 1313);
+    // What save_in_place does up to the point where the deck is replaced.
+    const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
+    ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
+    ASSERT_TRUE(mesh::document::save(first.document(), deck));
+  }
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.reopen({}));
+  EXPECT_NEAR(height(second, 1313), expected, 1e-9);
+  EXPECT_FALSE(second.changed());
+  EXPECT_EQ(second.state().recovered_edits, 0u);
+  EXPECT_EQ(state_files(".journal.saved.").size(), 1u);
+  EXPECT_TRUE(state_files(".saving").empty());
+  for (const auto& warning : second.state().warnings) EXPECT_NE(warning.kind, "deck-changed");
+}
+
+TEST_F(Keeping, ACrashBeforeTheSaveBringsTheEditsBackFromTheJournal) {
+  const fs::path deck = folder_.sheet();
+  double expected = 0;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    expected = height(first, 1313);
+    const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
+    ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
+  }
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.reopen({}));
+  EXPECT_EQ(height(second, 1313), expected);
+  EXPECT_EQ(second.state().recovered_edits, 1u);
+  EXPECT_TRUE(state_files(".saving").empty());
+}
+
+TEST_F(Keeping, ASaveCutOffBetweenTwoFilesIsFinished) {
+  const fs::path deck = folder_.two_files();
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    ASSERT_TRUE(first.edit(move_node(2, 0.25)));
+    ASSERT_TRUE(first.edit(move_node(5, 0.5)));
+    const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
+    ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
+    ASSERT_TRUE(first.save((folder_.path() / "whole/main.k").string()));
+    fs::copy_file(folder_.path() / "whole/rest.k", folder_.path() / "rest.k", fs::copy_options::overwrite_existing);
+  }
+  DocumentKeeper second = keeper();
+  const Result<bool> again = second.reopen({});
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(height(second, 2), 0.25);
+  EXPECT_EQ(height(second, 5), 0.5);
+  EXPECT_EQ(test::whole_file(deck), test::whole_file(folder_.path() / "whole/main.k"));
+  EXPECT_EQ(test::whole_file(folder_.path() / "rest.k"), test::whole_file(folder_.path() / "whole/rest.k"));
+  EXPECT_EQ(second.state().warnings.back().kind, "save-finished");
+}
+
+TEST_F(Keeping, ADeckThatSomethingElseChangedKeepsItsOldJournalAndSaysSo) {
+  const fs::path deck = folder_.sheet();
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  }
+  std::ofstream(deck, std::ios::app) << "$ changed by hand\n";
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.open(request(deck), {}));
+  EXPECT_FALSE(second.changed());
+  ASSERT_FALSE(second.state().warnings.empty());
+  EXPECT_EQ(second.state().warnings.back().kind, "deck-changed");
+  EXPECT_EQ(state_files(".journal").size(), 2u) << "the old journal is kept";
+}
+
+TEST_F(Keeping, SavingInPlaceIsRefusedWhenTheDeckChangedOnDisk) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  std::ofstream(deck, std::ios::app) << "$ changed by hand\n";
+  const std::string by_hand = test::whole_file(deck);
+  const Result<ipc::Saved> saved = first.save(std::nullopt);
+  ASSERT_FALSE(saved);
+  EXPECT_EQ(saved.error().file, deck.string());
+  EXPECT_EQ(test::whole_file(deck), by_hand);
+  EXPECT_TRUE(first.changed());
+  EXPECT_TRUE(first.save((folder_.path() / "elsewhere.k").string())) << "elsewhere it can be saved";
+  EXPECT_TRUE(first.edit(move_node(1313, 0.25))) << "and edited";
+}
+
+TEST_F(Keeping, UnsavedEditsAreNotGivenUpByAccident) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  EXPECT_FALSE(first.close(false));
+  EXPECT_FALSE(first.open(request(folder_.sheet("other.k")), {}));
+  EXPECT_TRUE(first.open(request(deck), {})) << "it is open already";
+  EXPECT_TRUE(first.changed());
+  EXPECT_TRUE(first.close(true));
+  EXPECT_EQ(state_files(".journal.discarded.").size(), 1u);
+  ASSERT_TRUE(first.open(request(deck), {}));
+  EXPECT_FALSE(first.changed());
+  EXPECT_EQ(first.state().recovered_edits, 0u);
+}
+
+TEST_F(Keeping, AnEditThatCantBeJournalledIsNotDone) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  const double before = height(first, 1313);
+
+  // The disk is full, as far as this process can tell.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  ::getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit tight{600, limit.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &tight);
+  const Result<EditReport> edited = first.edit(move_node(1313, 0.25));
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  ASSERT_FALSE(edited);
+  EXPECT_NE(edited.error().file.find(".journal"), std::string::npos) << edited.error().text();
+  EXPECT_EQ(height(first, 1313), before);
+
+  EXPECT_TRUE(first.edit(move_node(1313, 0.25))) << "there is room again";
+  EXPECT_EQ(height(first, 1313), before + 0.25);
+}
+
+TEST_F(Keeping, ADeckThatEndsTheDaemonEveryTimeIsLeft) {
+  const fs::path deck = folder_.sheet();
+  const StateFolder state(folder_.state());
+  ASSERT_TRUE(state.write_session({request(deck), 3}));
+  DocumentKeeper first = keeper();
+  const Result<bool> again = first.reopen({});
+  ASSERT_FALSE(again);
+  EXPECT_NE(again.error().message.find("ended the daemon 3 times"), std::string::npos);
+  EXPECT_TRUE(first.open(request(deck), {}));
+  EXPECT_EQ((*state.read_session())->attempts, 0u);
+}
+
+TEST_F(Keeping, ADamagedJournalIsNotPassedOver) {
+  const fs::path deck = folder_.sheet();
+  fs::path journal;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
+  }
+  std::string text = test::whole_file(journal);
+  text[text.find("translate")] = 'T';
+  std::ofstream(journal, std::ios::binary) << text;
+  DocumentKeeper second = keeper();
+  const Result<bool> again = second.reopen({});
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().file, journal.string());
+  EXPECT_NE(again.error().message.find("move that file away"), std::string::npos);
+}
+
+TEST_F(Keeping, NothingOpenIsSaid) {
+  DocumentKeeper first = keeper();
+  EXPECT_EQ(first.edit(Undo{}).error().message, "no document is open");
+  EXPECT_EQ(first.save(std::nullopt).error().message, "no document is open");
+  EXPECT_FALSE(*first.reopen({}));
+  EXPECT_FALSE(first.open(request("relative.k"), {}));
+}
+
+}  // namespace
+}  // namespace prismesh::modeld
