@@ -66,7 +66,7 @@ Errors compare(const Model& model, NodeIndex source, double radius, const std::f
     ++count;
   }
   errors.mean /= static_cast<double>(count);
-  EXPECT_GT(count, 100u);
+  EXPECT_GT(count, 10u);
   return errors;
 }
 
@@ -321,32 +321,43 @@ TEST(Geodesic, goes_around_a_square_hole) {
   EXPECT_LE(errors.max, 0.005);
 }
 
-TEST(Geodesic, goes_around_a_round_hole) {
-  constexpr int kAround = 48;
-  const auto place = [](int ring, int k) {
-    const double angle = 2 * kPiValue * (k + (ring == 0 ? 0.0 : 0.25 * noise(ring, k % kAround, 3))) / kAround;
-    const double r = 8 * std::pow(1 + 2 * kPiValue / kAround, ring);
+/// Errors around a hole of `around` nodes in a plate of rings of squares, from a node of a ring.
+Errors errors_around_hole(int around, int rings, int source_ring) {
+  const auto place = [&](int ring, int k) {
+    const double angle = 2 * kPiValue * (k + (ring == 0 ? 0.0 : 0.25 * noise(ring, k % around, 3))) / around;
+    const double r = 8 * std::pow(1 + 2 * kPiValue / around, ring);
     return Vec3(r * std::cos(angle), r * std::sin(angle), 0);
   };
   std::vector<test::NodeSpec> nodes;
   std::vector<test::ShellSpec> shells;
-  for (int ring = 0; ring <= 12; ++ring)
-    for (int k = 0; k < kAround; ++k) nodes.push_back({1 + k + ring * kAround, place(ring, k)});
-  for (int ring = 0; ring < 12; ++ring)
-    for (int k = 0; k < kAround; ++k) {
-      const int a = 1 + k + ring * kAround;
-      const int b = 1 + (k + 1) % kAround + ring * kAround;
-      shells.push_back({a, 1, {a, b, b + kAround, a + kAround}});
+  for (int ring = 0; ring <= rings; ++ring)
+    for (int k = 0; k < around; ++k) nodes.push_back({1 + k + ring * around, place(ring, k)});
+  for (int ring = 0; ring < rings; ++ring)
+    for (int k = 0; k < around; ++k) {
+      const int a = 1 + k + ring * around;
+      const int b = 1 + (k + 1) % around + ring * around;
+      shells.push_back({a, 1, {a, b, b + around, a + around}});
     }
   const Model model = make_model(nodes, shells);
   std::vector<Point> hole;
-  for (int k = 0; k < kAround; ++k) hole.push_back(place(0, k).head<2>());
-  for (const int ring : {0, 5}) {
-    const NodeIndex source(static_cast<std::size_t>(ring * kAround));
-    const Errors errors = compare(
-        model, source, 30, [&](NodeIndex n) { return around_hole(hole, model.position(source).head<2>(), model.position(n).head<2>()); });
-    expect_within_aim(errors);
-  }
+  for (int k = 0; k < around; ++k) hole.push_back(place(0, k).head<2>());
+  const NodeIndex source(static_cast<std::size_t>(source_ring * around));
+  return compare(model, source, 40,
+                 [&](NodeIndex n) { return around_hole(hole, model.position(source).head<2>(), model.position(n).head<2>()); });
+}
+
+TEST(Geodesic, goes_around_a_round_hole) {
+  for (const int ring : {0, 2, 5}) expect_within_aim(errors_around_hole(48, 12, ring));
+}
+
+TEST(Geodesic, goes_around_coarse_holes) {
+  // half as exact as elsewhere: a ring of a few shells holds the whole turn
+  for (const int around : {8, 12, 16})
+    for (const int ring : {0, 1, 2}) {
+      const Errors errors = errors_around_hole(around, 8, ring);
+      EXPECT_LE(errors.mean, 0.006) << around << " nodes, ring " << ring;
+      EXPECT_LE(errors.max, 0.02) << around << " nodes, ring " << ring;
+    }
 }
 
 std::vector<double> distances(const Model& model, std::vector<std::uint32_t> sources, double radius = kUnreached) {
@@ -390,7 +401,7 @@ TEST(Geodesic, is_the_same_there_and_back) {
   std::vector<std::vector<double>> from;
   for (const std::uint32_t source : some) from.push_back(distances(model, {source}));
   for (std::size_t a = 0; a < some.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b) EXPECT_NEAR(from[a][some[b]] / from[b][some[a]], 1, 0.01);
+    for (std::size_t b = 0; b < a; ++b) EXPECT_NEAR(from[a][some[b]] / from[b][some[a]], 1, 0.003);
 }
 
 TEST(Geodesic, does_not_change_under_rigid_motion_and_scales) {
