@@ -374,9 +374,12 @@ void Editor::panel_action(const panels::PanelAction& action) {
 // --- what is shown ---
 
 std::optional<render::Handle> Editor::shown_handle() const {
-  if (pull_) return render::Handle{pull_->foot(pulled_), pull_->direction(), true};
+  if (pull_) {
+    const bool ring = pull_->handle() == tools::Under::move_handle;
+    return render::Handle{pull_->foot(pulled_), pull_->direction(), ring ? render::Handle::Use::ring : render::Handle::Use::arrow};
+  }
   if (!anchor_ || !link_.connected() || link_.drag() != nullptr) return std::nullopt;
-  return render::Handle{anchor_->at, tools::arrow_direction(aim(), *anchor_), false};
+  return render::Handle{anchor_->at, tools::arrow_direction(aim(), *anchor_), render::Handle::Use::idle};
 }
 
 render::Picture Editor::picture() const {

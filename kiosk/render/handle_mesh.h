@@ -1,4 +1,4 @@
-// The arrow of the handle as triangles: shaft and head around an axis of length 1, radii in pixels.
+// The handle as triangles around an axis of length 1, radii in pixels: its arrow, and the ring about its foot.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@ struct HandleVertex {
 };
 
 /// Triangles, counterclockwise seen from outside.
-std::vector<HandleVertex> handle_mesh();
+std::vector<HandleVertex> arrow_mesh();
+std::vector<HandleVertex> ring_mesh();
 
 }  // namespace prismesh::kiosk::render

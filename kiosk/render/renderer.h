@@ -26,11 +26,12 @@ enum class ColourMode : std::uint8_t { parts, quality };
 inline constexpr std::array<std::string_view, 2> kColourModeNames{"parts", "quality"};
 std::optional<ColourMode> colour_mode_from(std::string_view name);
 
-/// The arrow that is dragged: white, green while active.
+/// What is dragged: an arrow, and a ring about its foot in the screen's plane. White; the part in use is green, the other goes.
 struct Handle {
+  enum class Use : std::uint8_t { idle, arrow, ring };
   Vec3 at = Vec3::Zero();  ///< deck coordinates
   Vec3 direction = Vec3::UnitZ();
-  bool active = false;
+  Use use = Use::idle;
 };
 
 /// One eye's image while it is being drawn: its framebuffer is bound, its viewport set, blending and depth test off.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kiosk/render/handle_mesh.h"
 #include "kiosk/render/palette.h"
 
 namespace prismesh::kiosk::render {
@@ -16,9 +15,10 @@ constexpr float kCreaseHalfWidth = 0.7F;
 constexpr float kLineElementHalfWidth = 0.9F;
 constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels short
 constexpr float kPreviewHalfWidth = 0.65F;
-constexpr float kNodeRadius = 4.5F;
+constexpr float kNodeRadius = 4.2F;
 constexpr float kCrowdedNodeRadius = 2.2F;
-constexpr std::size_t kCrowdedNodes = 20000;  ///< from here on nodes are drawn smaller and without their rim
+constexpr std::size_t kCrowdedNodes =
+    20000;  ///< from here on nodes are drawn smaller and without their rim, as under a preview's wireframe
 constexpr float kGlyphRadius = 8.0F;
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: what lifts lines off the surface they lie on
 constexpr float kHiddenLight = 0.80F;    ///< selected nodes behind a surface: lighter than any part, darker than white
@@ -82,14 +82,12 @@ bool may_be_seen(const stereo::Box& box, const Eigen::Matrix4d& clip_from_deck) 
 }
 
 ScenePass::ScenePass(const Shaders& shaders)
-    : shaders_(shaders),
-      no_attributes_(gl::VertexArray::make()),
-      handle_array_(gl::VertexArray::make()),
-      handle_buffer_(gl::Buffer::make()) {
-  const std::vector<HandleVertex> mesh = handle_mesh();
-  handle_vertices_ = static_cast<GLsizei>(mesh.size());
-  glBindVertexArray(handle_array_.get());
-  glBindBuffer(GL_ARRAY_BUFFER, handle_buffer_.get());
+    : shaders_(shaders), no_attributes_(gl::VertexArray::make()), arrow_(upload(arrow_mesh())), ring_(upload(ring_mesh())) {}
+
+ScenePass::Solid ScenePass::upload(const std::vector<HandleVertex>& mesh) {
+  Solid solid{gl::VertexArray::make(), gl::Buffer::make(), static_cast<GLsizei>(mesh.size())};
+  glBindVertexArray(solid.array.get());
+  glBindBuffer(GL_ARRAY_BUFFER, solid.buffer.get());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.size() * sizeof(HandleVertex)), mesh.data(), GL_STATIC_DRAW);
   for (GLuint attribute = 0; attribute < 3; ++attribute) {
     glEnableVertexAttribArray(attribute);
@@ -97,6 +95,7 @@ ScenePass::ScenePass(const Shaders& shaders)
                           reinterpret_cast<const void*>(attribute * 2 * sizeof(float)));
   }
   glBindVertexArray(0);
+  return solid;
 }
 
 void ScenePass::draw(const Picture& picture, ModelLayer& model, const EyeView& eye, std::size_t glyph_cap) const {
@@ -239,7 +238,7 @@ void ScenePass::draw_preview(const ModelLayer& model, const Frame& frame) const 
 void ScenePass::draw_selected(const ModelLayer& model, const Frame& frame) const {
   const Instances& nodes = model.selected();
   if (nodes.count == 0) return;
-  const bool crowded = nodes.count > kCrowdedNodes;
+  const bool crowded = nodes.count > kCrowdedNodes || model.previewing();
   frame.set(shaders_.nodes);
   shaders_.nodes.set("radius_pixels", crowded ? kCrowdedNodeRadius : kNodeRadius);
   glBindVertexArray(nodes.array.get());
@@ -286,35 +285,42 @@ void ScenePass::draw_handle(const Handle& handle, const Frame& frame) const {
   const double pixel = frame.eye.mm_per_pixel * std::max(eye_z - foot.z(), 1.0) / std::max(eye_z, 1.0);  // mm at the foot's depth
   const double length = stereo::kHandleLengthPixels * pixel / frame.view.mm_per_unit;
   const Vec3 axis = stereo::to_screen(frame.view, handle.at + handle.direction.normalized() * length) - foot;
-  if (!(axis.norm() > 0)) return;
-  const Vec3 helper = std::abs(axis.normalized().z()) < 0.9 ? Vec3(Vec3::UnitZ()) : Vec3(Vec3::UnitX());
-  const Vec3 side_a = helper.cross(axis).normalized() * pixel, side_b = axis.normalized().cross(side_a);
-
-  const gl::Program& program = shaders_.handle;
-  program.use();
-  program.set("clip_from_screen", Eigen::Matrix4f(frame.eye.clip_from_screen.cast<float>()));
-  program.set("foot", Eigen::Vector3f(foot.cast<float>()));
-  program.set("axis", Eigen::Vector3f(axis.cast<float>()));
-  program.set("side_a", Eigen::Vector3f(side_a.cast<float>()));
-  program.set("side_b", Eigen::Vector3f(side_b.cast<float>()));
-  glBindVertexArray(handle_array_.get());
-  const Colour& colour = handle.active ? kActiveColour : kSelectedColour;
-  const auto draw = [&](float alpha) {
-    program.set("ink", colour.x(), colour.y(), colour.z(), alpha);
-    glDrawArrays(GL_TRIANGLES, 0, handle_vertices_);
-  };
+  shaders_.handle.use();
+  shaders_.handle.set("clip_from_screen", Eigen::Matrix4f(frame.eye.clip_from_screen.cast<float>()));
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   glFrontFace(GL_CCW);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  // A few pixels before the foot, so that the surface the handle stands on doesn't swallow half of the ring.
+  constexpr double kRingBefore = 6, kRingThickness = 2;
+  if (handle.use != Handle::Use::arrow)
+    draw_solid(ring_, foot + Vec3(0, 0, kRingBefore * pixel), Vec3(0, 0, kRingThickness * pixel), pixel, handle.use == Handle::Use::ring);
+  if (handle.use != Handle::Use::ring && axis.norm() > 0) draw_solid(arrow_, foot, axis, pixel, handle.use == Handle::Use::arrow);
+  glDisable(GL_CULL_FACE);
+}
+
+void ScenePass::draw_solid(const Solid& solid, const Vec3& foot, const Vec3& axis, double pixel, bool active) const {
+  const Vec3 along = axis.normalized();
+  const Vec3 helper = std::abs(along.z()) < 0.9 ? Vec3(Vec3::UnitZ()) : Vec3(Vec3::UnitX());
+  const Vec3 side_a = helper.cross(along).normalized() * pixel, side_b = along.cross(side_a);
+  const gl::Program& program = shaders_.handle;
+  program.set("foot", Eigen::Vector3f(foot.cast<float>()));
+  program.set("axis", Eigen::Vector3f(axis.cast<float>()));
+  program.set("side_a", Eigen::Vector3f(side_a.cast<float>()));
+  program.set("side_b", Eigen::Vector3f(side_b.cast<float>()));
+  glBindVertexArray(solid.array.get());
+  const Colour& colour = active ? kActiveColour : kSelectedColour;
+  const auto draw = [&](float alpha) {
+    program.set("ink", colour.x(), colour.y(), colour.z(), alpha);
+    glDrawArrays(GL_TRIANGLES, 0, solid.vertices);
+  };
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_GREATER);  // behind a surface it stays visible, but says that it is behind
   draw(0.35F);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LEQUAL);
   draw(1.0F);
-  glDisable(GL_CULL_FACE);
 }
 
 void ScenePass::draw_flat(const Picture& picture, const EyeView& eye) const {

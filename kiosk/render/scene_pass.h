@@ -3,6 +3,7 @@
 
 #include "kiosk/render/eye_images.h"
 #include "kiosk/render/gl.h"
+#include "kiosk/render/handle_mesh.h"
 #include "kiosk/render/model_layer.h"
 #include "kiosk/render/renderer.h"
 #include "kiosk/render/shaders.h"
@@ -45,9 +46,18 @@ class ScenePass {
 
   const Shaders& shaders_;
   gl::VertexArray no_attributes_;
-  gl::VertexArray handle_array_;
-  gl::Buffer handle_buffer_;
-  GLsizei handle_vertices_ = 0;
+  /// A mesh of the handle.
+  struct Solid {
+    gl::VertexArray array;
+    gl::Buffer buffer;
+    GLsizei vertices = 0;
+  };
+  static Solid upload(const std::vector<HandleVertex>& mesh);
+  /// Draws one with its axis; sides are a pixel long.
+  void draw_solid(const Solid& solid, const Vec3& foot, const Vec3& axis, double pixel, bool active) const;
+
+  Solid arrow_;
+  Solid ring_;
 };
 
 /// Whether a box may be seen: false only if all its corners are outside one side of the picture.

@@ -204,12 +204,12 @@ TEST_F(Scene, TheActiveHandleIsGreen) {
   Picture picture = fitted("mono", "front", kWidth, kHeight);
   const Vec3 foot(0, -30, 20);
   const Vec3 down = -Vec3::UnitZ();
-  picture.handle = Handle{foot, down, true};
+  picture.handle = Handle{foot, down, Handle::Use::arrow};
   const Eigen::Vector2d middle =
       pixel_of(picture, stereo::handle_tip(aim_of(picture, kWidth, kHeight), foot, down)) - Eigen::Vector2d(0, 12);
   const Image image = draw(picture, kWidth, kHeight);
   EXPECT_GT(at(image, middle)[1], at(image, middle)[0] * 3 / 2);
-  picture.handle->active = false;
+  picture.handle->use = Handle::Use::idle;
   const Image idle = draw(picture, kWidth, kHeight);
   EXPECT_NEAR(at(idle, middle)[1], at(idle, middle)[0], 3);
   picture.handle->direction = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

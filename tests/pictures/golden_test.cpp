@@ -115,7 +115,7 @@ TEST_F(GoldenPicture, Lifting) {
   for (std::size_t i = 0; i < shells.size(); i += 7) frame.states[i].warn = frame.states[i].fail = 1;
   renderer_->begin_preview(nodes, shells);
   ASSERT_TRUE(renderer_->update_preview(frame));
-  picture.handle = Handle{frame.positions[frame.positions.size() / 2], mesh::Vec3::UnitZ(), true};
+  picture.handle = Handle{frame.positions[frame.positions.size() / 2], mesh::Vec3::UnitZ(), Handle::Use::arrow};
   picture.rubber_band = PixelRect{420, 40, 600, 130};
   compare("lifting", draw(picture, kWidth, kHeight));
 }
