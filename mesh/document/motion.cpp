@@ -144,7 +144,8 @@ Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const
   Motion motion;
   motion.is_lift = lift != nullptr;
   motion.grab = weights->grab;
-  motion.unreached = weights->unreached;
+  // a constant falloff asks for no way along the surface: pieces apart move too
+  motion.unreached = shaping.weights.falloff.profile == shape::Profile::constant ? 0 : weights->unreached;
   motion.max_move = shaping.max_move;
   keep_moving(*weights, model, motion);
   if (const Result<void> free = refuse_held(generation, motion.nodes, document); !free) return fail(free.error());
