@@ -220,8 +220,9 @@ TEST_F(Serving, AClientMustGreetInTheSameProtocol) {
       if (::poll(&ready, 1, 60'000) <= 0 || !socket.receive()) return "nothing";
     }
   };
-  EXPECT_NE(first_answer(R"({"request": "hello", "protocol": 99, "program": "old thing"})").find("speaks protocol 1, old thing protocol 99"),
-            std::string::npos);
+  EXPECT_NE(
+      first_answer(R"({"request": "hello", "protocol": 99, "program": "old thing"})").find("speaks protocol 1, old thing protocol 99"),
+      std::string::npos);
   EXPECT_NE(first_answer(R"({"request": "get_state", "number": 4})").find("must be a hello"), std::string::npos);
   EXPECT_NE(first_answer(R"({"request": "hello", "protocl": 1, "number": 5})").find("the nearest is \\\"protocol\\\""), std::string::npos);
   EXPECT_NE(first_answer("rubbish").find("it isn't JSON"), std::string::npos);

@@ -115,7 +115,7 @@ TEST_F(Keeping, SelectionAndHiddenPartsSurviveASaveAndARestart) {
     select.expr = "1001-1010";
     ASSERT_TRUE(first.edit(select));
     SetParts hide;
-    hide.on = "1";
+    hide.on = "7";
     const auto hidden = first.edit(hide);
     ASSERT_TRUE(hidden) << hidden.error().text();
     ASSERT_TRUE(first.edit(move_node(1313, 0.25)));

@@ -1,0 +1,213 @@
+// modeld is killed at random moments while it edits and saves: no edit that it acknowledged may be lost, and at most the one under
+// way may have been done. PRISMESH_KILL_CYCLES raises the number of kills.
+#include <csignal>
+#include <cstdlib>
+#include <random>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "folder.h"
+#include "ipc/reconnecting_client.h"
+#include "tests/station/process.h"
+
+namespace prismesh::modeld {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using namespace mesh::document;
+using test::Folder;
+using test::Process;
+
+constexpr auto kPatience = 90s;
+constexpr std::int64_t kNodes = test::kSheetSide * test::kSheetSide;
+
+using Heights = std::vector<double>;
+
+/// What the document must look like: the heights of its nodes now and, to check an undo, before the last edit.
+struct Expected {
+  Heights now;
+  std::optional<Heights> before;  ///< nothing: what an undo gives isn't known (after a save, a restart may forget)
+};
+
+class Killing : public ::testing::Test {
+ protected:
+  Killing() : deck_(folder_.sheet()), client_(ipc::model_socket_path(folder_.path() / "run"), "kill test") {}
+
+  void start() {
+    daemon_ =
+        std::make_unique<Process>(std::vector<std::string>{std::string(PRISMESH_PROGRAMS) + "/prismesh-modeld", "--runtime-dir",
+                                                           (folder_.path() / "run").string(), "--state-dir", folder_.state().string()},
+                                  std::map<std::string, std::string>{});
+  }
+
+  /// Connects and waits until the document is open: by itself, or by hand if the daemon was killed while it opened it too often.
+  ipc::State wait_until_open() {
+    const auto until = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < until) {
+      const Result<ipc::Client*> client = client_.wait(5s);
+      if (!client) continue;
+      const auto answer = (*client)->call(ipc::GetState{}, kPatience);
+      if (!answer) {
+        client_.lost(answer.error());
+        continue;
+      }
+      const auto& state = std::get<ipc::State>(*answer);
+      if (state.open) return state;
+      if (!state.busy) {
+        ipc::Open open;
+        open.path = deck_.string();
+        (void)(*client)->call(open, kPatience);
+      }
+      std::this_thread::sleep_for(2ms);
+    }
+    ADD_FAILURE() << "the document didn't come back: " << daemon_->standard_error();
+    return {};
+  }
+
+  Heights heights() {
+    const auto view = client_.client()->snapshot();
+    if (!view) {
+      ADD_FAILURE() << view.error().text();
+      return {};
+    }
+    Heights all;
+    for (std::size_t n = 0; n < (*view)->node_count(); ++n) all.push_back((*view)->position(n).z());
+    return all;
+  }
+
+  /// Equal but for the digits that the deck's columns can't hold after a save.
+  static bool same(const Heights& a, const Heights& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (std::abs(a[i] - b[i]) > 1e-6) return false;
+    return true;
+  }
+
+  struct Step {
+    std::vector<ipc::Request> requests;  ///< all to be acknowledged
+    bool drag = false;
+    Expected after;
+  };
+
+  Step random_step(const Expected& expected) {
+    Step step;
+    const unsigned kind = random_() % 16;
+    if (kind == 0) {
+      step.requests.emplace_back(ipc::Save{});
+      step.after = {expected.now, std::nullopt};
+      return step;
+    }
+    if (kind < 3 && expected.before) {
+      step.requests.emplace_back(ipc::ApplyEdit{Undo{}});
+      step.after = {*expected.before, std::nullopt};
+      return step;
+    }
+    const std::int64_t node = static_cast<std::int64_t>(random_() % kNodes);
+    Translate translate;
+    translate.by = {0, 0, 0.25 * (1 + static_cast<double>(random_() % 8))};
+    translate.shaping.on = std::to_string(test::kFirstNode + node);
+    step.after = {expected.now, expected.now};
+    step.after.now[static_cast<std::size_t>(node)] += translate.by.z();
+    step.drag = kind < 6;
+    step.requests.emplace_back(step.drag ? ipc::Request(ipc::BeginDrag{translate}) : ipc::Request(ipc::ApplyEdit{translate}));
+    return step;
+  }
+
+  /// False: the daemon has gone before it acknowledged the step.
+  bool take(ipc::Client& client, const Step& step) {
+    const auto answer = client.call(step.requests.front(), kPatience);
+    if (!answer) {
+      if (answer.error().message.find("is gone") == std::string::npos) ADD_FAILURE() << answer.error().text();
+      return false;
+    }
+    if (!step.drag) return true;
+    const auto& begun = std::get<ipc::DragBegun>(*answer);
+    const auto& translate = std::get<Translate>(std::get<ipc::BeginDrag>(step.requests.front()).edit);
+    for (std::uint64_t i = 1; i <= 4; ++i)
+      if (!client.send(ipc::DragStep{begun.drag, i, {0, 0, translate.by.z() * static_cast<double>(i) / 4}, 0})) return false;
+    return client.call(ipc::CommitDrag{begun.drag}, kPatience).has_value();
+  }
+
+  Folder folder_;
+  fs::path deck_;
+  std::unique_ptr<Process> daemon_;
+  ipc::ReconnectingClient client_;
+  std::mt19937 random_{20040601};
+};
+
+int cycles() {
+  const char* wanted = std::getenv("PRISMESH_KILL_CYCLES");
+  return wanted != nullptr && std::atoi(wanted) > 0 ? std::atoi(wanted) : 60;
+}
+
+TEST_F(Killing, NoAcknowledgedEditIsLost) {
+  const std::string original = test::whole_file(deck_);
+  start();
+  wait_until_open();
+  Expected expected{heights(), std::nullopt};
+  std::size_t acknowledged = 0, done_unacknowledged = 0, lost_under_way = 0;
+  for (int cycle = 0; cycle < cycles() && !HasFailure(); ++cycle) {
+    const auto life = std::chrono::microseconds(random_() % (cycle % 4 == 0 ? 10'000 : 120'000));
+    std::thread killer([&] {
+      std::this_thread::sleep_for(life);
+      daemon_->kill(SIGKILL);
+    });
+    Step step;
+    for (;;) {
+      step = random_step(expected);
+      if (!take(*client_.client(), step)) break;
+      expected = step.after;
+      ++acknowledged;
+    }
+    killer.join();
+    client_.lost({"", 0, "killed"});
+    if (daemon_->wait_for_exit() != 128 + SIGKILL) ADD_FAILURE() << daemon_->standard_error();
+
+    start();
+    if (cycle % 10 == 9) {  // once more while it opens the deck again
+      std::this_thread::sleep_for(std::chrono::microseconds(random_() % 60'000));
+      daemon_->kill(SIGKILL);
+      daemon_->wait_for_exit();
+      start();
+    }
+    wait_until_open();
+    const Heights found = heights();
+    if (same(found, expected.now)) {
+      ++lost_under_way;
+    } else if (same(found, step.after.now)) {
+      ++done_unacknowledged;
+    } else {
+      std::size_t wrong = 0;
+      for (std::size_t i = 0; i < found.size() && i < expected.now.size(); ++i) wrong += std::abs(found[i] - expected.now[i]) > 1e-6;
+      ADD_FAILURE() << "cycle " << cycle << ": after " << acknowledged << " acknowledged steps " << wrong << " nodes are elsewhere";
+    }
+    expected = {found, std::nullopt};
+  }
+  std::printf("%d kills, %zu steps acknowledged and kept, %zu done without an answer, %zu under way left out\n", cycles(), acknowledged,
+              done_unacknowledged, lost_under_way);
+  EXPECT_GT(acknowledged, static_cast<std::size_t>(cycles())) << "too few edits to mean anything";
+
+  // The deck then differs in the moved nodes' lines alone.
+  const auto saved = client_.client()->call(ipc::Save{}, kPatience);
+  ASSERT_TRUE(saved) << saved.error().text();
+  const std::string edited = test::whole_file(deck_);
+  const auto before = test::nodes_of_deck(original);
+  const auto after = test::nodes_of_deck(edited);
+  std::vector<std::int64_t> moved;
+  for (const auto& [id, point] : after) {
+    const auto index = static_cast<std::size_t>(id - test::kFirstNode);
+    EXPECT_NEAR(point[2], expected.now[index], 1e-6) << "node " << id;
+    if (point != before.at(id)) moved.push_back(id);
+  }
+  const test::DeckDifference difference = test::compare_decks(original, edited);
+  EXPECT_TRUE(difference.same_line_count);
+  EXPECT_TRUE(difference.other_changes.empty());
+  EXPECT_EQ(difference.nodes, moved);
+  daemon_->kill(SIGTERM);
+  EXPECT_EQ(daemon_->wait_for_exit(), 0) << daemon_->standard_error();
+}
+
+}  // namespace
+}  // namespace prismesh::modeld
