@@ -86,7 +86,7 @@ namespace {
 
 Result<Prepared> prepare_step(const Document& document, bool back) {
   if (back ? !document.can_undo() : !document.can_redo()) {
-    const bool dropped = back && document.generations.front() != document.opened;
+    const bool dropped = back && document.generations.front()->made_by != "open";  // not `opened`: saving in place replaces that
     return fail("", std::string("there is nothing to ") + (back ? "undo" : "redo") +
                         (dropped ? " any more: the oldest steps went to keep the history within its size" : ""));
   }
