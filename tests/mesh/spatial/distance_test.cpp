@@ -11,8 +11,6 @@
 namespace prismesh::mesh::spatial {
 namespace {
 
-using Triangle = Vec3[3];
-
 NodeSet nodes(std::initializer_list<std::size_t> indices) {
   NodeSet set;
   for (const std::size_t i : indices) set.push_back(NodeIndex(i));
@@ -32,14 +30,14 @@ struct Pair {
 
 TEST(Distance, pairs_of_triangles) {
   const Pair pairs[] = {
-      {"one above the other", {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 2}, {2, 1, 2}, {1, 2, 2}}, 2},
-      {"corner over the inside", {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 3}, {1, 1, 9}, {2, 1, 9}}, 3},
-      {"edge across edge", {{-1, 0, 0}, {1, 0, 0}, {0, 0, -5}}, {{0, -1, 1}, {0, 1, 1}, {0, 0, 5}}, 1},
-      {"crossing", {{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}, {{0, 0, -1}, {0, 0, 1}, {5, 5, 5}}, 0},
-      {"corner to corner", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{4, 4, 0}, {4, 5, 0}, {5, 4, 0}}, std::sqrt(2 * 3.5 * 3.5)},
-      {"parallel edges", {{0, 0, 0}, {2, 0, 0}, {1, -1, 0}}, {{1, 3, 0}, {4, 3, 0}, {2, 5, 0}}, 3},
-      {"point over a triangle", {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, 1},
-      {"two points", {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{3, 4, 0}, {3, 4, 0}, {3, 4, 0}}, 5},
+      {"one above the other", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}, {{{1, 1, 2}, {2, 1, 2}, {1, 2, 2}}}, 2},
+      {"corner over the inside", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}, {{{1, 1, 3}, {1, 1, 9}, {2, 1, 9}}}, 3},
+      {"edge across edge", {{{-1, 0, 0}, {1, 0, 0}, {0, 0, -5}}}, {{{0, -1, 1}, {0, 1, 1}, {0, 0, 5}}}, 1},
+      {"crossing", {{{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}}, {{{0, 0, -1}, {0, 0, 1}, {5, 5, 5}}}, 0},
+      {"corner to corner", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, {{{4, 4, 0}, {4, 5, 0}, {5, 4, 0}}}, std::sqrt(2 * 3.5 * 3.5)},
+      {"parallel edges", {{{0, 0, 0}, {2, 0, 0}, {1, -1, 0}}}, {{{1, 3, 0}, {4, 3, 0}, {2, 5, 0}}}, 3},
+      {"point over a triangle", {{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}, {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}, 1},
+      {"two points", {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, {{{3, 4, 0}, {3, 4, 0}, {3, 4, 0}}}, 5},
   };
   for (const Pair& pair : pairs) {
     for (const bool swap : {false, true}) {
