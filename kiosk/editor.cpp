@@ -80,7 +80,6 @@ void Editor::take_model() {
     last_clicked_.reset();
     return;
   }
-  view_.bounds = stereo::sphere_around(renderer_.bounds());
   anchor_ = shown_->info().selected_nodes > 0 ? tools::anchor_of_selection(*renderer_.model(), last_clicked_) : std::nullopt;
 }
 
