@@ -8,6 +8,7 @@ namespace {
 /// Enough to get past any header of comments; a keyword of its own decides earlier.
 constexpr std::size_t kLookedAt = std::size_t{256} << 10;
 constexpr std::size_t kLongestLine = 200;
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
 
@@ -129,6 +130,7 @@ Detected detect_format(std::string_view text) {
   if (text.empty()) return {{}, "an empty file"};
   for (const Signature& signature : kSignatures)
     if (starts_with(text, signature.bytes)) return {{}, std::string(signature.meaning)};
+  if (starts_with(text, kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   text = text.substr(0, kLookedAt);
   const Votes votes = count_votes(text);
   const int most = std::max({votes.ls_dyna, votes.nastran, votes.radioss, votes.abaqus});

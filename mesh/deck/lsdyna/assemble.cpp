@@ -312,6 +312,7 @@ class Assembler {
     for (int c = 0; c < kElementClassCount; ++c) {
       if (c == static_cast<int>(ElementClass::shell)) continue;
       auto block = std::make_shared<ElementBlock>();
+      places_.clear();
       for (std::size_t p = 0; p < cards_.size(); ++p) {
         RawElements& from = cards_[p].elements[static_cast<std::size_t>(c)];
         append_elements(pieces_[p].file, static_cast<ElementClass>(c), from, *block);
@@ -335,6 +336,7 @@ class Assembler {
         if (!whole) note_undefined(file, from.offset[e], name(element_class), from.id[e], from.nodes[n]);
       }
       if (!whole) continue;
+      places_.push_back({file, from.offset[e]});
       block.id.push_back(from.id[e]);
       block.part.push_back(from.part[e] == 0 && element_class == ElementClass::mass ? PartIndex() : part_of(from.part[e]));
       block.nodes.insert(block.nodes.end(), nodes.begin(), nodes.end());
@@ -351,7 +353,7 @@ class Assembler {
     for (std::size_t e = 0; e < block.size(); ++e) {
       if (index.find(block.id[e]) != e) {
         warnings_.note(
-            "duplicate-element", 0, 0,
+            "duplicate-element", places_[e].file, places_[e].offset,
             std::string(name(element_class)) + " " + std::to_string(block.id[e]) + " is defined again; its first definition counts");
         continue;
       }
@@ -369,6 +371,12 @@ class Assembler {
   Warnings& warnings_;
   Model model_;
   IdIndex part_index_;
+
+  struct Place {
+    std::uint32_t file;
+    std::size_t offset;
+  };
+  std::vector<Place> places_;  ///< of the cards of the class being gathered
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
 constexpr std::size_t kLongestName = 4096;
-constexpr std::size_t kMostPaths = 1000;
+constexpr std::size_t kMostPaths = 100;
 
 /// Decks from Windows have backslashes between folders.
 std::string with_slashes(std::string name) {

@@ -9,6 +9,7 @@ namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
 constexpr std::size_t kLongestKeyword = 256;
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 std::size_t end_of_line(std::string_view text, std::size_t at) {
   const void* found = std::memchr(text.data() + at, '\n', text.size() - at);
@@ -77,6 +78,8 @@ std::size_t Blocks::find_keyword(std::size_t at) const {
     if (!found) break;
     at = static_cast<std::size_t>(static_cast<const char*>(found) - text_.data());
     if (at == 0 || text_[at - 1] == '\n') return at;
+    // Some editors put a byte order mark before the first keyword.
+    if (at == kByteOrderMark.size() && text_.substr(0, at) == kByteOrderMark) return at;
     ++at;
   }
   return text_.size();

@@ -1,7 +1,10 @@
 #include "mesh/deck/lsdyna/parameters.h"
 
-#include <array>
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
+#include <set>
 
 #include "mesh/deck/lsdyna/card.h"
 #include "mesh/deck/lsdyna/number.h"
@@ -29,21 +32,42 @@ std::string parameter_name(std::string_view field) {
 
 }  // namespace
 
+std::optional<double> Parameters::find(const Table& table, std::string_view key, std::uint32_t version) {
+  const auto at = table.find(key);
+  if (at == table.end()) return std::nullopt;
+  const std::vector<Value>& values = at->second;
+  const auto after =
+      std::upper_bound(values.begin(), values.end(), version, [](std::uint32_t v, const Value& value) { return v < value.version; });
+  return after == values.begin() ? std::nullopt : std::prev(after)->value;
+}
+
 std::optional<double> Parameters::find(std::string_view name) const {
   const std::string key = lower(name);
-  for (const Shared& table : {local_, global_}) {
-    if (!table) continue;
-    if (const auto at = table->find(key); at != table->end()) return at->second;
-  }
-  return std::nullopt;
+  const std::optional<double> local = find(history_->tables[static_cast<std::size_t>(Scope::local)], key, version_);
+  return local ? local : find(history_->tables[static_cast<std::size_t>(Scope::global)], key, version_);
+}
+
+void Parameters::define(Scope scope, const std::string& key, std::optional<double> value) {
+  version_ = ++history_->latest;
+  history_->tables[static_cast<std::size_t>(scope)][key].push_back({version_, value});
+  if (scope == Scope::local) history_->local_changes.emplace_back(version_, key);
+}
+
+void Parameters::leave_file(const Parameters& before) {
+  const auto first = std::upper_bound(history_->local_changes.begin(), history_->local_changes.end(), before.version_,
+                                      [](std::uint32_t version, const auto& change) { return version < change.first; });
+  std::set<std::string> keys;
+  for (auto change = first; change != history_->local_changes.end(); ++change) keys.insert(change->second);
+  const Table& table = history_->tables[static_cast<std::size_t>(Scope::local)];
+  for (const std::string& key : keys) define(Scope::local, key, find(table, key, before.version_));
 }
 
 void Parameters::read(std::string_view text, const Block& block) {
-  Shared& table = block.name.find("_LOCAL") != std::string::npos ? local_ : global_;
+  const Scope scope = block.name.find("_LOCAL") != std::string::npos ? Scope::local : Scope::global;
   if (block.name.find("_EXPRESSION") != std::string::npos)
-    read_expressions(text, block, table);
+    read_expressions(text, block, scope);
   else
-    read_definitions(text, block, table);
+    read_definitions(text, block, scope);
 }
 
 std::optional<double> Parameters::real(std::string_view field) const {
@@ -65,49 +89,43 @@ std::optional<std::int64_t> Parameters::integer(std::string_view field) const {
   return static_cast<std::int64_t>(std::llround(*found));
 }
 
-void Parameters::read_definitions(std::string_view text, const Block& block, Shared& shared) {
+void Parameters::read_definitions(std::string_view text, const Block& block, Scope scope) {
   Lines lines(text, block.begin, block.end);
   Line line;
   Card card;
-  // One copy of the table a block, not one a parameter.
-  Table table = shared ? *shared : Table();
   while (lines.next(line)) {
     card.cut(line.text, block.columns);
     for (std::size_t f = 0; f + 1 < card.count(); f += 2) {
       const std::string name = parameter_name(card.text(f));
       if (name.empty()) continue;
-      if (const std::optional<double> value = card.real(f + 1, *this)) table[name] = *value;
+      if (const std::optional<double> value = card.real(f + 1, *this)) define(scope, name, value);
     }
   }
-  shared = std::make_shared<const Table>(std::move(table));
 }
 
-void Parameters::read_expressions(std::string_view text, const Block& block, Shared& shared) {
+void Parameters::read_expressions(std::string_view text, const Block& block, Scope scope) {
+  const auto width = static_cast<std::size_t>(field_width(10, block.columns));
   Lines lines(text, block.begin, block.end);
   Line line;
   std::string name;
   std::string expression;
   const auto finish = [&] {
     if (name.empty()) return;
-    const std::optional<double> value = evaluate(expression, *this);
-    if (!value) return;
-    auto table = shared ? std::make_shared<Table>(*shared) : std::make_shared<Table>();
-    (*table)[name] = *value;
-    shared = std::move(table);
+    if (const std::optional<double> value = evaluate(expression, *this)) define(scope, name, value);
   };
   while (lines.next(line)) {
-    const std::string_view head = line.text.substr(0, 10);
     if (trim(line.text).empty()) continue;
+    const std::string_view head = line.text.substr(0, width);
     const std::size_t comma = head.find(',');
-    const std::string_view body =
-        comma != std::string_view::npos ? line.text.substr(comma + 1) : line.text.substr(std::min<std::size_t>(10, line.text.size()));
+    const bool free = comma != std::string_view::npos;
+    const std::string_view body = line.text.substr(free ? comma + 1 : head.size());
     // A line whose name is blank goes on with the expression above it.
-    if (comma == std::string_view::npos && trim(head).empty()) {
+    if (!free && trim(head).empty()) {
       expression += trim(body);
       continue;
     }
     finish();
-    name = parameter_name(comma != std::string_view::npos ? head.substr(0, comma) : head);
+    name = parameter_name(free ? head.substr(0, comma) : head);
     expression = trim(body);
   }
   finish();

@@ -162,9 +162,7 @@ void Walk::include(std::uint32_t from, const Block& block, Columns columns, int 
 
 void Walk::include_one(std::uint32_t from, const IncludeName& name, Columns columns, int depth, bool read) {
   std::string reason = "isn't there";
-  std::uint32_t file = kNoFile;
-  if (const std::optional<fs::path> found = search_.find(name.name, files[from].path.parent_path()))
-    file = open_file(*found, name.name, reason);
+  const std::uint32_t file = find_file(from, name.name, reason);
   if (file == kNoFile) {
     if (missing_files.size() < kMostFiles) missing_files.push_back(name.name);
     warnings.note("missing-include", from, name.offset, "the include file " + name.name + " " + reason);
@@ -186,6 +184,15 @@ void Walk::include_one(std::uint32_t from, const IncludeName& name, Columns colu
   } else {
     walk_file(file, columns, depth + 1);
   }
+}
+
+/// Looked for once for each file that names it: names may be many, and looking is slow.
+std::uint32_t Walk::find_file(std::uint32_t from, const std::string& name, std::string& reason) {
+  const auto [at, first] = known_.try_emplace({from, name}, kNoFile);
+  if (!first || missing_files.size() >= kMostFiles) return at->second;
+  if (const std::optional<fs::path> found = search_.find(name, files[from].path.parent_path()))
+    at->second = open_file(*found, name, reason);
+  return at->second;
 }
 
 /// The index of the file, read now if it wasn't before; kNoFile with a reason if it can't be.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/deck/deck.h"
@@ -36,6 +37,7 @@ class Walk {
   void add_segment(std::uint32_t file, const Segment& segment);
   void include(std::uint32_t from, const Block& block, Columns columns, int depth);
   void include_one(std::uint32_t from, const IncludeName& name, Columns columns, int depth, bool read);
+  std::uint32_t find_file(std::uint32_t from, const std::string& name, std::string& reason);
   std::uint32_t open_file(const std::filesystem::path& found, const std::string& name, std::string& reason);
 
   std::filesystem::path main_folder_;
@@ -43,6 +45,7 @@ class Walk {
   IncludeSearch search_;
   Parameters parameters_;
   std::map<std::string, std::uint32_t> by_canonical_;
+  std::map<std::pair<std::uint32_t, std::string>, std::uint32_t> known_;  ///< by the file that names it, and the name
 
   /// By file.
   struct State {

@@ -105,9 +105,20 @@ TEST(BadInput, hostile_text_is_read_in_bounded_time_and_memory) {
     EXPECT_TRUE(opened || !opened.error().message.empty());
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << text.substr(0, 40);
   }
-  std::string blocks = "*KEYWORD\n";
-  for (int i = 0; i < 300000; ++i) blocks += "*NODE\n";
+  std::string blocks = "*KEYWORD\n", parameters = "*KEYWORD\n", includes = "*KEYWORD\n*INCLUDE_PATH\n";
+  for (int i = 0; i < 100000; ++i) {
+    blocks += "*NODE\n";
+    parameters += "*PARAMETER\nRa" + std::to_string(i) + ",1.\n*NODE\n" + std::to_string(i + 1) + ",&a" + std::to_string(i) + "\n";
+  }
+  for (int i = 0; i < 200; ++i) includes += "p" + std::to_string(i) + "\n";
+  for (int i = 0; i < 3000; ++i) includes += "*INCLUDE\ngone" + std::to_string(i % 1000) + "\n*INCLUDE\ndeck.k\n";
+  const auto start = std::chrono::steady_clock::now();
   EXPECT_TRUE(folder.open(blocks + "*END\n"));
+  const auto many = folder.open(parameters + "*END\n");
+  ASSERT_OPENED(many);
+  EXPECT_EQ(many->model.node_count(), 100000u);
+  EXPECT_TRUE(folder.open(includes + "*END\n"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
 TEST(Progress, goes_up_and_stops_when_told) {

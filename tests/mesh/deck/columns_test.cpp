@@ -135,6 +135,13 @@ TEST(Columns, a_fragment_needs_neither_keyword_nor_end) {
   EXPECT_TRUE(opened->deck->warnings.empty());
 }
 
+TEST(Columns, a_byte_order_mark_before_the_first_keyword_is_no_hindrance) {
+  const DeckFolder folder;
+  const auto opened = folder.open("\xef\xbb\xbf*KEYWORD LONG=Y\n*NODE\n                   1                 4.0\n*END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(position_of(opened->model, 1), Vec3(4, 0, 0));
+}
+
 TEST(Columns, what_follows_end_is_not_read) {
   const DeckFolder folder;
   const auto opened = folder.open("*KEYWORD\n*NODE\n       1             1.0\n*END\n*NODE\n       2 rubbish\n*NODE\n");

@@ -254,6 +254,14 @@ TEST(Elements, of_equal_ids_the_first_counts) {
   EXPECT_EQ(duplicate.line, 35);
 }
 
+TEST(Elements, duplicates_of_any_class_are_told_where_they_stand) {
+  const auto opened =
+      open("*ELEMENT_BEAM\n       1       6       1       2\n       2       6       3       4\n       1       6       3       4\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(warning(*opened->deck, "duplicate-element").line, 35);
+  EXPECT_EQ(warning(*opened->deck, "duplicate-element").message, "beam 1 is defined again; its first definition counts");
+}
+
 TEST(Elements, with_an_undefined_node_are_left_out_and_counted) {
   const auto opened = open(
       "*ELEMENT_SHELL\n"
