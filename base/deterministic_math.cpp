@@ -32,7 +32,7 @@ double small_cos(double x) {
 /// Arc tangent for 0 <= x <= 1: turned back by the nearest of five known angles, then the series for |t| <= 1/8.
 double small_atan(double x) {
   constexpr double kAngle[5] = {0, 0.24497866312686415417, 0.46364760900080611621, 0.64350110879328438680, 0.78539816339744830962};
-  const int k = static_cast<int>(x * 4 + 0.5);
+  const int k = static_cast<int>(std::floor(x * 4 + 0.5));
   const double c = 0.25 * k;
   const double t = (x - c) / (1.0 + x * c);
   const double z = t * t;

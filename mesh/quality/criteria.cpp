@@ -81,7 +81,7 @@ void judge_points(std::span<const Vec3> moving, std::span<const Vec3> fixed, std
       [&](std::size_t i, const Vec3*(&corner)[4]) {
         for (std::size_t c = 0; c < 4; ++c) {
           const std::int32_t at = corners[i][c];
-          corner[c] = at >= 0 ? &moving[static_cast<std::size_t>(at)] : &fixed[static_cast<std::size_t>(~at)];
+          corner[c] = at >= 0 ? &moving[static_cast<std::size_t>(at)] : &fixed[static_cast<std::uint32_t>(~at)];
         }
         return corners[i][3] == corners[i][2];
       },
@@ -102,12 +102,12 @@ Result<Criteria> load_criteria(const std::filesystem::path& path) {
 }
 
 const Criteria& default_criteria() {
-  static const Criteria criteria = [] {
+  static const Criteria kCriteria = [] {
     const Result<Criteria> parsed = parse_criteria(kDefaultCriteriaText, "mesh/quality/criteria/default.toml");
     if (!parsed) std::abort();  // the text is compiled in and tested
     return *parsed;
   }();
-  return criteria;
+  return kCriteria;
 }
 
 }  // namespace prismesh::mesh::quality

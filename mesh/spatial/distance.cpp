@@ -16,7 +16,7 @@ using Box = Eigen::AlignedBox3d;
 
 /// A node or half a shell.
 struct Primitive {
-  Vec3 corner[3];
+  Triangle corner;
   NodeIndex node;
   ShellIndex shell;
 
@@ -33,13 +33,13 @@ std::vector<Primitive> primitives_of(const Model& model, const Shape& shape) {
   primitives.reserve(shape.nodes.size() + 2 * shape.shells.size());
   for (const NodeIndex node : shape.nodes) {
     const Vec3& p = model.position(node);
-    primitives.push_back({{p, p, p}, node, {}});
+    primitives.push_back({Triangle{p, p, p}, node, {}});
   }
   for (const ShellIndex shell : shape.shells) {
     const ShellNodes& nodes = model.shell(shell);
     const auto corner = [&](int i) -> const Vec3& { return model.position(nodes.node[i]); };
-    primitives.push_back({{corner(0), corner(1), corner(2)}, {}, shell});
-    if (!nodes.is_triangle()) primitives.push_back({{corner(0), corner(2), corner(3)}, {}, shell});
+    primitives.push_back({Triangle{corner(0), corner(1), corner(2)}, {}, shell});
+    if (!nodes.is_triangle()) primitives.push_back({Triangle{corner(0), corner(2), corner(3)}, {}, shell});
   }
   return primitives;
 }

@@ -1,6 +1,7 @@
 // The shortest way between two sets of nodes and shells.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "mesh/model/model.h"
@@ -30,12 +31,15 @@ struct Closest {
 /// volumes", 1999, with boxes for volumes.
 std::optional<Closest> shortest_distance(const Model& model, const Shape& a, const Shape& b);
 
-/// The nearest points of two triangles, corners given. Degenerate ones (segments, points) are allowed.
+/// Corners; segments and points count as triangles too.
+using Triangle = std::array<Vec3, 3>;
+
+/// The nearest points of two triangles.
 struct Nearest {
   double distance2 = 0;
   Vec3 on_a = Vec3::Zero();
   Vec3 on_b = Vec3::Zero();
 };
-Nearest nearest_of_triangles(const Vec3 (&a)[3], const Vec3 (&b)[3]);
+Nearest nearest_of_triangles(const Triangle& a, const Triangle& b);
 
 }  // namespace prismesh::mesh::spatial

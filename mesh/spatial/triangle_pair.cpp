@@ -32,18 +32,18 @@ Nearest nearest_of_segments(const Vec3& p0, const Vec3& p1, const Vec3& q0, cons
 }
 
 /// Where `point` lies over the inside of the triangle, if it does.
-bool foot_inside(const Vec3& point, const Vec3 (&t)[3], Vec3& foot) {
+bool foot_inside(const Vec3& point, const Triangle& t, Vec3& foot) {
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
   const double nn = normal.squaredNorm();
   if (!(nn > 0)) return false;
-  for (int i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < 3; ++i)
     if ((t[(i + 1) % 3] - t[i]).cross(point - t[i]).dot(normal) < 0) return false;
   foot = point - normal * ((point - t[0]).dot(normal) / nn);
   return true;
 }
 
 /// Where the segment p-q goes through the triangle, if it does.
-bool pierces(const Vec3& p, const Vec3& q, const Vec3 (&t)[3], Vec3& at) {
+bool pierces(const Vec3& p, const Vec3& q, const Triangle& t, Vec3& at) {
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
   const double before = (p - t[0]).dot(normal), after = (q - t[0]).dot(normal);
   if (before == after || (before > 0) == (after > 0)) return false;
@@ -54,13 +54,13 @@ bool pierces(const Vec3& p, const Vec3& q, const Vec3 (&t)[3], Vec3& at) {
 }  // namespace
 
 // Two triangles that don't cross are nearest at a corner of one over the inside of the other, or at an edge of each.
-Nearest nearest_of_triangles(const Vec3 (&a)[3], const Vec3 (&b)[3]) {
+Nearest nearest_of_triangles(const Triangle& a, const Triangle& b) {
   Nearest best;
   best.distance2 = std::numeric_limits<double>::infinity();
   Vec3 at;
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     if (pierces(a[i], a[(i + 1) % 3], b, at) || pierces(b[i], b[(i + 1) % 3], a, at)) return {0.0, at, at};
-    for (int j = 0; j < 3; ++j) keep_nearer(best, nearest_of_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
+    for (std::size_t j = 0; j < 3; ++j) keep_nearer(best, nearest_of_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
     if (foot_inside(a[i], b, at)) keep_nearer(best, pair_of(a[i], at));
     if (foot_inside(b[i], a, at)) keep_nearer(best, pair_of(at, b[i]));
   }
