@@ -72,29 +72,32 @@ std::string tenths(double thickness) {
   return std::to_string(value / 10) + "." + std::to_string(value % 10);
 }
 
-std::size_t count_all(double size) {
+std::size_t count_all(const sample::ElementSize& size) {
   std::size_t count = 0;
-  for (const sample::Part& part : sample::body_side(size).parts) count += sample::count_shells(part, size);
+  for (const sample::Part& part : sample::body_side(size.across).parts) count += sample::count_shells(part, size);
   return count;
 }
 
-/// The element size whose mesh comes nearest to the wanted number: the count follows size^-2 but jumps with every row.
-double size_for(std::size_t shells) {
-  constexpr double kFirst = 16;
-  double size = kFirst * std::sqrt(static_cast<double>(count_all(kFirst)) / static_cast<double>(shells));
-  double best = size;
-  double best_error = 1e30;
-  for (int attempt = 0; attempt < 12; ++attempt) {
-    const double ratio = static_cast<double>(count_all(size)) / static_cast<double>(shells);
-    const double error = std::abs(ratio - 1);
-    if (error < best_error) {
-      best_error = error;
-      best = size;
-    }
-    if (error < 0.002) break;
-    // Full steps first, then halves: a row more or less can make full steps swing.
-    size *= attempt < 4 ? std::sqrt(ratio) : 0.5 * (1 + std::sqrt(ratio));
+/// The element size whose mesh comes nearest to the wanted number. The count follows size^-2 but jumps where all flanges get a row
+/// more; what is left then is made up along the parts.
+sample::ElementSize size_for(std::size_t shells) {
+  const auto ratio = [&](const sample::ElementSize& size) { return static_cast<double>(count_all(size)) / static_cast<double>(shells); };
+  double guess = 16;
+  for (int step = 0; step < 3; ++step) guess *= std::sqrt(ratio({guess, guess}));
+  sample::ElementSize best{guess, guess};
+  double best_error = std::abs(ratio(best) - 1);
+  const auto try_size = [&](const sample::ElementSize& size) {
+    const double error = std::abs(ratio(size) - 1);
+    if (error >= best_error) return;
+    best_error = error;
+    best = size;
+  };
+  constexpr double kNearEnough = 0.003;
+  for (int attempt = 1; attempt <= 20 && best_error > kNearEnough; ++attempt) {
+    const double size = guess * (1 + 0.0025 * (attempt % 2 == 0 ? attempt : -attempt));
+    try_size({size, size});
   }
+  if (best_error > kNearEnough) try_size({best.across, best.across * ratio(best)});
   return best;
 }
 
@@ -239,8 +242,8 @@ void write_welds(Cards& cards, const std::vector<sample::SpotWeld>& welds, std::
 }  // namespace
 
 std::string sample_text(std::size_t shells) {
-  const double size = size_for(shells);
-  const sample::Assembly assembly = sample::body_side(size);
+  const sample::ElementSize size = size_for(shells);
+  const sample::Assembly assembly = sample::body_side(size.across);
   Cards cards;
   cards.reserve(shells * 130 + 200'000);
   write_control(cards);
@@ -252,7 +255,7 @@ std::string sample_text(std::size_t shells) {
     const sample::SheetMesh mesh = sample::mesh_part(part, size);
     write_sheet(cards, part, mesh, first);
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
-      if (mesh.nodes[i].x() > 1640 - 0.5 * size) clamped.push_back(first + static_cast<std::int64_t>(i));
+      if (mesh.nodes[i].x() > 1640 - 0.5 * size.along) clamped.push_back(first + static_cast<std::int64_t>(i));
     first += kIdsPerPart;
   }
   write_welds(cards, assembly.welds, 90'000'001);

@@ -14,7 +14,7 @@ inline constexpr std::size_t kSampleShellsDefault = 5'000;
 inline constexpr std::size_t kSampleShellsMax = 5'000'000;
 
 /// The LS-DYNA text of the assembly (rail with closing plate, pillar, floor, crossmember, spot welds; mm, t, s) with about
-/// `shells` shell elements (within 3 %). Depends on nothing but `shells`. Precondition: within the limits above.
+/// `shells` shell elements (within 1 %). Depends on nothing but `shells`. Precondition: within the limits above.
 std::string sample_text(std::size_t shells);
 
 /// Writes sample_text to a file, whole or not at all. Errors: `shells` outside the limits (they are named), the file can't be

@@ -100,7 +100,7 @@ double rail_bead(double arc, double across, double size) {
   const double pitch = 3.2 * half;
   double depth = 0;
   for (double centre = 40 + 1.6 * half; centre + half < 300; centre += pitch) depth = std::max(depth, bump(centre, half, arc));
-  return -7 * depth * smooth_step(0, 0.3, across) * smooth_step(0, 0.3, 1 - across);
+  return -6 * depth * smooth_step(0, 0.5, across) * smooth_step(0, 0.5, 1 - across);
 }
 
 Part rail_outer(const std::shared_ptr<const Path>& path, double size) {
@@ -149,8 +149,8 @@ Path pillar_path() {
 Section pillar_section(double arc) {
   const double waist = smooth_step(20, 420, arc);
   const double head = smooth_step(560, 930, arc);
-  const double rise = smooth_step(24, 230, arc);
-  return hat(mix(mix(178, 66, waist), 92, head), 70 * rise, mix(34, 14, rise));
+  const double rise = smooth_step(20, 400, arc);
+  return hat(mix(mix(178, 66, waist), 92, head), 70 * rise, mix(60, 14, rise));
 }
 
 Vec3 pillar_point(const Path& path, double across_x, double out, double arc) {
@@ -227,13 +227,13 @@ Part reinforcement(const std::shared_ptr<const Path>& path) {
 constexpr double kFloorFrom = 700, kFloorLength = 820;
 
 /// Faces of the floor across: the flange, then flat and bead (slope, ground, slope) by turns.
-constexpr std::array<double, 19> kFloorFaces{kFlange, 46, 13, 26, 13, 46, 13, 26, 13, 46, 13, 26, 13, 46, 13, 26, 13, 46, 30};
+constexpr std::array<double, 19> kFloorFaces{kFlange, 44, 16, 24, 16, 44, 16, 24, 16, 44, 16, 24, 16, 44, 16, 24, 16, 44, 30};
 
 /// Beads end before the crossmember's flanges and the floor's ends.
 double floor_bead_depth(double x) {
-  const double front = smooth_step(60, 130, x - kFloorFrom) * smooth_step(110, 180, kPillarAt - x);
-  const double rear = smooth_step(110, 180, x - kPillarAt) * smooth_step(60, 130, kFloorFrom + kFloorLength - x);
-  return -9 * std::max(front, rear);
+  const double front = smooth_step(40, 130, x - kFloorFrom) * smooth_step(95, 185, kPillarAt - x);
+  const double rear = smooth_step(95, 185, x - kPillarAt) * smooth_step(40, 130, kFloorFrom + kFloorLength - x);
+  return -6 * std::max(front, rear);
 }
 
 Part floor_panel() {
@@ -323,6 +323,9 @@ void weld_floor(Assembly& assembly) {
     }
 }
 
+/// Parts are drawn with y outwards; the left side of a car has it inwards.
+Vec3 to_the_left_side(const Vec3& at) { return {at.x(), -at.y(), at.z()}; }
+
 }  // namespace
 
 Assembly body_side(double size) {
@@ -335,6 +338,11 @@ Assembly body_side(double size) {
   weld_pillar(assembly);
   weld_foot(assembly);
   weld_floor(assembly);
+  for (Part& part : assembly.parts)
+    part.surface = [drawn = part.surface](std::size_t face, double across, double along) {
+      return to_the_left_side(drawn(face, across, along));
+    };
+  for (SpotWeld& weld : assembly.welds) weld = {to_the_left_side(weld.from), to_the_left_side(weld.to)};
   return assembly;
 }
 

@@ -1,5 +1,5 @@
 // The sample's shape: a front rail with its closing plate that runs into a sill, a pillar on it (outer, inner, reinforcement),
-// a floor panel with beads and a crossmember. x to the rear, y outwards, z up, in mm.
+// a floor panel with beads and a crossmember. The left side of a car: x to the rear, y to the right, z up, in mm.
 #pragma once
 
 #include <vector>

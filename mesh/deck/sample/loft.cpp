@@ -9,6 +9,7 @@ namespace prismesh::mesh::deck::sample {
 namespace {
 
 constexpr std::uint32_t kNoNode = 0xffffffffu;
+constexpr double kHoleOfBlock = 0.355;  ///< a hole's radius in widths of the block it is cut into
 
 std::size_t rounded(double value) { return value < 1.5 ? 1 : static_cast<std::size_t>(std::lround(value)); }
 
@@ -47,9 +48,10 @@ std::vector<int> cells_along(const Part& part, std::size_t face, std::size_t sta
 
 /// The block for a hole; none where the grid is too coarse to hold it.
 bool place_block(const Plan& plan, const Part& part, const Hole& hole, double size, Block& block) {
-  const double in_cells = hole.radius / size;
-  if (in_cells < 0.5) return false;
-  const auto cells = static_cast<std::size_t>(std::lround(std::max({2.0 * in_cells + 1.2, 2.6 * in_cells, 2.0})));
+  // A hole of 0.355 of its block's width has edges about half as long as the block's: no shell between them is far from a
+  // square. So the radius follows the grid, by at most a sixth of itself.
+  const auto cells = static_cast<std::size_t>(std::lround(hole.radius / (kHoleOfBlock * size)));
+  if (cells < 3) return false;
   const double centre = hole.along / plan.step;
   const double first = centre - 0.5 * static_cast<double>(cells) + 0.5;
   if (first < 1.0) return false;
@@ -61,21 +63,21 @@ bool place_block(const Plan& plan, const Part& part, const Hole& hole, double si
     if (across[i] != n) return false;
   const double first_cell = hole.across * n - 0.5 * static_cast<double>(cells) + 0.5;
   if (first_cell < 1.0 || first_cell + static_cast<double>(cells) > n) return false;
-  const double width = part.width(hole.face, hole.along);
-  const double gap = 0.5 * static_cast<double>(cells) * (width / n) - hole.radius;
-  const double corner_gap = gap + 0.41 * (hole.radius + gap);
-  block = {hole, station, static_cast<std::size_t>(first_cell), cells, rounded(0.5 * (gap + corner_gap) / size)};
+  block = {hole, station, static_cast<std::size_t>(first_cell), cells, rounded(0.25 * static_cast<double>(cells))};
+  const double cell = 0.5 * (plan.step + part.width(hole.face, hole.along) / n);
+  block.hole.radius = kHoleOfBlock * cell * static_cast<double>(cells);
   return true;
 }
 
-Plan make_plan(const Part& part, double size) {
+Plan make_plan(const Part& part, const ElementSize& size) {
   Plan plan;
-  plan.stations = rounded(part.length / size);
+  plan.stations = rounded(part.length / size.along);
   plan.step = part.length / static_cast<double>(plan.stations);
-  for (std::size_t face = 0; face < part.faces; ++face) plan.cells.push_back(cells_along(part, face, plan.stations, plan.step, size));
+  for (std::size_t face = 0; face < part.faces; ++face)
+    plan.cells.push_back(cells_along(part, face, plan.stations, plan.step, size.across));
   for (const Hole& hole : part.holes) {
     Block block;
-    if (place_block(plan, part, hole, size, block)) plan.blocks.push_back(block);
+    if (place_block(plan, part, hole, size.across, block)) plan.blocks.push_back(block);
   }
   return plan;
 }
@@ -178,6 +180,11 @@ class Mesher {
       outer[i] = grid_[block.hole.face][block.station + s][block.cell + c];
       border[i] = {(static_cast<double>(s) - 0.5 * static_cast<double>(k)) * plan_.step,
                    (static_cast<double>(c) - 0.5 * static_cast<double>(k)) * width / n};
+      if (step != 0) continue;
+      // At a corner two quads share a right angle; moved in by a fifth of a cell, it is wider.
+      border[i][0] *= 1 - 0.4 / static_cast<double>(k);
+      border[i][1] *= 1 - 0.4 / static_cast<double>(k);
+      mesh_.nodes[outer[i]] = part_.surface(block.hole.face, centre_across + border[i][1] / width, centre_along + border[i][0]);
     }
     for (std::size_t ring = 1; ring <= block.rings; ++ring) {
       const double inward = static_cast<double>(ring) / static_cast<double>(block.rings);
@@ -210,7 +217,7 @@ double smooth_step(double from, double to, double x) {
   return t * t * t * (10 - t * (15 - 6 * t));
 }
 
-std::size_t count_shells(const Part& part, double size) {
+std::size_t count_shells(const Part& part, const ElementSize& size) {
   const Plan plan = make_plan(part, size);
   std::size_t count = 0;
   for (const std::vector<int>& cells : plan.cells)
@@ -219,7 +226,7 @@ std::size_t count_shells(const Part& part, double size) {
   return count;
 }
 
-SheetMesh mesh_part(const Part& part, double size) {
+SheetMesh mesh_part(const Part& part, const ElementSize& size) {
   const Plan plan = make_plan(part, size);
   return Mesher(part, plan).run();
 }

@@ -31,16 +31,21 @@ struct Part {
   std::vector<Hole> holes;
 };
 
+/// Edge lengths that a mesh should have, mm.
+struct ElementSize {
+  double across = 0;
+  double along = 0;
+};
+
 struct SheetMesh {
   std::vector<Vec3> nodes;
   std::vector<std::array<std::uint32_t, 4>> shells;  ///< indices into nodes; a triangle repeats its third
 };
 
 /// Shells that `mesh_part` will make; costs the number of stations.
-std::size_t count_shells(const Part& part, double size);
+std::size_t count_shells(const Part& part, const ElementSize& size);
 
-/// A mesh of edges about `size` long.
-SheetMesh mesh_part(const Part& part, double size);
+SheetMesh mesh_part(const Part& part, const ElementSize& size);
 
 /// 0 before `from`, 1 after `to`, without a kink in slope or curvature.
 double smooth_step(double from, double to, double x);
