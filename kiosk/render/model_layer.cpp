@@ -35,6 +35,22 @@ void upload_instances(Instances& instances, const std::vector<T>& values) {
   instances.count = values.size();
 }
 
+/// The median length of the first side of some 500 shells, evenly spread.
+double measure_typical_side(const ModelTable& table) {
+  const std::size_t step = table.shell_count() / 500 + 1;
+  std::vector<double> lengths;
+  mesh::ShellNodes nodes;
+  for (std::size_t s = 0; s < table.shell_count(); s += step) {
+    if (!table.shell(s, nodes)) continue;
+    const double length = (table.position(nodes.node[1].value) - table.position(nodes.node[0].value)).norm();
+    if (std::isfinite(length) && length > 0) lengths.push_back(length);
+  }
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
 }  // namespace
 
 Result<void> LineSet::upload(const std::vector<NodePair>& lines, const char* what) {
@@ -67,6 +83,7 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
     return fail(changes.error());
   }
   chunks_uploaded_ += changes->uploaded;
+  typical_side_ = measure_typical_side(*table_);
   if (changes->topology) end_preview();  // its indices are of another mesh
   if (changes->topology || changes->visibility || !changes->moved_chunks.empty()) {
     outline_.update(*table_, changes->topology, changes->visibility, changes->moved_chunks);

@@ -56,6 +56,8 @@ class ModelLayer {
 
   /// Around what is shown, deck coordinates. Costs the chunks and the line elements.
   stereo::Box shown_box() const;
+  /// Length of a typical shell's side, deck's unit; 0 without shells. What signs on nodes and shells must leave room for.
+  double typical_side() const { return typical_side_; }
   const std::vector<std::uint8_t>& visible_nodes();
   const std::vector<std::uint32_t>& line_nodes() const { return line_nodes_; }
 
@@ -85,6 +87,7 @@ class ModelLayer {
   std::size_t glyph_cap_ = 0;
   bool glyphs_stale_ = true;
   std::optional<std::vector<std::uint8_t>> visible_nodes_;
+  double typical_side_ = 0;
   std::uint64_t shape_version_ = 0;
   std::size_t chunks_uploaded_ = 0;
 };

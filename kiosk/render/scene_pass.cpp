@@ -15,13 +15,12 @@ constexpr float kCreaseHalfWidth = 0.7F;
 constexpr float kLineElementHalfWidth = 0.9F;
 constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels short
 constexpr float kPreviewHalfWidth = 0.65F;
-constexpr float kNodeRadius = 4.2F;
-constexpr float kCrowdedNodeRadius = 2.2F;
-constexpr std::size_t kCrowdedNodes =
-    20000;  ///< from here on nodes are drawn smaller and without their rim, as under a preview's wireframe
-constexpr float kGlyphRadius = 8.0F;
-constexpr double kLinesTowardEye = 1.3;  ///< pixels: what lifts lines off the surface they lie on
-constexpr float kHiddenLight = 0.80F;    ///< selected nodes behind a surface: lighter than any part, darker than white
+// Signs keep their size over the screen, but make room where elements are small.
+constexpr float kNodeRadius = 4.2F, kLeastNodeRadius = 1.3F, kNodeShareOfSide = 0.26F;
+constexpr float kGlyphRadius = 8.0F, kLeastGlyphRadius = 5.0F, kGlyphShareOfSide = 0.55F;
+constexpr float kRimmedNodeRadius = 2.6F;  ///< from this size on, white nodes have a dark rim
+constexpr double kLinesTowardEye = 1.3;    ///< pixels: what lifts lines off the surface they lie on
+constexpr float kHiddenLight = 0.80F;      ///< selected nodes behind a surface: lighter than any part, darker than white
 
 Eigen::Vector4f ink(const Colour& colour, float alpha) { return {colour.x(), colour.y(), colour.z(), alpha}; }
 
@@ -45,6 +44,12 @@ struct ScenePass::Frame {
     eye_in_model = (stereo::to_deck(view, eye.eye_mm) - model.textures().origin()).cast<float>();
   }
 
+  /// A sign's radius in pixels: `largest` unless that crowds typical elements.
+  float fitting_radius(float largest, float least, float share, double typical_side) const {
+    if (typical_side <= 0) return largest;
+    const double side_pixels = typical_side * view.mm_per_unit / eye.mm_per_pixel;
+    return std::clamp(share * static_cast<float>(std::min(side_pixels, 1000.0)), least, largest);
+  }
   float columns_per_pixel() const { return static_cast<float>(eye.image.display_width) / static_cast<float>(eye.image.width); }
 
   /// What every program that pulls the model needs.
@@ -120,7 +125,7 @@ void ScenePass::draw(const Picture& picture, ModelLayer& model, const EyeView& e
     if (model.previewing()) draw_preview(model, frame);
     model.textures().positions().bind(unit::kPositions);
     if (picture.selected_nodes) draw_selected(model, frame);
-    if (picture.quality_glyphs) draw_glyphs(model.glyphs(glyph_cap), frame);
+    if (picture.quality_glyphs) draw_glyphs(model, glyph_cap, frame);
   }
   if (picture.handle) draw_handle(*picture.handle, frame);
   glDisable(GL_DEPTH_TEST);
@@ -238,9 +243,10 @@ void ScenePass::draw_preview(const ModelLayer& model, const Frame& frame) const 
 void ScenePass::draw_selected(const ModelLayer& model, const Frame& frame) const {
   const Instances& nodes = model.selected();
   if (nodes.count == 0) return;
-  const bool crowded = nodes.count > kCrowdedNodes || model.previewing();
+  const float room = frame.fitting_radius(kNodeRadius, kLeastNodeRadius, kNodeShareOfSide, model.typical_side());
+  const float radius = model.previewing() ? kLeastNodeRadius : room;  // the wireframe says where they go
   frame.set(shaders_.nodes);
-  shaders_.nodes.set("radius_pixels", crowded ? kCrowdedNodeRadius : kNodeRadius);
+  shaders_.nodes.set("radius_pixels", radius);
   glBindVertexArray(nodes.array.get());
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
@@ -258,16 +264,17 @@ void ScenePass::draw_selected(const ModelLayer& model, const Frame& frame) const
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
   glDepthFunc(GL_LEQUAL);
-  if (!crowded) draw(1.35F, kBorderColour);  // a dark rim tells white nodes from a light part
+  if (radius >= kRimmedNodeRadius) draw(1.35F, kBorderColour);  // a dark rim tells white nodes from a light part
   glDepthMask(GL_TRUE);
   draw(1.0F, kSelectedColour);
   glDisable(GL_CULL_FACE);
 }
 
-void ScenePass::draw_glyphs(const Instances& glyphs, const Frame& frame) const {
+void ScenePass::draw_glyphs(ModelLayer& model, std::size_t cap, const Frame& frame) const {
+  const Instances& glyphs = model.glyphs(cap);
   if (glyphs.count == 0) return;
   frame.set(shaders_.glyphs);
-  shaders_.glyphs.set("radius_pixels", kGlyphRadius);
+  shaders_.glyphs.set("radius_pixels", frame.fitting_radius(kGlyphRadius, kLeastGlyphRadius, kGlyphShareOfSide, model.typical_side()));
   shaders_.glyphs.set("warn_ink", kWarnColour);
   shaders_.glyphs.set("fail_ink", kFailColour);
   glEnable(GL_BLEND);

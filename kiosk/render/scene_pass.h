@@ -40,7 +40,7 @@ class ScenePass {
   void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_preview(const ModelLayer& model, const Frame& frame) const;
   void draw_selected(const ModelLayer& model, const Frame& frame) const;
-  void draw_glyphs(const Instances& glyphs, const Frame& frame) const;
+  void draw_glyphs(ModelLayer& model, std::size_t cap, const Frame& frame) const;
   void draw_handle(const Handle& handle, const Frame& frame) const;
   void draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const;
 

@@ -1,0 +1,84 @@
+// Pictures from the command line: drawn by the kiosk beside the program, whole or not at all.
+#include <cstdint>
+
+#include <unistd.h>
+
+#include "tests/cli/cli_fixture.h"
+
+namespace prismesh::cli {
+namespace {
+
+class Render : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    const auto kiosk = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "prismesh-kiosk";
+    if (access(kiosk.c_str(), X_OK) != 0) GTEST_SKIP() << "RENDER IS NOT TESTED: " << kiosk << " isn't built";
+    deck_ = write("plate.k", "*KEYWORD\n*NODE\n" + node_card(1, 0, 0, 0) + node_card(2, 10, 0, 0) + node_card(3, 10, 10, 0) +
+                                 node_card(4, 0, 10, 0) + "*ELEMENT_SHELL\n" + shell_card(1, 1, 1, 2, 3, 4) + "*END\n");
+    if (draw({}).status != kDone) GTEST_SKIP() << "RENDER IS NOT TESTED: no picture can be drawn here: " << said_;
+    std::filesystem::remove(path("a.png"));
+  }
+  /// `render` with these options; what the kiosk says on standard error is in `said_`.
+  Outcome draw(const std::vector<std::string>& options) {
+    std::vector<std::string> args{"render", deck_, "-o", path("a.png"), "--size", "64x48"};
+    args.insert(args.end(), options.begin(), options.end());
+    ::testing::internal::CaptureStderr();
+    const Outcome outcome = prismesh(args);
+    said_ = ::testing::internal::GetCapturedStderr() + outcome.err;
+    return outcome;
+  }
+  std::string deck_, said_;
+};
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
+TEST_F(Render, WritesAPngOfTheSizeAskedFor) {
+  ASSERT_EQ(draw({"--view", "top", "--eye", "-30,10,600", "--colour", "quality", "--profile", "mono-left"}).status, kDone) << said_;
+  const std::string png = read(path("a.png"));
+  ASSERT_GT(png.size(), 100U);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_EQ(big_endian(png, 16), 64U);
+  EXPECT_EQ(big_endian(png, 20), 48U);
+  ASSERT_EQ(draw({"--view", "top", "--eye", "-30,10,600", "--colour", "quality", "--profile", "mono-left"}).status, kDone);
+  EXPECT_EQ(read(path("a.png")), png) << "the same picture every time";
+  ASSERT_EQ(draw({"--view", "top", "--eye", "-30,10,600", "--colour", "quality", "--profile", "mono-left", "--select", "1,3"}).status,
+            kDone);
+  EXPECT_NE(read(path("a.png")), png) << "selected nodes show";
+}
+
+TEST_F(Render, WrongUsageListsWhatThereIs) {
+  const std::pair<std::vector<std::string>, const char*> wrong[] = {{{"--view", "sideways"}, "front, back, left, right, top, bottom, iso"},
+                                                                    {{"--profile", "tv"}, "prism-mask, mono-left, mono-right"},
+                                                                    {{"--colour", "red"}, "parts, quality"},
+                                                                    {{"--eye", "1,2"}, "X,Y,Z"},
+                                                                    {{"--eye", "0,0,-5"}, "X,Y,Z"},
+                                                                    {{"--size", "12"}, "1920x1080"}};
+  for (const auto& [options, words] : wrong) {
+    EXPECT_EQ(draw(options).status, kWrongUsage) << options[1];
+    EXPECT_THAT(said_, HasSubstr(words));
+    EXPECT_FALSE(exists("a.png"));
+  }
+}
+
+TEST_F(Render, NothingIsWrittenOnFailure) {
+  EXPECT_EQ(draw({"--select", "1,99"}).status, kFailed);
+  EXPECT_THAT(said_, StartsWith("expression:3: "));
+  EXPECT_FALSE(exists("a.png"));
+  write("wide.toml", "weave = \"columns\"\npitch = 3\n");
+  EXPECT_EQ(draw({"--profile", path("wide.toml")}).status, kFailed);
+  EXPECT_THAT(said_, HasSubstr("wide.toml:2: "));
+  EXPECT_FALSE(exists("a.png"));
+  EXPECT_EQ(prismesh({"render", path("none.k"), "-o", path("a.png")}).status, kFailed);
+  ::testing::internal::CaptureStderr();
+  const int status = prismesh({"render", deck_, "-o", path("no/folder/here.txt/a.png")}).status;
+  ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(status, kDone) << "folders that lack are made, as for decks";
+}
+
+}  // namespace
+}  // namespace prismesh::cli
