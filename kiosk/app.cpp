@@ -186,7 +186,8 @@ Result<void> WindowedKiosk::show() {
   station_.editor.trace_picture();
   if (pictures_ == 0) station_.trace.line(fmt::format("ready {} {}", window_.size().width, window_.size().height));
   ++pictures_;
-  station_.trace.line(fmt::format("picture {} generation {}", pictures_, station_.editor.shown_generation()));
+  const std::optional<std::uint64_t> generation = station_.editor.shown_generation();
+  station_.trace.line(fmt::format("picture {} generation {}", pictures_, generation ? std::to_string(*generation) : "none"));
   return {};
 }
 

@@ -99,6 +99,8 @@ Result<void> Editor::follow_drag() {
     pull_->set_axis(aim(), mesh::Vec3(facts.grab_position[0], facts.grab_position[1], facts.grab_position[2]),
                     mesh::Vec3(facts.normal[0], facts.normal[1], facts.normal[2]));
     axis_taken_ = true;
+    pull_to(pulled_to_);
+    if (released_early_) link_.commit_drag();
   }
   if (drag->frame().sequence == preview_sequence_) return {};
   if (!preview_shown_) renderer_.begin_preview(drag->preview().nodes(), drag->preview().shells());
@@ -217,6 +219,8 @@ void Editor::handle(const tools::HandleTaken& taken) {
   const stereo::Aim now = aim();
   pull_.emplace(taken.handle, anchor_->at, tools::arrow_direction(now, *anchor_), now, taken.at);
   pulled_ = {};
+  pulled_to_ = taken.at;
+  axis_taken_ = released_early_ = false;
   mesh::document::Shaping shaping;
   shaping.grab = anchor_->id;
   if (taken.handle == Under::move_handle) {
@@ -232,16 +236,22 @@ void Editor::handle(const tools::HandleTaken& taken) {
 }
 
 void Editor::handle(const tools::HandleMoved& moved) {
-  if (!pull_) return;
-  pulled_ = pull_->at(aim(), moved.at);
-  link_.pull(pulled_.by, pulled_.distance);
+  if (pull_) pull_to(moved.at);
 }
 
 void Editor::handle(const tools::HandleReleased& released) {
   if (!pull_) return;
-  pulled_ = pull_->at(aim(), released.at);
-  link_.pull(pulled_.by, pulled_.distance);
-  link_.commit_drag();
+  pull_to(released.at);
+  if (axis_taken_)
+    link_.commit_drag();
+  else
+    released_early_ = true;
+}
+
+void Editor::pull_to(const Pixel& pixel) {
+  pulled_to_ = pixel;
+  pulled_ = pull_->at(aim(), pixel);
+  if (axis_taken_) link_.pull(pulled_.by, pulled_.distance);
 }
 
 void Editor::cancel_gesture() {

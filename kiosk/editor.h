@@ -49,7 +49,7 @@ class Editor {
   const stereo::Profile& profile() const { return profile_; }
   /// Counts up with everything that changes the picture or the panels.
   std::uint64_t changes() const { return changes_; }
-  std::uint64_t shown_generation() const { return shown_ ? shown_->info().generation : 0; }
+  std::optional<std::uint64_t> shown_generation() const { return shown_ ? std::optional(shown_->info().generation) : std::nullopt; }
   /// Writes what a watching program needs to aim: the projection and the handle's place, when they changed.
   void trace_picture();
 
@@ -76,6 +76,7 @@ class Editor {
   void fit();
   void next_profile();
   void cancel();
+  void pull_to(const tools::Pixel& pixel);
   void cancel_pull();
   void take_model();
   Result<void> follow_drag();
@@ -103,7 +104,9 @@ class Editor {
   tools::Pull pulled_;
   bool preview_shown_ = false;
   std::uint64_t preview_sequence_ = 0;
-  bool axis_taken_ = false;
+  tools::Pixel pulled_to_ = tools::Pixel::Zero();
+  bool axis_taken_ = false;      ///< the server has said along which normal: only then a distance means something to it
+  bool released_early_ = false;  ///< before that
   std::optional<render::PixelRect> rubber_band_;
   bool pivot_found_ = false;
   tools::Pixel orbit_from_ = tools::Pixel::Zero();

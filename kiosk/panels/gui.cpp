@@ -72,6 +72,7 @@ void set_style() {
   colour[ImGuiCol_ScrollbarGrab] = ImVec4(1, 1, 1, 0.20f);
   colour[ImGuiCol_ScrollbarGrabHovered] = ImVec4(1, 1, 1, 0.28f);
   colour[ImGuiCol_ScrollbarGrabActive] = ImVec4(1, 1, 1, 0.36f);
+  colour[ImGuiCol_CheckMark] = ink;
   colour[ImGuiCol_PlotHistogram] = ImGui::ColorConvertU32ToFloat4(kInformationColour);
   colour[ImGuiCol_TextSelectedBg] = ImVec4(0.41f, 0.71f, 0.93f, 0.35f);
   colour[ImGuiCol_NavHighlight] = ImGui::ColorConvertU32ToFloat4(kInformationColour);

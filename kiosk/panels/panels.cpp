@@ -53,6 +53,7 @@ void document_panel(const PanelData& data, display::PixelSize picture, Actions& 
   if (ImGui::RadioButton("all nodes through the model", data.through) && !data.through) actions.emplace_back(Command::toggle_through);
 
   section("Picture");
+  ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("colour by");
   ImGui::SameLine();
   if (ImGui::RadioButton("part", !data.colour_by_quality) && data.colour_by_quality) actions.emplace_back(Command::colour_mode);

@@ -94,7 +94,7 @@ void Station::start_kiosk(const std::vector<std::string>& more_arguments) {
   kiosk_ = std::make_unique<Process>(command, std::map<std::string, std::string>{{"DISPLAY", display_->name()}});
   ASSERT_FALSE(kiosk_->wait_for("generation ").empty()) << "the kiosk showed no document\n" << kiosk_->all_output();
   ASSERT_FALSE(
-      kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("generation 0"); }).empty());
+      kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); }).empty());
   Process search({"xdotool", "search", "--sync", "--name", "^Prismesh$"}, {{"DISPLAY", display_->name()}});
   window_ = search.wait_for("");
   ASSERT_FALSE(window_.empty());
