@@ -31,8 +31,10 @@ Outcome Bench::opened() {
 }
 
 Outcome Bench::open(const ipc::Open& request, const Progress& progress) {
-  if (const Result<void> done = keeper_.open(request, progress); !done) return {failed(done.error()), {}, {}, {}};
-  return opened();
+  const Result<bool> done = keeper_.open(request, progress);
+  if (!done) return {failed(done.error()), {}, {}, {}};
+  // Open already: only the asker learns how it is; other views have nothing to start over.
+  return *done ? opened() : Outcome{keeper_.state(), {}, {}, {}};
 }
 
 Outcome Bench::reopen(const Progress& progress) {

@@ -138,18 +138,22 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
                       recovered, std::move(warnings),  std::nullopt};
 }
 
-Result<void> DocumentKeeper::open(const ipc::Open& request, const Progress& progress) {
+Result<bool> DocumentKeeper::open(const ipc::Open& request, const Progress& progress) {
   if (open_) {
-    if (same_file(open_->document.path, request.path)) return {};
+    if (same_file(open_->document.path, request.path)) return false;
     if (changed())
       return fail(open_->document.path.string(), "has unsaved edits: save it, or close it with discard, before another deck is opened");
   }
   Result<OpenDocument> loaded = load(request, progress);
   if (!loaded) return fail(std::move(loaded.error()));
   if (open_)
-    if (Result<void> gone = let_go(); !gone) return gone;
+    if (Result<void> gone = let_go(); !gone) return fail(std::move(gone.error()));
   open_ = std::move(*loaded);
-  return folder_.write_session({request, 0});
+  if (const Result<void> noted = folder_.write_session({request, 0}); !noted)
+    open_->warnings.push_back({noted.error().file, 0, "session-not-noted",
+                               "what is open couldn't be noted, so after a restart it has to be opened by hand: " + noted.error().message,
+                               1});
+  return true;
 }
 
 Result<bool> DocumentKeeper::reopen(const Progress& progress) {
@@ -160,8 +164,8 @@ Result<bool> DocumentKeeper::reopen(const Progress& progress) {
   if (last.attempts >= kMostAttempts)
     return fail(last.open.path, "opening it ended the daemon " + std::to_string(last.attempts) + " times; open it by hand to try again");
   ++last.attempts;
-  if (Result<void> noted = folder_.write_session(last); !noted) return fail(std::move(noted.error()));
-  const Result<void> opened = open(last.open, progress);
+  (void)folder_.write_session(last);  // without room for it, only the count of attempts is lost
+  const Result<bool> opened = open(last.open, progress);
   // An honest refusal is no crash.
   if (!opened) {
     --last.attempts;

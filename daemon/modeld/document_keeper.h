@@ -18,8 +18,9 @@ class DocumentKeeper {
   explicit DocumentKeeper(StateFolder folder) : folder_(std::move(folder)) {}
 
   /// Opens a deck and brings back what its journal holds. A document that is open already is given up, which takes that it has
-  /// no unsaved edits; on an error it stays. Errors: those of the deck, of the journal, unsaved edits.
-  Result<void> open(const ipc::Open& request, const Progress& progress);
+  /// no unsaved edits; on an error it stays. False: this deck was open already. Errors: those of the deck, of the journal,
+  /// unsaved edits.
+  Result<bool> open(const ipc::Open& request, const Progress& progress);
   /// What was open when the last life ended; false if nothing was. Errors: as `open`; a deck that ended several lives is left.
   Result<bool> reopen(const Progress& progress);
   /// Prepares, journals, commits.

@@ -106,25 +106,27 @@ TEST_F(Keeping, WhatWasUndoneBeyondASaveSurvivesARestart) {
   EXPECT_TRUE(second.changed()) << "the deck on disk has the edit";
 }
 
-TEST_F(Keeping, SelectionAndHiddenPartsSurviveASaveAndARestart) {
+TEST_F(Keeping, SelectionAndLockedPartsSurviveASaveAndARestart) {
   const fs::path deck = folder_.sheet();
   {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
+    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
     Select select;
     select.expr = "1001-1010";
     ASSERT_TRUE(first.edit(select));
-    SetParts hide;
-    hide.on = "7";
-    const auto hidden = first.edit(hide);
-    ASSERT_TRUE(hidden) << hidden.error().text();
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    SetParts lock;
+    lock.action = VisibilityAction::lock;
+    lock.on = "7";
+    const auto locked = first.edit(lock);
+    ASSERT_TRUE(locked) << locked.error().text();
+    ASSERT_EQ(first.state().selected_nodes, 10u);
     ASSERT_TRUE(first.save(std::nullopt));
   }
   DocumentKeeper second = keeper();
   ASSERT_TRUE(second.reopen({}));
   EXPECT_EQ(second.state().selected_nodes, 10u);
-  EXPECT_TRUE(second.document().current().parts->at(0).hidden);
+  EXPECT_TRUE(second.document().current().parts->at(0).locked);
   EXPECT_FALSE(second.changed());
 }
 

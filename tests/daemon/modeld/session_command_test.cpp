@@ -1,0 +1,102 @@
+// `prismesh session` and modeld as two programs, with the daemon dying in between.
+#include <csignal>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "folder.h"
+#include "tests/station/process.h"
+
+namespace prismesh::modeld {
+namespace {
+
+using test::Folder;
+using test::Process;
+
+class SessionCommand : public ::testing::Test {
+ protected:
+  struct Ran {
+    int status = 0;
+    std::string out;
+    std::string err;
+  };
+
+  void start() {
+    daemon_ = std::make_unique<Process>(
+        std::vector<std::string>{program("prismesh-modeld"), "--runtime-dir", run_folder(), "--state-dir", folder_.state().string()},
+        std::map<std::string, std::string>{});
+  }
+  static std::string program(const std::string& name) { return std::string(PRISMESH_PROGRAMS) + "/" + name; }
+  std::string run_folder() const { return (folder_.path() / "run").string(); }
+
+  Ran session(const std::vector<std::string>& arguments) {
+    std::vector<std::string> command{program("prismesh"), "session", "--runtime-dir", run_folder()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    Process process(command, {});
+    Ran ran;
+    ran.status = process.wait_for_exit();
+    ran.out = process.all_output();
+    ran.err = process.standard_error();
+    return ran;
+  }
+  /// The daemon's socket may not be there yet: state is asked until it is.
+  void wait_until_there() {
+    for (int i = 0; i < 500 && session({"state"}).status != 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+
+  Folder folder_;
+  std::unique_ptr<Process> daemon_;
+};
+
+const char* const kMove = R"({"edit": "translate", "by": [0, 0, 0.25], "on": "1313"})";
+
+TEST_F(SessionCommand, WithoutADaemonItSaysSoAtOnce) {
+  const Ran ran = session({"state"});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.err.find("nobody listens there"), std::string::npos) << ran.err;
+}
+
+TEST_F(SessionCommand, EditsAndSavesTheOpenDocument) {
+  const auto deck = folder_.sheet();
+  const std::string original = test::whole_file(deck);
+  start();
+  wait_until_there();
+  EXPECT_EQ(session({"edit", kMove}).status, 1) << "nothing is open";
+  ASSERT_EQ(session({"open", deck.string()}).status, 0);
+  const Ran edited = session({"--json", "edit", kMove, kMove});
+  EXPECT_EQ(edited.status, 0) << edited.err;
+  EXPECT_EQ(std::count(edited.out.begin(), edited.out.end(), '\n'), 2);
+  EXPECT_NE(edited.out.find("\"nodes_moved\":1"), std::string::npos) << edited.out;
+  EXPECT_EQ(session({"undo"}).status, 0);
+  EXPECT_EQ(session({"close"}).status, 1) << "unsaved edits";
+  EXPECT_EQ(session({"edit", "{"}).status, 2) << "no JSON is wrong usage";
+  EXPECT_EQ(session({"save"}).status, 0);
+  EXPECT_EQ(test::compare_decks(original, test::whole_file(deck)).nodes, std::vector<std::int64_t>{1313});
+  EXPECT_EQ(session({"close"}).status, 0);
+  EXPECT_NE(session({"state"}).out.find("no document is open"), std::string::npos);
+  daemon_->kill(SIGTERM);
+  EXPECT_EQ(daemon_->wait_for_exit(), 0);
+}
+
+TEST_F(SessionCommand, GoesOnWhenTheDaemonIsRestarted) {
+  const auto deck = folder_.sheet();
+  start();
+  wait_until_there();
+  ASSERT_EQ(session({"open", deck.string()}).status, 0);
+  ASSERT_EQ(session({"edit", kMove}).status, 0);
+  daemon_->kill(SIGKILL);
+  daemon_->wait_for_exit();
+  std::thread restart([this] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    start();
+  });
+  const Ran edited = session({"edit", kMove});
+  restart.join();
+  EXPECT_EQ(edited.status, 0) << edited.err;
+  const Ran state = session({"--json", "state"});
+  EXPECT_NE(state.out.find("\"recovered_edits\":1"), std::string::npos) << state.out;
+  EXPECT_NE(state.out.find("\"journalled_edits\":2"), std::string::npos) << state.out;
+}
+
+}  // namespace
+}  // namespace prismesh::modeld
