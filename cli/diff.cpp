@@ -78,7 +78,9 @@ Difference compare(const OpenedDeck& a, const OpenedDeck& b) {
 Result<OpenedDeck> open_one(const std::filesystem::path& path, const Surroundings& surroundings) {
   MonotonicClock clock;
   ProgressBar bar(surroundings, "reading " + path.filename().string(), clock);
-  return mesh::deck::open(path, bar.progress());
+  Result<OpenedDeck> opened = mesh::deck::open(path, bar.progress());
+  if (!opened && opened.error().file.empty()) opened.error().file = path.string();
+  return opened;
 }
 
 }  // namespace

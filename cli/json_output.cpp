@@ -1,5 +1,7 @@
 #include "cli/json_output.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/report_text.h"
@@ -52,7 +54,7 @@ Json edit_object(const document::EditReport& report) {
           {"before", bad_shells(report.before)},
           {"after", bad_shells(report.after)},
           {"notes", std::move(notes)},
-          {"ms", report.milliseconds}};
+          {"ms", std::round(report.milliseconds * 1000) / 1000}};
 }
 
 }  // namespace

@@ -12,7 +12,9 @@ Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, co
   options.target_size = common.target_size;
   options.criteria = common.criteria;
   options.progress = bar.progress();
-  return mesh::document::open(deck, options);
+  Result<mesh::document::Document> document = mesh::document::open(deck, options);
+  if (!document && document.error().file.empty()) document.error().file = deck.string();
+  return document;
 }
 
 }  // namespace prismesh::cli

@@ -70,12 +70,23 @@ void say_warnings(const Surroundings& surroundings, const mesh::document::Docume
 
 void say_guesses(const Surroundings& surroundings, const mesh::document::Document& document) {
   const mesh::document::Settings& settings = document.settings;
-  const std::string unit(name(settings.length_unit));
-  const std::string file = document.path.string();
-  if (settings.target_size_guessed)
-    say(surroundings, Error{file, 0,
-                            "note: target size " + shortest(settings.target_size) + " " + unit +
-                                " is guessed from the median edge; --target-size sets it"});
+  std::string guesses, options;
+  const auto add = [&](bool guessed, const std::string& what, const char* option) {
+    if (!guessed) return;
+    if (!guesses.empty()) guesses += ", ", options += " and ";
+    guesses += what;
+    options += option;
+  };
+  add(settings.length_unit_guessed, "length unit " + std::string(name(settings.length_unit)), "--length-unit");
+  add(settings.target_size_guessed, "target size " + shortest(settings.target_size) + " from the median edge", "--target-size");
+  if (!guesses.empty()) say(surroundings, Error{document.path.string(), 0, "note: guessed " + guesses + "; set with " + options});
+}
+
+bool output_is_good(const Surroundings& surroundings) {
+  surroundings.out.flush();
+  if (surroundings.out) return true;
+  say(surroundings, Error{"standard output", 0, "can't be written"});
+  return false;
 }
 
 void print_edit(std::ostream& out, const mesh::document::EditReport& report) {

@@ -28,4 +28,8 @@ void say(const Surroundings& surroundings, const Error& error);
 void say_warnings(const Surroundings& surroundings, const mesh::document::Document& document);
 void say_guesses(const Surroundings& surroundings, const mesh::document::Document& document);
 
+/// Whether all results so far have reached standard output; asked before a deck is written, since a command that fails writes
+/// nothing. Says so if not.
+bool output_is_good(const Surroundings& surroundings);
+
 }  // namespace prismesh::cli

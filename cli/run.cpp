@@ -14,12 +14,7 @@ int run(std::span<const std::string> args, const Surroundings& surroundings) {
     return kWrongUsage;
   }
   const int status = (*action)(surroundings);
-  surroundings.out.flush();
-  if (status == kDone && !surroundings.out) {
-    say(surroundings, Error{"standard output", 0, "can't be written"});
-    return kFailed;
-  }
-  return status;
+  return status == kDone && !output_is_good(surroundings) ? kFailed : status;
 }
 
 int run(std::span<const std::string> args, std::ostream& out, std::ostream& err) { return run(args, Surroundings{out, err}); }

@@ -169,8 +169,30 @@ TEST_F(Cli, stopped_work_leaves_nothing) {
   std::ostringstream out, err;
   const std::vector<std::string> args = {"edit", deck, "--edit", kLift, "-o", path("out.k"), "--journal", path("journal.jsonl")};
   EXPECT_EQ(run(args, {out, err, false, &interrupted}), kFailed);
+  EXPECT_THAT(err.str(), StartsWith(deck + ": "));
   EXPECT_THAT(err.str(), HasSubstr("cancelled"));
   EXPECT_EQ(names(), before);
+}
+
+TEST_F(Cli, results_that_can_not_be_said_are_not_written) {
+  const std::string deck = write("plate.k", plate_text());
+  const auto before = names();
+  std::ostringstream out, err;
+  out.setstate(std::ios::badbit);  // a full disk or a reader that went away
+  const std::vector<std::string> args = {"edit", deck, "--edit", kLift, "-o", path("out.k"), "--journal", path("journal.jsonl")};
+  EXPECT_EQ(run(args, {out, err}), kFailed);
+  EXPECT_THAT(err.str(), HasSubstr("standard output: can't be written"));
+  EXPECT_EQ(names(), before);
+  EXPECT_EQ(run(std::vector<std::string>{"info", deck}, {out, err}), kFailed);
+}
+
+TEST_F(Cli, guesses_are_said_and_can_be_set) {
+  const std::string deck = write("plate.k", plate_text());
+  const Outcome guessed = prismesh({"edit", deck, "--edit", kSelect, "-o", path("a.k")});
+  EXPECT_THAT(guessed.err,
+              HasSubstr("note: guessed length unit mm, target size 5 from the median edge; set with --length-unit and --target-size"));
+  const Outcome set = prismesh({"edit", deck, "--edit", kSelect, "-o", path("b.k"), "--length-unit", "m", "--target-size", "4"});
+  EXPECT_EQ(set.err, "");
 }
 
 }  // namespace
