@@ -211,6 +211,17 @@ TEST(Journal, LostDoubledOrSwappedRecordsAreFound) {
   }
 }
 
+TEST(Journal, ARecordOfAnotherHistoryIsFound) {
+  const Session session({kSession[0], kSession[1]});
+  const Session other({R"({"edit":"select","expr":"2-20"})", kSession[1]});
+  const std::string spliced = content_of(session.path).substr(0, session.bytes[1]) + content_of(other.path).substr(other.bytes[1]);
+  put_content(session.path, spliced);
+  Document document = small();
+  const Result<Journal> journal = Journal::recover(session.path, document);
+  ASSERT_FALSE(journal);
+  EXPECT_EQ(journal.error().line, 4);
+}
+
 TEST(Journal, BlocksThatNeverReachedTheDiskAreATornTail) {
   const Session session;
   const std::string whole = content_of(session.path);
