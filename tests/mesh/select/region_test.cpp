@@ -145,6 +145,11 @@ TEST(Outline, of_less_than_an_area_takes_nothing) {
   EXPECT_TRUE(inside_outline(model, kIdentity, {{-9, 1}, {9, 1}, {3, 1 + 1e-320}}).empty());
 }
 
+TEST(Outline, counts_a_corner_at_a_nodes_height_once) {
+  const Model model = test::make_model({{1, {-0.9, 0, 0}}, {2, {0, 0, 0}}, {3, {1.9, 0, 0}}}, {});
+  EXPECT_EQ(inside_outline(model, kIdentity, {{-1, -2}, {2, 0}, {0, 2}}), (NodeSet{NodeIndex(1), NodeIndex(2)}));
+}
+
 TEST(Outline, counts_a_shared_border_once) {
   // two squares side by side: each node belongs to exactly one
   const Model model = flat_grid(4, 4);
