@@ -249,6 +249,20 @@ TEST(Save, into_another_folder_refuses_an_include_from_outside) {
   EXPECT_EQ(content(folder / "common.k"), "*NODE\n2,5.0,0.,0.\n");
 }
 
+/// A copy of the deck would still mean the old file.
+TEST(Save, into_another_folder_refuses_an_include_with_an_absolute_name) {
+  const DeckFolder folder;
+  const auto include = folder.write("src/a.k", "*NODE\n2,2.,0.,0.\n");
+  const auto main = folder.write("src/deck.k", "*INCLUDE\n" + include.string() + "\n");
+  const auto opened = deck::open(main);
+  ASSERT_OPENED(opened);
+  ASSERT_EQ(opened->model.node_count(), 1u);
+  const auto saved = save(*opened->deck, opened->model, opened->model, folder / "out/deck.k");
+  ASSERT_FALSE(saved);
+  EXPECT_NE(saved.error().file.find("a.k"), std::string::npos);
+  EXPECT_TRUE(save(*opened->deck, opened->model, opened->model, main));
+}
+
 TEST(Save, beside_the_old_deck_leaves_its_includes_alone) {
   const DeckFolder folder;
   folder.write("a.k", "*NODE\n2,2.,0.,0.\n");
