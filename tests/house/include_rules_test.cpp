@@ -74,7 +74,7 @@ TEST(Headers, say_what_they_are_and_guard_themselves) {
     if (!source.path.ends_with(".h")) continue;
     EXPECT_TRUE(source.text.starts_with("// ")) << source.path << " doesn't open with a line that says what it is";
     EXPECT_NE(source.text.find("#pragma once"), std::string::npos) << source.path;
-    EXPECT_EQ(source.text.find("using namespace"), std::string::npos) << source.path;
+    EXPECT_EQ(source.text.find("\nusing namespace"), std::string::npos) << source.path;
   }
 }
 

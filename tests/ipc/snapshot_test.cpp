@@ -8,7 +8,7 @@
 
 #include "ipc/snapshot_publisher.h"
 #include "ipc/snapshot_table.h"
-#include "small_document.h"
+#include "tests/ipc/small_document.h"
 
 namespace prismesh::ipc {
 namespace {

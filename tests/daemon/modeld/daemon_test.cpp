@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 
-#include "folder.h"
 #include "ipc/client.h"
 #include "ipc/line_socket.h"
 #include "ipc/messages_json.h"
+#include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
 namespace {

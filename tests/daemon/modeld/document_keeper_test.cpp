@@ -5,7 +5,7 @@
 
 #include "daemon/modeld/document_keeper.h"
 #include "daemon/modeld/save_intent.h"
-#include "folder.h"
+#include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
 namespace {

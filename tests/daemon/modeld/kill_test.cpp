@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "folder.h"
 #include "ipc/reconnecting_client.h"
+#include "tests/daemon/modeld/folder.h"
 #include "tests/station/process.h"
 
 namespace prismesh::modeld {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "folder.h"
+#include "tests/daemon/modeld/folder.h"
 #include "tests/station/process.h"
 
 namespace prismesh::modeld {
