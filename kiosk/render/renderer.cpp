@@ -66,7 +66,8 @@ struct Renderer::State {
   ScenePass scene;
   ModelLayer layer;
   std::shared_ptr<const ModelSource> model;
-  EyeImages images;
+  EyeImages fine_images;
+  EyeImages moving_images;  ///< without multisampling
   gl::VertexArray no_attributes = gl::VertexArray::make();
 
   // The item picture and what it is of.
@@ -82,7 +83,7 @@ struct Renderer::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  void weave(const Picture& picture, unsigned framebuffer, int width, int height) const;
+  void weave(const EyeImages& images, const Picture& picture, unsigned framebuffer, int width, int height) const;
   bool make_item_buffer(int width, int height);
   void read_items(int width, int height);
   const ItemImage& items_for(const stereo::Aim& aim);
@@ -99,7 +100,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
 }
 
 Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
-  const Result<void> done = state_->layer.set_model(model);
+  Result<void> done = state_->layer.set_model(model);
   state_->model = done ? std::move(model) : nullptr;
   state_->figures.chunks_uploaded = state_->layer.chunks_uploaded();
   return done;
@@ -125,16 +126,17 @@ void Renderer::end_preview() { state_->layer.end_preview(); }
 Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, int width, int height) {
   const auto eyes = eyes_for(picture.profile);
   const EyeView first = eye_view(picture, eyes.front(), width, height);
-  if (const auto sized = state_->images.resize(first.image.width, first.image.height, state_->options.samples); !sized)
+  EyeImages& images = picture.moving ? state_->moving_images : state_->fine_images;
+  if (const auto sized = images.resize(first.image.width, first.image.height, picture.moving ? 1 : state_->options.samples); !sized)
     return fail(sized.error());
   for (std::size_t i = 0; i < eyes.size(); ++i) {
     const EyeView eye = eye_view(picture, eyes[i], width, height);
-    state_->images.bind_scene();
+    images.bind_scene();
     state_->scene.draw(picture, state_->layer, eye, state_->options.glyph_cap);
-    state_->images.bind_flat(static_cast<int>(i));
+    images.bind_flat(static_cast<int>(i));
     state_->scene.draw_flat(picture, eye);
   }
-  state_->weave(picture, framebuffer, width, height);
+  state_->weave(images, picture, framebuffer, width, height);
   DrawReport report;
   if (picture.quality_glyphs && !state_->layer.empty()) {
     report.glyphs = state_->layer.glyphs(state_->options.glyph_cap).count;
@@ -143,7 +145,7 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
   return report;
 }
 
-void Renderer::State::weave(const Picture& picture, unsigned framebuffer, int width, int height) const {
+void Renderer::State::weave(const EyeImages& images, const Picture& picture, unsigned framebuffer, int width, int height) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width, height);
   // An overlay may have left anything switched on.

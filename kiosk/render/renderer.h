@@ -59,6 +59,7 @@ struct Picture {
   bool outlines = true;  ///< free edges and creases
   bool quality_glyphs = true;
   bool selected_nodes = true;
+  bool moving = false;  ///< the view is being turned or something dragged: drawn without multisampling, so that large models keep up
   std::optional<Handle> handle;
   std::optional<PixelRect> rubber_band;
   /// Panels, cursor and all else that lies in the screen's plane: called once per eye image, after the scene and before weaving.

@@ -1,7 +1,9 @@
 #include "kiosk/render/scene_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "kiosk/render/palette.h"
 
@@ -94,10 +96,12 @@ ScenePass::Solid ScenePass::upload(const std::vector<HandleVertex>& mesh) {
   glBindVertexArray(solid.array.get());
   glBindBuffer(GL_ARRAY_BUFFER, solid.buffer.get());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.size() * sizeof(HandleVertex)), mesh.data(), GL_STATIC_DRAW);
-  for (GLuint attribute = 0; attribute < 3; ++attribute) {
+  constexpr std::array<std::size_t, 3> kOffsets{offsetof(HandleVertex, circle), offsetof(HandleVertex, stem),
+                                                offsetof(HandleVertex, slant)};
+  for (GLuint attribute = 0; attribute < kOffsets.size(); ++attribute) {
     glEnableVertexAttribArray(attribute);
-    glVertexAttribPointer(attribute, 2, GL_FLOAT, GL_FALSE, sizeof(HandleVertex),
-                          reinterpret_cast<const void*>(attribute * 2 * sizeof(float)));
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): OpenGL passes offsets as pointers
+    glVertexAttribPointer(attribute, 2, GL_FLOAT, GL_FALSE, sizeof(HandleVertex), reinterpret_cast<const void*>(kOffsets[attribute]));
   }
   glBindVertexArray(0);
   return solid;
