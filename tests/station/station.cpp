@@ -42,8 +42,10 @@ VirtualDisplay::VirtualDisplay(const std::filesystem::path& home, int width, int
   const std::string number = server_->wait_for("");
   EXPECT_FALSE(number.empty()) << "Xvfb did not start:\n" << server_->all_output();
   name_ = ":" + number;
-  window_manager_ = std::make_unique<Process>(std::vector<std::string>{"openbox", "--sm-disable"},
+  window_manager_ = std::make_unique<Process>(std::vector<std::string>{"openbox", "--sm-disable", "--startup", "echo window-manager-ready"},
                                               std::map<std::string, std::string>{{"DISPLAY", name_}, {"HOME", home.string()}});
+  // A window that asks to be mapped while the window manager is starting may be forgotten.
+  EXPECT_FALSE(window_manager_->wait_for("window-manager-ready").empty()) << window_manager_->all_output();
 }
 
 Station::Station(const std::string& name)
@@ -93,9 +95,8 @@ void Station::start_kiosk(const std::vector<std::string>& more_arguments) {
   command.insert(command.end(), more_arguments.begin(), more_arguments.end());
   kiosk_ = std::make_unique<Process>(command, std::map<std::string, std::string>{{"DISPLAY", display_->name()}});
   ASSERT_FALSE(kiosk_->wait_for("generation ").empty()) << "the kiosk showed no document\n" << kiosk_->all_output();
-  ASSERT_FALSE(
-      kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); }).empty());
-  Process search({"xdotool", "search", "--sync", "--name", "^Prismesh$"}, {{"DISPLAY", display_->name()}});
+  ASSERT_FALSE(kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); }).empty());
+  Process search({"xdotool", "search", "--onlyvisible", "--sync", "--name", "^Prismesh$"}, {{"DISPLAY", display_->name()}});
   window_ = search.wait_for("");
   ASSERT_FALSE(window_.empty());
   xdotool({"windowfocus", "--sync", window_});
