@@ -21,7 +21,8 @@ class Render : public Cli {
   }
   /// `render` with these options; what the kiosk says on standard error is in `said_`.
   Outcome draw(const std::vector<std::string>& options) {
-    std::vector<std::string> args{"render", deck_, "-o", path("a.png"), "--size", "64x48"};
+    std::vector<std::string> args{"render", deck_, "-o", path("a.png")};
+    if (std::find(options.begin(), options.end(), "--size") == options.end()) args.insert(args.end(), {"--size", "64x48"});
     args.insert(args.end(), options.begin(), options.end());
     ::testing::internal::CaptureStderr();
     const Outcome outcome = prismesh(args);
