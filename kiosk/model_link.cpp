@@ -74,7 +74,7 @@ void ModelLink::lost(const Error& error) {
   client_.reset();
   waiting_.clear();
   busy_.clear();
-  stale_ = false;
+  stale_ = fetched_ = false;
   if (drag_) drop_drag("lost");
   next_attempt_ns_ = clock_.now_ns();
   ++changes_;
@@ -162,7 +162,8 @@ void ModelLink::took_state(const ipc::State& state) {
     if (state.warnings.size() > 1) text += fmt::format(" (and {} more warnings: prismesh info lists them)", state.warnings.size() - 1);
     say(Notice::Kind::warning, std::move(text));
   }
-  if (!snapshot_ || snapshot_->info().generation != state.generation || snapshot_->info().document != state.path) stale_ = true;
+  if (!fetched_ || !snapshot_ || snapshot_->info().generation != state.generation || snapshot_->info().document != state.path)
+    stale_ = true;
 }
 
 void ModelLink::fetch_snapshot() {
@@ -175,6 +176,7 @@ void ModelLink::fetch_snapshot() {
     return;
   }
   snapshot_ = std::move(*view);
+  fetched_ = true;
   const ipc::SnapshotInfo& info = snapshot_->info();
   trace_.line(fmt::format("generation {} selected {} warn {} fail {} changed {}", info.generation, info.selected_nodes, info.counts.warn,
                           info.counts.fail, info.changed ? 1 : 0));
@@ -231,7 +233,7 @@ void ModelLink::edit(mesh::document::Edit edit) {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say(Notice::Kind::error, text_of(*failed));
     const auto* edited = std::get_if<ipc::Edited>(&answer);
     if (edited == nullptr) return;
-    if (!snapshot_ || snapshot_->info().generation != edited->generation) stale_ = true;
+    if (!fetched_ || !snapshot_ || snapshot_->info().generation != edited->generation) stale_ = true;
     if (selecting || edited->report.notes.empty()) return;  // what a selection did is in the picture
     std::string text;
     for (const std::string& note : edited->report.notes) text += (text.empty() ? "" : "\n") + note;

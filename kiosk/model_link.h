@@ -117,7 +117,8 @@ class ModelLink {
   std::optional<ipc::State> state_;
   std::shared_ptr<const ipc::SnapshotView> snapshot_;
   std::string made_by_;
-  bool stale_ = false;  ///< a newer generation exists
+  bool stale_ = false;    ///< a newer generation exists
+  bool fetched_ = false;  ///< the snapshot is of this connection
   std::string busy_;
   double busy_fraction_ = 0;
   std::optional<RemoteDrag> drag_;

@@ -119,6 +119,7 @@ Result<void> X11Window::open(const X11Options& options) {
     return fail(
         name,
         "no X server answers there: start one, set DISPLAY to one that runs, or use --headless-frames N --shots DIR to draw pictures");
+  XSetIOErrorHandler([](Display*) { return 0; });  // the loop says it in its own words
   XSetIOErrorExitHandler(display_, mark_gone, &gone_);
   XkbSetDetectableAutoRepeat(display_, True, nullptr);
 

@@ -99,6 +99,7 @@ std::vector<Gesture> Gestures::wheel(const display::WheelTurned& event, Under un
 bool Gestures::cancel() {
   const bool something = drag_ == Drag::rectangle || drag_ == Drag::handle;
   if (drag_ != Drag::none) drag_ = Drag::dead;
+  last_click_.reset();
   return something;
 }
 

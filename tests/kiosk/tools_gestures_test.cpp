@@ -72,6 +72,13 @@ TEST_F(GesturesTest, a_late_or_distant_second_click_is_a_click) {
   only<NodeClicked>(click(100 + kClickRadius + 1, 50));
 }
 
+TEST_F(GesturesTest, what_was_cancelled_is_not_half_a_double_click) {
+  only<NodeClicked>(click(100, 50));
+  gestures_.cancel();
+  time_ms_ += 10;
+  only<NodeClicked>(click(100, 50));
+}
+
 TEST_F(GesturesTest, a_hand_that_trembles_still_clicks) {
   press(100, 50);
   EXPECT_TRUE(move(100 + kClickRadius, 50).empty());

@@ -15,7 +15,7 @@ class DragTest : public ::testing::Test {
   void SetUp() override {
     if (const std::string missing = missing_programs(); !missing.empty())
       GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
-    station_ = std::make_unique<Station>(::testing::UnitTest::GetInstance()->current_test_info()->name());
+    station_ = std::make_unique<Station>();
     original_ = whole_file(station_->deck());
     station_->start_kiosk();
   }
@@ -87,11 +87,7 @@ TEST_F(DragTest, a_click_selects_the_node_and_a_double_click_its_region) {
   EXPECT_NEAR(handle->foot_y, pixel[1], 1);
   station_->key("Escape");
   ASSERT_TRUE(station_->wait_for_selection(0));
-  station_->move(pixel[0], pixel[1]);
-  station_->press();
-  station_->release();
-  station_->press();
-  station_->release();
+  station_->double_click(pixel[0], pixel[1]);
   EXPECT_TRUE(station_->wait_for_selection(nodes.size())) << "a smooth sheet is one region";
 }
 
@@ -144,7 +140,7 @@ TEST_F(DragTest, a_model_server_killed_in_the_middle_of_a_pull_undoes_the_pull_o
 }
 
 TEST_F(DragTest, two_stations_side_by_side_do_not_touch_each_other) {
-  Station other("other");
+  Station other;
   other.start_kiosk();
   const std::vector<std::int64_t> here = station_->select_middle();
   const std::vector<std::int64_t> there = other.select_middle();

@@ -51,7 +51,7 @@ class WindowTest : public ::testing::Test {
   void SetUp() override {
     if (const std::string missing = missing_programs(); !missing.empty())
       GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
-    station_ = std::make_unique<Station>(::testing::UnitTest::GetInstance()->current_test_info()->name());
+    station_ = std::make_unique<Station>();
   }
   std::unique_ptr<Station> station_;
 };

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -48,9 +50,11 @@ VirtualDisplay::VirtualDisplay(const std::filesystem::path& home, int width, int
   EXPECT_FALSE(window_manager_->wait_for("window-manager-ready").empty()) << window_manager_->all_output();
 }
 
-Station::Station(const std::string& name)
-    : folder_(std::filesystem::temp_directory_path() / ("prismesh_station_" + name + "_" + std::to_string(::getpid()))) {
-  std::filesystem::remove_all(folder_);
+Station::Station() {
+  // Short: a socket's path has 107 bytes at most.
+  std::string pattern = (std::filesystem::temp_directory_path() / "station_XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no folder for a station: " + pattern);
+  folder_ = pattern;
   std::filesystem::create_directories(folder_ / "run");
   std::filesystem::create_directories(folder_ / "state");
   std::filesystem::permissions(folder_ / "run", std::filesystem::perms::owner_all);
@@ -115,6 +119,10 @@ void Station::release(int button) { xdotool({"mouseup", std::to_string(button)})
 void Station::click(double x, double y, int button) {
   move(x, y);
   xdotool({"click", std::to_string(button)});
+}
+void Station::double_click(double x, double y) {
+  move(x, y);
+  xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
 }
 void Station::drag(double from_x, double from_y, double to_x, double to_y) {
   move(from_x, from_y);

@@ -32,7 +32,7 @@ class VirtualDisplay {
 class Station {
  public:
   /// Starts display and model server in a new folder that goes with the station; deck() is written.
-  explicit Station(const std::string& name);
+  Station();
   ~Station();
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -52,6 +52,7 @@ class Station {
   void press(int button = 1);
   void release(int button = 1);
   void click(double x, double y, int button = 1);
+  void double_click(double x, double y);
   void drag(double from_x, double from_y, double to_x, double to_y);
   void key(const std::string& keys);
   void type(const std::string& text);
