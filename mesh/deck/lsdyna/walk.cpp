@@ -71,7 +71,7 @@ void Walk::walk_file(std::uint32_t file, Columns columns, int depth) {
   }
   // Fragments without *KEYWORD do without *END; a deck that has the one lacks the other when it was cut off.
   if (has_keyword && !blocks.ended())
-    warnings.note("no-end", file, files[file].bytes.text().size(), "the file has *KEYWORD but no *END: it may have been cut off");
+    warnings.note_each("no-end", file, files[file].bytes.text().size(), "the file has *KEYWORD but no *END: it may have been cut off");
   parameters_.leave_file(before);
   states_[file].open = false;
 }
@@ -82,7 +82,7 @@ void Walk::read_block(std::uint32_t file, const Block& block, Columns columns, i
   if (const std::optional<CardForm> form = card_form(name)) {
     add_mesh(file, block, *form);
   } else if (starts_with(name, "ELEMENT_")) {
-    warnings.note("unread-elements", file, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
+    warnings.note_each("unread-elements", file, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
   } else if (starts_with(name, "INCLUDE")) {
     include(file, block, columns, depth);
   } else if (starts_with(name, "PARAMETER") && name != "PARAMETER_DUPLICATION" && !starts_with(name, "PARAMETER_TYPE")) {
@@ -90,8 +90,8 @@ void Walk::read_block(std::uint32_t file, const Block& block, Columns columns, i
   } else if (definitions.read(text, block, parameters_)) {
     return;
   } else if (starts_with(name, "PART_MOVE") || starts_with(name, "NODE_TRANSFORM")) {
-    warnings.note("moved-at-start", file, block.keyword,
-                  "*" + block.name + " moves nodes when the solver starts; they are shown and edited where their cards put them");
+    warnings.note_each("moved-at-start", file, block.keyword,
+                       "*" + block.name + " moves nodes when the solver starts; they are shown and edited where their cards put them");
   }
 }
 
@@ -153,7 +153,7 @@ void Walk::include(std::uint32_t from, const Block& block, Columns columns, int 
       warnings.note("transformed-include", from, block.keyword,
                     "*INCLUDE_TRANSFORM isn't read in this version: what the file holds isn't shown; it is kept as it is");
   } else {
-    warnings.note("unread-include", from, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
+    warnings.note_each("unread-include", from, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
     // Of the others only these begin with a file's name.
     if (kind != "_NASTRAN" && kind != "_BINARY" && kind != "_TRIM" && kind != "_AUTO_OFFSET" && !starts_with(kind, "_STAMPED")) return;
   }
@@ -165,7 +165,7 @@ void Walk::include_one(std::uint32_t from, const IncludeName& name, Columns colu
   const std::uint32_t file = find_file(from, name.name, reason);
   if (file == kNoFile) {
     if (missing_files.size() < kMostFiles) missing_files.push_back(name.name);
-    warnings.note("missing-include", from, name.offset, "the include file " + name.name + " " + reason);
+    warnings.note_each("missing-include", from, name.offset, "the include file " + name.name + " " + reason);
     return;
   }
   ++states_[file].uses;

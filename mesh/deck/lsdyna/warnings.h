@@ -1,4 +1,4 @@
-// Collects what is odd about a deck: each kind once, with its first place and how often.
+// Collects what is odd about a deck: each kind, or each thing named, once, with its first place and how often.
 #pragma once
 
 #include <span>
@@ -14,7 +14,10 @@ class Warnings {
  public:
   /// `message` is kept of the first of its kind only.
   void note(std::string_view kind, std::uint32_t file, std::size_t offset, std::string message, std::size_t count = 1);
-  /// As the deck tells them; line numbers are counted only here, once a kind.
+  /// For what a user must hear of by name, as each file that lacks: only what says the same of the same file is put together.
+  /// After 100 of a kind the others are counted in one.
+  void note_each(std::string_view kind, std::uint32_t file, std::size_t offset, std::string message);
+  /// As the deck tells them; line numbers are counted only here.
   std::vector<Warning> finish(std::span<const SourceFile> files) const;
 
  private:

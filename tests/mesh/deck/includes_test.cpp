@@ -47,15 +47,30 @@ TEST(Includes, are_found_along_the_paths) {
   EXPECT_EQ(opened->deck->files[1].relative, "models/door.k");
 }
 
-TEST(Includes, missing_ones_are_warned_of) {
+TEST(Includes, missing_ones_are_warned_of_one_by_one) {
   const DeckFolder folder;
-  const auto opened = folder.open("*KEYWORD\n*INCLUDE\nlost.k\n*INCLUDE\ngone.k\n" + node(1) + "*END\n");
+  const auto opened = folder.open("*KEYWORD\n*INCLUDE\nlost.k\n*INCLUDE\ngone.k\nlost.k\n" + node(1) + "*END\n");
   ASSERT_OPENED(opened);
-  EXPECT_EQ(opened->deck->missing_files, (std::vector<std::string>{"lost.k", "gone.k"}));
-  const Warning missing = warning(*opened->deck, "missing-include");
-  EXPECT_EQ(missing.count, 2u);
-  EXPECT_EQ(missing.line, 3);
-  EXPECT_EQ(missing.message, "the include file lost.k isn't there");
+  EXPECT_EQ(opened->deck->missing_files, (std::vector<std::string>{"lost.k", "gone.k", "lost.k"}));
+  const std::vector<Warning>& missing = opened->deck->warnings;
+  ASSERT_EQ(missing.size(), 2u);
+  EXPECT_EQ(missing[0].message, "the include file lost.k isn't there");
+  EXPECT_EQ(missing[0].line, 3);
+  EXPECT_EQ(missing[0].count, 2u);
+  EXPECT_EQ(missing[1].message, "the include file gone.k isn't there");
+  EXPECT_EQ(missing[1].line, 5);
+  EXPECT_EQ(missing[1].count, 1u);
+}
+
+TEST(Includes, very_many_missing_ones_are_counted_in_the_end) {
+  const DeckFolder folder;
+  std::string text = "*KEYWORD\n*INCLUDE\n";
+  for (int i = 0; i < 150; ++i) text += "lost" + std::to_string(i) + ".k\n";
+  const auto opened = folder.open(text + "*END\n");
+  ASSERT_OPENED(opened);
+  ASSERT_EQ(opened->deck->warnings.size(), 101u);
+  EXPECT_EQ(opened->deck->warnings[99].message, "the include file lost99.k isn't there");
+  EXPECT_EQ(opened->deck->warnings[100].count, 50u);
 }
 
 TEST(Includes, circles_end_and_hold_their_nodes) {
