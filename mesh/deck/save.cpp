@@ -127,7 +127,7 @@ Result<void> check_unchanged(const SourceFile& file, OnDisk::File& known) {
     }
   }
   return fail(file.path.string(),
-              "has changed on disk since it was opened; nothing was written. Open it again, or save into another folder");
+              "has changed on disk since it was opened; nothing was written. Save into another folder, or close it and open it again");
 }
 
 Result<std::vector<Plan>> plan_in_place(const Deck& deck, const NewText& text) {
@@ -140,12 +140,19 @@ Result<std::vector<Plan>> plan_in_place(const Deck& deck, const NewText& text) {
   return plans;
 }
 
+/// Whether an include's name means something else, or still the old file, in another folder.
+bool stays_behind(const SourceFile& include) {
+  return include.relative.is_absolute() || include.relative.begin() == include.relative.end() || *include.relative.begin() == "..";
+}
+
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
 Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const NewText& text, const fs::path& target) {
+  const bool other_folder = !same_file(folder_of(target), folder_of(deck.files[0].path));
   std::vector<Plan> plans;
   for (const std::size_t file : writing_order(deck)) {
     const SourceFile& source = deck.files[file];
-    if (file != 0 &&
-        (source.relative.is_absolute() || source.relative.begin() == source.relative.end() || *source.relative.begin() == ".."))
+    if (file != 0 && other_folder && stays_behind(source))
       return fail(source.path.string(), "is an include outside the main file's folder, so the deck can't be saved into another folder");
     const fs::path to = file == 0 ? target : target.parent_path() / source.relative;
     const auto own = std::find_if(deck.files.begin(), deck.files.end(), [&](const SourceFile& other) { return same_file(other.path, to); });

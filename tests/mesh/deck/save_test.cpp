@@ -278,6 +278,27 @@ TEST(Save, beside_the_old_deck_leaves_its_includes_alone) {
   EXPECT_FALSE(save(*opened->deck, opened->model, opened->model, folder / "a.k")) << "the main file over its own include";
 }
 
+TEST(Save, beside_the_old_deck_includes_from_outside_stay_where_they_are) {
+  const DeckFolder folder;
+  folder.write("common.k", "*NODE\n2,2.,0.,0.\n");
+  const auto absolute = folder.write("abs.k", "*NODE\n3,3.,0.,0.\n");
+  const auto main = folder.write("src/deck.k", "*INCLUDE\n../common.k\n" + absolute.string() + "\n*NODE\n1,1.,0.,0.\n");
+  const auto opened = deck::open(main);
+  ASSERT_OPENED(opened);
+  const auto saved = save(*opened->deck, opened->model, with_node_at(opened->model, 1, {4, 0, 0}), folder / "src/copy.k");
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(saved->files_written, std::vector<std::filesystem::path>{folder / "src/copy.k"});
+  const auto copy = deck::open(folder / "src/copy.k");
+  ASSERT_OPENED(copy);
+  EXPECT_EQ(copy->model.node_count(), 3u);
+  for (const std::int64_t shared : {2, 3}) {
+    const auto refused = save(*opened->deck, opened->model, with_node_at(opened->model, shared, {4, 0, 0}), folder / "src/copy2.k");
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("would share it"), std::string::npos) << refused.error().text();
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "src/copy2.k"));
+}
+
 TEST(Save, refuses_nodes_that_must_not_move) {
   const DeckFolder folder;
   const auto opened = folder.open("*PARAMETER\nRa,1.0\n*NODE\n1,&a,0.,0.\n2,2.,0.,0.\n");
