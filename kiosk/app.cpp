@@ -89,6 +89,7 @@ class WindowedKiosk {
 };
 
 Result<void> WindowedKiosk::run() {
+  if (Result<void> laid_out = station_.screen.lay_out(); !laid_out) return laid_out;  // so that the panels' width is known
   while (!closing_) {
     const Result<std::vector<display::WindowEvent>> events = window_.take_events();
     if (!events) return fail(events.error());

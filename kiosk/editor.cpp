@@ -445,7 +445,7 @@ panels::PanelData Editor::panel_data() const {
     panels::PullFacts& pull = data.pull.emplace();
     const bool moving = pull_->handle() == Under::move_handle;
     pull.what = moving ? "Move" : "Lift";
-    pull.length = moving ? pulled_.by.norm() : pulled_.distance;
+    pull.length = moving ? pulled_.by.norm() : pull_->along_arrow(pulled_);
     if (const RemoteDrag* drag = link_.drag(); drag != nullptr && drag->begun()) {
       pull.nodes = drag->facts().nodes;
       if (drag->frame().sequence > 0) pull.counts = drag->frame().counts;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -237,45 +238,55 @@ void state_panel(const PanelData& data, display::PixelSize picture) {
   ImGui::End();
 }
 
+/// Two columns, `width` pixels wide from `x`: what to press, and what it does.
 template <class Bindings, class Left>
-void binding_table(const char* name, const Bindings& bindings, const Left& left) {
-  if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit)) return;
-  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed);
-  ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch);
+void binding_list(const char* title, const Bindings& bindings, const Left& left, float x, float width) {
+  ImGui::SetCursorPosX(x);
+  ImGui::PushFont(title_font());
+  ImGui::TextUnformatted(title);
+  ImGui::PopFont();
+  float label_width = 0;
+  for (const auto& binding : bindings)
+    label_width = std::max(label_width, ImGui::CalcTextSize(left(binding).data(), left(binding).data() + left(binding).size()).x);
   for (const auto& binding : bindings) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(std::string(left(binding)).c_str());
-    ImGui::TableNextColumn();
-    ImGui::PushTextWrapPos(0);
+    ImGui::SetCursorPosX(x);
+    ImGui::TextUnformatted(left(binding).data(), left(binding).data() + left(binding).size());
+    ImGui::SameLine(x + label_width + 2 * kGrid);
+    ImGui::PushTextWrapPos(x + width);
     ImGui::TextDisabled("%s", std::string(binding.meaning).c_str());
     ImGui::PopTextWrapPos();
   }
-  ImGui::EndTable();
 }
 
 void help_panel(display::PixelSize picture) {
-  begin_centred("Keys and mouse", picture, ImGui::GetFontSize() * 68);
+  const float widest = static_cast<float>(picture.width) - 2 * kMargin, highest = static_cast<float>(picture.height) - 2 * kMargin;
+  const float width = on_grid(std::min(ImGui::GetFontSize() * 76, widest)), half = (width - 6 * kGrid) / 2;
+  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, highest));
+  begin_centred("Keys and mouse", picture, width);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(kGrid, kGrid / 2));
-  if (ImGui::BeginTable("halves", 2)) {
-    ImGui::TableNextColumn();
-    ImGui::PushFont(title_font());
-    ImGui::TextUnformatted("Keys");
-    ImGui::PopFont();
-    binding_table("keys", tools::key_bindings(), [](const tools::KeyBinding& binding) { return binding.label; });
-    ImGui::TableNextColumn();
-    ImGui::PushFont(title_font());
-    ImGui::TextUnformatted("Mouse");
-    ImGui::PopFont();
-    binding_table("mouse", tools::mouse_bindings(), [](const tools::MouseBinding& binding) { return binding.gesture; });
-    ImGui::EndTable();
-  }
+  const float top = ImGui::GetCursorPosY();
+  binding_list(
+      "Keys", tools::key_bindings(), [](const tools::KeyBinding& binding) { return binding.label; }, 2 * kGrid, half);
+  const float bottom = ImGui::GetCursorPosY();
+  ImGui::SetCursorPosY(top);
+  binding_list(
+      "Mouse", tools::mouse_bindings(), [](const tools::MouseBinding& binding) { return binding.gesture; }, half + 4 * kGrid, half);
+  ImGui::SetCursorPosY(std::max(bottom, ImGui::GetCursorPosY()));
   ImGui::PopStyleVar();
   ImGui::End();
 }
 
 /// Tab: the text becomes what all offered entries begin with.
 int complete(ImGuiInputTextCallbackData* data) {
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways) {
+    // A field that takes the keyboard by itself selects all of its text; a path is meant to be gone on with.
+    bool& just_opened = *static_cast<bool*>(data->UserData);
+    if (std::exchange(just_opened, false)) {
+      data->CursorPos = data->BufTextLen;
+      data->ClearSelection();
+    }
+    return 0;
+  }
   const std::string typed(data->Buf, static_cast<std::size_t>(data->BufTextLen));
   const std::string longer = common_beginning(completions(typed, 10000));
   if (longer.size() > typed.size()) data->InsertChars(data->BufTextLen, longer.c_str() + typed.size());
@@ -287,7 +298,8 @@ int complete(ImGuiInputTextCallbackData* data) {
 Actions Panels::build(const PanelData& data, display::PixelSize picture) {
   Actions actions;
   covered_width_ = 2.0 * static_cast<double>(side_width(picture) + kMargin);
-  if (data.document && data.connected) {
+  const bool covered = data.help || data.dialog != Dialog::none;
+  if (data.document && data.connected && !covered) {
     document_panel(data, picture, actions);
     model_panel(data, picture, actions);
   }
@@ -310,11 +322,13 @@ void Panels::build_dialog(const PanelData& data, display::PixelSize picture, Act
     shown_dialog_ = data.dialog;
     const std::filesystem::path current(data.document ? data.document->path : "");
     typed_ = data.dialog == Dialog::save_as || !data.document ? current.string() : (current.parent_path() / "").string();
+    caret_to_end_ = true;
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(-1);
-  const bool entered =
-      ImGui::InputText("##path", &typed_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion, complete);
+  const bool entered = ImGui::InputText(
+      "##path", &typed_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackAlways,
+      complete, &caret_to_end_);
   ImGui::PushFont(small_font());
   if (offered_for_ != typed_) {
     offered_ = completions(typed_, 8);

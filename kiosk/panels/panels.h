@@ -98,6 +98,7 @@ class Panels {
 
   Dialog shown_dialog_ = Dialog::none;
   std::string typed_;
+  bool caret_to_end_ = false;
   std::vector<std::string> offered_;
   std::string offered_for_;
   double covered_width_ = 0;

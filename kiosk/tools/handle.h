@@ -49,6 +49,8 @@ class HandlePull {
   Pull at(const stereo::Aim& aim, const Pixel& pixel) const;
   /// Where a pull has brought the handle's foot.
   Vec3 foot(const Pull& pull) const;
+  /// The lift as the hand sees it: positive where the arrow points.
+  double along_arrow(const Pull& pull) const { return sense_ * pull.distance; }
   /// The grab and the unit normal that the model server works with; the normal's sense may differ from the arrow's.
   void set_axis(const stereo::Aim& aim, const Vec3& at, const Vec3& normal);
 
