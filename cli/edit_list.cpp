@@ -30,8 +30,10 @@ std::optional<Refusal> read_edits(const std::vector<std::string>& edits, const s
   std::string_view rest = bytes->text();
   for (long line = 1; !rest.empty(); ++line) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
-    if (auto refusal = take(rest.substr(0, end), script->string(), line, wanted)) return refusal;
+    const std::string_view edit = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (edit.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+    if (auto refusal = take(edit, script->string(), line, wanted)) return refusal;
   }
   return std::nullopt;
 }

@@ -25,7 +25,8 @@ struct Refusal {
   int status = kFailed;
 };
 
-/// Parses the arguments (named `argument` in errors), then the script's lines, onto `wanted`. Nothing: all were read.
+/// Parses the arguments (named `argument` in errors), then the script's lines, onto `wanted`; empty lines are passed over.
+/// Nothing: all were read.
 std::optional<Refusal> read_edits(const std::vector<std::string>& edits, const std::string& argument,
                                   const std::optional<std::filesystem::path>& script, std::vector<WantedEdit>& wanted);
 

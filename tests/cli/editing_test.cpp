@@ -101,7 +101,9 @@ TEST_F(Cli, unparsable_json_is_wrong_usage_and_names_the_line) {
   const Outcome broken = refused(std::string(kSelect) + "\n{\"edit\": \n");
   EXPECT_EQ(broken.status, kWrongUsage);
   EXPECT_THAT(broken.err, StartsWith(path("s.jsonl") + ":2: "));
-  EXPECT_EQ(refused(std::string(kSelect) + "\n\n" + kSelect).status, kWrongUsage);
+  const Outcome replayed = prismesh({"replay", path("s.jsonl"), deck, "-o", path("out.k")});
+  EXPECT_EQ(replayed.status, kWrongUsage);
+  EXPECT_EQ(replayed.err, broken.err);
   EXPECT_EQ(refused("# a comment\n").status, kWrongUsage);
   const Outcome inline_edit = prismesh({"edit", deck, "--edit", kSelect, "--edit", "select all", "-o", path("out.k")});
   EXPECT_EQ(inline_edit.status, kWrongUsage);
@@ -112,6 +114,18 @@ TEST_F(Cli, unparsable_json_is_wrong_usage_and_names_the_line) {
   EXPECT_THAT(unknown.err, HasSubstr("translate"));
   EXPECT_EQ(prismesh({"edit", deck, "--script", path("absent.jsonl"), "-o", path("out.k")}).status, kFailed);
   EXPECT_FALSE(exists("out.k"));
+}
+
+TEST_F(Cli, empty_lines_of_a_script_count_as_lines_only) {
+  const std::string deck = write("plate.k", plate_text());
+  const std::string script = write("s.jsonl", std::string(kSelect) + "\r\n\r\n  \n" + kLift + "\n\n");
+  const Outcome outcome = prismesh({"edit", deck, "--script", script, "-o", path("out.k"), "--json"});
+  EXPECT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_EQ(lines(outcome.out).size(), 2u);
+  EXPECT_EQ(prismesh({"replay", script, deck, "-o", path("again.k")}).status, kDone);
+  EXPECT_EQ(read(path("again.k")), read(path("out.k")));
+  const std::string broken = write("b.jsonl", std::string("\n\n") + "{\n");
+  EXPECT_THAT(prismesh({"edit", deck, "--script", broken, "-o", path("no.k")}).err, StartsWith(broken + ":3: "));
 }
 
 TEST_F(Cli, a_journal_replays_to_the_same_bytes) {
