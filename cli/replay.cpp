@@ -33,8 +33,12 @@ int replay(const ReplayOptions& options, const Common& common, const Surrounding
     say(surroundings, error);
     return kFailed;
   };
-  const Result<document::JournalIntents> intents = document::read_intents(options.journal);
-  if (!intents) return refuse(intents.error());
+  bool is_not_json = false;
+  const Result<document::JournalIntents> intents = document::read_intents(options.journal, &is_not_json);
+  if (!intents) {
+    say(surroundings, intents.error());
+    return is_not_json ? kWrongUsage : kFailed;
+  }
   Result<document::Document> document = open_deck(options.deck, common, surroundings);
   if (!document) return refuse(document.error());
   say_warnings(surroundings, *document);
