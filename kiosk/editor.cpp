@@ -173,7 +173,7 @@ void Editor::handle(const tools::RegionClicked& click) {
   mesh::document::SelectRegion edit;
   edit.at = shown_->node_id(node->value);
   edit.mode = click.mode;
-  link_.edit(std::move(edit));
+  link_.edit(edit);
 }
 
 void Editor::handle(const tools::TakeBackClicked&) {
@@ -269,7 +269,7 @@ void Editor::cancel_pull() {
 
 // --- commands ---
 
-bool Editor::command(Command command, std::optional<Pixel> pointer) {
+bool Editor::command(Command command, const std::optional<Pixel>& pointer) {
   ++changes_;
   switch (command) {
     case Command::open: dialog_ = panels::Dialog::open; return true;
@@ -318,7 +318,7 @@ void Editor::cancel() {
     clear_selection();
 }
 
-void Editor::set_parts(VisibilityAction action, std::optional<Pixel> pointer) {
+void Editor::set_parts(VisibilityAction action, const std::optional<Pixel>& pointer) {
   if (!shown_) return;
   mesh::document::SetParts edit;
   edit.action = action;

@@ -36,7 +36,7 @@ class Editor {
   tools::Under under(const tools::Pixel& pixel) const;  ///< of the handle; panels are not its matter
   void gesture(const tools::Gesture& gesture);
   /// `pointer`: where it is, if it is on the picture and on no panel. False: a command that isn't the editor's (fullscreen, help).
-  bool command(tools::Command command, std::optional<tools::Pixel> pointer);
+  bool command(tools::Command command, const std::optional<tools::Pixel>& pointer);
   void panel_action(const panels::PanelAction& action);
 
   bool dialog_open() const { return dialog_ != panels::Dialog::none; }
@@ -70,7 +70,7 @@ class Editor {
   std::optional<mesh::NodeIndex> node_at(const tools::Pixel& pixel);
   void clear_selection();
   void select_nodes(const mesh::NodeSet& nodes, mesh::document::SelectMode mode);
-  void set_parts(mesh::document::VisibilityAction action, std::optional<tools::Pixel> pointer);
+  void set_parts(mesh::document::VisibilityAction action, const std::optional<tools::Pixel>& pointer);
   void show_all();
   void look(std::string_view view_name);
   void fit();

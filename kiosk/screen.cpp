@@ -25,7 +25,7 @@ Result<void> Screen::lay_out() {
   return {};
 }
 
-Result<void> Screen::draw(unsigned framebuffer, std::optional<tools::Pixel> pointer) {
+Result<void> Screen::draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer) {
   pointer_ = pointer;
   // Panels that fit their content have their size after the second time.
   for (int round = 0; round < 2; ++round)

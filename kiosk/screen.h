@@ -26,7 +26,7 @@ class Screen {
   /// press isn't lost.
   Result<void> lay_out();
   /// `pointer`: drawn into the picture of a stereo profile, where the display's own would lie on the woven picture.
-  Result<void> draw(unsigned framebuffer, std::optional<tools::Pixel> pointer);
+  Result<void> draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer);
 
  private:
   panels::Gui gui_;

@@ -140,11 +140,11 @@ Result<GuiRenderer> GuiRenderer::create() {
   glBindBuffer(GL_ARRAY_BUFFER, state->vertices);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, state->indices);
   const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
-  constexpr GLsizei stride = sizeof(ImDrawVert);
+  constexpr GLsizei kStride = sizeof(ImDrawVert);
   for (GLuint i = 0; i < 3; ++i) glEnableVertexAttribArray(i);
-  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, stride, at(offsetof(ImDrawVert, pos)));
-  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, stride, at(offsetof(ImDrawVert, uv)));
-  glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, at(offsetof(ImDrawVert, col)));
+  glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, kStride, at(offsetof(ImDrawVert, pos)));
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, kStride, at(offsetof(ImDrawVert, uv)));
+  glVertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kStride, at(offsetof(ImDrawVert, col)));
 
   GuiRenderer renderer(std::move(state));
   renderer.upload_fonts();

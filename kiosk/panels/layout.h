@@ -1,6 +1,7 @@
 // Small pieces that the panels are put together from. For panels*.cpp only: includes ImGui.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include <imgui.h>
@@ -14,7 +15,7 @@ inline constexpr ImGuiWindowFlags kPanelFlags = ImGuiWindowFlags_NoDecoration | 
                                                 ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
 /// A grid multiple near `value`.
-inline float on_grid(float value) { return kGrid * static_cast<float>(static_cast<int>(value / kGrid + 0.5f)); }
+inline float on_grid(float value) { return kGrid * std::round(value / kGrid); }
 
 /// Width of a side panel: twenty characters of the body's size, never more than a third of the picture.
 inline float side_width(display::PixelSize picture) {

@@ -1,6 +1,7 @@
 #include "kiosk/panels/panels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -207,7 +208,8 @@ void notice_panel(const PanelData& data, display::PixelSize picture, Actions& ac
 }
 
 void begin_centred(const char* name, display::PixelSize picture, float width) {
-  ImGui::SetNextWindowPos(ImVec2(static_cast<float>(picture.width / 2), static_cast<float>(picture.height / 2)), 0, ImVec2(0.5f, 0.5f));
+  ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(picture.width) / 2), std::floor(static_cast<float>(picture.height) / 2)), 0,
+                          ImVec2(0.5f, 0.5f));
   ImGui::SetNextWindowSize(ImVec2(on_grid(std::min(width, static_cast<float>(picture.width) - 2 * kMargin)), 0));
   ImGui::Begin(name, nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
 }
