@@ -1,5 +1,6 @@
 #include "cli/run.h"
 
+#include <new>
 #include <ostream>
 
 #include "cli/arguments.h"
@@ -13,8 +14,13 @@ int run(std::span<const std::string> args, const Surroundings& surroundings) {
     say(surroundings, action.error());
     return kWrongUsage;
   }
-  const int status = (*action)(surroundings);
-  return status == kDone && !output_is_good(surroundings) ? kFailed : status;
+  try {
+    const int status = (*action)(surroundings);
+    return status == kDone && !output_is_good(surroundings) ? kFailed : status;
+  } catch (const std::bad_alloc&) {
+    say(surroundings, Error{"prismesh " + args[0], 0, "there isn't enough memory to do this"});
+    return kFailed;
+  }
 }
 
 int run(std::span<const std::string> args, std::ostream& out, std::ostream& err) { return run(args, Surroundings{out, err}); }

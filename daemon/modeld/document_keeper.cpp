@@ -1,6 +1,7 @@
 #include "daemon/modeld/document_keeper.h"
 
 #include <algorithm>
+#include <new>
 #include <system_error>
 
 #include "daemon/modeld/carry_over.h"
@@ -28,6 +29,16 @@ Result<OpenOptions> options_of(const ipc::Open& request) {
   options.target_size = request.target_size;
   if (request.criteria) options.criteria = *request.criteria;
   return options;
+}
+
+/// What the work gives, or an error where there is too little memory for it. For work that changes nothing until it is done.
+template <class Work>
+auto if_memory_allows(const Work& work, const std::string& file) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return fail(file, "there isn't enough memory to do this; everything is as it was");
+  }
 }
 
 bool is_there(const fs::path& path) {
@@ -144,7 +155,7 @@ Result<bool> DocumentKeeper::open(const ipc::Open& request, const Progress& prog
     if (changed())
       return fail(open_->document.path.string(), "has unsaved edits: save it, or close it with discard, before another deck is opened");
   }
-  Result<OpenDocument> loaded = load(request, progress);
+  Result<OpenDocument> loaded = if_memory_allows([&] { return load(request, progress); }, request.path);
   if (!loaded) return fail(std::move(loaded.error()));
   if (open_)
     if (Result<void> gone = let_go(); !gone) return fail(std::move(gone.error()));
@@ -179,7 +190,7 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit) {
   if (!open_) return fail("", "no document is open");
   OpenDocument& open = *open_;
   if (open.stuck) return fail(*open.stuck);
-  Result<Prepared> prepared = prepare(open.document, edit);
+  Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, edit); }, "");
   if (!prepared) return fail(std::move(prepared.error()));
   EditReport report = prepared->report;
   const bool follows = prepared->step == Prepared::Step::push || own_step(open.recorded, prepared->step) == prepared->next.get();

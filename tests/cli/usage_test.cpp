@@ -1,3 +1,7 @@
+#include <iostream>
+
+#include <sys/resource.h>
+
 #include "tests/cli/cli_fixture.h"
 
 namespace prismesh::cli {
@@ -58,6 +62,21 @@ TEST_F(Cli, common_options_stand_before_or_after_the_command) {
     EXPECT_EQ(outcome.json()["target_size_guessed"], false);
   }
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(Cli, too_little_memory_is_a_sentence) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const std::string target = path("large.k");
+  const auto in_little_memory = [&] {
+    const rlimit limit{200'000'000, 200'000'000};
+    setrlimit(RLIMIT_AS, &limit);
+    const std::vector<std::string> args{"sample", "--elements", "5000000", "-o", target};
+    std::exit(run(args, std::cout, std::cerr));
+  };
+  EXPECT_EXIT(in_little_memory(), ::testing::ExitedWithCode(kFailed), "prismesh sample: there isn't enough memory");
+  EXPECT_EQ(names(), std::vector<std::string>{});
+}
+#endif
 
 }  // namespace
 }  // namespace prismesh::cli

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "daemon/modeld/document_keeper.h"
 #include "daemon/modeld/save_intent.h"
@@ -263,6 +264,36 @@ TEST_F(Keeping, AnEditThatCantBeJournalledIsNotDone) {
   EXPECT_TRUE(first.edit(move_node(1313, 0.25))) << "there is room again";
   EXPECT_EQ(height(first, 1313), before + 0.25);
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(Keeping, ADeckTooLargeForTheMemoryLeavesWhatIsOpen) {
+  const fs::path large = folder_.path() / "large.k";
+  {
+    std::ofstream out(large);
+    out << "*KEYWORD\n*NODE\n";
+    for (int i = 1; i <= 600'000; ++i) out << i << ",1.,2.,3.\n";
+    out << "*END\n";
+  }
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(folder_.sheet()), {}));
+  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  ASSERT_TRUE(first.save((folder_.path() / "away.k").string()));
+
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  const rlimit tight{pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + 20'000'000, limit.rlim_max};
+  ::setrlimit(RLIMIT_AS, &tight);
+  const Result<bool> opened = first.open(request(large), {});
+  ::setrlimit(RLIMIT_AS, &limit);
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().message.find("memory"), std::string::npos) << opened.error().text();
+  EXPECT_TRUE(first.edit(move_node(1313, 0.25))) << "what was open goes on";
+  EXPECT_TRUE(first.edit(Undo{}));
+  EXPECT_TRUE(first.open(request(large), {})) << "there is memory again";
+}
+#endif
 
 TEST_F(Keeping, ADeckThatEndsTheDaemonEveryTimeIsLeft) {
   const fs::path deck = folder_.sheet();
