@@ -24,6 +24,8 @@ int main(int argc, char** argv) {
   sigaction(SIGTERM, &action, nullptr);
   // a reader that went away is an error of writing, said in words
   std::signal(SIGPIPE, SIG_IGN);
+  // as is a file that grows beyond what it may
+  std::signal(SIGXFSZ, SIG_IGN);
   const std::vector<std::string> args(argv + 1, argv + argc);
   return prismesh::cli::run(args, {std::cout, std::cerr, isatty(STDERR_FILENO) == 1, &interrupted});
 }

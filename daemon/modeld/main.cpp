@@ -1,4 +1,5 @@
 // prismesh-modeld: the document's daemon. Options and logging; the rest is in daemon.h.
+#include <csignal>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -52,6 +53,9 @@ int main(int argc, char** argv) {
     std::fputs(kUsage, stderr);
     return 2;
   }
+  // Whoever read the log may go away, and a journal may grow beyond what a file may hold: both are errors of writing, no end.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   spdlog::set_default_logger(spdlog::stderr_logger_mt("modeld"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e modeld %l: %v");
 

@@ -78,6 +78,29 @@ TEST_F(SessionCommand, EditsAndSavesTheOpenDocument) {
   EXPECT_EQ(daemon_->wait_for_exit(), 0);
 }
 
+/// A limit on the size of files ends a program by a signal unless the program wants it otherwise.
+TEST_F(SessionCommand, AFileThatMayNotGrowIsAnErrorAndNoEnd) {
+  const auto deck = folder_.sheet();
+  const std::string limited = "ulimit -f 8; exec \"$@\"";
+  daemon_ = std::make_unique<Process>(std::vector<std::string>{"/bin/sh", "-c", limited, "sh", program("prismesh-modeld"), "--runtime-dir",
+                                                               run_folder(), "--state-dir", folder_.state().string()},
+                                      std::map<std::string, std::string>{});
+  wait_until_there();
+  ASSERT_EQ(session({"open", deck.string()}).status, 0);
+  std::vector<std::string> many{"edit"};
+  many.resize(100, kMove);
+  const Ran refused = session(many);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("the edit wasn't made"), std::string::npos) << refused.err;
+  EXPECT_EQ(session({"state"}).status, 0) << "the daemon lives";
+
+  const auto target = folder_.path() / "out/sample.k";
+  Process sample({"/bin/sh", "-c", limited, "sh", program("prismesh"), "sample", "-o", target.string()}, {});
+  EXPECT_EQ(sample.wait_for_exit(), 1);
+  EXPECT_NE(sample.standard_error().find("can't be written"), std::string::npos) << sample.standard_error();
+  EXPECT_TRUE(std::filesystem::is_empty(target.parent_path()));
+}
+
 TEST_F(SessionCommand, GoesOnWhenTheDaemonIsRestarted) {
   const auto deck = folder_.sheet();
   start();
