@@ -61,7 +61,11 @@ double as_written(float value) {
 void say(const Surroundings& surroundings, const Error& error) { surroundings.err << printable(error.text()) << '\n'; }
 
 void say_warnings(const Surroundings& surroundings, const mesh::document::Document& document) {
-  for (const mesh::deck::Warning& warning : document.deck->warnings) {
+  say_warnings(surroundings, document.deck->warnings);
+}
+
+void say_warnings(const Surroundings& surroundings, std::span<const mesh::deck::Warning> warnings) {
+  for (const mesh::deck::Warning& warning : warnings) {
     std::string message = "warning: " + warning.message;
     if (warning.count > 1) message += " (" + std::to_string(warning.count) + " times)";
     say(surroundings, Error{warning.file, warning.line, std::move(message)});

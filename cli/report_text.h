@@ -2,6 +2,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -26,6 +27,7 @@ void print_edit(std::ostream& out, const mesh::document::EditReport& report);
 void say(const Surroundings& surroundings, const Error& error);
 /// The deck's warnings and guessed settings on standard error, for commands whose output has no room for them.
 void say_warnings(const Surroundings& surroundings, const mesh::document::Document& document);
+void say_warnings(const Surroundings& surroundings, std::span<const mesh::deck::Warning> warnings);
 void say_guesses(const Surroundings& surroundings, const mesh::document::Document& document);
 
 /// Whether all results so far have reached standard output; asked before a deck is written, since a command that fails writes

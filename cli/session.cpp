@@ -121,7 +121,7 @@ class Session {
   const Surroundings& surroundings_;
 };
 
-void print_state(std::ostream& out, const ipc::State& state) {
+void print_state(std::ostream& out, const Surroundings& surroundings, const ipc::State& state) {
   if (!state.open) {
     out << (state.busy ? "a deck is being opened\n" : "no document is open\n");
     return;
@@ -133,6 +133,7 @@ void print_state(std::ostream& out, const ipc::State& state) {
       << (state.target_size_guessed ? " (guessed)" : "") << '\n'
       << (state.changed ? "unsaved edits" : "no unsaved edits") << (state.can_undo ? ", undo" : "") << (state.can_redo ? ", redo" : "")
       << "; " << state.recovered_edits << " edits came back from the journal when it was opened\n";
+  say_warnings(surroundings, state.warnings);
 }
 
 void print_saved(std::ostream& out, const Surroundings& surroundings, const ipc::Saved& saved) {
@@ -209,7 +210,7 @@ int session(const SessionOptions& options, const Common& common, const Surroundi
   if (common.json)
     surroundings.out << ipc::answer_fields(*answer) << '\n';
   else if (const auto* state = std::get_if<ipc::State>(&*answer))
-    print_state(surroundings.out, *state);
+    print_state(surroundings.out, surroundings, *state);
   else if (const auto* saved = std::get_if<ipc::Saved>(&*answer))
     print_saved(surroundings.out, surroundings, *saved);
   return kDone;

@@ -78,6 +78,20 @@ TEST_F(SessionCommand, EditsAndSavesTheOpenDocument) {
   EXPECT_EQ(daemon_->wait_for_exit(), 0);
 }
 
+TEST_F(SessionCommand, SaysTheWarningsOfTheOpenDeck) {
+  const auto deck = folder_.two_files();
+  std::filesystem::remove(folder_.path() / "rest.k");
+  start();
+  wait_until_there();
+  const Ran opened = session({"open", deck.string()});
+  EXPECT_EQ(opened.status, 0);
+  EXPECT_NE(opened.err.find(deck.string() + ":7: warning: the include file rest.k isn't there"), std::string::npos) << opened.err;
+  EXPECT_EQ(session({"state"}).err, opened.err);
+  const Ran json = session({"--json", "state"});
+  EXPECT_NE(json.out.find("missing-include"), std::string::npos) << json.out;
+  EXPECT_EQ(json.err, "");
+}
+
 /// A limit on the size of files ends a program by a signal unless the program wants it otherwise.
 TEST_F(SessionCommand, AFileThatMayNotGrowIsAnErrorAndNoEnd) {
   const auto deck = folder_.sheet();
