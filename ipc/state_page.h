@@ -13,7 +13,7 @@ namespace prismesh::ipc {
 
 /// How a daemon is.
 struct Health {
-  std::int64_t heartbeat_ns = 0;  ///< CLOCK_MONOTONIC when this was written; modeld writes at least every kHeartbeat
+  std::int64_t heartbeat_ns = 0;  ///< CLOCK_MONOTONIC when this was written; modeld writes at least every kHeartbeatPeriodNs
   std::int64_t pid = 0;
   std::uint64_t generation = 0;  ///< published last; 0: no document
   std::uint64_t clients = 0;
@@ -22,7 +22,7 @@ struct Health {
   bool busy = false;
   bool dragging = false;
 };
-inline constexpr std::int64_t kHeartbeat_ns = 500'000'000;
+inline constexpr std::int64_t kHeartbeatPeriodNs = 500'000'000;
 
 /// The page as it lies in memory.
 struct StatePageLayout {

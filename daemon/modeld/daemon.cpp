@@ -118,7 +118,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   }
 
   void begin() {
-    server->every(std::chrono::nanoseconds(ipc::kHeartbeat_ns), [this] { beat(); });
+    server->every(std::chrono::nanoseconds(ipc::kHeartbeatPeriodNs), [this] { beat(); });
     beat();
     desk.start([](const ipc::Answer& answer) {
       if (const auto* failed = std::get_if<ipc::Failed>(&answer))
