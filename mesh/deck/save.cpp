@@ -44,6 +44,12 @@ std::string place(const SourceFile& file, std::size_t offset) {
   return file.path.string() + ":" + std::to_string(lsdyna::line_number(file.bytes.text(), offset));
 }
 
+const char* why_held(std::uint8_t hold) {
+  if ((hold & kHeldByParameter) != 0) return " has coordinates given by a parameter";
+  if ((hold & kHeldByInclude) != 0) return " stands in an include that is used twice or transformed";
+  return " belongs to an element that also names a node that isn't defined";
+}
+
 Result<NewText> new_text(const Deck& deck, const Model& original, const Model& model) {
   NewText out;
   out.by_file.resize(deck.files.size());
@@ -59,12 +65,10 @@ Result<NewText> new_text(const Deck& deck, const Model& original, const Model& m
           file.path.string(), lsdyna::line_number(file.bytes.text(), offset),
           "node " + std::to_string(original.node_ids[node.value]) + " has been moved to a place that is no number; nothing was written");
     lsdyna::RewrittenCard card = lsdyna::rewrite_node_card(line, run.columns, original.position(node), model.position(node));
-    if (card.by_parameter || original.node_holds[node.value] != 0)
-      return fail(
-          file.path.string(), lsdyna::line_number(file.bytes.text(), offset),
-          "node " + std::to_string(original.node_ids[node.value]) +
-              (card.by_parameter ? " has coordinates given by a parameter" : " stands in an include that is used twice or transformed") +
-              "; it can't be moved");
+    const std::uint8_t hold = static_cast<std::uint8_t>(original.node_holds[node.value] | (card.by_parameter ? kHeldByParameter : 0));
+    if (hold != 0)
+      return fail(file.path.string(), lsdyna::line_number(file.bytes.text(), offset),
+                  "node " + std::to_string(original.node_ids[node.value]) + why_held(hold) + "; it can't be moved");
     if (card.rounded > 0) {
       if (out.rounding.count == 0)
         out.rounding.first = place(file, offset) + " (node " + std::to_string(original.node_ids[node.value]) + ")";

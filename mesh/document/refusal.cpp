@@ -59,7 +59,7 @@ std::string why_held(std::uint8_t hold, const Card& card) {
     return parameter.empty() ? "has coordinates given by a parameter" : "has coordinates given by the parameter " + parameter;
   }
   if ((hold & kHeldByInclude) != 0) return "stands in an include that is transformed or used more than once";
-  return "has no coordinates in the deck";
+  return "belongs to an element that also names a node that isn't defined";
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ struct TimeStepControl {
 enum NodeHold : std::uint8_t {
   kHeldByParameter = 1,  ///< its coordinates are given by &parameters
   kHeldByInclude = 2,    ///< it stands in an include that is transformed or used twice
-  kHeldUndefined = 4,    ///< a shell names it but the deck doesn't define it: it has no position
+  kHeldByMissing = 4,    ///< an element at it is left out, since another of the element's nodes isn't defined
 };
 
 /// Nodes, shells, everything else, parts; in the deck's order. Nodes that elements name but nobody defines are not in

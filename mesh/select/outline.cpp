@@ -102,8 +102,7 @@ NodeSet inside_outline(const Model& model, const std::array<double, 16>& view, c
         const double w = row(3, positions[i]);
         if (!(w > 0)) continue;  // behind the eye
         if (!inside.contains(row(0, positions[i]) / w, row(1, positions[i]) / w)) continue;
-        const std::size_t node = c * kChunkSize + i;
-        if ((model.node_holds[node] & kHeldUndefined) == 0) of_chunk[c].push_back(NodeIndex(node));
+        of_chunk[c].push_back(NodeIndex(c * kChunkSize + i));
       }
     }
   });

@@ -68,7 +68,6 @@ NodeIndex nearest_node(const Model& model, const Vec3& point) {
       const auto positions = model.positions.chunk(c);
       for (std::size_t i = 0; i < positions.size(); ++i) {
         const std::size_t node = c * kChunkSize + i;
-        if ((model.node_holds[node] & kHeldUndefined) != 0) continue;
         const Nearest candidate{(positions[i] - point).squaredNorm(), NodeIndex(node)};
         if (closer(candidate, of_range[c])) of_range[c] = candidate;
       }

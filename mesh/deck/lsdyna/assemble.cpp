@@ -209,6 +209,11 @@ class Assembler {
                        ", which isn't defined; it is left out");
   }
 
+  /// An element that is left out would be torn or squeezed unseen if the nodes it has were moved.
+  void hold_by_missing(NodeIndex node) {
+    if (node.valid()) model_.node_holds.set(node.value, static_cast<std::uint8_t>(model_.node_holds[node.value] | kHeldByMissing));
+  }
+
   /// Shells of a piece whose nodes are all there; `resolved` gets their node indices.
   struct PieceShells {
     std::vector<ShellNodes> nodes;
@@ -265,7 +270,14 @@ class Assembler {
     for (const auto& [shell, nodes] : shells.midside)
       for (const std::int64_t node : nodes)
         if (node > 0 && !node_of(node).valid()) drop(shell, node);
-    if (!keep.empty()) keep_shells(shells, resolved, keep);
+    if (keep.empty()) return;
+    for (std::size_t i = 0; i < keep.size(); ++i)
+      if (!keep[i])
+        for (const NodeIndex node : resolved.nodes[i].node) hold_by_missing(node);
+    for (const auto& [shell, nodes] : shells.midside)
+      if (!keep[shell])
+        for (const std::int64_t node : nodes) hold_by_missing(node_of(node));
+    keep_shells(shells, resolved, keep);
   }
 
   void drop_duplicate_shells(std::size_t p, const IdIndex& index, std::size_t start, PieceShells& resolved) {
@@ -335,7 +347,10 @@ class Assembler {
         whole = nodes.back().valid();
         if (!whole) note_undefined(file, from.offset[e], name(element_class), from.id[e], from.nodes[n]);
       }
-      if (!whole) continue;
+      if (!whole) {
+        for (std::uint32_t n = from.first_node[e]; n < from.first_node[e + 1]; ++n) hold_by_missing(node_of(from.nodes[n]));
+        continue;
+      }
       places_.push_back({file, from.offset[e]});
       block.id.push_back(from.id[e]);
       block.part.push_back(from.part[e] == 0 && element_class == ElementClass::mass ? PartIndex() : part_of(from.part[e]));

@@ -283,6 +283,23 @@ TEST(Elements, with_an_undefined_node_are_left_out_and_counted) {
   EXPECT_EQ(undefined.message, "shell 2 names node 99, which isn't defined; it is left out");
 }
 
+TEST(Elements, that_are_left_out_hold_the_nodes_they_have) {
+  const auto opened = open(
+      "*ELEMENT_SHELL\n"
+      "       1       5       1       2       3       4\n"
+      "       2       5       3       4      12      99\n"
+      "       4       5       5       6       7       8       9      10      11      97\n"
+      "*ELEMENT_BEAM\n"
+      "       6       5      96      20\n"
+      "       7       5      21      22\n");
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  std::vector<std::int64_t> held;
+  for (std::size_t n = 0; n < model.node_count(); ++n)
+    if (model.node_holds[n] == kHeldByMissing) held.push_back(model.node_ids[n]);
+  EXPECT_EQ(held, (Ids{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 20}));
+}
+
 TEST(Elements, with_too_few_nodes_are_left_out_and_counted) {
   const auto opened = open("*ELEMENT_SHELL\n      10       1       1       2\n      11       1\n*ELEMENT_BEAM\n      12       1       4\n");
   ASSERT_OPENED(opened);

@@ -83,9 +83,11 @@ TEST(Move, HeldNodesRefuse) {
   Model model = test::make_grid(4, 4, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
   model.node_holds.set(6, kHeldByParameter);
   model.node_holds.set(7, kHeldByInclude);
+  model.node_holds.set(8, kHeldByMissing);
   Document document = make_document(std::move(model));
   EXPECT_EQ(refusal(document, R"({"edit":"translate","by":[0,0,1],"on":"1-25","falloff":{"profile":"constant"}})"),
-            "node 7 can't be moved: it has coordinates given by a parameter (2 such nodes in all); deselect it");
+            "node 7 can't be moved: it has coordinates given by a parameter (3 such nodes in all); deselect it");
+  EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":"9"})"), HasSubstr("also names a node that isn't defined"));
   EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":"8"})"), HasSubstr("transformed or used more than once"));
 }
 

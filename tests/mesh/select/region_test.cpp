@@ -59,9 +59,6 @@ TEST(NearestNode, finds_it_and_prefers_the_first_of_equals) {
   EXPECT_EQ(nearest_node(model, Vec3(41.2, 17.4, 3)), grid_node(100, 41, 17));
   EXPECT_EQ(nearest_node(model, Vec3(0.5, 0, 0)), grid_node(100, 0, 0));
   EXPECT_EQ(nearest_node(model, Vec3(-1e9, 0, 0)), grid_node(100, 0, 0));
-  Model held = model;
-  held.node_holds.set(grid_node(100, 41, 17).value, kHeldUndefined);
-  EXPECT_EQ(nearest_node(held, Vec3(41.2, 17.1, 0)), grid_node(100, 42, 17));
   EXPECT_FALSE(nearest_node(test::make_model({}, {}), Vec3(0, 0, 0)).valid());
 }
 
