@@ -1,6 +1,8 @@
 #include "mesh/document/edit.h"
 
+#include <filesystem>
 #include <ostream>
+#include <system_error>
 
 #include "cli/commands.h"
 #include "cli/edit_list.h"
@@ -41,6 +43,11 @@ class JournalGuard {
   std::filesystem::path path_;
   bool kept_ = false;
 };
+
+bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored);
+}
 
 /// Says why an edit wasn't done: the reason itself, and the edit's place where the reason has one of its own.
 void refuse_edit(const Surroundings& surroundings, const Common& common, const WantedEdit& wanted, Error reason) {
@@ -84,6 +91,10 @@ bool apply_all(const std::vector<WantedEdit>& wanted, document::Document& docume
 }  // namespace
 
 int edit(const EditOptions& options, const Common& common, const Surroundings& surroundings) {
+  if (options.journal && is_one_file(*options.journal, options.output)) {
+    say(surroundings, Error{options.journal->string(), 0, "can't be both the journal and the deck that is written"});
+    return kWrongUsage;
+  }
   std::vector<WantedEdit> wanted;
   if (const auto refusal = read_edits(options.edits, "--edit", options.script, wanted)) {
     say(surroundings, refusal->error);

@@ -152,6 +152,14 @@ TEST_F(Cli, a_journal_replays_to_the_same_bytes) {
   EXPECT_FALSE(exists("out2.k"));
 }
 
+TEST_F(Cli, a_deck_does_not_take_its_journals_place) {
+  const std::string deck = write("plate.k", plate_text());
+  const Outcome outcome = prismesh({"edit", deck, "--edit", kSelect, "-o", path("out.k"), "--journal", path("sub/../out.k")});
+  EXPECT_EQ(outcome.status, kWrongUsage);
+  EXPECT_THAT(outcome.err, HasSubstr("both the journal and the deck"));
+  EXPECT_FALSE(exists("out.k"));
+}
+
 TEST_F(Cli, replay_on_a_variant_says_what_did_not_apply) {
   const std::string script = write("s.jsonl", std::string(kLift) + "\n" + R"({"edit": "select", "expr": "part:99"})" + "\n");
   const std::string deck = write("plate.k", plate_text());
