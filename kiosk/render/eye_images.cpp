@@ -34,6 +34,13 @@ Result<void> EyeImages::resize(int width, int height, int samples) {
     glBindFramebuffer(GL_FRAMEBUFFER, flat.framebuffer.get());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, flat.colour.get(), 0);
     complete = complete && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    flat.kept_colour = gl::Renderbuffer::make();
+    glBindRenderbuffer(GL_RENDERBUFFER, flat.kept_colour.get());
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+    flat.kept = gl::Framebuffer::make();
+    glBindFramebuffer(GL_FRAMEBUFFER, flat.kept.get());
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, flat.kept_colour.get());
+    complete = complete && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   }
   if (!complete) {
     *this = EyeImages();
@@ -51,11 +58,18 @@ void EyeImages::bind_scene() const {
   glViewport(0, 0, width_, height_);
 }
 
-void EyeImages::bind_flat(int eye) const {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, scene_.get());
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, flat_[static_cast<std::size_t>(eye)].framebuffer.get());
+void EyeImages::copy(const gl::Framebuffer& from, const gl::Framebuffer& to) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, from.get());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to.get());
   glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
-  glBindFramebuffer(GL_FRAMEBUFFER, flat_[static_cast<std::size_t>(eye)].framebuffer.get());
+}
+
+void EyeImages::keep_scene(int eye) const { copy(scene_, flat_[static_cast<std::size_t>(eye)].kept); }
+
+void EyeImages::bind_flat(int eye) const {
+  const Flat& flat = flat_[static_cast<std::size_t>(eye)];
+  copy(flat.kept, flat.framebuffer);
+  glBindFramebuffer(GL_FRAMEBUFFER, flat.framebuffer.get());
   glViewport(0, 0, width_, height_);
 }
 

@@ -14,7 +14,9 @@ class EyeImages {
 
   /// Binds what an eye's scene is drawn into: colour and depth, multisampled if asked for.
   void bind_scene() const;
-  /// The scene is that of `eye` (0 left or only, 1 right) and done: resolves it and binds the plain image, for what is drawn flat on top.
+  /// The scene is that of `eye` (0 left or only, 1 right) and done: keeps it, resolved.
+  void keep_scene(int eye) const;
+  /// Binds the plain image of an eye, a copy of the scene kept for it, for what is drawn flat on top.
   void bind_flat(int eye) const;
   void bind_texture(int eye, unsigned unit) const;
   int width() const { return width_; }
@@ -24,7 +26,11 @@ class EyeImages {
   struct Flat {
     gl::Framebuffer framebuffer;
     gl::Texture colour;
+    gl::Framebuffer kept;
+    gl::Renderbuffer kept_colour;
   };
+  void copy(const gl::Framebuffer& from, const gl::Framebuffer& to) const;
+
   int width_ = 0;
   int height_ = 0;
   int samples_ = 0;

@@ -1,6 +1,7 @@
 #include "kiosk/render/renderer.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "kiosk/render/eye_images.h"
@@ -40,6 +41,22 @@ int weave_code(Weave weave) {
   return 1;
 }
 
+/// What the scene in an eye's image was drawn from.
+struct Drawn {
+  Picture picture;
+  int width = 0, height = 0;
+  std::uint64_t scene_version = 0;
+
+  bool same_scene(const Drawn& other) const {
+    const auto facts = [](const Drawn& d) {
+      const Picture& p = d.picture;
+      return std::tie(p.view, p.profile, p.between_eyes_mm, p.eye_separation_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs,
+                      p.selected_nodes, p.handle, d.width, d.height, d.scene_version);
+    };
+    return facts(*this) == facts(other);
+  }
+};
+
 EyeView eye_view(const Picture& picture, std::optional<Eye> eye, int width, int height) {
   EyeView view;
   const Eigen::Vector2d screen = stereo::screen_size_mm(picture.profile, width, height);
@@ -58,6 +75,13 @@ EyeView eye_view(const Picture& picture, std::optional<Eye> eye, int width, int 
   return view;
 }
 
+/// An overlay may have left anything switched on.
+void reset_after_overlay() {
+  for (const GLenum capability : {GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_STENCIL_TEST, GL_DITHER})
+    glDisable(capability);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 }  // namespace
 
 struct Renderer::State {
@@ -66,8 +90,13 @@ struct Renderer::State {
   ScenePass scene;
   ModelLayer layer;
   std::shared_ptr<const ModelSource> model;
-  EyeImages fine_images;
-  EyeImages moving_images;  ///< without multisampling
+  struct Images {
+    EyeImages eyes;
+    std::optional<Drawn> kept;  ///< what they show, but for what is flat
+  };
+  Images fine;
+  Images coarse;                    ///< without multisampling
+  std::uint64_t scene_version = 0;  ///< counts up with the model and the preview
   gl::VertexArray no_attributes = gl::VertexArray::make();
 
   // The item picture and what it is of.
@@ -83,6 +112,7 @@ struct Renderer::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
+  Result<void> draw_scene(Images& images, const Picture& picture, int width, int height, int samples);
   void weave(const EyeImages& images, const Picture& picture, unsigned framebuffer, int width, int height) const;
   bool make_item_buffer(int width, int height);
   void read_items(int width, int height);
@@ -102,6 +132,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& option
 Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
   Result<void> done = state_->layer.set_model(model);
   state_->model = done ? std::move(model) : nullptr;
+  ++state_->scene_version;
   state_->figures.chunks_uploaded = state_->layer.chunks_uploaded();
   return done;
 }
@@ -116,27 +147,38 @@ stereo::View Renderer::fitted(const stereo::View& view, const Eigen::Vector2d& s
 }
 
 void Renderer::begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells) {
+  ++state_->scene_version;
   state_->layer.begin_preview(nodes, shells);
 }
 
-Result<void> Renderer::update_preview(const ipc::PreviewFrame& frame) { return state_->layer.update_preview(frame); }
+Result<void> Renderer::update_preview(const ipc::PreviewFrame& frame) {
+  ++state_->scene_version;
+  return state_->layer.update_preview(frame);
+}
 
-void Renderer::end_preview() { state_->layer.end_preview(); }
+void Renderer::end_preview() {
+  ++state_->scene_version;
+  state_->layer.end_preview();
+}
 
 Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, int width, int height) {
-  const auto eyes = eyes_for(picture.profile);
-  const EyeView first = eye_view(picture, eyes.front(), width, height);
-  EyeImages& images = picture.moving ? state_->moving_images : state_->fine_images;
-  if (const auto sized = images.resize(first.image.width, first.image.height, picture.moving ? 1 : state_->options.samples); !sized)
-    return fail(sized.error());
-  for (std::size_t i = 0; i < eyes.size(); ++i) {
-    const EyeView eye = eye_view(picture, eyes[i], width, height);
-    images.bind_scene();
-    state_->scene.draw(picture, state_->layer, eye, state_->options.glyph_cap);
-    images.bind_flat(static_cast<int>(i));
-    state_->scene.draw_flat(picture, eye);
+  Drawn wanted{picture, width, height, state_->scene_version};
+  wanted.picture.overlay = nullptr;
+  // Nothing is gained by drawing coarsely what is there in full.
+  const bool fine = !picture.moving || (state_->fine.kept && state_->fine.kept->same_scene(wanted));
+  State::Images& images = fine ? state_->fine : state_->coarse;
+  if (!images.kept || !images.kept->same_scene(wanted)) {
+    if (Result<void> drawn = state_->draw_scene(images, picture, width, height, fine ? state_->options.samples : 1); !drawn)
+      return fail(drawn.error());
+    images.kept = std::move(wanted);
   }
-  state_->weave(images, picture, framebuffer, width, height);
+  const auto eyes = eyes_for(picture.profile);
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    reset_after_overlay();
+    images.eyes.bind_flat(static_cast<int>(i));
+    state_->scene.draw_flat(picture, eye_view(picture, eyes[i], width, height));
+  }
+  state_->weave(images.eyes, picture, framebuffer, width, height);
   DrawReport report;
   if (picture.quality_glyphs && !state_->layer.empty()) {
     report.glyphs = state_->layer.glyphs(state_->options.glyph_cap).count;
@@ -145,13 +187,24 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
   return report;
 }
 
+Result<void> Renderer::State::draw_scene(Images& images, const Picture& picture, int width, int height, int samples) {
+  images.kept.reset();
+  const auto eyes = eyes_for(picture.profile);
+  const EyeView first = eye_view(picture, eyes.front(), width, height);
+  if (Result<void> sized = images.eyes.resize(first.image.width, first.image.height, samples); !sized) return sized;
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    images.eyes.bind_scene();
+    scene.draw(picture, layer, eye_view(picture, eyes[i], width, height), options.glyph_cap);
+    images.eyes.keep_scene(static_cast<int>(i));
+  }
+  ++figures.scenes_drawn;
+  return {};
+}
+
 void Renderer::State::weave(const EyeImages& images, const Picture& picture, unsigned framebuffer, int width, int height) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width, height);
-  // An overlay may have left anything switched on.
-  for (const GLenum capability : {GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_STENCIL_TEST, GL_DITHER})
-    glDisable(capability);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  reset_after_overlay();
   images.bind_texture(0, unit::kLeft);
   images.bind_texture(1, unit::kRight);
   shaders.weave.use();

@@ -32,6 +32,7 @@ struct Handle {
   Vec3 at = Vec3::Zero();  ///< deck coordinates
   Vec3 direction = Vec3::UnitZ();
   Use use = Use::idle;
+  bool operator==(const Handle&) const = default;
 };
 
 /// One eye's image while it is being drawn: its framebuffer is bound, its viewport set, blending and depth test off.
@@ -101,13 +102,14 @@ class Renderer {
   Result<void> update_preview(const ipc::PreviewFrame& frame);
   void end_preview();
 
-  /// Draws into `framebuffer` (0: the window's), width x height pixels. Lower rows are first, as OpenGL counts.
+  /// Draws into `framebuffer` (0: the window's), width x height pixels. Lower rows are first, as OpenGL counts. A picture that differs
+  /// from the last one in its overlay and rubber band only doesn't cost the model.
   Result<DrawReport> draw(const Picture& picture, unsigned framebuffer, int width, int height);
 
   /// What lies where on the picture, for `aim`; drawn again only when the aim, the model or the visible parts changed. The pixels of a
   /// preview are those of the model underneath.
   std::optional<mesh::ShellIndex> shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel);
-  /// The visible node nearest to the pixel, at most `radius` pixels away.
+  /// The visible node nearest to the pixel, at most `radius` pixels away; corners of the shell at the pixel go first.
   std::optional<mesh::NodeIndex> node_near(const stereo::Aim& aim, const Eigen::Vector2d& pixel, double radius);
   /// Nodes of visible parts inside a rectangle, ascending: those that can be seen, or all of them (`through`).
   mesh::NodeSet nodes_in(const stereo::Aim& aim, const PixelRect& rect, bool through);
@@ -115,6 +117,7 @@ class Renderer {
   struct Figures {
     std::size_t chunks_uploaded = 0;  ///< over the renderer's life; for tests and figures
     std::size_t item_buffers_drawn = 0;
+    std::size_t scenes_drawn = 0;  ///< pictures whose model was drawn
   };
   Figures figures() const;
 

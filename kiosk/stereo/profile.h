@@ -28,6 +28,7 @@ struct Profile {
   double pixel_pitch_mm = 0.2805;  ///< of the display
   bool swap_eyes = false;          ///< columns: the right eye has the even columns (0, 2, ..); side_by_side: the right image is left
 
+  bool operator==(const Profile&) const = default;
   bool stereo() const { return weave == Weave::columns || weave == Weave::anaglyph || weave == Weave::side_by_side; }
   bool half_width() const { return weave == Weave::columns || weave == Weave::side_by_side; }
 };

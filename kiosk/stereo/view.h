@@ -25,6 +25,7 @@ inline constexpr double kComfortMargin = 0.8;
 struct Sphere {
   Vec3 centre = Vec3::Zero();
   double radius = 1;
+  bool operator==(const Sphere&) const = default;
 };
 
 /// An axis-parallel box in deck coordinates; empty when low > high.
@@ -50,6 +51,7 @@ struct View {
   double mm_per_unit = 1;                                        ///< mm on the screen for one deck length unit
   Eigen::Vector2d pan_mm = Eigen::Vector2d::Zero();              ///< where the pivot stands on the screen
   Sphere bounds;                                                 ///< the whole model, deck coordinates: what must stay in the comfort box
+  bool operator==(const View&) const = default;
 };
 
 /// Factor (<= 1) on depth alone that keeps `bounds` within the comfort box however the view is turned.

@@ -1,7 +1,9 @@
 // What is drawn of a model, what is found under the pointer, and that nothing in a snapshot can break either.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include <GLES3/gl31.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -214,6 +216,61 @@ TEST_F(Scene, TheActiveHandleIsGreen) {
   EXPECT_NEAR(at(idle, middle)[1], at(idle, middle)[0], 3);
   picture.handle->direction = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   draw(picture, kWidth, kHeight);
+}
+
+TEST_F(Scene, TheModelIsDrawnAnewOnlyForAnotherScene) {
+  make_renderer({.samples = 4});
+  TestSource source = two_plates();
+  show(source);
+  for (const char* profile : {"mono", "prism-mask"}) {
+    Picture picture = fitted(profile, "iso", kWidth, kHeight);
+    const auto drawn = [&] { return renderer_->figures().scenes_drawn; };
+    const Image plain = draw(picture, kWidth, kHeight);
+    const std::size_t before = drawn();
+    picture.rubber_band = PixelRect{40, 30, 200, 150};
+    // As careless as an overlay may be.
+    picture.overlay = [](const EyeImage& image) {
+      glEnable(GL_SCISSOR_TEST);
+      glScissor(0, 0, image.width / 2, image.height / 2);
+      glColorMask(GL_TRUE, GL_FALSE, GL_TRUE, GL_TRUE);
+      glClearColor(0.2F, 0.4F, 0.6F, 1);
+      glClear(GL_COLOR_BUFFER_BIT);
+    };
+    const Image covered = draw(picture, kWidth, kHeight);
+    EXPECT_NE(covered.rgb, plain.rgb);
+    EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, covered.rgb) << profile << ": nothing piles up";
+    picture.rubber_band.reset();
+    picture.overlay = nullptr;
+    picture.moving = true;
+    EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, plain.rgb) << profile << ": nothing of what was flat stays";
+    EXPECT_EQ(drawn(), before) << profile;
+    picture.moving = false;
+
+    picture.view = stereo::orbit(picture.view, 0.1, 0);
+    EXPECT_NE(draw(picture, kWidth, kHeight).rgb, plain.rgb) << profile;
+    picture.handle = Handle{};
+    draw(picture, kWidth, kHeight);
+    picture.colour = ColourMode::quality;
+    draw(picture, kWidth, kHeight);
+    show(source);
+    draw(picture, kWidth, kHeight);
+    EXPECT_EQ(drawn(), before + 4) << profile;
+  }
+}
+
+TEST_F(Scene, AMovingPictureIsCoarseAndTheOneAtRestAsIfItHadNeverMoved) {
+  make_renderer({.samples = 4});
+  show(two_plates());
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  const Image rest = draw(picture, kWidth, kHeight);
+  const stereo::View view = picture.view;
+  picture.view = stereo::orbit(view, 0.3, 0.1);
+  draw(picture, kWidth, kHeight);
+  picture.view = view;
+  picture.moving = true;
+  EXPECT_NE(draw(picture, kWidth, kHeight).rgb, rest.rgb) << "edges are not smooth while it moves";
+  picture.moving = false;
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, rest.rgb);
 }
 
 TEST_F(Scene, OnlyWhatChangedIsUploaded) {
