@@ -14,6 +14,8 @@ namespace {
 // How far in front of a node a shell must lie to hide it: a share of its own size, for curved sheets, and what a pixel can't tell.
 constexpr double kShareOfShell = 0.05;
 constexpr double kPixels = 1.5;
+// So much nearer must the end of a line be than a corner of the shell under the pointer.
+constexpr double kLineLagPixels = 4;
 
 bool has_corner(const mesh::ShellNodes& nodes, std::uint32_t node) {
   return std::any_of(nodes.node.begin(), nodes.node.end(), [&](mesh::NodeIndex corner) { return corner.value == node; });
@@ -79,17 +81,27 @@ std::optional<mesh::NodeIndex> NodeSight::nearest(const Eigen::Vector2d& pixel, 
       last = shell;
       for (const mesh::NodeIndex node : nodes.node) candidates.push_back(node.value);
     }
+  // Where sheets nearly coincide their nodes are equally near: the hand means those of the shell that it sees.
+  const std::uint32_t under = image_.shell_at(cx, cy);
+  mesh::ShellNodes corners;
+  const bool on_shell = under < table_.shell_count() && table_.shell(under, corners);
+  const auto lag = [&](std::uint32_t node) {
+    if (!on_shell || has_corner(corners, node)) return 0.0;
+    return std::find(others.begin(), others.end(), node) != others.end() ? kLineLagPixels : radius;
+  };
   std::sort(candidates.begin(), candidates.end());
   candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
   std::optional<mesh::NodeIndex> best;
-  double best_distance = radius;
+  double best_distance = 2 * radius + kLineLagPixels;
   for (const std::uint32_t node : candidates) {
     const auto at = pixel_of(node);
     if (!at) continue;
     const double distance = (*at - pixel).norm();
-    if (distance > best_distance || (best && distance == best_distance) || !seen(node, *at)) continue;
+    if (!(distance <= radius)) continue;
+    const double lagging = distance + lag(node);
+    if (!(lagging < best_distance) || !seen(node, *at)) continue;
     best = mesh::NodeIndex(node);
-    best_distance = distance;
+    best_distance = lagging;
   }
   return best;
 }

@@ -33,7 +33,8 @@ class NodeSight {
   bool seen(std::uint32_t node, const Eigen::Vector2d& pixel) const;
   std::optional<Eigen::Vector2d> pixel_of(std::uint32_t node) const;
 
-  /// Nearest seen node to a pixel among the corners of the shells around it and `others`.
+  /// Nearest seen node to a pixel among the corners of the shells around it and `others` (ends of lines). Corners of the shell at the
+  /// pixel go first.
   std::optional<mesh::NodeIndex> nearest(const Eigen::Vector2d& pixel, double radius, const std::vector<std::uint32_t>& others) const;
   /// Nodes marked in `candidates` inside the rectangle, ascending: those seen, or all (`through`).
   mesh::NodeSet inside(const PixelRect& rect, bool through, const std::vector<std::uint8_t>& candidates) const;

@@ -81,6 +81,39 @@ TEST_F(Scene, PickingFindsWhatIsSeen) {
   }
 }
 
+TEST_F(Scene, APickOnSheetsThatNearlyCoincideTakesTheSheetThatIsSeen) {
+  // A flange's edge: the sheet beneath goes on beyond it, and has nodes a hundredth under it.
+  TestSource source;
+  test::add_grid(source, 5, 10, 0, [](double u, double v) { return Vec3(u * 50 - 50, v * 60 - 30, 0); });
+  const std::uint32_t beneath =
+      test::add_grid(source, 20, 20, 1, [](double u, double v) { return Vec3(u * 100 - 53, v * 60 - 30, -0.01); });
+  show(source);
+  const Picture picture = fitted("mono", "top", kWidth, kHeight);
+  const auto aim = aim_of(picture, kWidth, kHeight);
+  constexpr double kRadius = 16;
+  std::size_t tried = 0;
+  for (std::uint32_t node = beneath; node < source.positions.size(); ++node) {
+    if (const double x = source.positions[node].x(); x < -4 || x > 0) continue;
+    const Eigen::Vector2d at = pixel_of(picture, source.positions[node]);
+    const auto shell = renderer_->shell_at(aim, at);
+    if (!shell || shell->value >= 50) continue;
+    const auto picked = renderer_->node_near(aim, at, kRadius);
+    ASSERT_TRUE(picked);
+    EXPECT_LT(picked->value, beneath) << "the upper sheet lies under the pointer";
+    ++tried;
+  }
+  EXPECT_GT(tried, 10U);
+}
+
+TEST_F(Scene, TheEndOfALineBeforeAPlateIsPickedWhereItIs) {
+  TestSource source = two_plates();
+  const std::uint32_t from = source.add_node({2, 1, 30}), to = source.add_node({7, 4, 30});
+  source.add_line(from, to, 2);
+  show(source);
+  const Picture picture = fitted("mono", "top", kWidth, kHeight);
+  EXPECT_EQ(renderer_->node_near(aim_of(picture, kWidth, kHeight), pixel_of(picture, source.positions[to]), 16), mesh::NodeIndex(to));
+}
+
 TEST_F(Scene, ARectangleTakesWhatIsSeenOrGoesThrough) {
   const TestSource source = two_plates();
   show(source);
