@@ -38,12 +38,8 @@ ModelLink::ModelLink(std::filesystem::path socket, std::optional<std::filesystem
 
 void ModelLink::turn() {
   if (!client_) try_connect();
-  // Fetching may bring events along, which no descriptor will announce.
-  while (client_) {
-    read();
-    if (!client_ || !stale_) break;
-    fetch_snapshot();
-  }
+  if (client_) read();
+  if (client_ && stale_ && !fetching_) fetch_snapshot();
   if (client_ && drag_) turn_drag();
 }
 
@@ -74,7 +70,7 @@ void ModelLink::lost(const Error& error) {
   client_.reset();
   waiting_.clear();
   busy_.clear();
-  stale_ = fetched_ = false;
+  stale_ = fetching_ = fetched_ = false;
   if (drag_) drop_drag("lost");
   next_attempt_ns_ = clock_.now_ns();
   ++changes_;
@@ -113,6 +109,7 @@ void ModelLink::heard(const ipc::Event& event) {
                  },
                  [&](const ipc::DocumentOpened& opened) {
                    deck_ = opened.path;
+                   fetched_ = false;  // it may be the same deck, read anew
                    busy_.clear();
                    stale_ = true;
                    ask_state();
@@ -129,8 +126,7 @@ void ModelLink::heard(const ipc::Event& event) {
                  [&](const ipc::DragEnded& ended) {
                    if (!drag_ || !drag_->begun() || drag_->facts().drag != ended.drag) return;
                    if (!ended.committed && !drag_->end_sent_) say(Notice::Kind::warning, "The drag has ended: " + ended.why);
-                   stale_ = stale_ || ended.committed;
-                   drop_drag(ended.committed ? "committed" : "cancelled");
+                   if (!ended.committed) drop_drag("cancelled");
                  },
              },
              event);
@@ -168,18 +164,41 @@ void ModelLink::took_state(const ipc::State& state) {
 
 void ModelLink::fetch_snapshot() {
   stale_ = false;
-  Result<std::shared_ptr<const ipc::SnapshotView>> view = client_->snapshot();
-  ++changes_;
-  if (!view) {
-    // An error here is either the connection's end, which the next read will tell, or no document.
-    if (state_ && state_->open) say(Notice::Kind::error, view.error().text());
+  fetching_ = true;
+  ipc::GetSnapshot request;
+  request.have_segments = client_->segments();
+  ask(request, [this](const ipc::Answer& answer) { took_snapshot(answer); });
+}
+
+void ModelLink::took_snapshot(const ipc::Answer& answer) {
+  fetching_ = false;
+  const auto* snapshot = std::get_if<ipc::Snapshot>(&answer);
+  if (snapshot == nullptr) {
+    // Unless a document is open, that there is none to show is no news.
+    const auto* failed = std::get_if<ipc::Failed>(&answer);
+    if (failed != nullptr && state_ && state_->open) say(Notice::Kind::error, text_of(*failed));
+    if (drag_ && drag_->made_) drop_drag("committed");
     return;
   }
-  snapshot_ = std::move(*view);
-  fetched_ = true;
-  const ipc::SnapshotInfo& info = snapshot_->info();
+  Result<std::shared_ptr<const ipc::SnapshotView>> view = client_->take_snapshot(*snapshot);
+  if (view)
+    show(std::move(*view));
+  else
+    say(Notice::Kind::error, view.error().text());
+  // If a newer one is on its way already, somebody may have undone the drag meanwhile: then it is that one's turn.
+  if (drag_ && drag_->made_ && (*drag_->made_ == snapshot->generation || !stale_)) drop_drag("committed");
+}
+
+void ModelLink::show(std::shared_ptr<const ipc::SnapshotView> view) {
+  const ipc::SnapshotInfo& info = view->info();
+  // What was asked for twice while one was on its way comes twice.
+  if (fetched_ && snapshot_ && snapshot_->info().generation == info.generation && snapshot_->info().document == info.document &&
+      snapshot_->info().changed == info.changed)
+    return;
   trace_.line(fmt::format("generation {} selected {} warn {} fail {} changed {}", info.generation, info.selected_nodes, info.counts.warn,
                           info.counts.fail, info.changed ? 1 : 0));
+  snapshot_ = std::move(view);
+  fetched_ = true;
 }
 
 void ModelLink::open(const std::filesystem::path& deck) {
@@ -197,6 +216,7 @@ void ModelLink::open(const std::filesystem::path& deck) {
       return;
     }
     deck_ = whole;
+    fetched_ = false;
     stale_ = true;
     trace_.line("document " + whole.string());
     if (const auto* state = std::get_if<ipc::State>(&answer)) {
@@ -300,9 +320,19 @@ void ModelLink::turn_drag() {
       say(Notice::Kind::error, text_of(*failed));
       return drop_drag("refused");
     }
-    stale_ = true;
-    drop_drag("committed");
+    const auto* edited = std::get_if<ipc::Edited>(&answer);
+    if (edited != nullptr) committed_drag(edited->generation);
   });
+}
+
+void ModelLink::committed_drag(std::uint64_t generation) {
+  if (!drag_) return;
+  // Without its preview the nodes would jump back until the generation is here.
+  drag_->made_ = generation;
+  if (fetched_ && snapshot_ && snapshot_->info().generation == generation)
+    drop_drag("committed");
+  else
+    stale_ = true;
 }
 
 void ModelLink::send_step() {

@@ -49,6 +49,7 @@ class RemoteDrag {
   std::int64_t sent_ns_ = 0;
   Wish wish_ = Wish::hold;
   bool end_sent_ = false;
+  std::optional<std::uint64_t> made_;  ///< the generation it has become; its preview stays until that is here
 };
 
 class ModelLink {
@@ -70,6 +71,8 @@ class ModelLink {
   const std::optional<ipc::State>& state() const { return state_; }
   /// The current generation; null while no document is open. Stays while the server is away.
   const std::shared_ptr<const ipc::SnapshotView>& snapshot() const { return snapshot_; }
+  /// No newer generation is known of or on its way.
+  bool up_to_date() const { return !stale_ && !fetching_; }
   /// The edit that made the current generation, as far as this client heard of it.
   const std::string& made_by() const { return made_by_; }
   const std::string& busy() const { return busy_; }
@@ -100,6 +103,9 @@ class ModelLink {
   void ask_state();
   void took_state(const ipc::State& state);
   void fetch_snapshot();
+  void took_snapshot(const ipc::Answer& answer);
+  void show(std::shared_ptr<const ipc::SnapshotView> view);
+  void committed_drag(std::uint64_t generation);
   void drag_began(const ipc::Answer& answer);
   void turn_drag();
   void send_step();
@@ -117,8 +123,9 @@ class ModelLink {
   std::optional<ipc::State> state_;
   std::shared_ptr<const ipc::SnapshotView> snapshot_;
   std::string made_by_;
-  bool stale_ = false;    ///< a newer generation exists
-  bool fetched_ = false;  ///< the snapshot is of this connection
+  bool stale_ = false;     ///< a newer generation exists
+  bool fetching_ = false;  ///< one snapshot has been asked for and isn't here
+  bool fetched_ = false;   ///< the snapshot is of this connection
   std::string busy_;
   double busy_fraction_ = 0;
   std::optional<RemoteDrag> drag_;
