@@ -25,7 +25,8 @@
 namespace prismesh::kiosk {
 namespace {
 
-constexpr int kCaretBlinkMs = 300;  ///< a text field's caret is the only thing that moves by itself
+constexpr int kCaretBlinkMs = 300;                  ///< a text field's caret is the only thing that moves by itself
+constexpr std::int64_t kWheelRestNs = 250'000'000;  ///< so long after its last step a wheel is taken to stand still
 
 /// Everything but the display. Needs a current GL context for all of its life.
 struct Station {
@@ -70,6 +71,8 @@ class WindowedKiosk {
   Result<void> take_key(const display::KeyChanged& event);
   void do_command(tools::Command command);
   Result<void> settle();
+  /// The view or something in it is about to change again.
+  bool moving() const { return gestures_.dragging() || station_.clock.now_ns() < wheel_rest_ns_; }
   Result<void> show();
   void wait();
   std::optional<tools::Pixel> pointer_on_picture() const;
@@ -84,6 +87,8 @@ class WindowedKiosk {
   bool dirty_ = true;
   bool fullscreen_ = false;
   bool closing_ = false;
+  bool shown_moving_ = false;  ///< the last picture was drawn for speed
+  std::int64_t wheel_rest_ns_ = 0;
   std::uint64_t shown_changes_ = 0;
   std::uint64_t pictures_ = 0;
 };
@@ -96,7 +101,7 @@ Result<void> WindowedKiosk::run() {
     for (const display::WindowEvent& event : *events)
       if (Result<void> taken = take(event); !taken) return taken;
     if (Result<void> turned = station_.turn(); !turned) return turned;
-    if (dirty_ || station_.editor.changes() != shown_changes_) {
+    if (dirty_ || station_.editor.changes() != shown_changes_ || (shown_moving_ && !moving())) {
       if (Result<void> shown = show(); !shown) return shown;
     } else if (events->empty()) {
       wait();
@@ -121,6 +126,7 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
   if (const auto* wheel = std::get_if<display::WheelTurned>(&event)) {
     const bool panel = station_.screen.gui().on_panel(wheel->x, wheel->y);
     gestures(gestures_.wheel(*wheel, panel ? tools::Under::panel : tools::Under::picture));
+    if (!panel) wheel_rest_ns_ = station_.clock.now_ns() + kWheelRestNs;
   } else if (const auto* resized = std::get_if<display::Resized>(&event)) {
     station_.screen.set_size(resized->size);
   } else if (std::holds_alternative<display::PointerLeft>(event)) {
@@ -182,8 +188,12 @@ Result<void> WindowedKiosk::show() {
   shown_changes_ = station_.editor.changes();
   dirty_ = edge_fed_ = false;
   window_.show_pointer(!station_.editor.profile().stereo());
-  if (Result<void> drawn = station_.screen.draw(0, gestures_.position()); !drawn) return drawn;
+  shown_moving_ = moving() && station_.editor.large_model();
+  if (Result<void> drawn = station_.screen.draw(0, gestures_.position(), shown_moving_); !drawn) return drawn;
   window_.present();
+  // A picture may take longer than a wheel's steps lie apart.
+  if (station_.clock.now_ns() < wheel_rest_ns_ + kWheelRestNs)
+    wheel_rest_ns_ = std::max(wheel_rest_ns_, station_.clock.now_ns() + kWheelRestNs);
   station_.editor.trace_picture();
   if (pictures_ == 0) station_.trace.line(fmt::format("ready {} {}", window_.size().width, window_.size().height));
   ++pictures_;
@@ -199,6 +209,10 @@ void WindowedKiosk::wait() {
     patience = patience < 0 ? kCaretBlinkMs : std::min(patience, kCaretBlinkMs);
     dirty_ = true;
   }
+  if (shown_moving_ && !gestures_.dragging()) {
+    const std::int64_t left_ms = std::max<std::int64_t>(0, wheel_rest_ns_ - station_.clock.now_ns()) / 1'000'000 + 1;
+    patience = patience < 0 ? static_cast<int>(left_ms) : std::min(patience, static_cast<int>(left_ms));
+  }
   ::poll(watched.data(), watched.size(), patience);
 }
 
@@ -212,7 +226,7 @@ Result<void> run_in_window(const AppOptions& options, const stereo::Profile& pro
 
 /// What was asked for can be seen, or nothing more is to be expected.
 bool settled(const Station& station, const AppOptions& options) {
-  if (!station.link.connected() || !station.link.state() || !station.link.busy().empty()) return false;
+  if (!station.link.connected() || !station.link.state() || !station.link.busy().empty() || !station.link.up_to_date()) return false;
   return !(options.deck || station.link.state()->open) || station.link.snapshot() != nullptr;
 }
 
@@ -237,7 +251,7 @@ Result<void> run_headless(const AppOptions& options, const stereo::Profile& prof
       std::this_thread::sleep_for(10ms);
       continue;
     }
-    if (Result<void> drawn = station.screen.draw(target->framebuffer(), std::nullopt); !drawn) return drawn;
+    if (Result<void> drawn = station.screen.draw(target->framebuffer(), std::nullopt, false); !drawn) return drawn;
     const std::filesystem::path file = options.shots / fmt::format("frame-{:04}.png", frame++);
     if (Result<void> written = render::write_png(file, target->read()); !written) return written;
     station.trace.line("shot " + file.string());

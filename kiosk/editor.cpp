@@ -21,6 +21,7 @@ using tools::Under;
 
 constexpr double kPickRadiusPixels = 16;
 constexpr double kZoomPerStep = 1.15;
+constexpr std::size_t kManyShells = 200'000;
 
 render::PixelRect rectangle_of(const Pixel& a, const Pixel& b) {
   return {std::min(a.x(), b.x()), std::min(a.y(), b.y()), std::max(a.x(), b.x()), std::max(a.y(), b.y())};
@@ -390,6 +391,8 @@ std::optional<render::Handle> Editor::shown_handle() const {
   if (!anchor_ || !link_.connected() || link_.drag() != nullptr) return std::nullopt;
   return render::Handle{anchor_->at, tools::arrow_direction(aim(), *anchor_), render::Handle::Use::idle};
 }
+
+bool Editor::large_model() const { return shown_ && shown_->shell_count() > kManyShells; }
 
 render::Picture Editor::picture() const {
   render::Picture picture;

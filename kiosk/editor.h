@@ -46,6 +46,8 @@ class Editor {
   render::Picture picture() const;
   panels::PanelData panel_data() const;
   void set_report(const render::DrawReport& report) { report_ = report; }
+  /// So many shells that a picture of them at rest may be too slow for the hand.
+  bool large_model() const;
   const stereo::Profile& profile() const { return profile_; }
   /// Counts up with everything that changes the picture or the panels.
   std::uint64_t changes() const { return changes_; }

@@ -25,12 +25,13 @@ Result<void> Screen::lay_out() {
   return {};
 }
 
-Result<void> Screen::draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer) {
+Result<void> Screen::draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer, bool moving) {
   pointer_ = pointer;
   // Panels that fit their content have their size after the second time.
   for (int round = 0; round < 2; ++round)
     if (Result<void> laid_out = lay_out(); !laid_out) return laid_out;
   render::Picture picture = editor_.picture();
+  picture.moving = moving;
   picture.overlay = [&](const render::EyeImage& image) {
     const bool columns = picture.profile.weave == stereo::Weave::columns && image.eye;
     const double shift = columns ? stereo::half_pixel_shift(*image.eye, image.display_width, picture.profile.swap_eyes) : 0;

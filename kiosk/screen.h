@@ -26,7 +26,8 @@ class Screen {
   /// press isn't lost.
   Result<void> lay_out();
   /// `pointer`: drawn into the picture of a stereo profile, where the display's own would lie on the woven picture.
-  Result<void> draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer);
+  /// `moving`: for speed, see render::Picture.
+  Result<void> draw(unsigned framebuffer, const std::optional<tools::Pixel>& pointer, bool moving);
 
  private:
   panels::Gui gui_;

@@ -78,8 +78,8 @@ class Gestures {
 
   std::optional<Pixel> position() const { return position_; }
   void left() { position_.reset(); }
-  /// Whether moves belong to a drag in the picture.
-  bool dragging() const { return drag_ != Drag::none && drag_ != Drag::panel && drag_ != Drag::dead; }
+  /// Whether something in the picture follows the pointer: the view, a rectangle or a handle.
+  bool dragging() const { return drag_ == Drag::rectangle || drag_ == Drag::orbit || drag_ == Drag::pan || drag_ == Drag::handle; }
 
  private:
   enum class Drag : std::uint8_t { none, panel, dead, pressed, rectangle, orbit, pan, handle };
