@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <type_traits>
+#include <variant>
 
 #include "base/file.h"
 #include "mesh/document/edit_json.h"
@@ -57,23 +59,56 @@ Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syn
 
 namespace {
 
-/// The history as the intents meant it, so that an undo of an edit that couldn't be applied doesn't take back another one.
+/// What an edit has to do with the selection.
+struct SelectionUse {
+  bool reads = false;   ///< it acts on the selection, or starts from it
+  bool writes = false;  ///< it makes another one
+};
+
+SelectionUse selection_use(const Edit& edit) {
+  return std::visit(
+      [](const auto& e) -> SelectionUse {
+        using T = std::decay_t<decltype(e)>;
+        if constexpr (std::is_same_v<T, Select> || std::is_same_v<T, SelectRegion> || std::is_same_v<T, SelectLasso>)
+          return {e.mode != SelectMode::set, true};
+        else if constexpr (std::is_same_v<T, Grow> || std::is_same_v<T, Shrink> || std::is_same_v<T, Invert>)
+          return {true, true};
+        else if constexpr (std::is_same_v<T, SetParts>)
+          return {!e.on, false};
+        else if constexpr (std::is_same_v<T, Translate> || std::is_same_v<T, Lift>)
+          return {!e.shaping.on, false};
+        else
+          return {};
+      },
+      edit);
+}
+
+/// The history as the intents meant it, so that an undo of an edit that couldn't be applied doesn't take back another one, and
+/// that what acts on a selection doesn't act on one that was left over because the right one couldn't be made.
 class MeantHistory {
  public:
-  void push(bool applied) {
-    applied_.resize(cursor_);
-    applied_.push_back(applied);
+  /// Whether the selection here is another one than was meant.
+  bool selection_lost() const { return cursor_ > 0 && steps_[cursor_ - 1].selection_lost; }
+
+  void push(bool applied, SelectionUse use) {
+    const bool lost = use.writes ? !applied : selection_lost();
+    steps_.resize(cursor_);
+    steps_.push_back({applied, lost});
     ++cursor_;
   }
   /// Whether the undo (or redo) stands for an edit that wasn't applied; moves past it.
   bool skips(bool back) {
-    if (back ? cursor_ == 0 : cursor_ == applied_.size()) return false;
+    if (back ? cursor_ == 0 : cursor_ == steps_.size()) return false;
     const std::size_t edit = back ? --cursor_ : cursor_++;
-    return !applied_[edit];
+    return !steps_[edit].applied;
   }
 
  private:
-  std::vector<bool> applied_;
+  struct Step {
+    bool applied = false;
+    bool selection_lost = false;  ///< after it
+  };
+  std::vector<Step> steps_;
   std::size_t cursor_ = 0;
 };
 
@@ -94,13 +129,20 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
       steps.push_back(std::move(step));
       continue;
     }
+    const SelectionUse use = selection_use(edit);
+    if (use.reads && meant.selection_lost()) {
+      step.message = "the selection it acts on couldn't be made";
+      steps.push_back(std::move(step));
+      meant.push(false, use);
+      continue;
+    }
     Result<EditReport> report = apply(document, edit);
     step.applied = report.has_value();
     if (report)
       step.report = std::move(*report);
     else
       step.message = report.error().text();
-    if (!is_step) meant.push(step.applied);
+    if (!is_step) meant.push(step.applied, use);
     steps.push_back(std::move(step));
   }
   return steps;

@@ -440,6 +440,39 @@ TEST(Replay, GoesOnAfterAFailure) {
   EXPECT_EQ(steps[3].report.nodes_moved, 3u);
 }
 
+TEST(Replay, LeavesAnotherSelectionThanWasMeantAlone) {
+  const Session session({
+      R"({"edit":"select","expr":"1-3"})",                                               // 0: there
+      R"({"edit":"select","expr":"30"})",                                                // 1: not on the variant
+      R"({"edit":"translate","by":[0,0,1],"falloff":{"profile":"constant"}})",           // 2: would move 1 to 3
+      R"({"edit":"grow"})",                                                              // 3
+      R"({"edit":"translate","by":[0,0,1],"on":"5","falloff":{"profile":"constant"}})",  // 4: names its own node
+      R"({"edit":"select","expr":"2","mode":"add"})",                                    // 5
+      R"({"edit":"hide"})",                                                              // 6
+      R"({"edit":"undo"})",                                                              // 7
+      R"({"edit":"undo"})",                                                              // 8
+      R"({"edit":"undo"})",                                                              // 9: of 4
+      R"({"edit":"undo"})",                                                              // 10
+      R"({"edit":"undo"})",                                                              // 11
+      R"({"edit":"undo"})",                                                              // 12: 1 to 3 are selected again
+      R"({"edit":"translate","by":[0,0,1],"falloff":{"profile":"constant"}})",           // 13
+      R"({"edit":"select","expr":"7"})",                                                 // 14
+      R"({"edit":"translate","by":[0,0,1],"falloff":{"profile":"constant"}})",           // 15
+  });
+  const Result<JournalIntents> intents = read_intents(session.path);
+  ASSERT_TRUE(intents) << intents.error().text();
+  Document same = small();
+  for (const ReplayStep& step : replay(same, *intents)) EXPECT_TRUE(step.applied) << step.message;
+  Document variant = make_sheet(3, 3);
+  const std::vector<ReplayStep> steps = replay(variant, *intents);
+  std::vector<std::size_t> applied;
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    if (steps[i].applied) applied.push_back(i);
+  EXPECT_EQ(applied, (std::vector<std::size_t>{0, 4, 9, 13, 14, 15}));
+  for (const std::size_t i : {2, 3, 5, 6}) EXPECT_EQ(steps[i].message, "the selection it acts on couldn't be made");
+  EXPECT_EQ(steps[13].report.nodes_moved, 3u);
+}
+
 TEST(Replay, ReadsScripts) {
   const Folder folder;
   put_content(folder / "script.jsonl", "{\"edit\":\"select\",\"expr\":\"1\"}\r\n\n{\"edit\":\"undo\"}");
