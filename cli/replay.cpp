@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
+#include "cli/progress_bar.h"
 #include "cli/report_text.h"
 #include "mesh/document/journal.h"
 
@@ -23,6 +24,13 @@ void print_text(std::ostream& out, const std::vector<document::ReplayStep>& step
       out << printable(step.message) << '\n';
   }
   out << applied << " of " << steps.size() << " edits applied\n";
+}
+
+std::vector<document::ReplayStep> replay_watched(document::Document& document, const document::JournalIntents& intents,
+                                                 const ReplayOptions& options, const Surroundings& surroundings) {
+  MonotonicClock clock;
+  ProgressBar bar(surroundings, "replaying " + options.journal.filename().string(), clock);
+  return document::replay(document, intents, bar.progress());
 }
 
 }  // namespace
@@ -48,7 +56,8 @@ int replay(const ReplayOptions& options, const Common& common, const Surrounding
   const bool other_deck = !intents->deck_hash.empty() && intents->deck_hash != document->deck->content.hex();
   if (other_deck) say(surroundings, Error{journal, 0, "note: made on another deck, " + intents->deck_path});
 
-  const std::vector<document::ReplayStep> steps = document::replay(*document, *intents);
+  const std::vector<document::ReplayStep> steps = replay_watched(*document, *intents, options, surroundings);
+  if (surroundings.stop()) return refuse({journal, 0, "cancelled; nothing is written"});
   std::size_t applied = 0;
   for (const document::ReplayStep& step : steps) {
     applied += step.applied;
@@ -59,7 +68,6 @@ int replay(const ReplayOptions& options, const Common& common, const Surrounding
   else
     print_text(surroundings.out, steps);
   if (applied == 0 && !steps.empty()) return refuse({journal, 0, "no edit could be applied; nothing is written"});
-  if (surroundings.stop()) return refuse({journal, 0, "cancelled; nothing is written"});
   if (!output_is_good(surroundings)) return kFailed;
   const Result<mesh::deck::SaveReport> saved = document::save(*document, options.output);
   if (!saved) return refuse(saved.error());

@@ -1,13 +1,23 @@
 #include "mesh/deck/sample.h"
 
 #include "cli/commands.h"
+#include "cli/progress_bar.h"
 #include "cli/report_text.h"
 
 namespace prismesh::cli {
 
+namespace {
+
+Result<void> write_watched(const SampleOptions& options, const Surroundings& surroundings) {
+  MonotonicClock clock;
+  ProgressBar bar(surroundings, "making " + options.output.filename().string(), clock);
+  return mesh::deck::write_sample(options.output, options.elements.value_or(mesh::deck::kSampleShellsDefault), bar.progress());
+}
+
+}  // namespace
+
 int sample(const SampleOptions& options, const Common&, const Surroundings& surroundings) {
-  const std::size_t elements = options.elements.value_or(mesh::deck::kSampleShellsDefault);
-  if (const Result<void> written = mesh::deck::write_sample(options.output, elements); !written) {
+  if (const Result<void> written = write_watched(options, surroundings); !written) {
     say(surroundings, written.error());
     return kFailed;
   }

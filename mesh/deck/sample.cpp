@@ -239,9 +239,7 @@ void write_welds(Cards& cards, const std::vector<sample::SpotWeld>& welds, std::
   }
 }
 
-}  // namespace
-
-std::string sample_text(std::size_t shells) {
+Result<std::string> make_text(std::size_t shells, const Progress& progress) {
   const sample::ElementSize size = size_for(shells);
   const sample::Assembly assembly = sample::body_side(size.across);
   Cards cards;
@@ -251,7 +249,9 @@ std::string sample_text(std::size_t shells) {
   write_materials(cards);
   std::vector<std::int64_t> clamped;
   std::int64_t first = kIdsPerPart + 1;
-  for (const sample::Part& part : assembly.parts) {
+  for (std::size_t p = 0; p < assembly.parts.size(); ++p) {
+    if (progress && !progress(static_cast<double>(p) / static_cast<double>(assembly.parts.size()))) return fail(cancelled());
+    const sample::Part& part = assembly.parts[p];
     const sample::SheetMesh mesh = sample::mesh_part(part, size);
     write_sheet(cards, part, mesh, first);
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
@@ -264,12 +264,18 @@ std::string sample_text(std::size_t shells) {
   return cards.take();
 }
 
-Result<void> write_sample(const std::filesystem::path& path, std::size_t shells) {
+}  // namespace
+
+std::string sample_text(std::size_t shells) { return *make_text(shells, {}); }
+
+Result<void> write_sample(const std::filesystem::path& path, std::size_t shells, const Progress& progress) {
   if (shells < kSampleShellsMin || shells > kSampleShellsMax)
     return fail(path.string(), "a sample has " + std::to_string(kSampleShellsMin) + " to " + std::to_string(kSampleShellsMax) +
                                    " shells, not " + std::to_string(shells));
-  const std::string text = sample_text(shells);
-  const PendingFile file{path, {text}};
+  const Result<std::string> text = make_text(shells, progress);
+  if (!text) return fail(path.string(), text.error().message);
+  if (progress && !progress(1)) return fail(path.string(), cancelled().message);
+  const PendingFile file{path, {*text}};
   return replace_files(std::span(&file, 1));
 }
 

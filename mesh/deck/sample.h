@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/progress.h"
 
 namespace prismesh::mesh::deck {
 
@@ -18,7 +19,7 @@ inline constexpr std::size_t kSampleShellsMax = 5'000'000;
 std::string sample_text(std::size_t shells);
 
 /// Writes sample_text to a file, whole or not at all. Errors: `shells` outside the limits (they are named), the file can't be
-/// written.
-Result<void> write_sample(const std::filesystem::path& path, std::size_t shells);
+/// written, cancelled.
+Result<void> write_sample(const std::filesystem::path& path, std::size_t shells, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::deck

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "mesh/document/document.h"
 
 namespace prismesh::mesh::document {
@@ -62,7 +63,7 @@ class Journal {
 /// a script isn't JSON at all. Errors: file and line of the first that can't be read, damage in a journal.
 Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syntax_error = nullptr);
 
-/// Executes the intents on a document, going on after an edit that can't be applied.
-std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents);
+/// Executes the intents on a document, going on after an edit that can't be applied. Told to stop, it returns the steps so far.
+std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::document

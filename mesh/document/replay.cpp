@@ -114,10 +114,11 @@ class MeantHistory {
 
 }  // namespace
 
-std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents) {
+std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents, const Progress& progress) {
   std::vector<ReplayStep> steps;
   MeantHistory meant;
   for (std::size_t i = 0; i < intents.edits.size(); ++i) {
+    if (progress && !progress(static_cast<double>(i) / static_cast<double>(intents.edits.size()))) break;
     const Edit& edit = intents.edits[i];
     ReplayStep step;
     step.line = i < intents.lines.size() ? intents.lines[i] : 0;

@@ -196,6 +196,15 @@ TEST_F(Cli, stopped_work_leaves_nothing) {
   EXPECT_EQ(names(), before);
 }
 
+TEST_F(Cli, a_stopped_sample_leaves_nothing) {
+  const std::atomic<bool> interrupted{true};
+  std::ostringstream out, err;
+  const std::vector<std::string> args = {"sample", "-o", path("s.k")};
+  EXPECT_EQ(run(args, {out, err, false, &interrupted}), kFailed);
+  EXPECT_EQ(err.str(), path("s.k") + ": cancelled\n");
+  EXPECT_EQ(names(), std::vector<std::string>{});
+}
+
 TEST_F(Cli, results_that_can_not_be_said_are_not_written) {
   const std::string deck = write("plate.k", plate_text());
   const auto before = names();

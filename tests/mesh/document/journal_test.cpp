@@ -440,6 +440,16 @@ TEST(Replay, GoesOnAfterAFailure) {
   EXPECT_EQ(steps[3].report.nodes_moved, 3u);
 }
 
+TEST(Replay, StopsWhenTold) {
+  const Session session;
+  const Result<JournalIntents> intents = read_intents(session.path);
+  ASSERT_TRUE(intents) << intents.error().text();
+  ASSERT_GT(intents->edits.size(), 2u);
+  Document document = small();
+  std::size_t asked = 0;
+  EXPECT_EQ(replay(document, *intents, [&](double) { return ++asked < 3; }).size(), 2u);
+}
+
 TEST(Replay, LeavesAnotherSelectionThanWasMeantAlone) {
   const Session session({
       R"({"edit":"select","expr":"1-3"})",                                               // 0: there
