@@ -202,11 +202,19 @@ void Editor::handle(const tools::Orbited& orbit) {
     // The model turns about what was under the pointer when the drag began.
     pivot_found_ = true;
     orbit_from_ = orbit.from;
-    if (const auto node = shown_ ? node_at(orbit.from) : std::nullopt)
-      if (node->value < shown_->node_count()) view_ = stereo::with_pivot(view_, shown_->position(node->value));
+    const std::optional<mesh::NodeIndex> node = shown_ ? node_at(orbit.from) : std::nullopt;
+    if (node && node->value < shown_->node_count()) turn_about(shown_->position(node->value));
   }
   const double radians_per_pixel = std::numbers::pi / std::max(size_.height, 1);
   view_ = stereo::orbit(view_, orbit.dx * radians_per_pixel, -orbit.dy * radians_per_pixel);
+}
+
+void Editor::turn_about(const mesh::Vec3& point) {
+  const stereo::Aim before = aim();
+  const std::optional<Pixel> pixel = stereo::pixel_of(before, point);
+  view_ = stereo::with_pivot(view_, point);
+  // The point has come into the plane of the screen: there it must stand where the eye saw it.
+  if (pixel) view_.pan_mm = stereo::mm_of_pixel(before, *pixel);
 }
 
 void Editor::handle(const tools::Panned& pan) { view_ = stereo::pan(view_, Eigen::Vector2d(pan.dx, -pan.dy) * aim().mm_per_pixel()); }
@@ -359,6 +367,7 @@ void Editor::next_profile() {
   const auto profiles = stereo::built_in_profiles();
   const auto current = std::find_if(profiles.begin(), profiles.end(), [&](const stereo::Profile& p) { return p.name == profile_.name; });
   profile_ = current == profiles.end() || current + 1 == profiles.end() ? profiles.front() : *(current + 1);
+  trace_.line("profile " + profile_.name);
 }
 
 void Editor::panel_action(const panels::PanelAction& action) {
