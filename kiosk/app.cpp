@@ -159,6 +159,7 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   if (!command || (event.repeat && !tools::repeats(*command))) return {};
   // While a path is typed the keyboard is the text field's.
   if (station_.editor.dialog_open() && *command != tools::Command::cancel) return {};
+  gestures_.forget_click();
   if (*command == tools::Command::cancel) gestures_.cancel();
   do_command(*command);
   // A text field takes the keyboard two layouts after it appears; the next key may be in the queue already.

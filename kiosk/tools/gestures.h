@@ -76,6 +76,9 @@ class Gestures {
   /// Gives up what is under way: releasing the button will do nothing. True if a rectangle or a handle was being dragged.
   bool cancel();
 
+  /// Something else was done: the next click is no second one.
+  void forget_click() { last_click_.reset(); }
+
   std::optional<Pixel> position() const { return position_; }
   void left() { position_.reset(); }
   /// Whether something in the picture follows the pointer: the view, a rectangle or a handle.
