@@ -57,6 +57,45 @@ void write_sheet(const std::filesystem::path& path) {
   std::fclose(file);
 }
 
+HatDeck write_closed_hat(const std::filesystem::path& path) {
+  constexpr int kRows = 13;
+  const std::vector<Point> hat{{-50, 0, 0}, {-40, 0, 0}, {-30, 0, 0}, {-24, 0, 15}, {-18, 0, 30}, {-9, 0, 30}, {0, 0, 30},
+                               {9, 0, 30},  {18, 0, 30}, {24, 0, 15}, {30, 0, 0},   {40, 0, 0},   {50, 0, 0}};
+  std::vector<Point> plate;
+  for (int x = -40; x <= 40; x += 8) plate.push_back({static_cast<double>(x), 0, -3});
+  HatDeck deck;
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  std::fprintf(file, "*KEYWORD\n*NODE\n");
+  const auto write_nodes = [&](const std::vector<Point>& section, std::int64_t first, std::map<std::int64_t, Point>& nodes) {
+    for (int row = 0; row < kRows; ++row)
+      for (const Point& point : section) {
+        const auto id = first++;
+        nodes[id] = {point[0], row * 10.0, point[2]};
+        std::fprintf(file, "%8lld%16.6f%16.6f%16.6f\n", static_cast<long long>(id), point[0], row * 10.0, point[2]);
+      }
+  };
+  write_nodes(hat, 1, deck.hat);
+  write_nodes(plate, 1001, deck.plate);
+  std::fprintf(file, "*ELEMENT_SHELL\n");
+  long long element = 1;
+  const auto write_shells = [&](std::size_t across, long long first, int part) {
+    for (int row = 0; row + 1 < kRows; ++row)
+      for (std::size_t i = 0; i + 1 < across; ++i) {
+        const long long n = first + row * static_cast<long long>(across) + static_cast<long long>(i);
+        const long long up = n + static_cast<long long>(across);
+        std::fprintf(file, "%8lld%8d%8lld%8lld%8lld%8lld\n", element++, part, n, n + 1, up + 1, up);
+      }
+  };
+  write_shells(hat.size(), 1, 1);
+  write_shells(plate.size(), 1001, 2);
+  std::fprintf(file,
+               "*PART\nHat\n%10d%10d%10d\n*PART\nClosing plate\n%10d%10d%10d\n*SECTION_SHELL\n%10d%10d\n%10.2f%10.2f%10.2f%10.2f\n"
+               "*MAT_ELASTIC\n%10d%10.2e%10.1f%10.2f\n*END\n",
+               1, 1, 1, 2, 1, 1, 1, 2, 0.8, 0.8, 0.8, 0.8, 1, 7.85e-9, 210000.0, 0.3);
+  std::fclose(file);
+  return deck;
+}
+
 Point sheet_normal(const Point& point) { return {point[0] / kRadius, 0, point[2] / kRadius}; }
 
 std::string whole_file(const std::filesystem::path& path) {

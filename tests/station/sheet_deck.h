@@ -1,4 +1,4 @@
-// A small curved sheet as a deck, written and read back by the test itself: an independent witness of what was saved.
+// Small decks, written and read back by the test itself: an independent witness of what was saved.
 #pragma once
 
 #include <array>
@@ -18,6 +18,13 @@ inline constexpr std::int64_t kFirstNode = 1001;
 inline constexpr int kSheetSide = 25;
 /// The outward normal of the sheet at a point of it.
 Point sheet_normal(const Point& point);
+
+/// A hat section with sloping walls, axis along y, 100 wide between its flanges' ends (part 1), and under it the plate that closes it,
+/// 80 wide (part 2): seen from above, the hat hides the plate.
+struct HatDeck {
+  std::map<std::int64_t, Point> hat, plate;  ///< their nodes
+};
+HatDeck write_closed_hat(const std::filesystem::path& path);
 
 std::string whole_file(const std::filesystem::path& path);
 std::vector<std::string> lines_of(const std::string& text);

@@ -30,7 +30,7 @@ std::size_t word_after(const std::string& line, const std::string& word) {
 
 std::string missing_programs() {
   std::string missing;
-  for (const char* program : {"Xvfb", "xdotool", "openbox"})
+  for (const char* program : {"Xvfb", "xdotool", "openbox", "import"})
     if (!program_exists(program)) missing += std::string(missing.empty() ? "" : ", ") + program;
   return missing;
 }
@@ -124,24 +124,29 @@ void Station::double_click(double x, double y) {
   move(x, y);
   xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
 }
-void Station::drag(double from_x, double from_y, double to_x, double to_y) {
+void Station::drag(double from_x, double from_y, double to_x, double to_y, int button) {
   move(from_x, from_y);
-  press();
+  press(button);
   move((from_x + to_x) / 2, (from_y + to_y) / 2);
   move(to_x, to_y);
-  release();
+  release(button);
 }
 void Station::key(const std::string& keys) { xdotool({"key", keys}); }
 void Station::type(const std::string& text) { xdotool({"type", "--delay", "2", text}); }
 
-std::array<double, 2> Station::pixel_of(const Point& point) {
-  std::stringstream line(kiosk_->last("aim "));
+Station::Aim Station::aim_from(const std::string& said) {
+  std::stringstream line(said);
   std::string word;
-  double width = 0, height = 0;
-  std::array<double, 16> m{};
-  line >> word >> width >> height;
-  for (double& value : m) line >> value;
+  Aim aim;
+  line >> word >> aim.width >> aim.height;
+  for (double& value : aim.m) line >> value;
   EXPECT_TRUE(line) << "the kiosk has not said how it projects";
+  return aim;
+}
+
+Station::Aim Station::aim() { return aim_from(kiosk_->last("aim ")); }
+
+std::array<double, 2> Station::Aim::pixel_of(const Point& point) const {
   const auto row = [&](std::size_t r) { return m[r] * point[0] + m[4 + r] * point[1] + m[8 + r] * point[2] + m[12 + r]; };
   return {(row(0) / row(3) + 1) / 2 * width, (1 - row(1) / row(3)) / 2 * height};
 }
@@ -208,6 +213,22 @@ void Station::pull_arrow(double pixels) {
 void Station::screenshot(const std::filesystem::path& file) {
   Process process({"import", "-window", "root", file.string()}, {{"DISPLAY", display_->name()}});
   process.wait_for_exit();
+}
+
+Station::Pixels Station::window_pixels() {
+  const std::filesystem::path file = folder_ / "window.ppm";
+  Process process({"import", "-window", window_, "-depth", "8", file.string()}, {{"DISPLAY", display_->name()}});
+  EXPECT_EQ(process.wait_for_exit(), 0) << process.standard_error();
+  std::ifstream picture(file, std::ios::binary);
+  std::string magic;
+  int most = 0;
+  Pixels pixels;
+  picture >> magic >> pixels.width >> pixels.height >> most;
+  picture.get();
+  pixels.rgb.resize(static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height) * 3);
+  picture.read(pixels.rgb.data(), static_cast<std::streamsize>(pixels.rgb.size()));
+  EXPECT_TRUE(picture && magic == "P6" && most == 255) << "no screenshot";
+  return pixels;
 }
 
 }  // namespace prismesh::test

@@ -53,13 +53,23 @@ class Station {
   void release(int button = 1);
   void click(double x, double y, int button = 1);
   void double_click(double x, double y);
-  void drag(double from_x, double from_y, double to_x, double to_y);
+  void drag(double from_x, double from_y, double to_x, double to_y, int button = 1);
   void key(const std::string& keys);
   void type(const std::string& text);
 
   // --- what the kiosk says ---
+  /// How a deck point comes to a pixel, as a line beginning with "aim " says it: column-major, deck to clip space.
+  struct Aim {
+    double width = 0, height = 0;
+    std::array<double, 16> m{};
+    std::array<double, 2> pixel_of(const Point& point) const;
+    /// What a displacement changes in the distance from the eye along the line of sight: none in the plane of the screen.
+    double depth_of(const Point& by) const { return m[3] * by[0] + m[7] * by[1] + m[11] * by[2]; }
+  };
+  static Aim aim_from(const std::string& line);
+  Aim aim();
   /// Where a deck point is on the picture.
-  std::array<double, 2> pixel_of(const Point& point);
+  std::array<double, 2> pixel_of(const Point& point) { return aim().pixel_of(point); }
   /// Waits until `selected` nodes are selected in the newest generation and the handle for them is on the picture.
   bool wait_for_selection(std::size_t selected);
   struct Handle {
@@ -73,6 +83,12 @@ class Station {
   /// Takes the arrow at its tip and moves the pointer along it; the button stays down and a preview is seen.
   void pull_arrow(double pixels);
   void screenshot(const std::filesystem::path& file);
+  /// What the kiosk's window shows: rows of red, green and blue bytes from the upper left.
+  struct Pixels {
+    int width = 0, height = 0;
+    std::string rgb;
+  };
+  Pixels window_pixels();
 
  private:
   void xdotool(const std::vector<std::string>& arguments);
