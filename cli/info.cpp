@@ -1,5 +1,6 @@
 #include <ostream>
 
+#include "base/counted.h"
 #include "cli/commands.h"
 #include "cli/figures.h"
 #include "cli/json_output.h"
@@ -28,8 +29,7 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
   const mesh::document::Settings& settings = document.settings;
   const std::string unit(name(settings.length_unit));
   const auto guessed = [](bool is) { return is ? " (guessed)" : ""; };
-  out << printable(document.path.string()) << ": " << name(deck.format) << ", " << deck.files.size()
-      << (deck.files.size() == 1 ? " file\n" : " files\n");
+  out << printable(document.path.string()) << ": " << name(deck.format) << ", " << counted(deck.files.size(), "file") << '\n';
   for (const mesh::deck::SourceFile& file : deck.files) out << "  " << printable(file.path.string()) << '\n';
   out << "length unit  " << unit << guessed(settings.length_unit_guessed) << '\n';
   out << "target size  " << shortest(settings.target_size) << ' ' << unit << guessed(settings.target_size_guessed) << '\n';

@@ -1,5 +1,6 @@
 #include <ostream>
 
+#include "base/counted.h"
 #include "cli/commands.h"
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
@@ -19,7 +20,7 @@ void print_text(std::ostream& out, const std::vector<document::ReplayStep>& step
     applied += step.applied;
     out << "line " << step.line << ": " << step.edit << (step.applied ? ": " : " not applied: ");
     if (step.applied)
-      out << step.report.nodes_moved << " nodes moved\n";
+      out << counted(step.report.nodes_moved, "node") << " moved\n";
     else
       out << printable(step.message) << '\n';
   }

@@ -1,4 +1,5 @@
 #include "cli/report_text.h"
+#include "base/counted.h"
 
 #include <charconv>
 #include <cmath>
@@ -94,7 +95,7 @@ bool output_is_good(const Surroundings& surroundings) {
 }
 
 void print_edit(std::ostream& out, const mesh::document::EditReport& report) {
-  out << report.edit << ": " << report.nodes_moved << " nodes moved; warn " << report.before.warn << " -> " << report.after.warn
+  out << report.edit << ": " << counted(report.nodes_moved, "node") << " moved; warn " << report.before.warn << " -> " << report.after.warn
       << ", fail " << report.before.fail << " -> " << report.after.fail << '\n';
   for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
 }

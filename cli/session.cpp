@@ -3,6 +3,7 @@
 #include <ostream>
 #include <system_error>
 
+#include "base/counted.h"
 #include "cli/commands.h"
 #include "cli/edit_list.h"
 #include "cli/json_output.h"
@@ -137,8 +138,8 @@ void print_state(std::ostream& out, const Surroundings& surroundings, const ipc:
 }
 
 void print_saved(std::ostream& out, const Surroundings& surroundings, const ipc::Saved& saved) {
-  out << "saved " << printable(saved.path) << ": " << saved.nodes_written << " nodes written, " << saved.lines_changed
-      << " lines changed\n";
+  out << "saved " << printable(saved.path) << ": " << counted(saved.nodes_written, "node") << " written, "
+      << counted(saved.lines_changed, "line") << " changed\n";
   for (const std::string& note : saved.notes) say(surroundings, Error{saved.path, 0, "note: " + note});
 }
 

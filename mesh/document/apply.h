@@ -16,7 +16,4 @@ Result<void> apply_edit(const Document& document, const SetParts& edit, Generati
 Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Lift& edit, Generation& next, EditReport& report);
 
-/// "1 node", "12 nodes".
-std::string counted(std::size_t count, std::string_view noun);
-
 }  // namespace prismesh::mesh::document

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/motion.h"
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/selecting.h"
 #include "mesh/model/adjacency.h"

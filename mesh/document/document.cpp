@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/clock.h"
+#include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/history.h"
 
@@ -57,10 +58,6 @@ std::shared_ptr<const Generation> first_generation(Model model, const Settings& 
 }
 
 }  // namespace
-
-std::string counted(std::size_t count, std::string_view noun) {
-  return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
-}
 
 Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened, const OpenOptions& options) {
   Result<Settings> settings = find_settings(opened.model, options);

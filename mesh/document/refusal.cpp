@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/model/adjacency.h"
 

@@ -1,0 +1,15 @@
+#include "base/counted.h"
+
+#include <gtest/gtest.h>
+
+namespace prismesh {
+namespace {
+
+TEST(Counted, TakesThePluralButForOne) {
+  EXPECT_EQ(counted(0, "node"), "0 nodes");
+  EXPECT_EQ(counted(1, "node"), "1 node");
+  EXPECT_EQ(counted(12, "line"), "12 lines");
+}
+
+}  // namespace
+}  // namespace prismesh
