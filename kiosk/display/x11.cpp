@@ -234,6 +234,10 @@ void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
     case ClientMessage:
       if (static_cast<Atom>(event.xclient.data.l[0]) == delete_window_) out.emplace_back(CloseRequested{});
       break;
+    case DestroyNotify:  // somebody else took the window away without asking
+      window_ = 0;
+      out.emplace_back(CloseRequested{});
+      break;
     default: break;
   }
 }

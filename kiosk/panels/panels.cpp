@@ -36,7 +36,7 @@ void document_panel(const PanelData& data, display::PixelSize picture, Actions& 
   ImGui::PushStyleColor(ImGuiCol_Text, kFaintInk);
   elided_text(printable(path.parent_path().string()), width);
   ImGui::PopStyleColor();
-  ImGui::TextUnformatted(document.changed ? "changed since it was opened or saved" : "as on disk");
+  ImGui::TextUnformatted(document.changed ? "unsaved edits" : "no unsaved edits");
   ImGui::PopFont();
 
   section("Model");

@@ -62,6 +62,12 @@ TEST_F(WindowTest, closing_the_window_ends_with_0) {
   EXPECT_EQ(station_->kiosk().wait_for_exit(), 0) << station_->kiosk().standard_error();
 }
 
+TEST_F(WindowTest, a_window_that_another_client_destroys_ends_with_0) {
+  station_->start_kiosk();
+  station_->destroy_window();
+  EXPECT_EQ(station_->kiosk().wait_for_exit(), 0) << station_->kiosk().standard_error();
+}
+
 TEST_F(WindowTest, a_display_that_goes_away_is_said_and_ends_with_1) {
   station_->start_kiosk();
   station_->display().server().kill(SIGKILL);

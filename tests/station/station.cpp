@@ -131,6 +131,7 @@ void Station::drag(double from_x, double from_y, double to_x, double to_y, int b
   move(to_x, to_y);
   release(button);
 }
+void Station::destroy_window() { xdotool({"windowclose", window_}); }
 void Station::key(const std::string& keys) { xdotool({"key", keys}); }
 void Station::type(const std::string& text) { xdotool({"type", "--delay", "2", text}); }
 

@@ -55,6 +55,7 @@ class Station {
   void double_click(double x, double y);
   void drag(double from_x, double from_y, double to_x, double to_y, int button = 1);
   void key(const std::string& keys);
+  void destroy_window();  ///< as a client that doesn't ask
   void type(const std::string& text);
 
   // --- what the kiosk says ---
