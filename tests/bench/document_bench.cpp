@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <numeric>
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>
@@ -12,53 +11,15 @@
 #include "mesh/document/drag.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/journal.h"
-#include "mesh/model/adjacency.h"
-#include "tests/bench/million_quads.h"
+#include "tests/bench/million_document.h"
 
 namespace prismesh::mesh::document {
 namespace {
 
-/// million_quads with everything a document needs.
-Model complete_million() {
-  Model model = bench::million_quads();
-  std::vector<std::int64_t> node_ids(model.node_count());
-  std::vector<std::int64_t> shell_ids(model.shell_count());
-  std::iota(node_ids.begin(), node_ids.end(), 1);
-  std::iota(shell_ids.begin(), shell_ids.end(), 1);
-  model.node_ids.resize(node_ids.size());
-  model.shell_ids.resize(shell_ids.size());
-  for (std::size_t i = 0; i < node_ids.size(); ++i) model.node_ids.set(i, node_ids[i]);
-  for (std::size_t i = 0; i < shell_ids.size(); ++i) model.shell_ids.set(i, shell_ids[i]);
-  model.node_holds = ChunkedArray<std::uint8_t>::filled(node_ids.size());
-  model.node_index = std::make_shared<IdIndex>(node_ids);
-  model.shell_index = std::make_shared<IdIndex>(shell_ids);
-  model.midside = std::make_shared<std::vector<MidsideNodes>>();
-  model.adjacency = std::make_shared<Adjacency>(build_adjacency(model));
-  return model;
-}
-
-Document open_million() {
-  auto deck = std::make_shared<deck::Deck>();
-  OpenOptions options;
-  options.target_size = 5.0;
-  options.history_bytes = std::size_t{1} << 30;
-  return open("million.k", {deck, complete_million()}, options).value();
-}
-
-/// A patch of 100 x 100 nodes in the middle of the sheet, 1001 nodes a row.
-std::string patch_expression() {
-  std::string expression;
-  for (int j = 450; j < 550; ++j) {
-    const int first = 450 + 1001 * j;
-    expression += (expression.empty() ? "" : ",") + std::to_string(first + 1) + "-" + std::to_string(first + 100);
-  }
-  return expression;
-}
-
 Document& million() {
   static Document document = [] {
-    Document fresh = open_million();
-    const Result<EditReport> selected = document::apply(fresh, Edit(Select{patch_expression()}));
+    Document fresh = bench::open_million();
+    const Result<EditReport> selected = document::apply(fresh, Edit(Select{bench::patch_expression()}));
     if (!selected || fresh.current().selected_nodes != 10'000) {
       std::cerr << "the patch isn't 10,000 nodes: " << (selected ? "" : selected.error().text()) << '\n';
       std::abort();
@@ -136,11 +97,11 @@ void lock_a_part(benchmark::State& state) {
 BENCHMARK(lock_a_part)->Unit(benchmark::kMillisecond);
 
 void journal_translate_10k(benchmark::State& state) {
-  Document document = open_million();
+  Document document = bench::open_million();
   const auto path = std::filesystem::temp_directory_path() / ("document-bench-" + std::to_string(::getpid()) + ".journal");
   Result<Journal> journal = Journal::create(path, document);
   if (!journal) return state.SkipWithError(journal.error().text().c_str());
-  const Edit select = Select{patch_expression()};
+  const Edit select = Select{bench::patch_expression()};
   document::apply(document, select).value();
   const Edit edit = pull(1.5);
   const Result<Prepared> prepared = prepare(document, edit);
