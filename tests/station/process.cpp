@@ -20,8 +20,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-[[noreturn]] void become(const std::vector<std::string>& command, const std::map<std::string, std::string>& environment, int out,
-                         int error) {
+/// Between fork and exec: other threads of the test may hold the allocator's lock, so nothing is allocated here but for an
+/// environment of the program's own.
+[[noreturn]] void become(const std::vector<char*>& arguments, const std::map<std::string, std::string>& environment, int out, int error) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
   ::dup2(out, STDOUT_FILENO);
@@ -32,9 +33,6 @@ using Clock = std::chrono::steady_clock;
     else
       ::setenv(name.c_str(), value.c_str(), 1);
   }
-  std::vector<char*> arguments;
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
   ::execvp(arguments[0], arguments.data());
   ::_exit(127);
 }
@@ -44,9 +42,12 @@ using Clock = std::chrono::steady_clock;
 Process::Process(std::vector<std::string> command, const std::map<std::string, std::string>& environment) {
   std::array<int, 2> out{}, error{};
   if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(error.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  std::vector<char*> arguments;
+  for (std::string& word : command) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("no process");
-  if (pid_ == 0) become(command, environment, out[1], error[1]);
+  if (pid_ == 0) become(arguments, environment, out[1], error[1]);
   ::close(out[1]);
   ::close(error[1]);
   out_ = out[0];

@@ -15,6 +15,7 @@ namespace prismesh::test {
 /// Waits are for events, so this is only how long a loaded machine may take before a test gives up.
 inline constexpr std::chrono::seconds kPatience{90};
 
+/// A program that ends with the thread that started it, however the test ends.
 class Process {
  public:
   /// `environment` is added to the test's own; an empty value removes a variable. Dies with the test.

@@ -1,5 +1,6 @@
 // `prismesh session` and modeld as two programs, with the daemon dying in between.
 #include <csignal>
+#include <future>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -123,12 +124,11 @@ TEST_F(SessionCommand, GoesOnWhenTheDaemonIsRestarted) {
   ASSERT_EQ(session({"edit", kMove}).status, 0);
   daemon_->kill(SIGKILL);
   daemon_->wait_for_exit();
-  std::thread restart([this] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    start();
-  });
-  const Ran edited = session({"edit", kMove});
-  restart.join();
+  // The daemon is started by the test's own thread: it is to end with the thread that started it (see Process).
+  std::future<Ran> editing = std::async(std::launch::async, [this] { return session({"edit", kMove}); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  start();
+  const Ran edited = editing.get();
   EXPECT_EQ(edited.status, 0) << edited.err;
   const Ran state = session({"--json", "state"});
   EXPECT_NE(state.out.find("\"recovered_edits\":1"), std::string::npos) << state.out;
