@@ -19,7 +19,7 @@ struct Index {
   constexpr Index() = default;
   constexpr explicit Index(std::size_t index) : value(static_cast<std::uint32_t>(index)) {}
   constexpr bool valid() const { return value != kNone; }
-  constexpr auto operator<=>(const Index&) const = default;
+  constexpr auto operator<=>(const Index&) const = default;  // NOLINT(modernize-use-nullptr): the check mistakes the operator
 };
 
 using NodeIndex = Index<struct NodeTag>;
