@@ -65,7 +65,13 @@ build_release() {
 }
 
 # sources: every C++ file that is ours, one a line.
-sources() { find base mesh drivers ipc daemon kiosk cli tests -name '*.h' -o -name '*.cpp' 2>/dev/null | sort; }
+sources() {
+  local folder folders=()
+  for folder in base mesh drivers ipc daemon kiosk cli tests; do
+    [ ! -d "$folder" ] || folders+=("$folder")  # find fails where one of its folders lacks
+  done
+  find "${folders[@]}" -name '*.h' -o -name '*.cpp' | sort
+}
 
 run_tidy() {
   [ $# -gt 0 ] || mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/fuzz/')
