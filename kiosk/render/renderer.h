@@ -49,12 +49,24 @@ struct PixelRect {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
+/// Where a picture lies on the panel: pixels from the panel's upper left corner. All 0: it covers the panel.
+struct PanelPlace {
+  int x = 0, y = 0;
+  int width = 0, height = 0;  ///< of the panel
+  bool operator==(const PanelPlace&) const = default;
+};
+
 /// All that a picture depends on, but for the model and the preview.
 struct Picture {
   stereo::View view;
   stereo::Profile profile;
   Vec3 between_eyes_mm = Vec3(0, 0, 650);
+  Vec3 toward_right = Vec3::UnitX();  ///< from the left eye to the right one
   double eye_separation_mm = stereo::kMeanEyeSeparationMm;
+  /// 1: each eye's own perspective; 0: both see the picture from between them (mono); in between while the one turns into the other.
+  double depth_share = 1;
+  std::optional<double> mask_mm;  ///< where a movable mask will be when this lights up; empty: where it should be for these eyes
+  PanelPlace panel;               ///< where the picture lies on the display's panel: eyes and mask count from the panel's centre
   ColourMode colour = ColourMode::parts;
   bool element_edges = true;
   bool outlines = true;  ///< free edges and creases
