@@ -1,0 +1,104 @@
+#include "drivers/port/open_error.h"
+
+#include <grp.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+namespace prismesh::drivers::port {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "Plugged in are a, b", from the folder of stable names; empty where there is none.
+std::string what_is_plugged_in() {
+  std::error_code ignored;
+  std::vector<std::string> names;
+  for (fs::directory_iterator entry("/dev/serial/by-id", ignored), end; !ignored && entry != end; entry.increment(ignored))
+    names.push_back(entry->path().string());
+  if (names.empty()) return "no serial device is plugged in (/dev/serial/by-id is empty)";
+  std::sort(names.begin(), names.end());
+  std::string text = "plugged in now:";
+  for (const std::string& name : names) text += " " + name;
+  return text;
+}
+
+std::string group_of(const std::string& path) {
+  struct stat what {};
+  if (::stat(path.c_str(), &what) != 0) return "dialout";
+  const group* found = ::getgrgid(what.st_gid);  // NOLINT(concurrency-mt-unsafe): opening is done by one thread
+  return found != nullptr ? found->gr_name : std::to_string(what.st_gid);
+}
+
+std::string program_name(const fs::path& process) {
+  std::string name;
+  std::ifstream(process / "comm") >> name;
+  return name;
+}
+
+/// "prog (process 12)" for each process of ours that has the file open; those of other users can't be looked into.
+std::string holders(const std::string& path) {
+  struct stat wanted {};
+  if (::stat(path.c_str(), &wanted) != 0) return {};
+  std::string text;
+  std::error_code ignored;
+  for (fs::directory_iterator process("/proc", ignored), end; !ignored && process != end; process.increment(ignored)) {
+    const std::string id = process->path().filename().string();
+    if (id.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::error_code unreadable;
+    for (fs::directory_iterator open(process->path() / "fd", unreadable), last; !unreadable && open != last; open.increment(unreadable)) {
+      struct stat what {};
+      if (::stat(open->path().c_str(), &what) != 0 || !S_ISCHR(what.st_mode) || what.st_rdev != wanted.st_rdev) continue;
+      text += (text.empty() ? "" : ", ") + program_name(process->path()) + " (process " + id + ")";
+      break;
+    }
+  }
+  return text;
+}
+
+std::string advice(const std::string& path, int error) {
+  switch (error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO: return "there is no such device; is it plugged in and switched on? " + what_is_plugged_in();
+    case EACCES:
+    case EPERM: {
+      const std::string group = group_of(path);
+      return "this user may not open it: install systemd/udev/60-prismesh.rules and plug the device in again, or join its group "
+             "(sudo usermod -aG " +
+             group + " $USER) and log in again";
+    }
+    case EBUSY:
+    case EWOULDBLOCK: {
+      const std::string who = holders(path);
+      return "another program has it open: " + (who.empty() ? "one of another user; sudo fuser -v " + path + " names it" : who) +
+             "; end that program, or give this one another port";
+    }
+    case ENOTTY:
+    case EINVAL: return "is no serial line; give the device's own file, such as one in /dev/serial/by-id";
+    case EIO: return "doesn't answer; pull the plug and put it in again";
+    default: return std::string("can't be opened: ") + std::strerror(error);
+  }
+}
+
+}  // namespace
+
+Error open_error(const std::string& path, int error) { return {path, 0, advice(path, error)}; }
+
+int lock(int descriptor) {
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return 0;
+  return errno == EWOULDBLOCK ? EBUSY : errno;
+}
+
+int refuse_others(int descriptor) { return ::ioctl(descriptor, TIOCEXCL) == 0 ? 0 : errno; }
+
+}  // namespace prismesh::drivers::port
