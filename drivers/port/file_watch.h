@@ -1,7 +1,9 @@
 // Tells when a device's file may have appeared or changed its permissions.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace prismesh::drivers::port {
@@ -17,18 +19,19 @@ class FileWatch {
 
   /// Readable (poll) when there may be news.
   int descriptor() const { return descriptor_; }
-  /// Reads the news and watches anew. Indices of the paths that exist and were touched, or had appeared before the watch was set.
+  /// Reads the news and watches anew. Indices of the paths that were touched and exist.
   std::vector<std::size_t> news();
 
  private:
   struct Watched {
     std::string path;
-    std::string folder;  ///< the nearest that exists
-    std::string name;    ///< the path's next component inside it
+    std::string folder;  // the nearest that exists
+    std::string name;    // the path's next component inside it
     int watch = -1;
-    bool existed = false;
+    bool touched = false;
   };
-  bool watch_nearest(Watched& watched);
+  void watch_nearest(Watched& watched);
+  void mark_touched(int watch, std::string_view name);
 
   int descriptor_ = -1;
   std::vector<Watched> watched_;

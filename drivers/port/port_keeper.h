@@ -11,10 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "base/clock.h"
 #include "base/error.h"
@@ -93,39 +90,5 @@ class BasicKeeper {
 class DatagramPort;
 using PortKeeper = BasicKeeper<BytePort>;
 using DatagramKeeper = BasicKeeper<DatagramPort>;
-
-/// What `KeeperThread` needs of a keeper, whichever port it keeps.
-struct KeeperWork {
-  std::function<std::int64_t()> work;  ///< returns when to call again at the latest
-  std::function<void()> hurry;
-  std::function<void(void (*)(void*), void*)> on_give_back;
-  std::string path;
-};
-
-template <class Port>
-KeeperWork work_of(BasicKeeper<Port>& keeper) {
-  return {[&keeper] { return keeper.work(); }, [&keeper] { keeper.hurry(); },
-          [&keeper](void (*call)(void*), void* with) { keeper.on_give_back(call, with); }, keeper.path()};
-}
-
-/// Drives keepers on a thread of its own until it's destroyed: at their times, at once when a port comes back, and at once when a device's
-/// file appears or changes (inotify on its folder, or on the nearest folder above that exists). The keepers must outlive it, and the
-/// real-time side must have stopped giving back before it is destroyed. `clock` is the keepers' own and must be CLOCK_MONOTONIC.
-class KeeperThread {
- public:
-  KeeperThread(Clock& clock, std::vector<KeeperWork> keepers);
-  ~KeeperThread();
-  KeeperThread(const KeeperThread&) = delete;
-  KeeperThread& operator=(const KeeperThread&) = delete;
-
- private:
-  void run(const std::stop_token& stop);
-  void wake();
-
-  Clock& clock_;
-  std::vector<KeeperWork> keepers_;
-  int event_ = -1;
-  std::jthread thread_;
-};
 
 }  // namespace prismesh::drivers::port
