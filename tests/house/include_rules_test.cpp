@@ -45,6 +45,12 @@ TEST(IncludeRules, rooms_of_the_mesh_keep_their_order) {
   EXPECT_FALSE(may_include("mesh/model", "mesh/no_such_room"));
 }
 
+TEST(IncludeRules, the_simulated_viewer_shares_nothing_with_what_it_judges) {
+  for (const char* judged : {"kiosk", "drivers", "ipc", "mesh/model", "tests"}) EXPECT_FALSE(may_include("tests/viewer", judged)) << judged;
+  EXPECT_TRUE(may_include("tests", "tests/viewer"));
+  EXPECT_EQ(room_of("tests/viewer/seen.cpp"), "tests/viewer");
+}
+
 TEST(IncludeRules, a_planted_violation_is_found_at_its_line) {
   EXPECT_THAT(include_violations("mesh/shape/move.cpp", "#include \"mesh/shape/move.h\"\n\n#include \"mesh/document/document.h\"\n"),
               ElementsAre("mesh/shape/move.cpp:3: mesh/shape must not include mesh/document (mesh/document/document.h)"));

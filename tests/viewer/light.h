@@ -1,0 +1,44 @@
+// Pictures as light: what a panel emits is linear, what a PNG holds is not.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "base/error.h"
+
+namespace prismesh::viewer {
+
+using Colour = std::array<float, 3>;  ///< red, green, blue; linear, 1 = a white panel
+
+/// Rows from the top.
+struct LightImage {
+  int width = 0;
+  int height = 0;
+  std::vector<Colour> pixels;
+
+  LightImage() = default;
+  LightImage(int wide, int high, Colour fill = {})
+      : width(wide), height(high), pixels(static_cast<std::size_t>(wide) * static_cast<std::size_t>(high), fill) {}
+  Colour& at(int x, int y) { return pixels[static_cast<std::size_t>(y) * width + x]; }
+  const Colour& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
+};
+
+/// sRGB (IEC 61966-2-1): 0..1 to linear light and back. What is below 0 or above 1 is cut off when encoding.
+float linear_from_srgb(float value);
+float srgb_from_linear(float light);
+/// 0..255, not rounded: where differences are to be as an eye weighs them.
+float level(float light);
+
+/// From rows of 8-bit sRGB, three bytes a pixel.
+LightImage light_of(std::span<const std::uint8_t> rgb, int width, int height);
+std::vector<std::uint8_t> srgb_bytes(const LightImage& image);
+
+/// Errors: not readable, no picture (each names the file).
+Result<LightImage> read_picture(const std::filesystem::path& path);
+/// A PNG; replaces the file whole or not at all. Errors: not writable.
+Result<void> write_picture(const std::filesystem::path& path, const LightImage& image);
+
+}  // namespace prismesh::viewer

@@ -1,0 +1,63 @@
+// What an eye sees on a mask display: one colour per element of the mask and row of the panel.
+#pragma once
+
+#include <vector>
+
+#include "tests/viewer/light.h"
+#include "tests/viewer/mask_display.h"
+
+namespace prismesh::viewer {
+
+struct Sharpness {
+  double window_pixels = 1;  ///< how wide a stretch of a row is seen through an element
+  double leak = 0;           ///< light from the places half a period aside, relative to that of the window: crosstalk
+};
+
+/// Rows from the top. An element whose window isn't wholly on the panel in some row isn't there.
+struct Seen {
+  int first_element = 0;
+  int elements = 0;
+  int rows = 0;
+  double window_mm = 0;         ///< width of what each shows
+  std::vector<float> place_mm;  ///< on the panel, [row][element]: ascending within a row
+  std::vector<Colour> light;    ///< [row][element]
+
+  std::size_t index(int element, int row) const { return static_cast<std::size_t>(row) * elements + element; }
+  const Colour& at(int element, int row) const { return light[index(element, row)]; }
+  /// As a picture, one pixel an element and row.
+  LightImage image() const;
+};
+
+/// Traces every element and row. `picture` is what the panel shows, of the panel's size.
+/// Errors: another size; an eye that isn't before the mask; a display that can't be.
+Result<Seen> look(const MaskDisplay& display, const LightImage& picture, const Point& eye, double mask_mm, const Sharpness& sharpness = {});
+
+/// What would be seen at the same places of an ordinary screen that shows `picture`, each place a period wide: what one element has to
+/// stand for. Of the same panel.
+Seen ordinary(const MaskDisplay& display, const LightImage& picture, const Seen& places);
+
+/// Brought to a common grid of the whole panel, `columns` wide, by linear interpolation between elements; places beyond the outermost
+/// elements take these.
+LightImage on_grid(const MaskDisplay& display, const Seen& seen, int columns);
+
+/// Mean absolute difference in levels (0..255), over all elements, rows and colours. Sizes must agree.
+double mean_difference(const Seen& a, const Seen& b);
+double mean_difference(const LightImage& a, const LightImage& b);
+
+/// Share of another picture that is mixed into what is seen: b of the least squares seen = a * own + b * other + constant, over
+/// differences along rows so that shading common to both doesn't count. 0 where the pictures are the same.
+double share_of_other(const Seen& seen, const Seen& own, const Seen& other);
+
+/// Centre of what differs from `ground` by more than `threshold` (linear light), weighted by the difference: element and row with
+/// fractions. Empty: nothing differs.
+struct Spot {
+  double element = 0;  ///< the mask's number
+  double row = 0;      ///< 0.5: the middle of the uppermost row
+  double light = 0;    ///< sum of differences
+};
+Spot spot_in(const Seen& seen, const Seen& ground, double threshold = 0.01);
+
+/// Connected pieces (8 neighbours) of what differs from `ground` by more than `levels`; 0: nothing does.
+int pieces_in(const Seen& seen, const Seen& ground, double levels = 8);
+
+}  // namespace prismesh::viewer
