@@ -26,6 +26,8 @@ struct LineCounts {
   std::uint64_t without_head = 0;   ///< of these: the device looks for a head
   std::uint64_t bytes_skipped = 0;  ///< bytes that belong to no record: noise, or before synchronisation
   std::uint64_t resyncs = 0;        ///< times that synchronisation was lost
+  std::uint64_t rejected = 0;       ///< records with a head where no viewer can be, or jumping there and back
+  std::uint64_t restarts = 0;       ///< times that the talk with a silent device was begun anew
 };
 
 class EyeTracker {

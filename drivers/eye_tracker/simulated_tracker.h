@@ -1,0 +1,38 @@
+// A simulated eye tracker for stations without one: the device's side is played on a thread of its own, over a pseudo-terminal
+// (DynaSight/D4D) or loopback datagrams (opentrack), so that the daemon opens and reads it as it would the real thing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "drivers/eye_tracker/simulated_head.h"
+#include "drivers/settings/settings.h"
+
+namespace prismesh::drivers::eye_tracker {
+
+class SimulatedTrackerThread {
+ public:
+  /// Plays the tracker that `settings` describe (driver, dialect, baud, latency, noise, offset, motion). Errors: an unknown motion, no
+  /// pseudo-terminal to be had, a driver that is `none`. `clock` must be CLOCK_MONOTONIC and outlive this.
+  static Result<std::unique_ptr<SimulatedTrackerThread>> start(const settings::EyeTrackerSettings& settings, Clock& clock,
+                                                               std::uint64_t seed = 1);
+  ~SimulatedTrackerThread();
+  SimulatedTrackerThread(const SimulatedTrackerThread&) = delete;
+  SimulatedTrackerThread& operator=(const SimulatedTrackerThread&) = delete;
+
+  /// The pseudo-terminal to open in place of the settings' port; empty for opentrack, which sends to the settings' udp_port.
+  const std::string& port_path() const { return port_path_; }
+
+ private:
+  SimulatedTrackerThread() = default;
+  struct Device;
+  std::unique_ptr<Device> device_;
+  std::string port_path_;
+  std::jthread thread_;
+};
+
+}  // namespace prismesh::drivers::eye_tracker
