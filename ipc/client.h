@@ -24,6 +24,11 @@ class Client {
  public:
   /// Connects and exchanges hellos. Errors: nobody listens (names the socket and says how to start), other protocol version.
   static Result<Client> connect(const std::filesystem::path& socket, const std::string& program);
+  /// Connects and sends the hello without waiting for the welcome, for loops that mustn't stand still. Until `greeted` is true nothing
+  /// else may be called.
+  static Result<Client> begin(const std::filesystem::path& socket, const std::string& program);
+  /// Whether the welcome has come, waiting for it at most `patience`. Errors as of `connect`.
+  Result<bool> greeted(std::chrono::milliseconds patience = std::chrono::milliseconds(0));
   Client(Client&&) noexcept;
   Client& operator=(Client&&) noexcept;
   ~Client();

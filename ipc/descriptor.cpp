@@ -93,7 +93,18 @@ Result<Descriptor> make_sealed_memory(const char* name, std::span<const std::byt
 }
 
 Result<void> seal_for_readers(const Descriptor& descriptor) {
-  if (::fcntl(descriptor.get(), F_ADD_SEALS, F_SEAL_FUTURE_WRITE) != 0) return system_failure("sealing shared memory against writing");
+  if (::fcntl(descriptor.get(), F_ADD_SEALS, F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) != 0)
+    return system_failure("sealing shared memory against writing");
+  return {};
+}
+
+Result<void> check_page_seals(const Descriptor& descriptor, const char* name) {
+  constexpr int kSize = F_SEAL_SHRINK | F_SEAL_GROW;
+  constexpr int kWriting = F_SEAL_FUTURE_WRITE | F_SEAL_WRITE;
+  const int seals = ::fcntl(descriptor.get(), F_GET_SEALS);
+  if (seals < 0) return fail(name, "it isn't sealed memory");
+  if ((seals & kSize) != kSize) return fail(name, "its size could change while it is read (F_SEAL_SHRINK or F_SEAL_GROW is missing)");
+  if ((seals & kWriting) == 0) return fail(name, "somebody else could write it (F_SEAL_FUTURE_WRITE is missing)");
   return {};
 }
 

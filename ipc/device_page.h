@@ -5,11 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "drivers/eye_tracker/filter.h"
 #include "drivers/prism_servo/mask_control.h"
-#include "ipc/descriptor.h"
+#include "ipc/sealed_page.h"
 #include "ipc/seqlock.h"
 
 namespace prismesh::ipc {
@@ -52,6 +53,9 @@ struct DeviceHealth {
 };
 
 struct DevicePageLayout {
+  static constexpr const char* kName = "prismesh-devices";
+  static constexpr std::uint64_t kMagic = 0x3153'4543'4956'4544;  // "DEVICES1"
+  static constexpr std::uint64_t kVersion = 1;
   std::uint64_t magic = 0;
   std::uint64_t version = 0;
   SeqlockSlot<EyesState> eyes;
@@ -61,29 +65,32 @@ struct DevicePageLayout {
 
 class DevicePage {
  public:
-  static Result<DevicePage> create();
+  static Result<DevicePage> create() {
+    return SealedPage<DevicePageLayout>::create().map([](auto page) { return DevicePage(std::move(page)); });
+  }
   /// One thread writes each slot.
-  void set_eyes(const EyesState& eyes) { layout_->eyes.write(eyes); }
-  void set_prism(const PrismState& prism) { layout_->prism.write(prism); }
-  void set_health(const DeviceHealth& health) { layout_->health.write(health); }
-  const Descriptor& descriptor() const { return descriptor_; }
+  void set_eyes(const EyesState& eyes) { page_->eyes.write(eyes); }
+  void set_prism(const PrismState& prism) { page_->prism.write(prism); }
+  void set_health(const DeviceHealth& health) { page_->health.write(health); }
+  const Descriptor& descriptor() const { return page_.descriptor(); }
 
  private:
-  Descriptor descriptor_;
-  Mapping mapping_;
-  DevicePageLayout* layout_ = nullptr;
+  explicit DevicePage(SealedPage<DevicePageLayout> page) : page_(std::move(page)) {}
+  SealedPage<DevicePageLayout> page_;
 };
 
 class DevicePageReader {
  public:
-  static Result<DevicePageReader> map(const Descriptor& descriptor);
-  std::optional<EyesState> eyes() const { return layout_->eyes.read(); }
-  std::optional<PrismState> prism() const { return layout_->prism.read(); }
-  std::optional<DeviceHealth> health() const { return layout_->health.read(); }
+  static Result<DevicePageReader> map(const Descriptor& descriptor) {
+    return SealedPageReader<DevicePageLayout>::map(descriptor).map([](auto page) { return DevicePageReader(std::move(page)); });
+  }
+  std::optional<EyesState> eyes() const { return page_->eyes.read(); }
+  std::optional<PrismState> prism() const { return page_->prism.read(); }
+  std::optional<DeviceHealth> health() const { return page_->health.read(); }
 
  private:
-  Mapping mapping_;
-  const DevicePageLayout* layout_ = nullptr;
+  explicit DevicePageReader(SealedPageReader<DevicePageLayout> page) : page_(std::move(page)) {}
+  SealedPageReader<DevicePageLayout> page_;
 };
 
 }  // namespace prismesh::ipc

@@ -139,7 +139,7 @@ Result<bool> LineSocket::flush() {
   return true;
 }
 
-Result<Descriptor> connect_to(const std::filesystem::path& path) {
+Result<Descriptor> connect_to(const std::filesystem::path& path, std::string_view remedy) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.native().size() >= sizeof address.sun_path)
@@ -151,8 +151,7 @@ Result<Descriptor> connect_to(const std::filesystem::path& path) {
   do status = ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
   while (status != 0 && errno == EINTR);
   if (status == 0) return socket;
-  if (errno == ENOENT || errno == ECONNREFUSED)
-    return fail(path.string(), "nobody listens there: start the document's daemon with `./station run` or `prismesh-modeld`");
+  if (errno == ENOENT || errno == ECONNREFUSED) return fail(path.string(), "nobody listens there: " + std::string(remedy));
   return fail(path.string(), std::string("can't connect: ") + std::strerror(errno));
 }
 

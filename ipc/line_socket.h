@@ -57,7 +57,7 @@ class LineSocket {
   std::size_t queued_bytes_ = 0;
 };
 
-/// Connects to a listening socket. Errors say whether nobody listens or the socket may not be used.
-Result<Descriptor> connect_to(const std::filesystem::path& socket);
+/// Connects to a listening socket. Errors say whether nobody listens (with `remedy`: what to do then) or the socket may not be used.
+Result<Descriptor> connect_to(const std::filesystem::path& socket, std::string_view remedy = "start its daemon");
 
 }  // namespace prismesh::ipc

@@ -22,10 +22,12 @@ std::string encode_event(const Event& event);
 /// An answer's fields alone, as an object in one line: for programs that print what they were told.
 std::string answer_fields(const Answer& answer);
 
-struct NumberedRequest {
+template <class AnyRequest>
+struct Numbered {
   std::uint64_t number = 0;
-  Request request;
+  AnyRequest request;
 };
+using NumberedRequest = Numbered<Request>;
 /// A request that can't be read; `number` is 0 where not even that can.
 struct BadRequest {
   std::uint64_t number = 0;
@@ -34,11 +36,14 @@ struct BadRequest {
 /// Errors name the field and, for an unknown one, the nearest known.
 tl::expected<NumberedRequest, BadRequest> decode_request(std::string_view line);
 
-struct FromDaemon {
+/// What a daemon says.
+template <class AnyAnswer, class AnyEvent>
+struct Said {
   std::uint64_t to = 0;         ///< the request that is answered
   std::size_t descriptors = 0;  ///< that ride with the line
-  std::variant<Answer, Event> message;
+  std::variant<AnyAnswer, AnyEvent> message;
 };
+using FromDaemon = Said<Answer, Event>;
 Result<FromDaemon> decode_from_daemon(std::string_view line);
 
 }  // namespace prismesh::ipc

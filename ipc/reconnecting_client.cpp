@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <thread>
-#include <utility>
+
+#include "ipc/connection.h"
 
 namespace prismesh::ipc {
 
@@ -12,38 +13,68 @@ using Time = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kLongestPause{1000};
+/// How long `wait` sleeps between two looks for the welcome.
+constexpr std::chrono::milliseconds kLook{5};
 
 }  // namespace
 
-Client* ReconnectingClient::client() {
-  if (client_) return &*client_;
-  if (Time::now() < next_try_) return nullptr;
-  Result<Client> connected = Client::connect(socket_, program_);
-  if (connected) {
-    client_ = std::move(*connected);
+template <class AnyClient>
+AnyClient* Reconnecting<AnyClient>::client() {
+  if (client_ && greeted_) return &*client_;
+  if (!client_) {
+    if (Time::now() < next_try_) return nullptr;
+    Result<AnyClient> begun = AnyClient::begin(socket_, program_);
+    if (!begun) {
+      try_again_later(std::move(begun.error()));
+      return nullptr;
+    }
+    client_ = std::move(*begun);
+    begun_ = Time::now();
+  }
+  const Result<bool> greeted = client_->greeted();
+  if (!greeted) {
+    try_again_later(greeted.error());
+  } else if (*greeted) {
+    greeted_ = true;
     ++connections_;
     pause_ = std::chrono::milliseconds(0);
     return &*client_;
+  } else {
+    trouble_ = {socket_.string(), 0, "the daemon listens, but hasn't answered the greeting yet"};
+    if (Time::now() - begun_ > kGreetingPatience) try_again_later(trouble_);
   }
-  trouble_ = std::move(connected.error());
-  pause_ = std::clamp(pause_ * 2, kFirstPause, kLongestPause);
-  next_try_ = Time::now() + pause_;
   return nullptr;
 }
 
-Result<Client*> ReconnectingClient::wait(std::chrono::milliseconds patience) {
+template <class AnyClient>
+void Reconnecting<AnyClient>::try_again_later(Error why) {
+  client_.reset();
+  trouble_ = std::move(why);
+  pause_ = std::clamp(pause_ * 2, kFirstPause, kLongestPause);
+  next_try_ = Time::now() + pause_;
+}
+
+template <class AnyClient>
+Result<AnyClient*> Reconnecting<AnyClient>::wait(std::chrono::milliseconds patience) {
   const Time::time_point until = Time::now() + patience;
   for (;;) {
-    if (Client* connected = client()) return connected;
-    if (Time::now() >= until) return fail(trouble_);
-    std::this_thread::sleep_until(std::min(next_try_, until));
+    if (AnyClient* connected = client()) return connected;
+    // One that was never tried is tried once, and may take a moment to greet.
+    if (Time::now() >= until && !client_) return fail(trouble_);
+    if (Time::now() >= until + kGreetingPatience) return fail(trouble_);
+    std::this_thread::sleep_until(client_ ? Time::now() + kLook : std::min(next_try_, until));
   }
 }
 
-void ReconnectingClient::lost(const Error& why) {
+template <class AnyClient>
+void Reconnecting<AnyClient>::lost(const Error& why) {
   client_.reset();
+  greeted_ = false;
   trouble_ = why;
   next_try_ = Time::now();
 }
+
+template class Reconnecting<Client>;
+template class Reconnecting<DeviceClient>;
 
 }  // namespace prismesh::ipc

@@ -4,9 +4,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
-#include "ipc/descriptor.h"
+#include "ipc/sealed_page.h"
 #include "ipc/seqlock.h"
 
 namespace prismesh::ipc {
@@ -26,6 +27,9 @@ inline constexpr std::int64_t kHeartbeatPeriodNs = 500'000'000;
 
 /// The page as it lies in memory.
 struct StatePageLayout {
+  static constexpr const char* kName = "prismesh-state";
+  static constexpr std::uint64_t kMagic = 0x3145'5441'5453'5250;  // "PRSTATE1"
+  static constexpr std::uint64_t kVersion = 1;
   std::uint64_t magic = 0;
   std::uint64_t version = 0;
   SeqlockSlot<Health> health;
@@ -33,25 +37,28 @@ struct StatePageLayout {
 
 class StatePage {
  public:
-  static Result<StatePage> create();
+  static Result<StatePage> create() {
+    return SealedPage<StatePageLayout>::create().map([](auto page) { return StatePage(std::move(page)); });
+  }
   /// One thread writes.
-  void set_health(const Health& health) { layout_->health.write(health); }
-  const Descriptor& descriptor() const { return descriptor_; }
+  void set_health(const Health& health) { page_->health.write(health); }
+  const Descriptor& descriptor() const { return page_.descriptor(); }
 
  private:
-  Descriptor descriptor_;
-  Mapping mapping_;
-  StatePageLayout* layout_ = nullptr;
+  explicit StatePage(SealedPage<StatePageLayout> page) : page_(std::move(page)) {}
+  SealedPage<StatePageLayout> page_;
 };
 
 class StatePageReader {
  public:
-  static Result<StatePageReader> map(const Descriptor& descriptor);
-  std::optional<Health> health() const { return layout_->health.read(); }
+  static Result<StatePageReader> map(const Descriptor& descriptor) {
+    return SealedPageReader<StatePageLayout>::map(descriptor).map([](auto page) { return StatePageReader(std::move(page)); });
+  }
+  std::optional<Health> health() const { return page_->health.read(); }
 
  private:
-  Mapping mapping_;
-  const StatePageLayout* layout_ = nullptr;
+  explicit StatePageReader(SealedPageReader<StatePageLayout> page) : page_(std::move(page)) {}
+  SealedPageReader<StatePageLayout> page_;
 };
 
 }  // namespace prismesh::ipc
