@@ -1,0 +1,156 @@
+#include "kiosk/stereo/tracked_eyes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace prismesh::kiosk::stereo {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Radii of the zones in which the picture stands still. 2 mm to the side shift an eye's windows by 0.03 pixels.
+constexpr double kStillAcrossMm = 2, kStillDeepMm = 6, kStillTurnMm = 0.5;
+constexpr double kTakeUpSeconds = 0.06;  ///< time constants of going over to eyes that came back ...
+constexpr double kLetGoSeconds = 0.4;    ///< ... and from lost eyes to the resting place
+constexpr double kArrivedMm = 0.05;
+constexpr std::int64_t kClockSlackNs = 50'000'000;  ///< a measurement that lies further in the future is nonsense
+
+double seconds_of(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
+double part(std::int64_t of_ns, std::int64_t whole_ns) {
+  return std::clamp(static_cast<double>(of_ns) / static_cast<double>(std::max<std::int64_t>(1, whole_ns)), 0.0, 1.0);
+}
+
+/// A place that a head before a screen can have; anything else is a fault, whatever the phase says.
+bool believable(const ipc::EyesState& eyes) {
+  const Eigen::Map<const Vector3d> place(eyes.between_eyes_mm.data()), velocity(eyes.velocity_mm_s.data()), right(eyes.toward_right.data());
+  return place.allFinite() && velocity.allFinite() && right.allFinite() && place.z() > 100 && place.norm() < 5000 &&
+         velocity.norm() < 5000 && std::abs(right.norm() - 1) < 0.01 && eyes.eye_separation_mm >= 40 && eyes.eye_separation_mm <= 90;
+}
+
+}  // namespace
+
+// --- gliding ---
+
+void TrackedEyes::Glide::begin(const Vector3d& at) {
+  zone_.reset();
+  shown_ = zone_.follow(at);
+  offset_.setZero();
+  fresh_target_ = false;
+}
+
+Vector3d TrackedEyes::Glide::follow(const Vector3d& target, double seconds, double time_constant_s) {
+  if (fresh_target_) zone_.reset();
+  const Vector3d held = zone_.follow(target);
+  if (fresh_target_) offset_ = shown_ - held;
+  fresh_target_ = false;
+  offset_ *= std::exp(-seconds / time_constant_s);
+  if (offset_.norm() < kArrivedMm) offset_.setZero();
+  return shown_ = held + offset_;
+}
+
+// --- looking ---
+
+TrackedEyes::TrackedEyes(const FollowOptions& options, const FollowLimits& limits)
+    : limits_(limits),
+      eye_separation_mm_(options.eye_separation_mm),
+      place_(kStillAcrossMm, kStillDeepMm),
+      half_separation_(kStillTurnMm, kStillTurnMm) {
+  set_options(options);
+}
+
+void TrackedEyes::set_options(const FollowOptions& options) {
+  options_ = options;
+  looked_ns_.reset();
+  disallowed_ns_.reset();
+  source_ = Source::resting;
+  place_.begin(options.resting_mm);
+  half_separation_.begin(0.5 * eye_separation_mm_ * Vector3d::UnitX());
+  seen_ = {};
+  seen_.between_eyes_mm = options.resting_mm;
+  seen_.eye_separation_mm = eye_separation_mm_;
+  seen_.depth_share = options.follow && options.mono_without_eyes ? 0 : 1;
+}
+
+SeenFrom TrackedEyes::look(const DeviceReading& reading, std::int64_t now_ns, const LitTime& lit) {
+  if (!options_.follow) return seen_;
+  take(reading, now_ns);
+  move(now_ns, lit);
+  if (options_.movable_mask) follow_mask(reading, lit);
+  if (options_.mono_without_eyes) {
+    double most = share_for_eyes(now_ns, lit);
+    most = std::min(most, 1 - std::min(1.0, place_.offset_mm() / limits_.place_slack_mm));
+    if (options_.movable_mask) most = std::min(most, share_for_mask(reading, now_ns, lit));
+    const double risen = seen_.depth_share + (looked_ns_ ? part(lit.from_ns - *looked_ns_, limits_.rise_ns) : 0);
+    seen_.depth_share = std::clamp(most, 0.0, risen);
+  }
+  looked_ns_ = lit.from_ns;
+  return seen_;
+}
+
+void TrackedEyes::take(const DeviceReading& reading, std::int64_t now_ns) {
+  if (!reading.eyes) return;
+  const ipc::EyesState& eyes = *reading.eyes;
+  if (eyes.phase != ipc::EyesPhase::tracking || eyes.measured_ns <= head_.time_ns || eyes.measured_ns > now_ns + kClockSlackNs) return;
+  if (!believable(eyes)) return;
+  found_again_ = found_again_ || eyes.measured_ns - head_.time_ns > limits_.lost_after_ns;
+  head_ = eyes.head();
+  eye_separation_mm_ = eyes.eye_separation_mm;
+}
+
+void TrackedEyes::move(std::int64_t now_ns, const LitTime& lit) {
+  const bool known = head_.time_ns != 0 && now_ns - head_.time_ns < limits_.rest_after_ns;
+  const bool fresh = head_.time_ns != 0 && now_ns - head_.time_ns < limits_.mono_after_ns;
+  const Source source = fresh || (known && source_ == Source::tracked) ? Source::tracked : Source::resting;
+  if (source != source_ || std::exchange(found_again_, false)) {
+    place_.retarget();
+    half_separation_.retarget();
+    source_ = source;
+  }
+  // What is lost goes on for as long as the filter extrapolates, and stands still from there.
+  const bool tracked = source == Source::tracked;
+  const double seconds = looked_ns_ ? std::max(0.0, seconds_of(lit.from_ns - *looked_ns_)) : 0;
+  const double time_constant = tracked ? kTakeUpSeconds : kLetGoSeconds;
+  seen_.between_eyes_mm = place_.follow(tracked ? predict(head_, lit.from_ns) : options_.resting_mm, seconds, time_constant);
+  const Vector3d right = tracked ? head_.toward_right : Vector3d::UnitX();
+  const Vector3d half = half_separation_.follow(0.5 * eye_separation_mm_ * right, seconds, time_constant);
+  seen_.toward_right = half.normalized();
+  seen_.eye_separation_mm = 2 * half.norm();
+}
+
+/// Full depth while measurements come; then down to mono, which the last picture before the deadline has reached.
+double TrackedEyes::share_for_eyes(std::int64_t now_ns, const LitTime& lit) const {
+  if (head_.time_ns == 0) return 0;
+  const std::int64_t deadline = head_.time_ns + limits_.mono_after_ns, ahead = lit.until_ns - now_ns;
+  // One picture may just have been begun when the eyes are found lost, and the next one has to be mono in time.
+  const std::int64_t room = limits_.mono_after_ns - 2 * ahead;
+  const std::int64_t lost_after = std::clamp(room, limits_.lost_soonest_ns, limits_.lost_after_ns);
+  if (now_ns - head_.time_ns <= lost_after) return 1;
+  const std::int64_t fade_from = head_.time_ns + lost_after + ahead;
+  return fade_from < deadline ? part(deadline - lit.until_ns, deadline - fade_from) : 0;
+}
+
+double TrackedEyes::share_for_mask(const DeviceReading& reading, std::int64_t now_ns, const LitTime& lit) {
+  const bool known = reading.prism && now_ns - reading.prism->time_ns < limits_.mask_old_ns;
+  if (known && reading.prism->stereo_allowed) {
+    disallowed_ns_.reset();
+    const ipc::PrismState& mask = *reading.prism;
+    const bool planned = mask.mono_from_ns != 0 || mask.mono_until_ns != 0;
+    if (!planned || lit.from_ns >= mask.mono_until_ns) return 1;
+    return part(mask.mono_from_ns - lit.until_ns, limits_.fade_ns);  // 0 from the last picture that would reach into the move
+  }
+  if (!disallowed_ns_) disallowed_ns_ = lit.until_ns;
+  // A move back that was announced needs no fade any more.
+  if (known && lit.until_ns > reading.prism->mono_from_ns && lit.from_ns < reading.prism->mono_until_ns) return 0;
+  return std::min(seen_.depth_share, 1 - part(lit.until_ns - *disallowed_ns_, limits_.fade_ns));
+}
+
+void TrackedEyes::follow_mask(const DeviceReading& reading, const LitTime& lit) {
+  if (!reading.prism || reading.prism->measured_ns == 0) return;
+  const double place = drivers::prism_servo::mask_position_at(*reading.prism, lit.from_ns);
+  if (!std::isfinite(place)) return;
+  if (!seen_.mask_mm || std::abs(place - *seen_.mask_mm) > limits_.mask_step_mm) seen_.mask_mm = place;
+}
+
+}  // namespace prismesh::kiosk::stereo
