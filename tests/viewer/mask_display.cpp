@@ -38,8 +38,8 @@ double MaskDisplay::element_pitch_mm() const {
 
 double MaskDisplay::reference_mm() const {
   // Column c begins at (c - columns / 2) pitches; c is the even number nearest to columns / 2.
-  const double middle = 0.5 * panel.columns;
-  return (2 * std::floor(0.5 * middle + 0.5) - middle) * panel.pitch_mm;
+  const double middle = 0.5 * panel.columns, edge_mm = (2 * std::floor(0.5 * middle + 0.5) - middle) * panel.pitch_mm;
+  return edge_mm * element_pitch_mm() / pitch_scale / (2 * panel.pitch_mm);  // the pitch is as much smaller than two pixels
 }
 
 double MaskDisplay::element_x_mm(double element, double mask_mm, double y_mm) const {

@@ -54,8 +54,8 @@ struct MaskDisplay {
   double air_gap_mm() const;  ///< thickness of an air gap that does what the glass does near the axis
   double glass_mm() const;
   double element_pitch_mm() const;
-  /// Where element 0 stands with the servo at 0: the left edge of the even column nearest to the panel's middle, so that an observer
-  /// in the middle has even columns in the left eye.
+  /// Where element 0 stands with the servo at 0: where an observer in the middle at the design distance sees the left edge of the even
+  /// column nearest to the panel's middle, so that the even columns are the left eye's.
   double reference_mm() const;
   /// x of an element's axis at height y of the mask. `element` may lie between two.
   double element_x_mm(double element, double mask_mm, double y_mm) const;
