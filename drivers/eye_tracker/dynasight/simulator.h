@@ -81,7 +81,7 @@ class DynasightSimulator final : public TrackerSimulator {
   Eigen::Vector3d last_seen_mm_ = Eigen::Vector3d::Zero();
   std::array<std::byte, 64> out_{};  ///< bytes of the record under way
   std::size_t out_count_ = 0, out_sent_ = 0;
-  std::int64_t out_ns_ = 0;  ///< when the next of them is through the line
+  std::int64_t out_ns_ = 0;  ///< when the next of them enters the line
   std::uint64_t records_sent_ = 0, unknown_commands_ = 0;
 };
 

@@ -30,7 +30,7 @@ class OpentrackSimulator final : public TrackerSimulator {
   std::uint64_t datagrams_sent() const { return sent_; }
 
  private:
-  Pose measure(double seconds);
+  Pose measure(const SimulatedHead& head);
 
   Send send_;
   HeadSource head_;

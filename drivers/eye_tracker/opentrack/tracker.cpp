@@ -1,0 +1,61 @@
+#include "drivers/eye_tracker/opentrack/tracker.h"
+
+#include <algorithm>
+#include <array>
+
+#include "drivers/eye_tracker/plausible.h"
+
+namespace prismesh::drivers::eye_tracker::opentrack {
+namespace {
+
+constexpr int kDatagramsAPoll = 64;  // a quarter of a second of opentrack's; what is left waits for the next poll
+
+}  // namespace
+
+OpentrackTracker::OpentrackTracker(port::DatagramPort& port, const Options& options) : port_(&port), options_(options) {}
+
+EyeTracker::Polled OpentrackTracker::poll(std::int64_t now_ns) {
+  Polled polled;
+  std::array<std::byte, 2 * kDatagramBytes> buffer;  // longer than a pose, so that a longer datagram is seen to be one
+  const std::uint64_t before = counts_.records;
+  for (int i = 0; i < kDatagramsAPoll; ++i) {
+    const port::Datagram datagram = port_->receive(buffer);
+    polled.status = datagram.status;
+    if (!datagram.arrived) break;
+    take(std::span(buffer).first(datagram.bytes), datagram.full_length, polled);
+  }
+  if (counts_.records != before) {
+    heard_ = true;
+    heard_ns_ = now_ns;
+  } else if (heard_ && now_ns - heard_ns_ > options_.silence_ns) {
+    heard_ = false;
+    last_.reset();
+    ++counts_.resyncs;
+  }
+  if (polled.fresh) polled.sample.measured_ns = now_ns - options_.latency_ns;
+  return polled;
+}
+
+void OpentrackTracker::take(std::span<const std::byte> datagram, std::size_t full_length, Polled& polled) {
+  const std::optional<Pose> pose = datagram.size() == full_length ? decode(datagram) : std::nullopt;
+  if (!pose) {
+    counts_.bytes_skipped += full_length;
+    return;
+  }
+  ++counts_.records;
+  if (last_ == pose) {
+    ++counts_.without_head;
+    return;
+  }
+  last_ = pose;
+  const Eigen::Vector3d place_mm = place_on_screen_mm(*pose) + options_.offset_mm;
+  if (!plausible_head(place_mm)) {
+    ++counts_.rejected;
+    return;
+  }
+  polled.fresh = true;
+  polled.sample.between_eyes_mm = place_mm;
+  polled.sample.toward_right = toward_right(*pose).normalized();
+}
+
+}  // namespace prismesh::drivers::eye_tracker::opentrack

@@ -1,0 +1,42 @@
+#include "drivers/eye_tracker/tracker_seat.h"
+
+#include <cmath>
+
+namespace prismesh::drivers::eye_tracker {
+namespace {
+
+std::int64_t nanoseconds(double milliseconds) { return std::llround(milliseconds * 1e6); }
+
+}  // namespace
+
+dynasight::DynasightTracker::Options dynasight_options(const settings::EyeTrackerSettings& settings) {
+  return {.dialect = settings.dialect,
+          .polled = settings.polled,
+          .baud = settings.baud,
+          .latency_ns = nanoseconds(settings.latency_ms),
+          .offset_mm = settings.offset_mm,
+          .times = {}};
+}
+
+opentrack::OpentrackTracker::Options opentrack_options(const settings::EyeTrackerSettings& settings) {
+  opentrack::OpentrackTracker::Options options;
+  options.latency_ns = nanoseconds(settings.latency_ms);
+  options.offset_mm = settings.offset_mm;
+  return options;
+}
+
+TrackerSeat::TrackerSeat(const settings::EyeTrackerSettings& settings)
+    : dynasight_(dynasight_options(settings)), opentrack_(opentrack_options(settings)) {}
+
+EyeTracker& TrackerSeat::sit(port::BytePort& port) { return tracker_.emplace<dynasight::DynasightTracker>(port, dynasight_); }
+
+EyeTracker& TrackerSeat::sit(port::DatagramPort& port) { return tracker_.emplace<opentrack::OpentrackTracker>(port, opentrack_); }
+
+void TrackerSeat::leave() { tracker_.emplace<std::monostate>(); }
+
+EyeTracker* TrackerSeat::tracker() {
+  if (auto* dynasight = std::get_if<dynasight::DynasightTracker>(&tracker_)) return dynasight;
+  return std::get_if<opentrack::OpentrackTracker>(&tracker_);
+}
+
+}  // namespace prismesh::drivers::eye_tracker
