@@ -203,18 +203,10 @@ void Editor::handle(const tools::Orbited& orbit) {
     pivot_found_ = true;
     orbit_from_ = orbit.from;
     const std::optional<mesh::NodeIndex> node = shown_ ? node_at(orbit.from) : std::nullopt;
-    if (node && node->value < shown_->node_count()) turn_about(shown_->position(node->value));
+    if (node && node->value < shown_->node_count()) view_ = stereo::with_pivot(view_, shown_->position(node->value));
   }
   const double radians_per_pixel = std::numbers::pi / std::max(size_.height, 1);
   view_ = stereo::orbit(view_, orbit.dx * radians_per_pixel, -orbit.dy * radians_per_pixel);
-}
-
-void Editor::turn_about(const mesh::Vec3& point) {
-  const stereo::Aim before = aim();
-  const std::optional<Pixel> pixel = stereo::pixel_of(before, point);
-  view_ = stereo::with_pivot(view_, point);
-  // The point has come into the plane of the screen: there it must stand where the eye saw it.
-  if (pixel) view_.pan_mm = stereo::mm_of_pixel(before, *pixel);
 }
 
 void Editor::handle(const tools::Panned& pan) { view_ = stereo::pan(view_, Eigen::Vector2d(pan.dx, -pan.dy) * aim().mm_per_pixel()); }

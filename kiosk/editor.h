@@ -75,7 +75,6 @@ class Editor {
   void set_parts(mesh::document::VisibilityAction action, const std::optional<tools::Pixel>& pointer);
   void show_all();
   void look(std::string_view view_name);
-  void turn_about(const mesh::Vec3& point);
   void fit();
   void next_profile();
   void cancel();

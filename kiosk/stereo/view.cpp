@@ -2,13 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace prismesh::kiosk::stereo {
 
 namespace {
 
-/// Farthest that the bounds can reach from the pivot, before compression, in mm.
-double reach_mm(const View& view) { return ((view.bounds.centre - view.pivot).norm() + view.bounds.radius) * view.mm_per_unit; }
+constexpr double kFlattest = 0.005;    ///< depth is never scaled to less: one thing has to hide another
+constexpr double kNearestEyeMm = 100;  ///< no eye is taken to be nearer when depth is measured by it
+
+/// Where the bounds' centre stands before the screen, and how far they reach from there: mm, before compression.
+struct Depths {
+  double centre = 0;
+  double radius = 1;
+};
+Depths depths(const View& view) {
+  const Vec3 turned = view.rotation * (view.bounds.centre - view.pivot) * view.mm_per_unit;
+  return {turned.z() + view.before_mm, view.bounds.radius * view.mm_per_unit};
+}
+
+/// Largest factor that keeps both ends of the depths within the limits.
+double largest_scale(const Depths& depths, const ComfortBox& limits) {
+  double scale = 1e9;
+  if (depths.centre + depths.radius > 0) scale = std::min(scale, limits.before_mm / (depths.centre + depths.radius));
+  if (depths.radius - depths.centre > 0) scale = std::min(scale, limits.behind_mm / (depths.radius - depths.centre));
+  return scale;
+}
 
 std::array<Vec3, 8> corners_of(const Box& box) {
   std::array<Vec3, 8> corners;
@@ -33,34 +52,43 @@ Sphere sphere_around(const Box& box) {
   return {0.5 * (box.low + box.high), radius > 0 ? radius : 1};
 }
 
+ComfortBox comfort_box(double eye_distance_mm, double degrees, double separation_mm) {
+  const double distance = std::max(eye_distance_mm, kNearestEyeMm);
+  const double parallax = distance * std::tan(degrees * std::numbers::pi / 180);
+  const double most = 0.5 * distance;
+  const double behind = parallax < separation_mm ? parallax * distance / (separation_mm - parallax) : most;
+  return {std::min(most, parallax * distance / (separation_mm + parallax)), std::min(most, behind)};
+}
+
 double depth_scale(const View& view) {
-  const double reach = reach_mm(view);
-  const double allowed = kComfortMargin * std::min(kComfortBeforeMm, kComfortBehindMm);
-  return reach > allowed ? allowed / reach : 1;
+  const double full = largest_scale(depths(view), view.comfort);
+  return std::max(kFlattest * std::min(1.0, full), std::min(full, view.depth_strength * std::min(1.0, kComfortMargin * full)));
 }
 
 Eigen::Matrix4d screen_from_deck(const View& view) {
+  const double scale = depth_scale(view);
   Eigen::Matrix3d linear = view.mm_per_unit * view.rotation.toRotationMatrix();
-  linear.row(2) *= depth_scale(view);
+  linear.row(2) *= scale;
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = linear;
-  matrix.topRightCorner<3, 1>() = Vec3(view.pan_mm.x(), view.pan_mm.y(), 0) - linear * view.pivot;
+  matrix.topRightCorner<3, 1>() = Vec3(view.pan_mm.x(), view.pan_mm.y(), view.before_mm * scale) - linear * view.pivot;
   return matrix;
 }
 
 Vec3 to_screen(const View& view, const Vec3& deck_point) {
   const Vec3 turned = view.rotation * (deck_point - view.pivot) * view.mm_per_unit;
-  return {turned.x() + view.pan_mm.x(), turned.y() + view.pan_mm.y(), turned.z() * depth_scale(view)};
+  return {turned.x() + view.pan_mm.x(), turned.y() + view.pan_mm.y(), (turned.z() + view.before_mm) * depth_scale(view)};
 }
 
 Vec3 to_deck(const View& view, const Vec3& screen_mm) {
-  const Vec3 turned(screen_mm.x() - view.pan_mm.x(), screen_mm.y() - view.pan_mm.y(), screen_mm.z() / depth_scale(view));
+  const Vec3 turned(screen_mm.x() - view.pan_mm.x(), screen_mm.y() - view.pan_mm.y(), screen_mm.z() / depth_scale(view) - view.before_mm);
   return view.pivot + view.rotation.conjugate() * (turned / view.mm_per_unit);
 }
 
 std::array<double, 2> depth_extent(const View& view) {
-  const double reach = reach_mm(view) * depth_scale(view);
-  return {-reach, reach};
+  const Depths reach = depths(view);
+  const double scale = depth_scale(view);
+  return {scale * (reach.centre - reach.radius), scale * (reach.centre + reach.radius)};
 }
 
 View orbit(const View& view, double right, double up) {
@@ -87,6 +115,7 @@ View zoom(const View& view, double factor, const Eigen::Vector2d& at_mm) {
   View scaled = view;
   scaled.mm_per_unit *= factor;
   scaled.pan_mm = at_mm + (view.pan_mm - at_mm) * factor;
+  scaled.before_mm *= factor;  // what lay in the plane of the screen stays there
   return scaled;
 }
 
@@ -95,6 +124,19 @@ View with_pivot(const View& view, const Vec3& deck_point) {
   const Vec3 turned = view.rotation * (deck_point - view.pivot) * view.mm_per_unit;
   moved.pivot = deck_point;
   moved.pan_mm += turned.head<2>();
+  moved.before_mm += turned.z();
+  return moved;
+}
+
+View toward_screen_plane(const View& view, const Vec3& deck_point, const Vec3& eye_mm, double share) {
+  const Vec3 before = to_screen(view, deck_point);
+  View moved = view;
+  moved.before_mm -= share * before.z() / depth_scale(view);
+  const Vec3 after = to_screen(moved, deck_point);
+  const double eye = std::max(eye_mm.z(), kNearestEyeMm);
+  const double farther = (eye - after.z()) / std::max(eye - before.z(), 1.0);
+  const Eigen::Vector2d wanted = eye_mm.head<2>() + farther * (before.head<2>() - eye_mm.head<2>());
+  moved.pan_mm += wanted - after.head<2>();
   return moved;
 }
 
@@ -112,6 +154,7 @@ View fit_turned(const View& view, const Box& turned, const Eigen::Vector2d& scre
   const Sphere sphere = sphere_around(turned);
   fitted.pivot = view.rotation.conjugate() * sphere.centre;
   fitted.pan_mm.setZero();
+  fitted.before_mm = 0;
   fitted.mm_per_unit = 0.5 * screen_mm.minCoeff() / sphere.radius;
   if (turned.empty()) return fitted;
   for (int round = 0; round < kRounds; ++round) {

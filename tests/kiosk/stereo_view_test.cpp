@@ -59,10 +59,15 @@ TEST(View, EverythingStaysInTheComfortBoxHoweverItIsTurnedAndZoomed) {
     View view = some_view();
     view = orbit(view, 3 * unit(random), 3 * unit(random));
     view = zoom(view, std::exp(6 * unit(random)), {50 * unit(random), 50 * unit(random)});
+    view = with_pivot(view, view.bounds.centre + view.bounds.radius * Vec3(unit(random), unit(random), unit(random)));
+    view = toward_screen_plane(view, view.bounds.centre + view.bounds.radius * Vec3(unit(random), unit(random), unit(random)),
+                               {80 * unit(random), 0, 650});
+    view.comfort = comfort_box(650 + 250 * unit(random), 1 + 0.5 * unit(random));
+    view.depth_strength = 0.75 + 0.75 * unit(random);
     const Vec3 direction = Vec3(unit(random), unit(random), unit(random)).normalized();
     const double z = to_screen(view, view.bounds.centre + view.bounds.radius * direction).z();
-    ASSERT_LE(z, kComfortBeforeMm);
-    ASSERT_GE(z, -kComfortBehindMm);
+    ASSERT_LE(z, view.comfort.before_mm + 1e-9);
+    ASSERT_GE(z, -view.comfort.behind_mm - 1e-9);
     const auto [behind, before] = depth_extent(view);
     ASSERT_LE(z, before + 1e-9);
     ASSERT_GE(z, behind - 1e-9);
@@ -94,11 +99,72 @@ TEST(View, ZoomKeepsWhatIsUnderThePointer) {
   EXPECT_LT((to_screen(zoom(view, 3.7, at), under).head<2>() - at).norm(), 1e-9);
 }
 
-TEST(View, ANewPivotMovesNothingSideways) {
+TEST(View, ANewPivotMovesNothing) {
   const View view = some_view();
   const Vec3 point(50, 60, 70);
   const View moved = with_pivot(view, Vec3(-5, 8, 13));
-  EXPECT_LT((to_screen(moved, point).head<2>() - to_screen(view, point).head<2>()).norm(), 1e-9);
+  EXPECT_LT((to_screen(moved, point) - to_screen(view, point)).norm(), 1e-9);
+  EXPECT_LT((to_deck(moved, to_screen(view, point)) - point).norm(), 1e-9);
+  EXPECT_LT((screen_from_deck(moved) - screen_from_deck(view)).norm(), 1e-9);
+  const Vec3 pivot = to_screen(moved, Vec3(-5, 8, 13));
+  const View turned = orbit(moved, 0.4, 0.2);
+  EXPECT_LT((to_screen(turned, Vec3(-5, 8, 13)).head<2>() - pivot.head<2>()).norm(), 1e-9) << "turns about it";
+}
+
+TEST(View, ZoomKeepsThePlaneOfTheScreen) {
+  const View view = toward_screen_plane(some_view(), Vec3(100, 50, -30), {0, 0, 650});
+  EXPECT_NEAR(to_screen(zoom(view, 2.5, {10, 20}), Vec3(100, 50, -30)).z(), 0, 1e-9);
+}
+
+Eigen::Vector2d seen_on_screen(const View& view, const Vec3& eye, const Vec3& deck) {
+  const Vec3 mm = to_screen(view, deck);
+  return eye.head<2>() + (mm.head<2>() - eye.head<2>()) * eye.z() / (eye.z() - mm.z());
+}
+
+TEST(View, APointComesIntoThePlaneOfTheScreenWhereTheEyeSeesIt) {
+  const Vec3 eye(70, -20, 600), point(150, -60, 210);
+  View view = some_view();
+  const Eigen::Vector2d seen = seen_on_screen(view, eye, point);
+  ASSERT_GT(std::abs(to_screen(view, point).z()), 5);
+  for (int step = 0; step < 4; ++step) {
+    view = toward_screen_plane(view, point, eye, 0.5);
+    EXPECT_LT((seen_on_screen(view, eye, point) - seen).norm(), 1e-9) << step;
+  }
+  view = toward_screen_plane(view, point, eye);
+  EXPECT_NEAR(to_screen(view, point).z(), 0, 1e-9);
+  EXPECT_LT((to_screen(view, point).head<2>() - seen).norm(), 1e-9);
+}
+
+TEST(View, TheComfortBoxIsADegreeOfParallax) {
+  const ComfortBox box = comfort_box(650);
+  EXPECT_NEAR(box.before_mm, 99, 0.5);
+  EXPECT_NEAR(box.behind_mm, 143, 0.5);
+  for (const double distance : {400.0, 550.0, 800.0, 1000.0}) {
+    const ComfortBox at = comfort_box(distance, 1, 63);
+    EXPECT_NEAR(63 * at.before_mm / (distance - at.before_mm), distance * std::tan(std::numbers::pi / 180), 1e-9);
+    EXPECT_NEAR(63 * at.behind_mm / (distance + at.behind_mm), distance * std::tan(std::numbers::pi / 180), 1e-9);
+  }
+  EXPECT_LE(comfort_box(3000, 3).behind_mm, 1500) << "eyes that would have to look outward: cut";
+  EXPECT_GT(comfort_box(650, 1.5).before_mm, box.before_mm);
+}
+
+TEST(View, DepthStrengthScalesDepthUpToTheComfortBox) {
+  View view = some_view();
+  view.bounds.radius = 40;  // 10 mm on the screen: true depth
+  EXPECT_EQ(depth_scale(view), 1);
+  view.depth_strength = 0.5;
+  EXPECT_NEAR(depth_scale(view), 0.5, 1e-12);
+  view.depth_strength = 1.5;
+  EXPECT_NEAR(depth_scale(view), 1.5, 1e-12);
+  view.depth_strength = 0;
+  EXPECT_GT(depth_scale(view), 0) << "can still be inverted";
+  EXPECT_LT(depth_extent(view)[1], 0.1);
+  view.bounds.radius = 4000;
+  view.depth_strength = 1;
+  const double fitted = depth_scale(view);
+  view.depth_strength = 1.5;
+  EXPECT_GT(depth_scale(view), 1.2 * fitted);
+  EXPECT_LE(depth_extent(view)[1], view.comfort.before_mm + 1e-9);
 }
 
 TEST(View, FitFillsTheScreenAndKeepsTheRotation) {
