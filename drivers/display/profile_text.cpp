@@ -144,48 +144,48 @@ Key panel_pixels() {
 const std::vector<Key>& keys() {
   static const std::vector<Key> all{
       text(
-          "", "name", "", [](Profile & p) -> auto& { return p.name; }),
+          "", "name", "", [](auto& p) -> auto& { return p.name; }),
       choice(
-          "weave", "how the eyes' pictures become one", weave_names(), [](Profile & p) -> auto& { return p.weave; }),
+          "weave", "how the eyes' pictures become one", weave_names(), [](auto& p) -> auto& { return p.weave; }),
       choice(
           "eye", "whose picture one-eye shows; else the eye that the pointer aims with", eye_names(),
-          [](Profile & p) -> auto& { return p.eye; }),
+          [](auto& p) -> auto& { return p.eye; }),
       flag(
-          "", "swap_eyes", "exchanges the eyes' places on the panel", [](Profile & p) -> auto& { return p.swap_eyes; }),
+          "", "swap_eyes", "exchanges the eyes' places on the panel", [](auto& p) -> auto& { return p.swap_eyes; }),
       choice(
           "subpixels", "order of a pixel's colours, where the mask tells them apart", subpixel_names(),
-          [](Profile & p) -> auto& { return p.subpixels; }),
+          [](auto& p) -> auto& { return p.subpixels; }),
       number(
-          "", "pixel_pitch_mm", 0.01, 10, "", [](Profile & p) -> auto& { return p.optics.pixel_pitch_mm; }),
+          "", "pixel_pitch_mm", 0.01, 10, "", [](auto& p) -> auto& { return p.optics.pixel_pitch_mm; }),
       number(
-          "", "gamma", 1, 4, "light = value ^ gamma", [](Profile & p) -> auto& { return p.gamma; }),
+          "", "gamma", 1, 4, "light = value ^ gamma", [](auto& p) -> auto& { return p.gamma; }),
       eye_separation(),
       flag(
-          "mask", "moves", "a servo shifts it", [](Profile & p) -> auto& { return p.mask_moves; }),
+          "mask", "moves", "a servo shifts it", [](auto& p) -> auto& { return p.mask_moves; }),
       number(
-          "mask", "design_distance_mm", 100, 20000, "", [](Profile & p) -> auto& { return p.optics.design_distance_mm; }),
+          "mask", "design_distance_mm", 100, 20000, "", [](auto& p) -> auto& { return p.optics.design_distance_mm; }),
       number(
-          "mask", "design_separation_mm", 40, 90, "of the eyes", [](Profile & p) -> auto& { return p.optics.design_separation_mm; }),
+          "mask", "design_separation_mm", 40, 90, "of the eyes", [](auto& p) -> auto& { return p.optics.design_separation_mm; }),
       number(
           "mask", "refractive_index", 1, 3, "of what lies between panel and mask",
-          [](Profile & p) -> auto& { return p.optics.refractive_index; }),
+          [](auto& p) -> auto& { return p.optics.refractive_index; }),
       number(
-          "mask", "lean", -2, 2, "dx/dy of the elements", [](Profile & p) -> auto& { return p.optics.lean; }),
+          "mask", "lean", -2, 2, "dx/dy of the elements", [](auto& p) -> auto& { return p.optics.lean; }),
       number(
-          "mask", "zero_mm", -100, 100, "where it stands when the servo says 0", [](Profile & p) -> auto& { return p.optics.zero_mm; }),
+          "mask", "zero_mm", -100, 100, "where it stands when the servo says 0", [](auto& p) -> auto& { return p.optics.zero_mm; }),
       number(
-          "mask", "pitch_scale", 0.2, 10, "real pitch over the computed one", [](Profile & p) -> auto& { return p.optics.pitch_scale; }),
+          "mask", "pitch_scale", 0.2, 10, "real pitch over the computed one", [](auto& p) -> auto& { return p.optics.pitch_scale; }),
       number(
-          "mask", "gap_scale", 0.1, 10, "real gap over the computed one", [](Profile & p) -> auto& { return p.optics.gap_scale; }),
+          "mask", "gap_scale", 0.1, 10, "real gap over the computed one", [](auto& p) -> auto& { return p.optics.gap_scale; }),
       number(
           "crosstalk", "left", 0, 0.5, "share of the right eye's light that the left one sees",
-          [](Profile & p) -> auto& { return p.crosstalk[0]; }),
+          [](auto& p) -> auto& { return p.crosstalk[0]; }),
       number(
-          "crosstalk", "right", 0, 0.5, "and the other way round", [](Profile & p) -> auto& { return p.crosstalk[1]; }),
+          "crosstalk", "right", 0, 0.5, "and the other way round", [](auto& p) -> auto& { return p.crosstalk[1]; }),
       text(
-          "monitor", "name", "as the monitor says it; empty: any", [](Profile & p) -> auto& { return p.monitor.name; }),
+          "monitor", "name", "as the monitor says it; empty: any", [](auto& p) -> auto& { return p.monitor.name; }),
       text(
-          "monitor", "serial", "", [](Profile & p) -> auto& { return p.monitor.serial; }),
+          "monitor", "serial", "", [](auto& p) -> auto& { return p.monitor.serial; }),
       panel_pixels(),
   };
   return all;
