@@ -95,7 +95,7 @@ run_all_tests() {
   step "build: asan" configure_and_build asan &&
     UBSAN_OPTIONS=print_stacktrace=1 run_ctest asan build/asan -L 'unit|threads'
   say "Building with ThreadSanitizer"
-  step "build: tsan" configure_and_build tsan -- ipc_test modeld_test deviced_test &&
+  step "build: tsan" configure_and_build tsan -- drivers_port_test ipc_test modeld_test deviced_test &&
     run_ctest tsan build/tsan -L threads
   run_fuzzers 10
   check_format

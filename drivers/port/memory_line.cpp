@@ -139,7 +139,7 @@ class MemoryLine::HostEnd final : public BytePort {
   int last_error() const override { return gone() ? EIO : 0; }
 
  private:
-  bool gone() const { return !line_.plugged_in_ || incarnation_ != line_.incarnation_; }
+  bool gone() const { return incarnation_ != line_.incarnation_; }
 
   MemoryLine& line_;
   std::uint64_t incarnation_;
@@ -192,6 +192,7 @@ BytePort& MemoryLine::device() { return *device_; }
 
 void MemoryLine::unplug() {
   plugged_in_ = false;
+  ++incarnation_;
   left_to_host_.reset();
   left_to_device_.reset();
   to_host_->clear();

@@ -82,8 +82,7 @@ Result<std::unique_ptr<BytePort>> open_serial_port(const std::string& path, cons
   const Result<std::string> file = own_file(path);
   if (!file) return fail(file.error());
   sp_port* line = nullptr;
-  errno = 0;
-  if (sp_get_port_by_name(file->c_str(), &line) != SP_OK) return fail(open_error(path, errno != 0 ? errno : ENOTTY));
+  if (sp_get_port_by_name(file->c_str(), &line) != SP_OK) return fail(open_error(path, ENOTTY));  // the file is there, but no such line
   errno = 0;
   if (const sp_return opened = sp_open(line, SP_MODE_READ_WRITE); opened != SP_OK) {
     const int error = opened == SP_ERR_FAIL && errno != 0 ? errno : ENOTTY;

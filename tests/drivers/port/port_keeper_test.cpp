@@ -1,0 +1,200 @@
+#include "drivers/port/port_keeper.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "drivers/port/memory_line.h"
+#include "tests/drivers/port/allocations.h"
+#include "tests/drivers/port/bytes.h"
+
+namespace prismesh::drivers::port {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+/// A line in memory, its keeper, and what both sides of the keeper do.
+struct Bench {
+  ManualClock clock;
+  MemoryLine line{clock, {}};
+  PortKeeper keeper{clock, [this] { return line.open_host(); }, "/dev/a"};
+
+  void advance_to_ms(std::int64_t ms) { clock.advance_ns(ms * kMs - clock.now_ns()); }
+  /// Works at each due time until `ms`; when the attempts were made.
+  std::vector<std::int64_t> attempts_until_ms(std::int64_t ms) {
+    std::vector<std::int64_t> at;
+    for (std::int64_t due = keeper.work(); due <= ms * kMs; due = keeper.work()) {
+      clock.advance_ns(due - clock.now_ns());
+      const std::uint64_t before = keeper.report().attempts;
+      keeper.work();
+      if (keeper.report().attempts > before) at.push_back(clock.now_ns() / kMs);
+    }
+    advance_to_ms(ms);
+    return at;
+  }
+  /// What a real-time loop does with a dead port.
+  bool tick() {
+    BytePort* port = keeper.port();
+    if (port == nullptr) return false;
+    std::array<std::byte, 16> buffer{};
+    if (port->read(buffer).status != PortStatus::gone) return true;
+    keeper.give_back();
+    return false;
+  }
+};
+
+TEST(PortKeeper, opens_at_once_and_hands_over) {
+  Bench bench;
+  EXPECT_EQ(bench.keeper.port(), nullptr);
+  EXPECT_EQ(bench.keeper.work(), kNever);
+  BytePort* port = bench.keeper.port();
+  ASSERT_NE(port, nullptr);
+  EXPECT_EQ(bench.keeper.port(), port) << "the same until it's given back";
+  EXPECT_TRUE(bench.keeper.report().open);
+}
+
+TEST(PortKeeper, waits_double_up_to_a_second) {
+  Bench bench;
+  bench.line.unplug();
+  bench.keeper.work();
+  EXPECT_EQ(bench.attempts_until_ms(5000), (std::vector<std::int64_t>{50, 150, 350, 750, 1550, 2550, 3550, 4550}));
+  const KeeperReport report = bench.keeper.report();
+  EXPECT_FALSE(report.open);
+  EXPECT_EQ(report.attempts, 9u);
+  EXPECT_EQ(report.openings, 0u);
+  ASSERT_TRUE(report.reason);
+  EXPECT_NE(report.reason->message.find("is it plugged in"), std::string::npos);
+}
+
+TEST(PortKeeper, work_before_the_time_does_nothing) {
+  Bench bench;
+  bench.line.unplug();
+  bench.keeper.work();
+  for (int i = 0; i < 49; ++i) {
+    bench.clock.advance_ns(kMs);
+    EXPECT_EQ(bench.keeper.work(), 50 * kMs);
+  }
+  EXPECT_EQ(bench.keeper.report().attempts, 1u);
+}
+
+TEST(PortKeeper, an_arrival_cuts_the_wait_short_and_starts_it_over) {
+  Bench bench;
+  bench.line.unplug();
+  bench.attempts_until_ms(3000);
+  bench.keeper.hurry();
+  // there, but not ready yet: tries come close together again
+  EXPECT_EQ(bench.keeper.work(), 3050 * kMs);
+  EXPECT_EQ(bench.attempts_until_ms(3400), (std::vector<std::int64_t>{3050, 3150, 3350}));
+  bench.line.plug_in();
+  bench.keeper.hurry();
+  bench.keeper.work();
+  EXPECT_NE(bench.keeper.port(), nullptr);
+}
+
+TEST(PortKeeper, a_proven_port_that_dies_is_tried_again_at_once) {
+  Bench bench;
+  bench.keeper.work();
+  ASSERT_TRUE(bench.tick());
+  bench.advance_to_ms(5000);
+  bench.line.unplug();
+  EXPECT_FALSE(bench.tick());
+  EXPECT_EQ(bench.keeper.port(), nullptr);
+  bench.line.plug_in();
+  bench.keeper.work();
+  EXPECT_TRUE(bench.tick());
+  EXPECT_EQ(bench.keeper.report().openings, 2u);
+}
+
+TEST(PortKeeper, a_port_that_opens_and_dies_at_once_is_not_opened_without_pause) {
+  Bench bench;
+  int openings = 0;
+  for (std::int64_t ms = 0; ms < 10'000; ++ms) {
+    bench.advance_to_ms(ms);
+    bench.line.plug_in();
+    bench.keeper.work();
+    openings += bench.tick();
+    bench.line.unplug();
+    bench.tick();
+  }
+  EXPECT_EQ(openings, 14) << "50, 100, 200, 400, 800 ms, then each second";
+}
+
+TEST(PortKeeper, giving_nothing_back_is_nothing) {
+  Bench bench;
+  bench.keeper.give_back();
+  bench.keeper.work();
+  EXPECT_NE(bench.keeper.port(), nullptr);
+}
+
+TEST(PortKeeper, giving_back_wakes_the_other_side) {
+  Bench bench;
+  int woken = 0;
+  bench.keeper.on_give_back([](void* count) { ++*static_cast<int*>(count); }, &woken);
+  bench.keeper.work();
+  bench.keeper.port();
+  bench.keeper.give_back();
+  EXPECT_EQ(woken, 1);
+}
+
+/// Says when it's closed.
+class MortalPort final : public BytePort {
+ public:
+  explicit MortalPort(int& alive) : alive_(alive) { ++alive_; }
+  ~MortalPort() override { --alive_; }
+  PortCount read(std::span<std::byte>) override { return {}; }
+  PortCount write(std::span<const std::byte>) override { return {}; }
+  void discard_input() override {}
+  bool set_baud(int) override { return true; }
+  int last_error() const override { return 0; }
+
+ private:
+  int& alive_;
+};
+
+TEST(PortKeeper, closes_outside_the_tick_and_never_holds_two) {
+  ManualClock clock;
+  int alive = 0;
+  const auto make = [&]() -> Result<std::unique_ptr<BytePort>> { return std::make_unique<MortalPort>(alive); };
+  {
+    PortKeeper keeper(clock, make);
+    for (int i = 0; i < 3; ++i) {
+      clock.advance_ns(2000 * kMs);
+      keeper.work();
+      EXPECT_EQ(alive, 1);
+      keeper.port();
+      keeper.give_back();
+      EXPECT_EQ(alive, 1) << "the real-time side closes nothing";
+    }
+    clock.advance_ns(2000 * kMs);
+    keeper.work();  // an offered port that nobody takes
+    EXPECT_EQ(alive, 1);
+  }
+  EXPECT_EQ(alive, 0);
+  {
+    PortKeeper keeper(clock, make);
+    keeper.work();
+    keeper.port();
+  }
+  EXPECT_EQ(alive, 0) << "nor is one that was taken left open";
+}
+
+TEST(PortKeeper, the_real_time_side_allocates_nothing) {
+  ManualClock clock;
+  int alive = 0;
+  PortKeeper keeper(clock, [&]() -> Result<std::unique_ptr<BytePort>> { return std::make_unique<MortalPort>(alive); });
+  std::uint64_t made = 0;
+  for (int i = 0; i < 100; ++i) {
+    clock.advance_ns(2000 * kMs);
+    keeper.work();
+    const std::uint64_t before = allocations_of_this_thread();
+    ASSERT_NE(keeper.port(), nullptr);
+    keeper.give_back();
+    keeper.port();
+    made += allocations_of_this_thread() - before;
+  }
+  EXPECT_EQ(made, 0u);
+}
+
+}  // namespace
+}  // namespace prismesh::drivers::port

@@ -1,0 +1,179 @@
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "drivers/port/open_port.h"
+#include "drivers/port/pty_pair.h"
+#include "tests/drivers/port/allocations.h"
+#include "tests/drivers/port/bytes.h"
+
+namespace prismesh::drivers::port {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr char kEveryByte[] = "\x03\x04\x11\x13\x1a\x1c\x7f\r\n\xff\xff plain";  // those that a cooked terminal would act on
+
+PtyPair pair() {
+  Result<PtyPair> opened = open_pty_pair();
+  EXPECT_TRUE(opened) << opened.error().text();
+  return std::move(*opened);
+}
+
+TEST(TerminalPort, carries_every_byte_both_ways_and_echoes_none) {
+  const PtyPair pty = pair();
+  ASSERT_TRUE(is_pseudo_terminal(pty.slave_path));
+  const auto port = open_port(pty.slave_path, 19200);
+  ASSERT_TRUE(port) << port.error().text();
+  const std::string text(kEveryByte, sizeof kEveryByte);  // with its NUL
+  (*port)->write(bytes_of(text));
+  EXPECT_EQ(read_soon(*pty.master, text.size()), text);
+  pty.master->write(bytes_of(text));
+  EXPECT_EQ(read_soon(**port, text.size()), text);
+  EXPECT_EQ(read_text(*pty.master), "") << "an echo";
+  EXPECT_TRUE((*port)->set_baud(1'000'000));
+}
+
+TEST(TerminalPort, reads_nothing_where_nothing_is) {
+  const PtyPair pty = pair();
+  const auto port = *open_terminal_port(pty.slave_path);
+  std::array<std::byte, 8> buffer{};
+  const PortCount got = port->read(buffer);
+  EXPECT_EQ(got.bytes, 0u);
+  EXPECT_EQ(got.status, PortStatus::ok);
+}
+
+TEST(TerminalPort, stale_backlog_is_thrown_away_on_opening_and_on_request) {
+  const PtyPair pty = pair();
+  pty.master->write(bytes_of("said before anyone listened"));
+  const auto port = *open_terminal_port(pty.slave_path);
+  pty.master->write(bytes_of("new"));
+  EXPECT_EQ(read_soon(*port, 3), "new");
+  pty.master->write(bytes_of("old"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  port->discard_input();
+  pty.master->write(bytes_of("newer"));
+  EXPECT_EQ(read_soon(*port, 5), "newer");
+}
+
+TEST(TerminalPort, what_the_simulator_said_before_doesnt_echo_back_to_it) {
+  const PtyPair pty = pair();
+  pty.master->write(bytes_of("records\r\n"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(read_text(*pty.master), "");
+}
+
+TEST(TerminalPort, a_vanished_device_is_gone_for_reads_and_writes) {
+  for (const bool by_reading : {true, false}) {
+    PtyPair pty = pair();
+    const auto port = *open_terminal_port(pty.slave_path);
+    pty.master.reset();
+    std::array<std::byte, 8> buffer{};
+    const PortCount count = by_reading ? port->read(buffer) : port->write(buffer);
+    EXPECT_EQ(count.status, PortStatus::gone);
+    EXPECT_EQ(count.bytes, 0u);
+    EXPECT_EQ(port->last_error(), by_reading ? 0 : EIO) << "a read sees the end, a write the error";
+    EXPECT_EQ(port->read(buffer).status, PortStatus::gone) << "and stays so";
+  }
+}
+
+TEST(TerminalPort, the_master_outlives_its_listeners) {
+  const PtyPair pty = pair();
+  std::array<std::byte, 8> buffer{};
+  for (int i = 0; i < 3; ++i) {
+    const auto port = open_terminal_port(pty.slave_path);
+    ASSERT_TRUE(port) << port.error().text();
+    (*port)->write(bytes_of("hello"));
+    EXPECT_EQ(read_soon(*pty.master, 5), "hello");
+    pty.master->write(bytes_of("left unread"));
+  }
+  EXPECT_EQ(pty.master->read(buffer).status, PortStatus::ok);
+}
+
+TEST(TerminalPort, a_full_line_takes_what_it_can_and_says_so) {
+  const PtyPair pty = pair();
+  const auto port = *open_terminal_port(pty.slave_path);
+  const std::string much(1 << 20, 'x');
+  const PortCount put = port->write(bytes_of(much));
+  EXPECT_EQ(put.status, PortStatus::full);
+  EXPECT_GT(put.bytes, 0u);
+  EXPECT_LT(put.bytes, much.size());
+}
+
+TEST(TerminalPort, a_second_opener_is_refused_and_told_by_whom) {
+  const PtyPair pty = pair();
+  auto first = open_terminal_port(pty.slave_path);
+  const auto second = open_port(pty.slave_path, 9600);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().file, pty.slave_path);
+  EXPECT_THAT(second.error().message, HasSubstr("another program has it open: "));
+  EXPECT_THAT(second.error().message, HasSubstr("(process " + std::to_string(::getpid()) + ")"));
+  first->reset();
+  EXPECT_TRUE(open_port(pty.slave_path, 9600)) << "closing sets it free";
+}
+
+TEST(TerminalPort, talking_allocates_nothing) {
+  const PtyPair pty = pair();
+  const auto port = *open_terminal_port(pty.slave_path);
+  std::array<std::byte, 64> buffer{};
+  const std::uint64_t before = allocations_of_this_thread();
+  for (int i = 0; i < 100; ++i) {
+    port->write(buffer);
+    pty.master->read(buffer);
+    pty.master->write(buffer);
+    port->read(buffer);
+  }
+  EXPECT_EQ(allocations_of_this_thread(), before);
+}
+
+TEST(OpenPort, a_missing_device_asks_for_its_plug) {
+  const auto port = open_port("/dev/serial/by-id/usb-Nobody-if00-port0", 9600);
+  ASSERT_FALSE(port);
+  EXPECT_EQ(port.error().file, "/dev/serial/by-id/usb-Nobody-if00-port0");
+  EXPECT_THAT(port.error().message, HasSubstr("is it plugged in and switched on? "));
+  EXPECT_THAT(port.error().message,
+              testing::AnyOf(HasSubstr("plugged in now: /dev/serial/by-id/"), HasSubstr("no serial device is plugged in")));
+}
+
+TEST(OpenPort, what_is_no_serial_line_is_said_to_be_none) {
+  for (const char* path : {"/dev/null", "/etc/passwd", "/tmp"}) {
+    const auto port = open_port(path, 9600);
+    ASSERT_FALSE(port) << path;
+    EXPECT_THAT(port.error().message, HasSubstr("is no serial line; give the device's own file")) << path;
+  }
+  EXPECT_FALSE(is_pseudo_terminal("/dev/null"));
+  EXPECT_FALSE(is_pseudo_terminal("/dev/pts"));
+}
+
+TEST(OpenPort, without_permission_the_way_to_get_it_is_told) {
+  const PtyPair pty = pair();
+  std::filesystem::permissions(pty.slave_path, std::filesystem::perms::none);
+  if (::getuid() == 0) {
+    // The superuser may everything: let a child try as nobody.
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(2);
+      const auto refused = open_port(pty.slave_path, 9600);
+      const bool told = !refused &&
+                        refused.error().message.find("this user may not open it: install systemd/udev/60-prismesh.rules") == 0 &&
+                        refused.error().message.find("(sudo usermod -aG ") != std::string::npos;
+      ::_exit(told ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  } else {
+    const auto refused = open_port(pty.slave_path, 9600);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("this user may not open it: install systemd/udev/60-prismesh.rules"));
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::drivers::port
