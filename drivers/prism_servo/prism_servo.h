@@ -18,7 +18,16 @@ enum class ServoPhase : std::uint8_t {
   absent,      ///< nothing answers
   setting_up,  ///< registers are read and written, one a tick
   ready,       ///< takes goals
-  alarm,       ///< the servo reports a hardware error (named by `alarm_bits`): torque is off until rearmed
+  alarm,       ///< the servo reports a hardware error (named by `alarm_bits`): torque is off until `powered` was false and is true again
+};
+
+/// Why a servo that should be `ready` isn't.
+enum class ServoTrouble : std::uint8_t {
+  none,
+  no_answer,    ///< at none of the line's speeds
+  other_model,  ///< one whose registers aren't known: nothing is written to it
+  refused,      ///< a register doesn't take what it is given
+  too_slow,     ///< the servo's own limit is below the speed that is asked for
 };
 
 class PrismServo {
@@ -29,6 +38,8 @@ class PrismServo {
     bool fresh = false;  ///< `reading` is new
     MaskReading reading;
     std::uint8_t alarm_bits = 0;
+    ServoTrouble trouble = ServoTrouble::none;
+    std::uint16_t trouble_number = 0;                ///< the model, or the register's address
     port::PortStatus status = port::PortStatus::ok;  ///< gone: a new servo needs a new port
   };
   /// Takes in answers, sends this tick's goal (mask millimetres; ignored unless `ready`) and the question for the position.

@@ -1,0 +1,455 @@
+#include "drivers/prism_servo/dynamixel/servo.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prismesh::drivers::prism_servo::dynamixel {
+namespace {
+
+constexpr int kPingsPerSpeed = 2;
+constexpr int kWriteTries = 3;
+constexpr int kSilentQuestionsToLose = 4;
+constexpr int kTicksBetweenChecks = 16;
+constexpr std::size_t kPingAnswerData = 3;
+constexpr std::size_t kMotionData = 8;  // present velocity, then present position
+constexpr std::size_t kStatusFrame = kPacketFrame + 1;
+constexpr double kBitsPerByte = 10;  // 8N1
+/// What adapters and schedulers add to an answer's time: an FTDI chip in its default holds bytes back for 16 ms.
+constexpr std::int64_t kSlowestAdapterNs = 30'000'000;
+/// Line time kept free behind an exchange: the servo's turn-around, its return delay at most 0.5 ms.
+constexpr std::int64_t kTurnAroundNs = 700'000;
+constexpr std::int64_t kUsbFrameNs = 1'000'000;
+constexpr std::int64_t kRebootNs = 500'000'000;
+constexpr std::int64_t kTryAgainNs = 1'000'000'000;
+
+/// Torque and, beside it, the LED: of two bytes, so that a late answer can't be taken for the watchdog's.
+constexpr Register kTorqueCheck{kTorqueEnable.address, 2};
+
+/// What is set up, in this order: first so that the servo answers at all, then with torque off what is kept without power, then the rest.
+constexpr std::array<Register, 15> kSetup = {
+    kStatusReturnLevel, kBusWatchdog,   kTorqueEnable,        kHardwareErrorStatus, kBaudRate,
+    kReturnDelayTime,   kDriveMode,     kOperatingMode,       kHomingOffset,        kMaxPositionLimit,
+    kMinPositionLimit,  kVelocityLimit, kProfileAcceleration, kProfileVelocity,     kBusWatchdog};
+
+/// Speeds at which a servo may have been left, likeliest first.
+constexpr std::array<int, 8> kCandidates = {57'600, 1'000'000, 115'200, 2'000'000, 3'000'000, 4'000'000, 4'500'000, 9'600};
+
+std::uint8_t watchdog_units(const ServoSettings& settings) {
+  return static_cast<std::uint8_t>(std::clamp<std::int64_t>((settings.watchdog_ns + kWatchdogUnitNs - 1) / kWatchdogUnitNs, 1, 127));
+}
+
+double ticks_of(const ServoSettings& settings, double mm) { return mm / settings.travel_mm_per_turn * kTicksPerTurn; }
+
+}  // namespace
+
+Result<ServoSettings> servo_settings(const settings::PrismServoSettings& from) {
+  const auto bad = [&](std::string sentence) { return fail(from.port, std::move(sentence)); };
+  if (from.id < 0 || from.id > kLastId) return bad("prism_servo.id is " + std::to_string(from.id) + "; a servo's id is 0 to 252.");
+  if (baud_code(from.baud) < 0)
+    return bad("prism_servo.baud is " + std::to_string(from.baud) +
+               "; a servo can do 9600, 57600, 115200, 1000000, 2000000, 3000000, 4000000 or 4500000.");
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  if (!positive(from.travel_mm_per_turn) || !positive(from.travel_mm) || !positive(from.speed_mm_s) || !std::isfinite(from.lag_ms) ||
+      from.lag_ms < 0)
+    return bad("prism_servo's travel_mm_per_turn, travel_mm and speed_mm_s have to be above zero, lag_ms at least zero.");
+  ServoSettings settings;
+  settings.id = static_cast<std::uint8_t>(from.id);
+  settings.baud = from.baud;
+  settings.travel_mm_per_turn = from.travel_mm_per_turn;
+  settings.reversed = from.reversed;
+  settings.zero_ticks = from.zero_ticks;
+  settings.travel_mm = from.travel_mm;
+  settings.speed_mm_s = from.speed_mm_s;
+  settings.lag_ns = std::llround(from.lag_ms * 1e6);
+  const double reach = ticks_of(settings, from.travel_mm);
+  if (!(from.zero_ticks - reach >= 0 && from.zero_ticks + reach <= kTicksPerTurn - 1))
+    return bad(
+        "prism_servo's travel_mm on both sides of zero_ticks leaves the encoder's turn (0 to 4095): move the horn so that the middle is "
+        "near "
+        "2048, or take a smaller travel_mm or a larger travel_mm_per_turn.");
+  return settings;
+}
+
+std::int32_t ticks_from_mm(const ServoSettings& settings, double mm) {
+  if (std::isnan(mm)) mm = 0;
+  const double held = std::clamp(mm, -settings.travel_mm, settings.travel_mm);
+  const double sign = settings.reversed ? -1 : 1;
+  return settings.zero_ticks + static_cast<std::int32_t>(std::lround(sign * ticks_of(settings, held)));
+}
+
+double mm_from_ticks(const ServoSettings& settings, std::int32_t ticks) {
+  const double sign = settings.reversed ? -1 : 1;
+  return sign * (static_cast<double>(ticks) - settings.zero_ticks) / kTicksPerTurn * settings.travel_mm_per_turn;
+}
+
+std::uint32_t velocity_units(const ServoSettings& settings, double mm_s) {
+  const double units = mm_s / settings.travel_mm_per_turn * 60 / kTurnsPerMinutePerUnit;
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(units), 1.0, 32'767.0));
+}
+
+Servo::Servo(port::BytePort& port, const ServoSettings& settings) : port_(port), settings_(settings) { port_.discard_input(); }
+
+PrismServo::Tick Servo::tick(std::int64_t now_ns, double goal_mm, bool powered) {
+  tick_.fresh = false;
+  tick_.status = port::PortStatus::ok;
+  out_size_ = 0;
+  hear(now_ns);
+  expire(now_ns);
+  if (tick_.status != port::PortStatus::gone && now_ns >= line_free_ns_) {
+    switch (stage_) {
+      case Stage::searching: search(now_ns); break;
+      case Stage::setting_up: set_up(now_ns); break;
+      case Stage::changing_baud: change_baud(now_ns); break;
+      case Stage::running: run(now_ns, goal_mm, powered); break;
+      case Stage::alarm: watch_alarm(now_ns, powered); break;
+      case Stage::rebooting:
+      case Stage::refused: begin_search(); break;
+    }
+    flush(now_ns);
+  }
+  counts_.bad_packets = parser_.bad_packets();
+  if (tick_.status == port::PortStatus::gone) tick_.phase = ServoPhase::absent;
+  return tick_;
+}
+
+std::int64_t Servo::line_ns(std::size_t bytes) const {
+  return std::llround(static_cast<double>(bytes) * kBitsPerByte * 1e9 / std::max(line_baud_, 1));
+}
+
+// --- what comes in ---
+
+void Servo::hear(std::int64_t now_ns) {
+  std::array<std::byte, kLongestPacket> bytes;
+  // Bounded: a line that never falls silent must not hold the tick.
+  for (int round = 0; round < 8; ++round) {
+    const port::PortCount count = port_.read(bytes);
+    parser_.take(std::span(bytes).first(count.bytes));
+    while (const Packet* packet = parser_.next()) take(*packet, now_ns);
+    if (count.status == port::PortStatus::gone) tick_.status = count.status;
+    if (count.bytes < bytes.size()) return;
+  }
+}
+
+void Servo::take(const Packet& packet, std::int64_t now_ns) {
+  // Instructions are the echo that some adapters give back.
+  if (packet.instruction != Instruction::status || packet.id != settings_.id) return;
+  ++counts_.answers;
+  if (packet.alert) check_error_next_ = true;
+  const Question question = question_;
+  if (question.what == Asked::nothing) return;
+  if (packet.error != 0) return take_refusal(question, now_ns);
+  const std::size_t expected = question.what == Asked::ping     ? kPingAnswerData
+                               : question.what == Asked::motion ? kMotionData
+                                                                : question.which.size;
+  if (packet.count != expected) return;
+  question_.what = Asked::nothing;
+  silent_questions_ = 0;
+  line_free_ns_ = now_ns;
+  usual_answer_ns_ = std::max(now_ns - question.sent_ns, usual_answer_ns_ - usual_answer_ns_ / 64);
+  switch (question.what) {
+    case Asked::ping: return take_ping(packet, now_ns);
+    case Asked::motion: return take_motion(packet, question, now_ns);
+    case Asked::value: return take_value(question.which, number_at(packet.data(), 0, question.which.size), now_ns);
+    case Asked::nothing: return;
+  }
+}
+
+/// A question that the servo doesn't answer with data, now or ever.
+void Servo::take_refusal(const Question& question, std::int64_t now_ns) {
+  question_.what = Asked::nothing;
+  silent_questions_ = 0;
+  line_free_ns_ = now_ns;
+  if (stage_ == Stage::setting_up) refuse(ServoTrouble::refused, question.which.address, now_ns);
+}
+
+void Servo::take_ping(const Packet& packet, std::int64_t now_ns) {
+  model_ = static_cast<std::uint16_t>(number_at(packet.data(), 0, 2));
+  found_baud_ = line_baud_;
+  if (model_name(model_).empty()) return refuse(ServoTrouble::other_model, model_, now_ns);
+  begin_setup();
+}
+
+void Servo::take_motion(const Packet& packet, const Question& question, std::int64_t now_ns) {
+  const auto velocity = static_cast<std::int32_t>(number_at(packet.data(), 0, 4));
+  const auto ticks = static_cast<std::int32_t>(number_at(packet.data(), 4, 4));
+  const double sign = settings_.reversed ? -1 : 1;
+  // The servo looked when the question had arrived, before the answer left. What lies between is mostly waiting for this tick, so the first
+  // half millisecond of it is the best guess: questions aren't held back by more than a USB frame.
+  const std::int64_t latest = std::max(question.gone_ns, now_ns - line_ns(question.answer_bytes));
+  tick_.reading.measured_ns = question.gone_ns + std::min((latest - question.gone_ns) / 2, kUsbFrameNs / 2);
+  tick_.reading.position_mm = mm_from_ticks(settings_, ticks);
+  tick_.reading.velocity_mm_s = sign * velocity * kTurnsPerMinutePerUnit / 60 * settings_.travel_mm_per_turn;
+  tick_.fresh = true;
+}
+
+void Servo::take_value(Register which, std::uint32_t value, std::int64_t now_ns) {
+  if (stage_ == Stage::setting_up) return take_setup_value(value, now_ns);
+  if (stage_ == Stage::running || stage_ == Stage::alarm) take_check(which, value);
+}
+
+void Servo::take_setup_value(std::uint32_t value, std::int64_t now_ns) {
+  const Register which = kSetup[step_];
+  bool done = value == wanted(which);
+  if (which == kHardwareErrorStatus) {
+    if (value != 0) return give_alarm(static_cast<std::uint8_t>(value));
+    done = true;
+  }
+  if (which == kVelocityLimit) {
+    if (value < wanted(kProfileVelocity)) return refuse(ServoTrouble::too_slow, which.address, now_ns);
+    done = true;
+  }
+  if (!done) {
+    if (++tries_ > kWriteTries) return refuse(ServoTrouble::refused, which.address, now_ns);
+    doing_ = Doing::writing;
+    return;
+  }
+  tries_ = 0;
+  doing_ = Doing::asking;
+  if (++step_ < kSetup.size()) return;
+  stage_ = Stage::running;
+  tick_.phase = ServoPhase::ready;
+  tick_.trouble = ServoTrouble::none;
+  tick_.alarm_bits = 0;
+  torque_sent_ = torque_known_ = false;
+  baud_changes_ = 0;
+  ticks_to_check_ = kTicksBetweenChecks;
+  check_watchdog_next_ = true;
+  check_error_next_ = false;
+}
+
+void Servo::take_check(Register which, std::uint32_t value) {
+  if (which == kHardwareErrorStatus) {
+    check_error_next_ = false;
+    if (value != 0) give_alarm(static_cast<std::uint8_t>(value));
+    return;
+  }
+  if (stage_ != Stage::running) return;
+  if (which == kTorqueCheck) {
+    // Lost on the way, or the servo let go by itself.
+    if (((value & 1U) != 0) != torque_sent_) torque_known_ = false;
+    return;
+  }
+  if (which != kBusWatchdog || value == watchdog_units(settings_)) return;
+  // Tripped: goals are refused until it is cleared. Anything else: the servo has lost power meanwhile.
+  if (value == kWatchdogTripped) ++counts_.watchdog_trips;
+  begin_setup();
+}
+
+void Servo::expire(std::int64_t now_ns) {
+  if (question_.what == Asked::nothing || now_ns < question_.deadline_ns) return;
+  question_.what = Asked::nothing;
+  ++counts_.timeouts;
+  ++silent_questions_;
+  check_watchdog_next_ = true;
+  usual_answer_ns_ = std::min(2 * usual_answer_ns_, kSlowestAdapterNs);
+  if (stage_ == Stage::searching || stage_ == Stage::changing_baud) return;
+  // A late answer must not be taken for that to another question.
+  if (stage_ == Stage::setting_up) line_free_ns_ = std::max(line_free_ns_, now_ns + kSlowestAdapterNs);
+  if (silent_questions_ >= kSilentQuestionsToLose) begin_search();
+}
+
+// --- what goes out ---
+
+void Servo::flush(std::int64_t now_ns) {
+  if (out_size_ == 0) return;
+  const port::PortCount count = port_.write(std::span(out_).first(out_size_));
+  if (count.status == port::PortStatus::gone) tick_.status = count.status;
+  out_size_ = 0;
+  last_sent_ns_ = now_ns;
+}
+
+void Servo::ask(Asked what, Register which, std::size_t question_bytes, std::size_t answer_data, std::int64_t now_ns) {
+  add(question_bytes);
+  question_.what = what;
+  question_.which = which;
+  question_.sent_ns = now_ns;
+  question_.gone_ns = now_ns + line_ns(out_size_);
+  question_.answer_bytes = kStatusFrame + answer_data;
+  const std::int64_t exchange = line_ns(out_size_ + question_.answer_bytes) + kTurnAroundNs;
+  line_free_ns_ = now_ns + exchange;
+  question_.deadline_ns = now_ns + exchange + std::min(kSlowestAdapterNs, std::max<std::int64_t>(2 * usual_answer_ns_, 5'000'000));
+}
+
+/// A write of the set-up: whether the servo answers it depends on what it was set to before, so an answer's time is waited for.
+void Servo::write_and_wait(Register which, std::uint32_t value, std::int64_t now_ns) {
+  add(encode_write(settings_.id, which.address, value, which.size, room()));
+  line_free_ns_ = now_ns + line_ns(out_size_ + kStatusFrame) + kTurnAroundNs;
+}
+
+void Servo::begin_search() {
+  stage_ = Stage::searching;
+  tick_.phase = ServoPhase::absent;
+  question_.what = Asked::nothing;
+  candidate_ = 0;
+  pings_left_ = 0;
+}
+
+/// Goes through the speeds; every other time the likeliest, at which the servo was or should be.
+void Servo::next_candidate(std::int64_t now_ns) {
+  const std::size_t all = 2 * kCandidates.size();
+  const int likeliest = found_baud_ != 0 ? found_baud_ : settings_.baud;
+  const int baud = candidate_ % 2 == 0 ? likeliest : kCandidates[candidate_ / 2];
+  if (++candidate_ == all) {
+    candidate_ = 0;
+    found_baud_ = 0;
+    tick_.trouble = ServoTrouble::no_answer;
+  }
+  if (baud != line_baud_ && !port_.set_baud(baud)) return;
+  line_baud_ = baud;
+  parser_.reset();
+  pings_left_ = kPingsPerSpeed;
+  line_free_ns_ = now_ns;
+}
+
+void Servo::search(std::int64_t now_ns) {
+  if (question_.what != Asked::nothing) return;
+  if (pings_left_ == 0) next_candidate(now_ns);
+  if (pings_left_ == 0) return;
+  --pings_left_;
+  usual_answer_ns_ = kSlowestAdapterNs;
+  ask(Asked::ping, {}, encode_ping(settings_.id, room()), kPingAnswerData, now_ns);
+}
+
+void Servo::begin_setup() {
+  stage_ = Stage::setting_up;
+  tick_.phase = ServoPhase::setting_up;
+  question_.what = Asked::nothing;
+  step_ = 0;
+  tries_ = 0;
+  // The first register is the one that lets the servo answer: it's written before it is read.
+  doing_ = Doing::writing;
+}
+
+std::uint32_t Servo::wanted(Register which) const {
+  const auto end = [&](double mm) { return static_cast<std::uint32_t>(ticks_from_mm(settings_, mm)); };
+  const double right = settings_.reversed ? -settings_.travel_mm : settings_.travel_mm;
+  if (which == kStatusReturnLevel) return kAnswerReads;
+  if (which == kBaudRate) return static_cast<std::uint32_t>(baud_code(settings_.baud));
+  if (which == kOperatingMode) return kPositionMode;
+  if (which == kMaxPositionLimit) return end(right);
+  if (which == kMinPositionLimit) return end(-right);
+  if (which == kProfileVelocity) return velocity_units(settings_, settings_.speed_mm_s);
+  if (which == kBusWatchdog) return step_ + 1 == kSetup.size() ? watchdog_units(settings_) : 0;
+  return 0;
+}
+
+void Servo::set_up(std::int64_t now_ns) {
+  if (question_.what != Asked::nothing) return;
+  const Register which = kSetup[step_];
+  if (doing_ == Doing::writing) {
+    write_and_wait(which, wanted(which), now_ns);
+    doing_ = Doing::verifying;
+    if (which == kBaudRate) stage_ = Stage::changing_baud;
+    return;
+  }
+  ask(Asked::value, which, encode_read(settings_.id, which.address, which.size, room()), which.size, now_ns);
+}
+
+/// The new speed has been written and has had time to arrive: follow it, and look whether the servo is there.
+void Servo::change_baud(std::int64_t now_ns) {
+  if (++baud_changes_ > kWriteTries || !port_.set_baud(settings_.baud)) {
+    baud_changes_ = 0;
+    return refuse(ServoTrouble::refused, kBaudRate.address, now_ns);
+  }
+  line_baud_ = found_baud_ = settings_.baud;
+  parser_.reset();
+  begin_search();
+}
+
+void Servo::run(std::int64_t now_ns, double goal_mm, bool powered) {
+  if (now_ns - last_sent_ns_ > settings_.watchdog_ns) check_watchdog_next_ = true;
+  if (!torque_known_ || torque_sent_ != powered) {
+    add(encode_write(settings_.id, kTorqueEnable.address, powered ? 1 : 0, kTorqueEnable.size, room()));
+    torque_sent_ = powered;
+    torque_known_ = true;
+  } else if (powered && std::isfinite(goal_mm)) {
+    const auto ticks = static_cast<std::uint32_t>(ticks_from_mm(settings_, goal_mm));
+    add(encode_write(settings_.id, kGoalPosition.address, ticks, kGoalPosition.size, room()));
+  }
+  if (question_.what == Asked::nothing)
+    ask_motion_or_check(now_ns);
+  else
+    line_free_ns_ = now_ns + line_ns(out_size_);
+}
+
+void Servo::ask_motion_or_check(std::int64_t now_ns) {
+  if (check_error_next_) {
+    const std::size_t bytes = encode_read(settings_.id, kHardwareErrorStatus.address, kHardwareErrorStatus.size, room());
+    return ask(Asked::value, kHardwareErrorStatus, bytes, kHardwareErrorStatus.size, now_ns);
+  }
+  if (--ticks_to_check_ <= 0 || check_watchdog_next_) {
+    torque_is_next_ = !torque_is_next_ && !check_watchdog_next_;
+    const Register which = torque_is_next_ ? kTorqueCheck : kBusWatchdog;
+    ticks_to_check_ = kTicksBetweenChecks;
+    check_watchdog_next_ = false;
+    return ask(Asked::value, which, encode_read(settings_.id, which.address, which.size, room()), which.size, now_ns);
+  }
+  const std::size_t bytes = encode_read(settings_.id, kPresentVelocity.address, kMotionData, room());
+  ask(Asked::motion, kPresentVelocity, bytes, kMotionData, now_ns);
+}
+
+void Servo::give_alarm(std::uint8_t bits) {
+  if (stage_ != Stage::alarm) {
+    let_go_since_alarm_ = false;
+    ticks_to_check_ = kTicksBetweenChecks;
+  }
+  stage_ = Stage::alarm;
+  tick_.phase = ServoPhase::alarm;
+  tick_.alarm_bits = bits;
+}
+
+/// Only a reboot brings the torque back after an alarm; meanwhile the position is still looked at.
+void Servo::watch_alarm(std::int64_t now_ns, bool powered) {
+  if (!powered) let_go_since_alarm_ = true;
+  if (powered && let_go_since_alarm_) {
+    add(encode_reboot(settings_.id, room()));
+    question_.what = Asked::nothing;
+    stage_ = Stage::rebooting;
+    tick_.phase = ServoPhase::absent;
+    tick_.alarm_bits = 0;
+    line_free_ns_ = now_ns + kRebootNs;
+    return;
+  }
+  if (question_.what != Asked::nothing) return;
+  check_error_next_ = --ticks_to_check_ <= 0;
+  if (check_error_next_) ticks_to_check_ = kTicksBetweenChecks;
+  check_watchdog_next_ = false;
+  ask_motion_or_check(now_ns);
+}
+
+std::string trouble_text(const PrismServo::Tick& tick, const settings::PrismServoSettings& settings) {
+  const std::string number = std::to_string(tick.trouble_number);
+  if (tick.phase == ServoPhase::alarm) {
+    std::string bits;
+    for (unsigned bit = 0; bit < 8; ++bit)
+      if ((tick.alarm_bits >> bit & 1U) != 0) bits.append(bits.empty() ? "" : ", ").append(hardware_error_name(bit));
+    return "The prism servo has switched its motor off: " + bits +
+           ". Look for what blocks or heats it and at its supply, then arm it again.";
+  }
+  switch (tick.trouble) {
+    case ServoTrouble::none: return {};
+    case ServoTrouble::no_answer:
+      return "No servo with id " + std::to_string(settings.id) + " answers on " + settings.port +
+             " at any speed: look at its supply, its cable and prism_servo.id.";
+    case ServoTrouble::other_model:
+      return "The servo on " + settings.port + " says it is model " + number +
+             ", whose registers aren't known here: it has to be a Dynamixel of the X series, or MX with firmware 2.0.";
+    case ServoTrouble::refused:
+      return "The prism servo doesn't take what its register " + number + " has to be set to: restore its factory settings and try again.";
+    case ServoTrouble::too_slow:
+      return "The prism servo's velocity limit (register " + number +
+             ") is below prism_servo.speed_mm_s: raise the limit or lower the speed.";
+  }
+  return {};
+}
+
+void Servo::refuse(ServoTrouble why, std::uint16_t number, std::int64_t now_ns) {
+  stage_ = Stage::refused;
+  tick_.phase = ServoPhase::absent;
+  tick_.trouble = why;
+  tick_.trouble_number = number;
+  question_.what = Asked::nothing;
+  line_free_ns_ = now_ns + kTryAgainNs;
+}
+
+}  // namespace prismesh::drivers::prism_servo::dynamixel

@@ -1,0 +1,108 @@
+// A Dynamixel X servo with a mask on its shaft, as seen from the other end of its cable: real bytes in and out, registers with the
+// factory's defaults, EEPROM locked while torque is on, a speed of the line that has to be right, return delay, status level, bus
+// watchdog, and a motor with limited speed, lag, backlash and stops. In virtual time on a MemoryLine, in real time through
+// SimulatedServoThread.
+// Source of the behaviour: ROBOTIS e-Manual, "DYNAMIXEL Protocol 2.0" and the control table of XM430-W210. What the manual leaves open is
+// marked in the code.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "drivers/port/byte_port.h"
+#include "drivers/prism_servo/dynamixel/packet.h"
+#include "drivers/prism_servo/dynamixel/registers.h"
+
+namespace prismesh::drivers::prism_servo::dynamixel {
+
+struct SimulatedServoSettings {
+  std::uint16_t model = 1030;  ///< XM430-W210
+  std::uint8_t id = 1;
+  int baud = 57'600;  ///< the factory's
+  std::uint8_t return_delay = 250;
+  double travel_mm_per_turn = 5;  ///< how the mask hangs on the shaft; the three as in PrismServoSettings
+  bool reversed = false;
+  int zero_ticks = 2048;
+  double start_mm = 0.6;                           ///< where the mask stands at first
+  double stop_mm = 2.3;                            ///< the mask hits something there, on either side
+  double speed_mm_s = 6;                           ///< what the motor can do
+  double lag_ms = 15;                              ///< time constant with which the motor follows its profile
+  double backlash_mm = 0.01;                       ///< between motor and mask; the encoder sits at the motor
+  double overload_mm = 0.1;                        ///< a motor that stays so far behind its profile ...
+  std::int64_t overload_after_ns = 1'500'000'000;  ///< ... for so long switches itself off
+  std::int64_t boot_ns = 300'000'000;              ///< after power comes or a reboot: silent so long
+  bool echoes = false;                             ///< the adapter gives the host its own bytes back
+};
+
+class SimulatedServo {
+ public:
+  /// `port`: the device's end; must outlive this. Sets its speed as the registers say.
+  SimulatedServo(port::BytePort& port, const SimulatedServoSettings& settings);
+
+  /// Moves on to `now_ns`: takes in what has come, answers what is due, turns the motor. Steps of a millisecond or less.
+  void step(std::int64_t now_ns);
+
+  // What befalls it.
+  void jam(bool jammed) { jammed_ = jammed; }    ///< the mask is held fast
+  void set_power(bool on);                       ///< off: silent, torque gone, volatile registers forgotten
+  void raise_hardware_error(std::uint8_t bits);  ///< as kHardwareErrorStatus
+  void mute(bool muted) { muted_ = muted; }      ///< hears and turns, but doesn't answer: a broken wire
+
+  double mask_mm() const { return mask_mm_; }  ///< where the mask truly is
+  double motor_mm() const { return motor_mm_; }
+  double motor_velocity_mm_s() const { return velocity_mm_s_; }
+  bool torque() const { return powered_ && value(kTorqueEnable) != 0; }
+  bool watchdog_tripped() const { return value(kBusWatchdog) == kWatchdogTripped; }
+  std::uint32_t value(Register which) const;
+  void set_value(Register which, std::uint32_t value);  ///< as if set before the test began; no checks
+
+  struct Counts {
+    std::uint64_t instructions = 0, answers = 0, bad_packets = 0, refused = 0, goals = 0, eeprom_writes = 0, watchdog_trips = 0;
+    std::uint64_t goals_beyond_limits = 0;
+  };
+  const Counts& counts() const { return counts_; }
+
+ private:
+  struct Answer {
+    std::int64_t due_ns = 0;
+    std::size_t size = 0;
+    std::array<std::byte, kLongestPacket> bytes{};
+  };
+  void factory_registers();
+  void forget_volatile();
+  void boot(std::int64_t now_ns);
+  void hear(std::int64_t now_ns);
+  void carry_out(const Packet& packet, std::int64_t now_ns);
+  void ping(std::int64_t now_ns);
+  void read(const Packet& packet, std::int64_t now_ns);
+  void write(const Packet& packet, std::int64_t now_ns);
+  Refusal write_register(Register which, std::uint32_t value);
+  Refusal check(Register which, std::uint32_t value) const;
+  void answer(std::int64_t now_ns, Refusal refusal, std::span<const std::uint8_t> data);
+  void send_due(std::int64_t now_ns);
+  void watch(std::int64_t now_ns);
+  void turn(std::int64_t now_ns);
+  void move_motor(double seconds);
+  void drag_mask();
+  void watch_load(std::int64_t now_ns);
+  void show_motion();
+  double ticks_from(double mm) const;
+  double mm_from(double ticks) const;
+  double speed_limit_mm_s() const;
+
+  port::BytePort& port_;
+  SimulatedServoSettings settings_;
+  std::array<std::uint8_t, 256> table_{};
+  Parser parser_;
+  std::array<Answer, 8> answers_{};
+  std::size_t answers_waiting_ = 0;
+  Counts counts_;
+  bool powered_ = true, jammed_ = false, muted_ = false, started_ = false;
+  std::int64_t now_ns_ = 0, boot_until_ns_ = 0, last_instruction_ns_ = 0, overload_since_ns_ = 0;
+  bool rebooting_ = false;
+  int baud_after_answer_ = 0;
+  double profile_mm_ = 0, motor_mm_ = 0, mask_mm_ = 0, velocity_mm_s_ = 0;
+};
+
+}  // namespace prismesh::drivers::prism_servo::dynamixel
