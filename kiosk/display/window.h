@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -95,11 +96,14 @@ struct FocusLost {};  ///< keys and buttons held down count as released
 struct Resized {
   PixelSize size;
 };
+struct Moved {};    ///< another place on the desktop, or another monitor or mode: ask `place` and `monitor` again
 struct Exposed {};  ///< the picture has to be shown again
 struct CloseRequested {};
 
-using WindowEvent =
-    std::variant<PointerMoved, ButtonChanged, WheelTurned, KeyChanged, TextTyped, PointerLeft, FocusLost, Resized, Exposed, CloseRequested>;
+using WindowEvent = std::variant<PointerMoved, ButtonChanged, WheelTurned, KeyChanged, TextTyped, PointerLeft, FocusLost, Resized, Moved,
+                                 Exposed, CloseRequested>;
+
+struct Monitor;  // monitor.h
 
 class Window {
  public:
@@ -110,8 +114,20 @@ class Window {
   virtual Result<std::vector<WindowEvent>> take_events() = 0;
   /// For poll(2): readable when there may be events. Negative: there never are any.
   virtual int descriptor() const = 0;
+  /// The picture's upper left corner in the desktop's pixels.
+  struct Place {
+    int x = 0, y = 0;
+    bool operator==(const Place&) const = default;
+  };
+  virtual Place place() const = 0;
+  /// The monitor that shows most of the picture; empty: unknown. Asks the display: once when something changed, not for each picture.
+  virtual std::optional<Monitor> monitor() = 0;
+  /// Waits until the picture in framebuffer 0 is drawn to its last pixel.
+  virtual void finish() = 0;
   /// Shows the picture drawn into framebuffer 0 of the window's GL context.
   virtual void present() = 0;
+  /// When the display began its newest refresh, CLOCK_MONOTONIC; empty where it doesn't tell.
+  virtual std::optional<std::int64_t> last_refresh_ns() = 0;
   /// Hides or shows the display's own pointer (it lies on the woven picture; stereo pictures carry their own).
   virtual void show_pointer(bool shown) = 0;
   virtual void set_fullscreen(bool fullscreen) = 0;

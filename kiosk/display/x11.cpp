@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdlib>
 #include <optional>
+#include <string_view>
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -10,7 +11,10 @@
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
+#include <X11/extensions/Xrandr.h>
 #include <X11/keysym.h>
+
+#include "kiosk/display/monitor_x11.h"
 
 namespace prismesh::kiosk::display {
 namespace {
@@ -54,6 +58,9 @@ std::optional<MouseButton> button_from(unsigned button) {
 
 bool is_wheel(unsigned button) { return button == Button4 || button == Button5; }
 
+/// EGL_CHROMIUM_sync_control: microseconds of the newest refresh, and how many refreshes and swaps there were.
+using GetSyncValues = EGLBoolean (*)(EGLDisplay, EGLSurface, EGLuint64KHR*, EGLuint64KHR*, EGLuint64KHR*);
+
 /// Set when the connection to the X server breaks; Xlib would otherwise end the program.
 void mark_gone(Display*, void* gone) { *static_cast<bool*>(gone) = true; }
 
@@ -65,15 +72,21 @@ class X11Window final : public Window {
   PixelSize size() const override { return size_; }
   Result<std::vector<WindowEvent>> take_events() override;
   int descriptor() const override { return ConnectionNumber(display_); }
+  Place place() const override { return place_; }
+  std::optional<Monitor> monitor() override { return gone_ ? std::nullopt : monitor_at(display_, root(), place_.x, place_.y, size_); }
+  void finish() override { eglWaitClient(); }
   void present() override {
     if (!gone_) eglSwapBuffers(egl_, surface_);
   }
+  std::optional<std::int64_t> last_refresh_ns() override;
   void show_pointer(bool shown) override;
   void set_fullscreen(bool fullscreen) override;
 
  private:
   Result<void> create_window(const X11Options& options);
   Result<void> create_context();
+  ::Window root() const { return DefaultRootWindow(display_); }
+  void find_place(std::vector<WindowEvent>& out);
   void translate(XEvent& event, std::vector<WindowEvent>& out);
   void translate_button(const XButtonEvent& event, bool down, std::vector<WindowEvent>& out);
   void translate_key(XKeyEvent& event, bool down, std::vector<WindowEvent>& out);
@@ -88,7 +101,12 @@ class X11Window final : public Window {
   EGLConfig config_ = nullptr;
   EGLContext context_ = EGL_NO_CONTEXT;
   EGLSurface surface_ = EGL_NO_SURFACE;
+  GetSyncValues sync_values_ = nullptr;
   PixelSize size_;
+  Place place_;
+  int randr_events_ = -1;  ///< first of RandR's event numbers; negative: there is no RandR
+  bool place_doubtful_ = true;
+  bool monitor_changed_ = false;
   bool pointer_shown_ = true;
   bool gone_ = false;
   std::array<bool, 256> held_{};  ///< by key code: a press while held is a repeat
@@ -169,6 +187,11 @@ Result<void> X11Window::create_window(const X11Options& options) {
   if (input_method_ != nullptr)
     input_context_ = XCreateIC(input_method_, XNInputStyle, XIMPreeditNothing | XIMStatusNothing, XNClientWindow, window_, XNFocusWindow,
                                window_, nullptr);
+  int randr_errors = 0;
+  if (XRRQueryExtension(display_, &randr_events_, &randr_errors) != 0)
+    XRRSelectInput(display_, root, RRScreenChangeNotifyMask | RRCrtcChangeNotifyMask | RROutputPropertyNotifyMask);
+  else
+    randr_events_ = -1;
   XMapWindow(display_, window_);
   XFlush(display_);
   return {};
@@ -182,6 +205,9 @@ Result<void> X11Window::create_context() {
   if (surface_ == EGL_NO_SURFACE || !eglMakeCurrent(egl_, surface_, surface_, context_))
     return fail(DisplayString(display_), "EGL can't draw to a window here (error " + std::to_string(eglGetError()) + ")");
   eglSwapInterval(egl_, 1);
+  const char* extensions = eglQueryString(egl_, EGL_EXTENSIONS);
+  if (extensions != nullptr && std::string_view(extensions).find("EGL_CHROMIUM_sync_control") != std::string_view::npos)
+    sync_values_ = reinterpret_cast<GetSyncValues>(eglGetProcAddress("eglGetSyncValuesCHROMIUM"));
   return {};
 }
 
@@ -193,11 +219,34 @@ Result<std::vector<WindowEvent>> X11Window::take_events() {
     if (XFilterEvent(&event, window_)) continue;
     translate(event, out);
   }
+  if (!gone_) find_place(out);
   if (gone_) return fail("", "the X server has gone away");
   return out;
 }
 
+/// A window manager puts the window into a frame of its own, so only the server knows where on the desktop it is.
+void X11Window::find_place(std::vector<WindowEvent>& out) {
+  if (!place_doubtful_ && !monitor_changed_) return;
+  int x = place_.x, y = place_.y;
+  ::Window child = 0;
+  if (window_ != 0) XTranslateCoordinates(display_, window_, root(), 0, 0, &x, &y, &child);
+  if (monitor_changed_ || Place{x, y} != place_) out.emplace_back(Moved{});
+  place_ = {x, y};
+  place_doubtful_ = monitor_changed_ = false;
+}
+
+std::optional<std::int64_t> X11Window::last_refresh_ns() {
+  EGLuint64KHR time_us = 0, refreshes = 0, swaps = 0;
+  if (gone_ || sync_values_ == nullptr || !sync_values_(egl_, surface_, &time_us, &refreshes, &swaps) || time_us == 0) return std::nullopt;
+  return static_cast<std::int64_t>(time_us) * 1000;
+}
+
 void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
+  if (randr_events_ >= 0 && (event.type == randr_events_ + RRScreenChangeNotify || event.type == randr_events_ + RRNotify)) {
+    XRRUpdateConfiguration(&event);
+    monitor_changed_ = true;
+    return;
+  }
   switch (event.type) {
     case MotionNotify: {
       const PointerMoved moved{static_cast<double>(event.xmotion.x), static_cast<double>(event.xmotion.y),
@@ -219,7 +268,9 @@ void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
       held_.fill(false);
       out.emplace_back(FocusLost{});
       break;
+    case ReparentNotify: place_doubtful_ = true; break;
     case ConfigureNotify: {
+      place_doubtful_ = true;
       const PixelSize now{event.xconfigure.width, event.xconfigure.height};
       if (now == size_) break;
       size_ = now;

@@ -53,6 +53,25 @@ struct PullFacts {
   std::optional<mesh::quality::Counts> counts;  ///< of the whole document as it would become
 };
 
+/// How the picture follows the eyes, in words.
+struct EyesFacts {
+  enum class State : std::uint8_t { good, waiting, trouble };
+  State state = State::waiting;
+  std::string eyes = "waiting";  ///< a few words
+  std::string mask;              ///< a few words; empty: the display has no mask that moves
+  std::string advice;            ///< a sentence: what to do; empty: nothing
+  bool in_depth = false;
+  bool simulated = false;
+  bool operator==(const EyesFacts&) const = default;
+};
+
+/// How much depth the picture has. Only for pictures in stereo.
+struct DepthFacts {
+  int strength_percent = 100;
+  double comfort_degrees = 1;
+  bool selection_in_plane = false;  ///< the selection is kept in the plane of the screen
+};
+
 enum class Dialog : std::uint8_t { none, open, save_as };
 
 struct PanelData {
@@ -63,6 +82,8 @@ struct PanelData {
   bool through = false;
   bool colour_by_quality = false;
   std::string profile;
+  std::optional<EyesFacts> eyes;
+  std::optional<DepthFacts> depth;
   std::uint64_t glyphs_left_out = 0;
   std::optional<Notice> notice;
   std::size_t more_notices = 0;

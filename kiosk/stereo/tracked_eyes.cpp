@@ -53,15 +53,13 @@ Vector3d TrackedEyes::Glide::follow(const Vector3d& target, double seconds, doub
 // --- looking ---
 
 TrackedEyes::TrackedEyes(const FollowOptions& options, const FollowLimits& limits)
-    : limits_(limits),
-      eye_separation_mm_(options.eye_separation_mm),
-      place_(kStillAcrossMm, kStillDeepMm),
-      half_separation_(kStillTurnMm, kStillTurnMm) {
+    : limits_(limits), place_(kStillAcrossMm, kStillDeepMm), half_separation_(kStillTurnMm, kStillTurnMm) {
   set_options(options);
 }
 
 void TrackedEyes::set_options(const FollowOptions& options) {
   options_ = options;
+  if (options.eye_separation_mm) eye_separation_mm_ = *options.eye_separation_mm;
   looked_ns_.reset();
   disallowed_ns_.reset();
   source_ = Source::resting;
@@ -74,10 +72,10 @@ void TrackedEyes::set_options(const FollowOptions& options) {
 }
 
 SeenFrom TrackedEyes::look(const DeviceReading& reading, std::int64_t now_ns, const LitTime& lit) {
+  if (options_.movable_mask) follow_mask(reading, lit);
   if (!options_.follow) return seen_;
   take(reading, now_ns);
   move(now_ns, lit);
-  if (options_.movable_mask) follow_mask(reading, lit);
   if (options_.mono_without_eyes) {
     double most = share_for_eyes(now_ns, lit);
     most = std::min(most, 1 - std::min(1.0, place_.offset_mm() / limits_.place_slack_mm));
@@ -96,7 +94,7 @@ void TrackedEyes::take(const DeviceReading& reading, std::int64_t now_ns) {
   if (!believable(eyes)) return;
   found_again_ = found_again_ || eyes.measured_ns - head_.time_ns > limits_.lost_after_ns;
   head_ = eyes.head();
-  eye_separation_mm_ = eyes.eye_separation_mm;
+  if (!options_.eye_separation_mm) eye_separation_mm_ = eyes.eye_separation_mm;
 }
 
 void TrackedEyes::move(std::int64_t now_ns, const LitTime& lit) {

@@ -30,7 +30,7 @@ struct FollowOptions {
   bool mono_without_eyes = true;  ///< each eye's picture reaches it only where it is woven for; false: glasses sort the pictures out
   bool movable_mask = true;       ///< depth only while the mask follows
   Eigen::Vector3d resting_mm{0, 0, 650};
-  double eye_separation_mm = drivers::display::kMeanEyeSeparationMm;  ///< until a tracker says
+  std::optional<double> eye_separation_mm;  ///< measured with this viewer; empty: the tracker's
   bool operator==(const FollowOptions&) const = default;
 };
 
@@ -97,7 +97,7 @@ class TrackedEyes {
   FollowOptions options_;
   FollowLimits limits_;
   drivers::eye_tracker::HeadState head_;
-  double eye_separation_mm_;
+  double eye_separation_mm_ = drivers::display::kMeanEyeSeparationMm;
   Source source_ = Source::resting;
   bool found_again_ = false;  ///< measurements have come back after they were lost
   Glide place_;

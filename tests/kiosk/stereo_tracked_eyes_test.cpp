@@ -353,7 +353,7 @@ TEST(TrackedEyes, GlassesKeepTheirDepthWithoutEyes) {
 
 TEST(TrackedEyes, FixedEyesStayInDepthWhateverTheDaemonSays) {
   FollowOptions options;
-  options.follow = false;
+  options.follow = options.movable_mask = false;
   options.resting_mm = {30, 20, 600};
   World world(options, HeadMotion(MotionKind::sway, 2));
   world.run_ms(1000);

@@ -1,0 +1,148 @@
+#include "kiosk/eye_watch.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace prismesh::kiosk {
+namespace {
+
+using drivers::prism_servo::MaskPhase;
+using ipc::EyesPhase;
+using panels::EyesFacts;
+
+constexpr std::string_view name(EyesPhase phase) {
+  switch (phase) {
+    case EyesPhase::none: return "none";
+    case EyesPhase::absent: return "absent";
+    case EyesPhase::silent: return "silent";
+    case EyesPhase::searching: return "searching";
+    case EyesPhase::tracking: return "tracking";
+  }
+  return "none";
+}
+
+/// The tracker in a few words, and what the user can do about it.
+void word_eyes(EyesPhase phase, const ipc::DeviceInfo* tracker, EyesFacts& facts) {
+  facts.state = phase == EyesPhase::tracking ? EyesFacts::State::good : EyesFacts::State::trouble;
+  switch (phase) {
+    case EyesPhase::tracking: facts.eyes = "following you"; return;
+    case EyesPhase::searching:
+      facts.state = EyesFacts::State::waiting;
+      facts.eyes = "nobody seen";
+      facts.advice = "Sit in front of the screen, an arm's length away.";
+      return;
+    case EyesPhase::silent:
+      facts.eyes = "tracker is silent";
+      facts.advice = "Is the eye tracker switched on, and its baud rate right?";
+      break;
+    case EyesPhase::absent:
+      facts.eyes = "tracker unplugged";
+      facts.advice = "Plug the eye tracker in.";
+      break;
+    case EyesPhase::none:
+      facts.eyes = "no tracker";
+      facts.advice = "Name the eye tracker in prismesh.toml.";
+      break;
+  }
+  if (tracker != nullptr && !tracker->trouble.empty()) facts.advice = tracker->trouble;
+}
+
+/// Only what keeps the picture mono though the eyes are seen.
+void word_mask(MaskPhase phase, const ipc::DeviceInfo* servo, EyesFacts& facts) {
+  const auto say = [&](EyesFacts::State state, const char* mask, const char* advice) {
+    facts.mask = mask;
+    if (facts.state != EyesFacts::State::good) return;
+    facts.state = state;
+    facts.advice = servo != nullptr && !servo->trouble.empty() ? servo->trouble : advice;
+  };
+  switch (phase) {
+    case MaskPhase::following:
+    case MaskPhase::flying_back: facts.mask = "following"; return;
+    case MaskPhase::homing: return say(EyesFacts::State::waiting, "finding its zero", "");
+    case MaskPhase::frozen:
+    case MaskPhase::parking:
+    case MaskPhase::parked: return say(EyesFacts::State::waiting, "at rest", "");
+    case MaskPhase::held: return say(EyesFacts::State::waiting, "held for calibration", "");
+    case MaskPhase::absent: return say(EyesFacts::State::trouble, "motor doesn't answer", "Check the prism motor's power and cable.");
+    case MaskPhase::stuck: return say(EyesFacts::State::trouble, "stuck", "Free the mask, then press Ctrl+R.");
+    case MaskPhase::alarm: return say(EyesFacts::State::trouble, "motor alarm", "Switch the prism motor off and on, then press Ctrl+R.");
+  }
+}
+
+}  // namespace
+
+EyeWatch::EyeWatch(const stereo::FollowOptions& options, DeviceLink& link, Clock& clock, Trace trace)
+    : link_(link), clock_(clock), trace_(trace), eyes_(options) {}
+
+void EyeWatch::set_options(const stereo::FollowOptions& options) {
+  if (options == eyes_.options()) return;
+  eyes_.set_options(options);
+  traced_phase_.reset();
+}
+
+bool EyeWatch::look() {
+  const std::int64_t now = clock_.now_ns();
+  timing_.begun(now);
+  const stereo::DeviceReading reading = link_.read();
+  seen_ = eyes_.look(reading, now, timing_.lit(now));
+  // The mask must not go anywhere by itself from the moment that depth may be seen.
+  if (follows() && seen_.depth_share > 0) {
+    link_.tell_picture(false);
+    mono_lit_ns_.reset();
+  }
+  tell(now);
+  trace_phase(reading, now);
+  std::optional<EyesFacts> facts = word(reading);
+  const bool reworded = facts != facts_;
+  facts_ = std::move(facts);
+  return reworded || seen_ != shown_;
+}
+
+void EyeWatch::drawn(std::optional<std::int64_t> refresh_ns) {
+  const std::int64_t now = clock_.now_ns();
+  timing_.drawn(now);
+  if (refresh_ns) timing_.refreshed(*refresh_ns, now);
+  shown_ = seen_;
+  // A display that follows no eyes needs no mask that does.
+  const bool mono = !follows() || seen_.depth_share <= 0;
+  const std::int64_t lit = timing_.lit(now - timing_.draw_ns()).from_ns;
+  if (mono && !mono_lit_ns_) mono_lit_ns_ = lit;
+  if (!follows() || traced_mono_ == mono) return;
+  traced_mono_ = mono;
+  trace_.line(fmt::format("shows {} lit {} measured {}", mono ? "mono" : "depth", lit, eyes_.measured_ns()));
+}
+
+void EyeWatch::tell(std::int64_t now_ns) {
+  if (mono_lit_ns_ && now_ns >= *mono_lit_ns_) link_.tell_picture(true);
+}
+
+void EyeWatch::trace_phase(const stereo::DeviceReading& reading, std::int64_t now_ns) {
+  if (!follows()) return;
+  const EyesPhase phase = reading.eyes ? reading.eyes->phase : EyesPhase::none;
+  if (traced_phase_ == phase) return;
+  traced_phase_ = phase;
+  trace_.line(fmt::format("eyes {} {}", reading.eyes ? name(phase) : "unknown", now_ns));
+}
+
+std::optional<EyesFacts> EyeWatch::word(const stereo::DeviceReading& reading) const {
+  if (!follows()) return std::nullopt;
+  EyesFacts facts;
+  facts.in_depth = seen_.depth_share > 0;
+  if (!link_.connected()) {
+    facts.state = EyesFacts::State::trouble;
+    facts.eyes = "no device daemon";
+    facts.advice = "Start prismesh-deviced; it is tried again every second.";
+    return facts;
+  }
+  if (!reading.eyes) return facts;
+  const ipc::DeviceInfo* tracker = link_.device("eye tracker");
+  const ipc::DeviceInfo* servo = link_.device("prism servo");
+  facts.simulated = (tracker != nullptr && tracker->simulated) || (servo != nullptr && servo->simulated);
+  word_eyes(reading.eyes->phase, tracker, facts);
+  if (eyes_.options().movable_mask) word_mask(reading.prism ? reading.prism->phase : MaskPhase::absent, servo, facts);
+  return facts;
+}
+
+}  // namespace prismesh::kiosk

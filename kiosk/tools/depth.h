@@ -1,0 +1,57 @@
+// How much depth the picture has, and what lies in the plane of the screen: adjusted by the user, fitted to where the eyes are. Pure, on
+// times that are passed in.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "kiosk/stereo/view.h"
+
+namespace prismesh::kiosk::tools {
+
+class DepthFit {
+ public:
+  static constexpr int kMostPercent = 150, kPercentStep = 10;
+  static constexpr double kLeastDegrees = 0.5, kMostDegrees = 1.5, kDegreesStep = 0.1;
+  static constexpr std::int64_t kGlideNs = 180'000'000;
+
+  /// 0 .. 150 % of the fitted depth.
+  int percent() const { return percent_; }
+  void change_percent(int steps);
+  /// Parallax that counts as comfortable.
+  double degrees() const { return 0.1 * tenths_; }
+  void change_degrees(int steps);
+  bool keeps_selection() const { return keeps_selection_; }
+  void keep_selection(bool keep) { keeps_selection_ = keep; }
+
+  /// The point goes into the plane of the screen within kGlideNs.
+  void bring(const stereo::Vec3& point, std::int64_t now_ns) { glide_ = Glide{point, now_ns, now_ns}; }
+  /// Something is under way: the view will be another at the next moment.
+  bool moving() const { return glide_.has_value() || distance_glide_.has_value(); }
+
+  /// The view as it should be now, seen from between these eyes. Follows their distance in steps, so that a head that sways doesn't
+  /// make the model breathe.
+  stereo::View fitted(const stereo::View& view, const stereo::Vec3& between_eyes_mm, std::int64_t now_ns);
+
+ private:
+  struct Glide {
+    stereo::Vec3 point;
+    std::int64_t begun_ns = 0;
+    std::int64_t last_ns = 0;
+  };
+  struct DistanceGlide {
+    double from_mm = 0;
+    std::int64_t begun_ns = 0;
+  };
+  void follow_distance(double eye_distance_mm, std::int64_t now_ns);
+
+  int percent_ = 100;
+  int tenths_ = 10;
+  bool keeps_selection_ = false;
+  std::optional<Glide> glide_;
+  double distance_mm_ = 0;  ///< that the comfort box is meant for; 0: none yet
+  double distance_goal_mm_ = 0;
+  std::optional<DistanceGlide> distance_glide_;
+};
+
+}  // namespace prismesh::kiosk::tools
