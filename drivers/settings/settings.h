@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -31,6 +32,7 @@ struct EyeTrackerSettings {
   Eigen::Vector3d offset_mm{0, 0, 0};  ///< the tracker's origin in screen coordinates
   double eye_separation_mm = 63;       ///< 50..75; the calibration's value in the profile goes before it
   std::string motion = "tour";         ///< simulated: still, sway, lean, turn, tour
+  bool operator==(const EyeTrackerSettings&) const = default;
 };
 
 struct PrismServoSettings {
@@ -45,6 +47,7 @@ struct PrismServoSettings {
   double travel_mm = 2.0;
   double speed_mm_s = 5.0;
   double lag_ms = 15;
+  bool operator==(const PrismServoSettings&) const = default;
 };
 
 struct DisplaySettings {
@@ -59,7 +62,16 @@ struct Settings {
 };
 
 /// Errors: a named file that isn't there, text that isn't TOML, an unknown key or section (with the nearest known one), a value out of its
-/// range: each with file and line.
+/// range, a real device without its port, one port for two devices: each with file and line.
 Result<Settings> read_settings(const std::optional<std::filesystem::path>& named_file);
+
+/// The files that every station looks for, in order: the system's and the user's. Without $XDG_CONFIG_HOME and $HOME the system's only.
+std::vector<std::filesystem::path> usual_files();
+
+/// As read_settings, with the usual files given: those that aren't there are passed over.
+Result<Settings> read_settings(const std::vector<std::filesystem::path>& usual, const std::optional<std::filesystem::path>& named_file);
+
+/// One file's text on its own, on top of the defaults; `file` stands in errors, and profile files are sought beside it.
+Result<Settings> parse_settings(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace prismesh::drivers::settings

@@ -1,0 +1,303 @@
+#include "drivers/settings/settings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <utility>
+
+#include <toml++/toml.h>
+
+#include "base/file.h"
+#include "base/nearest_name.h"
+
+namespace prismesh::drivers::settings {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is wrong with a value, as the rest of a sentence that begins with the key's name; empty: nothing.
+using Problem = std::string;
+
+struct Key {
+  std::string_view name;
+  std::function<Problem(const toml::node&)> read;
+};
+
+struct Section {
+  std::string_view name;
+  std::vector<Key> keys;
+};
+
+struct Place {
+  std::string file;
+  long line = 0;
+};
+
+/// Where each device was last asked for, to say so when a part of it is missing.
+struct Places {
+  Place tracker_driver, tracker_port, servo_driver, servo_port;
+};
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.10g", value);
+  return text.data();
+}
+
+Key flag(std::string_view name, bool& to) {
+  return {name, [&to](const toml::node& node) -> Problem {
+            const auto* value = node.as_boolean();
+            if (value == nullptr) return "must be true or false";
+            to = value->get();
+            return {};
+          }};
+}
+
+Problem outside(double value, double low, double high, std::string_view unit) {
+  return "is " + number_text(value) + "; it must be from " + number_text(low) + " to " + number_text(high) + std::string(unit);
+}
+
+template <class Whole>
+Key whole(std::string_view name, Whole& to, std::int64_t low, std::int64_t high, std::string_view unit = "") {
+  return {name, [&to, low, high, unit](const toml::node& node) -> Problem {
+            const auto* value = node.as_integer();
+            if (value == nullptr) return "must be a whole number";
+            if (value->get() < low || value->get() > high)
+              return outside(static_cast<double>(value->get()), static_cast<double>(low), static_cast<double>(high), unit);
+            to = static_cast<Whole>(value->get());
+            return {};
+          }};
+}
+
+/// The number of a node that is one, whole or not.
+std::optional<double> number_of(const toml::node& node) {
+  const std::optional<double> value = node.is_number() ? node.value<double>() : std::nullopt;
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+Key number(std::string_view name, double& to, double low, double high, std::string_view unit) {
+  return {name, [&to, low, high, unit](const toml::node& node) -> Problem {
+            const std::optional<double> value = number_of(node);
+            if (!value) return "must be a number";
+            if (*value < low || *value > high) return outside(*value, low, high, unit);
+            to = *value;
+            return {};
+          }};
+}
+
+Key place(std::string_view name, Eigen::Vector3d& to, double furthest) {
+  return {name, [&to, furthest](const toml::node& node) -> Problem {
+            const toml::array* values = node.as_array();
+            if (values == nullptr || values->size() != 3) return "must be three numbers, like [0, 210, -15]";
+            Eigen::Vector3d read;
+            for (std::size_t i = 0; i < 3; ++i) {
+              const std::optional<double> value = number_of(*values->get(i));
+              if (!value) return "must be three numbers, like [0, 210, -15]";
+              if (std::abs(*value) > furthest) return "holds " + outside(*value, -furthest, furthest, " mm").substr(3);
+              read[static_cast<Eigen::Index>(i)] = *value;
+            }
+            to = read;
+            return {};
+          }};
+}
+
+/// One of some names; `to` takes the index.
+Key choice(std::string_view name, std::vector<std::string_view> names, std::function<void(std::size_t)> to) {
+  return {name, [names = std::move(names), to = std::move(to)](const toml::node& node) -> Problem {
+            const auto* value = node.as_string();
+            std::string all;
+            for (const std::string_view one : names) all += (all.empty() ? "" : ", ") + std::string(one);
+            if (value == nullptr) return "must be one of " + all;
+            const auto found = std::find(names.begin(), names.end(), value->get());
+            if (found == names.end())
+              return "has no \"" + value->get() + "\"; the nearest is \"" + std::string(nearest_name(value->get(), names)) + "\" of " + all;
+            to(static_cast<std::size_t>(found - names.begin()));
+            return {};
+          }};
+}
+
+/// A device's file, or "" for none.
+Key device_file(std::string_view name, std::string& to) {
+  return {name, [&to](const toml::node& node) -> Problem {
+            const auto* value = node.as_string();
+            if (value == nullptr) return "must be a device's file in quotes, like \"/dev/serial/by-id/..\"";
+            const std::string& path = value->get();
+            if (!path.empty() && (path.front() != '/' || path.find('\0') != std::string::npos))
+              return "must be a device's whole path, like \"/dev/serial/by-id/..\"";
+            to = path;
+            return {};
+          }};
+}
+
+/// A built-in profile's name, or the file of one: a text with a slash, or one that ends in .toml.
+Key profile(std::string_view name, std::string& to, const fs::path& folder) {
+  return {name, [&to, &folder](const toml::node& node) -> Problem {
+            const auto* value = node.as_string();
+            if (value == nullptr || value->get().empty() || value->get().find('\0') != std::string::npos)
+              return "must be a profile's name or file in quotes, like \"prism-mask\"";
+            const std::string& text = value->get();
+            const bool is_file = text.find('/') != std::string::npos || text.ends_with(".toml");
+            to = is_file ? (folder / text).lexically_normal().string() : text;
+            return {};
+          }};
+}
+
+Key remember(Key key, Place& place, const std::string& file) {
+  return {key.name, [read = std::move(key.read), &place, &file](const toml::node& node) {
+            place = {file, static_cast<long>(node.source().begin.line)};
+            return read(node);
+          }};
+}
+
+Section tracker_section(EyeTrackerSettings& tracker, Places& places, const std::string& file) {
+  return {"eye_tracker",
+          {remember(choice("driver", {"none", "dynasight", "opentrack"}, [&](std::size_t i) { tracker.driver = TrackerDriver(i); }),
+                    places.tracker_driver, file),
+           flag("simulated", tracker.simulated), remember(device_file("port", tracker.port), places.tracker_port, file),
+           whole("baud", tracker.baud, 300, 4'000'000),
+           choice("dialect", {"dynasight", "d4d"}, [&](std::size_t i) { tracker.dialect = TrackerDialect(i); }),
+           flag("polled", tracker.polled), whole("udp_port", tracker.udp_port, 1, 65535),
+           number("latency_ms", tracker.latency_ms, 0, 500, " ms"), number("noise_mm", tracker.noise_mm, 0, 50, " mm"),
+           place("offset_mm", tracker.offset_mm, 2000), number("eye_separation_mm", tracker.eye_separation_mm, 50, 75, " mm"),
+           choice("motion", {"still", "sway", "lean", "turn", "tour"}, [&tracker](std::size_t i) {
+             constexpr std::array kMotions{"still", "sway", "lean", "turn", "tour"};
+             tracker.motion = kMotions[i];
+           })}};
+}
+
+Section servo_section(PrismServoSettings& servo, Places& places, const std::string& file) {
+  return {
+      "prism_servo",
+      {remember(choice("driver", {"none", "dynamixel"}, [&](std::size_t i) { servo.driver = ServoDriver(i); }), places.servo_driver, file),
+       flag("simulated", servo.simulated), remember(device_file("port", servo.port), places.servo_port, file),
+       whole("baud", servo.baud, 9600, 4'500'000), whole("id", servo.id, 0, 252),
+       number("travel_mm_per_turn", servo.travel_mm_per_turn, 0.1, 100, " mm"), flag("reversed", servo.reversed),
+       whole("zero_ticks", servo.zero_ticks, -1'048'575, 1'048'575), number("travel_mm", servo.travel_mm, 0.01, 100, " mm"),
+       number("speed_mm_s", servo.speed_mm_s, 0.01, 1000, " mm/s"), number("lag_ms", servo.lag_ms, 0, 500, " ms")}};
+}
+
+class Reader {
+ public:
+  Reader(std::string file, Settings& settings, Places& places)
+      : file_(std::move(file)), folder_(fs::path(file_).parent_path()), settings_(settings), places_(places) {}
+
+  Result<void> read(const toml::table& root) const {
+    const std::array<Section, 3> sections{Section{"display", {profile("profile", settings_.display.profile, folder_)}},
+                                          tracker_section(settings_.eye_tracker, places_, file_),
+                                          servo_section(settings_.prism_servo, places_, file_)};
+    std::vector<std::string_view> names;
+    for (const Section& section : sections) names.push_back(section.name);
+    for (const auto& [key, node] : root) {
+      const auto known = std::find_if(sections.begin(), sections.end(), [&](const Section& section) { return section.name == key.str(); });
+      if (known == sections.end())
+        return wrong(node, "settings have no section [" + std::string(key.str()) + "]; the nearest known is [" +
+                               std::string(nearest_name(key.str(), names)) + "]");
+      if (auto read = read_section(*known, node); !read) return read;
+    }
+    return {};
+  }
+
+ private:
+  tl::unexpected<Error> wrong(const toml::node& at, std::string message) const {
+    return fail(file_, static_cast<long>(at.source().begin.line), std::move(message));
+  }
+
+  Result<void> read_section(const Section& section, const toml::node& node) const {
+    const std::string section_name(section.name);
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return wrong(node, section_name + " must be a section, like [" + section_name + "]");
+    std::vector<std::string_view> names;
+    for (const Key& key : section.keys) names.push_back(key.name);
+    for (const auto& [name, value] : *table) {
+      const auto known = std::find_if(section.keys.begin(), section.keys.end(), [&](const Key& key) { return key.name == name.str(); });
+      if (known == section.keys.end())
+        return wrong(value, "[" + section_name + "] has no \"" + std::string(name.str()) + "\"; the nearest known is \"" +
+                                std::string(nearest_name(name.str(), names)) + "\"");
+      if (const Problem problem = known->read(value); !problem.empty())
+        return wrong(value, section_name + "." + std::string(known->name) + " " + problem);
+    }
+    return {};
+  }
+
+  std::string file_;
+  fs::path folder_;
+  Settings& settings_;
+  Places& places_;
+};
+
+Result<void> apply(std::string_view text, const fs::path& file, Settings& settings, Places& places) {
+  try {
+    const toml::table table = toml::parse(text, file.string());
+    if (auto read = Reader(file.string(), settings, places).read(table); !read) return read;
+  } catch (const toml::parse_error& error) {
+    return fail(file.string(), static_cast<long>(error.source().begin.line), std::string(error.description()));
+  }
+  settings.files.push_back(file);
+  return {};
+}
+
+tl::unexpected<Error> missing_port(const Place& driver, const std::string& device) {
+  return fail(driver.file, driver.line,
+              device + " has a driver but no port; say port = \"/dev/serial/by-id/..\" (ls that folder), or simulated = true");
+}
+
+/// What no single value can tell.
+Result<Settings> checked(Settings settings, const Places& places) {
+  const EyeTrackerSettings& tracker = settings.eye_tracker;
+  const PrismServoSettings& servo = settings.prism_servo;
+  const bool tracker_has_line = tracker.driver == TrackerDriver::dynasight && !tracker.simulated;
+  const bool servo_has_line = servo.driver == ServoDriver::dynamixel && !servo.simulated;
+  if (tracker_has_line && tracker.port.empty()) return missing_port(places.tracker_driver, "eye_tracker");
+  if (servo_has_line && servo.port.empty()) return missing_port(places.servo_driver, "prism_servo");
+  if (tracker_has_line && servo_has_line && tracker.port == servo.port)
+    return fail(places.servo_port.file, places.servo_port.line,
+                "prism_servo.port is eye_tracker's as well (" + servo.port + "); each has a line of its own");
+  return settings;
+}
+
+}  // namespace
+
+Result<Settings> parse_settings(std::string_view text, const fs::path& file) {
+  Settings settings;
+  Places places;
+  if (auto applied = apply(text, file, settings, places); !applied) return fail(applied.error());
+  return checked(std::move(settings), places);
+}
+
+std::vector<fs::path> usual_files() {
+  std::vector<fs::path> files{"/etc/prismesh/prismesh.toml"};
+  const auto folder = [](const char* name) -> fs::path {
+    const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): read at a program's start
+    return value != nullptr ? value : "";
+  };
+  if (const fs::path config = folder("XDG_CONFIG_HOME"); config.is_absolute())
+    files.push_back(config / "prismesh" / "prismesh.toml");
+  else if (const fs::path home = folder("HOME"); home.is_absolute())
+    files.push_back(home / ".config" / "prismesh" / "prismesh.toml");
+  return files;
+}
+
+Result<Settings> read_settings(const std::optional<fs::path>& named_file) { return read_settings(usual_files(), named_file); }
+
+Result<Settings> read_settings(const std::vector<fs::path>& usual, const std::optional<fs::path>& named_file) {
+  Settings settings;
+  Places places;
+  std::vector<fs::path> files;
+  for (const fs::path& file : usual) {
+    std::error_code error;
+    if (const fs::file_status status = fs::status(file, error); status.type() != fs::file_type::not_found) files.push_back(file);
+  }
+  if (named_file) files.push_back(*named_file);
+  for (const fs::path& file : files) {
+    const Result<FileBytes> bytes = read_file(file);
+    if (!bytes) return fail(bytes.error());
+    if (auto applied = apply(bytes->text(), file, settings, places); !applied) return fail(applied.error());
+  }
+  return checked(std::move(settings), places);
+}
+
+}  // namespace prismesh::drivers::settings

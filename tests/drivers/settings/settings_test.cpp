@@ -1,0 +1,279 @@
+#include "drivers/settings/settings.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace prismesh::drivers::settings {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+std::string error_of(std::string_view text) {
+  const Result<Settings> settings = parse_settings(text, "station.toml");
+  return settings ? "accepted" : settings.error().text();
+}
+
+Settings parsed(std::string_view text) {
+  Result<Settings> settings = parse_settings(text, "station.toml");
+  EXPECT_TRUE(settings) << settings.error().text();
+  return settings ? *settings : Settings{};
+}
+
+/// All that a file can say, as text, so that two settings can be compared.
+std::string all_of(const Settings& settings) {
+  const EyeTrackerSettings& t = settings.eye_tracker;
+  const PrismServoSettings& s = settings.prism_servo;
+  std::ostringstream text;
+  text << settings.display.profile << '|' << int(t.driver) << '|' << t.simulated << '|' << t.port << '|' << t.baud << '|' << int(t.dialect)
+       << '|' << t.polled << '|' << t.udp_port << '|' << t.latency_ms << '|' << t.noise_mm << '|' << t.offset_mm.x() << ' '
+       << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|' << t.motion << '|' << int(s.driver) << '|'
+       << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|' << s.travel_mm_per_turn << '|' << s.reversed << '|'
+       << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms;
+  return text.str();
+}
+
+constexpr char kEveryKey[] = R"(
+[display]
+profile = "anaglyph"
+[eye_tracker]
+driver = "dynasight"
+simulated = true
+port = "/dev/serial/by-id/usb-tracker"
+baud = 9600
+dialect = "dynasight"
+polled = true
+udp_port = 4243
+latency_ms = 12.5
+noise_mm = 0.5
+offset_mm = [1, 210.5, -15]
+eye_separation_mm = 61
+motion = "lean"
+[prism_servo]
+driver = "dynamixel"
+simulated = true
+port = "/dev/serial/by-id/usb-servo"
+baud = 57600
+id = 7
+travel_mm_per_turn = 4
+reversed = true
+zero_ticks = 1000
+travel_mm = 1.5
+speed_mm_s = 6
+lag_ms = 20
+)";
+
+TEST(Settings, an_empty_file_leaves_every_default) { EXPECT_EQ(all_of(parsed("")), all_of(Settings{})); }
+
+TEST(Settings, every_key_is_read) {
+  EXPECT_EQ(all_of(parsed(kEveryKey)),
+            "anaglyph|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
+            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20");
+}
+
+TEST(Settings, names_choose_drivers_and_dialects) {
+  EXPECT_EQ(parsed("[eye_tracker]\ndriver = 'opentrack'").eye_tracker.driver, TrackerDriver::opentrack);
+  EXPECT_EQ(parsed("[eye_tracker]\ndriver = 'none'").eye_tracker.driver, TrackerDriver::none);
+  EXPECT_EQ(parsed("[eye_tracker]\ndialect = 'd4d'").eye_tracker.dialect, TrackerDialect::d4d);
+  for (const char* motion : {"still", "sway", "lean", "turn", "tour"})
+    EXPECT_EQ(parsed("[eye_tracker]\nmotion = '" + std::string(motion) + "'").eye_tracker.motion, motion);
+}
+
+TEST(Settings, wrong_text_is_told_with_its_line_and_the_way_out) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"[eye_traker]\n", "station.toml:1: settings have no section [eye_traker]; the nearest known is [eye_tracker]"},
+      {"\nprofile = 'mono'\n", "station.toml:2: settings have no section [profile]"},
+      {"display = 3\n", "station.toml:1: display must be a section, like [display]"},
+      {"[display]\n\nprofil = 'mono'\n", "station.toml:3: [display] has no \"profil\"; the nearest known is \"profile\""},
+      {"[prism_servo]\nbuad = 57600\n", "station.toml:2: [prism_servo] has no \"buad\"; the nearest known is \"baud\""},
+      {"[eye_tracker]\ndriver = 'dynasite'\n",
+       "station.toml:2: eye_tracker.driver has no \"dynasite\"; the nearest is \"dynasight\" of none, dynasight, opentrack"},
+      {"[eye_tracker]\ndriver = 1\n", "station.toml:2: eye_tracker.driver must be one of none, dynasight, opentrack"},
+      {"[eye_tracker]\nsimulated = 1\n", "station.toml:2: eye_tracker.simulated must be true or false"},
+      {"[eye_tracker]\nport = 'ttyUSB0'\n",
+       "station.toml:2: eye_tracker.port must be a device's whole path, like \"/dev/serial/by-id/..\""},
+      {"[eye_tracker]\nudp_port = 65536\n", "station.toml:2: eye_tracker.udp_port is 65536; it must be from 1 to 65535"},
+      {"[eye_tracker]\nudp_port = 4242.0\n", "station.toml:2: eye_tracker.udp_port must be a whole number"},
+      {"[eye_tracker]\nlatency_ms = -1\n", "station.toml:2: eye_tracker.latency_ms is -1; it must be from 0 to 500 ms"},
+      {"[eye_tracker]\nnoise_mm = nan\n", "station.toml:2: eye_tracker.noise_mm must be a number"},
+      {"[eye_tracker]\nnoise_mm = inf\n", "station.toml:2: eye_tracker.noise_mm must be a number"},
+      {"[eye_tracker]\nnoise_mm = '1'\n", "station.toml:2: eye_tracker.noise_mm must be a number"},
+      {"[eye_tracker]\noffset_mm = [0, 1]\n", "station.toml:2: eye_tracker.offset_mm must be three numbers, like [0, 210, -15]"},
+      {"[eye_tracker]\noffset_mm = [0, 1, 'x']\n", "station.toml:2: eye_tracker.offset_mm must be three numbers"},
+      {"[eye_tracker]\noffset_mm = [0, 1, 3000]\n", "station.toml:2: eye_tracker.offset_mm holds 3000; it must be from -2000 to 2000 mm"},
+      {"[eye_tracker]\neye_separation_mm = 49\n", "station.toml:2: eye_tracker.eye_separation_mm is 49; it must be from 50 to 75 mm"},
+      {"[prism_servo]\nid = 253\n", "station.toml:2: prism_servo.id is 253; it must be from 0 to 252"},
+      {"[prism_servo]\nbaud = 99999999999999999999\n", "station.toml:2: "},
+      {"[prism_servo]\ntravel_mm_per_turn = 0\n", "station.toml:2: prism_servo.travel_mm_per_turn is 0; it must be from 0.1 to 100 mm"},
+      {"[display]\nprofile = ''\n", "station.toml:2: display.profile must be a profile's name or file in quotes"},
+      {"[display]\nprofile = \n", "station.toml:2: "},
+      {"[display]\n[display]\n", "station.toml:2: "},
+      {"[display]\nprofile = \"\xff\"\n", "station.toml:2: "},
+  };
+  for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text).substr(0, std::string_view(message).size()), message) << text;
+}
+
+TEST(Settings, limits_themselves_are_allowed) {
+  parsed("[eye_tracker]\nudp_port = 65535\nlatency_ms = 500\nnoise_mm = 0\neye_separation_mm = 50\noffset_mm = [-2000, 2000, 0]");
+  parsed("[prism_servo]\nid = 0\nbaud = 4500000\ntravel_mm_per_turn = 100");
+}
+
+TEST(Settings, a_real_device_needs_its_own_port) {
+  EXPECT_THAT(error_of("[eye_tracker]\nsimulated = false\ndriver = 'dynasight'\n"),
+              HasSubstr("station.toml:3: eye_tracker has a driver but no port; say port = "));
+  EXPECT_THAT(error_of("[prism_servo]\ndriver = 'dynamixel'\n"), HasSubstr("station.toml:2: prism_servo has a driver but no port"));
+  EXPECT_EQ(error_of("[eye_tracker]\ndriver = 'opentrack'\n"), "accepted");
+  EXPECT_EQ(error_of("[prism_servo]\ndriver = 'dynamixel'\nsimulated = true\n"), "accepted");
+  const std::string both = "[eye_tracker]\ndriver = 'dynasight'\nport = '/dev/a'\n[prism_servo]\ndriver = 'dynamixel'\nport = '/dev/a'\n";
+  EXPECT_THAT(error_of(both), HasSubstr("station.toml:6: prism_servo.port is eye_tracker's as well (/dev/a)"));
+  EXPECT_EQ(error_of(both + "simulated = true\n"), "accepted");
+}
+
+class SettingsFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "prismesh-settings-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  void TearDown() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  fs::path write(const std::string& name, const std::string& text) const {
+    fs::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  fs::path folder_;
+};
+
+TEST_F(SettingsFiles, a_later_file_changes_only_the_keys_it_has) {
+  const fs::path system = write("system.toml", "[eye_tracker]\nlatency_ms = 1\nnoise_mm = 2\n[prism_servo]\nid = 3\n");
+  const fs::path user = write("user.toml", "[eye_tracker]\nnoise_mm = 4\n");
+  const fs::path named = write("named.toml", "[prism_servo]\nid = 5\n");
+  const Result<Settings> settings = read_settings({system, folder_ / "absent.toml", user}, named);
+  ASSERT_TRUE(settings) << settings.error().text();
+  EXPECT_EQ(settings->eye_tracker.latency_ms, 1);
+  EXPECT_EQ(settings->eye_tracker.noise_mm, 4);
+  EXPECT_EQ(settings->prism_servo.id, 5);
+  EXPECT_EQ(settings->files, (std::vector<fs::path>{system, user, named}));
+}
+
+TEST_F(SettingsFiles, a_port_may_come_from_another_file_than_its_driver) {
+  const fs::path system = write("system.toml", "[eye_tracker]\ndriver = 'dynasight'\n");
+  const fs::path user = write("user.toml", "[eye_tracker]\nport = '/dev/a'\n");
+  EXPECT_TRUE(read_settings({system, user}, std::nullopt));
+  const Result<Settings> alone = read_settings({system}, std::nullopt);
+  ASSERT_FALSE(alone);
+  EXPECT_EQ(alone.error().file, system.string());
+  EXPECT_EQ(alone.error().line, 2);
+}
+
+TEST_F(SettingsFiles, no_files_at_all_are_the_defaults) {
+  const Result<Settings> settings = read_settings({folder_ / "a.toml"}, std::nullopt);
+  ASSERT_TRUE(settings);
+  EXPECT_EQ(all_of(*settings), all_of(Settings{}));
+  EXPECT_TRUE(settings->files.empty());
+}
+
+TEST_F(SettingsFiles, a_named_file_must_be_there) {
+  const Result<Settings> settings = read_settings({}, folder_ / "absent.toml");
+  ASSERT_FALSE(settings);
+  EXPECT_EQ(settings.error().text(), (folder_ / "absent.toml").string() + ": can't be opened: No such file or directory");
+}
+
+TEST_F(SettingsFiles, an_error_names_the_file_it_is_in) {
+  const fs::path system = write("system.toml", "[eye_tracker]\n\nnoise = 2\n");
+  const Result<Settings> settings = read_settings({system}, write("named.toml", ""));
+  ASSERT_FALSE(settings);
+  EXPECT_EQ(settings.error().file, system.string());
+  EXPECT_EQ(settings.error().line, 3);
+}
+
+TEST_F(SettingsFiles, a_profile_file_is_sought_beside_the_settings) {
+  const auto profile = [&](const std::string& value) {
+    return read_settings({}, write("etc/station.toml", "[display]\nprofile = '" + value + "'\n"))->display.profile;
+  };
+  EXPECT_EQ(profile("mono"), "mono");
+  EXPECT_EQ(profile("lab.toml"), (folder_ / "etc/lab.toml").string());
+  EXPECT_EQ(profile("profiles/lab.toml"), (folder_ / "etc/profiles/lab.toml").string());
+  EXPECT_EQ(profile("../lab.toml"), (folder_ / "lab.toml").string());
+  EXPECT_EQ(profile("/srv/lab.toml"), "/srv/lab.toml");
+}
+
+TEST_F(SettingsFiles, the_users_folder_is_where_the_environment_says) {
+  const auto with = [](const char* config, const char* home) {
+    const auto set = [](const char* name, const char* value) { value != nullptr ? ::setenv(name, value, 1) : ::unsetenv(name); };
+    const auto get = [](const char* name) {
+      return std::getenv(name) != nullptr ? std::optional<std::string>(std::getenv(name)) : std::nullopt;
+    };
+    const auto old_config = get("XDG_CONFIG_HOME"), old_home = get("HOME");
+    set("XDG_CONFIG_HOME", config);
+    set("HOME", home);
+    const std::vector<fs::path> files = usual_files();
+    set("XDG_CONFIG_HOME", old_config ? old_config->c_str() : nullptr);
+    set("HOME", old_home ? old_home->c_str() : nullptr);
+    return files;
+  };
+  using Files = std::vector<fs::path>;
+  const fs::path system = "/etc/prismesh/prismesh.toml";
+  EXPECT_EQ(with("/c", "/home/u"), (Files{system, "/c/prismesh/prismesh.toml"}));
+  EXPECT_EQ(with(nullptr, "/home/u"), (Files{system, "/home/u/.config/prismesh/prismesh.toml"}));
+  EXPECT_EQ(with("relative", "/home/u"), (Files{system, "/home/u/.config/prismesh/prismesh.toml"})) << "as the XDG specification has it";
+  EXPECT_EQ(with(nullptr, nullptr), Files{system});
+}
+
+std::string content(const fs::path& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+const fs::path kExample = fs::path(PRISMESH_SOURCE_FOLDER) / "systemd" / "prismesh.toml";
+
+TEST(SettingsExample, is_valid_and_changes_nothing) {
+  const Result<Settings> settings = read_settings({}, kExample);
+  ASSERT_TRUE(settings) << settings.error().text();
+  EXPECT_EQ(all_of(*settings), all_of(Settings{}));
+}
+
+TEST(SettingsExample, its_comments_hold_every_key_with_its_default) {
+  // "#key = value" becomes a key; "# A sentence" stays one.
+  const std::string text = std::regex_replace(content(kExample), std::regex("(^|\n)#(?=[a-z])"), "$1");
+  const Result<Settings> settings = parse_settings(text, kExample);
+  ASSERT_TRUE(settings) << settings.error().text();
+  EXPECT_EQ(all_of(*settings), all_of(Settings{}));
+  const auto keys_of = [](const std::string& toml) {
+    std::set<std::string> keys;
+    const std::regex line("(^|\n)([a-z_]+) = ");
+    std::string section;
+    std::istringstream lines(toml);
+    for (std::string one; std::getline(lines, one);) {
+      if (one.starts_with("[")) section = one;
+      std::smatch found;
+      if (std::regex_search(one, found, line)) keys.insert(section + found[2].str());
+    }
+    return keys;
+  };
+  EXPECT_EQ(keys_of(text), keys_of(kEveryKey));
+}
+
+TEST(SettingsExample, the_manual_names_every_key) {
+  const std::string manual = content(fs::path(PRISMESH_SOURCE_FOLDER) / "docs" / "settings.md");
+  std::istringstream lines(kEveryKey);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t end = line.find(" = ");
+    if (end == std::string::npos) continue;
+    EXPECT_THAT(manual, HasSubstr("`" + line.substr(0, end) + "`"));
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::drivers::settings
