@@ -44,6 +44,7 @@ struct DeviceInfo {
   bool simulated = false;
   std::string state;    ///< EyesPhase or MaskPhase, in words
   std::string trouble;  ///< what is wrong, and what to do about it; empty when all is well
+  bool operator==(const DeviceInfo&) const = default;
 };
 struct Devices {
   std::vector<DeviceInfo> devices;

@@ -255,4 +255,10 @@ void Server::send(ClientId client, std::string line, std::vector<Descriptor> des
 
 void Server::cut(ClientId client, const std::string& why) { state_->close(client, why); }
 
+std::optional<std::string> protocol_refusal(int ours, int theirs, const std::string& program) {
+  if (ours == theirs) return std::nullopt;
+  return "the daemon speaks protocol " + std::to_string(ours) + ", " + (program.empty() ? "the client" : program) + " protocol " +
+         std::to_string(theirs) + ": use programs of one version, and restart the daemon after an update";
+}
+
 }  // namespace prismesh::ipc

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +61,9 @@ class Server {
   explicit Server(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+/// Why a client that speaks another protocol is sent away, in a sentence; nothing if it speaks ours.
+std::optional<std::string> protocol_refusal(int ours, int theirs, const std::string& program);
 
 /// An exclusive lock on a folder, for the process's life; it can't outlive the process. Errors: another process holds it (named).
 Result<Descriptor> lock_folder(const std::filesystem::path& folder, const std::string& file, const std::string& whose);

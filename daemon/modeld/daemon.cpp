@@ -64,13 +64,8 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   }
 
   void greet(ipc::ClientId client, std::uint64_t number, const ipc::Hello& hello) {
-    if (hello.protocol != ipc::kProtocolVersion) {
-      answer(client, number,
-             ipc::Failed{"", 0,
-                         "the daemon speaks protocol " + std::to_string(ipc::kProtocolVersion) + ", " +
-                             (hello.program.empty() ? "the client" : hello.program) + " protocol " + std::to_string(hello.protocol) +
-                             ": use programs of one version, and restart the daemon after an update"},
-             {});
+    if (const auto refusal = ipc::protocol_refusal(ipc::kProtocolVersion, hello.protocol, hello.program)) {
+      answer(client, number, ipc::Failed{"", 0, *refusal}, {});
       return server->cut(client, "it speaks another protocol");
     }
     Result<ipc::Descriptor> state_page = page.descriptor().duplicate();

@@ -1,0 +1,278 @@
+#include "daemon/deviced/daemon.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <deque>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <spdlog/spdlog.h>
+
+#include "daemon/deviced/loop_thread.h"
+#include "daemon/deviced/station.h"
+#include "ipc/device_client.h"
+#include "ipc/device_messages_json.h"
+#include "ipc/device_page.h"
+#include "ipc/server.h"
+
+namespace prismesh::deviced {
+
+namespace {
+
+using Time = std::chrono::steady_clock;
+
+/// How often the main thread looks what the loop has told.
+constexpr std::chrono::milliseconds kLook{20};
+/// A device that changes all the time is told about, and logged, so often at most; the page shows every change.
+constexpr std::chrono::milliseconds kTellPause{500};
+
+ipc::ServerLimits limits() {
+  ipc::ServerLimits limits;
+  limits.line_bytes = 64 * 1024;
+  limits.queue_bytes = 1024 * 1024;
+  return limits;
+}
+
+/// On the watchdog's thread, while the loop hangs: nothing can be wound down.
+[[noreturn]] void end_stuck() {
+  spdlog::critical("the device loop hangs, so this daemon ends to be started again; the prism servo stops by its own watchdog");
+  spdlog::default_logger()->flush();
+  std::_Exit(kStuckStatus);
+}
+
+void log(const ipc::DeviceInfo& device) {
+  const std::string what =
+      device.role + " (" + device.kind + (device.simulated ? ", simulated" : "") + ", " + device.where + "): " + device.state;
+  if (device.trouble.empty())
+    spdlog::info("{}", what);
+  else
+    spdlog::warn("{}: {}", what, device.trouble);
+}
+
+}  // namespace
+
+struct Daemon::State final : ipc::ServerHandler {
+  State(DaemonOptions wanted, StationPlan sound, ipc::DevicePage device_page)
+      : options(std::move(wanted)), plan(std::move(sound)), page(std::move(device_page)) {}
+
+  struct Told {
+    ipc::DeviceInfo device;
+    Time::time_point at;
+  };
+
+  DaemonOptions options;
+  StationPlan plan;
+  ipc::DevicePage page;
+  bool memory_locked = false;
+  std::optional<ipc::Server> server;
+  std::map<ipc::ClientId, std::string> greeted;  ///< their programs
+  std::set<ipc::ClientId> showing_stereo;
+  bool picture_mono = true;  ///< as the loop was told
+  std::optional<ipc::ClientId> holder;
+  ipc::HoldMask hold;
+  std::deque<LoopCommand> untaken;  ///< the loop's ring was full
+  std::vector<ipc::DeviceInfo> devices;
+  std::map<std::string, Told> told;  ///< by role
+  std::string no_station;            ///< why there is none
+  std::unique_ptr<Station> station;  // last: it ends before what it writes to
+
+  // --- the station ---
+
+  Result<void> start_station() {
+    station.reset();
+    untaken.clear();
+    Result<std::unique_ptr<Station>> started = Station::start(plan, page, memory_locked, end_stuck);
+    if (!started) return fail(std::move(started.error()));
+    station = std::move(*started);
+    if (!station->refused().empty()) spdlog::warn("{}", station->refused());
+    if (!picture_mono) tell_loop(SetPictureMono{false});
+    if (holder) tell_loop(SetHold{hold.position_mm});
+    return {};
+  }
+
+  void tell_loop(const LoopCommand& command) {
+    untaken.push_back(command);
+    while (station && !untaken.empty() && station->tell(untaken.front())) untaken.pop_front();
+  }
+
+  void look() {
+    if (!station) return;
+    while (!untaken.empty() && station->tell(untaken.front())) untaken.pop_front();
+    devices = station->look();
+    for (const ipc::DeviceInfo& device : devices) {
+      Told& last = told[device.role];
+      const Time::time_point now = Time::now();
+      if (last.device == device || now - last.at < kTellPause) continue;
+      last = {device, now};
+      log(device);
+      tell_all(ipc::DeviceChanged{device});
+    }
+  }
+
+  void picture_shown() {
+    if (std::exchange(picture_mono, showing_stereo.empty()) != picture_mono) tell_loop(SetPictureMono{picture_mono});
+  }
+
+  void end_hold() {
+    holder.reset();
+    tell_loop(EndHold{});
+  }
+
+  // --- from the socket ---
+
+  void connected(ipc::ClientId) override {}
+
+  void line(ipc::ClientId client, std::string_view line) override {
+    const auto request = ipc::decode_device_request(line);
+    if (!request) return answer(client, request.error().number, ipc::Failed{"request", 0, request.error().message});
+    if (const auto* hello = std::get_if<ipc::DeviceHello>(&request->request)) return greet(client, request->number, *hello);
+    if (!greeted.contains(client)) {
+      answer(client, request->number, ipc::Failed{"request", 0, "the first message must be a hello"});
+      return server->cut(client, "it didn't greet");
+    }
+    if (const auto* shown = std::get_if<ipc::PictureShown>(&request->request)) {
+      if (shown->mono)
+        showing_stereo.erase(client);
+      else
+        showing_stereo.insert(client);
+      return picture_shown();
+    }
+    answer(client, request->number, std::visit([&](const auto& wanted) { return done(client, wanted); }, request->request));
+  }
+
+  void greet(ipc::ClientId client, std::uint64_t number, const ipc::DeviceHello& hello) {
+    if (const auto refusal = ipc::protocol_refusal(ipc::kDeviceProtocolVersion, hello.protocol, hello.program)) {
+      answer(client, number, ipc::Failed{"", 0, *refusal});
+      return server->cut(client, "it speaks another protocol");
+    }
+    Result<ipc::Descriptor> shared = page.descriptor().duplicate();
+    if (!shared) return server->cut(client, shared.error().text());
+    greeted[client] = hello.program;
+    spdlog::info("client {} is {}", client, hello.program);
+    std::vector<ipc::Descriptor> descriptors;
+    descriptors.push_back(std::move(*shared));
+    server->send(client, ipc::encode_device_answer(number, ipc::DeviceWelcome{ipc::kDeviceProtocolVersion, PRISMESH_VERSION}, 1),
+                 std::move(descriptors));
+  }
+
+  void disconnected(ipc::ClientId client, const std::string& why) override {
+    if (greeted.erase(client) == 0) return;
+    spdlog::info("client {} left: {}", client, why);
+    if (holder == client) end_hold();
+    // What it drew is no longer seen.
+    if (showing_stereo.erase(client) > 0) picture_shown();
+  }
+
+  // --- what is asked for ---
+
+  template <class Other>
+  ipc::DeviceAnswer done(ipc::ClientId, const Other&) {
+    return ipc::Done{};  // hello and picture_shown don't come here
+  }
+
+  ipc::DeviceAnswer done(ipc::ClientId, const ipc::GetDevices&) {
+    if (!station) return ipc::Failed{"", 0, no_station};
+    look();
+    return ipc::Devices{devices, plan.profile.name};
+  }
+
+  std::optional<ipc::Failed> no_servo() const {
+    if (!station) return ipc::Failed{"", 0, no_station};
+    if (plan.has_servo()) return std::nullopt;
+    return ipc::Failed{"", 0,
+                       plan.profile.mask_moves ? "no prism servo is configured: set prism_servo.driver in prismesh.toml"
+                                               : "the display profile \"" + plan.profile.name + "\" has no mask that moves"};
+  }
+
+  ipc::DeviceAnswer done(ipc::ClientId client, const ipc::HoldMask& wanted) {
+    if (const auto failed = no_servo()) return *failed;
+    const double travel_mm = plan.settings.prism_servo.travel_mm;
+    if (std::abs(wanted.position_mm) > travel_mm)
+      return ipc::Failed{"", 0, fmt::format("position_mm must be from {} to {}, not {}", -travel_mm, travel_mm, wanted.position_mm)};
+    if (holder && *holder != client)
+      return ipc::Failed{"", 0, "the mask is held by " + greeted[*holder] + " already: end that program's calibration first"};
+    holder = client;
+    hold = wanted;
+    tell_loop(SetHold{wanted.position_mm});
+    return ipc::Done{};
+  }
+
+  ipc::DeviceAnswer done(ipc::ClientId client, const ipc::ReleaseMask&) {
+    if (holder != client) return ipc::Failed{"", 0, "the mask isn't held by this client"};
+    end_hold();
+    return ipc::Done{};
+  }
+
+  ipc::DeviceAnswer done(ipc::ClientId client, const ipc::Rearm&) {
+    if (const auto failed = no_servo()) return *failed;
+    spdlog::info("{} (client {}) rearms the prism servo", greeted[client], client);
+    tell_loop(AskRearm{});
+    return ipc::Done{};
+  }
+
+  ipc::DeviceAnswer done(ipc::ClientId, const ipc::Reload&) {
+    Result<StationPlan> fresh = read_plan(options.config);
+    if (!fresh) return failed(fresh.error());
+    const bool go_on = station && fresh->same_devices(plan);
+    plan = std::move(*fresh);
+    spdlog::info("settings and the profile \"{}\" were read again{}", plan.profile.name, go_on ? "" : "; the devices are started anew");
+    if (go_on) {
+      tell_loop(SetDisplay{plan.profile.optics, plan.eye_separation_mm()});
+      return ipc::Done{};
+    }
+    if (holder && no_servo()) holder.reset();
+    const Result<void> started = start_station();
+    if (started) return ipc::Done{};
+    no_station = started.error().text();
+    spdlog::error("{}", no_station);
+    return failed(started.error());
+  }
+
+  // --- to the socket ---
+
+  static ipc::Failed failed(const Error& error) { return {error.file, error.line, error.message}; }
+
+  void answer(ipc::ClientId client, std::uint64_t number, const ipc::DeviceAnswer& answer) {
+    if (const auto* refused = std::get_if<ipc::Failed>(&answer))
+      spdlog::info("client {}: refused: {}", client, Error{refused->file, refused->line, refused->message}.text());
+    server->send(client, ipc::encode_device_answer(number, answer));
+  }
+
+  void tell_all(const ipc::DeviceEvent& event) {
+    const std::string line = ipc::encode_device_event(event);
+    // A copy: sending to a client that is cut off for it changes the map.
+    const std::map<ipc::ClientId, std::string> all = greeted;
+    for (const auto& [client, program] : all) server->send(client, line);
+  }
+};
+
+Result<Daemon> Daemon::start(const DaemonOptions& options) {
+  Result<StationPlan> plan = read_plan(options.config);
+  if (!plan) return fail(std::move(plan.error()));
+  Result<ipc::DevicePage> page = ipc::DevicePage::create();
+  if (!page) return fail(std::move(page.error()));
+  auto state = std::make_unique<State>(options, std::move(*plan), std::move(*page));
+  Result<ipc::Server> server = ipc::Server::listen(ipc::device_socket_path(options.runtime_directory), *state, limits());
+  if (!server) return fail(std::move(server.error()));
+  state->server = std::move(*server);
+  if (const std::string refused = lock_memory(); refused.empty())
+    state->memory_locked = true;
+  else
+    spdlog::warn("{}", refused);
+  if (Result<void> started = state->start_station(); !started) return fail(std::move(started.error()));
+  state->server->every(kLook, [state = state.get()] { state->look(); });
+  return Daemon(std::move(state));
+}
+
+Daemon::Daemon(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Daemon::Daemon(Daemon&&) noexcept = default;
+Daemon::~Daemon() = default;
+
+void Daemon::run() { state_->server->run(); }
+void Daemon::stop() { state_->server->stop(); }
+
+}  // namespace prismesh::deviced

@@ -1,0 +1,122 @@
+// What deviced does again and again: takes in what the eye tracker says, filters it, moves the mask after the eyes, and publishes both.
+// Pure: the time, the ports and the page are passed in. A tick neither allocates nor locks, logs or blocks; what is worth telling goes
+// into a ring for the main thread, and what the main thread wants comes through another.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "daemon/deviced/ring.h"
+#include "drivers/display/optics.h"
+#include "drivers/eye_tracker/filter.h"
+#include "drivers/eye_tracker/tracker_seat.h"
+#include "drivers/port/port_keeper.h"
+#include "drivers/prism_servo/dynamixel/servo.h"
+#include "drivers/prism_servo/mask_control.h"
+#include "drivers/settings/settings.h"
+#include "ipc/device_page.h"
+
+namespace prismesh::deviced {
+
+inline constexpr std::int64_t kTickPeriodNs = 4'000'000;
+
+/// Where the loop's devices are plugged in. Null where there is no such device. The keepers outlive the loop.
+struct LoopPorts {
+  drivers::port::PortKeeper* tracker_line = nullptr;
+  drivers::port::DatagramKeeper* tracker_datagrams = nullptr;
+  drivers::port::PortKeeper* servo_line = nullptr;
+};
+
+struct LoopSettings {
+  drivers::settings::EyeTrackerSettings tracker;
+  drivers::prism_servo::dynamixel::ServoSettings servo;
+  drivers::display::MaskOptics optics;
+  drivers::prism_servo::MaskLimits limits;  ///< `eyes_lost_ns` also tells when a tracker counts as searching
+  double eye_separation_mm = drivers::display::kMeanEyeSeparationMm;
+};
+
+// What the main thread tells the loop.
+struct SetPictureMono {
+  bool mono = true;
+};
+struct SetHold {
+  double position_mm = 0;
+};
+struct EndHold {};
+struct AskRearm {};
+struct SetDisplay {
+  drivers::display::MaskOptics optics;
+  double eye_separation_mm = drivers::display::kMeanEyeSeparationMm;
+};
+using LoopCommand = std::variant<SetPictureMono, SetHold, EndHold, AskRearm, SetDisplay>;
+
+// What the loop tells the main thread: changes only, so a fault is told once.
+struct EyesChanged {
+  std::int64_t time_ns = 0;
+  ipc::EyesPhase phase = ipc::EyesPhase::none;
+};
+struct MaskChanged {
+  std::int64_t time_ns = 0;
+  drivers::prism_servo::MaskPhase phase = drivers::prism_servo::MaskPhase::absent;
+};
+struct ServoChanged {
+  std::int64_t time_ns = 0;
+  bool open = false;  ///< its port
+  drivers::prism_servo::PrismServo::Tick tick;
+};
+using LoopEvent = std::variant<EyesChanged, MaskChanged, ServoChanged>;
+
+class DeviceLoop {
+ public:
+  DeviceLoop(const LoopSettings& settings, const LoopPorts& ports, ipc::DevicePage& page);
+
+  /// Once a period. Of the page, the slots of the eyes and the prism are written; health belongs to whoever drives the loop.
+  void tick(std::int64_t now_ns);
+  /// In place of `tick` on the way out: the motor is let go, and the page says that nothing is to be relied on any more. Some ticks of
+  /// it, so that the servo has heard it.
+  void wind_down(std::int64_t now_ns);
+
+  // From one other thread.
+  /// False: the loop hasn't taken earlier ones yet.
+  bool tell(const LoopCommand& command) { return commands_.push(command); }
+  std::optional<LoopEvent> next_event() { return events_.pop(); }
+
+ private:
+  using Tracker = drivers::eye_tracker::EyeTracker;
+  using Servo = drivers::prism_servo::dynamixel::Servo;
+
+  void take_commands();
+  void obey(const LoopCommand& command);
+  Tracker* seated_tracker();
+  void leave_tracker();
+  void poll_tracker(std::int64_t now_ns);
+  ipc::EyesPhase judge_eyes(std::int64_t now_ns);
+  void publish_eyes(std::int64_t now_ns);
+  void tick_servo(std::int64_t now_ns, double goal_mm, bool powered);
+  void publish_mask(std::int64_t now_ns);
+  void tell_changes(std::int64_t now_ns);
+
+  LoopSettings settings_;
+  LoopPorts ports_;
+  ipc::DevicePage& page_;
+  Ring<LoopCommand, 64> commands_;
+  Ring<LoopEvent, 256> events_;
+
+  drivers::eye_tracker::TrackerSeat seat_;
+  drivers::eye_tracker::HeadFilter filter_;
+  ipc::EyesState eyes_;
+  std::optional<Servo> servo_;
+  drivers::prism_servo::PrismServo::Tick servo_tick_;
+  drivers::prism_servo::MaskControl control_;
+  drivers::prism_servo::MaskControl::Output mask_;
+  bool picture_mono_ = true;
+  std::optional<double> hold_mm_;
+  bool rearm_ = false;
+
+  ipc::EyesPhase told_eyes_ = ipc::EyesPhase::none;
+  drivers::prism_servo::MaskPhase told_mask_ = drivers::prism_servo::MaskPhase::absent;
+  ServoChanged told_servo_;
+};
+
+}  // namespace prismesh::deviced

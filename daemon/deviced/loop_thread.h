@@ -1,0 +1,56 @@
+// Drives the device loop in real time: a thread of its own with SCHED_FIFO where the system grants it, ticks at absolute times, and an
+// account of how well it keeps them on the device page.
+#pragma once
+
+#include <pthread.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "daemon/deviced/loop.h"
+
+namespace prismesh::deviced {
+
+/// Locks the process's memory, now and in future, if all of it may be: with a limit, a later allocation would fail instead.
+/// Empty: done; else why not, and what would help.
+std::string lock_memory();
+
+class LoopThread {
+ public:
+  /// Starts ticking. `memory_locked` and `simulated` go into the health that it publishes. Errors: the system gives no thread.
+  static Result<std::unique_ptr<LoopThread>> start(DeviceLoop& loop, ipc::DevicePage& page, bool memory_locked, bool simulated);
+  /// Winds the loop down (the motor is let go) and ends.
+  ~LoopThread();
+  LoopThread(const LoopThread&) = delete;
+  LoopThread& operator=(const LoopThread&) = delete;
+
+  /// Why SCHED_FIFO was refused, and what would help; empty if it wasn't.
+  const std::string& refused() const { return refused_; }
+  /// Ticks that have ended: for whoever watches that they do.
+  std::uint64_t ticks() const { return ticks_.load(std::memory_order_relaxed); }
+
+ private:
+  LoopThread(DeviceLoop& loop, ipc::DevicePage& page) : loop_(loop), page_(page) {}
+  int create(bool realtime);
+  static void* enter(void* self);
+  void run();
+  void keep_account(std::int64_t due_ns, std::int64_t began_ns, std::int64_t cpu_ns);
+
+  DeviceLoop& loop_;
+  ipc::DevicePage& page_;
+  MonotonicClock clock_;
+  ipc::DeviceHealth health_;
+  std::array<std::int64_t, 256> costs_{};
+  std::string refused_;
+  bool running_ = false;
+  std::atomic<bool> stop_ = false;
+  std::atomic<std::uint64_t> ticks_{0};
+  pthread_t thread_{};
+};
+
+}  // namespace prismesh::deviced

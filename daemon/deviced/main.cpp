@@ -1,0 +1,42 @@
+// prismesh-deviced: the daemon of eye tracker and prism servo. Options and logging; the rest is in daemon.h.
+#include <csignal>
+#include <cstdio>
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/prctl.h>
+
+#include "base/program_options.h"
+#include "daemon/deviced/daemon.h"
+#include "ipc/client.h"
+
+namespace {
+
+constexpr const char* kUsage =
+    "usage: prismesh-deviced [--runtime-dir FOLDER] [--config FILE]\n"
+    "  --runtime-dir  for the socket; default $RUNTIME_DIRECTORY, $XDG_RUNTIME_DIR/prismesh or /tmp/prismesh-UID\n"
+    "  --config       settings that go before those in /etc/prismesh/prismesh.toml and ~/.config/prismesh/prismesh.toml\n";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const prismesh::ProgramOptions given = prismesh::program_options({"prismesh-deviced", kUsage, {"--runtime-dir", "--config"}}, argc, argv);
+  if (given.end) return *given.end;
+  // Whoever read the log may go away: an error of writing, no end.
+  std::signal(SIGPIPE, SIG_IGN);
+  // Writing a core takes seconds in which the ports would stay open with nobody behind them.
+  ::prctl(PR_SET_DUMPABLE, 0);
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("deviced"));
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e deviced %l: %v");
+
+  const prismesh::deviced::DaemonOptions options{prismesh::ipc::runtime_directory(given.path("--runtime-dir")), given.path("--config")};
+  prismesh::Result<prismesh::deviced::Daemon> daemon = prismesh::deviced::Daemon::start(options);
+  if (!daemon) {
+    std::fprintf(stderr, "%s\n", daemon.error().text().c_str());
+    return 1;
+  }
+  spdlog::info("listening in {}", options.runtime_directory.string());
+  daemon->run();
+  spdlog::info("ended");
+  return 0;
+}

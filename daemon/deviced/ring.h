@@ -1,0 +1,41 @@
+// A queue of a fixed size between two threads, one that writes and one that reads; nobody waits for anybody, nothing is allocated.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <optional>
+#include <type_traits>
+
+namespace prismesh::deviced {
+
+template <class T, std::size_t kPlaces>
+requires std::is_trivially_copyable_v<T>
+class Ring {
+ public:
+  /// The writing thread. False: it is full, and nothing was put in.
+  bool push(const T& value) {
+    const std::size_t at = written_.load(std::memory_order_relaxed);
+    if (at - read_.load(std::memory_order_acquire) == kPlaces) return false;
+    places_[at % kPlaces] = value;
+    written_.store(at + 1, std::memory_order_release);
+    return true;
+  }
+
+  /// The reading thread.
+  std::optional<T> pop() {
+    const std::size_t at = read_.load(std::memory_order_relaxed);
+    if (at == written_.load(std::memory_order_acquire)) return std::nullopt;
+    std::optional<T> value = places_[at % kPlaces];
+    read_.store(at + 1, std::memory_order_release);
+    return value;
+  }
+
+ private:
+  static_assert((kPlaces & (kPlaces - 1)) == 0, "counts run over: a power of two keeps their places");
+  std::array<T, kPlaces> places_{};
+  alignas(64) std::atomic<std::size_t> written_{0};
+  alignas(64) std::atomic<std::size_t> read_{0};
+};
+
+}  // namespace prismesh::deviced
