@@ -37,7 +37,7 @@ class DynasightSimulator final : public TrackerSimulator {
     bool streams_at_power_up = false;
     Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();  ///< the tracker's origin in screen coordinates
     int target = 0;
-    Faults faults;
+    Faults faults = {};
     std::uint64_t seed = 1;
   };
   /// `line` is the device's end and must outlive this.

@@ -18,7 +18,7 @@ namespace prismesh::drivers::eye_tracker::dynasight {
 inline constexpr int kAgreeingRecords = 4;           ///< before a way to cut the stream is taken
 inline constexpr int kAgreeingRecordsRivalled = 16;  ///< when another way has its markers right too
 inline constexpr int kBadRecordsToLoss = 3;          ///< in a row, before synchronisation counts as lost
-inline constexpr double kLargestStepMm = 100;        ///< between two records, along each axis: 6 m/s at 60 Hz
+inline constexpr double kLargestStepMm = 40;         ///< between two records, along each axis: 2.4 m/s at 60 Hz
 
 /// What a byte completed.
 struct Heard {

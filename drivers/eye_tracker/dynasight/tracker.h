@@ -35,7 +35,7 @@ class DynasightTracker final : public EyeTracker {
     int baud = 19200;
     std::int64_t latency_ns = 20'000'000;  ///< from the head being there to the record's last byte
     Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();
-    TalkTimes times;
+    TalkTimes times = {};
   };
   /// `port` must outlive this.
   DynasightTracker(port::BytePort& port, const Options& options);

@@ -1,0 +1,214 @@
+// What the station and the tracker say to each other, line by line.
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "drivers/eye_tracker/dynasight/tracker.h"
+
+namespace prismesh::drivers::eye_tracker::dynasight {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+/// A port whose other side is the test.
+class ScriptedPort final : public port::BytePort {
+ public:
+  port::PortCount read(std::span<std::byte> to) override {
+    if (gone) return {0, port::PortStatus::gone};
+    std::size_t got = 0;
+    for (; got < to.size() && !arrived.empty(); ++got) {
+      to[got] = arrived.front();
+      arrived.pop_front();
+    }
+    return {got, port::PortStatus::ok};
+  }
+  port::PortCount write(std::span<const std::byte> from) override {
+    if (gone) return {0, port::PortStatus::gone};
+    const std::size_t taken = std::min(from.size(), room);
+    for (std::size_t i = 0; i < taken; ++i) said.push_back(static_cast<char>(from[i]));
+    room -= taken;
+    return {taken, taken == from.size() ? port::PortStatus::ok : port::PortStatus::full};
+  }
+  void discard_input() override { arrived.clear(); }
+  bool set_baud(int) override { return true; }
+  int last_error() const override { return 0; }
+  std::string take_said() { return std::exchange(said, {}); }
+
+  std::deque<std::byte> arrived;
+  std::string said;
+  std::size_t room = 1000;
+  bool gone = false;
+};
+
+struct Line {
+  std::int64_t at_ms;
+  std::vector<RecordBytes> device = {};  ///< arrives before the poll at that time
+  std::string station = "";              ///< what the station says in that poll
+  std::optional<double> x_mm = {};       ///< of the fresh sample
+  bool doubtful = false;
+};
+
+RecordBytes at(double x_mm, Status status = Status::track) { return encode(record_for({x_mm, 40, 650}, status)); }
+
+void hold(const std::vector<Line>& lines, const DynasightTracker::Options& options) {
+  ScriptedPort port;
+  DynasightTracker tracker(port, options);
+  for (const Line& line : lines) {
+    for (const RecordBytes& record : line.device) port.arrived.insert(port.arrived.end(), record.begin(), record.end());
+    const EyeTracker::Polled polled = tracker.poll(line.at_ms * kMs);
+    EXPECT_EQ(port.take_said(), line.station) << "at " << line.at_ms << " ms";
+    EXPECT_EQ(polled.fresh, line.x_mm.has_value()) << "at " << line.at_ms << " ms";
+    if (!polled.fresh || !line.x_mm) continue;
+    EXPECT_NEAR(polled.sample.between_eyes_mm.x(), *line.x_mm, 0.051) << "at " << line.at_ms << " ms";
+    EXPECT_EQ(polled.sample.doubtful, line.doubtful) << "at " << line.at_ms << " ms";
+    EXPECT_EQ(polled.sample.toward_right, Eigen::Vector3d::UnitX());
+  }
+}
+
+TEST(DynasightTalk, a_d4d_is_interrupted_and_told_to_stream) {
+  hold({{0, {}, "\x03\x03\x03"},
+        {5, {at(9), at(8)}, ""},  // the tail of an earlier life is no news
+        {45, {}, ""},
+        {50, {}, "0"},
+        {70, {at(1)}},
+        {87, {at(2)}},
+        {103, {at(3)}},
+        {120, {at(4)}},  // four agree: synchronised, and the next is believed
+        {137, {at(5)}, "", 5},
+        {153, {at(6, Status::caution)}, "", 6, true},
+        {170, {at(6, Status::coast)}, "", 6, true},
+        {187, {at(0, Status::search)}},
+        {203, {at(7)}},  // the head is back; a second record has to say so
+        {220, {at(8)}, "", 8}},
+       {});
+}
+
+TEST(DynasightTalk, a_dynasight_streams_at_another_letter) {
+  hold({{0, {}, "\x03\x03\x03"}, {50, {}, "V"}}, {.dialect = settings::TrackerDialect::dynasight});
+}
+
+TEST(DynasightTalk, polled_means_one_record_for_one_question) {
+  hold({{0, {}, "\x03\x03\x03"},
+        {50, {}, "4\x11"},
+        {55, {}, ""},
+        {60, {at(1)}, "\x11"},
+        {65, {at(2)}, "\x11"},
+        {70, {at(3)}, "\x11"},
+        {75, {at(4)}, "\x11"},
+        {80, {at(5)}, "\x11", 5},
+        {180, {}, ""},
+        {185, {}, "\x11"},  // no answer in 100 ms: the question or the answer was lost
+        {190, {at(6)}, "\x11", 6}},
+       {.polled = true});
+}
+
+TEST(DynasightTalk, a_silent_device_is_spoken_to_again_and_again) {
+  hold({{0, {}, "\x03\x03\x03"},
+        {50, {}, "0"},
+        {550, {}, ""},
+        {555, {}, "\x03\x03\x03"},
+        {600, {}, ""},
+        {605, {}, "0"},
+        {1105, {}, ""},
+        {1110, {}, "\x03\x03\x03"}},
+       {});
+}
+
+TEST(DynasightTalk, a_device_that_falls_silent_or_talks_nonsense_is_started_again) {
+  for (const bool nonsense : {false, true}) {
+    ScriptedPort port;
+    DynasightTracker tracker(port, {});
+    tracker.poll(0);
+    tracker.poll(50 * kMs);
+    port.take_said();
+    for (int i = 0; i < 6; ++i) {
+      for (const std::byte byte : at(i)) port.arrived.push_back(byte);
+      tracker.poll((60 + 17 * i) * kMs);
+    }
+    ASSERT_TRUE(tracker.synchronised());
+    std::int64_t restarted_ms = 0;
+    for (std::int64_t ms = 160; ms < 1000 && restarted_ms == 0; ms += 5) {
+      if (nonsense) port.arrived.insert(port.arrived.end(), 5, std::byte{'?'});
+      tracker.poll(ms * kMs);
+      if (port.take_said() == "\x03\x03\x03") restarted_ms = ms;
+    }
+    EXPECT_GE(restarted_ms, 145 + 500);
+    EXPECT_LE(restarted_ms, 145 + 510);
+    EXPECT_EQ(tracker.counts().restarts, 1u);
+    tracker.poll((restarted_ms + 50) * kMs);
+    EXPECT_FALSE(tracker.synchronised());
+    EXPECT_EQ(tracker.counts().resyncs, 1u);
+  }
+}
+
+TEST(DynasightTalk, commands_wait_for_a_line_that_is_full) {
+  ScriptedPort port;
+  port.room = 2;
+  DynasightTracker tracker(port, {});
+  EXPECT_EQ(tracker.poll(0).status, port::PortStatus::ok);
+  EXPECT_EQ(port.take_said(), "\x03\x03");
+  port.room = 100;
+  tracker.poll(5 * kMs);
+  EXPECT_EQ(port.take_said(), "\x03");
+}
+
+TEST(DynasightTalk, a_port_that_is_gone_says_so) {
+  ScriptedPort port;
+  DynasightTracker tracker(port, {});
+  EXPECT_EQ(tracker.poll(0).status, port::PortStatus::ok);
+  port.gone = true;
+  EXPECT_EQ(tracker.poll(kMs).status, port::PortStatus::gone);
+}
+
+TEST(DynasightTalk, of_several_records_in_one_read_the_newest_counts_and_its_time_allows_for_those_after_it) {
+  constexpr std::int64_t kByteNs = 520'833;  // at 19200 baud
+  ScriptedPort port;
+  DynasightTracker tracker(port, {.latency_ns = 20 * kMs});
+  tracker.poll(0);
+  tracker.poll(50 * kMs);
+  const auto say = [&](const RecordBytes& record, std::size_t bytes = kRecordBytes) {
+    port.arrived.insert(port.arrived.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(bytes));
+  };
+  for (int i = 0; i < 6; ++i) say(at(i));
+  auto polled = tracker.poll(200 * kMs);
+  ASSERT_TRUE(polled.fresh);
+  EXPECT_EQ(polled.sample.measured_ns, 180 * kMs);
+
+  say(at(7));
+  say(at(8), 3);  // three bytes of the next record: the one before ended three bytes ago
+  polled = tracker.poll(220 * kMs);
+  ASSERT_TRUE(polled.fresh);
+  EXPECT_NEAR(polled.sample.between_eyes_mm.x(), 7, 0.05);
+  EXPECT_EQ(polled.sample.measured_ns, 200 * kMs - 3 * kByteNs);
+
+  const RecordBytes rest = at(8);
+  port.arrived.insert(port.arrived.end(), rest.begin() + 3, rest.end());
+  say(at(0, Status::search));  // a whole record after it: that was a 60th of a second earlier
+  polled = tracker.poll(240 * kMs);
+  ASSERT_TRUE(polled.fresh);
+  EXPECT_NEAR(polled.sample.between_eyes_mm.x(), 8, 0.05);
+  EXPECT_EQ(polled.sample.measured_ns, 220 * kMs - 16'666'667);
+}
+
+TEST(DynasightTalk, the_offset_moves_the_place_and_what_lands_outside_is_refused) {
+  ScriptedPort port;
+  DynasightTracker tracker(port, {.offset_mm = {10, -200, -580}});
+  tracker.poll(0);
+  tracker.poll(50 * kMs);
+  const auto hear = [&](const Eigen::Vector3d& place, std::int64_t ms) {
+    for (const std::byte byte : encode(record_for(place))) port.arrived.push_back(byte);
+    return tracker.poll(ms * kMs);
+  };
+  for (int i = 0; i < 5; ++i) hear({0, 100, 700}, 60 + i);
+  const auto inside = hear({1, 100, 700}, 80);
+  ASSERT_TRUE(inside.fresh);
+  EXPECT_TRUE(inside.sample.between_eyes_mm.isApprox(Eigen::Vector3d(11, -100, 120), 1e-3));
+  EXPECT_FALSE(hear({1, 100, 670}, 90).fresh) << "90 mm from the screen: nobody's eyes";
+  EXPECT_EQ(tracker.counts().rejected, 2u);  // and the record of the lock itself
+}
+
+}  // namespace
+}  // namespace prismesh::drivers::eye_tracker::dynasight
