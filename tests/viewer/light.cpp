@@ -21,9 +21,12 @@ float srgb_from_linear(float light) {
 
 float level(float light) { return 255 * srgb_from_linear(light); }
 
-LightImage light_of(std::span<const std::uint8_t> rgb, int width, int height) {
+LightImage light_of(std::span<const std::uint8_t> rgb, int width, int height, double gamma) {
   std::array<float, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) table[i] = linear_from_srgb(static_cast<float>(i) / 255);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const float value = static_cast<float>(i) / 255;
+    table[i] = gamma > 0 ? std::pow(value, static_cast<float>(gamma)) : linear_from_srgb(value);
+  }
   LightImage image(width, height);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = {table[rgb[3 * i]], table[rgb[3 * i + 1]], table[rgb[3 * i + 2]]};
   return image;
@@ -37,7 +40,7 @@ std::vector<std::uint8_t> srgb_bytes(const LightImage& image) {
   return bytes;
 }
 
-Result<LightImage> read_picture(const std::filesystem::path& path) {
+Result<LightImage> read_picture(const std::filesystem::path& path, double gamma) {
   const Result<FileBytes> file = read_file(path);
   if (!file) return fail(file.error());
   const std::string_view text = file->text();
@@ -46,7 +49,7 @@ Result<LightImage> read_picture(const std::filesystem::path& path) {
       stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(text.data()), static_cast<int>(text.size()), &width, &height, &channels, 3),
       &stbi_image_free);
   if (!data) return fail(path.string(), std::string("is no picture that can be read (") + stbi_failure_reason() + ")");
-  return light_of({data.get(), static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3}, width, height);
+  return light_of({data.get(), static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3}, width, height, gamma);
 }
 
 Result<void> write_picture(const std::filesystem::path& path, const LightImage& image) {

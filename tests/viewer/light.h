@@ -32,12 +32,12 @@ float srgb_from_linear(float light);
 /// 0..255, not rounded: where differences are to be as an eye weighs them.
 float level(float light);
 
-/// From rows of 8-bit sRGB, three bytes a pixel.
-LightImage light_of(std::span<const std::uint8_t> rgb, int width, int height);
+/// From rows of 8 bits, three bytes a pixel. `gamma`: of the panel, light = value ^ gamma; 0: sRGB.
+LightImage light_of(std::span<const std::uint8_t> rgb, int width, int height, double gamma = 0);
 std::vector<std::uint8_t> srgb_bytes(const LightImage& image);
 
 /// Errors: not readable, no picture (each names the file).
-Result<LightImage> read_picture(const std::filesystem::path& path);
+Result<LightImage> read_picture(const std::filesystem::path& path, double gamma = 0);
 /// A PNG; replaces the file whole or not at all. Errors: not writable.
 Result<void> write_picture(const std::filesystem::path& path, const LightImage& image);
 

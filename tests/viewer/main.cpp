@@ -25,6 +25,7 @@ struct Options {
   MaskDisplay display;
   Sharpness sharpness;
   double separation_mm = 63;
+  double gamma = 0;
   std::optional<double> mask_mm;
   bool swapped = false;
   bool json = false;
@@ -58,6 +59,9 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--mask", options.mask_mm, "Where the mask stands, mm (where it suits the eyes)")->option_text("MM");
   app.add_option("--pitch", options.display.panel.pitch_mm, "Of the panel's pixels, mm (0.2805)")->option_text("MM");
   app.add_option("--stripes", options.stripes, "Of a pixel: rgb, bgr, none (rgb)")->option_text("ORDER");
+  app.add_option("--gamma", options.gamma, "Of the panel: light = value ^ gamma; 0 is sRGB (0)")
+      ->check(CLI::Range(0.0, 5.0))
+      ->option_text("GAMMA");
   app.add_option("--design-distance", options.display.design_distance_mm, "mm (650)")->option_text("MM");
   app.add_option("--design-separation", options.display.design_separation_mm, "Of the eyes the mask was made for, mm (63)")
       ->option_text("MM");
@@ -132,8 +136,8 @@ Result<Verdict> judge_plain(const Options& options, const LightImage& woven, boo
       mean_difference(seen, resized(own, seen.width, seen.height)), mean_difference(seen, resized(other, seen.width, seen.height)), {}};
 }
 
-Result<LightImage> picture_like(const std::string& path, const LightImage& woven) {
-  Result<LightImage> picture = read_picture(path);
+Result<LightImage> picture_like(const std::string& path, const LightImage& woven, double gamma = 0) {
+  Result<LightImage> picture = read_picture(path, gamma);
   if (picture && (picture->width != woven.width || picture->height != woven.height))
     return fail(path, "is " + std::to_string(picture->width) + "x" + std::to_string(picture->height) + ", but the woven picture is " +
                           std::to_string(woven.width) + "x" + std::to_string(woven.height));
@@ -191,7 +195,7 @@ Result<std::optional<PhaseSummary>> phase_of(const Options& options, const Light
 }
 
 Result<void> run(Options& options) {
-  const Result<LightImage> woven = read_picture(options.woven);
+  const Result<LightImage> woven = read_picture(options.woven, options.gamma);
   if (!woven) return fail(woven.error());
   options.display.panel.columns = woven->width;
   options.display.panel.rows = woven->height;
@@ -200,8 +204,8 @@ Result<void> run(Options& options) {
   if (options.expected_left.empty() != options.expected_right.empty())
     return fail("prismesh-viewer", "give both --expected-left and --expected-right, or neither");
   if (!options.expected_left.empty()) {
-    Result<LightImage> expected_left = picture_like(options.expected_left, *woven),
-                       expected_right = picture_like(options.expected_right, *woven);
+    Result<LightImage> expected_left = picture_like(options.expected_left, *woven, options.gamma),
+                       expected_right = picture_like(options.expected_right, *woven, options.gamma);
     if (!expected_left) return fail(expected_left.error());
     if (!expected_right) return fail(expected_right.error());
     left = std::move(*expected_left), right = std::move(*expected_right);

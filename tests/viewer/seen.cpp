@@ -78,32 +78,46 @@ LightImage Seen::image() const {
   return picture;
 }
 
-Result<Seen> look(const MaskDisplay& display, const LightImage& picture, const Point& eye, double mask_mm, const Sharpness& sharpness) {
+Result<Viewpoint> Viewpoint::at(const MaskDisplay& display, const Point& eye, double mask_mm, const Sharpness& sharpness) {
   if (const Result<void> checked = display.check(); !checked) return fail(checked.error());
-  const Panel& panel = display.panel;
-  if (picture.width != panel.columns || picture.height != panel.rows)
-    return fail("picture", "is " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + ", but the panel has " +
-                               std::to_string(panel.columns) + "x" + std::to_string(panel.rows) + " pixels");
   if (!(eye.z > 1)) return fail("eye", "must be more than 1 mm before the screen");
   if (!(sharpness.window_pixels > 0.01 && sharpness.window_pixels < 20 && sharpness.leak >= 0 && sharpness.leak < 1))
     return fail("window", "must be from 0.01 to 20 pixels wide, and its leak from 0 to less than 1");
-  Seen seen;
-  seen.rows = panel.rows;
-  seen.window_mm = sharpness.window_pixels * panel.pitch_mm;
-  const double period = display.element_pitch_mm() * (eye.z + display.air_gap_mm()) / eye.z / panel.pitch_mm;
-  find_elements(display, eye, mask_mm, 0.5 * seen.window_mm, seen);
-  seen.place_mm.resize(static_cast<std::size_t>(seen.elements) * seen.rows);
-  seen.light.resize(seen.place_mm.size());
+  Viewpoint view;
+  view.panel_ = display.panel;
+  view.sharpness_ = sharpness;
+  view.period_pixels_ = display.element_pitch_mm() * (eye.z + display.air_gap_mm()) / eye.z / display.panel.pitch_mm;
+  Seen& places = view.places_;
+  places.rows = display.panel.rows;
+  places.window_mm = sharpness.window_pixels * display.panel.pitch_mm;
+  find_elements(display, eye, mask_mm, 0.5 * places.window_mm, places);
+  places.light.resize(static_cast<std::size_t>(places.elements) * places.rows);
+  places.place_mm.resize(places.light.size());
+  for (int y = 0; y < places.rows; ++y) {
+    const double v = display.panel.row_height_mm(y);
+    for (int i = 0; i < places.elements; ++i)
+      places.place_mm[places.index(i, y)] = static_cast<float>(window_of(display, eye, mask_mm, places.first_element + i, v).u_mm);
+  }
+  return view;
+}
+
+Result<Seen> Viewpoint::look(const LightImage& picture) const {
+  if (picture.width != panel_.columns || picture.height != panel_.rows)
+    return fail("picture", "is " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + ", but the panel has " +
+                               std::to_string(panel_.columns) + "x" + std::to_string(panel_.rows) + " pixels");
+  Seen seen = places_;
   for (int y = 0; y < seen.rows; ++y) {
-    const RowLight row(panel, &picture.pixels[static_cast<std::size_t>(y) * picture.width]);
-    const double v = panel.row_height_mm(y);
-    for (int i = 0; i < seen.elements; ++i) {
-      const double u = window_of(display, eye, mask_mm, seen.first_element + i, v).u_mm;
-      seen.place_mm[seen.index(i, y)] = static_cast<float>(u);
-      seen.light[seen.index(i, y)] = mixed(row, pixels_from_left(panel, u), 0.5 * sharpness.window_pixels, 0.5 * period, sharpness.leak);
-    }
+    const RowLight row(panel_, &picture.pixels[static_cast<std::size_t>(y) * picture.width]);
+    for (int i = 0; i < seen.elements; ++i)
+      seen.light[seen.index(i, y)] = mixed(row, pixels_from_left(panel_, seen.place_mm[seen.index(i, y)]), 0.5 * sharpness_.window_pixels,
+                                           0.5 * period_pixels_, sharpness_.leak);
   }
   return seen;
+}
+
+Result<Seen> look(const MaskDisplay& display, const LightImage& picture, const Point& eye, double mask_mm, const Sharpness& sharpness) {
+  const Result<Viewpoint> view = Viewpoint::at(display, eye, mask_mm, sharpness);
+  return view ? view->look(picture) : fail(view.error());
 }
 
 Seen ordinary(const MaskDisplay& display, const LightImage& picture, const Seen& places) {

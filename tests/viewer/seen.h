@@ -28,8 +28,22 @@ struct Seen {
   LightImage image() const;
 };
 
-/// Traces every element and row. `picture` is what the panel shows, of the panel's size.
-/// Errors: another size; an eye that isn't before the mask; a display that can't be.
+/// An eye in its place: the rays are traced once, for any number of pictures.
+class Viewpoint {
+ public:
+  /// Traces every element and row. Errors: an eye that isn't before the mask; a display or a window that can't be.
+  static Result<Viewpoint> at(const MaskDisplay& display, const Point& eye, double mask_mm, const Sharpness& sharpness = {});
+  /// `picture`: what the panel shows. Errors: not of the panel's size.
+  Result<Seen> look(const LightImage& picture) const;
+
+ private:
+  Panel panel_;
+  Sharpness sharpness_;
+  double period_pixels_ = 2;  ///< between neighbouring windows
+  Seen places_;               ///< dark
+};
+
+/// For a single picture.
 Result<Seen> look(const MaskDisplay& display, const LightImage& picture, const Point& eye, double mask_mm, const Sharpness& sharpness = {});
 
 /// What would be seen at the same places of an ordinary screen that shows `picture`, each place a period wide: what one element has to
