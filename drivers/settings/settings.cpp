@@ -186,9 +186,11 @@ class Reader {
       : file_(std::move(file)), folder_(fs::path(file_).parent_path()), settings_(settings), places_(places) {}
 
   Result<void> read(const toml::table& root) const {
-    const std::array<Section, 3> sections{Section{"display", {profile("profile", settings_.display.profile, folder_)}},
-                                          tracker_section(settings_.eye_tracker, places_, file_),
-                                          servo_section(settings_.prism_servo, places_, file_)};
+    const std::array<Section, 3> sections{
+        Section{
+            "display",
+            {profile("profile", settings_.display.profile, folder_), number("latency_ms", settings_.display.latency_ms, 0, 200, " ms")}},
+        tracker_section(settings_.eye_tracker, places_, file_), servo_section(settings_.prism_servo, places_, file_)};
     std::vector<std::string_view> names;
     for (const Section& section : sections) names.push_back(section.name);
     for (const auto& [key, node] : root) {

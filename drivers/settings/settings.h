@@ -52,6 +52,7 @@ struct PrismServoSettings {
 
 struct DisplaySettings {
   std::string profile = "prism-mask";  ///< a built-in name, or a profile file (relative to the settings file)
+  double latency_ms = 10;              ///< from a row's scan-out to its light: what the panel's electronics and pixels take
 };
 
 struct Settings {

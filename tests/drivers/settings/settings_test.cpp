@@ -33,17 +33,18 @@ std::string all_of(const Settings& settings) {
   const EyeTrackerSettings& t = settings.eye_tracker;
   const PrismServoSettings& s = settings.prism_servo;
   std::ostringstream text;
-  text << settings.display.profile << '|' << int(t.driver) << '|' << t.simulated << '|' << t.port << '|' << t.baud << '|' << int(t.dialect)
-       << '|' << t.polled << '|' << t.udp_port << '|' << t.latency_ms << '|' << t.noise_mm << '|' << t.offset_mm.x() << ' '
-       << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|' << t.motion << '|' << int(s.driver) << '|'
-       << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|' << s.travel_mm_per_turn << '|' << s.reversed << '|'
-       << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms;
+  text << settings.display.profile << '|' << settings.display.latency_ms << '|' << int(t.driver) << '|' << t.simulated << '|' << t.port
+       << '|' << t.baud << '|' << int(t.dialect) << '|' << t.polled << '|' << t.udp_port << '|' << t.latency_ms << '|' << t.noise_mm << '|'
+       << t.offset_mm.x() << ' ' << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|' << t.motion << '|'
+       << int(s.driver) << '|' << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|' << s.travel_mm_per_turn << '|'
+       << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms;
   return text.str();
 }
 
 constexpr char kEveryKey[] = R"(
 [display]
 profile = "anaglyph"
+latency_ms = 6.5
 [eye_tracker]
 driver = "dynasight"
 simulated = true
@@ -75,7 +76,7 @@ TEST(Settings, an_empty_file_leaves_every_default) { EXPECT_EQ(all_of(parsed("")
 
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
-            "anaglyph|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
+            "anaglyph|6.5|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
             "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20");
 }
 
@@ -102,6 +103,7 @@ TEST(Settings, wrong_text_is_told_with_its_line_and_the_way_out) {
        "station.toml:2: eye_tracker.port must be a device's whole path, like \"/dev/serial/by-id/..\""},
       {"[eye_tracker]\nudp_port = 65536\n", "station.toml:2: eye_tracker.udp_port is 65536; it must be from 1 to 65535"},
       {"[eye_tracker]\nudp_port = 4242.0\n", "station.toml:2: eye_tracker.udp_port must be a whole number"},
+      {"[display]\nlatency_ms = 1000\n", "station.toml:2: display.latency_ms is 1000; it must be from 0 to 200 ms"},
       {"[eye_tracker]\nlatency_ms = -1\n", "station.toml:2: eye_tracker.latency_ms is -1; it must be from 0 to 500 ms"},
       {"[eye_tracker]\nnoise_mm = nan\n", "station.toml:2: eye_tracker.noise_mm must be a number"},
       {"[eye_tracker]\nnoise_mm = inf\n", "station.toml:2: eye_tracker.noise_mm must be a number"},
