@@ -1,0 +1,125 @@
+#include "drivers/settings/choose_profile.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "base/file.h"
+#include "drivers/settings/settings.h"
+
+namespace prismesh::drivers::settings {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// A basic string of TOML.
+std::string quoted(const std::string& text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') out += '\\';
+    if (byte < 0x20 || byte == 0x7F)
+      out += std::string("\\u00") + kDigits[byte >> 4] + kDigits[byte & 15];
+    else
+      out += c;
+  }
+  return out + '"';
+}
+
+/// The end of a value that begins the text: a string in single or double quotes. Nothing for any other kind.
+std::optional<std::size_t> end_of_string(std::string_view text) {
+  if (text.empty() || (text[0] != '"' && text[0] != '\'') || text.substr(0, 3) == std::string(3, text[0])) return std::nullopt;
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    if (text[i] == text[0]) return i + 1;
+    if (text[i] == '\\' && text[0] == '"') ++i;
+  }
+  return std::nullopt;
+}
+
+bool is_section(std::string_view line) { return line.starts_with('['); }
+
+bool is_display_section(std::string_view line) {
+  if (!line.starts_with('[')) return false;
+  const std::size_t end = line.find(']');
+  return end != std::string_view::npos && trimmed(line.substr(1, end - 1)) == "display";
+}
+
+/// Where the value of `profile = ..` begins in a line; nothing for every other line.
+std::optional<std::size_t> profile_value(std::string_view line) {
+  const std::size_t equals = line.find('=');
+  if (equals == std::string_view::npos || trimmed(line.substr(0, equals)) != "profile") return std::nullopt;
+  const std::size_t value = line.find_first_not_of(" \t", equals + 1);
+  return value == std::string_view::npos ? line.size() : value;
+}
+
+struct Found {
+  std::optional<std::size_t> section_end;  ///< just after the line [display]
+  std::optional<std::size_t> value;        ///< of its key `profile`
+};
+
+Found find(std::string_view text) {
+  Found found;
+  bool inside = false;
+  for (std::size_t start = 0; start < text.size();) {
+    std::size_t end = text.find('\n', start);
+    end = end == std::string_view::npos ? text.size() : end + 1;
+    const std::string_view line = text.substr(start, end - start);
+    if (const std::string_view words = trimmed(line.substr(0, line.find('\n'))); is_section(words)) {
+      inside = is_display_section(words);
+      if (inside && !found.section_end) found.section_end = end;
+    } else if (inside && !found.value) {
+      if (const auto value = profile_value(line)) found.value = start + *value;
+    }
+    start = end;
+  }
+  return found;
+}
+
+}  // namespace
+
+Result<std::string> with_profile(std::string_view text, const std::string& file, const std::filesystem::path& profile) {
+  const std::string value = quoted(profile.string());
+  const std::string line_end = text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
+  const Found found = find(text);
+  std::string changed(text);
+  if (found.value) {
+    const std::optional<std::size_t> length = end_of_string(text.substr(*found.value));
+    if (!length) return fail(file, "its display profile isn't written in one line: set profile = " + value + " under [display] yourself");
+    changed.replace(*found.value, *length, value);
+  } else if (found.section_end) {
+    const bool line_open = !text.substr(0, *found.section_end).ends_with('\n');
+    changed.insert(*found.section_end, (line_open ? line_end : "") + "profile = " + value + line_end);
+  } else {
+    if (!changed.empty() && !changed.ends_with('\n')) changed += line_end;
+    changed += (changed.empty() ? "" : line_end) + "[display]" + line_end + "profile = " + value + line_end;
+  }
+  // Only a text that says what was meant goes to the disk: a section may also be written in other ways.
+  const Result<Settings> read = parse_settings(changed, file);
+  if (!read) return fail(read.error());
+  const std::filesystem::path wanted = profile.has_parent_path() ? std::filesystem::path(file).parent_path() / profile : profile;
+  if (std::filesystem::path(read->display.profile) != wanted && read->display.profile != profile.string())
+    return fail(file, "set profile = " + value + " under [display] yourself: the file is written in a way that can't be changed safely");
+  return changed;
+}
+
+Result<void> choose_profile(const std::filesystem::path& file, const std::filesystem::path& profile) {
+  std::error_code error;
+  FileBytes bytes;
+  if (std::filesystem::exists(file, error)) {
+    Result<FileBytes> read = read_file(file);
+    if (!read) return fail(read.error());
+    bytes = std::move(*read);
+    if (Result<Settings> valid = parse_settings(bytes.text(), file); !valid) return fail(valid.error());
+  }
+  const Result<std::string> changed = with_profile(bytes.text(), file.string(), profile);
+  if (!changed) return fail(changed.error());
+  const std::array<PendingFile, 1> files{{{file, {*changed}}}};
+  return replace_files(files);
+}
+
+}  // namespace prismesh::drivers::settings

@@ -1,0 +1,72 @@
+#include "drivers/settings/choose_profile.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "drivers/settings/settings.h"
+
+namespace prismesh::drivers::settings {
+namespace {
+
+using testing::HasSubstr;
+
+std::string changed(const std::string& text, const std::filesystem::path& profile = "/home/lab/wall.toml") {
+  const Result<std::string> result = with_profile(text, "/etc/prismesh/prismesh.toml", profile);
+  EXPECT_TRUE(result) << result.error().text();
+  return result.value_or("");
+}
+
+TEST(ChooseProfile, changes_one_value_and_nothing_else) {
+  EXPECT_EQ(
+      changed("# our wall\n[display]\nlatency_ms = 7  # measured\n  profile = \"prism-mask\"  # was: mono\n\n[eye_tracker]\ndriver = "
+              "\"none\"\n"),
+      "# our wall\n[display]\nlatency_ms = 7  # measured\n  profile = \"/home/lab/wall.toml\"  # was: mono\n\n[eye_tracker]\ndriver = "
+      "\"none\"\n");
+  EXPECT_EQ(changed("[display]\r\nprofile='mono'\r\n"), "[display]\r\nprofile=\"/home/lab/wall.toml\"\r\n");
+}
+
+TEST(ChooseProfile, adds_the_key_or_the_section) {
+  EXPECT_EQ(changed("[display]\nlatency_ms = 7\n"), "[display]\nprofile = \"/home/lab/wall.toml\"\nlatency_ms = 7\n");
+  EXPECT_EQ(changed("[display]"), "[display]\nprofile = \"/home/lab/wall.toml\"\n");
+  EXPECT_EQ(changed(""), "[display]\nprofile = \"/home/lab/wall.toml\"\n");
+  EXPECT_EQ(changed("[eye_tracker]\ndriver = \"none\""),
+            "[eye_tracker]\ndriver = \"none\"\n\n[display]\nprofile = \"/home/lab/wall.toml\"\n");
+}
+
+TEST(ChooseProfile, writes_names_that_need_quoting) {
+  const std::string odd = "/home/lab/a \"b\"\\c\td.toml";
+  const Result<Settings> read = parse_settings(changed("", odd), "/etc/prismesh/prismesh.toml");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->display.profile, odd);
+}
+
+TEST(ChooseProfile, asks_for_help_rather_than_guess) {
+  for (const char* text : {"display = {profile = \"mono\"}\n", "display.profile = \"mono\"\n", "[display]\nprofile = \"\"\"\nmono\"\"\"\n",
+                           "[\"display\"]\nprofile = \"mono\"\n"}) {
+    const Result<std::string> result = with_profile(text, "/etc/prismesh/prismesh.toml", "/home/lab/wall.toml");
+    EXPECT_FALSE(result) << text << "\n" << *result;
+  }
+}
+
+TEST(ChooseProfile, makes_the_file_and_leaves_a_broken_one_alone) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "choose_profile";
+  std::filesystem::remove_all(folder);
+  const std::filesystem::path file = folder / "prismesh" / "prismesh.toml";
+  ASSERT_TRUE(choose_profile(file, "/home/lab/wall.toml"));
+  EXPECT_EQ(read_settings({file}, std::nullopt)->display.profile, "/home/lab/wall.toml");
+  std::ofstream(file) << "[display\n";
+  const Result<void> refused = choose_profile(file, "/home/lab/other.toml");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().line, 1);
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  EXPECT_EQ(text.str(), "[display\n");
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace prismesh::drivers::settings
