@@ -1,0 +1,339 @@
+#include "drivers/prism_servo/mask_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prismesh::drivers::prism_servo {
+namespace {
+
+constexpr std::int64_t kLongestAheadNs = 100'000'000;
+/// After a stall the goal goes on as if only so long had passed.
+constexpr std::int64_t kLongestStepNs = 20'000'000;
+constexpr std::int64_t kLongestLagNs = 200'000'000;
+/// Of a move back: time to come to rest, besides the way itself.
+constexpr std::int64_t kRestNs = 30'000'000;
+constexpr std::int64_t kLagsToRest = 4;
+/// The envelope that a healthy motor stays in: as quick as its command, or with three times the lag at 70 % of the speed.
+constexpr double kSlowLags = 3;
+constexpr double kSlowSpeed = 0.7;
+/// Over this the goal's velocity is taken.
+constexpr std::int64_t kSlopeNs = 20'000'000;
+
+bool finite(const eye_tracker::HeadState& head) {
+  return head.between_eyes_mm.allFinite() && head.velocity_mm_s.allFinite() && head.toward_right.allFinite();
+}
+
+double toward(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
+
+std::int64_t ns_of(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+}  // namespace
+
+double mask_position_at(const MaskState& state, std::int64_t time_ns) {
+  if (state.measured_ns == 0) return state.position_mm;
+  const auto seconds = [](std::int64_t ns) { return static_cast<double>(std::clamp<std::int64_t>(ns, 0, kLongestAheadNs)) * 1e-9; };
+  const double ahead = seconds(time_ns - state.measured_ns);
+  const double place = state.position_mm + state.velocity_mm_s * ahead;
+  // The goal's own path; a motor that comes from one side of it doesn't get to the other.
+  const double goal_then = state.goal_mm - state.goal_velocity_mm_s * seconds(state.time_ns - state.measured_ns);
+  const double goal = state.goal_mm + state.goal_velocity_mm_s * seconds(time_ns - state.time_ns);
+  if (state.position_mm <= goal_then) return std::min(place, std::max(goal, state.position_mm));
+  return std::max(place, std::min(goal, state.position_mm));
+}
+
+MaskControl::MaskControl(const display::MaskOptics& optics, const MaskLimits& limits) : optics_(optics), limits_(limits) {}
+
+void MaskControl::set_optics(const display::MaskOptics& optics) {
+  optics_ = optics;
+  if (state_.phase == MaskPhase::following || state_.phase == MaskPhase::flying_back) start_following(state_.half_periods);
+}
+
+MaskControl::Output MaskControl::step(const Input& input) {
+  const std::int64_t passed = started_ ? std::clamp<std::int64_t>(input.now_ns - state_.time_ns, 0, kLongestStepNs) : 0;
+  started_ = true;
+  state_.time_ns = input.now_ns;
+  lag_ns_ = std::clamp<std::int64_t>(input.servo_lag_ns, 0, kLongestLagNs);
+  const bool there = look(input);
+  wish_velocity_mm_s_ = 0;
+  decide(input, there);
+  move_command(static_cast<double>(passed) * 1e-9);
+  if (powered_ && there) watch_motor(input);
+  state_.goal_mm = command_mm_;
+  state_.stereo_allowed = state_.phase == MaskPhase::following && caught_up_;
+  if (state_.phase == MaskPhase::held) state_.stereo_allowed = arrived_;
+  return {command_mm_, powered_, state_};
+}
+
+/// Takes in what the sensors say. Whether the motor is there and answers.
+bool MaskControl::look(const Input& input) {
+  const std::int64_t age = input.now_ns - input.head.time_ns;
+  seen_ = input.head_seen && input.head.time_ns != 0 && finite(input.head) && age <= limits_.eyes_lost_ns && age >= -limits_.eyes_lost_ns;
+  const MaskReading& reading = input.servo.reading;
+  if (reading.measured_ns != 0 && std::isfinite(reading.position_mm) && std::isfinite(reading.velocity_mm_s)) {
+    state_.measured_ns = reading.measured_ns;
+    state_.position_mm = reading.position_mm;
+    state_.velocity_mm_s = reading.velocity_mm_s;
+  }
+  return input.servo.phase == ServoPhase::ready && input.servo.status != port::PortStatus::gone && state_.measured_ns != 0 &&
+         input.now_ns - state_.measured_ns <= limits_.reading_old_ns;
+}
+
+void MaskControl::decide(const Input& input, bool there) {
+  if (input.rearm) rearm(input);
+  if (rearming_until_ns_ != 0) {
+    if (there || input.now_ns > rearming_until_ns_) {
+      rearming_until_ns_ = 0;
+      enter(MaskPhase::absent);
+    } else {
+      // The motor has been let go before; being asked again is what it starts anew for.
+      return set_powered(input.servo.phase == ServoPhase::alarm);
+    }
+  }
+  if (input.servo.phase == ServoPhase::alarm && fault_ == MaskPhase::absent) latch(MaskPhase::alarm);
+  if (fault_ != MaskPhase::absent) return set_powered(false);
+  if (!there) {
+    if (state_.phase != MaskPhase::absent) enter(MaskPhase::absent);
+    return set_powered(false);
+  }
+  if (state_.phase == MaskPhase::absent) enter(MaskPhase::homing);
+  if (input.hold_mm != nullptr && state_.phase != MaskPhase::homing && state_.phase != MaskPhase::held) enter(MaskPhase::held);
+  set_powered(true);
+  switch (state_.phase) {
+    case MaskPhase::homing: return home(input);
+    case MaskPhase::following: return follow(input);
+    case MaskPhase::flying_back: return fly_back(input);
+    case MaskPhase::frozen: return freeze(input);
+    case MaskPhase::parking:
+    case MaskPhase::parked:
+      if (seen_) return start_following(middle_periods(ideal_mm(input, lag_ns_)));
+      return park();
+    case MaskPhase::held: return hold(input);
+    case MaskPhase::absent:
+    case MaskPhase::stuck:
+    case MaskPhase::alarm: return;
+  }
+}
+
+void MaskControl::enter(MaskPhase phase) {
+  state_.phase = phase;
+  state_.mono_from_ns = state_.mono_until_ns = 0;
+  phase_since_ns_ = state_.time_ns;
+  caught_up_ = arrived_ = false;
+  on_wish_since_ns_ = 0;
+  if (phase != MaskPhase::following && phase != MaskPhase::frozen) state_.half_periods = 0;
+}
+
+void MaskControl::rearm(const Input& input) {
+  fault_ = MaskPhase::absent;
+  set_powered(false);
+  enter(MaskPhase::homing);
+  rearming_until_ns_ = input.now_ns + limits_.rearm_ns;
+}
+
+void MaskControl::latch(MaskPhase fault) {
+  fault_ = fault;
+  enter(fault);
+  set_powered(false);
+}
+
+void MaskControl::home(const Input& input) {
+  wish_mm_ = 0;
+  if (!arrived_) return;
+  if (seen_) return start_following(middle_periods(ideal_mm(input, lag_ns_)));
+  enter(MaskPhase::parking);
+}
+
+void MaskControl::start_following(std::int32_t half_periods) {
+  enter(MaskPhase::following);
+  state_.half_periods = half_periods;
+}
+
+void MaskControl::follow(const Input& input) {
+  if (!seen_) return enter(MaskPhase::frozen);
+  const double ideal = ideal_mm(input, lag_ns_);
+  // Nobody sees stereo before the mask has caught up, so no move has to be announced.
+  if (!caught_up_ && std::abs(ideal - state_.half_periods * half_period_mm()) > return_mm()) state_.half_periods = middle_periods(ideal);
+  wish_to_follow(input);
+  caught_up_ = caught_up_ || arrived_;
+  if (caught_up_) plan_return(input);
+}
+
+/// A move back is announced, and made when the last picture in stereo has gone.
+void MaskControl::plan_return(const Input& input) {
+  if (state_.mono_from_ns == 0) {
+    const double then = ideal_mm(input, lag_ns_ + limits_.return_notice_ns);
+    const std::int32_t next = periods_back(then, state_.half_periods);
+    if (std::abs(then - state_.half_periods * half_period_mm()) <= return_mm() || next == state_.half_periods) return;
+    state_.mono_from_ns = input.now_ns + limits_.return_notice_ns;
+    const double way = std::abs(next - state_.half_periods) * half_period_mm();
+    state_.mono_until_ns = state_.mono_from_ns + limits_.picture_ns + flight_ns(way);
+    return;
+  }
+  if (input.now_ns < state_.mono_from_ns + limits_.picture_ns) return;
+  const double ideal = ideal_mm(input, lag_ns_);
+  const std::int32_t next = periods_back(ideal, state_.half_periods);
+  const double way = std::abs(next - state_.half_periods) * half_period_mm();
+  if (next == state_.half_periods || input.now_ns + flight_ns(way) > state_.mono_until_ns + limits_.return_notice_ns / 4) {
+    // The head has turned round meanwhile: nothing is done without an announcement of its own.
+    if (input.now_ns >= state_.mono_until_ns) state_.mono_from_ns = state_.mono_until_ns = 0;
+    return;
+  }
+  state_.phase = MaskPhase::flying_back;
+  state_.half_periods = next;
+  phase_since_ns_ = input.now_ns;
+  arrived_ = false;
+  on_wish_since_ns_ = 0;
+  fly_back(input);
+}
+
+void MaskControl::fly_back(const Input& input) {
+  if (!seen_) return enter(MaskPhase::frozen);
+  wish_to_follow(input);
+  if (!arrived_) {
+    // Later than planned is said as soon as it is known, and never on shorter notice than the move itself.
+    const std::int64_t needed = flight_ns(std::abs(state_.position_mm - wish_mm_) - limits_.settle_mm);
+    state_.mono_until_ns = std::max(state_.mono_until_ns, input.now_ns + std::max(needed, limits_.return_notice_ns));
+    return;
+  }
+  if (input.now_ns < state_.mono_until_ns) return;
+  const std::int32_t half_periods = state_.half_periods;
+  start_following(half_periods);
+  caught_up_ = true;
+}
+
+void MaskControl::freeze(const Input& input) {
+  wish_mm_ = command_mm_;
+  const bool may_move = input.picture_mono || input.now_ns - phase_since_ns_ >= limits_.park_after_ns;
+  if (!seen_) {
+    if (may_move) enter(MaskPhase::parking);
+    return;
+  }
+  const double ideal = ideal_mm(input, lag_ns_);
+  const bool in_reach = std::abs(ideal - state_.half_periods * half_period_mm()) <= return_mm();
+  if (in_reach) return start_following(state_.half_periods);
+  if (may_move) start_following(middle_periods(ideal));
+}
+
+void MaskControl::park() {
+  wish_mm_ = 0;
+  if (state_.phase == MaskPhase::parked) return set_powered(false);
+  if (!arrived_) return;
+  enter(MaskPhase::parked);
+  set_powered(false);
+}
+
+void MaskControl::hold(const Input& input) {
+  if (input.hold_mm == nullptr) {
+    if (!seen_) return enter(MaskPhase::frozen);
+    return start_following(middle_periods(ideal_mm(input, lag_ns_)));
+  }
+  if (std::isfinite(*input.hold_mm)) wish_mm_ = in_travel(*input.hold_mm);
+}
+
+// --- where to ---
+
+double MaskControl::ideal_mm(const Input& input, std::int64_t ahead_ns) const {
+  const double place = display::mask_position_mm(optics_, eye_tracker::predict(input.head, input.now_ns + ahead_ns));
+  return std::isfinite(place) ? place : 0;
+}
+
+void MaskControl::wish_to_follow(const Input& input) {
+  const double back = state_.half_periods * half_period_mm();
+  wish_mm_ = in_travel(ideal_mm(input, lag_ns_) - back);
+  const double later = in_travel(ideal_mm(input, lag_ns_ + kSlopeNs) - back);
+  wish_velocity_mm_s_ = (later - wish_mm_) / (static_cast<double>(kSlopeNs) * 1e-9);
+}
+
+double MaskControl::half_period_mm() const { return optics_.mask_pitch_mm() / 2; }
+
+double MaskControl::in_travel(double mm) const { return std::clamp(mm, -limits_.travel_mm, limits_.travel_mm); }
+
+/// The fewest half (or whole) periods back that leave half a step of room before the next move.
+std::int32_t MaskControl::periods_back(double ideal_mm, std::int32_t now) const {
+  const std::int32_t unit = limits_.half_period_returns ? 1 : 2;
+  const double step = unit * half_period_mm();
+  const double place = ideal_mm - now * half_period_mm();
+  if (!(step > 0)) return now;
+  const auto steps = static_cast<std::int32_t>(std::ceil((std::abs(place) - return_mm()) / step + 0.5));
+  if (steps <= 0) return now;
+  const std::int32_t back = now + (place > 0 ? 1 : -1) * steps * unit;
+  // Where travel is scarce this may be too far on the other side.
+  return std::abs(ideal_mm - back * half_period_mm()) <= return_mm() ? back : middle_periods(ideal_mm);
+}
+
+std::int32_t MaskControl::middle_periods(double ideal_mm) const {
+  const std::int32_t unit = limits_.half_period_returns ? 1 : 2;
+  const double step = unit * half_period_mm();
+  return step > 0 ? unit * static_cast<std::int32_t>(std::lround(ideal_mm / step)) : 0;
+}
+
+std::int64_t MaskControl::flight_ns(double distance_mm) const {
+  return ns_of(std::max(distance_mm, 0.0) / (0.9 * limits_.speed_mm_s)) + kLagsToRest * lag_ns_ + kRestNs;
+}
+
+// --- the motor ---
+
+/// Power comes on where the motor stands.
+void MaskControl::set_powered(bool powered) {
+  if (powered && !powered_) forget();
+  powered_ = powered;
+  if (!powered) forget();
+}
+
+void MaskControl::forget() {
+  command_mm_ = quick_mm_ = slow_mm_ = slow_profile_mm_ = in_travel(state_.position_mm);
+  wish_mm_ = command_mm_;
+  arrived_ = false;
+  on_wish_since_ns_ = astray_since_ns_ = 0;
+  remembered_ = 0;
+  remember();
+}
+
+void MaskControl::move_command(double seconds) {
+  const double before = command_mm_;
+  if (powered_) {
+    command_mm_ = toward(command_mm_, wish_mm_, limits_.speed_mm_s * seconds);
+    const double lag_s = std::max(1e-3, static_cast<double>(lag_ns_) * 1e-9);
+    quick_mm_ = toward(quick_mm_, command_mm_, limits_.speed_mm_s * seconds);
+    slow_profile_mm_ = toward(slow_profile_mm_, command_mm_, kSlowSpeed * limits_.speed_mm_s * seconds);
+    slow_mm_ += (slow_profile_mm_ - slow_mm_) * (1 - std::exp(-seconds / (kSlowLags * lag_s)));
+    remember();
+  }
+  const bool on_wish = powered_ && std::abs(command_mm_ - wish_mm_) < 1e-9;
+  if (!on_wish)
+    on_wish_since_ns_ = 0;
+  else if (on_wish_since_ns_ == 0)
+    on_wish_since_ns_ = state_.time_ns;
+  state_.goal_velocity_mm_s = on_wish ? wish_velocity_mm_s_ : seconds > 0 ? (command_mm_ - before) / seconds : 0;
+}
+
+void MaskControl::remember() {
+  newest_ = (newest_ + 1) % traces_.size();
+  traces_[newest_] = {state_.time_ns, command_mm_, quick_mm_, slow_mm_};
+  remembered_ = std::min(remembered_ + 1, traces_.size());
+}
+
+/// What was at a time, or the oldest that is remembered.
+const MaskControl::Trace& MaskControl::trace_at(std::int64_t time_ns) const {
+  std::size_t at = newest_;
+  for (std::size_t i = 1; i < remembered_ && traces_[at].time_ns > time_ns; ++i) at = (at + traces_.size() - 1) % traces_.size();
+  return traces_[at];
+}
+
+/// Compares what was measured with what a healthy motor would have done by then.
+void MaskControl::watch_motor(const Input& input) {
+  if (!input.servo.fresh) return;
+  const Trace& then = trace_at(state_.measured_ns);
+  const Trace& told = trace_at(state_.measured_ns - lag_ns_);
+  const bool told_the_wish = on_wish_since_ns_ != 0 && told.time_ns >= on_wish_since_ns_;
+  arrived_ = told_the_wish && std::abs(state_.position_mm - told.command_mm) <= limits_.settle_mm;
+  const double low = std::min(then.quick_mm, then.slow_mm), high = std::max(then.quick_mm, then.slow_mm);
+  if (state_.position_mm >= low - limits_.stuck_mm && state_.position_mm <= high + limits_.stuck_mm) {
+    astray_since_ns_ = 0;
+    return;
+  }
+  if (astray_since_ns_ == 0) astray_since_ns_ = state_.measured_ns;
+  if (state_.measured_ns - astray_since_ns_ >= limits_.stuck_after_ns) latch(MaskPhase::stuck);
+}
+
+}  // namespace prismesh::drivers::prism_servo
