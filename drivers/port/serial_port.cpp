@@ -1,5 +1,7 @@
 // The only place that knows libserialport.
 #include <libserialport.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 #include <cerrno>
 #include <filesystem>
@@ -59,12 +61,16 @@ class SerialPort final : public BytePort {
   int last_error_ = 0;
 };
 
-/// libserialport looks a port up by its own name, so links (/dev/serial/by-id/..) are followed first.
+/// The kernel's own name for the device behind `path`, as a file in /dev. libserialport knows ports by these only, not by links such as
+/// /dev/serial/by-id/...
 Result<std::string> own_file(const std::string& path) {
+  struct stat what {};
+  if (::stat(path.c_str(), &what) != 0) return fail(open_error(path, errno));
+  const std::string number = std::to_string(major(what.st_rdev)) + ":" + std::to_string(minor(what.st_rdev));
   std::error_code error;
-  const std::filesystem::path file = std::filesystem::canonical(path, error);
-  if (error) return fail(open_error(path, error.value()));
-  return file.string();
+  const std::filesystem::path place = std::filesystem::read_symlink("/sys/dev/char/" + number, error);
+  if (!S_ISCHR(what.st_mode) || error) return fail(open_error(path, ENOTTY));
+  return "/dev/" + place.filename().string();
 }
 
 /// The first step that the line refuses, as a sentence; null when all were taken.
