@@ -57,6 +57,7 @@ void DynasightTracker::take(std::byte byte, std::int64_t now_ns, Reading& readin
     ++counts_.without_head;
     return;
   }
+  if (stage_ != Stage::listen) return;  // of an earlier life, and who knows how old
   const Eigen::Vector3d place_mm = heard->record.place_mm() + options_.offset_mm;
   if (!heard->believed || !plausible_head(place_mm)) {
     ++counts_.rejected;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include <Eigen/Core>
 
@@ -73,7 +74,7 @@ class DynasightTracker final : public EyeTracker {
   std::int64_t record_ns_ = 0;  ///< of the last record, or of the talk's begin
   std::int64_t asked_ns_ = 0;   ///< polled
   std::uint64_t bytes_since_asked_ = 0;
-  std::int64_t last_measured_ns_ = 0;
+  std::int64_t last_measured_ns_ = std::numeric_limits<std::int64_t>::min();
   std::array<std::byte, 8> unsent_{};
   std::size_t unsent_count_ = 0;
 };

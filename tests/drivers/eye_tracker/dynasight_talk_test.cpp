@@ -70,7 +70,7 @@ void hold(const std::vector<Line>& lines, const DynasightTracker::Options& optio
 
 TEST(DynasightTalk, a_d4d_is_interrupted_and_told_to_stream) {
   hold({{0, {}, "\x03\x03\x03"},
-        {5, {at(9), at(8)}, ""},  // the tail of an earlier life is no news
+        {5, {at(9), at(9), at(9), at(9), at(9), at(8)}, ""},  // of an earlier life: no news, however well it agrees
         {45, {}, ""},
         {50, {}, "0"},
         {70, {at(1)}},
