@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace prismesh::drivers::eye_tracker::dynasight {
 namespace {
@@ -49,6 +50,8 @@ void Synchroniser::follow(Cut& cut, const std::optional<Record>& record) {
 }
 
 bool Synchroniser::convincing(std::size_t at) const {
+  const std::optional<Record>& head = locked_ ? trusted_ : remembered_;
+  if (head && cuts_[at].last.sees_head() && continues(*head, cuts_[at].last)) return cuts_[at].agreeing >= kAgreeingRecordsToRegain;
   int needed = kAgreeingRecords;
   for (std::size_t other = 0; other < kRecordBytes; ++other)
     if (other != at && cuts_[other].markers >= kAgreeingRecords - 1) needed = kAgreeingRecordsRivalled;
@@ -59,6 +62,7 @@ std::optional<Heard> Synchroniser::take(std::byte byte) {
   ring_[at_] = byte;
   at_ = (at_ + 1) % kRecordBytes;
   ++unclaimed_;
+  if (remembered_ && ++since_loss_ > kRegainBytes) remembered_.reset();
   const std::size_t cut = at_;  // named by where in the ring its records end
   const std::optional<Record> record = decode(window());
   follow(cuts_[cut], record);
@@ -111,15 +115,16 @@ bool Synchroniser::believe(const Record& record) {
 void Synchroniser::lock(std::size_t at, const Record& record) {
   locked_ = at;
   bad_ = 0;
+  trusted_ = std::exchange(remembered_, std::nullopt);
   candidate_.reset();
-  trusted_.reset();
   if (record.sees_head()) candidate_ = record;
 }
 
 void Synchroniser::lose() {
   locked_.reset();
   bad_ = 0;
-  trusted_.reset();
+  remembered_ = std::exchange(trusted_, std::nullopt);
+  since_loss_ = 0;
   candidate_.reset();
   ++losses_;
 }
@@ -128,6 +133,7 @@ void Synchroniser::reset() {
   skipped_ += unclaimed_;
   unclaimed_ = 0;
   if (locked_) lose();
+  remembered_.reset();
   cuts_ = {};
   ring_ = {};
 }
