@@ -15,6 +15,7 @@ constexpr double kStillAcrossMm = 2, kStillDeepMm = 6, kStillTurnMm = 0.5;
 constexpr double kTakeUpSeconds = 0.06;  ///< time constants of going over to eyes that came back ...
 constexpr double kLetGoSeconds = 0.4;    ///< ... and from lost eyes to the resting place
 constexpr double kArrivedMm = 0.05;
+constexpr std::int64_t kLookLateNs = 10'000'000;    ///< between two looks while nothing is drawn
 constexpr std::int64_t kClockSlackNs = 50'000'000;  ///< a measurement that lies further in the future is nonsense
 
 double seconds_of(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
@@ -121,8 +122,8 @@ void TrackedEyes::move(std::int64_t now_ns, const LitTime& lit) {
 double TrackedEyes::share_for_eyes(std::int64_t now_ns, const LitTime& lit) const {
   if (head_.time_ns == 0) return 0;
   const std::int64_t deadline = head_.time_ns + limits_.mono_after_ns, ahead = lit.until_ns - now_ns;
-  // One picture may just have been begun when the eyes are found lost, and the next one has to be mono in time.
-  const std::int64_t room = limits_.mono_after_ns - 2 * ahead;
+  // One picture may just have been begun when the eyes could have been found lost: the next one has to be mono in time.
+  const std::int64_t room = limits_.mono_after_ns - ahead - kLookLateNs;
   const std::int64_t lost_after = std::clamp(room, limits_.lost_soonest_ns, limits_.lost_after_ns);
   if (now_ns - head_.time_ns <= lost_after) return 1;
   const std::int64_t fade_from = head_.time_ns + lost_after + ahead;

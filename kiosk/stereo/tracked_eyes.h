@@ -3,7 +3,7 @@
 //
 // The promise: a display whose picture is right only where it was woven for never shows depth that is older than 250 ms after the last
 // good measurement, whatever has failed (the tracker, its line, the daemon, the link to it). It holds while a picture takes no more than
-// about 90 ms to draw.
+// 70 ms to draw.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ struct FollowOptions {
 struct FollowLimits {
   std::int64_t mono_after_ns = 240'000'000;    ///< since the last good measurement: mono at the latest; 10 ms under the promise
   std::int64_t lost_after_ns = 100'000'000;    ///< without a measurement for so long: the fade begins ...
-  std::int64_t lost_soonest_ns = 40'000'000;   ///< ... sooner, down to this, where pictures take long
+  std::int64_t lost_soonest_ns = 60'000'000;   ///< ... sooner, down to this, where pictures take long
   std::int64_t fade_ns = 80'000'000;           ///< to mono when the mask stops following, and before it flies back
   std::int64_t rise_ns = 200'000'000;          ///< from mono to full depth
   std::int64_t mask_old_ns = 100'000'000;      ///< a mask state that is older says nothing

@@ -234,7 +234,7 @@ TEST(TrackedEyes, TenThousandLossesAtAnyMomentNeverLeaveDepthBehind) {
     World world(prism_mask(), HeadMotion(static_cast<MotionKind>(round % 5), static_cast<std::uint64_t>(round)));
     allow_stereo(world);
     for (int loss = 0; loss < 100; ++loss) {
-      world.draw_ms = 1 + static_cast<std::int64_t>(random() % (round < 50 ? 16 : 60));
+      world.draw_ms = 1 + static_cast<std::int64_t>(random() % (round < 50 ? 16 : 70));
       world.run_ms(300 + static_cast<std::int64_t>(random() % 200));
       bool& what = random() % 2 == 0 ? world.daemon_runs : world.tracker_sees;
       what = false;
