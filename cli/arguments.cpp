@@ -155,6 +155,15 @@ void add_session(Parser& parser) {
   add("close", Action::close, "close the document")->add_flag("--discard", options->discard, "give unsaved edits up");
 }
 
+void add_devices(Parser& parser) {
+  const auto [app, options] =
+      add_command<DevicesOptions>(parser, "devices", "show eye tracker, prism servo and their loop in a running deviced", devices);
+  add_optional(app, "--runtime-dir", options->runtime_directory, "the folder of deviced's socket");
+  app->add_flag("--watch", options->watch, "again each second, until Ctrl-C");
+  app->add_flag("--rearm", options->rearm, "first let a mask that was stuck or switched itself off try again");
+  app->add_flag("--reload", options->reload, "first read prismesh.toml and the display profile again");
+}
+
 /// Wrong usage as an Error that names the command and, for an unknown command, the nearest known one.
 tl::unexpected<Error> usage_error(const Parser& parser, std::span<const std::string> args, const CLI::ParseError& problem) {
   std::string command = "prismesh";
@@ -182,6 +191,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_writing_commands(*parser);
   add_render(*parser);
   add_session(*parser);
+  add_devices(*parser);
   try {
     std::vector<std::string> reversed(args.rbegin(), args.rend());
     parser->app.parse(std::move(reversed));

@@ -91,4 +91,13 @@ struct SessionOptions {
 };
 int session(const SessionOptions& options, const Common& common, const Surroundings& surroundings);
 
+/// Asks a running deviced.
+struct DevicesOptions {
+  std::optional<std::filesystem::path> runtime_directory;
+  bool watch = false;   ///< again each second
+  bool rearm = false;   ///< first let a mask that was stuck or switched itself off try again
+  bool reload = false;  ///< first let the daemon read settings and profile again
+};
+int devices(const DevicesOptions& options, const Common& common, const Surroundings& surroundings);
+
 }  // namespace prismesh::cli

@@ -146,4 +146,48 @@ std::string distance_json(const Gap& gap) {
       .dump();
 }
 
+std::string devices_json(const DeviceFigures& figures) {
+  const ipc::EyesState& eyes = figures.eyes;
+  const ipc::PrismState& mask = figures.mask;
+  const ipc::DeviceHealth& loop = figures.loop;
+  Json listed = Json::array();
+  for (const ipc::DeviceInfo& device : figures.devices.devices)
+    listed.push_back({{"role", device.role},
+                      {"kind", device.kind},
+                      {"where", printable(device.where)},
+                      {"simulated", device.simulated},
+                      {"state", device.state},
+                      {"trouble", printable(device.trouble)}});
+  return Json{{"profile", printable(figures.devices.profile)},
+              {"devices", std::move(listed)},
+              {"eyes",
+               {{"age_ms", or_null(figures.age_ms(eyes.measured_ns))},
+                {"between_eyes_mm", eyes.between_eyes_mm},
+                {"velocity_mm_s", eyes.velocity_mm_s},
+                {"toward_right", eyes.toward_right},
+                {"eye_separation_mm", eyes.eye_separation_mm},
+                {"records", eyes.records},
+                {"bytes_skipped", eyes.bytes_skipped},
+                {"resyncs", eyes.resyncs},
+                {"times_lost", eyes.times_lost}}},
+              {"mask",
+               {{"age_ms", or_null(figures.age_ms(mask.measured_ns))},
+                {"position_mm", mask.position_mm},
+                {"velocity_mm_s", mask.velocity_mm_s},
+                {"goal_mm", mask.goal_mm},
+                {"half_periods", mask.half_periods},
+                {"stereo_allowed", mask.stereo_allowed}}},
+              {"loop",
+               {{"age_ms", or_null(figures.age_ms(loop.heartbeat_ns))},
+                {"pid", loop.pid},
+                {"ticks", loop.ticks},
+                {"ticks_late", loop.ticks_late},
+                {"worst_late_ms", static_cast<double>(loop.worst_late_ns) * 1e-6},
+                {"tick_cpu_us", static_cast<double>(loop.tick_cpu_ns) * 1e-3},
+                {"realtime", loop.realtime},
+                {"memory_locked", loop.memory_locked},
+                {"simulated", loop.simulated}}}}
+      .dump();
+}
+
 }  // namespace prismesh::cli

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/device_figures.h"
 #include "cli/figures.h"
 #include "mesh/document/document.h"
 #include "mesh/document/journal.h"
@@ -21,5 +22,6 @@ std::string failed_edit_json(const std::string& edit, const std::string& reason)
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);
 std::string diff_json(const Difference& difference);
 std::string distance_json(const Gap& gap);
+std::string devices_json(const DeviceFigures& figures);
 
 }  // namespace prismesh::cli

@@ -1,0 +1,26 @@
+// What deviced and its state page say at one moment. Inner to cli.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "ipc/device_messages.h"
+#include "ipc/device_page.h"
+
+namespace prismesh::cli {
+
+struct DeviceFigures {
+  std::int64_t now_ns = 0;  ///< of the same clock as the page's times
+  ipc::Devices devices;
+  ipc::EyesState eyes;
+  ipc::PrismState mask;
+  ipc::DeviceHealth loop;
+
+  /// Milliseconds since a time on the page; nothing for "never".
+  std::optional<double> age_ms(std::int64_t time_ns) const {
+    if (time_ns == 0) return std::nullopt;
+    return static_cast<double>(now_ns - time_ns) * 1e-6;
+  }
+};
+
+}  // namespace prismesh::cli

@@ -1,0 +1,131 @@
+// The eye tracker, the prism servo and the loop that joins them, as deviced knows them.
+#include <ostream>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "base/clock.h"
+#include "base/counted.h"
+#include "cli/commands.h"
+#include "cli/device_figures.h"
+#include "cli/json_output.h"
+#include "cli/report_text.h"
+#include "ipc/reconnecting_client.h"
+
+namespace prismesh::cli {
+
+namespace {
+
+constexpr std::chrono::seconds kPatience{15};
+constexpr std::chrono::seconds kWatchPeriod{1};
+
+Result<DeviceFigures> look(ipc::DeviceClient& client) {
+  Result<ipc::DeviceAnswer> answer = client.call(ipc::GetDevices{});
+  while (client.next_event()) {
+  }  // what they tell is in the answer
+  if (!answer) return fail(std::move(answer.error()));
+  auto* devices = std::get_if<ipc::Devices>(&*answer);
+  if (devices == nullptr) return fail("", "the device daemon answered something else than its devices");
+  DeviceFigures figures;
+  figures.devices = std::move(*devices);
+  figures.eyes = client.page().eyes().value_or(ipc::EyesState{});
+  figures.mask = client.page().prism().value_or(ipc::PrismState{});
+  figures.loop = client.page().health().value_or(ipc::DeviceHealth{});
+  MonotonicClock clock;
+  figures.now_ns = clock.now_ns();
+  return figures;
+}
+
+std::string eyes_text(const DeviceFigures& figures) {
+  const ipc::EyesState& eyes = figures.eyes;
+  const auto age_ms = figures.age_ms(eyes.measured_ns);
+  if (!age_ms) return "no head was seen yet";
+  const auto& at = eyes.between_eyes_mm;
+  return fmt::format("head at ({:.0f}, {:.0f}, {:.0f}) mm, measured {:.0f} ms ago; lost {} since the daemon's start", at[0], at[1], at[2],
+                     *age_ms, counted(eyes.times_lost, "time"));
+}
+
+std::string mask_text(const DeviceFigures& figures) {
+  const ipc::PrismState& mask = figures.mask;
+  const auto age_ms = figures.age_ms(mask.measured_ns);
+  if (!age_ms) return "the mask's place isn't known";
+  return fmt::format("mask at {:.3f} mm (goal {:.3f}), measured {:.0f} ms ago; {}", mask.position_mm, mask.goal_mm, *age_ms,
+                     mask.stereo_allowed ? "stereo" : "no stereo now");
+}
+
+std::string loop_text(const DeviceFigures& figures) {
+  const ipc::DeviceHealth& loop = figures.loop;
+  const auto beat_ms = figures.age_ms(loop.heartbeat_ns);
+  if (!beat_ms) return "it hasn't begun";
+  return fmt::format(
+      "process {}: {}, last {:.0f} ms ago, {} late (worst {:.1f} ms), {:.1f} us of CPU a tick; real-time priority {}, memory {}", loop.pid,
+      counted(loop.ticks, "tick"), *beat_ms, loop.ticks_late, static_cast<double>(loop.worst_late_ns) * 1e-6,
+      static_cast<double>(loop.tick_cpu_ns) * 1e-3, loop.realtime ? "granted" : "refused", loop.memory_locked ? "locked" : "not locked");
+}
+
+void print(std::ostream& out, const DeviceFigures& figures) {
+  out << "display profile " << printable(figures.devices.profile) << '\n';
+  if (figures.devices.devices.empty()) out << "no device is configured: docs/settings.md says how to name one in prismesh.toml\n";
+  for (const ipc::DeviceInfo& device : figures.devices.devices) {
+    out << device.role << ": " << device.state << " (" << device.kind << (device.simulated ? ", simulated" : "") << ", "
+        << printable(device.where) << ")\n"
+        << "  " << (device.role == "eye tracker" ? eyes_text(figures) : mask_text(figures)) << '\n';
+    if (!device.trouble.empty()) out << "  trouble: " << printable(device.trouble) << '\n';
+  }
+  out << "loop: " << loop_text(figures) << '\n';
+}
+
+/// What the user wants done first; empty: only to look.
+Result<void> act(ipc::DeviceClient& client, const DevicesOptions& options) {
+  if (options.reload)
+    if (Result<ipc::DeviceAnswer> done = client.call(ipc::Reload{}); !done) return fail(std::move(done.error()));
+  if (options.rearm)
+    if (Result<ipc::DeviceAnswer> done = client.call(ipc::Rearm{}); !done) return fail(std::move(done.error()));
+  return {};
+}
+
+Result<void> act_and_print(ipc::DeviceClient& client, const DevicesOptions& options, bool first, const Common& common,
+                           const Surroundings& surroundings) {
+  if (first)
+    if (Result<void> acted = act(client, options); !acted) return acted;
+  const Result<DeviceFigures> figures = look(client);
+  if (!figures) return fail(figures.error());
+  if (common.json)
+    surroundings.out << devices_json(*figures) << '\n';
+  else
+    print(surroundings.out, *figures);
+  surroundings.out.flush();
+  return {};
+}
+
+/// Until the user stops it; a daemon that is started again is found again.
+void watch(ipc::ReconnectingDeviceClient& connection, const DevicesOptions& options, const Common& common,
+           const Surroundings& surroundings) {
+  while (!surroundings.stop() && surroundings.out.good()) {
+    if (const Result<ipc::DeviceClient*> client = connection.wait(kPatience); !client)
+      say(surroundings, client.error());
+    else if (const Result<void> printed = act_and_print(**client, options, false, common, surroundings); !printed)
+      connection.lost(printed.error());
+    for (auto slept = std::chrono::milliseconds(0); slept < kWatchPeriod && !surroundings.stop(); slept += std::chrono::milliseconds(50))
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+}  // namespace
+
+int devices(const DevicesOptions& options, const Common& common, const Surroundings& surroundings) {
+  ipc::ReconnectingDeviceClient connection(ipc::device_socket_path(options.runtime_directory), "prismesh devices");
+  const Result<ipc::DeviceClient*> client = connection.wait(std::chrono::milliseconds(0));
+  if (!client) {
+    say(surroundings, client.error());
+    return kFailed;
+  }
+  if (const Result<void> printed = act_and_print(**client, options, true, common, surroundings); !printed) {
+    say(surroundings, printed.error());
+    return kFailed;
+  }
+  if (options.watch) watch(connection, options, common, surroundings);
+  return kDone;
+}
+
+}  // namespace prismesh::cli

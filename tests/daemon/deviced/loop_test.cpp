@@ -1,0 +1,297 @@
+// The device loop in virtual time: what the page says as devices start, work, are lost and come back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/daemon/deviced/loop_rig.h"
+#include "tests/drivers/port/allocations.h"
+
+namespace prismesh::deviced {
+namespace {
+
+using drivers::eye_tracker::SimulatedHead;
+using drivers::prism_servo::MaskPhase;
+using ipc::EyesPhase;
+using ::testing::ElementsAre;
+
+std::vector<EyesPhase> eyes_phases(const std::vector<LoopEvent>& events) {
+  std::vector<EyesPhase> phases;
+  for (const LoopEvent& event : events)
+    if (const auto* changed = std::get_if<EyesChanged>(&event)) phases.push_back(changed->phase);
+  return phases;
+}
+std::vector<MaskPhase> mask_phases(const std::vector<LoopEvent>& events) {
+  std::vector<MaskPhase> phases;
+  for (const LoopEvent& event : events)
+    if (const auto* changed = std::get_if<MaskChanged>(&event)) phases.push_back(changed->phase);
+  return phases;
+}
+
+TEST(DeviceLoop, StartsUpByStepsThatThePageShows) {
+  LoopRig rig;
+  EXPECT_EQ(rig.eyes().phase, EyesPhase::none) << "before the first tick";
+  rig.tick();
+  EXPECT_EQ(rig.eyes().phase, EyesPhase::silent);
+  EXPECT_EQ(rig.mask().phase, MaskPhase::absent);
+  EXPECT_FALSE(rig.mask().stereo_allowed);
+  const std::int64_t ms = rig.run_until([&] { return rig.tracking() && rig.following(); });
+  EXPECT_GE(ms, 0) << rig.state();
+  EXPECT_LE(ms, 3000);
+  const std::vector<LoopEvent> events = rig.events();
+  EXPECT_THAT(eyes_phases(events), ElementsAre(EyesPhase::silent, EyesPhase::searching, EyesPhase::tracking));
+  EXPECT_THAT(mask_phases(events), ElementsAre(MaskPhase::homing, MaskPhase::following));
+}
+
+TEST(DeviceLoop, PublishesWhereTheHeadIsAndTheMaskFollows) {
+  RigOptions options;
+  LoopRig rig(options);
+  rig.start();
+  rig.run_for_ms(500);
+  double worst_eyes_mm = 0, worst_mask_mm = 0;
+  rig.after_tick = [&] {
+    if (!rig.following()) return;  // on the way back by a period
+    const std::int64_t now = rig.clock.now_ns();
+    // The simulator's time began with its first step.
+    const Eigen::Vector3d truth = options.head(static_cast<double>(now - 1'001 * kMs) * 1e-9).between_eyes_mm;
+    const Eigen::Vector3d predicted = drivers::eye_tracker::predict(rig.eyes().head(), now);
+    worst_eyes_mm = std::max(worst_eyes_mm, (predicted - truth).head<2>().norm());
+    const double wanted =
+        drivers::display::mask_position_mm(options.loop.optics, truth) - rig.mask().half_periods * options.loop.optics.mask_pitch_mm() / 2;
+    worst_mask_mm = std::max(worst_mask_mm, std::abs(rig.servo.mask_mm() - wanted));
+  };
+  rig.run_for_ms(12'000);
+  EXPECT_LE(worst_eyes_mm, 8);
+  EXPECT_LE(worst_mask_mm, 0.05) << "0.0044 mm of mask a millimetre of head, backlash, lag";
+  EXPECT_GE(rig.eyes().records, 600u);
+  EXPECT_EQ(rig.eyes().resyncs, 0u);
+  EXPECT_EQ(rig.eyes().times_lost, 0u);
+}
+
+TEST(DeviceLoop, AHeadThatLeavesIsSearchedAndTheMaskFreezesAndParks) {
+  bool there = true;
+  RigOptions options;
+  options.head = [&](double) {
+    SimulatedHead head;
+    head.between_eyes_mm = {40, 0, 650};
+    head.visible = there;
+    return head;
+  };
+  LoopRig rig(options);
+  rig.start();
+  rig.events();
+  there = false;
+  const std::int64_t searching = rig.run_until([&] { return rig.eyes().phase == EyesPhase::searching; });
+  EXPECT_GE(searching, 50);
+  EXPECT_LE(searching, 150) << "the newest measurement is older than eyes_lost_ns";
+  rig.tick();
+  EXPECT_FALSE(rig.mask().stereo_allowed);
+  ASSERT_GE(rig.run_until([&] { return rig.mask().phase == MaskPhase::parked; }, 2000), 0) << rig.state();
+  EXPECT_EQ(rig.eyes().times_lost, 1u);
+  EXPECT_THAT(mask_phases(rig.events()), ElementsAre(MaskPhase::frozen, MaskPhase::parking, MaskPhase::parked));
+
+  there = true;
+  const std::int64_t back = rig.run_until([&] { return rig.tracking() && rig.following(); });
+  EXPECT_GE(back, 0) << rig.state();
+  EXPECT_LE(back, 2000);
+}
+
+TEST(DeviceLoop, AFrozenMaskParksAtOnceWhenThePictureIsMono) {
+  const auto parking_after = [](bool mono) {
+    bool there = true;
+    RigOptions options;
+    options.head = [&](double) { return SimulatedHead{.visible = there}; };
+    LoopRig rig(options);
+    rig.loop.tell(SetPictureMono{false});
+    rig.start();
+    there = false;
+    EXPECT_GE(rig.run_until([&] { return rig.mask().phase == MaskPhase::frozen; }), 0);
+    if (mono) rig.loop.tell(SetPictureMono{true});
+    return rig.run_until([&] { return rig.mask().phase != MaskPhase::frozen; });
+  };
+  EXPECT_LE(parking_after(true), 12);
+  EXPECT_GE(parking_after(false), 200);
+}
+
+TEST(DeviceLoop, AnUnpluggedTrackerIsAbsentWithTheNextTick) {
+  LoopRig rig;
+  rig.start();
+  rig.events();
+  rig.tracker_line.unplug();
+  rig.tick();
+  EXPECT_EQ(rig.eyes().phase, EyesPhase::absent);
+  EXPECT_EQ(rig.eyes().times_lost, 1u);
+  rig.run_for_ms(1500);
+  EXPECT_EQ(rig.eyes().phase, EyesPhase::absent);
+  EXPECT_THAT(eyes_phases(rig.events()), ElementsAre(EyesPhase::absent)) << "told once";
+  rig.plug_in_tracker();
+  const std::int64_t back = rig.run_until([&] { return rig.tracking() && rig.following(); });
+  EXPECT_GE(back, 0);
+  EXPECT_LE(back, 2000);
+}
+
+TEST(DeviceLoop, AnUnpluggedServoAllowsNoStereo) {
+  LoopRig rig;
+  rig.start();
+  rig.servo_line.unplug();
+  rig.tick();
+  rig.tick();
+  EXPECT_EQ(rig.mask().phase, MaskPhase::absent);
+  EXPECT_FALSE(rig.mask().stereo_allowed);
+  EXPECT_TRUE(rig.tracking());
+  rig.run_for_ms(500);
+  EXPECT_TRUE(rig.servo.watchdog_tripped()) << "a servo without its host stops by itself";
+  rig.plug_in_servo();
+  const std::int64_t back = rig.run_until([&] { return rig.following(); });
+  EXPECT_GE(back, 0);
+  EXPECT_LE(back, 2000);
+}
+
+TEST(DeviceLoop, DevicesThatFallSilentOnAnOpenPortAreLostByTheAgeOfTheirData) {
+  LoopRig rig;
+  rig.start();
+  rig.tracker.set_power(false);
+  const std::int64_t unseen = rig.run_until([&] { return !rig.tracking(); });
+  EXPECT_LE(unseen, 150);
+  EXPECT_GE(rig.run_until([&] { return rig.eyes().phase == EyesPhase::silent; }), 0) << rig.state();
+  rig.tracker.set_power(true);
+  const std::int64_t seen = rig.run_until([&] { return rig.tracking() && rig.following(); });
+  EXPECT_GE(seen, 0) << rig.state();
+  EXPECT_LE(seen, 2000);
+
+  rig.servo.set_power(false);
+  const std::int64_t dead = rig.run_until([&] { return !rig.mask().stereo_allowed; });
+  EXPECT_LE(dead, 250);
+  EXPECT_GE(rig.run_until([&] { return rig.mask().phase == MaskPhase::absent; }), 0) << rig.state();
+  rig.servo.set_power(true);
+  const std::int64_t back = rig.run_until([&] { return rig.following(); });
+  EXPECT_GE(back, 0) << rig.state();
+  EXPECT_LE(back, 2000);
+}
+
+TEST(DeviceLoop, CalibrationHoldsTheMaskAndLetsItGo) {
+  LoopRig rig;
+  rig.start();
+  ASSERT_TRUE(rig.loop.tell(SetHold{-0.8}));
+  ASSERT_GE(rig.run_until([&] { return rig.mask().phase == MaskPhase::held && std::abs(rig.mask().position_mm + 0.8) < 0.02; }), 0)
+      << rig.state();
+  EXPECT_NEAR(rig.servo.mask_mm(), -0.8, 0.03);
+  rig.run_for_ms(1000);
+  EXPECT_NEAR(rig.servo.mask_mm(), -0.8, 0.03) << "whatever the eyes do";
+  ASSERT_TRUE(rig.loop.tell(EndHold{}));
+  EXPECT_GE(rig.run_until([&] { return rig.following(); }), 0);
+}
+
+TEST(DeviceLoop, AJammedMaskIsSaidAndLetGoUntilItIsRearmed) {
+  RigOptions options;
+  options.head = [](double seconds) {
+    SimulatedHead head;
+    head.between_eyes_mm = {120 * std::sin(2 * 3.14159265 * seconds / 3), 0, 650};
+    return head;
+  };
+  LoopRig rig(options);
+  rig.start();
+  rig.servo.jam(true);
+  const std::int64_t found = rig.run_until([&] { return rig.mask().phase == MaskPhase::stuck || rig.mask().phase == MaskPhase::alarm; });
+  EXPECT_GE(found, 0);
+  EXPECT_LE(found, 3000);
+  EXPECT_FALSE(rig.mask().stereo_allowed);
+  rig.run_for_ms(200);
+  EXPECT_FALSE(rig.servo.torque());
+  rig.servo.jam(false);
+  rig.run_for_ms(2000);
+  EXPECT_FALSE(rig.following()) << "latched until somebody has looked";
+  ASSERT_TRUE(rig.loop.tell(AskRearm{}));
+  const std::int64_t back = rig.run_until([&] { return rig.following(); });
+  EXPECT_GE(back, 0) << rig.state();
+}
+
+TEST(DeviceLoop, ANewDisplayIsTakenWithoutAPause) {
+  LoopRig rig;
+  rig.start();
+  SetDisplay display;
+  display.optics.zero_mm = 0.1;
+  display.eye_separation_mm = 58;
+  ASSERT_TRUE(rig.loop.tell(display));
+  rig.tick();
+  EXPECT_EQ(rig.eyes().eye_separation_mm, 58);
+  EXPECT_TRUE(rig.tracking());
+  EXPECT_GE(rig.run_until([&] { return rig.following(); }, 1000), 0);
+}
+
+TEST(DeviceLoop, OnTheWayOutTheMotorIsLetGoAndThePageSaysSo) {
+  LoopRig rig;
+  rig.start();
+  EXPECT_TRUE(rig.servo.torque());
+  for (int i = 0; i < 25; ++i) {
+    for (int ms = 0; ms < 4; ++ms) {
+      rig.clock.advance_ns(kMs);
+      rig.servo.step(rig.clock.now_ns());
+    }
+    rig.loop.wind_down(rig.clock.now_ns());
+  }
+  EXPECT_FALSE(rig.servo.torque());
+  EXPECT_EQ(rig.eyes().phase, EyesPhase::absent);
+  EXPECT_EQ(rig.mask().phase, MaskPhase::absent);
+  EXPECT_FALSE(rig.mask().stereo_allowed);
+}
+
+TEST(DeviceLoop, WithoutDevicesThereAreNone) {
+  ManualClock clock;
+  ipc::DevicePage page = ipc::DevicePage::create().value();
+  const ipc::DevicePageReader reader = ipc::DevicePageReader::map(page.descriptor()).value();
+  DeviceLoop loop({}, {}, page);
+  for (int i = 0; i < 100; ++i) {
+    clock.advance_ns(kTickPeriodNs);
+    loop.tick(clock.now_ns());
+  }
+  EXPECT_EQ(reader.eyes()->phase, EyesPhase::none);
+  EXPECT_EQ(reader.eyes()->time_ns, clock.now_ns());
+  EXPECT_EQ(reader.prism()->phase, MaskPhase::absent);
+  EXPECT_FALSE(loop.next_event()) << "nothing has changed";
+}
+
+TEST(DeviceLoop, CommandsThatFindNoPlaceAreRefusedNotLost) {
+  ipc::DevicePage page = ipc::DevicePage::create().value();
+  DeviceLoop loop({}, {}, page);
+  int taken = 0;
+  while (loop.tell(SetHold{0.1})) ++taken;
+  EXPECT_GE(taken, 16);
+  EXPECT_FALSE(loop.tell(EndHold{}));
+  loop.tick(kTickPeriodNs);
+  EXPECT_TRUE(loop.tell(EndHold{}));
+}
+
+TEST(DeviceLoop, ATickAllocatesNothingWhateverHappens) {
+  RigOptions options;
+  options.tracker.faults = {.drop_out = 0.005, .caution = 0.05, .garbage = 0.01, .damaged_byte = 0.001, .lost_byte = 0.001};
+  LoopRig rig(options);
+  std::uint64_t before = 0, most = 0;
+  rig.before_tick = [&] { before = drivers::port::allocations_of_this_thread(); };
+  rig.after_tick = [&] { most = std::max(most, drivers::port::allocations_of_this_thread() - before); };
+  rig.run_for_ms(4000);
+  EXPECT_EQ(most, 0u) << "starting up and following";
+  for (int i = 0; i < 20; ++i) {
+    rig.tracker_line.unplug();
+    rig.run_for_ms(120);
+    rig.plug_in_tracker();
+    rig.run_for_ms(400);
+    rig.servo_line.unplug();
+    rig.run_for_ms(120);
+    rig.plug_in_servo();
+    rig.run_for_ms(700);
+    rig.loop.tell(SetHold{0.3});
+    rig.run_for_ms(100);
+    rig.loop.tell(EndHold{});
+    rig.loop.tell(AskRearm{});
+    rig.run_for_ms(300);
+    rig.loop.tell(SetDisplay{});
+  }
+  rig.servo.raise_hardware_error(0x20);
+  rig.run_for_ms(1000);
+  EXPECT_EQ(most, 0u);
+  const std::uint64_t start = drivers::port::allocations_of_this_thread();
+  ::operator delete(::operator new(8));
+  EXPECT_EQ(drivers::port::allocations_of_this_thread(), start + 1) << "the counter counts";
+}
+
+}  // namespace
+}  // namespace prismesh::deviced
