@@ -18,6 +18,7 @@ constexpr std::int64_t kLongestSleepNs = 1'000'000'000;
 
 std::vector<std::string> paths_of(const std::vector<KeeperWork>& keepers) {
   std::vector<std::string> paths;
+  paths.reserve(keepers.size());
   for (const KeeperWork& keeper : keepers) paths.push_back(keeper.path);
   return paths;
 }

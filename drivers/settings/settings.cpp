@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <span>
 #include <utility>
 
 #include <toml++/toml.h>
@@ -31,6 +32,12 @@ struct Section {
   std::string_view name;
   std::vector<Key> keys;
 };
+
+template <class Named>
+const Named* find(std::span<const Named> all, std::string_view name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
 
 struct Place {
   std::string file;
@@ -194,11 +201,11 @@ class Reader {
     std::vector<std::string_view> names;
     for (const Section& section : sections) names.push_back(section.name);
     for (const auto& [key, node] : root) {
-      const auto known = std::find_if(sections.begin(), sections.end(), [&](const Section& section) { return section.name == key.str(); });
-      if (known == sections.end())
+      const Section* section = find(std::span<const Section>(sections), key.str());
+      if (section == nullptr)
         return wrong(node, "settings have no section [" + std::string(key.str()) + "]; the nearest known is [" +
                                std::string(nearest_name(key.str(), names)) + "]");
-      if (auto read = read_section(*known, node); !read) return read;
+      if (auto read = read_section(*section, node); !read) return read;
     }
     return {};
   }
@@ -215,12 +222,12 @@ class Reader {
     std::vector<std::string_view> names;
     for (const Key& key : section.keys) names.push_back(key.name);
     for (const auto& [name, value] : *table) {
-      const auto known = std::find_if(section.keys.begin(), section.keys.end(), [&](const Key& key) { return key.name == name.str(); });
-      if (known == section.keys.end())
+      const Key* key = find(std::span<const Key>(section.keys), name.str());
+      if (key == nullptr)
         return wrong(value, "[" + section_name + "] has no \"" + std::string(name.str()) + "\"; the nearest known is \"" +
                                 std::string(nearest_name(name.str(), names)) + "\"");
-      if (const Problem problem = known->read(value); !problem.empty())
-        return wrong(value, section_name + "." + std::string(known->name) + " " + problem);
+      if (const Problem problem = key->read(value); !problem.empty())
+        return wrong(value, section_name + "." + std::string(key->name) + " " + problem);
     }
     return {};
   }
