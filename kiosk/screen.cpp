@@ -32,11 +32,7 @@ Result<void> Screen::draw(unsigned framebuffer, const std::optional<tools::Pixel
     if (Result<void> laid_out = lay_out(); !laid_out) return laid_out;
   render::Picture picture = editor_.picture();
   picture.moving = moving;
-  picture.overlay = [&](const render::EyeImage& image) {
-    const bool columns = picture.profile.weave == stereo::Weave::columns && image.eye;
-    const double shift = columns ? stereo::half_pixel_shift(*image.eye, image.display_width, picture.profile.swap_eyes) : 0;
-    gui_.draw({image.width, image.height}, {image.display_width, image.display_height}, shift);
-  };
+  picture.overlay = [&](const render::EyeImage& image) { gui_.draw({image.width, image.height}, image.from_picture); };
   const Result<render::DrawReport> report = renderer_.draw(picture, framebuffer, size_.width, size_.height);
   if (!report) return fail(report.error());
   editor_.set_report(*report);

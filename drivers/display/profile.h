@@ -56,6 +56,8 @@ struct Profile {
 
   bool operator==(const Profile&) const = default;
   bool stereo() const { return weave != Weave::one_eye && weave != Weave::centre; }
+  /// Neighbouring pixels belong to different eyes: such a picture is right only pixel by pixel.
+  bool interlaced() const { return has_mask() || weave == Weave::rows; }
   bool has_mask() const { return weave == Weave::mask || weave == Weave::columns || weave == Weave::stencil; }
 };
 

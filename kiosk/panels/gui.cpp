@@ -197,8 +197,8 @@ void Gui::layout(display::PixelSize picture, double seconds, const std::function
   state_->laid_out = true;
 }
 
-void Gui::draw(display::PixelSize target, display::PixelSize picture, double shift_x) const {
-  if (state_->laid_out) state_->renderer->draw(*ImGui::GetDrawData(), target, picture, shift_x);
+void Gui::draw(display::PixelSize target, const PictureMap& from_picture) const {
+  if (state_->laid_out) state_->renderer->draw(*ImGui::GetDrawData(), target, from_picture);
 }
 
 void draw_pointer(double x, double y) {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "kiosk/display/window.h"
+#include "kiosk/panels/gui_renderer.h"
 
 struct ImFont;
 
@@ -43,7 +44,7 @@ class Gui {
   /// Lays the panels out: `build` calls ImGui. `seconds`: since the last time.
   void layout(display::PixelSize picture, double seconds, const std::function<void()>& build);
   /// Draws what was laid out into the bound framebuffer (see GuiRenderer::draw).
-  void draw(display::PixelSize target, display::PixelSize picture, double shift_x) const;
+  void draw(display::PixelSize target, const PictureMap& from_picture) const;
 
  private:
   struct State;

@@ -1,8 +1,6 @@
 #include "kiosk/panels/gui_renderer.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -16,23 +14,32 @@ constexpr const char* kVertexShader = R"(#version 310 es
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec2 texture_position;
 layout(location = 2) in vec4 colour;
-uniform vec4 scale_and_offset;
+uniform vec3 to_x, to_y;
 out vec2 uv;
 out vec4 tint;
+out vec2 place;
 void main() {
   uv = texture_position;
   tint = colour;
-  gl_Position = vec4(position * scale_and_offset.xy + scale_and_offset.zw, 0.0, 1.0);
+  place = position;
+  vec3 at = vec3(position, 1.0);
+  gl_Position = vec4(dot(to_x, at), dot(to_y, at), 0.0, 1.0);
 }
 )";
 
 constexpr const char* kFragmentShader = R"(#version 310 es
 precision mediump float;
 uniform sampler2D atlas;
-in vec2 uv;
+uniform highp vec4 clip;
+in highp vec2 uv;
 in vec4 tint;
+in highp vec2 place;
 out vec4 colour;
-void main() { colour = vec4(tint.rgb, tint.a * texture(atlas, uv).r); }
+void main() {
+  // A scissor can't follow an image that is sheared.
+  if (any(lessThan(place, clip.xy)) || any(greaterThan(place, clip.zw))) discard;
+  colour = vec4(tint.rgb, tint.a * texture(atlas, uv).r);
+}
 )";
 
 Result<GLuint> compile(GLenum kind, const char* source) {
@@ -95,7 +102,7 @@ class SavedState {
 
 struct GuiRenderer::State {
   GLuint program = 0;
-  GLint scale_and_offset = -1;
+  GLint to_x = -1, to_y = -1, clip = -1;
   GLuint vertex_array = 0;
   GLuint vertices = 0;
   GLuint indices = 0;
@@ -130,7 +137,9 @@ Result<GuiRenderer> GuiRenderer::create() {
   glLinkProgram(state->program);
   glDeleteShader(*vertex);
   glDeleteShader(*fragment);
-  state->scale_and_offset = glGetUniformLocation(state->program, "scale_and_offset");
+  state->to_x = glGetUniformLocation(state->program, "to_x");
+  state->to_y = glGetUniformLocation(state->program, "to_y");
+  state->clip = glGetUniformLocation(state->program, "clip");
 
   glGenVertexArrays(1, &state->vertex_array);
   glGenBuffers(1, &state->vertices);
@@ -169,37 +178,37 @@ void GuiRenderer::upload_fonts() {
   fonts.TexID = reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(state_->atlas));
 }
 
-void GuiRenderer::draw(const ImDrawData& data, display::PixelSize target, display::PixelSize picture, double shift_x) const {
-  const ImVec2 size(static_cast<float>(picture.width), static_cast<float>(picture.height)), origin = data.DisplayPos;
-  if (size.x <= 0 || size.y <= 0 || target.width <= 0 || target.height <= 0) return;
+void GuiRenderer::draw(const ImDrawData& data, display::PixelSize target, const PictureMap& from_picture) const {
+  if (target.width <= 0 || target.height <= 0) return;
   const SavedState saved;
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
+  glDisable(GL_SCISSOR_TEST);
   glEnable(GL_BLEND);
   glBlendEquation(GL_FUNC_ADD);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  glEnable(GL_SCISSOR_TEST);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glViewport(0, 0, target.width, target.height);
   glUseProgram(state_->program);
-  glUniform4f(state_->scale_and_offset, 2.0f / size.x, -2.0f / size.y, -1.0f - 2.0f * origin.x / size.x + static_cast<float>(shift_x),
-              1.0f + 2.0f * origin.y / size.y);
+  const Eigen::Vector3d origin(data.DisplayPos.x, data.DisplayPos.y, 0);
+  const auto set_row = [&](GLint location, int row) {
+    const double offset = from_picture(row, 2) - from_picture.row(row).dot(origin);
+    glUniform3f(location, static_cast<float>(from_picture(row, 0)), static_cast<float>(from_picture(row, 1)), static_cast<float>(offset));
+  };
+  set_row(state_->to_x, 0);
+  set_row(state_->to_y, 1);
   glBindVertexArray(state_->vertex_array);
   glBindBuffer(GL_ARRAY_BUFFER, state_->vertices);
   glBindTexture(GL_TEXTURE_2D, state_->atlas);
 
-  const float to_x = static_cast<float>(target.width) / size.x, to_y = static_cast<float>(target.height) / size.y;
   for (int l = 0; l < data.CmdListsCount; ++l) {
     const ImDrawList& list = *data.CmdLists[l];
     glBufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data, GL_STREAM_DRAW);
     for (const ImDrawCmd& command : list.CmdBuffer) {
-      const int left = std::max(0, static_cast<int>(std::floor((command.ClipRect.x - origin.x) * to_x)));
-      const int right = std::min(target.width, static_cast<int>(std::ceil((command.ClipRect.z - origin.x) * to_x)));
-      const int top = std::max(0, static_cast<int>(std::floor((command.ClipRect.y - origin.y) * to_y)));
-      const int bottom = std::min(target.height, static_cast<int>(std::ceil((command.ClipRect.w - origin.y) * to_y)));
-      if (right <= left || bottom <= top || command.ElemCount == 0) continue;
-      glScissor(left, target.height - bottom, right - left, bottom - top);
+      const ImVec4& clip = command.ClipRect;
+      if (!(clip.z > clip.x && clip.w > clip.y) || command.ElemCount == 0) continue;
+      glUniform4f(state_->clip, clip.x, clip.y, clip.z, clip.w);
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(static_cast<std::size_t>(command.IdxOffset) * sizeof(ImDrawIdx)));
     }

@@ -4,12 +4,17 @@
 
 #include <memory>
 
+#include <Eigen/Core>
+
 #include "base/error.h"
 #include "kiosk/display/window.h"
 
 struct ImDrawData;
 
 namespace prismesh::kiosk::panels {
+
+/// Places in the picture (pixels from the upper left corner) to an image's normalised coordinates (y up): affine.
+using PictureMap = Eigen::Matrix<double, 2, 3>;
 
 class GuiRenderer {
  public:
@@ -22,9 +27,8 @@ class GuiRenderer {
   /// Takes the font atlas of the current ImGui context, which must have been built or changed since.
   void upload_fonts();
 
-  /// Draws into the bound framebuffer's lower left `target` pixels, which stand for `picture` pixels of the display: it is squeezed to
-  /// fit. `shift_x` (normalised device coordinates) moves everything sideways: the half-pixel correction of an eye's columns.
-  void draw(const ImDrawData& data, display::PixelSize target, display::PixelSize picture, double shift_x) const;
+  /// Draws into the bound framebuffer's lower left `target` pixels; `from_picture` says where the picture's places lie there.
+  void draw(const ImDrawData& data, display::PixelSize target, const PictureMap& from_picture) const;
 
  private:
   struct State;

@@ -77,6 +77,8 @@ class Program {
   void set(const char* uniform, float x, float y) const { glUniform2f(location(uniform), x, y); }
   void set(const char* uniform, float x, float y, float z, float w) const { glUniform4f(location(uniform), x, y, z, w); }
   void set(const char* uniform, const Eigen::Vector3f& v) const { glUniform3f(location(uniform), v.x(), v.y(), v.z()); }
+  void set(const char* uniform, int x, int y) const { glUniform2i(location(uniform), x, y); }
+  void set(const char* uniform, const Eigen::Matrix2f& m) const { glUniformMatrix2fv(location(uniform), 1, GL_FALSE, m.data()); }
   void set(const char* uniform, const Eigen::Matrix4f& m) const { glUniformMatrix4fv(location(uniform), 1, GL_FALSE, m.data()); }
   void set(const char* uniform, const Eigen::Matrix3f& m) const { glUniformMatrix3fv(location(uniform), 1, GL_FALSE, m.data()); }
 

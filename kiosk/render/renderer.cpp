@@ -4,16 +4,15 @@
 #include <tuple>
 #include <utility>
 
+#include "kiosk/render/composition.h"
 #include "kiosk/render/eye_images.h"
 #include "kiosk/render/item_image.h"
 #include "kiosk/render/model_layer.h"
 #include "kiosk/render/scene_pass.h"
 #include "kiosk/render/shaders.h"
+#include "kiosk/render/weave_pass.h"
 
 namespace prismesh::kiosk::render {
-
-using stereo::Eye;
-using stereo::Weave;
 
 std::optional<ColourMode> colour_mode_from(std::string_view name) {
   for (std::size_t i = 0; i < kColourModeNames.size(); ++i)
@@ -23,55 +22,39 @@ std::optional<ColourMode> colour_mode_from(std::string_view name) {
 
 namespace {
 
-/// The eyes whose images a weave needs, the left one first; empty: the one between.
-std::vector<std::optional<Eye>> eyes_for(const stereo::Profile& profile) {
-  if (profile.weave == Weave::one_eye) return {profile.eye};
-  if (profile.weave == Weave::centre) return {std::nullopt};
-  return {Eye::left, Eye::right};
-}
-
-int weave_code(Weave weave) {
-  switch (weave) {
-    case Weave::columns: return 0;
-    case Weave::one_eye:
-    case Weave::centre: return 1;
-    case Weave::anaglyph: return 2;
-    case Weave::side_by_side: return 3;
-  }
-  return 1;
-}
-
-/// What the scene in an eye's image was drawn from.
+/// What the scene in the eyes' images was drawn from.
 struct Drawn {
   Picture picture;
+  std::vector<ComposedImage> images;
   int width = 0, height = 0;
   std::uint64_t scene_version = 0;
 
   bool same_scene(const Drawn& other) const {
     const auto facts = [](const Drawn& d) {
       const Picture& p = d.picture;
-      return std::tie(p.view, p.profile, p.between_eyes_mm, p.eye_separation_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs,
-                      p.selected_nodes, p.handle, d.width, d.height, d.scene_version);
+      return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.selected_nodes,
+                      p.handle, d.images, d.width, d.height, d.scene_version);
     };
     return facts(*this) == facts(other);
   }
 };
 
-EyeView eye_view(const Picture& picture, std::optional<Eye> eye, int width, int height) {
+/// What the composition of a picture depends on, apart from the scene.
+bool same_composition(const Picture& a, const Picture& b) {
+  const auto facts = [](const Picture& p) {
+    return std::tie(p.profile, p.between_eyes_mm, p.toward_right, p.eye_separation_mm, p.depth_share, p.mask_mm, p.panel);
+  };
+  return facts(a) == facts(b);
+}
+
+EyeView eye_view(const Picture& picture, const ComposedImage& image, int width, int height) {
   EyeView view;
   const Eigen::Vector2d screen = stereo::screen_size_mm(picture.profile, width, height);
-  view.eye_mm = eye ? stereo::eyes_from(picture.between_eyes_mm, picture.eye_separation_mm).of(*eye) : picture.between_eyes_mm;
+  view.eye_mm = image.eye_mm;
   view.range = stereo::depth_range(picture.view, view.eye_mm);
-  view.clip_from_screen = stereo::clip_from_screen(view.eye_mm, screen, view.range);
+  view.clip_from_screen = stereo::clip_onto(image.from_picture, stereo::clip_from_screen(view.eye_mm, screen, view.range), width, height);
   view.mm_per_pixel = screen.x() / width;
-  view.image = {eye, width, height, width, height};
-  if (picture.profile.half_width()) {
-    view.image.width = (width + 1) / 2;
-    view.image.display_width = 2 * view.image.width;
-    view.clip_from_screen = picture.profile.weave == Weave::columns
-                                ? stereo::clip_for_columns(view.clip_from_screen, eye.value_or(Eye::left), width, picture.profile.swap_eyes)
-                                : stereo::clip_for_half_width(view.clip_from_screen, width);
-  }
+  view.image = {image.eye, image.width, image.height, width, height, image.from_picture};
   return view;
 }
 
@@ -97,7 +80,10 @@ struct Renderer::State {
   Images fine;
   Images coarse;                    ///< without multisampling
   std::uint64_t scene_version = 0;  ///< counts up with the model and the preview
-  gl::VertexArray no_attributes = gl::VertexArray::make();
+  WeavePass weave;
+  // How the last picture was composed: kept, since idle pictures differ in nothing that it depends on.
+  Composition composition;
+  std::optional<Drawn> composed_for;
 
   // The item picture and what it is of.
   gl::Framebuffer item_framebuffer;
@@ -108,12 +94,12 @@ struct Renderer::State {
   std::uint64_t items_version = 0;
   Figures figures;
 
-  State(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders) {}
+  State(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders), weave(shaders) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
   Result<void> draw_scene(Images& images, const Picture& picture, int width, int height, int samples);
-  void weave(const EyeImages& images, const Picture& picture, unsigned framebuffer, int width, int height) const;
+  void compose_for(const Picture& picture, int width, int height);
   bool make_item_buffer(int width, int height);
   void read_items(int width, int height);
   const ItemImage& items_for(const stereo::Aim& aim);
@@ -161,8 +147,17 @@ void Renderer::end_preview() {
   state_->layer.end_preview();
 }
 
+stereo::Aim aim_for(const Picture& picture, int width, int height) {
+  stereo::PictureEyes eyes{picture.between_eyes_mm, picture.toward_right, picture.eye_separation_mm, picture.depth_share};
+  const drivers::display::PanelArea area = panel_area(picture.panel, width, height);
+  const double pitch = picture.profile.optics.pixel_pitch_mm;
+  eyes.between_mm -= Vec3(area.u_mm(0.5 * width, pitch), area.v_mm(0.5 * height, pitch), 0);
+  return stereo::aim_for(picture.view, picture.profile, eyes, width, height);
+}
+
 Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, int width, int height) {
-  Drawn wanted{picture, width, height, state_->scene_version};
+  state_->compose_for(picture, width, height);
+  Drawn wanted{picture, state_->composition.images, width, height, state_->scene_version};
   wanted.picture.overlay = nullptr;
   // Nothing is gained by drawing coarsely what is there in full.
   const bool fine = !picture.moving || (state_->fine.kept && state_->fine.kept->same_scene(wanted));
@@ -172,13 +167,14 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
       return fail(drawn.error());
     images.kept = std::move(wanted);
   }
-  const auto eyes = eyes_for(picture.profile);
-  for (std::size_t i = 0; i < eyes.size(); ++i) {
+  const std::vector<ComposedImage>& composed = state_->composition.images;
+  for (std::size_t i = 0; i < composed.size(); ++i) {
     reset_after_overlay();
     images.eyes.bind_flat(static_cast<int>(i));
-    state_->scene.draw_flat(picture, eye_view(picture, eyes[i], width, height));
+    state_->scene.draw_flat(picture, eye_view(picture, composed[i], width, height));
   }
-  state_->weave(images.eyes, picture, framebuffer, width, height);
+  reset_after_overlay();
+  state_->weave.draw(state_->composition, images.eyes, framebuffer, width, height);
   DrawReport report;
   if (picture.quality_glyphs && !state_->layer.empty()) {
     report.glyphs = state_->layer.glyphs(state_->options.glyph_cap).count;
@@ -187,35 +183,25 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
   return report;
 }
 
+void Renderer::State::compose_for(const Picture& picture, int width, int height) {
+  if (composed_for && composed_for->width == width && composed_for->height == height && same_composition(composed_for->picture, picture))
+    return;
+  composition = compose(picture, width, height);
+  composed_for = Drawn{picture, {}, width, height, 0};
+  composed_for->picture.overlay = nullptr;
+}
+
 Result<void> Renderer::State::draw_scene(Images& images, const Picture& picture, int width, int height, int samples) {
   images.kept.reset();
-  const auto eyes = eyes_for(picture.profile);
-  const EyeView first = eye_view(picture, eyes.front(), width, height);
-  if (Result<void> sized = images.eyes.resize(first.image.width, first.image.height, samples); !sized) return sized;
-  for (std::size_t i = 0; i < eyes.size(); ++i) {
+  const std::vector<ComposedImage>& composed = composition.images;
+  if (Result<void> sized = images.eyes.resize(composed.front().width, composed.front().height, samples); !sized) return sized;
+  for (std::size_t i = 0; i < composed.size(); ++i) {
     images.eyes.bind_scene();
-    scene.draw(picture, layer, eye_view(picture, eyes[i], width, height), options.glyph_cap);
+    scene.draw(picture, layer, eye_view(picture, composed[i], width, height), options.glyph_cap);
     images.eyes.keep_scene(static_cast<int>(i));
   }
   ++figures.scenes_drawn;
   return {};
-}
-
-void Renderer::State::weave(const EyeImages& images, const Picture& picture, unsigned framebuffer, int width, int height) const {
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, width, height);
-  reset_after_overlay();
-  images.bind_texture(0, unit::kLeft);
-  images.bind_texture(1, unit::kRight);
-  shaders.weave.use();
-  shaders.weave.set("left_eye", static_cast<int>(unit::kLeft));
-  shaders.weave.set("right_eye", static_cast<int>(unit::kRight));
-  shaders.weave.set("weave", weave_code(picture.profile.weave));
-  shaders.weave.set("swap", picture.profile.swap_eyes ? 1 : 0);
-  shaders.weave.set("half_columns", images.width());
-  glBindVertexArray(no_attributes.get());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glActiveTexture(GL_TEXTURE0);
 }
 
 bool Renderer::State::make_item_buffer(int width, int height) {

@@ -40,8 +40,11 @@ struct EyeImage {
   std::optional<stereo::Eye> eye;  ///< empty: the picture from between the eyes
   int width = 0;                   ///< of the image, pixels
   int height = 0;
-  int display_width = 0;  ///< what the image stands for on the display: twice `width` for half-width images
-  int display_height = 0;
+  int picture_width = 0;  ///< of the whole picture, display pixels
+  int picture_height = 0;
+  /// Where a place of the picture (pixels from the upper left corner) lies in the image: normalised coordinates, y up. Images that are
+  /// dealt out to columns are narrower than the picture, shifted, and sheared where the mask leans.
+  stereo::ImageMap from_picture = stereo::ImageMap::Zero();
 };
 
 /// A rectangle in display pixels from the upper left corner.
@@ -79,6 +82,8 @@ struct Picture {
   /// Nothing may be drawn into the target after `draw`. May change any GL state.
   std::function<void(const EyeImage&)> overlay;
 };
+/// What the pointer aims with in a picture of width x height pixels: its pointer eye, from where that eye's picture is drawn.
+stereo::Aim aim_for(const Picture& picture, int width, int height);
 
 struct RendererOptions {
   int samples = 4;                ///< 4 or 1 (no multisampling)

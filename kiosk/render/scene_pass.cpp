@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include <Eigen/LU>
+
 #include "kiosk/render/palette.h"
 
 namespace prismesh::kiosk::render {
@@ -26,6 +28,14 @@ constexpr float kHiddenLight = 0.80F;      ///< selected nodes behind a surface:
 
 Eigen::Vector4f ink(const Colour& colour, float alpha) { return {colour.x(), colour.y(), colour.z(), alpha}; }
 
+/// An image's places (texels from its lower left corner) to the picture's (pixels from the upper left corner).
+Eigen::Matrix3d picture_from(const EyeImage& image) {
+  Eigen::Matrix3d from_texels, to_picture = Eigen::Matrix3d::Identity();
+  from_texels << 2.0 / image.width, 0, -1, 0, 2.0 / image.height, -1, 0, 0, 1;
+  to_picture.topRows<2>() = image.from_picture;
+  return to_picture.inverse() * from_texels;
+}
+
 }  // namespace
 
 struct ScenePass::Frame {
@@ -34,6 +44,8 @@ struct ScenePass::Frame {
   Eigen::Matrix4f clip_from_model;  ///< the model's coordinates count from its origin
   Eigen::Matrix3f screen_from_normal;
   Eigen::Vector3f eye_in_model;
+  // Steps on the display (pixels, y up), in normalised coordinates and in texels.
+  Eigen::Matrix2f clip_from_pixels, pixels_from_clip, texels_from_pixels, pixels_from_texels;
   const stereo::View& view;
 
   Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& model) : eye(eye_view), view(picture.view) {
@@ -44,6 +56,12 @@ struct ScenePass::Frame {
     clip_from_model = (clip_from_deck * deck_from_model).cast<float>();
     screen_from_normal = view.rotation.toRotationMatrix().cast<float>();
     eye_in_model = (stereo::to_deck(view, eye.eye_mm) - model.textures().origin()).cast<float>();
+    const Eigen::Matrix2d clip = eye.image.from_picture.leftCols<2>() * Eigen::Vector2d(1, -1).asDiagonal();
+    const Eigen::Matrix2d texels = 0.5 * Eigen::Vector2d(eye.image.width, eye.image.height).asDiagonal() * clip;
+    clip_from_pixels = clip.cast<float>();
+    pixels_from_clip = clip.inverse().cast<float>();
+    texels_from_pixels = texels.cast<float>();
+    pixels_from_texels = texels.inverse().cast<float>();
   }
 
   /// A sign's radius in pixels: `largest` unless that crowds typical elements.
@@ -52,8 +70,6 @@ struct ScenePass::Frame {
     const double side_pixels = typical_side * view.mm_per_unit / eye.mm_per_pixel;
     return std::clamp(share * static_cast<float>(std::min(side_pixels, 1000.0)), least, largest);
   }
-  float columns_per_pixel() const { return static_cast<float>(eye.image.display_width) / static_cast<float>(eye.image.width); }
-
   /// What every program that pulls the model needs.
   void set(const gl::Program& program) const {
     program.use();
@@ -64,8 +80,10 @@ struct ScenePass::Frame {
     program.set("connectivity", static_cast<int>(unit::kConnectivity));
     program.set("surface", static_cast<int>(unit::kSurface));
     program.set("lines", static_cast<int>(unit::kLines));
-    program.set("display_pixels", static_cast<float>(eye.image.display_width), static_cast<float>(eye.image.display_height));
-    program.set("columns_per_pixel", columns_per_pixel());
+    program.set("clip_from_pixels", clip_from_pixels);
+    program.set("pixels_from_clip", pixels_from_clip);
+    program.set("texels_from_pixels", texels_from_pixels);
+    program.set("pixels_from_texels", pixels_from_texels);
     program.set("mm_per_pixel", static_cast<float>(eye.mm_per_pixel));
     program.set("screen_from_normal", screen_from_normal);
   }
@@ -344,8 +362,10 @@ void ScenePass::draw_flat(const Picture& picture, const EyeView& eye) const {
     program.use();
     program.set("rectangle", static_cast<float>(band.x0), static_cast<float>(band.y0), static_cast<float>(band.x1),
                 static_cast<float>(band.y1));
-    program.set("display_per_pixel", static_cast<float>(eye.image.display_width) / static_cast<float>(eye.image.width), 1.0F);
-    program.set("display_height", static_cast<float>(eye.image.display_height));
+    const Eigen::Matrix3d picture_from_image = picture_from(eye.image);
+    program.set("picture_from_image", Eigen::Matrix3f(picture_from_image.cast<float>()));
+    program.set("soft", static_cast<float>(picture_from_image.row(0).head<2>().norm()),
+                static_cast<float>(picture_from_image.row(1).head<2>().norm()));
     glBindVertexArray(no_attributes_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }

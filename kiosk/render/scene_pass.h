@@ -13,7 +13,7 @@ namespace prismesh::kiosk::render {
 /// From where and onto what an image is drawn.
 struct EyeView {
   Vec3 eye_mm = Vec3(0, 0, 650);
-  Eigen::Matrix4d clip_from_screen = Eigen::Matrix4d::Identity();  ///< with the shifts of half-width images
+  Eigen::Matrix4d clip_from_screen = Eigen::Matrix4d::Identity();  ///< onto the image
   stereo::DepthRange range;
   EyeImage image;
   double mm_per_pixel = 0.28;  ///< of the display

@@ -92,23 +92,26 @@ void main() {
 }
 )";
 
+// Images may be narrower than the picture, or sheared: `texels_from_pixels` takes steps on the display to steps in the image, and
+// widths are those on the display. Row vectors times it: gradients the other way.
+
 // Distance to the nearest side, in the shell's own square or triangle, over how fast that changes: no diagonal can appear.
 const char* const kShellFragment = R"(
 in vec2 place;
 flat in vec3 look;
 flat in float triangle;
-uniform float columns_per_pixel;
+uniform mat2 texels_from_pixels, pixels_from_texels;
 uniform float edge_strength;
 out vec4 colour;
 float cover(float distance, vec2 gradient) {
-  gradient.x /= columns_per_pixel;
+  gradient = gradient * texels_from_pixels;
   float slope = max(length(gradient), 1e-9);
   vec2 across = gradient / slope;
-  float footprint = length(vec2(across.x * columns_per_pixel, across.y));
+  float footprint = length(across * pixels_from_texels);
   const float kHalf = 0.55;
   return min(clamp((kHalf + 0.5 * footprint - distance / slope) / footprint, 0.0, 1.0), 2.0 * kHalf / footprint);
 }
-float extent(vec2 gradient) { return 1.0 / max(length(vec2(gradient.x / columns_per_pixel, gradient.y)), 1e-9); }
+float extent(vec2 gradient) { return 1.0 / max(length(gradient * texels_from_pixels), 1e-9); }
 void main() {
   vec2 s = vec2(dFdx(place.x), dFdy(place.x)), t = vec2(dFdx(place.y), dFdy(place.y));
   float edge = max(cover(place.x, s), cover(place.y, t));
@@ -142,9 +145,8 @@ void main() { number = item; }
 
 const char* const kLineVertex = R"(
 uniform usampler2D lines;
-uniform vec2 display_pixels;
+uniform mat2 clip_from_pixels, pixels_from_clip, pixels_from_texels;
 uniform float half_width;
-uniform float columns_per_pixel;
 uniform float toward_eye_mm;
 uniform float least_alpha;
 out float across_pixels;
@@ -162,17 +164,17 @@ void main() {
   footprint = 1.0;
   presence = 0.0;
   if (pa.w == 0.0 || pb.w == 0.0 || a.w <= 0.0 || b.w <= 0.0) return;
-  vec2 along = (b.xy / b.w - a.xy / a.w) * display_pixels;
+  vec2 along = 2.0 * (pixels_from_clip * (b.xy / b.w - a.xy / a.w));
   float length_pixels = length(along);
   along = length_pixels > 1e-4 ? along / length_pixels : vec2(1.0, 0.0);
   vec2 across = vec2(-along.y, along.x);
-  footprint = length(vec2(across.x * columns_per_pixel, across.y));
+  footprint = length(across * pixels_from_texels);
   presence = mix(least_alpha, 1.0, smoothstep(3.0, 16.0, length_pixels));  // short lines stand close: they step back
   float reach = half_width + 0.5 * footprint + 0.5;
   across_pixels = side * reach;
   vec4 clip = nearer(second ? b : a, toward_eye_mm);
   vec2 offset = across * across_pixels + along * (second ? 0.5 : -0.5) * half_width;
-  gl_Position = clip + vec4(offset * 2.0 / display_pixels * clip.w, 0.0, 0.0);
+  gl_Position = clip + vec4(clip_from_pixels * offset * clip.w, 0.0, 0.0);
 }
 )";
 
@@ -192,7 +194,7 @@ void main() {
 
 const char* const kNodeVertex = R"(
 layout(location = 0) in uint node;
-uniform vec2 display_pixels;
+uniform mat2 clip_from_pixels;
 uniform float radius_pixels;
 uniform float mm_per_pixel;
 uniform mat3 screen_from_normal;
@@ -212,7 +214,7 @@ void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   if (at.w == 0.0 || clip.w <= 0.0) return;
   clip = nearer(clip, (offset.z + radius_pixels) * mm_per_pixel);
-  gl_Position = clip + vec4(offset.xy * 2.0 / display_pixels * clip.w, 0.0, 0.0);
+  gl_Position = clip + vec4(clip_from_pixels * offset.xy * clip.w, 0.0, 0.0);
 }
 )";
 
@@ -226,7 +228,7 @@ void main() { colour = vec4(ink.rgb * light, ink.a); }
 const char* const kGlyphVertex = R"(
 layout(location = 0) in vec3 centre;
 layout(location = 1) in uint kind;
-uniform vec2 display_pixels;
+uniform mat2 clip_from_pixels;
 uniform float radius_pixels;
 uniform float mm_per_pixel;
 out vec2 place;
@@ -239,7 +241,7 @@ void main() {
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   if (clip.w <= 0.0) return;
   clip = nearer(clip, radius_pixels * mm_per_pixel);
-  gl_Position = clip + vec4(place * radius_pixels * 2.0 / display_pixels * clip.w, 0.0, 0.0);
+  gl_Position = clip + vec4(clip_from_pixels * place * radius_pixels * clip.w, 0.0, 0.0);
 }
 )";
 
@@ -312,49 +314,109 @@ void main() {
 // A rectangle in display pixels, edge and all, over the whole image: what is outside is thrown away.
 const char* const kRectangleFragment = R"(
 uniform vec4 rectangle;
-uniform vec2 display_per_pixel;
-uniform float display_height;
+uniform mat3 picture_from_image;
+uniform vec2 soft;
 out vec4 colour;
 void main() {
-  vec2 p = gl_FragCoord.xy * display_per_pixel;
-  p.y = display_height - p.y;
+  vec2 p = (picture_from_image * vec3(gl_FragCoord.xy, 1.0)).xy;
   vec2 centre = 0.5 * (rectangle.xy + rectangle.zw), half_size = 0.5 * abs(rectangle.zw - rectangle.xy);
   vec2 d = abs(p - centre) - half_size;
   float outside = max(d.x, d.y);
   if (outside > 1.5) discard;
-  vec2 soft = display_per_pixel;
   float line = max(1.0 - max(abs(d.x) / soft.x, 0.0), 1.0 - abs(d.y) / soft.y);
   line = outside > 0.0 ? (d.x > 0.0 && d.y > 0.0 ? 0.0 : line) : line;
   colour = vec4(1.0, 1.0, 1.0, max(clamp(line, 0.0, 1.0) * 0.9, outside <= 0.0 ? 0.08 : 0.0));
 }
 )";
 
-// texelFetch only: each display pixel is one texel of one eye's image.
+// texelFetch only: each (sub)pixel of the display is one texel of one eye's image. See composition.h for what the numbers are.
 const char* const kWeaveFragment = R"(
-uniform sampler2D left_eye, right_eye;
-uniform int weave;
-uniform int swap;
-uniform int half_columns;
-uniform vec2 corner;
+uniform sampler2D left_eye, right_eye, phases;
+uniform int join;
+uniform int by_rows;
+uniform int swapped;
+uniform ivec2 picture;
+uniform ivec2 image;
+uniform float nodes_per_pixel;
+uniform float subpixel;
+uniform vec2 leak;
+uniform float gamma;
 out vec4 colour;
-float grey(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
-void main() {
-  ivec2 p = ivec2(gl_FragCoord.xy);
-  if (weave == 0) {
-    ivec2 q = ivec2(p.x >> 1, p.y);
-    colour = (p.x & 1) == swap ? texelFetch(left_eye, q, 0) : texelFetch(right_eye, q, 0);
-  } else if (weave == 1) {
-    colour = texelFetch(left_eye, p, 0);
-  } else if (weave == 2) {
-    vec3 l = texelFetch(left_eye, p, 0).rgb, r = texelFetch(right_eye, p, 0).rgb;
-    colour = vec4(grey(l), r.gb, 1.0);
-  } else {
-    bool second = p.x >= half_columns;
-    ivec2 q = ivec2(second ? p.x - half_columns : p.x, p.y);
-    colour = second == (swap != 0) ? texelFetch(left_eye, q, 0) : texelFetch(right_eye, q, 0);
-  }
-  colour.a = 1.0;
+
+// What the display must show of an eye's colour so that with the other eye's light leaking in, this eye sees what it should. Black is
+// lifted by the leak, so that there is always something to subtract from.
+vec3 without_leak(vec3 own, vec3 other, float into_own, float into_other) {
+  vec3 wanted = into_own + (1.0 - into_own) * pow(own, vec3(gamma));
+  vec3 wanted_other = into_other + (1.0 - into_other) * pow(other, vec3(gamma));
+  return pow(clamp((wanted - into_own * wanted_other) / (1.0 - into_own * into_other), 0.0, 1.0), vec3(1.0 / gamma));
 }
+vec3 shown(bool is_left, vec3 own, vec3 other) {
+  if (leak == vec2(0.0)) return own;
+  return is_left ? without_leak(own, other, leak.x, leak.y) : without_leak(own, other, leak.y, leak.x);
+}
+
+ivec2 texel(float number, ivec2 p) {
+  int k = int(number);
+  return by_rows != 0 ? ivec2(p.x, clamp(k, 0, image.y - 1)) : ivec2(clamp(k, 0, image.x - 1), p.y);
+}
+vec3 fetch(bool left, ivec2 q) { return left ? texelFetch(left_eye, q, 0).rgb : texelFetch(right_eye, q, 0).rgb; }
+// The other eye has no texel at just this place: what lies between its two nearest ones.
+vec3 between(bool left, float number, ivec2 p) {
+  float below = floor(number);
+  return mix(fetch(left, texel(below, p)), fetch(left, texel(below + 1.0, p)), number - below);
+}
+bool left_shows(vec2 numbers) {
+  vec2 off = abs(numbers - floor(numbers + 0.5));
+  return off.x <= off.y;
+}
+vec3 interlaced(vec2 numbers, ivec2 p) {
+  bool left = left_shows(numbers);
+  float own = left ? numbers.x : numbers.y, other = left ? numbers.y : numbers.x;
+  vec3 light = fetch(left, texel(floor(own + 0.5), p));
+  return leak == vec2(0.0) ? light : shown(left, light, between(!left, other, p));
+}
+
+// Both eyes' numbers at a pixel's middle, and what they change by over a pixel to the right.
+void read_numbers(ivec2 p, out vec2 numbers, out vec2 slope) {
+  vec2 at = (vec2(p) + 0.5) * nodes_per_pixel;
+  ivec2 node = ivec2(at);
+  vec2 t = at - vec2(node);
+  vec2 a = texelFetch(phases, node, 0).xy, b = texelFetch(phases, node + ivec2(1, 0), 0).xy;
+  vec2 c = texelFetch(phases, node + ivec2(0, 1), 0).xy, d = texelFetch(phases, node + ivec2(1, 1), 0).xy;
+  vec2 across = (b - a) + t.y * ((d - c) - (b - a));
+  numbers = a + t.y * (c - a) + t.x * across;
+  slope = across * nodes_per_pixel;
+}
+
+float grey(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
+
+vec3 woven(ivec2 p) {
+  if (join == 0) {
+    vec3 only = texelFetch(left_eye, p, 0).rgb;
+    return shown(true, only, only);
+  }
+  if (join == 3) {
+    vec3 l = texelFetch(left_eye, p, 0).rgb, r = texelFetch(right_eye, p, 0).rgb;
+    return swapped != 0 ? vec3(grey(r), l.gb) : vec3(grey(l), r.gb);
+  }
+  if (join == 4 || join == 5) {
+    int row = picture.y - 1 - p.y;
+    bool second = join == 4 ? p.x >= image.x : row >= image.y;
+    ivec2 q = join == 4 ? ivec2(second ? p.x - image.x : p.x, p.y) : ivec2(p.x, image.y - 1 - (second ? row - image.y : row));
+    bool left = second == (swapped != 0);
+    return shown(left, fetch(left, q), fetch(!left, q));
+  }
+  vec2 numbers, slope;
+  read_numbers(p, numbers, slope);
+  if (join == 2) {
+    bool left = left_shows(numbers);
+    return shown(left, fetch(left, p), fetch(!left, p));
+  }
+  if (subpixel == 0.0) return interlaced(numbers, p);
+  vec2 step = subpixel * slope;
+  return vec3(interlaced(numbers - step, p).r, interlaced(numbers, p).g, interlaced(numbers + step, p).b);
+}
+void main() { colour = vec4(woven(ivec2(gl_FragCoord.xy)), 1.0); }
 )";
 
 }  // namespace

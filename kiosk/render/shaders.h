@@ -13,6 +13,7 @@ inline constexpr unsigned kSurface = 2;
 inline constexpr unsigned kLines = 3;
 inline constexpr unsigned kLeft = 4;
 inline constexpr unsigned kRight = 5;
+inline constexpr unsigned kPhases = 6;
 }  // namespace unit
 
 struct Shaders {

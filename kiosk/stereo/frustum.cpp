@@ -10,9 +10,13 @@ constexpr double kRoomMm = 40;        ///< for what stands out of the model: han
 constexpr double kNearestEyeMm = 20;  ///< an eye nearer than this, or behind the screen, is taken to be here
 }  // namespace
 
-EyePair eyes_from(const Vec3& between_mm, double separation_mm) {
-  const Vec3 half(0.5 * separation_mm, 0, 0);
-  return {between_mm - half, between_mm + half};
+EyePair PictureEyes::eyes() const {
+  const double length = toward_right.norm();
+  return eyes_from(between_mm, separation_mm, length > 0 ? Vec3(toward_right / length) : Vec3(Vec3::UnitX()));
+}
+
+Vec3 PictureEyes::picture_eye(std::optional<Eye> eye) const {
+  return eye ? Vec3(between_mm + depth_share * (eyes().of(*eye) - between_mm)) : between_mm;
 }
 
 DepthRange depth_range(const View& view, const Vec3& eye_mm) {
@@ -40,23 +44,20 @@ Eigen::Matrix4d clip_from_screen(const Vec3& eye_mm, const Eigen::Vector2d& scre
   return frustum * from_eye;
 }
 
-double half_pixel_shift(Eye eye, int display_columns, bool swap) {
-  const bool even_columns = (eye == Eye::left) != swap;
-  return (even_columns ? 1.0 : -1.0) / display_columns;
+ImageMap whole_picture(int width, int height) {
+  ImageMap map;
+  map << 2.0 / width, 0, -1, 0, -2.0 / height, 1;
+  return map;
 }
 
-Eigen::Matrix4d clip_for_columns(const Eigen::Matrix4d& clip, Eye eye, int display_columns, bool swap) {
-  Eigen::Matrix4d shifted = clip;
-  shifted.row(0) += half_pixel_shift(eye, display_columns, swap) * clip.row(3);
-  return clip_for_half_width(shifted, display_columns);
-}
-
-Eigen::Matrix4d clip_for_half_width(const Eigen::Matrix4d& clip, int display_columns) {
-  const double covered = 2 * ((display_columns + 1) / 2);  // columns that the image stands for
-  const double share = display_columns / covered;
-  Eigen::Matrix4d widened = clip;
-  widened.row(0) = share * clip.row(0) + (share - 1) * clip.row(3);
-  return widened;
+Eigen::Matrix4d clip_onto(const ImageMap& image, const Eigen::Matrix4d& clip, int width, int height) {
+  Eigen::Matrix3d picture = Eigen::Matrix3d::Identity();  // normalised coordinates to pixels
+  picture << 0.5 * width, 0, 0.5 * width, 0, -0.5 * height, 0.5 * height, 0, 0, 1;
+  const ImageMap from_picture = image * picture;
+  Eigen::Matrix4d onto = clip;
+  for (int row = 0; row < 2; ++row)
+    onto.row(row) = from_picture(row, 0) * clip.row(0) + from_picture(row, 1) * clip.row(1) + from_picture(row, 2) * clip.row(3);
+  return onto;
 }
 
 }  // namespace prismesh::kiosk::stereo

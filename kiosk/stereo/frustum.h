@@ -1,25 +1,33 @@
 // What an eye sees through the screen's window: generalised perspective projection (R. Kooima, "Generalized Perspective
-// Projection", 2008), and the shift that puts half-width images onto their own display columns.
+// Projection", 2008); and from where pictures are drawn.
 #pragma once
+
+#include <optional>
 
 #include <Eigen/Core>
 
+#include "drivers/display/eyes.h"
 #include "kiosk/stereo/view.h"
 
 namespace prismesh::kiosk::stereo {
 
-enum class Eye : unsigned char { left, right };
+using drivers::display::Eye;
+using drivers::display::EyePair;
+using drivers::display::eyes_from;
+using drivers::display::kMeanEyeSeparationMm;
 
-struct EyePair {
-  Vec3 left;
-  Vec3 right;
-  const Vec3& of(Eye eye) const { return eye == Eye::left ? left : right; }
+/// Who looks at the picture. Millimetres from the screen's centre.
+struct PictureEyes {
+  Vec3 between_mm = Vec3(0, 0, 650);
+  Vec3 toward_right = Vec3::UnitX();  ///< from the left eye to the right one; any length but zero
+  double separation_mm = kMeanEyeSeparationMm;
+  double depth_share = 1;  ///< how much of their separation the pictures are drawn with; 0: both from between them
+
+  /// The eyes where they are.
+  EyePair eyes() const;
+  /// Where an eye's picture is drawn from; empty: the one from between them.
+  Vec3 picture_eye(std::optional<Eye> eye) const;
 };
-
-inline constexpr double kMeanEyeSeparationMm = 63;
-
-/// The eyes from the point between them, on a line parallel to the screen's lower edge.
-EyePair eyes_from(const Vec3& between_mm, double separation_mm = kMeanEyeSeparationMm);
 
 struct DepthRange {
   double near_mm = 50;  ///< from the eye, along the screen's normal; > 0
@@ -32,14 +40,11 @@ DepthRange depth_range(const View& view, const Vec3& eye_mm);
 /// the picture whatever the eye. Column vectors; clip z in -w..w.
 Eigen::Matrix4d clip_from_screen(const Vec3& eye_mm, const Eigen::Vector2d& screen_mm, const DepthRange& range);
 
-/// What to add to normalised x so that a half-width image samples the scene where its display columns are: the columns
-/// of one eye are centred at 2i + 0.5, the other's at 2i + 1.5, while both images have their texel centres at 2i + 1.
-/// `display_columns`: width of the display; `swap`: the right eye has the even columns.
-double half_pixel_shift(Eye eye, int display_columns, bool swap);
-/// The projection for an eye's half-width image, ceil(display_columns / 2) texels wide, whose texels are dealt out to alternate columns:
-/// the half-pixel shift, and for an odd width the one column that the image is too wide.
-Eigen::Matrix4d clip_for_columns(const Eigen::Matrix4d& clip, Eye eye, int display_columns, bool swap);
-/// The same for half-width images whose texels stay together, each as wide as two columns.
-Eigen::Matrix4d clip_for_half_width(const Eigen::Matrix4d& clip, int display_columns);
+/// An affine map from places in the picture (pixels from the upper left corner) to an image's normalised coordinates (-1..1, y up).
+using ImageMap = Eigen::Matrix<double, 2, 3>;
+/// The map of an image that is the picture.
+ImageMap whole_picture(int width, int height);
+/// A projection onto a picture of width x height pixels, turned into the one onto an image of it.
+Eigen::Matrix4d clip_onto(const ImageMap& image, const Eigen::Matrix4d& clip, int width, int height);
 
 }  // namespace prismesh::kiosk::stereo

@@ -28,10 +28,10 @@ Eigen::Matrix4d Aim::clip_from_deck() const {
   return clip_from_screen(eye_mm, screen_mm, depth_range(view, eye_mm)) * screen_from_deck(view);
 }
 
-Aim aim_for(const View& view, const Profile& profile, const Vec3& between_eyes_mm, double separation_mm, int width, int height) {
+Aim aim_for(const View& view, const Profile& profile, const PictureEyes& eyes, int width, int height) {
   Aim aim;
   aim.view = view;
-  aim.eye_mm = profile.weave == Weave::centre ? between_eyes_mm : eyes_from(between_eyes_mm, separation_mm).of(profile.eye);
+  aim.eye_mm = eyes.picture_eye(profile.weave == Weave::centre ? std::nullopt : std::optional(profile.eye));
   aim.screen_mm = screen_size_mm(profile, width, height);
   aim.width = width;
   aim.height = height;

@@ -24,8 +24,9 @@ struct Aim {
   Eigen::Matrix4d clip_from_deck() const;
   double mm_per_pixel() const { return screen_mm.x() / width; }
 };
-/// The aim of a profile's pointer eye (from between the eyes for Weave::centre).
-Aim aim_for(const View& view, const Profile& profile, const Vec3& between_eyes_mm, double separation_mm, int width, int height);
+/// The aim of a profile's pointer eye (from between the eyes for Weave::centre), for a picture in the middle of the screen that `eyes`
+/// counts from.
+Aim aim_for(const View& view, const Profile& profile, const PictureEyes& eyes, int width, int height);
 
 /// Pixel of a deck point; empty when it lies behind the eye.
 std::optional<Eigen::Vector2d> pixel_of(const Aim& aim, const Vec3& deck_point);

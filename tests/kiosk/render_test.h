@@ -49,9 +49,7 @@ class RenderTest : public testing::Test {
     picture.view = renderer_->fitted(picture.view, stereo::screen_size_mm(picture.profile, width, height));
     return picture;
   }
-  stereo::Aim aim_of(const Picture& picture, int width, int height) const {
-    return stereo::aim_for(picture.view, picture.profile, picture.between_eyes_mm, picture.eye_separation_mm, width, height);
-  }
+  stereo::Aim aim_of(const Picture& picture, int width, int height) const { return aim_for(picture, width, height); }
   Image draw(const Picture& picture, int width, int height) {
     auto offscreen = Offscreen::create(width, height);
     EXPECT_TRUE(offscreen);

@@ -1,4 +1,4 @@
-// The screen is a window: its corners stay where they are whatever the eye, and each column samples the scene where it stands.
+// The screen is a window: its corners stay where they are whatever the eye, and pictures go onto images of any shape.
 #include <gtest/gtest.h>
 
 #include "kiosk/stereo/frustum.h"
@@ -28,7 +28,7 @@ TEST(Frustum, ScreenCornersLandOnThePicturesCornersForAnyEye) {
 }
 
 TEST(Frustum, ParallaxIsThatOfTheEyes) {
-  const EyePair eyes = eyes_from({0, 0, 650});
+  const EyePair eyes = eyes_from({0, 0, 650}, 63);
   EXPECT_DOUBLE_EQ((eyes.right - eyes.left).x(), 63);
   const Eigen::Matrix4d left = clip_from_screen(eyes.left, {kWidth, kHeight}, {50, 5000});
   const Eigen::Matrix4d right = clip_from_screen(eyes.right, {kWidth, kHeight}, {50, 5000});
@@ -57,21 +57,26 @@ TEST(Frustum, AnEyeBehindTheScreenBreaksNothing) {
     EXPECT_TRUE(clip_from_screen({0, 0, z}, {kWidth, kHeight}, depth_range(View(), {0, 0, z})).allFinite());
 }
 
-/// Where a display column's centre lies in an eye's half-width image, in texels.
-double texel_of(double display_x, int columns, Eye eye, bool swap) {
-  Eigen::Matrix4d plain = Eigen::Matrix4d::Identity();
-  const Eigen::Matrix4d clip = clip_for_columns(plain, eye, columns, swap);
-  const int texels = (columns + 1) / 2;
-  return (project(clip, Vec3(display_x / columns * 2 - 1, 0, 0)).x() + 1) / 2 * texels;
+TEST(Frustum, AProjectionGoesOntoAnyAffineImageOfThePicture) {
+  const Eigen::Matrix4d clip = clip_from_screen(kEyes[1], {kWidth, kHeight}, {50, 5000});
+  EXPECT_TRUE(clip_onto(whole_picture(1280, 1024), clip, 1280, 1024).isApprox(clip, 1e-12)) << "the picture itself";
+  ImageMap sheared;
+  sheared << 0.003, -0.0004, -0.7, 0, -2.0 / 1024, 1;
+  const Eigen::Matrix4d onto = clip_onto(sheared, clip, 1280, 1024);
+  for (const Vec3& point : {Vec3(0, 0, 0), Vec3(120, -80, 40), Vec3(-150, 100, -90)}) {
+    const Eigen::Vector2d at = project(clip, point);
+    const Eigen::Vector3d pixel(0.5 * (at.x() + 1) * 1280, 0.5 * (1 - at.y()) * 1024, 1);
+    EXPECT_LT((project(onto, point) - sheared * pixel).norm(), 1e-12);
+  }
 }
 
-TEST(Frustum, EveryColumnSamplesWhereItStands) {
-  for (const int columns : {1920, 641})
-    for (const bool swap : {false, true})
-      for (int column = 0; column < columns; ++column) {
-        const Eye owner = (column % 2 == 0) != swap ? Eye::left : Eye::right;
-        ASSERT_NEAR(texel_of(column + 0.5, columns, owner, swap), column / 2 + 0.5, 1e-9) << columns << " " << column;
-      }
+TEST(Frustum, PicturesAreDrawnFromAShareOfTheEyesSeparation) {
+  PictureEyes eyes{{10, 20, 600}, {3, 4, 0}, 60, 0.5};
+  EXPECT_LT((eyes.eyes().right - Vec3(10 + 18, 20 + 24, 600)).norm(), 1e-12);
+  EXPECT_LT((eyes.picture_eye(Eye::right) - Vec3(10 + 9, 20 + 12, 600)).norm(), 1e-12);
+  EXPECT_EQ(eyes.picture_eye(std::nullopt), eyes.between_mm);
+  eyes.depth_share = 0;
+  EXPECT_EQ(eyes.picture_eye(Eye::left), eyes.between_mm);
 }
 
 Aim some_aim() {

@@ -1,0 +1,214 @@
+#include "kiosk/render/composition.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prismesh::kiosk::render {
+
+using drivers::display::LinearNumbers;
+using drivers::display::MaskOptics;
+using drivers::display::PanelArea;
+using drivers::display::PhaseMap;
+using stereo::Eye;
+using stereo::Weave;
+
+namespace {
+
+/// What an eye's image shows, in places of the picture.
+struct Frame {
+  int width = 1, height = 1;
+  stereo::ImageMap from_picture;
+};
+
+stereo::PictureEyes tame_eyes(const Picture& picture) {
+  stereo::PictureEyes eyes;
+  if (picture.between_eyes_mm.allFinite()) eyes.between_mm = picture.between_eyes_mm;
+  if (picture.toward_right.allFinite() && picture.toward_right.norm() > 0) eyes.toward_right = picture.toward_right;
+  if (picture.eye_separation_mm >= 0 && picture.eye_separation_mm <= 1000) eyes.separation_mm = picture.eye_separation_mm;
+  eyes.depth_share = std::clamp(std::isfinite(picture.depth_share) ? picture.depth_share : 0, 0.0, 1.0);
+  return eyes;
+}
+
+Vec3 centre_on_panel_mm(const PanelArea& area, double pitch) {
+  return {area.u_mm(0.5 * area.width, pitch), area.v_mm(0.5 * area.height, pitch), 0};
+}
+
+/// A mask's optics for this panel, and where it stands.
+struct PlacedMask {
+  MaskOptics optics;
+  double mask_mm = 0;
+};
+
+PlacedMask place_mask(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area) {
+  PlacedMask placed{picture.profile.optics, 0};
+  placed.optics.panel_columns = area.panel_columns;
+  const double ideal = mask_position_mm(placed.optics, eyes.between_mm);
+  if (picture.profile.mask_moves) placed.mask_mm = picture.mask_mm && std::isfinite(*picture.mask_mm) ? *picture.mask_mm : ideal;
+  // Half a period aside the eyes have each other's places.
+  if (picture.profile.swap_eyes) placed.mask_mm += 0.5 * placed.optics.mask_pitch_mm();
+  return placed;
+}
+
+/// Whether alternate columns that never change must be exchanged: the mask may have gone back by an odd number of half periods.
+bool columns_swapped(const Picture& picture, const stereo::PictureEyes& eyes) {
+  bool swapped = picture.profile.swap_eyes;
+  if (picture.profile.has_mask() && picture.profile.mask_moves && picture.mask_mm && std::isfinite(*picture.mask_mm)) {
+    const MaskOptics& optics = picture.profile.optics;
+    const double halves = 2 * (mask_position_mm(optics, eyes.between_mm) - *picture.mask_mm) / optics.mask_pitch_mm();
+    if (std::abs(std::remainder(std::round(halves), 2)) > 0.5) swapped = !swapped;
+  }
+  return swapped;
+}
+
+/// Windows' numbers as they lie on the picture if they are evenly spaced, and an image that has a texel for each.
+Frame frame_of_windows(const LinearNumbers& numbers, int first, int texels, bool by_rows, int width, int height) {
+  // Texel i has its middle where the number is first + i.
+  const double scale = 2.0 / texels;
+  Frame frame{by_rows ? width : texels, by_rows ? texels : height, stereo::whole_picture(width, height)};
+  frame.from_picture.row(by_rows ? 1 : 0) << scale * numbers.by_x, scale * numbers.by_y, scale * (numbers.at_origin - first + 0.5) - 1;
+  return frame;
+}
+
+/// How many texels the eyes' images need; the same for most places of a head, so that their memory isn't made anew with every move.
+int texels_for(const PlacedMask& mask, const PhaseMap& phases, const PanelArea& area) {
+  const MaskOptics& optics = mask.optics;
+  const double spacing = optics.mask_pitch_mm() * (1 + optics.air_gap_mm() / optics.design_distance_mm);
+  const double extent = (area.width + std::abs(optics.lean) * area.height) * optics.pixel_pitch_mm;
+  const int usual = static_cast<int>(std::ceil(1.02 * extent / spacing)) + 8;
+  const int needed = std::max(phases.windows[0], phases.windows[1]);
+  constexpr int kStep = 64;
+  return needed <= usual ? usual : (needed + kStep - 1) / kStep * kStep;
+}
+
+LinearNumbers evenly_spaced(const PlacedMask& mask, const Vec3& eye_mm, const PanelArea& area) {
+  const double pitch = mask.optics.pixel_pitch_mm;
+  const auto row = window_row(mask.optics, eye_mm, mask.mask_mm, area.panel_columns * pitch);
+  // number = (u - lean v - first) / spacing
+  const double by_u = 1 / row.spacing_mm, by_v = -mask.optics.lean / row.spacing_mm;
+  return {by_u * pitch, -by_v * pitch, by_u * area.u_mm(0, pitch) + by_v * area.v_mm(0, pitch) - row.first_mm / row.spacing_mm};
+}
+
+std::array<Frame, 2> behind_mask(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
+  const PlacedMask mask = place_mask(picture, eyes, area);
+  const stereo::EyePair pair = eyes.eyes();
+  composed.join = Join::interlaced;
+  composed.subpixel = picture.profile.subpixels == stereo::Subpixels::rgb   ? 1.0 / 3
+                      : picture.profile.subpixels == stereo::Subpixels::bgr ? -1.0 / 3
+                                                                            : 0;
+  composed.phases = phase_map(mask.optics, pair, mask.mask_mm, area);
+  const int texels = texels_for(mask, composed.phases, area);
+  std::array<Frame, 2> frames;
+  for (const Eye eye : {Eye::left, Eye::right}) {
+    const auto i = static_cast<std::size_t>(eye);
+    frames[i] = frame_of_windows(evenly_spaced(mask, pair.of(eye), area), composed.phases.first[i], texels, false, area.width, area.height);
+  }
+  return frames;
+}
+
+/// Alternate columns or rows of the panel, whatever the eyes.
+std::array<LinearNumbers, 2> alternating(bool by_rows, bool swapped, const PanelArea& area) {
+  std::array<LinearNumbers, 2> numbers;
+  for (const std::size_t eye : {0U, 1U}) {
+    const double own = (eye == 1) != swapped ? 1.5 : 0.5;  // the middle of its first column or row
+    if (by_rows)
+      numbers[eye] = {0, -0.5, -0.5 * (area.y - own)};  // count up from below
+    else
+      numbers[eye] = {0.5, 0, 0.5 * (area.x - own)};
+  }
+  return numbers;
+}
+
+std::array<Frame, 2> alternate(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
+  composed.by_rows = picture.profile.weave == Weave::rows;
+  const auto numbers = alternating(composed.by_rows, columns_swapped(picture, eyes), area);
+  composed.phases = phase_map(numbers, area.width, area.height);
+  std::array<Frame, 2> frames;
+  if (picture.profile.weave == Weave::stencil) {
+    composed.join = Join::stencil;
+    frames.fill({area.width, area.height, stereo::whole_picture(area.width, area.height)});
+    return frames;
+  }
+  composed.join = Join::interlaced;
+  const int from = composed.by_rows ? area.y : area.x, pixels = composed.by_rows ? area.height : area.width;
+  const int before = from >> 1, last = (from + pixels - 1) >> 1;  // rounded down for a picture that begins beside the panel, too
+  for (const std::size_t eye : {0U, 1U}) {
+    // The map's first number is that of its outermost node; the image begins with the first column or row that is there.
+    const int first = composed.by_rows ? -last : before;
+    for (auto& node : composed.phases.numbers) node[eye] += static_cast<float>(composed.phases.first[eye] - first);
+    composed.phases.first[eye] = first;
+    composed.phases.windows[eye] = last - before + 1;
+    frames[eye] = frame_of_windows(numbers[eye], first, composed.phases.windows[eye], composed.by_rows, area.width, area.height);
+  }
+  return frames;
+}
+
+Frame half_width(int width, int height) {
+  Frame frame{(width + 1) / 2, height, stereo::whole_picture(width, height)};
+  frame.from_picture(0, 0) = 1.0 / frame.width;
+  return frame;
+}
+
+Frame half_height(int width, int height) {
+  Frame frame{width, (height + 1) / 2, stereo::whole_picture(width, height)};
+  frame.from_picture(1, 1) = -1.0 / frame.height;
+  return frame;
+}
+
+/// How the two eyes' images are framed and joined.
+std::array<Frame, 2> frames_for(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
+  const Frame whole{area.width, area.height, stereo::whole_picture(area.width, area.height)};
+  switch (picture.profile.weave) {
+    case Weave::mask: return behind_mask(picture, eyes, area, composed);
+    case Weave::columns:
+    case Weave::stencil:
+    case Weave::rows: return alternate(picture, eyes, area, composed);
+    case Weave::side_by_side:
+      composed.join = Join::beside;
+      return {half_width(area.width, area.height), half_width(area.width, area.height)};
+    case Weave::top_bottom:
+      composed.join = Join::stacked;
+      return {half_height(area.width, area.height), half_height(area.width, area.height)};
+    case Weave::anaglyph: composed.join = Join::anaglyph; return {whole, whole};
+    case Weave::one_eye:
+    case Weave::centre: break;
+  }
+  composed.join = Join::alone;
+  return {whole, whole};
+}
+
+}  // namespace
+
+PanelArea panel_area(const PanelPlace& place, int width, int height) {
+  if (place.width <= 0 || place.height <= 0) return {0, 0, width, height, width, height};
+  return {place.x, place.y, width, height, place.width, place.height};
+}
+
+Composition compose(const Picture& picture, int width, int height) {
+  const PanelArea area = panel_area(picture.panel, width, height);
+  const stereo::PictureEyes eyes = tame_eyes(picture);
+  const Vec3 centre = centre_on_panel_mm(area, picture.profile.optics.pixel_pitch_mm);
+  const bool sharing = picture.profile.weave != Weave::anaglyph && picture.profile.stereo();
+  Composition composed;
+  composed.swapped = picture.profile.swap_eyes;
+  composed.gamma = picture.profile.gamma;
+  if (sharing) composed.leak = picture.profile.crosstalk;
+  const auto image = [&](std::optional<Eye> eye, const Frame& frame) {
+    composed.images.push_back({eye, eyes.picture_eye(eye) - centre, frame.width, frame.height, frame.from_picture});
+  };
+  const bool flat = picture.profile.stereo() && eyes.depth_share == 0;
+  if (flat && picture.profile.interlaced()) {
+    // Both eyes see the same picture wherever they are: every pixel is its own.
+    image(std::nullopt, {width, height, stereo::whole_picture(width, height)});
+    return composed;
+  }
+  const std::array<Frame, 2> frames = frames_for(picture, eyes, area, composed);
+  if (flat || picture.profile.weave == Weave::centre)
+    image(std::nullopt, frames[0]);
+  else if (picture.profile.weave == Weave::one_eye)
+    image(picture.profile.eye, frames[0]);
+  else
+    for (const Eye eye : {Eye::left, Eye::right}) image(eye, frames[static_cast<std::size_t>(eye)]);
+  return composed;
+}
+
+}  // namespace prismesh::kiosk::render
