@@ -1,4 +1,5 @@
 // Pictures kept beside the test, compared with what is drawn today. PRISMESH_UPDATE_PICTURES=1 draws them anew: look at them then.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -74,9 +75,30 @@ class GoldenPicture : public RenderTest {
   }
 };
 
-TEST_F(GoldenPicture, PrismMask) {
+TEST_F(GoldenPicture, EveryProfile) {
   show(model());
-  compare("prism_mask", draw(fitted("prism-mask", "iso", kWidth, kHeight), kWidth, kHeight));
+  for (const auto& profile : stereo::built_in_profiles()) {
+    std::string name = profile.name;
+    std::replace(name.begin(), name.end(), '-', '_');
+    compare(name, draw(fitted(profile.name, "iso", kWidth, kHeight), kWidth, kHeight));
+  }
+}
+
+TEST_F(GoldenPicture, PrismMaskFromTheSide) {
+  show(model());
+  Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
+  picture.between_eyes_mm = {150, 60, 520};
+  picture.toward_right = {1, 0.15, 0};
+  picture.panel = {401, 300, 1920, 1080};
+  picture.rubber_band = PixelRect{420, 40, 600, 130};
+  compare("prism_mask_from_the_side", draw(picture, kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, CrosstalkTakenOut) {
+  show(model());
+  Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
+  picture.profile.crosstalk = {0.1, 0.1};
+  compare("crosstalk", draw(picture, kWidth, kHeight));
 }
 
 TEST_F(GoldenPicture, AnaglyphFromTheSide) {
