@@ -31,14 +31,15 @@ std::int64_t ns_of(double seconds) { return static_cast<std::int64_t>(seconds * 
 
 double mask_position_at(const MaskState& state, std::int64_t time_ns) {
   if (state.measured_ns == 0) return state.position_mm;
-  const auto seconds = [](std::int64_t ns) { return static_cast<double>(std::clamp<std::int64_t>(ns, 0, kLongestAheadNs)) * 1e-9; };
-  const double ahead = seconds(time_ns - state.measured_ns);
-  const double place = state.position_mm + state.velocity_mm_s * ahead;
-  // The goal's own path; a motor that comes from one side of it doesn't get to the other.
-  const double goal_then = state.goal_mm - state.goal_velocity_mm_s * seconds(state.time_ns - state.measured_ns);
-  const double goal = state.goal_mm + state.goal_velocity_mm_s * seconds(time_ns - state.time_ns);
-  if (state.position_mm <= goal_then) return std::min(place, std::max(goal, state.position_mm));
-  return std::max(place, std::min(goal, state.position_mm));
+  const auto seconds = [](std::int64_t ns) {
+    return static_cast<double>(std::clamp<std::int64_t>(ns, -kLongestAheadNs, kLongestAheadNs)) * 1e-9;
+  };
+  const double lag = std::max(1e-3, seconds(state.lag_ns));
+  // A motor that is pulled toward its goal ends up as far behind it as the goal gets in its lag, and what it is off by now fades away.
+  const auto behind_goal = [&](std::int64_t ns) { return state.goal_mm + state.goal_velocity_mm_s * (seconds(ns - state.time_ns) - lag); };
+  const double off = state.position_mm - behind_goal(state.measured_ns);
+  const std::int64_t until_ns = std::max(time_ns, state.measured_ns);
+  return behind_goal(until_ns) + off * std::exp(-seconds(until_ns - state.measured_ns) / lag);
 }
 
 MaskControl::MaskControl(const display::MaskOptics& optics, const MaskLimits& limits) : optics_(optics), limits_(limits) {}
@@ -52,7 +53,7 @@ MaskControl::Output MaskControl::step(const Input& input) {
   const std::int64_t passed = started_ ? std::clamp<std::int64_t>(input.now_ns - state_.time_ns, 0, kLongestStepNs) : 0;
   started_ = true;
   state_.time_ns = input.now_ns;
-  lag_ns_ = std::clamp<std::int64_t>(input.servo_lag_ns, 0, kLongestLagNs);
+  state_.lag_ns = lag_ns_ = std::clamp<std::int64_t>(input.servo_lag_ns, 0, kLongestLagNs);
   const bool there = look(input);
   wish_velocity_mm_s_ = 0;
   decide(input, there);
@@ -304,7 +305,8 @@ void MaskControl::move_command(double seconds) {
     on_wish_since_ns_ = 0;
   else if (on_wish_since_ns_ == 0)
     on_wish_since_ns_ = state_.time_ns;
-  state_.goal_velocity_mm_s = on_wish ? wish_velocity_mm_s_ : seconds > 0 ? (command_mm_ - before) / seconds : 0;
+  const bool with_the_head = on_wish || state_.phase == MaskPhase::following;
+  state_.goal_velocity_mm_s = with_the_head ? wish_velocity_mm_s_ : seconds > 0 ? (command_mm_ - before) / seconds : 0;
 }
 
 void MaskControl::remember() {

@@ -34,7 +34,8 @@ struct MaskState {
   double position_mm = 0;
   double velocity_mm_s = 0;
   double goal_mm = 0;
-  double goal_velocity_mm_s = 0;   ///< how fast the goal goes
+  double goal_velocity_mm_s = 0;   ///< how fast the goal goes: as the head is expected to, however it is being caught up with
+  std::int64_t lag_ns = 0;         ///< by which the mask follows its goal
   std::int32_t half_periods = 0;   ///< goal = ideal position - half_periods * P / 2; odd: a weave of fixed columns swaps the eyes
   std::int64_t mono_from_ns = 0;   ///< a scheduled move back: pictures that light up from here ...
   std::int64_t mono_until_ns = 0;  ///< ... to here must be mono; both 0: none is scheduled
@@ -42,7 +43,8 @@ struct MaskState {
   bool stereo_allowed = false;  ///< now, but for a scheduled move back
 };
 
-/// Where the mask will be: measured place and velocity, not past the goal (which itself goes on), nor further than 100 ms ahead.
+/// Where the mask will be: from the measured place it falls in behind the goal (which itself goes on), by its lag. Not further than
+/// 100 ms ahead. A velocity that was measured isn't asked: each new measurement of the head changes it, and that soon passes.
 double mask_position_at(const MaskState& state, std::int64_t time_ns);
 
 /// Thresholds in one place; starting values.

@@ -176,7 +176,9 @@ void Servo::take_motion(const Packet& packet, const Question& question, std::int
   // The servo looked when the question had arrived, before the answer left. What lies between is mostly waiting for this tick, so the first
   // half millisecond of it is the best guess: questions aren't held back by more than a USB frame.
   const std::int64_t latest = std::max(question.gone_ns, now_ns - line_ns(question.answer_bytes));
-  tick_.reading.measured_ns = question.gone_ns + std::min((latest - question.gone_ns) / 2, kUsbFrameNs / 2);
+  const std::int64_t looked = question.gone_ns + std::min((latest - question.gone_ns) / 2, kUsbFrameNs / 2);
+  // An answer sooner than its question is an older question's, come late.
+  tick_.reading.measured_ns = std::min(looked, now_ns);
   tick_.reading.position_mm = mm_from_ticks(settings_, ticks);
   tick_.reading.velocity_mm_s = sign * velocity * kTurnsPerMinutePerUnit / 60 * settings_.travel_mm_per_turn;
   tick_.fresh = true;

@@ -96,24 +96,24 @@ TEST(mask_control, the_published_state_foretells_the_mask) {
   EXPECT_LT(worst, 0.015);
 }
 
-TEST(mask_control, a_position_in_the_future_stops_at_the_goal) {
+TEST(mask_control, a_position_in_the_future_falls_in_behind_the_goal) {
   MaskState state;
-  state.time_ns = 1'000 * kMs;
-  state.measured_ns = 995 * kMs;
+  state.time_ns = state.measured_ns = 1'000 * kMs;
+  state.lag_ns = 20 * kMs;
   state.position_mm = 0.9;
   state.velocity_mm_s = 5;
   state.goal_mm = 1;
-  EXPECT_NEAR(mask_position_at(state, 1'005 * kMs), 0.95, 1e-9);
-  EXPECT_NEAR(mask_position_at(state, 1'200 * kMs), 1, 1e-9);
+  EXPECT_NEAR(mask_position_at(state, 1'000 * kMs), 0.9, 1e-9);
+  EXPECT_NEAR(mask_position_at(state, 1'020 * kMs), 1 - 0.1 * std::exp(-1), 1e-9);
+  EXPECT_NEAR(mask_position_at(state, 1'100 * kMs), 1, 0.001);
+  EXPECT_LE(mask_position_at(state, 1'100 * kMs), 1);
   state.goal_velocity_mm_s = 1;
-  EXPECT_NEAR(mask_position_at(state, 1'050 * kMs), 1.05, 1e-9);
-  EXPECT_NEAR(mask_position_at(state, 9'000 * kMs), 1.1, 1e-9) << "no further than 100 ms ahead";
-  EXPECT_NEAR(mask_position_at(state, 0), 0.9, 1e-9);
-  state.position_mm = 1.2;  // past the goal, and moving away from it
-  state.goal_velocity_mm_s = 0;
-  EXPECT_GE(mask_position_at(state, 1'100 * kMs), 1.2);
+  state.position_mm = 0.98;  // a lag behind the goal: goes on beside it
+  EXPECT_NEAR(mask_position_at(state, 1'050 * kMs), 1.03, 1e-9);
+  EXPECT_NEAR(mask_position_at(state, 9'000 * kMs), 1.08, 1e-9) << "no further than 100 ms ahead";
+  EXPECT_NEAR(mask_position_at(state, 0), 0.98, 1e-9);
   state.measured_ns = 0;
-  EXPECT_EQ(mask_position_at(state, 1'100 * kMs), 1.2);
+  EXPECT_EQ(mask_position_at(state, 1'100 * kMs), 0.98);
 }
 
 // --- moves back ---

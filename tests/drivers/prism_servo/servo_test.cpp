@@ -172,6 +172,25 @@ TEST(dynamixel_servo, a_readings_time_is_that_of_its_place) {
   }
 }
 
+TEST(dynamixel_servo, no_reading_is_of_the_future) {
+  RigSettings settings;
+  settings.driver.baud = 9'600;
+  ServoRig rig(settings);
+  ASSERT_GT(rig.run_until_ready(), 0);
+  std::array<std::byte, kLongestPacket> stray;
+  const std::size_t size = encode_status(1, 0, std::array<std::uint8_t, 8>{}, stray);
+  int fresh = 0;
+  for (int i = 0; i < 400; ++i) {
+    // An answer that nobody expects yet, among the real ones.
+    if (i % 40 == 0) rig.line().inject(port::Direction::to_host, std::span(stray).first(size));
+    const std::int64_t now = rig.clock().now_ns();
+    const PrismServo::Tick tick = rig.tick();
+    EXPECT_LE(tick.reading.measured_ns, now);
+    fresh += tick.fresh ? 1 : 0;
+  }
+  EXPECT_GT(fresh, 20);
+}
+
 TEST(dynamixel_servo, a_tick_fits_200_hz_with_room) {
   ServoRig rig;
   WatchedPort port(rig.port());
