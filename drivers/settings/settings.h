@@ -43,7 +43,7 @@ struct PrismServoSettings {
   int id = 1;
   double travel_mm_per_turn = 5.0;
   bool reversed = false;
-  int zero_ticks = 2048;  ///< of the position register when the mask stands in its middle
+  int zero_ticks = 2048;   ///< of the position register when the mask stands in its middle
   double travel_mm = 2.0;  ///< to either side of the middle
   double speed_mm_s = 5.0;
   double lag_ms = 15;
