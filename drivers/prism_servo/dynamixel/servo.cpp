@@ -20,6 +20,7 @@ constexpr std::int64_t kSlowestAdapterNs = 30'000'000;
 constexpr std::int64_t kTurnAroundNs = 700'000;
 constexpr std::int64_t kUsbFrameNs = 1'000'000;
 constexpr std::int64_t kRebootNs = 500'000'000;
+constexpr std::int64_t kSearchPauseNs = 150'000'000;
 constexpr std::int64_t kTryAgainNs = 1'000'000'000;
 
 /// Torque and, beside it, the LED: of two bytes, so that a late answer can't be taken for the watchdog's.
@@ -300,13 +301,14 @@ void Servo::next_candidate(std::int64_t now_ns) {
   line_baud_ = baud;
   parser_.reset();
   pings_left_ = kPingsPerSpeed;
-  line_free_ns_ = now_ns;
+  // Changing an adapter's speed takes a millisecond of USB; where nobody has answered at any, it's done less often.
+  line_free_ns_ = tick_.trouble == ServoTrouble::no_answer ? now_ns + kSearchPauseNs : now_ns;
 }
 
 void Servo::search(std::int64_t now_ns) {
   if (question_.what != Asked::nothing) return;
   if (pings_left_ == 0) next_candidate(now_ns);
-  if (pings_left_ == 0) return;
+  if (pings_left_ == 0 || now_ns < line_free_ns_) return;
   --pings_left_;
   usual_answer_ns_ = kSlowestAdapterNs;
   ask(Asked::ping, {}, encode_ping(settings_.id, room()), kPingAnswerData, now_ns);

@@ -35,7 +35,10 @@ class WatchedPort final : public port::BytePort {
     return port_.write(from);
   }
   void discard_input() override { port_.discard_input(); }
-  bool set_baud(int baud) override { return port_.set_baud(baud); }
+  bool set_baud(int baud) override {
+    ++speeds_set_;
+    return port_.set_baud(baud);
+  }
   int last_error() const override { return port_.last_error(); }
 
   struct Write {
@@ -44,6 +47,7 @@ class WatchedPort final : public port::BytePort {
     std::uint32_t value;
   };
   const std::vector<Write>& writes() const { return writes_; }
+  int speeds_set() const { return speeds_set_; }
   std::size_t bytes_read() const { return read_; }
   std::size_t bytes_written() const { return written_; }
 
@@ -52,6 +56,7 @@ class WatchedPort final : public port::BytePort {
   Parser parser_;
   std::vector<Write> writes_;
   std::size_t read_ = 0, written_ = 0;
+  int speeds_set_ = 0;
 };
 
 TEST(dynamixel_servo, is_found_and_set_up_as_it_leaves_the_factory) {
@@ -410,6 +415,20 @@ TEST(dynamixel_servo, noise_costs_readings_but_nothing_worse) {
   EXPECT_TRUE(rig.ready());
   EXPECT_NEAR(rig.simulated().motor_mm(), 1, 0.001);
   EXPECT_EQ(rig.simulated().counts().goals_beyond_limits, 0U);
+}
+
+TEST(dynamixel_servo, searches_at_leisure_where_nobody_answers) {
+  ServoRig rig;
+  WatchedPort port(rig.port());
+  rig.put_between(port);
+  rig.simulated().set_power(false);
+  rig.run_for(3'000 * kMs);
+  const int before = port.speeds_set();
+  rig.run_for(10'000 * kMs);
+  EXPECT_GT(port.speeds_set(), before + 20);
+  EXPECT_LE(port.speeds_set(), before + 60);
+  rig.simulated().set_power(true);
+  EXPECT_GE(rig.run_until_ready(6'000), 0) << "at the factory's speed, which it has yet";
 }
 
 TEST(dynamixel_servo, another_model_is_left_alone) {
