@@ -1,6 +1,7 @@
 #include "drivers/port/port_keeper.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 #include "drivers/port/udp_port.h"
@@ -53,7 +54,7 @@ void BasicKeeper<Port>::close_returned(std::int64_t now) {
   next_try_ns_ = now + wait_ns_;
   const std::scoped_lock lock(report_mutex_);
   report_.open = false;
-  report_.reason.reset();
+  report_.reason = Error{path_, 0, "went away" + (dead->last_error() != 0 ? std::string(": ") + std::strerror(dead->last_error()) : "")};
 }
 
 template <class Port>

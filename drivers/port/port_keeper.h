@@ -31,7 +31,7 @@ struct KeeperReport {
   bool open = false;            ///< a port is out with the real-time side, or waits there to be taken
   std::uint64_t attempts = 0;   ///< calls of the maker
   std::uint64_t openings = 0;   ///< those that succeeded
-  std::optional<Error> reason;  ///< why it isn't open, as the last attempt said it
+  std::optional<Error> reason;  ///< why it isn't open: as the last attempt said it, or that it went away
 };
 
 /// `Port` is BytePort or DatagramPort.

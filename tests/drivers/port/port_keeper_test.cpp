@@ -103,6 +103,7 @@ TEST(PortKeeper, a_proven_port_that_dies_is_tried_again_at_once) {
   bench.line.plug_in();
   bench.keeper.work();
   EXPECT_TRUE(bench.tick());
+  EXPECT_FALSE(bench.keeper.report().reason);
   EXPECT_EQ(bench.keeper.report().openings, 2u);
 }
 
@@ -118,6 +119,20 @@ TEST(PortKeeper, a_port_that_opens_and_dies_at_once_is_not_opened_without_pause)
     bench.tick();
   }
   EXPECT_EQ(openings, 14) << "50, 100, 200, 400, 800 ms, then each second";
+}
+
+TEST(PortKeeper, a_port_that_went_away_is_reported_as_that) {
+  Bench bench;
+  bench.keeper.work();
+  ASSERT_TRUE(bench.tick());
+  bench.clock.advance_ns(100 * kMs);  // not proven yet, so the next try waits
+  bench.line.unplug();
+  EXPECT_FALSE(bench.tick());
+  bench.keeper.work();
+  const KeeperReport report = bench.keeper.report();
+  EXPECT_FALSE(report.open);
+  ASSERT_TRUE(report.reason);
+  EXPECT_EQ(report.reason->text(), "/dev/a: went away: Input/output error");
 }
 
 TEST(PortKeeper, giving_nothing_back_is_nothing) {
