@@ -40,8 +40,8 @@ unsigned packed(const render::Colour& colour) {
 
 }  // namespace
 
-Editor::Editor(const EditorOptions& options, ModelLink& link, render::Renderer& renderer, Trace trace)
-    : link_(link), renderer_(renderer), trace_(trace), profile_(options.profile), between_eyes_mm_(options.between_eyes_mm) {
+Editor::Editor(const EditorOptions& options, ModelLink& link, render::Renderer& renderer, Clock& clock, Trace trace)
+    : link_(link), renderer_(renderer), clock_(clock), trace_(trace), profile_(options.profile) {
   view_.rotation = *stereo::named_rotation("iso");
 }
 
@@ -51,9 +51,27 @@ void Editor::set_picture_size(display::PixelSize size) {
   ++changes_;
 }
 
-stereo::Aim Editor::aim() const {
-  return stereo::aim_for(view_, profile_, between_eyes_mm_, stereo::kMeanEyeSeparationMm, size_.width, size_.height);
+void Editor::look_from(const stereo::SeenFrom& seen) {
+  seen_ = seen;
+  const stereo::View fitted = depth_.fitted(view_, seen.between_eyes_mm, clock_.now_ns());
+  if (fitted == view_) return;
+  view_ = fitted;
+  ++changes_;
 }
+
+void Editor::set_eyes_facts(std::optional<panels::EyesFacts> facts) {
+  if (facts == eyes_facts_) return;
+  eyes_facts_ = std::move(facts);
+  ++changes_;
+}
+
+void Editor::set_panel(const render::PanelPlace& panel) {
+  if (panel == panel_) return;
+  panel_ = panel;
+  ++changes_;
+}
+
+stereo::Aim Editor::aim() const { return render::aim_for(plain_picture(), size_.width, size_.height); }
 
 // --- following the model server ---
 
@@ -79,9 +97,19 @@ void Editor::take_model() {
   if (!shown_) {
     anchor_.reset();
     last_clicked_.reset();
+    selection_centre_.reset();
     return;
   }
+  const std::optional<mesh::Vec3> centre = shown_->info().selected_nodes > 0 ? tools::selection_centre(*renderer_.model()) : std::nullopt;
+  const bool elsewhere = centre != selection_centre_;
+  selection_centre_ = centre;
+  if (elsewhere && depth_.keeps_selection()) bring_selection();
   anchor_ = shown_->info().selected_nodes > 0 ? tools::anchor_of_selection(*renderer_.model(), last_clicked_) : std::nullopt;
+}
+
+/// The selection's middle goes into the plane of the screen, where both eyes see it at the same place.
+void Editor::bring_selection() {
+  if (selection_centre_ && profile_.stereo()) depth_.bring(*selection_centre_, clock_.now_ns());
 }
 
 Result<void> Editor::follow_drag() {
@@ -300,8 +328,18 @@ bool Editor::command(Command command, const std::optional<Pixel>& pointer) {
       colour_ = colour_ == render::ColourMode::parts ? render::ColourMode::quality : render::ColourMode::parts;
       return true;
     case Command::next_profile: next_profile(); return true;
+    case Command::selection_to_plane: bring_selection(); return true;
+    case Command::keep_selection_in_plane:
+      depth_.keep_selection(!depth_.keeps_selection());
+      if (depth_.keeps_selection()) bring_selection();
+      return true;
+    case Command::more_depth: depth_.change_percent(1); return true;
+    case Command::less_depth: depth_.change_percent(-1); return true;
+    case Command::wider_comfort: depth_.change_degrees(1); return true;
+    case Command::narrower_comfort: depth_.change_degrees(-1); return true;
     case Command::help: help_ = !help_; return true;
-    case Command::fullscreen: return false;
+    case Command::fullscreen:
+    case Command::rearm: return false;
   }
   return false;
 }
@@ -351,7 +389,8 @@ void Editor::fit() {
   if (renderer_.bounds().empty()) return;
   Eigen::Vector2d free = stereo::screen_size_mm(profile_, size_.width, size_.height);
   free.x() *= std::max(0.2, 1 - covered_width_ / std::max(size_.width, 1));
-  view_ = renderer_.fitted(view_, free, between_eyes_mm_.z());
+  view_ = renderer_.fitted(view_, free, seen_.between_eyes_mm.z());
+  if (depth_.keeps_selection()) bring_selection();
   ++changes_;
 }
 
@@ -395,11 +434,22 @@ std::optional<render::Handle> Editor::shown_handle() const {
 
 bool Editor::large_model() const { return shown_ && shown_->shell_count() > kManyShells; }
 
-render::Picture Editor::picture() const {
+/// View, eyes and display, without what stands in the picture.
+render::Picture Editor::plain_picture() const {
   render::Picture picture;
   picture.view = view_;
   picture.profile = profile_;
-  picture.between_eyes_mm = between_eyes_mm_;
+  picture.between_eyes_mm = seen_.between_eyes_mm;
+  picture.toward_right = seen_.toward_right;
+  picture.eye_separation_mm = seen_.eye_separation_mm;
+  picture.depth_share = seen_.depth_share;
+  picture.mask_mm = seen_.mask_mm;
+  picture.panel = panel_;
+  return picture;
+}
+
+render::Picture Editor::picture() const {
+  render::Picture picture = plain_picture();
   picture.colour = colour_;
   picture.handle = shown_handle();
   picture.rubber_band = rubber_band_;
@@ -413,6 +463,8 @@ panels::PanelData Editor::panel_data() const {
   data.through = through_;
   data.colour_by_quality = colour_ == render::ColourMode::quality;
   data.profile = profile_.name;
+  data.eyes = eyes_facts_;
+  if (profile_.stereo()) data.depth = panels::DepthFacts{depth_.percent(), depth_.degrees(), depth_.keeps_selection()};
   data.glyphs_left_out = report_.glyphs_left_out;
   data.busy = link_.busy();
   data.busy_fraction = link_.busy_fraction();

@@ -8,11 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "base/clock.h"
 #include "kiosk/display/window.h"
 #include "kiosk/model_link.h"
 #include "kiosk/panels/panels.h"
 #include "kiosk/render/renderer.h"
+#include "kiosk/stereo/tracked_eyes.h"
 #include "kiosk/tools/command.h"
+#include "kiosk/tools/depth.h"
 #include "kiosk/tools/gestures.h"
 #include "kiosk/tools/handle.h"
 
@@ -20,16 +23,19 @@ namespace prismesh::kiosk {
 
 struct EditorOptions {
   stereo::Profile profile;
-  mesh::Vec3 between_eyes_mm = mesh::Vec3(0, 0, 650);
 };
 
 class Editor {
  public:
-  Editor(const EditorOptions& options, ModelLink& link, render::Renderer& renderer, Trace trace);
+  Editor(const EditorOptions& options, ModelLink& link, render::Renderer& renderer, Clock& clock, Trace trace);
 
   void set_picture_size(display::PixelSize size);
   /// Width at the left and right that panels cover: `fit` leaves it free.
   void set_covered_width(double pixels) { covered_width_ = pixels; }
+  /// What the next picture is drawn for. Depth follows.
+  void look_from(const stereo::SeenFrom& seen);
+  void set_eyes_facts(std::optional<panels::EyesFacts> facts);
+  void set_panel(const render::PanelPlace& panel);
   /// Follows the model server: its generation, its drag, its words. Errors: a model too large for the GPU.
   Result<void> follow();
 
@@ -49,6 +55,8 @@ class Editor {
   /// So many shells that a picture of them at rest may be too slow for the hand.
   bool large_model() const;
   const stereo::Profile& profile() const { return profile_; }
+  /// The view is on its way to another, without the hand.
+  bool gliding() const { return depth_.moving(); }
   /// Counts up with everything that changes the picture or the panels.
   std::uint64_t changes() const { return changes_; }
   std::optional<std::uint64_t> shown_generation() const { return shown_ ? std::optional(shown_->info().generation) : std::nullopt; }
@@ -68,6 +76,7 @@ class Editor {
   void handle(const tools::HandleMoved& moved);
   void handle(const tools::HandleReleased& released);
 
+  render::Picture plain_picture() const;
   stereo::Aim aim() const;
   std::optional<mesh::NodeIndex> node_at(const tools::Pixel& pixel);
   void clear_selection();
@@ -81,17 +90,22 @@ class Editor {
   void pull_to(const tools::Pixel& pixel);
   void cancel_pull();
   void take_model();
+  void bring_selection();
   Result<void> follow_drag();
   void follow_notices();
   std::optional<render::Handle> shown_handle() const;
 
   ModelLink& link_;
   render::Renderer& renderer_;
+  Clock& clock_;
   Trace trace_;
   display::PixelSize size_{1, 1};
   double covered_width_ = 0;
   stereo::Profile profile_;
-  mesh::Vec3 between_eyes_mm_;
+  stereo::SeenFrom seen_;
+  render::PanelPlace panel_;
+  std::optional<panels::EyesFacts> eyes_facts_;
+  tools::DepthFit depth_;
   stereo::View view_;
   render::ColourMode colour_ = render::ColourMode::parts;
   bool through_ = false;
@@ -102,6 +116,7 @@ class Editor {
   std::uint64_t link_changes_ = 0;
   std::optional<mesh::NodeIndex> last_clicked_;
   std::optional<tools::Anchor> anchor_;
+  std::optional<mesh::Vec3> selection_centre_;
   std::optional<tools::HandlePull> pull_;
   tools::Pull pulled_;
   bool preview_shown_ = false;

@@ -86,7 +86,9 @@ bool EyeWatch::look() {
   const std::int64_t now = clock_.now_ns();
   timing_.begun(now);
   const stereo::DeviceReading reading = link_.read();
-  seen_ = eyes_.look(reading, now, timing_.lit(now));
+  lit_ = timing_.lit(now);
+  seen_ = eyes_.look(reading, now, lit_);
+  if (!refused_.empty()) seen_.depth_share = 0;
   // The mask must not go anywhere by itself from the moment that depth may be seen.
   if (follows() && seen_.depth_share > 0) {
     link_.tell_picture(false);
@@ -104,14 +106,19 @@ void EyeWatch::drawn(std::optional<std::int64_t> refresh_ns) {
   const std::int64_t now = clock_.now_ns();
   timing_.drawn(now);
   if (refresh_ns) timing_.refreshed(*refresh_ns, now);
+  note_shown(timing_.lit(now - timing_.draw_ns()).from_ns);
+}
+
+void EyeWatch::taken() { note_shown(lit_.from_ns); }
+
+void EyeWatch::note_shown(std::int64_t lit_ns) {
   shown_ = seen_;
   // A display that follows no eyes needs no mask that does.
   const bool mono = !follows() || seen_.depth_share <= 0;
-  const std::int64_t lit = timing_.lit(now - timing_.draw_ns()).from_ns;
-  if (mono && !mono_lit_ns_) mono_lit_ns_ = lit;
+  if (mono && !mono_lit_ns_) mono_lit_ns_ = lit_ns;
   if (!follows() || traced_mono_ == mono) return;
   traced_mono_ = mono;
-  trace_.line(fmt::format("shows {} lit {} measured {}", mono ? "mono" : "depth", lit, eyes_.measured_ns()));
+  trace_.line(fmt::format("shows {} lit {} measured {}", mono ? "mono" : "depth", lit_ns, eyes_.measured_ns()));
 }
 
 void EyeWatch::tell(std::int64_t now_ns) {
@@ -127,8 +134,14 @@ void EyeWatch::trace_phase(const stereo::DeviceReading& reading, std::int64_t no
 }
 
 std::optional<EyesFacts> EyeWatch::word(const stereo::DeviceReading& reading) const {
-  if (!follows()) return std::nullopt;
   EyesFacts facts;
+  if (!refused_.empty()) {
+    facts.state = EyesFacts::State::trouble;
+    facts.eyes = "no depth on this screen";
+    facts.advice = refused_;
+    return facts;
+  }
+  if (!follows()) return std::nullopt;
   facts.in_depth = seen_.depth_share > 0;
   if (!link_.connected()) {
     facts.state = EyesFacts::State::trouble;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/clock.h"
 #include "kiosk/device_link.h"
@@ -22,7 +23,11 @@ class EyeWatch {
   /// Another display profile, or fixed eyes.
   void set_options(const stereo::FollowOptions& options);
   void set_timing(const stereo::DisplayTiming& timing) { timing_.set_timing(timing); }
+  /// Why nothing may be shown in depth here, a sentence; empty: it may.
+  void refuse_depth(std::string why) { refused_ = std::move(why); }
   bool follows() const { return eyes_.options().follow; }
+  /// What it sees may change by itself.
+  bool watches() const { return follows() || (eyes_.options().movable_mask && link_.connected()); }
 
   /// A beat of the display has come: looks where the eyes are. True: what is on the display must be drawn again.
   bool look();
@@ -34,10 +39,16 @@ class EyeWatch {
   /// The picture for `seen` is drawn to its last pixel and about to be shown. `refresh_ns`: when the display refreshed last, if it tells.
   void drawn(std::optional<std::int64_t> refresh_ns);
 
+  /// The picture for `seen` was taken for a file: as if a display had shown it, however long drawing took.
+  void taken();
+  /// When the picture for `seen` is expected to light up.
+  std::int64_t lit_ns() const { return lit_.from_ns; }
+
   /// What stands in the panel; nothing while no eyes are followed.
   std::optional<panels::EyesFacts> facts() const { return facts_; }
 
  private:
+  void note_shown(std::int64_t lit_ns);
   void tell(std::int64_t now_ns);
   void trace_phase(const stereo::DeviceReading& reading, std::int64_t now_ns);
   std::optional<panels::EyesFacts> word(const stereo::DeviceReading& reading) const;
@@ -47,6 +58,8 @@ class EyeWatch {
   Trace trace_;
   stereo::TrackedEyes eyes_;
   stereo::PictureTiming timing_{{}};
+  stereo::LitTime lit_;
+  std::string refused_;
   stereo::SeenFrom seen_;
   std::optional<stereo::SeenFrom> shown_;    ///< what the picture on the display was drawn for
   std::optional<std::int64_t> mono_lit_ns_;  ///< from when on nothing but mono is seen; to be told to the daemon then

@@ -36,19 +36,24 @@ bool parse_point(const std::string& text, prismesh::mesh::Vec3& point) {
 
 int run_interactive(int argc, char** argv) {
   AppOptions options;
-  std::string size = "1600x900", eye = "0,0,650", runtime_dir, deck, shots;
+  std::string size = "1600x900", eye, profile, config, runtime_dir, deck, shots;
   bool window = false;
   CLI::App app("The picture of a Prismesh station: shows the model server's document and edits it by hand.");
-  app.add_option("--runtime-dir", runtime_dir, "Folder of the model server's socket")->option_text("DIR");
+  app.add_option("--runtime-dir", runtime_dir, "Folder of the daemons' sockets")->option_text("DIR");
+  app.add_option("--config", config, "Settings that go before those of the system and the user (docs/settings.md)")->option_text("FILE");
   auto* in_window = app.add_flag("--window", window, "Open in a window (the default)");
   app.add_flag("--fullscreen", options.fullscreen, "Cover the display")->excludes(in_window);
   app.add_option("--size", size, "Size of the window or the pictures (1600x900)")->option_text("WxH");
-  app.add_option("--profile", options.profile, "Display profile: a name or a file (mono)")->option_text("NAME|FILE");
-  app.add_option("--eye", eye, "Point between the eyes, mm from the screen's centre (0,0,650)")->option_text("X,Y,Z");
+  app.add_option("--profile", profile, "Display profile: a name or a file (the settings', else mono)")->option_text("NAME|FILE");
+  app.add_option("--eye", eye, "Fixed point between the eyes, mm from the screen's centre; no tracker is followed")->option_text("X,Y,Z");
   app.add_option("--open", deck, "Deck to open")->option_text("DECK");
   auto* frames = app.add_option("--headless-frames", options.headless_frames, "Draw so many pictures without a display, then end")
                      ->option_text("N")
                      ->check(CLI::Range(1, 1000000));
+  auto* pace = app.add_option("--pace", options.pace_seconds, "Seconds between those pictures (0)")
+                   ->option_text("S")
+                   ->check(CLI::Range(0.0, 3600.0));
+  pace->needs(frames);
   auto* folder = app.add_option("--shots", shots, "Folder for those pictures")->option_text("DIR");
   frames->needs(folder);
   folder->needs(frames);
@@ -64,11 +69,15 @@ int run_interactive(int argc, char** argv) {
     std::fprintf(stderr, "--size %s: write width and height in pixels, for example 1600x900 (320x240 to 16384x16384)\n", size.c_str());
     return 2;
   }
-  if (!parse_point(eye, options.between_eyes_mm) || options.between_eyes_mm.z() <= 0) {
+  if (prismesh::mesh::Vec3 fixed; !eye.empty() && parse_point(eye, fixed) && fixed.z() > 0) {
+    options.fixed_eyes_mm = fixed;
+  } else if (!eye.empty()) {
     std::fprintf(stderr, "--eye %s: write three numbers in mm, the last greater than 0, for example 0,0,650\n", eye.c_str());
     return 2;
   }
   if (!runtime_dir.empty()) options.runtime_dir = runtime_dir;
+  if (!config.empty()) options.config = config;
+  if (!profile.empty()) options.profile = profile;
   if (!deck.empty()) options.deck = std::filesystem::absolute(deck);
   options.shots = shots;
   return prismesh::kiosk::run_app(options);

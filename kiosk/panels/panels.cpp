@@ -157,14 +157,74 @@ void part_row(const PartRow& part, Actions& actions) {
   ImGui::PopID();
 }
 
+/// How tracked eyes and the mask are: a line when all is well, and what to do about it when it isn't.
+void eyes_section(const EyesFacts& eyes) {
+  section("Eyes");
+  const bool good = eyes.state == EyesFacts::State::good, waiting = eyes.state == EyesFacts::State::waiting;
+  draw_signal(good ? Signal::ok : waiting ? Signal::information : Signal::warn, ImGui::GetFontSize() * 0.75f);
+  ImGui::SameLine();
+  fact(eyes.eyes.c_str(), eyes.in_depth ? "in depth" : "flat");
+  if (!eyes.mask.empty()) fact("prism mask", eyes.mask);
+  if (eyes.simulated) fact("devices", "simulated");
+  if (eyes.advice.empty()) return;
+  ImGui::PushFont(small_font());
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(printable(eyes.advice).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopFont();
+}
+
+void depth_row(const char* label, const std::string& value, Command less, Command more, Actions& actions) {
+  const float button = ImGui::GetFrameHeight(), right = ImGui::GetWindowContentRegionMax().x;
+  ImGui::PushID(label);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", label);
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(right - 2 * button - 2 * kGrid - ImGui::CalcTextSize(value.c_str()).x);
+  ImGui::TextUnformatted(value.c_str());
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(right - 2 * button - kGrid / 2);
+  if (ImGui::Button("-", ImVec2(button, 0))) actions.emplace_back(less);
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(right - button);
+  if (ImGui::Button("+", ImVec2(button, 0))) actions.emplace_back(more);
+  ImGui::PopID();
+}
+
+void depth_section(const DepthFacts& depth, Actions& actions) {
+  section("Depth");
+  depth_row("strength", fmt::format("{} %", depth.strength_percent), Command::less_depth, Command::more_depth, actions);
+  depth_row("parallax up to", fmt::format("{:.1f}\u00b0", depth.comfort_degrees), Command::narrower_comfort, Command::wider_comfort,
+            actions);
+  bool kept = depth.selection_in_plane;
+  if (ImGui::Checkbox("selection at the screen", &kept)) actions.emplace_back(Command::keep_selection_in_plane);
+}
+
+/// How high the two sections above will be, so that the panel fits its content.
+float stereo_height(const PanelData& data, float width) {
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  float height = 0;
+  if (data.eyes) {
+    height += line * (2.6f + (data.eyes->mask.empty() ? 0 : 1) + (data.eyes->simulated ? 1 : 0));
+    ImGui::PushFont(small_font());
+    if (!data.eyes->advice.empty()) height += ImGui::CalcTextSize(data.eyes->advice.c_str(), nullptr, false, width).y + kGrid / 2;
+    ImGui::PopFont();
+  }
+  if (data.depth) height += line * 1.6f + 3 * ImGui::GetFrameHeightWithSpacing();
+  return height;
+}
+
 void model_panel(const PanelData& data, display::PixelSize picture, Actions& actions) {
   const float width = side_width(picture), most = static_cast<float>(picture.height) - 2 * kMargin;
   ImGui::SetNextWindowPos(ImVec2(static_cast<float>(picture.width) - kMargin - width, kMargin));
   const auto rows = static_cast<float>(data.document->parts.size());
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  ImGui::SetNextWindowSize(ImVec2(width, std::min(most, on_grid(line * (rows + 7.0f) + 4 * kGrid))));
+  ImGui::SetNextWindowSize(
+      ImVec2(width, std::min(most, on_grid(line * (rows + 7.0f) + 4 * kGrid + stereo_height(data, width - 4 * kGrid)))));
   ImGui::Begin("Quality and parts", nullptr, kPanelFlags);
   quality_section(data);
+  if (data.eyes) eyes_section(*data.eyes);
+  if (data.depth) depth_section(*data.depth, actions);
   section("Parts");
   const auto hidden =
       std::count_if(data.document->parts.begin(), data.document->parts.end(), [](const PartRow& part) { return part.hidden; });

@@ -34,6 +34,13 @@ constexpr std::array kKeys = {
     KeyBinding{digit(7), false, false, Command::view_oblique, "7", "oblique view"},
     KeyBinding{letter('Q'), false, false, Command::colour_mode, "Q", "colour by part or by quality"},
     KeyBinding{letter('P'), false, false, Command::next_profile, "P", "next display profile"},
+    KeyBinding{letter('Z'), false, false, Command::selection_to_plane, "Z", "bring the selection into the plane of the screen"},
+    KeyBinding{letter('X'), false, false, Command::keep_selection_in_plane, "X", "keep every new selection there, or not"},
+    KeyBinding{Key::page_up, false, false, Command::more_depth, "PgUp", "more depth"},
+    KeyBinding{Key::page_down, false, false, Command::less_depth, "PgDn", "less depth"},
+    KeyBinding{Key::page_up, true, false, Command::wider_comfort, "Ctrl+PgUp", "let a model reach farther out of and into the screen"},
+    KeyBinding{Key::page_down, true, false, Command::narrower_comfort, "Ctrl+PgDn", "less far: easier on the eyes"},
+    KeyBinding{letter('R'), true, false, Command::rearm, "Ctrl+R", "try the prism mask again after it was stuck"},
     KeyBinding{Key::f11, false, false, Command::fullscreen, "F11", "fullscreen on and off"},
     KeyBinding{Key::f1, false, false, Command::help, "F1", "show or hide this help"},
 };
@@ -58,7 +65,17 @@ std::span<const KeyBinding> key_bindings() { return kKeys; }
 std::span<const MouseBinding> mouse_bindings() { return kMouse; }
 
 bool repeats(Command command) {
-  return command == Command::undo || command == Command::redo || command == Command::grow || command == Command::shrink;
+  switch (command) {
+    case Command::undo:
+    case Command::redo:
+    case Command::grow:
+    case Command::shrink:
+    case Command::more_depth:
+    case Command::less_depth:
+    case Command::wider_comfort:
+    case Command::narrower_comfort: return true;
+    default: return false;
+  }
 }
 
 std::optional<Command> command_for(Key key, const display::Modifiers& modifiers) {

@@ -35,6 +35,13 @@ enum class Command : std::uint8_t {
   view_oblique,
   colour_mode,
   next_profile,
+  selection_to_plane,
+  keep_selection_in_plane,
+  more_depth,
+  less_depth,
+  wider_comfort,
+  narrower_comfort,
+  rearm,
   fullscreen,
   help,
 };

@@ -23,21 +23,14 @@ void for_each_selected(const ModelSource& model, const Visit& visit) {
 }
 
 std::optional<NodeIndex> nearest_to_centre(const ModelSource& model) {
-  Vec3 sum = Vec3::Zero();
-  std::size_t count = 0;
+  const std::optional<Vec3> centre = selection_centre(model);
+  if (!centre) return std::nullopt;
   const std::size_t nodes = model.size(SnapshotArray::positions);
-  for_each_selected(model, [&](std::size_t n) {
-    if (n >= nodes) return;
-    sum += model.at<Vec3>(SnapshotArray::positions, n);
-    ++count;
-  });
-  if (count == 0) return std::nullopt;
-  const Vec3 centre = sum / static_cast<double>(count);
   std::optional<NodeIndex> best;
   double best_distance = std::numeric_limits<double>::infinity();
   for_each_selected(model, [&](std::size_t n) {
     if (n >= nodes) return;
-    const double distance = (model.at<Vec3>(SnapshotArray::positions, n) - centre).squaredNorm();
+    const double distance = (model.at<Vec3>(SnapshotArray::positions, n) - *centre).squaredNorm();
     if (!(distance < best_distance)) return;
     best_distance = distance;
     best = NodeIndex(n);
@@ -69,6 +62,18 @@ Vec3 normal_at(const ModelSource& model, NodeIndex node) {
 }
 
 }  // namespace
+
+std::optional<Vec3> selection_centre(const ModelSource& model) {
+  Vec3 sum = Vec3::Zero();
+  std::size_t count = 0;
+  const std::size_t nodes = model.size(SnapshotArray::positions);
+  for_each_selected(model, [&](std::size_t n) {
+    if (n >= nodes) return;
+    sum += model.at<Vec3>(SnapshotArray::positions, n);
+    ++count;
+  });
+  return count == 0 ? std::nullopt : std::optional<Vec3>(sum / static_cast<double>(count));
+}
 
 std::optional<Anchor> anchor_of_selection(const ModelSource& model, std::optional<NodeIndex> preferred) {
   std::optional<NodeIndex> node;

@@ -21,6 +21,9 @@ struct Anchor {
   bool operator==(const Anchor&) const = default;
 };
 
+/// The middle of the selected nodes; nothing if none is selected. Costs a pass over the marks.
+std::optional<Vec3> selection_centre(const render::ModelSource& model);
+
 /// The anchor of the model's selection: `preferred` if it is selected, else the selected node nearest to the selection's centre.
 /// Nothing if no node is selected. Costs a pass over the marks, and over the shells' nodes for the normal.
 std::optional<Anchor> anchor_of_selection(const render::ModelSource& model, std::optional<mesh::NodeIndex> preferred);

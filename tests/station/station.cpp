@@ -17,7 +17,7 @@ namespace prismesh::test {
 namespace {
 
 const std::filesystem::path kPrograms = PRISMESH_PROGRAMS;
-constexpr int kWidth = 1280, kHeight = 800;
+constexpr int kScreenWidth = 1320, kScreenHeight = 880;
 
 std::string text_of(double value) { return std::to_string(static_cast<long>(std::lround(value))); }
 
@@ -59,7 +59,7 @@ Station::Station() {
   std::filesystem::create_directories(folder_ / "state");
   std::filesystem::permissions(folder_ / "run", std::filesystem::perms::owner_all);
   write_sheet(deck());
-  display_ = std::make_unique<VirtualDisplay>(folder_, kWidth + 40, kHeight + 80);
+  display_ = std::make_unique<VirtualDisplay>(folder_, kScreenWidth, kScreenHeight);
   start_model_server();
 }
 
@@ -69,7 +69,10 @@ Station::~Station() {
     std::fprintf(stderr, "--- what the kiosk said ---\n%s--- what the model server said ---\n%s", kiosk_->all_output().c_str(),
                  model_server_->standard_error().c_str());
   }
+  if (::testing::Test::HasFailure() && device_daemon_)
+    std::fprintf(stderr, "--- what the device daemon said ---\n%s", device_daemon_->standard_error().c_str());
   kiosk_.reset();
+  device_daemon_.reset();
   model_server_.reset();
   display_.reset();
   std::error_code ignored;
@@ -87,17 +90,31 @@ void Station::kill_model_server() {
   EXPECT_EQ(model_server_->wait_for_exit(), 128 + SIGKILL);
 }
 
+void Station::start_device_daemon(const std::string& settings) {
+  const std::filesystem::path file = folder_ / "prismesh.toml";
+  std::ofstream(file) << settings;
+  device_daemon_ = std::make_unique<Process>(std::vector<std::string>{(kPrograms / "prismesh-deviced").string(), "--runtime-dir",
+                                                                      (folder_ / "run").string(), "--config", file.string()},
+                                             std::map<std::string, std::string>{{"XDG_CONFIG_HOME", (folder_ / "config").string()}});
+}
+
+void Station::kill_device_daemon() {
+  device_daemon_->kill(SIGKILL);
+  EXPECT_EQ(device_daemon_->wait_for_exit(), 128 + SIGKILL);
+}
+
 void Station::start_kiosk(const std::vector<std::string>& more_arguments) {
   std::vector<std::string> command{(kPrograms / "prismesh-kiosk").string(),
                                    "--trace",
                                    "--runtime-dir",
                                    (folder_ / "run").string(),
                                    "--size",
-                                   std::to_string(kWidth) + "x" + std::to_string(kHeight),
+                                   std::to_string(width_) + "x" + std::to_string(height_),
                                    "--open",
                                    deck().string()};
   command.insert(command.end(), more_arguments.begin(), more_arguments.end());
-  kiosk_ = std::make_unique<Process>(command, std::map<std::string, std::string>{{"DISPLAY", display_->name()}});
+  kiosk_ = std::make_unique<Process>(
+      command, std::map<std::string, std::string>{{"DISPLAY", display_->name()}, {"XDG_CONFIG_HOME", (folder_ / "config").string()}});
   ASSERT_FALSE(kiosk_->wait_for("generation ").empty()) << "the kiosk showed no document\n" << kiosk_->all_output();
   ASSERT_FALSE(kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); }).empty());
   Process search({"xdotool", "search", "--onlyvisible", "--sync", "--name", "^Prismesh$"}, {{"DISPLAY", display_->name()}});

@@ -42,6 +42,12 @@ class Station {
   /// As a crash would.
   void kill_model_server();
   Process& model_server() { return *model_server_; }
+  /// With these settings (text of a prismesh.toml).
+  void start_device_daemon(const std::string& settings);
+  void kill_device_daemon();
+  Process& device_daemon() { return *device_daemon_; }
+  /// Of the kiosk's next window. Small ones are drawn fast without a graphics card.
+  void set_picture_size(int width, int height) { width_ = width, height_ = height; }
   /// Opens the deck in a kiosk and waits until its picture is on the screen.
   void start_kiosk(const std::vector<std::string>& more_arguments = {});
   Process& kiosk() { return *kiosk_; }
@@ -97,7 +103,9 @@ class Station {
   std::filesystem::path folder_;
   std::unique_ptr<VirtualDisplay> display_;
   std::unique_ptr<Process> model_server_;
+  std::unique_ptr<Process> device_daemon_;
   std::unique_ptr<Process> kiosk_;
+  int width_ = 1280, height_ = 800;
   std::string window_;
 };
 

@@ -1,0 +1,49 @@
+// A kiosk without a display: pictures of what it would show, into a folder.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "kiosk/app.h"
+#include "kiosk/render/offscreen.h"
+#include "kiosk/station.h"
+
+namespace prismesh::kiosk {
+
+class HeadlessKiosk {
+ public:
+  HeadlessKiosk(const AppOptions& options, Station& station, const render::Offscreen& target);
+
+  /// Until the pictures are written. Errors: a model too large for the GPU; a picture that can't be written.
+  Result<void> run();
+
+ private:
+  /// A picture that was taken, and is waited for to say from where it would really have been seen.
+  struct Shot {
+    std::filesystem::path file;
+    std::int64_t lit_ns = 0;
+  };
+  /// The eyes and the mask as they were measured, not predicted.
+  struct Measured {
+    std::int64_t eyes_ns = 0;
+    mesh::Vec3 eyes_mm = mesh::Vec3::Zero();
+    std::int64_t mask_ns = 0;
+    double mask_mm = 0;
+  };
+
+  bool settled() const;
+  Result<void> shoot();
+  void remember();
+  /// Says of the oldest shots where eyes and mask were when they would have lit up, as soon as that was measured.
+  void tell_seen();
+
+  const AppOptions& options_;
+  Station& station_;
+  const render::Offscreen& target_;
+  int taken_ = 0;
+  std::deque<Shot> shots_;
+  std::deque<Measured> measured_;
+};
+
+}  // namespace prismesh::kiosk

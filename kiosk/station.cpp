@@ -1,0 +1,86 @@
+#include "kiosk/station.h"
+
+#include <cmath>
+#include <utility>
+
+#include "kiosk/display/link_check.h"
+
+namespace prismesh::kiosk {
+
+namespace {
+
+stereo::FollowOptions follow_options(const stereo::Profile& profile, bool fixed_eyes, const mesh::Vec3& resting_mm) {
+  stereo::FollowOptions options;
+  options.follow = profile.stereo() && !fixed_eyes;
+  options.mono_without_eyes = profile.has_mask();
+  options.movable_mask = profile.has_mask() && profile.mask_moves;
+  options.resting_mm = resting_mm;
+  options.eye_separation_mm = profile.eye_separation_mm;
+  return options;
+}
+
+}  // namespace
+
+Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer> made, panels::Gui gui)
+    : trace(options.trace ? stdout : nullptr),
+      link(ipc::model_socket_path(options.runtime_dir), options.deck, clock, trace),
+      devices(ipc::device_socket_path(options.runtime_dir), trace),
+      eyes({}, devices, clock, trace),
+      renderer(std::move(made)),
+      editor({options.profile}, link, *renderer, clock, trace),
+      screen(std::move(gui), *renderer, editor, clock),
+      fixed_eyes_(options.fixed_eyes_mm.has_value()),
+      resting_mm_(options.fixed_eyes_mm.value_or(kRestingEyesMm)),
+      panel_latency_ms_(options.panel_latency_ms) {
+  follow_profile();
+  look();
+}
+
+Result<std::unique_ptr<Station>> Station::create(const StationOptions& options) {
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create({});
+  if (!renderer) return fail(renderer.error());
+  Result<panels::Gui> gui = panels::Gui::create();
+  if (!gui) return fail(gui.error());
+  return std::unique_ptr<Station>(new Station(options, std::move(*renderer), std::move(*gui)));
+}
+
+Result<void> Station::turn() {
+  link.turn();
+  devices.turn();
+  if (Result<void> followed = editor.follow(); !followed) return followed;
+  follow_profile();
+  return {};
+}
+
+bool Station::look() {
+  const bool other = eyes.look();
+  editor.look_from(eyes.seen());
+  editor.set_eyes_facts(eyes.facts());
+  return other;
+}
+
+void Station::place(std::optional<display::Monitor> monitor, const display::Window::Place& place) {
+  monitor_ = std::move(monitor);
+  place_ = place;
+  stereo::DisplayTiming timing;
+  if (monitor_ && monitor_->refresh_hz > 1) timing.period_ns = std::llround(1e9 / monitor_->refresh_hz);
+  timing.panel_latency_ns = std::llround(panel_latency_ms_ * 1e6);
+  eyes.set_timing(timing);
+  followed_.reset();
+  follow_profile();
+}
+
+void Station::follow_profile() {
+  if (followed_ == editor.profile()) return;
+  followed_ = editor.profile();
+  eyes.set_options(follow_options(*followed_, fixed_eyes_, resting_mm_));
+  const display::LinkReport report = display::check_link(*followed_, monitor_);
+  eyes.refuse_depth(report.stereo_allowed() ? std::string() : report.refusals.front());
+  // Eyes that are followed, and masks, count from the panel's middle; a picture for nobody in particular is its own screen.
+  render::PanelPlace panel;
+  if (monitor_ && (eyes.follows() || followed_->has_mask()))
+    panel = {place_.x - monitor_->x, place_.y - monitor_->y, monitor_->shown.width, monitor_->shown.height};
+  editor.set_panel(panel);
+}
+
+}  // namespace prismesh::kiosk

@@ -1,0 +1,181 @@
+#include "kiosk/windowed_kiosk.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kiosk/display/monitor.h"
+
+namespace prismesh::kiosk {
+
+namespace {
+
+constexpr std::int64_t kCaretBlinkNs = 300'000'000;  ///< a text field's caret is the only thing that moves by itself
+constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< so long after its last step a wheel is taken to stand still
+constexpr std::int64_t kForEverNs = -1;
+constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< an absent device daemon is looked for so often
+
+std::int64_t shorter(std::int64_t a, std::int64_t b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
+
+}  // namespace
+
+WindowedKiosk::WindowedKiosk(display::Window& window, Station& station) : window_(window), station_(station) {
+  station_.screen.set_size(window.size());
+  find_place();
+}
+
+Result<void> WindowedKiosk::run() {
+  if (Result<void> laid_out = station_.screen.lay_out(); !laid_out) return laid_out;  // so that the panels' width is known
+  while (!closing_) {
+    const Result<std::vector<display::WindowEvent>> events = window_.take_events();
+    if (!events) return fail(events.error());
+    for (const display::WindowEvent& event : *events)
+      if (Result<void> taken = take(event); !taken) return taken;
+    if (Result<void> turned = station_.turn(); !turned) return turned;
+    const Result<bool> drawn = beat();
+    if (!drawn) return fail(drawn.error());
+    if (!*drawn && events->empty()) wait();
+  }
+  return {};
+}
+
+/// Looks and draws where it is time to and something has changed; whether a picture was drawn.
+Result<bool> WindowedKiosk::beat() {
+  if (!stale() && !station_.eyes.watches()) return false;
+  if (station_.clock.now_ns() < station_.eyes.next_look_ns()) return false;
+  const bool seen_otherwise = station_.look();
+  if (!seen_otherwise && !stale()) return false;
+  if (Result<void> shown = show(); !shown) return fail(shown.error());
+  return true;
+}
+
+Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
+  if (const auto* moved = std::get_if<display::PointerMoved>(&event)) {
+    const bool was_on_panel = gestures_.position() && station_.screen.gui().on_panel(gestures_.position()->x(), gestures_.position()->y());
+    station_.screen.gui().feed(event);
+    gestures(gestures_.moved(*moved));
+    // Panels answer to the pointer, and a stereo picture carries it.
+    if (was_on_panel || station_.screen.gui().on_panel(moved->x, moved->y) || station_.editor.profile().stereo()) dirty_ = true;
+    return {};
+  }
+  if (const auto* button = std::get_if<display::ButtonChanged>(&event)) return take_button(*button);
+  if (const auto* key = std::get_if<display::KeyChanged>(&event)) return take_key(*key);
+  station_.screen.gui().feed(event);
+  dirty_ = true;
+  if (const auto* wheel = std::get_if<display::WheelTurned>(&event)) {
+    const bool panel = station_.screen.gui().on_panel(wheel->x, wheel->y);
+    gestures(gestures_.wheel(*wheel, panel ? tools::Under::panel : tools::Under::picture));
+    if (!panel) wheel_rest_ns_ = station_.clock.now_ns() + kWheelRestNs;
+  } else if (const auto* resized = std::get_if<display::Resized>(&event)) {
+    station_.screen.set_size(resized->size);
+    find_place();
+  } else if (std::holds_alternative<display::Moved>(event)) {
+    find_place();
+  } else if (std::holds_alternative<display::PointerLeft>(event)) {
+    gestures_.left();
+  } else if (std::holds_alternative<display::FocusLost>(event)) {
+    gestures_.cancel();
+    station_.editor.cancel_gesture();
+  } else if (std::holds_alternative<display::CloseRequested>(event)) {
+    closing_ = true;
+  }
+  return {};
+}
+
+Result<void> WindowedKiosk::take_button(const display::ButtonChanged& event) {
+  if (Result<void> settled = settle(); !settled) return settled;
+  station_.screen.gui().feed(event);
+  edge_fed_ = dirty_ = true;
+  const bool panel = station_.screen.gui().on_panel(event.x, event.y);
+  const tools::Under under = panel ? tools::Under::panel : station_.editor.under({event.x, event.y});
+  gestures(gestures_.button(event, under));
+  return {};
+}
+
+Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
+  if (Result<void> settled = settle(); !settled) return settled;
+  station_.screen.gui().feed(event);
+  edge_fed_ = dirty_ = true;
+  if (!event.down) return {};
+  const std::optional<tools::Command> command = tools::command_for(event.key, event.modifiers);
+  if (!command || (event.repeat && !tools::repeats(*command))) return {};
+  // While a path is typed the keyboard is the text field's.
+  if (station_.editor.dialog_open() && *command != tools::Command::cancel) return {};
+  gestures_.forget_click();
+  if (*command == tools::Command::cancel) gestures_.cancel();
+  do_command(*command);
+  // A text field takes the keyboard two layouts after it appears; the next key may be in the queue already.
+  for (int round = 0; round < 3 && station_.editor.dialog_open() && !station_.screen.gui().wants_keys(); ++round)
+    if (Result<void> laid_out = station_.screen.lay_out(); !laid_out) return laid_out;
+  return {};
+}
+
+void WindowedKiosk::do_command(tools::Command command) {
+  if (command == tools::Command::fullscreen)
+    window_.set_fullscreen(fullscreen_ = !fullscreen_);
+  else if (command == tools::Command::rearm)
+    station_.devices.rearm();
+  else
+    station_.editor.command(command, pointer_on_picture());
+}
+
+std::optional<tools::Pixel> WindowedKiosk::pointer_on_picture() const {
+  const std::optional<tools::Pixel> at = gestures_.position();
+  return at && !station_.screen.gui().on_panel(at->x(), at->y()) ? at : std::nullopt;
+}
+
+Result<void> WindowedKiosk::settle() {
+  if (!std::exchange(edge_fed_, false)) return {};
+  return station_.screen.lay_out();
+}
+
+Result<void> WindowedKiosk::show() {
+  shown_changes_ = station_.editor.changes();
+  dirty_ = edge_fed_ = false;
+  window_.show_pointer(!station_.editor.profile().stereo());
+  shown_moving_ = moving() && station_.editor.large_model();
+  if (Result<void> drawn = station_.screen.draw(0, gestures_.position(), shown_moving_); !drawn) return drawn;
+  if (station_.eyes.watches()) window_.finish();
+  station_.eyes.drawn(station_.eyes.watches() ? window_.last_refresh_ns() : std::nullopt);
+  window_.present();
+  // A picture may take longer than a wheel's steps lie apart.
+  if (station_.clock.now_ns() < wheel_rest_ns_ + kWheelRestNs)
+    wheel_rest_ns_ = std::max(wheel_rest_ns_, station_.clock.now_ns() + kWheelRestNs);
+  trace_picture();
+  return {};
+}
+
+void WindowedKiosk::trace_picture() {
+  station_.editor.trace_picture();
+  if (pictures_ == 0) station_.trace.line(fmt::format("ready {} {}", window_.size().width, window_.size().height));
+  ++pictures_;
+  const std::optional<std::uint64_t> generation = station_.editor.shown_generation();
+  station_.trace.line(fmt::format("picture {} generation {}", pictures_, generation ? std::to_string(*generation) : "none"));
+}
+
+std::int64_t WindowedKiosk::patience_ns() const {
+  const std::int64_t now = station_.clock.now_ns();
+  const int link_ms = station_.link.patience_ms();
+  std::int64_t patience = link_ms < 0 ? kForEverNs : link_ms * std::int64_t{1'000'000};
+  if (!station_.devices.connected()) patience = shorter(patience, kDaemonTriesNs);
+  if (stale() || station_.eyes.watches()) patience = shorter(patience, std::max<std::int64_t>(0, station_.eyes.next_look_ns() - now));
+  if (station_.screen.gui().wants_keys()) patience = shorter(patience, kCaretBlinkNs);
+  if (shown_moving_ && !gestures_.dragging()) patience = shorter(patience, std::max<std::int64_t>(0, wheel_rest_ns_ - now));
+  return patience;
+}
+
+void WindowedKiosk::wait() {
+  std::array<pollfd, 3> watched{
+      {{window_.descriptor(), POLLIN, 0}, {station_.link.descriptor(), POLLIN, 0}, {station_.devices.descriptor(), POLLIN, 0}}};
+  const std::int64_t patience = patience_ns();
+  const bool caret = station_.screen.gui().wants_keys();
+  const timespec most{patience / 1'000'000'000, patience % 1'000'000'000};
+  ::ppoll(watched.data(), watched.size(), patience < 0 ? nullptr : &most, nullptr);
+  if (caret) dirty_ = true;
+}
+
+}  // namespace prismesh::kiosk

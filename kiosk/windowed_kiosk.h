@@ -1,0 +1,54 @@
+// The loop of a kiosk in a window: waits for the hand, the daemons and the eyes, and draws when something changed, at most once per refresh
+// of the display.
+#pragma once
+
+#include "kiosk/display/window.h"
+#include "kiosk/station.h"
+#include "kiosk/tools/gestures.h"
+
+namespace prismesh::kiosk {
+
+class WindowedKiosk {
+ public:
+  WindowedKiosk(display::Window& window, Station& station);
+
+  /// Until the window is closed. Errors: the display is gone; a model too large for the GPU.
+  Result<void> run();
+
+ private:
+  Result<void> take(const display::WindowEvent& event);
+  Result<void> take_button(const display::ButtonChanged& event);
+  Result<void> take_key(const display::KeyChanged& event);
+  void do_command(tools::Command command);
+  Result<void> settle();
+  void find_place() { station_.place(window_.monitor(), window_.place()); }
+  /// The view or something in it is about to change again.
+  bool moving() const { return gestures_.dragging() || station_.clock.now_ns() < wheel_rest_ns_; }
+  /// Something has changed that must be seen.
+  bool stale() const {
+    return dirty_ || station_.editor.changes() != shown_changes_ || (shown_moving_ && !moving()) || station_.editor.gliding();
+  }
+  Result<bool> beat();
+  Result<void> show();
+  void trace_picture();
+  void wait();
+  std::int64_t patience_ns() const;
+  std::optional<tools::Pixel> pointer_on_picture() const;
+  void gestures(const std::vector<tools::Gesture>& made) {
+    for (const tools::Gesture& gesture : made) station_.editor.gesture(gesture);
+  }
+
+  display::Window& window_;
+  Station& station_;
+  tools::Gestures gestures_;
+  bool edge_fed_ = false;  ///< a press or release that the panels haven't seen yet
+  bool dirty_ = true;
+  bool fullscreen_ = false;
+  bool closing_ = false;
+  bool shown_moving_ = false;  ///< the last picture was drawn for speed
+  std::int64_t wheel_rest_ns_ = 0;
+  std::uint64_t shown_changes_ = 0;
+  std::uint64_t pictures_ = 0;
+};
+
+}  // namespace prismesh::kiosk
