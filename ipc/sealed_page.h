@@ -45,12 +45,13 @@ class SealedPage {
 template <class Layout>
 class SealedPageReader {
  public:
-  /// Errors: memory that could shrink or be written by somebody else, that is too short, or that holds something else.
+  /// Errors: memory that could shrink or be written by somebody else, of another size, or that holds something else.
   static Result<SealedPageReader> map(const Descriptor& descriptor) {
     if (Result<void> sealed = check_page_seals(descriptor, Layout::kName); !sealed) return fail(std::move(sealed.error()));
     Result<Mapping> mapping = Mapping::map(descriptor, false);
     if (!mapping) return fail(std::move(mapping.error()));
-    if (mapping->bytes().size() < sizeof(Layout)) return fail(Layout::kName, "it is too short");
+    if (mapping->bytes().size() != sizeof(Layout))
+      return fail(Layout::kName, "it has another size: use programs of one version, and restart the daemon after an update");
     SealedPageReader reader;
     reader.mapping_ = std::move(*mapping);
     reader.layout_ = reinterpret_cast<const Layout*>(reader.mapping_.bytes().data());

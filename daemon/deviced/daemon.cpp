@@ -104,8 +104,9 @@ struct Daemon::State final : ipc::ServerHandler {
     while (!untaken.empty() && station->tell(untaken.front())) untaken.pop_front();
     devices = station->look();
     for (const ipc::DeviceInfo& device : devices) {
-      Told& last = told[device.role];
       const Time::time_point now = Time::now();
+      // What comes and goes while a station starts isn't worth a word.
+      Told& last = told.try_emplace(device.role, Told{{}, now}).first->second;
       if (last.device == device || now - last.at < kTellPause) continue;
       last = {device, now};
       log(device);

@@ -108,7 +108,9 @@ void DeviceLoop::leave_tracker() {
 void DeviceLoop::poll_tracker(std::int64_t now_ns) {
   Tracker* tracker = seated_tracker();
   if (tracker == nullptr) return;
-  const Tracker::Polled polled = tracker->poll(now_ns);
+  Tracker::Polled polled = tracker->poll(now_ns);
+  // It arrived at some moment since the last tick: half of it ago, on average.
+  polled.sample.measured_ns -= kTickPeriodNs / 2;
   if (polled.fresh) filter_.take(polled.sample);
   const drivers::eye_tracker::LineCounts& counts = tracker->counts();
   eyes_.records = counts.records;

@@ -83,7 +83,7 @@ struct Station::State {
   std::unique_ptr<LoopThread> loop_thread;
   std::optional<Watchdog> watchdog;
 
-  ipc::EyesPhase eyes = ipc::EyesPhase::none;
+  EyesChanged eyes;
   ServoStatus servo;
 
   Result<void> start_simulators() {
@@ -134,7 +134,7 @@ struct Station::State {
   }
 
   void take_in(const LoopEvent& event) {
-    if (const auto* changed = std::get_if<EyesChanged>(&event)) eyes = changed->phase;
+    if (const auto* changed = std::get_if<EyesChanged>(&event)) eyes = *changed;
     if (const auto* changed = std::get_if<MaskChanged>(&event)) servo.mask = changed->phase;
     if (const auto* changed = std::get_if<ServoChanged>(&event)) {
       servo.open = changed->open;
@@ -142,6 +142,7 @@ struct Station::State {
     }
   }
 
+  TrackerStatus tracker_status() { return {eyes.phase, clock.now_ns() - eyes.time_ns}; }
   KeeperReport tracker_report() const { return tracker_line ? tracker_line->report() : tracker_datagrams->report(); }
 };
 
@@ -163,7 +164,7 @@ std::vector<ipc::DeviceInfo> Station::look() {
   while (const std::optional<LoopEvent> event = state_->loop->next_event()) state_->take_in(*event);
   const auto& settings = state_->plan.settings;
   std::vector<ipc::DeviceInfo> all;
-  if (state_->plan.has_tracker()) all.push_back(tracker_info(settings.eye_tracker, state_->eyes, state_->tracker_report()));
+  if (state_->plan.has_tracker()) all.push_back(tracker_info(settings.eye_tracker, state_->tracker_status(), state_->tracker_report()));
   if (state_->plan.has_servo()) all.push_back(servo_info(settings.prism_servo, state_->servo, state_->servo_line->report()));
   return all;
 }

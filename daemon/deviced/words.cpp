@@ -13,9 +13,7 @@ using drivers::settings::PrismServoSettings;
 using drivers::settings::TrackerDriver;
 using ipc::EyesPhase;
 
-std::string not_open(const drivers::port::KeeperReport& port) {
-  return port.reason ? port.reason->text() : "its port isn't open; it is tried again by itself";
-}
+std::string not_open(const drivers::port::KeeperReport& port) { return port.reason ? port.reason->text() : std::string(); }
 
 std::string silence_of(const EyeTrackerSettings& settings) {
   if (settings.driver == TrackerDriver::opentrack)
@@ -66,16 +64,16 @@ std::string_view name(MaskPhase phase) {
   return "unknown";
 }
 
-ipc::DeviceInfo tracker_info(const EyeTrackerSettings& settings, EyesPhase phase, const drivers::port::KeeperReport& port) {
+ipc::DeviceInfo tracker_info(const EyeTrackerSettings& settings, const TrackerStatus& status, const drivers::port::KeeperReport& port) {
   const bool datagrams = settings.driver == TrackerDriver::opentrack;
   ipc::DeviceInfo info;
   info.role = "eye tracker";
   info.kind = datagrams ? "opentrack" : "dynasight";
   info.where = datagrams ? "127.0.0.1:" + std::to_string(settings.udp_port) : settings.port;
   info.simulated = settings.simulated;
-  info.state = name(phase);
-  if (phase == EyesPhase::absent) info.trouble = not_open(port);
-  if (phase == EyesPhase::silent) info.trouble = silence_of(settings);
+  info.state = name(status.phase);
+  if (status.phase == EyesPhase::absent) info.trouble = not_open(port);
+  if (status.phase == EyesPhase::silent && status.age_ns > kFirstWordNs) info.trouble = silence_of(settings);
   return info;
 }
 

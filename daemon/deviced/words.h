@@ -1,7 +1,7 @@
 // The devices in words that a user can act on.
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -17,8 +17,15 @@ namespace prismesh::deviced {
 std::string_view name(ipc::EyesPhase phase);
 std::string_view name(drivers::prism_servo::MaskPhase phase);
 
-/// `port` is what the settings say, or the pseudo-terminal of a simulated device.
-ipc::DeviceInfo tracker_info(const drivers::settings::EyeTrackerSettings& settings, ipc::EyesPhase phase,
+/// A device that has just been opened says nothing yet; that is a trouble only after so long.
+inline constexpr std::int64_t kFirstWordNs = 1'500'000'000;
+
+struct TrackerStatus {
+  ipc::EyesPhase phase = ipc::EyesPhase::none;
+  std::int64_t age_ns = 0;  ///< how long it has been in that phase
+};
+/// The settings' port is the pseudo-terminal where the device is simulated.
+ipc::DeviceInfo tracker_info(const drivers::settings::EyeTrackerSettings& settings, const TrackerStatus& status,
                              const drivers::port::KeeperReport& port);
 
 struct ServoStatus {

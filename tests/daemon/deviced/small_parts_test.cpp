@@ -1,0 +1,150 @@
+// The ring between loop and main thread, the thread that drives the loop, the watchdog, and the words.
+#include <atomic>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "daemon/deviced/loop_thread.h"
+#include "daemon/deviced/ring.h"
+#include "daemon/deviced/watchdog.h"
+#include "daemon/deviced/words.h"
+
+namespace prismesh::deviced {
+namespace {
+
+using drivers::prism_servo::MaskPhase;
+using drivers::prism_servo::ServoPhase;
+using drivers::prism_servo::ServoTrouble;
+using drivers::settings::TrackerDriver;
+using ipc::EyesPhase;
+using namespace std::chrono_literals;
+
+TEST(Ring, GivesBackInOrderAndRefusesWhenFull) {
+  Ring<int, 4> ring;
+  EXPECT_FALSE(ring.pop());
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.push(i));
+  EXPECT_FALSE(ring.push(4));
+  EXPECT_EQ(ring.pop(), 0);
+  EXPECT_TRUE(ring.push(4));
+  for (int i = 1; i <= 4; ++i) EXPECT_EQ(ring.pop(), i);
+  EXPECT_FALSE(ring.pop());
+}
+
+TEST(Ring, CarriesEverythingFromOneThreadToAnother) {
+  struct Pair {
+    std::uint64_t a = 0, b = 0;
+  };
+  constexpr std::uint64_t kCount = 200'000;
+  Ring<Pair, 64> ring;
+  std::jthread writer([&ring] {
+    for (std::uint64_t i = 0; i < kCount;)
+      if (ring.push({i, ~i})) ++i;
+  });
+  for (std::uint64_t i = 0; i < kCount;) {
+    const std::optional<Pair> pair = ring.pop();
+    if (!pair) continue;
+    ASSERT_EQ(pair->a, i);
+    ASSERT_EQ(pair->b, ~i);
+    ++i;
+  }
+}
+
+TEST(LoopThread, TicksAndKeepsAnAccountThatReadersSee) {
+  ipc::DevicePage page = ipc::DevicePage::create().value();
+  const ipc::DevicePageReader reader = ipc::DevicePageReader::map(page.descriptor()).value();
+  DeviceLoop loop({}, {}, page);
+  {
+    const auto thread = LoopThread::start(loop, page, false, true).value();
+    while (thread->ticks() < 600) std::this_thread::sleep_for(2ms);
+    const ipc::DeviceHealth health = reader.health().value();
+    EXPECT_GE(health.ticks, 599u);
+    EXPECT_GT(health.heartbeat_ns, 0);
+    EXPECT_EQ(health.pid, ::getpid());
+    EXPECT_GT(health.tick_cpu_ns, 0) << "a median of 256 ticks";
+    EXPECT_TRUE(health.simulated);
+    EXPECT_FALSE(health.memory_locked);
+    EXPECT_EQ(health.realtime, thread->refused().empty());
+  }
+  const std::uint64_t ticks = reader.health()->ticks;
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(reader.health()->ticks, ticks) << "it has ended";
+}
+
+TEST(Watchdog, NoticesALoopThatStopsTickingAndSaysSoOnce) {
+  std::atomic<std::uint64_t> ticks{0};
+  std::atomic<int> stuck{0};
+  std::atomic<bool> hangs{false};
+  const Watchdog watchdog([&] { return hangs ? ticks.load() : ++ticks; }, [&] { ++stuck; }, {1ms, 5});
+  std::this_thread::sleep_for(100ms);
+  EXPECT_EQ(stuck, 0);
+  hangs = true;
+  for (int i = 0; i < 5000 && stuck == 0; ++i) std::this_thread::sleep_for(1ms);
+  std::this_thread::sleep_for(50ms);
+  EXPECT_EQ(stuck, 1);
+}
+
+TEST(Words, ATrackerSaysWhatToDo) {
+  drivers::settings::EyeTrackerSettings settings;
+  settings.driver = TrackerDriver::dynasight;
+  settings.port = "/dev/serial/by-id/tracker";
+  drivers::port::KeeperReport port;
+  port.reason = Error{settings.port, 0, "nothing is plugged in there"};
+  ipc::DeviceInfo info = tracker_info(settings, {EyesPhase::absent, 0}, port);
+  EXPECT_EQ(info.role, "eye tracker");
+  EXPECT_EQ(info.kind, "dynasight");
+  EXPECT_EQ(info.where, settings.port);
+  EXPECT_EQ(info.state, "absent");
+  EXPECT_EQ(info.trouble, "/dev/serial/by-id/tracker: nothing is plugged in there");
+
+  info = tracker_info(settings, {EyesPhase::silent, kFirstWordNs / 2}, {});
+  EXPECT_EQ(info.trouble, "") << "it has only just been opened";
+  info = tracker_info(settings, {EyesPhase::silent, 2 * kFirstWordNs}, {});
+  EXPECT_NE(info.trouble.find("19200 baud"), std::string::npos) << info.trouble;
+  info = tracker_info(settings, {EyesPhase::searching, 2 * kFirstWordNs}, {});
+  EXPECT_EQ(info.state, "searching");
+  EXPECT_EQ(info.trouble, "") << "nobody sits there: no fault";
+
+  settings.driver = TrackerDriver::opentrack;
+  settings.simulated = true;
+  info = tracker_info(settings, {EyesPhase::silent, 2 * kFirstWordNs}, {});
+  EXPECT_EQ(info.where, "127.0.0.1:4242");
+  EXPECT_TRUE(info.simulated);
+  EXPECT_NE(info.trouble.find("start opentrack"), std::string::npos) << info.trouble;
+}
+
+TEST(Words, AServoSaysWhatToDo) {
+  drivers::settings::PrismServoSettings settings;
+  settings.port = "/dev/ttyUSB1";
+  ServoStatus status;
+  drivers::port::KeeperReport port;
+  port.reason = Error{settings.port, 0, "no permission"};
+  EXPECT_EQ(servo_info(settings, status, port).trouble, "/dev/ttyUSB1: no permission");
+
+  status.open = true;
+  status.mask = MaskPhase::following;
+  status.tick.phase = ServoPhase::ready;
+  ipc::DeviceInfo info = servo_info(settings, status, {});
+  EXPECT_EQ(info.state, "following");
+  EXPECT_EQ(info.trouble, "");
+
+  status.mask = MaskPhase::stuck;
+  EXPECT_NE(servo_info(settings, status, {}).trouble.find("--rearm"), std::string::npos);
+
+  status.mask = MaskPhase::alarm;
+  status.tick.phase = ServoPhase::alarm;
+  status.tick.alarm_bits = 0x20;
+  EXPECT_NE(servo_info(settings, status, {}).trouble.find("overload"), std::string::npos) << servo_info(settings, status, {}).trouble;
+
+  status.mask = MaskPhase::absent;
+  status.tick = {};
+  status.tick.trouble = ServoTrouble::no_answer;
+  EXPECT_NE(servo_info(settings, status, {}).trouble, "");
+}
+
+TEST(Words, EveryPhaseHasAName) {
+  for (int phase = 0; phase <= static_cast<int>(EyesPhase::tracking); ++phase) EXPECT_NE(name(static_cast<EyesPhase>(phase)), "unknown");
+  for (int phase = 0; phase <= static_cast<int>(MaskPhase::alarm); ++phase) EXPECT_NE(name(static_cast<MaskPhase>(phase)), "unknown");
+}
+
+}  // namespace
+}  // namespace prismesh::deviced
