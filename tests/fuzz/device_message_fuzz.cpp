@@ -1,0 +1,35 @@
+// Lines from a hostile client or a false device daemon, in both directions: a typed error or a message, and a message can be written
+// and read again, field for field.
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "ipc/device_messages_json.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace prismesh::ipc;
+  const std::string_view line(reinterpret_cast<const char*>(data), size);
+  if (const auto request = decode_device_request(line)) {
+    // Text that came in as JSON is UTF-8, so it can go out.
+    const auto again = encode_device_request(request->number, request->request);
+    if (!again) std::abort();
+    const auto back = decode_device_request(*again);
+    if (!back || back->number != request->number || encode_device_request(back->number, back->request) != again) std::abort();
+  } else if (request.error().message.empty()) {
+    std::abort();
+  }
+  if (const auto message = decode_from_deviced(line)) {
+    if (const auto* answer = std::get_if<DeviceAnswer>(&message->message)) {
+      const std::string again = encode_device_answer(message->to, *answer, message->descriptors);
+      const auto back = decode_from_deviced(again);
+      if (!back || encode_device_answer(back->to, std::get<DeviceAnswer>(back->message), back->descriptors) != again) std::abort();
+    } else {
+      const std::string again = encode_device_event(std::get<DeviceEvent>(message->message));
+      const auto back = decode_from_deviced(again);
+      if (!back || encode_device_event(std::get<DeviceEvent>(back->message)) != again) std::abort();
+    }
+  } else if (message.error().message.empty()) {
+    std::abort();
+  }
+  return 0;
+}
