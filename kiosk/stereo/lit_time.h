@@ -17,6 +17,8 @@ namespace prismesh::kiosk::stereo {
 struct LitTime {
   std::int64_t from_ns = 0;   ///< the picture is seen from here ...
   std::int64_t until_ns = 0;  ///< ... until the next one can take its place
+  /// What head and mask are predicted to: then a picture that stands still is as much ahead of them at first as it is behind at last.
+  std::int64_t middle_ns() const { return from_ns + (until_ns - from_ns) / 2; }
 };
 
 struct DisplayTiming {

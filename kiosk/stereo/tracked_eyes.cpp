@@ -111,7 +111,7 @@ void TrackedEyes::move(std::int64_t now_ns, const LitTime& lit) {
   const bool tracked = source == Source::tracked;
   const double seconds = looked_ns_ ? std::max(0.0, seconds_of(lit.from_ns - *looked_ns_)) : 0;
   const double time_constant = tracked ? kTakeUpSeconds : kLetGoSeconds;
-  seen_.between_eyes_mm = place_.follow(tracked ? predict(head_, lit.from_ns) : options_.resting_mm, seconds, time_constant);
+  seen_.between_eyes_mm = place_.follow(tracked ? predict(head_, lit.middle_ns()) : options_.resting_mm, seconds, time_constant);
   const Vector3d right = tracked ? head_.toward_right : Vector3d::UnitX();
   const Vector3d half = half_separation_.follow(0.5 * eye_separation_mm_ * right, seconds, time_constant);
   seen_.toward_right = half.normalized();
@@ -147,7 +147,7 @@ double TrackedEyes::share_for_mask(const DeviceReading& reading, std::int64_t no
 
 void TrackedEyes::follow_mask(const DeviceReading& reading, const LitTime& lit) {
   if (!reading.prism || reading.prism->measured_ns == 0) return;
-  const double place = drivers::prism_servo::mask_position_at(*reading.prism, lit.from_ns);
+  const double place = drivers::prism_servo::mask_position_at(*reading.prism, lit.middle_ns());
   if (!std::isfinite(place)) return;
   if (!seen_.mask_mm || std::abs(place - *seen_.mask_mm) > limits_.mask_step_mm) seen_.mask_mm = place;
 }

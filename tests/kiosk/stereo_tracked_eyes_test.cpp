@@ -329,8 +329,9 @@ TEST(TrackedEyes, TheMaskIsPredictedToTheLight) {
   allow_stereo(world);
   ipc::PrismState& mask = *world.reading.prism;
   mask.position_mm = 0.1;
-  mask.velocity_mm_s = 2;
-  mask.goal_mm = 1.5;
+  mask.lag_ns = 20 * kMs;
+  mask.goal_mm = 0.14;
+  mask.goal_velocity_mm_s = 2;
   world.run_ms(100);
   ASSERT_TRUE(world.seen.mask_mm.has_value());
   EXPECT_GT(*world.seen.mask_mm, 0.15) << "some 40 ms ahead at 2 mm/s";
