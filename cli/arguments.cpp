@@ -127,8 +127,11 @@ void add_render(Parser& parser) {
         what);
   };
   pass_on("--size", "WxH in pixels (default 1920x1080)");
-  pass_on("--profile", "display profile: prism-mask (default), mono-left, mono-right, mono, anaglyph, side-by-side, or a file");
+  pass_on("--profile",
+          "display profile: prism-mask (default), prism-mask-columns, prism-mask-stencil, lenticular, row-interlaced, side-by-side, "
+          "top-bottom, anaglyph, mono, mono-left, mono-right, or a file");
   pass_on("--eye", "X,Y,Z: the point between the eyes, mm from the screen's centre (default 0,0,650)");
+  pass_on("--mask", "where a movable mask stands, mm (default: where it should for these eyes)");
   pass_on("--view", "front, back, left, right, top, bottom or iso (default)");
   pass_on("--colour", "parts (default) or quality");
 }

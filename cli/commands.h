@@ -74,7 +74,7 @@ struct RenderOptions {
   std::filesystem::path deck;
   std::filesystem::path output;
   std::optional<std::string> select;   ///< an expression: these nodes are shown as selected
-  std::vector<std::string> passed_on;  ///< options and values that the kiosk reads: --size, --profile, --eye, --view, --colour
+  std::vector<std::string> passed_on;  ///< options and values that the kiosk reads: --size, --profile, --eye, --mask, --view, --colour
 };
 int render(const RenderOptions& options, const Common& common, const Surroundings& surroundings);
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ipc/snapshot.h"
@@ -28,6 +29,7 @@ struct RenderOptions {
   int height = 1080;
   std::string profile = "prism-mask";
   mesh::Vec3 eye_mm = mesh::Vec3(0, 0, 650);
+  std::optional<double> mask_mm;  ///< empty: where it should be
   std::string view = "iso";
   std::string colour = "parts";
   int samples = 4;
@@ -81,6 +83,14 @@ Result<void> read_eye(const std::string& text, RenderOptions& options) {
   return {};
 }
 
+Result<void> read_mask(const std::string& text, RenderOptions& options) {
+  const std::vector<double> place = numbers<double>(text, ',');
+  if (place.size() != 1 || !(std::abs(place[0]) <= 100))
+    return wrong("--mask", text, "write where the mask stands in mm from its zero, for example 0.12; -100 to 100");
+  options.mask_mm = place[0];
+  return {};
+}
+
 Result<void> read_descriptors(const std::string& text, RenderOptions& options) {
   options.descriptors = numbers<int>(text, ',');
   if (options.descriptors.empty()) return wrong("--snapshot-fds", text, "write the descriptors of a snapshot's table and segments: 3,4,5");
@@ -114,6 +124,7 @@ Result<RenderOptions> parse(std::span<const std::string> arguments) {
       {"--snapshot-fds", [&](const std::string& text) { return read_descriptors(text, options); }},
       {"--size", [&](const std::string& text) { return read_size(text, options); }},
       {"--eye", [&](const std::string& text) { return read_eye(text, options); }},
+      {"--mask", [&](const std::string& text) { return read_mask(text, options); }},
       {"--view", [&](const std::string& text) { return read_view(text, options); }},
       {"--colour", [&](const std::string& text) { return read_colour(text, options); }},
       {"--samples", [&](const std::string& text) { return read_samples(text, options); }}};
@@ -154,6 +165,8 @@ Result<void> render_picture(const RenderOptions& options, const stereo::Profile&
   render::Picture picture;
   picture.profile = profile;
   picture.between_eyes_mm = options.eye_mm;
+  picture.eye_separation_mm = profile.eye_separation_mm.value_or(stereo::kMeanEyeSeparationMm);
+  picture.mask_mm = options.mask_mm;
   picture.colour = *render::colour_mode_from(options.colour);
   picture.view.rotation = *stereo::named_rotation(options.view);
   picture.view.bounds = stereo::sphere_around((*renderer)->bounds());

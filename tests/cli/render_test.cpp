@@ -54,10 +54,11 @@ TEST_F(Render, WritesAPngOfTheSizeAskedFor) {
 
 TEST_F(Render, WrongUsageListsWhatThereIs) {
   const std::pair<std::vector<std::string>, const char*> wrong[] = {{{"--view", "sideways"}, "front, back, left, right, top, bottom, iso"},
-                                                                    {{"--profile", "tv"}, "prism-mask, mono-left, mono-right"},
+                                                                    {{"--profile", "tv"}, "prism-mask, prism-mask-columns"},
                                                                     {{"--colour", "red"}, "parts, quality"},
                                                                     {{"--eye", "1,2"}, "X,Y,Z"},
                                                                     {{"--eye", "0,0,-5"}, "X,Y,Z"},
+                                                                    {{"--mask", "left"}, "--mask left: write where the mask stands"},
                                                                     {{"--size", "12"}, "1920x1080"}};
   for (const auto& [options, words] : wrong) {
     EXPECT_EQ(draw(options).status, kWrongUsage) << options[1];
