@@ -74,8 +74,8 @@ void DynasightTracker::take(std::byte byte, std::int64_t now_ns, Reading& readin
 std::int64_t DynasightTracker::measured_ns(std::int64_t now_ns, const Reading& reading) const {
   const std::int64_t byte_ns = kBitsAByte * 1'000'000'000 / std::max(options_.baud, 1);
   const auto after = static_cast<std::int64_t>(reading.bytes - reading.sample_end);
-  constexpr auto record = static_cast<std::int64_t>(kRecordBytes);
-  const std::int64_t waited_ns = after / record * std::max(kRecordPeriodNs, record * byte_ns) + after % record * byte_ns;
+  constexpr auto kLength = static_cast<std::int64_t>(kRecordBytes);
+  const std::int64_t waited_ns = after / kLength * std::max(kRecordPeriodNs, kLength * byte_ns) + after % kLength * byte_ns;
   return now_ns - waited_ns - options_.latency_ns;
 }
 
