@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "drivers/settings/settings.h"
+#include "kiosk/calibration/calibrator.h"
 #include "kiosk/display/headless.h"
 #include "kiosk/display/x11.h"
 #include "kiosk/headless_kiosk.h"
@@ -20,6 +21,30 @@ Result<void> run_in_window(const AppOptions& options, const StationOptions& what
   Result<std::unique_ptr<Station>> station = Station::create(what);
   if (!station) return fail(station.error());
   return WindowedKiosk(**window, **station).run();
+}
+
+/// Calibrates the display that the window covers.
+Result<void> run_calibration(const AppOptions& options, const StationOptions& what) {
+  Result<calibration::SaveTo> save_to = calibration::usual_place(options.config);
+  if (!save_to) return fail(save_to.error());
+  if (!what.profile.stereo())
+    return fail("--calibrate",
+                "the profile \"" + what.profile.name +
+                    "\" shows no depth, so there is nothing to calibrate: name the kind of display, for example --profile prism-mask");
+  Result<std::unique_ptr<display::Window>> window = display::open_x11_window({"Prismesh", options.size, options.fullscreen});
+  if (!window) return fail(window.error());
+  Result<std::unique_ptr<Station>> station = Station::create(what);
+  if (!station) return fail(station.error());
+  (*station)->place((*window)->monitor(), (*window)->place());
+  auto calibrator = calibration::Calibrator::create(**window, **station, what.profile, std::move(*save_to));
+  if (!calibrator) return fail(calibrator.error());
+  const Result<std::optional<std::filesystem::path>> saved = (*calibrator)->run();
+  if (!saved) return fail(saved.error());
+  if (*saved)
+    std::printf("The calibration is saved in %s, and prismesh.toml names it.\n", (*saved)->c_str());
+  else
+    std::printf("Nothing was saved.\n");
+  return {};
 }
 
 Result<void> run_headless(const AppOptions& options, const StationOptions& what) {
@@ -46,6 +71,7 @@ Result<void> run(const AppOptions& options) {
   what.fixed_eyes_mm = options.fixed_eyes_mm;
   what.panel_latency_ms = settings->display.latency_ms;
   what.trace = options.trace;
+  if (options.calibrate) return run_calibration(options, what);
   return options.headless_frames > 0 ? run_headless(options, what) : run_in_window(options, what);
 }
 

@@ -22,7 +22,8 @@ struct AppOptions {
   int headless_frames = 0;                  ///< > 0: no window; so many pictures are written to `shots`, then the program ends
   double pace_seconds = 0;                  ///< between those pictures
   std::filesystem::path shots;
-  bool trace = false;  ///< what happens goes to standard output, a line each
+  bool calibrate = false;  ///< lead through the display's calibration instead
+  bool trace = false;      ///< what happens goes to standard output, a line each
 };
 
 /// Runs until the window is closed or the pictures are written. Returns the exit status: 0 done, 1 it couldn't be done;

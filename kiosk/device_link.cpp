@@ -22,6 +22,7 @@ void DeviceLink::greet() {
   trace_.line("devices connected");
   send(ipc::GetDevices{});
   if (shown_mono_) send(ipc::PictureShown{*shown_mono_});
+  if (held_mm_) send(ipc::HoldMask{*held_mm_});
 }
 
 template <class Request>
@@ -39,6 +40,10 @@ void DeviceLink::lost(const Error& why) {
 }
 
 void DeviceLink::take(const ipc::DeviceAnswer& answer) {
+  if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
+    refusal_ = failed->message;
+    trace_.line("devices refused " + refusal_);
+  }
   const auto* all = std::get_if<ipc::Devices>(&answer);
   if (all == nullptr) return;
   devices_ = all->devices;
@@ -71,6 +76,19 @@ void DeviceLink::tell_picture(bool mono) {
   shown_mono_ = mono;
   send(ipc::PictureShown{mono});
 }
+
+void DeviceLink::hold_mask(double position_mm) {
+  if (held_mm_ == position_mm) return;
+  held_mm_ = position_mm;
+  send(ipc::HoldMask{position_mm});
+}
+
+void DeviceLink::release_mask() {
+  if (!std::exchange(held_mm_, std::nullopt)) return;
+  send(ipc::ReleaseMask{});
+}
+
+void DeviceLink::reload() { send(ipc::Reload{}); }
 
 void DeviceLink::rearm() { send(ipc::Rearm{}); }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ipc/reconnecting_client.h"
@@ -30,6 +31,13 @@ class DeviceLink {
   void tell_picture(bool mono);
   /// Try again after a stuck mask or a motor's alarm.
   void rearm();
+  /// Calibration: the mask goes there and stays, until it is released or the connection ends.
+  void hold_mask(double position_mm);
+  void release_mask();
+  /// The daemon reads settings and display profile again.
+  void reload();
+  /// What the daemon has refused since the last call: its words, the newest; empty: nothing.
+  std::string take_refusal() { return std::exchange(refusal_, {}); }
 
   /// Eye tracker and prism servo, as the daemon words them; empty without a daemon.
   const std::vector<ipc::DeviceInfo>& devices() const { return devices_; }
@@ -50,6 +58,8 @@ class DeviceLink {
   ipc::DeviceClient* client_ = nullptr;  ///< good until the next turn
   std::size_t greeted_ = 0;              ///< connections that were told what is shown
   std::optional<bool> shown_mono_;
+  std::optional<double> held_mm_;
+  std::string refusal_;
   std::vector<ipc::DeviceInfo> devices_;
   std::uint64_t changes_ = 0;
 };

@@ -36,6 +36,7 @@ class Editor {
   void look_from(const stereo::SeenFrom& seen);
   void set_eyes_facts(std::optional<panels::EyesFacts> facts);
   void set_panel(const render::PanelPlace& panel);
+  const render::PanelPlace& panel() const { return panel_; }
   /// Follows the model server: its generation, its drag, its words. Errors: a model too large for the GPU.
   Result<void> follow();
 

@@ -57,6 +57,7 @@ int run_interactive(int argc, char** argv) {
   auto* folder = app.add_option("--shots", shots, "Folder for those pictures")->option_text("DIR");
   frames->needs(folder);
   folder->needs(frames);
+  app.add_flag("--calibrate", options.calibrate, "Lead through the calibration of this display; covers it")->excludes(frames);
   app.add_flag("--trace", options.trace, "Say what happens on standard output, a line each (docs/kiosk.md)");
   app.set_version_flag("--version", PRISMESH_VERSION);
   app.footer("`prismesh-kiosk --render` draws one picture of a snapshot; `prismesh render` calls it.");
@@ -80,6 +81,7 @@ int run_interactive(int argc, char** argv) {
   if (!profile.empty()) options.profile = profile;
   if (!deck.empty()) options.deck = std::filesystem::absolute(deck);
   options.shots = shots;
+  if (options.calibrate && !window) options.fullscreen = true;
   return prismesh::kiosk::run_app(options);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -275,6 +276,7 @@ Result<void> Wizard::next(const Now& now) {
 }
 
 void Wizard::back() {
+  if (std::exchange(finished_, false)) return;
   if (step() == Step::places && !choices_.empty()) {
     choices_.pop_back();
     return;

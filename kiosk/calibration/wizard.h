@@ -67,6 +67,7 @@ class Wizard {
   void adjust(int steps, bool coarse);
   /// Takes what is set and goes on. Errors: why it can't be taken yet, as a sentence; the step stays.
   Result<void> next(const Now& now);
+  /// One place, or one step, back; a wizard that is finished goes back to its last look.
   void back();
 
   bool finished() const { return finished_; }

@@ -1,0 +1,69 @@
+// The calibration on a display: shows the wizard's pages in both eyes, takes keys and buttons, holds the mask, and saves.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "kiosk/calibration/pattern_painter.h"
+#include "kiosk/calibration/wizard.h"
+#include "kiosk/display/window.h"
+#include "kiosk/panels/gui.h"
+#include "kiosk/panels/wizard_panel.h"
+#include "kiosk/render/renderer.h"
+#include "kiosk/station.h"
+
+namespace prismesh::kiosk::calibration {
+
+/// Where a finished calibration goes.
+struct SaveTo {
+  std::filesystem::path folder;    ///< of profile files
+  std::filesystem::path settings;  ///< the settings file that names the station's profile
+};
+/// The user's own folder and settings, or the settings file given. Errors: there is no home to put them in.
+Result<SaveTo> usual_place(const std::optional<std::filesystem::path>& settings);
+
+class Calibrator {
+ public:
+  /// Needs the window's GL context. Errors: the driver refuses a shader, the font lacks.
+  static Result<std::unique_ptr<Calibrator>> create(display::Window& window, Station& station, const drivers::display::Profile& start,
+                                                    SaveTo save_to);
+
+  /// Until it is saved or left: the profile's file, or nothing. Errors: the display is gone.
+  Result<std::optional<std::filesystem::path>> run();
+
+ private:
+  Calibrator(display::Window& window, Station& station, drivers::display::Profile start, SaveTo save_to)
+      : window_(window), station_(station), start_(std::move(start)), save_to_(std::move(save_to)) {}
+
+  Result<void> take_events();
+  void take_key(const display::KeyChanged& key);
+  void act(panels::WizardAction action);
+  void begin_when_ready();
+  Now now() const;
+  Result<void> draw();
+  void lay_out(const Page& page);
+  panels::WizardFacts facts(const Page& page) const;
+  void save();
+  void wait() const;
+
+  display::Window& window_;
+  Station& station_;
+  drivers::display::Profile start_;
+  SaveTo save_to_;
+  std::unique_ptr<render::Renderer> renderer_;  ///< of its own, without a model
+  std::optional<PatternPainter> painter_;
+  std::optional<panels::Gui> gui_;
+  std::optional<Wizard> wizard_;
+  std::int64_t began_ns_ = 0;
+  std::int64_t laid_out_ns_ = 0;
+  std::string trouble_;
+  std::string traced_;
+  std::optional<tools::Pixel> pointer_;
+  std::optional<std::filesystem::path> saved_;
+  bool left_ = false;
+};
+
+}  // namespace prismesh::kiosk::calibration
