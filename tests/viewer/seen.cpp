@@ -162,7 +162,6 @@ double difference_of(const std::vector<Colour>& a, const std::vector<Colour>& b)
   return count == 0 ? 0 : sum / (3.0 * static_cast<double>(count));
 }
 float grey(const Colour& colour) { return (colour[0] + colour[1] + colour[2]) / 3; }
-float farthest(const Colour& a, const Colour& b) { return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])}); }
 }  // namespace
 
 double mean_difference(const Seen& a, const Seen& b) { return difference_of(a.light, b.light); }
@@ -181,43 +180,51 @@ double share_of_other(const Seen& seen, const Seen& own, const Seen& other) {
   return determinant > 1e-9 * ee * dd && dd > 0 ? (sd * ee - se * ed) / determinant : 0;
 }
 
-Spot spot_in(const Seen& seen, const Seen& ground, double threshold) {
-  Spot spot;
-  for (int y = 0; y < seen.rows; ++y)
-    for (int x = 0; x < seen.elements; ++x) {
-      const Colour &a = seen.at(x, y), &b = ground.at(x, y);
-      if (farthest(a, b) <= threshold) continue;
-      const double weight = std::abs(grey(a) - grey(b));
-      spot.element += weight * (seen.first_element + x);
-      spot.row += weight * (y + 0.5);
-      spot.light += weight;
-    }
-  if (spot.light > 0) spot.element /= spot.light, spot.row /= spot.light;
-  return spot;
-}
-
-int pieces_in(const Seen& seen, const Seen& ground, double levels) {
+namespace {
+/// Calls `piece(cells)` for each set of connected (8 neighbours) elements and rows that differ by more than `levels`; `cells` are indices.
+template <class Piece>
+void for_each_piece(const Seen& seen, const Seen& ground, double levels, const Piece& piece) {
   std::vector<char> ink(seen.light.size());
   for (std::size_t i = 0; i < ink.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c) ink[i] |= std::abs(level(seen.light[i][c]) - level(ground.light[i][c])) > levels;
-  int found = 0;
-  std::vector<std::size_t> open;
+  std::vector<std::size_t> cells;
   for (std::size_t start = 0; start < ink.size(); ++start) {
     if (ink[start] == 0) continue;
-    ++found;
     ink[start] = 0;
-    open.push_back(start);
-    while (!open.empty()) {
-      const int x = static_cast<int>(open.back()) % seen.elements, y = static_cast<int>(open.back()) / seen.elements;
-      open.pop_back();
+    cells.assign(1, start);
+    for (std::size_t next = 0; next < cells.size(); ++next) {
+      const int x = static_cast<int>(cells[next]) % seen.elements, y = static_cast<int>(cells[next]) / seen.elements;
       for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, seen.rows - 1); ++ny)
         for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, seen.elements - 1); ++nx)
           if (char& cell = ink[seen.index(nx, ny)]; cell != 0) {
             cell = 0;
-            open.push_back(seen.index(nx, ny));
+            cells.push_back(seen.index(nx, ny));
           }
     }
+    piece(cells);
   }
+}
+}  // namespace
+
+Spot spot_in(const Seen& seen, const Seen& ground, double levels) {
+  Spot strongest;
+  for_each_piece(seen, ground, levels, [&](const std::vector<std::size_t>& cells) {
+    Spot spot;
+    for (const std::size_t cell : cells) {
+      const double weight = std::abs(grey(seen.light[cell]) - grey(ground.light[cell]));
+      spot.element += weight * (seen.first_element + static_cast<int>(cell) % seen.elements);
+      spot.row += weight * (static_cast<int>(cell) / seen.elements + 0.5);
+      spot.light += weight;
+    }
+    if (spot.light > strongest.light) strongest = spot;
+  });
+  if (strongest.light > 0) strongest.element /= strongest.light, strongest.row /= strongest.light;
+  return strongest;
+}
+
+int pieces_in(const Seen& seen, const Seen& ground, double levels) {
+  int found = 0;
+  for_each_piece(seen, ground, levels, [&](const std::vector<std::size_t>&) { ++found; });
   return found;
 }
 

@@ -62,14 +62,14 @@ double mean_difference(const LightImage& a, const LightImage& b);
 /// differences along rows so that shading common to both doesn't count. 0 where the pictures are the same.
 double share_of_other(const Seen& seen, const Seen& own, const Seen& other);
 
-/// Centre of what differs from `ground` by more than `threshold` (linear light), weighted by the difference: element and row with
-/// fractions. Empty: nothing differs.
+/// Centre of the connected piece that differs most from `ground` (a ghost in the other eye's place is another piece), weighted by the
+/// difference: element and row with fractions. `light` is 0 where nothing differs.
 struct Spot {
   double element = 0;  ///< the mask's number
   double row = 0;      ///< 0.5: the middle of the uppermost row
   double light = 0;    ///< sum of differences
 };
-Spot spot_in(const Seen& seen, const Seen& ground, double threshold = 0.01);
+Spot spot_in(const Seen& seen, const Seen& ground, double levels = 8);
 
 /// Connected pieces (8 neighbours) of what differs from `ground` by more than `levels`; 0: nothing does.
 int pieces_in(const Seen& seen, const Seen& ground, double levels = 8);
