@@ -221,7 +221,9 @@ Result<void> read_table(const std::string& file, std::string_view section, const
       if (const auto read = read_table(file, name.str(), *node.as_table(), profile); !read) return fail(read.error());
       continue;
     }
-    const auto key = std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.section == section && k.name == name.str(); });
+    const std::string_view wanted_name = name.str();
+    const auto key =
+        std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.section == section && k.name == wanted_name; });
     if (key == keys().end()) return unknown_key(file, name.source(), section, name.str());
     if (const std::string wanted = key->read(node, profile); !wanted.empty())
       return wrong(file, node.source(), std::string(key->name) + in_section(section) + " must be " + wanted);

@@ -94,7 +94,7 @@ struct Renderer::State {
   std::uint64_t items_version = 0;
   Figures figures;
 
-  State(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders), weave(shaders) {}
+  State(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -174,7 +174,8 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
     state_->scene.draw_flat(picture, eye_view(picture, composed[i], width, height));
   }
   reset_after_overlay();
-  state_->weave.draw(state_->composition, images.eyes, framebuffer, width, height);
+  if (Result<void> woven = state_->weave.draw(state_->composition, images.eyes, framebuffer, width, height); !woven)
+    return fail(woven.error());
   DrawReport report;
   if (picture.quality_glyphs && !state_->layer.empty()) {
     report.glyphs = state_->layer.glyphs(state_->options.glyph_cap).count;

@@ -4,19 +4,24 @@
 
 namespace prismesh::kiosk::render {
 
-namespace {
-
-const std::string kHead = R"(#version 310 es
+const std::string& shader_head() {
+  static const std::string head = R"(#version 310 es
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp usampler2D;
 )";
+  return head;
+}
 
-// One triangle that covers the image.
-const char* const kCoverVertex = R"(
+const std::string& cover_vertex_shader() {
+  static const std::string shader = shader_head() + R"(
 void main() { gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0); }
 )";
+  return shader;
+}
+
+namespace {
 
 const char* const kGroundFragment = R"(
 uniform vec3 top, bottom;
@@ -329,96 +334,6 @@ void main() {
 }
 )";
 
-// texelFetch only: each (sub)pixel of the display is one texel of one eye's image. See composition.h for what the numbers are.
-const char* const kWeaveFragment = R"(
-uniform sampler2D left_eye, right_eye, phases;
-uniform int join;
-uniform int by_rows;
-uniform int swapped;
-uniform ivec2 picture;
-uniform ivec2 image;
-uniform float nodes_per_pixel;
-uniform float subpixel;
-uniform vec2 leak;
-uniform float gamma;
-out vec4 colour;
-
-// What the display must show of an eye's colour so that with the other eye's light leaking in, this eye sees what it should. Black is
-// lifted by the leak, so that there is always something to subtract from.
-vec3 without_leak(vec3 own, vec3 other, float into_own, float into_other) {
-  vec3 wanted = into_own + (1.0 - into_own) * pow(own, vec3(gamma));
-  vec3 wanted_other = into_other + (1.0 - into_other) * pow(other, vec3(gamma));
-  return pow(clamp((wanted - into_own * wanted_other) / (1.0 - into_own * into_other), 0.0, 1.0), vec3(1.0 / gamma));
-}
-vec3 shown(bool is_left, vec3 own, vec3 other) {
-  if (leak == vec2(0.0)) return own;
-  return is_left ? without_leak(own, other, leak.x, leak.y) : without_leak(own, other, leak.y, leak.x);
-}
-
-ivec2 texel(float number, ivec2 p) {
-  int k = int(number);
-  return by_rows != 0 ? ivec2(p.x, clamp(k, 0, image.y - 1)) : ivec2(clamp(k, 0, image.x - 1), p.y);
-}
-vec3 fetch(bool left, ivec2 q) { return left ? texelFetch(left_eye, q, 0).rgb : texelFetch(right_eye, q, 0).rgb; }
-// The other eye has no texel at just this place: what lies between its two nearest ones.
-vec3 between(bool left, float number, ivec2 p) {
-  float below = floor(number);
-  return mix(fetch(left, texel(below, p)), fetch(left, texel(below + 1.0, p)), number - below);
-}
-bool left_shows(vec2 numbers) {
-  vec2 off = abs(numbers - floor(numbers + 0.5));
-  return off.x <= off.y;
-}
-vec3 interlaced(vec2 numbers, ivec2 p) {
-  bool left = left_shows(numbers);
-  float own = left ? numbers.x : numbers.y, other = left ? numbers.y : numbers.x;
-  vec3 light = fetch(left, texel(floor(own + 0.5), p));
-  return leak == vec2(0.0) ? light : shown(left, light, between(!left, other, p));
-}
-
-// Both eyes' numbers at a pixel's middle, and what they change by over a pixel to the right.
-void read_numbers(ivec2 p, out vec2 numbers, out vec2 slope) {
-  vec2 at = (vec2(p) + 0.5) * nodes_per_pixel;
-  ivec2 node = ivec2(at);
-  vec2 t = at - vec2(node);
-  vec2 a = texelFetch(phases, node, 0).xy, b = texelFetch(phases, node + ivec2(1, 0), 0).xy;
-  vec2 c = texelFetch(phases, node + ivec2(0, 1), 0).xy, d = texelFetch(phases, node + ivec2(1, 1), 0).xy;
-  vec2 across = (b - a) + t.y * ((d - c) - (b - a));
-  numbers = a + t.y * (c - a) + t.x * across;
-  slope = across * nodes_per_pixel;
-}
-
-float grey(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
-
-vec3 woven(ivec2 p) {
-  if (join == 0) {
-    vec3 only = texelFetch(left_eye, p, 0).rgb;
-    return shown(true, only, only);
-  }
-  if (join == 3) {
-    vec3 l = texelFetch(left_eye, p, 0).rgb, r = texelFetch(right_eye, p, 0).rgb;
-    return swapped != 0 ? vec3(grey(r), l.gb) : vec3(grey(l), r.gb);
-  }
-  if (join == 4 || join == 5) {
-    int row = picture.y - 1 - p.y;
-    bool second = join == 4 ? p.x >= image.x : row >= image.y;
-    ivec2 q = join == 4 ? ivec2(second ? p.x - image.x : p.x, p.y) : ivec2(p.x, image.y - 1 - (second ? row - image.y : row));
-    bool left = second == (swapped != 0);
-    return shown(left, fetch(left, q), fetch(!left, q));
-  }
-  vec2 numbers, slope;
-  read_numbers(p, numbers, slope);
-  if (join == 2) {
-    bool left = left_shows(numbers);
-    return shown(left, fetch(left, p), fetch(!left, p));
-  }
-  if (subpixel == 0.0) return interlaced(numbers, p);
-  vec2 step = subpixel * slope;
-  return vec3(interlaced(numbers - step, p).r, interlaced(numbers, p).g, interlaced(numbers + step, p).b);
-}
-void main() { colour = vec4(woven(ivec2(gl_FragCoord.xy)), 1.0); }
-)";
-
 }  // namespace
 
 Result<Shaders> Shaders::link() {
@@ -429,16 +344,15 @@ Result<Shaders> Shaders::link() {
     std::string vertex;
     std::string fragment;
   };
-  const std::string pull = kHead + kPull, shell = pull + kShellPull;
-  const Entry entries[] = {{&Shaders::ground, "ground", kHead + kCoverVertex, kHead + kGroundFragment},
-                           {&Shaders::shells, "shells", shell + kShellVertex, kHead + kShellFragment},
-                           {&Shaders::items, "items", shell + kItemVertex, kHead + kItemFragment},
-                           {&Shaders::lines, "lines", pull + kLineVertex, kHead + kLineFragment},
-                           {&Shaders::nodes, "nodes", pull + kNodeVertex, kHead + kNodeFragment},
-                           {&Shaders::glyphs, "glyphs", pull + kGlyphVertex, kHead + kGlyphFragment},
-                           {&Shaders::handle, "handle", kHead + kHandleVertex, kHead + kHandleFragment},
-                           {&Shaders::rectangle, "rectangle", kHead + kCoverVertex, kHead + kRectangleFragment},
-                           {&Shaders::weave, "weave", kHead + kCoverVertex, kHead + kWeaveFragment}};
+  const std::string pull = shader_head() + kPull, shell = pull + kShellPull;
+  const Entry entries[] = {{&Shaders::ground, "ground", cover_vertex_shader(), shader_head() + kGroundFragment},
+                           {&Shaders::shells, "shells", shell + kShellVertex, shader_head() + kShellFragment},
+                           {&Shaders::items, "items", shell + kItemVertex, shader_head() + kItemFragment},
+                           {&Shaders::lines, "lines", pull + kLineVertex, shader_head() + kLineFragment},
+                           {&Shaders::nodes, "nodes", pull + kNodeVertex, shader_head() + kNodeFragment},
+                           {&Shaders::glyphs, "glyphs", pull + kGlyphVertex, shader_head() + kGlyphFragment},
+                           {&Shaders::handle, "handle", shader_head() + kHandleVertex, shader_head() + kHandleFragment},
+                           {&Shaders::rectangle, "rectangle", cover_vertex_shader(), shader_head() + kRectangleFragment}};
   for (const Entry& entry : entries) {
     Result<gl::Program> program = gl::Program::link(entry.name, entry.vertex, entry.fragment);
     if (!program) return fail(program.error());

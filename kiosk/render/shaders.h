@@ -1,6 +1,8 @@
 // The shader programs, linked once.
 #pragma once
 
+#include <string>
+
 #include "kiosk/render/gl.h"
 
 namespace prismesh::kiosk::render {
@@ -16,6 +18,11 @@ inline constexpr unsigned kRight = 5;
 inline constexpr unsigned kPhases = 6;
 }  // namespace unit
 
+/// What every shader begins with.
+const std::string& shader_head();
+/// One triangle that covers the image.
+const std::string& cover_vertex_shader();
+
 struct Shaders {
   gl::Program ground;  ///< one triangle over the whole image
   gl::Program shells;  ///< six vertices a shell, pulled from textures
@@ -25,7 +32,6 @@ struct Shaders {
   gl::Program glyphs;  ///< flat signs, six vertices an instance
   gl::Program handle;  ///< the arrow's mesh
   gl::Program rectangle;
-  gl::Program weave;  ///< two images into one
 
   static Result<Shaders> link();
 };

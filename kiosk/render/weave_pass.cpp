@@ -1,6 +1,167 @@
 #include "kiosk/render/weave_pass.h"
 
+#include <utility>
+
+#include "kiosk/render/shaders.h"
+
 namespace prismesh::kiosk::render {
+
+namespace {
+
+// texelFetch only: each (sub)pixel of the display is one texel of one eye's image. See composition.h for what the numbers are.
+const char* const kDeclarations = R"(
+uniform sampler2D left_eye, right_eye, phases;
+uniform bool swapped;
+uniform ivec2 picture;
+uniform ivec2 image;
+uniform float nodes_per_pixel;
+uniform float subpixel;
+uniform vec2 leak;
+uniform float gamma;
+out vec4 colour;
+vec3 fetch(bool left, ivec2 q) { return left ? texelFetch(left_eye, q, 0).rgb : texelFetch(right_eye, q, 0).rgb; }
+)";
+
+// What the display must show of an eye's colour so that with the other eye's light leaking in, this eye sees what it should. Black is
+// lifted by the leak, so that there is always something to subtract from.
+const char* const kShown = R"(
+#if LEAKING
+vec3 without_leak(vec3 own, vec3 other, float into_own, float into_other) {
+  vec3 wanted = into_own + (1.0 - into_own) * pow(own, vec3(gamma));
+  vec3 wanted_other = into_other + (1.0 - into_other) * pow(other, vec3(gamma));
+  return pow(clamp((wanted - into_own * wanted_other) / (1.0 - into_own * into_other), 0.0, 1.0), vec3(1.0 / gamma));
+}
+vec3 shown(bool left, vec3 own, vec3 other) {
+  vec2 into = left ? leak : leak.yx;
+  return without_leak(own, other, into.x, into.y);
+}
+#else
+vec3 shown(bool left, vec3 own, vec3 other) { return own; }
+#endif
+)";
+
+const char* const kNumbers = R"(
+// Both eyes' numbers at a pixel's middle, and what they change by over a pixel to the right.
+void read_numbers(ivec2 p, out vec2 numbers, out vec2 slope) {
+  vec2 at = (vec2(p) + 0.5) * nodes_per_pixel;
+  ivec2 node = ivec2(at);
+  vec2 t = at - vec2(node);
+  vec2 a = texelFetch(phases, node, 0).xy, b = texelFetch(phases, node + ivec2(1, 0), 0).xy;
+  vec2 c = texelFetch(phases, node + ivec2(0, 1), 0).xy, d = texelFetch(phases, node + ivec2(1, 1), 0).xy;
+  vec2 across = (b - a) + t.y * ((d - c) - (b - a));
+  numbers = a + t.y * (c - a) + t.x * across;
+  slope = across * nodes_per_pixel;
+}
+bool left_shows(vec2 numbers) {
+  vec2 off = abs(numbers - floor(numbers + 0.5));
+  return off.x <= off.y;
+}
+)";
+
+const char* const kInterlaced = R"(
+ivec2 texel(float number, ivec2 p) {
+#if BY_ROWS
+  return ivec2(p.x, clamp(int(number), 0, image.y - 1));
+#else
+  return ivec2(clamp(int(number), 0, image.x - 1), p.y);
+#endif
+}
+vec3 interlaced(vec2 numbers, ivec2 p) {
+  bool left = left_shows(numbers);
+  float own = left ? numbers.x : numbers.y, other = left ? numbers.y : numbers.x;
+  vec3 light = fetch(left, texel(floor(own + 0.5), p));
+#if LEAKING
+  // The other eye has no texel at just this place: what lies between its two nearest ones.
+  float below = floor(other);
+  vec3 beside = mix(fetch(!left, texel(below, p)), fetch(!left, texel(below + 1.0, p)), other - below);
+  return shown(left, light, beside);
+#else
+  return light;
+#endif
+}
+vec3 woven(ivec2 p) {
+  vec2 numbers, slope;
+  read_numbers(p, numbers, slope);
+#if SUBPIXELS
+  vec2 aside = subpixel * slope;
+  return vec3(interlaced(numbers - aside, p).r, interlaced(numbers, p).g, interlaced(numbers + aside, p).b);
+#else
+  return interlaced(numbers, p);
+#endif
+}
+)";
+
+const char* const kStencil = R"(
+vec3 woven(ivec2 p) {
+  vec2 numbers, slope;
+  read_numbers(p, numbers, slope);
+  bool left = left_shows(numbers);
+  return shown(left, fetch(left, p), fetch(!left, p));
+}
+)";
+
+const char* const kAlone = R"(
+vec3 woven(ivec2 p) {
+  vec3 only = texelFetch(left_eye, p, 0).rgb;
+  return shown(true, only, only);
+}
+)";
+
+const char* const kAnaglyph = R"(
+float grey(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
+vec3 woven(ivec2 p) { return vec3(grey(fetch(!swapped, p)), fetch(swapped, p).gb); }
+)";
+
+const char* const kBeside = R"(
+vec3 woven(ivec2 p) {
+  bool second = p.x >= image.x;
+  ivec2 q = ivec2(second ? p.x - image.x : p.x, p.y);
+  bool left = second == swapped;
+  return shown(left, fetch(left, q), fetch(!left, q));
+}
+)";
+
+const char* const kStacked = R"(
+vec3 woven(ivec2 p) {
+  int row = picture.y - 1 - p.y;
+  bool second = row >= image.y;
+  ivec2 q = ivec2(p.x, image.y - 1 - (second ? row - image.y : row));
+  bool left = second == swapped;
+  return shown(left, fetch(left, q), fetch(!left, q));
+}
+)";
+
+const char* const kMain = R"(
+void main() { colour = vec4(woven(ivec2(gl_FragCoord.xy)), 1.0); }
+)";
+
+}  // namespace
+
+std::string WeavePass::fragment_shader(const Way& way) {
+  const auto define = [](const char* name, bool value) { return std::string("#define ") + name + (value ? " 1\n" : " 0\n"); };
+  std::string shader = shader_head() + define("BY_ROWS", way.by_rows) + define("SUBPIXELS", way.subpixels) + define("LEAKING", way.leaking);
+  shader += kDeclarations;
+  shader += kShown;
+  switch (way.join) {
+    case Join::alone: shader += kAlone; break;
+    case Join::interlaced: (shader += kNumbers) += kInterlaced; break;
+    case Join::stencil: (shader += kNumbers) += kStencil; break;
+    case Join::anaglyph: shader += kAnaglyph; break;
+    case Join::beside: shader += kBeside; break;
+    case Join::stacked: shader += kStacked; break;
+  }
+  return shader + kMain;
+}
+
+Result<const gl::Program*> WeavePass::program_for(const Way& way) {
+  auto known = programs_.find(way);
+  if (known == programs_.end()) {
+    Result<gl::Program> program = gl::Program::link("weave", cover_vertex_shader(), fragment_shader(way));
+    if (!program) return fail(program.error());
+    known = programs_.emplace(way, std::move(*program)).first;
+  }
+  return &known->second;
+}
 
 void WeavePass::upload(const drivers::display::PhaseMap& phases) {
   glActiveTexture(GL_TEXTURE0 + unit::kPhases);
@@ -18,19 +179,20 @@ void WeavePass::upload(const drivers::display::PhaseMap& phases) {
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, phases.columns, phases.rows, GL_RG, GL_FLOAT, phases.numbers.data());
 }
 
-void WeavePass::draw(const Composition& composition, const EyeImages& images, unsigned framebuffer, int width, int height) {
+Result<void> WeavePass::draw(const Composition& composition, const EyeImages& images, unsigned framebuffer, int width, int height) {
+  const bool leaking = composition.leak != std::array<double, 2>{0, 0};
+  const auto found = program_for({composition.join, composition.by_rows, composition.subpixel != 0, leaking});
+  if (!found) return fail(found.error());
+  const gl::Program& program = **found;
   if (composition.phases.columns > 0) upload(composition.phases);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, width, height);
   images.bind_texture(0, unit::kLeft);
   images.bind_texture(composition.images.size() > 1 ? 1 : 0, unit::kRight);
-  const gl::Program& program = shaders_.weave;
   program.use();
   program.set("left_eye", static_cast<int>(unit::kLeft));
   program.set("right_eye", static_cast<int>(unit::kRight));
   program.set("phases", static_cast<int>(unit::kPhases));
-  program.set("join", static_cast<int>(composition.join));
-  program.set("by_rows", composition.by_rows ? 1 : 0);
   program.set("swapped", composition.swapped ? 1 : 0);
   program.set("picture", width, height);
   program.set("image", images.width(), images.height());
@@ -41,6 +203,7 @@ void WeavePass::draw(const Composition& composition, const EyeImages& images, un
   glBindVertexArray(no_attributes_.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glActiveTexture(GL_TEXTURE0);
+  return {};
 }
 
 }  // namespace prismesh::kiosk::render
