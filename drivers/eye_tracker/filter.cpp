@@ -10,18 +10,21 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// What is assumed of heads and trackers; docs/prediction.md says how the values were found.
-constexpr double kDriftMm2PerS3 = 30;                 // at rest: spectral density of what changes the velocity
-constexpr double kAccelerationMmPerS2 = 900;          // moving: standard deviation of the acceleration ...
-constexpr double kAccelerationLastsS = 0.2;           // ... and how long one lasts
-constexpr double kChangesPerSecond = 0.5;             // between resting and moving
-constexpr double kLeadS = 0.05;                       // the published velocity is the mean over this time to come ...
-constexpr double kLeadShare = 0.95;                   // ... of which so much is used: rather behind the head than beyond it
-constexpr double kFirstSpeedMmPerS = 200;             // standard deviation for a head that was just found
-constexpr double kLeastChance = 1e-4;                 // no model is ever ruled out
-constexpr double kDoubtfulNoise = 3;                  // times the noise of an ordinary sample
-constexpr double kWildSigmas = 7, kWildMm = 12;       // surprises beyond both are no head's
-constexpr double kAgreeMm = 12, kAgreeMmPerS = 1000;  // two samples are of one head
-constexpr int kAgreeing = 3;                          // so many that agree with each other are believed
+constexpr double kDriftMm2PerS3 = 30;                      // at rest: spectral density of what changes the velocity
+constexpr double kAccelerationMmPerS2 = 900;               // moving: standard deviation of the acceleration ...
+constexpr double kAccelerationLastsS = 0.2;                // ... and how long one lasts
+constexpr double kChangesPerSecond = 0.5;                  // between resting and moving
+constexpr double kLeadS = 0.05;                            // the published velocity is the mean over this time to come ...
+constexpr double kLeadShare = 0.95;                        // ... of which so much is used: rather behind the head than beyond it
+constexpr double kFirstSpeedMmPerS = 200;                  // standard deviation for a head that was just found
+constexpr double kLeastChance = 1e-4;                      // no model is ever ruled out
+constexpr double kDoubtfulNoise = 3;                       // times the noise of an ordinary sample
+constexpr double kWildSigmas = 7, kWildMm = 12;            // surprises beyond both are no head's
+constexpr double kAgreeMm = 12, kAgreeMmPerS = 1000;       // two samples are of one head
+constexpr int kAgreeing = 3;                               // so many that agree with each other are believed
+constexpr double kScatterShare = 1.0 / 60;                 // of a new sample in the scatter ...
+constexpr double kScatterTrust = 0.8, kScatterMostMm = 8;  // ... which is uncertain, and no tracker is as bad as that
+constexpr double kScatterGapS = 0.04;                      // samples farther apart tell of the head rather than of noise
 constexpr std::int64_t kGapNs = 250'000'000;
 constexpr double kLongestStepS = 0.02;  // the moving model's noise is a series in time over kAccelerationLastsS
 constexpr double kAcrossLastsS = 0.15;  // smoothing of the line between the eyes
@@ -67,12 +70,16 @@ Vector3d predict(const HeadState& state, std::int64_t time_ns) {
   return state.between_eyes_mm + state.velocity_mm_s * ahead;
 }
 
-HeadFilter::HeadFilter(const Options& options) : options_(options) {}
+HeadFilter::HeadFilter(const Options& options) : options_(options) { reset(); }
+
+double HeadFilter::noise_mm() const { return std::max(options_.noise_mm, std::sqrt(kScatterTrust * scatter_mm2_)); }
 
 void HeadFilter::reset() {
   state_ = {};
   belief_.moving = 0;
   aside_count_ = 0;
+  scatter_mm2_ = options_.noise_mm * options_.noise_mm;
+  heard_ = {};
 }
 
 void HeadFilter::take(const HeadSample& sample) {
@@ -82,7 +89,7 @@ void HeadFilter::take(const HeadSample& sample) {
     start(sample);
     return;
   }
-  const double noise = options_.noise_mm * (sample.doubtful ? kDoubtfulNoise : 1);
+  const double noise = noise_mm() * (sample.doubtful ? kDoubtfulNoise : 1);
   Belief next = foretold(belief_, seconds_between(state_.time_ns, sample.measured_ns));
   if (!believable(next, sample.between_eyes_mm, noise * noise)) {
     set_aside(sample);
@@ -90,6 +97,7 @@ void HeadFilter::take(const HeadSample& sample) {
   }
   weigh(next, sample.between_eyes_mm, noise * noise);
   belief_ = next;
+  if (!sample.doubtful) listen_to_noise(sample);
   aside_count_ = 0;
   publish(sample);
 }
@@ -105,6 +113,22 @@ void HeadFilter::start(const HeadSample& sample) {
   const bool has_direction = sample.toward_right.norm() > 1e-3;
   state_ = {sample.measured_ns, sample.between_eyes_mm, Vector3d::Zero(),
             has_direction ? Vector3d(sample.toward_right.normalized()) : Vector3d(Vector3d::UnitX())};
+}
+
+/// How far the middle one of three samples lies beside the line between the others is nearly all noise: even a head in a fast turn bends
+/// its way by half a millimetre only.
+void HeadFilter::listen_to_noise(const HeadSample& sample) {
+  const auto& [middle, first] = heard_;
+  const double before = seconds_between(first.measured_ns, middle.measured_ns),
+               after = seconds_between(middle.measured_ns, sample.measured_ns);
+  if (first.measured_ns != 0 && before > 0 && before <= kScatterGapS && after > 0 && after <= kScatterGapS) {
+    const double share = before / (before + after);
+    const Vector3d line = (1 - share) * first.between_eyes_mm + share * sample.between_eyes_mm;
+    const double unit = 1 + share * share + (1 - share) * (1 - share);
+    const double scatter = (middle.between_eyes_mm - line).squaredNorm() / (3 * unit);
+    scatter_mm2_ += kScatterShare * (std::min(scatter, kScatterMostMm * kScatterMostMm) - scatter_mm2_);
+  }
+  heard_ = {sample, middle};
 }
 
 /// What was set aside is believed when several in a row agree: the head really is elsewhere.

@@ -31,7 +31,7 @@ Eigen::Vector3d predict(const HeadState& state, std::int64_t time_ns);
 class HeadFilter {
  public:
   struct Options {
-    double noise_mm = 1;  ///< standard deviation of the tracker's noise in each axis; the rest follows from it
+    double noise_mm = 1;  ///< the tracker's noise in each axis, standard deviation, at least; more is noticed, see noise_mm()
   };
   explicit HeadFilter(const Options& options);
 
@@ -43,6 +43,8 @@ class HeadFilter {
   const HeadState& state() const { return state_; }
   /// How sure it is that the head moves, 0..1.
   double moving() const { return belief_.moving; }
+  /// What it takes the tracker's noise to be: as set, or what the last second's samples scatter by if that is more.
+  double noise_mm() const;
 
  private:
   /// Place, velocity and acceleration (rows) of the three axes (columns), and the covariance that the axes have in common.
@@ -58,13 +60,16 @@ class HeadFilter {
   void start(const HeadSample& sample);
   void set_aside(const HeadSample& sample);
   void publish(const HeadSample& sample);
+  void listen_to_noise(const HeadSample& sample);
   static Belief foretold(const Belief& now, double seconds);
   static bool believable(const Belief& foretold, const Eigen::Vector3d& place_mm, double variance);
   static void weigh(Belief& foretold, const Eigen::Vector3d& place_mm, double variance);
 
   Options options_;
   Belief belief_;
-  HeadSample aside_;  ///< the newest of those that were set aside
+  std::array<HeadSample, 2> heard_;  ///< the last two that were believed, the newest first
+  double scatter_mm2_ = 0;           ///< variance of the noise as it was in the last second or so
+  HeadSample aside_;                 ///< the newest of those that were set aside
   int aside_count_ = 0;
   HeadState state_;
 };

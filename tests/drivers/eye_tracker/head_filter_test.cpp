@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/eye_tracker/filter.h"
+#include "tests/drivers/port/allocations.h"
 #include "tests/support/head_trials.h"
 
 namespace prismesh::drivers::eye_tracker {
@@ -95,6 +96,20 @@ TEST(HeadFilter, is_calmer_at_rest_than_the_tracker) {
   EXPECT_LT(ours, raw);         // the goal
   EXPECT_LT(ours, 0.25 * raw);  // what it does
   EXPECT_LT(jitter_mm<Station>({.kind = MotionKind::still, .ahead_s = 0.08}), raw);
+}
+
+TEST(HeadFilter, notices_a_tracker_that_is_noisier_than_it_was_told) {
+  const Trial trial{.kind = MotionKind::still, .noise_mm = 2.5};
+  const double raw = jitter_mm<Raw>(trial), ours = jitter_mm<Station>(trial);
+  std::printf("2.5 mm of noise where 1 mm was expected: jitter %.2f mm of %.2f mm\n", ours, raw);
+  EXPECT_LT(ours, 0.3 * raw);
+  EXPECT_LE(p99_mm({.kind = MotionKind::turn, .noise_mm = 2.5}), 13.5);
+  Station station;
+  trials::run({.kind = MotionKind::turn, .noise_mm = 2.5, .seconds = 20}, station);
+  EXPECT_NEAR(station.filter.noise_mm(), 2.3, 0.4);
+  Station quiet;
+  trials::run({.kind = MotionKind::turn, .noise_mm = 0.2, .seconds = 20}, quiet);
+  EXPECT_EQ(quiet.filter.noise_mm(), 1) << "as set: a tracker that smooths by itself may hide its noise";
 }
 
 TEST(HeadFilter, stands_lost_samples_and_uneven_times) {
@@ -252,6 +267,19 @@ TEST(HeadFilter, stays_sane_whatever_it_is_given) {
     ASSERT_GE(filter.moving(), 0);
     ASSERT_LE(filter.moving(), 1);
   }
+}
+
+TEST(HeadFilter, allocates_nothing) {
+  HeadFilter filter(HeadFilter::Options{});
+  DeadZone zone(kRestingRadiusMm);
+  const std::uint64_t before = port::allocations_of_this_thread();
+  Vector3d sum = Vector3d::Zero();
+  for (int i = 0; i < 1000; ++i) {
+    filter.take(sample_at(1'000 * kMs + i * kPeriod, {i % 100 < 3 ? 300.0 : 0.3 * i, 0, 650}));
+    sum += zone.follow(predict(filter.state(), 1'050 * kMs + i * kPeriod));
+  }
+  EXPECT_EQ(port::allocations_of_this_thread(), before);
+  EXPECT_TRUE(sum.allFinite());
 }
 
 TEST(HeadFilter, reset_forgets_everything) {
