@@ -175,6 +175,7 @@ class Promises {
     const bool flying = state.phase == MaskPhase::flying_back;
     if (flying) {
       ASSERT_FALSE(state.stereo_allowed);
+      ASSERT_GE(state.mono_until_ns, input.now_ns) << "still on its way";
       ++flying_ticks;
     }
     ASSERT_EQ(state.mono_from_ns == 0, state.mono_until_ns == 0);
@@ -265,8 +266,8 @@ TEST(mask_control, keeps_them_with_a_head_that_goes_up_to_500_mm_s_at_random) {
 TEST(mask_control, a_slow_motor_makes_mono_longer_and_says_so_in_time) {
   MaskRigSettings settings = little_travel(0.6);
   settings.limits.half_period_returns = false;
-  settings.servo.simulated.speed_mm_s = 3.8;  // of the 5 that were promised
-  settings.servo.simulated.lag_ms = 35;
+  settings.servo.simulated.speed_mm_s = 3.7;  // of the 5 that were promised
+  settings.servo.simulated.lag_ms = 50;       // of 15
   MaskRig rig(settings);
   rig.head = to_and_fro(300, 8);
   Promises promises(rig, settings);

@@ -179,6 +179,13 @@ TEST(dynamixel_parser, noise_between_packets_costs_none) {
   EXPECT_EQ(lost, 0) << "of " << all;
 }
 
+TEST(dynamixel_parser, a_packet_that_was_cut_off_does_not_swallow_the_next) {
+  Bytes bytes = {0xFF, 0xFF, 0xFD, 0, 1, 100, 0, 0x55, 0, 1, 2};
+  const Bytes whole = encoded([](auto to) { return encode_status(1, 0, Bytes{7}, to); });
+  bytes.insert(bytes.end(), whole.begin(), whole.end());
+  EXPECT_THAT(parsed(bytes), ElementsAre(Seen{1, Instruction::status, 0, false, {7}}));
+}
+
 TEST(dynamixel_parser, gives_an_echo_as_what_it_is) {
   Bytes line = encoded([](auto to) { return encode_read(1, 132, 4, to); });
   const Bytes answer = encoded([](auto to) { return encode_status(1, 0, Bytes{0xA6, 0, 0, 0}, to); });

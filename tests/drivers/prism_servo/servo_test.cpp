@@ -182,12 +182,13 @@ TEST(dynamixel_servo, no_reading_is_of_the_future) {
   settings.driver.baud = 9'600;
   ServoRig rig(settings);
   ASSERT_GT(rig.run_until_ready(), 0);
+  rig.powered = true;
   std::array<std::byte, kLongestPacket> stray;
   const std::size_t size = encode_status(1, 0, std::array<std::uint8_t, 8>{}, stray);
   int fresh = 0;
   for (int i = 0; i < 400; ++i) {
     // An answer that nobody expects yet, among the real ones.
-    if (i % 40 == 0) rig.line().inject(port::Direction::to_host, std::span(stray).first(size));
+    if (i % 7 == 0) rig.line().inject(port::Direction::to_host, std::span(stray).first(size));
     const std::int64_t now = rig.clock().now_ns();
     const PrismServo::Tick tick = rig.tick();
     EXPECT_LE(tick.reading.measured_ns, now);
@@ -264,8 +265,12 @@ TEST(dynamixel_servo, impossible_goals_never_reach_the_wire) {
   rig.powered = true;
   const double inf = std::numeric_limits<double>::infinity();
   for (const double goal : {0.5, std::nan(""), inf, -inf, 1e300, -1e300, 1e18, -3.0, 2.0001}) {
+    const double stands = rig.simulated().motor_mm();
     rig.goal_mm = goal;
-    rig.run_for(20 * kTickNs);
+    rig.run_for(60 * kTickNs);
+    if (!std::isfinite(goal)) {
+      EXPECT_NEAR(rig.simulated().motor_mm(), stands, 0.001) << "holds what it was told last";
+    }
   }
   int goals = 0;
   for (const WatchedPort::Write& write : port.writes()) {
@@ -311,6 +316,16 @@ TEST(dynamixel_servo, lets_go_and_holds_again) {
   EXPECT_FALSE(rig.simulated().torque());
   rig.powered = true;
   rig.run_for(3 * kTickNs);
+  EXPECT_TRUE(rig.simulated().torque());
+}
+
+TEST(dynamixel_servo, torque_that_was_lost_on_the_way_is_given_again) {
+  ServoRig rig;
+  ASSERT_GT(rig.run_until_ready(), 0);
+  rig.powered = true;
+  rig.run_for(200 * kMs);
+  rig.simulated().set_value(kTorqueEnable, 0);
+  rig.run_for(300 * kMs);
   EXPECT_TRUE(rig.simulated().torque());
 }
 
