@@ -1,0 +1,154 @@
+// Each eye sees its own picture, wherever the eyes are in the working volume and whatever the mask does that is known.
+#include <cmath>
+#include <iostream>
+#include <string>
+
+#include "tests/optics/optics_fixture.h"
+
+namespace prismesh::optics {
+namespace {
+
+constexpr double kPhaseLimit = 0.25;  ///< pixels
+
+class OwnPicture : public OpticsTest {
+ protected:
+  /// How an eye's sight compares with what it should see and with what the other eye should.
+  struct Sight {
+    double to_own = 0, to_other = 0, other_share = 0;
+  };
+  Sight sight(const viewer::MaskDisplay& display, const Picture& picture, double true_mask_mm, bool left) {
+    const viewer::Eyes eyes = eyes_of(picture);
+    const auto seen = viewer::look(display, woven(picture, display.panel), left ? eyes.left : eyes.right, true_mask_mm);
+    EXPECT_TRUE(seen) << seen.error().text();
+    const viewer::Seen own = viewer::ordinary(display, ordinary(picture, left ? "mono-left" : "mono-right", display.panel), *seen);
+    const viewer::Seen other = viewer::ordinary(display, ordinary(picture, left ? "mono-right" : "mono-left", display.panel), *seen);
+    return {viewer::mean_difference(*seen, own), viewer::mean_difference(*seen, other), viewer::share_of_other(*seen, own, other)};
+  }
+  static std::string where(const Vec3& at) {
+    return std::to_string(std::lround(at.x())) + ", " + std::to_string(std::lround(at.y())) + ", " + std::to_string(std::lround(at.z()));
+  }
+  void expect_own_pictures(const viewer::MaskDisplay& display, const Picture& picture, double true_mask_mm, const std::string& where) {
+    for (const bool left : {true, false}) {
+      const Sight found = sight(display, picture, true_mask_mm, left);
+      EXPECT_LT(found.to_own, 1) << where << ": levels from its own picture";
+      EXPECT_GT(found.to_other, 3 * found.to_own) << where << ": and not like the other eye's";
+      EXPECT_LT(std::abs(found.other_share), kPhaseLimit) << where << ": of the other eye's detail";
+    }
+  }
+};
+
+TEST_F(OwnPicture, AnywhereInTheWorkingVolume) {
+  make_renderer({});
+  const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
+  show(test::make_crash_box());
+  for (const double distance : {575.0, 650.0, 735.0})
+    for (const double aside : {-120.0, -45.0, 0.0, 80.0})
+      for (const double up : {-60.0, 80.0}) {
+        Picture picture = at_head("prism-mask", {aside, up, distance});
+        fit(picture, display.panel);
+        const double mask = display.ideal_mask_mm({aside, up, distance});
+        expect_own_pictures(display, picture, mask, where(picture.between_eyes_mm));
+        const viewer::PhaseSummary phase =
+            viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture), mask, some_rows(display.panel));
+        EXPECT_LE(phase.worst_pixels, kPhaseLimit) << where(picture.between_eyes_mm);
+      }
+}
+
+TEST_F(OwnPicture, WhereverTheMaskIsKnownToStand) {
+  make_renderer({});
+  const viewer::MaskDisplay display = OpticsTest::display(1280, 120);
+  show(test::make_crash_box());
+  const double pitch = display.element_pitch_mm();
+  for (const Vec3& head : {Vec3(0, 0, 650), Vec3(70, 30, 590)})
+    for (const double periods : {0.1, 0.25, 0.5, -0.37, 3.0}) {
+      Picture picture = at_head("prism-mask", head);
+      fit(picture, display.panel);
+      picture.mask_mm = display.ideal_mask_mm(point(head)) + periods * pitch;
+      expect_own_pictures(display, picture, *picture.mask_mm, where(head) + ", mask off by " + std::to_string(periods) + " periods");
+      const viewer::PhaseSummary phase =
+          viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture), *picture.mask_mm, some_rows(display.panel));
+      EXPECT_LE(phase.worst_pixels, kPhaseLimit) << periods;
+    }
+}
+
+TEST_F(OwnPicture, OnAnyPanel) {
+  // Widths that leave every remainder when divided by four: the even columns begin elsewhere.
+  for (const int columns : {1024, 1366, 1279, 1281})
+    for (const Vec3& head : {Vec3(0, 0, 650), Vec3(-85, 40, 700)}) {
+      const viewer::MaskDisplay display = OpticsTest::display(columns, 401);
+      const Picture picture = at_head("prism-mask", head);
+      const viewer::PhaseSummary phase = viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture),
+                                                               display.ideal_mask_mm(point(head)), some_rows(display.panel));
+      EXPECT_GT(phase.windows, 3U * static_cast<unsigned>(columns - 10));
+      EXPECT_LE(phase.worst_pixels, kPhaseLimit) << columns << " columns, head " << where(head);
+      EXPECT_LT(phase.mean_wrong_share, 0.12) << columns << " columns, head " << where(head);
+    }
+}
+
+TEST_F(OwnPicture, WithTheHeadTilted) {
+  const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
+  Picture picture = at_head("prism-mask", {-40, 30, 610});
+  picture.toward_right = Vec3(0.96, 0.22, -0.17).normalized();
+  picture.eye_separation_mm = 58;
+  const viewer::PhaseSummary phase = viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture),
+                                                           display.ideal_mask_mm({-40, 30, 610}), some_rows(display.panel));
+  EXPECT_LE(phase.worst_pixels, kPhaseLimit);
+}
+
+TEST_F(OwnPicture, OnALeaningLenticularThatStandsStill) {
+  make_renderer({});
+  viewer::MaskDisplay display = OpticsTest::display(1280, 160);
+  display.lean = 1.0 / 6;
+  show(test::make_crash_box());
+  for (const Vec3& head : {Vec3(0, 0, 650), Vec3(47, 0, 650), Vec3(-110, 60, 560), Vec3(25, -40, 730)}) {
+    Picture picture = at_head("lenticular", head);
+    fit(picture, display.panel);
+    expect_own_pictures(display, picture, 0, "lenticular, " + where(head));
+    const viewer::PhaseSummary phase =
+        viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture), 0, some_rows(display.panel));
+    EXPECT_LE(phase.worst_pixels, kPhaseLimit) << where(head);
+  }
+}
+
+TEST_F(OwnPicture, SwappedEyesAreNoticed) {
+  make_renderer({});
+  const viewer::MaskDisplay display = OpticsTest::display(1280, 120);
+  show(test::make_crash_box());
+  Picture picture = at_head("prism-mask", {0, 0, 650});
+  fit(picture, display.panel);
+  picture.profile.swap_eyes = true;
+  for (const bool left : {true, false}) {
+    const Sight found = sight(display, picture, 0, left);
+    EXPECT_GT(found.to_own, 3 * found.to_other);
+    EXPECT_GT(found.other_share, 0.9);
+  }
+}
+
+TEST_F(OwnPicture, ThoughTheMaskLeaks) {
+  make_renderer({});
+  const viewer::MaskDisplay display = OpticsTest::display(1280, 160);
+  show(test::make_crash_box());
+  constexpr double kLeak = 0.08;
+  Picture picture = at_head("prism-mask", {0, 0, 650});
+  fit(picture, display.panel);
+  const auto share = [&](const std::array<double, 2>& corrected) {
+    picture.profile.crosstalk = corrected;
+    const Image image = draw(picture, display.panel.columns, display.panel.rows);
+    const auto as_light = [](const Image& drawn) { return viewer::light_of(drawn.rgb, drawn.width, drawn.height, 2.2); };
+    const viewer::Seen seen = *viewer::look(display, as_light(image), eyes_of(picture).left, 0, {1, kLeak});
+    std::array<viewer::Seen, 2> wanted;
+    for (const std::size_t i : {0, 1}) {
+      Picture mono = picture;
+      mono.profile = profile_named(i == 0 ? "mono-left" : "mono-right");
+      wanted[i] = viewer::ordinary(display, as_light(draw(mono, display.panel.columns, display.panel.rows)), seen);
+    }
+    return viewer::share_of_other(seen, wanted[0], wanted[1]);
+  };
+  const double uncorrected = share({0, 0}), corrected = share({kLeak, kLeak});
+  EXPECT_GT(uncorrected, 0.4 * kLeak) << "the viewer sees the ghost, blurred over both sides";
+  EXPECT_LT(std::abs(corrected), 0.4 * uncorrected) << "and hardly with the correction";
+  std::cout << "of the other eye's detail is seen: " << uncorrected << " without, " << corrected << " with crosstalk correction\n";
+}
+
+}  // namespace
+}  // namespace prismesh::optics
