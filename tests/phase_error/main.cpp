@@ -38,7 +38,7 @@ void print_header(const char* first) {
 void print_row(const Sweep& sweep, double shown) {
   std::printf("| %.0f |", shown);
   for (const Way& way : kWays) {
-    const Figures figures = figures_of(sweeping(sweep, way.predicts, way.profile), 3);
+    const Figures figures = figures_of(sweeping(sweep, way.predicts, way.profile), 2);
     std::printf(" %.3f / %.3f / %.3f |", quantile(figures.moved, 0.99), quantile(figures.middle, 0.99), quantile(figures.panel, 0.99));
     std::fflush(stdout);
   }
@@ -58,7 +58,7 @@ Curve curve(bool predicts, const char* name, const char* colour) {
 }
 
 int report(const char* svg_file) {
-  std::printf("99th percentiles of phase errors, in pixels, 3 seeds of 20 s each; a head that goes 80 mm to either side.\n");
+  std::printf("99th percentiles of phase errors, in pixels, 2 seeds of 20 s each; a head that goes 80 mm to either side.\n");
   print_header("peak speed, mm/s, 650 mm away");
   for (const double speed : {0.0, 50.0, 100.0, 250.0, 412.0, 500.0}) print_row({.peak_mm_s = speed}, speed);
   print_header("distance, mm, at 250 mm/s");
