@@ -266,8 +266,8 @@ TEST(mask_control, keeps_them_with_a_head_that_goes_up_to_500_mm_s_at_random) {
 TEST(mask_control, a_slow_motor_makes_mono_longer_and_says_so_in_time) {
   MaskRigSettings settings = little_travel(0.6);
   settings.limits.half_period_returns = false;
-  settings.servo.simulated.speed_mm_s = 3.7;  // of the 5 that were promised
-  settings.servo.simulated.lag_ms = 50;       // of 15
+  settings.servo.simulated.speed_mm_s = 3.6;  // of the 5 that were promised
+  settings.servo.simulated.lag_ms = 60;       // of 15
   MaskRig rig(settings);
   rig.head = to_and_fro(300, 8);
   Promises promises(rig, settings);
@@ -325,6 +325,13 @@ TEST(mask_control, measurements_that_stop_count_as_lost_eyes) {
   MaskRig rig(settings);
   ASSERT_GE(rig.run_until_stereo(), 0);
   EXPECT_LE(rig.run_until(MaskPhase::frozen, 400), 300);
+}
+
+TEST(mask_control, places_that_are_no_numbers_count_as_lost_eyes) {
+  MaskRig rig;
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  rig.head = [](double) { return Eigen::Vector3d(std::nan(""), 0, 650); };
+  EXPECT_LE(rig.run_until(MaskPhase::frozen, 100), 30);
 }
 
 TEST(mask_control, eyes_that_come_back_soon_are_followed_on) {
