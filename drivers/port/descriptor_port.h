@@ -13,6 +13,10 @@ namespace prismesh::drivers::port {
 /// alike, so reading alone can't tell.
 bool hung_up(int descriptor);
 
+/// Whether nothing can be read from a terminal now. Reading and polling one that has nothing both wait until a thread of the kernel's, of
+/// ordinary priority, has handed over what is on its way (flush_work); on a busy machine that took a real-time loop many milliseconds. This
+/// question doesn't wait. False as well where it isn't known: on an end, an error, no terminal.
+bool surely_nothing_there(int descriptor);
 /// Raw mode without echo on a terminal, whatever it was before. False with errno set.
 bool make_raw(int descriptor);
 

@@ -26,7 +26,7 @@ class SerialPort final : public BytePort {
 
   PortCount read(std::span<std::byte> to) override {
     if (gone_) return {0, PortStatus::gone};
-    if (to.empty()) return {};
+    if (to.empty() || surely_nothing_there(descriptor_)) return {};
     const int got = sp_nonblocking_read(line_, to.data(), to.size());
     if (got < 0) return failed(errno);
     if (got == 0 && hung_up(descriptor_)) return failed(0);  // libserialport reports the end as "nothing yet"
