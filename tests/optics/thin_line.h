@@ -39,15 +39,16 @@ class ThinLine {
   ThinLine(const ThinLine&) = delete;
   ThinLine& operator=(const ThinLine&) = delete;
 
-  /// 200 pixels of a picture of `size` pixels, `degrees` from its rows, through `middle` (pixels from the centre, up), on black.
-  void draw(double degrees, std::array<double, 2> middle, std::array<int, 2> size) const {
+  /// 200 pixels of a picture of `size` pixels, `degrees` from its rows, through `middle` (pixels from the centre, up), white on a
+  /// grey of 0..1.
+  void draw(double degrees, std::array<double, 2> middle, std::array<int, 2> size, float grey = 0) const {
     const double angle = degrees * std::numbers::pi / 180;
     const std::array<double, 2> half{100 * std::cos(angle), 100 * std::sin(angle)};
     std::array<float, 4> ends{};
     for (std::size_t i = 0; i < 4; ++i) ends[i] = static_cast<float>(2 * (middle[i % 2] + (i < 2 ? -1 : 1) * half[i % 2]) / size[i % 2]);
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
-    glClearColor(0, 0, 0, 1);
+    glClearColor(grey, grey, grey, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     glUseProgram(program_);
     glUniform4fv(glGetUniformLocation(program_, "ends"), 1, ends.data());

@@ -12,7 +12,7 @@ namespace {
 using viewer::LightImage;
 using viewer::Owner;
 
-constexpr int kWidth = 1280, kHeight = 1010;
+constexpr int kWidth = 1280, kHeight = 950;
 
 /// Where a magnified part lies in its picture.
 struct Part {
@@ -65,15 +65,15 @@ Result<LightImage> interlacing_figure(Stage& stage) {
   const auto left = stage.draw_as("mono-left", *picture, panel), right = stage.draw_as("mono-right", *picture, panel);
   const auto woven = stage.draw(*picture, panel);
   const auto owners = stage.owners(*picture, panel);
-  // Nearer and seen where the windows have drifted by a third of a pixel against the columns.
-  kiosk::render::Picture near = *picture;
-  near.between_eyes_mm = {0, 0, 560};
-  const auto near_woven = stage.draw(near, panel);
-  const auto near_owners = stage.owners(near, panel);
-  for (const auto* drawn : {&left, &right, &woven, &near_woven})
+  // The windows have moved by a third of a pixel against the columns.
+  kiosk::render::Picture moved = *picture;
+  moved.mask_mm = 0.1;
+  const auto moved_woven = stage.draw(moved, panel);
+  const auto moved_owners = stage.owners(moved, panel);
+  for (const auto* drawn : {&left, &right, &woven, &moved_woven})
     if (!*drawn) return fail(drawn->error());
   if (!owners) return fail(owners.error());
-  if (!near_owners) return fail(near_owners.error());
+  if (!moved_owners) return fail(moved_owners.error());
 
   const Part part{389, 232, 32, 18};
   const Column columns[] = {{"1  The left eye's image", "as an ordinary screen would show it", &*left, manner::kLeft},
@@ -94,9 +94,9 @@ Result<LightImage> interlacing_figure(Stage& stage) {
     const char* words;
     const LightImage* image;
     const viewer::Owners* owners;
-  } close[] = {
-      {"4  Its stripes, head at 650 mm", "the bar says whose: blue left, orange right; whole columns in turn", &*woven, &*owners},
-      {"5  The same place, head at 560 mm", "the borders between the eyes fall between a pixel's stripes", &*near_woven, &*near_owners}};
+  } close[] = {{"4  Its stripes", "the bar says whose: blue the left eye's, orange the right eye's", &*woven, &*owners},
+               {"5  The same place, the mask 0.1 mm farther right", "the border between the eyes falls between a pixel's stripes",
+                &*moved_woven, &*moved_owners}};
   for (int i = 0; i < 2; ++i) {
     const double x = 30 + 620.0 * i;
     canvas->text({x, 612}, close[i].title, manner::kTitle, manner::kText);
