@@ -36,7 +36,9 @@ struct FollowOptions {
 
 /// Starting values, in one place.
 struct FollowLimits {
-  std::int64_t mono_after_ns = 240'000'000;    ///< since the last good measurement: mono at the latest; 10 ms under the promise
+  /// Since the last good measurement: mono by then. The rest of the 250 ms is for a refresh just missed, and for a picture that takes
+  /// longer to draw than the last ones did.
+  std::int64_t mono_after_ns = 210'000'000;
   std::int64_t lost_after_ns = 100'000'000;    ///< without a measurement for so long: the fade begins ...
   std::int64_t lost_soonest_ns = 60'000'000;   ///< ... sooner, down to this, where pictures take long
   std::int64_t fade_ns = 80'000'000;           ///< to mono when the mask stops following, and before it flies back
@@ -90,6 +92,7 @@ class TrackedEyes {
 
   void take(const DeviceReading& reading, std::int64_t now_ns);
   void move(std::int64_t now_ns, const LitTime& lit);
+  std::int64_t heard_ns() const { return head_.time_ns + slow_ns_; }
   double share_for_eyes(std::int64_t now_ns, const LitTime& lit) const;
   double share_for_mask(const DeviceReading& reading, std::int64_t now_ns, const LitTime& lit);
   void follow_mask(const DeviceReading& reading, const LitTime& lit);
@@ -97,6 +100,7 @@ class TrackedEyes {
   FollowOptions options_;
   FollowLimits limits_;
   drivers::eye_tracker::HeadState head_;
+  std::int64_t slow_ns_ = 0;  ///< by so much older than usual are measurements when they come: a webcam's
   double eye_separation_mm_ = drivers::display::kMeanEyeSeparationMm;
   Source source_ = Source::resting;
   bool found_again_ = false;  ///< measurements have come back after they were lost

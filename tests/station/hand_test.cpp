@@ -23,10 +23,10 @@ class HandTest : public ::testing::Test {
     station_ = std::make_unique<Station>();
   }
   /// The sheet, and its nodes.
-  void start_with_sheet() {
+  void start_with_sheet(const std::vector<std::string>& arguments = {}) {
     original_ = whole_file(station_->deck());
     nodes_ = nodes_of_deck(original_);
-    station_->start_kiosk();
+    station_->start_kiosk(arguments);
   }
   /// The closed hat seen from above.
   void start_with_hat() {
@@ -219,7 +219,7 @@ double contrast(const Station::Pixels& pixels, int step) {
 }
 
 TEST_F(HandTest, p_goes_through_the_display_profiles_and_a_prism_mask_gets_its_columns) {
-  start_with_sheet();
+  start_with_sheet({"--eye", "0,0,650"});  // nobody is followed here: without eyes a mask's picture is flat
   const auto column_contrast = [&] {
     const Station::Pixels pixels = station_->window_pixels();
     return contrast(pixels, 1) / contrast(pixels, 2);
@@ -241,7 +241,7 @@ TEST_F(HandTest, p_goes_through_the_display_profiles_and_a_prism_mask_gets_its_c
     }
     EXPECT_GT(ratio, 1) << "prism mask: a column is most like the next one of its own eye";
   }
-  EXPECT_EQ(seen.size(), 6u);
+  EXPECT_GE(seen.size(), 11u);
 }
 
 TEST_F(HandTest, another_deck_is_opened_by_keyboard) {
