@@ -28,7 +28,8 @@ Owners mapped(const Profile& profile, const EyePair& eyes, double mask_mm) {
   Owners owners{area.width, 1, {}};
   const bool fine = profile.subpixels != drivers::display::Subpixels::none;
   for (int stripe = 0; stripe < 3 * area.width; ++stripe) {
-    const double x = fine ? (stripe + 0.5) / 3 : stripe / 3 + 0.5;
+    const int column = stripe / 3;
+    const double x = fine ? (stripe + 0.5) / 3 : column + 0.5;
     const std::array<double, 2> numbers = numbers_at(map, area.height, x, 0.5);
     const auto off = [](double number) { return std::abs(number - std::round(number)); };
     owners.stripes.push_back(off(numbers[0]) <= off(numbers[1]) ? Owner::left : Owner::right);
