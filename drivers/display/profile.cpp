@@ -16,7 +16,7 @@ std::string known_profiles() {
 
 std::span<const Profile> built_in_profiles() {
   // The lenticular's elements lean by one pixel in six, which is usual: it spreads the black grid between the pixels over both eyes.
-  static const std::array<Profile, 11> profiles{
+  static const std::array<Profile, 11> kProfiles{
       {{.name = "prism-mask", .weave = Weave::mask, .subpixels = Subpixels::rgb, .mask_moves = true},
        {.name = "prism-mask-columns", .weave = Weave::columns, .mask_moves = true},
        {.name = "prism-mask-stencil", .weave = Weave::stencil, .mask_moves = true},
@@ -28,7 +28,7 @@ std::span<const Profile> built_in_profiles() {
        {.name = "mono", .weave = Weave::centre},
        {.name = "mono-left", .weave = Weave::one_eye, .eye = Eye::left},
        {.name = "mono-right", .weave = Weave::one_eye, .eye = Eye::right}}};
-  return profiles;
+  return kProfiles;
 }
 
 Result<Profile> find_profile(const std::string& name_or_path) {

@@ -17,18 +17,18 @@ template <class Value>
 using Names = std::vector<std::pair<std::string_view, Value>>;
 
 const Names<Weave>& weave_names() {
-  static const Names<Weave> names{{"mask", Weave::mask},         {"columns", Weave::columns},           {"stencil", Weave::stencil},
-                                  {"rows", Weave::rows},         {"side-by-side", Weave::side_by_side}, {"top-bottom", Weave::top_bottom},
-                                  {"anaglyph", Weave::anaglyph}, {"one-eye", Weave::one_eye},           {"centre", Weave::centre}};
-  return names;
+  static const Names<Weave> kNames{{"mask", Weave::mask},         {"columns", Weave::columns},           {"stencil", Weave::stencil},
+                                   {"rows", Weave::rows},         {"side-by-side", Weave::side_by_side}, {"top-bottom", Weave::top_bottom},
+                                   {"anaglyph", Weave::anaglyph}, {"one-eye", Weave::one_eye},           {"centre", Weave::centre}};
+  return kNames;
 }
 const Names<Eye>& eye_names() {
-  static const Names<Eye> names{{"left", Eye::left}, {"right", Eye::right}};
-  return names;
+  static const Names<Eye> kNames{{"left", Eye::left}, {"right", Eye::right}};
+  return kNames;
 }
 const Names<Subpixels>& subpixel_names() {
-  static const Names<Subpixels> names{{"none", Subpixels::none}, {"rgb", Subpixels::rgb}, {"bgr", Subpixels::bgr}};
-  return names;
+  static const Names<Subpixels> kNames{{"none", Subpixels::none}, {"rgb", Subpixels::rgb}, {"bgr", Subpixels::bgr}};
+  return kNames;
 }
 
 std::string number_text(double value) {
@@ -142,7 +142,7 @@ Key panel_pixels() {
 }
 
 const std::vector<Key>& keys() {
-  static const std::vector<Key> all{
+  static const std::vector<Key> kKeys{
       text(
           "", "name", "", [](auto& p) -> auto& { return p.name; }),
       choice(
@@ -188,7 +188,7 @@ const std::vector<Key>& keys() {
           "monitor", "serial", "", [](auto& p) -> auto& { return p.monitor.serial; }),
       panel_pixels(),
   };
-  return all;
+  return kKeys;
 }
 
 tl::unexpected<Error> wrong(const std::string& file, const toml::source_region& at, const std::string& message) {

@@ -5,20 +5,20 @@
 namespace prismesh::kiosk::render {
 
 const std::string& shader_head() {
-  static const std::string head = R"(#version 310 es
+  static const std::string kHead = R"(#version 310 es
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp usampler2D;
 )";
-  return head;
+  return kHead;
 }
 
 const std::string& cover_vertex_shader() {
-  static const std::string shader = shader_head() + R"(
+  static const std::string kShader = shader_head() + R"(
 void main() { gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0, float(gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0); }
 )";
-  return shader;
+  return kShader;
 }
 
 namespace {

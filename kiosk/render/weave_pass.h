@@ -23,7 +23,7 @@ class WeavePass {
     bool by_rows = false;
     bool subpixels = false;
     bool leaking = false;
-    auto operator<=>(const Way&) const = default;
+    auto operator<=>(const Way&) const = default;  // NOLINT(modernize-use-nullptr): the check mistakes the operator
   };
   static std::string fragment_shader(const Way& way);
   Result<const gl::Program*> program_for(const Way& way);
