@@ -2,6 +2,17 @@
 
 namespace prismesh::ipc {
 
+std::string_view name(EyesPhase phase) {
+  switch (phase) {
+    case EyesPhase::none: return "none";
+    case EyesPhase::absent: return "absent";
+    case EyesPhase::silent: return "silent";
+    case EyesPhase::searching: return "searching";
+    case EyesPhase::tracking: return "tracking";
+  }
+  return "unknown";
+}
+
 drivers::eye_tracker::HeadState EyesState::head() const {
   drivers::eye_tracker::HeadState state;
   state.time_ns = measured_ns;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "base/error.h"
@@ -23,10 +24,13 @@ enum class EyesPhase : std::uint8_t {
   tracking,
 };
 
+std::string_view name(EyesPhase phase);
+
 /// The eyes, written at each tick.
 struct EyesState {
-  std::int64_t time_ns = 0;      ///< CLOCK_MONOTONIC of the tick that wrote this
-  std::int64_t measured_ns = 0;  ///< of the newest measurement; 0: never. Its age is what tells fresh from stale
+  std::int64_t time_ns = 0;                  ///< CLOCK_MONOTONIC of the tick that wrote this
+  std::int64_t measured_ns = 0;              ///< of the newest measurement; 0: never. Its age is what tells fresh from stale ...
+  std::int64_t lost_after_ns = 100'000'000;  ///< ... older than this the eyes are lost: more with a tracker that takes long
   std::array<double, 3> between_eyes_mm{};
   std::array<double, 3> velocity_mm_s{};
   std::array<double, 3> toward_right{1, 0, 0};

@@ -1,7 +1,6 @@
 #include "kiosk/eye_watch.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -11,17 +10,6 @@ namespace {
 using drivers::prism_servo::MaskPhase;
 using ipc::EyesPhase;
 using panels::EyesFacts;
-
-constexpr std::string_view name(EyesPhase phase) {
-  switch (phase) {
-    case EyesPhase::none: return "none";
-    case EyesPhase::absent: return "absent";
-    case EyesPhase::silent: return "silent";
-    case EyesPhase::searching: return "searching";
-    case EyesPhase::tracking: return "tracking";
-  }
-  return "none";
-}
 
 /// The tracker in a few words, and what the user can do about it.
 void word_eyes(EyesPhase phase, const ipc::DeviceInfo* tracker, EyesFacts& facts) {

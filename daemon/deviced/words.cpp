@@ -28,7 +28,7 @@ std::string trouble_of(const PrismServoSettings& settings, const ServoStatus& st
   if (!status.open) return not_open(port);
   const std::string of_servo = drivers::prism_servo::dynamixel::trouble_text(status.tick, settings);
   if (status.mask == MaskPhase::alarm)
-    return (of_servo.empty() ? std::string("the motor has switched itself off") : of_servo) + "; " + kRearm;
+    return (of_servo.empty() ? std::string("the motor has switched itself off: find out why") : of_servo) + ", " + kRearm;
   if (!of_servo.empty()) return of_servo;
   if (status.mask == MaskPhase::stuck)
     return std::string("the mask doesn't go where it is told, so the motor was let go: look what blocks it or has come loose, ") + kRearm;
@@ -36,17 +36,6 @@ std::string trouble_of(const PrismServoSettings& settings, const ServoStatus& st
 }
 
 }  // namespace
-
-std::string_view name(EyesPhase phase) {
-  switch (phase) {
-    case EyesPhase::none: return "none";
-    case EyesPhase::absent: return "absent";
-    case EyesPhase::silent: return "silent";
-    case EyesPhase::searching: return "searching";
-    case EyesPhase::tracking: return "tracking";
-  }
-  return "unknown";
-}
 
 std::string_view name(MaskPhase phase) {
   switch (phase) {

@@ -14,7 +14,6 @@
 
 namespace prismesh::deviced {
 
-std::string_view name(ipc::EyesPhase phase);
 std::string_view name(drivers::prism_servo::MaskPhase phase);
 
 /// A device that has just been opened says nothing yet; that is a trouble only after so long.

@@ -80,7 +80,8 @@ std::string advice(const std::string& path, int error) {
     case EBUSY:
     case EWOULDBLOCK: {
       const std::string who = holders(path);
-      return "another program has it open: " + (who.empty() ? "one of another user; sudo fuser -v " + path + " names it" : who) +
+      return "another program has it open: " +
+             (who.empty() ? "one that can't be seen from here; sudo fuser -v " + path + " names it" : who) +
              "; end that program, or give this one another port";
     }
     case ENOTTY:

@@ -427,22 +427,21 @@ std::string trouble_text(const PrismServo::Tick& tick, const settings::PrismServ
     std::string bits;
     for (unsigned bit = 0; bit < 8; ++bit)
       if ((tick.alarm_bits >> bit & 1U) != 0) bits.append(bits.empty() ? "" : ", ").append(hardware_error_name(bit));
-    return "The prism servo has switched its motor off: " + bits +
-           ". Look for what blocks or heats it and at its supply, then arm it again.";
+    return "the prism servo has switched its motor off (" + bits + "): look for what blocks or heats it, and at its supply";
   }
   switch (tick.trouble) {
     case ServoTrouble::none: return {};
     case ServoTrouble::no_answer:
-      return "No servo with id " + std::to_string(settings.id) + " answers on " + settings.port +
-             " at any speed: look at its supply, its cable and prism_servo.id.";
+      return "no servo with id " + std::to_string(settings.id) + " answers on " + settings.port +
+             " at any speed: look at its supply, its cable and prism_servo.id";
     case ServoTrouble::other_model:
-      return "The servo on " + settings.port + " says it is model " + number +
-             ", whose registers aren't known here: it has to be a Dynamixel of the X series, or MX with firmware 2.0.";
+      return "the servo on " + settings.port + " says it is model " + number +
+             ", whose registers aren't known here: it has to be a Dynamixel of the X series, or MX with firmware 2.0";
     case ServoTrouble::refused:
-      return "The prism servo doesn't take what its register " + number + " has to be set to: restore its factory settings and try again.";
+      return "the prism servo doesn't take what its register " + number + " has to be set to: restore its factory settings and try again";
     case ServoTrouble::too_slow:
-      return "The prism servo's velocity limit (register " + number +
-             ") is below prism_servo.speed_mm_s: raise the limit or lower the speed.";
+      return "the prism servo's velocity limit (register " + number +
+             ") is below prism_servo.speed_mm_s: raise the limit or lower the speed";
   }
   return {};
 }

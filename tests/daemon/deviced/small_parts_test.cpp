@@ -133,7 +133,9 @@ TEST(Words, AServoSaysWhatToDo) {
   status.mask = MaskPhase::alarm;
   status.tick.phase = ServoPhase::alarm;
   status.tick.alarm_bits = 0x20;
-  EXPECT_NE(servo_info(settings, status, {}).trouble.find("overload"), std::string::npos) << servo_info(settings, status, {}).trouble;
+  EXPECT_EQ(servo_info(settings, status, {}).trouble,
+            "the prism servo has switched its motor off (overload): look for what blocks or heats it, and at its supply, then say so with "
+            "`prismesh devices --rearm`");
 
   status.mask = MaskPhase::absent;
   status.tick = {};
