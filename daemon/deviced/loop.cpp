@@ -38,6 +38,7 @@ DeviceLoop::DeviceLoop(const LoopSettings& settings, const LoopPorts& ports, ipc
       seat_(settings.tracker),
       filter_({settings.tracker.noise_mm}),
       control_(settings.optics, settings.limits) {
+  eyes_.lost_after_ns = settings.limits.eyes_lost_ns;
   eyes_.eye_separation_mm = settings.eye_separation_mm;
 }
 

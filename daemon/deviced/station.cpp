@@ -1,5 +1,7 @@
 #include "daemon/deviced/station.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,9 @@ using drivers::port::PortKeeper;
 using drivers::prism_servo::dynamixel::SimulatedServoThread;
 using drivers::settings::TrackerDriver;
 
+/// Records that stay away for so long, five at 60 Hz, are missed.
+constexpr std::int64_t kMissedNs = 80'000'000;
+
 LoopSettings loop_settings(const StationPlan& plan) {
   LoopSettings settings;
   settings.tracker = plan.settings.eye_tracker;
@@ -33,6 +38,9 @@ LoopSettings loop_settings(const StationPlan& plan) {
   settings.optics = plan.profile.optics;
   settings.limits.travel_mm = plan.settings.prism_servo.travel_mm;
   settings.limits.speed_mm_s = plan.settings.prism_servo.speed_mm_s;
+  // What a slow tracker says, a webcam's say, is old when it comes.
+  const std::int64_t latency_ns = std::llround(plan.settings.eye_tracker.latency_ms * 1e6);
+  settings.limits.eyes_lost_ns = std::max(settings.limits.eyes_lost_ns, latency_ns + kMissedNs);
   settings.eye_separation_mm = plan.eye_separation_mm();
   return settings;
 }

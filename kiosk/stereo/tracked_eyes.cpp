@@ -17,6 +17,7 @@ constexpr double kLetGoSeconds = 0.4;    ///< ... and from lost eyes to the rest
 constexpr double kArrivedMm = 0.05;
 constexpr std::int64_t kLookLateNs = 10'000'000;    ///< between two looks while nothing is drawn
 constexpr std::int64_t kClockSlackNs = 50'000'000;  ///< a measurement that lies further in the future is nonsense
+constexpr std::int64_t kSlowestNs = 500'000'000;    ///< no tracker takes longer
 
 double seconds_of(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 double part(std::int64_t of_ns, std::int64_t whole_ns) {
@@ -94,13 +95,14 @@ void TrackedEyes::take(const DeviceReading& reading, std::int64_t now_ns) {
   if (eyes.phase != ipc::EyesPhase::tracking || eyes.measured_ns <= head_.time_ns || eyes.measured_ns > now_ns + kClockSlackNs) return;
   if (!believable(eyes)) return;
   found_again_ = found_again_ || eyes.measured_ns - head_.time_ns > limits_.lost_after_ns;
+  slow_ns_ = std::clamp(eyes.lost_after_ns, limits_.lost_after_ns, limits_.lost_after_ns + kSlowestNs) - limits_.lost_after_ns;
   head_ = eyes.head();
   if (!options_.eye_separation_mm) eye_separation_mm_ = eyes.eye_separation_mm;
 }
 
 void TrackedEyes::move(std::int64_t now_ns, const LitTime& lit) {
   const bool known = head_.time_ns != 0 && now_ns - head_.time_ns < limits_.rest_after_ns;
-  const bool fresh = head_.time_ns != 0 && now_ns - head_.time_ns < limits_.mono_after_ns;
+  const bool fresh = head_.time_ns != 0 && now_ns - heard_ns() < limits_.mono_after_ns;
   const Source source = fresh || (known && source_ == Source::tracked) ? Source::tracked : Source::resting;
   if (source != source_ || std::exchange(found_again_, false)) {
     place_.retarget();
@@ -121,12 +123,12 @@ void TrackedEyes::move(std::int64_t now_ns, const LitTime& lit) {
 /// Full depth while measurements come; then down to mono, which the last picture before the deadline has reached.
 double TrackedEyes::share_for_eyes(std::int64_t now_ns, const LitTime& lit) const {
   if (head_.time_ns == 0) return 0;
-  const std::int64_t deadline = head_.time_ns + limits_.mono_after_ns, ahead = lit.until_ns - now_ns;
+  const std::int64_t deadline = heard_ns() + limits_.mono_after_ns, ahead = lit.until_ns - now_ns;
   // One picture may just have been begun when the eyes could have been found lost: the next one has to be mono in time.
   const std::int64_t room = limits_.mono_after_ns - ahead - kLookLateNs;
   const std::int64_t lost_after = std::clamp(room, limits_.lost_soonest_ns, limits_.lost_after_ns);
-  if (now_ns - head_.time_ns <= lost_after) return 1;
-  const std::int64_t fade_from = head_.time_ns + lost_after + ahead;
+  if (now_ns - heard_ns() <= lost_after) return 1;
+  const std::int64_t fade_from = heard_ns() + lost_after + ahead;
   return fade_from < deadline ? part(deadline - lit.until_ns, deadline - fade_from) : 0;
 }
 

@@ -31,7 +31,8 @@ struct Shown {
   SeenFrom seen;
 };
 
-/// A tracker at 60 Hz, 20 ms late and with 1 mm of noise, the daemon's page at 200 Hz, and a kiosk that looks at it at each refresh.
+/// A tracker at 60 Hz, 20 ms late if not said otherwise and with 1 mm of noise, the daemon's page at 200 Hz, and a kiosk that looks at it
+/// at each refresh.
 class World {
  public:
   explicit World(const FollowOptions& options, const HeadMotion& motion = HeadMotion(MotionKind::still, 1))
@@ -62,7 +63,7 @@ class World {
   std::vector<Shown> pictures;
   std::size_t looks = 0;
   bool daemon_runs = true, tracker_sees = true, page_is_there = true;
-  std::int64_t draw_ms = 3;
+  std::int64_t draw_ms = 3, latency_ms = 20;
   std::int64_t last_measured_ns = 0;
 
  private:
@@ -75,7 +76,7 @@ class World {
     if (drawn_ns_ == 0 && now() >= timing_.next_begin_ns()) look();
   }
   void measure() {
-    const std::int64_t measured = now() - 20 * kMs;
+    const std::int64_t measured = now() - latency_ms * kMs;
     if (measured <= kStart) return;
     filter_.take({measured, head_at(measured) + Vector3d(noise_(random_), noise_(random_), noise_(random_)), Vector3d::UnitX(), false});
   }
@@ -86,7 +87,7 @@ class World {
     to.measured_ns = last_measured_ns = head.time_ns;
     std::copy_n(head.between_eyes_mm.data(), 3, to.between_eyes_mm.begin());
     std::copy_n(head.velocity_mm_s.data(), 3, to.velocity_mm_s.begin());
-    to.phase = now() - head.time_ns < 100 * kMs ? ipc::EyesPhase::tracking : ipc::EyesPhase::searching;
+    to.phase = now() - head.time_ns < to.lost_after_ns ? ipc::EyesPhase::tracking : ipc::EyesPhase::searching;
     ipc::PrismState& mask = *reading.prism;
     mask.time_ns = mask.measured_ns = now();
   }
@@ -193,6 +194,22 @@ TEST(TrackedEyes, EyesThatAreLostTurnThePictureMonoInTimeAndSmoothly) {
   const std::int64_t back = world.now();
   world.run_until_stereo();
   EXPECT_LT(world.now() - back, 1000 * kMs);
+}
+
+TEST(TrackedEyes, ATrackerThatTakesLongGivesDepthToo) {
+  World world(prism_mask());
+  allow_stereo(world);
+  world.latency_ms = 150;
+  world.reading.eyes->lost_after_ns = 230 * kMs;
+  world.run_until_stereo();
+  const std::size_t before = world.pictures.size();
+  world.run_ms(1000);
+  for (std::size_t i = before; i < world.pictures.size(); ++i) EXPECT_EQ(world.pictures[i].seen.depth_share, 1);
+  world.tracker_sees = false;
+  world.run_ms(1000);
+  world.close_pictures();
+  EXPECT_EQ(world.seen.depth_share, 0);
+  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 130 * kMs) << "the promise counts from when the head was heard of";
 }
 
 TEST(TrackedEyes, AShortGapIsBridged) {
