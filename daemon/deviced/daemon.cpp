@@ -95,6 +95,8 @@ struct Daemon::State final : ipc::ServerHandler {
   }
 
   void tell_loop(const LoopCommand& command) {
+    // Of each kind only the newest counts, so a client that asks without end fills no memory.
+    std::erase_if(untaken, [&](const LoopCommand& older) { return older.index() == command.index(); });
     untaken.push_back(command);
     while (station && !untaken.empty() && station->tell(untaken.front())) untaken.pop_front();
   }

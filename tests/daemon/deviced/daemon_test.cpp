@@ -246,6 +246,49 @@ TEST_F(Deviced, AKilledDaemonIsNoticedAndFoundAgainWithANewPage) {
   EXPECT_EQ(connection.connections(), 4u);
 }
 
+TEST_F(Deviced, ATrackerThatTakesLongIsFollowedToo) {
+  configure("[eye_tracker]\ndriver = \"dynasight\"\nsimulated = true\nmotion = \"still\"\nlatency_ms = 150\n");
+  start();
+  const ipc::DeviceClient client = connect("test");
+  ASSERT_TRUE(wait_for([&] { return client.page().eyes() && client.page().eyes()->phase == EyesPhase::tracking; }))
+      << daemon_->standard_error();
+  EXPECT_GE(client.page().eyes()->time_ns - client.page().eyes()->measured_ns, 150'000'000);
+}
+
+TEST_F(Deviced, AClientThatNeverStopsAskingFillsNoMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer keeps what was freed";
+#endif
+  start();
+  const ipc::DeviceClient quiet = connect("test");
+  ASSERT_TRUE(wait_for([&] { return at_work(quiet.page()); })) << daemon_->standard_error();
+  const auto resident_kib = [&] {
+    std::ifstream status("/proc/" + std::to_string(daemon_->pid()) + "/status");
+    for (std::string word; status >> word;)
+      if (word == "VmRSS:") {
+        long kib = 0;
+        status >> kib;
+        return kib;
+      }
+    return 0L;
+  };
+  const long before = resident_kib();
+  ASSERT_GT(before, 0);
+  ipc::DeviceClient flood = connect("flood");
+  for (int i = 0; i < 200'000; ++i) ASSERT_TRUE(flood.send(ipc::PictureShown{i % 2 == 0}));
+  EXPECT_LT(resident_kib() - before, 8 * 1024);
+  EXPECT_EQ(listed(flood).devices.size(), 2u);
+}
+
+TEST_F(Deviced, ATerminalThatClosesEndsItAsCleanly) {
+  start();
+  const ipc::DeviceClient client = connect("test");
+  ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
+  daemon_->kill(SIGHUP);
+  EXPECT_EQ(daemon_->wait_for_exit(), 0) << daemon_->standard_error();
+  EXPECT_EQ(client.page().prism()->phase, MaskPhase::absent);
+}
+
 TEST_F(Deviced, OnTheWayOutThePageSaysThatNothingIsToBeReliedOn) {
   start();
   const ipc::DeviceClient client = connect("test");
@@ -261,7 +304,7 @@ TEST_F(Deviced, OnTheWayOutThePageSaysThatNothingIsToBeReliedOn) {
 TEST_F(Deviced, WrongUseAndWrongSettingsAreSaid) {
   Process wrong({program("prismesh-deviced"), "--runtime"}, {});
   EXPECT_EQ(wrong.wait_for_exit(), 2);
-  EXPECT_NE(wrong.standard_error().find("usage: prismesh-deviced"), std::string::npos);
+  EXPECT_NE(wrong.standard_error().find("--runtime is no option of prismesh-deviced\nusage: prismesh-deviced"), std::string::npos);
 
   configure("[eye_tracker]\ndriver = \"dynasite\"\n");
   start();
