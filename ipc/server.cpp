@@ -106,6 +106,9 @@ struct Server::State {
   void start() {
     accept_next();
     watch_stalls();
+    // A terminal that closes ends a daemon like the others, unless it was started not to mind (nohup).
+    struct sigaction hang_up {};
+    if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) signals.add(SIGHUP);
     signals.async_wait([this](const error_code& problem, int) {
       if (!problem) loop.stop();
     });

@@ -44,7 +44,7 @@ class Server {
   Server& operator=(Server&&) noexcept;
   ~Server();
 
-  /// Serves until `stop`, or until SIGTERM or SIGINT. What was queued for clients is sent where they take it at once.
+  /// Serves until `stop`, or until SIGTERM, SIGINT or a terminal's SIGHUP. What was queued for clients is sent where they take it at once.
   void run();
   void stop();
   /// Runs `work` in the loop, soon. From any thread.

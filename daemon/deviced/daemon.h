@@ -25,7 +25,7 @@ class Daemon {
   /// The motor is let go before this returns.
   ~Daemon();
 
-  /// Serves until SIGTERM or SIGINT, or `stop`.
+  /// Serves until SIGTERM, SIGINT or a terminal's SIGHUP, or `stop`.
   void run();
   /// From any thread.
   void stop();
