@@ -27,6 +27,8 @@ ProgramOptions program_options(const ProgramUse& use, int count, char** values) 
     const std::string_view option = values[i];
     const bool known = std::find(use.with_path.begin(), use.with_path.end(), option) != use.with_path.end();
     if (!known || i + 1 == count) {
+      const std::string problem = known ? " needs a path behind it\n" : " is no option of " + use.name + "\n";
+      std::fputs((std::string(option) + problem).c_str(), stderr);
       std::fputs(use.usage.c_str(), stderr);
       options.end = 2;
       return options;
