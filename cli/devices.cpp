@@ -1,4 +1,5 @@
 // The eye tracker, the prism servo and the loop that joins them, as deviced knows them.
+#include <cmath>
 #include <ostream>
 #include <thread>
 
@@ -40,8 +41,8 @@ std::string eyes_text(const DeviceFigures& figures) {
   const ipc::EyesState& eyes = figures.eyes;
   const auto age_ms = figures.age_ms(eyes.measured_ns);
   if (!age_ms) return "no head was seen yet";
-  const auto& at = eyes.between_eyes_mm;
-  return fmt::format("head at ({:.0f}, {:.0f}, {:.0f}) mm, measured {:.0f} ms ago; lost {} since the daemon's start", at[0], at[1], at[2],
+  const auto mm = [&](std::size_t axis) { return std::round(eyes.between_eyes_mm[axis]) + 0.0; };  // no "-0"
+  return fmt::format("head at ({:.0f}, {:.0f}, {:.0f}) mm, measured {:.0f} ms ago; lost {} since the daemon's start", mm(0), mm(1), mm(2),
                      *age_ms, counted(eyes.times_lost, "time"));
 }
 
@@ -101,13 +102,16 @@ Result<void> act_and_print(ipc::DeviceClient& client, const DevicesOptions& opti
 /// Until the user stops it; a daemon that is started again is found again.
 void watch(ipc::ReconnectingDeviceClient& connection, const DevicesOptions& options, const Common& common,
            const Surroundings& surroundings) {
-  while (!surroundings.stop() && surroundings.out.good()) {
+  const auto pause = [&] {
+    for (auto slept = std::chrono::milliseconds(0); slept < kWatchPeriod && !surroundings.stop(); slept += std::chrono::milliseconds(50))
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  };
+  // The first look was printed already.
+  for (pause(); !surroundings.stop() && surroundings.out.good(); pause()) {
     if (const Result<ipc::DeviceClient*> client = connection.wait(kPatience); !client)
       say(surroundings, client.error());
     else if (const Result<void> printed = act_and_print(**client, options, false, common, surroundings); !printed)
       connection.lost(printed.error());
-    for (auto slept = std::chrono::milliseconds(0); slept < kWatchPeriod && !surroundings.stop(); slept += std::chrono::milliseconds(50))
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
 }
 
