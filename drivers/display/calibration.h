@@ -28,7 +28,7 @@ struct MaskFit {
 
 inline constexpr double kGapScaleLow = 0.85, kGapScaleHigh = 1.15;
 /// More than this and somebody chose the wrong place, or moved: better choose again.
-inline constexpr double kScatterTooLargePx = 0.3;
+inline constexpr double kScatterTooLargePx = 0.2;
 
 /// Fits the zero, and the gap where the heads' places allow, to choices; `optics` gives all the rest. Errors, as sentences for the
 /// viewer: no choice, one that isn't a number or has the head behind the screen, choices that contradict each other (the worst is named by

@@ -30,6 +30,7 @@ constexpr double kPitchStep = 2e-5, kPitchRange = 0.02;
 constexpr double kCrosstalkStep = 0.0025, kCrosstalkHighest = 0.3;
 constexpr double kBarStepMm = 0.1;
 constexpr int kMaskStepsAPitch = 96;
+constexpr double kFarthestPitches = 0.75;
 
 bool shares_panel(const Profile& profile) { return profile.has_mask() || profile.weave == Weave::rows; }
 
@@ -151,7 +152,8 @@ void Wizard::pitch_page(const Now& /*now*/, Page& page) const {
 void Wizard::places_page(const Now& now, Page& page) const {
   const std::size_t seat = std::min(choices_.size(), kSeats.size() - 1);
   page.title = "The mask's place";
-  page.task = std::string(kSeats[seat].words) + ". " + eye_to_close(false) + "Turn until the picture is as dark as it gets, then choose.";
+  page.task = std::string(kSeats[seat].words) + ". " + eye_to_close(false) +
+              "Turn past the darkest place to both sides, come back to the middle between them, and choose.";
   page.value = fmt::format("{:+.3f} mm", mask_mm_);
   page.remarks.push_back(fmt::format("place {} of {}", seat + 1, seats()));
   if (std::string where = where_to_sit(now); !where.empty()) page.remarks.push_back(std::move(where));
@@ -212,7 +214,9 @@ void Wizard::adjust(int steps, bool coarse) {
       break;
     case Step::places: {
       const double pitch = profile_.optics.mask_pitch_mm();
-      mask_mm_ = stepped(mask_mm_, by * pitch / kMaskStepsAPitch, -pitch, pitch);
+      mask_mm_ += by * pitch / kMaskStepsAPitch;
+      // A whole pitch farther everything looks the same: there is no end to turning, and the mask stays near its middle.
+      if (std::abs(mask_mm_) > kFarthestPitches * pitch) mask_mm_ = std::remainder(mask_mm_, pitch);
       break;
     }
     case Step::crosstalk_left:
@@ -232,7 +236,7 @@ Result<void> Wizard::choose_place(const Now& now) {
   if (now.eyes_seen) {
     const Eigen::Vector3d off = now.between_eyes_mm - choice.between_eyes_mm;
     if (std::abs(off.x()) > kSeatToleranceMm || std::abs(off.z()) > kSeatToleranceMm)
-      return fail("calibration", where_to_sit(now) + " first");
+      return fail("calibration", "not chosen yet: go there first");
     choice.between_eyes_mm = now.between_eyes_mm;
   }
   // As if the mask had been moved by what the picture was shifted.

@@ -45,7 +45,7 @@ void check_colour(const Monitor& monitor, const std::string& who, LinkReport& re
   const bool may_be_halved = !monitor.edid || !monitor.edid->digital || monitor.edid->takes_ycbcr_422;
   if (monitor.colour == LinkColour::unknown && may_be_halved)
     report.doubts.push_back(
-        fmt::format("how colours reach {} can't be found out: look at the stripes of the calibration's first page", who));
+        fmt::format("the computer can't find out how colours reach {}: only the striped fields of the calibration tell", who));
 }
 
 }  // namespace

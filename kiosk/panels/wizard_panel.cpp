@@ -15,6 +15,15 @@ using Actions = std::vector<WizardAction>;
 /// A button that a fingertip finds.
 bool wide_button(const std::string& label, float width) { return ImGui::Button(label.c_str(), ImVec2(width, 1.7f * ImGui::GetFontSize())); }
 
+void title_row(const WizardFacts& facts) {
+  ImGui::PushFont(title_font());
+  ImGui::TextUnformatted(facts.title.c_str());
+  ImGui::PopFont();
+  const std::string count = fmt::format("page {} of {}", facts.number, facts.count);
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(count.c_str()).x);
+  ImGui::TextDisabled("%s", count.c_str());
+}
+
 void value_row(const WizardFacts& facts, Actions& actions) {
   if (facts.value.empty()) return;
   const float width = 2.6f * ImGui::GetFontSize();
@@ -73,12 +82,10 @@ Actions wizard_panel(const WizardFacts& facts, display::PixelSize picture) {
   const float width = on_grid(std::min(0.9f * w, 40 * ImGui::GetFontSize()));
   ImGui::SetNextWindowPos(ImVec2(on_grid(0.5f * (w - width)), h - kMargin), ImGuiCond_Always, ImVec2(0, 1));
   ImGui::SetNextWindowSize(ImVec2(width, 0));
+  // The patterns behind it flicker with every pixel column: nothing of them may come through the text.
+  ImGui::SetNextWindowBgAlpha(1);
   ImGui::Begin("Calibration", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::PushFont(title_font());
-  ImGui::TextUnformatted(fmt::format("{}  {}", facts.number, facts.title).c_str());
-  ImGui::PopFont();
-  ImGui::SameLine();
-  ImGui::TextDisabled("of %d", facts.count);
+  title_row(facts);
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(facts.task.c_str());
   value_row(facts, actions);

@@ -145,7 +145,8 @@ TEST(CalibrationWizard, does_not_take_a_choice_from_a_wrong_seat) {
   now.between_eyes_mm = {120, 0, 540};
   const Result<void> chosen = wizard.next(now);
   ASSERT_FALSE(chosen);
-  EXPECT_EQ(chosen.error().message, "move 120 mm to the left and 110 mm back first");
+  EXPECT_EQ(chosen.error().message, "not chosen yet: go there first");
+  EXPECT_THAT(wizard.page(now).remarks, Contains("move 120 mm to the left and 110 mm back"));
   EXPECT_TRUE(wizard.choices().empty());
 }
 
@@ -211,8 +212,11 @@ TEST(CalibrationWizard, keeps_values_within_their_limits) {
   wizard.adjust(-10000, true);
   EXPECT_EQ(wizard.result().eye_separation_mm, 50);
   go_to(wizard, Step::places);
+  const double pitch = wizard.result().optics.mask_pitch_mm();
+  wizard.adjust(96 + 24, false);
+  EXPECT_NEAR(*wizard.page({}).hold_mask_mm, 0.25 * pitch, 1e-9) << "a whole pitch farther is the same place";
   wizard.adjust(10000, true);
-  EXPECT_NEAR(*wizard.page({}).hold_mask_mm, wizard.result().optics.mask_pitch_mm(), 1e-9);
+  EXPECT_LE(std::abs(*wizard.page({}).hold_mask_mm), 0.75 * pitch);
 }
 
 TEST(CalibrationWizard, says_what_is_wrong_with_the_link_on_its_first_page) {
