@@ -103,7 +103,11 @@ Result<void> understand(Options& options) {
     options.display.panel.stripes = Stripes::none;
   else if (options.stripes != "rgb")
     return fail("--stripes " + options.stripes, "stripes are rgb, bgr or none");
-  if (!options.mask_mm) options.mask_mm = options.display.ideal_mask_mm(between);
+  if (!options.mask_mm) {
+    MaskDisplay believed = options.display;
+    believed.offset_mm = 0;  // nobody knows of it
+    options.mask_mm = believed.ideal_mask_mm(between);
+  }
   return {};
 }
 
