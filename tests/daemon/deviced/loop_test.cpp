@@ -46,8 +46,10 @@ TEST(DeviceLoop, PublishesWhereTheHeadIsAndTheMaskFollows) {
   LoopRig rig(options);
   rig.start();
   rig.run_for_ms(500);
-  double worst_eyes_mm = 0, worst_mask_mm = 0;
+  double worst_eyes_mm = 0, worst_mask_mm = 0, youngest_ms = 1000, oldest_ms = 0;
   rig.after_tick = [&] {
+    youngest_ms = std::min(youngest_ms, rig.eyes_age_ms());
+    oldest_ms = std::max(oldest_ms, rig.eyes_age_ms());
     if (!rig.following()) return;  // on the way back by a period
     const std::int64_t now = rig.clock.now_ns();
     // The simulator's time began with its first step.
@@ -60,6 +62,8 @@ TEST(DeviceLoop, PublishesWhereTheHeadIsAndTheMaskFollows) {
   };
   rig.run_for_ms(12'000);
   EXPECT_LE(worst_eyes_mm, 8);
+  EXPECT_GE(youngest_ms, 18) << "a measurement is as old as the tracker is slow";
+  EXPECT_LE(oldest_ms, 45) << "and one comes every 17 ms";
   EXPECT_LE(worst_mask_mm, 0.05) << "0.0044 mm of mask a millimetre of head, backlash, lag";
   EXPECT_GE(rig.eyes().records, 600u);
   EXPECT_EQ(rig.eyes().resyncs, 0u);
