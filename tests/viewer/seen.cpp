@@ -212,8 +212,9 @@ Spot spot_in(const Seen& seen, const Seen& ground, double levels) {
     Spot spot;
     for (const std::size_t cell : cells) {
       const double weight = std::abs(grey(seen.light[cell]) - grey(ground.light[cell]));
-      spot.element += weight * (seen.first_element + static_cast<int>(cell) % seen.elements);
-      spot.row += weight * (static_cast<int>(cell) / seen.elements + 0.5);
+      const int row = static_cast<int>(cell) / seen.elements, element = static_cast<int>(cell) % seen.elements;
+      spot.element += weight * (seen.first_element + element);
+      spot.row += weight * (row + 0.5);
       spot.light += weight;
     }
     if (spot.light > strongest.light) strongest = spot;
