@@ -60,6 +60,9 @@ double stepped(double value, double by, double low, double high) { return std::c
 
 int bar_pixels(const Surroundings& surroundings) { return ruler_bar(surroundings.panel.width).bars.front().pixels; }
 
+/// To thousandths; zero is +0.000 from either side.
+std::string with_sign(double value) { return fmt::format("{:+.3f}", std::round(value * 1000) == 0 ? 0.0 : value); }
+
 std::string eye_to_close(bool left_eye_looks) {
   return left_eye_looks ? "Close your right eye and look with the left one. " : "Close your left eye and look with the right one. ";
 }
@@ -142,7 +145,7 @@ void Wizard::separation_page(const Now& /*now*/, Page& page) const {
 void Wizard::pitch_page(const Now& /*now*/, Page& page) const {
   page.title = "The mask's pitch";
   page.task = eye_to_close(true) + "You see a bright band across the picture. Turn until it lies level from left to right.";
-  page.value = fmt::format("{:+.3f} %", 100 * (profile_.optics.pitch_scale - 1));
+  page.value = with_sign(100 * (profile_.optics.pitch_scale - 1)) + " %";
   page.pattern = one_eye_bright(true);
   // Leaning by one mask pitch over the picture's height lets the phase run through once from top to bottom: where it fits is bright.
   page.profile.optics.lean += profile_.optics.mask_pitch_mm() / (surroundings_.panel.height * profile_.optics.pixel_pitch_mm);
@@ -154,7 +157,7 @@ void Wizard::places_page(const Now& now, Page& page) const {
   page.title = "The mask's place";
   page.task = std::string(kSeats[seat].words) + ". " + eye_to_close(false) +
               "Turn past the darkest place to both sides, come back to the middle between them, and choose.";
-  page.value = fmt::format("{:+.3f} mm", mask_mm_);
+  page.value = with_sign(mask_mm_) + " mm";
   page.remarks.push_back(fmt::format("place {} of {}", seat + 1, seats()));
   if (std::string where = where_to_sit(now); !where.empty()) page.remarks.push_back(std::move(where));
   page.pattern = one_eye_bright(true);

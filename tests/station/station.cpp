@@ -103,24 +103,40 @@ void Station::kill_device_daemon() {
   EXPECT_EQ(device_daemon_->wait_for_exit(), 128 + SIGKILL);
 }
 
-void Station::start_kiosk(const std::vector<std::string>& more_arguments) {
+void Station::run_kiosk(const std::vector<std::string>& arguments) {
   std::vector<std::string> command{(kPrograms / "prismesh-kiosk").string(),
                                    "--trace",
                                    "--runtime-dir",
                                    (folder_ / "run").string(),
                                    "--size",
-                                   std::to_string(width_) + "x" + std::to_string(height_),
-                                   "--open",
-                                   deck().string()};
-  command.insert(command.end(), more_arguments.begin(), more_arguments.end());
+                                   std::to_string(width_) + "x" + std::to_string(height_)};
+  command.insert(command.end(), arguments.begin(), arguments.end());
   kiosk_ = std::make_unique<Process>(
       command, std::map<std::string, std::string>{{"DISPLAY", display_->name()}, {"XDG_CONFIG_HOME", (folder_ / "config").string()}});
-  ASSERT_FALSE(kiosk_->wait_for("generation ").empty()) << "the kiosk showed no document\n" << kiosk_->all_output();
-  ASSERT_FALSE(kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); }).empty());
+}
+
+void Station::find_window() {
   Process search({"xdotool", "search", "--onlyvisible", "--sync", "--name", "^Prismesh$"}, {{"DISPLAY", display_->name()}});
   window_ = search.wait_for("");
   ASSERT_FALSE(window_.empty());
   xdotool({"windowfocus", "--sync", window_});
+}
+
+void Station::start_kiosk(const std::vector<std::string>& more_arguments) {
+  std::vector<std::string> arguments{"--open", deck().string()};
+  arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
+  run_kiosk(arguments);
+  ASSERT_FALSE(kiosk_->wait_for("generation ").empty()) << "the kiosk showed no document\n" << kiosk_->all_output();
+  ASSERT_FALSE(kiosk_->wait_until([](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); }).empty());
+  find_window();
+}
+
+void Station::start_calibration(const std::vector<std::string>& more_arguments) {
+  std::vector<std::string> arguments{"--calibrate", "--window", "--config", (folder_ / "prismesh.toml").string()};
+  arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
+  run_kiosk(arguments);
+  ASSERT_FALSE(kiosk_->wait_for("calibration 1 ").empty()) << "the calibration didn't begin\n" << kiosk_->all_output();
+  find_window();
 }
 
 void Station::xdotool(const std::vector<std::string>& arguments) {

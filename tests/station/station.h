@@ -50,6 +50,8 @@ class Station {
   void set_picture_size(int width, int height) { width_ = width, height_ = height; }
   /// Opens the deck in a kiosk and waits until its picture is on the screen.
   void start_kiosk(const std::vector<std::string>& more_arguments = {});
+  /// A kiosk that calibrates its display, in a window, with the daemon's settings file; waits for its first page.
+  void start_calibration(const std::vector<std::string>& more_arguments = {});
   Process& kiosk() { return *kiosk_; }
   VirtualDisplay& display() { return *display_; }
 
@@ -99,6 +101,8 @@ class Station {
 
  private:
   void xdotool(const std::vector<std::string>& arguments);
+  void run_kiosk(const std::vector<std::string>& arguments);
+  void find_window();
 
   std::filesystem::path folder_;
   std::unique_ptr<VirtualDisplay> display_;
