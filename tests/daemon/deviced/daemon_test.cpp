@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "base/clock.h"
+#include "drivers/eye_tracker/opentrack/datagram.h"
+#include "drivers/port/udp_port.h"
 #include "ipc/line_socket.h"
 #include "ipc/reconnecting_client.h"
 #include "tests/station/process.h"
@@ -253,6 +255,54 @@ TEST_F(Deviced, ATrackerThatTakesLongIsFollowedToo) {
   ASSERT_TRUE(wait_for([&] { return client.page().eyes() && client.page().eyes()->phase == EyesPhase::tracking; }))
       << daemon_->standard_error();
   EXPECT_GE(client.page().eyes()->time_ns - client.page().eyes()->measured_ns, 150'000'000);
+}
+
+TEST_F(Deviced, ALostMaskWaitsForThePictureOfWhoeverShowsStereo) {
+  const auto port = static_cast<std::uint16_t>(20000 + ::getpid() % 20000);
+  configure("[eye_tracker]\ndriver = \"opentrack\"\nudp_port = " + std::to_string(port) +
+            "\n[prism_servo]\ndriver = \"dynamixel\"\nsimulated = true\n");
+  start();
+  const ipc::DeviceClient client = connect("test");
+  const auto head = drivers::port::UdpSender::open(port).value();
+  int sent = 0;
+  /// How long the mask stood still when the head was lost, by the daemon's own clock.
+  const auto frozen_ns = [&]() -> std::int64_t {
+    EXPECT_TRUE(wait_for([&] {
+      const Eigen::Vector3d place(0, 0, 650 + 0.01 * (++sent % 7));
+      head->send(drivers::eye_tracker::opentrack::encode(drivers::eye_tracker::opentrack::pose_for(place, Eigen::Vector3d::UnitX())));
+      std::this_thread::sleep_for(5ms);
+      return at_work(client.page());
+    })) << daemon_->standard_error();
+    std::int64_t followed_ns = 0, parked_ns = 0;
+    EXPECT_TRUE(wait_for([&] {
+      const ipc::PrismState mask = *client.page().prism();
+      if (mask.phase == MaskPhase::following) followed_ns = mask.time_ns;
+      if (mask.phase == MaskPhase::parking || mask.phase == MaskPhase::parked) parked_ns = mask.time_ns;
+      return parked_ns != 0;
+    }));
+    return parked_ns - followed_ns;
+  };
+  {
+    ipc::DeviceClient viewer = connect("viewer");
+    ASSERT_TRUE(viewer.send(ipc::PictureShown{false}));
+    listed(viewer);
+    EXPECT_GE(frozen_ns(), 240'000'000) << "it may still be looked at";
+    ASSERT_TRUE(viewer.send(ipc::PictureShown{true}));
+    listed(viewer);
+  }
+  // A busy machine makes any of them long; a daemon that waits makes all of them so.
+  const auto at_once = [&] {
+    for (int attempt = 0; attempt < 5; ++attempt)
+      if (frozen_ns() < 200'000'000) return true;
+    return false;
+  };
+  EXPECT_TRUE(at_once()) << "the picture was mono";
+  {
+    ipc::DeviceClient viewer = connect("viewer");
+    ASSERT_TRUE(viewer.send(ipc::PictureShown{false}));
+    listed(viewer);
+  }
+  EXPECT_TRUE(at_once()) << "who showed it has gone";
 }
 
 TEST_F(Deviced, AClientThatNeverStopsAskingFillsNoMemory) {
