@@ -144,7 +144,9 @@ void Wizard::separation_page(const Now& /*now*/, Page& page) const {
 
 void Wizard::pitch_page(const Now& /*now*/, Page& page) const {
   page.title = "The mask's pitch";
-  page.task = eye_to_close(true) + "You see a bright band across the picture. Turn until it lies level from left to right.";
+  page.task = eye_to_close(true) +
+              "Bands of colour go across the picture, one of them white. Turn until each "
+              "keeps its colour all the way from left to right.";
   page.value = with_sign(100 * (profile_.optics.pitch_scale - 1)) + " %";
   page.pattern = one_eye_bright(true);
   // Leaning by one mask pitch over the picture's height lets the phase run through once from top to bottom: where it fits is bright.
