@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 
 #include "base/nearest_name.h"
+#include "base/toml_text.h"
 #include "drivers/display/profile.h"
 
 namespace prismesh::drivers::display {
@@ -34,21 +35,6 @@ const Names<Subpixels>& subpixel_names() {
 std::string number_text(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-std::string in_quotes(std::string_view text) {
-  std::string quotes = "\"";
-  for (const char c : text) {
-    constexpr std::string_view kHex = "0123456789ABCDEF";
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\')
-      quotes += {'\\', c};
-    else if (byte < 0x20 || byte == 0x7f)
-      (quotes += "\\u00") += {kHex[byte >> 4], kHex[byte & 15]};
-    else
-      quotes += c;
-  }
-  return quotes + '"';
 }
 
 /// One key of the file. `read` returns what the value must be if it isn't; `write` the value's text, empty to leave the key out.
@@ -91,7 +77,7 @@ Key text(std::string_view section, std::string_view name, std::string_view comme
             field(profile) = *node.value<std::string>();
             return {};
           },
-          [=](const Profile& profile) { return in_quotes(field(profile)); }};
+          [=](const Profile& profile) { return toml_quoted(field(profile)); }};
 }
 
 template <class Value, class Field>
@@ -102,13 +88,13 @@ Key choice(std::string_view name, std::string_view comment, const Names<Value>& 
             std::string known;
             for (const auto& [known_name, value] : names) {
               if (given == known_name) return field(profile) = value, std::string();
-              known += (known.empty() ? "" : ", ") + in_quotes(known_name);
+              known += (known.empty() ? "" : ", ") + toml_quoted(known_name);
             }
             return "one of " + known;
           },
           [=, &names](const Profile& profile) {
             for (const auto& [known_name, value] : names)
-              if (field(profile) == value) return in_quotes(known_name);
+              if (field(profile) == value) return toml_quoted(known_name);
             return std::string();
           }};
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/file.h"
+#include "base/toml_text.h"
 #include "drivers/settings/settings.h"
 
 namespace prismesh::drivers::settings {
@@ -14,21 +15,6 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-/// A basic string of TOML.
-std::string quoted(const std::string& text) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') out += '\\';
-    if (byte < 0x20 || byte == 0x7F)
-      out += std::string("\\u00") + kDigits[byte >> 4] + kDigits[byte & 15];
-    else
-      out += c;
-  }
-  return out + '"';
 }
 
 /// The end of a value that begins the text: a string in single or double quotes. Nothing for any other kind.
@@ -83,7 +69,7 @@ Found find(std::string_view text) {
 }  // namespace
 
 Result<std::string> with_profile(std::string_view text, const std::string& file, const std::filesystem::path& profile) {
-  const std::string value = quoted(profile.string());
+  const std::string value = toml_quoted(profile.string());
   const std::string line_end = text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
   const Found found = find(text);
   std::string changed(text);

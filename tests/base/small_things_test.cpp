@@ -7,10 +7,17 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/progress.h"
+#include "base/toml_text.h"
 #include "base/units.h"
 
 namespace prismesh {
 namespace {
+
+TEST(TomlText, escapes_what_would_end_or_spoil_a_string) {
+  EXPECT_EQ(toml_quoted("prism-mask"), "\"prism-mask\"");
+  EXPECT_EQ(toml_quoted("a\"b\\c"), "\"a\\\"b\\\\c\"");
+  EXPECT_EQ(toml_quoted("\n\x7f\xc3\xa4"), "\"\\u000A\\u007F\xc3\xa4\"");
+}
 
 TEST(Error, text_leaves_out_what_is_absent) {
   EXPECT_EQ((Error{"a.k", 12, "is wrong"}.text()), "a.k:12: is wrong");
