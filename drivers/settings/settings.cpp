@@ -184,7 +184,7 @@ Section servo_section(PrismServoSettings& servo, Places& places, const std::stri
        whole("baud", servo.baud, 9600, 4'500'000), whole("id", servo.id, 0, 252),
        number("travel_mm_per_turn", servo.travel_mm_per_turn, 0.1, 100, " mm"), flag("reversed", servo.reversed),
        whole("zero_ticks", servo.zero_ticks, -1'048'575, 1'048'575), number("travel_mm", servo.travel_mm, 0.01, 100, " mm"),
-       number("speed_mm_s", servo.speed_mm_s, 0.01, 1000, " mm/s"), number("lag_ms", servo.lag_ms, 0, 500, " ms")}};
+       number("speed_mm_s", servo.speed_mm_s, 0.01, 1000, " mm/s"), number("lag_ms", servo.lag_ms, 0, 200, " ms")}};
 }
 
 class Reader {
