@@ -1,5 +1,6 @@
 // A device's bytes, whatever carries them: a serial line (libserialport), a pseudo-terminal, or memory in tests. Calls never block
-// and never allocate, so that they may stand in a real-time tick; opening and closing may do both and belong outside.
+// and never allocate, so that they may stand in a real-time tick; opening and closing may do both and belong outside. The one exception is
+// `set_baud`: an adapter takes a millisecond for it and libserialport allocates, so it's for looking for a device, not for its work.
 #pragma once
 
 #include <cstddef>
