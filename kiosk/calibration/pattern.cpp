@@ -17,11 +17,11 @@ Pattern one_eye_bright(bool left) {
 }
 
 Pattern colour_stripes() {
-  constexpr Colour red{1, 0, 0}, blue{0, 0, 1};
+  constexpr Colour kRed{1, 0, 0}, kBlue{0, 0, 1};
   Pattern pattern;
   pattern.ground = kDim;
-  pattern.stripes.push_back({0.25, 0.15, 0.5, 0.45, 1, red, blue});
-  pattern.stripes.push_back({0.5, 0.15, 0.75, 0.45, 2, red, blue});
+  pattern.stripes.push_back({0.25, 0.15, 0.5, 0.45, 1, kRed, kBlue});
+  pattern.stripes.push_back({0.5, 0.15, 0.75, 0.45, 2, kRed, kBlue});
   return pattern;
 }
 
