@@ -98,6 +98,7 @@ LoopThread::~LoopThread() {
 }
 
 void* LoopThread::enter(void* self) {
+  ::pthread_setname_np(::pthread_self(), "device loop");  // for top and chrt
   static_cast<LoopThread*>(self)->run();
   return nullptr;
 }
