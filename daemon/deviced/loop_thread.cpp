@@ -18,7 +18,7 @@ namespace {
 
 /// Above ordinary work and the kernel's threads at 1, below its interrupt threads at 50, which bring the bytes.
 constexpr int kPriority = 40;
-constexpr std::size_t kStackBytes = 256 * 1024;
+constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
 /// How long the servo may take to hear that it is let go.
 constexpr int kWindDownTicks = 25;
 

@@ -9,15 +9,15 @@
 
 namespace prismesh::deviced {
 
-template <class T, std::size_t kPlaces>
+template <class T, std::size_t Places>
 requires std::is_trivially_copyable_v<T>
 class Ring {
  public:
   /// The writing thread. False: it is full, and nothing was put in.
   bool push(const T& value) {
     const std::size_t at = written_.load(std::memory_order_relaxed);
-    if (at - read_.load(std::memory_order_acquire) == kPlaces) return false;
-    places_[at % kPlaces] = value;
+    if (at - read_.load(std::memory_order_acquire) == Places) return false;
+    places_[at % Places] = value;
     written_.store(at + 1, std::memory_order_release);
     return true;
   }
@@ -26,14 +26,14 @@ class Ring {
   std::optional<T> pop() {
     const std::size_t at = read_.load(std::memory_order_relaxed);
     if (at == written_.load(std::memory_order_acquire)) return std::nullopt;
-    std::optional<T> value = places_[at % kPlaces];
+    std::optional<T> value = places_[at % Places];
     read_.store(at + 1, std::memory_order_release);
     return value;
   }
 
  private:
-  static_assert((kPlaces & (kPlaces - 1)) == 0, "counts run over: a power of two keeps their places");
-  std::array<T, kPlaces> places_{};
+  static_assert((Places & (Places - 1)) == 0, "counts run over: a power of two keeps their places");
+  std::array<T, Places> places_{};
   alignas(64) std::atomic<std::size_t> written_{0};
   alignas(64) std::atomic<std::size_t> read_{0};
 };
