@@ -17,7 +17,15 @@ SelectMode mode_for(const display::Modifiers& modifiers) {
 std::vector<Gesture> Gestures::moved(const display::PointerMoved& event) {
   const Pixel at(event.x, event.y);
   position_ = at;
-  if (drag_ == Drag::pressed && distance(at, down_) > kClickRadius) begin_drag();
+  if (drag_ == Drag::pressed && distance(at, down_) > kClickRadius) {
+    if (handle_below_) {
+      last_click_.reset();
+      drag_ = Drag::handle;
+      last_ = at;
+      return {HandleTaken{*handle_below_, down_}, HandleMoved{at}};
+    }
+    begin_drag();
+  }
   const Pixel before = last_;
   last_ = at;
   switch (drag_) {
@@ -50,16 +58,26 @@ std::vector<Gesture> Gestures::pressed(const display::ButtonChanged& event, Unde
   button_ = event.button;
   modifiers_ = event.modifiers;
   down_ = last_ = Pixel(event.x, event.y);
-  const bool handle = under == Under::lift_handle || under == Under::move_handle;
+  const bool handle =
+      (under == Under::lift_handle || under == Under::move_handle) && event.button == MouseButton::left && !event.modifiers.alt;
+  handle_below_.reset();
   if (under == Under::panel) {
     drag_ = Drag::panel;
-  } else if (handle && event.button == MouseButton::left && !event.modifiers.alt) {
+  } else if (handle && second_click(event.time_ms)) {
+    // The first click has put the handle under the pointer, perhaps before the second one came.
+    handle_below_ = under;
+    drag_ = Drag::pressed;
+  } else if (handle) {
     drag_ = Drag::handle;
     return {HandleTaken{under, down_}};
   } else {
     drag_ = Drag::pressed;
   }
   return {};
+}
+
+bool Gestures::second_click(std::int64_t time_ms) const {
+  return last_click_ && distance(*last_click_, down_) <= kClickRadius && time_ms - last_click_ms_ <= kDoubleClickMs;
 }
 
 std::vector<Gesture> Gestures::released(const display::ButtonChanged& event) {
@@ -79,8 +97,7 @@ std::vector<Gesture> Gestures::clicked(const display::ButtonChanged& event) {
   if (event.button == MouseButton::middle) return {TakeBackClicked{}};
   if (event.button == MouseButton::right) return {NodeClicked{down_, SelectMode::subtract}};
   const SelectMode mode = mode_for(modifiers_);
-  const bool second = last_click_ && distance(*last_click_, down_) <= kClickRadius && event.time_ms - last_click_ms_ <= kDoubleClickMs;
-  if (second) {
+  if (second_click(event.time_ms)) {
     const Pixel first = *last_click_;
     last_click_.reset();
     return {RegionClicked{first, mode}};

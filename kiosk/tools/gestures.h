@@ -91,6 +91,8 @@ class Gestures {
   std::vector<Gesture> released(const display::ButtonChanged& event);
   std::vector<Gesture> clicked(const display::ButtonChanged& event);
   void begin_drag();
+  /// The button goes down where and soon after it was clicked.
+  bool second_click(std::int64_t time_ms) const;
 
   Drag drag_ = Drag::none;
   display::MouseButton button_ = display::MouseButton::left;
@@ -99,6 +101,7 @@ class Gestures {
   Pixel last_ = Pixel::Zero();
   std::optional<Pixel> position_;
   std::optional<Pixel> last_click_;
+  std::optional<Under> handle_below_;  ///< of a press that may become a double click
   std::int64_t last_click_ms_ = 0;
 };
 

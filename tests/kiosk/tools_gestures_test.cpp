@@ -72,6 +72,30 @@ TEST_F(GesturesTest, a_late_or_distant_second_click_is_a_click) {
   only<NodeClicked>(click(100 + kClickRadius + 1, 50));
 }
 
+TEST_F(GesturesTest, a_double_click_is_one_though_the_first_click_brought_the_handle) {
+  only<NodeClicked>(click(100, 50));
+  time_ms_ += 150;
+  EXPECT_TRUE(press(101, 50, MouseButton::left, {}, Under::move_handle).empty());
+  EXPECT_EQ(only<RegionClicked>(release(101, 50)).at, Pixel(100, 50));
+}
+
+TEST_F(GesturesTest, a_handle_pulled_right_after_the_click_that_brought_it_is_pulled) {
+  only<NodeClicked>(click(100, 50));
+  time_ms_ += 150;
+  EXPECT_TRUE(press(100, 50, MouseButton::left, {}, Under::lift_handle).empty());
+  EXPECT_TRUE(move(102, 50).empty());
+  const auto made = move(110, 50);
+  ASSERT_EQ(made.size(), 2u);
+  ASSERT_TRUE(std::holds_alternative<HandleTaken>(made[0]));
+  EXPECT_EQ(std::get<HandleTaken>(made[0]).at, Pixel(100, 50));
+  EXPECT_EQ(std::get<HandleTaken>(made[0]).handle, Under::lift_handle);
+  EXPECT_EQ(std::get<HandleMoved>(made[1]).at, Pixel(110, 50));
+  EXPECT_EQ(only<HandleMoved>(move(120, 50)).at, Pixel(120, 50));
+  only<HandleReleased>(release(120, 50));
+  time_ms_ += 10;
+  only<NodeClicked>(click(120, 50));  // no second click of anything
+}
+
 TEST_F(GesturesTest, what_was_cancelled_is_not_half_a_double_click) {
   only<NodeClicked>(click(100, 50));
   gestures_.cancel();
