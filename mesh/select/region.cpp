@@ -14,8 +14,6 @@ namespace prismesh::mesh::select {
 
 namespace {
 
-constexpr std::size_t kNodeGrain = 32768;
-
 ShellSet without(const ShellSet& all, const ShellSet& some) {
   ShellSet rest;
   std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(rest));

@@ -1,5 +1,6 @@
 // A snapshot's table and a preview from a hostile daemon: refused, or every chunk can be read.
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <vector>
@@ -26,8 +27,8 @@ void look_through(const PreviewReader& preview) {
   PreviewFrame frame;
   if (preview.latest(frame) && (frame.positions.size() != preview.nodes().size() || frame.states.size() != preview.shells().size()))
     std::abort();
-  static volatile std::uint64_t sink = 0;
-  sink = sum;
+  // The sum keeps the reads from being left out.
+  if (sum == 0x5EED'0000'0000'0001) std::fputs("a rare sum\n", stderr);
 }
 
 }  // namespace
