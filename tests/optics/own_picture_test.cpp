@@ -27,11 +27,13 @@ class OwnPicture : public OpticsTest {
   static std::string where(const Vec3& at) {
     return std::to_string(std::lround(at.x())) + ", " + std::to_string(std::lround(at.y())) + ", " + std::to_string(std::lround(at.z()));
   }
-  void expect_own_pictures(const viewer::MaskDisplay& display, const Picture& picture, double true_mask_mm, const std::string& where) {
+  /// `likeness`: how many times nearer what an eye sees is to its own picture than to the other's.
+  void expect_own_pictures(const viewer::MaskDisplay& display, const Picture& picture, double true_mask_mm, const std::string& where,
+                           double likeness = 3) {
     for (const bool left : {true, false}) {
       const Sight found = sight(display, picture, true_mask_mm, left);
       EXPECT_LT(found.to_own, 1) << where << ": levels from its own picture";
-      EXPECT_GT(found.to_other, 2.5 * found.to_own) << where << ": and not like the other eye's";
+      EXPECT_GT(found.to_other, likeness * found.to_own) << where << ": and not like the other eye's";
       EXPECT_LT(std::abs(found.other_share), kPhaseLimit) << where << ": of the other eye's detail";
     }
   }
@@ -64,7 +66,8 @@ TEST_F(OwnPicture, WhereverTheMaskIsKnownToStand) {
       Picture picture = at_head("prism-mask", head);
       fit(picture, display.panel);
       picture.mask_mm = display.ideal_mask_mm(point(head)) + periods * pitch;
-      expect_own_pictures(display, picture, *picture.mask_mm, where(head) + ", mask off by " + std::to_string(periods) + " periods");
+      // Borders that fall into a pixel's stripes cost some of the likeness.
+      expect_own_pictures(display, picture, *picture.mask_mm, where(head) + ", mask off by " + std::to_string(periods) + " periods", 2.5);
       const viewer::PhaseSummary phase =
           viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture), *picture.mask_mm, some_rows(display.panel));
       EXPECT_LE(phase.worst_pixels, kPhaseLimit) << periods;
