@@ -13,7 +13,9 @@
 #include <set>
 #include <string>
 #include <system_error>
+#include <utility>
 
+#include "base/large_memory.h"
 #include "base/parallel_for.h"
 
 namespace prismesh {
@@ -22,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kReadPiece = std::size_t{8} << 20;
+constexpr std::size_t kWritePiece = std::size_t{8} << 20;
 constexpr int kLinkDepth = 40;  // as many links in a row as the kernel follows
 
 std::string reason(int error) { return std::generic_category().message(error); }
@@ -67,6 +70,12 @@ int read_range(int fd, char* data, std::size_t size, std::size_t offset) {
 
 }  // namespace
 
+FileBytes FileBytes::unpacked(FileBytes file, std::unique_ptr<char[]> text, std::size_t size) {
+  file.packed_ = std::exchange(file.data_, std::move(text));
+  file.packed_size_ = std::exchange(file.size_, size);
+  return file;
+}
+
 Result<FileIdentity> identify_file(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return fail(path.string(), "can't be found: " + reason(errno));
@@ -86,6 +95,7 @@ Result<FileBytes> read_file(const fs::path& path) {
   bytes.size_ = static_cast<std::size_t>(before.st_size);
   bytes.data_.reset(new (std::nothrow) char[bytes.size_ + 1]);
   if (!bytes.data_) return fail(path.string(), "is too large for this machine's memory (" + std::to_string(bytes.size_) + " bytes)");
+  prefer_large_pages(bytes.data_.get(), bytes.size_);
   bytes.data_[bytes.size_] = '\0';
   std::atomic<int> error = 0;
   parallel_for(bytes.size_, kReadPiece, [&](std::size_t begin, std::size_t end) {
@@ -131,28 +141,64 @@ struct Staged {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
+/// How much of all files is written.
+class Written {
+ public:
+  Written(std::span<const PendingFile> files, const Progress& progress) : progress_(progress) {
+    for (const PendingFile& file : files)
+      for (const std::string_view piece : file.pieces) all_ += piece.size();
+  }
+  void add(std::size_t bytes) { written_ += bytes; }
+  /// Tells the progress. False: stop.
+  bool goes_on() const { return !progress_ || progress_(all_ == 0 ? 1.0 : static_cast<double>(written_) / static_cast<double>(all_)); }
+
+ private:
+  const Progress& progress_;
+  std::size_t all_ = 0;
+  std::size_t written_ = 0;
+};
+
+constexpr int kStopped = -1;
+
 /// 0 or an errno.
-int write_pieces(int fd, const std::vector<std::string_view>& pieces) {
+int write_batch(int fd, std::vector<iovec>& batch) {
+  std::size_t first = 0;
+  while (first < batch.size()) {
+    const ssize_t wrote = ::writev(fd, batch.data() + first, static_cast<int>(batch.size() - first));
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote < 0) return errno;
+    if (wrote == 0) return EIO;
+    // A short write goes on where it stopped; the reason for it shows as an error then.
+    auto left = static_cast<std::size_t>(wrote);
+    while (first < batch.size() && left >= batch[first].iov_len) left -= batch[first++].iov_len;
+    if (left > 0) {
+      batch[first].iov_base = static_cast<char*>(batch[first].iov_base) + left;
+      batch[first].iov_len -= left;
+    }
+  }
+  return 0;
+}
+
+/// 0, an errno or kStopped.
+int write_pieces(int fd, const std::vector<std::string_view>& pieces, Written& written) {
   std::vector<iovec> batch;
   std::size_t next = 0;
+  std::size_t offset = 0;  // in the next piece
   while (next < pieces.size()) {
     batch.clear();
-    for (; next < pieces.size() && batch.size() < IOV_MAX; ++next)
-      if (!pieces[next].empty()) batch.push_back({const_cast<char*>(pieces[next].data()), pieces[next].size()});
-    std::size_t first = 0;
-    while (first < batch.size()) {
-      const ssize_t wrote = ::writev(fd, batch.data() + first, static_cast<int>(batch.size() - first));
-      if (wrote < 0 && errno == EINTR) continue;
-      if (wrote < 0) return errno;
-      if (wrote == 0) return EIO;
-      // A short write goes on where it stopped; the reason for it shows as an error then.
-      auto left = static_cast<std::size_t>(wrote);
-      while (first < batch.size() && left >= batch[first].iov_len) left -= batch[first++].iov_len;
-      if (left > 0) {
-        batch[first].iov_base = static_cast<char*>(batch[first].iov_base) + left;
-        batch[first].iov_len -= left;
-      }
+    std::size_t bytes = 0;
+    while (next < pieces.size() && batch.size() < IOV_MAX && bytes < kWritePiece) {
+      const std::string_view part = pieces[next].substr(offset, kWritePiece - bytes);
+      if (!part.empty()) batch.push_back({const_cast<char*>(part.data()), part.size()});
+      bytes += part.size();
+      offset += part.size();
+      if (offset < pieces[next].size()) continue;
+      ++next;
+      offset = 0;
     }
+    if (const int error = write_batch(fd, batch); error != 0) return error;
+    written.add(bytes);
+    if (!written.goes_on()) return kStopped;
   }
   return 0;
 }
@@ -181,7 +227,7 @@ Result<void> take_permissions(int fd, const Staged& staged) {
   return {};
 }
 
-Result<Staged> stage(const PendingFile& file) {
+Result<Staged> stage(const PendingFile& file, Written& written) {
   Staged staged;
   staged.shown = file.path;
   Result<fs::path> target = follow_links(file.path);
@@ -194,11 +240,11 @@ Result<Staged> stage(const PendingFile& file) {
   std::string name = (folder_of(staged.target) / ("." + staged.target.filename().string() + ".XXXXXX")).string();
   Descriptor fd(::mkostemp(name.data(), O_CLOEXEC));
   if (fd.get() < 0) {
-    const int error = errno;
-    if (error == EACCES || error == EROFS || error == EPERM)
+    const int refused = errno;
+    if (refused == EACCES || refused == EROFS || refused == EPERM)
       return fail(file.path.string(),
-                  "can't be written: the folder " + folder_of(staged.target).string() + " is read-only (" + reason(error) + ")");
-    return write_failure(file.path, error);
+                  "can't be written: the folder " + folder_of(staged.target).string() + " is read-only (" + reason(refused) + ")");
+    return write_failure(file.path, refused);
   }
   staged.temporary = name;
   // mkstemp makes private files; a new deck is as readable as any file its user makes.
@@ -206,9 +252,11 @@ Result<Staged> stage(const PendingFile& file) {
   ::umask(mask);
   if (::fchmod(fd.get(), 0666 & ~mask) != 0) return write_failure(file.path, errno);
   if (Result<void> taken = take_permissions(fd.get(), staged); !taken) return fail(taken.error());
-  if (const int error = write_pieces(fd.get(), file.pieces); error != 0) return write_failure(file.path, error);
+  const int error = write_pieces(fd.get(), file.pieces, written);
+  if (error == kStopped) return fail(cancelled());
+  if (error != 0) return write_failure(file.path, error);
   if (::fsync(fd.get()) != 0) return write_failure(file.path, errno);
-  if (const int error = fd.close(); error != 0) return write_failure(file.path, error);
+  if (const int closed = fd.close(); closed != 0) return write_failure(file.path, closed);
   return staged;
 }
 
@@ -222,14 +270,17 @@ Result<void> flush_folder(const fs::path& folder) {
 
 }  // namespace
 
-Result<void> replace_files(std::span<const PendingFile> files) {
+Result<void> replace_files(std::span<const PendingFile> files, const Progress& progress) {
+  Written written(files, progress);
   std::vector<Staged> staged;
   staged.reserve(files.size());
   for (const PendingFile& file : files) {
-    Result<Staged> one = stage(file);
+    Result<Staged> one = stage(file, written);
     if (!one) return fail(one.error());
     staged.push_back(std::move(*one));
   }
+  // Flushing may have taken long.
+  if (!written.goes_on()) return fail(cancelled());
   std::set<fs::path> folders;
   for (std::size_t i = 0; i < staged.size(); ++i) {
     if (::rename(staged[i].temporary.c_str(), staged[i].target.c_str()) != 0) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/progress.h"
 
 namespace prismesh {
 
@@ -23,17 +24,27 @@ struct FileIdentity {
 };
 
 /// A file's bytes in private memory: later changes or truncation of the file on disk don't reach them (a mapping would
-/// raise SIGBUS). The bytes are followed by one NUL that isn't counted.
+/// raise SIGBUS). The text is followed by one NUL that isn't counted.
 class FileBytes {
  public:
+  /// What the file says: its bytes, or what they unpack to (base/compression.h).
   std::string_view text() const { return {data_.get(), size_}; }
-  std::span<const std::byte> bytes() const { return std::as_bytes(std::span(data_.get(), size_)); }
+  /// As they stand on disk.
+  std::span<const std::byte> bytes() const {
+    return packed_ ? std::as_bytes(std::span(packed_.get(), packed_size_)) : std::as_bytes(std::span(data_.get(), size_));
+  }
+  bool is_packed() const { return packed_ != nullptr; }
   const FileIdentity& identity() const { return identity_; }
+
+  /// A file whose bytes unpack to `text`, of `size` characters and a NUL.
+  static FileBytes unpacked(FileBytes file, std::unique_ptr<char[]> text, std::size_t size);
 
  private:
   friend Result<FileBytes> read_file(const std::filesystem::path& path);
   std::unique_ptr<char[]> data_;
   std::size_t size_ = 0;
+  std::unique_ptr<char[]> packed_;
+  std::size_t packed_size_ = 0;
   FileIdentity identity_;
 };
 
@@ -50,7 +61,9 @@ struct PendingFile {
 
 /// Writes every file beside its target, flushes them to disk, then renames them into place in the given order (so put
 /// the file that names the others last) and flushes the folders. An existing target keeps its permissions; folders that
-/// lack are made. On an error before the first rename nothing has changed and no temporary file remains.
-Result<void> replace_files(std::span<const PendingFile> files);
+/// lack are made. On an error before the first rename nothing has changed and no temporary file remains. The progress is told each 8 MB
+/// or less, and for the last time right before the first rename: from then on nothing stops it. Errors: a file can't be written or
+/// replaced, cancelled.
+Result<void> replace_files(std::span<const PendingFile> files, const Progress& progress = {});
 
 }  // namespace prismesh

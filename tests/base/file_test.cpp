@@ -5,9 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -64,6 +67,26 @@ TEST_F(FileTest, what_was_read_stays_when_the_file_changes) {
   fs::resize_file(path, 1);
   EXPECT_EQ(bytes->text(), "before");
   EXPECT_NE(bytes->identity(), *identify_file(path));
+}
+
+TEST_F(FileTest, says_so_when_a_file_grows_and_shrinks_while_it_is_read) {
+  constexpr std::uintmax_t kSize = 40'000'000;
+  const fs::path path = write("a", "");
+  fs::resize_file(path, kSize);
+  std::atomic<bool> done = false;
+  std::thread changing([&] {
+    for (std::uintmax_t i = 1; !done; ++i) fs::resize_file(path, i % 2 == 0 ? kSize : kSize / 3);
+  });
+  int refused = 0;
+  for (int i = 0; i < 200 && refused < 5; ++i) {
+    const Result<FileBytes> bytes = read_file(path);
+    if (bytes) continue;
+    ++refused;
+    EXPECT_EQ(bytes.error().message, "changed while it was being read; open it again");
+  }
+  done = true;
+  changing.join();
+  EXPECT_GT(refused, 0);
 }
 
 TEST_F(FileTest, says_why_it_cant_read) {
@@ -154,6 +177,37 @@ TEST_F(FileTest, a_short_write_says_so_and_leaves_nothing_behind) {
   EXPECT_NE(failed.error().message.find("nothing was changed"), std::string::npos);
   EXPECT_EQ(content(old), "old");
   EXPECT_EQ(entries(), 1u);
+}
+
+/// Stopped at each of the times it is asked, the last of which is right before the first rename.
+TEST_F(FileTest, told_to_stop_it_leaves_nothing_behind) {
+  const fs::path first = write("first", "old");
+  const fs::path second = write("second", "old");
+  const std::string large(std::size_t{20} << 20, 'x');
+  const PendingFile files[] = {{first, {"head", large}}, {second, {large, "tail"}}, {folder_ / "third", {"small"}}};
+  std::vector<double> told;
+  ASSERT_TRUE(replace_files(files, [&](double fraction) {
+    told.push_back(fraction);
+    return true;
+  }));
+  EXPECT_GE(told.size(), 7u) << "8 MB at a time";
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1);
+  EXPECT_EQ(content(first), "head" + large);
+  EXPECT_EQ(content(second), large + "tail");
+  fs::remove(folder_ / "third");
+  write("first", "old");
+  write("second", "old");
+  for (std::size_t stop = 0; stop < told.size(); ++stop) {
+    std::size_t asked = 0;
+    const Result<void> stopped = replace_files(files, [&](double) { return asked++ < stop; });
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().message, cancelled().message);
+    EXPECT_EQ(asked, stop + 1);
+    EXPECT_EQ(content(first), "old");
+    EXPECT_EQ(content(second), "old");
+    EXPECT_EQ(entries(), 2u);
+  }
 }
 
 /// /dev/full can't be renamed over, but a tiny file system could be full: where one is at hand, use it.

@@ -1,0 +1,197 @@
+// Packed files: what gzip and zstd themselves write is read, and what is written they read. The programs are the judges where they are.
+#include "base/compression.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+namespace prismesh {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Packed : public ::testing::Test {
+ protected:
+  Packed() {
+    std::string name = (fs::temp_directory_path() / "prismesh-packed-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~Packed() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, std::string_view text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  static std::string content(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  bool shell(const std::string& command) const {
+    return std::system(("cd " + folder_.string() + " && " + command + " 2>/dev/null").c_str()) == 0;
+  }
+  static Result<FileBytes> read(const fs::path& path, const Progress& progress = {}) {
+    Result<FileBytes> file = read_file(path);
+    return file ? unpack(std::move(*file), path, progress) : std::move(file);
+  }
+  static std::string packed_as(const std::string& text, const std::string& like) {
+    const std::string_view halves[] = {std::string_view(text).substr(0, text.size() / 2), std::string_view(text).substr(text.size() / 2)};
+    return pack(halves, std::as_bytes(std::span(like))).value();
+  }
+  static std::string error_of(const fs::path& path) {
+    const Result<FileBytes> file = read(path);
+    return file ? "no error" : file.error().file == path.string() ? file.error().message : "another file's: " + file.error().text();
+  }
+
+  fs::path folder_;
+};
+
+/// A gzip file of "hello\n" that was called "hi", and a zstd file of the same with a checksum.
+const std::string kGzip("\x1f\x8b\x08\x08\x00\x00\x00\x00\x00\x03hi\x00\xcb\x48\xcd\xc9\xc9\xe7\x02\x00\x20\x30\x3a\x36\x06\x00\x00\x00",
+                        29);
+const std::string kZstd("\x28\xb5\x2f\xfd\x24\x06\x31\x00\x00hello\n\x53\x88\xbd\x91", 19);
+
+std::string long_text() {
+  std::string text;
+  for (int i = 0; text.size() < 1'200'000; ++i) text += std::to_string(i * 7919 % 1000003) + ", " + std::to_string(i) + ".5\n";
+  return text;
+}
+
+TEST_F(Packed, knows_packings_by_their_bytes) {
+  EXPECT_EQ(packing_of(std::as_bytes(std::span(kGzip))), Packing::gzip);
+  EXPECT_EQ(packing_of(std::as_bytes(std::span(kZstd))), Packing::zstd);
+  const std::string text = "*KEYWORD", brief = "\x1f\x8b";
+  EXPECT_EQ(packing_of(std::as_bytes(std::span(text))), Packing::none);
+  EXPECT_EQ(packing_of(std::as_bytes(std::span(brief))), Packing::none);
+}
+
+TEST_F(Packed, reads_gzip_whole_with_all_its_members) {
+  for (const std::string& stored : {kGzip, kGzip + kGzip, kGzip + std::string(512, '\0')}) {
+    const auto file = read(write("x", stored));
+    ASSERT_TRUE(file) << file.error().text();
+    EXPECT_EQ(file->text(), stored == kGzip + kGzip ? "hello\nhello\n" : "hello\n");
+    EXPECT_TRUE(file->is_packed());
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size()), stored);
+  }
+  const auto plain = read(write("plain", "hello"));
+  ASSERT_TRUE(plain);
+  EXPECT_FALSE(plain->is_packed());
+  EXPECT_EQ(plain->bytes().size(), 5u);
+}
+
+TEST_F(Packed, reads_what_the_programs_write_and_they_read_what_is_written) {
+  const std::string text = long_text();
+  write("deck", text);
+  int judged = 0;
+  for (const auto& [program, packs, unpacks] : {std::tuple("gzip", "gzip -9 -c deck > packed", "gzip -dc < again"),
+                                                std::tuple("zstd", "zstd -q -c deck > packed", "zstd -q -dc < again")}) {
+    if (!shell(std::string(program) + " --version > version")) {
+      std::cout << program << " isn't here: WHAT IT WRITES AND READS ISN'T TESTED\n";
+      continue;
+    }
+    ++judged;
+    // Twice the same, one behind the other.
+    ASSERT_TRUE(shell(packs));
+    const std::string one = content(folder_ / "packed");
+    const auto file = read(write("two", one + one));
+    ASSERT_TRUE(file) << file.error().text();
+    EXPECT_TRUE(file->text() == text + text);
+    write("again", packed_as(text, one));
+    ASSERT_TRUE(shell(std::string(unpacks) + " > unpacked"));
+    EXPECT_TRUE(content(folder_ / "unpacked") == text);
+    EXPECT_LT(content(folder_ / "again").size(), one.size() * 5 / 4);
+    if (std::string_view(program) == "gzip") {
+      // The name and the time in the header are the old ones.
+      EXPECT_EQ(content(folder_ / "again").substr(0, 15), one.substr(0, 15));
+    }
+  }
+  EXPECT_GT(judged, 0);
+}
+
+TEST_F(Packed, packs_as_it_was_packed) {
+  const std::string text = long_text();
+  for (const std::string& like : {kGzip, kZstd}) {
+    const std::string packed = packed_as(text, like);
+    const auto file = read(write("packed", packed));
+    ASSERT_TRUE(file) << file.error().text();
+    EXPECT_TRUE(file->text() == text);
+    EXPECT_EQ(packed, packed_as(text, like)) << "not the same bytes again";
+  }
+  EXPECT_NE(packed_as("x", kGzip).find(std::string("hi\0", 3)), std::string::npos);
+}
+
+TEST_F(Packed, says_what_is_wrong_with_a_file) {
+  const std::string text = long_text();
+  for (const std::string& like : {kGzip, kZstd}) {
+    const std::string packed = packed_as(text, like);
+    EXPECT_NE(error_of(write("cut", packed.substr(0, packed.size() / 2))).find("is cut off"), std::string::npos);
+    EXPECT_NE(error_of(write("cut", packed.substr(0, packed.size() - 3))).find("is cut off"), std::string::npos);
+    EXPECT_NE(error_of(write("cut", packed.substr(0, 7))).find("is cut off"), std::string::npos);
+    std::string damaged = packed;
+    for (std::size_t i = damaged.size() / 2; i < damaged.size() / 2 + 40; ++i) damaged[i] = static_cast<char>(damaged[i] ^ 0x5a);
+    EXPECT_NE(error_of(write("damaged", damaged)).find("is damaged"), std::string::npos);
+  }
+  EXPECT_EQ(error_of(write("behind", kGzip + "more")), "has something else behind its gzip data");
+  EXPECT_NE(error_of(write("behind", kZstd + "more")).find("no zstd file all through"), std::string::npos);
+}
+
+TEST_F(Packed, refuses_bombs) {
+  const std::string zeros(std::size_t{2} << 20, '0');
+  for (const std::string& like : {kGzip, kZstd}) {
+    const std::string bomb = packed_as(zeros, like);
+    ASSERT_GT(zeros.size(), most_unpacked(bomb.size()));
+    EXPECT_NE(error_of(write("bomb", bomb)).find("unpacks to far more than any deck would"), std::string::npos);
+  }
+}
+
+TEST_F(Packed, tells_how_far_it_is_and_stops) {
+  const std::string text = long_text();
+  for (const std::string& like : {kGzip, kZstd}) {
+    const fs::path path = write("packed", packed_as(text, like));
+    double last = 0;
+    int told = 0;
+    ASSERT_TRUE(read(path, [&](double fraction) {
+      EXPECT_GE(fraction, last);
+      last = fraction;
+      ++told;
+      return true;
+    }));
+    EXPECT_GT(told, 1);
+    EXPECT_GT(last, 0.5);
+    EXPECT_LE(last, 1);
+    const auto stopped = read(path, [](double) { return false; });
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().message, "cancelled");
+  }
+}
+
+TEST_F(Packed, packing_tells_how_far_it_is_and_stops) {
+  std::string text;
+  while (text.size() < 3'500'000) text += long_text();
+  const std::string_view whole = text;
+  for (const std::string& like : {kGzip, kZstd}) {
+    std::vector<double> told;
+    const auto watch = [&](std::size_t most) {
+      return pack(std::span(&whole, 1), std::as_bytes(std::span(like)), [&told, most](double fraction) {
+        told.push_back(fraction);
+        return told.size() < most;
+      });
+    };
+    ASSERT_TRUE(watch(1000));
+    EXPECT_GE(told.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_LE(told.back(), 1);
+    told.clear();
+    const Result<std::string> stopped = watch(2);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().message, cancelled().message);
+    EXPECT_EQ(told.size(), 2u);
+  }
+}
+
+}  // namespace
+}  // namespace prismesh
