@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "base/large_memory.h"
 #include "base/parallel_for.h"
 #include "mesh/model/model.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr std::size_t kNodeGrain = 32768;
 
-/// The distinct corners of a shell; a degenerate shell has fewer than it names.
+/// The distinct corners of a shell; a degenerate shell has fewer than it names, a removed one has none.
 struct Corners {
   std::array<NodeIndex, 4> node;
   int count = 0;
@@ -21,6 +22,7 @@ struct Corners {
 
 Corners distinct_corners(const ShellNodes& shell) {
   Corners corners;
+  if (!shell.node[0].valid()) return corners;
   for (const NodeIndex node : shell.node) {
     bool seen = false;
     for (int i = 0; i < corners.count; ++i) seen = seen || corners.node[i] == node;
@@ -34,6 +36,7 @@ void fill_node_shells(const Model& model, Adjacency& adjacency) {
   // Counts start two places late: after the running sum first[n + 1] is where node n begins, and once it is filled where it
   // ends, which is where node n + 1 begins.
   std::vector<std::uint32_t>& first = adjacency.node_first;
+  reserve_large(first, model.node_count() + 2);
   first.assign(model.node_count() + 2, 0);
   const auto each_corner = [&](const auto& body) {
     std::size_t shell = 0;
@@ -50,6 +53,7 @@ void fill_node_shells(const Model& model, Adjacency& adjacency) {
     ++total;
   });
   for (std::size_t i = 2; i < first.size(); ++i) first[i] += first[i - 1];
+  reserve_large(adjacency.node_shells, total);
   adjacency.node_shells.resize(total);
   each_corner([&](std::uint32_t node, std::size_t shell) { adjacency.node_shells[first[node + 1]++] = ShellIndex(shell); });
   first.pop_back();
@@ -121,10 +125,14 @@ void join_pieces(const std::vector<EdgePiece>& pieces, std::size_t node_count, A
     edge_base[p + 1] = edge_base[p] + pieces[p].high.size();
     use_base[p + 1] = use_base[p] + pieces[p].shells.size();
   }
-  adjacency.edge_first.resize(node_count + 1);
-  adjacency.edge_high.resize(edge_base.back());
-  adjacency.edge_shell_first.resize(edge_base.back() + 1);
-  adjacency.edge_shells.resize(use_base.back());
+  const auto resize = [](auto& values, std::size_t size) {
+    reserve_large(values, size);
+    values.resize(size);
+  };
+  resize(adjacency.edge_first, node_count + 1);
+  resize(adjacency.edge_high, edge_base.back());
+  resize(adjacency.edge_shell_first, edge_base.back() + 1);
+  resize(adjacency.edge_shells, use_base.back());
   parallel_for(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const EdgePiece& piece = pieces[p];

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace prismesh::mesh {
@@ -55,6 +56,16 @@ class ChunkedArray {
   std::span<T> own_chunk(std::size_t c) {
     if (chunks_[c].use_count() > 1) chunks_[c] = std::make_shared<Chunk>(*chunks_[c]);
     return {chunks_[c]->data(), std::min(kChunkSize, size_ - c * kChunkSize)};
+  }
+  /// A size without content: before anything else every chunk has to be put there by `put_chunk`, distinct ones from any thread.
+  void reset(std::size_t size) {
+    chunks_.assign((size + kChunkSize - 1) / kChunkSize, nullptr);
+    size_ = size;
+  }
+  /// The chunk, for writing.
+  std::span<T> put_chunk(std::size_t c, std::shared_ptr<Chunk> chunk) {
+    chunks_[c] = std::move(chunk);
+    return own_chunk(c);
   }
   void set(std::size_t i, const T& value) { own_chunk(i / kChunkSize)[i % kChunkSize] = value; }
 

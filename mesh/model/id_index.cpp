@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "base/large_memory.h"
+
 namespace prismesh::mesh {
 namespace {
 
@@ -26,8 +28,10 @@ IdIndex::IdIndex(std::span<const std::int64_t> ids) {
     size_ = ids.size();
     contiguous_ = range == ids.size() - 1;
     if (contiguous_) return;
+    reserve_large(ids_, ids.size());
     ids_.assign(ids.begin(), ids.end());
     if (!dense) return;
+    reserve_large(dense_, range + 1);
     dense_.assign(range + 1, kNotFound);
     for (std::size_t i = 0; i < ids.size(); ++i) dense_[static_cast<std::uint64_t>(ids[i] - first_)] = static_cast<std::uint32_t>(i);
   } else if (dense) {
@@ -38,6 +42,7 @@ IdIndex::IdIndex(std::span<const std::int64_t> ids) {
 }
 
 void IdIndex::build_dense(std::span<const std::int64_t> ids, std::uint64_t range) {
+  reserve_large(dense_, range + 1);
   dense_.assign(range + 1, kNotFound);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     std::uint32_t& slot = dense_[static_cast<std::uint64_t>(ids[i] - first_)];
@@ -48,8 +53,8 @@ void IdIndex::build_dense(std::span<const std::int64_t> ids, std::uint64_t range
   }
   std::sort(duplicates_.begin(), duplicates_.end());
   duplicates_.erase(std::unique(duplicates_.begin(), duplicates_.end()), duplicates_.end());
-  ids_.reserve(ids.size());
-  order_.reserve(ids.size());
+  reserve_large(ids_, ids.size());
+  reserve_large(order_, ids.size());
   for (std::size_t slot = 0; slot < dense_.size(); ++slot)
     if (dense_[slot] != kNotFound) {
       ids_.push_back(first_ + static_cast<std::int64_t>(slot));
@@ -81,7 +86,79 @@ std::uint32_t IdIndex::find_sorted(std::int64_t id) const {
   return index_at(static_cast<std::size_t>(at - ids_.begin()));
 }
 
+IdIndex& IdIndex::own(std::shared_ptr<const IdIndex>& index) {
+  if (!index->base_ || index.use_count() > 1) {
+    auto changed = std::make_shared<IdIndex>();
+    if (index->base_)
+      *changed = *index;
+    else
+      changed->base_ = index;
+    index = std::move(changed);
+  }
+  // Nobody else holds it, and it was made above, not as a constant.
+  return const_cast<IdIndex&>(*index);
+}
+
+std::size_t IdIndex::first_change(std::int64_t id) const {
+  const auto at =
+      std::lower_bound(changes_.begin(), changes_.end(), id, [](const Change& c, std::int64_t wanted) { return c.id < wanted; });
+  return static_cast<std::size_t>(at - changes_.begin());
+}
+
+void IdIndex::insert_change(std::size_t at, const Change& change) {
+  const int by = change.index == kNotFound ? -1 : 1;
+  changes_.insert(changes_.begin() + static_cast<std::ptrdiff_t>(at), change);
+  changes_[at].shift = static_cast<std::int32_t>(at == 0 ? 0 : changes_[at - 1].shift + (changes_[at - 1].index == kNotFound ? -1 : 1));
+  for (std::size_t i = at + 1; i < changes_.size(); ++i) changes_[i].shift += by;
+  shift_ += by;
+}
+
+void IdIndex::erase_change(std::size_t at) {
+  const int by = changes_[at].index == kNotFound ? -1 : 1;
+  changes_.erase(changes_.begin() + static_cast<std::ptrdiff_t>(at));
+  for (std::size_t i = at; i < changes_.size(); ++i) changes_[i].shift -= by;
+  shift_ -= by;
+}
+
+void IdIndex::add(std::shared_ptr<const IdIndex>& index, std::int64_t id, std::uint32_t at) {
+  IdIndex& mine = own(index);
+  const std::size_t place = mine.first_change(id);
+  if (place < mine.changes_.size() && mine.changes_[place].id == id) mine.erase_change(place);
+  if (mine.base_->find(id) != at) mine.insert_change(place, {id, at, 0});
+}
+
+void IdIndex::remove(std::shared_ptr<const IdIndex>& index, std::int64_t id) {
+  IdIndex& mine = own(index);
+  const std::size_t place = mine.first_change(id);
+  if (place < mine.changes_.size() && mine.changes_[place].id == id) mine.erase_change(place);
+  if (mine.base_->find(id) != kNotFound) mine.insert_change(place, {id, kNotFound, 0});
+}
+
+std::uint32_t IdIndex::find_changed(std::int64_t id) const {
+  const std::size_t place = first_change(id);
+  return place < changes_.size() && changes_[place].id == id ? changes_[place].index : base_->find(id);
+}
+
+std::size_t IdIndex::rank_of(const Change& change) const {
+  return static_cast<std::size_t>(static_cast<std::int64_t>(base_->lower_bound(change.id)) + change.shift);
+}
+
+std::pair<std::int64_t, std::uint32_t> IdIndex::at_changed(std::size_t rank) const {
+  // Ranks ascend with the changes. The last one that stands at or before the wanted rank decides by how much the base is shifted there.
+  const auto after = std::partition_point(changes_.begin(), changes_.end(), [&](const Change& change) { return rank_of(change) <= rank; });
+  if (after == changes_.begin()) return base_->at(rank);
+  const Change& change = *std::prev(after);
+  const bool added = change.index != kNotFound;
+  if (added && rank_of(change) == rank) return {change.id, change.index};
+  return base_->at(static_cast<std::size_t>(static_cast<std::int64_t>(rank) - change.shift - (added ? 1 : -1)));
+}
+
 std::size_t IdIndex::lower_bound(std::int64_t id) const {
+  if (base_) {
+    const std::size_t place = first_change(id);
+    const std::int64_t shift = place < changes_.size() ? changes_[place].shift : shift_;
+    return static_cast<std::size_t>(static_cast<std::int64_t>(base_->lower_bound(id)) + shift);
+  }
   if (!contiguous_) return static_cast<std::size_t>(std::lower_bound(ids_.begin(), ids_.end(), id) - ids_.begin());
   if (id <= first_) return 0;
   const std::uint64_t offset = static_cast<std::uint64_t>(id) - static_cast<std::uint64_t>(first_);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,21 +22,42 @@ class IdIndex {
 
   /// The index, or kNotFound.
   std::uint32_t find(std::int64_t id) const {
-    if (size_ == 0 || id < first_) return kNotFound;
+    if (size_ == 0 || id < first_) return base_ ? find_changed(id) : kNotFound;
     const std::uint64_t offset = static_cast<std::uint64_t>(id) - static_cast<std::uint64_t>(first_);
     if (contiguous_) return offset < size_ ? static_cast<std::uint32_t>(offset) : kNotFound;
     if (!dense_.empty()) return offset < dense_.size() ? dense_[offset] : kNotFound;
     return find_sorted(id);
   }
   /// Ids and indices ascending by id, each id once.
-  std::size_t size() const { return size_; }
-  std::pair<std::int64_t, std::uint32_t> at(std::size_t rank) const { return {id_at(rank), index_at(rank)}; }
+  std::size_t size() const { return base_ ? static_cast<std::size_t>(static_cast<std::int64_t>(base_->size()) + shift_) : size_; }
+  std::pair<std::int64_t, std::uint32_t> at(std::size_t rank) const {
+    return base_ ? at_changed(rank) : std::pair(id_at(rank), index_at(rank));
+  }
   /// Rank of the first id >= `id`.
   std::size_t lower_bound(std::int64_t id) const;
   /// Ids that occur more than once, ascending, each once.
-  const std::vector<std::int64_t>& duplicates() const { return duplicates_; }
+  const std::vector<std::int64_t>& duplicates() const { return base_ ? base_->duplicates() : duplicates_; }
+
+  /// One id more, which must not be there, or one less. The large index is shared, what has changed since is listed beside it: that list is
+  /// copied where another index holds it as well, and an entry costs a move of those after it (ids mostly come in ascending order).
+  static void add(std::shared_ptr<const IdIndex>& index, std::int64_t id, std::uint32_t at);
+  static void remove(std::shared_ptr<const IdIndex>& index, std::int64_t id);
 
  private:
+  /// An id that the base lacks, or has too many.
+  struct Change {
+    std::int64_t id = 0;
+    std::uint32_t index = kNotFound;  ///< kNotFound: the base has it, and it is gone
+    std::int32_t shift = 0;           ///< how many ids more than in the base there are before this one
+  };
+  static IdIndex& own(std::shared_ptr<const IdIndex>& index);
+  std::size_t first_change(std::int64_t id) const;
+  void insert_change(std::size_t at, const Change& change);
+  void erase_change(std::size_t at);
+  std::uint32_t find_changed(std::int64_t id) const;
+  std::pair<std::int64_t, std::uint32_t> at_changed(std::size_t rank) const;
+  std::size_t rank_of(const Change& change) const;
+
   std::int64_t id_at(std::size_t rank) const { return contiguous_ ? first_ + static_cast<std::int64_t>(rank) : ids_[rank]; }
   std::uint32_t index_at(std::size_t rank) const { return order_.empty() ? static_cast<std::uint32_t>(rank) : order_[rank]; }
   std::uint32_t find_sorted(std::int64_t id) const;
@@ -49,6 +71,9 @@ class IdIndex {
   std::vector<std::uint32_t> order_;  ///< rank -> index; empty where both are the same
   std::vector<std::uint32_t> dense_;  ///< id - first_ -> index, where the ids are dense enough
   std::vector<std::int64_t> duplicates_;
+  std::shared_ptr<const IdIndex> base_;  ///< if set, only what follows counts besides it
+  std::vector<Change> changes_;          ///< ascending by id
+  std::int64_t shift_ = 0;               ///< of all changes
 };
 
 }  // namespace prismesh::mesh

@@ -27,14 +27,26 @@ PartIndex Model::find_part(std::int64_t id) const {
 
 std::vector<NodeIndex> moved_nodes(const Model& a, const Model& b) {
   std::vector<NodeIndex> moved;
-  for (std::size_t c = 0; c < a.positions.chunk_count(); ++c) {
-    if (a.positions.shares_chunk(b.positions, c)) continue;
+  const std::size_t chunks = std::min(a.positions.chunk_count(), b.positions.chunk_count());
+  for (std::size_t c = 0; c < chunks; ++c) {
+    // Equal addresses mean equal content, also where one array goes on further than the other.
+    if (a.positions.chunk_owner(c) == b.positions.chunk_owner(c)) continue;
     const std::span<const Vec3> from = a.positions.chunk(c);
     const std::span<const Vec3> to = b.positions.chunk(c);
-    for (std::size_t i = 0; i < from.size(); ++i)
-      if (from[i] != to[i]) moved.push_back(NodeIndex(c * kChunkSize + i));
+    for (std::size_t i = 0; i < std::min(from.size(), to.size()); ++i) {
+      const NodeIndex node(c * kChunkSize + i);
+      if (from[i] != to[i] && !a.is_removed(node) && !b.is_removed(node)) moved.push_back(node);
+    }
   }
   return moved;
+}
+
+std::string_view why_held(std::uint8_t hold) {
+  if ((hold & kHeldByParameter) != 0) return "has coordinates given by a parameter";
+  if ((hold & kHeldByInclude) != 0) return "stands in an include that is used more than once or can't be transformed back";
+  if ((hold & kHeldByFrame) != 0) return "spans a coordinate system that other nodes stand in, or stands in one that can't be worked out";
+  if ((hold & kHeldByMaking) != 0) return "has no card of its own: one card makes it and others";
+  return "belongs to an element that also names a node that isn't defined";
 }
 
 }  // namespace prismesh::mesh

@@ -20,6 +20,7 @@ namespace prismesh::mesh {
 using Vec3 = Eigen::Vector3d;
 
 struct Adjacency;  // mesh/model/adjacency.h
+struct Growth;     // mesh/model/growth.h
 
 /// Corner nodes of a shell in the deck's order; a triangle repeats its third node.
 struct ShellNodes {
@@ -77,10 +78,16 @@ enum NodeHold : std::uint8_t {
   kHeldByParameter = 1,  ///< its coordinates are given by &parameters
   kHeldByInclude = 2,    ///< it stands in an include that is transformed or used twice
   kHeldByMissing = 4,    ///< an element at it is left out, since another of the element's nodes isn't defined
+  kHeldByFrame = 8,      ///< it spans a coordinate system that other nodes stand in, or its own system can't be worked out
+  kHeldByMaking = 16,    ///< no card of its own: a card that makes many nodes at once made it (replication, generation)
+  kRemoved = 128,        ///< it is gone; its entry stays so that indices never change
 };
+/// Why a node with one of these bits can't be moved, as the end of a sentence about it: "has coordinates given by a parameter".
+std::string_view why_held(std::uint8_t hold);
 
 /// Nodes, shells, everything else, parts; in the deck's order. Nodes that elements name but nobody defines are not in
-/// the arrays; an element with such a node is left out of the arrays and counted in `skipped`.
+/// the arrays; an element with such a node is left out of the arrays and counted in `skipped`. Nodes and shells that were removed keep
+/// their entries, but no id leads to them (mesh/model/growth.h).
 struct Model {
   ChunkedArray<std::int64_t> node_ids;
   ChunkedArray<Vec3> positions;           ///< deck's length unit
@@ -94,20 +101,23 @@ struct Model {
   std::shared_ptr<const std::vector<Part>> parts;                                ///< ascending by id
   std::shared_ptr<const IdIndex> node_index;                                     ///< deck's id -> NodeIndex value
   std::shared_ptr<const IdIndex> shell_index;
-  std::shared_ptr<const Adjacency> adjacency;  ///< of the shells; built by build_adjacency
+  std::shared_ptr<const Adjacency> adjacency;  ///< of the shells; built by build_adjacency; null after growth until it is built again
+  std::shared_ptr<const Growth> growth;        ///< what was added and removed since the deck was opened; null: nothing
 
   std::size_t node_count() const { return positions.size(); }
   std::size_t shell_count() const { return shell_nodes.size(); }
   const Vec3& position(NodeIndex node) const { return positions[node.value]; }
   const ShellNodes& shell(ShellIndex shell) const { return shell_nodes[shell.value]; }
+  bool is_removed(NodeIndex node) const { return growth && (node_holds[node.value] & kRemoved) != 0; }
+  bool is_removed(ShellIndex shell) const { return !shell_nodes[shell.value].node[0].valid(); }
 
   NodeIndex find_node(std::int64_t id) const { return NodeIndex(node_index->find(id)); }
   ShellIndex find_shell(std::int64_t id) const { return ShellIndex(shell_index->find(id)); }
   PartIndex find_part(std::int64_t id) const;
 };
 
-/// Nodes in which a and b differ in position, ascending. Costs what differs: shared chunks are passed over.
-/// Precondition: equal node counts.
+/// Nodes that are in both, with different positions, ascending: nodes added or removed since haven't moved. Costs what differs: shared
+/// chunks are passed over.
 std::vector<NodeIndex> moved_nodes(const Model& a, const Model& b);
 
 }  // namespace prismesh::mesh

@@ -1,0 +1,151 @@
+#include "mesh/model/growth.h"
+
+#include <algorithm>
+
+namespace prismesh::mesh {
+
+namespace {
+
+/// The model's growth, for writing: copied where another model holds it as well.
+Growth& own_growth(Model& model) {
+  if (!model.growth || model.growth.use_count() > 1) {
+    auto growth = model.growth ? std::make_shared<Growth>(*model.growth) : std::make_shared<Growth>();
+    if (!model.growth) {
+      growth->deck_nodes = model.node_count();
+      growth->deck_shells = model.shell_count();
+    }
+    model.growth = std::move(growth);
+  }
+  // Nobody else holds it, and it was made above, not as a constant.
+  return const_cast<Growth&>(*model.growth);
+}
+
+template <class T>
+void push_back(ChunkedArray<T>& array, const T& value) {
+  array.resize(array.size() + 1, value);
+}
+
+constexpr ShellNodes kNoNodes{};
+
+/// Of those listed: in one of the models and not in the other.
+template <class IndexType>
+std::vector<IndexType> sorted_unique(std::vector<IndexType> list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+template <class IndexType>
+std::vector<IndexType> added_between(std::size_t before, std::size_t after, const Model& model) {
+  std::vector<IndexType> added;
+  for (std::size_t i = before; i < after; ++i)
+    if (!model.is_removed(IndexType(i))) added.push_back(IndexType(i));
+  return added;
+}
+
+/// Removed since `before`: those that were there.
+template <class IndexType>
+std::vector<IndexType> removed_since(std::vector<IndexType> removed, std::size_t count_before, const Model& before) {
+  std::erase_if(removed, [&](IndexType i) { return i.value >= count_before || before.is_removed(i); });
+  return sorted_unique(std::move(removed));
+}
+
+}  // namespace
+
+NodeOrigin edge_origin(NodeIndex a, NodeIndex b, double weight_of_b) {
+  return {{a, b, NodeIndex(), NodeIndex()}, {1 - weight_of_b, weight_of_b, 0, 0}};
+}
+
+NodeOrigin centre_origin(const ShellNodes& shell) {
+  NodeOrigin origin;
+  const int corners = shell.corners();
+  for (int i = 0; i < corners; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    origin.parent[at] = shell.node[at];
+    origin.weight[at] = 1.0 / corners;
+  }
+  return origin;
+}
+
+NodeIndex add_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin) {
+  Growth& growth = own_growth(model);
+  const NodeIndex node(model.node_count());
+  push_back(growth.node_origins, origin);
+  push_back(model.node_ids, id);
+  push_back(model.positions, position);
+  push_back(model.node_holds, std::uint8_t{0});
+  IdIndex::add(model.node_index, id, node.value);
+  model.adjacency.reset();
+  return node;
+}
+
+ShellIndex add_shell(Model& model, std::int64_t id, const ShellNodes& nodes, ShellIndex parent) {
+  Growth& growth = own_growth(model);
+  const ShellIndex shell(model.shell_count());
+  push_back(growth.shell_parents, parent);
+  push_back(model.shell_ids, id);
+  push_back(model.shell_nodes, nodes);
+  push_back(model.shell_parts, PartIndex(model.shell_parts[parent.value]));
+  push_back(model.shell_thickness, float{model.shell_thickness[parent.value]});
+  IdIndex::add(model.shell_index, id, shell.value);
+  model.adjacency.reset();
+  return shell;
+}
+
+void set_shell_nodes(Model& model, ShellIndex shell, const ShellNodes& nodes) {
+  if (model.shell(shell) == nodes) return;
+  Growth& growth = own_growth(model);
+  // An added shell is written anew whatever happened to it.
+  if (shell.value < growth.deck_shells) growth.reshaped_shells.push_back(shell);
+  model.shell_nodes.set(shell.value, nodes);
+  model.adjacency.reset();
+}
+
+void remove_shell(Model& model, ShellIndex shell) {
+  own_growth(model).removed_shells.push_back(shell);
+  model.shell_nodes.set(shell.value, kNoNodes);
+  IdIndex::remove(model.shell_index, model.shell_ids[shell.value]);
+  model.adjacency.reset();
+}
+
+void remove_node(Model& model, NodeIndex node) {
+  own_growth(model).removed_nodes.push_back(node);
+  model.node_holds.set(node.value, static_cast<std::uint8_t>(model.node_holds[node.value] | kRemoved));
+  IdIndex::remove(model.node_index, model.node_ids[node.value]);
+  model.adjacency.reset();
+}
+
+std::size_t live_nodes(const Model& model) { return model.node_count() - (model.growth ? model.growth->removed_nodes.size() : 0); }
+std::size_t live_shells(const Model& model) { return model.shell_count() - (model.growth ? model.growth->removed_shells.size() : 0); }
+
+bool is_added(const Model& model, NodeIndex node) { return model.growth && node.value >= model.growth->deck_nodes; }
+bool is_added(const Model& model, ShellIndex shell) { return model.growth && shell.value >= model.growth->deck_shells; }
+
+const NodeOrigin& origin_of(const Model& model, NodeIndex node) {
+  return model.growth->node_origins[node.value - model.growth->deck_nodes];
+}
+
+ShellIndex deck_ancestor(const Model& model, ShellIndex shell) {
+  // A parent was there before its child, so this ends.
+  while (is_added(model, shell)) shell = model.growth->shell_parents[shell.value - model.growth->deck_shells];
+  return shell;
+}
+
+Changes changes_between(const Model& before, const Model& after) {
+  Changes changes;
+  if (!after.growth || after.growth == before.growth) return changes;
+  changes.added_nodes = added_between<NodeIndex>(before.node_count(), after.node_count(), after);
+  changes.added_shells = added_between<ShellIndex>(before.shell_count(), after.shell_count(), after);
+  changes.removed_nodes = removed_since(after.growth->removed_nodes, before.node_count(), before);
+  changes.removed_shells = removed_since(after.growth->removed_shells, before.shell_count(), before);
+  // Shells that `before` has as added ones may have been given other nodes since without being listed.
+  std::vector<ShellIndex> reshaped = after.growth->reshaped_shells;
+  for (std::size_t s = after.growth->deck_shells; s < before.shell_count(); ++s) reshaped.push_back(ShellIndex(s));
+  std::erase_if(reshaped, [&](ShellIndex s) {
+    return s.value >= before.shell_count() || before.is_removed(s) || after.is_removed(s) || before.shell(s) == after.shell(s);
+  });
+  changes.reshaped_shells = sorted_unique(std::move(reshaped));
+  return changes;
+}
+
+}  // namespace prismesh::mesh

@@ -1,0 +1,171 @@
+// Adding and removing nodes and shells: indices stay, ids are found, copies aren't touched, and what differs is told.
+#include "mesh/model/growth.h"
+
+#include <map>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "mesh/model/adjacency.h"
+
+namespace prismesh::mesh {
+namespace {
+
+/// `columns` x `rows` quads; node ids count from 1, shell ids from 101.
+Model sheet(std::size_t columns, std::size_t rows) {
+  Model model;
+  std::vector<std::int64_t> nodes, shells;
+  for (std::size_t y = 0; y <= rows; ++y)
+    for (std::size_t x = 0; x <= columns; ++x) {
+      nodes.push_back(static_cast<std::int64_t>(nodes.size()) + 1);
+      model.positions.resize(nodes.size(), Vec3(static_cast<double>(x), static_cast<double>(y), 0));
+      model.node_ids.resize(nodes.size(), nodes.back());
+    }
+  model.node_holds.resize(nodes.size());
+  for (std::size_t y = 0; y < rows; ++y)
+    for (std::size_t x = 0; x < columns; ++x) {
+      const std::size_t a = y * (columns + 1) + x;
+      shells.push_back(static_cast<std::int64_t>(shells.size()) + 101);
+      model.shell_ids.resize(shells.size(), shells.back());
+      model.shell_nodes.resize(shells.size(), {{NodeIndex(a), NodeIndex(a + 1), NodeIndex(a + columns + 2), NodeIndex(a + columns + 1)}});
+    }
+  model.shell_parts.resize(shells.size(), PartIndex(std::size_t{3}));
+  model.shell_thickness.resize(shells.size(), 1.5f);
+  model.midside = std::make_shared<const std::vector<MidsideNodes>>();
+  model.node_index = std::make_shared<const IdIndex>(nodes);
+  model.shell_index = std::make_shared<const IdIndex>(shells);
+  model.adjacency = std::make_shared<const Adjacency>(build_adjacency(model));
+  return model;
+}
+
+TEST(Growth, adds_at_the_end_and_finds_by_id) {
+  const Model before = sheet(2, 1);
+  Model model = before;
+  const NodeIndex middle = add_node(model, 77, {0.5, 0, 0}, edge_origin(NodeIndex(std::size_t{0}), NodeIndex(std::size_t{1})));
+  const ShellIndex child = add_shell(model, 5, {{middle, NodeIndex(std::size_t{1}), NodeIndex(std::size_t{4}), NodeIndex(std::size_t{4})}},
+                                     ShellIndex(std::size_t{0}));
+  EXPECT_EQ(middle.value, 6u);
+  EXPECT_EQ(child.value, 2u);
+  EXPECT_EQ(model.find_node(77), middle);
+  EXPECT_EQ(model.find_shell(5), child);
+  EXPECT_EQ(model.find_node(3).value, 2u);
+  EXPECT_FALSE(before.find_node(77).valid());
+  EXPECT_EQ(before.node_count(), 6u);
+  EXPECT_EQ(model.shell_parts[2].value, 3u);
+  EXPECT_EQ(model.shell_thickness[2], 1.5f);
+  EXPECT_TRUE(is_added(model, middle));
+  EXPECT_FALSE(is_added(model, NodeIndex(std::size_t{5})));
+  EXPECT_EQ(origin_of(model, middle).count(), 2);
+  EXPECT_EQ(deck_ancestor(model, child).value, 0u);
+  const ShellIndex grandchild = add_shell(model, 6, model.shell(child), child);
+  EXPECT_EQ(deck_ancestor(model, grandchild).value, 0u);
+  EXPECT_EQ(model.adjacency, nullptr);
+}
+
+TEST(Growth, keeps_the_entries_of_what_is_removed) {
+  const Model before = sheet(2, 1);
+  Model model = before;
+  remove_shell(model, ShellIndex(std::size_t{0}));
+  remove_node(model, NodeIndex(std::size_t{0}));
+  EXPECT_TRUE(model.is_removed(ShellIndex(std::size_t{0})));
+  EXPECT_TRUE(model.is_removed(NodeIndex(std::size_t{0})));
+  EXPECT_FALSE(model.find_node(1).valid());
+  EXPECT_FALSE(model.find_shell(101).valid());
+  EXPECT_EQ(model.find_node(2).value, 1u);
+  EXPECT_EQ(model.find_shell(102).value, 1u);
+  EXPECT_EQ(model.node_ids[0], 1);
+  EXPECT_EQ(live_nodes(model), 5u);
+  EXPECT_EQ(live_shells(model), 1u);
+  EXPECT_TRUE(before.find_node(1).valid());
+  const Adjacency adjacency = build_adjacency(model);
+  EXPECT_EQ(adjacency.edge_count(), 4u);
+  EXPECT_TRUE(adjacency.shells_of(NodeIndex(std::size_t{0})).empty());
+}
+
+TEST(Growth, tells_what_differs) {
+  const Model opened = sheet(3, 1);
+  Model model = opened;
+  EXPECT_TRUE(changes_between(opened, model).empty());
+  const NodeIndex added = add_node(model, 50, {0, 0, 1}, edge_origin(NodeIndex(std::size_t{0}), NodeIndex(std::size_t{4})));
+  ShellNodes corners = model.shell(ShellIndex(std::size_t{1}));
+  corners.node[0] = added;
+  set_shell_nodes(model, ShellIndex(std::size_t{1}), corners);
+  const ShellIndex child = add_shell(model, 9, corners, ShellIndex(std::size_t{1}));
+  const Model half = model;
+  remove_shell(model, ShellIndex(std::size_t{0}));
+  remove_shell(model, child);
+  set_shell_nodes(model, ShellIndex(std::size_t{2}), corners);
+  set_shell_nodes(model, ShellIndex(std::size_t{1}), opened.shell(ShellIndex(std::size_t{1})));
+  model.positions.set(2, {9, 9, 9});
+
+  const Changes all = changes_between(opened, model);
+  EXPECT_EQ(all.added_nodes, std::vector{added});
+  EXPECT_TRUE(all.added_shells.empty()) << "it was removed again";
+  EXPECT_EQ(all.removed_shells, std::vector{ShellIndex(std::size_t{0})});
+  EXPECT_EQ(all.reshaped_shells, std::vector{ShellIndex(std::size_t{2})}) << "the other one has its nodes back";
+  const Changes second = changes_between(half, model);
+  EXPECT_TRUE(second.added_nodes.empty());
+  EXPECT_EQ(second.removed_shells, (std::vector{ShellIndex(std::size_t{0}), child}));
+  EXPECT_EQ(second.reshaped_shells, (std::vector{ShellIndex(std::size_t{1}), ShellIndex(std::size_t{2})}));
+  EXPECT_EQ(moved_nodes(opened, model), std::vector{NodeIndex(std::size_t{2})});
+  remove_node(model, NodeIndex(std::size_t{2}));
+  EXPECT_TRUE(moved_nodes(opened, model).empty()) << "what is gone hasn't moved";
+}
+
+TEST(Growth, shares_what_it_does_not_change) {
+  const Model before = sheet(300, 60);
+  Model model = before;
+  add_node(model, 1'000'000, {0, 0, 1}, edge_origin(NodeIndex(std::size_t{0}), NodeIndex(std::size_t{1})));
+  remove_node(model, NodeIndex(std::size_t{9000}));
+  std::size_t own = 0;
+  for (std::size_t c = 0; c < before.node_holds.chunk_count(); ++c)
+    own += before.node_holds.chunk_owner(c) != model.node_holds.chunk_owner(c);
+  EXPECT_EQ(own, 2u);
+}
+
+/// Ranks and lookups of a changed index are those of one built afresh.
+TEST(IdIndex, changed_is_as_one_built_afresh) {
+  std::mt19937 random(7);
+  for (int round = 0; round < 30; ++round) {
+    std::vector<std::int64_t> ids;
+    for (std::int64_t id = 10; id < 60; ++id)
+      if (round % 3 == 0 || random() % 3 != 0) ids.push_back(id * (round % 2 == 0 ? 1 : 7));
+    if (round % 5 == 0) std::shuffle(ids.begin(), ids.end(), random);
+    std::shared_ptr<const IdIndex> index = std::make_shared<const IdIndex>(ids);
+    const auto original = index;
+    std::map<std::int64_t, std::uint32_t> wanted;
+    for (std::size_t i = 0; i < ids.size(); ++i) wanted[ids[i]] = static_cast<std::uint32_t>(i);
+    auto next = static_cast<std::uint32_t>(ids.size());
+    std::set<std::int64_t> ever(ids.begin(), ids.end());
+    for (int step = 0; step < 60; ++step) {
+      const auto held = step % 4 == 0 ? index : nullptr;  // someone else looks at it too
+      const auto id = static_cast<std::int64_t>(random() % 460);
+      if (random() % 2 == 0 && ever.insert(id).second) {
+        IdIndex::add(index, id, next);
+        wanted[id] = next++;
+      } else if (!wanted.empty()) {
+        const auto gone = std::next(wanted.begin(), static_cast<std::ptrdiff_t>(random() % wanted.size()));
+        IdIndex::remove(index, gone->first);
+        wanted.erase(gone);
+      }
+      ASSERT_EQ(index->size(), wanted.size());
+      std::size_t rank = 0;
+      for (const auto& [want, at] : wanted) {
+        ASSERT_EQ(index->at(rank), std::pair(want, at)) << "rank " << rank << " step " << step;
+        ASSERT_EQ(index->lower_bound(want), rank);
+        ASSERT_EQ(index->find(want), at);
+        ++rank;
+      }
+      ASSERT_EQ(index->lower_bound(100'000), wanted.size());
+      for (std::int64_t missing = 0; missing < 470; missing += 3) {
+        if (wanted.contains(missing)) continue;
+        ASSERT_EQ(index->find(missing), IdIndex::kNotFound) << missing;
+      }
+    }
+    EXPECT_EQ(original->size(), ids.size());
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::mesh
