@@ -2,8 +2,17 @@
 
 #include <algorithm>
 
+#include "base/compression.h"
+#include "mesh/deck/abaqus/reader.h"
+#include "mesh/deck/abaqus/writer.h"
+#include "mesh/deck/card_writer.h"
 #include "mesh/deck/detect.h"
 #include "mesh/deck/lsdyna/reader.h"
+#include "mesh/deck/lsdyna/writer.h"
+#include "mesh/deck/nastran/reader.h"
+#include "mesh/deck/nastran/writer.h"
+#include "mesh/deck/radioss/reader.h"
+#include "mesh/deck/radioss/writer.h"
 
 namespace prismesh::mesh::deck {
 
@@ -29,23 +38,48 @@ ElementCounts& ElementCounts::operator+=(const ElementCounts& more) {
   return *this;
 }
 
-std::uint32_t Deck::run_of(NodeIndex node) const {
-  const auto after = std::upper_bound(node_runs.begin(), node_runs.end(), node.value,
-                                      [](std::uint32_t value, const NodeRun& run) { return value < run.first_node; });
-  return static_cast<std::uint32_t>(after - node_runs.begin()) - 1;
+namespace {
+
+const CardRun& run_of(const std::vector<CardRun>& runs, std::uint32_t index) {
+  return *std::prev(
+      std::upper_bound(runs.begin(), runs.end(), index, [](std::uint32_t value, const CardRun& run) { return value < run.first; }));
 }
+
+}  // namespace
+
+const CardRun& Deck::run_of(NodeIndex node) const { return deck::run_of(node_runs, node.value); }
+const CardRun& Deck::run_of(ShellIndex shell) const { return deck::run_of(shell_runs, shell.value); }
+
+namespace {
+
+/// How far unpacking brings the progress; the walk over the text goes on from there.
+constexpr double kUnpacked = 0.1;
+
+}  // namespace
 
 Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress) {
   if (progress && !progress(0)) return fail(cancelled());
   Result<FileBytes> bytes = read_file(path);
   if (!bytes) return fail(bytes.error());
+  const Progress unpacking = [&](double fraction) { return !progress || progress(kUnpacked * fraction); };
+  bytes = unpack(std::move(*bytes), path, unpacking);
+  if (!bytes) return fail(bytes.error());
   const Detected detected = detect_format(bytes->text());
   if (!detected.format) return fail(path.string(), "is no deck: it looks like " + detected.looks_like);
   if (*detected.format == Format::ls_dyna) return lsdyna::read(path, std::move(*bytes), progress);
-  const std::string_view what = *detected.format == Format::nastran   ? "a Nastran"
-                                : *detected.format == Format::radioss ? "a Radioss"
-                                                                      : "an Abaqus";
-  return fail(path.string(), "looks like " + std::string(what) + " deck; this version reads LS-DYNA");
+  if (*detected.format == Format::radioss) return radioss::read(path, std::move(*bytes), progress);
+  if (*detected.format == Format::abaqus) return abaqus::read(path, std::move(*bytes), progress);
+  return nastran::read(path, std::move(*bytes), progress);
+}
+
+std::unique_ptr<const CardWriter> card_writer(Format format) {
+  switch (format) {
+    case Format::abaqus: return abaqus::card_writer();
+    case Format::radioss: return radioss::card_writer();
+    case Format::nastran: return nastran::card_writer();
+    case Format::ls_dyna: break;
+  }
+  return lsdyna::card_writer();
 }
 
 }  // namespace prismesh::mesh::deck

@@ -2,7 +2,10 @@
 // rewrites only what changed. Formats live in folders beside this header.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,7 +16,9 @@
 #include "base/hash.h"
 #include "base/progress.h"
 #include "base/units.h"
+#include "mesh/deck/frame.h"
 #include "mesh/model/model.h"
+#include "mesh/model/references.h"
 
 namespace prismesh::mesh::deck {
 
@@ -52,14 +57,33 @@ struct SourceFile {
   FileBytes bytes;
 };
 
-/// How the columns of a run of node cards are cut.
-enum class Columns : std::uint8_t { standard, i10, wide };
+/// What is added to the ids that an include's text gives, to make those of the model: LS-DYNA's *INCLUDE_TRANSFORM, what the includes
+/// around it add counted in.
+struct IdOffsets {
+  std::int64_t node = 0;
+  std::int64_t element = 0;
+  std::int64_t part = 0;
+  std::int64_t material = 0;
+  std::int64_t set = 0;
+  std::int64_t function = 0;
+  std::int64_t define = 0;  ///< everything under *DEFINE but functions
+  std::int64_t other = 0;   ///< sections, hourglass controls, ...
+  bool operator==(const IdOffsets&) const = default;
+};
 
-/// Nodes that follow each other in one file in one column layout (a card with commas is free format whatever the layout).
-struct NodeRun {
-  std::uint32_t first_node = 0;  ///< NodeIndex value of the first; runs ascend
-  std::uint32_t file = 0;        ///< index into files
-  Columns columns = Columns::standard;
+/// Nodes or shells that follow each other in one file in one style and one frame.
+struct CardRun {
+  std::uint32_t first = 0;  ///< index of the first node or shell; runs ascend
+  std::uint32_t file = 0;   ///< index into files
+  std::uint16_t style = 0;  ///< how their cards are laid out: a number that only the format's own reader and writer know
+  std::uint32_t frame = 0;  ///< index into frames, in which coordinates are given, and into id_offsets
+  bool operator==(const CardRun&) const = default;
+};
+
+/// The greatest ids of a file's nodes and shells, as in the model; 0: it has none.
+struct LastIds {
+  std::int64_t node = 0;
+  std::int64_t shell = 0;
 };
 
 struct OnDisk;  // mesh/deck/on_disk.h
@@ -67,17 +91,32 @@ struct OnDisk;  // mesh/deck/on_disk.h
 /// Everything about the text that editing and saving need.
 struct Deck {
   Format format = Format::ls_dyna;
-  std::vector<SourceFile> files;  ///< main file first, includes in the order they are read
-  std::vector<NodeRun> node_runs;
+  std::vector<SourceFile> files;       ///< main file first, includes in the order they are read
+  std::vector<Frame> frames{Frame()};  ///< [0]: the basic system
+  std::vector<IdOffsets> id_offsets;   ///< of the cards of a frame; none beyond its end
+  std::vector<CardRun> node_runs;
   std::vector<std::uint64_t> node_line;  ///< byte offset in its file of each node's card
-  Hash128 content;                       ///< of all files' bytes and relative names
+  std::vector<CardRun> shell_runs;
+  std::vector<std::uint64_t> shell_line;        ///< byte offset in its file of each shell's card
+  Hash128 content;                              ///< of all files' bytes and relative names
+  std::vector<LastIds> last_ids;                ///< by file
+  std::vector<std::int64_t> left_out_elements;  ///< ids of element cards that the model lacks, ascending: they are taken all the same
+  std::vector<std::uint32_t> held_files;        ///< ascending: those that stand for several places, whose cards must not change
   ElementCounts element_cards;
+  std::map<std::string, std::size_t, std::less<>> element_kinds;  ///< cards by the deck's own word: "CQUAD4", "SHELL_THICKNESS", "S4R"
+  std::shared_ptr<const References> references;                   ///< cards that name entities; never null after opening
   TimeStepControl time_step;
+  std::optional<LengthUnit> length_unit;  ///< where the deck itself says so
   std::vector<Warning> warnings;
   std::vector<std::string> missing_files;  ///< includes that weren't found, as written
   std::shared_ptr<OnDisk> on_disk;         ///< what saving in place has left on disk; never null after opening
 
-  std::uint32_t run_of(NodeIndex node) const;  ///< index into node_runs
+  bool is_held(std::uint32_t file) const { return std::binary_search(held_files.begin(), held_files.end(), file); }
+  const CardRun& run_of(NodeIndex node) const;
+  const CardRun& run_of(ShellIndex shell) const;
+  const SourceFile& file_of(NodeIndex node) const { return files[run_of(node).file]; }
+  /// What its cards' ids lack to those of the model.
+  IdOffsets offsets_of(const CardRun& run) const { return run.frame < id_offsets.size() ? id_offsets[run.frame] : IdOffsets(); }
 };
 
 struct OpenedDeck {
@@ -90,18 +129,30 @@ struct OpenedDeck {
 Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress = {});
 
 struct SaveReport {
-  std::size_t nodes_written = 0;
-  std::size_t lines_changed = 0;
+  std::size_t nodes_written = 0;  ///< moved ones
+  std::size_t nodes_added = 0;
+  std::size_t nodes_removed = 0;
+  std::size_t shells_changed = 0;  ///< with other nodes than before
+  std::size_t shells_added = 0;
+  std::size_t shells_removed = 0;
+  std::size_t set_cards_changed = 0;  ///< sets, segments and other cards that name what came and went
+  std::size_t lines_changed = 0;      ///< lines that come, go or differ
   std::vector<std::filesystem::path> files_written;
   std::vector<std::string> notes;  ///< fields that couldn't hold the full precision, ...
 };
 
-/// Writes the deck with the positions of `model` to `target`. Only cards of nodes whose position differs from the one in
-/// the text are rewritten, in their own columns and style. To the deck's own path: changed files only, and refused if a
-/// file on disk is no longer the one that was read. Elsewhere: all files, includes under their relative paths (one
-/// outside the main file's folder is refused by name). Atomic (see replace_files).
-/// `original` is the model as it was opened.
-Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target);
+/// Whether `model` can be saved as what `original` has become: an edit asks this before it is applied. Costs what differs. Errors: what
+/// can't be written safely, with the reason (docs/formats/editing.md has the rules). `original` is the model as it was opened.
+Result<void> can_save(const Deck& deck, const Model& original, const Model& model);
+
+/// Writes the deck as `model` has it to `target`. Only cards of nodes and shells that differ are rewritten, in their own columns and
+/// style; new ones stand right behind those they come from; cards that name what came or went follow by the rules of
+/// docs/formats/editing.md. To the deck's own path: changed files only, and refused if a file on disk is no longer the one that was read.
+/// Elsewhere: all files, includes under their relative paths (one outside the main file's folder is refused by name). Atomic (see
+/// replace_files); stopped by its progress, it leaves everything as it was. Errors: those of can_save, before anything is written, those
+/// of writing, cancelled. `original` is the model as it was opened.
+Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
+                        const Progress& progress = {});
 
 /// Guesses from densities and the median edge.
 LengthUnit guess_length_unit(const Model& model);

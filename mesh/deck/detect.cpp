@@ -114,12 +114,18 @@ Votes count_votes(std::string_view text) {
   return votes;
 }
 
+/// Old Macintosh computers and broken transfers leave carriage returns alone; all would be one line.
+bool has_carriage_returns_alone(std::string_view text) {
+  return text.find('\n') == std::string_view::npos && std::count(text.begin(), text.end(), '\r') > 1;
+}
+
 std::string describe(std::string_view text) {
   if (starts_with(text, "solid ")) return "an STL file";
   const auto binary = std::count_if(text.begin(), text.end(), [](char c) {
     return static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\r' && c != '\t' && c != '\f';
   });
   if (static_cast<std::size_t>(binary) * 50 > text.size()) return "a binary file";
+  if (text.find('\0') != std::string_view::npos) return "a text with NUL bytes in it, as a broken transfer leaves them";
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return "an empty file";
   return "text without a single keyword of a deck";
 }
@@ -132,6 +138,8 @@ Detected detect_format(std::string_view text) {
     if (starts_with(text, signature.bytes)) return {{}, std::string(signature.meaning)};
   if (starts_with(text, kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   text = text.substr(0, kLookedAt);
+  if (has_carriage_returns_alone(text))
+    return {{}, "text whose lines end with carriage returns alone; save it with LF or CRLF line ends first"};
   const Votes votes = count_votes(text);
   const int most = std::max({votes.ls_dyna, votes.nastran, votes.radioss, votes.abaqus});
   if (most == 0 || (most < kCertain && text.find('\0') != std::string_view::npos)) return {{}, describe(text)};

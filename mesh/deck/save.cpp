@@ -1,86 +1,20 @@
-// Saving: new text for the cards of moved nodes, and the rules of which files are written where.
+// Saving: the rules of which files are written where (text_changes.h says what is written).
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 #include <mutex>
 
+#include "base/compression.h"
 #include "mesh/deck/deck.h"
-#include "mesh/deck/lsdyna/keyword.h"
-#include "mesh/deck/lsdyna/writer.h"
 #include "mesh/deck/on_disk.h"
+#include "mesh/deck/text_changes.h"
 
 namespace prismesh::mesh::deck {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A card's new text in its file.
-struct Replacement {
-  std::size_t offset = 0;
-  std::size_t length = 0;
-  std::string text;
-};
-
-/// Coordinates that their columns can't hold to the last bit.
-struct Rounding {
-  std::size_t count = 0;
-  double largest_error = 0;
-  std::string first;
-};
-
-struct NewText {
-  std::vector<std::vector<Replacement>> by_file;
-  Rounding rounding;
-  std::size_t nodes = 0;
-  std::size_t lines = 0;
-};
-
-std::string_view line_at(std::string_view text, std::size_t offset) {
-  std::string_view line = text.substr(offset, std::min(text.find('\n', offset), text.size()) - offset);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  return line;
-}
-
-std::string place(const SourceFile& file, std::size_t offset) {
-  return file.path.string() + ":" + std::to_string(lsdyna::line_number(file.bytes.text(), offset));
-}
-
-const char* why_held(std::uint8_t hold) {
-  if ((hold & kHeldByParameter) != 0) return " has coordinates given by a parameter";
-  if ((hold & kHeldByInclude) != 0) return " stands in an include that is used twice or transformed";
-  return " belongs to an element that also names a node that isn't defined";
-}
-
-Result<NewText> new_text(const Deck& deck, const Model& original, const Model& model) {
-  NewText out;
-  out.by_file.resize(deck.files.size());
-  const std::vector<NodeIndex> moved = moved_nodes(original, model);
-  out.nodes = moved.size();
-  for (const NodeIndex node : moved) {
-    const NodeRun& run = deck.node_runs[deck.run_of(node)];
-    const SourceFile& file = deck.files[run.file];
-    const std::size_t offset = deck.node_line[node.value];
-    const std::string_view line = line_at(file.bytes.text(), offset);
-    if (!model.position(node).allFinite())
-      return fail(
-          file.path.string(), lsdyna::line_number(file.bytes.text(), offset),
-          "node " + std::to_string(original.node_ids[node.value]) + " has been moved to a place that is no number; nothing was written");
-    lsdyna::RewrittenCard card = lsdyna::rewrite_node_card(line, run.columns, original.position(node), model.position(node));
-    const std::uint8_t hold = static_cast<std::uint8_t>(original.node_holds[node.value] | (card.by_parameter ? kHeldByParameter : 0));
-    if (hold != 0)
-      return fail(file.path.string(), lsdyna::line_number(file.bytes.text(), offset),
-                  "node " + std::to_string(original.node_ids[node.value]) + why_held(hold) + "; it can't be moved");
-    if (card.rounded > 0) {
-      if (out.rounding.count == 0)
-        out.rounding.first = place(file, offset) + " (node " + std::to_string(original.node_ids[node.value]) + ")";
-      out.rounding.count += static_cast<std::size_t>(card.rounded);
-      out.rounding.largest_error = std::max(out.rounding.largest_error, card.largest_error);
-    }
-    if (card.text == line) continue;
-    ++out.lines;
-    out.by_file[run.file].push_back({offset, line.size(), std::move(card.text)});
-  }
-  return out;
-}
+constexpr double kPackingShare = 0.9;
 
 std::vector<std::string_view> content_of(const SourceFile& file, const std::vector<Replacement>& replacements) {
   const std::string_view text = file.bytes.text();
@@ -94,6 +28,18 @@ std::vector<std::string_view> content_of(const SourceFile& file, const std::vect
   }
   pieces.push_back(text.substr(at));
   return pieces;
+}
+
+/// What the file gets on disk. A packed one is packed again in its own manner, or stays as it is; `packed` keeps what that makes.
+Result<std::vector<std::string_view>> stored_content_of(const SourceFile& file, const std::vector<Replacement>& replacements,
+                                                        std::deque<std::string>& packed, const Progress& progress) {
+  if (!file.bytes.is_packed()) return content_of(file, replacements);
+  const std::span<const std::byte> stored = file.bytes.bytes();
+  if (replacements.empty()) return std::vector{std::string_view(reinterpret_cast<const char*>(stored.data()), stored.size())};
+  Result<std::string> anew = pack(content_of(file, replacements), stored, progress);
+  if (!anew) return fail(anew.error().message == cancelled().message ? anew.error() : Error{file.path.string(), 0, anew.error().message});
+  packed.push_back(std::move(*anew));
+  return std::vector<std::string_view>{packed.back()};
 }
 
 bool same_file(const fs::path& a, const fs::path& b) {
@@ -134,7 +80,7 @@ Result<void> check_unchanged(const SourceFile& file, OnDisk::File& known) {
               "has changed on disk since it was opened; nothing was written. Save into another folder, or close it and open it again");
 }
 
-Result<std::vector<Plan>> plan_in_place(const Deck& deck, const NewText& text) {
+Result<std::vector<Plan>> plan_in_place(const Deck& deck, const TextChanges& text) {
   std::vector<Plan> plans;
   for (const std::size_t file : writing_order(deck)) {
     OnDisk::File& known = deck.on_disk->files[file];
@@ -151,7 +97,7 @@ bool stays_behind(const SourceFile& include) {
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
-Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const NewText& text, const fs::path& target) {
+Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const TextChanges& text, const fs::path& target) {
   const bool other_folder = !same_file(folder_of(target), folder_of(deck.files[0].path));
   std::vector<Plan> plans;
   for (const std::size_t file : writing_order(deck)) {
@@ -174,7 +120,8 @@ Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const NewText& text, 
 }
 
 /// After saving in place: what is on disk now, also where only some of the files could be replaced.
-void remember_written(const Deck& deck, std::span<const PendingFile> pending, std::span<const Plan> plans, const NewText& text, bool all) {
+void remember_written(const Deck& deck, std::span<const PendingFile> pending, std::span<const Plan> plans, const TextChanges& text,
+                      bool all) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const SourceFile& source = deck.files[plans[i].file];
     const Hash128 written = hash128(pending[i].pieces);
@@ -191,32 +138,84 @@ void remember_written(const Deck& deck, std::span<const PendingFile> pending, st
 std::string rounding_note(const Rounding& rounding) {
   char error[32];
   std::snprintf(error, sizeof error, "%.1e", rounding.largest_error);
-  return std::to_string(rounding.count) + (rounding.count == 1 ? " coordinate was" : " coordinates were") +
-         " rounded to what their columns hold, by " + error + " at most; first at " + rounding.first;
+  return std::to_string(rounding.count) + (rounding.count == 1 ? " number was" : " numbers were") +
+         " rounded to what their fields hold, by " + error + " at most; first at " + rounding.first;
+}
+
+/// Sets that text hides can't be given the new ones.
+std::string encrypted_note(const Deck& deck) {
+  for (const UnreadText& unread : deck.references->unread())
+    if (unread.encrypted)
+      return "the encrypted text at " + place_of(deck, unread.file, unread.begin) +
+             " may hold sets, which the new nodes and shells haven't joined";
+  return "";
+}
+
+/// Files with their content, ready to be written; `packed` keeps what packing makes. Packing brings the progress to `share`.
+Result<std::vector<PendingFile>> pending_files(const Deck& deck, const std::vector<Plan>& plans, const TextChanges& text,
+                                               std::deque<std::string>& packed, double share, const Progress& progress) {
+  std::vector<PendingFile> pending;
+  for (const Plan& plan : plans) {
+    const double done = share * static_cast<double>(pending.size()) / static_cast<double>(plans.size());
+    const double part = share / static_cast<double>(plans.size());
+    const Progress packing = [&](double fraction) { return !progress || progress(done + fraction * part); };
+    Result<std::vector<std::string_view>> stored = stored_content_of(deck.files[plan.file], text.by_file[plan.file], packed, packing);
+    if (!stored) return fail(stored.error());
+    pending.push_back({plan.target, std::move(*stored)});
+  }
+  return pending;
+}
+
+SaveReport report_of(const Deck& deck, const TextChanges& text, const std::vector<Plan>& plans) {
+  SaveReport report;
+  report.nodes_written = text.nodes_moved;
+  report.nodes_added = text.nodes_added;
+  report.nodes_removed = text.nodes_removed;
+  report.shells_changed = text.shells_changed;
+  report.shells_added = text.shells_added;
+  report.shells_removed = text.shells_removed;
+  report.set_cards_changed = text.set_cards;
+  report.lines_changed = text.lines;
+  for (const Plan& plan : plans) report.files_written.push_back(plan.target);
+  if (text.rounding.count > 0) report.notes.push_back(rounding_note(text.rounding));
+  if (text.shells_turned > 0)
+    report.notes.push_back("the material angles of " + std::to_string(text.shells_turned) +
+                           (text.shells_turned == 1 ? " shell" : " shells") +
+                           " were turned with their first edges, to which they are taken to be relative");
+  if (text.nodes_added + text.shells_added > 0)
+    if (std::string note = encrypted_note(deck); !note.empty()) report.notes.push_back(std::move(note));
+  return report;
 }
 
 }  // namespace
 
-Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const fs::path& target) {
+Result<void> can_save(const Deck& deck, const Model& original, const Model& model) {
+  const Result<TextChanges> text = text_changes(deck, original, model);
+  if (!text) return fail(text.error());
+  return {};
+}
+
+Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const fs::path& target, const Progress& progress) {
   const std::lock_guard lock(deck.on_disk->mutex);
-  const Result<NewText> text = new_text(deck, original, model);
+  const Result<TextChanges> text = text_changes(deck, original, model);
   if (!text) return fail(text.error());
   const bool in_place = same_file(target, deck.files[0].path);
   const Result<std::vector<Plan>> plans = in_place ? plan_in_place(deck, *text) : plan_elsewhere(deck, *text, target);
   if (!plans) return fail(plans.error());
 
-  std::vector<PendingFile> pending;
-  for (const Plan& plan : *plans) pending.push_back({plan.target, content_of(deck.files[plan.file], text->by_file[plan.file])});
-  const Result<void> replaced = replace_files(pending);
-  if (in_place) remember_written(deck, pending, *plans, *text, replaced.has_value());
+  // Packing takes many times as long as writing.
+  const bool packs = std::any_of(plans->begin(), plans->end(), [&](const Plan& plan) {
+    return deck.files[plan.file].bytes.is_packed() && !text->by_file[plan.file].empty();
+  });
+  const double share = packs ? kPackingShare : 0;
+  std::deque<std::string> packed;
+  const Result<std::vector<PendingFile>> pending = pending_files(deck, *plans, *text, packed, share, progress);
+  if (!pending) return fail(pending.error());
+  const Progress writing = [&](double fraction) { return !progress || progress(share + fraction * (1 - share)); };
+  const Result<void> replaced = replace_files(*pending, writing);
+  if (in_place) remember_written(deck, *pending, *plans, *text, replaced.has_value());
   if (!replaced) return fail(replaced.error());
-
-  SaveReport report;
-  report.nodes_written = text->nodes;
-  report.lines_changed = text->lines;
-  for (const Plan& plan : *plans) report.files_written.push_back(plan.target);
-  if (text->rounding.count > 0) report.notes.push_back(rounding_note(text->rounding));
-  return report;
+  return report_of(deck, *text, *plans);
 }
 
 }  // namespace prismesh::mesh::deck

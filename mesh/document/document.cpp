@@ -29,10 +29,11 @@ std::shared_ptr<const Attached> find_attached(const Model& model) {
   return attached;
 }
 
-Result<Settings> find_settings(const Model& model, const OpenOptions& options) {
+Result<Settings> find_settings(const deck::Deck& deck, const Model& model, const OpenOptions& options) {
   Settings settings;
-  settings.length_unit_guessed = !options.length_unit;
-  settings.length_unit = options.length_unit ? *options.length_unit : deck::guess_length_unit(model);
+  const std::optional<LengthUnit> known = options.length_unit ? options.length_unit : deck.length_unit;
+  settings.length_unit_guessed = !known;
+  settings.length_unit = known ? *known : deck::guess_length_unit(model);
   settings.target_size_guessed = !options.target_size;
   settings.target_size = options.target_size ? *options.target_size : quality::guess_target_size(model);
   if (!(settings.target_size > 0 && settings.target_size < 1e300)) return fail("", "the target size must be greater than 0");
@@ -60,7 +61,7 @@ std::shared_ptr<const Generation> first_generation(Model model, const Settings& 
 }  // namespace
 
 Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened, const OpenOptions& options) {
-  Result<Settings> settings = find_settings(opened.model, options);
+  Result<Settings> settings = find_settings(*opened.deck, opened.model, options);
   if (!settings) return fail(settings.error());
   Document document;
   document.path = path;
@@ -157,8 +158,8 @@ Result<EditReport> apply(Document& document, const Edit& edit) {
   return report;
 }
 
-Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target) {
-  return deck::save(*document.deck, document.opened->model, document.current().model, target);
+Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress) {
+  return deck::save(*document.deck, document.opened->model, document.current().model, target, progress);
 }
 
 }  // namespace prismesh::mesh::document

@@ -124,6 +124,6 @@ void commit(Document& document, Prepared prepared);
 Result<EditReport> apply(Document& document, const Edit& edit);
 
 /// Saves the current generation (deck::save).
-Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target);
+Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::document

@@ -44,7 +44,8 @@ Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& no
   return std::optional<NodeIndex>();
 }
 
-/// The mid-side nodes among the nodes acted on, with the ends of their edges; ascending, each once.
+/// The mid-side nodes on edges with an end among the nodes acted on, or acted on themselves, with the ends of their edges; ascending,
+/// each once. A node that is a corner elsewhere moves as one.
 struct EdgeMiddle {
   NodeIndex node;
   std::array<NodeIndex, 2> end;
@@ -52,6 +53,7 @@ struct EdgeMiddle {
 std::vector<EdgeMiddle> middles_in(const Model& model, const NodeSet& nodes, const ShellSet& shells) {
   std::vector<EdgeMiddle> middles;
   if (!model.midside || model.midside->empty()) return middles;
+  const auto acted_on = [&](NodeIndex node) { return std::binary_search(nodes.begin(), nodes.end(), node); };
   const auto& all = *model.midside;
   auto entry = all.begin();
   for (const ShellIndex shell : shells) {
@@ -60,9 +62,12 @@ std::vector<EdgeMiddle> middles_in(const Model& model, const NodeSet& nodes, con
     if (entry->shell != shell) continue;
     const ShellNodes& corners = model.shell(shell);
     const int count = corners.corners();
-    for (int i = 0; i < count; ++i)
-      if (const NodeIndex node = entry->node[i]; node.valid() && std::binary_search(nodes.begin(), nodes.end(), node))
-        middles.push_back({node, {corners.node[i], corners.node[(i + 1) % count]}});
+    for (int i = 0; i < count; ++i) {
+      const NodeIndex node = entry->node[i];
+      const std::array<NodeIndex, 2> end = {corners.node[i], corners.node[(i + 1) % count]};
+      if (!node.valid() || !model.adjacency->shells_of(node).empty()) continue;
+      if (acted_on(node) || acted_on(end[0]) || acted_on(end[1])) middles.push_back({node, end});
+    }
   }
   std::stable_sort(middles.begin(), middles.end(), [](const EdgeMiddle& a, const EdgeMiddle& b) { return a.node < b.node; });
   middles.erase(std::unique(middles.begin(), middles.end(), [](const EdgeMiddle& a, const EdgeMiddle& b) { return a.node == b.node; }),
@@ -82,24 +87,31 @@ void keep_moving(const shape::Weights& weights, const Model& model, Motion& moti
     const std::uint32_t at = place_in(weights.nodes, node);
     return at == Motion::Midside::kStays ? 0.0 : weights.weight[at];
   };
+  const auto keep = [&](NodeIndex node, double weight) {
+    motion.nodes.push_back(node);
+    motion.weight.push_back(weight);
+    motion.start.push_back(model.position(node));
+  };
   const std::vector<EdgeMiddle> middles = middles_in(model, weights.nodes, shells_touching(model, weights.nodes));
   auto middle = middles.begin();
-  for (std::size_t i = 0; i < weights.nodes.size(); ++i) {
-    const NodeIndex node = weights.nodes[i];
-    const bool is_middle = middle != middles.end() && middle->node == node && model.adjacency->shells_of(node).empty();
-    const bool moves = is_middle ? weight_of(middle->end[0]) > 0 || weight_of(middle->end[1]) > 0 : weights.weight[i] > 0;
-    if (middle != middles.end() && middle->node == node) ++middle;
-    if (is_middle && motion.unreached > 0) --motion.unreached;
-    if (!moves) continue;
-    motion.nodes.push_back(node);
-    motion.weight.push_back(is_middle ? 0.0 : weights.weight[i]);
-    motion.start.push_back(model.position(node));
+  std::size_t i = 0;
+  while (i < weights.nodes.size() || middle != middles.end()) {
+    const bool has_node = i < weights.nodes.size();
+    if (middle == middles.end() || (has_node && weights.nodes[i] < middle->node)) {
+      if (weights.weight[i] > 0) keep(weights.nodes[i], weights.weight[i]);
+      ++i;
+      continue;
+    }
+    if (weight_of(middle->end[0]) > 0 || weight_of(middle->end[1]) > 0) keep(middle->node, 0.0);
+    if (has_node && weights.nodes[i] == middle->node) {
+      if (motion.unreached > 0) --motion.unreached;
+      ++i;
+    }
+    ++middle;
   }
-  for (const EdgeMiddle& each : middles) {
-    const std::uint32_t at = place_in(motion.nodes, each.node);
-    if (at == Motion::Midside::kStays || !model.adjacency->shells_of(each.node).empty()) continue;
-    motion.midside.push_back({at, {place_in(motion.nodes, each.end[0]), place_in(motion.nodes, each.end[1])}});
-  }
+  for (const EdgeMiddle& each : middles)
+    if (const std::uint32_t at = place_in(motion.nodes, each.node); at != Motion::Midside::kStays)
+      motion.midside.push_back({at, {place_in(motion.nodes, each.end[0]), place_in(motion.nodes, each.end[1])}});
 }
 
 Result<void> find_normals(const Model& model, bool each, Motion& motion) {

@@ -39,7 +39,7 @@ struct Card {
 Card card_of(const Document& document, NodeIndex node) {
   const deck::Deck& deck = *document.deck;
   if (deck.node_runs.empty() || node.value >= deck.node_line.size()) return {};
-  const deck::SourceFile& file = deck.files[deck.node_runs[deck.run_of(node)].file];
+  const deck::SourceFile& file = deck.file_of(node);
   const std::string_view text = file.bytes.text();
   const std::size_t begin = std::min<std::size_t>(deck.node_line[node.value], text.size());
   const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -54,13 +54,13 @@ std::string parameter_in(std::string_view card) {
   return std::string(card.substr(begin, card.find_first_of(" ,\t\r)+-*/", begin + 1) - begin));
 }
 
+/// With the parameter's name where that is the reason.
 std::string why_held(std::uint8_t hold, const Card& card) {
-  if ((hold & kHeldByParameter) != 0) {
-    const std::string parameter = parameter_in(card.text);
-    return parameter.empty() ? "has coordinates given by a parameter" : "has coordinates given by the parameter " + parameter;
-  }
-  if ((hold & kHeldByInclude) != 0) return "stands in an include that is transformed or used more than once";
-  return "belongs to an element that also names a node that isn't defined";
+  std::string why(mesh::why_held(hold));
+  if ((hold & kHeldByParameter) != 0)
+    if (const std::string parameter = parameter_in(card.text); !parameter.empty())
+      why = "has coordinates given by the parameter " + parameter;
+  return why;
 }
 
 }  // namespace

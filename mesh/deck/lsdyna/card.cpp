@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "mesh/deck/lsdyna/number.h"
 #include "mesh/deck/lsdyna/parameters.h"
+#include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {

@@ -20,6 +20,8 @@ std::optional<CardForm> shell_form(std::string_view options) {
   CardForm form{.kind = CardKind::shell};
   while (!options.empty()) {
     const std::string_view word = next_word(options);
+    if (word == "MCID") form.coordinate_system = true;
+    if (word == "DOF") form.scalar_nodes = true;
     if (word == "THICKNESS" || word == "BETA" || word == "MCID")
       form.thickness = true;
     else if (word == "OFFSET" || word == "DOF")
@@ -96,10 +98,32 @@ std::optional<CardForm> card_form(std::string_view keyword) {
   if (what == "MASS" && options.empty()) return CardForm{.kind = CardKind::mass};
   if (what == "MASS" && options == "_NODE_SET") return CardForm{.kind = CardKind::mass_of_set};
   if (what == "MASS" && (options == "_PART" || options == "_PART_SET")) return CardForm{.kind = CardKind::mass_of_part};
+  if (what == "INERTIA" && (options.empty() || options == "_OFFSET"))
+    return CardForm{.kind = CardKind::mass, .extra_lines = options.empty() ? 1 : 2};
   if (what == "SPH" && (options.empty() || options == "_VOLUME")) return CardForm{.kind = CardKind::sph};
   if (what == "SEATBELT" && options.empty()) return CardForm{.kind = CardKind::other, .node_fields = 2};
   if (what == "PLOTEL" && options.empty()) return CardForm{.kind = CardKind::other, .node_fields = 0};
   return std::nullopt;
+}
+
+std::uint16_t shell_style(const CardForm& form, Columns columns) {
+  unsigned bits = static_cast<unsigned>(columns);
+  bits |= form.thickness ? 4u : 0u;
+  bits |= form.composite ? 8u : 0u;
+  bits |= form.composite_long ? 16u : 0u;
+  bits |= form.coordinate_system ? 32u : 0u;
+  bits |= form.scalar_nodes ? 64u : 0u;
+  return static_cast<std::uint16_t>(bits | static_cast<unsigned>(form.extra_lines) << 7);
+}
+
+CardForm shell_form_of(std::uint16_t style) {
+  return {.kind = CardKind::shell,
+          .thickness = (style & 4u) != 0,
+          .composite = (style & 8u) != 0,
+          .composite_long = (style & 16u) != 0,
+          .coordinate_system = (style & 32u) != 0,
+          .scalar_nodes = (style & 64u) != 0,
+          .extra_lines = style >> 7};
 }
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -1,9 +1,10 @@
 #include "mesh/deck/lsdyna/definitions.h"
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "mesh/deck/lsdyna/card.h"
-#include "mesh/deck/lsdyna/number.h"
+#include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
@@ -39,9 +40,30 @@ class Cards {
   Columns columns_;
 };
 
-std::optional<std::int64_t> id_or_none(std::optional<std::int64_t> id) { return id && *id > 0 ? id : std::nullopt; }
+/// `offset`: the include's.
+std::optional<std::int64_t> id_or_none(std::optional<std::int64_t> id, std::int64_t offset = 0) {
+  return id && *id > 0 ? std::optional(*id + offset) : std::nullopt;
+}
 
-/// Cards of the options of *PART besides the two that all have.
+/// Cuts one of `options` off the front of the keyword's rest.
+bool cut_option(std::string_view& rest, std::initializer_list<std::string_view> options) {
+  for (const std::string_view option : options)
+    if (starts_with(rest, option) && (rest.size() == option.size() || rest[option.size()] == '_')) {
+      rest.remove_prefix(option.size());
+      return true;
+    }
+  return false;
+}
+
+/// *PART with any of its options; *PART_MOVE, _ANNEAL, _SENSOR and their like are about parts that others define.
+bool defines_parts(std::string_view keyword) {
+  if (!starts_with(keyword, "PART")) return false;
+  keyword.remove_prefix(4);
+  while (cut_option(keyword, {"_INERTIA", "_REPOSITION", "_CONTACT", "_PRINT", "_ATTACHMENT_NODES", "_AVERAGED", "_FIELD"})) continue;
+  return keyword.empty();
+}
+
+/// Cards of the options of *PART besides the two that all have; `inertia`: the first of its cards.
 int option_cards(std::string_view keyword, const Card* inertia, const Parameters& parameters) {
   int cards = 0;
   if (has_option(keyword, "_INERTIA")) {
@@ -54,19 +76,21 @@ int option_cards(std::string_view keyword, const Card* inertia, const Parameters
   return cards;
 }
 
+/// Cards that hold `values`, eight each; what no solver takes is cut.
+int cards_of_eight(double values) { return static_cast<int>((std::clamp(values, 0.0, 10000.0) + 7) / 8); }
+
 }  // namespace
 
-bool Definitions::read(std::string_view text, const Block& block, const Parameters& parameters) {
+bool Definitions::read(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& context) {
   const std::string_view name = block.name;
+  context_ = &context;
   if (starts_with(name, "PART_COMPOSITE")) {
     read_composite_part(text, block, parameters);
-  } else if (name == "PART" || starts_with(name, "PART_INERTIA") || starts_with(name, "PART_CONTACT") || starts_with(name, "PART_PRINT") ||
-             starts_with(name, "PART_REPOSITION") || starts_with(name, "PART_ATTACHMENT_NODES") || starts_with(name, "PART_FIELD") ||
-             starts_with(name, "PART_AVERAGED")) {
-    if (!has_option(name, "_AVERAGED")) read_parts(text, block, parameters);
+  } else if (defines_parts(name)) {
+    read_parts(text, block, parameters);
   } else if (starts_with(name, "SECTION_SHELL")) {
     read_shell_sections(text, block, parameters);
-  } else if (starts_with(name, "MAT_") && !starts_with(name, "MAT_ADD")) {
+  } else if (starts_with(name, "MAT_") && !starts_with(name, "MAT_ADD") && !starts_with(name, "MAT_NONLOCAL")) {
     read_material(text, block, parameters);
   } else if (name == "CONTROL_TIMESTEP") {
     read_time_step(text, block, parameters);
@@ -76,20 +100,25 @@ bool Definitions::read(std::string_view text, const Block& block, const Paramete
   return true;
 }
 
+void Definitions::add_part(std::int64_t id, Part part, std::string_view title) {
+  if (id <= 0) return;
+  part.id = id;
+  part.name = context_->prefix + std::string(title) + context_->suffix;
+  part.defined = true;
+  parts_.try_emplace(id, std::move(part));
+}
+
 void Definitions::read_parts(std::string_view text, const Block& block, const Parameters& parameters) {
   Cards cards(text, block);
   std::string_view title;
   Card card;
   while (cards.next(title) && cards.next(card)) {
-    const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters));
+    const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters), context_->offsets.part);
     if (id) {
       Part part;
-      part.id = *id;
-      part.name = title;
-      part.defined = true;
-      part.section = id_or_none(card.integer(1, parameters));
-      part.material = id_or_none(card.integer(2, parameters));
-      parts_.try_emplace(*id, std::move(part));
+      part.section = id_or_none(card.integer(1, parameters), context_->offsets.other);
+      part.material = id_or_none(card.integer(2, parameters), context_->offsets.material);
+      add_part(*id, std::move(part), title);
     }
     int left = option_cards(block.name, nullptr, parameters);
     if (has_option(block.name, "_INERTIA") && left > 0) {
@@ -100,39 +129,46 @@ void Definitions::read_parts(std::string_view text, const Block& block, const Pa
   }
 }
 
-/// One part a keyword: its layers go on to the end of the block.
+/// One part a keyword: its layers go on to the end of the block. Those of a thick shell only share out the room between its nodes.
 void Definitions::read_composite_part(std::string_view text, const Block& block, const Parameters& parameters) {
   Cards cards(text, block);
   std::string_view title;
   Card card;
   if (!cards.next(title) || !cards.next(card)) return;
-  const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters));
+  const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters), context_->offsets.part);
   if (!id) return;
   Part part;
-  part.id = *id;
-  part.name = title;
-  part.defined = true;
   if (has_option(block.name, "_CONTACT") && !cards.skip(1)) return;
-  const bool one_a_card = has_option(block.name, "_LONG");
+  const std::size_t layers_a_card = has_option(block.name, "_LONG") ? 1 : 2;
+  std::vector<Layer> layers;
   double thickness = 0;
-  while (cards.next(card)) {
-    if (!part.material) part.material = id_or_none(card.integer(0, parameters));
-    thickness += card.real(1, parameters).value_or(0);
-    if (!one_a_card) thickness += card.real(5, parameters).value_or(0);
-  }
-  if (thickness > 0) part.thickness = thickness;
-  parts_.try_emplace(*id, std::move(part));
+  while (cards.next(card))
+    for (std::size_t layer = 0; layer < layers_a_card; ++layer) {
+      const std::optional<std::int64_t> material = id_or_none(card.integer(4 * layer, parameters), context_->offsets.material);
+      const double height = card.real(4 * layer + 1, parameters).value_or(0);
+      if (!part.material) part.material = material;
+      if (!(height > 0)) continue;
+      thickness += height;
+      layers.push_back({material.value_or(0), height});
+    }
+  if (thickness > 0 && !has_option(block.name, "_TSHELL")) part.thickness = thickness * context_->length;
+  if (!parts_.contains(*id)) layers_[*id] = std::move(layers);
+  add_part(*id, std::move(part), title);
 }
 
 void Definitions::read_shell_sections(std::string_view text, const Block& block, const Parameters& parameters) {
-  const bool titled = has_option(block.name, "_TITLE");
-  // Other options bring cards of their own after the first section's.
-  const bool repeats = block.name == "SECTION_SHELL" || block.name == "SECTION_SHELL_TITLE";
+  std::string_view options = std::string_view(block.name).substr(std::string_view("SECTION_SHELL").size());
+  const bool titled = has_option(options, "_TITLE");
+  // Of each of these options one card follows.
+  int option_cards = 0;
+  while (cut_option(options, {"_EFG", "_THERMAL", "_XFEM", "_MISC"})) ++option_cards;
+  cut_option(options, {"_TITLE"});
+  const bool repeats = options.empty();
   Cards cards(text, block);
   std::string_view title;
   Card card;
   while ((!titled || cards.next(title)) && cards.next(card)) {
-    const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters));
+    const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters), context_->offsets.other);
     const std::int64_t formulation = card.integer(1, parameters).value_or(0);
     const double points = card.real(3, parameters).value_or(0);
     const bool layered = card.integer(6, parameters).value_or(0) == 1;
@@ -143,10 +179,14 @@ void Definitions::read_shell_sections(std::string_view text, const Block& block,
       const double given = card.real(corner, parameters).value_or(0);
       sum += given > 0 ? given : first;
     }
-    if (id && sum > 0) section_thickness_.try_emplace(*id, sum / 4);
-    // User-defined formulations bring cards of their own as well.
-    if (!repeats || formulation > 100) return;
-    if (layered && !cards.skip(static_cast<int>((std::clamp(points, 1.0, 1000.0) + 7) / 8))) return;
+    if (id && sum > 0) section_thickness_.try_emplace(*id, sum / 4 * context_->length);
+    if (!repeats || !cards.skip((layered ? cards_of_eight(std::max(points, 1.0)) : 0) + option_cards)) return;
+    // User-defined formulations have a card of counts, then one for each point of integration, then their constants.
+    if (formulation < 101 || formulation > 105) continue;
+    if (!cards.next(card)) return;
+    const std::int64_t own_points = std::clamp<std::int64_t>(card.integer(0, parameters).value_or(0), 0, 10000);
+    const int constants = cards_of_eight(card.real(5, parameters).value_or(0));
+    if (!cards.skip(static_cast<int>(own_points) + constants)) return;
   }
 }
 
@@ -156,7 +196,7 @@ void Definitions::read_material(std::string_view text, const Block& block, const
   Card card;
   if (has_option(block.name, "_TITLE") && !cards.next(title)) return;
   if (!cards.next(card)) return;
-  const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters));
+  const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters), context_->offsets.material);
   if (!id) return;
   const MaterialFields fields = material_fields(block.name);
   const auto positive = [&](int field) -> std::optional<double> {
@@ -165,8 +205,9 @@ void Definitions::read_material(std::string_view text, const Block& block, const
     return value && *value > 0 ? value : std::nullopt;
   };
   Material material;
-  material.density = positive(fields.density);
-  material.youngs_modulus = positive(fields.youngs_modulus);
+  const IncludeContext& c = *context_;
+  if (const auto density = positive(fields.density)) material.density = *density * c.mass / (c.length * c.length * c.length);
+  if (const auto modulus = positive(fields.youngs_modulus)) material.youngs_modulus = *modulus * c.mass / (c.length * c.time * c.time);
   if (material.youngs_modulus && fields.poissons_ratio > 0)
     material.poissons_ratio = card.real(static_cast<std::size_t>(fields.poissons_ratio - 1), parameters);
   material.limits_time_step = fields.limits_time_step;
@@ -179,7 +220,20 @@ void Definitions::read_time_step(std::string_view text, const Block& block, cons
   if (!cards.next(card)) return;
   if (const double scale = card.real(1, parameters).value_or(0); scale > 0) time_step_.scale = scale;
   time_step_.shell_option = static_cast<int>(std::clamp<std::int64_t>(card.integer(2, parameters).value_or(0), -100, 100));
-  time_step_.mass_scaled = card.real(4, parameters).value_or(0);
+  time_step_.mass_scaled = card.real(4, parameters).value_or(0) * context_->time;
+}
+
+/// The mean over the thickness; nullopt where that of a layer isn't known.
+std::optional<double> Definitions::density_of(const std::vector<Layer>& layers) const {
+  double mass = 0;
+  double thickness = 0;
+  for (const Layer& layer : layers) {
+    const auto material = materials_.find(layer.material);
+    if (material == materials_.end() || !material->second.density) return std::nullopt;
+    mass += layer.thickness * *material->second.density;
+    thickness += layer.thickness;
+  }
+  return thickness > 0 ? std::optional(mass / thickness) : std::nullopt;
 }
 
 std::vector<Part> Definitions::parts() const {
@@ -196,6 +250,8 @@ std::vector<Part> Definitions::parts() const {
         part.poissons_ratio = material->second.poissons_ratio;
         part.limits_time_step = material->second.limits_time_step;
       }
+    if (const auto layers = layers_.find(id); layers != layers_.end())
+      if (const auto density = density_of(layers->second)) part.density = density;
     out.push_back(std::move(part));
   }
   return out;

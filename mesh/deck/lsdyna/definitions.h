@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/deck/deck.h"
+#include "mesh/deck/lsdyna/includes.h"
 #include "mesh/deck/lsdyna/keyword.h"
 #include "mesh/deck/lsdyna/parameters.h"
 
@@ -24,20 +25,29 @@ struct Material {
 class Definitions {
  public:
   /// Reads the block if its keyword is one of those; false: it isn't.
-  bool read(std::string_view text, const Block& block, const Parameters& parameters);
+  /// `context`: of the include it stands in; ids and units are put into those of the model.
+  bool read(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& context);
 
   /// Defined parts with section and material put in, ascending by id.
   std::vector<Part> parts() const;
   const TimeStepControl& time_step() const { return time_step_; }
 
  private:
+  struct Layer {
+    std::int64_t material = 0;  ///< 0: none
+    double thickness = 0;       ///< in the units of its include
+  };
+  std::optional<double> density_of(const std::vector<Layer>& layers) const;
+  void add_part(std::int64_t id, Part part, std::string_view title);
   void read_parts(std::string_view text, const Block& block, const Parameters& parameters);
   void read_composite_part(std::string_view text, const Block& block, const Parameters& parameters);
   void read_shell_sections(std::string_view text, const Block& block, const Parameters& parameters);
   void read_material(std::string_view text, const Block& block, const Parameters& parameters);
   void read_time_step(std::string_view text, const Block& block, const Parameters& parameters);
 
+  const IncludeContext* context_ = nullptr;  ///< of what is being read
   std::map<std::int64_t, Part> parts_;
+  std::map<std::int64_t, std::vector<Layer>> layers_;  ///< of composite parts
   std::map<std::int64_t, double> section_thickness_;
   std::map<std::int64_t, Material> materials_;
   TimeStepControl time_step_;

@@ -1,9 +1,10 @@
 #include "mesh/deck/lsdyna/includes.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "mesh/deck/lsdyna/card.h"
-#include "mesh/deck/lsdyna/number.h"
+#include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
@@ -11,15 +12,15 @@ namespace {
 constexpr std::size_t kLongestName = 4096;
 constexpr std::size_t kMostPaths = 100;
 
+/// Whether a name goes on in the next line.
+bool goes_on(std::string_view part) {
+  return part.size() >= 2 && part.back() == '+' && (part[part.size() - 2] == ' ' || part[part.size() - 2] == '\t');
+}
+
 /// Decks from Windows have backslashes between folders.
 std::string with_slashes(std::string name) {
   std::replace(name.begin(), name.end(), '\\', '/');
   return name;
-}
-
-bool is_file(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error) && !std::filesystem::is_directory(path, error);
 }
 
 }  // namespace
@@ -28,59 +29,126 @@ std::vector<IncludeName> include_names(std::string_view text, const Block& block
   std::vector<IncludeName> names;
   Lines lines(text, block.begin, block.end);
   Line line;
-  bool goes_on = false;
+  bool name_goes_on = false;
   while (lines.next(line)) {
     std::string_view part = trim(line.text);
     if (part.empty()) continue;
-    if (!goes_on) {
+    if (!name_goes_on) {
       if (only_first && !names.empty()) break;
       names.push_back({{}, line.offset});
     }
-    goes_on = part.size() >= 2 && part.back() == '+' && (part[part.size() - 2] == ' ' || part[part.size() - 2] == '\t');
-    if (goes_on) part = trim(part.substr(0, part.size() - 1));
+    name_goes_on = goes_on(part);
+    if (name_goes_on) part = trim(part.substr(0, part.size() - 1));
     std::string& name = names.back().name;
     if (name.size() + part.size() <= kLongestName) name += part;
+  }
+  // Some writers put names with blanks between quotes.
+  for (IncludeName& each : names) {
+    const std::string& name = each.name;
+    if (name.size() > 2 && (name.front() == '"' || name.front() == '\'') && name.back() == name.front())
+      each.name = name.substr(1, name.size() - 2);
   }
   return names;
 }
 
-bool transform_is_identity(std::string_view text, const Block& block, const Parameters& parameters) {
+bool IncludeContext::same_as(const IncludeContext& other) const {
+  return parent == other.parent && offsets == other.offsets && mass == other.mass && time == other.time && length == other.length &&
+         transformation == other.transformation && prefix == other.prefix && suffix == other.suffix;
+}
+
+namespace {
+
+/// Greater offsets fit no field, and their sums must stay numbers.
+constexpr std::int64_t kLargestOffset = 1'000'000'000'000'000;
+constexpr double kLargestFactor = 1e30;
+constexpr std::size_t kLongestAffix = 256;
+
+/// The fields of an *INCLUDE_TRANSFORM after the file's name.
+class TransformCards {
+ public:
+  TransformCards(const Parameters& parameters, std::string& problem) : parameters_(parameters), problem_(problem) {}
+
+  void read(int number, const Card& card, IncludeContext& context) {
+    card_ = &card;
+    IdOffsets& to = context.offsets;
+    if (number == 1) {
+      std::int64_t* const offsets[] = {&to.node, &to.element, &to.part, &to.material, &to.set, &to.function, &to.define};
+      for (std::size_t f = 0; f < std::size(offsets); ++f) add_offset(f, *offsets[f]);
+    } else if (number == 2) {
+      add_offset(0, to.other);
+      // The outer include's prefix stands before the inner one's.
+      if (!card.text(1).empty()) context.prefix = (context.prefix + std::string(card.text(1)) + ".").substr(0, kLongestAffix);
+      if (!card.text(2).empty()) context.suffix = ("." + std::string(card.text(2)) + context.suffix).substr(0, kLongestAffix);
+    } else if (number == 3) {
+      context.mass *= factor(0);
+      context.time *= factor(1);
+      context.own_length = factor(2);
+      context.length *= context.own_length;
+    } else if (number == 4) {
+      context.transformation = card.integer(0, parameters_).value_or(-1);
+      if (context.transformation < 0) problem_ = "has a TRANID that can't be read";
+    }
+  }
+
+ private:
+  void add_offset(std::size_t field, std::int64_t& to) {
+    const std::optional<std::int64_t> value = card_->integer(field, parameters_);
+    if (value && *value > -kLargestOffset && *value < kLargestOffset)
+      to += *value;
+    else
+      problem_ = "has an offset of ids that can't be used";
+  }
+  double factor(std::size_t field) {
+    const std::optional<double> value = card_->real(field, parameters_);
+    if (value && *value == 0) return 1;
+    if (value && *value > 1 / kLargestFactor && *value < kLargestFactor) return *value;
+    problem_ = "has a factor of units that can't be used";
+    return 1;
+  }
+
+  const Parameters& parameters_;
+  std::string& problem_;
+  const Card* card_ = nullptr;
+};
+
+}  // namespace
+
+IncludeContext read_transform(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& parent,
+                              std::uint32_t parent_index, std::string& problem) {
+  IncludeContext context = parent;
+  context.parent = parent_index;
+  context.own_length = 1;
+  context.transformation = 0;
   Lines lines(text, block.begin, block.end);
   Line line;
   Card card;
+  TransformCards cards(parameters, problem);
   bool in_name = true;
   for (int number = 0; lines.next(line);) {
-    const std::string_view part = trim(line.text);
     if (in_name) {
-      in_name = part.size() >= 2 && part.back() == '+' && part[part.size() - 2] == ' ';
+      in_name = goes_on(trim(line.text)) || trim(line.text).empty();
       continue;
     }
-    // Offsets of ids on the first two cards; factors for mass, time, length on the third, where 1 is as good as 0 and
-    // the fifth field only concerns the solver's output; the transformation on the fourth.
-    ++number;
     card.cut(line.text, block.columns);
-    for (std::size_t f = 0; f < card.count() && number <= 4; ++f) {
-      if (number == 3 && f == 4) continue;
-      const std::optional<double> value = card.real(f, parameters);
-      if (!value || (*value != 0 && !(number == 3 && *value == 1))) return false;
-    }
+    cards.read(++number, card, context);
   }
-  return true;
+  // Where factors multiply up beyond all units, positions would be no numbers any more.
+  for (double* const factor : {&context.mass, &context.time, &context.length})
+    if (!(*factor > 1 / kLargestFactor && *factor < kLargestFactor)) {
+      *factor = 1;
+      problem = "has a factor of units that can't be used";
+    }
+  return context;
 }
 
 void IncludeSearch::add_path(const std::string& path) {
   if (paths_.size() < kMostPaths) paths_.push_back(main_folder_ / with_slashes(path));
 }
 
-std::optional<std::filesystem::path> IncludeSearch::find(const std::string& name, const std::filesystem::path& from_folder) const {
-  if (name.find('\0') != std::string::npos) return std::nullopt;
-  for (const std::string& spelled : {name, with_slashes(name)}) {
-    if (is_file(from_folder / spelled)) return from_folder / spelled;
-    if (is_file(main_folder_ / spelled)) return main_folder_ / spelled;
-    for (const std::filesystem::path& path : paths_)
-      if (is_file(path / spelled)) return path / spelled;
-  }
-  return std::nullopt;
+std::vector<std::filesystem::path> IncludeSearch::folders(const std::filesystem::path& from_folder) const {
+  std::vector<std::filesystem::path> out = {from_folder, main_folder_};
+  out.insert(out.end(), paths_.begin(), paths_.end());
+  return out;
 }
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -1,4 +1,4 @@
-// *INCLUDE: which file a name means.
+// *INCLUDE: which file a name means, and what *INCLUDE_TRANSFORM makes of what it holds.
 #pragma once
 
 #include <filesystem>
@@ -22,16 +22,33 @@ struct IncludeName {
 /// has other cards after its one name.
 std::vector<IncludeName> include_names(std::string_view text, const Block& block, bool only_first);
 
-/// Whether an *INCLUDE_TRANSFORM block changes nothing: no offset, no factor, no transformation.
-bool transform_is_identity(std::string_view text, const Block& block, const Parameters& parameters);
+/// What becomes of the cards of an include: everything the includes around it do is counted in, but for the transformation.
+struct IncludeContext {
+  std::uint32_t parent = 0;
+  std::uint32_t file = 0;  ///< of the *INCLUDE_TRANSFORM
+  std::size_t offset = 0;
+  IdOffsets offsets;
+  double mass = 1, time = 1, length = 1;  ///< what the file's units are multiplied with
+  double own_length = 1;                  ///< of this include alone
+  std::int64_t transformation = 0;        ///< of this include alone, as written; 0: none
+  std::string prefix, suffix;             ///< of titles, each with its dot
+
+  /// Whether it does the same as another at another place.
+  bool same_as(const IncludeContext& other) const;
+};
+
+/// An *INCLUDE_TRANSFORM in a file that is in `parent` (number `parent_index`) itself. `problem` gets what of it can't be used, as the
+/// end of a sentence; it is left out then.
+IncludeContext read_transform(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& parent,
+                              std::uint32_t parent_index, std::string& problem);
 
 /// Where includes are looked for: beside the file that names them, beside the main file, then along the paths.
 class IncludeSearch {
  public:
   explicit IncludeSearch(std::filesystem::path main_folder) : main_folder_(std::move(main_folder)) {}
   void add_path(const std::string& path);
-  /// The file, if one is there.
-  std::optional<std::filesystem::path> find(const std::string& name, const std::filesystem::path& from_folder) const;
+  /// In the order they are looked through for what a file in `from_folder` names.
+  std::vector<std::filesystem::path> folders(const std::filesystem::path& from_folder) const;
 
  private:
   std::filesystem::path main_folder_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "mesh/deck/lsdyna/number.h"
+#include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
@@ -112,10 +112,6 @@ bool Lines::next(Line& line) {
     return true;
   }
   return false;
-}
-
-long line_number(std::string_view text, std::size_t offset) {
-  return 1 + static_cast<long>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size())), '\n'));
 }
 
 }  // namespace prismesh::mesh::deck::lsdyna

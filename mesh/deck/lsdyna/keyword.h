@@ -10,6 +10,9 @@
 
 namespace prismesh::mesh::deck::lsdyna {
 
+/// How the columns of a run of cards are cut (a card with commas is free format whatever the layout). CardRun::style of this format.
+enum class Columns : std::uint8_t { standard, i10, wide };
+
 /// From a line that starts with '*' to the next one. Offsets are into the file's text.
 struct Block {
   std::string name;  ///< upper case, without the asterisk, the suffix and what follows: "ELEMENT_SHELL_THICKNESS"
@@ -61,8 +64,5 @@ class Lines {
 /// What stands before an encrypted block, at the start of a line.
 inline constexpr std::string_view kEncryptedBegin = "-----BEGIN PGP";
 inline constexpr std::string_view kEncryptedEnd = "-----END PGP";
-
-/// The number of the line at an offset, from 1.
-long line_number(std::string_view text, std::size_t offset);
 
 }  // namespace prismesh::mesh::deck::lsdyna

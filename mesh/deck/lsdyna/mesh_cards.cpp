@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "mesh/deck/lsdyna/card.h"
-#include "mesh/deck/lsdyna/number.h"
+#include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
@@ -14,24 +14,7 @@ constexpr std::array<int, 10> kElementWidths = {8, 8, 8, 8, 8, 8, 8, 8, 8, 8};
 constexpr std::array<int, 5> kThicknessWidths = {16, 16, 16, 16, 16};
 constexpr std::array<int, 4> kMassWidths = {8, 8, 16, 8};
 constexpr std::size_t kMostElementFields = 10;
-
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text.substr(0, 40)) out += c >= ' ' && c != 127 ? c : '?';
-  return out + (text.size() > 40 ? "...\"" : "\"");
-}
-
-/// Digits with blanks around them; anything else is for the slow way.
-inline bool plain_integer(const char* at, const char* end, std::int64_t& value) {
-  while (at < end && *at == ' ') ++at;
-  std::int64_t sum = 0;
-  const char* first = at;
-  while (at < end && static_cast<unsigned char>(*at - '0') < 10) sum = sum * 10 + (*at++ - '0');
-  if (at - first > 18) return false;
-  while (at < end && *at == ' ') ++at;
-  value = sum;
-  return at == end;
-}
+constexpr std::size_t kShortestUsualLine = 40;
 
 class PieceReader {
  public:
@@ -42,11 +25,26 @@ class PieceReader {
     parameters_ = &tables_[segment.parameters];
     Lines lines(text_, segment.begin, segment.end);
     lines_ = &lines;
+    make_room(segment);
     if (segment.form.kind == CardKind::node) return read_nodes();
+    if (segment.form.kind == CardKind::shell) out_.begin_shells(shell_style(segment.form, segment.columns), segment.frame);
     return read_elements();
   }
 
  private:
+  /// Cards of a block are mostly as long as its first. Growing step by step would touch twice the memory.
+  void make_room(const Segment& segment) {
+    const std::string_view text = text_.substr(segment.begin, segment.end - segment.begin);
+    const std::size_t line = std::max(std::min(text.find('\n'), text.size()) + 1, kShortestUsualLine);
+    const std::size_t count = text.size() / line + 1;
+    const auto reserve = [&](auto& values) {
+      if (values.size() + count > values.capacity()) values.reserve(std::max(values.size() + count, 2 * values.capacity()));
+    };
+    RawShells& shells = out_.shells;
+    if (segment.form.kind == CardKind::node) reserve(out_.node_id), reserve(out_.position), reserve(out_.node_offset);
+    if (segment.form.kind == CardKind::shell) reserve(shells.id), reserve(shells.part), reserve(shells.nodes), reserve(shells.offset);
+  }
+
   bool fail_at(std::size_t offset, std::string message) {
     out_.error = {offset, std::move(message)};
     return false;
@@ -57,7 +55,7 @@ class PieceReader {
       out_.encrypted = true;
       return false;
     }
-    if (field.find('&') != std::string_view::npos) {
+    if (field.find_first_of("&<") != std::string_view::npos) {
       out_.note("undefined-parameter", line.offset, id);
       return true;
     }
@@ -65,7 +63,7 @@ class PieceReader {
   }
 
   bool read_nodes() {
-    out_.runs.push_back({static_cast<std::uint32_t>(out_.node_id.size()), segment_->columns});
+    out_.begin_nodes(static_cast<std::uint16_t>(segment_->columns), segment_->frame);
     const auto id_width = static_cast<std::size_t>(field_width(8, segment_->columns));
     const auto width = static_cast<std::size_t>(field_width(16, segment_->columns));
     Line line;
@@ -106,7 +104,7 @@ class PieceReader {
       const std::optional<double> value = parameters_->real(field);
       if (!value) return refuse(line, field, std::string("the ") + "xyz"[axis] + " coordinate of node " + std::to_string(*id), *id);
       position[axis] = *value;
-      by_parameter |= field.find('&') != std::string_view::npos;
+      by_parameter |= field.find_first_of("&<") != std::string_view::npos;
     }
     if (by_parameter) out_.by_parameter.push_back(static_cast<std::uint32_t>(out_.node_id.size()));
     add_node(*id, position, line.offset);
@@ -226,17 +224,7 @@ class PieceReader {
     shells.thickness.back() = static_cast<float>(thickness);
   }
 
-  /// Layers go on until the next keyword or a line that only an element's card can be: whole numbers alone, at least
-  /// five, where eight-column fields begin.
-  bool looks_like_element(std::string_view line) {
-    if (line.find_first_not_of("0123456789 ,\t") != std::string_view::npos) return false;
-    card_.cut(line, kElementWidths, segment_->columns);
-    for (std::size_t f = 0; f < 5; ++f) {
-      std::int64_t value = 0;
-      if (!parse_integer(card_.text(f), value) || value <= 0) return false;
-    }
-    return true;
-  }
+  bool looks_like_element(std::string_view line) { return lsdyna::looks_like_element(line, segment_->columns); }
 
   bool read_layers() {
     double thickness = 0;
@@ -361,19 +349,76 @@ class PieceReader {
 
 }  // namespace
 
-void PieceCards::note(std::string_view kind, std::size_t offset, std::int64_t id) {
-  const auto at = std::find_if(oddities.begin(), oddities.end(), [&](const Oddity& o) { return o.kind == kind; });
-  if (at != oddities.end())
-    ++at->count;
-  else
-    oddities.push_back({std::string(kind), offset, id, 1});
+namespace {
+
+std::size_t cards_in(const ElementCounts& counts) { return counts.shells() + counts.beam + counts.solid + counts.tshell + counts.other; }
+
+void shift(std::span<std::int64_t> ids, std::int64_t by) {
+  for (std::int64_t& id : ids)
+    if (id > 0) id += by;
 }
 
-PieceCards read_piece(std::string_view text, const Piece& piece, const std::vector<Parameters>& parameters) {
+/// Ids as they are in the model, lengths in its unit. What was read stays small enough for the sums: see parse_integer and
+/// read_transform.
+void transform(PieceCards& cards, const IncludeContext& context) {
+  const IdOffsets& by = context.offsets;
+  shift(cards.node_id, by.node);
+  RawShells& shells = cards.shells;
+  shift(shells.id, by.element);
+  shift(shells.part, by.part);
+  for (auto& nodes : shells.nodes) shift(nodes, by.node);
+  for (auto& [shell, nodes] : shells.midside) shift(nodes, by.node);
+  for (float& thickness : shells.thickness) thickness = static_cast<float>(thickness * context.length);
+  for (std::size_t c = 0; c < cards.elements.size(); ++c) {
+    RawElements& elements = cards.elements[c];
+    // A particle is called by its node.
+    shift(elements.id, c == static_cast<std::size_t>(ElementClass::sph) ? by.node : by.element);
+    shift(elements.part, by.part);
+    shift(elements.nodes, by.node);
+  }
+}
+
+/// An offset below zero may leave no id.
+void refuse_ids_below_one(PieceCards& cards) {
+  if (cards.error) return;
+  const auto look = [&](const std::vector<std::int64_t>& ids, const std::vector<std::uint64_t>& offsets, const char* what) {
+    for (std::size_t i = 0; i < ids.size() && !cards.error; ++i)
+      if (ids[i] <= 0)
+        cards.error = {offsets[i], std::string("the include's offset makes the id of this ") + what + " " + std::to_string(ids[i])};
+  };
+  look(cards.node_id, cards.node_offset, "node");
+  look(cards.shells.id, cards.shells.offset, "element");
+  for (const RawElements& elements : cards.elements) look(elements.id, elements.offset, "element");
+}
+
+}  // namespace
+
+bool looks_like_element(std::string_view line, Columns columns) {
+  if (line.find_first_not_of("0123456789 ,\t") != std::string_view::npos) return false;
+  Card card;
+  card.cut(line, kElementWidths, columns);
+  for (std::size_t f = 0; f < 5; ++f) {
+    std::int64_t value = 0;
+    if (!parse_integer(card.text(f), value) || value <= 0) return false;
+  }
+  return true;
+}
+
+PieceCards read_piece(std::string_view text, const Piece& piece, const std::vector<Parameters>& parameters,
+                      const std::vector<IncludeContext>& contexts) {
   PieceCards out;
+  out.file = piece.file;
+  out.held = piece.held;
   PieceReader reader(text, parameters, out);
-  for (const Segment& segment : piece.segments)
-    if (!reader.read(segment)) break;
+  for (const Segment& segment : piece.segments) {
+    const std::size_t before = cards_in(out.counts);
+    const bool read = reader.read(segment);
+    if (const std::size_t count = cards_in(out.counts) - before; count > 0) out.count_kind(segment.word, count);
+    if (!read) break;
+  }
+  if (piece.segments.empty() || piece.segments.front().frame == 0) return out;
+  transform(out, contexts[piece.segments.front().frame]);
+  refuse_ids_below_one(out);
   return out;
 }
 

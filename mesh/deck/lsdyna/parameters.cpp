@@ -7,12 +7,13 @@
 #include <set>
 
 #include "mesh/deck/lsdyna/card.h"
-#include "mesh/deck/lsdyna/number.h"
+#include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
 constexpr int kDeepestExpression = 64;
+constexpr std::size_t kLongestExpression = 1 << 20;
 
 std::string lower(std::string_view text) {
   std::string out(text);
@@ -21,36 +22,72 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// The name behind the type letter: "R  tEnd" -> "tend", "rtbumper" -> "tbumper". Empty for text parameters.
-std::string parameter_name(std::string_view field) {
+/// "R  tEnd" is the real parameter "tend", "rtbumper" is "tbumper".
+struct TypedName {
+  char type = 0;  ///< 'r', 'i', 'c'; 0: neither
+  std::string name;
+};
+
+TypedName typed_name(std::string_view field) {
   field = trim(field);
   if (field.empty()) return {};
-  const char type = field.front();
-  if (type != 'R' && type != 'r' && type != 'I' && type != 'i') return {};
-  return lower(trim(field.substr(1)));
+  const std::string type = lower(field.substr(0, 1));
+  if (type != "r" && type != "i" && type != "c") return {};
+  return {type[0], lower(trim(field.substr(1)))};
 }
+
+bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
 }  // namespace
 
-std::optional<double> Parameters::find(const Table& table, std::string_view key, std::uint32_t version) {
+const Parameters::Value* Parameters::find(const Table& table, std::string_view key, std::uint32_t version) {
   const auto at = table.find(key);
-  if (at == table.end()) return std::nullopt;
+  if (at == table.end()) return nullptr;
   const std::vector<Value>& values = at->second;
   const auto after =
       std::upper_bound(values.begin(), values.end(), version, [](std::uint32_t v, const Value& value) { return v < value.version; });
-  return after == values.begin() ? std::nullopt : std::prev(after)->value;
+  return after == values.begin() || !std::prev(after)->defined ? nullptr : &*std::prev(after);
 }
 
-std::optional<double> Parameters::find(std::string_view name) const {
+const Parameters::Value* Parameters::find_value(std::string_view name) const {
   const std::string key = lower(name);
-  const std::optional<double> local = find(history_->tables[static_cast<std::size_t>(Scope::local)], key, version_);
-  return local ? local : find(history_->tables[static_cast<std::size_t>(Scope::global)], key, version_);
+  const Value* value = find(history_->tables[static_cast<std::size_t>(Scope::local)], key, version_);
+  if (!value) value = find(history_->tables[static_cast<std::size_t>(Scope::global)], key, version_);
+  return value;
 }
 
-void Parameters::define(Scope scope, const std::string& key, std::optional<double> value) {
+std::optional<ParameterValue> Parameters::find(std::string_view name) const {
+  const Value* value = find_value(name);
+  if (!value) ++history_->undefined;
+  return value && !value->text ? std::optional(value->number) : std::nullopt;
+}
+
+void Parameters::set(Scope scope, const std::string& key, Value value) {
   version_ = ++history_->latest;
-  history_->tables[static_cast<std::size_t>(scope)][key].push_back({version_, value});
+  value.version = version_;
+  history_->tables[static_cast<std::size_t>(scope)][key].push_back(std::move(value));
   if (scope == Scope::local) history_->local_changes.emplace_back(version_, key);
+}
+
+/// "Defined again" is within one scope: a local one hides global ones and those of the files around without a word.
+void Parameters::define(const Definition& definition, const std::string& key, Value value) {
+  if (key.empty()) return;
+  const Value* before = find(history_->tables[static_cast<std::size_t>(definition.scope)], key, version_);
+  value.depth = depth_;
+  value.is_mutable = definition.is_mutable;
+  if (before && (definition.scope == Scope::global || before->depth == depth_)) {
+    value.is_mutable = before->is_mutable;
+    const bool same = before->text == value.text && before->number.value == value.number.value;
+    if (!before->is_mutable && !same) {
+      const int flag = history_->duplication;
+      const bool takes_new = flag == 2 || flag == 4;
+      if (flag != 4 && flag != 5)
+        definition.problems->push_back({definition.offset, "duplicate-parameter",
+                                        "parameter " + key + " is defined again; its " + (takes_new ? "new" : "first") + " value counts"});
+      if (!takes_new) return;
+    }
+  }
+  set(definition.scope, key, std::move(value));
 }
 
 void Parameters::leave_file(const Parameters& before) {
@@ -59,15 +96,31 @@ void Parameters::leave_file(const Parameters& before) {
   std::set<std::string> keys;
   for (auto change = first; change != history_->local_changes.end(); ++change) keys.insert(change->second);
   const Table& table = history_->tables[static_cast<std::size_t>(Scope::local)];
-  for (const std::string& key : keys) define(Scope::local, key, find(table, key, before.version_));
+  for (const std::string& key : keys) {
+    const Value* old = find(table, key, before.version_);
+    Value value = old ? *old : Value();
+    value.defined = old != nullptr;
+    set(Scope::local, key, std::move(value));
+  }
+  depth_ = before.depth_;
 }
 
-void Parameters::read(std::string_view text, const Block& block) {
-  const Scope scope = block.name.find("_LOCAL") != std::string::npos ? Scope::local : Scope::global;
-  if (block.name.find("_EXPRESSION") != std::string::npos)
-    read_expressions(text, block, scope);
+void Parameters::read(std::string_view text, const Block& block, std::vector<ParameterProblem>& problems) {
+  const auto has = [&](std::string_view option) { return block.name.find(option) != std::string::npos; };
+  if (has("_DUPLICATION")) {
+    Lines lines(text, block.begin, block.end);
+    Line line;
+    Card card;
+    if (!lines.next(line) || history_->duplication != 0) return;
+    card.cut(line.text, block.columns);
+    history_->duplication = static_cast<int>(std::clamp<std::int64_t>(card.integer(0, *this).value_or(1), 1, 5));
+    return;
+  }
+  const Definition definition{has("_LOCAL") ? Scope::local : Scope::global, has("_MUTABLE"), 0, &problems};
+  if (has("_EXPRESSION"))
+    read_expressions(text, block, definition);
   else
-    read_definitions(text, block, scope);
+    read_definitions(text, block, definition);
 }
 
 std::optional<double> Parameters::real(std::string_view field) const {
@@ -76,9 +129,14 @@ std::optional<double> Parameters::real(std::string_view field) const {
   field = trim(field);
   const bool negative = field.size() > 1 && field[0] == '-';
   if (negative || (field.size() > 1 && field[0] == '+')) field = trim(field.substr(1));
-  if (field.empty() || field.front() != '&') return std::nullopt;
-  const std::optional<double> found = find(trim(field.substr(1)));
-  return found && negative ? std::optional(-*found) : found;
+  if (field.empty()) return std::nullopt;
+  std::optional<ParameterValue> found;
+  if (field.front() == '&')
+    found = find(trim(field.substr(1)));
+  else if (field.front() == '<' && field.back() == '>')
+    found = evaluate(field.substr(1, field.size() - 2), *this);
+  if (!found) return std::nullopt;
+  return negative ? -found->value : found->value;
 }
 
 std::optional<std::int64_t> Parameters::integer(std::string_view field) const {
@@ -89,29 +147,85 @@ std::optional<std::int64_t> Parameters::integer(std::string_view field) const {
   return static_cast<std::int64_t>(std::llround(*found));
 }
 
-void Parameters::read_definitions(std::string_view text, const Block& block, Scope scope) {
+std::string Parameters::put_into_text(std::string_view text) const {
+  std::string out;
+  while (!text.empty()) {
+    std::size_t length = 1;
+    if (text.front() == '&') {
+      while (length < text.size() && is_name(text[length])) ++length;
+      // The longest name that is known: what follows need not be set apart.
+      for (std::size_t l = length; l > 1; --l) {
+        const Value* value = find_value(text.substr(1, l - 1));
+        if (!value || (!value->text && !value->number.whole)) continue;
+        out += value->text ? *value->text : std::to_string(static_cast<std::int64_t>(value->number.value));
+        text.remove_prefix(l);
+        length = 0;
+        break;
+      }
+    }
+    out += text.substr(0, length);
+    text.remove_prefix(length);
+  }
+  return out;
+}
+
+void Parameters::define(const Definition& definition, std::string_view field, std::string_view text) {
+  const TypedName typed = typed_name(field);
+  if (typed.name.empty()) {
+    if (!field.empty())
+      definition.problems->push_back(
+          {definition.offset, "bad-parameter",
+           "a parameter's name begins with R, I or C for its type; " + std::string(field.substr(0, 20)) + " is left out"});
+    return;
+  }
+  Value value;
+  if (typed.type == 'c') {
+    value.text = std::string(text);
+  } else if (const std::optional<double> number = real(text)) {
+    value.number = {typed.type == 'i' ? std::trunc(*number) : *number, typed.type == 'i' && std::abs(*number) < 1e18};
+  } else {
+    definition.problems->push_back(
+        {definition.offset, "bad-parameter", "the value of parameter " + typed.name + " is no number; the parameter stays undefined"});
+    return;
+  }
+  define(definition, typed.name, std::move(value));
+}
+
+void Parameters::read_definitions(std::string_view text, const Block& block, Definition definition) {
+  // *PARAMETER_TYPE has one a card, and behind it what kind of id it is.
+  const bool one_a_card = block.name.find("_TYPE") != std::string::npos;
   Lines lines(text, block.begin, block.end);
   Line line;
   Card card;
   while (lines.next(line)) {
     card.cut(line.text, block.columns);
-    for (std::size_t f = 0; f + 1 < card.count(); f += 2) {
-      const std::string name = parameter_name(card.text(f));
-      if (name.empty()) continue;
-      if (const std::optional<double> value = card.real(f + 1, *this)) define(scope, name, value);
-    }
+    definition.offset = line.offset;
+    for (std::size_t f = 0; f + 1 < (one_a_card ? std::min<std::size_t>(card.count(), 2) : card.count()); f += 2)
+      define(definition, card.text(f), card.text(f + 1));
   }
 }
 
-void Parameters::read_expressions(std::string_view text, const Block& block, Scope scope) {
+void Parameters::read_expressions(std::string_view text, const Block& block, Definition definition) {
   const auto width = static_cast<std::size_t>(field_width(10, block.columns));
   Lines lines(text, block.begin, block.end);
   Line line;
-  std::string name;
+  TypedName name;
   std::string expression;
   const auto finish = [&] {
-    if (name.empty()) return;
-    if (const std::optional<double> value = evaluate(expression, *this)) define(scope, name, value);
+    if (name.name.empty()) return;
+    Value value;
+    if (name.type == 'c') {
+      value.text = expression;
+    } else if (const std::optional<ParameterValue> number = evaluate(expression, *this)) {
+      value.number = *number;
+      value.number.whole = name.type == 'i' && std::abs(number->value) < 1e18;
+      if (name.type == 'i') value.number.value = std::trunc(number->value);
+    } else {
+      definition.problems->push_back({definition.offset, "bad-parameter",
+                                      "the expression of parameter " + name.name + " can't be evaluated; the parameter stays undefined"});
+      return;
+    }
+    define(definition, name.name, std::move(value));
   };
   while (lines.next(line)) {
     if (trim(line.text).empty()) continue;
@@ -121,11 +235,12 @@ void Parameters::read_expressions(std::string_view text, const Block& block, Sco
     const std::string_view body = line.text.substr(free ? comma + 1 : head.size());
     // A line whose name is blank goes on with the expression above it.
     if (!free && trim(head).empty()) {
-      expression += trim(body);
+      if (expression.size() < kLongestExpression) expression += trim(body);
       continue;
     }
     finish();
-    name = parameter_name(free ? head.substr(0, comma) : head);
+    name = typed_name(free ? head.substr(0, comma) : head);
+    definition.offset = line.offset;
     expression = trim(body);
   }
   finish();
@@ -138,14 +253,16 @@ class Evaluator {
  public:
   Evaluator(std::string_view text, const Parameters& parameters) : text_(text), parameters_(parameters) {}
 
-  std::optional<double> run() {
-    const double value = sum();
+  std::optional<ParameterValue> run() {
+    const Number value = sum();
     skip_blanks();
-    if (failed_ || at_ != text_.size() || !std::isfinite(value)) return std::nullopt;
+    if (failed_ || at_ != text_.size() || !std::isfinite(value.value)) return std::nullopt;
     return value;
   }
 
  private:
+  using Number = ParameterValue;
+
   void skip_blanks() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
   }
@@ -159,69 +276,82 @@ class Evaluator {
     skip_blanks();
     return text_.substr(at_, symbol.size()) == symbol;
   }
-  double give_up() {
+  Number give_up() {
     failed_ = true;
     at_ = text_.size();
-    return 0;
+    return {};
   }
 
-  double sum() {
-    double value = product();
+  Number sum() {
+    Number value = product();
     while (!failed_) {
-      if (take("+"))
-        value += product();
-      else if (take("-"))
-        value -= product();
-      else
+      if (take("+")) {
+        const Number next = product();
+        value = {value.value + next.value, value.whole && next.whole};
+      } else if (take("-")) {
+        const Number next = product();
+        value = {value.value - next.value, value.whole && next.whole};
+      } else {
         break;
+      }
     }
     return value;
   }
-  double product() {
-    double value = signed_power();
+  Number product() {
+    Number value = power();
     while (!failed_) {
-      if (!ahead("**") && take("*"))
-        value *= signed_power();
-      else if (take("/"))
-        value /= signed_power();
-      else
+      if (!ahead("**") && take("*")) {
+        const Number next = power();
+        value = {value.value * next.value, value.whole && next.whole};
+      } else if (take("/")) {
+        const Number next = power();
+        const bool whole = value.whole && next.whole;
+        value = {whole ? std::trunc(value.value / next.value) : value.value / next.value, whole};
+      } else {
         break;
+      }
     }
     return value;
   }
-  double signed_power() {
+  Number power() {
     if (++depth_ > kDeepestExpression) return give_up();
-    double value = 0;
-    if (take("-"))
-      value = -signed_power();
-    else if (take("+"))
-      value = signed_power();
-    else
-      value = power();
+    Number value = signed_atom();
+    if (!failed_ && take("**")) {
+      const Number exponent = power();
+      value = {std::pow(value.value, exponent.value), value.whole && exponent.whole && exponent.value >= 0};
+    }
     --depth_;
     return value;
   }
-  double power() {
-    const double base = atom();
-    return !failed_ && take("**") ? std::pow(base, signed_power()) : base;
+  Number signed_atom() {
+    bool negative = false;
+    for (;;) {
+      if (take("-"))
+        negative = !negative;
+      else if (!take("+"))
+        break;
+    }
+    Number value = atom();
+    if (negative) value.value = -value.value;
+    return value;
   }
-  double atom() {
+  Number atom() {
     skip_blanks();
     if (take("(")) {
-      const double value = sum();
+      const Number value = sum();
       return take(")") ? value : give_up();
     }
     take("&");
     const std::size_t begin = at_;
     if (at_ < text_.size() && (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.')) return number();
-    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_')) ++at_;
+    while (at_ < text_.size() && is_name(text_[at_])) ++at_;
     const std::string name = lower(text_.substr(begin, at_ - begin));
     if (name.empty()) return give_up();
     if (take("(")) return call(name);
-    const std::optional<double> value = parameters_.find(name);
-    return value ? *value : name == "pi" ? 3.14159265358979323846 : give_up();
+    const std::optional<Number> value = name == "pi" ? std::optional(Number{3.14159265358979323846, false}) : parameters_.find(name);
+    return value ? *value : give_up();
   }
-  double number() {
+  Number number() {
     const std::size_t begin = at_;
     const auto digits = [&] {
       while (at_ < text_.size() && (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.')) ++at_;
@@ -232,36 +362,54 @@ class Evaluator {
       if (at_ < text_.size() && (text_[at_] == '+' || text_[at_] == '-')) ++at_;
       digits();
     }
-    double value = 0;
-    return parse_real(text_.substr(begin, at_ - begin), value) ? value : give_up();
+    const std::string_view digits_text = text_.substr(begin, at_ - begin);
+    Number value;
+    value.whole = digits_text.find_first_not_of("0123456789") == std::string_view::npos;
+    return parse_real(digits_text, value.value) ? value : give_up();
   }
-  double call(const std::string& name) {
+
+  Number call(const std::string& name) {
     if (++depth_ > kDeepestExpression) return give_up();
-    const double a = sum();
-    const bool two = take(",");
-    const double b = two ? sum() : 0;
+    std::vector<Number> arguments{sum()};
+    while (!failed_ && take(",")) arguments.push_back(sum());
     --depth_;
     if (failed_ || !take(")")) return give_up();
-    if (two)
-      return name == "min"     ? std::fmin(a, b)
-             : name == "max"   ? std::fmax(a, b)
-             : name == "mod"   ? std::fmod(a, b)
-             : name == "sign"  ? std::copysign(a, b)
-             : name == "atan2" ? std::atan2(a, b)
-                               : give_up();
-    if (name == "abs") return std::abs(a);
-    if (name == "sqrt") return std::sqrt(a);
-    if (name == "int") return std::trunc(a);
-    if (name == "nint") return std::round(a);
-    if (name == "sin") return std::sin(a);
-    if (name == "cos") return std::cos(a);
-    if (name == "tan") return std::tan(a);
-    if (name == "asin") return std::asin(a);
-    if (name == "acos") return std::acos(a);
-    if (name == "atan") return std::atan(a);
-    if (name == "exp") return std::exp(a);
-    if (name == "log") return std::log(a);
-    if (name == "log10") return std::log10(a);
+    return arguments.size() == 1 ? call(name, arguments[0]) : call(name, arguments);
+  }
+  Number call(const std::string& name, const std::vector<Number>& arguments) {
+    const bool whole = std::all_of(arguments.begin(), arguments.end(), [](const Number& n) { return n.whole; });
+    const double a = arguments[0].value;
+    const double b = arguments[1].value;
+    if (name == "min" || name == "max") {
+      double out = a;
+      for (const Number& n : arguments) out = name == "min" ? std::fmin(out, n.value) : std::fmax(out, n.value);
+      return {out, whole};
+    }
+    if (arguments.size() != 2) return give_up();
+    if (name == "mod") return {std::fmod(a, b), whole};
+    if (name == "sign") return {std::copysign(std::abs(a), b), whole};
+    if (name == "dim") return {std::fmax(a - b, 0), whole};
+    if (name == "atan2") return {std::atan2(a, b), false};
+    return give_up();
+  }
+  Number call(const std::string& name, const Number& a) {
+    struct Function {
+      std::string_view name;
+      double (*function)(double);
+      bool whole;  ///< the result
+    };
+    static constexpr Function kFunctions[] = {
+        {"sqrt", std::sqrt, false},   {"int", std::trunc, true},   {"aint", std::trunc, false},  {"nint", std::round, true},
+        {"anint", std::round, false}, {"floor", std::floor, true}, {"ceiling", std::ceil, true}, {"ceil", std::ceil, true},
+        {"sin", std::sin, false},     {"cos", std::cos, false},    {"tan", std::tan, false},     {"asin", std::asin, false},
+        {"acos", std::acos, false},   {"atan", std::atan, false},  {"sinh", std::sinh, false},   {"cosh", std::cosh, false},
+        {"tanh", std::tanh, false},   {"exp", std::exp, false},    {"log", std::log, false},     {"ln", std::log, false},
+        {"log10", std::log10, false},
+    };
+    if (name == "abs") return {std::abs(a.value), a.whole};
+    if (name == "float" || name == "real") return {a.value, false};
+    for (const Function& f : kFunctions)
+      if (name == f.name) return {f.function(a.value), f.whole};
     return give_up();
   }
 
@@ -274,7 +422,7 @@ class Evaluator {
 
 }  // namespace
 
-std::optional<double> evaluate(std::string_view expression, const Parameters& parameters) {
+std::optional<ParameterValue> evaluate(std::string_view expression, const Parameters& parameters) {
   return Evaluator(expression, parameters).run();
 }
 

@@ -1,7 +1,8 @@
-// *PARAMETER: names that stand where a number is expected.
+// *PARAMETER: names that stand where a number is expected (LS-DYNA keyword manual, volume I).
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -15,47 +16,86 @@
 
 namespace prismesh::mesh::deck::lsdyna {
 
+/// A number that knows whether it is a whole one: 2/5 is 0, 2.0/5 is 0.4.
+struct ParameterValue {
+  double value = 0;
+  bool whole = false;
+};
+
+/// What of a *PARAMETER card can't be used, or isn't.
+struct ParameterProblem {
+  std::size_t offset = 0;  ///< of the line
+  std::string kind;        ///< of the warning: "duplicate-parameter", "bad-parameter"
+  std::string message;
+};
+
 /// The parameters known at some place of the deck. A copy stays as it is while the original reads on, and costs no more than
 /// a version number: what was defined when is kept once, for all copies. Only one of them may read on.
 class Parameters {
  public:
-  /// A field's value: a number, "&name" or "-&name". nullopt: neither, or an unknown name.
+  /// A field's value: a number, "&name", "-&name" or "<expression>". nullopt: none of them, or an unknown name.
   std::optional<double> real(std::string_view field) const;
   std::optional<std::int64_t> integer(std::string_view field) const;
   /// The value of a name, whatever its case; local ones hide global ones.
-  std::optional<double> find(std::string_view name) const;
+  std::optional<ParameterValue> find(std::string_view name) const;
+  /// `name` with "&parameter" replaced where it is a text parameter, or a whole number.
+  std::string put_into_text(std::string_view text) const;
 
-  /// Reads a block named PARAMETER, with any of the options _EXPRESSION and _LOCAL. A name defined again gets the new
-  /// value; what can't be evaluated stays undefined.
-  void read(std::string_view text, const Block& block);
+  /// Reads a block named PARAMETER, with any of its options. A name that is defined again keeps its first value, unless that was
+  /// MUTABLE, *PARAMETER_DUPLICATION says otherwise, or a local one hides a global one or one of a file around. What can't be evaluated
+  /// stays undefined.
+  void read(std::string_view text, const Block& block, std::vector<ParameterProblem>& problems);
 
+  /// How often a name that isn't defined was asked for, in all copies.
+  std::size_t undefined() const { return history_->undefined; }
+
+  /// Into an included file: what it defines locally goes when it ends.
+  void enter_file() { ++depth_; }
   /// Back in the including file: its own local parameters count again, the global ones stay as they are.
   void leave_file(const Parameters& before);
 
-  bool operator==(const Parameters&) const = default;  ///< the same place of the same deck
+  /// Whether it is the same place of the same deck.
+  bool operator==(const Parameters& other) const { return history_ == other.history_ && version_ == other.version_; }
 
  private:
   enum class Scope : std::uint8_t { global, local };
   struct Value {
-    std::uint32_t version = 0;    ///< from which on it holds
-    std::optional<double> value;  ///< nullopt: it is undefined again
+    std::uint32_t version = 0;  ///< from which on it holds
+    bool defined = true;        ///< false: it is undefined again
+    bool is_mutable = false;
+    int depth = 0;  ///< of the file that defined it
+    ParameterValue number;
+    std::optional<std::string> text;  ///< of a text parameter
   };
   using Table = std::map<std::string, std::vector<Value>, std::less<>>;
   struct History {
     std::array<Table, 2> tables;  ///< by Scope
     std::vector<std::pair<std::uint32_t, std::string>> local_changes;
     std::uint32_t latest = 0;
+    int duplication = 0;  ///< DFLAG of the first *PARAMETER_DUPLICATION; 0: none yet
+    std::atomic<std::size_t> undefined = 0;
   };
-  static std::optional<double> find(const Table& table, std::string_view key, std::uint32_t version);
-  void define(Scope scope, const std::string& key, std::optional<double> value);
-  void read_definitions(std::string_view text, const Block& block, Scope scope);
-  void read_expressions(std::string_view text, const Block& block, Scope scope);
+  struct Definition {
+    Scope scope;
+    bool is_mutable;
+    std::size_t offset;
+    std::vector<ParameterProblem>* problems;
+  };
+  static const Value* find(const Table& table, std::string_view key, std::uint32_t version);
+  const Value* find_value(std::string_view name) const;
+  void set(Scope scope, const std::string& key, Value value);
+  void define(const Definition& definition, const std::string& key, Value value);
+  void define(const Definition& definition, std::string_view typed_name, std::string_view value);
+  void read_definitions(std::string_view text, const Block& block, Definition definition);
+  void read_expressions(std::string_view text, const Block& block, Definition definition);
 
   std::shared_ptr<History> history_ = std::make_shared<History>();
   std::uint32_t version_ = 0;
+  int depth_ = 0;
 };
 
-/// Evaluates + - * / ** and parentheses over numbers, parameters and the usual functions. nullopt: it can't.
-std::optional<double> evaluate(std::string_view expression, const Parameters& parameters);
+/// Evaluates + - * / ** and parentheses over numbers, parameters and the usual functions. A sign binds tighter than **: -3**2 is 9.
+/// nullopt: it can't.
+std::optional<ParameterValue> evaluate(std::string_view expression, const Parameters& parameters);
 
 }  // namespace prismesh::mesh::deck::lsdyna

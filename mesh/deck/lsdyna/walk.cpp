@@ -3,103 +3,118 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/deck/number.h"
+#include "mesh/deck/opening.h"
+
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
-constexpr int kDeepestInclude = 64;
-constexpr std::size_t kMostFiles = 20000;
-constexpr std::uint32_t kNoFile = 0xffffffffu;
+constexpr std::size_t kMostWalks = 4000;  ///< also of contexts, which are looked through for each include
+constexpr std::size_t kFreeRepeats = std::size_t{64} << 20;
+constexpr std::size_t kMostRepeats = 16;  ///< times the size of all files
 
 bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-
-fs::path normal(const fs::path& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
-  return (error ? path : absolute).lexically_normal();
-}
-
-std::string canonical_name(const fs::path& path) {
-  std::error_code error;
-  const fs::path canonical = fs::canonical(path, error);
-  return (error ? normal(path) : canonical).string();
-}
 
 }  // namespace
 
 Walk::Walk(fs::path path, FileBytes main, bool cut_out_encrypted)
-    : main_folder_(normal(path).parent_path()), cut_out_encrypted_(cut_out_encrypted), search_(path.parent_path()) {
-  by_canonical_[canonical_name(path)] = 0;
-  fs::path name = path.filename();
-  files.push_back({std::move(path), std::move(name), std::move(main)});
-}
+    : files(path, std::move(main)), cut_out_encrypted_(cut_out_encrypted), search_(path.parent_path()) {}
 
 void Walk::run() {
   states_.resize(1);
   states_[0].uses = 1;
-  walk_file(0, Columns::standard, 0);
+  walk_file({0, 0, 0}, Columns::standard);
+  tell_unseen();
   hold_repeated();
 }
 
 /// Nodes of a file that is used twice, and of what it includes, stand for more than one place.
 void Walk::hold_repeated() {
-  std::vector<bool> held(files.size());
-  std::vector<std::uint32_t> waiting;
-  for (std::uint32_t file = 0; file < files.size(); ++file)
-    if (states_[file].uses > 1) waiting.push_back(file);
-  while (!waiting.empty()) {
-    const std::uint32_t file = waiting.back();
-    waiting.pop_back();
-    if (held[file]) continue;
-    held[file] = true;
-    waiting.insert(waiting.end(), states_[file].includes.begin(), states_[file].includes.end());
-  }
+  std::vector<const FileUse*> uses;
+  for (const State& state : states_) uses.push_back(&state);
+  const std::vector<bool> held = repeated_files(uses);
   for (Piece& piece : pieces) piece.held = held[piece.file];
 }
 
-void Walk::walk_file(std::uint32_t file, Columns columns, int depth) {
-  states_[file].walked = states_[file].open = true;
+void Walk::walk_file(const Visit& visit, Columns columns) {
+  State& state = states_[visit.file];
+  state.walked.insert(visit.context);
+  state.open = true;
+  ++walks_;
   const Parameters before = parameters_;
-  Blocks blocks(files[file].bytes.text(), columns);
+  parameters_.enter_file();
+  Blocks blocks(files.files[visit.file].bytes.text(), columns);
   Block block;
   bool has_keyword = false;
   while (blocks.next(block)) {
     has_keyword |= starts_with(block.name, "KEYWORD");
-    read_block(file, block, blocks.columns(), depth);
+    const std::size_t undefined = parameters_.undefined();
+    read_block(visit, block, blocks.columns());
+    if (parameters_.undefined() > undefined)
+      warnings.note("undefined-parameter", visit.file, block.keyword,
+                    "*" + block.name + " names a parameter that isn't defined; what depends on it stays unknown");
   }
   // Fragments without *KEYWORD do without *END; a deck that has the one lacks the other when it was cut off.
   if (has_keyword && !blocks.ended())
-    warnings.note_each("no-end", file, files[file].bytes.text().size(), "the file has *KEYWORD but no *END: it may have been cut off");
+    warnings.note_each("no-end", visit.file, files.files[visit.file].bytes.text().size(),
+                       "the file has *KEYWORD but no *END: it may have been cut off");
   parameters_.leave_file(before);
-  states_[file].open = false;
+  states_[visit.file].open = false;
 }
 
-void Walk::read_block(std::uint32_t file, const Block& block, Columns columns, int depth) {
-  const std::string_view text = files[file].bytes.text();
+void Walk::read_block(const Visit& visit, const Block& block, Columns columns) {
+  const std::string_view text = files.files[visit.file].bytes.text();
   const std::string_view name = block.name;
+  references.read(visit.file, block, parameters_, contexts[visit.context].offsets);
   if (const std::optional<CardForm> form = card_form(name)) {
-    add_mesh(file, block, *form);
-  } else if (starts_with(name, "ELEMENT_")) {
-    warnings.note_each("unread-elements", file, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
+    add_mesh(visit, block, *form);
   } else if (starts_with(name, "INCLUDE")) {
-    include(file, block, columns, depth);
-  } else if (starts_with(name, "PARAMETER") && name != "PARAMETER_DUPLICATION" && !starts_with(name, "PARAMETER_TYPE")) {
-    parameters_.read(text, block);
-  } else if (definitions.read(text, block, parameters_)) {
+    include(visit, block, columns);
+  } else if (starts_with(name, "PARAMETER")) {
+    std::vector<ParameterProblem> problems;
+    parameters_.read(text, block, problems);
+    for (ParameterProblem& problem : problems) warnings.note(problem.kind, visit.file, problem.offset, std::move(problem.message));
+  } else if (definitions.read(text, block, parameters_, contexts[visit.context])) {
     return;
-  } else if (starts_with(name, "PART_MOVE") || starts_with(name, "NODE_TRANSFORM")) {
-    warnings.note_each("moved-at-start", file, block.keyword,
-                       "*" + block.name + " moves nodes when the solver starts; they are shown and edited where their cards put them");
+  } else if (name == "DEFINE_TRANSFORMATION" || name == "DEFINE_TRANSFORMATION_TITLE") {
+    transformations.read(text, visit.file, block, parameters_, contexts[visit.context].offsets);
+  } else if (const std::optional<Unseen> what = unseen(name)) {
+    note_unseen(visit, block, *what);
   }
 }
 
-void Walk::add_mesh(std::uint32_t file, const Block& block, const CardForm& form) {
+/// The lines of what isn't shown are counted over all blocks of a keyword.
+void Walk::note_unseen(const Visit& visit, const Block& block, const Unseen& what) {
+  if (!what.counted) {
+    warnings.note_each(what.kind, visit.file, block.keyword, "*" + block.name + " " + std::string(what.message));
+    return;
+  }
+  if (states_[visit.file].walked.size() > 1) return;  // told at the first place it is shown at
+  UnseenLines& unseen_lines = unseen_.try_emplace({visit.file, block.name}, UnseenLines{what, block.keyword}).first->second;
+  Lines lines(files.files[visit.file].bytes.text(), block.begin, block.end);
+  Line line;
+  while (lines.next(line))
+    if (!trim(line.text).empty()) ++unseen_lines.lines;
+}
+
+void Walk::tell_unseen() {
+  for (const auto& [keyword, found] : unseen_)
+    warnings.note_each(found.what.kind, keyword.first, found.offset,
+                       "*" + keyword.second + " " + std::string(found.what.message) + " (" + std::to_string(found.lines) +
+                           (found.lines == 1 ? " line)" : " lines)"));
+}
+
+void Walk::add_mesh(const Visit& visit, const Block& block, const CardForm& form) {
+  const std::uint32_t file = visit.file;
   if (parameter_tables.empty() || !(parameter_tables.back() == parameters_)) parameter_tables.push_back(parameters_);
   states_[file].has_mesh = true;
-  Segment segment{form, block.columns, static_cast<std::uint32_t>(parameter_tables.size() - 1), block.begin, block.end};
-  const std::string_view text = files[file].bytes.text().substr(0, block.end);
+  Segment segment{form, block.columns, static_cast<std::uint32_t>(parameter_tables.size() - 1), block.begin, block.end, visit.context, {}};
+  // "ELEMENT_SHELL_THICKNESS" is told as "SHELL_THICKNESS".
+  constexpr std::string_view kElement = "ELEMENT_";
+  if (starts_with(block.name, kElement)) segment.word = *words_.insert(block.name.substr(kElement.size())).first;
+  const std::string_view text = files.files[file].bytes.text().substr(0, block.end);
   while (cut_out_encrypted_ && segment.begin < segment.end) {
     std::size_t begin = text.find(kEncryptedBegin, segment.begin);
     while (begin != std::string_view::npos && begin > 0 && text[begin - 1] != '\n') begin = text.find(kEncryptedBegin, begin + 1);
@@ -110,17 +125,20 @@ void Walk::add_mesh(std::uint32_t file, const Block& block, const CardForm& form
     const std::size_t last = text.find(kEncryptedEnd, begin);
     const std::size_t end = last == std::string_view::npos ? last : text.find('\n', last);
     segment.begin = end == std::string_view::npos ? block.end : end + 1;
+    references.encrypted(file, block, begin, segment.begin);
   }
   add_segment(file, segment);
 }
 
 /// Pieces are about equally large: long blocks are cut between lines, short ones put together.
 void Walk::add_segment(std::uint32_t file, const Segment& segment) {
-  const std::string_view text = files[file].bytes.text();
+  const std::string_view text = files.files[file].bytes.text();
   const auto bytes_of = [](const Piece& piece) { return piece.segments.back().end - piece.segments.front().begin; };
   Segment rest = segment;
   while (rest.begin < rest.end) {
-    if (pieces.empty() || pieces.back().file != file || bytes_of(pieces.back()) >= kPieceBytes) pieces.push_back({file, false, {}});
+    if (pieces.empty() || pieces.back().file != file || pieces.back().segments.back().frame != rest.frame ||
+        bytes_of(pieces.back()) >= kPieceBytes)
+      pieces.push_back({file, false, {}});
     Piece& piece = pieces.back();
     const std::size_t begin = piece.segments.empty() ? rest.begin : piece.segments.front().begin;
     std::size_t end = rest.end;
@@ -135,86 +153,97 @@ void Walk::add_segment(std::uint32_t file, const Segment& segment) {
   }
 }
 
-void Walk::include(std::uint32_t from, const Block& block, Columns columns, int depth) {
-  const std::string_view text = files[from].bytes.text();
+void Walk::include(const Visit& from, const Block& block, Columns columns) {
+  const std::string_view text = files.files[from.file].bytes.text();
   const std::string_view kind = std::string_view(block.name).substr(std::string_view("INCLUDE").size());
   if (kind == "_PATH" || kind == "_PATH_RELATIVE") {
     for (const IncludeName& name : include_names(text, block, false)) search_.add_path(name.name);
-    return;
-  }
-  if (kind.empty()) {
-    for (const IncludeName& name : include_names(text, block, false)) include_one(from, name, columns, depth, true);
-    return;
-  }
-  bool read = false;
-  if (kind == "_TRANSFORM") {
-    read = transform_is_identity(text, block, parameters_);
-    if (!read)
-      warnings.note("transformed-include", from, block.keyword,
-                    "*INCLUDE_TRANSFORM isn't read in this version: what the file holds isn't shown; it is kept as it is");
+  } else if (kind.empty()) {
+    for (const IncludeName& name : include_names(text, block, false)) include_one(from, name, columns, from.context);
+  } else if (kind == "_TRANSFORM") {
+    include_transformed(from, block, columns);
   } else {
-    warnings.note_each("unread-include", from, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
-    // Of the others only these begin with a file's name.
-    if (kind != "_NASTRAN" && kind != "_BINARY" && kind != "_TRIM" && kind != "_AUTO_OFFSET" && !starts_with(kind, "_STAMPED")) return;
+    keep_unread(from, block);
   }
-  for (const IncludeName& name : include_names(text, block, true)) include_one(from, name, columns, depth, read);
 }
 
-void Walk::include_one(std::uint32_t from, const IncludeName& name, Columns columns, int depth, bool read) {
-  std::string reason = "isn't there";
-  const std::uint32_t file = find_file(from, name.name, reason);
-  if (file == kNoFile) {
-    if (missing_files.size() < kMostFiles) missing_files.push_back(name.name);
-    warnings.note_each("missing-include", from, name.offset, "the include file " + name.name + " " + reason);
+/// Another place of the same transformation is the same include again, and one that changes nothing is a plain one.
+void Walk::include_transformed(const Visit& from, const Block& block, Columns columns) {
+  const std::string_view text = files.files[from.file].bytes.text();
+  std::string problem;
+  IncludeContext context = read_transform(text, block, parameters_, contexts[from.context], from.context, problem);
+  if (!problem.empty())
+    warnings.note_each("bad-include-transform", from.file, block.keyword, "*" + block.name + " " + problem + "; that is left out");
+  context.file = from.file;
+  context.offset = block.keyword;
+  std::uint32_t index = from.context;
+  IncludeContext nothing = contexts[from.context];
+  nothing.parent = from.context;
+  nothing.transformation = 0;
+  if (!context.same_as(nothing)) {
+    const auto known = std::find_if(contexts.begin() + 1, contexts.end(), [&](const IncludeContext& c) { return c.same_as(context); });
+    index = static_cast<std::uint32_t>(known - contexts.begin());
+    if (index >= kMostWalks) {
+      warnings.note("too-many-includes", from.file, block.keyword, "more includes are transformed than can be shown; this one isn't read");
+      return;
+    }
+    if (known == contexts.end()) contexts.push_back(std::move(context));
+  }
+  for (const IncludeName& name : include_names(text, block, true)) include_one(from, name, columns, index);
+}
+
+/// Files that are named by keywords which aren't read belong to the deck all the same.
+void Walk::keep_unread(const Visit& from, const Block& block) {
+  const std::string_view kind = std::string_view(block.name).substr(std::string_view("INCLUDE").size());
+  warnings.note_each("unread-include", from.file, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
+  // Of the others only these begin with a file's name.
+  if (kind != "_NASTRAN" && kind != "_BINARY" && kind != "_TRIM" && kind != "_AUTO_OFFSET" && !starts_with(kind, "_STAMPED")) return;
+  for (const IncludeName& name : include_names(files.files[from.file].bytes.text(), block, true)) {
+    std::string reason;
+    const std::uint32_t file = files.include(from.file, name.name, search_.folders(files.folder_of(from.file)), reason);
+    states_.resize(files.files.size());
+    if (file == FileSet::kNoFile)
+      warnings.note_each("missing-include", from.file, name.offset, "the include file " + name.name + " " + reason);
+    else
+      ++states_[file].uses;
+  }
+}
+
+/// Shown at several places a file costs several times its size; a few lines of a deck mustn't make gigabytes of it.
+bool Walk::may_walk_again(std::uint32_t file) {
+  std::size_t total = 0;
+  for (const SourceFile& each : files.files) total += each.bytes.text().size();
+  walked_again_ += files.files[file].bytes.text().size();
+  return walks_ < kMostWalks && walked_again_ <= kFreeRepeats + kMostRepeats * total;
+}
+
+void Walk::include_one(const Visit& from, const IncludeName& name, Columns columns, std::uint32_t context) {
+  std::string reason;
+  const std::string spelled = parameters_.put_into_text(name.name);
+  const std::uint32_t file = files.include(from.file, spelled, search_.folders(files.folder_of(from.file)), reason);
+  states_.resize(files.files.size());
+  if (file == FileSet::kNoFile) {
+    warnings.note_each("missing-include", from.file, name.offset, "the include file " + name.name + " " + reason);
     return;
   }
   ++states_[file].uses;
-  states_[from].includes.push_back(file);
+  states_[from.file].includes.push_back(file);
+  const auto warn = [&](const char* kind, const std::string& what) {
+    warnings.note(kind, from.file, name.offset, "the include file " + name.name + " " + what);
+  };
   if (states_[file].open) {
-    warnings.note("circular-include", from, name.offset, "the include file " + name.name + " includes itself; it is read once");
-  } else if (!read) {
-    return;
-  } else if (states_[file].walked) {
-    if (states_[file].has_mesh)
-      warnings.note("repeated-include", from, name.offset,
-                    "the include file " + name.name + " is included twice; its nodes can't be moved");
-  } else if (depth >= kDeepestInclude) {
-    warnings.note("deep-include", from, name.offset,
-                  "the include file " + name.name + " is nested more than " + std::to_string(kDeepestInclude) + " deep; it isn't read");
+    warn("circular-include", "includes itself; it is read once");
+  } else if (states_[file].walked.contains(context)) {
+    if (states_[file].has_mesh) warn("repeated-include", "is included twice; its nodes can't be moved");
+  } else if (from.depth >= kDeepestInclude) {
+    warn("deep-include", "is nested more than " + std::to_string(kDeepestInclude) + " deep; it isn't read");
+  } else if (!states_[file].walked.empty() && !may_walk_again(file)) {
+    warn("too-many-includes", "is included too often to be shown at each place; it isn't read again");
   } else {
-    walk_file(file, columns, depth + 1);
+    if (!states_[file].walked.empty())
+      warn("several-places", "is shown at several places, transformed differently; its nodes can't be moved, since all would move");
+    walk_file({file, context, from.depth + 1}, columns);
   }
-}
-
-/// Looked for once for each file that names it: names may be many, and looking is slow.
-std::uint32_t Walk::find_file(std::uint32_t from, const std::string& name, std::string& reason) {
-  const auto [at, first] = known_.try_emplace({from, name}, kNoFile);
-  if (!first || missing_files.size() >= kMostFiles) return at->second;
-  if (const std::optional<fs::path> found = search_.find(name, files[from].path.parent_path()))
-    at->second = open_file(*found, name, reason);
-  return at->second;
-}
-
-/// The index of the file, read now if it wasn't before; kNoFile with a reason if it can't be.
-std::uint32_t Walk::open_file(const fs::path& found, const std::string& name, std::string& reason) {
-  const std::string canonical = canonical_name(found);
-  if (const auto at = by_canonical_.find(canonical); at != by_canonical_.end()) return at->second;
-  if (files.size() >= kMostFiles) {
-    reason = "is one of too many";
-    return kNoFile;
-  }
-  Result<FileBytes> bytes = read_file(found);
-  if (!bytes) {
-    reason = bytes.error().message;
-    return kNoFile;
-  }
-  // An absolute name would still mean the old file in a copy of the deck, so it isn't made relative.
-  const fs::path relative = fs::path(name).is_absolute() ? fs::path(name) : normal(found).lexically_relative(main_folder_);
-  const auto index = static_cast<std::uint32_t>(files.size());
-  by_canonical_[canonical] = index;
-  files.push_back({found, relative, std::move(*bytes)});
-  states_.emplace_back();
-  return index;
 }
 
 }  // namespace prismesh::mesh::deck::lsdyna

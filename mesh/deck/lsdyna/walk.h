@@ -4,15 +4,20 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mesh/deck/deck.h"
+#include "mesh/deck/file_set.h"
 #include "mesh/deck/lsdyna/definitions.h"
 #include "mesh/deck/lsdyna/includes.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
-#include "mesh/deck/lsdyna/warnings.h"
+#include "mesh/deck/lsdyna/references.h"
+#include "mesh/deck/lsdyna/transformations.h"
+#include "mesh/deck/lsdyna/unseen.h"
+#include "mesh/deck/warnings.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 
@@ -22,40 +27,55 @@ class Walk {
   Walk(std::filesystem::path path, FileBytes main, bool cut_out_encrypted);
   void run();
 
-  std::vector<SourceFile> files;
+  FileSet files;
   std::vector<Piece> pieces;
-  std::vector<Parameters> parameter_tables;  ///< what the segments' `parameters` index
+  std::vector<Parameters> parameter_tables;                ///< what the segments' `parameters` index
+  std::vector<IncludeContext> contexts{IncludeContext()};  ///< what the segments' `frame` indexes; [0]: the main file's
+  Transformations transformations;
   Definitions definitions;
+  ReferenceReader references;  ///< finish() it once the walk is done
   Warnings warnings;
-  std::vector<std::string> missing_files;
 
  private:
   void hold_repeated();
-  void walk_file(std::uint32_t file, Columns columns, int depth);
-  void read_block(std::uint32_t file, const Block& block, Columns columns, int depth);
-  void add_mesh(std::uint32_t file, const Block& block, const CardForm& form);
+  /// A file as it is read at one place of the deck.
+  struct Visit {
+    std::uint32_t file = 0;
+    std::uint32_t context = 0;  ///< index into contexts
+    int depth = 0;
+  };
+  void walk_file(const Visit& visit, Columns columns);
+  void read_block(const Visit& visit, const Block& block, Columns columns);
+  void note_unseen(const Visit& visit, const Block& block, const Unseen& what);
+  void tell_unseen();
+  void add_mesh(const Visit& visit, const Block& block, const CardForm& form);
   void add_segment(std::uint32_t file, const Segment& segment);
-  void include(std::uint32_t from, const Block& block, Columns columns, int depth);
-  void include_one(std::uint32_t from, const IncludeName& name, Columns columns, int depth, bool read);
-  std::uint32_t find_file(std::uint32_t from, const std::string& name, std::string& reason);
-  std::uint32_t open_file(const std::filesystem::path& found, const std::string& name, std::string& reason);
+  void include(const Visit& from, const Block& block, Columns columns);
+  void include_transformed(const Visit& from, const Block& block, Columns columns);
+  void include_one(const Visit& from, const IncludeName& name, Columns columns, std::uint32_t context);
+  void keep_unread(const Visit& from, const Block& block);
+  bool may_walk_again(std::uint32_t file);
 
-  std::filesystem::path main_folder_;
   bool cut_out_encrypted_;
   IncludeSearch search_;
   Parameters parameters_;
-  std::map<std::string, std::uint32_t> by_canonical_;
-  std::map<std::pair<std::uint32_t, std::string>, std::uint32_t> known_;  ///< by the file that names it, and the name
 
   /// By file.
-  struct State {
-    bool walked = false;
-    bool open = false;  ///< being walked right now
+  struct State : FileUse {
+    std::set<std::uint32_t> walked;  ///< in which contexts
+    bool open = false;               ///< being walked right now
     bool has_mesh = false;
-    int uses = 0;
-    std::vector<std::uint32_t> includes;
   };
   std::vector<State> states_;
+  struct UnseenLines {
+    Unseen what;
+    std::size_t offset = 0;  ///< of the first
+    std::size_t lines = 0;
+  };
+  std::map<std::pair<std::uint32_t, std::string>, UnseenLines> unseen_;  ///< by file and keyword
+  std::set<std::string, std::less<>> words_;                             ///< of the elements' keywords
+  std::size_t walked_again_ = 0;                                         ///< bytes
+  std::size_t walks_ = 0;
 };
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/deck/lsdyna/card.h"
-#include "mesh/deck/lsdyna/format_number.h"
-#include "mesh/deck/lsdyna/number.h"
+#include "mesh/deck/format_number.h"
+#include "mesh/deck/lsdyna/field_line.h"
+#include "mesh/deck/lsdyna/mesh_cards.h"
+#include "mesh/deck/lsdyna/parameters.h"
+#include "mesh/deck/lsdyna/set_writer.h"
+#include "mesh/deck/lsdyna/shell_writer.h"
+#include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-std::string number_for(double value, std::size_t width, RewrittenCard& card) {
+constexpr std::array<int, 6> kNodeWidths = {8, 16, 16, 16, 8, 8};
+
+std::string number_for(double value, std::size_t width, WrittenCard& card) {
   std::string text = format_coordinate(value, width);
   double back = 0;
   if (!parse_real(text, back) || back != value) {
@@ -20,66 +26,123 @@ std::string number_for(double value, std::size_t width, RewrittenCard& card) {
   return text;
 }
 
-/// In the field's place: leaning left if the old number did, else right.
-std::string padded(const std::string& number, std::string_view old, std::size_t width) {
-  if (number.size() >= width) return number;
-  const std::size_t first = old.find_first_not_of(' ');
-  const bool leans_left =
-      first != std::string_view::npos && first <= 1 && old.size() == width && old.back() == ' ' && first + number.size() < width;
-  std::string out(width, ' ');
-  std::copy(number.begin(), number.end(), out.begin() + static_cast<std::ptrdiff_t>(leans_left ? first : width - number.size()));
-  return out;
-}
+}  // namespace
 
-void rewrite_columns(std::string_view line, Columns columns, const Vec3& from, const Vec3& to, RewrittenCard& card) {
-  card.text = line.find('\t') == std::string_view::npos ? std::string(line) : expand_tabs(line);
-  const auto id_width = static_cast<std::size_t>(field_width(8, columns));
-  const auto width = static_cast<std::size_t>(field_width(16, columns));
+WrittenCard rewrite_node_card(std::string_view line, Columns columns, const Vec3& from, const Vec3& to) {
+  WrittenCard card;
+  FieldLine fields(line, kNodeWidths, columns);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<Eigen::Index>(axis);
     if (from[a] == to[a]) continue;
-    const std::size_t begin = id_width + axis * width;
-    if (card.text.size() < begin + width) {
-      // A short line lacks fields that are zero; one that follows the number stays where it is.
-      card.text.resize(begin + width, ' ');
+    card.by_parameter |= fields.by_parameter(axis + 1);
+    const std::size_t width = fields.width(axis + 1);
+    fields.set(axis + 1, number_for(to[a], fields.free_format() ? std::max(width, fields.text(axis + 1).size()) : width, card));
+  }
+  card.text = fields.str();
+  return card;
+}
+
+namespace {
+
+class Writer : public CardWriter {
+ public:
+  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_line(text, offset); }
+
+  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t style) const override {
+    return lsdyna::shell_end(text, offset, style);
+  }
+
+  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t style) const override {
+    Card card;
+    card.cut(text.substr(offset, end_of_line(text, offset) - offset), kNodeWidths, columns_of(style));
+    const Parameters none;
+    Vec3 out;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::optional<double> value = card.real(axis + 1, none);
+      if (!value) return std::nullopt;
+      out[static_cast<Eigen::Index>(axis)] = *value;
     }
-    const std::string old = card.text.substr(begin, width);
-    card.by_parameter |= old.find('&') != std::string::npos;
-    card.text.replace(begin, width, padded(number_for(to[a], width, card), old, width));
+    return out;
   }
-}
 
-void rewrite_commas(std::string_view line, Columns columns, const Vec3& from, const Vec3& to, RewrittenCard& card) {
-  const auto width = static_cast<std::size_t>(field_width(16, columns));
-  std::vector<std::string> fields;
-  for (std::size_t begin = 0;;) {
-    const std::size_t comma = line.find(',', begin);
-    fields.emplace_back(line.substr(begin, comma - begin));
-    if (comma == std::string_view::npos) break;
-    begin = comma + 1;
+  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t style, const Vec3& from, const Vec3& to) const override {
+    return rewrite_node_card(text.substr(offset, end_of_line(text, offset) - offset), columns_of(style), from, to);
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<Eigen::Index>(axis);
-    if (from[a] == to[a]) continue;
-    if (fields.size() < axis + 2) fields.resize(axis + 2);
-    std::string& field = fields[axis + 1];
-    card.by_parameter |= field.find('&') != std::string::npos;
-    const std::string_view old = trim(field);
-    const auto before = old.empty() ? std::size_t{0} : static_cast<std::size_t>(old.data() - field.data());
-    field.replace(before, old.size(), number_for(to[a], std::max(width, old.size()), card));
+
+  WrittenCard new_node(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id, const Vec3& at) const override {
+    return new_card(text, offset, style, id, at, false);
   }
-  for (std::size_t f = 0; f < fields.size(); ++f) card.text += (f > 0 ? "," : "") + fields[f];
-}
+
+  /// TC and RC, where they hold something.
+  std::string node_constraints(std::string_view text, std::size_t offset, std::uint16_t style) const override {
+    const FieldLine line(line_of(text, offset), kNodeWidths, columns_of(style));
+    if (line.is_blank_or_zero(4) && line.is_blank_or_zero(5)) return {};
+    return std::string(line.text(4)) + "," + std::string(line.text(5));
+  }
+
+  Result<WrittenCard> new_constrained_node(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id,
+                                           const Vec3& at) const override {
+    return new_card(text, offset, style, id, at, true);
+  }
+
+  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const override {
+    return write_shell(text, offset, style, shell);
+  }
+
+  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return true; }
+
+  Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
+    return change_set(text, set, ids, {});
+  }
+  Result<std::vector<Replacement>> change_list(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
+                                               std::span<const std::int64_t> leaving) const override {
+    return change_set(text, set, joining, leaving);
+  }
+  std::optional<std::array<std::int64_t, 4>> segment(std::string_view text, const Referrer& set, std::size_t card) const override {
+    return read_segment(text, set, card);
+  }
+  Result<std::vector<Replacement>> replace_segment(std::string_view text, const Referrer& set, std::size_t card,
+                                                   std::span<const std::array<std::int64_t, 4>> with) const override {
+    return lsdyna::replace_segment(text, set, card, with);
+  }
+  Inheritance inheritance(const Referrer& card, Referred referred) const override { return inheritance_of(card, referred); }
+  Result<std::vector<Replacement>> copy_single(std::string_view text, const Referrer& card, const Reference& single,
+                                               std::span<const std::int64_t> ids) const override {
+    return lsdyna::copy_single(text, card, single, ids);
+  }
+
+  std::int64_t largest_node_id(std::uint16_t style) const override {
+    std::int64_t most = 1;
+    for (int digit = 0; digit < std::min(18, field_width(8, columns_of(style))); ++digit) most *= 10;
+    return most - 1;
+  }
+  std::int64_t largest_shell_id(std::uint16_t style) const override { return largest_node_id(style); }
+
+ private:
+  static std::string_view line_of(std::string_view text, std::size_t offset) {
+    return text.substr(offset, end_of_line(text, offset) - offset);
+  }
+
+  /// In the manner of the card at `offset`: its columns or commas, its length, zeros where it has constraints.
+  static WrittenCard new_card(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id, const Vec3& at,
+                              bool constrained) {
+    WrittenCard card;
+    FieldLine line(line_of(text, offset), kNodeWidths, columns_of(style));
+    line.set(0, std::to_string(id));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t width = line.width(axis + 1);
+      line.set(axis + 1, number_for(at[static_cast<Eigen::Index>(axis)], width, card));
+    }
+    if (!constrained)
+      for (const std::size_t field : {std::size_t{4}, std::size_t{5}})
+        if (!line.is_blank_or_zero(field)) line.set(field, "0");
+    card.text = line.str();
+    return card;
+  }
+};
 
 }  // namespace
 
-RewrittenCard rewrite_node_card(std::string_view line, Columns columns, const Vec3& from, const Vec3& to) {
-  RewrittenCard card;
-  if (line.find(',') != std::string_view::npos)
-    rewrite_commas(line, columns, from, to, card);
-  else
-    rewrite_columns(line, columns, from, to, card);
-  return card;
-}
+std::unique_ptr<const CardWriter> card_writer() { return std::make_unique<Writer>(); }
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -1,23 +1,17 @@
-// Node cards with new coordinates, everything else about them kept.
+// Cards of nodes and shells rewritten, everything else about them kept.
 #pragma once
 
-#include <string>
+#include <memory>
 #include <string_view>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/card_writer.h"
+#include "mesh/deck/lsdyna/keyword.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 
-/// A card rewritten.
-struct RewrittenCard {
-  std::string text;
-  int rounded = 0;            ///< coordinates whose field can't hold them exactly
-  double largest_error = 0;   ///< of those
-  bool by_parameter = false;  ///< a coordinate that changes is given by a parameter: the text isn't usable
-};
+/// `line` is a node's card without its line end; see CardWriter::move_node.
+WrittenCard rewrite_node_card(std::string_view line, Columns columns, const Vec3& from, const Vec3& to);
 
-/// `line` is the card without its line end. Only the fields of coordinates that differ between `from` and `to` change; the
-/// rest of the line, the columns or commas, and the side the numbers lean to stay.
-RewrittenCard rewrite_node_card(std::string_view line, Columns columns, const Vec3& from, const Vec3& to);
+std::unique_ptr<const CardWriter> card_writer();
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -28,14 +28,13 @@ TEST(BadInput, says_what_it_looks_like) {
       {" \n\n", "an empty file"},
       {"Dear all,\nplease find attached\n", "text without a single keyword"},
       {std::string("PK\x03\x04zip", 7), "a ZIP archive"},
-      {"\x1f\x8b\x08gz", "a gzip file"},
+      {"\x1f\x8b\x07gz", "a gzip file"},
       {"%PDF-1.4", "a PDF document"},
       {"solid part\n facet normal 0 0 1\n", "an STL file"},
       {std::string(1000, '\0'), "a binary file"},
       {"\xff\xfe*\0N\0", "UTF-16"},
-      {"GRID,1,,0.,0.,0.\nCQUAD4,1,1,1,2,3,4\n", "looks like a Nastran deck; this version reads LS-DYNA"},
-      {"#RADIOSS STARTER\n/BEGIN\n", "looks like a Radioss deck; this version reads LS-DYNA"},
-      {"*HEADING\n** a comment\n*NODE, NSET=ALL\n1,0.,0.,0.\n", "looks like an Abaqus deck; this version reads LS-DYNA"}};
+      {"*KEYWORD\r*NODE\r1,0.,0.,0.\r*END\r", "carriage returns alone"},
+      {std::string("*NODE\n1,\0,1.,1.\n", 16) + std::string(100, '*'), "a text with NUL bytes"}};
   for (const auto& [text, words] : cases) expect_error(folder.open(text), 0, words);
 }
 
@@ -119,6 +118,78 @@ TEST(BadInput, hostile_text_is_read_in_bounded_time_and_memory) {
   EXPECT_EQ(many->model.node_count(), 100000u);
   EXPECT_TRUE(folder.open(includes + "*END\n"));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+struct Hostile {
+  const char* name;  ///< the main file's
+  std::string text;
+  std::string said;  ///< words of the error or of a warning
+};
+
+std::string repeated(std::string_view text, std::size_t times) {
+  std::string out;
+  for (std::size_t i = 0; i < times; ++i) out += text;
+  return out;
+}
+
+/// What the deck's error or warnings say, the places where they say it included.
+std::string all_said(const Result<OpenedDeck>& opened) {
+  if (!opened) return opened.error().text();
+  std::string said;
+  for (const Warning& warning : opened->deck->warnings) said += Error{warning.file, warning.line, warning.message}.text() + "\n";
+  return said;
+}
+
+TEST(BadInput, of_every_format_is_named_by_file_and_line_in_bounded_time) {
+  const std::string grid = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nCTRIA3,1,1,1,2,3\n";
+  const std::string bulk = "BEGIN BULK\n" + grid;
+  const std::string rad = "#RADIOSS STARTER\n/BEGIN\nx\n      2022         0\n";
+  const std::string inp = "*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n3,1.,1.,0.\n*ELEMENT,TYPE=S3,ELSET=E\n1,1,2,3\n";
+  std::string chain = "BEGIN BULK\n";
+  for (int i = 0; i < 20000; ++i) chain += "CORD2R," + std::to_string(i + 1) + "," + std::to_string(i) + ",1.,0.,0.,1.,0.,1.,\n,2.,0.,0.\n";
+  const Hostile cases[] = {
+      {"d.bdf", "BEGIN BULK\nGRID,1,,0.,0.,0.\n=,*(1),=,*(1.),==\n=(999999999)\nENDDATA\n", "d.bdf:4: the replications"},
+      {"d.bdf", bulk + "CTRIA3,2,1,1,2,3\n=,*(1),==\n=(2000000000)\nENDDATA\n", "d.bdf:8: the replications"},
+      {"d.bdf", bulk + "SPC1,1,123,1,THRU,1000000000000000000\nSPOINT,1,THRU,999999999999999999\nENDDATA\n", ""},
+      {"d.bdf", "CORD2R,1,2,0.,0.,0.,0.,0.,1.,\n,1.,0.,0.\nCORD2R,2,1,0.,0.,0.,0.,0.,1.,\n,1.,0.,0.\nGRID,1,1,1.,1.,1.\n",
+       "stands on itself"},
+      {"d.bdf", chain + "GRID,1,20000,1.,1.,1.\n", ""},
+      {"d.bdf", bulk + "RBE2,9,1,123,2\n" + repeated("+,3,3,3,3,3,3,3,3\n", 50000), ""},
+      {"d.bdf", bulk + std::string(4 << 20, '1') + "\nENDDATA\n", ""},
+      {"d.bdf", bulk + "INCLUDE '" + repeated("x\n", 100000) + "'\nENDDATA\n", "d.bdf:6: the quote before the include file's name"},
+      {"d.bdf", bulk + "INCLUDE 'd.bdf'\nINCLUDE 'sub'\nENDDATA\n", "d.bdf:7: the include file sub is a folder"},
+      {"d.bdf", "BEGIN BULK\nGRID,1,,abc,0.,0.\n", "d.bdf:2: expected coordinate 1 of GRID 1 but found \"abc\""},
+      {"d.bdf", bulk + "CQUAD1,9,1,1,2,3,3\n", "d.bdf:6: CQUAD1"},
+      {"d_0000.rad", rad + "#include d_0000.rad\n#include sub\n/END\n", "d_0000.rad:6: the include file sub is a folder"},
+      {"d_0000.rad", rad + repeated("//SUBMODEL/1\nx\n", 50000) + "/END\n", "submodels stand in each other more than 64 deep"},
+      {"d_0000.rad", rad + "/NODE\n" + std::string(4 << 20, '1') + "\n/END\n", ""},
+      {"d_0000.rad", rad + "/NODE\n         x                 1.0\n/END\n", "d_0000.rad:6: expected a node id"},
+      {"d_0000.rad", rad + "/\n//\n///\n/NODE/\n/SHELL/\n/SHELL/x\n/PART/\n/PART/-1\n/END\n", ""},
+      {"d.inp", inp + "*INCLUDE,INPUT=d.inp\n*INCLUDE,INPUT=sub\n", "d.inp:8: the include file sub is a folder"},
+      {"d.inp", inp + "*NSET,NSET=X,GENERATE\n1,1000000000000000000,1\n*ELSET,ELSET=Y,GENERATE\n1,999999999999,1\n", ""},
+      {"d.inp", inp + "*ELSET,ELSET=P\nQ\n*ELSET,ELSET=Q\nP\n*SHELL SECTION,ELSET=P,MATERIAL=M\n1.\n", ""},
+      {"d.inp", inp + "*NODE\n1000000000,0.,0.,0.\n2000000000,1.,0.,0.\n*NGEN\n1000000000,2000000000,1\n", "d.inp:10: *NGEN"},
+      {"d.inp", inp + "*NODE\n" + std::string(4 << 20, '1') + "\n", "d.inp:8: expected a node number"},
+      {"d.inp", inp + "*NODE\n" + std::string(4 << 20, ',') + "\n", ""},
+      {"d.inp", inp + repeated("*NSET,\n", 100000), ""},
+      {"d.inp", inp + "*ELEMENT,TYPE=C3D20,ELSET=S\n9," + repeated("1,\n", 200000), "fewer nodes than its kind needs"},
+  };
+  const DeckFolder folder;
+  std::filesystem::create_directory(folder / "sub");
+  for (const auto& [name, text, said] : cases) {
+    SCOPED_TRACE(text.substr(0, 60) + " ... " + text.substr(text.size() - std::min<std::size_t>(text.size(), 60)));
+    const auto start = std::chrono::steady_clock::now();
+    const auto opened = deck::open(folder.write(name, text));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    EXPECT_NE(all_said(opened).find(said), std::string::npos) << all_said(opened);
+    if (!opened) {
+      EXPECT_FALSE(said.empty()) << opened.error().text();
+      continue;
+    }
+    const auto saved = save(*opened->deck, opened->model, opened->model, folder / "out" / name);
+    ASSERT_TRUE(saved) << saved.error().text();
+    EXPECT_EQ(content(folder / "out" / name), text);
+  }
 }
 
 TEST(Progress, goes_up_and_stops_when_told) {

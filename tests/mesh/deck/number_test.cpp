@@ -1,4 +1,4 @@
-#include "mesh/deck/lsdyna/number.h"
+#include "mesh/deck/number.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/deck/lsdyna/format_number.h"
+#include "mesh/deck/format_number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
@@ -107,6 +107,24 @@ TEST(FormatCoordinate, reads_back_within_the_fields_precision) {
       ASSERT_EQ(back, std::strtod(text.c_str(), nullptr)) << text;
       // 16 columns with sign, point and an exponent like E-12 leave ten digits.
       ASSERT_NEAR(back, value, std::abs(value) * (width == 16 ? 1e-9 : 1e-13)) << text;
+    }
+  }
+}
+
+TEST(ParseEightDigits, takes_blanks_then_digits_and_nothing_else) {
+  constexpr std::string_view kOthers = "0123456789 +-.:/!*\tpP\xf5\x10";
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 500000; ++i) {
+    std::string text(8, ' ');
+    const std::size_t first = random() % 9;
+    for (std::size_t c = first; c < 8; ++c)
+      text[c] = random() % 40 > 0 ? static_cast<char>('0' + random() % 10) : kOthers[random() % kOthers.size()];
+    const std::size_t begin = text.find_first_not_of(' ');
+    const bool plain = begin != std::string::npos && text.find_first_not_of("0123456789", begin) == std::string::npos;
+    std::int64_t value = -1;
+    ASSERT_EQ(parse_eight_digits(text.data(), value), plain) << text;
+    if (plain) {
+      ASSERT_EQ(value, std::stoll(text)) << text;
     }
   }
 }

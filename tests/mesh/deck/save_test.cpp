@@ -7,6 +7,7 @@
 namespace prismesh::mesh::deck {
 namespace {
 
+using lsdyna::Columns;
 using lsdyna::rewrite_node_card;
 
 struct CardCase {
@@ -134,7 +135,7 @@ TEST(Save, notes_where_columns_cant_hold_the_precision) {
   const auto saved = save(*opened->deck, opened->model, model, folder / "out/deck.k");
   ASSERT_TRUE(saved) << saved.error().text();
   ASSERT_EQ(saved->notes.size(), 1u);
-  EXPECT_NE(saved->notes[0].find("3 coordinates were rounded"), std::string::npos) << saved->notes[0];
+  EXPECT_NE(saved->notes[0].find("3 numbers were rounded"), std::string::npos) << saved->notes[0];
   EXPECT_NE(saved->notes[0].find("deck.k:5 (node 2)"), std::string::npos) << saved->notes[0];
 }
 
@@ -312,6 +313,38 @@ TEST(Save, refuses_nodes_that_must_not_move) {
   ASSERT_FALSE(no_number);
   EXPECT_EQ(no_number.error().line, 5);
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+/// At each of the times it asks; then all the way, so that stopping has broken nothing.
+TEST(Save, told_to_stop_it_leaves_the_deck_as_it_was) {
+  const DeckFolder folder;
+  const std::string include = "*NODE\n2,2.,0.,0.\n";
+  const std::string text = "*INCLUDE\na.k\n*NODE\n1,1.,0.,0.\n$" + std::string(std::size_t{17} << 20, 'x') + "\n";
+  folder.write("a.k", include);
+  const auto opened = folder.open(text);
+  ASSERT_OPENED(opened);
+  const Model model = with_node_at(with_node_at(opened->model, 1, {1.5, 0, 0}), 2, {2.5, 0, 0});
+  const auto entries = [&] { return std::distance(std::filesystem::directory_iterator(folder.path()), {}); };
+  std::size_t stop = 0;
+  for (bool done = false; !done; ++stop) {
+    std::size_t asked = 0;
+    double last = 0;
+    const auto saved = save(*opened->deck, opened->model, model, folder / "deck.k", [&](double fraction) {
+      EXPECT_GE(fraction, last);
+      last = fraction;
+      return asked++ < stop;
+    });
+    done = saved.has_value();
+    EXPECT_EQ(entries(), 2);
+    if (done) break;
+    EXPECT_EQ(saved.error().message, cancelled().message);
+    EXPECT_EQ(content(folder / "deck.k"), text);
+    EXPECT_EQ(content(folder / "a.k"), include);
+  }
+  EXPECT_GE(stop, 4u) << "8 MB at a time";
+  EXPECT_EQ(content(folder / "a.k"), "*NODE\n2,2.5,0.,0.\n");
+  std::string wanted = text;
+  EXPECT_TRUE(content(folder / "deck.k") == wanted.replace(wanted.find("1,1.,"), 5, "1,1.5,"));
 }
 
 TEST(Save, a_symbolic_link_stays_one) {

@@ -88,7 +88,7 @@ TEST(Move, HeldNodesRefuse) {
   EXPECT_EQ(refusal(document, R"({"edit":"translate","by":[0,0,1],"on":"1-25","falloff":{"profile":"constant"}})"),
             "node 7 can't be moved: it has coordinates given by a parameter (3 such nodes in all); deselect it");
   EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":"9"})"), HasSubstr("also names a node that isn't defined"));
-  EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":"8"})"), HasSubstr("transformed or used more than once"));
+  EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":"8"})"), HasSubstr("used more than once"));
 }
 
 TEST(Move, RefusesWhatMakesNoSense) {
@@ -143,6 +143,12 @@ TEST(Move, MidsideNodesFollowTheirEdge) {
   EXPECT_EQ(at(document, 3).x(), 14);
   EXPECT_EQ(at(document, 50).x(), 9.5);
   EXPECT_EQ(at(document, 51).x(), 14);
+  // A corner alone takes them along too.
+  must_apply(document, R"({"edit":"translate","by":[0,0,3],"on":"3","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(at(document, 3).z(), 3);
+  EXPECT_EQ(at(document, 50).z(), 1.5);
+  EXPECT_EQ(at(document, 51).z(), 1.5);
+  EXPECT_EQ(at(document, 2).z(), 0);
 }
 
 TEST(Move, OnlyTouchedChunksAreCopied) {

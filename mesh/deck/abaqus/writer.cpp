@@ -1,0 +1,247 @@
+#include "mesh/deck/abaqus/writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "mesh/deck/abaqus/keyword.h"
+#include "mesh/deck/abaqus/mesh_cards.h"
+#include "mesh/deck/abaqus/references.h"
+#include "mesh/deck/format_number.h"
+#include "mesh/deck/number.h"
+
+namespace prismesh::mesh::deck::abaqus {
+namespace {
+
+/// "Floating point numbers can occupy 20 spaces at most, including the sign, the point and the exponent."
+constexpr std::size_t kNumberWidth = 20;
+constexpr std::int64_t kLargestId = 999'999'999;
+constexpr std::size_t kIdsOnALine = 16;
+
+std::size_t end_of_line(std::string_view text, std::size_t offset) {
+  const std::size_t end = std::min(text.find('\n', offset), text.size());
+  return end > offset && text[end - 1] == '\r' ? end - 1 : end;
+}
+
+/// A field's place in a card's text: between its commas, blanks included.
+struct Place {
+  std::size_t begin = 0;
+  std::size_t length = 0;
+};
+
+/// The fields of a line, those after the last comma only if there is something.
+std::vector<Place> places_of_line(std::string_view line, std::size_t at) {
+  std::vector<Place> out;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t comma = std::min(line.find(',', begin), line.size());
+    if (comma == line.size() && trim(line.substr(begin)).empty()) break;
+    out.push_back({at + begin, comma - begin});
+    begin = comma + 1;
+  }
+  return out;
+}
+
+bool starts_with_blanks(std::string_view field) { return field.size() > 1 && field[0] == ' ' && field[1] == ' '; }
+
+/// In the old one's place, blanks around it kept; in a column it ends where the old one did, as far as it fits.
+std::string in_place_of(std::string_view old, const std::string& text, bool column) {
+  const std::string_view shown = trim(old);
+  if (shown.empty()) return (old.empty() ? "" : " ") + text;
+  const auto before = static_cast<std::size_t>(shown.data() - old.data());
+  const std::size_t room = before + shown.size();
+  std::string out(old.substr(0, before));
+  if (column && before > 0) out.assign(room > text.size() ? room - text.size() : 1, ' ');
+  return out + text + std::string(old.substr(room));
+}
+
+std::string number_text(double value, WrittenCard& card) {
+  std::string text = format_coordinate(value, kNumberWidth);
+  double back = 0;
+  if (!parse_real(text, back) || back != value) {
+    ++card.rounded;
+    card.largest_error = std::max(card.largest_error, std::abs(back - value));
+  }
+  return text;
+}
+
+class Writer : public CardWriter {
+ public:
+  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override {
+    return std::max(end_of_line(text, offset), offset);
+  }
+
+  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t style) const override {
+    std::size_t end = offset;
+    cut(text, offset, nodes_of(style) + 1, end);
+    return end;
+  }
+
+  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t) const override {
+    const auto fields = first_fields<4>(text.substr(offset, end_of_line(text, offset) - offset));
+    Vec3 out;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!parse_real(fields[axis + 1], out[static_cast<Eigen::Index>(axis)])) return std::nullopt;
+    return out;
+  }
+
+  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t, const Vec3& from, const Vec3& to) const override {
+    WrittenCard card;
+    card.text = std::string(text.substr(offset, end_of_line(text, offset) - offset));
+    for (std::size_t axis = 3; axis-- > 0;) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      if (from[a] != to[a]) put_coordinate(card, axis, to[a]);
+    }
+    return card;
+  }
+
+  WrittenCard new_node(std::string_view text, std::size_t offset, std::uint16_t, std::int64_t id, const Vec3& at) const override {
+    WrittenCard card;
+    card.text = std::string(text.substr(offset, end_of_line(text, offset) - offset));
+    std::vector<Place> places = places_of_line(card.text, 0);
+    // What follows the coordinates is the old node's normal.
+    if (places.size() > 4) card.text.resize(places[3].begin + places[3].length);
+    for (std::size_t axis = 3; axis-- > 0;) put_coordinate(card, axis, at[static_cast<Eigen::Index>(axis)]);
+    card.by_parameter = false;
+    const std::string_view old = std::string_view(card.text).substr(places[0].begin, places[0].length);
+    const std::string put = in_place_of(old, std::to_string(id), starts_with_blanks(old));
+    card.text.replace(places[0].begin, places[0].length, put);
+    return card;
+  }
+
+  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const override {
+    if ((style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
+    if ((style & kStyleShifted) != 0) return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
+    const bool triangle = shell.nodes[3] == shell.nodes[2];
+    const std::size_t corners = nodes_of(style);
+    if (triangle && corners == 4) return fail("", "is of a type with four corners, so a triangle can't be written like it");
+    if (!triangle && corners == 3) return fail("", "is of a type with three corners, so a quad can't be written like it");
+    std::size_t end = offset;
+    const std::vector<Place> places = cut(text, offset, corners + 1, end);
+    if (places.size() < corners + 1) return fail("", "has a card that can't be read");
+    WrittenCard card;
+    card.text = std::string(text.substr(offset, end - offset));
+    for (std::size_t f = corners + 1; f-- > 0;) {
+      const std::string_view old = text.substr(places[f].begin, places[f].length);
+      const std::int64_t id = f == 0 ? shell.id : shell.nodes[f - 1];
+      std::int64_t now = 0;
+      if (old.find('<') != std::string_view::npos) {
+        card.by_parameter = true;
+      } else if (!parse_integer(trim(old), now) || now != id) {
+        card.text.replace(places[f].begin - offset, places[f].length, in_place_of(old, std::to_string(id), starts_with_blanks(old)));
+      }
+    }
+    return card;
+  }
+
+  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
+
+  Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
+    if ((set.style & kStyleNamesAndIds) != 0) return fail("", "isn't a set that lists what it has");
+    if ((set.style & kStyleOtherIds) != 0) return fail("", "belongs to a part whose numbers are shown changed, or shown several times");
+    if (ids.empty()) return std::vector<Replacement>();
+    const Tail tail = tail_of(text, set);
+    std::string lines;
+    std::size_t on_line = 0;
+    const bool generate = (set.style & kStyleGenerate) != 0;
+    for (const std::int64_t id : ids) {
+      if (!lines.empty()) {
+        if (!generate && on_line < kIdsOnALine) {
+          lines += tail.between;
+        } else {
+          lines += tail.line_end;
+          on_line = 0;
+        }
+      }
+      if (on_line == 0) lines += tail.before;
+      lines += std::to_string(id);
+      if (generate) lines += tail.between + std::to_string(id) + tail.between + "1";
+      ++on_line;
+    }
+    const bool unended = tail.at == text.size() && tail.at > 0 && text[tail.at - 1] != '\n';
+    return std::vector<Replacement>{{tail.at, 0, unended ? tail.line_end + lines : lines + tail.line_end}};
+  }
+
+  std::int64_t largest_node_id(std::uint16_t style) const override { return (style & kStyleShifted) != 0 ? 0 : kLargestId; }
+  std::int64_t largest_shell_id(std::uint16_t style) const override { return (style & kStyleShifted) != 0 ? 0 : kLargestId; }
+
+ private:
+  /// How a set's lines look, and where the next goes.
+  struct Tail {
+    std::size_t at = 0;
+    std::string before;          ///< blanks at the line's beginning
+    std::string between = ", ";  ///< two numbers
+    std::string line_end = "\n";
+  };
+
+  static Tail tail_of(std::string_view text, const Referrer& set) {
+    Tail tail;
+    Keywords keywords(text.substr(static_cast<std::size_t>(set.offset), static_cast<std::size_t>(set.end - set.offset)));
+    Keyword keyword;
+    std::size_t data = static_cast<std::size_t>(set.end);
+    if (keywords.next(keyword)) data = static_cast<std::size_t>(set.offset) + keyword.end;
+    tail.at = data;
+    DataLines lines(text, data, static_cast<std::size_t>(set.end));
+    DataLine last;
+    for (DataLine line; lines.next(line);) last = line;
+    if (!last.text.empty()) {
+      const std::size_t end = text.find('\n', last.offset);
+      tail.at = end == std::string_view::npos ? text.size() : end + 1;
+      const std::string_view first = trim(last.text);
+      tail.before = std::string(last.text.substr(0, static_cast<std::size_t>(first.data() - last.text.data())));
+      const std::size_t comma = first.find(',');
+      if (comma != std::string_view::npos && comma + 1 < first.size()) {
+        const std::size_t blanks = first.find_first_not_of(" \t", comma + 1);
+        tail.between =
+            "," +
+            std::string(blanks == std::string_view::npos ? " " : first.substr(comma + 1, std::min<std::size_t>(blanks - comma - 1, 1)));
+      }
+    }
+    const std::size_t line = text.find('\n', static_cast<std::size_t>(set.offset));
+    if (line != std::string_view::npos && line > 0 && text[line - 1] == '\r') tail.line_end = "\r\n";
+    return tail;
+  }
+
+  static std::size_t nodes_of(std::uint16_t style) {
+    const std::size_t corners = style & kStyleCorners;
+    return (style & kStyleMidside) != 0 ? 2 * corners : corners;
+  }
+
+  static void put_coordinate(WrittenCard& card, std::size_t axis, double value) {
+    std::vector<Place> places = places_of_line(card.text, 0);
+    if (places.size() < axis + 2) {
+      // Fields that lack are zero.
+      if (!places.empty() && trim(card.text).back() == ',') card.text.erase(card.text.find_last_of(','));
+      while (places.size() < axis + 2) {
+        card.text += ",";
+        places.push_back({card.text.size(), 0});
+      }
+    }
+    const Place place = places[axis + 1];
+    const std::string old = card.text.substr(place.begin, place.length);
+    card.by_parameter |= old.find('<') != std::string::npos;
+    bool column = false;
+    for (std::size_t f = 1; f < std::min<std::size_t>(places.size(), 4); ++f)
+      column |= starts_with_blanks(std::string_view(card.text).substr(places[f].begin, places[f].length));
+    card.text.replace(place.begin, place.length, in_place_of(old, number_text(value, card), column));
+  }
+
+  /// The first `wanted` fields of a card that may go on in further lines; `end` gets where the line of the last of them ends.
+  static std::vector<Place> cut(std::string_view text, std::size_t offset, std::size_t wanted, std::size_t& end) {
+    std::vector<Place> out;
+    DataLines lines(text, offset, text.size());
+    DataLine line;
+    while (out.size() < wanted && lines.next(line)) {
+      for (const Place& place : places_of_line(line.text, line.offset))
+        if (out.size() < wanted) out.push_back(place);
+      end = end_of_line(text, line.offset);
+      if (line.text.back() != ',' && out.size() % kIdsOnALine != 0) break;
+    }
+    return out;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<const CardWriter> card_writer() { return std::make_unique<Writer>(); }
+
+}  // namespace prismesh::mesh::deck::abaqus

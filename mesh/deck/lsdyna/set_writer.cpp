@@ -1,0 +1,341 @@
+#include "mesh/deck/lsdyna/set_writer.h"
+
+#include <algorithm>
+#include <set>
+
+#include "mesh/deck/lsdyna/field_line.h"
+#include "mesh/deck/lsdyna/mesh_cards.h"
+#include "mesh/deck/number.h"
+
+namespace prismesh::mesh::deck::lsdyna {
+namespace {
+
+constexpr std::array<int, 8> kSetWidths = {10, 10, 10, 10, 10, 10, 10, 10};
+
+bool has_word(std::string_view keyword, std::string_view word) {
+  for (std::size_t at = keyword.find(word); at != std::string_view::npos; at = keyword.find(word, at + 1)) {
+    const bool begins = at == 0 || keyword[at - 1] == '_';
+    const std::size_t end = at + word.size();
+    if (begins && (end == keyword.size() || keyword[end] == '_')) return true;
+  }
+  return false;
+}
+
+std::string_view eol_of(std::string_view text, std::size_t line) {
+  const std::size_t newline = text.find('\n', line);
+  const std::size_t known = newline != std::string_view::npos ? newline : text.rfind('\n');
+  return known != std::string_view::npos && known > 0 && text[known - 1] == '\r' ? "\r\n" : "\n";
+}
+
+/// The data lines of a set, without title and header.
+Result<std::vector<Line>> members_of(std::string_view text, const Referrer& set) {
+  Lines lines(text, set.offset, std::min<std::size_t>(set.end, text.size()));
+  Line line;
+  std::vector<Line> members;
+  int before = has_word(set.keyword, "TITLE") ? 3 : 2;  // the keyword's own line, a title, the header
+  while (lines.next(line)) {
+    if (line.text.substr(0, kEncryptedBegin.size()) == kEncryptedBegin) return fail("", "is encrypted in part");
+    if (before-- > 0) continue;
+    if (!trim(line.text).empty()) members.push_back(line);
+  }
+  return members;
+}
+
+/// A list of ids, from field `first` of its lines on.
+class IdList {
+ public:
+  IdList(std::string_view text, const Referrer& set, std::vector<Line> lines)
+      : text_(text), columns_(columns_of(set.style)), lines_(std::move(lines)) {}
+
+  /// Takes ids out of their lines; those behind move up. False: one isn't there as a plain number.
+  bool take_out(std::span<const std::int64_t> leaving, std::size_t first, std::vector<Replacement>& out) {
+    std::set<std::int64_t> wanted(leaving.begin(), leaving.end()), found;
+    for (const Line& line : lines_) {
+      FieldLine fields(line.text, kSetWidths, columns_);
+      std::vector<std::string> kept;
+      bool touched = false;
+      for (std::size_t f = first; f < 8; ++f) {
+        std::int64_t id = 0;
+        if (parse_integer(fields.text(f), id) && wanted.contains(id)) {
+          found.insert(id);
+          touched = true;
+        } else if (!fields.is_blank_or_zero(f)) {
+          kept.emplace_back(fields.text(f));
+        }
+      }
+      remaining_ += kept.size();
+      if (!touched) continue;
+      if (kept.empty()) {
+        const std::size_t newline = text_.find('\n', line.offset);
+        out.push_back({line.offset, (newline == std::string_view::npos ? text_.size() : newline + 1) - line.offset, ""});
+        continue;
+      }
+      out.push_back({line.offset, line.text.size(), rewritten(line, fields, first, kept)});
+    }
+    return found.size() == wanted.size();
+  }
+
+  std::size_t remaining() const { return remaining_; }
+
+ private:
+  std::string rewritten(const Line& line, const FieldLine& fields, std::size_t first, const std::vector<std::string>& kept) const {
+    FieldLine out(line.text, kSetWidths, columns_);
+    // What is behind the last id: zeros where the line had them, else nothing.
+    bool zeros = false;
+    for (std::size_t f = first; f < 8; ++f) zeros |= fields.text(f) == "0";
+    for (std::size_t f = first; f < 8; ++f) {
+      const std::size_t at = f - first;
+      if (at < kept.size())
+        out.set(f, kept[at]);
+      else if (!fields.text(f).empty())
+        out.set(f, zeros ? "0" : "");
+    }
+    std::string text = out.str();
+    const std::size_t last = text.find_last_not_of(zeros ? " " : " ,");
+    if (line.text.find_last_not_of(' ') + 1 == line.text.size()) text.resize(last + 1);
+    return text;
+  }
+
+  std::string_view text_;
+  Columns columns_;
+  std::vector<Line> lines_;
+  std::size_t remaining_ = 0;
+};
+
+/// Lines of up to eight fields in the manner of `example`: `word` in the first, or none.
+std::string new_lines(const std::vector<std::string>& values, std::size_t fields, std::string_view word, bool zeros,
+                      const FieldLine& example, Columns columns, std::string_view eol) {
+  std::string out;
+  const std::size_t first = word.empty() ? 0 : 1;
+  for (std::size_t at = 0; at < values.size(); at += fields - first) {
+    FieldLine line(example.free_format() ? "," : "", kSetWidths, columns);
+    if (!word.empty()) line.set(0, word);
+    for (std::size_t f = first; f < fields; ++f) {
+      if (at + f - first < values.size())
+        line.set(f, values[at + f - first]);
+      else if (zeros)
+        line.set(f, "0");
+    }
+    out += line.str() + std::string(eol);
+  }
+  return out;
+}
+
+std::vector<std::string> texts_of(std::span<const std::int64_t> ids) {
+  std::vector<std::string> texts;
+  for (const std::int64_t id : ids) texts.push_back(std::to_string(id));
+  return texts;
+}
+
+/// Ids that count up by one, as first and last.
+std::vector<std::string> ranges_of(std::span<const std::int64_t> ids, bool with_step) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < ids.size();) {
+    std::size_t end = i + 1;
+    while (end < ids.size() && ids[end] == ids[end - 1] + 1) ++end;
+    texts.push_back(std::to_string(ids[i]));
+    texts.push_back(std::to_string(ids[end - 1]));
+    if (with_step) texts.push_back("1");
+    i = end;
+  }
+  return texts;
+}
+
+/// The field of a "follows" card that names the one it is about.
+struct Followed {
+  std::string_view keyword;
+  std::size_t field;
+};
+constexpr Followed kFollowedNodes[] = {
+    {"BOUNDARY_SPC_NODE", 0},        {"BOUNDARY_TEMPERATURE_NODE", 0}, {"CONSTRAINED_EXTRA_NODES_NODE", 1},
+    {"INITIAL_TEMPERATURE_NODE", 0}, {"INITIAL_VELOCITY_NODE", 0},
+};
+constexpr Followed kFollowedShells[] = {{"LOAD_SHELL_ELEMENT", 0}};
+
+bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
+
+bool is_initial_shell(std::string_view keyword) { return keyword == "INITIAL_STRESS_SHELL" || keyword == "INITIAL_STRAIN_SHELL"; }
+
+std::optional<std::size_t> followed_field(std::string_view keyword, Referred referred) {
+  if (is_initial_shell(keyword)) return 0;
+  const std::span<const Followed> table = referred == Referred::node ? std::span<const Followed>(kFollowedNodes) : kFollowedShells;
+  for (const Followed& entry : table)
+    if (entry.keyword == keyword) return entry.field;
+  return std::nullopt;
+}
+
+/// In which fields a segment's corners stand; nullopt: `keyword` has no segments that can be replaced.
+std::optional<std::size_t> first_corner(const Referrer& set, const FieldLine& line) {
+  if (!starts_with(set.keyword, "SET_SEGMENT")) return std::nullopt;
+  if (!has_word(set.keyword, "GENERAL")) return 0;
+  std::string word(line.text(0));
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+  if (word != "SEG") return std::nullopt;
+  return 1;
+}
+
+std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
+
+}  // namespace
+
+Result<std::vector<Replacement>> change_set(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
+                                            std::span<const std::int64_t> leaving) {
+  if (!starts_with(set.keyword, "SET_")) return fail("", "lists what it is about in a way that this version can't change");
+  const bool generate = has_word(set.keyword, "GENERATE"), increment = has_word(set.keyword, "INCREMENT");
+  const bool general = has_word(set.keyword, "GENERAL"), column = has_word(set.keyword, "COLUMN");
+  if (has_word(set.keyword, "ADD") || has_word(set.keyword, "INTERSECT")) return fail("", "is made of other sets");
+  const Columns columns = columns_of(set.style);
+  const Result<std::vector<Line>> members = members_of(text, set);
+  if (!members) return fail(members.error());
+  if (members->empty()) return fail("", "has no line after which another could go");
+  for (const std::int64_t id : joining)
+    if (std::to_string(id).size() > static_cast<std::size_t>(field_width(10, columns)))
+      return fail("", "has fields too narrow for the new ids");
+
+  std::vector<Replacement> out;
+  if (!leaving.empty()) {
+    IdList list(text, set, *members);
+    const bool found = column ? false : list.take_out(leaving, general ? 1 : 0, out);
+    if (!found)
+      return fail("", column ? "lists its entries with attributes, from which none can be taken out"
+                             : "names what would go by a parameter, or otherwise than as a plain number");
+    if (list.remaining() == 0 && joining.empty()) return fail("", "would be left empty");
+  }
+  if (joining.empty()) return out;
+
+  const Line last = members->back();
+  const auto rewritten = std::find_if(out.begin(), out.end(), [&](const Replacement& r) { return r.offset == last.offset; });
+  const bool gone = rewritten != out.end() && rewritten->text.empty();
+  const std::string last_text = rewritten != out.end() && !gone ? rewritten->text : std::string(last.text);
+  FieldLine fields(last_text, kSetWidths, columns);
+  const std::string_view eol = eol_of(text, last.offset);
+  bool zeros = false;
+  for (std::size_t f = 0; f < 8; ++f) zeros |= fields.text(f) == "0";
+
+  std::vector<std::string> values;
+  std::string more;
+  std::string line_text = last_text;
+  if (general) {
+    const std::string_view word = starts_with(set.keyword, "SET_NODE") ? "NODE" : starts_with(set.keyword, "SET_PART") ? "PART" : "ELEM";
+    more = new_lines(texts_of(joining), 8, word, false, fields, columns, eol);
+  } else if (column) {
+    for (std::size_t f = 1; f < 5; ++f)
+      for (const Line& line : *members)
+        if (FieldLine(line.text, kSetWidths, columns).text(f) != fields.text(f))
+          return fail("", "gives its entries different attributes, and it can't be told which a new one has");
+    for (const std::int64_t id : joining) {
+      FieldLine line(last.text, kSetWidths, columns);
+      line.set(0, std::to_string(id));
+      more += line.str() + std::string(eol);
+    }
+  } else if (increment) {
+    more = new_lines(ranges_of(joining, true), 3, "", false, fields, columns, eol);
+  } else {
+    values = generate ? ranges_of(joining, false) : texts_of(joining);
+    // The last line is filled up first.
+    std::size_t used = 8;
+    while (used > 0 && fields.is_blank_or_zero(used - 1)) --used;
+    if (generate) used += used % 2;
+    std::size_t filled = 0;
+    const std::size_t whole = generate ? 2 : 1;
+    if (!gone)
+      while (used + whole <= 8 && filled + whole <= values.size())
+        for (std::size_t i = 0; i < whole; ++i) fields.set(used++, values[filled++]);
+    if (filled > 0) line_text = fields.str();
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(filled));
+    more = new_lines(values, 8, "", zeros, fields, columns, eol);
+  }
+  if (line_text != last.text && !gone) {
+    if (rewritten != out.end())
+      rewritten->text = line_text;
+    else
+      out.push_back({last.offset, last.text.size(), line_text});
+  }
+  if (!more.empty()) {
+    const std::size_t newline = text.find('\n', last.offset);
+    if (newline == std::string_view::npos) {
+      more.resize(more.size() - eol.size());
+      out.push_back({text.size(), 0, std::string(eol) + more});
+    } else {
+      out.push_back({newline + 1, 0, more});
+    }
+  }
+  return out;
+}
+
+std::optional<std::array<std::int64_t, 4>> read_segment(std::string_view text, const Referrer& set, std::size_t card) {
+  const FieldLine line(line_at(text, card), kSetWidths, columns_of(set.style));
+  const std::optional<std::size_t> first = first_corner(set, line);
+  if (!first) return std::nullopt;
+  std::array<std::int64_t, 4> corners{};
+  for (std::size_t c = 0; c < 4; ++c)
+    if (!parse_integer(line.text(*first + c), corners[c])) return std::nullopt;
+  if (corners[3] == 0) corners[3] = corners[2];
+  return corners;
+}
+
+Result<std::vector<Replacement>> replace_segment(std::string_view text, const Referrer& set, std::size_t card,
+                                                 std::span<const std::array<std::int64_t, 4>> with) {
+  const std::string_view before = line_at(text, card);
+  const FieldLine old(before, kSetWidths, columns_of(set.style));
+  const std::optional<std::size_t> first = first_corner(set, old);
+  if (!first) return fail("", "can't be replaced");
+  if (with.empty()) {
+    const std::size_t newline = text.find('\n', card);
+    return std::vector<Replacement>{{card, (newline == std::string_view::npos ? text.size() : newline + 1) - card, ""}};
+  }
+  std::string lines;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    FieldLine line = old;
+    for (std::size_t c = 0; c < 4; ++c) {
+      std::int64_t node = 0;
+      if (!parse_integer(line.text(*first + c), node) || node != with[i][c]) line.set(*first + c, std::to_string(with[i][c]));
+    }
+    lines += (i > 0 ? std::string(eol_of(text, card)) : std::string()) + line.str();
+  }
+  return std::vector<Replacement>{{card, before.size(), lines}};
+}
+
+Inheritance inheritance_of(const Referrer& card, Referred referred) {
+  const std::string_view keyword = card.keyword;
+  if (followed_field(keyword, referred)) return Inheritance::follows;
+  if (starts_with(keyword, "DATABASE_") || starts_with(keyword, "SENSOR_")) return Inheritance::stays;
+  // What holds or drives a node, or loads or stresses a shell, can't be left with a part of where it was.
+  if (referred != Referred::node || starts_with(keyword, "BOUNDARY_") || starts_with(keyword, "INITIAL_")) return Inheritance::forbids;
+  // Joints, welds, systems of coordinates, forces at a point.
+  return Inheritance::stays;
+}
+
+Result<std::vector<Replacement>> copy_single(std::string_view text, const Referrer& card, const Reference& single,
+                                             std::span<const std::int64_t> ids) {
+  const std::optional<std::size_t> field = followed_field(card.keyword, is_element(single.referred) ? Referred::shell : Referred::node);
+  if (!field) return fail("", "can't be written again for another");
+  const Columns columns = columns_of(card.style);
+  const std::string_view first = line_at(text, single.card);
+  std::size_t end = single.card + first.size();
+  if (is_initial_shell(card.keyword)) {
+    // As it is read: the values have points, the line of the next element has whole numbers alone.
+    Lines lines(text, single.card, std::min<std::size_t>(card.end, text.size()));
+    Line line;
+    lines.next(line);
+    while (lines.next(line) && line.text.find('.') != std::string_view::npos) end = line.offset + line.text.size();
+  }
+  FieldLine line(first, kSetWidths, columns);
+  if (line.by_parameter(*field)) return fail("", "names it by the parameter " + std::string(line.text(*field)));
+  const std::string_view rest = text.substr(single.card + first.size(), end - single.card - first.size());
+  const std::string_view eol = eol_of(text, single.card);
+  std::string copies;
+  for (const std::int64_t id : ids) {
+    const std::string number = std::to_string(id);
+    if (!line.free_format() && number.size() > line.width(*field)) return fail("", "has fields too narrow for the new ids");
+    line.set(*field, number);
+    copies += line.str() + std::string(rest) + std::string(eol);
+  }
+  const std::size_t newline = text.find('\n', end);
+  if (newline != std::string_view::npos) return std::vector<Replacement>{{newline + 1, 0, copies}};
+  copies.resize(copies.size() - eol.size());
+  return std::vector<Replacement>{{text.size(), 0, std::string(eol) + copies}};
+}
+
+}  // namespace prismesh::mesh::deck::lsdyna

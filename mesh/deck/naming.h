@@ -1,0 +1,51 @@
+// What stands in the way of taking an entity out of a deck: cards that name it, and text nobody understands that may.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "mesh/deck/deck.h"
+
+namespace prismesh::mesh::deck {
+
+/// A card as reports speak of it: "*SET_NODE_LIST 1", "SPC1 7", "/GRNOD/NODE 3".
+std::string card_name(Format format, const Referrer& card);
+
+/// The cards that name the id, in the deck's order, each once: "*SET_NODE_LIST 1 (deck.k:1234)". At most `most`, then how many more.
+std::vector<std::string> what_names(const Deck& deck, Referred referred, std::int64_t id, std::size_t most = 10);
+
+/// Decides what may be taken out. Text that isn't understood is searched once, when it is first asked for, for all numbers in it.
+class DeletionCheck {
+ public:
+  /// The deck must outlive this.
+  explicit DeletionCheck(const Deck& deck) : deck_(deck) {}
+  /// Sets that list the id, or have it in a range, don't stand in the way: it can be taken out of them. Errors: the first card that names
+  /// it alone or as the corner of a segment; text that isn't understood and holds the number; encrypted text, and files that aren't
+  /// there, since they may name anything.
+  Result<void> may_be_deleted(Referred referred, std::int64_t id);
+  /// The same without the cards that are understood: for who looks after those himself.
+  Result<void> unnamed_in_unread(Referred referred, std::int64_t id);
+
+ private:
+  std::optional<Error> named_by_card(Referred referred, std::int64_t id, const std::string& what) const;
+  std::optional<Error> named_unseen(const std::string& what) const;
+  std::optional<Error> named_in_unread(Referred referred, std::int64_t id, const std::string& what);
+  void gather_numbers();
+
+  const Deck& deck_;
+  std::optional<std::vector<std::pair<std::int64_t, std::uint32_t>>> numbers_;  ///< with the index of the text they stand in, ascending
+};
+
+/// For one id; more than a few are faster with a DeletionCheck.
+Result<void> may_be_deleted(const Deck& deck, Referred referred, std::int64_t id);
+
+/// Every whole number that a text may hold, whichever way its columns are cut: words between blanks and commas, and of longer runs of
+/// digits the fields of 8, 10, 16 and 20 columns. Appended to `numbers`, without signs.
+void gather_whole_numbers(std::string_view text, std::vector<std::int64_t>& numbers);
+
+}  // namespace prismesh::mesh::deck

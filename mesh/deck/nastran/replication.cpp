@@ -1,0 +1,81 @@
+#include "mesh/deck/nastran/replication.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "mesh/deck/number.h"
+
+namespace prismesh::mesh::deck::nastran {
+namespace {
+
+/// "(0.5)" and "0.5" are the same.
+std::string_view without_parentheses(std::string_view text) {
+  text = trim(text);
+  if (!text.empty() && text.front() == '(') text.remove_prefix(1);
+  if (!text.empty() && text.back() == ')') text.remove_suffix(1);
+  return trim(text);
+}
+
+std::string raised(const std::string& text, const std::string& by) {
+  std::int64_t whole = 0, whole_by = 0;
+  if (text.find('.') == std::string::npos && by.find('.') == std::string::npos && parse_integer(text, whole) && parse_integer(by, whole_by))
+    return std::to_string(whole + whole_by);
+  double value = 0, value_by = 0;
+  if (!parse_real(text, value) || !parse_real(by, value_by)) return text;
+  char buffer[40];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value + value_by).ptr;
+  std::string out(buffer, end);
+  if (out.find_first_of(".e") == std::string::npos) out += '.';
+  return out;
+}
+
+}  // namespace
+
+void Replication::set_template(const Card& card) {
+  name_ = card.name();
+  layout_ = card.layout();
+  fields_.assign(card.size(), {});
+  for (std::size_t f = 0; f < card.size(); ++f) fields_[f].text = card.text(f);
+  has_template_ = true;
+  raised_ = false;
+}
+
+std::size_t Replication::read(const Card& card) {
+  const std::string_view name = card.name();
+  if (name != "=" && name != "==") {
+    std::int64_t count = 0;
+    if (!raised_ || !parse_integer(without_parentheses(name.substr(1)), count) || count < 1) return 0;
+    return static_cast<std::size_t>(std::min<std::int64_t>(count, kMostCopies + 1));
+  }
+  std::vector<Field> next(std::max(card.size(), fields_.size()));
+  bool rest = name == "==";
+  for (std::size_t f = 0; f < next.size(); ++f) {
+    const std::string_view text = card.text(f);
+    const std::string old = f < fields_.size() ? fields_[f].text : std::string();
+    if (f % 8 == 0 && f > 0 && f >= card.size()) break;  // a further line is there only if the copy has one
+    if (text == "==") rest = true;
+    if (rest || text == "=")
+      next[f].text = old;
+    else if (!text.empty() && text[0] == '*')
+      next[f] = {old, std::string(without_parentheses(text.substr(1)))};
+    else if (!text.empty() && (text[0] == '%' || text[0] == '='))
+      return 0;
+    else
+      next[f].text = text;
+    if (f % 8 == 7 && name != "==") rest = false;
+  }
+  fields_ = std::move(next);
+  raised_ = true;
+  return 1;
+}
+
+void Replication::make(Card& copy) {
+  std::vector<std::string> texts;
+  for (Field& field : fields_) {
+    if (!field.raise.empty()) field.text = raised(field.text, field.raise);
+    texts.push_back(field.text);
+  }
+  copy.assign(name_, texts, layout_);
+}
+
+}  // namespace prismesh::mesh::deck::nastran

@@ -1,0 +1,56 @@
+// The walk over a deck's files in the order the solver reads them: finds the bulk data and the includes, and cuts the text into pieces.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mesh/deck/deck.h"
+#include "mesh/deck/file_set.h"
+#include "mesh/deck/nastran/piece.h"
+#include "mesh/deck/nastran/references.h"
+#include "mesh/deck/warnings.h"
+
+namespace prismesh::mesh::deck::nastran {
+
+/// A line that gives the text its structure.
+struct Mark {
+  enum class Kind : std::uint8_t { begin_bulk, begin_other, executive, end_data, include };
+  std::size_t offset = 0;
+  std::size_t next = 0;  ///< where the line after begins
+  Kind kind = Kind::include;
+};
+
+/// All of a text's, ascending. Looks at every line, in parallel.
+std::vector<Mark> find_marks(std::string_view text);
+
+class Walk {
+ public:
+  Walk(std::filesystem::path path, FileBytes main);
+  void run();
+
+  FileSet files;
+  std::vector<Piece> pieces;
+  std::vector<bool> held;      ///< by file: it is used more than once
+  ReferenceReader references;  ///< of the text outside the bulk data, and of bulk data that isn't read
+  Warnings warnings;
+
+ private:
+  enum class Section : std::uint8_t { control, bulk, other, ended };
+  void walk_file(std::uint32_t file, const std::vector<Mark>& marks, int depth);
+  void take(std::uint32_t file, std::size_t begin, std::size_t end);
+  void cut(std::uint32_t file, std::size_t begin, std::size_t end);
+  std::size_t include(std::uint32_t from, const Mark& mark, int depth);
+  void hold_repeated();
+
+  Section section_ = Section::control;
+  /// By file.
+  struct State : FileUse {
+    bool walked = false;
+    bool open = false;
+  };
+  std::vector<State> states_;
+};
+
+}  // namespace prismesh::mesh::deck::nastran

@@ -1,0 +1,12 @@
+// Cards of grid points and shells rewritten, everything else about them kept.
+#pragma once
+
+#include <memory>
+
+#include "mesh/deck/card_writer.h"
+
+namespace prismesh::mesh::deck::nastran {
+
+std::unique_ptr<const CardWriter> card_writer();
+
+}  // namespace prismesh::mesh::deck::nastran

@@ -1,0 +1,107 @@
+#include "mesh/deck/opening.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/parallel_for.h"
+#include "mesh/deck/assemble.h"
+#include "mesh/deck/findings.h"
+#include "mesh/deck/number.h"
+#include "mesh/deck/on_disk.h"
+#include "mesh/model/adjacency.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+/// Entities are numbered with 32 bits.
+constexpr std::size_t kMostEntities = 0xfffffffeu;
+
+/// One hash over all files: their bytes' hashes and their names relative to the main file.
+Hash128 content_hash(const std::vector<SourceFile>& files, const std::vector<Hash128>& hashes) {
+  std::string all;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    all += hashes[i].hex();
+    // The main file may be renamed without becoming another deck.
+    if (i > 0) all += files[i].relative.generic_string();
+    all += '\n';
+  }
+  return hash128(std::as_bytes(std::span(all)));
+}
+
+/// The greatest id of each file's entities: what new ones go on from.
+template <class Ids, class Field>
+void find_last_ids(const Ids& ids, const std::vector<CardRun>& runs, Field field, std::vector<LastIds>& last) {
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const std::size_t end = r + 1 < runs.size() ? runs[r + 1].first : ids.size();
+    std::int64_t& greatest = last[runs[r].file].*field;
+    for (std::size_t i = runs[r].first; i < end; ++i) greatest = std::max(greatest, ids[i]);
+  }
+}
+
+std::optional<Error> first_error(const Found& found) {
+  std::size_t entities = 0;
+  for (const PieceCards& cards : found.cards) {
+    const SourceFile& file = found.files[cards.file];
+    if (cards.error) return Error{file.path.string(), line_number(file.bytes.text(), cards.error->first), cards.error->second};
+    entities += std::max(cards.node_id.size(), cards.shells.id.size());
+  }
+  if (entities >= kMostEntities) return Error{found.files[0].path.string(), 0, "has more nodes or elements than this version can number"};
+  return std::nullopt;
+}
+
+}  // namespace
+
+void read_pieces(Found& found, std::size_t pieces, const std::function<PieceCards(std::size_t)>& read, Watch& watch) {
+  found.cards.resize(pieces);
+  found.hashes.resize(found.files.size());
+  std::atomic<std::size_t> done = 0;
+  const std::size_t jobs = found.files.size() + pieces;
+  parallel_for(jobs, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t job = begin; job < end && !watch.stopped(); ++job) {
+      if (job < found.files.size())
+        found.hashes[job] = hash128(found.files[job].bytes.bytes());
+      else
+        found.cards[job - found.files.size()] = read(job - found.files.size());
+      watch.tell(kWalked + (kRead - kWalked) * static_cast<double>(++done) / static_cast<double>(jobs));
+    }
+  });
+  watch.tell(kRead);
+}
+
+Result<OpenedDeck> finish(Found found, Watch& watch) {
+  if (watch.stopped()) return fail(cancelled());
+  if (std::optional<Error> error = first_error(found)) return fail(std::move(*error));
+
+  auto deck = std::make_shared<Deck>();
+  deck->format = found.format;
+  deck->content = content_hash(found.files, found.hashes);
+  deck->time_step = found.time_step;
+  deck->length_unit = found.length_unit;
+  deck->frames = std::move(found.frames);
+  deck->id_offsets = std::move(found.id_offsets);
+  OpenedDeck opened;
+  opened.model = assemble(found.cards, std::move(found.parts), *deck, found.warnings);
+  deck->files = std::move(found.files);
+  std::sort(deck->left_out_elements.begin(), deck->left_out_elements.end());
+  deck->last_ids.resize(deck->files.size());
+  find_last_ids(opened.model.node_ids, deck->node_runs, &LastIds::node, deck->last_ids);
+  find_last_ids(opened.model.shell_ids, deck->shell_runs, &LastIds::shell, deck->last_ids);
+  deck->on_disk = std::make_shared<OnDisk>();
+  for (std::size_t i = 0; i < deck->files.size(); ++i)
+    deck->on_disk->files.push_back({deck->files[i].bytes.identity(), found.hashes[i], true});
+  deck->missing_files = std::move(found.missing_files);
+  found.references.finish();
+  deck->references = std::make_shared<const References>(std::move(found.references));
+  watch.tell(kAssembled);
+  if (watch.stopped()) return fail(cancelled());
+  opened.model.adjacency = std::make_shared<const Adjacency>(build_adjacency(opened.model));
+  note_findings(*deck, opened.model, found.warnings);
+  deck->warnings = found.warnings.finish(deck->files);
+  watch.tell(1);
+  if (watch.stopped()) return fail(cancelled());
+  opened.deck = std::move(deck);
+  return opened;
+}
+
+}  // namespace prismesh::mesh::deck

@@ -1,0 +1,72 @@
+#include "mesh/deck/radioss/block.h"
+
+#include <algorithm>
+
+#include "mesh/deck/number.h"
+
+namespace prismesh::mesh::deck::radioss {
+namespace {
+
+constexpr std::size_t kLongestKeyword = 200;
+constexpr std::size_t kMostWords = 12;
+
+bool is_comment(char first) { return first == '#' || first == '$'; }
+
+}  // namespace
+
+std::string Keyword::joined() const {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : "/") + word;
+  return out;
+}
+
+Keyword keyword_at(std::string_view text, std::size_t offset) {
+  Keyword out;
+  std::string_view line = text.substr(offset, std::min(text.find_first_of("\r\n", offset), text.size()) - offset);
+  line = trim(line.substr(0, kLongestKeyword));
+  while (!line.empty() && line.front() == '/' && out.words.size() + out.numbers.size() < kMostWords) {
+    line.remove_prefix(1);
+    const std::string_view part = trim(line.substr(0, line.find('/')));
+    line.remove_prefix(std::min(line.find('/'), line.size()));
+    std::int64_t number = 0;
+    if (!part.empty() && part.find_first_not_of("0123456789") == std::string_view::npos && parse_integer(part, number)) {
+      out.numbers.push_back(number);
+    } else if (out.numbers.empty() && !part.empty()) {
+      std::string word(part);
+      std::transform(word.begin(), word.end(), word.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
+      out.words.push_back(std::move(word));
+    }
+  }
+  return out;
+}
+
+bool Lines::next(std::string_view& line, std::size_t& offset) {
+  while (at_ < text_.size()) {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    offset = at_;
+    at_ = end + 1;
+    if (is_comment(text_[offset])) continue;
+    line = text_.substr(offset, end - offset);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return true;
+  }
+  return false;
+}
+
+void BlockLines::enter(std::size_t stretch) {
+  stretch_ = stretch;
+  const Stretch& at = stretch == 0 ? block_.body : block_.more[stretch - 1];
+  file_ = at.file;
+  lines_.emplace(files_[at.file].bytes.text(), at.begin, at.end);
+}
+
+bool BlockLines::next(Line& line) {
+  while (!lines_->next(line.text, line.offset)) {
+    if (stretch_ == block_.more.size()) return false;
+    enter(stretch_ + 1);
+  }
+  line.file = file_;
+  return true;
+}
+
+}  // namespace prismesh::mesh::deck::radioss

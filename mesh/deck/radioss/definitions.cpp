@@ -1,0 +1,217 @@
+#include "mesh/deck/radioss/definitions.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh/deck/number.h"
+
+namespace prismesh::mesh::deck::radioss {
+namespace {
+
+struct Law {
+  std::string_view name;
+  std::string_view word;
+  MaterialFields fields;
+};
+// Fields are counted one wide: Young's modulus in the first number is field 1, Poisson's ratio in the second is field 3.
+constexpr MaterialFields kIsotropic{2, 1, 3, true};
+constexpr MaterialFields kOrthotropic{2, 1, 5, true};
+constexpr MaterialFields kModulusOnly{2, 1, 0, true};
+constexpr std::array<Law, 40> kLaws = {{
+    {"LAW0", "VOID", {1, 3, 5, false}},
+    {"LAW1", "ELAST", kIsotropic},
+    {"LAW2", "PLAS_JOHNS", kIsotropic},
+    {"LAW2", "PLAS_ZERIL", kIsotropic},
+    {"LAW3", "HYDPLA", kIsotropic},
+    {"LAW4", "HYD_JCOOK", kIsotropic},
+    {"LAW13", "RIGID", {2, 1, 3, false}},
+    {"LAW15", "CHANG", kOrthotropic},
+    {"LAW19", "FABRI", kOrthotropic},
+    {"LAW22", "DAMA", kIsotropic},
+    {"LAW23", "PLAS_DAMA", kIsotropic},
+    {"LAW25", "COMPSH", kOrthotropic},
+    {"LAW27", "PLAS_BRIT", kIsotropic},
+    {"LAW32", "HILL", kIsotropic},
+    {"LAW33", "FOAM_PLAS", kModulusOnly},
+    {"LAW35", "FOAM_VISC", kIsotropic},
+    {"LAW36", "PLAS_TAB", kIsotropic},
+    {"LAW43", "HILL_TAB", kIsotropic},
+    {"LAW44", "COWPER", kIsotropic},
+    {"LAW48", "ZHAO", kIsotropic},
+    {"LAW49", "STEINB", kIsotropic},
+    {"LAW52", "GURSON", kIsotropic},
+    {"LAW57", "BARLAT3", kIsotropic},
+    {"LAW60", "PLAS_T3", kIsotropic},
+    {"LAW63", "HANSEL", kIsotropic},
+    {"LAW64", "UGINE_ALZ", kIsotropic},
+    {"LAW65", "ELASTOMER", kIsotropic},
+    {"LAW66", "", kIsotropic},
+    {"LAW70", "FOAM_TAB", kIsotropic},
+    {"LAW71", "", kIsotropic},
+    {"LAW72", "HILL_MMC", kIsotropic},
+    {"LAW73", "THERM_HILL", kIsotropic},
+    {"LAW74", "THERM_HILL_3D", kIsotropic},
+    {"LAW76", "SAMP", kIsotropic},
+    {"LAW78", "", kIsotropic},
+    {"LAW80", "", kIsotropic},
+    {"LAW84", "SWIFT_VOCE", kIsotropic},
+    {"LAW87", "BARLAT2000", kIsotropic},
+    {"LAW93", "ORTH_HILL", {0, 0, 0, true}},
+    {"LAW109", "", kIsotropic},
+}};
+
+/// Shell properties and where they keep the thickness: the card, and the field counted from 1.
+struct ThicknessPlace {
+  std::string_view type;
+  std::string_view word;
+  int card;
+  int field;
+};
+constexpr std::array<ThicknessPlace, 7> kThicknessPlaces = {{{"TYPE0", "VOID", 1, 1},
+                                                             {"TYPE1", "SHELL", 3, 3},
+                                                             {"TYPE9", "SH_ORTH", 3, 3},
+                                                             {"TYPE10", "SH_COMP", 3, 3},
+                                                             {"TYPE11", "SH_SANDW", 3, 3},
+                                                             {"TYPE16", "SH_FABR", 3, 3},
+                                                             {"TYPE19", "PLY", 1, 3}}};
+
+/// A block's title and cards by their numbers.
+class Cards {
+ public:
+  Cards(const Block& block, const Surroundings& around)
+      : around_(around), block_(block), lines_(around.files, block), width_(around.contexts[block.context].field_width()) {}
+
+  std::string title() {
+    Line line;
+    return lines_.next(line) ? std::string(trim(line.text)) : std::string();
+  }
+  bool next() { return lines_.next(line_); }
+  std::optional<double> real(int from_one) const {
+    return around_.parameters.real(field(line_.text, width_, static_cast<std::size_t>(from_one - 1), 2), around_.contexts, block_.context);
+  }
+  std::optional<double> positive(int from_one) const {
+    const std::optional<double> value = real(from_one);
+    return value && *value > 0 ? value : std::nullopt;
+  }
+  std::optional<std::int64_t> id(int from_one, std::int64_t added) const {
+    const std::optional<std::int64_t> value =
+        around_.parameters.integer(field(line_.text, width_, static_cast<std::size_t>(from_one - 1)), around_.contexts, block_.context);
+    return value && *value > 0 ? std::optional(*value + added) : std::nullopt;
+  }
+
+ private:
+  const Surroundings& around_;
+  const Block& block_;
+  BlockLines lines_;
+  std::size_t width_;
+  Line line_;
+};
+
+/// In other units; those of a deck may be anything.
+std::optional<double> converted(std::optional<double> value, double factor) {
+  if (value) *value *= factor;
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+}  // namespace
+
+MaterialFields material_fields(std::string_view law) {
+  for (const Law& known : kLaws)
+    if (law == known.name || (!known.word.empty() && law == known.word)) return known.fields;
+  return {0, 0, 0, true};
+}
+
+std::optional<Units> Surroundings::units(std::uint32_t context, std::int64_t system) const {
+  if (system > 0) return systems.find(contexts, context, system);
+  for (;;) {
+    const Context& at = contexts[context];
+    if (at.units) return at.units;
+    if (at.unit > 0) return systems.find(contexts, context, at.unit);
+    if (at.parent == context) return Units();
+    context = at.parent;
+  }
+}
+
+bool Definitions::read(const Block& block, const Keyword& keyword, const Surroundings& around) {
+  if (keyword.number(0) <= 0) return false;
+  if (keyword.word(0) == "PART")
+    read_part(block, keyword, around);
+  else if (keyword.word(0) == "PROP")
+    read_property(block, keyword, around);
+  else if (keyword.word(0) == "MAT")
+    read_material(block, keyword, around);
+  else
+    return false;
+  return true;
+}
+
+void Definitions::read_part(const Block& block, const Keyword& keyword, const Surroundings& around) {
+  const IdOffsets& added = around.contexts[block.context].added;
+  Cards cards(block, around);
+  Part part;
+  part.id = keyword.number(0) + added.part;
+  part.defined = true;
+  part.name = cards.title();
+  if (cards.next()) {
+    part.section = cards.id(1, added.other);
+    part.material = cards.id(2, added.material);
+  }
+  parts_.try_emplace(part.id, std::move(part));
+}
+
+void Definitions::read_property(const Block& block, const Keyword& keyword, const Surroundings& around) {
+  const auto place = std::find_if(kThicknessPlaces.begin(), kThicknessPlaces.end(), [&](const ThicknessPlace& known) {
+    return keyword.word(1) == known.type || keyword.word(1) == known.word;
+  });
+  const std::optional<Units> units = around.units(block.context, keyword.number(1));
+  const std::optional<Units> main = around.units(0, 0);
+  if (place == kThicknessPlaces.end() || !units || !main) return;
+  Cards cards(block, around);
+  cards.title();
+  for (int card = 0; card < place->card; ++card)
+    if (!cards.next()) return;
+  if (const std::optional<double> thickness = converted(cards.positive(place->field), units->length / main->length))
+    thickness_.try_emplace(keyword.number(0) + around.contexts[block.context].added.other, *thickness);
+}
+
+void Definitions::read_material(const Block& block, const Keyword& keyword, const Surroundings& around) {
+  const MaterialFields fields = material_fields(keyword.word(1));
+  Material material;
+  material.limits_time_step = fields.limits_time_step;
+  const std::optional<Units> units = around.units(block.context, keyword.number(1));
+  const std::optional<Units> main = around.units(0, 0);
+  Cards cards(block, around);
+  cards.title();
+  if (units && main && cards.next()) {
+    const double mass = units->mass / main->mass;
+    const double length = units->length / main->length;
+    const double time = units->time / main->time;
+    material.density = converted(cards.positive(1), mass / (length * length * length));
+    if (fields.youngs_modulus > 0 && (fields.card == 1 || cards.next())) {
+      material.youngs_modulus = converted(cards.positive(fields.youngs_modulus), mass / (length * time * time));
+      if (material.youngs_modulus && fields.poissons_ratio > 0) material.poissons_ratio = cards.real(fields.poissons_ratio);
+    }
+  }
+  materials_.try_emplace(keyword.number(0) + around.contexts[block.context].added.material, material);
+}
+
+std::vector<Part> Definitions::parts() const {
+  std::vector<Part> out;
+  for (const auto& [id, defined] : parts_) {
+    Part part = defined;
+    if (part.section)
+      if (const auto thickness = thickness_.find(*part.section); thickness != thickness_.end()) part.thickness = thickness->second;
+    if (part.material)
+      if (const auto material = materials_.find(*part.material); material != materials_.end()) {
+        part.density = material->second.density;
+        part.youngs_modulus = material->second.youngs_modulus;
+        part.poissons_ratio = material->second.poissons_ratio;
+        part.limits_time_step = material->second.limits_time_step;
+      }
+    out.push_back(std::move(part));
+  }
+  return out;
+}
+
+}  // namespace prismesh::mesh::deck::radioss

@@ -1,0 +1,79 @@
+// /TRANSFORM: nodes of submodels and node groups that the solver puts elsewhere when it starts. They are shown there, by frames.
+// Source: Radioss Reference Guide, "/TRANSFORM/TRA", "ROT", "SYM", "SCA", "MATRIX", "POSITION", "/GRNOD".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "mesh/deck/frame.h"
+#include "mesh/deck/opening.h"
+#include "mesh/deck/radioss/definitions.h"
+
+namespace prismesh::mesh::deck::radioss {
+
+/// What a card says; lengths in the main file's unit, ids as the model numbers them.
+struct Transform {
+  enum class Kind : std::uint8_t { translation, rotation, symmetry, scaling, matrix, position, unknown };
+  Kind kind = Kind::unknown;
+  std::int64_t group = 0;
+  std::int64_t submodel = 0;
+  std::array<std::int64_t, 6> nodes{};
+  std::array<Eigen::Vector3d, 6> points{};  ///< translation and scaling: the first; matrix: its rows, then the translation
+  double angle_degrees = 0;
+  bool readable = true;
+  std::uint32_t file = 0;
+  std::size_t offset = 0;
+};
+Transform read_transform(const Block& block, const Keyword& keyword, const Surroundings& around);
+
+/// The map of a card whose nodes are at `at` (nullopt where one isn't defined). nullopt: it can't be worked out.
+std::optional<Eigen::Affine3d> affine_of(const Transform& transform, const std::array<std::optional<Eigen::Vector3d>, 6>& at);
+
+/// Applies cards in their order: changes frames, adds some, gives runs of nodes others, and holds nodes whose place can't be worked out
+/// or that a card's map hangs on.
+class Transformer {
+ public:
+  /// `frame_context`: the submodel of each frame. `groups`: /GRNOD blocks by id.
+  Transformer(Found& found, std::vector<std::uint32_t>& frame_context, const Surroundings& around,
+              const std::map<std::int64_t, const Block*>& groups)
+      : found_(found), frame_context_(frame_context), around_(around), groups_(groups) {}
+  void run(const std::vector<Transform>& transforms);
+
+ private:
+  /// A node that a card names.
+  struct Named {
+    std::int64_t id = 0;
+    std::uint32_t piece = 0;
+    std::uint32_t node = 0;
+    bool found = false;
+  };
+  /// Members of a node group.
+  struct Members {
+    std::vector<std::array<std::int64_t, 3>> ranges;  ///< first, last, step
+    std::vector<std::int64_t> ids;                    ///< sorted at the end
+    std::vector<std::int64_t> without;                ///< sorted at the end
+    bool has(std::int64_t id) const;
+  };
+  void find_named(const std::vector<Transform>& transforms);
+  std::optional<Eigen::Vector3d> position(std::int64_t node) const;
+  void move_submodel(const Transform& transform, const Eigen::Affine3d& map);
+  void move_group(const Members& members, const Eigen::Affine3d& map);
+  void hold(const Transform& transform, const Members* members);
+  bool in_submodel(std::uint32_t frame, std::int64_t submodel) const;
+  bool collect(std::int64_t group, int depth, Members& members);
+  void collect_parts(const std::vector<std::int64_t>& parts, Members& members);
+
+  Found& found_;
+  std::vector<std::uint32_t>& frame_context_;
+  const Surroundings& around_;
+  const std::map<std::int64_t, const Block*>& groups_;
+  std::vector<Named> named_;
+  std::set<std::int64_t> held_;  ///< submodels whose nodes are all held; 0: every node is
+  std::size_t work_ = 0;
+};
+
+}  // namespace prismesh::mesh::deck::radioss

@@ -1,0 +1,56 @@
+// The walk over a deck's files in the order the solver reads them: finds the blocks, follows the includes and submodels. Nothing else is
+// interpreted here.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/deck/file_set.h"
+#include "mesh/deck/radioss/block.h"
+#include "mesh/deck/radioss/context.h"
+#include "mesh/deck/warnings.h"
+
+namespace prismesh::mesh::deck::radioss {
+
+class Walk {
+ public:
+  Walk(std::filesystem::path path, FileBytes main);
+  void run();
+
+  FileSet files;
+  std::vector<Block> blocks;  ///< up to /END, in their order; without submodels' own keywords
+  std::vector<Context> contexts{Context()};
+  std::vector<bool> held;  ///< by file: what it holds stands for several places of the model
+  Warnings warnings;
+
+ private:
+  void walk_file(std::uint32_t file, int depth);
+  void keyword(std::uint32_t file, std::size_t offset);
+  void include(std::uint32_t file, std::size_t offset, int depth);
+  void close_stretch(std::size_t end);
+  void finish_block();
+  void begin_submodel(const Block& block, const Keyword& keyword);
+  void end_submodel(std::uint32_t file, std::size_t offset);
+  void read_begin(const Block& block);
+
+  std::filesystem::path main_folder_;
+  bool ended_ = false;  ///< the file being walked has come to its end
+  bool in_block_ = false;
+  Block block_;
+  Keyword keyword_;
+  Stretch stretch_;  ///< of the block, as far as it is known
+  bool first_stretch_ = false;
+  std::uint32_t context_ = 0;
+  std::size_t repeated_bytes_ = 0;
+
+  struct State : FileUse {
+    bool open = false;
+  };
+  std::vector<State> states_;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> walked_;  ///< file and context
+};
+
+}  // namespace prismesh::mesh::deck::radioss

@@ -1,0 +1,302 @@
+#include "mesh/deck/radioss/writer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/deck/format_number.h"
+#include "mesh/deck/number.h"
+#include "mesh/deck/radioss/block.h"
+#include "mesh/deck/radioss/mesh_cards.h"
+#include "mesh/deck/radioss/references.h"
+
+namespace prismesh::mesh::deck::radioss {
+namespace {
+
+std::size_t end_of_line(std::string_view text, std::size_t offset) {
+  const std::size_t end = std::min(text.find('\n', offset), text.size());
+  return end > offset && text[end - 1] == '\r' ? end - 1 : end;
+}
+
+std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
+
+/// Tabs count as one blank each.
+std::string without_tabs(std::string_view line) {
+  std::string out(line);
+  std::replace(out.begin(), out.end(), '\t', ' ');
+  return out;
+}
+
+/// In the place of fields: leaning left if the old number did, else right.
+void put(std::string& line, std::size_t begin, std::size_t width, std::string_view number) {
+  if (line.size() < begin + width) line.resize(begin + width, ' ');
+  const std::string_view old = std::string_view(line).substr(begin, width);
+  const std::size_t first = old.find_first_not_of(' ');
+  const bool leans_left = first <= 1 && old.back() == ' ' && first + number.size() < width;
+  std::string out(width, ' ');
+  std::copy(number.begin(), number.end(),
+            out.begin() + static_cast<std::ptrdiff_t>(leans_left ? first : width - std::min(width, number.size())));
+  line.replace(begin, width, out);
+}
+
+void put_coordinate(std::size_t width, std::size_t axis, double value, WrittenCard& card) {
+  const std::string number = format_coordinate(value, 2 * width);
+  double back = 0;
+  if (!parse_real(number, back) || back != value) {
+    ++card.rounded;
+    card.largest_error = std::max(card.largest_error, std::abs(back - value));
+  }
+  const std::size_t begin = width * (1 + 2 * axis);
+  card.by_parameter |= field(card.text, width, 1 + 2 * axis, 2).find('&') != std::string_view::npos;
+  put(card.text, begin, 2 * width, number);
+}
+
+bool is_triangle(const ShellCard& shell) { return shell.nodes[2] == shell.nodes[3]; }
+
+std::int64_t largest_id(std::size_t width) {
+  std::int64_t most = 1;
+  for (std::size_t digit = 0; digit < width; ++digit) most *= 10;
+  return most - 1;
+}
+
+std::size_t width_of(const Referrer& set) { return is_old(set.style) ? kOldField : kField; }
+bool is_surface(const Referrer& set) { return set.keyword == "SURF/SEG"; }
+
+/// The end of the line whose text ends at `end`: as it is, or that of a last line without one.
+std::string line_end_at(std::string_view text, std::size_t end) {
+  if (end < text.size()) return text[end] == '\r' ? "\r\n" : "\n";
+  return text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
+}
+
+/// A card of a set, behind its title.
+struct ListLine {
+  std::string_view text;
+  std::size_t offset = 0;
+};
+std::vector<ListLine> list_lines(std::string_view text, const Referrer& set) {
+  std::vector<ListLine> out;
+  const std::size_t first = std::min(text.find('\n', set.offset), text.size());
+  Lines lines(text, std::min(first + 1, text.size()), std::min<std::size_t>(set.end, text.size()));
+  ListLine line;
+  if (!lines.next(line.text, line.offset)) return out;
+  out.push_back(line);  // the title, as a place to go on from
+  while (lines.next(line.text, line.offset))
+    if (line.text.find_first_not_of(" \t") != std::string_view::npos) out.push_back(line);
+  return out;
+}
+
+/// A set's list of ids, ten a line.
+class IdList {
+ public:
+  IdList(std::string_view text, const Referrer& set) : text_(text), width_(width_of(set)), lines_(list_lines(text, set)) {}
+
+  Result<std::vector<Replacement>> change(std::span<const std::int64_t> joining, std::span<const std::int64_t> leaving) {
+    if (lines_.empty()) return fail("", "has no title, so its list can't be found");
+    std::vector<std::int64_t> gone(leaving.begin(), leaving.end());
+    std::sort(gone.begin(), gone.end());
+    std::vector<Replacement> out;
+    std::size_t found = 0, kept = 0, last = 0;
+    std::vector<std::string> last_fields;
+    for (std::size_t l = 1; l < lines_.size(); ++l) {
+      std::vector<std::string> fields = fields_of(lines_[l].text);
+      const std::size_t before = fields.size();
+      std::erase_if(fields, [&](const std::string& one) {
+        std::int64_t id = 0;
+        return parse_integer(one, id) && std::binary_search(gone.begin(), gone.end(), id);
+      });
+      found += before - fields.size();
+      kept += fields.size();
+      if (fields.size() != before) replace_line(l, fields, out);
+      if (!fields.empty()) last = l, last_fields = std::move(fields);
+    }
+    if (found < gone.size()) return fail("", "names one of them by a parameter or in an include, so it can't be taken out");
+    if (kept + joining.size() == 0) return fail("", "would be left without any");
+    if (joining.empty()) return out;
+    for (const std::int64_t id : joining)
+      if (id > largest_id(width_)) return fail("", "has fields that are too narrow for the new id");
+    append(last, std::move(last_fields), joining, out);
+    return out;
+  }
+
+ private:
+  static constexpr std::size_t kPerLine = 10;
+
+  std::vector<std::string> fields_of(std::string_view line) const {
+    const std::string plain = without_tabs(line);
+    std::vector<std::string> out;
+    for (std::size_t f = 0; f < kPerLine && f * width_ < plain.size(); ++f) {
+      const std::string_view one = trim(field(plain, width_, f));
+      if (!one.empty()) out.emplace_back(one);
+    }
+    return out;
+  }
+
+  std::string line_of(const std::vector<std::string>& fields) const {
+    std::string out;
+    for (const std::string& one : fields) out += std::string(width_ - std::min(width_, one.size()), ' ') + one;
+    return out;
+  }
+
+  void replace_line(std::size_t l, const std::vector<std::string>& fields, std::vector<Replacement>& out) const {
+    const std::size_t end = lines_[l].offset + lines_[l].text.size();
+    const std::size_t next = std::min(text_.find('\n', end), text_.size() - 1) + 1;
+    out.push_back({lines_[l].offset, (fields.empty() ? next : end) - lines_[l].offset, line_of(fields)});
+  }
+
+  /// Fills up the last line that stays, then adds lines.
+  void append(std::size_t last, std::vector<std::string> fields, std::span<const std::int64_t> joining,
+              std::vector<Replacement>& out) const {
+    std::size_t next = 0;
+    const ListLine& line = lines_[last];
+    const std::size_t end = line.offset + line.text.size();
+    std::string added;
+    if (last > 0)
+      while (fields.size() < kPerLine && next < joining.size()) fields.push_back(std::to_string(joining[next++]));
+    std::string first = last > 0 ? line_of(fields) : std::string(line.text);
+    while (next < joining.size()) {
+      std::vector<std::string> more;
+      while (more.size() < kPerLine && next < joining.size()) more.push_back(std::to_string(joining[next++]));
+      added += line_end_at(text_, end) + line_of(more);
+    }
+    std::erase_if(out, [&](const Replacement& replacement) { return replacement.offset == line.offset; });
+    out.push_back({line.offset, line.text.size(), first + added});
+    std::sort(out.begin(), out.end(), [](const Replacement& a, const Replacement& b) { return a.offset < b.offset; });
+  }
+
+  std::string_view text_;
+  std::size_t width_;
+  std::vector<ListLine> lines_;
+};
+
+class Writer : public CardWriter {
+ public:
+  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_line(text, offset); }
+  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_line(text, offset); }
+
+  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t style) const override {
+    const std::string line = without_tabs(line_at(text, offset));
+    Vec3 out;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!parse_real(field(line, Style::of(style).width(), 1 + 2 * axis, 2), out[static_cast<Eigen::Index>(axis)])) return std::nullopt;
+    return out;
+  }
+
+  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t style, const Vec3& from, const Vec3& to) const override {
+    WrittenCard card;
+    card.text = without_tabs(line_at(text, offset));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<Eigen::Index>(axis);
+      if (from[a] != to[a]) put_coordinate(Style::of(style).width(), axis, to[a], card);
+    }
+    return card;
+  }
+
+  WrittenCard new_node(std::string_view, std::size_t, std::uint16_t style, std::int64_t id, const Vec3& at) const override {
+    const std::size_t width = Style::of(style).width();
+    WrittenCard card;
+    put(card.text, 0, width, std::to_string(id));
+    for (std::size_t axis = 0; axis < 3; ++axis) put_coordinate(width, axis, at[static_cast<Eigen::Index>(axis)], card);
+    return card;
+  }
+
+  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const override {
+    const Style own = Style::of(style);
+    const std::string line = without_tabs(line_at(text, offset));
+    if (is_triangle(shell) != own.triangle)
+      return fail("", own.triangle ? "stands in an /SH3N block, which holds triangles only"
+                                   : "stands in a /SHELL block, where a triangle's own block is /SH3N");
+    return with_corners(line, own, shell);
+  }
+
+  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
+
+  Result<WrittenCard> shell_in_manner(std::string_view text, std::size_t offset, std::uint16_t style, std::string_view, std::size_t,
+                                      std::uint16_t manner_style, const ShellCard& shell) const override {
+    const Style own = Style::of(style);
+    const Style manner = Style::of(manner_style);
+    if (is_triangle(shell) != manner.triangle) return fail("", "has another number of corners than the block it would go to");
+    if (own.old != manner.old) return fail("", "would go to a block with columns of another width");
+    // Angle and thickness stand in the same columns in both blocks; what lies between the corners and them goes.
+    std::string line = without_tabs(line_at(text, offset));
+    const std::size_t width = own.width();
+    if (line.size() > 4 * width)
+      line.replace(4 * width, std::min(line.size(), 6 * width) - 4 * width, std::string(std::min(line.size(), 6 * width) - 4 * width, ' '));
+    return with_corners(std::move(line), manner, shell);
+  }
+
+  Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
+    return change_list(text, set, ids, {});
+  }
+
+  Result<std::vector<Replacement>> change_list(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
+                                               std::span<const std::int64_t> leaving) const override {
+    if (adds_to_ids(set.style)) return fail("", "stands in a submodel that adds to its ids, so its list can't be changed");
+    return IdList(text, set).change(joining, leaving);
+  }
+
+  std::optional<std::array<std::int64_t, 4>> segment(std::string_view text, const Referrer& set, std::size_t card) const override {
+    if (adds_to_ids(set.style) || !is_surface(set)) return std::nullopt;
+    const std::string line = without_tabs(line_at(text, card));
+    std::array<std::int64_t, 4> out{};
+    for (std::size_t c = 0; c < 4; ++c)
+      if (!parse_integer(field(line, width_of(set), 1 + c), out[c])) return std::nullopt;
+    if (out[3] == 0) out[3] = out[2];
+    return out;
+  }
+
+  Result<std::vector<Replacement>> replace_segment(std::string_view text, const Referrer& set, std::size_t card,
+                                                   std::span<const std::array<std::int64_t, 4>> with) const override {
+    if (adds_to_ids(set.style)) return fail("", "stands in a submodel that adds to its ids, so its segments can't be changed");
+    if (!is_surface(set)) return fail("", "is a line, whose segments can't be divided");
+    const std::size_t width = width_of(set);
+    const std::size_t end = end_of_line(text, card);
+    const std::string line = without_tabs(text.substr(card, end - card));
+    std::int64_t last_id = 0;
+    for (const ListLine& other : list_lines(text, set)) {
+      std::int64_t id = 0;
+      if (parse_integer(field(without_tabs(other.text), width, 0), id)) last_id = std::max(last_id, id);
+    }
+    std::string out;
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      std::string segment = line;
+      if (i > 0) put_id(segment, 0, width, ++last_id);
+      for (std::size_t c = 0; c < 4; ++c) put_id(segment, (1 + c) * width, width, with[i][c]);
+      if (last_id > largest_id(width)) return fail("", "has no room for the number of one more segment");
+      out += (i > 0 ? line_end_at(text, end) : "") + segment;
+    }
+    const std::size_t removed = with.empty() ? std::min(text.find('\n', end), text.size() - 1) + 1 : end;
+    return std::vector<Replacement>{{card, removed - card, std::move(out)}};
+  }
+
+  /// Whatever names one alone goes on meaning that one: main nodes, histories, sections, directions; but who is taken out of a set?
+  Inheritance inheritance(const Referrer& card, Referred) const override {
+    return card.keyword.substr(0, 2) == "GR" ? Inheritance::forbids : Inheritance::stays;
+  }
+
+  std::int64_t largest_node_id(std::uint16_t style) const override { return largest_id(Style::of(style).width()); }
+  std::int64_t largest_shell_id(std::uint16_t style) const override { return largest_node_id(style); }
+
+ private:
+  static Result<WrittenCard> with_corners(std::string line, const Style& style, const ShellCard& shell) {
+    WrittenCard card;
+    const std::size_t width = style.width();
+    const std::size_t corners = style.triangle ? 3 : 4;
+    card.text = std::move(line);
+    if (field(card.text, width, 0, 1 + corners).find('&') != std::string_view::npos)
+      return fail("", "has ids given by a parameter, which can't be changed here");
+    put_id(card.text, 0, width, shell.id);
+    for (std::size_t c = 0; c < corners; ++c) put_id(card.text, (1 + c) * width, width, shell.nodes[c]);
+    return card;
+  }
+
+  static void put_id(std::string& line, std::size_t begin, std::size_t width, std::int64_t id) {
+    std::int64_t old = 0;
+    if (begin < line.size() && parse_integer(std::string_view(line).substr(begin, width), old) && old == id) return;
+    put(line, begin, width, std::to_string(id));
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<const CardWriter> card_writer() { return std::make_unique<Writer>(); }
+
+}  // namespace prismesh::mesh::deck::radioss

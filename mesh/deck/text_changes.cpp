@@ -1,0 +1,438 @@
+#include "mesh/deck/text_changes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "mesh/deck/carrying.h"
+#include "mesh/deck/descent.h"
+#include "mesh/deck/number.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/model/growth.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+/// Where a node's card should put it, and where it puts it now, both as the card gives coordinates.
+struct CardMove {
+  Vec3 from, to;
+};
+
+/// Coordinates of a card in a frame of its own that differ by no more than this share of the node's distance from the frame's origin
+/// are the same: the way there and back costs the last digits.
+constexpr double kSameInFrame = 1e-13;
+
+constexpr const char* kFlattened = "stands in a coordinate system that flattens it, so its place can't be written";
+
+std::optional<CardMove> in_card(const Deck& deck, const CardWriter& writer, const CardRun& run, std::size_t offset, const Vec3& from,
+                                const Vec3& to) {
+  const Frame& frame = deck.frames[run.frame];
+  if (frame.is_basic()) return CardMove{from, to};
+  const std::optional<Vec3> before = writer.node_coordinates(deck.files[run.file].bytes.text(), offset, run.style);
+  std::optional<Vec3> after;
+  if (before) after = to_card(frame, to, *before);
+  if (!after || !after->allFinite()) return std::nullopt;
+  const double same = kSameInFrame * std::max(before->cwiseAbs().maxCoeff(), after->cwiseAbs().maxCoeff());
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs((*after)[axis] - (*before)[axis]) <= same) (*after)[axis] = (*before)[axis];
+  return CardMove{*before, *after};
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+/// Lines that come, go or change: what is alike at both ends doesn't count.
+std::size_t lines_that_differ(std::string_view before, std::string_view after) {
+  // Behind a last line without an end, the end that it gets makes no line of its own.
+  if (before.empty()) after.remove_prefix(std::min(after.find_first_not_of("\r\n"), after.size()));
+  const std::vector<std::string_view> a = lines_of(before), b = lines_of(after);
+  if (a.size() == b.size()) {
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) differ += a[i] != b[i];
+    return differ;
+  }
+  const std::size_t common = std::min(a.size(), b.size());
+  std::size_t front = 0, back = 0;
+  while (front < common && a[front] == b[front]) ++front;
+  while (back < common - front && a[a.size() - 1 - back] == b[b.size() - 1 - back]) ++back;
+  return std::max(a.size(), b.size()) - front - back;
+}
+
+/// What follows a line: "\n" or "\r\n"; at the end of the text that of the line before it.
+std::string_view line_end(std::string_view text, std::size_t at) {
+  std::size_t newline = text.find('\n', at);
+  if (newline == std::string_view::npos) newline = text.rfind('\n');
+  return newline != std::string_view::npos && newline > 0 && text[newline - 1] == '\r' ? "\r\n" : "\n";
+}
+
+class Differ {
+ public:
+  Differ(const Deck& deck, const Model& original, const Model& model)
+      : deck_(deck),
+        original_(original),
+        model_(model),
+        writer_(card_writer(deck.format)),
+        changes_(changes_between(original, model)),
+        by_file_(deck.files.size()) {}
+
+  Result<TextChanges> run() {
+    if (Result<void> done = nothing_else_differs(); !done) return fail(done.error());
+    if (Result<void> done = removed_are_unused(); !done) return fail(done.error());
+    if (Result<void> done = moved(); !done) return fail(done.error());
+    if (Result<void> done = nodes(); !done) return fail(done.error());
+    if (Result<void> done = shells(); !done) return fail(done.error());
+    if (!changes_.empty()) {
+      Result<Carried> carried = carry_along(deck_, original_, model_, changes_, *writer_);
+      if (!carried) return fail(carried.error());
+      out_.set_cards = carried->cards;
+      for (auto& [file, replacement] : carried->replacements) by_file_[file].push_back(std::move(replacement));
+    }
+    if (Result<void> done = put_in_order(); !done) return fail(done.error());
+    return std::move(out_);
+  }
+
+ private:
+  std::string_view text_of(const CardRun& run) const { return deck_.files[run.file].bytes.text(); }
+  tl::unexpected<Error> refuse(const CardRun& run, std::size_t offset, const std::string& message) const {
+    return fail(deck_.files[run.file].path.string(), line_number(text_of(run), offset), message + "; nothing was written");
+  }
+  std::string node_name(NodeIndex node) const { return "node " + std::to_string(model_.node_ids[node.value]); }
+  std::string shell_name(ShellIndex shell) const { return "shell " + std::to_string(model_.shell_ids[shell.value]); }
+
+  // --- what can't be saved at all ---
+
+  template <class Array>
+  std::optional<std::size_t> first_difference(const Array& a, const Array& b) const {
+    for (std::size_t c = 0; c < std::min(a.chunk_count(), b.chunk_count()); ++c) {
+      if (a.chunk_owner(c) == b.chunk_owner(c)) continue;
+      const auto before = a.chunk(c), after = b.chunk(c);
+      for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i)
+        if (before[i] != after[i]) return c * kChunkSize + i;
+    }
+    return std::nullopt;
+  }
+
+  Result<void> nothing_else_differs() const {
+    for (const auto& [what, at] : {std::pair("part", first_difference(original_.shell_parts, model_.shell_parts)),
+                                   std::pair("thickness", first_difference(original_.shell_thickness, model_.shell_thickness))})
+      if (at)
+        return refuse(deck_.run_of(ShellIndex(*at)), deck_.shell_line[*at],
+                      shell_name(ShellIndex(*at)) + " has another " + what + " than its card, which this version can't write");
+    return {};
+  }
+
+  /// No shell that is there, and no other element, may have a node that is gone.
+  Result<void> removed_are_unused() const {
+    const auto gone = [&](NodeIndex node) { return node.valid() && model_.is_removed(node); };
+    const auto refuse_node = [&](NodeIndex node, const std::string& user) {
+      return refuse(deck_.run_of(node), deck_.node_line[node.value], node_name(node) + " can't be removed: " + user + " has it");
+    };
+    const auto check_shell = [&](ShellIndex shell) -> Result<void> {
+      if (model_.is_removed(shell)) return {};
+      for (const NodeIndex node : model_.shell(shell).node)
+        if (gone(node)) {
+          if (node.value < original_.node_count()) return refuse_node(node, shell_name(shell));
+          return fail(deck_.files[0].path.string(),
+                      shell_name(shell) + " has " + node_name(node) + ", which was removed again; nothing was written");
+        }
+      return {};
+    };
+    for (const auto* shells : {&changes_.added_shells, &changes_.reshaped_shells})
+      for (const ShellIndex shell : *shells)
+        if (Result<void> fine = check_shell(shell); !fine) return fine;
+    if (changes_.removed_nodes.empty()) return {};
+    for (const NodeIndex node : changes_.removed_nodes)
+      if (original_.adjacency)
+        for (const ShellIndex shell : original_.adjacency->shells_of(node))
+          if (Result<void> fine = check_shell(shell); !fine) return fine;
+    for (int c = 0; c < kElementClassCount; ++c) {
+      const auto& block = original_.elements[static_cast<std::size_t>(c)];
+      if (!block) continue;
+      for (std::size_t e = 0; e < block->size(); ++e)
+        for (std::uint32_t n = block->first_node[e]; n < block->first_node[e + 1]; ++n)
+          if (gone(block->nodes[n]))
+            return refuse_node(block->nodes[n], std::string(name(static_cast<ElementClass>(c))) + " " + std::to_string(block->id[e]));
+    }
+    for (const MidsideNodes& midside : *original_.midside)
+      if (!model_.is_removed(midside.shell))
+        for (const NodeIndex node : midside.node)
+          if (gone(node)) return refuse_node(node, shell_name(midside.shell));
+    return {};
+  }
+
+  // --- nodes ---
+
+  void note_rounding(const WrittenCard& card, const CardRun& run, std::size_t offset, const std::string& what) {
+    if (card.rounded == 0) return;
+    if (out_.rounding.count == 0) out_.rounding.first = place_of(deck_, run.file, offset) + " (" + what + ")";
+    out_.rounding.count += static_cast<std::size_t>(card.rounded);
+    out_.rounding.largest_error = std::max(out_.rounding.largest_error, card.largest_error);
+  }
+
+  /// "is given by the parameter &name" for the first name in a card.
+  std::string by_parameter(std::string_view card) const {
+    const std::size_t begin = card.find('&');
+    if (begin == std::string_view::npos) return "has numbers given by a parameter";
+    return "has numbers given by the parameter " + std::string(card.substr(begin, card.find_first_of(" ,\t\r\n)+-*/", begin + 1) - begin));
+  }
+
+  void replace(const CardRun& run, std::size_t offset, std::size_t end, std::string text) {
+    by_file_[run.file].push_back({offset, end - offset, std::move(text)});
+  }
+
+  Result<void> moved() {
+    for (const NodeIndex node : moved_nodes(original_, model_)) {
+      const CardRun& run = deck_.run_of(node);
+      const std::string_view text = text_of(run);
+      const std::size_t offset = deck_.node_line[node.value];
+      const auto refuse_node = [&](const std::string& why) { return refuse(run, offset, node_name(node) + " " + why); };
+      if (!model_.position(node).allFinite()) return refuse_node("has been moved to a place that is no number");
+      const std::uint8_t held = original_.node_holds[node.value];
+      if (held != 0) return refuse_node(std::string(why_held(held)) + "; it can't be moved");
+      const std::optional<CardMove> move = in_card(deck_, *writer_, run, offset, original_.position(node), model_.position(node));
+      if (!move) return refuse_node(kFlattened);
+      const std::size_t end = writer_->node_end(text, offset, run.style);
+      const std::string_view old = text.substr(offset, end - offset);
+      WrittenCard card = writer_->move_node(text, offset, run.style, move->from, move->to);
+      if (card.by_parameter) return refuse_node(by_parameter(old) + "; it can't be moved");
+      note_rounding(card, run, offset, node_name(node));
+      ++out_.nodes_moved;
+      if (card.text != old) replace(run, offset, end, std::move(card.text));
+    }
+    return {};
+  }
+
+  Result<void> nodes() {
+    for (const NodeIndex node : changes_.added_nodes)
+      if (Result<void> done = add_node(node); !done) return done;
+    for (const NodeIndex node : changes_.removed_nodes) {
+      const CardRun& run = deck_.run_of(node);
+      const std::size_t offset = deck_.node_line[node.value];
+      if (const auto held = static_cast<std::uint8_t>(original_.node_holds[node.value] & ~kHeldByParameter); held != 0)
+        return refuse(run, offset, node_name(node) + " " + std::string(why_held(held)) + "; it can't be removed");
+      remove_lines(run, offset, writer_->node_end(text_of(run), offset, run.style));
+      ++out_.nodes_removed;
+    }
+    return {};
+  }
+
+  Result<void> add_node(NodeIndex node) {
+    if (!model_.position(node).allFinite())
+      return fail(deck_.files[0].path.string(), node_name(node) + " is new and has a place that is no number; nothing was written");
+    const NodeIndex home = home_of(model_, node);
+    if (!home.valid())
+      return fail(deck_.files[0].path.string(),
+                  node_name(node) +
+                      " would have to stand in an include that is used twice, or beside nodes that have no cards of their own; "
+                      "nothing was written");
+    const CardRun& run = deck_.run_of(home);
+    const std::string_view text = text_of(run);
+    const std::size_t offset = deck_.node_line[home.value];
+    const auto refuse_node = [&](const std::string& why) { return refuse(run, offset, "the new " + node_name(node) + " " + why); };
+    const std::int64_t id = model_.node_ids[node.value] - deck_.offsets_of(run).node;
+    if (id < 1 || id > writer_->largest_node_id(run.style))
+      return refuse_node("has an id that doesn't fit the fields of the cards beside it");
+    const Frame& frame = deck_.frames[run.frame];
+    Vec3 at = model_.position(node);
+    if (!frame.is_basic()) {
+      const std::optional<Vec3> own = to_card(frame, at, writer_->node_coordinates(text, offset, run.style).value_or(Vec3(Vec3::Zero())));
+      if (!own || !own->allFinite()) return refuse_node(kFlattened);
+      at = *own;
+    }
+    const Result<bool> constrained = takes_constraints(node, home);
+    if (!constrained) return fail(constrained.error());
+    Result<WrittenCard> card = *constrained ? writer_->new_constrained_node(text, offset, run.style, id, at)
+                                            : Result<WrittenCard>(writer_->new_node(text, offset, run.style, id, at));
+    if (!card) return refuse_node(card.error().message);
+    if (card->by_parameter) return refuse_node("would have its place given by a parameter");
+    note_rounding(*card, run, offset, "new " + node_name(node));
+    insert_behind(run, writer_->node_end(text, offset, run.style), std::move(card->text));
+    ++out_.nodes_added;
+    return {};
+  }
+
+  /// Whether all that a node comes from are constrained by their own cards, in the same way.
+  Result<bool> takes_constraints(NodeIndex node, NodeIndex home) const {
+    const auto constraints_of = [&](NodeIndex ancestor) {
+      const CardRun& run = deck_.run_of(ancestor);
+      return writer_->node_constraints(text_of(run), deck_.node_line[ancestor.value], run.style);
+    };
+    const std::string wanted = constraints_of(home);
+    if (wanted.empty()) return false;
+    bool differ = false;
+    for (const NodeIndex ancestor : deck_ancestors(model_, node)) {
+      const std::string own = constraints_of(ancestor);
+      if (own.empty()) return false;
+      differ |= own != wanted;
+    }
+    if (differ)
+      return refuse(deck_.run_of(home), deck_.node_line[home.value],
+                    "the new " + node_name(node) + " lies between nodes whose cards constrain them in different ways");
+    return true;
+  }
+
+  // --- shells ---
+
+  Result<void> shells() {
+    for (const ShellIndex shell : changes_.reshaped_shells)
+      if (Result<void> done = write_shell(shell, false); !done) return done;
+    for (const ShellIndex shell : changes_.added_shells)
+      if (Result<void> done = write_shell(shell, true); !done) return done;
+    for (const ShellIndex shell : changes_.removed_shells) {
+      const CardRun& run = deck_.run_of(shell);
+      const std::size_t offset = deck_.shell_line[shell.value];
+      if (deck_.is_held(run.file))
+        return refuse(run, offset, shell_name(shell) + " stands in an include that is used twice; it can't be removed");
+      if (!writer_->stands_alone(text_of(run), offset, run.style))
+        return refuse(run, offset, shell_name(shell) + " has no card that is its alone; it can't be removed");
+      remove_lines(run, offset, writer_->shell_end(text_of(run), offset, run.style));
+      ++out_.shells_removed;
+    }
+    return {};
+  }
+
+  Result<void> write_shell(ShellIndex shell, bool added) {
+    const ShellIndex ancestor = deck_ancestor(model_, shell);
+    const CardRun& run = deck_.run_of(ancestor);
+    const std::string_view text = text_of(run);
+    const std::size_t offset = deck_.shell_line[ancestor.value];
+    const std::string what = (added ? "the new " : "") + shell_name(shell);
+    const auto refuse_shell = [&](const std::string& why) { return refuse(run, offset, what + " " + why); };
+    if (deck_.is_held(run.file)) return refuse_shell("stands in an include that is used twice; it can't be changed");
+    if (has_midside(ancestor)) return refuse_shell("would come from a shell with mid-side nodes, which can't be divided or changed");
+    ShellCard wanted = shell_card(original_, model_, shell);
+    const IdOffsets offsets = deck_.offsets_of(run);
+    wanted.id -= offsets.element;
+    const std::int64_t largest = writer_->largest_shell_id(run.style);
+    for (std::int64_t& node : wanted.nodes) {
+      node -= offsets.node;
+      if (node < 1 || node > largest) return refuse_shell("has a node whose id doesn't fit the fields of its card");
+    }
+    if (wanted.id < 1 || wanted.id > largest) return refuse_shell("has an id that doesn't fit the fields of the cards beside it");
+
+    const bool triangle = model_.shell(shell).is_triangle();
+    const bool other_kind =
+        original_.shell(ancestor).is_triangle() != triangle && !writer_->holds_triangles_and_quads(text, offset, run.style);
+    const std::size_t end = writer_->shell_end(text, offset, run.style);
+    ShellIndex beside = ancestor;
+    Result<WrittenCard> card = WrittenCard();
+    if (other_kind) {
+      beside = neighbour_of_kind(ancestor, triangle);
+      if (!beside.valid())
+        return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") +
+                            ", and in its file there is none of its part beside which it could stand");
+      const CardRun& manner = deck_.run_of(beside);
+      card = writer_->shell_in_manner(text, offset, run.style, text_of(manner), deck_.shell_line[beside.value], manner.style, wanted);
+    } else {
+      card = writer_->shell(text, offset, run.style, wanted);
+    }
+    if (!card) return refuse_shell(card.error().message);
+    if (card->by_parameter) return refuse_shell(by_parameter(text.substr(offset, end - offset)) + "; it can't be changed");
+    note_rounding(*card, run, offset, shell_name(shell));
+    out_.shells_turned += card->turned;
+    ++(added ? out_.shells_added : out_.shells_changed);
+    if (!added && !other_kind) {
+      replace(run, offset, end, std::move(card->text));
+      return {};
+    }
+    if (!added) remove_lines(run, offset, end);
+    const CardRun& there = deck_.run_of(beside);
+    insert_behind(there, writer_->shell_end(text_of(there), deck_.shell_line[beside.value], there.style), std::move(card->text));
+    return {};
+  }
+
+  bool has_midside(ShellIndex shell) const {
+    const auto& all = *original_.midside;
+    const auto at = std::lower_bound(all.begin(), all.end(), shell, [](const MidsideNodes& m, ShellIndex s) { return m.shell < s; });
+    return at != all.end() && at->shell == shell;
+  }
+
+  /// The last shell of the same part and file with three or four corners before the given one, else the first after it.
+  ShellIndex neighbour_of_kind(ShellIndex shell, bool triangle) {
+    const std::uint32_t file = deck_.run_of(shell).file;
+    const auto [known, is_new] = neighbours_.try_emplace({file, original_.shell_parts[shell.value], triangle});
+    if (!is_new) return known->second;
+    const auto fits = [&](std::size_t other) {
+      const ShellIndex at(other);
+      return original_.shell_parts[other] == original_.shell_parts[shell.value] && original_.shell(at).is_triangle() == triangle &&
+             deck_.run_of(at).file == file && !has_midside(at);
+    };
+    for (std::size_t other = shell.value; other-- > 0 && !known->second.valid();)
+      if (fits(other)) known->second = ShellIndex(other);
+    for (std::size_t other = shell.value + 1; other < original_.shell_count() && !known->second.valid(); ++other)
+      if (fits(other)) known->second = ShellIndex(other);
+    return known->second;
+  }
+
+  // --- text ---
+
+  /// `end`: one past the card's last character. The new lines end as that line does.
+  void insert_behind(const CardRun& run, std::size_t end, std::string card) {
+    const std::string_view text = text_of(run);
+    const std::string_view eol = line_end(text, end);
+    const std::size_t newline = text.find('\n', end);
+    if (newline == std::string_view::npos)
+      by_file_[run.file].push_back({text.size(), 0, std::string(eol) + card});
+    else
+      by_file_[run.file].push_back({newline + 1, 0, card + std::string(eol)});
+  }
+
+  void remove_lines(const CardRun& run, std::size_t begin, std::size_t end) {
+    const std::string_view text = text_of(run);
+    const std::size_t newline = text.find('\n', end);
+    replace(run, begin, newline == std::string_view::npos ? text.size() : newline + 1, "");
+  }
+
+  Result<void> put_in_order() {
+    out_.by_file.resize(by_file_.size());
+    for (std::size_t file = 0; file < by_file_.size(); ++file) {
+      std::vector<Replacement>& all = by_file_[file];
+      const std::string_view text = deck_.files[file].bytes.text();
+      // What is put in at a place stands before what is changed there.
+      std::stable_sort(all.begin(), all.end(), [](const Replacement& a, const Replacement& b) {
+        return a.offset != b.offset ? a.offset < b.offset : (a.length == 0 && b.length > 0);
+      });
+      std::size_t reached = 0;
+      for (Replacement& replacement : all) {
+        if (replacement.offset < reached || replacement.offset + replacement.length > text.size())
+          return fail(deck_.files[file].path.string(), line_number(text, std::min(replacement.offset, text.size())),
+                      "two changes meet in this line, and can't be written together; nothing was written");
+        reached = replacement.offset + replacement.length;
+        const std::string_view old = text.substr(replacement.offset, replacement.length);
+        if (old == replacement.text) continue;
+        out_.lines += lines_that_differ(old, replacement.text);
+        out_.by_file[file].push_back(std::move(replacement));
+      }
+    }
+    return {};
+  }
+
+  const Deck& deck_;
+  const Model& original_;
+  const Model& model_;
+  const std::unique_ptr<const CardWriter> writer_;
+  const Changes changes_;
+  std::vector<std::vector<Replacement>> by_file_;
+  std::map<std::tuple<std::uint32_t, PartIndex, bool>, ShellIndex> neighbours_;
+  TextChanges out_;
+};
+
+}  // namespace
+
+std::string place_of(const Deck& deck, std::uint32_t file, std::size_t offset) {
+  return deck.files[file].path.string() + ":" + std::to_string(line_number(deck.files[file].bytes.text(), offset));
+}
+
+Result<TextChanges> text_changes(const Deck& deck, const Model& original, const Model& model) {
+  return Differ(deck, original, model).run();
+}
+
+}  // namespace prismesh::mesh::deck

@@ -1,0 +1,73 @@
+// How Abaqus lines are written.
+#include "mesh/deck/abaqus/mesh_cards.h"
+#include "mesh/deck/abaqus/references.h"
+#include "mesh/deck/card_writer.h"
+#include "tests/mesh/deck/deck_files.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+const std::unique_ptr<const CardWriter> kWriter = card_writer(Format::abaqus);
+
+TEST(AbaqusWriter, moves_nodes_in_the_lines_own_style) {
+  const auto moved = [](const char* line, const Vec3& from, const Vec3& to) { return kWriter->move_node(line, 0, 0, from, to).text; };
+  EXPECT_EQ(moved("1,2.,3.,4.\n5,", {2, 3, 4}, {2, 3.5, 4}), "1,2.,3.5,4.");
+  EXPECT_EQ(moved("1, 2., 3., 4.\r\n", {2, 3, 4}, {2, 3, -4}), "1, 2., 3., -4.0");
+  EXPECT_EQ(moved("       1, -7.45058e-09,  1.00000e+00,  0.00000e+00 ", {-7.45058e-09, 1, 0}, {0, 1, 0.25}),
+            "       1,          0.0,  1.00000e+00,         0.25 ");
+  EXPECT_EQ(moved("1", {0, 0, 0}, {0, 0, 7}), "1,,,7.0");
+  EXPECT_EQ(moved("1, 5.,", {5, 0, 0}, {5, 1, 0}), "1, 5.,1.0");
+  EXPECT_EQ(moved("21,  7.5e-01,  1.0e+00,  ,0.0e+00", {0.75, 1, 0}, {0.75, 1, 3}), "21,  7.5e-01,  1.0e+00, 3.0,0.0e+00");
+  EXPECT_TRUE(kWriter->move_node("1,<a>,0,0", 0, 0, {1, 0, 0}, {2, 0, 0}).by_parameter);
+  const WrittenCard long_number = kWriter->move_node("1,0,0,0", 0, 0, {0, 0, 0}, {-1.2345678901234567e-30, 0, 0});
+  EXPECT_EQ(long_number.rounded, 1);
+  EXPECT_LE(long_number.text.size(), std::string("1,,0,0").size() + 20);
+}
+
+TEST(AbaqusWriter, makes_nodes_after_an_example) {
+  EXPECT_EQ(kWriter->new_node("      12,  1.50000e+00,  0.0, 2., 0., 0., 1.\n", 0, 0, 1234, {1, 2, 3}).text,
+            "    1234,          1.0,  2.0, 3.0");
+  EXPECT_EQ(kWriter->new_node("7,1.,2.", 0, 0, 8, {1, 2, 3}).text, "8,1.0,2.0,3.0");
+}
+
+TEST(AbaqusWriter, writes_shells_across_lines) {
+  ShellCard card;
+  card.id = 100;
+  card.nodes = {1, 2, 30, 4};
+  const char text[] = "  10,   1,   2,\r\n** here\r\n   3,   4\r\n11,";
+  EXPECT_EQ(kWriter->shell(text, 0, 4, card)->text, " 100,   1,   2,\r\n** here\r\n  30,   4");
+  EXPECT_EQ(kWriter->shell_end(text, 0, 4), std::string(text).find("\r\n11"));
+  card.nodes = {1, 2, 3, 3};
+  EXPECT_FALSE(kWriter->shell(text, 0, 4, card));
+  EXPECT_EQ(kWriter->shell("5,1,2,4", 0, 3, card)->text, "100,1,2,3");
+  card.nodes = {1, 2, 3, 4};
+  EXPECT_FALSE(kWriter->shell("5,1,2,4", 0, 3, card));
+  EXPECT_FALSE(kWriter->shell("5,1,2,3,4,5,6,7,8", 0, 4 | abaqus::kStyleMidside, card));
+  EXPECT_FALSE(kWriter->shell(text, 0, 4 | abaqus::kStyleShifted, card));
+}
+
+std::string joined(const std::string& text, std::uint16_t style, std::vector<std::int64_t> ids) {
+  Referrer set;
+  set.offset = 0;
+  set.end = std::min(text.find("*STEP"), text.size());
+  set.style = style;
+  const auto replaced = kWriter->join(text, set, ids);
+  if (!replaced) return replaced.error().message;
+  std::string out = text;
+  for (const Replacement& r : *replaced) out.replace(r.offset, r.length, r.text);
+  return out;
+}
+
+TEST(AbaqusWriter, adds_to_sets) {
+  EXPECT_EQ(joined("*NSET,NSET=a\n  1, 2\n  3\n** end\n*STEP\n", 0, {7, 8}), "*NSET,NSET=a\n  1, 2\n  3\n  7, 8\n** end\n*STEP\n");
+  EXPECT_EQ(joined("*NSET,NSET=a\r\n1,2\r\n*STEP\r\n", 0, {7, 8}), "*NSET,NSET=a\r\n1,2\r\n7,8\r\n*STEP\r\n");
+  EXPECT_EQ(joined("*NSET,NSET=a\n1,2", 0, {7}), "*NSET,NSET=a\n1,2\n7");
+  EXPECT_EQ(joined("*NSET,\nNSET=a\n*STEP", 0, {7}), "*NSET,\nNSET=a\n7\n*STEP");
+  EXPECT_EQ(joined("*NSET,NSET=a,GENERATE\n1,9,1\n", abaqus::kStyleGenerate, {20, 22}), "*NSET,NSET=a,GENERATE\n1,9,1\n20,20,1\n22,22,1\n");
+  const std::string many = joined("*NSET,NSET=a\n1,2\n", 0, std::vector<std::int64_t>(17, 5));
+  EXPECT_EQ(std::count(many.begin(), many.end(), '\n'), 4);
+  EXPECT_NE(joined("*NSET,NSET=a\n1\n", abaqus::kStyleOtherIds, {7}).find("numbers"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::deck

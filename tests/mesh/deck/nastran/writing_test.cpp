@@ -1,0 +1,307 @@
+// What saving changes in Nastran bulk data: the fields that must, in the width and manner of their card.
+#include "mesh/deck/card_writer.h"
+#include "mesh/deck/nastran/writer.h"
+#include "tests/mesh/deck/growing.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+const auto kWriter = nastran::card_writer();
+constexpr std::array<std::array<double, 4>, 4> kSame{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+
+struct Move {
+  const char* what;
+  std::string card;
+  Vec3 from, to;
+  std::string wanted;
+};
+
+TEST(NastranWriter, moves_within_the_card) {
+  const Move moves[] = {
+      {"small field",
+       "GRID           1       0     1.0     2.0     3.0       4     123",
+       {1, 2, 3},
+       {1.5, 2, 3},
+       "GRID           1       0     1.5     2.0     3.0       4     123"},
+      {"the most digits of eight columns",
+       "GRID           1             1.0     2.0     3.0",
+       {1, 2, 3},
+       {0.00123456789, -123456.789, 123456789.0},
+       "GRID           1        .0012346-123457.1.2346+8"},
+      {"small numbers",
+       "GRID           1             1.0     2.0     3.0",
+       {1, 2, 3},
+       {1.23456e-7, -1.23456e-7, 3},
+       "GRID           1        1.2346-7-1.235-7     3.0"},
+      {"numbers that lean left",
+       "GRID    1               1.0     2.0     3.0",
+       {1, 2, 3},
+       {1, 20.5, 3},
+       "GRID    1               1.0     20.5    3.0"},
+      {"fields that lack", "GRID    1               1.", {1, 0, 0}, {1, 0, 2}, "GRID    1               1.              2.0"},
+      {"large field",
+       "GRID*                  1                             1.0             2.0*A\n*A                   3.0",
+       {1, 2, 3},
+       {1, 1.0 / 3, -1.0 / 3},
+       "GRID*                  1                             1.0.333333333333333*A\n*A      -.33333333333333"},
+      {"a large field card without its second line",
+       "GRID*                  1                             1.0             2.0",
+       {1, 2, 0},
+       {1, 2, 5},
+       "GRID*                  1                             1.0             2.0\n*                    5.0"},
+      {"comments within",
+       "GRID*   1                               1.0             2.0\r\n$ why\r\n*       3.0",
+       {1, 2, 3},
+       {1, 2, 4},
+       "GRID*   1                               1.0             2.0\r\n$ why\r\n*       4.0"},
+      {"free field", "GRID,1,, 1.0 ,2.,3.,,123 $ a, b", {1, 2, 3}, {-7, 2, 1.25}, "GRID,1,, -7.0 ,2.,1.25,,123 $ a, b"},
+      {"few free fields", "GRID,1", {0, 0, 0}, {0, 2, 0}, "GRID,1,,,2.0"},
+      {"long free fields keep their length",
+       "GRID,1,,0.123456789012",
+       {0.123456789012, 0, 0},
+       {0.98765432101234, 0, 0},
+       "GRID,1,,.9876543210123"},
+      {"large free field", "GRID*,1,,1.,2.\n*,3.", {1, 2, 3}, {1, 2, 1.0 / 3}, "GRID*,1,,1.,2.\n*,.333333333333333"},
+      {"tabs", "GRID\t1\t\t1.\t2.\t3.", {1, 2, 3}, {1, 2, 4}, "GRID    1               1.      2.      4.0"},
+      {"a comment in columns",
+       "GRID           1             1.0 $ one",
+       {1, 0, 0},
+       {1, 0, 2},
+       "GRID           1             1.0             2.0 $ one"},
+  };
+  for (const Move& move : moves) {
+    const std::string text = move.card + "\nGRID,2";
+    ASSERT_EQ(kWriter->node_end(text, 0, 0), move.card.size()) << move.what;
+    EXPECT_EQ(kWriter->move_node(text, 0, 0, move.from, move.to).text, move.wanted) << move.what;
+  }
+}
+
+TEST(NastranWriter, says_what_it_rounds) {
+  const WrittenCard card = kWriter->move_node("GRID           1             1.0     2.0     3.0", 0, 0, {1, 2, 3}, {1.0 / 3, 2.5, 3});
+  EXPECT_EQ(card.rounded, 1);
+  EXPECT_NEAR(card.largest_error, 3.3e-8, 1e-9);
+}
+
+TEST(NastranWriter, new_nodes_in_the_manner_of_the_old) {
+  EXPECT_EQ(kWriter->new_node("GRID           1       7     1.0     2.0     3.0       4     123", 0, 0, 22, {1, 2.5, 0}).text,
+            "GRID          22       7     1.0     2.5     0.0");
+  EXPECT_EQ(kWriter->new_node("GRID,1,7,1.,2.,3.,4,123", 0, 0, 22, {1, 2.5, 0}).text, "GRID,22,7,1.0,2.5,0.0");
+  EXPECT_EQ(kWriter
+                ->new_node("GRID*                  1                             1.0             2.0\r\n*                    3.0", 0, 0, 22,
+                           {1, 2.5, 0})
+                .text,
+            "GRID*                 22                             1.0             2.5\r\n*                    0.0");
+  EXPECT_EQ(kWriter->new_constrained_node("GRID,1,7,1.,2.,3.,4,123", 0, 0, 22, {1, 2.5, 0})->text, "GRID,22,7,1.0,2.5,0.0,4,123");
+  EXPECT_EQ(kWriter->node_constraints("GRID,1,7,1.,2.,3.", 0, 0), "");
+  EXPECT_NE(kWriter->node_constraints("GRID,1,7,1.,2.,3.,,123", 0, 0), "");
+}
+
+TEST(NastranWriter, shells_change_in_place) {
+  const ShellCard wanted{10, {1, 2, 9, 4}, kSame, 0};
+  EXPECT_EQ(
+      kWriter
+          ->shell("CQUAD4        10       7       1       2       3       4     45.      .5+A\n+A                     1.      1.      1.   "
+                  "   1.",
+                  0, 0, wanted)
+          ->text,
+      "CQUAD4        10       7       1       2       9       4     45.      .5+A\n+A                     1.      1.      1.      1.");
+  EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4", 0, 0, wanted)->text, "CQUAD4,10,7,1,2,9,4");
+}
+
+TEST(NastranWriter, new_shells_mix_thickness_and_turn_angles) {
+  const std::array<std::array<double, 4>, 4> half{{{1, 0, 0, 0}, {.5, .5, 0, 0}, {0, 0, .5, .5}, {0, 0, 0, 1}}};
+  EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4,45.,.5\n,,,1.,2.,3.,4.", 0, 0, {22, {1, 5, 6, 4}, half, 30})->text,
+            "CQUAD4,22,7,1,5,6,4,15.0,.5\n+,,,1.0,1.5,3.5,4.0");
+  EXPECT_EQ(
+      kWriter->shell("CQUAD4        10       7       1       2       3       4       5      .5", 0, 0, {22, {1, 2, 3, 3}, kSame, 30})->text,
+      "CTRIA3        22       7       1       2       3       5      .5");
+  EXPECT_EQ(kWriter->shell("CTRIAR,10,7,1,2,3,1.5", 0, 0, {10, {1, 2, 3, 4}, kSame, 0})->text, "CQUADR,10,7,1,2,3,4,1.5");
+  EXPECT_EQ(
+      kWriter
+          ->shell("CQUAD4*               10               7               1               2*\n*                      3               4", 0,
+                  0, {22, {1, 2, 3, 4}, kSame, 0})
+          ->text,
+      "CQUAD4*               22               7               1               2\n*                      3               4");
+}
+
+TEST(NastranWriter, shells_that_cant_be_carried_over) {
+  const ShellCard wanted{22, {1, 2, 3, 4}, kSame, 0};
+  EXPECT_EQ(kWriter->shell("CQUAD8,10,7,1,2,3,4,5,6", 0, 0, wanted).error().message, "has mid-side nodes");
+  EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4\n=,*(1),==", 0, 0, wanted).error().message, "is made by replication or replicated");
+  EXPECT_FALSE(kWriter->shell("CQUAD4,10,7,1,2,3,4\n,,,1.", 0, 0, {22, {1, 2, 3, 3}, kSame, 0}).has_value());
+}
+
+std::string joined(const std::string& text, const char* keyword, std::vector<std::int64_t> ids) {
+  Referrer set;
+  set.keyword = keyword;
+  set.end = text.size();
+  const auto replacements = kWriter->join(text, set, ids);
+  if (!replacements) return replacements.error().message;
+  std::string out = text;
+  for (const Replacement& r : *replacements) out.replace(r.offset, r.length, r.text);
+  return out;
+}
+
+TEST(NastranWriter, ids_join_lists) {
+  EXPECT_EQ(joined("SPC1           7     123       1    THRU       9", "SPC1", {20, 21}),
+            "SPC1           7     123       1    THRU       9\nSPC1           7     123      20      21");
+  EXPECT_EQ(joined("SET1,7,1,2,3,4,5,6,7", "SET1", {20, 21}), "SET1,7,1,2,3,4,5,6,7\n+,20,21");
+  EXPECT_EQ(joined("SET1,7,1,2", "SET1", {20, 21}), "SET1,7,1,2,20,21");
+  EXPECT_EQ(joined("SET 4 = 1, 2 THRU 9", "SET", {20, 21}), "SET 4 = 1, 2 THRU 9,\n  20,21");
+  EXPECT_EQ(joined("PLOAD2,7,1.5,1,2,3,4,5,6", "PLOAD2", {1, 2, 3, 4, 5, 6, 7}),
+            "PLOAD2,7,1.5,1,2,3,4,5,6\nPLOAD2,7,1.5,1,2,3,4,5,6\nPLOAD2,7,1.5,7");
+}
+
+TEST(NastranWriter, a_pressure_on_a_range_gets_cards_of_its_own_for_more) {
+  // In fields 7 and 8, a further line holds the direction: nothing may be written behind the range.
+  EXPECT_EQ(joined("PLOAD4        10   10144     1.5                            THRU   10145", "PLOAD4", {22051, 22052}),
+            "PLOAD4        10   10144     1.5                            THRU   10145\n"
+            "PLOAD4        10   22051     1.5\n"
+            "PLOAD4        10   22052     1.5");
+  EXPECT_EQ(joined("PLOAD4,10,4,1.5,2.,,,THRU,9\n+,3,0.,0.,1.", "PLOAD4", {20}),
+            "PLOAD4,10,4,1.5,2.,,,THRU,9\n+,3,0.,0.,1.\nPLOAD4,10,20,1.5,2.,,,,\n+,3,0.,0.,1.");
+}
+
+TEST(NastranWriter, lists_grow_only_where_their_entry_has_room) {
+  const std::pair<std::string, std::string> without_continuation[] = {
+      {"SESET,7,1,2,3,4,5,6,7", "\nSESET,7,20,21,22,23,24,25,26\nSESET,7,27"},
+      {"SEELT,7,1", "\nSEELT,7,20,21,22,23,24,25,26\nSEELT,7,27"},
+      {"RELEASE,7,123,1", "\nRELEASE,7,123,20,21,22,23,24,25\nRELEASE,7,123,26,27"},
+      {"BNDGRID,123,1", "\nBNDGRID,123,20,21,22,23,24,25,26\nBNDGRID,123,27"},
+      {"QVOL,7,1.,9,1", "\nQVOL,7,1.,9,20,21,22,23,24\nQVOL,7,1.,9,25,26,27"},
+  };
+  for (const auto& [card, more] : without_continuation)
+    EXPECT_EQ(joined(card, card.substr(0, card.find(',')).c_str(), {20, 21, 22, 23, 24, 25, 26, 27}), card + more);
+  for (const char* name : {"SPC1", "ASET1", "USET1", "SEBSET1", "QBDY1"}) {
+    const std::string card = std::string(name) + (name[0] == 'A' ? ",123,1" : ",7,123,1");
+    EXPECT_EQ(joined(card, name, {20}), card + "\n" + card.substr(0, card.rfind(',')) + ",20");
+  }
+  EXPECT_EQ(joined("ACCEL1,7,,1.,0.,0.,1.\n+,1,THRU,9", "ACCEL1", {20}), "ACCEL1,7,,1.,0.,0.,1.\n+,1,THRU,9,20");
+  EXPECT_EQ(joined("SET3,7,GRID,1,THRU,9", "SET3", {20}), "SET3,7,GRID,1,THRU,9,20");
+  EXPECT_EQ(joined("SET,7,GRID,LIST\n+,1", "SET", {20}), "SET,7,GRID,LIST\n+,1,20");
+  EXPECT_EQ(joined("TEMPP1,7,1,1.\n+,2,3", "TEMPP1", {20}), "TEMPP1,7,1,1.\n+,2,3,20");
+  for (const char* card : {"SET1,7,1,THRU,9", "BSURF,7,1,THRU,9", "ELIST,7,1,THRU,9", "TEMPP1,7,1,1.\n+,2,THRU,9", "SEEXCLD,1,2,1,THRU,9"})
+    EXPECT_EQ(joined(card, std::string(card).substr(0, std::string(card).find(',')).c_str(), {20}),
+              "names a range, which leaves no room for more ids");
+  for (const char* card : {"BLSEG,7,1,2,3", "CNGRNT,1,2,3", "SOMENEW,1,2"})
+    EXPECT_EQ(joined(card, std::string(card).substr(0, std::string(card).find(',')).c_str(), {20}), "has a list that can't take more ids");
+}
+
+std::string changed(const std::string& text, const char* keyword, std::vector<std::int64_t> joining, std::vector<std::int64_t> leaving) {
+  Referrer set;
+  set.keyword = keyword;
+  set.end = text.size();
+  const std::string file = text + "\nGRID,1\n";
+  const auto replacements = kWriter->change_list(file, set, joining, leaving);
+  if (!replacements) return replacements.error().message;
+  std::string out = file;
+  for (const Replacement& r : *replacements) out.replace(r.offset, r.length, r.text);
+  EXPECT_EQ(out.substr(out.size() - 8), "\nGRID,1\n");
+  return out.substr(0, out.size() - 8);
+}
+
+TEST(NastranWriter, ids_leave_lists) {
+  EXPECT_EQ(changed("SPC1           7     123       1       2       3", "SPC1", {}, {2}), "SPC1           7     123       1       3");
+  EXPECT_EQ(changed("SPC1,7,123,1,2,3,4,5,6\n+,7", "SPC1", {}, {1, 2}), "SPC1,7,123,3,4,5,6,7");
+  EXPECT_EQ(changed("SPC1           7     123       1       2       3       4       5       6+A\n+A             7", "SPC1", {}, {7}),
+            "SPC1           7     123       1       2       3       4       5       6+A");
+  EXPECT_EQ(changed("SPC1,7,123,1,2", "SPC1", {20}, {2}), "SPC1,7,123,1\nSPC1,7,123,20");
+  EXPECT_EQ(changed("SET1,7,1,2", "SET1", {20}, {1}), "SET1,7,2,20");
+  EXPECT_EQ(changed("SPC1,7,123,1", "SPC1", {}, {1}), "would name nothing any more");
+  EXPECT_EQ(changed("SET 4 = 1, 2, 3", "SET", {}, {1}), "SET 4 = 2, 3");
+  EXPECT_EQ(changed("SET 4 = 1, 2, 3", "SET", {}, {3}), "SET 4 = 1, 2");
+  EXPECT_EQ(changed("SET 4 = 1, 2,\n  3,\n  4 THRU 9 BY 2", "SET", {20}, {2, 3, 4, 9}), "SET 4 = 1,\n  4 THRU 9 BY 2,\n  20");
+  EXPECT_EQ(changed("SET 4 = 1", "SET", {}, {1}), "would name nothing any more");
+  EXPECT_EQ(changed("SET 4 = 1 THRU 9 EXCEPT 5, 20", "SET", {}, {20}), "ends with what it leaves out");
+}
+
+TEST(NastranWriter, single_cards_are_copied) {
+  const auto copied = [](const std::string& text, const char* keyword, Referred referred, std::int64_t named) {
+    Referrer card;
+    card.keyword = keyword;
+    EXPECT_EQ(kWriter->inheritance(card, referred), Inheritance::follows);
+    Reference single;
+    single.first = single.last = named;
+    const std::vector<std::int64_t> ids{20};
+    const auto replacements = kWriter->copy_single(text, card, single, ids);
+    return replacements ? (*replacements)[0].text : replacements.error().message;
+  };
+  EXPECT_EQ(copied("SPC,7,1,123,0.,2,456,.5", "SPC", Referred::node, 2), "\nSPC,7,20,456,.5");
+  EXPECT_EQ(copied("PLOAD4         7       1     1.5", "PLOAD4", Referred::shell, 1), "\nPLOAD4         7      20     1.5");
+}
+
+TEST(NastranSave, a_moved_node_changes_its_card_alone_whatever_its_system) {
+  const DeckFolder folder;
+  const std::string text =
+      "SOL 101\r\nCEND\r\nBEGIN BULK\r\nCORD2C         1       0      1.      2.      3.      1.      2.      4.\r\n"
+      "              2.      2.      3.\r\nGRID           1       1     10.     30.      5.\r\nGRID,2,,1.,2.,3.\r\nENDDATA\r\n";
+  const auto opened = folder.open(text);
+  ASSERT_OPENED(opened);
+  const Vec3 at = position_of(opened->model, 1);
+  const Vec3 out = (Vec3(at.x(), at.y(), 3) - Vec3(1, 2, 3)).normalized();
+  const auto moved = save(*opened->deck, opened->model, with_node_at(opened->model, 1, at + 2.5 * out), folder / "out.k");
+  ASSERT_TRUE(moved) << moved.error().text();
+  std::string wanted = text;
+  wanted.replace(wanted.find("     10.     30."), 16, "    12.5     30.");
+  EXPECT_EQ(content(folder / "out.k"), wanted);
+}
+
+constexpr const char* kOneQuad =
+    "GRID,11,,0.,0.\nGRID,12,,1.,0.\nGRID,13,,1.,1.\nGRID,14,,0.,1.\nCQUAD4,1,1,11,12,13,14\nPSHELL,1,1,.1\nMAT1,1,1.,,.3\n";
+
+/// What comes to the deck's text when shell 1 is divided in four.
+std::string comes_with_a_split(const DeckFolder& folder, const std::string& cards) {
+  const auto opened = folder.open(kOneQuad + cards);
+  if (!opened) return opened.error().text();
+  Growing edit(*opened);
+  edit.split_in_four(edit.shell(1));
+  const auto saved = save(edit.deck, edit.original, edit.model, folder / "out.k");
+  if (!saved) return saved.error().message;
+  std::string out;
+  for (const std::string& line : line_difference(content(folder / "deck.k"), content(folder / "out.k")).come)
+    if (line.substr(0, 4) != "GRID" && line.substr(0, 6) != "CQUAD4") out += line + "\n";
+  return out;
+}
+
+TEST(NastranSave, cards_of_one_set_constrain_together_what_lies_between) {
+  const DeckFolder folder;
+  const auto opened = folder.open(std::string(kOneQuad) + "SPC1,1,123456,11\nSPC1,1,654321,12\n");
+  ASSERT_OPENED(opened);
+  Growing edit(*opened);
+  edit.split_in_four(edit.shell(1));
+  const std::int64_t between = edit.model.node_ids[edit.middle(edit.node(11), edit.node(12)).value];
+  EXPECT_EQ(comes_with_a_split(folder, "SPC1,1,123456,11\nSPC1,1,654321,12\n"), "SPC1,1,123456," + std::to_string(between) + "\n");
+  EXPECT_EQ(comes_with_a_split(folder, "SPC1,1,123456,11\nSPC1,1,123,12\n"), "");
+  EXPECT_EQ(comes_with_a_split(folder, "SPC1,1,123456,11\nSPC1,2,123456,12\n"), "");
+  EXPECT_EQ(comes_with_a_split(folder, "ASET1,123,11\nASET1,123,12\n"), "ASET1,123," + std::to_string(between) + "\n");
+  EXPECT_EQ(comes_with_a_split(folder, "SPC1,1,123,11\nSPC1,1,123,11,12\n"), "SPC1,1,123," + std::to_string(between) + "\n");
+}
+
+TEST(NastranSave, a_pressure_on_a_range_acts_on_the_pieces_too) {
+  const DeckFolder folder;
+  const std::string come = comes_with_a_split(folder, "PLOAD4,10,1,1.5,,,,THRU,1\n");
+  EXPECT_EQ(std::count(come.begin(), come.end(), '\n'), 3) << come;
+  EXPECT_EQ(come.find("+"), std::string::npos) << come;
+  EXPECT_EQ(come.find("PLOAD4,10,"), 0u) << come;
+}
+
+TEST(NastranSave, refusals_speak_as_the_deck_does) {
+  const DeckFolder folder;
+  const std::string refused = comes_with_a_split(folder, "BLSEG,7,11,12\n");
+  EXPECT_EQ(refused.substr(0, 5), "BLSEG") << refused;
+  EXPECT_EQ(refused.find('*'), std::string::npos) << refused;
+}
+
+TEST(NastranSave, a_node_that_spans_a_system_stays) {
+  const DeckFolder folder;
+  const auto opened = folder.open("CORD1R,1,1,2,3\nGRID,1\nGRID,2,,,,1.\nGRID,3,,1.\nGRID,4,1,1.,2.,3.\n");
+  ASSERT_OPENED(opened);
+  const auto refused = save(*opened->deck, opened->model, with_node_at(opened->model, 3, {2, 0, 0}), folder / "out.k");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().line, 4);
+  EXPECT_NE(refused.error().message.find("spans a coordinate system"), std::string::npos) << refused.error().message;
+  EXPECT_TRUE(save(*opened->deck, opened->model, with_node_at(opened->model, 4, {2, 0, 0}), folder / "out.k"));
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::deck
