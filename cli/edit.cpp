@@ -113,7 +113,7 @@ int edit(const EditOptions& options, const Common& common, const Surroundings& s
     if (const Result<void> created = journal.create(*options.journal, *document); !created) return refuse(created.error());
   if (!apply_all(wanted, *document, journal, common, surroundings)) return kFailed;
   if (!output_is_good(surroundings)) return kFailed;
-  const Result<mesh::deck::SaveReport> saved = document::save(*document, options.output);
+  const Result<mesh::deck::SaveReport> saved = save_deck(*document, options.output, surroundings);
   if (!saved) return refuse(saved.error());
   journal.keep();
   for (const std::string& note : saved->notes) say(surroundings, Error{options.output.string(), 0, "note: " + note});

@@ -37,6 +37,11 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
   out << "shells       " << n.quad << " quads, " << n.tri << " triangles, " << n.quad8 << " 8-node quads, " << n.tri6
       << " 6-node triangles\n";
   out << "others       " << n.beam << " beams, " << n.solid << " solids, " << n.tshell << " thick shells, " << n.other << " more\n";
+  if (!deck.element_kinds.empty()) {
+    out << "by card     ";
+    for (const auto& [kind, count] : deck.element_kinds) out << ' ' << printable(kind) << ' ' << count;
+    out << '\n';
+  }
   const std::vector<PartFigures> parts = part_figures(document.current().model);
   out << "parts        " << parts.size() << '\n';
   for (const PartFigures& part : parts) {

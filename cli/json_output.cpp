@@ -74,6 +74,8 @@ std::string info_json(const document::Document& document, const std::vector<Part
   for (const deck::Warning& w : deck.warnings)
     warnings.push_back(
         {{"file", printable(w.file)}, {"line", w.line}, {"kind", w.kind}, {"message", printable(w.message)}, {"count", w.count}});
+  Json cards = Json::object();
+  for (const auto& [kind, count] : deck.element_kinds) cards[printable(kind)] = count;
   const document::Settings& settings = document.settings;
   const Json json = {{"format", name(deck.format)},
                      {"files", std::move(files)},
@@ -83,6 +85,7 @@ std::string info_json(const document::Document& document, const std::vector<Part
                      {"target_size_guessed", settings.target_size_guessed},
                      {"nodes", document.current().model.node_index->size()},
                      {"elements", counts_of_elements(deck.element_cards)},
+                     {"element_cards", std::move(cards)},
                      {"parts", std::move(listed)},
                      {"warnings", std::move(warnings)}};
   return json.dump();

@@ -17,4 +17,13 @@ Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, co
   return document;
 }
 
+Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& document, const std::filesystem::path& target,
+                                         const Surroundings& surroundings) {
+  MonotonicClock clock;
+  ProgressBar bar(surroundings, "saving " + target.filename().string(), clock);
+  Result<mesh::deck::SaveReport> saved = mesh::document::save(document, target, bar.progress());
+  if (!saved && saved.error().file.empty()) saved.error().file = target.string();
+  return saved;
+}
+
 }  // namespace prismesh::cli

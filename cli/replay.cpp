@@ -70,7 +70,7 @@ int replay(const ReplayOptions& options, const Common& common, const Surrounding
     print_text(surroundings.out, steps);
   if (applied == 0 && !steps.empty()) return refuse({journal, 0, "no edit could be applied; nothing is written"});
   if (!output_is_good(surroundings)) return kFailed;
-  const Result<mesh::deck::SaveReport> saved = document::save(*document, options.output);
+  const Result<mesh::deck::SaveReport> saved = save_deck(*document, options.output, surroundings);
   if (!saved) return refuse(saved.error());
   for (const std::string& note : saved->notes) say(surroundings, Error{options.output.string(), 0, "note: " + note});
   return kDone;

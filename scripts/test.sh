@@ -65,7 +65,7 @@ fuzz_one() {
   [ -d "tests/fuzz/seeds/$name" ] && seeds=("tests/fuzz/seeds/$name")
   [ -f "tests/fuzz/${name%_fuzz}.dict" ] && seeds+=("-dict=tests/fuzz/${name%_fuzz}.dict")
   mkdir -p "build/fuzz/corpus/$name"
-  "$target" -max_total_time="$2" -timeout=20 -rss_limit_mb=4096 -artifact_prefix="out/fuzz/$name-" -print_final_stats=0 -verbosity=0 \
+  "$target" -max_total_time="$2" -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=1024 -artifact_prefix="out/fuzz/$name-" -print_final_stats=0 -verbosity=0 \
     "build/fuzz/corpus/$name" "${seeds[@]}" </dev/null >"out/fuzz/$name.log" 2>&1 || status=$?
   echo "$status" >"out/fuzz/$name.status"
 }

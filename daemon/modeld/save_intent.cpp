@@ -56,7 +56,7 @@ Result<void> write_save_intent(const std::filesystem::path& path, const mesh::do
   const mesh::Model& model = document.current().model;
   const std::vector<NodeIndex> moved = mesh::moved_nodes(document.opened->model, model);
   std::set<std::uint32_t> files;
-  for (const NodeIndex node : moved) files.insert(deck.node_runs[deck.run_of(node)].file);
+  for (const NodeIndex node : moved) files.insert(deck.run_of(node).file);
 
   ipc::ByteWriter out;
   out.put(kMagic);
@@ -92,7 +92,7 @@ Result<SaveOutcome> settle_save(const std::filesystem::path& path, const std::fi
   for (const MovedNode& moved : intent->nodes) {
     if (moved.node >= model.node_count() || model.node_ids[static_cast<std::size_t>(moved.node)] != moved.id) return SaveOutcome::unknown;
     const NodeIndex node(static_cast<std::size_t>(moved.node));
-    if (unreplaced.contains(opened.deck->node_runs[opened.deck->run_of(node)].file))
+    if (unreplaced.contains(opened.deck->run_of(node).file))
       model.positions.set(node.value, Vec3(moved.position[0], moved.position[1], moved.position[2]));
   }
   const Result<mesh::deck::SaveReport> saved = mesh::deck::save(*opened.deck, opened.model, model, deck_path);

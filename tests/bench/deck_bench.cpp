@@ -1,14 +1,20 @@
-// Opening and saving a deck of a million shells: the sample's, or the one PRISMESH_BENCH_DECK names.
+// Opening and saving a deck of a million shells: the sample's, or the one PRISMESH_BENCH_DECK names; and its Nastran twin, which
+// PRISMESH_BENCH_TWIN keeps at the path it gives. With PRISMESH_BENCH_LARGE also the sample of two and of five million shells.
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <string>
 
 #include <benchmark/benchmark.h>
 
 #include "mesh/deck/deck.h"
+#include "mesh/deck/opening.h"
 #include "mesh/deck/sample.h"
+#include "tests/bench/nastran_twin.h"
 
 namespace prismesh::mesh::deck {
 namespace {
@@ -34,6 +40,7 @@ class Place {
   }
   const fs::path& deck() const { return deck_; }
   fs::path out() const { return folder_ / "out" / "deck.k"; }
+  const fs::path& folder() const { return folder_; }
 
  private:
   fs::path folder_;
@@ -45,17 +52,124 @@ const Place& place() {
   return place;
 }
 
-/// From the file to the complete model with adjacency.
-void open_a_million(benchmark::State& state) {
-  const fs::path& path = place().deck();
-  for (auto _ : state) {
-    const auto opened = open(path);
-    if (!opened) state.SkipWithError(opened.error().text().c_str());
-    if (opened) state.counters["shells"] = static_cast<double>(opened->model.shell_count());
+/// Wall clock and the processor time of all threads, in milliseconds.
+struct Moment {
+  double wall = 0;
+  double cpu = 0;
+  static Moment now() {
+    std::timespec cpu{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+    const auto wall = std::chrono::steady_clock::now().time_since_epoch();
+    return {std::chrono::duration<double, std::milli>(wall).count(),
+            static_cast<double>(cpu.tv_sec) * 1e3 + static_cast<double>(cpu.tv_nsec) * 1e-6};
   }
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(fs::file_size(path)));
+};
+
+/// The most memory that this process has had, in MB.
+double peak_mb() {
+  struct rusage usage {};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024e-6;
 }
+
+/// Adds up how long opening took to each of its phases' ends.
+class Phases {
+ public:
+  Phases() : start_(Moment::now()) {}
+  Progress progress() {
+    return [this](double fraction) {
+      if (fraction >= kWalked) reached(walked_);
+      if (fraction >= kRead) reached(read_);
+      if (fraction >= kAssembled) reached(entities_);
+      return true;
+    };
+  }
+  void add_to(Moment (&sums)[4]) {
+    Moment end;
+    reached(end);
+    for (const auto& [sum, moment] : {std::pair(&sums[0], walked_), {&sums[1], read_}, {&sums[2], entities_}, {&sums[3], end}}) {
+      sum->wall += moment.wall;
+      sum->cpu += moment.cpu;
+    }
+  }
+
+ private:
+  void reached(Moment& moment) const {
+    if (moment.wall > 0) return;
+    const Moment now = Moment::now();
+    moment = {now.wall - start_.wall, now.cpu - start_.cpu};
+  }
+  Moment start_, walked_, read_, entities_;
+};
+
+/// From the file to the complete model with adjacency. The counters are milliseconds from the start of opening, of wall clock and of
+/// processor time: to the end of the walk, of reading the cards, to all entities in the model, to the model with adjacency.
+void open_measured(benchmark::State& state, const fs::path& path) {
+  Moment sums[4];
+  double shells = 0;
+  for (auto _ : state) {
+    Phases phases;
+    const auto opened = open(path, phases.progress());
+    phases.add_to(sums);
+    if (!opened) state.SkipWithError(opened.error().text().c_str());
+    if (opened) shells = static_cast<double>(opened->model.shell_count());
+  }
+  state.counters["shells"] = shells;
+  if (sums[3].cpu > 0) state.counters["shells_per_cpu_s"] = shells * static_cast<double>(state.iterations()) * 1e3 / sums[3].cpu;
+  state.counters["peak_MB"] = peak_mb();
+  const char* names[] = {"1walked", "2read", "3entities", "4complete"};
+  for (int i = 0; i < 4; ++i) {
+    state.counters[names[i]] = benchmark::Counter(sums[i].wall, benchmark::Counter::kAvgIterations);
+    state.counters[std::string(names[i]) + "_cpu"] = benchmark::Counter(sums[i].cpu, benchmark::Counter::kAvgIterations);
+  }
+  std::error_code ignored;
+  if (const auto size = fs::file_size(path, ignored); !ignored)
+    state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(size));
+}
+
+void open_a_million(benchmark::State& state) { open_measured(state, place().deck()); }
 BENCHMARK(open_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// The same mesh as small-field Nastran. Errors: as those of opening the deck and of writing the twin.
+Result<fs::path> write_twin() {
+  const Result<OpenedDeck> opened = open(place().deck());
+  if (!opened) return fail(opened.error());
+  const char* kept = std::getenv("PRISMESH_BENCH_TWIN");
+  const fs::path twin = kept != nullptr ? fs::path(kept) : place().folder() / "twin.bdf";
+  if (const Result<void> written = bench::write_nastran_twin(opened->model, twin); !written) return fail(written.error());
+  return twin;
+}
+
+void open_the_nastran_twin(benchmark::State& state) {
+  static const Result<fs::path> twin = write_twin();
+  if (twin)
+    open_measured(state, *twin);
+  else
+    state.SkipWithError(twin.error().text().c_str());
+}
+BENCHMARK(open_the_nastran_twin)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// Whether opening stays linear: the counter shells_per_cpu_s should hardly fall.
+void open_millions(benchmark::State& state) {
+  const fs::path deck = place().folder() / "millions.k";
+  if (const Result<void> written = write_sample(deck, static_cast<std::size_t>(state.range(0))); !written)
+    state.SkipWithError(written.error().text().c_str());
+  else
+    open_measured(state, deck);
+  std::error_code ignored;
+  fs::remove(deck, ignored);
+}
+[[maybe_unused]] const bool kLarge = [] {
+  if (std::getenv("PRISMESH_BENCH_LARGE") == nullptr) return false;
+  benchmark::RegisterBenchmark("open_millions", open_millions)
+      ->Arg(1'000'000)
+      ->Arg(2'000'000)
+      ->Arg(5'000'000)
+      ->Unit(benchmark::kMillisecond)
+      ->MeasureProcessCPUTime()
+      ->UseRealTime();
+  return true;
+}();
 
 /// Saving into another folder after `range(0)` nodes have moved; the disk's flush is part of it.
 void save_a_million(benchmark::State& state) {
