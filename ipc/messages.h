@@ -38,13 +38,14 @@ struct ApplyEdit {
   mesh::document::Edit edit;
 };
 struct BeginDrag {
-  mesh::document::Edit edit;  ///< translate or lift; the displacement is ignored
+  mesh::document::Edit edit;  ///< translate, lift, slide or rotate; the displacement is ignored
 };
 struct DragStep {  ///< no answer; the preview shows it
   std::uint64_t drag = 0;
   std::uint64_t sequence = 0;
   std::array<double, 3> by{};
   double distance = 0;
+  double degrees = 0;
 };
 struct CommitDrag {
   std::uint64_t drag = 0;

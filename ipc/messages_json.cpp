@@ -27,7 +27,8 @@ PRISMESH_MESSAGE(Save, "save", f("path", m.path));
 PRISMESH_MESSAGE(Close, "close", f("discard", m.discard));
 PRISMESH_MESSAGE(ApplyEdit, "apply_edit", f("edit", m.edit));
 PRISMESH_MESSAGE(BeginDrag, "begin_drag", f("edit", m.edit));
-PRISMESH_MESSAGE(DragStep, "drag_step", f("drag", m.drag), f("sequence", m.sequence), f("by", m.by), f("distance", m.distance));
+PRISMESH_MESSAGE(DragStep, "drag_step", f("drag", m.drag), f("sequence", m.sequence), f("by", m.by), f("distance", m.distance),
+                 f("degrees", m.degrees));
 PRISMESH_MESSAGE(CommitDrag, "commit_drag", f("drag", m.drag));
 PRISMESH_MESSAGE(CancelDrag, "cancel_drag", f("drag", m.drag));
 PRISMESH_MESSAGE(GetState, "get_state", );

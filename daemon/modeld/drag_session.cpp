@@ -27,7 +27,7 @@ ipc::DragBegun DragSession::begun() const {
 }
 
 void DragSession::step(const ipc::DragStep& step) {
-  drag_.step(mesh::Vec3(step.by[0], step.by[1], step.by[2]), step.distance);
+  drag_.step({mesh::Vec3(step.by[0], step.by[1], step.by[2]), step.distance, step.degrees});
   preview_.publish(step.sequence, drag_.positions(), drag_.states(), drag_.counts());
   moved_ = true;
 }

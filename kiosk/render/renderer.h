@@ -26,11 +26,21 @@ enum class ColourMode : std::uint8_t { parts, quality };
 inline constexpr std::array<std::string_view, 2> kColourModeNames{"parts", "quality"};
 std::optional<ColourMode> colour_mode_from(std::string_view name);
 
-/// What is dragged: an arrow, and a ring about its foot in the screen's plane. White; the part in use is green, the other goes.
+/// What is dragged: an arrow along the normal, a disk across it about its foot (slides), a ring about that in the screen's plane
+/// (moves), or, where an axis was picked, the axis and an arc about it that turns. Of the same size on the screen wherever it is. White;
+/// the part in use is green, the others go.
 struct Handle {
-  enum class Use : std::uint8_t { idle, arrow, ring };
+  enum class Use : std::uint8_t { idle, arrow, disk, ring, arc };
+  /// The axis of a rotation; the arc is drawn about it through `at`, from where the grab was to where it is.
+  struct Turn {
+    Vec3 point = Vec3::Zero();  ///< on the axis, deck coordinates
+    Vec3 axis = Vec3::UnitZ();  ///< unit
+    double degrees = 0;         ///< turned so far
+    bool operator==(const Turn&) const = default;
+  };
   Vec3 at = Vec3::Zero();  ///< deck coordinates
   Vec3 direction = Vec3::UnitZ();
+  std::optional<Turn> turn;  ///< then arrow, disk and ring aren't there
   Use use = Use::idle;
   bool operator==(const Handle&) const = default;
 };
@@ -78,6 +88,8 @@ struct Picture {
   bool moving = false;  ///< the view is being turned or something dragged: drawn without multisampling, so that large models keep up
   std::optional<Handle> handle;
   std::optional<PixelRect> rubber_band;
+  std::vector<Eigen::Vector2d> lasso;  ///< display pixels; drawn closed
+  bool shadows = false;                ///< the dragged surface's shadow on the planes beside the model (the paper's suggestion)
   /// Panels, cursor and all else that lies in the screen's plane: called once per eye image, after the scene and before weaving.
   /// Nothing may be drawn into the target after `draw`. May change any GL state.
   std::function<void(const EyeImage&)> overlay;

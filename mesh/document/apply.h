@@ -15,5 +15,7 @@ Result<void> apply_edit(const Document& document, const Invert& edit, Generation
 Result<void> apply_edit(const Document& document, const SetParts& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Lift& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Slide& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Rotate& edit, Generation& next, EditReport& report);
 
 }  // namespace prismesh::mesh::document

@@ -4,6 +4,7 @@
 #include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/motion.h"
+#include "mesh/document/surroundings.h"
 
 namespace prismesh::mesh::document {
 
@@ -40,11 +41,11 @@ void note_attached(const Attached& attached, const NodeSet& moved, EditReport& r
   }
 }
 
-Result<void> move(const Document& document, const Edit& edit, const Vec3& by, double distance, Generation& next, EditReport& report) {
+Result<void> move(const Document& document, const Edit& edit, Generation& next, EditReport& report) {
   const Result<Motion> motion = plan_motion(document.current(), edit, &document);
   if (!motion) return fail(motion.error());
   std::vector<Vec3> positions(motion->nodes.size());
-  const std::size_t held_back = positions_at(*motion, by, distance, positions);
+  const std::size_t held_back = positions_at(*motion, displacement_of(edit), positions);
   for (const Vec3& position : positions)
     if (!position.allFinite()) return fail("", std::string(name(edit)) + ": the displacement is too large to be a coordinate");
   const NodeSet moved = put_positions(motion->nodes, positions, next.model.positions);
@@ -54,18 +55,26 @@ Result<void> move(const Document& document, const Edit& edit, const Vec3& by, do
   if (motion->unreached > 0)
     report.notes.push_back(counted(motion->unreached, "node") + " can't be reached from the grab along what is moved; left in place");
   if (held_back > 0) report.notes.push_back(counted(held_back, "node") + " held back by max_move");
-  note_attached(*document.attached, moved, report);
+  note_attached(document.current().around->attached, moved, report);
   return {};
 }
 
 }  // namespace
 
 Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report) {
-  return move(document, edit, edit.by, 0, next, report);
+  return move(document, edit, next, report);
 }
 
 Result<void> apply_edit(const Document& document, const Lift& edit, Generation& next, EditReport& report) {
-  return move(document, edit, Vec3::Zero(), edit.distance, next, report);
+  return move(document, edit, next, report);
+}
+
+Result<void> apply_edit(const Document& document, const Slide& edit, Generation& next, EditReport& report) {
+  return move(document, edit, next, report);
+}
+
+Result<void> apply_edit(const Document& document, const Rotate& edit, Generation& next, EditReport& report) {
+  return move(document, edit, next, report);
 }
 
 }  // namespace prismesh::mesh::document

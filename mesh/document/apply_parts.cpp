@@ -3,6 +3,7 @@
 #include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/selecting.h"
+#include "mesh/document/surroundings.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::document {
@@ -31,7 +32,7 @@ PartFlags parts_of_selection(const Document& document) {
   flag_parts_of(model, inside.empty() ? shells_touching(model, selected.nodes) : inside, flags);
   for (const NodeIndex node : selected.nodes) {
     if (!model.adjacency->shells_of(node).empty()) continue;
-    const auto& uses = document.attached->uses;
+    const auto& uses = document.current().around->attached.uses;
     auto use = std::lower_bound(uses.begin(), uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
     for (; use != uses.end() && use->node == node; ++use) {
       const PartIndex part = model.elements[static_cast<std::size_t>(use->element_class)]->part[use->element];
@@ -50,6 +51,7 @@ Result<PartFlags> parts_named(const Document& document, const SetParts& edit) {
     for (const PartIndex part : chosen->parts) flags[part.value] = 1;
     return flags;
   }
+  if (edit.action == VisibilityAction::reverse) return PartFlags(model.parts->size(), 1);
   const bool reveals = edit.action == VisibilityAction::show || edit.action == VisibilityAction::unlock;
   if (document.current().selected_nodes == 0) {
     if (reveals) return PartFlags(model.parts->size(), 1);
@@ -63,6 +65,7 @@ void set_state(PartState& state, VisibilityAction action, bool is_named) {
     case VisibilityAction::hide: state.hidden = state.hidden || is_named; break;
     case VisibilityAction::show: state.hidden = state.hidden && !is_named; break;
     case VisibilityAction::only: state.hidden = !is_named; break;
+    case VisibilityAction::reverse: state.hidden = state.hidden != is_named; break;
     case VisibilityAction::lock: state.locked = state.locked || is_named; break;
     case VisibilityAction::unlock: state.locked = state.locked && !is_named; break;
   }
@@ -102,7 +105,8 @@ Result<void> apply_edit(const Document& document, const SetParts& edit, Generati
   }
   next.parts = std::move(states);
   mark_parts(next.model, *next.parts, next.node_marks);
-  if (edit.action == VisibilityAction::hide || edit.action == VisibilityAction::only) deselect_hidden(document, next, report);
+  if (edit.action != VisibilityAction::show && edit.action != VisibilityAction::lock && edit.action != VisibilityAction::unlock)
+    deselect_hidden(document, next, report);
   return {};
 }
 

@@ -6,28 +6,11 @@
 #include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/history.h"
+#include "mesh/document/surroundings.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
-
-std::shared_ptr<const Attached> find_attached(const Model& model) {
-  auto attached = std::make_shared<Attached>();
-  std::size_t count = 0;
-  for (const auto& block : model.elements)
-    if (block) count += block->nodes.size();
-  attached->uses.reserve(count);
-  for (std::size_t c = 0; c < model.elements.size(); ++c) {
-    if (!model.elements[c]) continue;
-    const ElementBlock& block = *model.elements[c];
-    for (std::size_t e = 0; e < block.size(); ++e)
-      for (std::size_t n = block.first_node[e]; n < block.first_node[e + 1]; ++n)
-        if (block.nodes[n].valid()) attached->uses.push_back({block.nodes[n], static_cast<ElementClass>(c), static_cast<std::uint32_t>(e)});
-  }
-  std::sort(attached->uses.begin(), attached->uses.end());
-  attached->uses.erase(std::unique(attached->uses.begin(), attached->uses.end()), attached->uses.end());
-  return attached;
-}
 
 Result<Settings> find_settings(const deck::Deck& deck, const Model& model, const OpenOptions& options) {
   Settings settings;
@@ -46,8 +29,9 @@ Result<Settings> find_settings(const deck::Deck& deck, const Model& model, const
   return settings;
 }
 
-std::shared_ptr<const Generation> first_generation(Model model, const Settings& settings) {
+std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const deck::Deck>& deck, Model model, const Settings& settings) {
   auto first = std::make_shared<Generation>();
+  first->around = find_surroundings(deck, model);
   first->node_marks = ChunkedArray<std::uint8_t>::filled(model.node_count());
   first->shell_marks = ChunkedArray<std::uint8_t>::filled(model.shell_count());
   first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
@@ -68,8 +52,7 @@ Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened
   document.deck = std::move(opened.deck);
   document.settings = std::move(*settings);
   document.history_bytes = options.history_bytes;
-  document.attached = find_attached(opened.model);
-  document.opened = first_generation(std::move(opened.model), document.settings);
+  document.opened = first_generation(document.deck, std::move(opened.model), document.settings);
   document.generations = {document.opened};
   return document;
 }

@@ -45,6 +45,8 @@ enum NodeMark : std::uint8_t {
   kHidden = 4,  ///< elements use the node, all of hidden parts
 };
 
+struct Surroundings;  // mesh/document/surroundings.h
+
 /// The document after an edit. A value that shares what it didn't change with its neighbours.
 struct Generation {
   Model model;
@@ -54,6 +56,7 @@ struct Generation {
   std::size_t selected_nodes = 0;
   std::size_t selected_shells = 0;
   std::shared_ptr<const std::vector<PartState>> parts;  ///< by PartIndex
+  std::shared_ptr<const Surroundings> around;           ///< what the deck says besides the mesh; never null once opened
   ChunkedArray<quality::ShellState> quality;
   quality::Counts counts;     ///< all shells
   std::uint64_t number = 0;   ///< counts up over the document's life, never reused
@@ -74,17 +77,6 @@ struct EditReport {
   double milliseconds = 0;
 };
 
-/// Elements other than shells at each node: what moves along when the node is moved. Ascending by node.
-struct Attached {
-  struct Use {
-    NodeIndex node;
-    ElementClass element_class = ElementClass::other;
-    std::uint32_t element = 0;  ///< index in Model::elements[element_class]
-    auto operator<=>(const Use&) const = default;
-  };
-  std::vector<Use> uses;
-};
-
 struct Document {
   std::filesystem::path path;
   std::shared_ptr<const deck::Deck> deck;
@@ -94,7 +86,6 @@ struct Document {
   std::size_t cursor = 0;                                      ///< the current one
   std::shared_ptr<const Generation> opened;                    ///< as read from the deck; what saving compares with
   std::uint64_t next_number = 1;
-  std::shared_ptr<const Attached> attached;  ///< never null once opened
 
   const Generation& current() const { return *generations[cursor]; }
   bool can_undo() const { return cursor > 0; }

@@ -89,10 +89,9 @@ const NodeSet& Drag::nodes() const { return motion_->nodes; }
 NodeIndex Drag::grab() const { return motion_->grab; }
 const Vec3& Drag::normal() const { return motion_->normal; }
 
-void Drag::step(const Vec3& by, double distance) {
-  by_ = by;
-  distance_ = distance;
-  positions_at(*motion_, by, distance, positions_);
+void Drag::step(const Displacement& displacement) {
+  displacement_ = displacement;
+  positions_at(*motion_, displacement, positions_);
   std::vector<quality::Counts> counts((corners_.size() + kShellsAtATime - 1) / kShellsAtATime);
   parallel_for(corners_.size(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
@@ -107,15 +106,8 @@ void Drag::step(const Vec3& by, double distance) {
 
 Edit Drag::edit() const {
   Edit edit = edit_;
-  Shaping* shaping = nullptr;
-  if (auto* translate = std::get_if<Translate>(&edit)) {
-    translate->by = by_;
-    shaping = &translate->shaping;
-  } else {
-    auto& lift = std::get<Lift>(edit);
-    lift.distance = distance_;
-    shaping = &lift.shaping;
-  }
+  set_displacement(edit, displacement_);
+  Shaping* shaping = shaping_of(edit);
   const Vec3& at = base_->model.position(grab());
   shaping->grab = base_->model.node_ids[grab().value];
   shaping->grab_at = std::array<double, 3>{at.x(), at.y(), at.z()};

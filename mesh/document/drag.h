@@ -15,7 +15,7 @@ struct Motion;
 
 class Drag {
  public:
-  /// `edit` is a Translate or Lift; its displacement is ignored. Errors as `prepare`.
+  /// `edit` is a Translate, Lift, Slide or Rotate; its displacement is ignored. Errors as `prepare`.
   static Result<Drag> begin(std::shared_ptr<const Generation> base, const Settings& settings, const Edit& edit);
 
   /// Nodes that can move (weight > 0) and the shells that touch them; fixed for the whole drag.
@@ -25,8 +25,8 @@ class Drag {
   /// The unit normal at the grab: the direction of a lift.
   const Vec3& normal() const;
 
-  /// Moves to a displacement: `by` for a translate, `distance` for a lift. Bit for bit what applying the edit will give.
-  void step(const Vec3& by, double distance);
+  /// Moves to a displacement. Bit for bit what applying the edit will give.
+  void step(const Displacement& displacement);
   const std::vector<Vec3>& positions() const { return positions_; }           ///< of nodes()
   const std::vector<quality::ShellState>& states() const { return states_; }  ///< of shells()
   const quality::Counts& counts() const { return counts_; }                   ///< of the whole document at this step
@@ -40,8 +40,7 @@ class Drag {
   Settings settings_;
   Edit edit_;
   ShellSet shells_;
-  Vec3 by_ = Vec3::Zero();
-  double distance_ = 0;
+  Displacement displacement_;
   std::vector<Vec3> positions_;
   std::vector<std::array<std::int32_t, 4>> corners_;  ///< of shells_: >= 0 index into nodes(), < 0: ~index into fixed_
   std::vector<Vec3> fixed_;

@@ -25,15 +25,20 @@ struct Select {
   select::Kind kind = select::Kind::node;
   SelectMode mode = SelectMode::set;
 };
+/// What bounds a region: feature edges (sharper than `angle`, free edges, junctions); the part at the place; everything connected by
+/// shared edges; or the loop of free edges nearest to the place, whose nodes it selects.
+enum class RegionBy : std::uint8_t { features, part, piece, free_edge };
 struct SelectRegion {
   Place at;
   double angle = 30;  ///< degrees
+  RegionBy by = RegionBy::features;
+  bool across_welds = false;  ///< goes on over sheets that are welded to those it has reached
   SelectMode mode = SelectMode::set;
 };
 struct SelectLasso {
   std::vector<std::array<double, 2>> outline;  ///< normalised device coordinates
   std::array<double, 16> view{};               ///< deck coordinates to clip space, column-major
-  bool visible = false;                        ///< true is refused here: it takes a picture; views send the nodes they see
+  bool visible = false;                        ///< only nodes that no shell in sight hides from this view
   SelectMode mode = SelectMode::set;
 };
 struct Grow {
@@ -44,9 +49,9 @@ struct Shrink {
 };
 struct Invert {};
 
-enum class VisibilityAction : std::uint8_t { hide, show, only, lock, unlock };
+enum class VisibilityAction : std::uint8_t { hide, show, only, reverse, lock, unlock };
 /// Parts named by `on` (an expression of kind part); without it, the parts of the selection; show and unlock with nothing
-/// selected: all parts.
+/// selected: all parts. `reverse` shows what is hidden and hides the rest, of the parts named or of all.
 struct SetParts {
   VisibilityAction action = VisibilityAction::hide;
   std::optional<std::string> on;
@@ -56,12 +61,19 @@ struct SetParts {
 /// mode is ignored. A recipe of a region by coordinates means the same place on a remeshed variant.
 using Where = std::variant<std::string, Select, SelectRegion, SelectLasso>;
 
+/// The same edit mirrored: on the images of the nodes acted on, with the images of the displacements. A node on the plane stays on it.
+struct Symmetry {
+  Vec3 point = Vec3::Zero();    ///< on the plane, deck coordinates
+  Vec3 normal = Vec3::UnitX();  ///< of any length but zero
+};
+
 /// What a shaping edit acts on and how it fades out.
 struct Shaping {
   std::optional<Where> on;    ///< without it the selection
   std::optional<Place> grab;  ///< coordinates: the nearest node of those acted on; absent: the node farthest from the border
   std::optional<std::array<double, 3>> grab_at;  ///< where the node `grab` was: used where no such node is acted on (a variant)
   shape::WeightOptions weights;
+  std::optional<Symmetry> symmetry;
   std::optional<double> max_move;  ///< no node moves farther; deck's length unit
 };
 struct Translate {
@@ -73,10 +85,36 @@ struct Lift {
   bool each_normal = false;  ///< "normals": "each": every node along its own normal
   Shaping shaping;
 };
+/// On the surface: nodes go where `by` takes them and then lie on the faces as they were when the edit began.
+struct Slide {
+  Vec3 by = Vec3::Zero();
+  Shaping shaping;
+};
+/// About an axis: every node by its weight's share of the angle, on a circle.
+struct Rotate {
+  Vec3 point = Vec3::Zero();  ///< on the axis, deck coordinates
+  Vec3 axis = Vec3::UnitZ();  ///< of any length but zero
+  double degrees = 0;         ///< right-handed
+  Shaping shaping;
+};
+/// How far a shaping edit goes; each kind reads its own.
+struct Displacement {
+  Vec3 by = Vec3::Zero();  ///< translate, slide
+  double distance = 0;     ///< lift
+  double degrees = 0;      ///< rotate
+};
+
 struct Undo {};
 struct Redo {};
 
-using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, Translate, Lift, Undo, Redo>;
+using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, Translate, Lift, Slide, Rotate, Undo, Redo>;
+
+/// What a shaping edit says of where and how; null for the others.
+const Shaping* shaping_of(const Edit& edit);
+Shaping* shaping_of(Edit& edit);
+/// How far it goes; zero for the others. And the same edit going otherwise.
+Displacement displacement_of(const Edit& edit);
+void set_displacement(Edit& edit, const Displacement& displacement);
 
 /// The edit's name as in its JSON ("translate", "hide", ...).
 std::string_view name(const Edit& edit);

@@ -5,7 +5,7 @@
 
 namespace prismesh::mesh::document {
 
-// A visitor has required(name, value), optional(name, value), nested(name, object) and not_built(name, sentence).
+// A visitor has required(name, value), optional(name, value), direction(name, vector) and nested(name, object).
 // Numbers carry their limits as a Limit argument, so that the error can name them.
 struct Limit {
   double low;
@@ -26,6 +26,8 @@ template <class Visitor>
 void fields(Visitor& v, auto& edit, const SelectRegion*) {
   v.required("at", edit.at);
   v.optional("angle", edit.angle, Limit{0, 180});
+  v.optional("by", edit.by);
+  v.optional("across_welds", edit.across_welds);
   v.optional("mode", edit.mode);
 }
 template <class Visitor>
@@ -67,12 +69,30 @@ void fields(Visitor& v, auto& shaping, const Shaping*) {
   v.nested("falloff", shaping.weights.falloff);
   v.optional("free_ends", shaping.weights.free_ends);
   v.optional("origin", shaping.weights.origin);
+  v.optional("across_welds", shaping.weights.across_welds);
+  v.nested("symmetry", shaping.symmetry);
   v.optional("max_move", shaping.max_move, Limit{0, kLargest, true});
-  v.not_built("symmetry", "this version doesn't mirror an edit at a plane");
 }
 template <class Visitor>
 void fields(Visitor& v, auto& edit, const Translate*) {
   v.required("by", edit.by);
+  fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
+}
+template <class Visitor>
+void fields(Visitor& v, auto& symmetry, const Symmetry*) {
+  v.required("point", symmetry.point);
+  v.direction("normal", symmetry.normal);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Slide*) {
+  v.required("by", edit.by);
+  fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Rotate*) {
+  v.required("point", edit.point);
+  v.direction("axis", edit.axis);
+  v.required("degrees", edit.degrees, kAnyLength);
   fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
 }
 template <class Visitor>

@@ -34,6 +34,11 @@ const Names<SelectMode>& names(SelectMode) {
       {"set", SelectMode::set}, {"add", SelectMode::add}, {"subtract", SelectMode::subtract}, {"intersect", SelectMode::intersect}};
   return table;
 }
+const Names<RegionBy>& names(RegionBy) {
+  static const Names<RegionBy> table{
+      {"features", RegionBy::features}, {"part", RegionBy::part}, {"piece", RegionBy::piece}, {"free_edge", RegionBy::free_edge}};
+  return table;
+}
 const Names<shape::Origin>& names(shape::Origin) {
   static const Names<shape::Origin> table{{"grab", shape::Origin::grab}, {"free_edge", shape::Origin::free_edge}};
   return table;
@@ -57,11 +62,11 @@ struct EditName {
 const std::vector<EditName>& edit_names() {
   static const std::vector<EditName> table = [] {
     std::vector<EditName> all;
-    for (const VisibilityAction action :
-         {VisibilityAction::hide, VisibilityAction::show, VisibilityAction::only, VisibilityAction::lock, VisibilityAction::unlock})
+    for (const VisibilityAction action : {VisibilityAction::hide, VisibilityAction::show, VisibilityAction::only, VisibilityAction::reverse,
+                                          VisibilityAction::lock, VisibilityAction::unlock})
       all.push_back({"", SetParts{action, std::nullopt}});
     for (Edit edit : {Edit(Select{}), Edit(SelectRegion{}), Edit(SelectLasso{}), Edit(Grow{}), Edit(Shrink{}), Edit(Invert{}),
-                      Edit(Translate{}), Edit(Lift{}), Edit(Undo{}), Edit(Redo{})})
+                      Edit(Translate{}), Edit(Lift{}), Edit(Slide{}), Edit(Rotate{}), Edit(Undo{}), Edit(Redo{})})
       all.push_back({"", std::move(edit)});
     for (EditName& entry : all) entry.name = name(entry.blank);
     std::sort(all.begin(), all.end(), [](const EditName& a, const EditName& b) { return a.name < b.name; });
@@ -71,8 +76,8 @@ const std::vector<EditName>& edit_names() {
 }
 
 /// Edits that the command line's contract names and this version lacks.
-constexpr std::string_view kNotBuilt[] = {"slide", "rotate", "relax",    "repair", "split", "collapse",
-                                          "merge", "swap",   "separate", "weld",   "bond",  "replace_part"};
+constexpr std::string_view kNotBuilt[] = {"relax", "repair",   "split", "collapse", "merge",
+                                          "swap",  "separate", "weld",  "bond",     "replace_part"};
 
 // --- words for errors ---
 
@@ -226,16 +231,25 @@ class Reader {
     if (value.along && !(value.along->squaredNorm() > 0)) inner.complain("along", "must be a direction, not [0, 0, 0]");
     if (!error_) error_ = inner.finish();
   }
+  void nested(std::string_view field, std::optional<Symmetry>& value) {
+    const Json* json = find(field);
+    if (json == nullptr) return;
+    if (!json->is_object()) return complain(field, must_be("an object like {\"point\": [0, 0, 0], \"normal\": [0, 1, 0]}", *json));
+    value.emplace();
+    Reader inner(*json, what_ + ": " + in_quotes(field));
+    fields(inner, *value, static_cast<const Symmetry*>(nullptr));
+    if (!error_) error_ = inner.finish();
+  }
+  void direction(std::string_view field, Vec3& value) {
+    required(field, value);
+    if (object_.contains(std::string(field)) && !(value.squaredNorm() > 0)) complain(field, "must be a direction, not [0, 0, 0]");
+  }
   void normals(std::string_view field, bool& each) {
     const Json* json = find(field);
     if (json == nullptr) return;
     const bool known = *json == "each" || *json == "grab";
     if (!known) return complain(field, must_be("\"grab\" (all nodes along the normal at the grab) or \"each\"", *json));
     each = *json == "each";
-  }
-  void not_built(std::string_view field, std::string_view sentence) {
-    if (object_.contains(std::string(field))) complain(field, std::string("isn't there yet: ") + std::string(sentence));
-    absent_.push_back(field);
   }
   void also_known(std::string_view field) { known_.push_back(field); }
 
@@ -245,7 +259,7 @@ class Reader {
       const auto in = [&key = key](const std::vector<std::string_view>& all) {
         return std::find(all.begin(), all.end(), key) != all.end();
       };
-      if (in(known_) || in(absent_)) continue;
+      if (in(known_)) continue;
       return Error{"", 0,
                    what_ + " has no field " + in_quotes(key) + "; the nearest is " + in_quotes(nearest_name(key, known_)) +
                        " (known: " + list(known_) + ")"};
@@ -275,7 +289,6 @@ class Reader {
   const Json& object_;
   std::string what_;
   std::vector<std::string_view> known_;
-  std::vector<std::string_view> absent_;
   std::optional<std::string_view> missing_;
   std::optional<Error> error_;
 };
@@ -359,7 +372,14 @@ class Writer {
     object_[std::string(field)] = std::move(inner);
   }
   void normals(std::string_view field, bool each) { object_[std::string(field)] = each ? "each" : "grab"; }
-  void not_built(std::string_view, std::string_view) {}
+  void nested(std::string_view field, const std::optional<Symmetry>& value) {
+    if (!value) return;
+    Json inner = Json::object();
+    Writer writer(inner);
+    fields(writer, *value, static_cast<const Symmetry*>(nullptr));
+    object_[std::string(field)] = std::move(inner);
+  }
+  void direction(std::string_view field, const Vec3& value) { required(field, value); }
 
  private:
   Json& object_;

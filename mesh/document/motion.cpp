@@ -78,14 +78,14 @@ std::vector<EdgeMiddle> middles_in(const Model& model, const NodeSet& nodes, con
 /// Position of a node in motion.nodes, or kStays.
 std::uint32_t place_in(const NodeSet& nodes, NodeIndex node) {
   const auto at = std::lower_bound(nodes.begin(), nodes.end(), node);
-  return at != nodes.end() && *at == node ? static_cast<std::uint32_t>(at - nodes.begin()) : Motion::Midside::kStays;
+  return at != nodes.end() && *at == node ? static_cast<std::uint32_t>(at - nodes.begin()) : Motion::Follower::kStays;
 }
 
 /// Keeps what moves: nodes with a weight, and middles of edges of which an end has one.
 void keep_moving(const shape::Weights& weights, const Model& model, Motion& motion) {
   const auto weight_of = [&](NodeIndex node) {
     const std::uint32_t at = place_in(weights.nodes, node);
-    return at == Motion::Midside::kStays ? 0.0 : weights.weight[at];
+    return at == Motion::Follower::kStays ? 0.0 : weights.weight[at];
   };
   const auto keep = [&](NodeIndex node, double weight) {
     motion.nodes.push_back(node);
@@ -110,13 +110,16 @@ void keep_moving(const shape::Weights& weights, const Model& model, Motion& moti
     ++middle;
   }
   for (const EdgeMiddle& each : middles)
-    if (const std::uint32_t at = place_in(motion.nodes, each.node); at != Motion::Midside::kStays)
-      motion.midside.push_back({at, {place_in(motion.nodes, each.end[0]), place_in(motion.nodes, each.end[1])}});
+    if (const std::uint32_t at = place_in(motion.nodes, each.node); at != Motion::Follower::kStays)
+      motion.followers.push_back(
+          {at,
+           {place_in(motion.nodes, each.end[0]), place_in(motion.nodes, each.end[1]), Motion::Follower::kStays, Motion::Follower::kStays},
+           {0.5, 0.5, 0, 0}});
 }
 
 Result<void> find_normals(const Model& model, bool each, Motion& motion) {
   motion.normal = shape::oriented_normals(model, {motion.grab}, motion.grab).front();
-  if (!motion.is_lift) return {};
+  if (motion.kind != Motion::Kind::lift) return {};
   if (!(motion.normal.squaredNorm() > 0))
     return fail("", "no shell touches the grabbed node " + std::to_string(model.node_ids[motion.grab.value]) +
                         ", so there is no normal to lift along; use translate");
@@ -130,11 +133,12 @@ Result<void> find_normals(const Model& model, bool each, Motion& motion) {
 }  // namespace
 
 Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const Document* document) {
-  const auto* translate = std::get_if<Translate>(&edit);
+  const Shaping* shaping_in_edit = shaping_of(edit);
+  if (shaping_in_edit == nullptr) return fail("", std::string(name(edit)) + " moves no nodes: only shaping edits can be dragged");
+  const Shaping& shaping = *shaping_in_edit;
   const auto* lift = std::get_if<Lift>(&edit);
-  if (translate == nullptr && lift == nullptr)
-    return fail("", std::string(name(edit)) + " moves no nodes: only translate and lift can be dragged");
-  const Shaping& shaping = translate != nullptr ? translate->shaping : lift->shaping;
+  if (std::holds_alternative<Slide>(edit) || std::holds_alternative<Rotate>(edit) || shaping.symmetry)
+    return fail("", std::string(name(edit)) + " isn't there yet");
   const Model& model = generation.model;
 
   NodeSet nodes;
@@ -154,7 +158,7 @@ Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const
   if (!weights) return fail(weights.error());
 
   Motion motion;
-  motion.is_lift = lift != nullptr;
+  motion.kind = lift != nullptr ? Motion::Kind::lift : Motion::Kind::translate;
   motion.grab = weights->grab;
   // a constant falloff asks for no way along the surface: pieces apart move too
   motion.unreached = shaping.weights.falloff.profile == shape::Profile::constant ? 0 : weights->unreached;
@@ -165,16 +169,16 @@ Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const
   return motion;
 }
 
-std::size_t positions_at(const Motion& motion, const Vec3& by, double distance, std::span<Vec3> out) {
-  if (motion.is_lift)
-    shape::lift(motion.start, motion.weight, motion.normals, distance, out);
+std::size_t positions_at(const Motion& motion, const Displacement& displacement, std::span<Vec3> out) {
+  if (motion.kind == Motion::Kind::lift)
+    shape::lift(motion.start, motion.weight, motion.normals, displacement.distance, out);
   else
-    shape::translate(motion.start, motion.weight, by, out);
-  for (const Motion::Midside& middle : motion.midside) {
+    shape::translate(motion.start, motion.weight, displacement.by, out);
+  for (const Motion::Follower& follower : motion.followers) {
     Vec3 move = Vec3::Zero();
-    for (const std::uint32_t end : middle.end)
-      if (end != Motion::Midside::kStays) move += 0.5 * (out[end] - motion.start[end]);
-    out[middle.node] = motion.start[middle.node] + move;
+    for (std::size_t i = 0; i < follower.of.size(); ++i)
+      if (const std::uint32_t of = follower.of[i]; of != Motion::Follower::kStays) move += follower.share[i] * (out[of] - motion.start[of]);
+    out[follower.node] = motion.start[follower.node] + move;
   }
   std::size_t held_back = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {

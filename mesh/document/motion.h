@@ -12,23 +12,25 @@
 
 namespace prismesh::mesh::document {
 
-/// What a translate or lift moves, before its displacement is known.
+/// What a shaping edit moves, before its displacement is known.
 struct Motion {
-  /// A mid-side node: it follows the ends of its edge, half each, since no distance is known for it. Positions in `nodes`.
-  struct Midside {
+  /// A node for which no weight is known: a mid-side node follows the ends of its edge, half each; the node of a weld that lies on a
+  /// shell follows its corners. Positions in `nodes`; followers never follow followers.
+  struct Follower {
     static constexpr std::uint32_t kStays = 0xffffffffu;
     std::uint32_t node = 0;
-    std::array<std::uint32_t, 2> end{kStays, kStays};
+    std::array<std::uint32_t, 4> of{kStays, kStays, kStays, kStays};
+    std::array<double, 4> share{};
   };
 
-  bool is_lift = false;
+  enum class Kind : std::uint8_t { translate, lift, slide, rotate } kind = Kind::translate;
   NodeSet nodes;               ///< those with weight > 0
   std::vector<double> weight;  ///< of each
   std::vector<Vec3> start;     ///< of each
   std::vector<Vec3> normals;   ///< lift: of each, or one for all
   NodeIndex grab;
   Vec3 normal = Vec3::Zero();  ///< unit normal at the grab; zero where no shell is
-  std::vector<Midside> midside;
+  std::vector<Follower> followers;
   std::size_t unreached = 0;  ///< nodes acted on with no way from the grab
   std::optional<double> max_move;
 };
@@ -37,8 +39,7 @@ struct Motion {
 /// Errors: nothing acted on, no such grab, a locked or held node would move, no normal at the grab of a lift.
 Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const Document* document);
 
-/// Positions of motion.nodes at a displacement: `by` for a translate, `distance` for a lift. `out` has one entry each.
-/// Returns how many nodes max_move held back.
-std::size_t positions_at(const Motion& motion, const Vec3& by, double distance, std::span<Vec3> out);
+/// Positions of motion.nodes at a displacement. `out` has one entry each. Returns how many nodes max_move held back.
+std::size_t positions_at(const Motion& motion, const Displacement& displacement, std::span<Vec3> out);
 
 }  // namespace prismesh::mesh::document

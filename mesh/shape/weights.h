@@ -30,6 +30,7 @@ struct WeightOptions {
   Falloff falloff;
   bool free_ends = true;  ///< the part's own boundary (free edges) is no border
   Origin origin = Origin::grab;
+  bool across_welds = false;  ///< pieces that the grab doesn't reach get the weight of the closest point of those it does
 };
 
 struct Weights {

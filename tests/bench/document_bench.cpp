@@ -66,7 +66,7 @@ void drag_step_10k(benchmark::State& state) {
   if (!drag) return state.SkipWithError(drag.error().text().c_str());
   double z = 0;
   for (auto _ : state) {
-    drag->step(Vec3(0, 0, z), 0);
+    drag->step({Vec3(0, 0, z), 0, 0});
     benchmark::DoNotOptimize(drag->states().data());
     z += 0.01;
   }

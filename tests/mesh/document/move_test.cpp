@@ -204,7 +204,7 @@ TEST(Drag, ShowsBitForBitWhatTheEditWillDo) {
     ASSERT_TRUE(drag) << drag.error().text();
     EXPECT_EQ(drag->counts(), document.current().counts);
     for (const double size : {50.5, -72.25, 31.1}) {
-      drag->step(Vec3(0.1 * size, -size, 0.7 * size), size);
+      drag->step({Vec3(0.1 * size, -size, 0.7 * size), size, size});
       Document after = document;
       const Result<EditReport> report = try_apply(after, parse_edit(edit_to_json(drag->edit()).dump()).value());
       ASSERT_TRUE(report) << report.error().text();
@@ -228,9 +228,9 @@ TEST(Drag, NothingIsKept) {
   ASSERT_TRUE(drag);
   EXPECT_EQ(std::abs(drag->normal().z()), 1);
   EXPECT_EQ(document.current().model.node_ids[drag->grab().value], 25);
-  drag->step(Vec3::Zero(), 4);
+  drag->step({Vec3::Zero(), 4, 0});
   EXPECT_EQ(document.current().model.positions[24].z(), 0);
-  drag->step(Vec3::Zero(), 0);
+  drag->step({Vec3::Zero(), 0, 0});
   EXPECT_EQ(drag->positions()[0], before->model.position(drag->nodes()[0]));
 }
 

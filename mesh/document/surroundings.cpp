@@ -1,0 +1,36 @@
+#include "mesh/document/surroundings.h"
+
+#include <algorithm>
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+Attached find_attached(const Model& model) {
+  Attached attached;
+  std::size_t count = 0;
+  for (const auto& block : model.elements)
+    if (block) count += block->nodes.size();
+  attached.uses.reserve(count);
+  for (std::size_t c = 0; c < model.elements.size(); ++c) {
+    if (!model.elements[c]) continue;
+    const ElementBlock& block = *model.elements[c];
+    for (std::size_t e = 0; e < block.size(); ++e)
+      for (std::size_t n = block.first_node[e]; n < block.first_node[e + 1]; ++n)
+        if (block.nodes[n].valid()) attached.uses.push_back({block.nodes[n], static_cast<ElementClass>(c), static_cast<std::uint32_t>(e)});
+  }
+  std::sort(attached.uses.begin(), attached.uses.end());
+  attached.uses.erase(std::unique(attached.uses.begin(), attached.uses.end()), attached.uses.end());
+  return attached;
+}
+
+}  // namespace
+
+std::shared_ptr<const Surroundings> find_surroundings(std::shared_ptr<const deck::Deck> deck, const Model& model) {
+  auto around = std::make_shared<Surroundings>();
+  around->attached = find_attached(model);
+  around->deck = std::move(deck);
+  return around;
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,52 @@
+// The closest point of a surface: a tree of boxes over shells, built once, asked often. The same bits on every processor.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
+
+namespace prismesh::mesh::spatial {
+
+struct SurfacePoint {
+  ShellIndex shell;
+  Vec3 point = Vec3::Zero();
+  double distance = 0;
+  std::array<double, 4> share{};  ///< of the shell's corners, 0..1, sum 1: point = sum of share * corner; a triangle's last is 0
+};
+
+/// A quad counts as the two triangles at its diagonal from the first corner to the third. Positions are those at building time. Of
+/// equally close shells the first.
+class ShellTree {
+ public:
+  ShellTree(const Model& model, const ShellSet& shells);
+
+  /// Nothing if no shell is within `radius`.
+  std::optional<SurfacePoint> closest(const Vec3& point, double radius = std::numeric_limits<double>::infinity()) const;
+  /// One for each shell within `radius` of the point, ascending by shell.
+  std::vector<SurfacePoint> within(const Vec3& point, double radius) const;
+  bool empty() const { return triangles_.empty(); }
+
+ private:
+  struct Triangle {
+    std::array<Vec3, 3> corner;
+    ShellIndex shell;
+    bool second = false;  ///< of a quad: corners 0, 2, 3
+  };
+  struct Node {
+    Vec3 low, high;
+    std::uint32_t first = 0;  ///< of triangles_ for a leaf; else the left child, which the right one follows
+    std::uint32_t count = 0;  ///< triangles of a leaf; 0: not one
+  };
+  template <class Visit>
+  void walk(const Vec3& point, double& radius2, Visit&& visit) const;
+
+  std::vector<Triangle> triangles_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace prismesh::mesh::spatial

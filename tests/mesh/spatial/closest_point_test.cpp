@@ -1,0 +1,107 @@
+#include "mesh/spatial/closest_point.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/make_model.h"
+
+namespace prismesh::mesh::spatial {
+namespace {
+
+using test::make_model;
+
+ShellSet all_shells(const Model& model) {
+  ShellSet shells;
+  for (std::size_t s = 0; s < model.shell_count(); ++s) shells.emplace_back(s);
+  return shells;
+}
+
+/// A bumpy sheet of n x n quads, every third of which is two triangles.
+Model bumpy_sheet(int n) {
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) nodes.push_back({1 + i + (n + 1) * j, Vec3(i, j, 0.7 * ((i * 7 + j * 5) % 4))});
+  std::int64_t id = 1;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const std::int64_t a = 1 + i + (n + 1) * j, b = a + 1, c = b + n + 1, d = a + n + 1;
+      if ((i + j) % 3 == 0) {
+        shells.push_back({id++, 1, {a, b, c}});
+        shells.push_back({id++, 1, {a, c, d}});
+      } else {
+        shells.push_back({id++, 1, {a, b, c, d}});
+      }
+    }
+  return make_model(nodes, shells);
+}
+
+TEST(ShellTreeTest, finds_points_over_face_side_and_corner_of_a_square) {
+  const Model model = make_model({{1, {0, 0, 0}}, {2, {2, 0, 0}}, {3, {2, 2, 0}}, {4, {0, 2, 0}}}, {{1, 1, {1, 2, 3, 4}}});
+  const ShellTree tree(model, all_shells(model));
+  const auto over_face = tree.closest(Vec3(1.5, 0.5, 3));
+  ASSERT_TRUE(over_face);
+  EXPECT_LT((over_face->point - Vec3(1.5, 0.5, 0)).norm(), 1e-14);
+  EXPECT_DOUBLE_EQ(over_face->distance, 3);
+  const auto beside = tree.closest(Vec3(1, -4, 0));
+  EXPECT_LT((beside->point - Vec3(1, 0, 0)).norm(), 1e-14);
+  const auto corner = tree.closest(Vec3(5, 6, 0));
+  EXPECT_LT((corner->point - Vec3(2, 2, 0)).norm(), 1e-14);
+  EXPECT_DOUBLE_EQ(corner->distance, 5);
+  EXPECT_NEAR(corner->share[2], 1, 1e-15);
+}
+
+TEST(ShellTreeTest, keeps_to_the_radius) {
+  const Model model = make_model({{1, {0, 0, 0}}, {2, {2, 0, 0}}, {3, {2, 2, 0}}}, {{1, 1, {1, 2, 3}}});
+  const ShellTree tree(model, all_shells(model));
+  EXPECT_FALSE(tree.closest(Vec3(1, 0.5, 1), 0.999));
+  EXPECT_TRUE(tree.closest(Vec3(1, 0.5, 1), 1.001));
+  EXPECT_FALSE(ShellTree(model, {}).closest(Vec3::Zero()));
+  EXPECT_TRUE(tree.within(Vec3(1, 0.5, 1), 0.5).empty());
+}
+
+TEST(ShellTreeTest, agrees_with_dense_samples_of_every_shell) {
+  const Model model = bumpy_sheet(9);
+  const ShellTree tree(model, all_shells(model));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> anywhere(-3, 12);
+  constexpr int kSamples = 40;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Vec3 point(anywhere(random), anywhere(random), anywhere(random) - 4);
+    double sampled = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s < model.shell_count(); ++s) {
+      const ShellNodes& shell = model.shell(ShellIndex(s));
+      for (int half = 0; half < (shell.is_triangle() ? 1 : 2); ++half) {
+        const Vec3 a = model.position(shell.node[0]);
+        const Vec3 b = model.position(shell.node[half == 0 ? 1 : 2]);
+        const Vec3 c = model.position(shell.node[half == 0 ? 2 : 3]);
+        for (int i = 0; i <= kSamples; ++i)
+          for (int j = 0; j + i <= kSamples; ++j)
+            sampled = std::min(sampled, (a + (b - a) * i / kSamples + (c - a) * j / kSamples - point).norm());
+      }
+    }
+    const auto found = tree.closest(point);
+    ASSERT_TRUE(found);
+    EXPECT_LE(found->distance, sampled + 1e-12);
+    EXPECT_GE(found->distance, sampled - 0.06);
+    const ShellNodes& shell = model.shell(found->shell);
+    Vec3 mixed = Vec3::Zero();
+    double sum = 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      mixed += found->share[c] * model.position(shell.node[c]);
+      sum += found->share[c];
+      EXPECT_GE(found->share[c], 0);
+    }
+    EXPECT_NEAR(sum, 1, 1e-12);
+    EXPECT_LT((mixed - found->point).norm(), 1e-12);
+    const auto around = tree.within(point, found->distance * 1.2);
+    const auto same = std::find_if(around.begin(), around.end(), [&](const SurfacePoint& p) { return p.shell == found->shell; });
+    ASSERT_NE(same, around.end());
+    EXPECT_DOUBLE_EQ(same->distance, found->distance);
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::spatial
