@@ -19,7 +19,7 @@ std::vector<Edit> session_for(const Document& document) {
   const NodeIndex node = model.shell_nodes[model.shell_count() / 2].node[0];
   const Vec3& at = model.position(node);
   const double size = document.settings.target_size;
-  SelectRegion region{Place(model.node_ids[node.value]), 30, SelectMode::set};
+  SelectRegion region{.at = Place(model.node_ids[node.value]), .angle = 30};
   Lift lift;
   lift.distance = 0.4 * size;
   lift.shaping.grab = std::array<double, 3>{at.x(), at.y(), at.z()};
