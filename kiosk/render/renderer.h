@@ -40,8 +40,8 @@ struct Handle {
   };
   Vec3 at = Vec3::Zero();  ///< deck coordinates
   Vec3 direction = Vec3::UnitZ();
-  std::optional<Turn> turn;  ///< then arrow, disk and ring aren't there
   Use use = Use::idle;
+  std::optional<Turn> turn{};  ///< then arrow, disk and ring aren't there
   bool operator==(const Handle&) const = default;
 };
 
