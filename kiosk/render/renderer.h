@@ -26,24 +26,29 @@ enum class ColourMode : std::uint8_t { parts, quality };
 inline constexpr std::array<std::string_view, 2> kColourModeNames{"parts", "quality"};
 std::optional<ColourMode> colour_mode_from(std::string_view name);
 
-/// What is dragged: an arrow along the normal, a disk across it about its foot (slides), a ring about that in the screen's plane
+/// What is dragged: an arrow along the normal, a disk across it about its foot (slides), a ring about the foot in the screen's plane
 /// (moves), or, where an axis was picked, the axis and an arc about it that turns. Of the same size on the screen wherever it is. White;
 /// the part in use is green, the others go.
 struct Handle {
   enum class Use : std::uint8_t { idle, arrow, disk, ring, arc };
-  /// The axis of a rotation; the arc is drawn about it through `at`, from where the grab was to where it is.
+  /// The axis of a rotation. A circle about it goes through `at`, where a ball is to be grabbed; the arc on it runs from where the grab
+  /// was before the turn to `at`.
   struct Turn {
     Vec3 point = Vec3::Zero();  ///< on the axis, deck coordinates
     Vec3 axis = Vec3::UnitZ();  ///< unit
-    double degrees = 0;         ///< turned so far
+    double degrees = 0;         ///< turned so far, right-handed about the axis
     bool operator==(const Turn&) const = default;
   };
-  Vec3 at = Vec3::Zero();  ///< deck coordinates
+  Vec3 at = Vec3::Zero();  ///< deck coordinates: where the grab is now
   Vec3 direction = Vec3::UnitZ();
   Use use = Use::idle;
   std::optional<Turn> turn{};  ///< then arrow, disk and ring aren't there
   bool operator==(const Handle&) const = default;
 };
+// Sizes on the screen in pixels, for what finds out which part the pointer is on; the arrow's is stereo::kHandleLengthPixels.
+inline constexpr double kHandleRingPixels = 12;  ///< the ring's radius
+inline constexpr double kHandleDiskPixels = 36;  ///< the disk's radius, in the plane across `direction`
+inline constexpr double kHandleBallPixels = 8;   ///< radius of the ball at `at` on the circle about an axis
 
 /// One eye's image while it is being drawn: its framebuffer is bound, its viewport set, blending and depth test off.
 struct EyeImage {
