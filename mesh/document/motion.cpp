@@ -117,9 +117,29 @@ void keep_moving(const shape::Weights& weights, const Model& model, Motion& moti
            {0.5, 0.5, 0, 0}});
 }
 
-Result<void> find_normals(const Model& model, bool each, Motion& motion) {
+Motion::Kind kind_of(const Edit& edit) {
+  if (std::holds_alternative<Lift>(edit)) return Motion::Kind::lift;
+  if (std::holds_alternative<Slide>(edit)) return Motion::Kind::slide;
+  return std::holds_alternative<Rotate>(edit) ? Motion::Kind::rotate : Motion::Kind::translate;
+}
+
+/// What the kind of motion needs besides weights: axis, normals, surface.
+Result<void> find_ways(const Model& model, const Edit& edit, Motion& motion) {
   motion.normal = shape::oriented_normals(model, {motion.grab}, motion.grab).front();
+  if (const auto* rotate = std::get_if<Rotate>(&edit)) {
+    const std::optional<Vec3> direction = shape::unit_of(rotate->axis);
+    if (!direction) return fail("", "rotate: the axis has no direction");
+    motion.axis = {rotate->point, *direction};
+  }
+  if (motion.kind == Motion::Kind::slide) {
+    if (!(motion.normal.squaredNorm() > 0))
+      return fail("", "no shell touches the grabbed node " + std::to_string(model.node_ids[motion.grab.value]) +
+                          ", so there is no surface to slide on; use translate");
+    motion.slideway =
+        std::make_shared<const shape::Slideway>(model, motion.nodes, shape::oriented_normals(model, motion.nodes, motion.grab));
+  }
   if (motion.kind != Motion::Kind::lift) return {};
+  const bool each = std::get<Lift>(edit).each_normal;
   if (!(motion.normal.squaredNorm() > 0))
     return fail("", "no shell touches the grabbed node " + std::to_string(model.node_ids[motion.grab.value]) +
                         ", so there is no normal to lift along; use translate");
@@ -136,9 +156,7 @@ Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const
   const Shaping* shaping_in_edit = shaping_of(edit);
   if (shaping_in_edit == nullptr) return fail("", std::string(name(edit)) + " moves no nodes: only shaping edits can be dragged");
   const Shaping& shaping = *shaping_in_edit;
-  const auto* lift = std::get_if<Lift>(&edit);
-  if (std::holds_alternative<Slide>(edit) || std::holds_alternative<Rotate>(edit) || shaping.symmetry)
-    return fail("", std::string(name(edit)) + " isn't there yet");
+  if (shaping.symmetry) return fail("", std::string(name(edit)) + " isn't there yet");
   const Model& model = generation.model;
 
   NodeSet nodes;
@@ -158,32 +176,43 @@ Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const
   if (!weights) return fail(weights.error());
 
   Motion motion;
-  motion.kind = lift != nullptr ? Motion::Kind::lift : Motion::Kind::translate;
+  motion.kind = kind_of(edit);
   motion.grab = weights->grab;
   // a constant falloff asks for no way along the surface: pieces apart move too
   motion.unreached = shaping.weights.falloff.profile == shape::Profile::constant ? 0 : weights->unreached;
   motion.max_move = shaping.max_move;
   keep_moving(*weights, model, motion);
   if (const Result<void> free = refuse_held(generation, motion.nodes, document); !free) return fail(free.error());
-  if (const Result<void> found = find_normals(model, lift != nullptr && lift->each_normal, motion); !found) return fail(found.error());
+  if (const Result<void> found = find_ways(model, edit, motion); !found) return fail(found.error());
   return motion;
 }
 
 std::size_t positions_at(const Motion& motion, const Displacement& displacement, std::span<Vec3> out) {
-  if (motion.kind == Motion::Kind::lift)
-    shape::lift(motion.start, motion.weight, motion.normals, displacement.distance, out);
-  else
-    shape::translate(motion.start, motion.weight, displacement.by, out);
+  // on a circle, on the surface: there a node that may go no farther stays on its way
+  const bool stops_itself = motion.kind == Motion::Kind::rotate || motion.kind == Motion::Kind::slide;
+  std::size_t held_back = 0;
+  switch (motion.kind) {
+    case Motion::Kind::translate: shape::translate(motion.start, motion.weight, displacement.by, out); break;
+    case Motion::Kind::lift: shape::lift(motion.start, motion.weight, motion.normals, displacement.distance, out); break;
+    case Motion::Kind::rotate:
+      held_back = shape::rotate(motion.start, motion.weight, motion.axis, displacement.degrees, motion.max_move, out);
+      break;
+    case Motion::Kind::slide: {
+      std::vector<Vec3> by(motion.nodes.size());
+      for (std::size_t i = 0; i < by.size(); ++i) by[i] = motion.weight[i] * displacement.by;
+      held_back = motion.slideway->positions(by, motion.max_move, out);
+      break;
+    }
+  }
   for (const Motion::Follower& follower : motion.followers) {
     Vec3 move = Vec3::Zero();
     for (std::size_t i = 0; i < follower.of.size(); ++i)
       if (const std::uint32_t of = follower.of[i]; of != Motion::Follower::kStays) move += follower.share[i] * (out[of] - motion.start[of]);
     out[follower.node] = motion.start[follower.node] + move;
   }
-  std::size_t held_back = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out[i] == motion.start[i]) out[i] = motion.start[i];  // -0 stays -0: what hasn't moved keeps its bits
-    if (!motion.max_move) continue;
+    if (!motion.max_move || stops_itself) continue;
     const Vec3 move = out[i] - motion.start[i];
     const double length = move.norm();
     if (!(length > *motion.max_move)) continue;

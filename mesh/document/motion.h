@@ -4,11 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "mesh/document/document.h"
+#include "mesh/shape/rotate.h"
+#include "mesh/shape/slide.h"
 
 namespace prismesh::mesh::document {
 
@@ -24,10 +27,12 @@ struct Motion {
   };
 
   enum class Kind : std::uint8_t { translate, lift, slide, rotate } kind = Kind::translate;
-  NodeSet nodes;               ///< those with weight > 0
-  std::vector<double> weight;  ///< of each
-  std::vector<Vec3> start;     ///< of each
-  std::vector<Vec3> normals;   ///< lift: of each, or one for all
+  NodeSet nodes;                                    ///< those with weight > 0
+  std::vector<double> weight;                       ///< of each
+  std::vector<Vec3> start;                          ///< of each
+  std::vector<Vec3> normals;                        ///< lift: of each, or one for all
+  shape::Axis axis;                                 ///< rotate
+  std::shared_ptr<const shape::Slideway> slideway;  ///< slide
   NodeIndex grab;
   Vec3 normal = Vec3::Zero();  ///< unit normal at the grab; zero where no shell is
   std::vector<Follower> followers;

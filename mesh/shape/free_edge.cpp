@@ -31,6 +31,28 @@ double surrounding_angle(const Model& model, NodeIndex node) {
 
 }  // namespace
 
+int free_edges_at(const Model& model, NodeIndex node, std::array<NodeIndex, 2>& ends) {
+  const Adjacency& adjacency = *model.adjacency;
+  int count = 0;
+  for (const ShellIndex index : adjacency.shells_of(node)) {
+    const ShellNodes& shell = model.shell(index);
+    const int corners = shell.corners();
+    const int at = static_cast<int>(std::find(shell.node.begin(), shell.node.begin() + corners, node) - shell.node.begin());
+    for (const NodeIndex other : {shell.node[(at + 1) % corners], shell.node[(at + corners - 1) % corners]}) {
+      const EdgeIndex edge = adjacency.find_edge(node, other);
+      if (!edge.valid() || adjacency.shells_of(edge).size() != 1) continue;
+      if (count < 2) ends[static_cast<std::size_t>(count)] = other;
+      ++count;
+    }
+  }
+  return count;
+}
+
+bool is_boundary_corner(const Model& model, NodeIndex node) {
+  const double angle = surrounding_angle(model, node);
+  return angle < kConvexCorner || angle > kReflexCorner;
+}
+
 FreeEdges::FreeEdges(const Model& model, const NodeSet& selection) : model_(model), selection_(selection) {
   const Adjacency& adjacency = *model.adjacency;
   std::vector<std::array<std::uint32_t, 2>> ends;
@@ -56,8 +78,7 @@ FreeEdges::FreeEdges(const Model& model, const NodeSet& selection) : model_(mode
 
 bool FreeEdges::is_corner(std::uint32_t node) const {
   if (neighbours(node).size() != 2) return true;
-  const double angle = surrounding_angle(model_, selection_[node]);
-  return angle < kConvexCorner || angle > kReflexCorner;
+  return is_boundary_corner(model_, selection_[node]);
 }
 
 std::vector<std::uint32_t> FreeEdges::walk(std::uint32_t from, std::uint32_t to, std::span<const std::uint8_t> border) const {

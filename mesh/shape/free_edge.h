@@ -11,6 +11,11 @@
 
 namespace prismesh::mesh::shape {
 
+/// How many free edges end at a node; `ends` gets the other ends of the first two.
+int free_edges_at(const Model& model, NodeIndex node, std::array<NodeIndex, 2>& ends);
+/// Whether the surface around a node of the boundary spans less than 135 or more than 250 degrees.
+bool is_boundary_corner(const Model& model, NodeIndex node);
+
 /// The free edges (edges of exactly one shell) with both ends in a selection. Nodes are positions in the selection.
 class FreeEdges {
  public:

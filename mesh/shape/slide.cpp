@@ -1,0 +1,300 @@
+#include "mesh/shape/slide.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+
+#include <Eigen/Geometry>
+
+#include "base/parallel_for.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/shape/free_edge.h"
+
+namespace prismesh::mesh::shape {
+
+namespace {
+
+constexpr std::size_t kNodesAtATime = 128;
+constexpr double kOnTheSpot = 1e-9;      // shares of a face, and sines of angles: nearer counts as the same
+constexpr int kMostFaces = 100'000;      // of one way
+constexpr int kMostFacesOnTheSpot = 64;  // without getting on: round a needle's point there is no straight on
+
+/// One triangle of a shell. Its side i runs from corner i to the next and lies opposite corner (i + 2) % 3.
+struct Face {
+  std::array<NodeIndex, 3> node;
+  std::array<Vec3, 3> at;
+  ShellIndex shell;
+  bool second = false;  ///< of a quad: corners 0, 2, 3
+};
+
+std::size_t next(std::size_t i) { return i == 2 ? 0 : i + 1; }
+
+Face face_of(const Model& model, ShellIndex index, bool second) {
+  const ShellNodes& shell = model.shell(index);
+  Face face{{shell.node[0], shell.node[second ? 2 : 1], shell.node[second ? 3 : 2]}, {}, index, second};
+  for (std::size_t i = 0; i < 3; ++i) face.at[i] = model.position(face.node[i]);
+  return face;
+}
+
+Vec3 area_normal(const Face& face) { return (face.at[1] - face.at[0]).cross(face.at[2] - face.at[0]); }
+
+/// From the middle of the side from a to b towards the third corner, within the face and at right angles to the side; of length 1. Zero
+/// where the face has no area.
+Vec3 inward(const Vec3& a, const Vec3& along, const Vec3& third) {
+  const Vec3 to_third = third - a;
+  const Vec3 across = to_third - to_third.dot(along) * along;
+  const double height = across.norm();
+  return height > kOnTheSpot * to_third.norm() ? Vec3(across / height) : Vec3::Zero();
+}
+
+/// Turned by the smallest turn that takes one unit vector to another; as it is where they are opposite.
+Vec3 turned_with(const Vec3& from, const Vec3& to, const Vec3& direction) {
+  const double cosine = from.dot(to);
+  if (!(1 + cosine > kOnTheSpot)) return direction;
+  const Vec3 axis = from.cross(to);
+  const Vec3 across = axis.cross(direction);
+  return direction + across + axis.cross(across) / (1 + cosine);
+}
+
+/// One node's way.
+class Walk {
+ public:
+  Walk(const Model& model, NodeIndex node, double max_move) : model_(model), start_(model.position(node)), here_(start_), most_(max_move) {}
+
+  const Vec3& here() const { return here_; }
+  bool stopped() const { return stopped_; }
+
+  /// Over the faces, from a node, by the part of a displacement that lies at right angles to the normal there.
+  void over_faces(NodeIndex node, const Vec3& normal, const Vec3& by) {
+    const Vec3 flat = by - by.dot(normal) * normal;
+    left_ = flat.norm();
+    if (!(left_ > 0) || !set_out(node, normal, flat / left_)) return;
+    int on_the_spot = 0;
+    for (int faces = 0; faces < kMostFaces && left_ > 0 && !stopped_; ++faces) {
+      const double before = left_;
+      if (!cross_face()) return;
+      on_the_spot = left_ < before ? 0 : on_the_spot + 1;
+      if (on_the_spot > kMostFacesOnTheSpot) return;
+    }
+  }
+
+  /// Along the line of free edges.
+  void along_free_edge(NodeIndex node, const Vec3& by) {
+    std::array<NodeIndex, 2> both{};
+    if (!free_neighbours(node, both)) return;
+    const auto towards = [&](NodeIndex other) -> Vec3 { return (model_.position(other) - model_.position(node)).normalized(); };
+    const Vec3 line = towards(both[0]) - towards(both[1]);
+    const double length = line.norm();
+    left_ = length > 0 ? by.dot(line) / length : 0;
+    NodeIndex to = left_ >= 0 ? both[0] : both[1];
+    left_ = std::abs(left_);
+    for (int edges = 0; edges < kMostFaces && left_ > 0 && !stopped_; ++edges) {
+      const Vec3 edge = model_.position(to) - here_;
+      const double edge_length = edge.norm();
+      if (left_ <= edge_length) return go_to(here_ + edge * (left_ / edge_length));
+      go_to(model_.position(to));
+      left_ -= edge_length;
+      const NodeIndex from = node;
+      node = to;
+      if (stopped_ || !free_neighbours(node, both)) return;
+      to = both[0] == from ? both[1] : both[0];
+    }
+  }
+
+ private:
+  /// Straight to a point, or as far as the limit allows.
+  void go_to(const Vec3& point) {
+    if ((point - start_).norm() > most_) {
+      // |here + s (point - here) - start| = most
+      const Vec3 step = point - here_;
+      const Vec3 gone = here_ - start_;
+      const double a = step.squaredNorm();
+      const double b = step.dot(gone);
+      const double c = gone.squaredNorm() - most_ * most_;
+      const double s = std::clamp((-b + std::sqrt(std::max(0.0, b * b - a * c))) / a, 0.0, 1.0);
+      here_ += s * step;
+      stopped_ = true;
+      return;
+    }
+    here_ = point;
+  }
+
+  /// The face at a node over which a direction leads away: the one whose picture in the node's plane holds it.
+  bool set_out(NodeIndex node, const Vec3& normal, const Vec3& direction) {
+    double best = 0;
+    const auto consider = [&](ShellIndex shell, bool second) {
+      const Face face = face_of(model_, shell, second);
+      const auto at = static_cast<std::size_t>(std::find(face.node.begin(), face.node.end(), node) - face.node.begin());
+      if (at == 3) return;
+      const std::size_t b = next(at), c = next(b);
+      const Vec3 side_b = face.at[b] - face.at[at];
+      const Vec3 side_c = face.at[c] - face.at[at];
+      const Vec3 across = side_b.cross(side_c);
+      const double turned = across.dot(normal);
+      const double facing = std::abs(turned) / across.norm();
+      if (!(facing > kOnTheSpot)) return;
+      double share_b = direction.cross(side_c).dot(normal) / turned;
+      double share_c = side_b.cross(direction).dot(normal) / turned;
+      if (share_b * side_b.norm() < -kOnTheSpot || share_c * side_c.norm() < -kOnTheSpot || !(facing > best)) return;
+      best = facing;
+      share_b = share_b * side_b.norm() < kOnTheSpot ? 0 : share_b;
+      share_c = share_c * side_c.norm() < kOnTheSpot ? 0 : share_c;
+      face_ = face;
+      entered_by_ = 3;
+      share_ = {0, 0, 0};
+      share_[at] = 1;
+      direction_ = (share_b * side_b + share_c * side_c).normalized();
+    };
+    for (const ShellIndex shell : model_.adjacency->shells_of(node)) {
+      consider(shell, false);
+      if (!model_.shell(shell).is_triangle()) consider(shell, true);
+    }
+    return best > 0;
+  }
+
+  /// To the end of the way or over the face's side. False where the surface ends.
+  bool cross_face() {
+    const Vec3 normal = area_normal(face_);
+    const double area2 = normal.squaredNorm();
+    if (!(area2 > 0)) return false;
+    // how each corner's share changes with the length of the way, and where one first comes to nothing
+    std::array<double, 3> rate{};
+    std::size_t leaves = 3;
+    double length = left_;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 gradient = normal.cross(face_.at[next(next(i))] - face_.at[next(i)]) / area2;
+      rate[i] = gradient.dot(direction_);
+      if (std::abs(rate[i]) < kOnTheSpot * gradient.norm()) rate[i] = 0;
+      if (rate[i] < 0 && next(i) != entered_by_ && share_[i] < -rate[i] * length) {
+        length = share_[i] / -rate[i];
+        leaves = i;
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) share_[i] = std::max(0.0, share_[i] + length * rate[i]);
+    if (leaves != 3) share_[leaves] = 0;
+    const double sum = share_[0] + share_[1] + share_[2];
+    for (double& share : share_) share /= sum;
+    go_to(share_[0] * face_.at[0] + share_[1] * face_.at[1] + share_[2] * face_.at[2]);
+    left_ -= length;
+    if (leaves == 3) left_ = 0;
+    if (stopped_ || !(left_ > 0)) return true;
+    const std::size_t a = next(leaves), b = next(a);
+    if (share_[a] < kOnTheSpot) return pass_node(b, normal / std::sqrt(area2));
+    if (share_[b] < kOnTheSpot) return pass_node(a, normal / std::sqrt(area2));
+    return cross_side(a, b);
+  }
+
+  /// Over the side into the face beyond that leads straightest on.
+  bool cross_side(std::size_t a, std::size_t b) {
+    const Vec3 along = (face_.at[b] - face_.at[a]).normalized();
+    const Vec3 back = inward(face_.at[a], along, face_.at[next(b)]);
+    std::optional<Face> beyond;
+    Vec3 on = Vec3::Zero();
+    std::size_t entered_by = 3;
+    const auto consider = [&](ShellIndex shell, bool second) {
+      const Face face = face_of(model_, shell, second);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const bool same_side = (face.node[i] == face_.node[a] && face.node[next(i)] == face_.node[b]) ||
+                               (face.node[i] == face_.node[b] && face.node[next(i)] == face_.node[a]);
+        if (!same_side) continue;
+        const Vec3 into = inward(face_.at[a], along, face.at[next(next(i))]);
+        // a shell on the same corners lies beneath, not beyond
+        if (!(into.squaredNorm() > 0) || into.dot(back) > 1 - 1e-12 || (beyond && into.dot(back) >= on.dot(back))) return;
+        beyond = face;
+        on = into;
+        entered_by = i;
+      }
+    };
+    const ShellNodes& shell = model_.shell(face_.shell);
+    if (!shell.is_triangle() && is_diagonal(a, b)) {
+      consider(face_.shell, !face_.second);
+    } else {
+      for (const ShellIndex other : model_.adjacency->shells_of(model_.adjacency->find_edge(face_.node[a], face_.node[b])))
+        if (other != face_.shell) {
+          consider(other, false);
+          if (!model_.shell(other).is_triangle()) consider(other, true);
+        }
+    }
+    if (!beyond) return false;
+    const double share_b = share_[b];
+    const bool same_sense = beyond->node[entered_by] == face_.node[a];
+    share_ = {0, 0, 0};
+    share_[same_sense ? next(entered_by) : entered_by] = share_b;
+    share_[same_sense ? entered_by : next(entered_by)] = 1 - share_b;
+    direction_ = (direction_.dot(along) * along - direction_.dot(back) * on).normalized();
+    face_ = *beyond;
+    entered_by_ = entered_by;
+    return true;
+  }
+
+  bool is_diagonal(std::size_t a, std::size_t b) const {
+    const std::size_t side = next(a) == b ? a : b;
+    return face_.second ? side == 0 : side == 2;
+  }
+
+  /// Straight on over a node: as over its own plane, of which all faces at it are pictures.
+  bool pass_node(std::size_t corner, const Vec3& face_normal) {
+    const NodeIndex node = face_.node[corner];
+    Vec3 sum = Vec3::Zero();
+    for (const ShellIndex shell : model_.adjacency->shells_of(node)) {
+      const Vec3 normal = area_normal(face_of(model_, shell, false)) +
+                          (model_.shell(shell).is_triangle() ? Vec3(Vec3::Zero()) : area_normal(face_of(model_, shell, true)));
+      sum += normal.dot(face_normal) < 0 ? Vec3(-normal) : normal;
+    }
+    const double length = sum.norm();
+    std::array<NodeIndex, 2> unused{};
+    if (!(length > 0) || free_edges_at(model_, node, unused) > 0) return false;
+    const Vec3 normal = sum / length;
+    const Vec3 turned = turned_with(face_normal, normal, direction_);
+    const Vec3 flat = turned - turned.dot(normal) * normal;
+    return flat.squaredNorm() > 0 && set_out(node, normal, flat.normalized());
+  }
+
+  /// The two ends of the line of free edges next to a node; false at its corners and forks, and off it.
+  bool free_neighbours(NodeIndex node, std::array<NodeIndex, 2>& both) const {
+    return free_edges_at(model_, node, both) == 2 && !is_boundary_corner(model_, node);
+  }
+
+  const Model& model_;
+  Vec3 start_;
+  Vec3 here_;
+  double most_;
+  bool stopped_ = false;
+  double left_ = 0;
+  Face face_;
+  std::array<double, 3> share_{};  ///< of the face's corners: where it is
+  std::size_t entered_by_ = 3;     ///< side of the face; 3: none
+  Vec3 direction_ = Vec3::Zero();  ///< of length 1, in the face
+};
+
+}  // namespace
+
+Slideway::Slideway(const Model& surface, const NodeSet& nodes, std::vector<Vec3> normals)
+    : surface_(surface), nodes_(nodes), normals_(std::move(normals)), on_free_edge_(nodes.size(), 0) {
+  parallel_for(nodes_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+    std::array<NodeIndex, 2> unused{};
+    for (std::size_t i = begin; i < end; ++i) on_free_edge_[i] = free_edges_at(surface_, nodes_[i], unused) > 0 ? 1 : 0;
+  });
+}
+
+std::size_t Slideway::positions(std::span<const Vec3> by, std::optional<double> max_move, std::span<Vec3> out) const {
+  std::atomic<std::size_t> stopped = 0;
+  parallel_for(nodes_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+    std::size_t stopped_here = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      Walk walk(surface_, nodes_[i], max_move.value_or(std::numeric_limits<double>::infinity()));
+      if (on_free_edge_[i] != 0)
+        walk.along_free_edge(nodes_[i], by[i]);
+      else
+        walk.over_faces(nodes_[i], normals_[i], by[i]);
+      out[i] = walk.here();
+      if (walk.stopped()) ++stopped_here;
+    }
+    stopped += stopped_here;
+  });
+  return stopped;
+}
+
+}  // namespace prismesh::mesh::shape
