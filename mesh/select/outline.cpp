@@ -1,12 +1,13 @@
-// What lies inside a freehand outline: crossings counted in bands of height, so that a node meets a few edges of the outline
-// however many it has.
+// Crossings counted in bands of height, so that a node meets a few edges of the outline however many it has.
+#include "mesh/select/outline.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
 #include "base/parallel_for.h"
-#include "mesh/select/region.h"
+#include "mesh/select/projection.h"
 
 namespace prismesh::mesh::select {
 
@@ -17,8 +18,12 @@ struct OutlineEdge {
   double low_x = 0;
   double low_y = 0;
   double high_y = 0;
-  double slope = 0;  ///< dx/dy
-  int sense = 0;     ///< +1 drawn upwards, -1 downwards
+  double width = 0;   ///< high_x - low_x
+  double height = 0;  ///< high_y - low_y, > 0
+  int sense = 0;      ///< +1 drawn upwards, -1 downwards
+
+  /// Whether a point at one of its heights lies to its left. No division: what is representable is decided exactly.
+  bool is_right_of(double x, double y) const { return (x - low_x) * height < (y - low_y) * width; }
 };
 
 /// A point is inside where the outline winds around it: a lasso that crosses its own line keeps what it went round twice.
@@ -42,7 +47,7 @@ class Outline {
     int winding = 0;
     for (std::uint32_t k = band_first_[band]; k < band_first_[band + 1]; ++k) {
       const OutlineEdge& edge = band_edges_[k];
-      if (y >= edge.low_y && y < edge.high_y && x < edge.low_x + (y - edge.low_y) * edge.slope) winding += edge.sense;
+      if (y >= edge.low_y && y < edge.high_y && edge.is_right_of(x, y)) winding += edge.sense;
     }
     return winding != 0;
   }
@@ -53,7 +58,7 @@ class Outline {
     const bool up = from[1] < to[1];
     const auto& low = up ? from : to;
     const auto& high = up ? to : from;
-    edges_.push_back({low[0], low[1], high[1], (high[0] - low[0]) / (high[1] - low[1]), up ? 1 : -1});
+    edges_.push_back({low[0], low[1], high[1], high[0] - low[0], high[1] - low[1], up ? 1 : -1});
   }
 
   std::size_t band_of(double y) const {
@@ -89,24 +94,29 @@ class Outline {
 
 }  // namespace
 
-NodeSet inside_outline(const Model& model, const std::array<double, 16>& view, const std::vector<std::array<double, 2>>& outline) {
+NodeSet inside_outline(const Model& model, const ViewMatrix& view, const std::vector<std::array<double, 2>>& outline) {
   const bool finite = std::all_of(outline.begin(), outline.end(), [](const auto& p) { return std::isfinite(p[0]) && std::isfinite(p[1]); });
   if (outline.size() < 3 || !finite) return {};
   const Outline inside(outline);
-  const auto row = [&](std::size_t r, const Vec3& p) { return view[r] * p.x() + view[4 + r] * p.y() + view[8 + r] * p.z() + view[12 + r]; };
   std::vector<NodeSet> of_chunk(model.positions.chunk_count());
   parallel_for(model.positions.chunk_count(), 8, [&](std::size_t begin, std::size_t end) {
+    std::vector<NodeIndex> found(kChunkSize);
     for (std::size_t c = begin; c < end; ++c) {
       const auto positions = model.positions.chunk(c);
+      std::size_t count = 0;
       for (std::size_t i = 0; i < positions.size(); ++i) {
-        const double w = row(3, positions[i]);
+        const double w = clip_row(view, 3, positions[i]);
         if (!(w > 0)) continue;  // behind the eye
-        if (!inside.contains(row(0, positions[i]) / w, row(1, positions[i]) / w)) continue;
-        of_chunk[c].push_back(NodeIndex(c * kChunkSize + i));
+        if (!inside.contains(clip_row(view, 0, positions[i]) / w, clip_row(view, 1, positions[i]) / w)) continue;
+        found[count++] = NodeIndex(c * kChunkSize + i);
       }
+      of_chunk[c].assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
     }
   });
+  std::size_t total = 0;
+  for (const NodeSet& part : of_chunk) total += part.size();
   NodeSet nodes;
+  nodes.reserve(total);
   for (const NodeSet& part : of_chunk) nodes.insert(nodes.end(), part.begin(), part.end());
   return nodes;
 }

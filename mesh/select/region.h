@@ -1,11 +1,11 @@
 // Selections that follow the surface: a region bounded by feature edges, rings of neighbours, what lies inside an outline.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
+#include "mesh/select/outline.h"
 
 namespace prismesh::mesh::select {
 
@@ -20,9 +20,5 @@ NodeIndex nearest_node(const Model& model, const Vec3& point);
 NodeSet grow(const Model& model, const NodeSet& nodes, int rings);
 NodeSet shrink(const Model& model, const NodeSet& nodes, int rings);
 NodeSet invert(const Model& model, const NodeSet& nodes);
-
-/// Nodes whose projection lies inside the closed outline. `view` takes deck coordinates to clip space (column-major 4x4);
-/// `outline` is in normalised device coordinates. Nodes behind the eye are outside.
-NodeSet inside_outline(const Model& model, const std::array<double, 16>& view, const std::vector<std::array<double, 2>>& outline);
 
 }  // namespace prismesh::mesh::select

@@ -1,7 +1,6 @@
 #include "mesh/select/region.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -91,68 +90,6 @@ TEST(Invert, swaps_selected_and_unselected) {
   EXPECT_EQ(rest.size(), 46u);
   EXPECT_EQ(invert(model, rest), some);
   EXPECT_EQ(invert(model, {}).size(), 49u);
-}
-
-constexpr std::array<double, 16> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-
-/// Winding number by the angle swept: slow, and has nothing in common with counting crossings.
-bool winds_around(const std::vector<std::array<double, 2>>& outline, double x, double y) {
-  double swept = 0;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const auto& a = outline[i];
-    const auto& b = outline[(i + 1) % outline.size()];
-    const double ax = a[0] - x, ay = a[1] - y, bx = b[0] - x, by = b[1] - y;
-    swept += std::atan2(ax * by - ay * bx, ax * bx + ay * by);
-  }
-  return std::abs(swept) > 1;
-}
-
-TEST(Outline, takes_what_it_goes_round) {
-  const Model model = make_grid(60, 60, [](int i, int j) { return Vec3(i / 30.0 - 1, j / 30.0 - 1, 0.3); });
-  // a wild lasso of 256 points that crosses its own line
-  std::vector<std::array<double, 2>> outline;
-  for (int k = 0; k < 256; ++k) {
-    const double t = 2 * 3.14159265358979 * k / 256;
-    const double r = 0.5 + 0.3 * std::sin(5 * t) + 0.11 * std::cos(17 * t);
-    outline.push_back({r * std::cos(t) + 0.2 * std::cos(9 * t) + 0.013, r * std::sin(t) + 0.2 * std::sin(9 * t) - 0.017});
-  }
-  const NodeSet inside = inside_outline(model, kIdentity, outline);
-  NodeSet expected;
-  for (std::size_t i = 0; i < model.node_count(); ++i)
-    if (winds_around(outline, model.positions[i].x(), model.positions[i].y())) expected.push_back(NodeIndex(i));
-  EXPECT_GT(expected.size(), 300u);
-  EXPECT_EQ(inside, expected);
-  std::reverse(outline.begin(), outline.end());
-  EXPECT_EQ(inside_outline(model, kIdentity, outline), expected);
-}
-
-TEST(Outline, sees_through_the_view_and_not_behind_the_eye) {
-  const Model model = test::make_model({{1, {0, 0, -2}}, {2, {0, 0, 2}}, {3, {3, 0, -2}}, {4, {1.9, 0, -4}}}, {});
-  // a pinhole looking down -z: x/-z, y/-z
-  const std::array<double, 16> view{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0};
-  EXPECT_EQ(inside_outline(model, view, {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}), (NodeSet{NodeIndex(0), NodeIndex(3)}));
-}
-
-TEST(Outline, of_less_than_an_area_takes_nothing) {
-  const Model model = flat_grid(4, 4);
-  EXPECT_TRUE(inside_outline(model, kIdentity, {}).empty());
-  EXPECT_TRUE(inside_outline(model, kIdentity, {{-9, -9}, {9, 9}}).empty());
-  EXPECT_TRUE(inside_outline(model, kIdentity, {{-9, 1}, {9, 1}, {3, 1}}).empty());
-  EXPECT_TRUE(inside_outline(model, kIdentity, {{-9, -9}, {9, NAN}, {9, 9}}).empty());
-  EXPECT_TRUE(inside_outline(model, kIdentity, {{-9, 1}, {9, 1}, {3, 1 + 1e-320}}).empty());
-}
-
-TEST(Outline, counts_a_corner_at_a_nodes_height_once) {
-  const Model model = test::make_model({{1, {-0.9, 0, 0}}, {2, {0, 0, 0}}, {3, {1.9, 0, 0}}}, {});
-  EXPECT_EQ(inside_outline(model, kIdentity, {{-1, -2}, {2, 0}, {0, 2}}), (NodeSet{NodeIndex(1), NodeIndex(2)}));
-}
-
-TEST(Outline, counts_a_shared_border_once) {
-  // two squares side by side: each node belongs to exactly one
-  const Model model = flat_grid(4, 4);
-  const NodeSet left = inside_outline(model, kIdentity, {{-0.5, -0.5}, {2, -0.5}, {2, 4.5}, {-0.5, 4.5}});
-  const NodeSet right = inside_outline(model, kIdentity, {{2, -0.5}, {4.5, -0.5}, {4.5, 4.5}, {2, 4.5}});
-  EXPECT_EQ(left.size() + right.size(), 25u);
 }
 
 }  // namespace

@@ -1,0 +1,19 @@
+// What lies inside an outline drawn on the screen.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
+
+namespace prismesh::mesh::select {
+
+/// Nodes whose projection lies inside the closed outline, which means that the outline winds around it at least once, in either sense.
+/// `view` takes deck coordinates to clip space (column-major 4x4); `outline` is in normalised device coordinates and may reach beyond
+/// -1..1. Nodes behind the eye are outside. A node exactly on the border is inside if the border is on its left or below it. Nothing for
+/// fewer than three points or coordinates that aren't finite. Cost: a pass over the nodes, for each the few sides of the outline at its
+/// height.
+NodeSet inside_outline(const Model& model, const std::array<double, 16>& view, const std::vector<std::array<double, 2>>& outline);
+
+}  // namespace prismesh::mesh::select

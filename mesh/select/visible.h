@@ -1,0 +1,26 @@
+// Which nodes a view shows: those that no shell in sight hides.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "base/error.h"
+#include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
+
+namespace prismesh::mesh::select {
+
+/// A shell that passes this close to a node lies on it and doesn't hide it; a share of the shell's longest edge.
+inline constexpr double kLiesOnShell = 1e-3;
+
+/// Of `candidates`, the nodes in the picture that no shell in sight hides. `view` takes deck coordinates to clip space (column-major 4x4,
+/// perspective or orthographic, the nearer the smaller z/w); what it cuts off before its near plane hides nothing, and nodes beyond its
+/// planes aren't in the picture. `out_of_sight` has an entry for each part, not 0 where the part is hidden; empty: all are in sight.
+/// A node isn't hidden by its own shells, nor by shells that lie on it. A quad counts as the two triangles at its diagonal from the first
+/// corner to the third. Exact but for rounding, at silhouettes as elsewhere; the same on every machine.
+/// Errors: the view keeps no depth (its matrix can't be inverted where the candidates are).
+Result<NodeSet> visible_nodes(const Model& model, const std::array<double, 16>& view, const NodeSet& candidates,
+                              std::span<const std::uint8_t> out_of_sight);
+
+}  // namespace prismesh::mesh::select
