@@ -76,7 +76,8 @@ double deterministic_atan2(double y, double x) {
   const double along = std::abs(x), across = std::abs(y);
   const double longer = std::max(along, across);
   if (!(longer > 0)) return 0;
-  double angle = small_atan(std::min(along, across) / longer);
+  const double share = std::min(along, across) / longer;
+  double angle = small_atan(share <= 1 ? share : 1.0);  // infinity by infinity: 45 degrees, as the C library has it
   if (across > along) angle = kPi / 2 - angle;
   if (x < 0) angle = kPi - angle;
   return y < 0 ? -angle : angle;

@@ -37,6 +37,9 @@ TEST(DeterministicMath, angles) {
   EXPECT_EQ(deterministic_atan2(0, -2), kPi);
   EXPECT_EQ(deterministic_atan2(-3, 0), -kPi / 2);
   for (double x = -1; x <= 1; x += 0.001953125) EXPECT_NEAR(deterministic_acos(x), std::acos(x), 2e-15) << x;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(deterministic_atan2(kInfinity, kInfinity), kPi / 4, 1e-15);
+  EXPECT_NEAR(deterministic_atan2(1, -kInfinity), kPi, 1e-15);
   EXPECT_EQ(deterministic_acos(1.5), 0.0);
   EXPECT_EQ(deterministic_acos(-1.5), kPi);
 }
