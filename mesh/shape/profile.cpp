@@ -30,7 +30,7 @@ std::optional<Profile> profile_from(std::string_view name) {
 }
 
 double evaluate(const Falloff& falloff, double d) {
-  d = std::clamp(d, 0.0, 1.0);
+  d = d > 0 ? std::min(d, 1.0) : 0.0;  // NaN counts as the border
   if (falloff.flat > 0 && d > 0) d = falloff.flat < 1 ? std::min(1.0, d / (1 - falloff.flat)) : 1.0;
   switch (falloff.profile) {
     case Profile::constant: return 1;

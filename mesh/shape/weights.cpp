@@ -10,6 +10,7 @@
 
 #include "mesh/model/adjacency.h"
 #include "mesh/shape/free_edge.h"
+#include "mesh/shape/weights_carried.h"
 #include "mesh/spatial/geodesic.h"
 
 namespace prismesh::mesh::shape {
@@ -53,12 +54,15 @@ class Weighing {
     Weights weights;
     weights.nodes = selection_;
     weights.grab = selection_[grab_];
-    weights.unreached = static_cast<std::size_t>(std::count(from_origin_.begin(), from_origin_.end(), kUnreached));
+    std::vector<std::uint8_t> reached(from_origin_.size());
+    for (std::size_t i = 0; i < reached.size(); ++i) reached[i] = from_origin_[i] < kUnreached ? 1 : 0;
     const std::vector<double> share = options_.falloff.along ? shares_along(options_.falloff.along->normalized()) : shares_on_surface();
-    weights.weight.reserve(share.size());
     const bool constant = options_.falloff.profile == Profile::constant;
+    weights.weight.reserve(share.size());
     for (std::size_t i = 0; i < share.size(); ++i)
-      weights.weight.push_back(from_origin_[i] == kUnreached && !constant ? 0 : evaluate(options_.falloff, share[i]));
+      weights.weight.push_back(reached[i] == 0 && !constant ? 0 : evaluate(options_.falloff, share[i]));
+    if (options_.across_welds && !constant) carry_across_welds(model_, patch_, reached, weights.weight);
+    weights.unreached = static_cast<std::size_t>(std::count(reached.begin(), reached.end(), 0));
     return weights;
   }
 
@@ -151,7 +155,7 @@ class Weighing {
     double border_low = kInfinity;
     double border_high = -kInfinity;
     for (std::uint32_t i = 0; i < border_.size(); ++i) {
-      if (border_[i] == 0) continue;
+      if (border_[i] == 0 || !patch_.positions[i].allFinite()) continue;
       const double faces = facing(i, direction);
       if (faces <= 0 && place(i) < origin_low) border_low = std::min(border_low, place(i));
       if (faces >= 0 && place(i) > origin_high) border_high = std::max(border_high, place(i));

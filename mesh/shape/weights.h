@@ -30,18 +30,21 @@ struct WeightOptions {
   Falloff falloff;
   bool free_ends = true;  ///< the part's own boundary (free edges) is no border
   Origin origin = Origin::grab;
-  bool across_welds = false;  ///< pieces that the grab doesn't reach get the weight of the closest point of those it does
+  /// Pieces that the grab doesn't reach get the weight of the closest point of those it does, if they come near enough; the constant
+  /// profile needs none.
+  bool across_welds = false;
 };
 
 struct Weights {
   NodeSet nodes;               ///< the selection
   std::vector<double> weight;  ///< of each, 0..1
   NodeIndex grab;              ///< the one used
-  std::size_t unreached = 0;   ///< nodes with no way from the grab along the selection: weight 0 (1 with profile constant)
+  std::size_t unreached = 0;   ///< nodes with no way from the grab along the selection, nor across welds if asked: weight 0 (1 with
+                               ///< profile constant)
 };
 
-/// The profile at d (1 at the grab, 0 at the border; arguments beyond count as the nearer end). Every profile is 1 at d = 1
-/// and 0 at d = 0, except constant, which is 1 everywhere. The same bits on every processor.
+/// The profile at d (1 at the grab, 0 at the border; arguments beyond count as the nearer end, NaN as 0). Every profile is 1 at
+/// d = 1 and 0 at d = 0, except constant, which is 1 everywhere. The same bits on every processor.
 double evaluate(const Falloff& falloff, double d);
 
 /// Weights of a selection; the whole definition is in docs/shaping.md.

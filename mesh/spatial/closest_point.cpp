@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -10,6 +11,7 @@ namespace prismesh::mesh::spatial {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 4;
+constexpr double kSliver2 = 1e-16;  ///< square of the height, as a share of the length, below which a triangle counts as its sides
 
 struct OnTriangle {
   Vec3 point;
@@ -31,7 +33,7 @@ OnTriangle closest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
   };
   const Vec3 normal = ab.cross(ac);
   const double area2 = normal.squaredNorm();
-  if (area2 > 0) {
+  if (area2 > kSliver2 * ab.squaredNorm() * ac.squaredNorm()) {
     const Vec3 ap = p - t[0];
     const double v = ap.cross(ac).dot(normal) / area2;
     const double w = ab.cross(ap).dot(normal) / area2;
@@ -45,6 +47,9 @@ OnTriangle closest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
   return best;
 }
 
+/// A little more than the square, so that a distance that was given is within itself; nothing is within less than 0.
+double square(double radius) { return radius >= 0 ? radius * radius * (1 + 1e-15) : -1.0; }
+
 double distance2_to_box(const Vec3& low, const Vec3& high, const Vec3& point) {
   return (low - point).cwiseMax(point - high).cwiseMax(Vec3::Zero()).squaredNorm();
 }
@@ -56,44 +61,56 @@ ShellTree::ShellTree(const Model& model, const ShellSet& shells) {
   for (const ShellIndex index : shells) {
     if (model.is_removed(index)) continue;
     const ShellNodes& shell = model.shell(index);
-    const auto at = [&](std::size_t corner) { return model.position(shell.node[corner]); };
-    triangles_.push_back({{at(0), at(1), at(2)}, index, false});
-    if (!shell.is_triangle()) triangles_.push_back({{at(0), at(2), at(3)}, index, true});
+    const auto add = [&](std::size_t b, std::size_t c, bool second) {
+      const Triangle triangle{{model.position(shell.node[0]), model.position(shell.node[b]), model.position(shell.node[c])}, index, second};
+      // what has no place would leave the order undefined, and is close to nothing
+      for (const Vec3& corner : triangle.corner)
+        if (!corner.allFinite()) return;
+      triangles_.push_back(triangle);
+    };
+    add(1, 2, false);
+    if (!shell.is_triangle()) add(2, 3, true);
   }
-  if (triangles_.empty()) return;
+  if (!triangles_.empty()) divide();
+}
 
-  const auto middle_of = [](const Triangle& t, int axis) { return t.corner[0][axis] + t.corner[1][axis] + t.corner[2][axis]; };
+/// Halves ranges of triangles by their middles along the longest axis until few are left. What is sorted is a small entry of each; the
+/// triangles follow at the end.
+void ShellTree::divide() {
+  struct Entry {
+    Vec3 middle;
+    std::uint32_t triangle;  ///< ascending by shell and half: ties by it make the tree the same wherever it is built
+  };
   struct Range {
     std::uint32_t node, begin, end;
   };
+  std::vector<Entry> entries;
+  entries.reserve(triangles_.size());
+  for (const Triangle& t : triangles_)
+    entries.push_back({t.corner[0] / 3 + t.corner[1] / 3 + t.corner[2] / 3, static_cast<std::uint32_t>(entries.size())});
   nodes_.reserve(triangles_.size());
   nodes_.emplace_back();
-  std::vector<Range> open{{0, 0, static_cast<std::uint32_t>(triangles_.size())}};
+  std::vector<Range> open{{0, 0, static_cast<std::uint32_t>(entries.size())}};
   while (!open.empty()) {
     const Range range = open.back();
     open.pop_back();
-    Vec3 low = triangles_[range.begin].corner[0];
-    Vec3 high = low;
-    for (std::uint32_t i = range.begin; i < range.end; ++i)
-      for (const Vec3& corner : triangles_[i].corner) {
-        low = low.cwiseMin(corner);
-        high = high.cwiseMax(corner);
-      }
-    nodes_[range.node].low = low;
-    nodes_[range.node].high = high;
     if (range.end - range.begin <= kLeafTriangles) {
       nodes_[range.node].first = range.begin;
       nodes_[range.node].count = range.end - range.begin;
       continue;
     }
+    Vec3 low = entries[range.begin].middle;
+    Vec3 high = low;
+    for (std::uint32_t i = range.begin; i < range.end; ++i) {
+      low = low.cwiseMin(entries[i].middle);
+      high = high.cwiseMax(entries[i].middle);
+    }
     int axis = 0;
     (high - low).maxCoeff(&axis);
     const std::uint32_t middle = range.begin + (range.end - range.begin) / 2;
-    // ties by shell and half, so that the tree is the same wherever it is built
-    std::nth_element(triangles_.begin() + range.begin, triangles_.begin() + middle, triangles_.begin() + range.end,
-                     [&](const Triangle& a, const Triangle& b) {
-                       const double at_a = middle_of(a, axis), at_b = middle_of(b, axis);
-                       return at_a != at_b ? at_a < at_b : std::pair(a.shell, a.second) < std::pair(b.shell, b.second);
+    std::nth_element(entries.begin() + range.begin, entries.begin() + middle, entries.begin() + range.end,
+                     [axis](const Entry& a, const Entry& b) {
+                       return a.middle[axis] != b.middle[axis] ? a.middle[axis] < b.middle[axis] : a.triangle < b.triangle;
                      });
     const auto left = static_cast<std::uint32_t>(nodes_.size());
     nodes_[range.node].first = left;
@@ -102,16 +119,39 @@ ShellTree::ShellTree(const Model& model, const ShellSet& shells) {
     open.push_back({left, range.begin, middle});
     open.push_back({left + 1, middle, range.end});
   }
+  std::vector<Triangle> sorted;
+  sorted.reserve(triangles_.size());
+  for (const Entry& entry : entries) sorted.push_back(triangles_[entry.triangle]);
+  triangles_ = std::move(sorted);
+  fit_boxes();
+}
+
+/// Children come after their parents, so that going backwards each box finds those it holds.
+void ShellTree::fit_boxes() {
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    Node& node = nodes_[i];
+    if (node.count == 0) {
+      node.low = nodes_[node.first].low.cwiseMin(nodes_[node.first + 1].low);
+      node.high = nodes_[node.first].high.cwiseMax(nodes_[node.first + 1].high);
+      continue;
+    }
+    node.low = node.high = triangles_[node.first].corner[0];
+    for (std::uint32_t t = node.first; t < node.first + node.count; ++t)
+      for (const Vec3& corner : triangles_[t].corner) {
+        node.low = node.low.cwiseMin(corner);
+        node.high = node.high.cwiseMax(corner);
+      }
+  }
 }
 
 template <class Visit>
 void ShellTree::walk(const Vec3& point, double& radius2, Visit&& visit) const {
-  if (nodes_.empty()) return;
+  if (nodes_.empty() || !point.allFinite()) return;
   struct Waiting {
     std::uint32_t node;
     double distance2;
   };
-  std::array<Waiting, 96> stack;  // the tree is balanced: two a level
+  std::array<Waiting, 40> stack;  // the tree halves 32-bit numbers of triangles, and each level leaves one waiting
   std::size_t waiting = 0;
   stack[waiting++] = {0, distance2_to_box(nodes_[0].low, nodes_[0].high, point)};
   while (waiting > 0) {
@@ -144,7 +184,7 @@ SurfacePoint surface_point(ShellIndex shell, bool second, const OnTriangle& on, 
 
 std::optional<SurfacePoint> ShellTree::closest(const Vec3& point, double radius) const {
   std::optional<SurfacePoint> best;
-  double least2 = radius * radius;
+  double least2 = square(radius);
   walk(point, least2, [&](const Triangle& triangle) {
     const OnTriangle on = closest_on(triangle.corner, point);
     const double distance2 = (on.point - point).squaredNorm();
@@ -158,7 +198,7 @@ std::optional<SurfacePoint> ShellTree::closest(const Vec3& point, double radius)
 
 std::vector<SurfacePoint> ShellTree::within(const Vec3& point, double radius) const {
   std::vector<SurfacePoint> found;
-  double radius2 = radius * radius;
+  double radius2 = square(radius);
   walk(point, radius2, [&](const Triangle& triangle) {
     const OnTriangle on = closest_on(triangle.corner, point);
     const double distance2 = (on.point - point).squaredNorm();

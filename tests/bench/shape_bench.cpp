@@ -1,6 +1,7 @@
 // Selecting and weighing on a million quads.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "mesh/shape/move.h"
 #include "mesh/shape/normals.h"
 #include "mesh/shape/weights.h"
+#include "mesh/spatial/closest_point.h"
 #include "mesh/spatial/geodesic.h"
 #include "tests/bench/million_quads.h"
 
@@ -70,6 +72,51 @@ void geodesic_of_10000_nodes(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(spatial::geodesic_distance(patch, source));
 }
 BENCHMARK(geodesic_of_10000_nodes)->Unit(benchmark::kMillisecond);
+
+/// All nodes within 250 mm of the middle, some 7,800.
+NodeSet within_250_mm() {
+  const Model& model = whole();
+  const Vec3 middle = model.positions[500 * kStride + 500];
+  NodeSet nodes;
+  for (std::size_t j = 440; j < 560; ++j)
+    for (std::size_t i = 440; i < 560; ++i)
+      if ((model.positions[j * kStride + i] - middle).norm() <= 250) nodes.push_back(NodeIndex(j * kStride + i));
+  return nodes;
+}
+
+void cut_250_mm(benchmark::State& state) {
+  const NodeSet nodes = within_250_mm();
+  for (auto _ : state) benchmark::DoNotOptimize(spatial::cut_patch_between(whole(), nodes));
+  state.counters["nodes"] = static_cast<double>(nodes.size());
+}
+BENCHMARK(cut_250_mm)->Unit(benchmark::kMillisecond);
+
+void geodesic_of_250_mm(benchmark::State& state) {
+  const NodeSet nodes = within_250_mm();
+  const spatial::Patch patch = spatial::cut_patch_between(whole(), nodes);
+  const auto middle = std::lower_bound(nodes.begin(), nodes.end(), NodeIndex(500 * kStride + 500));
+  const std::vector<std::uint32_t> source{static_cast<std::uint32_t>(middle - nodes.begin())};
+  for (auto _ : state) benchmark::DoNotOptimize(spatial::geodesic_distance(patch, source));
+}
+BENCHMARK(geodesic_of_250_mm)->Unit(benchmark::kMillisecond);
+
+void tree_over_a_million_shells(benchmark::State& state) {
+  const Model& model = whole();
+  ShellSet shells(model.shell_count());
+  for (std::size_t i = 0; i < shells.size(); ++i) shells[i] = ShellIndex(i);
+  for (auto _ : state) benchmark::DoNotOptimize(spatial::ShellTree(model, shells));
+}
+BENCHMARK(tree_over_a_million_shells)->Unit(benchmark::kMillisecond);
+
+void closest_of_10000_points_on_a_million_shells(benchmark::State& state) {
+  const Model& model = whole();
+  ShellSet shells(model.shell_count());
+  for (std::size_t i = 0; i < shells.size(); ++i) shells[i] = ShellIndex(i);
+  const spatial::ShellTree tree(model, shells);
+  for (auto _ : state)
+    for (const NodeIndex node : ten_thousand()) benchmark::DoNotOptimize(tree.closest(model.position(node) + Vec3(0.4, 0.3, 2.0)));
+}
+BENCHMARK(closest_of_10000_points_on_a_million_shells)->Unit(benchmark::kMillisecond);
 
 void oriented_normals_of_10000_nodes(benchmark::State& state) {
   const Model& model = whole();

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/deterministic_math.h"
 #include "mesh/shape/move.h"
 #include "tests/support/make_model.h"
 
@@ -75,6 +76,84 @@ TEST(Normals, spread_over_a_junction_and_to_every_piece) {
   EXPECT_EQ(normals[4], Vec3(0, 0, 1));
   EXPECT_NEAR(normals[6].norm(), 1, 1e-15);
   EXPECT_EQ(normals[8], Vec3(0, 0, 1));
+}
+
+/// A band of `count` quads, two wide, whose end is joined to its beginning after `turns` half turns.
+Model twisted_band(int count, int turns) {
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  const auto id = [&](int i, int j) { return i < count ? 1 + 3 * i + j : 1 + (turns % 2 == 0 ? j : 2 - j); };
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const double around = 2 * kPi * i / count, twist = turns * around / 2, out = 20 + (j - 1) * std::cos(twist);
+      nodes.push_back({id(i, j), {out * std::cos(around), out * std::sin(around), (j - 1) * std::sin(twist)}});
+    }
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < 2; ++j) {
+      std::vector<std::int64_t> corners{id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)};
+      if ((i * 5 + j * 3) % 4 == 0) std::swap(corners[1], corners[3]);
+      shells.push_back({1 + 2 * i + j, 1, corners});
+    }
+  return test::make_model(nodes, shells);
+}
+
+TEST(Normals, turn_over_only_on_the_far_side_of_a_moebius_strip) {
+  for (const int turns : {1, 2, 3}) {
+    const Model model = twisted_band(80, turns);
+    const NodeIndex start(3 * 10 + 1);  // in the band's middle
+    const std::vector<Vec3> normals = oriented_normals(model, all_nodes(model), start);
+    EXPECT_EQ(normals, oriented_normals(model, all_nodes(model), start));
+    int turned_at = -1, times = 0;
+    for (int i = 0; i < 80; ++i) {
+      const Vec3& here = normals[static_cast<std::size_t>(3 * i + 1)];
+      const Vec3& next = normals[static_cast<std::size_t>(3 * ((i + 1) % 80) + 1)];
+      EXPECT_NEAR(here.norm(), 1, 1e-12);
+      if (here.dot(next) < 0) turned_at = i, ++times;
+    }
+    EXPECT_EQ(times, turns % 2);
+    EXPECT_NEAR(turned_at, turns % 2 == 1 ? 50 : -1, 2);
+  }
+}
+
+TEST(Normals, keep_a_sheet_together_however_its_ribs_run) {
+  // a flat sheet of 12 x 12 with three ribs across it, each with a gap at one end; a rib is where the spreading begins
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  for (int j = 0; j <= 12; ++j)
+    for (int i = 0; i <= 12; ++i) nodes.push_back({1 + i + 13 * j, Vec3(i, j, 0)});
+  for (int j = 0; j < 12; ++j)
+    for (int i = 0; i < 12; ++i) {
+      const std::int64_t a = 1 + i + 13 * j;
+      shells.push_back({1 + i + 12 * j, 1, {a, a + 1, a + 14, a + 13}});
+      if ((i + j) % 3 == 0) std::swap(shells.back().nodes[1], shells.back().nodes[3]);
+    }
+  for (const int row : {3, 6, 9}) {
+    for (int i = 0; i < 12; ++i) nodes.push_back({1000 * row + i, Vec3(i, row, 1)});
+    for (int i = 0; i < 11; ++i) {
+      const std::int64_t a = 1 + i + 13 * row;
+      shells.push_back({1000 * row + i, 2, {a, a + 1, 1000 * row + i + 1, 1000 * row + i}});
+    }
+  }
+  const Model model = test::make_model(nodes, shells);
+  const std::vector<Vec3> normals = oriented_normals(model, all_nodes(model), model.find_node(6005));
+  const double up = normals[0].z();
+  EXPECT_EQ(std::abs(up), 1);
+  for (std::size_t i = 0; i < 169; ++i)
+    if (model.positions[i].y() < 3 || model.positions[i].y() > 9) {
+      EXPECT_EQ(normals[i].z(), up) << i;
+    }
+  for (const int row : {3, 6, 9}) EXPECT_GT(normals[static_cast<std::size_t>(1 + 13 * row + 5)].z() * up, 0.5);
+}
+
+TEST(Normals, take_the_first_shell_where_a_folded_sheet_cancels_itself) {
+  const Model model =
+      test::make_model({{1, {0, 0, 0}}, {2, {1, 0, 0}}, {3, {1, 1, 0}}, {4, {0, 1, 0}}, {5, {0.1, 0, 0}}, {6, {0.1, 1, 0}}, {7, {5, 5, 5}}},
+                       {{1, 1, {1, 2, 3, 4}}, {2, 1, {2, 5, 6, 3}}, {3, 1, {7, 7, 7}}, {4, 1, {1, 1, 7, 7}}});
+  const std::vector<Vec3> normals = oriented_normals(model, all_nodes(model), NodeIndex(0));
+  for (const Vec3& normal : normals) EXPECT_TRUE(normal.allFinite());
+  EXPECT_EQ(normals[0], Vec3(0, 0, 1));
+  EXPECT_NEAR(std::abs(normals[1].z()), 1, 1e-12);
+  EXPECT_EQ(normals[6], Vec3(0, 0, 0));
 }
 
 TEST(Move, translates_and_lifts_by_weight) {

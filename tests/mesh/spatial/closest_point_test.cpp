@@ -1,6 +1,7 @@
 #include "mesh/spatial/closest_point.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -60,6 +61,79 @@ TEST(ShellTreeTest, keeps_to_the_radius) {
   EXPECT_TRUE(tree.closest(Vec3(1, 0.5, 1), 1.001));
   EXPECT_FALSE(ShellTree(model, {}).closest(Vec3::Zero()));
   EXPECT_TRUE(tree.within(Vec3(1, 0.5, 1), 0.5).empty());
+}
+
+TEST(ShellTreeTest, counts_shells_at_the_radius_as_within_it) {
+  const Model model = bumpy_sheet(6);
+  const ShellTree tree(model, all_shells(model));
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> anywhere(-3, 9);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Vec3 point(anywhere(random), anywhere(random), anywhere(random));
+    const auto found = tree.closest(point);
+    ASSERT_TRUE(found);
+    const auto again = tree.closest(point, found->distance);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->shell, found->shell);
+    EXPECT_FALSE(tree.within(point, found->distance).empty());
+    EXPECT_FALSE(tree.closest(point, found->distance * (1 - 1e-9)));
+  }
+  EXPECT_FALSE(tree.closest(Vec3(3, 3, 0), -1));
+  EXPECT_FALSE(tree.closest(Vec3(3, 3, 0), std::nan("")));
+  EXPECT_TRUE(tree.within(Vec3(3, 3, 0), -5).empty());
+  const Vec3 on = model.position(NodeIndex(10));
+  ASSERT_TRUE(tree.closest(on, 0));
+  EXPECT_EQ(tree.closest(on, 0)->distance, 0);
+}
+
+TEST(ShellTreeTest, passes_over_what_is_no_number) {
+  Model model = bumpy_sheet(9);
+  const double odd[] = {std::nan(""), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (std::size_t n = 0; n < model.node_count(); n += 3) {
+    Vec3 place = model.positions[n];
+    place[static_cast<int>(n % 2)] = odd[n % 5 % 3];
+    model.positions.set(n, place);
+  }
+  const ShellTree tree(model, all_shells(model));
+  for (const double number : odd) {
+    EXPECT_FALSE(tree.closest(Vec3(1, number, 1)));
+    EXPECT_TRUE(tree.within(Vec3(number, 0, 0), 5).empty());
+  }
+  const auto found = tree.closest(Vec3(4, 4, 9));
+  if (found) {
+    EXPECT_TRUE(found->point.allFinite() && std::isfinite(found->distance));
+  }
+  for (const SurfacePoint& point : tree.within(Vec3(4, 4, 0), 100)) EXPECT_TRUE(point.point.allFinite());
+  // nothing finite at all
+  for (std::size_t n = 0; n < model.node_count(); ++n) model.positions.set(n, Vec3(odd[n % 3], 0, 0));
+  EXPECT_TRUE(ShellTree(model, all_shells(model)).empty());
+}
+
+TEST(ShellTreeTest, measures_slivers_and_points) {
+  // a needle 1e-12 high, one without any height, and shells whose corners are one point
+  const Model model =
+      make_model({{1, {0, 0, 0}}, {2, {10, 0, 0}}, {3, {4, 1e-12, 0}}, {4, {0, 5, 0}}, {5, {10, 5, 0}}, {6, {4, 5, 0}}, {7, {3, 9, 0}}},
+                 {{1, 1, {1, 2, 3}}, {2, 1, {4, 5, 6}}, {3, 1, {7, 7, 7}}, {4, 1, {7, 7, 7, 7}}});
+  const ShellTree tree(model, all_shells(model));
+  for (double x = 0.5; x < 10; x += 0.83) {
+    EXPECT_NEAR(tree.closest(Vec3(x, -1, 1))->distance, std::sqrt(2.0), 1e-11);
+    EXPECT_NEAR(tree.closest(Vec3(x, 4.5, 0))->distance, 0.5, 1e-12);
+    EXPECT_NEAR((tree.closest(Vec3(x, 4.5, 0))->point - Vec3(x, 5, 0)).norm(), 0, 1e-12);
+  }
+  EXPECT_EQ(tree.closest(Vec3(3, 9, 2))->distance, 2);
+  EXPECT_EQ(tree.closest(Vec3(3, 9, 2))->shell, ShellIndex(2));
+  EXPECT_EQ(tree.within(Vec3(3, 9, 2), 2).size(), 2u);
+}
+
+TEST(ShellTreeTest, divides_where_all_middles_coincide) {
+  // 5,000 equal triangles: no axis tells them apart
+  std::vector<test::NodeSpec> nodes{{1, {0, 0, 0}}, {2, {1, 0, 0}}, {3, {0, 1, 0}}};
+  std::vector<test::ShellSpec> shells;
+  for (int s = 1; s <= 5000; ++s) shells.push_back({s, 1, {1, 2, 3}});
+  const Model model = make_model(nodes, shells);
+  const ShellTree tree(model, all_shells(model));
+  EXPECT_EQ(tree.closest(Vec3(0.2, 0.2, 3))->shell, ShellIndex(0));
+  EXPECT_EQ(tree.within(Vec3(0.2, 0.2, 3), 3).size(), 5000u);
 }
 
 TEST(ShellTreeTest, agrees_with_dense_samples_of_every_shell) {

@@ -1,0 +1,136 @@
+#include "mesh/shape/weights_carried.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "base/parallel_for.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/spatial/closest_point.h"
+
+namespace prismesh::mesh::shape {
+
+namespace {
+
+constexpr std::size_t kNodesAtATime = 256;
+
+class Carrying {
+ public:
+  Carrying(const Model& model, const spatial::Patch& patch, std::vector<std::uint8_t>& reached, std::vector<double>& weight)
+      : model_(model), patch_(patch), reached_(reached), weight_(weight) {
+    find_pieces();
+  }
+
+  void run() {
+    std::vector<std::uint32_t> source;
+    for (std::uint32_t i = 0; i < reached_.size(); ++i)
+      if (reached_[i] != 0) source.push_back(i);
+    while (!source.empty() && !waiting_.empty()) {
+      look_for_closest(spatial::ShellTree(model_, shells_at(source)));
+      source = carry_near_pieces();
+    }
+  }
+
+ private:
+  struct Closest {
+    double distance = std::numeric_limits<double>::infinity();
+    bool near = false;
+    double weight = 0;
+  };
+
+  /// Numbers the connected pieces among the nodes that aren't reached; a node without a shell is one of its own.
+  void find_pieces() {
+    piece_.assign(reached_.size(), 0);
+    for (std::uint32_t first = 0; first < reached_.size(); ++first) {
+      if (reached_[first] != 0 || piece_[first] != 0) continue;
+      ++pieces_;
+      std::vector<std::uint32_t> open{first};
+      piece_[first] = pieces_;
+      while (!open.empty()) {
+        const std::uint32_t node = open.back();
+        open.pop_back();
+        waiting_.push_back(node);
+        for (std::uint32_t k = patch_.node_first[node]; k < patch_.node_first[node + 1]; ++k)
+          for (const std::uint32_t next : patch_.shells[patch_.node_shells[k]])
+            if (piece_[next] == 0 && reached_[next] == 0) {
+              piece_[next] = pieces_;
+              open.push_back(next);
+            }
+      }
+    }
+    std::sort(waiting_.begin(), waiting_.end());
+    closest_.resize(reached_.size());
+  }
+
+  ShellSet shells_at(const std::vector<std::uint32_t>& nodes) const {
+    ShellSet shells;
+    for (const std::uint32_t node : nodes)
+      for (const ShellIndex shell : model_.adjacency->shells_of(patch_.nodes[node])) shells.push_back(shell);
+    std::sort(shells.begin(), shells.end());
+    shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
+    return shells;
+  }
+
+  void look_for_closest(const spatial::ShellTree& tree) {
+    parallel_for(waiting_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Closest& best = closest_[waiting_[i]];
+        const auto found = tree.closest(patch_.positions[waiting_[i]], best.distance);
+        if (found && found->distance < best.distance)
+          best = {found->distance, found->distance <= reach_of(found->shell), weight_at(*found)};
+      }
+    });
+  }
+
+  double reach_of(ShellIndex index) const {
+    const ShellNodes& shell = model_.shell(index);
+    const int corners = shell.corners();
+    double around = 0;
+    for (int i = 0; i < corners; ++i) around += (model_.position(shell.node[(i + 1) % corners]) - model_.position(shell.node[i])).norm();
+    return kWeldReach * around / corners;
+  }
+
+  double weight_at(const spatial::SurfacePoint& at) const {
+    const ShellNodes& shell = model_.shell(at.shell);
+    double weight = 0;
+    for (int i = 0; i < shell.corners(); ++i) {
+      const auto node = std::lower_bound(patch_.nodes.begin(), patch_.nodes.end(), shell.node[i]);
+      if (node != patch_.nodes.end() && *node == shell.node[i])
+        weight += at.share[i] * weight_[static_cast<std::size_t>(node - patch_.nodes.begin())];
+    }
+    return std::clamp(weight, 0.0, 1.0);
+  }
+
+  /// Returns the nodes of the pieces that are near, which now have their weight.
+  std::vector<std::uint32_t> carry_near_pieces() {
+    std::vector<std::uint8_t> near(pieces_ + std::size_t{1}, 0);
+    for (const std::uint32_t node : waiting_)
+      if (closest_[node].near) near[piece_[node]] = 1;
+    std::vector<std::uint32_t> carried;
+    for (const std::uint32_t node : waiting_)
+      if (near[piece_[node]] != 0 && closest_[node].distance < std::numeric_limits<double>::infinity()) {
+        reached_[node] = 1;
+        weight_[node] = closest_[node].weight;
+        carried.push_back(node);
+      }
+    std::erase_if(waiting_, [&](std::uint32_t node) { return near[piece_[node]] != 0; });
+    return carried;
+  }
+
+  const Model& model_;
+  const spatial::Patch& patch_;
+  std::vector<std::uint8_t>& reached_;
+  std::vector<double>& weight_;
+  std::uint32_t pieces_ = 0;
+  std::vector<std::uint32_t> piece_;    ///< of each node, from 1; 0: reached from the grab
+  std::vector<std::uint32_t> waiting_;  ///< nodes without a weight yet, ascending
+  std::vector<Closest> closest_;        ///< of each node, on what is reached so far
+};
+
+}  // namespace
+
+void carry_across_welds(const Model& model, const spatial::Patch& patch, std::vector<std::uint8_t>& reached, std::vector<double>& weight) {
+  Carrying(model, patch, reached, weight).run();
+}
+
+}  // namespace prismesh::mesh::shape

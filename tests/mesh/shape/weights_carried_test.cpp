@@ -1,0 +1,139 @@
+// Weights that carry to sheets which are welded, not joined.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "mesh/shape/weights_carried.h"
+#include "tests/mesh/shape/weighed.h"
+#include "tests/support/make_model.h"
+
+namespace prismesh::mesh::shape {
+namespace {
+
+using test::make_model;
+using test::nodes_where;
+using test::Weighed;
+
+struct Sheet {
+  int columns, rows;
+  std::function<Vec3(int, int)> place;
+};
+
+/// Sheets that share no nodes; node (i, j) of sheet s has the id 10000 (s + 1) + 100 j + i.
+Model sheets(const std::vector<Sheet>& all) {
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    const auto id = [s](int i, int j) { return static_cast<std::int64_t>(10000 * (s + 1)) + 100 * j + i; };
+    for (int j = 0; j <= all[s].rows; ++j)
+      for (int i = 0; i <= all[s].columns; ++i) nodes.push_back({id(i, j), all[s].place(i, j)});
+    for (int j = 0; j < all[s].rows; ++j)
+      for (int i = 0; i < all[s].columns; ++i)
+        shells.push_back({id(i, j), static_cast<std::int64_t>(s) + 1, {id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)}});
+  }
+  return make_model(nodes, shells);
+}
+
+WeightOptions carried() {
+  WeightOptions options;
+  options.falloff.profile = Profile::linear;
+  options.across_welds = true;
+  return options;
+}
+
+Sheet flat(double z, double shift = 0) {
+  return {20, 20, [=](int i, int j) { return Vec3(i + shift, j + shift, z); }};
+}
+
+/// The weight of the first sheet at a place over it, bilinear within its square.
+double below(const Model& model, const Weighed& w, const Vec3& p) {
+  const int i = std::min(19, static_cast<int>(p.x())), j = std::min(19, static_cast<int>(p.y()));
+  const auto at = [&](int di, int dj) { return w(model.find_node(10000 + 100 * (j + dj) + i + di)); };
+  const double u = p.x() - i, v = p.y() - j;
+  // over the triangle of the diagonal from the first corner to the third
+  return u > v ? (1 - u) * at(0, 0) + (u - v) * at(1, 0) + v * at(1, 1) : (1 - v) * at(0, 0) + (v - u) * at(0, 1) + u * at(1, 1);
+}
+
+TEST(WeightsAcrossWelds, carry_to_a_parallel_sheet_straight_across_the_gap) {
+  const Model model = sheets({flat(0), flat(1.2, 0.3)});
+  const NodeSet selection = nodes_where(model, [](const Vec3& p) { return (p - Vec3(10, 10, p.z())).norm() <= 7; });
+  const NodeIndex grab = model.find_node(10000 + 1010);
+  const Weighed w(model, selection, grab, carried());
+  EXPECT_EQ(w.weights.unreached, 0u);
+  double most = 0;
+  for (const NodeIndex node : selection) {
+    const Vec3& p = model.position(node);
+    if (p.z() == 0) continue;
+    EXPECT_NEAR(w(node), below(model, w, p), 1e-12);
+    most = std::max(most, w(node));
+  }
+  EXPECT_GT(most, 0.8);
+  // without being asked for, the other sheet stays
+  WeightOptions alone = carried();
+  alone.across_welds = false;
+  const Weighed left(model, selection, grab, alone);
+  EXPECT_GT(left.weights.unreached, 100u);
+  for (const NodeIndex node : selection) EXPECT_EQ(left(node), model.position(node).z() == 0 ? w(node) : 0);
+}
+
+TEST(WeightsAcrossWelds, end_at_a_distance_that_scales_with_the_elements) {
+  for (const double scale : {1.0, 0.01, 250.0})
+    for (const double gap : {kWeldReach - 0.01, kWeldReach + 0.01}) {
+      const auto scaled = [&](double z) { return Sheet{8, 8, [=](int i, int j) { return Vec3(scale * Vec3(i, j, z)); }}; };
+      const Model model = sheets({scaled(0), scaled(gap)});
+      const NodeSet all = nodes_where(model, [](const Vec3&) { return true; });
+      const Weighed w(model, all, model.find_node(10000), carried());
+      EXPECT_EQ(w.weights.unreached, gap < kWeldReach ? 0u : 81u) << scale << ", " << gap;
+      for (const double weight : w.weights.weight) EXPECT_TRUE(weight == 0 || weight == 1);
+    }
+}
+
+TEST(WeightsAcrossWelds, carry_a_standing_sheet_whole_with_its_foot) {
+  // the second sheet stands on the first, half an element above it; what is high up follows the foot
+  const Model model = sheets({flat(0), {20, 12, [](int i, int j) { return Vec3(i, 10, 0.5 + j); }}});
+  const NodeSet selection = nodes_where(model, [](const Vec3& p) { return (p - Vec3(10, 10, p.z())).norm() <= 7; });
+  const Weighed w(model, selection, model.find_node(10000 + 1010), carried());
+  EXPECT_EQ(w.weights.unreached, 0u);
+  for (int j = 0; j <= 12; ++j)
+    for (int i = 3; i <= 17; ++i)
+      EXPECT_NEAR(w(model.find_node(20000 + 100 * j + i)), w(model.find_node(10000 + 1000 + i)), 1e-12) << i << ", " << j;
+}
+
+TEST(WeightsAcrossWelds, carry_from_piece_to_piece) {
+  const Model model = sheets({flat(0), flat(1), flat(2), flat(3), flat(9)});
+  const NodeSet selection = nodes_where(model, [](const Vec3& p) { return (p - Vec3(10, 10, p.z())).norm() <= 7; });
+  const Weighed w(model, selection, model.find_node(30000 + 1010), carried());
+  for (int j = 4; j <= 16; ++j)
+    for (int i = 6; i <= 14; ++i)
+      for (const int other : {1, 2, 4}) {
+        const NodeIndex node = model.find_node(10000 * other + 100 * j + i);
+        EXPECT_NEAR(w(node), w(model.find_node(30000 + 100 * j + i)), 1e-12);
+      }
+  EXPECT_EQ(w(model.find_node(50000 + 1010)), 0);
+  EXPECT_GT(w.weights.unreached, 100u);
+}
+
+TEST(WeightsAcrossWelds, carry_to_lone_nodes) {
+  Model model = make_model({{1, {0, 0, 0}}, {2, {1, 0, 0}}, {3, {1, 1, 0}}, {4, {0, 1, 0}}, {5, {0.5, 0.5, 1}}, {6, {0.5, 0.5, 9}}},
+                           {{1, 1, {1, 2, 3, 4}}}, {{ElementClass::beam, 1, 2, {5, 6}}});
+  const Weighed w(model, nodes_where(model, [](const Vec3&) { return true; }), NodeIndex(0), carried());
+  EXPECT_EQ(w.weights.weight, (std::vector<double>{1, 1, 1, 1, 1, 0}));
+  EXPECT_EQ(w.weights.unreached, 1u);
+}
+
+TEST(WeightsAcrossWelds, leave_the_constant_profile_as_it_is) {
+  const Model model = sheets({flat(0), flat(1)});
+  const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.x() < 8; });
+  WeightOptions options = carried();
+  options.falloff.profile = Profile::constant;
+  const Weighed with(model, selection, std::nullopt, options);
+  options.across_welds = false;
+  const Weighed without(model, selection, std::nullopt, options);
+  EXPECT_EQ(with.weights.weight, without.weights.weight);
+  EXPECT_EQ(with.weights.unreached, without.weights.unreached);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::shape
