@@ -213,22 +213,21 @@ class March {
     const double slope_y = std::sqrt(1 - slope_x * slope_x);
     const double crossing = x * slope_y - y * slope_x;
     const std::uint32_t nearer = crossing < 0.5 * t.base * slope_y ? t.a : t.b;
-    if (source_[t.a] == source_[t.b] && cross_behind_turn(t, x, y, nearer)) return;
+    if (source_[t.a] == source_[t.b] && cross_behind_turn(t, x, y)) return;
     if (crossing < 0 || crossing > t.base * slope_y) return;
     offer(t.tip, distance_[t.a] + x * slope_x + y * slope_y, centre_[nearer], source_[nearer]);
   }
 
-  bool cross_behind_turn(const Triangle& t, double x, double y, std::uint32_t nearer) {
-    const bool a_turned = distance_[centre_[t.a]] >= distance_[centre_[t.b]];
-    const std::uint32_t turn = centre_[a_turned ? t.a : t.b];
-    const std::uint32_t former = centre_[a_turned ? t.b : t.a];
-    // the end that the former centre sees is farther over the turn than the way it was reached
-    const double radius_a = std::max(distance_[t.a], straight(turn, t.a)) - distance_[turn];
-    const double radius_b = std::max(distance_[t.b], straight(turn, t.b)) - distance_[turn];
-    const bool over_turn = cross_from_centre(t, x, y, turn, radius_a, radius_b);
-    if (over_turn && centre_[nearer] == turn) return true;
-    const bool direct = cross_from_centre(t, x, y, former, distance_[t.a] - distance_[former], distance_[t.b] - distance_[former]);
-    return over_turn || direct;
+  /// Both centres' waves are tried. An end that a centre doesn't see is no nearer to it than the way by which it was reached, nor than
+  /// straight.
+  bool cross_behind_turn(const Triangle& t, double x, double y) {
+    const auto over = [&](std::uint32_t centre) {
+      return cross_from_centre(t, x, y, centre, std::max(distance_[t.a], straight(centre, t.a)) - distance_[centre],
+                               std::max(distance_[t.b], straight(centre, t.b)) - distance_[centre]);
+    };
+    const bool from_a = over(centre_[t.a]);
+    const bool from_b = over(centre_[t.b]);
+    return from_a || from_b;
   }
 
   /// A node that was done is taken up again when its support came late: a base may reach farther than its tip where corners
