@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/shape/free_edge.h"
 #include "mesh/shape/weights_carried.h"
@@ -50,7 +51,7 @@ class Weighing {
     else
       grab_ = farthest_from_border();
     if (const auto found = find_origin(); !found) return fail(found.error());
-    from_origin_ = spatial::geodesic_distance(patch_, origin_);
+    find_distances();
     Weights weights;
     weights.nodes = selection_;
     weights.grab = selection_[grab_];
@@ -71,6 +72,19 @@ class Weighing {
   const std::vector<double>& from_border() {
     if (from_border_.empty()) from_border_ = spatial::geodesic_distance(patch_, marked(border_));
     return from_border_;
+  }
+
+  /// Both at once where both are wanted: neither needs the other.
+  void find_distances() {
+    const bool border_too = !options_.falloff.along && options_.falloff.profile != Profile::constant && from_border_.empty();
+    parallel_for(border_too ? 2 : 1, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i == 0)
+          from_origin_ = spatial::geodesic_distance(patch_, origin_);
+        else
+          from_border_ = spatial::geodesic_distance(patch_, marked(border_));
+      }
+    });
   }
 
   std::uint32_t farthest_from_border() {

@@ -2,11 +2,19 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "base/deterministic_math.h"
+#include "mesh/deck/deck.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/model/features.h"
 #include "mesh/shape/move.h"
 #include "tests/support/make_model.h"
 
@@ -154,6 +162,50 @@ TEST(Normals, take_the_first_shell_where_a_folded_sheet_cancels_itself) {
   EXPECT_EQ(normals[0], Vec3(0, 0, 1));
   EXPECT_NEAR(std::abs(normals[1].z()), 1, 1e-12);
   EXPECT_EQ(normals[6], Vec3(0, 0, 0));
+}
+
+/// Decks whose neighbouring shells disagree. Across smooth edges the normals of the ends have to agree all the same.
+TEST(Normals, hang_together_on_real_decks) {
+  const char* models = std::getenv("PRISMESH_MODELS");
+  if (models == nullptr) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
+  for (const char* name : {"wing_ferig", "wheel_k", "gsa_car6_comma"}) {
+    SCOPED_TRACE(name);
+    std::ifstream in(std::filesystem::path(models) / "counts.json");
+    const auto counts = nlohmann::json::parse(in);
+    const auto opened = deck::open(std::filesystem::path(models) / counts[name]["main"].get<std::string>());
+    ASSERT_TRUE(opened.has_value()) << opened.error().text();
+    const Model& model = opened->model;
+    const std::vector<Vec3> normals = oriented_normals(model, all_nodes(model), model.shell(ShellIndex(0)).node[0]);
+    EXPECT_EQ(normals, oriented_normals(model, all_nodes(model), model.shell(ShellIndex(0)).node[0]));
+    const std::vector<EdgeKind> kinds = classify_edges(model, 20);
+    const auto inner = [&](NodeIndex node) {  // away from creases and junctions, where a node's normal is a compromise
+      for (const ShellIndex shell : model.adjacency->shells_of(node))
+        for (int c = 0; c < model.shell(shell).corners(); ++c) {
+          const EdgeIndex edge = model.adjacency->find_edge(node, model.shell(shell).node[c]);
+          if (edge.valid() && kinds[edge.value] != EdgeKind::smooth && kinds[edge.value] != EdgeKind::free) return false;
+        }
+      return true;
+    };
+    std::size_t smooth = 0, turned = 0, disagree = 0;
+    for (std::size_t e = 0; e < kinds.size(); ++e) {
+      if (kinds[e] != EdgeKind::smooth) continue;
+      const Edge ends = model.adjacency->edge(EdgeIndex(e));
+      const auto shells = model.adjacency->shells_of(EdgeIndex(e));
+      const auto plain = [&](ShellIndex s) {
+        const auto& n = model.shell(s).node;
+        return Vec3((model.position(n[2]) - model.position(n[0])).cross(model.position(n[3]) - model.position(n[1])));
+      };
+      disagree += plain(shells[0]).dot(plain(shells[1])) < 0 ? 1 : 0;
+      if (!inner(ends.low) || !inner(ends.high)) continue;
+      ++smooth;
+      turned += normals[ends.low.value].dot(normals[ends.high.value]) < 0 ? 1 : 0;
+    }
+    std::cout << "  " << name << ": " << disagree << " smooth edges between shells that disagree; of " << smooth << " inner ones " << turned
+              << " between normals that do\n";
+    EXPECT_GT(smooth, 500u);
+    EXPECT_EQ(turned, 0u);
+    for (const Vec3& normal : normals) EXPECT_TRUE(normal.allFinite());
+  }
 }
 
 TEST(Move, translates_and_lifts_by_weight) {

@@ -1,10 +1,16 @@
 // Weights that carry to sheets which are welded, not joined.
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "mesh/deck/deck.h"
 #include "mesh/shape/weights_carried.h"
 #include "tests/mesh/shape/weighed.h"
 #include "tests/support/make_model.h"
@@ -133,6 +139,38 @@ TEST(WeightsAcrossWelds, leave_the_constant_profile_as_it_is) {
   const Weighed without(model, selection, std::nullopt, options);
   EXPECT_EQ(with.weights.weight, without.weights.weight);
   EXPECT_EQ(with.weights.unreached, without.weights.unreached);
+}
+
+/// A real bumper: a beam, its flanges, and sheets that share no nodes with them.
+TEST(WeightsAcrossWelds, carry_over_the_flanges_of_a_real_deck) {
+  const char* models = std::getenv("PRISMESH_MODELS");
+  if (models == nullptr) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
+  for (const char* name : {"bumper_beam_rad", "simplecar_nas"}) {
+    SCOPED_TRACE(name);
+    std::ifstream in(std::filesystem::path(models) / "counts.json");
+    const auto counts = nlohmann::json::parse(in);
+    const auto opened = deck::open(std::filesystem::path(models) / counts[name]["main"].get<std::string>());
+    ASSERT_TRUE(opened.has_value()) << opened.error().text();
+    const Model& model = opened->model;
+    // everything near a node in the middle of the first part, whichever sheet it belongs to
+    const Vec3 middle = model.position(model.shell(ShellIndex(model.shell_count() / 2)).node[0]);
+    double widest = 0;
+    for (std::size_t n = 0; n < model.node_count(); ++n) widest = std::max(widest, (model.positions[n] - middle).norm());
+    const NodeSet selection = nodes_where(model, [&](const Vec3& p) { return (p - middle).norm() < 0.4 * widest; });
+    WeightOptions options = carried();
+    options.across_welds = false;
+    const Weighed alone(model, selection, std::nullopt, options);
+    options.across_welds = true;
+    const Weighed w(model, selection, std::nullopt, options);
+    std::cout << "  " << name << ": " << selection.size() << " nodes, unreached " << alone.weights.unreached << ", across welds "
+              << w.weights.unreached << "\n";
+    EXPECT_LT(w.weights.unreached, alone.weights.unreached);
+    for (std::size_t i = 0; i < selection.size(); ++i) {
+      const double before = alone.weights.weight[i], after = w.weights.weight[i];
+      EXPECT_TRUE(after >= before && after <= 1);
+      EXPECT_TRUE(before == 0 || after == before);
+    }
+  }
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST(WeightsProperties, stay_finite_where_coordinates_are_no_numbers) {
   const Model model = shuffled_sheets(5);
   const NodeSet selection = disc(model);
   for (const double number : odd)
-    for (std::size_t which = 0; which < selection.size(); which += 7)
+    for (std::size_t which = 0; which < selection.size(); which += 23)
       for (int axis = 0; axis < 4; ++axis) {
         Model broken = model;
         Vec3 place = model.position(selection[which]);

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "mesh/shape/move.h"
+#include "tests/mesh/shape/weighed.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::shape {
@@ -19,16 +20,11 @@ namespace {
 using test::grid_node;
 using test::make_grid;
 using test::make_model;
+using test::nodes_where;
+using test::Weighed;
 
 Model flat_grid(int columns, int rows) {
   return make_grid(columns, rows, [](int i, int j) { return Vec3(i, j, 0); });
-}
-
-NodeSet nodes_where(const Model& model, const std::function<bool(const Vec3&)>& chosen) {
-  NodeSet nodes;
-  for (std::size_t i = 0; i < model.node_count(); ++i)
-    if (chosen(model.positions[i])) nodes.push_back(NodeIndex(i));
-  return nodes;
 }
 
 WeightOptions linear() {
@@ -36,22 +32,6 @@ WeightOptions linear() {
   options.falloff.profile = Profile::linear;
   return options;
 }
-
-/// The weights, as a function of the node; 0 outside the selection.
-class Weighed {
- public:
-  Weighed(const Model& model, const NodeSet& selection, std::optional<NodeIndex> grab, const WeightOptions& options) {
-    const Result<Weights> result = compute_weights(model, selection, grab, options);
-    EXPECT_TRUE(result.has_value()) << result.error().text();
-    if (result) weights = *result;
-  }
-  double operator()(NodeIndex node) const {
-    const auto found = std::lower_bound(weights.nodes.begin(), weights.nodes.end(), node);
-    if (found == weights.nodes.end() || *found != node) return 0;
-    return weights.weight[static_cast<std::size_t>(found - weights.nodes.begin())];
-  }
-  Weights weights;
-};
 
 TEST(Weights, are_one_at_the_grab_and_zero_on_the_rim) {
   const Model model = flat_grid(20, 20);
