@@ -10,29 +10,26 @@ using ipc::SnapshotArray;
 
 namespace {
 
-void make_instances(Instances& instances, bool of_nodes) {
+void make_glyph_instances(Instances& instances) {
   instances.array = gl::VertexArray::make();
   instances.buffer = gl::Buffer::make();
   glBindVertexArray(instances.array.get());
   glBindBuffer(GL_ARRAY_BUFFER, instances.buffer.get());
-  if (of_nodes) {
-    glVertexAttribIPointer(0, 1, GL_UNSIGNED_INT, 0, nullptr);
-  } else {
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Glyph), nullptr);
-    glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(Glyph), reinterpret_cast<const void*>(offsetof(Glyph, kind)));
-    glEnableVertexAttribArray(1);
-    glVertexAttribDivisor(1, 1);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Glyph), nullptr);
+  glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(Glyph), reinterpret_cast<const void*>(offsetof(Glyph, kind)));
+  for (const GLuint attribute : {0U, 1U}) {
+    glEnableVertexAttribArray(attribute);
+    glVertexAttribDivisor(attribute, 1);
   }
-  glEnableVertexAttribArray(0);
-  glVertexAttribDivisor(0, 1);
   glBindVertexArray(0);
 }
 
-template <class T>
-void upload_instances(Instances& instances, const std::vector<T>& values) {
+void upload_instances(Instances& instances, const std::vector<Glyph>& values) {
+  const std::size_t bytes = values.size() * sizeof(Glyph);
   glBindBuffer(GL_ARRAY_BUFFER, instances.buffer.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data(), GL_DYNAMIC_DRAW);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), values.data(), GL_DYNAMIC_DRAW);
   instances.count = values.size();
+  instances.bytes_uploaded += bytes;
 }
 
 /// The median length of the first side of some 500 shells, evenly spread.
@@ -62,16 +59,16 @@ Result<void> LineSet::upload(const std::vector<NodePair>& lines, const char* wha
 }
 
 ModelLayer::ModelLayer() {
-  make_instances(selected_, true);
-  make_instances(glyphs_, false);
+  make_glyph_instances(model_glyphs_.instances);
+  make_glyph_instances(preview_glyphs_.instances);
 }
 
 Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   ++shape_version_;
-  glyphs_stale_ = true;
-  visible_nodes_.reset();
+  model_glyphs_.stale = selection_casting_.stale = true;
   if (!source) {
     table_.reset();
+    visible_nodes_.reset();
     end_preview();
     return {};
   }
@@ -82,6 +79,8 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
     table_.reset();
     return fail(changes.error());
   }
+  if (changes->topology || changes->visibility) visible_nodes_.reset();
+  forget_visible_nodes();
   chunks_uploaded_ += changes->uploaded;
   typical_side_ = measure_typical_side(*table_);
   if (changes->topology) end_preview();  // its indices are of another mesh
@@ -92,8 +91,9 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   }
   if (const auto done = update_line_elements(first || changes->topology || changes->visibility); !done) return done;
   glyph_list_.update(*table_, changes->topology || changes->visibility);
-  update_selected(changes->topology || changes->visibility);
-  return {};
+  const bool others_seen = !visible_nodes_ && table_->any_hidden();
+  return selected_.update(*table_, textures_.origin(), changes->topology || changes->visibility || others_seen, changes->moved_chunks,
+                          [this]() -> const std::vector<std::uint8_t>& { return visible_nodes(); });
 }
 
 Result<void> ModelLayer::update_line_elements(bool changed) {
@@ -113,32 +113,19 @@ Result<void> ModelLayer::update_line_elements(bool changed) {
   return line_elements_.upload(lines, "line elements");
 }
 
-void ModelLayer::update_selected(bool visibility_changed) {
-  const ModelSource& source = table_->source();
-  marks_.resize(source.chunk_count(SnapshotArray::node_marks));
-  bool changed = visibility_changed;
-  for (std::size_t c = 0; c < marks_.size(); ++c) {
-    MarkChunk& chunk = marks_[c];
-    const std::uint64_t version = source.chunk_version(SnapshotArray::node_marks, c);
-    if (chunk.known && chunk.version == version && !visibility_changed) continue;
-    chunk.known = changed = true;
-    chunk.version = version;
-    chunk.selected.clear();
-    const auto marks = source.chunk<std::uint8_t>(SnapshotArray::node_marks, c);
-    for (std::size_t i = 0; i < marks.size(); ++i)
-      if (const std::size_t node = c * mesh::kChunkSize + i; (marks[i] & mesh::document::kSelected) != 0 && node < table_->node_count())
-        chunk.selected.push_back(static_cast<std::uint32_t>(node));
-  }
-  if (!changed) return;
-  std::vector<std::uint32_t> nodes;
-  for (const MarkChunk& chunk : marks_)
-    for (const std::uint32_t node : chunk.selected)
-      if (!table_->any_hidden() || visible_nodes()[node] != 0) nodes.push_back(node);
-  upload_instances(selected_, nodes);
+void ModelLayer::forget_visible_nodes() {
+  std::vector<std::uint64_t> versions;
+  for (const SnapshotArray array :
+       {SnapshotArray::shell_nodes, SnapshotArray::shell_parts, SnapshotArray::line_nodes, SnapshotArray::line_parts})
+    for (std::size_t c = 0; c < table_->source().chunk_count(array); ++c) versions.push_back(table_->source().chunk_version(array, c));
+  if (versions == visible_versions_) return;
+  visible_versions_ = std::move(versions);
+  visible_nodes_.reset();
 }
 
 void ModelLayer::begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells) {
   end_preview();
+  preview_casting_.stale = true;
   if (table_) preview_.emplace(*table_, textures_.origin(), nodes, shells);
 }
 
@@ -146,7 +133,8 @@ Result<void> ModelLayer::update_preview(const ipc::PreviewFrame& frame) {
   if (!preview_) return {};
   const bool first = !preview_->any_frame();
   if (!preview_->update(frame)) return {};
-  glyphs_stale_ = true;
+  preview_glyphs_.stale = true;
+  if (first) model_glyphs_.stale = true;  // the shells that it shows aren't the model's to mark any more
   if (const auto reserved = preview_positions_.reserve(preview_->positions().size(), "moving nodes"); !reserved)
     return fail(reserved.error());
   preview_positions_.upload(std::as_bytes(std::span(preview_->positions())));
@@ -154,31 +142,73 @@ Result<void> ModelLayer::update_preview(const ipc::PreviewFrame& frame) {
 }
 
 void ModelLayer::end_preview() {
-  if (preview_) glyphs_stale_ = true;
+  if (preview_) model_glyphs_.stale = preview_glyphs_.stale = true;
   preview_.reset();
 }
 
-const Instances& ModelLayer::glyphs(std::size_t cap) {
-  if (!glyphs_stale_ && cap == glyph_cap_) return glyphs_;
-  static const std::unordered_set<std::uint32_t> kNone;
-  GlyphList::Chosen chosen;
+void ModelLayer::choose_preview_glyphs(std::size_t cap) {
   std::vector<Glyph> live;
   if (previewing()) live = preview_->glyphs();
-  if (live.size() > cap) {  // failures come last: keep them
-    chosen.left_out = live.size() - cap;
-    live.erase(live.begin(), live.end() - static_cast<std::ptrdiff_t>(cap));
-  }
-  if (table_) {
-    const std::size_t left_out = chosen.left_out;
-    chosen = glyph_list_.choose(*table_, textures_.origin(), cap - live.size(), previewing() ? preview_->shells() : kNone);
-    chosen.left_out += left_out;
-  }
-  chosen.glyphs.insert(chosen.glyphs.end(), live.begin(), live.end());
-  upload_instances(glyphs_, chosen.glyphs);
-  glyphs_left_out_ = chosen.left_out;
+  preview_glyphs_.left_out = live.size() - std::min(live.size(), cap);
+  live.erase(live.begin(), live.begin() + static_cast<std::ptrdiff_t>(preview_glyphs_.left_out));  // failures come last: they stay
+  upload_instances(preview_glyphs_.instances, live);
+  preview_glyphs_.stale = false;
+}
+
+ModelLayer::Glyphs ModelLayer::glyphs(std::size_t cap) {
+  if (cap != glyph_cap_) model_glyphs_.stale = preview_glyphs_.stale = true;
   glyph_cap_ = cap;
-  glyphs_stale_ = false;
-  return glyphs_;
+  // The preview's share is set aside for all of the drag, so that none of the model's signs come and go with its frames.
+  const std::size_t set_aside = previewing() ? std::min(preview_->shells().size(), cap / 2) : 0;
+  if (preview_glyphs_.stale) choose_preview_glyphs(set_aside);
+  if (model_glyphs_.stale) {
+    static const std::unordered_set<std::uint32_t> kNone;
+    GlyphList::Chosen chosen;
+    if (table_) chosen = glyph_list_.choose(*table_, textures_.origin(), cap - set_aside, previewing() ? preview_->shells() : kNone);
+    upload_instances(model_glyphs_.instances, chosen.glyphs);
+    model_glyphs_.left_out = chosen.left_out;
+    model_glyphs_.stale = false;
+  }
+  return {model_glyphs_.instances, preview_glyphs_.instances, model_glyphs_.left_out + preview_glyphs_.left_out};
+}
+
+Result<void> ModelLayer::upload_casting(Casting& casting, const std::vector<std::array<std::uint32_t, 4>>& shells) const {
+  casting.shells = 0;
+  if (const auto reserved = casting.connectivity.reserve(shells.size(), "shadows"); !reserved) return fail(reserved.error());
+  casting.connectivity.upload(std::as_bytes(std::span(shells)));
+  casting.shells = shells.size();
+  casting.stale = false;
+  return {};
+}
+
+Result<ModelLayer::ShadowCaster> ModelLayer::shadow_caster() {
+  if (previewing()) {
+    if (preview_casting_.stale)
+      if (const auto done = upload_casting(preview_casting_, preview_->corners()); !done) return fail(done.error());
+    return ShadowCaster{&preview_positions_, &preview_casting_.connectivity, preview_casting_.shells};
+  }
+  if (selection_casting_.stale) {
+    std::vector<std::array<std::uint32_t, 4>> shells;
+    if (selected_.count() > 0)
+      for (std::size_t s = 0; s < table_->shell_count(); ++s) {
+        mesh::ShellNodes nodes;
+        if (!table_->shell(s, nodes) || !table_->shell_visible(s)) continue;
+        const auto selected = [&](mesh::NodeIndex node) { return table_->node_selected(node.value); };
+        if (std::all_of(nodes.node.begin(), nodes.node.end(), selected))
+          shells.push_back({nodes.node[0].value, nodes.node[1].value, nodes.node[2].value, nodes.node[3].value});
+      }
+    if (const auto done = upload_casting(selection_casting_, shells); !done) return fail(done.error());
+  }
+  return ShadowCaster{&textures_.positions(), &selection_casting_.connectivity, selection_casting_.shells};
+}
+
+std::size_t ModelLayer::bytes_uploaded() const {
+  std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded;
+  for (const RowTexture* texture : {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture,
+                                    &creases_.texture, &line_elements_.texture, &selected_.texture(), &preview_positions_,
+                                    &preview_casting_.connectivity, &selection_casting_.connectivity, &preview_edges_.texture})
+    bytes += texture->bytes_uploaded();
+  return bytes;
 }
 
 stereo::Box ModelLayer::shown_box() const {

@@ -9,6 +9,7 @@
 #include "kiosk/render/model_textures.h"
 #include "kiosk/render/outline.h"
 #include "kiosk/render/preview_patch.h"
+#include "kiosk/render/selection_rows.h"
 
 namespace prismesh::kiosk::render {
 
@@ -24,6 +25,7 @@ struct Instances {
   gl::VertexArray array;
   gl::Buffer buffer;
   std::size_t count = 0;
+  std::size_t bytes_uploaded = 0;
 };
 
 class ModelLayer {
@@ -41,7 +43,7 @@ class ModelLayer {
   const LineSet& borders() const { return borders_; }
   const LineSet& creases() const { return creases_; }
   const LineSet& line_elements() const { return line_elements_; }
-  const Instances& selected() const { return selected_; }
+  const SelectionRows& selected() const { return selected_; }
 
   void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
   Result<void> update_preview(const ipc::PreviewFrame& frame);
@@ -50,9 +52,26 @@ class ModelLayer {
   const RowTexture& preview_positions() const { return preview_positions_; }
   const LineSet& preview_edges() const { return preview_edges_; }
 
-  /// The signs to draw now: the model's, or the preview's in their place. Rebuilt only after a change.
-  const Instances& glyphs(std::size_t cap);
-  std::size_t glyphs_left_out() const { return glyphs_left_out_; }
+  /// The signs to draw now, in this order: the model's, but for the shells that a preview shows, and the preview's. Rebuilt only after a
+  /// change; a preview's frame costs the preview.
+  struct Glyphs {
+    const Instances& model;
+    const Instances& preview;
+    std::size_t left_out = 0;
+  };
+  Glyphs glyphs(std::size_t cap);
+
+  /// What throws shadows: the shells of the preview, else those with all nodes selected. The latter are found by a pass over the model
+  /// where it has changed. Errors: no graphics memory.
+  struct ShadowCaster {
+    const RowTexture* positions = nullptr;
+    const RowTexture* connectivity = nullptr;
+    std::size_t shells = 0;
+  };
+  Result<ShadowCaster> shadow_caster();
+
+  /// Bytes given to OpenGL over the layer's life.
+  std::size_t bytes_uploaded() const;
 
   /// Around what is shown, deck coordinates. Costs the chunks and the line elements.
   stereo::Box shown_box() const;
@@ -62,13 +81,9 @@ class ModelLayer {
   const std::vector<std::uint32_t>& line_nodes() const { return line_nodes_; }
 
  private:
-  struct MarkChunk {
-    std::uint64_t version = 0;
-    bool known = false;
-    std::vector<std::uint32_t> selected;
-  };
   Result<void> update_line_elements(bool changed);
-  void update_selected(bool visibility_changed);
+  void forget_visible_nodes();
+  void choose_preview_glyphs(std::size_t cap);
 
   std::optional<ModelTable> table_;
   ModelTextures textures_;
@@ -77,16 +92,28 @@ class ModelLayer {
   LineSet borders_, creases_, line_elements_;
   std::vector<std::uint32_t> line_nodes_;
   std::vector<std::uint64_t> line_versions_;
-  std::vector<MarkChunk> marks_;
-  Instances selected_;
+  SelectionRows selected_;
   std::optional<PreviewPatch> preview_;
   RowTexture preview_positions_{kPositionTexel};
   LineSet preview_edges_;
-  Instances glyphs_;
-  std::size_t glyphs_left_out_ = 0;
+  /// Shells that throw shadows, by their corners.
+  struct Casting {
+    RowTexture connectivity{kFourIndices};
+    std::size_t shells = 0;
+    bool stale = true;
+  };
+  Result<void> upload_casting(Casting& casting, const std::vector<std::array<std::uint32_t, 4>>& shells) const;
+  Casting preview_casting_, selection_casting_;
+  /// Glyphs on the GPU, and whether they are of what is to be shown.
+  struct GlyphBatch {
+    Instances instances;
+    std::size_t left_out = 0;
+    bool stale = true;
+  };
+  GlyphBatch model_glyphs_, preview_glyphs_;
   std::size_t glyph_cap_ = 0;
-  bool glyphs_stale_ = true;
   std::optional<std::vector<std::uint8_t>> visible_nodes_;
+  std::vector<std::uint64_t> visible_versions_;  ///< of the chunks that visible_nodes_ is made of
   double typical_side_ = 0;
   std::uint64_t shape_version_ = 0;
   std::size_t chunks_uploaded_ = 0;

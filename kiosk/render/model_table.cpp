@@ -32,6 +32,8 @@ ModelTable::ModelTable(std::shared_ptr<const ModelSource> source)
   any_hidden_ = std::find(hidden_.begin(), hidden_.end(), 1) != hidden_.end();
   for (std::size_t c = 0; c < source_->chunk_count(SnapshotArray::line_parts); ++c)
     line_parts_.push_back(source_->chunk<mesh::PartIndex>(SnapshotArray::line_parts, c));
+  for (std::size_t c = 0; c < source_->chunk_count(SnapshotArray::node_marks); ++c)
+    node_marks_.push_back(source_->chunk<std::uint8_t>(SnapshotArray::node_marks, c));
 }
 
 bool ModelTable::line(std::size_t line, std::array<std::uint32_t, 2>& ends) const {

@@ -8,6 +8,7 @@
 
 #include "kiosk/render/model_source.h"
 #include "kiosk/stereo/view.h"
+#include "mesh/document/document.h"
 
 namespace prismesh::kiosk::render {
 
@@ -32,6 +33,10 @@ class ModelTable {
     for (const mesh::NodeIndex node : nodes.node)
       if (node.value >= node_count_) return false;
     return true;
+  }
+  bool node_selected(std::size_t node) const {
+    const std::size_t chunk = node / mesh::kChunkSize, at = node % mesh::kChunkSize;
+    return chunk < node_marks_.size() && at < node_marks_[chunk].size() && (node_marks_[chunk][at] & mesh::document::kSelected) != 0;
   }
   mesh::PartIndex shell_part(std::size_t shell) const { return parts_[shell / mesh::kChunkSize][shell % mesh::kChunkSize]; }
   bool shell_visible(std::size_t shell) const { return !part_hidden(shell_part(shell).value); }
@@ -59,6 +64,7 @@ class ModelTable {
   std::vector<const mesh::PartIndex*> parts_;
   std::vector<const mesh::NodeIndex*> lines_;
   std::vector<std::span<const mesh::PartIndex>> line_parts_;
+  std::vector<std::span<const std::uint8_t>> node_marks_;
   std::vector<std::uint8_t> hidden_;
   bool any_hidden_ = false;
 };

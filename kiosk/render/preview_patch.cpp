@@ -60,6 +60,12 @@ bool PreviewPatch::update(const ipc::PreviewFrame& frame) {
   return true;
 }
 
+std::vector<std::array<std::uint32_t, 4>> PreviewPatch::corners() const {
+  std::vector<std::array<std::uint32_t, 4>> corners;
+  for (const Shell& shell : shells_) corners.push_back(shell.corner);
+  return corners;
+}
+
 std::vector<Glyph> PreviewPatch::glyphs() const {
   std::vector<Glyph> glyphs;
   if (!any_frame_) return glyphs;

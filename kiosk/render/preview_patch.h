@@ -24,6 +24,7 @@ class PreviewPatch {
   const std::vector<std::array<float, 4>>& positions() const { return positions_; }  ///< from the origin; w = 0: nowhere
   const std::vector<NodePair>& edges() const { return edges_; }                      ///< into positions()
   const std::unordered_set<std::uint32_t>& shells() const { return touched_; }
+  std::vector<std::array<std::uint32_t, 4>> corners() const;  ///< of the shells drawn, into positions()
   /// Glyphs of the newest frame, warnings first.
   std::vector<Glyph> glyphs() const;
 

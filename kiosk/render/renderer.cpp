@@ -6,6 +6,7 @@
 
 #include "kiosk/render/composition.h"
 #include "kiosk/render/eye_images.h"
+#include "kiosk/render/flat_pass.h"
 #include "kiosk/render/item_image.h"
 #include "kiosk/render/model_layer.h"
 #include "kiosk/render/scene_pass.h"
@@ -22,6 +23,8 @@ std::optional<ColourMode> colour_mode_from(std::string_view name) {
 
 namespace {
 
+constexpr double kNearestViewerMm = 20;
+
 /// What the scene in the eyes' images was drawn from.
 struct Drawn {
   Picture picture;
@@ -33,7 +36,7 @@ struct Drawn {
     const auto facts = [](const Drawn& d) {
       const Picture& p = d.picture;
       return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.selected_nodes,
-                      p.handle, d.images, d.width, d.height, d.scene_version);
+                      p.handle, p.shadows, d.images, d.width, d.height, d.scene_version);
     };
     return facts(*this) == facts(other);
   }
@@ -54,6 +57,7 @@ EyeView eye_view(const Picture& picture, const ComposedImage& image, int width, 
   view.range = stereo::depth_range(picture.view, view.eye_mm);
   view.clip_from_screen = stereo::clip_onto(image.from_picture, stereo::clip_from_screen(view.eye_mm, screen, view.range), width, height);
   view.mm_per_pixel = screen.x() / width;
+  view.viewer_mm = std::max(picture.between_eyes_mm.z(), kNearestViewerMm);
   view.image = {image.eye, image.width, image.height, width, height, image.from_picture};
   return view;
 }
@@ -71,6 +75,7 @@ struct Renderer::State {
   RendererOptions options;
   Shaders shaders;
   ScenePass scene;
+  FlatPass flat;
   ModelLayer layer;
   std::shared_ptr<const ModelSource> model;
   struct Images {
@@ -94,7 +99,7 @@ struct Renderer::State {
   std::uint64_t items_version = 0;
   Figures figures;
 
-  State(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders) {}
+  State(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders), flat(shaders) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
@@ -171,15 +176,16 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
   for (std::size_t i = 0; i < composed.size(); ++i) {
     reset_after_overlay();
     images.eyes.bind_flat(static_cast<int>(i));
-    state_->scene.draw_flat(picture, eye_view(picture, composed[i], width, height));
+    state_->flat.draw(picture, eye_view(picture, composed[i], width, height));
   }
   reset_after_overlay();
   if (Result<void> woven = state_->weave.draw(state_->composition, images.eyes, framebuffer, width, height); !woven)
     return fail(woven.error());
   DrawReport report;
   if (picture.quality_glyphs && !state_->layer.empty()) {
-    report.glyphs = state_->layer.glyphs(state_->options.glyph_cap).count;
-    report.glyphs_left_out = state_->layer.glyphs_left_out();
+    const ModelLayer::Glyphs glyphs = state_->layer.glyphs(state_->options.glyph_cap);
+    report.glyphs = glyphs.model.count + glyphs.preview.count;
+    report.glyphs_left_out = glyphs.left_out;
   }
   return report;
 }
@@ -196,6 +202,7 @@ Result<void> Renderer::State::draw_scene(Images& images, const Picture& picture,
   images.kept.reset();
   const std::vector<ComposedImage>& composed = composition.images;
   if (Result<void> sized = images.eyes.resize(composed.front().width, composed.front().height, samples); !sized) return sized;
+  if (Result<void> prepared = scene.prepare(picture, layer); !prepared) return prepared;
   for (std::size_t i = 0; i < composed.size(); ++i) {
     images.eyes.bind_scene();
     scene.draw(picture, layer, eye_view(picture, composed[i], width, height), options.glyph_cap);
@@ -278,6 +285,10 @@ mesh::NodeSet Renderer::nodes_in(const stereo::Aim& aim, const PixelRect& rect, 
   return NodeSight(state_->layer.table(), image, aim).inside(rect, through, state_->layer.visible_nodes());
 }
 
-Renderer::Figures Renderer::figures() const { return state_->figures; }
+Renderer::Figures Renderer::figures() const {
+  Figures figures = state_->figures;
+  figures.bytes_uploaded = state_->layer.bytes_uploaded();
+  return figures;
+}
 
 }  // namespace prismesh::kiosk::render

@@ -150,6 +150,7 @@ class Renderer {
 
   struct Figures {
     std::size_t chunks_uploaded = 0;  ///< over the renderer's life; for tests and figures
+    std::size_t bytes_uploaded = 0;   ///< of the model and of previews, over the renderer's life
     std::size_t item_buffers_drawn = 0;
     std::size_t scenes_drawn = 0;  ///< pictures whose model was drawn
   };

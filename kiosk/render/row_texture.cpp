@@ -29,6 +29,7 @@ Result<bool> RowTexture::reserve(std::size_t elements, const char* what) {
 
 void RowTexture::upload_row(std::size_t row, std::span<const std::byte> texels) {
   if (texels.empty()) return;
+  bytes_uploaded_ += texels.size();
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glBindTexture(GL_TEXTURE_2D, texture_.get());
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, static_cast<GLint>(row), static_cast<GLsizei>(texels.size() / format_.bytes), 1, format_.format,

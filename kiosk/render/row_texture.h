@@ -19,6 +19,7 @@ struct TexelFormat {
 inline constexpr TexelFormat kPositionTexel{GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
 inline constexpr TexelFormat kFourIndices{GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
 inline constexpr TexelFormat kTwoIndices{GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8};
+inline constexpr TexelFormat kOneIndex{GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
 
 /// Shaders find element i at (i & 4095, i >> 12).
 class RowTexture {
@@ -35,11 +36,14 @@ class RowTexture {
   /// Replaces everything from the start.
   void upload(std::span<const std::byte> texels);
   void bind(unsigned unit) const;
+  /// Over the texture's life.
+  std::size_t bytes_uploaded() const { return bytes_uploaded_; }
 
  private:
   TexelFormat format_;
   gl::Texture texture_;
   std::size_t rows_ = 0;
+  std::size_t bytes_uploaded_ = 0;
 };
 
 }  // namespace prismesh::kiosk::render

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "kiosk/render/sign_shaders.h"
+
 namespace prismesh::kiosk::render {
 
 const std::string& shader_head() {
@@ -159,9 +161,9 @@ flat out float presence;
 flat out float footprint;
 void main() {
   uvec2 ends = texelFetch(lines, texel(uint(gl_VertexID / 6)), 0).xy;
-  int k = gl_VertexID % 6;
-  bool second = k == 1 || k == 2 || k == 4;
-  float side = k == 2 || k == 4 || k == 5 ? 1.0 : -1.0;
+  vec2 corner = square_corner(gl_VertexID);
+  bool second = corner.x > 0.0;
+  float side = corner.y;
   vec4 pa = texelFetch(positions, texel(ends.x), 0), pb = texelFetch(positions, texel(ends.y), 0);
   vec4 a = clip_from_model * vec4(pa.xyz, 1.0), b = clip_from_model * vec4(pb.xyz, 1.0);
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
@@ -197,143 +199,6 @@ void main() {
 }
 )";
 
-const char* const kNodeVertex = R"(
-layout(location = 0) in uint node;
-uniform mat2 clip_from_pixels;
-uniform float radius_pixels;
-uniform float mm_per_pixel;
-uniform mat3 screen_from_normal;
-uniform float grow;
-flat out float light;
-const vec3 kTip[6] = vec3[6](vec3(1, 0, 0), vec3(0, 1, 0), vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1));
-void main() {
-  int face = gl_VertexID / 3, k = gl_VertexID % 3;
-  int quarter = face & 3;
-  bool upper = face < 4;
-  int tip = k == 2 ? (upper ? 4 : 5) : ((k == 0) == upper ? quarter : (quarter + 1) & 3);
-  vec3 normal = screen_from_normal * normalize(kTip[quarter] + kTip[(quarter + 1) & 3] + kTip[upper ? 4 : 5]);
-  light = 0.82 + 0.18 * clamp(dot(normal, vec3(-0.4369, 0.5825, 0.6854)), 0.0, 1.0);
-  vec3 offset = screen_from_normal * kTip[tip] * radius_pixels * grow;
-  vec4 at = texelFetch(positions, texel(node), 0);
-  vec4 clip = clip_from_model * vec4(at.xyz, 1.0);
-  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  if (at.w == 0.0 || clip.w <= 0.0) return;
-  clip = nearer(clip, (offset.z + radius_pixels) * mm_per_pixel);
-  gl_Position = clip + vec4(clip_from_pixels * offset.xy * clip.w, 0.0, 0.0);
-}
-)";
-
-const char* const kNodeFragment = R"(
-flat in float light;
-uniform vec4 ink;
-out vec4 colour;
-void main() { colour = vec4(ink.rgb * light, ink.a); }
-)";
-
-const char* const kGlyphVertex = R"(
-layout(location = 0) in vec3 centre;
-layout(location = 1) in uint kind;
-uniform mat2 clip_from_pixels;
-uniform float radius_pixels;
-uniform float mm_per_pixel;
-out vec2 place;
-flat out uint sign_kind;
-void main() {
-  int k = gl_VertexID;
-  place = vec2(k == 1 || k == 2 || k == 4 ? 1.0 : -1.0, k == 2 || k == 4 || k == 5 ? 1.0 : -1.0);
-  sign_kind = kind;
-  vec4 clip = clip_from_model * vec4(centre, 1.0);
-  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  if (clip.w <= 0.0) return;
-  clip = nearer(clip, radius_pixels * mm_per_pixel);
-  gl_Position = clip + vec4(clip_from_pixels * place * radius_pixels * clip.w, 0.0, 0.0);
-}
-)";
-
-// Signs by signed distance (negative inside). 0 warped quad: a bow tie with its bent diagonal; 1 length: a short bar between stops;
-// 2 angle: an open wedge; 3 aspect: a slender box; 4 other: a disc.
-const char* const kGlyphFragment = R"(
-in vec2 place;
-flat in uint sign_kind;
-uniform vec3 warn_ink, fail_ink;
-out vec4 colour;
-float box(vec2 p, vec2 half_size) {
-  vec2 d = abs(p) - half_size;
-  return length(max(d, 0.0)) + min(max(d.x, d.y), 0.0);
-}
-float segment(vec2 p, vec2 a, vec2 b) {
-  vec2 along = b - a;
-  return length(p - a - along * clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0));
-}
-float shape(vec2 p, uint kind) {
-  if (kind == 0u) {
-    vec2 q = abs(p);
-    float wings = max(max(q.x - 0.66, (q.y - q.x) * 0.7071), -1.0);
-    return min(wings, segment(p, vec2(-0.62, -0.62), vec2(0.62, 0.62)) - 0.13);
-  }
-  if (kind == 1u) return min(box(p, vec2(0.5, 0.14)), box(vec2(abs(p.x) - 0.5, p.y), vec2(0.14, 0.55)));
-  if (kind == 2u)
-    return min(segment(p, vec2(-0.55, -0.42), vec2(0.62, -0.42)), segment(p, vec2(-0.55, -0.42), vec2(0.36, 0.55))) - 0.16;
-  if (kind == 3u) return box(p, vec2(0.72, 0.26));
-  return length(p) - 0.48;
-}
-void main() {
-  uint kind = sign_kind & 7u;
-  bool failing = (sign_kind & 8u) != 0u;
-  float distance = shape(place, kind);
-  float soft = max(fwidth(place.x), fwidth(place.y)) * 0.5;
-  float body = 1.0 - smoothstep(-soft, soft, distance);
-  float rim = 1.0 - smoothstep(-soft, soft, distance - 0.17);
-  if (rim < 0.02) discard;
-  vec3 ink = failing ? fail_ink : warn_ink;
-  vec3 outline = failing ? vec3(0.25, 0.02, 0.02) : vec3(0.20, 0.16, 0.02);
-  colour = vec4(mix(outline, ink, body), rim);
-}
-)";
-
-const char* const kHandleVertex = R"(
-layout(location = 0) in vec2 circle;
-layout(location = 1) in vec2 stem;
-layout(location = 2) in vec2 slant;
-uniform mat4 clip_from_screen;
-uniform vec3 foot, axis, side_a, side_b;
-out vec3 normal;
-void main() {
-  vec3 out_of_axis = circle.x * side_a + circle.y * side_b;
-  normal = normalize(normalize(out_of_axis + axis * 1e-6) * slant.x + normalize(axis) * slant.y);
-  gl_Position = clip_from_screen * vec4(foot + axis * stem.x + out_of_axis * stem.y, 1.0);
-}
-)";
-
-const char* const kHandleFragment = R"(
-in vec3 normal;
-uniform vec4 ink;
-out vec4 colour;
-void main() {
-  vec3 n = normalize(normal);
-  float light = 0.58 + 0.42 * max(dot(n, vec3(-0.4369, 0.5825, 0.6854)), 0.0);
-  colour = vec4(ink.rgb * light, ink.a);
-}
-)";
-
-// A rectangle in display pixels, edge and all, over the whole image: what is outside is thrown away.
-const char* const kRectangleFragment = R"(
-uniform vec4 rectangle;
-uniform mat3 picture_from_image;
-uniform vec2 soft;
-out vec4 colour;
-void main() {
-  vec2 p = (picture_from_image * vec3(gl_FragCoord.xy, 1.0)).xy;
-  vec2 centre = 0.5 * (rectangle.xy + rectangle.zw), half_size = 0.5 * abs(rectangle.zw - rectangle.xy);
-  vec2 d = abs(p - centre) - half_size;
-  float outside = max(d.x, d.y);
-  if (outside > 1.5) discard;
-  float line = max(1.0 - max(abs(d.x) / soft.x, 0.0), 1.0 - abs(d.y) / soft.y);
-  line = outside > 0.0 ? (d.x > 0.0 && d.y > 0.0 ? 0.0 : line) : line;
-  colour = vec4(1.0, 1.0, 1.0, max(clamp(line, 0.0, 1.0) * 0.9, outside <= 0.0 ? 0.08 : 0.0));
-}
-)";
-
 }  // namespace
 
 Result<Shaders> Shaders::link() {
@@ -344,15 +209,22 @@ Result<Shaders> Shaders::link() {
     std::string vertex;
     std::string fragment;
   };
-  const std::string pull = shader_head() + kPull, shell = pull + kShellPull;
-  const Entry entries[] = {{&Shaders::ground, "ground", cover_vertex_shader(), shader_head() + kGroundFragment},
-                           {&Shaders::shells, "shells", shell + kShellVertex, shader_head() + kShellFragment},
-                           {&Shaders::items, "items", shell + kItemVertex, shader_head() + kItemFragment},
-                           {&Shaders::lines, "lines", pull + kLineVertex, shader_head() + kLineFragment},
-                           {&Shaders::nodes, "nodes", pull + kNodeVertex, shader_head() + kNodeFragment},
-                           {&Shaders::glyphs, "glyphs", pull + kGlyphVertex, shader_head() + kGlyphFragment},
-                           {&Shaders::handle, "handle", shader_head() + kHandleVertex, shader_head() + kHandleFragment},
-                           {&Shaders::rectangle, "rectangle", cover_vertex_shader(), shader_head() + kRectangleFragment}};
+  using namespace sign_shaders;
+  const std::string& head = shader_head();
+  const std::string pull = head + kPull, shell = pull + kShellPull, flat = "#define FLAT\n";
+  const Entry entries[] = {
+      {&Shaders::ground, "ground", cover_vertex_shader(), head + kGroundFragment},
+      {&Shaders::shells, "shells", shell + kShellVertex, head + kShellFragment},
+      {&Shaders::items, "items", shell + kItemVertex, head + kItemFragment},
+      {&Shaders::lines, "lines", pull + kSquareCorner + kLineVertex, head + kLineFragment},
+      {&Shaders::nodes, "nodes", pull + kNodeVertex, head + kNodeFragment},
+      {&Shaders::flat_nodes, "flat nodes", pull + flat + kNodeVertex, head + flat + kNodeFragment},
+      {&Shaders::glyphs, "glyphs", pull + kSquareCorner + kGlyphVertex, head + kGlyphFragment},
+      {&Shaders::handle, "handle", head + kHandleVertex, head + kHandleFragment},
+      {&Shaders::rectangle, "rectangle", cover_vertex_shader(), head + kRectangleFragment},
+      {&Shaders::pencil, "pencil", head + kSquareCorner + kPencilVertex, head + kPencilFragment},
+      {&Shaders::shadow_caster, "shadow caster", head + kShadowCasterVertex, head + kShadowCasterFragment},
+      {&Shaders::shadow_plane, "shadow plane", head + kSquareCorner + kShadowPlaneVertex, head + kShadowPlaneFragment}};
   for (const Entry& entry : entries) {
     Result<gl::Program> program = gl::Program::link(entry.name, entry.vertex, entry.fragment);
     if (!program) return fail(program.error());

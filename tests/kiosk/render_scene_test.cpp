@@ -15,16 +15,9 @@ namespace {
 using ipc::SnapshotArray;
 using mesh::Vec3;
 using test::TestSource;
+using test::two_plates;
 
 constexpr int kWidth = 320, kHeight = 200;
-
-/// Two plates of 10 x 10 quads, 40 apart: part 0 before (z = 20), part 1 behind.
-TestSource two_plates() {
-  TestSource source;
-  for (const std::uint32_t part : {0U, 1U})
-    test::add_grid(source, 10, 10, part, [&](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, part == 0 ? 20 : -20); });
-  return source;
-}
 
 class Scene : public RenderTest {
  protected:

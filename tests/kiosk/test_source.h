@@ -99,6 +99,14 @@ inline std::uint32_t add_grid(TestSource& source, std::uint32_t n, std::uint32_t
   return first;
 }
 
+/// Two plates of 10 x 10 quads, 40 apart: part 0 before (z = 20), part 1 behind.
+inline TestSource two_plates() {
+  TestSource source;
+  for (const std::uint32_t part : {0U, 1U})
+    add_grid(source, 10, 10, part, [&](double u, double v) { return mesh::Vec3(u * 100 - 50, v * 60 - 30, part == 0 ? 20 : -20); });
+  return source;
+}
+
 /// A crash box on a base plate: a hat section with rounded shoulders (part 0), its closing plate (part 1), a curved panel (part 2) and
 /// spot welds as lines (part 3). Lengths in mm; some 1,100 shells.
 inline TestSource make_crash_box() {

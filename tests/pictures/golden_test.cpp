@@ -1,5 +1,6 @@
 // Pictures kept beside the test, compared with what is drawn today. PRISMESH_UPDATE_PICTURES=1 draws them anew: look at them then.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -43,6 +44,33 @@ class GoldenPicture : public RenderTest {
       if (i % 2 == 0) state.fail = state.warn;
     }
     return source;
+  }
+
+  /// The selection on its way, 22 mm up.
+  Picture lifted() {
+    const test::TestSource source = model();
+    show(source);
+    Picture picture = fitted("mono", "iso", kWidth, kHeight);
+    std::vector<mesh::NodeIndex> nodes;
+    ipc::PreviewFrame frame;
+    for (std::uint32_t n = 0; n < source.positions.size(); ++n)
+      if (source.node_marks[n] != 0) {
+        nodes.push_back(mesh::NodeIndex(n));
+        frame.positions.push_back(source.positions[n] + mesh::Vec3(0, 0, 22));
+      }
+    std::vector<mesh::ShellIndex> shells;
+    for (std::uint32_t s = 0; s < source.shell_nodes.size(); ++s)
+      for (const mesh::NodeIndex node : source.shell_nodes[s].node)
+        if (source.node_marks[node.value] != 0) {
+          shells.push_back(mesh::ShellIndex(s));
+          break;
+        }
+    frame.states.resize(shells.size());
+    for (std::size_t i = 0; i < shells.size(); i += 7) frame.states[i].warn = frame.states[i].fail = 1;
+    renderer_->begin_preview(nodes, shells);
+    EXPECT_TRUE(renderer_->update_preview(frame));
+    picture.handle = Handle{frame.positions[frame.positions.size() / 2], mesh::Vec3::UnitZ(), Handle::Use::arrow};
+    return picture;
   }
 
   void compare(const std::string& name, const Image& image) {
@@ -116,30 +144,80 @@ TEST_F(GoldenPicture, Quality) {
 }
 
 TEST_F(GoldenPicture, Lifting) {
-  const test::TestSource source = model();
-  show(source);
-  Picture picture = fitted("mono", "iso", kWidth, kHeight);
-  std::vector<mesh::NodeIndex> nodes;
-  ipc::PreviewFrame frame;
-  for (std::uint32_t n = 0; n < source.positions.size(); ++n)
-    if (source.node_marks[n] != 0) {
-      nodes.push_back(mesh::NodeIndex(n));
-      frame.positions.push_back(source.positions[n] + mesh::Vec3(0, 0, 22));
-    }
-  std::vector<mesh::ShellIndex> shells;
-  for (std::uint32_t s = 0; s < source.shell_nodes.size(); ++s)
-    for (const mesh::NodeIndex node : source.shell_nodes[s].node)
-      if (source.node_marks[node.value] != 0) {
-        shells.push_back(mesh::ShellIndex(s));
-        break;
-      }
-  frame.states.resize(shells.size());
-  for (std::size_t i = 0; i < shells.size(); i += 7) frame.states[i].warn = frame.states[i].fail = 1;
-  renderer_->begin_preview(nodes, shells);
-  ASSERT_TRUE(renderer_->update_preview(frame));
-  picture.handle = Handle{frame.positions[frame.positions.size() / 2], mesh::Vec3::UnitZ(), Handle::Use::arrow};
+  Picture picture = lifted();
   picture.rubber_band = PixelRect{420, 40, 600, 130};
   compare("lifting", draw(picture, kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, Shadows) {
+  Picture picture = lifted();
+  picture.shadows = true;
+  compare("shadows", draw(picture, kWidth, kHeight));
+  renderer_->end_preview();
+  picture.handle.reset();
+  compare("shadows_of_the_selection", draw(picture, kWidth, kHeight));
+}
+
+/// The middle of the selection, nearer.
+Picture nearer(Picture picture, const mesh::Vec3& at, double factor) {
+  const Eigen::Vector2d seen = stereo::to_screen(picture.view, at).head<2>();
+  picture.view = stereo::zoom(stereo::pan(picture.view, -seen), factor, {0, 0});
+  return picture;
+}
+
+TEST_F(GoldenPicture, SelectedNodesBehindSomethingShowThrough) {
+  test::TestSource source = model();
+  for (auto& state : source.shell_quality) state = {};
+  const std::size_t plate = 23 * 31;  // the closing plate lies under the hat
+  for (std::size_t row = 10; row < 20; ++row)
+    for (std::size_t n = 4; n < 12; ++n) source.node_marks[plate + 16 * row + n] = mesh::document::kSelected;
+  show(source);
+  compare("selection", draw(nearer(fitted("mono", "iso", kWidth, kHeight), source.positions[23 * 14 + 11], 1.8), kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, Handle) {
+  const test::TestSource source = model();
+  show(source);
+  const mesh::Vec3 foot = source.positions[23 * 14 + 13];
+  Picture picture = nearer(fitted("mono", "iso", kWidth, kHeight), foot, 1.8);
+  using Use = Handle::Use;
+  for (const auto& [use, name] :
+       {std::pair{Use::idle, "handle"}, {Use::arrow, "handle_arrow"}, {Use::disk, "handle_disk"}, {Use::ring, "handle_ring"}}) {
+    picture.handle = render::Handle{foot, mesh::Vec3(0.1, 0.1, 1).normalized(), use};
+    compare(name, draw(picture, kWidth, kHeight));
+  }
+  picture.handle->use = Use::idle;
+  picture.handle->at -= mesh::Vec3(0, 0, 14);
+  compare("handle_hidden", draw(picture, kWidth, kHeight));
+  picture = nearer(fitted("side-by-side", "iso", kWidth, kHeight), foot, 1.8);
+  picture.handle = render::Handle{foot, mesh::Vec3(0.1, 0.1, 1).normalized(), Use::idle};
+  compare("handle_side_by_side", draw(picture, kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, Rotation) {
+  const test::TestSource source = model();
+  show(source);
+  const mesh::Vec3 grab = source.positions[23 * 14 + 11];
+  Picture picture = nearer(fitted("mono", "iso", kWidth, kHeight), grab, 1.5);
+  picture.handle = render::Handle{grab, mesh::Vec3::UnitZ(), render::Handle::Use::idle};
+  picture.handle->turn = render::Handle::Turn{grab + mesh::Vec3(-45, 0, 12), mesh::Vec3::UnitY(), 0};
+  compare("rotation_idle", draw(picture, kWidth, kHeight));
+  picture.handle->use = render::Handle::Use::arc;
+  picture.handle->turn->degrees = -110;
+  picture.handle->at += mesh::Vec3(-30, 0, 50);
+  compare("rotation", draw(picture, kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, Lasso) {
+  show(model());
+  Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
+  for (int i = 0; i < 60; ++i) {
+    const double angle = 0.1 * i, reach = 90 + 25 * std::sin(3 * angle);
+    picture.lasso.emplace_back(300 + 1.6 * reach * std::cos(angle), 150 + reach * std::sin(angle));
+  }
+  compare("lasso_prism_mask", draw(picture, kWidth, kHeight));
+  picture.profile = *stereo::find_profile("mono");
+  compare("lasso", draw(picture, kWidth, kHeight));
 }
 
 }  // namespace

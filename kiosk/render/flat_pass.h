@@ -1,0 +1,26 @@
+// Draws what lies in the screen's plane, over the finished scene: rubber band, lasso, and whatever else the picture's overlay draws.
+#pragma once
+
+#include "kiosk/render/frame.h"
+#include "kiosk/render/shaders.h"
+
+namespace prismesh::kiosk::render {
+
+class FlatPass {
+ public:
+  explicit FlatPass(const Shaders& shaders);
+
+  /// Into the bound framebuffer; its viewport is set.
+  void draw(const Picture& picture, const EyeView& eye) const;
+
+ private:
+  void draw_rectangle(const PixelRect& band, const EyeImage& image) const;
+  void draw_lasso(const std::vector<Eigen::Vector2d>& corners, const EyeImage& image) const;
+
+  const Shaders& shaders_;
+  gl::VertexArray no_attributes_;
+  gl::VertexArray segments_;
+  gl::Buffer segment_buffer_;
+};
+
+}  // namespace prismesh::kiosk::render

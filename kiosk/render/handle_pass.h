@@ -1,0 +1,23 @@
+// Draws the handle: solid where it can be seen, dimmed where something hides it, so that it can always be taken.
+#pragma once
+
+#include "kiosk/render/frame.h"
+#include "kiosk/render/handle_mesh.h"
+#include "kiosk/render/shaders.h"
+
+namespace prismesh::kiosk::render {
+
+class HandlePass {
+ public:
+  explicit HandlePass(const Shaders& shaders);
+
+  /// Into the bound framebuffer, after the model. Leaves the depth test on (GL_LEQUAL) and blending off.
+  void draw(const std::vector<HandlePiece>& pieces, const EyeView& eye) const;
+
+ private:
+  const Shaders& shaders_;
+  gl::VertexArray array_;
+  gl::Buffer buffer_;
+};
+
+}  // namespace prismesh::kiosk::render

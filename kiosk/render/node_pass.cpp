@@ -1,0 +1,77 @@
+#include "kiosk/render/node_pass.h"
+
+namespace prismesh::kiosk::render {
+
+namespace {
+
+// Sizes in display pixels.
+constexpr float kNodeRadius = 4.2F, kLeastNodeRadius = 1.3F;
+constexpr float kNodeShareOfSide = 0.26F;  ///< they make room where elements are small
+constexpr float kRimmedNodeRadius =
+    2.6F;                              ///< from this size on they are solids with a dark rim: smaller ones couldn't be told from squares
+constexpr float kHiddenLight = 0.80F;  ///< behind a surface: lighter than any part, darker than white
+
+constexpr std::array<std::uint8_t, 24> kOctahedron{0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
+constexpr std::array<std::uint8_t, 6> kSquare{0, 1, 2, 0, 2, 3};
+
+}  // namespace
+
+template <std::size_t N>
+NodePass::Solid NodePass::make_solid(const gl::Program& program, int corners, const std::array<std::uint8_t, N>& indices) {
+  std::vector<std::uint16_t> all;  // six corners a node: 24,576 at most
+  all.reserve(mesh::kChunkSize * N);
+  for (std::size_t node = 0; node < mesh::kChunkSize; ++node)
+    for (const std::uint8_t index : indices) all.push_back(static_cast<std::uint16_t>(node * static_cast<std::size_t>(corners) + index));
+  Solid solid{program, gl::VertexArray::make(), gl::Buffer::make(), static_cast<int>(N)};
+  glBindVertexArray(solid.array.get());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, solid.indices.get());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(all.size() * sizeof(std::uint16_t)), all.data(), GL_STATIC_DRAW);
+  glBindVertexArray(0);
+  return solid;
+}
+
+NodePass::NodePass(const Shaders& shaders)
+    : octahedra_(make_solid(shaders.nodes, 6, kOctahedron)), squares_(make_solid(shaders.flat_nodes, 4, kSquare)) {}
+
+void NodePass::draw(const ModelLayer& model, const Frame& frame) const {
+  const SelectionRows& rows = model.selected();
+  if (rows.count() == 0) return;
+  const float room = frame.fitting_radius(kNodeRadius, kLeastNodeRadius, kNodeShareOfSide, model.typical_side());
+  const float radius = model.previewing() ? kLeastNodeRadius : room;  // the wireframe says where they go
+  const bool rimmed = radius >= kRimmedNodeRadius;
+  const Solid& solid = rimmed ? octahedra_ : squares_;
+  rows.texture().bind(unit::kSelection);
+  frame.set(solid.program);
+  solid.program.set("selection", static_cast<int>(unit::kSelection));
+  solid.program.set("radius_pixels", radius);
+  const Eigen::Matrix4d clip_from_model = frame.clip_from_model.cast<double>();
+  std::vector<std::size_t> seen;
+  for (std::size_t c = 0; c < rows.chunks().size(); ++c)
+    if (rows.chunks()[c].count > 0 && may_be_seen(rows.chunks()[c].box, clip_from_model)) seen.push_back(c);
+  glBindVertexArray(solid.array.get());
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  glFrontFace(GL_CCW);
+  const auto draw = [&](float grow, const Colour& colour) {
+    solid.program.set("grow", grow);
+    solid.program.set("ink", colour.x(), colour.y(), colour.z(), 1.0F);
+    for (const std::size_t c : seen) {
+      solid.program.set("first", static_cast<int>(c * mesh::kChunkSize));
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(rows.chunks()[c].count) * solid.indices_each, GL_UNSIGNED_SHORT, nullptr);
+    }
+  };
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  glEnable(GL_BLEND);
+  glBlendEquation(GL_MAX);
+  draw(0.85F, kHiddenLight * kSelectedColour);
+  glBlendEquation(GL_FUNC_ADD);
+  glDisable(GL_BLEND);
+  glDepthFunc(GL_LEQUAL);
+  if (rimmed) draw(1.35F, kBorderColour);  // a dark rim tells white nodes from a light part
+  glDepthMask(GL_TRUE);
+  draw(1.0F, kSelectedColour);
+  glDisable(GL_CULL_FACE);
+}
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,86 @@
+// What a picture costs with many selected nodes, and what selecting them costs; on whatever draws (say which: llvmpipe draws on the
+// processor, so that its figures hold the graphics card's work as well).
+#include <memory>
+#include <string>
+
+#include <GLES3/gl31.h>
+#include <benchmark/benchmark.h>
+
+#include "kiosk/display/headless.h"
+#include "kiosk/render/offscreen.h"
+#include "kiosk/render/renderer.h"
+#include "tests/kiosk/test_source.h"
+
+namespace {
+
+using namespace prismesh;
+using namespace prismesh::kiosk;
+
+constexpr int kWidth = 1600, kHeight = 900;
+constexpr std::uint32_t kSide = 1000;
+
+/// A million quads, so many of whose nodes are selected: a band across the sheet.
+std::shared_ptr<test::TestSource> million(std::size_t selected) {
+  static const test::TestSource sheet = [] {
+    test::TestSource source;
+    test::add_grid(source, kSide, kSide, 0,
+                   [](double u, double v) { return mesh::Vec3(5000 * u, 5000 * v, 300 * std::sin(6 * u) * std::cos(5 * v)); });
+    return source;
+  }();
+  auto source = std::make_shared<test::TestSource>(sheet);
+  for (std::size_t n = 0; n < selected; ++n) source->node_marks[n + 400 * (kSide + 1)] = mesh::document::kSelected;
+  source->key = selected + 1;
+  return source;
+}
+
+struct Stage {
+  display::Headless headless = std::move(*display::Headless::create());
+  std::unique_ptr<render::Renderer> renderer = std::move(*render::Renderer::create({}));
+  render::Offscreen target = std::move(*render::Offscreen::create(kWidth, kHeight));
+  render::Picture picture;
+
+  Stage(std::size_t selected, const std::string& profile, double zoom) {
+    (void)renderer->set_model(million(selected));
+    picture.profile = *stereo::find_profile(profile);
+    picture.view.rotation = *stereo::named_rotation("iso");
+    picture.view.bounds = stereo::sphere_around(renderer->bounds());
+    picture.view = renderer->fitted(picture.view, stereo::screen_size_mm(picture.profile, kWidth, kHeight));
+    picture.view = stereo::zoom(picture.view, zoom, {0, 0});
+    picture.moving = true;
+  }
+};
+
+/// A picture of the sheet being turned. Arguments: selected nodes, zoom.
+void turning(benchmark::State& state) {
+  Stage stage(static_cast<std::size_t>(state.range(0)), "mono", static_cast<double>(state.range(1)));
+  for (auto _ : state) {
+    stage.picture.view = stereo::orbit(stage.picture.view, 0.001, 0);
+    benchmark::DoNotOptimize(stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight));
+    glFinish();
+  }
+  state.SetLabel(reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+}
+BENCHMARK(turning)
+    ->ArgNames({"selected", "zoom"})
+    ->Args({0, 1})
+    ->Args({200000, 1})
+    ->Args({0, 40})
+    ->Args({200000, 40})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+/// From a snapshot with another selected node to the renderer that knows it.
+void another_node_selected(benchmark::State& state) {
+  Stage stage(static_cast<std::size_t>(state.range(0)), "mono", 1);
+  const std::shared_ptr<test::TestSource> source = million(static_cast<std::size_t>(state.range(0)));
+  (void)stage.renderer->set_model(source);
+  for (auto _ : state) {
+    source->node_marks[0] ^= mesh::document::kSelected;
+    source->touch(ipc::SnapshotArray::node_marks, 0);
+    benchmark::DoNotOptimize(stage.renderer->set_model(source));
+  }
+}
+BENCHMARK(another_node_selected)->ArgName("selected")->Arg(0)->Arg(200000)->Unit(benchmark::kMillisecond);
+
+}  // namespace

@@ -1,0 +1,391 @@
+// What is drawn over the model for the hand: selected nodes, the handle, the lasso; and what a drag's frame costs.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "kiosk/render/handle_mesh.h"
+#include "tests/kiosk/render_test.h"
+
+namespace prismesh::kiosk::render {
+namespace {
+
+using ipc::SnapshotArray;
+using mesh::Vec3;
+using test::TestSource;
+using test::two_plates;
+
+constexpr int kWidth = 640, kHeight = 400;
+
+constexpr std::size_t kFront = 60, kBehind = 121 + 37;
+
+/// Where two pictures differ.
+struct Blob {
+  std::size_t pixels = 0;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  Eigen::Vector2i low = Eigen::Vector2i::Constant(1 << 20), high = Eigen::Vector2i::Constant(-1);
+};
+Blob difference(const Image& a, const Image& b, int x0, int x1) {
+  Blob blob;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = x0; x < x1; ++x) {
+      if (std::abs(brightness(a, x, y) - brightness(b, x, y)) < 12) continue;
+      ++blob.pixels;
+      blob.centre += Eigen::Vector2d(x + 0.5, y + 0.5);
+      blob.low = blob.low.cwiseMin(Eigen::Vector2i(x, y));
+      blob.high = blob.high.cwiseMax(Eigen::Vector2i(x, y));
+    }
+  if (blob.pixels > 0) blob.centre /= static_cast<double>(blob.pixels);
+  return blob;
+}
+Blob difference(const Image& a, const Image& b) { return difference(a, b, 0, a.width); }
+
+class Signs : public RenderTest {
+ protected:
+  Eigen::Vector2d pixel_of(const Picture& picture, const Vec3& point) const {
+    return *stereo::pixel_of(aim_of(picture, kWidth, kHeight), point);
+  }
+  static const std::uint8_t* at(const Image& image, const Eigen::Vector2d& pixel) {
+    return image.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+  }
+  static bool green(const std::uint8_t* pixel) { return pixel[1] > pixel[0] * 4 / 3 && pixel[1] > pixel[2] * 5 / 4; }
+  /// What selecting these nodes alone changes in a picture.
+  Blob marks(TestSource source, const Picture& picture, std::initializer_list<std::size_t> nodes, int x0 = 0, int x1 = kWidth) {
+    show(source);
+    const Image without = draw(picture, kWidth, kHeight);
+    for (const std::size_t node : nodes) source.node_marks[node] = mesh::document::kSelected;
+    source.key = 2;
+    show(source);
+    return difference(draw(picture, kWidth, kHeight), without, x0, x1);
+  }
+  /// What a handle changes in a picture.
+  Blob handle(Picture picture, const Handle& shown) {
+    const Image without = draw(picture, kWidth, kHeight);
+    picture.handle = shown;
+    return difference(draw(picture, kWidth, kHeight), without);
+  }
+};
+
+TEST_F(Signs, ASelectedNodeKeepsItsSizeWhateverTheZoom) {
+  show(two_plates());
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  picture.element_edges = false;
+  const Blob small = marks(two_plates(), picture, {kFront});
+  picture.view = stereo::zoom(picture.view, 2.2, {0, 0});
+  const Blob large = marks(two_plates(), picture, {kFront});
+  EXPECT_GT(small.pixels, 40U);
+  EXPECT_NEAR(static_cast<double>(large.pixels), static_cast<double>(small.pixels), 0.15 * static_cast<double>(small.pixels));
+  EXPECT_NEAR((large.high - large.low).x(), (small.high - small.low).x(), 1);
+  EXPECT_NEAR((large.high - large.low).y(), (small.high - small.low).y(), 1);
+}
+
+TEST_F(Signs, BothEyesSeeASelectedNodeWhereTheyWouldSeeThePlaceItself) {
+  show(two_plates());
+  Picture picture = fitted("side-by-side", "top", kWidth, kHeight);
+  picture.element_edges = false;
+  picture.view.depth_strength = 1.5;
+  const stereo::PictureEyes eyes{picture.between_eyes_mm, picture.toward_right, picture.eye_separation_mm, 1};
+  std::array<double, 2> parallax{};
+  for (const std::size_t node : {kFront, kBehind}) {
+    std::array<double, 2> x{};
+    for (const stereo::Eye eye : {stereo::Eye::left, stereo::Eye::right}) {
+      const bool right = eye == stereo::Eye::right;
+      const Blob blob = marks(two_plates(), picture, {node}, right ? kWidth / 2 : 0, right ? kWidth : kWidth / 2);
+      ASSERT_GT(blob.pixels, 5U);
+      stereo::Aim aim = aim_of(picture, kWidth, kHeight);
+      aim.eye_mm = eyes.picture_eye(eye);
+      const Eigen::Vector2d expected = *stereo::pixel_of(aim, two_plates().positions[node]);
+      x[right ? 1 : 0] = 2 * (blob.centre.x() - (right ? kWidth / 2 : 0));
+      EXPECT_NEAR(x[right ? 1 : 0], expected.x(), 1.0) << node << (right ? " right" : " left");
+      EXPECT_NEAR(blob.centre.y(), expected.y(), 0.7);
+    }
+    parallax[node == kFront ? 0 : 1] = x[1] - x[0];
+  }
+  EXPECT_LT(parallax[0], -3) << "before the screen: the right eye sees it farther left";
+  EXPECT_GT(parallax[1], 3) << "behind it";
+}
+
+TEST_F(Signs, SelectingCostsTheChunksThatChange) {
+  TestSource source;
+  test::add_grid(source, 200, 200, 0, [](double u, double v) { return Vec3(u, v, 0); });
+  show(source);
+  const auto bytes = [&] { return renderer_->figures().bytes_uploaded; };
+  std::size_t before = bytes();
+  for (const std::size_t node : {7U, 8U, 1000U}) source.node_marks[node] = mesh::document::kSelected;
+  source.touch(SnapshotArray::node_marks, 0);
+  show(source);
+  EXPECT_EQ(bytes() - before, 3 * sizeof(std::uint32_t));
+  before = bytes();
+  source.node_marks[5 * mesh::kChunkSize + 3] = mesh::document::kSelected;
+  source.touch(SnapshotArray::node_marks, 5);
+  show(source);
+  EXPECT_EQ(bytes() - before, sizeof(std::uint32_t)) << "the first chunk's row stays as it is";
+}
+
+TEST_F(Signs, CrowdedNodesAreAllThere) {
+  TestSource source;
+  test::add_grid(source, 400, 250, 0, [](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, 0); });
+  show(source);
+  const Picture picture = fitted("mono", "top", kWidth, kHeight);
+  for (std::size_t n = 0; n < source.node_marks.size(); ++n) source.node_marks[n] = n % 401 < 200 ? mesh::document::kSelected : 0;
+  source.key = 2;
+  show(source);
+  const Image image = draw(picture, kWidth, kHeight);
+  for (const double y : {-25.0, 0.0, 25.0}) {
+    double selected = 0, plain = 0;
+    for (int x = -40; x < -10; ++x) {
+      selected += at(image, pixel_of(picture, {static_cast<double>(x), y, 0}))[2] / 30.0;
+      plain += at(image, pixel_of(picture, {static_cast<double>(-x), y, 0}))[2] / 30.0;
+    }
+    EXPECT_GT(selected, plain + 40);
+  }
+}
+
+TEST_F(Signs, NodesOfHiddenPartsAreNotMarkedAndComeBack) {
+  show(two_plates());
+  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  TestSource source = two_plates();
+  source.node_marks[kBehind] = mesh::document::kSelected;
+  source.key = 2;
+  show(source);
+  const Image marked = draw(picture, kWidth, kHeight);
+  source.hidden[1] = true;
+  show(source);
+  const Image hidden = draw(picture, kWidth, kHeight);
+  EXPECT_GT(difference(marked, hidden).pixels, 20U);
+  source.shell_parts[0] = mesh::PartIndex(1);  // and a shell of the front plate goes as well: its corner is one shell's alone
+  source.touch(SnapshotArray::shell_parts, 0);
+  source.node_marks[0] = mesh::document::kSelected;
+  source.touch(SnapshotArray::node_marks, 0);
+  show(source);
+  const Image corner_gone = draw(picture, kWidth, kHeight);
+  source.node_marks[0] = 0;
+  source.touch(SnapshotArray::node_marks, 0);
+  show(source);
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, corner_gone.rgb);
+  source.shell_parts[0] = mesh::PartIndex(0);
+  source.touch(SnapshotArray::shell_parts, 0);
+  source.hidden[1] = false;
+  show(source);
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, marked.rgb);
+}
+
+TEST_F(Signs, ThePartInUseIsGreenAndTheOthersGo) {
+  show(two_plates());
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  const Vec3 foot(0, 0, 20);
+  const stereo::Aim aim = aim_of(picture, kWidth, kHeight);
+  const double deck_pixel = aim.mm_per_pixel() / aim.view.mm_per_unit;
+  const auto on_disk = [&](double x, double y) {
+    return pixel_of(picture, foot + Vec3(x, y, 0) * (0.72 * kHandleDiskPixels * deck_pixel));
+  };
+  const Eigen::Vector2d arrow = pixel_of(picture, stereo::handle_tip(aim, foot, Vec3::UnitZ())) + Eigen::Vector2d(0, 12);
+  const Eigen::Vector2d disk = on_disk(1, 0);
+  const Eigen::Vector2d ring = pixel_of(picture, foot) + Eigen::Vector2d(kHandleRingPixels, 0);
+  using Use = Handle::Use;
+  const std::array<std::pair<Use, Eigen::Vector2d>, 3> parts{{{Use::arrow, arrow}, {Use::disk, disk}, {Use::ring, ring}}};
+  const Image without = draw(picture, kWidth, kHeight);
+  for (const Use use : {Use::idle, Use::arrow, Use::disk, Use::ring}) {
+    picture.handle = Handle{foot, Vec3::UnitZ(), use};
+    const Image image = draw(picture, kWidth, kHeight);
+    for (const auto& [part, pixel] : parts) {
+      const bool there = use == Use::idle || use == part;
+      if (use == Use::disk && part == Use::ring) continue;  // lies over it
+      EXPECT_EQ(green(at(image, pixel)), use == part) << static_cast<int>(use) << " at " << static_cast<int>(part);
+      if (there || part != Use::disk) continue;
+      EXPECT_TRUE(std::equal(at(image, pixel), at(image, pixel) + 3, at(without, pixel))) << "nothing is left of the disk";
+    }
+  }
+  picture.handle = Handle{foot, Vec3::UnitZ(), Use::disk};
+  const Image image = draw(picture, kWidth, kHeight);
+  for (const auto& [x, y] : {std::pair{-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) EXPECT_TRUE(green(at(image, on_disk(x, y)))) << x << y;
+}
+
+TEST_F(Signs, TheHandleKeepsItsSizeAndShowsThroughTheModel) {
+  show(two_plates());
+  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  const Handle shown{{0, 0, 20}, Vec3::UnitZ(), Handle::Use::disk};
+  const double small = static_cast<double>(handle(picture, shown).pixels);
+  Handle behind = shown;
+  behind.at.z() = -10;
+  const Blob dimmed = handle(picture, behind);
+  EXPECT_GT(static_cast<double>(dimmed.pixels), 0.3 * small) << "can be grabbed though it is hidden";
+  const Image without = draw(picture, kWidth, kHeight);
+  picture.handle = behind;
+  const Image image = draw(picture, kWidth, kHeight);
+  picture.handle = shown;
+  const Image before = draw(picture, kWidth, kHeight);
+  const auto strength = [&](const Image& with) {
+    int most = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) most = std::max(most, std::abs(brightness(with, x, y) - brightness(without, x, y)));
+    return most;
+  };
+  EXPECT_LT(strength(image), 0.6 * strength(before)) << "but dimmed";
+  picture.handle.reset();
+  picture.view = stereo::zoom(picture.view, 2, {0, 0});
+  EXPECT_NEAR(static_cast<double>(handle(picture, shown).pixels), small, 0.06 * small);
+}
+
+TEST_F(Signs, AnArcRunsFromWhereTheGrabWasToWhereItIs) {
+  show(two_plates());
+  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  Handle turned{{0, 25, 20}, Vec3::UnitZ(), Handle::Use::arc};
+  turned.turn = Handle::Turn{{0, 0, 0}, Vec3::UnitZ(), 90};
+  picture.handle = turned;
+  const Image image = draw(picture, kWidth, kHeight);
+  const auto place = [&](double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return pixel_of(picture, Vec3(25 * std::cos(angle), 25 * std::sin(angle), 20));
+  };
+  for (const double degrees : {10.0, 40.0, 80.0}) EXPECT_TRUE(green(at(image, place(degrees)))) << degrees;
+  for (const double degrees : {-20.0, 130.0, 200.0}) EXPECT_FALSE(green(at(image, place(degrees)))) << degrees;
+  EXPECT_TRUE(green(at(image, place(90)))) << "the ball";
+  picture.handle->turn->degrees = -90;
+  const Image other = draw(picture, kWidth, kHeight);
+  EXPECT_TRUE(green(at(other, place(130)))) << "turned the other way";
+  EXPECT_FALSE(green(at(other, place(40))));
+  picture.handle->use = Handle::Use::idle;
+  const Image idle = draw(picture, kWidth, kHeight);
+  for (const double degrees : {90.0, 130.0}) EXPECT_FALSE(green(at(idle, place(degrees))));
+}
+
+TEST_F(Signs, TheAxisGoesThroughTheModelAndStandsOutOfIt) {
+  show(two_plates());
+  Picture picture = fitted("mono", "front", kWidth, kHeight);
+  Handle turned{{30, 0, 20}, Vec3::UnitZ(), Handle::Use::idle};
+  turned.turn = Handle::Turn{{10, 0, 3}, Vec3::UnitZ(), 0};
+  const Blob blob = handle(picture, turned);
+  EXPECT_LT(blob.low.y(), pixel_of(picture, {10, 0, 20}).y() - 15);
+  EXPECT_GT(blob.high.y(), pixel_of(picture, {10, 0, -20}).y() + 15);
+}
+
+HandleSpace space_of(const stereo::View& view) {
+  HandleSpace space{view, 0.28, 650, {}};
+  space.around.add(Vec3(-50, -30, -20));
+  space.around.add(Vec3(50, 30, 20));
+  return space;
+}
+
+TEST(HandleMesh, FacesLookOutward) {
+  const stereo::View view;
+  Handle turned{{30, 5, 10}, Vec3(1, 2, 3), Handle::Use::idle};
+  for (const bool turn : {false, true}) {
+    if (turn) turned.turn = Handle::Turn{{0, 0, 0}, Vec3(1, 1, 3).normalized(), 77};
+    const std::vector<HandlePiece> pieces = handle_pieces(turned, space_of(view));
+    ASSERT_GE(pieces.size(), 3U);
+    for (const HandlePiece& piece : pieces) {
+      if (piece.sheet) continue;
+      ASSERT_EQ(piece.triangles.size() % 3, 0U);
+      for (std::size_t i = 0; i < piece.triangles.size(); i += 3) {
+        std::array<Eigen::Vector3f, 3> p;
+        Eigen::Vector3f outward = Eigen::Vector3f::Zero();
+        for (std::size_t k = 0; k < 3; ++k) {
+          p[k] = Eigen::Vector3f(piece.triangles[i + k].at.data());
+          outward += Eigen::Vector3f(piece.triangles[i + k].outward.data());
+        }
+        const Eigen::Vector3f normal = (p[1] - p[0]).cross(p[2] - p[0]);
+        if (normal.norm() > 1e-4F) {
+          EXPECT_GT(normal.dot(outward), 0) << turn << " triangle " << i / 3;
+        }
+      }
+    }
+  }
+}
+
+TEST(HandleMesh, WhatIsNowhereIsNotDrawn) {
+  const stereo::View view;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(handle_pieces({Vec3::Constant(nan), Vec3::UnitZ()}, space_of(view)).empty());
+  EXPECT_TRUE(handle_pieces({Vec3::Zero(), Vec3::Zero()}, space_of(view)).empty());
+  EXPECT_TRUE(handle_pieces({Vec3::Zero(), Vec3::Constant(nan)}, space_of(view)).empty());
+  Handle turned{{30, 0, 0}, Vec3::UnitZ(), Handle::Use::arc};
+  turned.turn = Handle::Turn{{0, 0, 0}, Vec3::Zero(), 10};
+  EXPECT_TRUE(handle_pieces(turned, space_of(view)).empty()) << "no axis";
+  turned.turn = Handle::Turn{{0, 0, 0}, Vec3::UnitZ(), nan};
+  EXPECT_TRUE(handle_pieces(turned, space_of(view)).empty());
+  turned.turn = Handle::Turn{{0, 0, 0}, Vec3::UnitX(), 10};
+  EXPECT_EQ(handle_pieces(turned, space_of(view)).size(), 1U) << "a grab on the axis has no arc";
+}
+
+TEST_F(Signs, ALassoIsALineInThePlaneOfTheScreenClosedByDashes) {
+  show(two_plates());
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  const Image without = draw(picture, kWidth, kHeight);
+  const std::size_t scenes = renderer_->figures().scenes_drawn;
+  picture.lasso = {{40.5, 40.5}, {300.5, 60.5}, {340.5, 300.5}, {60.5, 340.5}};
+  const Image image = draw(picture, kWidth, kHeight);
+  EXPECT_EQ(renderer_->figures().scenes_drawn, scenes) << "doesn't cost the model";
+  const auto white = [](const Image& drawn, std::size_t from, const Picture& of, int x0, double squeeze) {
+    const Eigen::Vector2d a = of.lasso[from], b = of.lasso[(from + 1) % of.lasso.size()];
+    int found = 0;
+    for (int i = 0; i < 400; ++i) {
+      const Eigen::Vector2d p = a + (b - a) * (i + 0.5) / 400;
+      found += brightness(drawn, x0 + static_cast<int>(p.x() * squeeze), static_cast<int>(p.y())) > 215;
+    }
+    return found / 400.0;
+  };
+  for (const std::size_t edge : {0U, 1U, 2U}) EXPECT_GT(white(image, edge, picture, 0, 1), 0.97) << edge;
+  const double dashed = white(image, 3, picture, 0, 1);
+  EXPECT_GT(dashed, 0.3);
+  EXPECT_LT(dashed, 0.75) << "what nobody drew";
+  EXPECT_LT(difference(image, without).pixels, 2U * 4 * 340 * 3) << "a line, and nothing else";
+  Picture stereo = fitted("side-by-side", "iso", kWidth, kHeight);
+  stereo.lasso = picture.lasso;
+  const Image both = draw(stereo, kWidth, kHeight);
+  for (const int x0 : {0, kWidth / 2}) EXPECT_GT(white(both, 0, stereo, x0, 0.5), 0.9) << "at the same place for both eyes";
+  picture.lasso = {{std::numeric_limits<double>::quiet_NaN(), 3}, {1e300, 4}, {100, 100}};
+  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, without.rgb) << "one corner is no line";
+}
+
+/// Bytes that each frame of a drag uploads, of the same 100 nodes on a sheet of n x n quads full of bad shells.
+std::vector<std::size_t> bytes_of_frames(Renderer& renderer, const std::function<void()>& draw, std::uint32_t n) {
+  auto source = std::make_shared<TestSource>();
+  test::add_grid(*source, n, n, 0, [n](double u, double v) { return Vec3(u * n, v * n, 0); });
+  for (std::size_t s = 0; s < source->shell_quality.size(); s += 3) source->shell_quality[s].warn = 1;
+  source->key = n;
+  std::vector<mesh::NodeIndex> nodes;
+  std::vector<mesh::ShellIndex> shells;
+  for (std::uint32_t j = 0; j < 12; ++j)
+    for (std::uint32_t i = 0; i < 12; ++i) {
+      if (i < 11 && j < 11) shells.emplace_back((j + 5) * n + i + 5);
+      if (i >= 1 && i <= 10 && j >= 1 && j <= 10) nodes.emplace_back((j + 5) * (n + 1) + i + 5);
+    }
+  for (const mesh::NodeIndex node : nodes) source->node_marks[node.value] = mesh::document::kSelected;
+  EXPECT_TRUE(renderer.set_model(source));
+  draw();
+  renderer.begin_preview(nodes, shells);
+  std::vector<std::size_t> bytes;
+  std::size_t before = renderer.figures().bytes_uploaded;
+  for (int frame_number = 0; frame_number < 4; ++frame_number) {
+    ipc::PreviewFrame frame;
+    for (const mesh::NodeIndex node : nodes) frame.positions.push_back(source->positions[node.value] + Vec3(0, 0, 1 + frame_number));
+    frame.states.resize(shells.size());
+    for (int i = 0; i < 7; ++i) frame.states[static_cast<std::size_t>(i * 9)].fail = 1;
+    EXPECT_TRUE(renderer.update_preview(frame));
+    draw();
+    bytes.push_back(renderer.figures().bytes_uploaded - before);
+    before = renderer.figures().bytes_uploaded;
+  }
+  renderer.end_preview();
+  return bytes;
+}
+
+TEST_F(Signs, AFrameOfADragUploadsWhatMovesWhateverTheModel) {
+  Picture picture;
+  picture.profile = *stereo::find_profile("mono");
+  const auto draw_it = [&] { draw(picture, 64, 40); };
+  const std::vector<std::size_t> small = bytes_of_frames(*renderer_, draw_it, 40);
+  const std::vector<std::size_t> large = bytes_of_frames(*renderer_, draw_it, 400);
+  for (std::size_t i = 1; i < small.size(); ++i) {
+    EXPECT_EQ(small[i], 12U * 12 * 16 + 7 * 16) << "positions of the shells' corners, and the live signs";
+    EXPECT_EQ(large[i], small[i]);
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::render
