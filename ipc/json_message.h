@@ -56,8 +56,7 @@ void write(Json& json, T value) { json = value; }
 template <class T>
 void write_object(Json& json, const T& value);
 template <class T>
-requires std::is_class_v<T>
-void write(Json& json, const T& value) {
+requires(std::is_class_v<T> || std::is_enum_v<T>) void write(Json& json, const T& value) {
   if constexpr (requires { Message<T>::write(json, value); })
     Message<T>::write(json, value);
   else
@@ -131,7 +130,7 @@ inline Problem read(const Json& json, std::array<double, 3>& value) {
 template <class T>
 Problem read_object(const Json& json, T& value);
 template <class T>
-requires std::is_class_v<T> Problem read(const Json& json, T& value) {
+requires(std::is_class_v<T> || std::is_enum_v<T>) Problem read(const Json& json, T& value) {
   if constexpr (requires { Message<T>::read(json, value); }) {
     return Message<T>::read(json, value);
   } else {

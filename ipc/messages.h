@@ -53,6 +53,10 @@ struct CommitDrag {
 struct CancelDrag {
   std::uint64_t drag = 0;
 };
+struct Count {  ///< what an id expression names; selects nothing
+  std::string expr;
+  mesh::select::Kind kind = mesh::select::Kind::node;
+};
 struct GetState {};
 struct GetSnapshot {
   std::vector<std::uint64_t> have_segments;  ///< segments the client still has mapped
@@ -61,8 +65,8 @@ struct ReturnSnapshot {  ///< no answer
   std::uint64_t lease = 0;
 };
 
-using Request =
-    std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, GetState, GetSnapshot, ReturnSnapshot>;
+using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Count, GetState, GetSnapshot,
+                             ReturnSnapshot>;
 
 // --- answers ---
 struct Failed {
@@ -75,6 +79,12 @@ struct Welcome {
   int protocol = kProtocolVersion;
   std::string version;
   std::uint64_t client = 0;
+};
+/// A file of the deck that holds elements, and the parts that these belong to.
+struct DeckFile {
+  std::string name;  ///< as `file:NAME` in an expression means it
+  std::uint64_t shells = 0;
+  std::vector<std::int64_t> parts;  ///< ids, ascending
 };
 struct State {
   bool open = false;
@@ -91,6 +101,8 @@ struct State {
   bool can_undo = false, can_redo = false, changed = false;
   std::uint64_t recovered_edits = 0;   ///< brought back from the journal when the document was opened
   std::uint64_t journalled_edits = 0;  ///< acknowledged since the deck was opened or last saved in place: what a restart brings back
+  std::uint64_t history_bytes = 0, history_cap = 0;  ///< what the states kept for undo and redo take, and may take
+  std::vector<DeckFile> files;
   std::vector<mesh::deck::Warning> warnings;
 };
 struct Saved {
@@ -101,6 +113,9 @@ struct Saved {
 struct Edited {
   mesh::document::EditReport report;
   std::uint64_t generation = 0;
+};
+struct Counted {
+  std::uint64_t nodes = 0, shells = 0, parts = 0;
 };
 struct DragBegun {  ///< descriptor: the preview
   std::uint64_t drag = 0;
@@ -116,12 +131,13 @@ struct Snapshot {  ///< descriptors: the table, then the segments listed in new_
   std::vector<std::uint64_t> segments;      ///< all that the table uses, in the table's order
   std::vector<std::uint64_t> new_segments;  ///< those that ride with this message, in this order
 };
-using Answer = std::variant<Failed, Done, Welcome, State, Saved, Edited, DragBegun, Snapshot>;
+using Answer = std::variant<Failed, Done, Welcome, State, Saved, Edited, Counted, DragBegun, Snapshot>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {
   std::uint64_t generation = 0;
   std::string made_by;
+  std::uint64_t history_bytes = 0, history_cap = 0;  ///< as in State
 };
 struct DocumentOpened {
   std::string path;

@@ -20,6 +20,18 @@ struct Message<mesh::document::Edit> {
   }
 };
 
+template <>
+struct Message<mesh::select::Kind> {
+  static constexpr std::array<std::string_view, 3> kNames{"node", "element", "part"};
+  static void write(Json& json, mesh::select::Kind value) { json = kNames[static_cast<std::size_t>(value)]; }
+  static Problem read(const Json& json, mesh::select::Kind& value) {
+    const auto found = json.is_string() ? std::find(kNames.begin(), kNames.end(), json.get<std::string>()) : kNames.end();
+    if (found == kNames.end()) return "must be \"node\", \"element\" or \"part\"";
+    value = static_cast<mesh::select::Kind>(found - kNames.begin());
+    return std::nullopt;
+  }
+};
+
 PRISMESH_MESSAGE(Hello, "hello", f("protocol", m.protocol), f("program", m.program));
 PRISMESH_MESSAGE(Open, "open", f("path", m.path), f("length_unit", m.length_unit), f("target_size", m.target_size),
                  f("criteria", m.criteria));
@@ -31,6 +43,7 @@ PRISMESH_MESSAGE(DragStep, "drag_step", f("drag", m.drag), f("sequence", m.seque
                  f("degrees", m.degrees));
 PRISMESH_MESSAGE(CommitDrag, "commit_drag", f("drag", m.drag));
 PRISMESH_MESSAGE(CancelDrag, "cancel_drag", f("drag", m.drag));
+PRISMESH_MESSAGE(Count, "count", f("expr", m.expr), f("kind", m.kind));
 PRISMESH_MESSAGE(GetState, "get_state", );
 PRISMESH_MESSAGE(GetSnapshot, "get_snapshot", f("have_segments", m.have_segments));
 PRISMESH_MESSAGE(ReturnSnapshot, "return_snapshot", f("lease", m.lease));
@@ -40,15 +53,19 @@ PRISMESH_MESSAGE(State, "state", f("open", m.open), f("busy", m.busy), f("path",
                  f("target_size_guessed", m.target_size_guessed), f("generation", m.generation), f("nodes", m.nodes), f("shells", m.shells),
                  f("parts", m.parts), f("selected_nodes", m.selected_nodes), f("counts", m.counts), f("can_undo", m.can_undo),
                  f("can_redo", m.can_redo), f("changed", m.changed), f("recovered_edits", m.recovered_edits),
-                 f("journalled_edits", m.journalled_edits), f("warnings", m.warnings));
+                 f("journalled_edits", m.journalled_edits), f("history_bytes", m.history_bytes), f("history_cap", m.history_cap),
+                 f("files", m.files), f("warnings", m.warnings));
+PRISMESH_PART(DeckFile, f("name", m.name), f("shells", m.shells), f("parts", m.parts));
 PRISMESH_MESSAGE(Saved, "saved", f("path", m.path), f("nodes_written", m.nodes_written), f("lines_changed", m.lines_changed),
                  f("notes", m.notes));
 PRISMESH_MESSAGE(Edited, "edited", f("report", m.report), f("generation", m.generation));
+PRISMESH_MESSAGE(Counted, "counted", f("nodes", m.nodes), f("shells", m.shells), f("parts", m.parts));
 PRISMESH_MESSAGE(DragBegun, "drag_begun", f("drag", m.drag), f("base_generation", m.base_generation), f("nodes", m.nodes),
                  f("grab", m.grab), f("grab_position", m.grab_position), f("normal", m.normal));
 PRISMESH_MESSAGE(Snapshot, "snapshot", f("lease", m.lease), f("generation", m.generation), f("segments", m.segments),
                  f("new_segments", m.new_segments));
-PRISMESH_MESSAGE(GenerationPublished, "generation_published", f("generation", m.generation), f("made_by", m.made_by));
+PRISMESH_MESSAGE(GenerationPublished, "generation_published", f("generation", m.generation), f("made_by", m.made_by),
+                 f("history_bytes", m.history_bytes), f("history_cap", m.history_cap));
 PRISMESH_MESSAGE(DocumentOpened, "document_opened", f("path", m.path));
 PRISMESH_MESSAGE(DocumentClosed, "document_closed", );
 PRISMESH_MESSAGE(ProgressMade, "progress_made", f("what", m.what), f("fraction", m.fraction));
@@ -56,8 +73,9 @@ PRISMESH_MESSAGE(DragEnded, "drag_ended", f("drag", m.drag), f("committed", m.co
 PRISMESH_PART(mesh::quality::Counts, f("ok", m.ok), f("warn", m.warn), f("fail", m.fail));
 PRISMESH_PART(mesh::deck::Warning, f("file", m.file), f("line", m.line), f("kind", m.kind), f("message", m.message), f("count", m.count));
 PRISMESH_PART(mesh::document::EditReport, f("edit", m.edit), f("nodes_moved", m.nodes_moved), f("elements_added", m.elements_added),
-              f("elements_removed", m.elements_removed), f("before", m.before), f("after", m.after), f("notes", m.notes),
-              f("ms", m.milliseconds));
+              f("elements_removed", m.elements_removed), f("before", m.before), f("after", m.after), f("inverted", m.inverted),
+              f("lost_connections", m.lost_connections), f("lost", m.lost), f("mass_before", m.mass_before), f("mass_after", m.mass_after),
+              f("cog_before", m.centre_before), f("cog_after", m.centre_after), f("notes", m.notes), f("ms", m.milliseconds));
 
 }  // namespace json_message
 

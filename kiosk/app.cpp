@@ -64,7 +64,10 @@ Result<void> run(const AppOptions& options) {
   const std::string profile_name = options.profile.value_or(settings->files.empty() ? "mono" : settings->display.profile);
   const Result<stereo::Profile> profile = stereo::find_profile(profile_name);
   if (!profile) return fail(profile.error());
+  Result<tools::MouseLayout> mouse = tools::find_mouse_layout(settings->hand.mouse);
+  if (!mouse) return fail(mouse.error());
   StationOptions what;
+  what.mouse = std::move(*mouse);
   what.runtime_dir = options.runtime_dir;
   what.deck = options.deck;
   what.profile = *profile;

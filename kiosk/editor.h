@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,15 +15,21 @@
 #include "kiosk/panels/panels.h"
 #include "kiosk/render/renderer.h"
 #include "kiosk/stereo/tracked_eyes.h"
+#include "kiosk/tools/axis_pick.h"
 #include "kiosk/tools/command.h"
 #include "kiosk/tools/depth.h"
 #include "kiosk/tools/gestures.h"
 #include "kiosk/tools/handle.h"
+#include "kiosk/tools/history_file.h"
+#include "kiosk/tools/shaping_options.h"
+#include "kiosk/tools/typed_number.h"
 
 namespace prismesh::kiosk {
 
 struct EditorOptions {
   stereo::Profile profile;
+  tools::MouseLayout mouse = tools::default_mouse_layout();
+  std::filesystem::path expressions{};  ///< where entered expressions are kept; empty: nowhere
 };
 
 class Editor {
@@ -47,6 +54,10 @@ class Editor {
   void panel_action(const panels::PanelAction& action);
 
   bool dialog_open() const { return dialog_ != panels::Dialog::none; }
+  /// Typing a number now would say how far: something is pulled, or the pointer is over a part of the handle.
+  bool takes_numbers(const std::optional<tools::Pixel>& pointer) const;
+  /// `text`: what has been typed of it.
+  void begin_number(const std::string& text, const std::optional<tools::Pixel>& pointer);
   /// What the pointer was dragging is let go without effect.
   void cancel_gesture();
 
@@ -68,33 +79,71 @@ class Editor {
   void handle(const tools::NodeClicked& click);
   void handle(const tools::RegionClicked& click);
   void handle(const tools::TakeBackClicked& click);
-  void handle(const tools::RectangleStretched& rectangle);
-  void handle(const tools::RectangleDone& rectangle);
+  void handle(const tools::OutlineDrawn& outline);
+  void handle(const tools::OutlineDone& outline);
   void handle(const tools::Orbited& orbit);
   void handle(const tools::Panned& pan);
   void handle(const tools::Zoomed& zoom);
+  void handle(const tools::AngleTurned& turned);
   void handle(const tools::HandleTaken& taken);
   void handle(const tools::HandleMoved& moved);
   void handle(const tools::HandleReleased& released);
 
   render::Picture plain_picture() const;
   stereo::Aim aim() const;
+  void view_moved();
+
+  // --- editor_select.cpp ---
   std::optional<mesh::NodeIndex> node_at(const tools::Pixel& pixel);
   void clear_selection();
   void select_nodes(const mesh::NodeSet& nodes, mesh::document::SelectMode mode);
+  void select_region(const tools::Pixel& at, mesh::document::SelectMode mode);
+  void change_angle(double degrees);
+  bool is_rectangle(bool other_kind) const { return lasso_ == other_kind; }
+  void open_expression();
+  void expression_changed(const panels::ExpressionTyped& typed);
+  void enter_expression(const panels::ExpressionEntered& entered);
+  std::optional<mesh::PartIndex> part_at(const std::optional<tools::Pixel>& pointer);
   void set_parts(mesh::document::VisibilityAction action, const std::optional<tools::Pixel>& pointer);
+  void set_file(tools::Command command, const std::optional<tools::Pixel>& pointer);
   void show_all();
+
+  // --- editor_shape.cpp ---
+  void begin_pull(tools::Under handle, const tools::Pixel& at);
+  void pull_to(const tools::Pixel& pixel);
+  void send_pull();
+  void cancel_pull();
+  Result<void> follow_drag();
+  std::optional<render::Handle> shown_handle() const;
+  void set_axis(const std::optional<tools::Axis>& axis, const std::string& what);
+  void pick_axis();
+  void axis_clicked(const tools::Pixel& at);
+  void axis_from_edge(const std::optional<tools::Pixel>& pointer);
+  void axis_from_deck(tools::DeckAxis axis);
+  void enter_number(const std::string& text);
+  bool change_shaping(tools::Command command);
+
+  // --- editor_commands.cpp ---
+  bool select_command(tools::Command command, const std::optional<tools::Pixel>& pointer);
+  bool shape_command(tools::Command command, const std::optional<tools::Pixel>& pointer);
+  bool view_command(tools::Command command);
   void look(std::string_view view_name);
   void fit();
   void next_profile();
   void cancel();
-  void pull_to(const tools::Pixel& pixel);
-  void cancel_pull();
+  void compare();
+  void open_dialog(panels::Dialog dialog);
+
+  // --- following ---
   void take_model();
   void bring_selection();
-  Result<void> follow_drag();
   void follow_notices();
-  std::optional<render::Handle> shown_handle() const;
+  void follow_comparison();
+
+  // --- editor_facts.cpp ---
+  panels::DocumentFacts document_facts() const;
+  std::optional<panels::PullFacts> pull_facts() const;
+  std::string guidance() const;
 
   ModelLink& link_;
   render::Renderer& renderer_;
@@ -110,6 +159,33 @@ class Editor {
   stereo::View view_;
   render::ColourMode colour_ = render::ColourMode::parts;
   bool through_ = false;
+  bool lasso_ = true;
+  mesh::document::RegionBy region_by_ = mesh::document::RegionBy::features;
+  double region_angle_ = 30;
+  bool region_across_welds_ = false;
+  std::optional<mesh::document::SelectRegion> last_region_;  ///< picked last, while nothing else was selected since
+  tools::HistoryFile expressions_;
+  std::vector<tools::MouseBinding> mouse_words_;
+  tools::ShapingOptions shaping_;
+  bool shaping_open_ = false, menu_ = false, shadows_ = false;
+  tools::Under tool_ = tools::Under::lift_handle;  ///< what numbers are typed for
+  tools::AxisPick axis_pick_;
+  std::optional<tools::Axis> axis_;
+  /// What the number that is being typed is for.
+  struct Typing {
+    enum class For : std::uint8_t { pull, move_limit, symmetry_place } what = For::pull;
+    std::string begun;
+    std::string problem;
+  };
+  Typing typing_;
+  /// Looking back and forth between the states before and after an edit.
+  struct Comparison {
+    std::string edit;
+    std::uint64_t after = 0;
+    std::optional<std::uint64_t> before;  ///< not known until it is here
+    bool showing_before = true;
+  };
+  std::optional<Comparison> comparison_;
   panels::Dialog dialog_ = panels::Dialog::none;
   bool help_ = false;
 
@@ -123,9 +199,11 @@ class Editor {
   bool preview_shown_ = false;
   std::uint64_t preview_sequence_ = 0;
   tools::Pixel pulled_to_ = tools::Pixel::Zero();
-  bool axis_taken_ = false;      ///< the server has said along which normal: only then a distance means something to it
-  bool released_early_ = false;  ///< before that
+  bool axis_taken_ = false;                ///< the server has said along which normal: only then a distance means something to it
+  bool released_early_ = false;            ///< before that
+  std::optional<tools::Pull> typed_pull_;  ///< by so much, whatever the pointer says; of a lift: along the arrow
   std::optional<render::PixelRect> rubber_band_;
+  std::vector<tools::Pixel> lasso_way_;
   bool pivot_found_ = false;
   tools::Pixel orbit_from_ = tools::Pixel::Zero();
   std::deque<panels::Notice> notices_;

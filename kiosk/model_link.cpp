@@ -70,7 +70,7 @@ void ModelLink::lost(const Error& error) {
   client_.reset();
   waiting_.clear();
   busy_.clear();
-  stale_ = fetching_ = fetched_ = false;
+  stale_ = fetching_ = fetched_ = counting_ = false;
   if (drag_) drop_drag("lost");
   next_attempt_ns_ = clock_.now_ns();
   ++changes_;
@@ -105,6 +105,8 @@ void ModelLink::heard(const ipc::Event& event) {
   std::visit(Overloaded{
                  [&](const ipc::GenerationPublished& published) {
                    made_by_ = published.made_by;
+                   history_bytes_ = published.history_bytes;
+                   history_cap_ = published.history_cap;
                    stale_ = true;
                  },
                  [&](const ipc::DocumentOpened& opened) {
@@ -141,6 +143,8 @@ void ModelLink::ask_state() {
 void ModelLink::took_state(const ipc::State& state) {
   const bool first = !state_ || state_->path != state.path;
   state_ = state;
+  history_bytes_ = state.history_bytes;
+  history_cap_ = state.history_cap;
   if (!state.open) {
     if (deck_ && !state.busy) open(*deck_);  // the server is new: it brings the journal's edits back when it opens the deck
     return;
@@ -254,10 +258,7 @@ void ModelLink::edit(mesh::document::Edit edit) {
     const auto* edited = std::get_if<ipc::Edited>(&answer);
     if (edited == nullptr) return;
     if (!fetched_ || !snapshot_ || snapshot_->info().generation != edited->generation) stale_ = true;
-    if (selecting || edited->report.notes.empty()) return;  // what a selection did is in the picture
-    std::string text;
-    for (const std::string& note : edited->report.notes) text += (text.empty() ? "" : "\n") + note;
-    say(Notice::Kind::information, std::move(text));
+    if (!selecting) say_report(edited->report);  // what a selection did is in the picture
   });
 }
 
@@ -285,12 +286,31 @@ void ModelLink::drag_began(const ipc::Answer& answer) {
   trace_.line(fmt::format("drag begun {} nodes {} grab {}", begun->drag, begun->nodes, begun->grab));
 }
 
-void ModelLink::pull(const mesh::Vec3& by, double distance) {
+void ModelLink::pull(const mesh::document::Displacement& displacement) {
   if (!drag_ || drag_->wish_ != RemoteDrag::Wish::hold) return;
-  if (drag_->by_ == by && drag_->distance_ == distance) return;
-  drag_->by_ = by;
-  drag_->distance_ = distance;
+  const mesh::document::Displacement& before = drag_->wanted_;
+  if (before.by == displacement.by && before.distance == displacement.distance && before.degrees == displacement.degrees) return;
+  drag_->wanted_ = displacement;
   drag_->moved_ = true;
+}
+
+void ModelLink::count(const std::string& expr, mesh::select::Kind kind) {
+  to_count_ = Count{expr, kind, std::nullopt, std::nullopt};
+  ask_count();
+}
+
+void ModelLink::ask_count() {
+  if (!client_ || counting_ || !to_count_) return;
+  Count what = *std::exchange(to_count_, std::nullopt);
+  counting_ = true;
+  ask(ipc::Count{what.expr, what.kind}, [this, what](const ipc::Answer& answer) mutable {
+    counting_ = false;
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) what.failed = *failed;
+    if (const auto* counted = std::get_if<ipc::Counted>(&answer)) what.counted = *counted;
+    trace_.line(fmt::format("counted {} {}", what.counted ? std::to_string(what.counted->nodes) : "none", what.expr));
+    counted_ = std::move(what);
+    ask_count();
+  });
 }
 
 void ModelLink::commit_drag() {
@@ -321,7 +341,9 @@ void ModelLink::turn_drag() {
       return drop_drag("refused");
     }
     const auto* edited = std::get_if<ipc::Edited>(&answer);
-    if (edited != nullptr) committed_drag(edited->generation);
+    if (edited == nullptr) return;
+    say_report(edited->report);
+    committed_drag(edited->generation);
   });
 }
 
@@ -340,8 +362,9 @@ void ModelLink::send_step() {
   ipc::DragStep step;
   step.drag = drag.facts().drag;
   step.sequence = ++drag.sequence_;
-  step.by = {drag.by_.x(), drag.by_.y(), drag.by_.z()};
-  step.distance = drag.distance_;
+  step.by = {drag.wanted_.by.x(), drag.wanted_.by.y(), drag.wanted_.by.z()};
+  step.distance = drag.wanted_.distance;
+  step.degrees = drag.wanted_.degrees;
   drag.moved_ = false;
   drag.sent_ns_ = clock_.now_ns();
   if (const Result<std::uint64_t> sent = client_->send(step); !sent) lost(sent.error());
@@ -352,6 +375,13 @@ void ModelLink::drop_drag(const char* how) {
   drag_.reset();
   ++changes_;
   trace_.line(std::string("drag ") + how);
+}
+
+void ModelLink::say_report(const mesh::document::EditReport& report) {
+  if (report.notes.empty()) return;
+  std::string text;
+  for (const std::string& note : report.notes) text += (text.empty() ? "" : "\n") + note;
+  say(Notice::Kind::information, std::move(text));
 }
 
 void ModelLink::say(Notice::Kind kind, std::string text) {

@@ -42,10 +42,9 @@ class RemoteDrag {
   std::optional<ipc::DragBegun> begun_;
   std::optional<ipc::PreviewReader> reader_;
   ipc::PreviewFrame frame_;
-  mesh::Vec3 by_ = mesh::Vec3::Zero();  ///< what the hand wants
-  double distance_ = 0;
-  bool moved_ = false;          ///< since the last step was sent
-  std::uint64_t sequence_ = 0;  ///< of the last step sent
+  mesh::document::Displacement wanted_;  ///< by the hand
+  bool moved_ = false;                   ///< since the last step was sent
+  std::uint64_t sequence_ = 0;           ///< of the last step sent
   std::int64_t sent_ns_ = 0;
   Wish wish_ = Wish::hold;
   bool end_sent_ = false;
@@ -82,10 +81,25 @@ class ModelLink {
   void save(const std::optional<std::filesystem::path>& path);
   void edit(mesh::document::Edit edit);
 
+  /// How many entities an expression names, as far as the server has answered: `expr` is what it was asked last.
+  struct Count {
+    std::string expr;
+    mesh::select::Kind kind = mesh::select::Kind::node;
+    std::optional<ipc::Counted> counted;
+    std::optional<ipc::Failed> failed;
+  };
+  /// Asks, one question at a time: while one is on its way only the newest of the others is kept.
+  void count(const std::string& expr, mesh::select::Kind kind);
+  const std::optional<Count>& counted() const { return counted_; }
+
+  /// What the states kept for undo and redo take and may take, bytes; 0: not known.
+  std::uint64_t history_bytes() const { return history_bytes_; }
+  std::uint64_t history_cap() const { return history_cap_; }
+
   /// A drag from taking the handle until the server's last word on it. Steps that the hand outruns are left out, the last
   /// one never is.
   void begin_drag(mesh::document::Edit edit);
-  void pull(const mesh::Vec3& by, double distance);
+  void pull(const mesh::document::Displacement& displacement);
   void commit_drag();
   void cancel_drag();
   const RemoteDrag* drag() const { return drag_ ? &*drag_ : nullptr; }
@@ -108,8 +122,10 @@ class ModelLink {
   void committed_drag(std::uint64_t generation);
   void drag_began(const ipc::Answer& answer);
   void turn_drag();
+  void ask_count();
   void send_step();
   void drop_drag(const char* how);
+  void say_report(const mesh::document::EditReport& report);
   void say(panels::Notice::Kind kind, std::string text);
 
   std::filesystem::path socket_;
@@ -129,6 +145,10 @@ class ModelLink {
   std::string busy_;
   double busy_fraction_ = 0;
   std::optional<RemoteDrag> drag_;
+  std::optional<Count> counted_;   ///< the newest answer
+  std::optional<Count> to_count_;  ///< what shall be asked next
+  bool counting_ = false;
+  std::uint64_t history_bytes_ = 0, history_cap_ = 0;
   std::vector<panels::Notice> notices_;
   std::uint64_t changes_ = 0;
 };

@@ -19,15 +19,21 @@ stereo::FollowOptions follow_options(const stereo::Profile& profile, bool fixed_
   return options;
 }
 
+std::filesystem::path expressions_file() {
+  const std::filesystem::path folder = tools::kiosk_state_folder();
+  return folder.empty() ? folder : folder / "expressions";
+}
+
 }  // namespace
 
 Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer> made, panels::Gui gui)
     : trace(options.trace ? stdout : nullptr),
+      mouse(options.mouse),
       link(ipc::model_socket_path(options.runtime_dir), options.deck, clock, trace),
       devices(ipc::device_socket_path(options.runtime_dir), trace),
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
-      editor({options.profile}, link, *renderer, clock, trace),
+      editor({options.profile, options.mouse, expressions_file()}, link, *renderer, clock, trace),
       screen(std::move(gui), *renderer, editor, clock),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),
       resting_mm_(options.fixed_eyes_mm.value_or(kRestingEyesMm)),

@@ -19,6 +19,7 @@ struct StationOptions {
   std::optional<std::filesystem::path> runtime_dir;  ///< where the daemons' sockets are
   std::optional<std::filesystem::path> deck;         ///< opened at the start
   stereo::Profile profile;
+  tools::MouseLayout mouse = tools::default_mouse_layout();
   std::optional<mesh::Vec3> fixed_eyes_mm;  ///< the eyes are here, whatever a tracker says
   double panel_latency_ms = 10;
   bool trace = false;
@@ -31,6 +32,7 @@ inline const mesh::Vec3 kRestingEyesMm(0, 0, 650);
 struct Station {
   MonotonicClock clock;
   Trace trace;
+  tools::MouseLayout mouse;
   ModelLink link;
   DeviceLink devices;
   EyeWatch eyes;

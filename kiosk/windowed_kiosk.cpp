@@ -23,7 +23,7 @@ std::int64_t shorter(std::int64_t a, std::int64_t b) { return a < 0 ? b : b < 0 
 
 }  // namespace
 
-WindowedKiosk::WindowedKiosk(display::Window& window, Station& station) : window_(window), station_(station) {
+WindowedKiosk::WindowedKiosk(display::Window& window, Station& station) : window_(window), station_(station), gestures_(station.mouse) {
   station_.screen.set_size(window.size());
   find_place();
 }
@@ -64,6 +64,7 @@ Result<void> WindowedKiosk::take(const display::WindowEvent& event) {
   }
   if (const auto* button = std::get_if<display::ButtonChanged>(&event)) return take_button(*button);
   if (const auto* key = std::get_if<display::KeyChanged>(&event)) return take_key(*key);
+  if (const auto* text = std::get_if<display::TextTyped>(&event)) return take_text(*text);
   station_.screen.gui().feed(event);
   dirty_ = true;
   if (const auto* wheel = std::get_if<display::WheelTurned>(&event)) {
@@ -101,6 +102,9 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   station_.screen.gui().feed(event);
   edge_fed_ = dirty_ = true;
   if (!event.down) return {};
+  swallow_text_ = false;
+  const bool digit = event.key >= display::Key::digit_0 && event.key <= display::Key::digit_9;
+  if (digit && !event.modifiers.ctrl && !event.modifiers.alt && station_.editor.takes_numbers(pointer_on_picture())) return {};
   const std::optional<tools::Command> command = tools::command_for(event.key, event.modifiers);
   if (!command || (event.repeat && !tools::repeats(*command))) return {};
   // While a path is typed the keyboard is the text field's.
@@ -108,9 +112,25 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   gestures_.forget_click();
   if (*command == tools::Command::cancel) gestures_.cancel();
   do_command(*command);
-  // A text field takes the keyboard two layouts after it appears; the next key may be in the queue already.
+  swallow_text_ = station_.editor.dialog_open();
+  return give_field_the_keyboard();
+}
+
+/// A text field takes the keyboard two layouts after it appears; the next key may be in the queue already.
+Result<void> WindowedKiosk::give_field_the_keyboard() {
   for (int round = 0; round < 3 && station_.editor.dialog_open() && !station_.screen.gui().wants_keys(); ++round)
     if (Result<void> laid_out = station_.screen.lay_out(); !laid_out) return laid_out;
+  return {};
+}
+
+Result<void> WindowedKiosk::take_text(const display::TextTyped& event) {
+  if (std::exchange(swallow_text_, false)) return {};
+  dirty_ = true;
+  if (!station_.screen.gui().wants_keys() && tools::begins_number(event.text) && station_.editor.takes_numbers(pointer_on_picture())) {
+    station_.editor.begin_number(event.text, pointer_on_picture());
+    return give_field_the_keyboard();
+  }
+  station_.screen.gui().feed(event);
   return {};
 }
 

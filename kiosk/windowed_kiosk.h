@@ -19,6 +19,8 @@ class WindowedKiosk {
   Result<void> take(const display::WindowEvent& event);
   Result<void> take_button(const display::ButtonChanged& event);
   Result<void> take_key(const display::KeyChanged& event);
+  Result<void> take_text(const display::TextTyped& event);
+  Result<void> give_field_the_keyboard();
   void do_command(tools::Command command);
   Result<void> settle();
   void find_place() { station_.place(window_.monitor(), window_.place()); }
@@ -41,7 +43,8 @@ class WindowedKiosk {
   display::Window& window_;
   Station& station_;
   tools::Gestures gestures_;
-  bool edge_fed_ = false;  ///< a press or release that the panels haven't seen yet
+  bool swallow_text_ = false;  ///< the key that opened a field isn't meant for it
+  bool edge_fed_ = false;      ///< a press or release that the panels haven't seen yet
   bool dirty_ = true;
   bool fullscreen_ = false;
   bool closing_ = false;

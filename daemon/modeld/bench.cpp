@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "mesh/document/surroundings.h"
+
 namespace prismesh::modeld {
 
 namespace {
@@ -18,7 +20,7 @@ void Bench::show(const std::string& made_by, Outcome& outcome) {
     publisher_.release(published->lease);  // it stays current
   else if (auto* edited = std::get_if<ipc::Edited>(&outcome.answer))
     edited->report.notes.push_back("the views couldn't be given the new state: " + published.error().text());
-  outcome.events.emplace_back(ipc::GenerationPublished{state.generation, made_by});
+  outcome.events.emplace_back(ipc::GenerationPublished{state.generation, made_by, state.history_bytes, state.history_cap});
   outcome.face = Face{std::make_shared<const mesh::document::Document>(document), state};
 }
 
@@ -51,6 +53,14 @@ Outcome Bench::edit(const mesh::document::Edit& edit) {
   outcome.answer = ipc::Edited{std::move(*report), keeper_.document().current().number};
   show(made_by, outcome);
   return outcome;
+}
+
+Outcome Bench::count(const ipc::Count& request) const {
+  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  const mesh::document::Generation& current = keeper_.document().current();
+  const Result<mesh::select::Chosen> chosen = mesh::select::evaluate(current.model, request.expr, request.kind, current.around->names);
+  if (!chosen) return {failed(chosen.error()), {}, {}, {}};
+  return {ipc::Counted{chosen->nodes.size(), chosen->shells.size(), chosen->parts.size()}, {}, {}, {}};
 }
 
 Outcome Bench::save(const ipc::Save& request) {

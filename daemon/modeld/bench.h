@@ -29,12 +29,14 @@ struct Outcome {
 
 class Bench {
  public:
-  Bench(StateFolder folder, ipc::SnapshotPublisher& publisher) : keeper_(std::move(folder)), publisher_(publisher) {}
+  Bench(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes)
+      : keeper_(std::move(folder), history_bytes), publisher_(publisher) {}
 
   Outcome open(const ipc::Open& request, const Progress& progress);
   /// What was open when the last life ended. The answer is Failed if that couldn't be opened.
   Outcome reopen(const Progress& progress);
   Outcome edit(const mesh::document::Edit& edit);
+  Outcome count(const ipc::Count& request) const;
   Outcome save(const ipc::Save& request);
   Outcome close(const ipc::Close& request);
   /// The answer is DragBegun, or Failed and there is no drag.

@@ -36,7 +36,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
       : lock(std::move(state_lock)),
         page(std::move(state_page)),
         publisher(first_number()),
-        bench(StateFolder(options.state_directory), publisher),
+        bench(StateFolder(options.state_directory), publisher, options.history_bytes),
         desk(*this, worker, bench, publisher) {}
 
   ipc::Descriptor lock;

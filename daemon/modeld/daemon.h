@@ -1,6 +1,7 @@
 // modeld put together: the socket, the desk, the worker, the state page.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 
@@ -11,6 +12,7 @@ namespace prismesh::modeld {
 struct DaemonOptions {
   std::filesystem::path runtime_directory;
   std::filesystem::path state_directory;
+  std::size_t history_bytes = std::size_t{2} << 30;  ///< what the states kept for undo and redo may take
 };
 
 class Daemon {

@@ -173,6 +173,8 @@ void Desk::begin(Waiting next) {
     run([this, request = std::move(*open), progress = watch("open")] { return bench_.open(request, progress); }, answer);
   else if (auto* edit = std::get_if<ipc::ApplyEdit>(&next.request))
     run([this, request = std::move(*edit)] { return bench_.edit(request.edit); }, answer);
+  else if (auto* count = std::get_if<ipc::Count>(&next.request))
+    run([this, request = std::move(*count)] { return bench_.count(request); }, answer);
   else if (auto* save = std::get_if<ipc::Save>(&next.request))
     run([this, request = std::move(*save)] { return bench_.save(request); }, answer);
   else if (auto* close = std::get_if<ipc::Close>(&next.request))

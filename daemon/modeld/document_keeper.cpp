@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "daemon/modeld/carry_over.h"
+#include "daemon/modeld/deck_files.h"
 #include "daemon/modeld/save_intent.h"
 #include "mesh/deck/deck.h"
 
@@ -117,6 +118,7 @@ Result<OpenedDeck> DocumentKeeper::read_deck(const fs::path& path, const Progres
 Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& request, const Progress& progress) {
   Result<OpenOptions> options = options_of(request);
   if (!options) return fail(std::move(options.error()));
+  options->history_bytes = history_bytes_;
   const fs::path path = request.path;
   if (!path.is_absolute()) return fail(request.path, "the path must be absolute: the daemon has its own working folder");
   std::vector<Warning> warnings;
@@ -145,8 +147,9 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
   const std::uint64_t recovered = journal->records();
   Document recorded = *document;
   const std::shared_ptr<const Generation> saved = document->opened;
+  std::vector<ipc::DeckFile> files = files_with_shells(*document);
   return OpenDocument{request,   std::move(*document), std::move(recorded), std::move(*journal), saved,
-                      recovered, std::move(warnings),  std::nullopt};
+                      recovered, std::move(warnings),  std::move(files),    std::nullopt};
 }
 
 Result<bool> DocumentKeeper::open(const ipc::Open& request, const Progress& progress) {
@@ -324,6 +327,9 @@ ipc::State DocumentKeeper::state() const {
   state.changed = changed();
   state.recovered_edits = open_->recovered;
   state.journalled_edits = open_->journal.records();
+  for (const auto& generation : document.generations) state.history_bytes += generation->own_bytes;
+  state.history_cap = document.history_bytes;
+  state.files = open_->files;
   state.warnings = document.deck->warnings;
   state.warnings.insert(state.warnings.end(), open_->warnings.begin(), open_->warnings.end());
   return state;

@@ -15,7 +15,9 @@ namespace prismesh::modeld {
 
 class DocumentKeeper {
  public:
-  explicit DocumentKeeper(StateFolder folder) : folder_(std::move(folder)) {}
+  /// `history_bytes`: what the states kept for undo and redo may take.
+  explicit DocumentKeeper(StateFolder folder, std::size_t history_bytes = mesh::document::OpenOptions{}.history_bytes)
+      : folder_(std::move(folder)), history_bytes_(history_bytes) {}
 
   /// Opens a deck and brings back what its journal holds. A document that is open already is given up, which takes that it has
   /// no unsaved edits; on an error it stays. False: this deck was open already. Errors: those of the deck, of the journal,
@@ -46,7 +48,8 @@ class DocumentKeeper {
     std::shared_ptr<const mesh::document::Generation> saved;  ///< what `changed` compares with
     std::uint64_t recovered = 0;
     std::vector<mesh::deck::Warning> warnings;  ///< beside the deck's
-    std::optional<Error> stuck;                 ///< why no edit can be journalled any more
+    std::vector<ipc::DeckFile> files;
+    std::optional<Error> stuck;  ///< why no edit can be journalled any more
   };
 
   Result<OpenDocument> load(const ipc::Open& request, const Progress& progress);
@@ -58,6 +61,7 @@ class DocumentKeeper {
   Result<void> let_go();
 
   StateFolder folder_;
+  std::size_t history_bytes_;
   std::optional<OpenDocument> open_;
 };
 

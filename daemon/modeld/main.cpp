@@ -1,6 +1,8 @@
 // prismesh-modeld: the document's daemon. Options and logging; the rest is in daemon.h.
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <optional>
 
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -8,20 +10,22 @@
 #include "base/program_options.h"
 #include "daemon/modeld/daemon.h"
 #include "daemon/modeld/state_folder.h"
+#include "drivers/settings/settings.h"
 #include "ipc/client.h"
 
 namespace {
 
 constexpr const char* kUsage =
-    "usage: prismesh-modeld [--runtime-dir FOLDER] [--state-dir FOLDER]\n"
+    "usage: prismesh-modeld [--runtime-dir FOLDER] [--state-dir FOLDER] [--config FILE]\n"
     "  --runtime-dir  for the socket; default $RUNTIME_DIRECTORY, $XDG_RUNTIME_DIR/prismesh or /tmp/prismesh-UID\n"
-    "  --state-dir    for journals; default $STATE_DIRECTORY, $XDG_STATE_HOME/prismesh or ~/.local/state/prismesh\n";
+    "  --state-dir    for journals; default $STATE_DIRECTORY, $XDG_STATE_HOME/prismesh or ~/.local/state/prismesh\n"
+    "  --config       settings that go before the system's and the user's prismesh.toml (docs/settings.md)\n";
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const prismesh::ProgramOptions given =
-      prismesh::program_options({"prismesh-modeld", kUsage, {"--runtime-dir", "--state-dir"}}, argc, argv);
+      prismesh::program_options({"prismesh-modeld", kUsage, {"--runtime-dir", "--state-dir", "--config"}}, argc, argv);
   if (given.end) return *given.end;
   // Whoever read the log may go away, and a journal may grow beyond what a file may hold: both are errors of writing, no end.
   std::signal(SIGPIPE, SIG_IGN);
@@ -29,8 +33,21 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_mt("modeld"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e modeld %l: %v");
 
-  const prismesh::modeld::DaemonOptions options{prismesh::ipc::runtime_directory(given.path("--runtime-dir")),
-                                                prismesh::modeld::state_directory(given.path("--state-dir"))};
+  const std::optional<std::filesystem::path> config = given.path("--config");
+  prismesh::Result<prismesh::drivers::settings::Settings> settings = prismesh::drivers::settings::read_settings(config);
+  if (!settings && config) {
+    std::fprintf(stderr, "%s\n", settings.error().text().c_str());
+    return 1;
+  }
+  // A device's mistyped key shall not keep anybody from their deck.
+  if (!settings) {
+    spdlog::warn("the settings are left aside: {}", settings.error().text());
+    settings = prismesh::drivers::settings::Settings{};
+  }
+  prismesh::modeld::DaemonOptions options;
+  options.runtime_directory = prismesh::ipc::runtime_directory(given.path("--runtime-dir"));
+  options.state_directory = prismesh::modeld::state_directory(given.path("--state-dir"));
+  options.history_bytes = static_cast<std::size_t>(settings->document.history_mb) << 20;
   prismesh::Result<prismesh::modeld::Daemon> daemon = prismesh::modeld::Daemon::start(options);
   if (!daemon) {
     std::fprintf(stderr, "%s\n", daemon.error().text().c_str());

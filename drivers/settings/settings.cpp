@@ -140,12 +140,12 @@ Key device_file(std::string_view name, std::string& to) {
           }};
 }
 
-/// A built-in profile's name, or the file of one: a text with a slash, or one that ends in .toml.
-Key profile(std::string_view name, std::string& to, const fs::path& folder) {
-  return {name, [&to, &folder](const toml::node& node) -> Problem {
+/// Something built in by its name, or a file of one's own: a text with a slash, or one that ends in .toml. `what`: "a profile's name or
+/// file in quotes, like ..".
+Key name_or_file(std::string_view name, std::string& to, const fs::path& folder, std::string what) {
+  return {name, [&to, &folder, what = std::move(what)](const toml::node& node) -> Problem {
             const auto* value = node.as_string();
-            if (value == nullptr || value->get().empty() || value->get().find('\0') != std::string::npos)
-              return "must be a profile's name or file in quotes, like \"prism-mask\"";
+            if (value == nullptr || value->get().empty() || value->get().find('\0') != std::string::npos) return "must be " + what;
             const std::string& text = value->get();
             const bool is_file = text.find('/') != std::string::npos || text.ends_with(".toml");
             to = is_file ? (folder / text).lexically_normal().string() : text;
@@ -193,10 +193,12 @@ class Reader {
       : file_(std::move(file)), folder_(fs::path(file_).parent_path()), settings_(settings), places_(places) {}
 
   Result<void> read(const toml::table& root) const {
-    const std::array<Section, 3> sections{
-        Section{
-            "display",
-            {profile("profile", settings_.display.profile, folder_), number("latency_ms", settings_.display.latency_ms, 0, 200, " ms")}},
+    const std::array<Section, 5> sections{
+        Section{"display",
+                {name_or_file("profile", settings_.display.profile, folder_, "a profile's name or file in quotes, like \"prism-mask\""),
+                 number("latency_ms", settings_.display.latency_ms, 0, 200, " ms")}},
+        Section{"hand", {name_or_file("mouse", settings_.hand.mouse, folder_, "a layout's name or file in quotes, like \"right-orbit\"")}},
+        Section{"document", {whole("history_mb", settings_.document.history_mb, 16, 1'048'576, " MB")}},
         tracker_section(settings_.eye_tracker, places_, file_), servo_section(settings_.prism_servo, places_, file_)};
     std::vector<std::string_view> names;
     for (const Section& section : sections) names.push_back(section.name);

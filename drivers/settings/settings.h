@@ -55,8 +55,20 @@ struct DisplaySettings {
   double latency_ms = 10;              ///< from a row's scan-out to its light: what the panel's electronics and pixels take
 };
 
+/// What the kiosk's hand works with.
+struct HandSettings {
+  std::string mouse = "default";  ///< a built-in layout's name, or a file (relative to the settings file)
+};
+
+/// What the model server keeps.
+struct DocumentSettings {
+  std::int64_t history_mb = 2048;  ///< of states kept for undo and redo
+};
+
 struct Settings {
   DisplaySettings display;
+  HandSettings hand;
+  DocumentSettings document;
   EyeTrackerSettings eye_tracker;
   PrismServoSettings prism_servo;
   std::vector<std::filesystem::path> files;  ///< those that were read, in order

@@ -10,6 +10,7 @@
 
 #include "kiosk/display/window.h"
 #include "kiosk/tools/command.h"
+#include "kiosk/tools/shaping_options.h"
 #include "mesh/document/edit.h"
 #include "mesh/quality/report.h"
 
@@ -22,6 +23,14 @@ struct PartRow {
   unsigned colour = 0;  ///< 0xAABBGGRR, as the picture shows it
   bool hidden = false;
   bool locked = false;
+};
+
+/// A file of the deck that holds shells.
+struct FileRow {
+  std::string name;
+  std::uint64_t shells = 0;
+  std::size_t parts = 0;
+  bool hidden = false, locked = false;  ///< all of its parts are
 };
 
 struct DocumentFacts {
@@ -37,6 +46,7 @@ struct DocumentFacts {
   std::uint64_t selected_shells = 0;
   mesh::quality::Counts counts;
   std::vector<PartRow> parts;
+  std::vector<FileRow> files;
 };
 
 struct Notice {
@@ -47,8 +57,9 @@ struct Notice {
 
 /// What is being dragged, while it is.
 struct PullFacts {
-  std::string what;   ///< "Lift", "Move"
-  double length = 0;  ///< deck's length unit
+  std::string what;               ///< "Lift", "Slide", "Move", "Turn"
+  double length = 0;              ///< deck's length unit
+  std::optional<double> degrees;  ///< instead of a length
   std::uint64_t nodes = 0;
   std::optional<mesh::quality::Counts> counts;  ///< of the whole document as it would become
 };
@@ -72,14 +83,47 @@ struct DepthFacts {
   bool selection_in_plane = false;  ///< the selection is kept in the plane of the screen
 };
 
-enum class Dialog : std::uint8_t { none, open, save_as };
+/// How outlines and regions select.
+struct SelectFacts {
+  bool lasso = true;
+  bool through = false;
+  mesh::document::RegionBy by = mesh::document::RegionBy::features;
+  double angle = 30;
+  bool across_welds = false;
+};
+
+struct ExpressionFacts {
+  struct Count {
+    std::uint64_t nodes = 0, shells = 0, parts = 0;
+  };
+  const std::vector<std::string>* entered = nullptr;  ///< before, oldest first
+  std::string counted_for;                            ///< what count or problem are of
+  std::optional<Count> count;
+  std::string problem;
+  long column = 0;  ///< where the problem is, from 1; 0: nowhere
+};
+
+/// A number that is typed for something.
+struct NumberFacts {
+  std::string title, hint;
+  std::string begun;    ///< what the field begins with
+  std::string problem;  ///< a sentence; empty: none
+};
+
+enum class Dialog : std::uint8_t { none, open, save_as, expression, number };
 
 struct PanelData {
   bool connected = false;
   std::string socket;
   std::optional<DocumentFacts> document;
   std::optional<PullFacts> pull;
-  bool through = false;
+  SelectFacts selecting;
+  tools::ShapingOptions shaping;
+  bool shaping_open = false;
+  tools::Under tool = tools::Under::lift_handle;  ///< what a typed number would do
+  std::string guidance;                           ///< what to do next, or which state is shown; empty: nothing
+  std::uint64_t history_bytes = 0, history_cap = 0;
+  bool shadows = false;
   bool colour_by_quality = false;
   std::string profile;
   std::optional<EyesFacts> eyes;
@@ -89,12 +133,16 @@ struct PanelData {
   std::size_t more_notices = 0;
   std::string busy;  ///< what the model server is at; empty: nothing
   double busy_fraction = 0;
-  bool help = false;
+  bool help = false, menu = false;
+  const std::vector<tools::MouseBinding>* mouse = nullptr;
+  std::optional<ExpressionFacts> expression;
+  std::optional<NumberFacts> number;
   Dialog dialog = Dialog::none;
 };
 
-struct AskPart {
-  std::int64_t part = 0;
+/// `on` is an expression of parts: an id, or file:NAME.
+struct AskParts {
+  std::string on;
   mesh::document::VisibilityAction action = mesh::document::VisibilityAction::hide;
 };
 struct AskOpen {
@@ -103,9 +151,40 @@ struct AskOpen {
 struct AskSaveAs {
   std::string path;
 };
+struct ExpressionTyped {
+  std::string text;
+  mesh::select::Kind kind = mesh::select::Kind::node;
+};
+struct ExpressionEntered {
+  std::string text;
+  mesh::select::Kind kind = mesh::select::Kind::node;
+  mesh::document::SelectMode mode = mesh::document::SelectMode::set;
+};
+struct NumberEntered {
+  std::string text;
+};
+struct SetShaping {
+  tools::ShapingOptions options;
+};
+struct SetRegion {
+  mesh::document::RegionBy by = mesh::document::RegionBy::features;
+  double angle = 30;
+  bool across_welds = false;
+};
 struct NoticeRead {};
 struct DialogClosed {};
-using PanelAction = std::variant<tools::Command, AskPart, AskOpen, AskSaveAs, NoticeRead, DialogClosed>;
+using PanelAction = std::variant<tools::Command, AskParts, AskOpen, AskSaveAs, ExpressionTyped, ExpressionEntered, NumberEntered,
+                                 SetShaping, SetRegion, NoticeRead, DialogClosed>;
+
+/// What a field that is typed into remembers from one layout to the next.
+struct EntryState {
+  std::string text;
+  std::string told;  ///< what was last said of it
+  mesh::select::Kind kind = mesh::select::Kind::node;
+  std::optional<std::size_t> recalled;  ///< which of the earlier entries stands in the field
+  std::string own;                      ///< what stood there before
+  bool caret_to_end = false;
+};
 
 /// Lays out all panels (inside Gui::layout) and says what the user asked of them.
 class Panels {
@@ -116,9 +195,11 @@ class Panels {
 
  private:
   void build_dialog(const PanelData& data, display::PixelSize picture, std::vector<PanelAction>& actions);
+  void build_path(const PanelData& data, std::vector<PanelAction>& actions, bool opened);
 
   Dialog shown_dialog_ = Dialog::none;
   std::string typed_;
+  EntryState entry_;
   bool caret_to_end_ = false;
   std::vector<std::string> offered_;
   std::string offered_for_;

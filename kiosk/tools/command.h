@@ -1,6 +1,7 @@
-// What a key or a button of a panel asks for, and the one table of keys that the program, its help panel and docs/kiosk.md share.
+// What a key or an entry of the menu asks for: one table that the program, its menu, its help panel and docs/kiosk.md share.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,14 +18,48 @@ enum class Command : std::uint8_t {
   save_as,
   undo,
   redo,
+  compare,
   cancel,
+  expression,
+  outline_kind,
+  toggle_through,
   grow,
   shrink,
   invert,
+  region,
+  region_by,
+  wider_angle,
+  narrower_angle,
+  region_across_welds,
+  type_number,
+  next_tool,
+  pick_axis,
+  axis_edge,
+  axis_x,
+  axis_y,
+  axis_z,
+  no_axis,
+  shaping_panel,
+  falloff,
+  flatter,
+  less_flat,
+  along,
+  free_ends,
+  origin,
+  each_normal,
+  move_limit,
+  symmetry,
+  symmetry_place,
+  weights_across_welds,
   hide,
   only,
   show_all,
-  toggle_through,
+  reverse,
+  lock,
+  unlock,
+  hide_file,
+  only_file,
+  lock_file,
   fit,
   view_front,
   view_back,
@@ -34,6 +69,7 @@ enum class Command : std::uint8_t {
   view_bottom,
   view_oblique,
   colour_mode,
+  shadows,
   next_profile,
   selection_to_plane,
   keep_selection_in_plane,
@@ -43,32 +79,32 @@ enum class Command : std::uint8_t {
   narrower_comfort,
   rearm,
   fullscreen,
+  menu,
   help,
 };
+inline constexpr std::size_t kCommandCount = static_cast<std::size_t>(Command::help) + 1;
+
+enum class Menu : std::uint8_t { file, edit, select, shape, parts, view, display, help };
+inline constexpr std::array<std::string_view, 8> kMenuNames{"File", "Edit", "Select", "Shape", "Parts", "View", "Display", "Help"};
 
 struct KeyBinding {
   display::Key key = display::Key::none;
   bool ctrl = false;
   bool shift = false;
   Command command = Command::cancel;
+  Menu menu = Menu::file;    ///< where its entry stands
   std::string_view label;    ///< the key as people write it: "Ctrl+Shift+S"
-  std::string_view meaning;  ///< what it does, a short sentence part
+  std::string_view meaning;  ///< what it does, a short sentence part; the entry's text
 };
 
-/// All keys, in the order in which help shows them.
+/// All commands with their keys, in the order in which help and the menu show them.
 std::span<const KeyBinding> key_bindings();
 
-/// The command of a key, if it has one. Shift must match for keys with Ctrl; elsewhere it is ignored.
+/// The command of a key, if it has one. Shift must match for keys with Ctrl; elsewhere a key with Shift that has no meaning of its own has
+/// that of the plain key.
 std::optional<Command> command_for(display::Key key, const display::Modifiers& modifiers);
 
 /// Whether a key held down asks for it again and again.
 bool repeats(Command command);
-
-struct MouseBinding {
-  std::string_view gesture;
-  std::string_view meaning;
-};
-/// What the mouse does, in the order in which help shows it.
-std::span<const MouseBinding> mouse_bindings();
 
 }  // namespace prismesh::kiosk::tools

@@ -6,74 +6,113 @@ namespace {
 using display::MouseButton;
 using mesh::document::SelectMode;
 
+constexpr double kPixelsPerZoomStep = 30;
+
 double distance(const Pixel& a, const Pixel& b) { return (a - b).norm(); }
 
-SelectMode mode_for(const display::Modifiers& modifiers) {
-  return modifiers.ctrl ? SelectMode::subtract : modifiers.shift ? SelectMode::add : SelectMode::set;
-}
+bool moves_view(DragDoes does) { return does == DragDoes::orbit || does == DragDoes::pan || does == DragDoes::zoom; }
 
 }  // namespace
+
+SelectMode Gestures::mode() const {
+  if (layout_.takes_modifiers(button_, modifiers_)) return SelectMode::set;
+  if (modifiers_.ctrl) return modifiers_.shift ? SelectMode::intersect : SelectMode::subtract;
+  return modifiers_.shift ? SelectMode::add : SelectMode::set;
+}
 
 std::vector<Gesture> Gestures::moved(const display::PointerMoved& event) {
   const Pixel at(event.x, event.y);
   position_ = at;
-  if (drag_ == Drag::pressed && distance(at, down_) > kClickRadius) {
-    if (handle_below_) {
-      last_click_.reset();
-      drag_ = Drag::handle;
-      last_ = at;
-      return {HandleTaken{*handle_below_, down_}, HandleMoved{at}};
-    }
-    begin_drag();
-  }
-  const Pixel before = last_;
-  last_ = at;
-  switch (drag_) {
-    case Drag::rectangle: return {RectangleStretched{down_, at}};
-    case Drag::orbit: return {Orbited{at.x() - before.x(), at.y() - before.y(), down_}};
-    case Drag::pan: return {Panned{at.x() - before.x(), at.y() - before.y(), down_}};
-    case Drag::handle: return {HandleMoved{at}};
-    default: return {};
+  if (navigation_) return navigated(at);
+  if (drag_ == Drag::pressed && distance(at, down_) > kClickRadius) return begin_drag(at);
+  if (drag_ == Drag::handle) return {HandleMoved{at}};
+  if (drag_ != Drag::outline) return {};
+  lengthen(at);
+  return {OutlineDrawn{way_, outline_ == DragDoes::other_outline}};
+}
+
+std::vector<Gesture> Gestures::navigated(const Pixel& at) {
+  const Pixel by = at - navigation_->last;
+  navigation_->last = at;
+  switch (navigation_->does) {
+    case DragDoes::pan: return {Panned{by.x(), by.y(), navigation_->from, at}};
+    case DragDoes::zoom: return {Zoomed{navigation_->from, -by.y() / kPixelsPerZoomStep}};
+    default: return {Orbited{by.x(), by.y(), navigation_->from, at}};
   }
 }
 
-void Gestures::begin_drag() {
-  last_click_.reset();
-  if (button_ == MouseButton::middle || (button_ == MouseButton::right && modifiers_.alt))
-    drag_ = Drag::pan;
-  else if (button_ == MouseButton::right || modifiers_.alt)
-    drag_ = Drag::orbit;
+void Gestures::lengthen(const Pixel& at) {
+  if (way_.size() < 2)
+    way_.push_back(at);
   else
-    drag_ = Drag::rectangle;
-  last_ = down_;
+    way_.back() = at;  // its end follows the pointer; a point stays where it is far enough from the one before
+  if (distance(way_[way_.size() - 2], at) >= kOutlineStep && way_.size() < kMostOutlinePoints) way_.push_back(at);
+}
+
+std::vector<Gesture> Gestures::begin_drag(const Pixel& at) {
+  last_click_.reset();
+  if (handle_below_) {
+    drag_ = Drag::handle;
+    return {HandleTaken{*handle_below_, down_}, HandleMoved{at}};
+  }
+  const DragDoes does = layout_.drag(button_, modifiers_);
+  if (moves_view(does)) {
+    drag_ = Drag::view;
+    navigation_ = Navigation{button_, does, down_, down_};
+    return navigated(at);
+  }
+  drag_ = Drag::outline;
+  outline_ = does;
+  way_ = {down_};
+  lengthen(at);
+  return {OutlineDrawn{way_, outline_ == DragDoes::other_outline}};
 }
 
 std::vector<Gesture> Gestures::button(const display::ButtonChanged& event, Under under) {
   position_ = Pixel(event.x, event.y);
-  if (event.down) return drag_ == Drag::none ? pressed(event, under) : std::vector<Gesture>{};  // a second button changes nothing
+  if (event.down) return drag_ == Drag::none ? pressed(event, under) : second_pressed(event, under);
+  if (navigation_ && drag_ != Drag::view && event.button == navigation_->button) {
+    navigation_.reset();
+    return {};
+  }
   return event.button == button_ ? released(event) : std::vector<Gesture>{};
+}
+
+/// While something is drawn or pulled, another button moves the view and nothing else.
+std::vector<Gesture> Gestures::second_pressed(const display::ButtonChanged& event, Under under) {
+  const bool waits = drag_ == Drag::outline || drag_ == Drag::handle;
+  if (!waits || navigation_ || event.button == button_ || under == Under::panel) return {};
+  const Pixel at(event.x, event.y);
+  if (const DragDoes does = layout_.drag(event.button, event.modifiers); moves_view(does))
+    navigation_ = Navigation{event.button, does, at, at};
+  return {};
 }
 
 std::vector<Gesture> Gestures::pressed(const display::ButtonChanged& event, Under under) {
   button_ = event.button;
   modifiers_ = event.modifiers;
-  down_ = last_ = Pixel(event.x, event.y);
-  const bool handle =
-      (under == Under::lift_handle || under == Under::move_handle) && event.button == MouseButton::left && !event.modifiers.alt;
+  down_ = Pixel(event.x, event.y);
+  navigation_.reset();
   handle_below_.reset();
   if (under == Under::panel) {
     drag_ = Drag::panel;
-  } else if (handle && second_click(event.time_ms)) {
+    return {};
+  }
+  drag_ = Drag::pressed;
+  const bool plain_left = event.button == MouseButton::left && !event.modifiers.alt;
+  if (under == Under::picture || !plain_left) return {};
+  if (under == Under::slide_handle) {
+    // The disk lies over nodes that may be meant: only a drag takes it, and only one that doesn't select.
+    if (!event.modifiers.shift && !event.modifiers.ctrl) handle_below_ = under;
+    return {};
+  }
+  if (second_click(event.time_ms)) {
     // The first click has put the handle under the pointer, perhaps before the second one came.
     handle_below_ = under;
-    drag_ = Drag::pressed;
-  } else if (handle) {
-    drag_ = Drag::handle;
-    return {HandleTaken{under, down_}};
-  } else {
-    drag_ = Drag::pressed;
+    return {};
   }
-  return {};
+  drag_ = Drag::handle;
+  return {HandleTaken{under, down_}};
 }
 
 bool Gestures::second_click(std::int64_t time_ms) const {
@@ -83,10 +122,14 @@ bool Gestures::second_click(std::int64_t time_ms) const {
 std::vector<Gesture> Gestures::released(const display::ButtonChanged& event) {
   const Drag was = drag_;
   drag_ = Drag::none;
+  navigation_.reset();
   const Pixel at(event.x, event.y);
   switch (was) {
     case Drag::pressed: return clicked(event);
-    case Drag::rectangle: return {RectangleDone{down_, at, mode_for(modifiers_)}};
+    case Drag::outline:
+      lengthen(at);
+      return {OutlineDone{std::exchange(way_, {}), outline_ == DragDoes::other_outline,
+                          outline_ == DragDoes::remove_outline ? SelectMode::subtract : mode()}};
     case Drag::handle: return {HandleReleased{at}};
     default: return {};
   }
@@ -94,29 +137,38 @@ std::vector<Gesture> Gestures::released(const display::ButtonChanged& event) {
 
 std::vector<Gesture> Gestures::clicked(const display::ButtonChanged& event) {
   if (modifiers_.alt) return {};
-  if (event.button == MouseButton::middle) return {TakeBackClicked{}};
-  if (event.button == MouseButton::right) return {NodeClicked{down_, SelectMode::subtract}};
-  const SelectMode mode = mode_for(modifiers_);
-  if (second_click(event.time_ms)) {
+  if (second_click(event.time_ms) && layout_.double_click(event.button, modifiers_) == ClickDoes::region) {
     const Pixel first = *last_click_;
     last_click_.reset();
-    return {RegionClicked{first, mode}};
+    return {RegionClicked{first, mode()}};
   }
-  last_click_ = down_;
-  last_click_ms_ = event.time_ms;
-  return {NodeClicked{down_, mode}};
+  last_click_.reset();
+  switch (layout_.click(event.button, modifiers_)) {
+    case ClickDoes::take_back: return {TakeBackClicked{}};
+    case ClickDoes::unpick: return {NodeClicked{down_, SelectMode::subtract}};
+    case ClickDoes::region: return {RegionClicked{down_, mode()}};
+    case ClickDoes::pick:
+      last_click_ = down_;
+      last_click_ms_ = event.time_ms;
+      return {NodeClicked{down_, mode()}};
+    case ClickDoes::nothing: break;
+  }
+  return {};
 }
 
 std::vector<Gesture> Gestures::wheel(const display::WheelTurned& event, Under under) {
   position_ = Pixel(event.x, event.y);
   if (under == Under::panel) return {};
+  if (layout_.wheel(event.modifiers) == WheelDoes::angle) return {AngleTurned{event.steps}};
   return {Zoomed{Pixel(event.x, event.y), event.steps}};
 }
 
 bool Gestures::cancel() {
-  const bool something = drag_ == Drag::rectangle || drag_ == Drag::handle;
+  const bool something = drag_ == Drag::outline || drag_ == Drag::handle;
   if (drag_ != Drag::none) drag_ = Drag::dead;
+  navigation_.reset();
   last_click_.reset();
+  way_.clear();
   return something;
 }
 

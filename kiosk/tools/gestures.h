@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "kiosk/display/window.h"
+#include "kiosk/tools/mouse_layout.h"
 #include "mesh/document/edit.h"
 
 namespace prismesh::kiosk::tools {
@@ -17,7 +18,7 @@ namespace prismesh::kiosk::tools {
 using Pixel = Eigen::Vector2d;
 
 /// What lies under the pointer when a button goes down.
-enum class Under : std::uint8_t { picture, panel, lift_handle, move_handle };
+enum class Under : std::uint8_t { picture, panel, lift_handle, slide_handle, move_handle, turn_handle };
 
 struct NodeClicked {
   Pixel at = Pixel::Zero();
@@ -28,24 +29,33 @@ struct RegionClicked {
   mesh::document::SelectMode mode = mesh::document::SelectMode::set;
 };
 struct TakeBackClicked {};
-struct RectangleStretched {
-  Pixel from = Pixel::Zero(), to = Pixel::Zero();
+/// An outline while it is drawn: the pointer's way, from where the button went down. What is made of it, a lasso or the rectangle between
+/// its ends, is for those who draw it.
+struct OutlineDrawn {
+  std::vector<Pixel> way;
+  bool other_kind = false;
 };
-struct RectangleDone {
-  Pixel from = Pixel::Zero(), to = Pixel::Zero();
+struct OutlineDone {
+  std::vector<Pixel> way;
+  bool other_kind = false;
   mesh::document::SelectMode mode = mesh::document::SelectMode::set;
 };
 struct Orbited {
   double dx = 0, dy = 0;       ///< pixels since the last one
   Pixel from = Pixel::Zero();  ///< where the drag began
+  Pixel at = Pixel::Zero();
 };
 struct Panned {
   double dx = 0, dy = 0;
   Pixel from = Pixel::Zero();
+  Pixel at = Pixel::Zero();
 };
 struct Zoomed {
-  Pixel at = Pixel::Zero();
-  double steps = 0;  ///< positive: nearer
+  Pixel at = Pixel::Zero();  ///< what is seen there stays there
+  double steps = 0;          ///< positive: nearer
+};
+struct AngleTurned {
+  double steps = 0;  ///< positive: wider
 };
 struct HandleTaken {
   Under handle = Under::lift_handle;
@@ -58,22 +68,30 @@ struct HandleReleased {
   Pixel at = Pixel::Zero();
 };
 
-using Gesture = std::variant<NodeClicked, RegionClicked, TakeBackClicked, RectangleStretched, RectangleDone, Orbited, Panned, Zoomed,
+using Gesture = std::variant<NodeClicked, RegionClicked, TakeBackClicked, OutlineDrawn, OutlineDone, Orbited, Panned, Zoomed, AngleTurned,
                              HandleTaken, HandleMoved, HandleReleased>;
 
 /// How far a pressed pointer may wander and still be a click, in pixels; and how quickly a second click must follow.
 inline constexpr double kClickRadius = 4;
 inline constexpr std::int64_t kDoubleClickMs = 400;
 
-/// Follows one mouse. A button pressed over a panel belongs to the panel until it is released.
+/// An outline's way has a point every so many pixels, and not more than an edit may have.
+inline constexpr double kOutlineStep = 2;
+inline constexpr std::size_t kMostOutlinePoints = 100'000;
+
+/// Follows one mouse. A button pressed over a panel belongs to the panel until it is released. While something is drawn or pulled with one
+/// button, another one may move the view: what was begun waits where it is, and goes on when that button is up.
 class Gestures {
  public:
+  explicit Gestures(MouseLayout layout = default_mouse_layout()) : layout_(std::move(layout)) {}
+  const MouseLayout& layout() const { return layout_; }
+
   std::vector<Gesture> moved(const display::PointerMoved& event);
   /// `under` is looked at when the button goes down only.
   std::vector<Gesture> button(const display::ButtonChanged& event, Under under);
   std::vector<Gesture> wheel(const display::WheelTurned& event, Under under);
 
-  /// Gives up what is under way: releasing the button will do nothing. True if a rectangle or a handle was being dragged.
+  /// Gives up what is under way: releasing the button will do nothing. True if an outline or a handle was being dragged.
   bool cancel();
 
   /// Something else was done: the next click is no second one.
@@ -81,27 +99,41 @@ class Gestures {
 
   std::optional<Pixel> position() const { return position_; }
   void left() { position_.reset(); }
-  /// Whether something in the picture follows the pointer: the view, a rectangle or a handle.
-  bool dragging() const { return drag_ == Drag::rectangle || drag_ == Drag::orbit || drag_ == Drag::pan || drag_ == Drag::handle; }
+  /// Whether something in the picture follows the pointer: the view, an outline or a handle.
+  bool dragging() const { return drag_ == Drag::outline || drag_ == Drag::view || drag_ == Drag::handle; }
 
  private:
-  enum class Drag : std::uint8_t { none, panel, dead, pressed, rectangle, orbit, pan, handle };
+  enum class Drag : std::uint8_t { none, panel, dead, pressed, outline, view, handle };
+  /// The view being moved.
+  struct Navigation {
+    display::MouseButton button = display::MouseButton::left;
+    DragDoes does = DragDoes::orbit;
+    Pixel from = Pixel::Zero();
+    Pixel last = Pixel::Zero();
+  };
 
   std::vector<Gesture> pressed(const display::ButtonChanged& event, Under under);
+  std::vector<Gesture> second_pressed(const display::ButtonChanged& event, Under under);
   std::vector<Gesture> released(const display::ButtonChanged& event);
   std::vector<Gesture> clicked(const display::ButtonChanged& event);
-  void begin_drag();
+  std::vector<Gesture> begin_drag(const Pixel& at);
+  std::vector<Gesture> navigated(const Pixel& at);
+  mesh::document::SelectMode mode() const;
+  void lengthen(const Pixel& at);
   /// The button goes down where and soon after it was clicked.
   bool second_click(std::int64_t time_ms) const;
 
+  MouseLayout layout_;
   Drag drag_ = Drag::none;
   display::MouseButton button_ = display::MouseButton::left;
   display::Modifiers modifiers_;
   Pixel down_ = Pixel::Zero();
-  Pixel last_ = Pixel::Zero();
+  std::vector<Pixel> way_;  ///< of an outline
+  DragDoes outline_ = DragDoes::outline;
+  std::optional<Navigation> navigation_;
   std::optional<Pixel> position_;
   std::optional<Pixel> last_click_;
-  std::optional<Under> handle_below_;  ///< of a press that may become a double click
+  std::optional<Under> handle_below_;  ///< of a press that may become a click
   std::int64_t last_click_ms_ = 0;
 };
 

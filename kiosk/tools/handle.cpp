@@ -1,7 +1,10 @@
 #include "kiosk/tools/handle.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -92,13 +95,52 @@ bool points_at_viewer(const stereo::Aim& aim, const Vec3& at, const Vec3& direct
   return !foot || !tip || (*tip - *foot).norm() < 2 * kRingRadiusPixels;
 }
 
-Under part_of_handle(const stereo::Aim& aim, const Vec3& at, const Vec3& direction, const Pixel& pixel) {
-  const std::optional<Pixel> foot = stereo::pixel_of(aim, at);
+namespace {
+
+constexpr double kSlackPixels = 8;
+constexpr int kCircleSteps = 180;
+constexpr double kLeastFacing = 0.12;  ///< of a plane to the line of sight: under it a pointer can't be followed in the plane
+
+bool on_disk_at(const stereo::Aim& aim, const Vec3& at, const Vec3& direction, const Pixel& pixel) {
+  const Vec3 edge = stereo::handle_tip(aim, at, direction) - at;  // as long as the arrow
+  const double radius = edge.norm() * render::kHandleDiskPixels / stereo::kHandleLengthPixels;
+  const stereo::Ray ray = stereo::ray_through(aim, pixel);
+  const double facing = ray.direction.dot(direction);
+  if (facing == 0) return false;
+  return (ray.origin + ray.direction * ((at - ray.origin).dot(direction) / facing) - at).norm() <= radius;
+}
+
+Vec3 turned(const Axis& axis, const Vec3& point, double degrees) {
+  return axis.point + Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.direction) * (point - axis.point);
+}
+
+bool on_circle(const stereo::Aim& aim, const Axis& axis, const Vec3& at, const Pixel& pixel) {
+  const auto ball = stereo::pixel_of(aim, at);
+  if (ball && (*ball - pixel).norm() <= render::kHandleBallPixels + kSlackPixels) return true;
+  std::optional<Pixel> before;
+  for (int step = 0; step <= kCircleSteps; ++step) {
+    const std::optional<Pixel> now = stereo::pixel_of(aim, turned(axis, at, 360.0 * step / kCircleSteps));
+    if (before && now) {
+      const Pixel way = *now - *before;
+      const double length = way.squaredNorm(), share = length > 0 ? std::clamp((pixel - *before).dot(way) / length, 0.0, 1.0) : 0;
+      if ((pixel - (*before + share * way)).norm() <= kSlackPixels) return true;
+    }
+    before = now;
+  }
+  return false;
+}
+
+}  // namespace
+
+Under part_of_handle(const stereo::Aim& aim, const render::Handle& handle, const Pixel& pixel) {
+  const std::optional<Pixel> foot = stereo::pixel_of(aim, handle.at);
   if (!foot) return Under::picture;
-  const bool on_arrow = stereo::on_handle(aim, at, direction, pixel);
-  if (on_arrow && points_at_viewer(aim, at, direction)) return Under::lift_handle;
+  if (handle.turn) return on_circle(aim, {handle.turn->point, handle.turn->axis}, handle.at, pixel) ? Under::turn_handle : Under::picture;
+  const bool on_arrow = stereo::on_handle(aim, handle.at, handle.direction, pixel);
+  if (on_arrow && points_at_viewer(aim, handle.at, handle.direction)) return Under::lift_handle;
   if ((*foot - pixel).norm() <= kRingRadiusPixels) return Under::move_handle;
-  return on_arrow ? Under::lift_handle : Under::picture;
+  if (on_arrow) return Under::lift_handle;
+  return on_disk_at(aim, handle.at, handle.direction, pixel) ? Under::slide_handle : Under::picture;
 }
 
 Vec3 arrow_direction(const stereo::Aim& aim, const Anchor& anchor) {
@@ -107,36 +149,93 @@ Vec3 arrow_direction(const stereo::Aim& aim, const Anchor& anchor) {
   return anchor.normal.dot(stereo::ray_through(aim, *foot).direction) > 0 ? Vec3(-anchor.normal) : anchor.normal;
 }
 
-HandlePull::HandlePull(Under handle, const Vec3& at, const Vec3& direction, const stereo::Aim& aim, const Pixel& pixel)
-    : handle_(handle), start_(at), direction_(direction), taken_(pixel) {
-  const std::optional<double> along_axis = stereo::distance_along(aim, start_, direction_, pixel);
-  upward_ = !along_axis || points_at_viewer(aim, start_, direction_);
-  along_when_taken_ = along_axis.value_or(0);
-  offset_when_taken_ = stereo::displacement_in_screen_plane(aim, start_, pixel);
+HandlePull::HandlePull(Under handle, const Vec3& at, const Vec3& direction, const std::optional<Axis>& axis, const stereo::Aim& aim,
+                       const Pixel& pixel)
+    : handle_(handle), start_(at), direction_(direction), axis_(axis), taken_(pixel) {
+  hold(aim, pixel, {});
+}
+
+void HandlePull::hold(const stereo::Aim& aim, const Pixel& pixel, const Pull& pull) {
+  taken_ = pixel;
+  held_ = pull;
+  upward_ = points_at_viewer(aim, start_, direction_) || !stereo::distance_along(aim, start_, direction_, pixel);
+  const Vec3 normal = axis_ ? axis_->direction : direction_;
+  const stereo::Ray ray = stereo::ray_through(aim, pixel);
+  sideways_ = std::abs(ray.direction.normalized().dot(normal)) < kLeastFacing;
+  when_taken_ = raw(aim, pixel);
 }
 
 double HandlePull::along(const stereo::Aim& aim, const Pixel& pixel) const {
   if (upward_) return (taken_.y() - pixel.y()) * aim.mm_per_pixel() / aim.view.mm_per_unit;
-  return stereo::distance_along(aim, start_, direction_, pixel).value_or(along_when_taken_);
+  return stereo::distance_along(aim, start_, direction_, pixel).value_or(when_taken_.distance);
 }
 
-Pull HandlePull::at(const stereo::Aim& aim, const Pixel& pixel) const {
+/// The place under the pointer in the plane of the disk. Seen from its edge: what the pointer does across the screen, without what leads
+/// out of the plane.
+Vec3 HandlePull::on_disk(const stereo::Aim& aim, const Pixel& pixel) const {
+  if (sideways_) {
+    const Vec3 by = stereo::displacement_in_screen_plane(aim, start_, pixel);
+    return by - direction_ * by.dot(direction_);
+  }
+  const stereo::Ray ray = stereo::ray_through(aim, pixel);
+  const double facing = ray.direction.dot(direction_);
+  const double at = (start_ - ray.origin).dot(direction_) / facing;
+  if (!(at > 0) || !std::isfinite(at)) return when_taken_.by;  // above the horizon
+  return ray.origin + ray.direction * at - start_;
+}
+
+/// The angle of the place under the pointer in the plane that is turned. Seen from its edge: as far as the pointer goes where the ball
+/// goes.
+double HandlePull::degrees(const stereo::Aim& aim, const Pixel& pixel) const {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  const Vec3 centre = axis_->point + axis_->direction * (start_ - axis_->point).dot(axis_->direction);
+  const Vec3 a = start_ - centre, b = axis_->direction.cross(a);
+  if (!sideways_) {
+    const stereo::Ray ray = stereo::ray_through(aim, pixel);
+    const double at = (centre - ray.origin).dot(axis_->direction) / ray.direction.dot(axis_->direction);
+    const Vec3 out = ray.origin + ray.direction * at - centre;
+    if (at > 0 && std::isfinite(at)) return std::atan2(out.dot(b), out.dot(a)) * kDegrees;
+    return when_taken_.degrees;
+  }
+  const Vec3 here = turned(*axis_, start_, held_.degrees), ahead = turned(*axis_, start_, held_.degrees + 1);
+  const auto from = stereo::pixel_of(aim, here), to = stereo::pixel_of(aim, ahead);
+  if (!from || !to || (*to - *from).norm() < 1e-9) return 0;
+  return (pixel - taken_).dot(*to - *from) / (*to - *from).squaredNorm();
+}
+
+Pull HandlePull::raw(const stereo::Aim& aim, const Pixel& pixel) const {
   Pull pull;
-  if (handle_ == Under::move_handle)
-    pull.by = stereo::displacement_in_screen_plane(aim, start_, pixel) - offset_when_taken_;
-  else
-    pull.distance = sense_ * (along(aim, pixel) - along_when_taken_);
+  switch (handle_) {
+    case Under::move_handle: pull.by = stereo::displacement_in_screen_plane(aim, start_, pixel); break;
+    case Under::slide_handle: pull.by = on_disk(aim, pixel); break;
+    case Under::turn_handle: pull.degrees = degrees(aim, pixel); break;
+    default: pull.distance = along(aim, pixel); break;
+  }
   return pull;
 }
 
-Vec3 HandlePull::foot(const Pull& pull) const { return start_ + pull.by + direction_ * (sense_ * pull.distance); }
+Pull HandlePull::at(const stereo::Aim& aim, const Pixel& pixel, const Pull& before) const {
+  const Pull now = raw(aim, pixel);
+  Pull pull;
+  pull.by = held_.by + now.by - when_taken_.by;
+  pull.distance = held_.distance + sense_ * (now.distance - when_taken_.distance);
+  pull.degrees = held_.degrees + now.degrees - when_taken_.degrees;
+  if (handle_ == Under::turn_handle && !sideways_) pull.degrees -= 360 * std::round((pull.degrees - before.degrees) / 360);
+  return pull;
+}
+
+Vec3 HandlePull::foot(const Pull& pull) const {
+  if (handle_ == Under::turn_handle) return turned(*axis_, start_, pull.degrees);
+  return start_ + pull.by + direction_ * (sense_ * pull.distance);
+}
 
 void HandlePull::set_axis(const stereo::Aim& aim, const Vec3& at, const Vec3& normal) {
-  sense_ = normal.dot(direction_) < 0 ? -1 : 1;
   start_ = at;
-  direction_ = sense_ * normal;
-  if (!upward_) along_when_taken_ = stereo::distance_along(aim, start_, direction_, taken_).value_or(along_when_taken_);
-  offset_when_taken_ = stereo::displacement_in_screen_plane(aim, start_, taken_);
+  if (normal.norm() > 0) {
+    sense_ = normal.dot(direction_) < 0 ? -1 : 1;
+    direction_ = sense_ * normal;
+  }
+  if (!upward_ || handle_ != Under::lift_handle) when_taken_ = raw(aim, taken_);
 }
 
 }  // namespace prismesh::kiosk::tools

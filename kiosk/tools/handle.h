@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "kiosk/render/model_source.h"
+#include "kiosk/render/renderer.h"
 #include "kiosk/stereo/pointer.h"
 #include "kiosk/tools/gestures.h"
 
@@ -31,47 +32,65 @@ std::optional<Anchor> anchor_of_selection(const render::ModelSource& model, std:
 /// Whether the arrow is so foreshortened that it can't be followed along its length: then it is pulled by moving upward.
 bool points_at_viewer(const stereo::Aim& aim, const Vec3& at, const Vec3& direction);
 
-/// Which part of a handle a pixel is on: the ring about its foot, its arrow, or (picture) neither. `direction` is the arrow's. An
-/// arrow that points at the viewer stands in the ring and goes first.
-Under part_of_handle(const stereo::Aim& aim, const Vec3& at, const Vec3& direction, const Pixel& pixel);
-inline constexpr double kRingRadiusPixels = 12;
+/// Which part of a handle a pixel is on: the ring about its foot, its arrow, the disk, or (picture) none of them. An arrow that points at
+/// the viewer stands in the ring and goes first. A handle with an axis has the ball and its circle only.
+Under part_of_handle(const stereo::Aim& aim, const render::Handle& handle, const Pixel& pixel);
+inline constexpr double kRingRadiusPixels = render::kHandleRingPixels;
 
 /// The arrow's direction: along the normal, on the viewer's side of the surface, so that the model never hides it.
 Vec3 arrow_direction(const stereo::Aim& aim, const Anchor& anchor);
 
-/// How far a handle has been pulled, in the deck's length unit.
-struct Pull {
-  Vec3 by = Vec3::Zero();  ///< of the ring
-  double distance = 0;     ///< of the arrow, along the normal (see HandlePull::set_axis)
+/// An axis to turn about, deck coordinates.
+struct Axis {
+  Vec3 point = Vec3::Zero();
+  Vec3 direction = Vec3::UnitZ();  ///< unit
+  bool operator==(const Axis&) const = default;
 };
 
-/// One pull, from taking the handle to letting it go. The view may change meanwhile.
+/// How far a handle has been pulled, in the deck's length unit and degrees: what an edit of the handle's kind takes.
+using Pull = mesh::document::Displacement;
+
+/// One pull, from taking the handle to letting it go. The view may change meanwhile (see `hold`).
 class HandlePull {
  public:
-  HandlePull(Under handle, const Vec3& at, const Vec3& direction, const stereo::Aim& aim, const Pixel& pixel);
-  Pull at(const stereo::Aim& aim, const Pixel& pixel) const;
+  /// `axis` is needed by the turning handle only.
+  HandlePull(Under handle, const Vec3& at, const Vec3& direction, const std::optional<Axis>& axis, const stereo::Aim& aim,
+             const Pixel& pixel);
+  /// Where the pointer brings it; `before` is where it was, so that a turn may go round more than once.
+  Pull at(const stereo::Aim& aim, const Pixel& pixel, const Pull& before = {}) const;
+  /// The view has changed: from now on this pixel means this pull.
+  void hold(const stereo::Aim& aim, const Pixel& pixel, const Pull& pull);
   /// Where a pull has brought the handle's foot.
   Vec3 foot(const Pull& pull) const;
   /// The lift as the hand sees it: positive where the arrow points.
   double along_arrow(const Pull& pull) const { return sense_ * pull.distance; }
+  /// The lift that takes it so far along the arrow.
+  double lift_of(double along_arrow) const { return sense_ * along_arrow; }
   /// The grab and the unit normal that the model server works with; the normal's sense may differ from the arrow's.
   void set_axis(const stereo::Aim& aim, const Vec3& at, const Vec3& normal);
 
   Under handle() const { return handle_; }
   const Vec3& start() const { return start_; }
   const Vec3& direction() const { return direction_; }
+  const std::optional<Axis>& axis() const { return axis_; }
 
  private:
+  /// What the pointer points at, in the way this handle reads it, without regard to where it was taken.
+  Pull raw(const stereo::Aim& aim, const Pixel& pixel) const;
+  Vec3 on_disk(const stereo::Aim& aim, const Pixel& pixel) const;
   double along(const stereo::Aim& aim, const Pixel& pixel) const;
+  double degrees(const stereo::Aim& aim, const Pixel& pixel) const;
 
   Under handle_;
   Vec3 start_;
   Vec3 direction_;
+  std::optional<Axis> axis_;
   Pixel taken_;
-  double sense_ = 1;     ///< of the normal against the arrow
-  bool upward_ = false;  ///< the arrow pointed at the viewer when it was taken
-  double along_when_taken_ = 0;
-  Vec3 offset_when_taken_ = Vec3::Zero();
+  double sense_ = 1;       ///< of the normal against the arrow
+  bool upward_ = false;    ///< the arrow points at the viewer since the pixel was last held
+  bool sideways_ = false;  ///< the disk or the circle is seen from its edge
+  Pull when_taken_;        ///< raw
+  Pull held_;              ///< the pull that it stood for
 };
 
 }  // namespace prismesh::kiosk::tools

@@ -28,6 +28,13 @@ TEST(Messages, RequestsSurviveARoundTrip) {
   EXPECT_EQ(std::get<DragStep>(step->request).by[0], 1.0 / 3);
   EXPECT_EQ(std::get<DragStep>(step->request).by[2], 1e-300);
 
+  const auto count = decode_request(encode_request(2, Count{"part:3", mesh::select::Kind::part}).value());
+  ASSERT_TRUE(count) << count.error().message;
+  EXPECT_EQ(std::get<Count>(count->request).expr, "part:3");
+  EXPECT_EQ(std::get<Count>(count->request).kind, mesh::select::Kind::part);
+  EXPECT_NE(refusal(R"({"request": "count", "number": 1, "kind": "nodes"})").find("must be \"node\", \"element\" or \"part\""),
+            std::string::npos);
+
   mesh::document::Select select;
   select.expr = "1-100";
   const auto edit = decode_request(encode_request(5, ApplyEdit{select}).value());
@@ -40,6 +47,8 @@ TEST(Messages, AnswersAndEventsSurviveARoundTrip) {
   state.open = true;
   state.generation = ~std::uint64_t{0};
   state.counts = {1, 2, 3};
+  state.history_bytes = 17;
+  state.files.push_back({"parts/hood.k", 12, {3, 7}});
   state.warnings.push_back({"a.k", 7, "missing-include", "it isn't there", 2});
   const Result<FromDaemon> answer = decode_from_daemon(encode_answer(9, state, 1));
   ASSERT_TRUE(answer) << answer.error().text();
@@ -50,6 +59,10 @@ TEST(Messages, AnswersAndEventsSurviveARoundTrip) {
   EXPECT_EQ(back.counts, state.counts);
   ASSERT_EQ(back.warnings.size(), 1u);
   EXPECT_EQ(back.warnings[0].line, 7);
+  EXPECT_EQ(back.history_bytes, 17u);
+  ASSERT_EQ(back.files.size(), 1u);
+  EXPECT_EQ(back.files[0].name, "parts/hood.k");
+  EXPECT_EQ(back.files[0].parts, (std::vector<std::int64_t>{3, 7}));
 
   const Result<FromDaemon> event = decode_from_daemon(encode_event(DragEnded{4, true, "why"}));
   ASSERT_TRUE(event) << event.error().text();

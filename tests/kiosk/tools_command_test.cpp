@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "kiosk/tools/mouse_layout.h"
+
 namespace prismesh::kiosk::tools {
 namespace {
 
@@ -28,7 +30,29 @@ TEST(KeysTest, every_key_finds_its_command) {
 TEST(KeysTest, shift_tells_save_from_save_as_but_does_not_stop_a_plain_key) {
   EXPECT_EQ(command_for(display::letter('S'), {false, true, false}), Command::save);
   EXPECT_EQ(command_for(display::letter('S'), {true, true, false}), Command::save_as);
-  EXPECT_EQ(command_for(display::letter('G'), {true, false, false}), Command::grow);
+  EXPECT_EQ(command_for(display::letter('C'), {true, false, false}), Command::compare);
+  EXPECT_EQ(command_for(display::letter('R'), {true, false, false}), Command::region_by) << "Shift+R has a meaning of its own";
+}
+
+TEST(KeysTest, every_command_has_a_key_and_a_menu_entry_with_words) {
+  std::set<Command> seen;
+  for (const KeyBinding& binding : key_bindings()) {
+    EXPECT_TRUE(seen.insert(binding.command).second) << binding.label << ": the command stands in the table twice";
+    EXPECT_NE(binding.key, display::Key::none) << binding.meaning;
+    EXPECT_FALSE(binding.label.empty()) << binding.meaning;
+    EXPECT_FALSE(binding.meaning.empty()) << binding.label;
+    EXPECT_LT(static_cast<std::size_t>(binding.menu), kMenuNames.size()) << binding.label;
+  }
+  EXPECT_EQ(seen.size(), kCommandCount) << "a command lacks its row";
+}
+
+TEST(KeysTest, a_label_says_which_key_it_is) {
+  for (const KeyBinding& binding : key_bindings()) {
+    EXPECT_EQ(binding.label.find("Ctrl+") != std::string_view::npos, binding.ctrl) << binding.label;
+    EXPECT_EQ(binding.label.find("Shift+") != std::string_view::npos, binding.shift) << binding.label;
+    const std::string_view key = binding.label.substr(binding.label.rfind('+') + 1);
+    if (key.size() == 1) EXPECT_EQ(static_cast<int>(binding.key), key[0]) << binding.label;
+  }
 }
 
 TEST(KeysTest, unknown_keys_and_keys_with_alt_do_nothing) {
@@ -47,8 +71,8 @@ TEST(KeysTest, the_documentation_lists_every_key_and_gesture_as_the_program_has_
     const std::string row = "| " + std::string(binding.label) + " | " + std::string(binding.meaning) + " |";
     EXPECT_NE(page.find(row), std::string::npos) << "docs/kiosk.md lacks the row\n" << row;
   }
-  for (const MouseBinding& binding : mouse_bindings()) {
-    const std::string row = "| " + std::string(binding.gesture) + " | " + std::string(binding.meaning) + " |";
+  for (const MouseBinding& binding : default_mouse_layout().in_words()) {
+    const std::string row = "| " + binding.gesture + " | " + std::string(binding.meaning) + " |";
     EXPECT_NE(page.find(row), std::string::npos) << "docs/kiosk.md lacks the row\n" << row;
   }
 }

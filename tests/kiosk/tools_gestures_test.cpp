@@ -1,6 +1,8 @@
 // What the mouse means: clicks, double clicks, drags, and whose they are.
 #include "kiosk/tools/gestures.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace prismesh::kiosk::tools {
@@ -109,15 +111,57 @@ TEST_F(GesturesTest, a_hand_that_trembles_still_clicks) {
   only<NodeClicked>(release(102, 50));
 }
 
-TEST_F(GesturesTest, a_left_drag_is_a_rectangle_from_where_the_button_went_down) {
+TEST_F(GesturesTest, a_left_drag_draws_an_outline_from_where_the_button_went_down) {
   press(100, 50, MouseButton::left, {true, false, false});
-  const auto stretched = only<RectangleStretched>(move(160, 90));
-  EXPECT_EQ(stretched.from, Pixel(100, 50));
-  EXPECT_EQ(stretched.to, Pixel(160, 90));
-  const auto done = only<RectangleDone>(release(170, 95));
-  EXPECT_EQ(done.from, Pixel(100, 50));
-  EXPECT_EQ(done.to, Pixel(170, 95));
+  const auto drawn = only<OutlineDrawn>(move(160, 90));
+  EXPECT_EQ(drawn.way.front(), Pixel(100, 50));
+  EXPECT_EQ(drawn.way.back(), Pixel(160, 90));
+  EXPECT_FALSE(drawn.other_kind);
+  move(200, 40);
+  const auto done = only<OutlineDone>(release(170, 95));
+  EXPECT_EQ(done.way.front(), Pixel(100, 50));
+  EXPECT_EQ(done.way.back(), Pixel(170, 95));
+  EXPECT_GE(std::count(done.way.begin(), done.way.end(), Pixel(160, 90)), 1) << "its corners stay";
+  EXPECT_GE(std::count(done.way.begin(), done.way.end(), Pixel(200, 40)), 1);
   EXPECT_EQ(done.mode, SelectMode::add);
+}
+
+TEST_F(GesturesTest, a_trembling_pointer_doesnt_lengthen_the_outline) {
+  press(100, 50);
+  move(160, 90);
+  for (int i = 0; i < 1000; ++i) move(160 + 0.5 * (i % 2), 90);
+  EXPECT_LT(only<OutlineDone>(release(160, 90)).way.size(), 6u);
+}
+
+TEST_F(GesturesTest, shift_and_ctrl_say_how_an_outline_selects) {
+  const auto mode_with = [&](Modifiers modifiers) {
+    press(0, 0, MouseButton::left, modifiers);
+    move(50, 50);
+    return only<OutlineDone>(release(90, 0)).mode;
+  };
+  EXPECT_EQ(mode_with({}), SelectMode::set);
+  EXPECT_EQ(mode_with({true, false, false}), SelectMode::add);
+  EXPECT_EQ(mode_with({false, true, false}), SelectMode::subtract);
+  EXPECT_EQ(mode_with({true, true, false}), SelectMode::intersect);
+}
+
+TEST_F(GesturesTest, alt_draws_the_other_kind_of_outline) {
+  press(0, 0, MouseButton::left, {false, false, true});
+  EXPECT_TRUE(only<OutlineDrawn>(move(20, 0)).other_kind);
+  EXPECT_TRUE(only<OutlineDone>(release(20, 20)).other_kind);
+}
+
+TEST_F(GesturesTest, the_disk_is_taken_by_a_drag_and_lets_clicks_through) {
+  EXPECT_TRUE(press(100, 50, MouseButton::left, {}, Under::slide_handle).empty());
+  only<NodeClicked>(release(100, 50));
+  time_ms_ += 5000;
+  press(100, 50, MouseButton::left, {}, Under::slide_handle);
+  const auto made = move(120, 50);
+  ASSERT_EQ(made.size(), 2u);
+  EXPECT_EQ(std::get<HandleTaken>(made[0]).handle, Under::slide_handle);
+  only<HandleReleased>(release(120, 50));
+  press(100, 50, MouseButton::left, {true, false, false}, Under::slide_handle);
+  only<OutlineDrawn>(move(120, 50));  // with Shift something is added
 }
 
 TEST_F(GesturesTest, a_right_drag_orbits_by_what_the_pointer_moved_and_selects_nothing) {
@@ -131,13 +175,10 @@ TEST_F(GesturesTest, a_right_drag_orbits_by_what_the_pointer_moved_and_selects_n
   EXPECT_TRUE(release(111, 53, MouseButton::right).empty());
 }
 
-TEST_F(GesturesTest, a_middle_drag_pans_and_alt_makes_a_left_drag_orbit) {
+TEST_F(GesturesTest, a_middle_drag_pans_and_so_does_alt_with_the_right_button) {
   press(0, 0, MouseButton::middle);
   only<Panned>(move(20, 0));
   release(20, 0, MouseButton::middle);
-  press(0, 0, MouseButton::left, {false, false, true});
-  only<Orbited>(move(20, 0));
-  release(20, 0);
   press(0, 0, MouseButton::right, {false, false, true});
   only<Panned>(move(20, 0));
 }
@@ -157,11 +198,38 @@ TEST_F(GesturesTest, a_press_on_a_panel_is_the_panels_until_it_is_released) {
   only<Zoomed>(gestures_.wheel(display::WheelTurned{1, 10, 10, {}}, Under::picture));
 }
 
-TEST_F(GesturesTest, a_second_button_does_not_disturb_a_drag) {
+TEST_F(GesturesTest, another_button_moves_the_view_while_a_handle_waits) {
   press(100, 50, MouseButton::left, {}, Under::lift_handle);
-  EXPECT_TRUE(press(100, 50, MouseButton::right).empty());
-  EXPECT_TRUE(release(100, 50, MouseButton::right).empty());
   only<HandleMoved>(move(120, 50));
+  EXPECT_TRUE(press(120, 50, MouseButton::right).empty());
+  const auto orbited = only<Orbited>(move(130, 55));
+  EXPECT_EQ(orbited.dx, 10);
+  EXPECT_EQ(orbited.at, Pixel(130, 55));
+  EXPECT_TRUE(release(130, 55, MouseButton::right).empty());
+  only<HandleMoved>(move(140, 55));
+  only<HandleReleased>(release(140, 55));
+}
+
+TEST_F(GesturesTest, the_view_moves_in_the_middle_of_an_outline_without_a_trace_in_it) {
+  press(100, 50);
+  move(160, 90);
+  press(160, 90, MouseButton::middle);
+  only<Panned>(move(400, 400));
+  release(400, 400, MouseButton::middle);
+  only<Zoomed>(gestures_.wheel(display::WheelTurned{1, 400, 400, {}}, Under::picture));
+  move(200, 30);
+  const auto done = only<OutlineDone>(release(200, 30));
+  for (const Pixel& at : done.way) EXPECT_LT(at.y(), 100) << "the way of the view isn't the outline's";
+}
+
+TEST_F(GesturesTest, letting_the_first_button_go_ends_what_it_began_though_the_view_moves) {
+  press(100, 50, MouseButton::left, {}, Under::move_handle);
+  press(100, 50, MouseButton::right);
+  move(130, 55);
+  only<HandleReleased>(release(130, 55));
+  EXPECT_TRUE(move(150, 55).empty());
+  EXPECT_TRUE(release(150, 55, MouseButton::right).empty());
+  only<NodeClicked>(click(130, 50));
 }
 
 TEST_F(GesturesTest, cancelling_makes_the_release_do_nothing) {

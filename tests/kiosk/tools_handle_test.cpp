@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "kiosk/tools/shaping_options.h"
+
 namespace prismesh::kiosk::tools {
 namespace {
 
@@ -106,28 +108,113 @@ TEST(HandleTest, the_normal_has_the_shells_sense_and_the_arrow_the_viewers_side)
   EXPECT_NEAR((arrow_direction(aim_from("bottom"), *anchor) + Vec3::UnitZ()).norm(), 0, 1e-12);
 }
 
-TEST(HandleTest, ring_and_arrow_are_told_apart) {
-  const stereo::Aim aim = aim_from("front");  // the arrow points up on the screen
+render::Handle handle_at(const Vec3& at, const Vec3& direction) {
+  render::Handle handle;
+  handle.at = at;
+  handle.direction = direction;
+  return handle;
+}
+
+TEST(HandleTest, ring_arrow_and_disk_are_told_apart) {
+  const stereo::Aim aim = aim_from("iso");
   const Vec3 at(40, 40, 0);
+  const render::Handle handle = handle_at(at, Vec3::UnitZ());
   const Pixel foot = *stereo::pixel_of(aim, at), tip = *stereo::pixel_of(aim, stereo::handle_tip(aim, at, Vec3::UnitZ()));
-  EXPECT_LT(tip.y(), foot.y() - 60);
-  EXPECT_EQ(part_of_handle(aim, at, Vec3::UnitZ(), foot), Under::move_handle);
-  EXPECT_EQ(part_of_handle(aim, at, Vec3::UnitZ(), tip), Under::lift_handle);
-  EXPECT_EQ(part_of_handle(aim, at, Vec3::UnitZ(), foot + Pixel(100, 0)), Under::picture);
+  EXPECT_EQ(part_of_handle(aim, handle, foot), Under::move_handle);
+  EXPECT_EQ(part_of_handle(aim, handle, tip), Under::lift_handle);
+  EXPECT_EQ(part_of_handle(aim, handle, foot + Pixel(25, 0)), Under::slide_handle);
+  EXPECT_EQ(part_of_handle(aim, handle, foot + Pixel(0, 32)), Under::picture) << "the disk is foreshortened";
+  EXPECT_EQ(part_of_handle(aim, handle, foot + Pixel(100, 0)), Under::picture);
 }
 
 TEST(HandleTest, an_arrow_toward_the_viewer_is_what_lies_under_its_foot) {
   const stereo::Aim aim = aim_from("top");
   const Vec3 at(40, 40, 0);
   EXPECT_TRUE(points_at_viewer(aim, at, Vec3::UnitZ()));
-  EXPECT_EQ(part_of_handle(aim, at, Vec3::UnitZ(), *stereo::pixel_of(aim, at)), Under::lift_handle);
+  EXPECT_EQ(part_of_handle(aim, handle_at(at, Vec3::UnitZ()), *stereo::pixel_of(aim, at)), Under::lift_handle);
+}
+
+TEST(HandleTest, a_handle_with_an_axis_has_its_ball_and_circle_only) {
+  const stereo::Aim aim = aim_from("top");
+  render::Handle handle = handle_at(Vec3(60, 40, 0), Vec3::UnitZ());
+  handle.turn = render::Handle::Turn{Vec3(40, 40, 0), Vec3::UnitZ(), 0};
+  EXPECT_EQ(part_of_handle(aim, handle, *stereo::pixel_of(aim, Vec3(60, 40, 0))), Under::turn_handle);
+  EXPECT_EQ(part_of_handle(aim, handle, *stereo::pixel_of(aim, Vec3(40, 60, 0))), Under::turn_handle);
+  EXPECT_EQ(part_of_handle(aim, handle, *stereo::pixel_of(aim, Vec3(40, 40, 0))), Under::picture);
+}
+
+TEST(HandleTest, the_disk_keeps_what_is_under_the_pointer_in_its_plane) {
+  const stereo::Aim aim = aim_from("iso");
+  const Vec3 at(40, 40, 0), taken(43, 41, 0), to(70, 25, 0);
+  const HandlePull pull(Under::slide_handle, at, Vec3::UnitZ(), std::nullopt, aim, *stereo::pixel_of(aim, taken));
+  const Pull pulled = pull.at(aim, *stereo::pixel_of(aim, to));
+  EXPECT_NEAR((pulled.by - (to - taken)).norm(), 0, 1e-6);
+}
+
+TEST(HandleTest, a_disk_seen_from_its_edge_goes_across_the_screen) {
+  const stereo::Aim aim = aim_from("front");
+  const Vec3 at(40, 40, 0);
+  const Pixel taken = *stereo::pixel_of(aim, at);
+  const HandlePull pull(Under::slide_handle, at, Vec3::UnitZ(), std::nullopt, aim, taken);
+  const Vec3 by = pull.at(aim, taken + Pixel(40, 30)).by;
+  EXPECT_GT(by.x(), 5);
+  EXPECT_NEAR(by.z(), 0, 1e-9) << "up on the screen leads out of the plane";
+}
+
+TEST(HandleTest, the_ball_turns_by_the_angle_that_the_pointer_goes_and_more_than_once) {
+  const stereo::Aim aim = aim_from("top");
+  const Vec3 centre(40, 40, 0), at(60, 40, 0);
+  const Axis axis{centre, Vec3::UnitZ()};
+  const HandlePull pull(Under::turn_handle, at, Vec3::UnitZ(), axis, aim, *stereo::pixel_of(aim, at));
+  Pull pulled;
+  for (int degrees = 10; degrees <= 400; degrees += 10) {
+    const double angle = degrees * std::acos(-1.0) / 180;
+    pulled = pull.at(aim, *stereo::pixel_of(aim, centre + 27 * Vec3(std::cos(angle), std::sin(angle), 0)), pulled);
+    ASSERT_NEAR(pulled.degrees, degrees, 1e-6);
+  }
+  EXPECT_NEAR(
+      (pull.foot(pulled) - (centre + 20 * Vec3(std::cos(40 * std::acos(-1.0) / 180), std::sin(40 * std::acos(-1.0) / 180), 0))).norm(), 0,
+      1e-6);
+}
+
+TEST(HandleTest, a_circle_seen_from_its_edge_turns_by_moving_along_it) {
+  const stereo::Aim aim = aim_from("front");  // the axis lies up the screen, the ball before it
+  const Vec3 at(40, 20, 0);
+  const HandlePull pull(Under::turn_handle, at, Vec3::UnitZ(), Axis{Vec3(40, 40, 0), Vec3::UnitZ()}, aim, *stereo::pixel_of(aim, at));
+  const Pixel ball = *stereo::pixel_of(aim, at);
+  const double one = (*stereo::pixel_of(aim, pull.foot(Pull{Vec3::Zero(), 0, 1})) - ball).norm();
+  EXPECT_NEAR(pull.at(aim, ball + Pixel(25 * one, 0)).degrees, 25, 0.1);
+  EXPECT_NEAR(pull.at(aim, ball - Pixel(25 * one, 0)).degrees, -25, 0.1);
+}
+
+/// Orbit and zoom in the middle of a pull.
+TEST(HandleTest, what_is_pulled_stays_where_it_is_when_the_view_moves) {
+  const Vec3 at(40, 40, 0), up = Vec3::UnitZ();
+  const Axis axis{Vec3(20, 40, 0), up};
+  for (const Under handle : {Under::lift_handle, Under::slide_handle, Under::move_handle, Under::turn_handle}) {
+    const stereo::Aim before = aim_from("iso");
+    stereo::Aim after = before;
+    after.view = stereo::zoom(stereo::orbit(before.view, 0.5, -0.2), 1.7, Eigen::Vector2d(30, 10));
+    const Pixel taken = *stereo::pixel_of(before, at), to = taken + Pixel(35, -28), pointer(900, 300);
+    HandlePull pull(handle, at, up, handle == Under::turn_handle ? std::optional(axis) : std::nullopt, before, taken);
+    pull.set_axis(before, at, -up);
+    const Pull pulled = pull.at(before, to);
+    pull.hold(after, pointer, pulled);
+    const Pull held = pull.at(after, pointer, pulled);
+    EXPECT_NEAR((held.by - pulled.by).norm(), 0, 1e-9) << name_of(handle);
+    EXPECT_NEAR(held.distance, pulled.distance, 1e-9) << name_of(handle);
+    EXPECT_NEAR(held.degrees, pulled.degrees, 1e-9) << name_of(handle);
+    const Pull on = pull.at(after, pointer + Pixel(20, -20), held);
+    EXPECT_GT((pull.foot(on) - pull.foot(pulled)).norm(), 1) << name_of(handle) << " goes on from there";
+    EXPECT_LT((pull.foot(on) - pull.foot(pulled)).norm(), 60) << name_of(handle);
+  }
 }
 
 TEST(HandleTest, a_lift_follows_the_pointer_along_the_arrow_from_wherever_it_was_taken) {
   const stereo::Aim aim = aim_from("iso");
   const Vec3 at(40, 40, 0), up = Vec3::UnitZ();
   const Pixel taken = *stereo::pixel_of(aim, at + 6 * up);
-  const HandlePull pull(Under::lift_handle, at, up, aim, taken);
+  const HandlePull pull(Under::lift_handle, at, up, std::nullopt, aim, taken);
   EXPECT_NEAR(pull.at(aim, taken).distance, 0, 1e-9);
   const Pull pulled = pull.at(aim, *stereo::pixel_of(aim, at + 21 * up));
   EXPECT_NEAR(pulled.distance, 15, 1e-6);
@@ -138,7 +225,7 @@ TEST(HandleTest, a_lift_follows_the_pointer_along_the_arrow_from_wherever_it_was
 TEST(HandleTest, a_normal_of_the_other_sense_changes_the_distances_sign_only) {
   const stereo::Aim aim = aim_from("iso");
   const Vec3 at(40, 40, 0), up = Vec3::UnitZ();
-  HandlePull pull(Under::lift_handle, at, up, aim, *stereo::pixel_of(aim, at));
+  HandlePull pull(Under::lift_handle, at, up, std::nullopt, aim, *stereo::pixel_of(aim, at));
   pull.set_axis(aim, at, -up);
   const Pull pulled = pull.at(aim, *stereo::pixel_of(aim, at + 10 * up));
   EXPECT_NEAR(pulled.distance, -10, 1e-6);
@@ -150,7 +237,7 @@ TEST(HandleTest, an_arrow_toward_the_viewer_is_pulled_by_moving_up) {
   const stereo::Aim aim = aim_from("top");
   const Vec3 at(40, 40, 0);
   const Pixel taken = *stereo::pixel_of(aim, at);
-  const HandlePull pull(Under::lift_handle, at, Vec3::UnitZ(), aim, taken);
+  const HandlePull pull(Under::lift_handle, at, Vec3::UnitZ(), std::nullopt, aim, taken);
   EXPECT_NEAR(pull.at(aim, taken - Pixel(0, 50)).distance, 50 * aim.mm_per_pixel(), 1e-9);
   EXPECT_NEAR(pull.at(aim, taken + Pixel(300, 0)).distance, 0, 1e-9);
 }
@@ -159,7 +246,7 @@ TEST(HandleTest, the_ring_moves_in_the_screens_plane_under_the_pointer) {
   const stereo::Aim aim = aim_from("front");
   const Vec3 at(40, 40, 0);
   const Pixel foot = *stereo::pixel_of(aim, at), taken = foot + Pixel(3, -2);
-  const HandlePull pull(Under::move_handle, at, Vec3::UnitZ(), aim, taken);
+  const HandlePull pull(Under::move_handle, at, Vec3::UnitZ(), std::nullopt, aim, taken);
   EXPECT_NEAR(pull.at(aim, taken).by.norm(), 0, 1e-9);
   const Vec3 by = pull.at(aim, taken + Pixel(40, 25)).by;
   EXPECT_NEAR(by.y(), 0, 1e-9);  // front looks along +y

@@ -54,7 +54,7 @@ class HandTest : public ::testing::Test {
           low[i] = std::min(low[i], at), high[i] = std::max(high[i], at);
         }
     station_->kiosk().skip_lines();
-    station_->drag(low[0] - 5, low[1] - 5, high[0] + 5, high[1] + 5);
+    station_->drag_rectangle(low[0] - 5, low[1] - 5, high[0] + 5, high[1] + 5);
     return selected_now();
   }
   /// Of the next generation.

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -111,8 +112,10 @@ void Station::run_kiosk(const std::vector<std::string>& arguments) {
                                    "--size",
                                    std::to_string(width_) + "x" + std::to_string(height_)};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  kiosk_ = std::make_unique<Process>(
-      command, std::map<std::string, std::string>{{"DISPLAY", display_->name()}, {"XDG_CONFIG_HOME", (folder_ / "config").string()}});
+  rectangles_ = false;
+  kiosk_ = std::make_unique<Process>(command, std::map<std::string, std::string>{{"DISPLAY", display_->name()},
+                                                                                 {"XDG_CONFIG_HOME", (folder_ / "config").string()},
+                                                                                 {"XDG_STATE_HOME", (folder_ / "home").string()}});
 }
 
 void Station::find_window() {
@@ -163,6 +166,10 @@ void Station::drag(double from_x, double from_y, double to_x, double to_y, int b
   move((from_x + to_x) / 2, (from_y + to_y) / 2);
   move(to_x, to_y);
   release(button);
+}
+void Station::drag_rectangle(double from_x, double from_y, double to_x, double to_y) {
+  if (!std::exchange(rectangles_, true)) key("l");
+  drag(from_x, from_y, to_x, to_y);
 }
 void Station::destroy_window() { xdotool({"windowclose", window_}); }
 void Station::key(const std::string& keys) { xdotool({"key", keys}); }
@@ -224,7 +231,7 @@ std::vector<std::int64_t> Station::select_middle() {
   }
   kiosk_->skip_lines();
   const double x = std::round(centre[0]), y = std::round(centre[1]);
-  drag(x - half_width, y - half_height, x + half_width, y + half_height);
+  drag_rectangle(x - half_width, y - half_height, x + half_width, y + half_height);
   EXPECT_GT(inside.size(), 20u);
   EXPECT_TRUE(wait_for_selection(inside.size())) << "expected " << inside.size() << " selected nodes, got: " << kiosk_->last("generation ");
   return inside;
@@ -247,6 +254,11 @@ void Station::pull_arrow(double pixels) {
 void Station::screenshot(const std::filesystem::path& file) {
   Process process({"import", "-window", "root", file.string()}, {{"DISPLAY", display_->name()}});
   process.wait_for_exit();
+}
+
+void Station::show_people(const std::string& name) {
+  const char* folder = std::getenv("PRISMESH_STATION_PICTURES");  // NOLINT(concurrency-mt-unsafe): tests don't set it
+  if (folder != nullptr) screenshot(std::filesystem::path(folder) / (name + ".png"));
 }
 
 Station::Pixels Station::window_pixels() {

@@ -62,6 +62,8 @@ class Station {
   void click(double x, double y, int button = 1);
   void double_click(double x, double y);
   void drag(double from_x, double from_y, double to_x, double to_y, int button = 1);
+  /// The same with the left button as a rectangle that selects.
+  void drag_rectangle(double from_x, double from_y, double to_x, double to_y);
   void key(const std::string& keys);
   void destroy_window();  ///< as a client that doesn't ask
   void type(const std::string& text);
@@ -92,6 +94,8 @@ class Station {
   /// Takes the arrow at its tip and moves the pointer along it; the button stays down and a preview is seen.
   void pull_arrow(double pixels);
   void screenshot(const std::filesystem::path& file);
+  /// A picture NAME.png of the screen for people, in the folder that $PRISMESH_STATION_PICTURES names; none where it names none.
+  void show_people(const std::string& name);
   /// What the kiosk's window shows: rows of red, green and blue bytes from the upper left.
   struct Pixels {
     int width = 0, height = 0;
@@ -110,6 +114,7 @@ class Station {
   std::unique_ptr<Process> device_daemon_;
   std::unique_ptr<Process> kiosk_;
   int width_ = 1280, height_ = 800;
+  bool rectangles_ = false;  ///< what the kiosk draws; a new one draws lassos
   std::string window_;
 };
 

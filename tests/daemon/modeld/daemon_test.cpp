@@ -126,6 +126,22 @@ TEST_F(Serving, ADragIsPreviewedAndCommitted) {
   EXPECT_TRUE(next<ipc::DragEnded>(owner)->committed);
 }
 
+TEST_F(Serving, AnExpressionIsCountedAndSelectsNothing) {
+  Client client = this->client();
+  const ipc::State before = open(client, folder_.sheet());
+  const auto ask = [&](const std::string& expr, mesh::select::Kind kind) { return client.call(ipc::Count{expr, kind}, kPatience).value(); };
+  EXPECT_EQ(std::get<ipc::Counted>(ask("1001-1025", mesh::select::Kind::node)).nodes, 25u);
+  const auto parts = std::get<ipc::Counted>(ask("all", mesh::select::Kind::part));
+  EXPECT_EQ(parts.parts, before.parts);
+  EXPECT_EQ(parts.shells, before.shells);
+  const auto failed = std::get<ipc::Failed>(ask("1001,9", mesh::select::Kind::node));
+  EXPECT_EQ(failed.file, "expression");
+  EXPECT_EQ(failed.line, 6) << "the column";
+  const auto after = std::get<ipc::State>(client.call(ipc::GetState{}, kPatience).value());
+  EXPECT_EQ(after.generation, before.generation);
+  EXPECT_EQ(after.selected_nodes, 0u);
+}
+
 TEST_F(Serving, OnlyTheOwnerStepsAndEndsADrag) {
   Client owner = client("owner");
   Client other = client("other");

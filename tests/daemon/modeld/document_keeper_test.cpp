@@ -46,6 +46,52 @@ class Keeping : public ::testing::Test {
   Folder folder_;
 };
 
+TEST_F(Keeping, TheHistoryKeepsToItsBytesAndSaysWhatGoes) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper all = keeper();
+  ASSERT_TRUE(all.open(request(deck), {}));
+  const std::uint64_t opened = all.state().history_bytes;
+  ASSERT_TRUE(all.edit(move_node(1313, 0.25)));
+  const std::uint64_t step = all.state().history_bytes - opened;
+  ASSERT_GT(step, 0u);
+  EXPECT_EQ(all.state().history_cap, OpenOptions{}.history_bytes);
+  ASSERT_TRUE(all.close(true));
+
+  const std::size_t cap = opened + 3 * step;
+  DocumentKeeper few(StateFolder(folder_.state()), cap);
+  ASSERT_TRUE(few.open(request(deck), {}));
+  bool said = false;
+  for (int i = 0; i < 12; ++i) {
+    const Result<EditReport> report = few.edit(move_node(1313, 0.25));
+    ASSERT_TRUE(report) << report.error().text();
+    for (const std::string& note : report->notes) said = said || note.find("can't be undone any more") != std::string::npos;
+    EXPECT_LE(few.state().history_bytes, cap + step) << "after edit " << i;
+  }
+  EXPECT_TRUE(said) << "what goes is said";
+  EXPECT_EQ(few.state().history_cap, cap);
+  int undone = 0;
+  while (few.state().can_undo && undone < 12) {
+    ASSERT_TRUE(few.edit(Undo{}));
+    ++undone;
+  }
+  EXPECT_GT(undone, 0);
+  EXPECT_LT(undone, 12) << "the oldest have gone";
+}
+
+TEST_F(Keeping, TheStateSaysWhichFilesHoldWhichParts) {
+  DocumentKeeper keeper = this->keeper();
+  ASSERT_TRUE(keeper.open(request(folder_.two_files()), {}));
+  const std::vector<ipc::DeckFile> files = keeper.state().files;
+  std::uint64_t shells = 0;
+  for (const ipc::DeckFile& file : files) {
+    EXPECT_FALSE(file.name.empty());
+    EXPECT_FALSE(file.parts.empty()) << file.name;
+    EXPECT_GT(file.shells, 0u) << file.name << " holds none and shouldn't be named";
+    shells += file.shells;
+  }
+  EXPECT_EQ(shells, keeper.state().shells);
+}
+
 TEST_F(Keeping, ARestartBringsEveryEditBack) {
   const fs::path deck = folder_.sheet();
   double expected = 0;

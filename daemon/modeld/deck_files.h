@@ -1,0 +1,14 @@
+// Which file of a deck holds which parts: what views offer to hide and lock by file.
+#pragma once
+
+#include <vector>
+
+#include "ipc/messages.h"
+#include "mesh/document/document.h"
+
+namespace prismesh::modeld {
+
+/// The deck's files that hold shells, in the deck's order. Costs a pass over the shells.
+std::vector<ipc::DeckFile> files_with_shells(const mesh::document::Document& document);
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,133 @@
+// What shows the table of commands: the help, the menu, and buttons that know their keys.
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "kiosk/panels/sections.h"
+#include "kiosk/panels/text.h"
+
+namespace prismesh::kiosk::panels {
+namespace {
+
+using tools::Command;
+using tools::KeyBinding;
+
+const KeyBinding& binding_of(Command command) {
+  const auto all = tools::key_bindings();
+  return *std::find_if(all.begin(), all.end(), [&](const KeyBinding& binding) { return binding.command == command; });
+}
+
+/// Two columns, `width` pixels wide from `x`: what to press, and what it does.
+template <class Bindings, class Left>
+void binding_list(const char* title, const Bindings& bindings, const Left& left, float x, float width) {
+  ImGui::SetCursorPosX(x);
+  ImGui::PushFont(title_font());
+  ImGui::TextUnformatted(title);
+  ImGui::PopFont();
+  float label_width = 0;
+  for (const auto& binding : bindings)
+    label_width = std::max(label_width, ImGui::CalcTextSize(left(binding).data(), left(binding).data() + left(binding).size()).x);
+  for (const auto& binding : bindings) {
+    ImGui::SetCursorPosX(x);
+    ImGui::TextUnformatted(left(binding).data(), left(binding).data() + left(binding).size());
+    ImGui::SameLine(x + label_width + 2 * kGrid);
+    ImGui::PushTextWrapPos(x + width);
+    ImGui::TextDisabled("%s", std::string(binding.meaning).c_str());
+    ImGui::PopTextWrapPos();
+  }
+}
+
+}  // namespace
+
+void help_panel(const PanelData& data, display::PixelSize picture) {
+  const float widest = static_cast<float>(picture.width) - 2 * kMargin, highest = static_cast<float>(picture.height) - 2 * kMargin;
+  const float width = on_grid(std::min(ImGui::GetFontSize() * 76, widest)), half = (width - 6 * kGrid) / 2;
+  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, highest));
+  begin_centred("Keys and mouse", picture, width);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(kGrid, kGrid / 2));
+  const float top = ImGui::GetCursorPosY();
+  binding_list(
+      "Keys", tools::key_bindings(), [](const tools::KeyBinding& binding) { return binding.label; }, 2 * kGrid, half);
+  const float bottom = ImGui::GetCursorPosY();
+  ImGui::SetCursorPosY(top);
+  if (data.mouse != nullptr)
+    binding_list(
+        "Mouse", *data.mouse, [](const tools::MouseBinding& binding) { return std::string_view(binding.gesture); }, half + 4 * kGrid, half);
+  ImGui::SetCursorPosY(std::max(bottom, ImGui::GetCursorPosY()));
+  ImGui::PopStyleVar();
+  ImGui::End();
+}
+
+bool command_button(Command command) {
+  const KeyBinding& binding = binding_of(command);
+  return ImGui::SmallButton(fmt::format("{}  ({})", binding.meaning, binding.label).c_str());
+}
+
+void setting(const char* label, const std::string& value, Command next, Actions& actions) {
+  ImGui::PushID(label);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", label);
+  const float width = ImGui::CalcTextSize(value.c_str()).x + 2 * kGrid;
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - width));
+  if (ImGui::Button(value.c_str())) actions.emplace_back(next);
+  if (ImGui::IsItemHovered()) {
+    const KeyBinding& binding = binding_of(next);
+    ImGui::SetTooltip("%s (%s)", std::string(binding.meaning).c_str(), std::string(binding.label).c_str());
+  }
+  ImGui::PopID();
+}
+
+/// All commands in columns, menu by menu; a click does one.
+void menu_panel(const PanelData&, display::PixelSize picture, Actions& actions) {
+  constexpr int kColumns = 3;
+  const float widest = static_cast<float>(picture.width) - 2 * kMargin, highest = static_cast<float>(picture.height) - 2 * kMargin;
+  const float width = on_grid(std::min(ImGui::GetFontSize() * 92, widest));
+  const auto all = tools::key_bindings();
+  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, highest));
+  begin_centred("Menu", picture, width);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(kGrid, kGrid / 4));
+  ImGui::Columns(kColumns, nullptr, false);
+  const std::size_t lines = all.size() + 2 * tools::kMenuNames.size();
+  std::size_t line = 0, column = 0;
+  for (std::size_t m = 0; m < tools::kMenuNames.size(); ++m) {
+    const auto entries = static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [&](const KeyBinding& binding) { return static_cast<std::size_t>(binding.menu) == m; }));
+    // A menu stays whole: where more than half of it would hang over, it goes into the next column.
+    if (column + 1 < kColumns && (line + entries / 2) * kColumns > lines * (column + 1)) {
+      ImGui::NextColumn();
+      ++column;
+    }
+    line += entries + 2;
+    ImGui::PushFont(title_font());
+    ImGui::TextUnformatted(tools::kMenuNames[m].data());
+    ImGui::PopFont();
+    for (const KeyBinding& binding : all) {
+      if (static_cast<std::size_t>(binding.menu) != m) continue;
+      const float left = ImGui::GetCursorPosX(), room = ImGui::GetColumnWidth() - 2 * kGrid;
+      const float key_width = ImGui::CalcTextSize(binding.label.data()).x;
+      ImGui::PushID(static_cast<int>(binding.command));
+      if (ImGui::Selectable("##entry", false, 0, ImVec2(room, 0))) actions.emplace_back(binding.command);
+      ImGui::PopID();
+      ImGui::SameLine(left);
+      elided_text(std::string(binding.meaning), room - key_width - 2 * kGrid);
+      ImGui::SameLine(left + room - key_width);
+      ImGui::TextDisabled("%s", binding.label.data());
+    }
+    ImGui::Dummy(ImVec2(0, kGrid));
+  }
+  ImGui::Columns(1);
+  ImGui::PopStyleVar();
+  ImGui::End();
+}
+
+void begin_centred(const char* name, display::PixelSize picture, float width) {
+  ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(picture.width) / 2), std::floor(static_cast<float>(picture.height) / 2)), 0,
+                          ImVec2(0.5f, 0.5f));
+  ImGui::SetNextWindowSize(ImVec2(on_grid(std::min(width, static_cast<float>(picture.width) - 2 * kMargin)), 0));
+  ImGui::Begin(name, nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+}
+
+}  // namespace prismesh::kiosk::panels

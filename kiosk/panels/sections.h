@@ -1,0 +1,28 @@
+// The panels one by one. For panels*.cpp only.
+#pragma once
+
+#include <vector>
+
+#include "kiosk/panels/layout.h"
+#include "kiosk/panels/panels.h"
+
+namespace prismesh::kiosk::panels {
+
+using Actions = std::vector<PanelAction>;
+
+void document_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
+void shaping_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
+void model_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
+void help_panel(const PanelData& data, display::PixelSize picture);
+void menu_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
+/// `opened`: it wasn't there the last time.
+void expression_box(const PanelData& data, display::PixelSize picture, bool opened, EntryState& entry, Actions& actions);
+void number_box(const PanelData& data, display::PixelSize picture, bool opened, EntryState& entry, Actions& actions);
+
+/// A button whose text says what it does and which key does it too.
+bool command_button(tools::Command command);
+/// What is set, and a button that takes the next: "falloff ..... smooth".
+void setting(const char* label, const std::string& value, tools::Command next, Actions& actions);
+void begin_centred(const char* name, display::PixelSize picture, float width);
+
+}  // namespace prismesh::kiosk::panels

@@ -1,0 +1,31 @@
+// Lines that were entered before, oldest first, kept in a file over restarts.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace prismesh::kiosk::tools {
+
+/// The kiosk's folder for what outlives it: $XDG_STATE_HOME/prismesh, else ~/.local/state/prismesh; empty where neither is known.
+std::filesystem::path kiosk_state_folder();
+
+class HistoryFile {
+ public:
+  static constexpr std::size_t kMost = 200;        ///< entries; the oldest go
+  static constexpr std::size_t kMostBytes = 4096;  ///< of an entry; a longer one isn't kept
+
+  HistoryFile() = default;
+  /// Reads what is there; a file that isn't, or can't be read, is an empty history. An empty path: nothing is kept over restarts.
+  explicit HistoryFile(std::filesystem::path file);
+
+  const std::vector<std::string>& entries() const { return entries_; }
+  /// To the end; an entry that was there before moves there. Written at once, as a whole; that it can't be is no reason to stop anybody.
+  void add(const std::string& entry);
+
+ private:
+  std::filesystem::path file_;
+  std::vector<std::string> entries_;
+};
+
+}  // namespace prismesh::kiosk::tools

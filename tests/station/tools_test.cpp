@@ -1,0 +1,230 @@
+// The tools in the hand: lasso, expressions, sliding, turning, typed numbers, before and after, files; and a view that moves in the middle.
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/station/station.h"
+
+namespace prismesh::test {
+namespace {
+
+using Pixel = std::array<double, 2>;
+
+bool inside(const std::vector<Pixel>& outline, const Pixel& at) {
+  bool in = false;
+  for (std::size_t i = 0, j = outline.size() - 1; i < outline.size(); j = i++)
+    if ((outline[i][1] > at[1]) != (outline[j][1] > at[1]) &&
+        at[0] < (outline[j][0] - outline[i][0]) * (at[1] - outline[i][1]) / (outline[j][1] - outline[i][1]) + outline[i][0])
+      in = !in;
+  return in;
+}
+
+Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+double length(const Point& a) { return std::hypot(a[0], a[1], a[2]); }
+
+class ToolsTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_programs(); !missing.empty())
+      GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
+    station_ = std::make_unique<Station>();
+    station_->set_picture_size(1000, 640);
+    original_ = whole_file(station_->deck());
+    nodes_ = nodes_of_deck(original_);
+  }
+  const Point& middle() const { return nodes_.at(kFirstNode + (kSheetSide / 2) * kSheetSide + kSheetSide / 2); }
+  void select_by_expression(const std::string& expression, std::size_t nodes) {
+    station_->key("e");
+    station_->type(expression);
+    EXPECT_EQ(station_->kiosk().wait_for("counted " + std::to_string(nodes)), "counted " + std::to_string(nodes) + " " + expression);
+    station_->key("Return");
+    ASSERT_TRUE(station_->wait_for_selection(nodes));
+  }
+  /// Goes with the left button down, and waits until a preview is seen.
+  void pull(const Pixel& from, const std::vector<Pixel>& to) {
+    station_->kiosk().skip_lines();
+    station_->move(from[0], from[1]);
+    station_->press();
+    for (const Pixel& at : to) station_->move(at[0], at[1]);
+    ASSERT_FALSE(station_->kiosk().wait_for("drag begun").empty());
+    ASSERT_FALSE(station_->kiosk().wait_for("drag shown").empty());
+  }
+  void committed() { ASSERT_FALSE(station_->kiosk().wait_for("drag committed").empty()) << "the drag became no edit"; }
+  /// By how much each node went that did.
+  std::map<std::int64_t, Point> moved(const std::string& saved) const {
+    std::map<std::int64_t, Point> by;
+    for (const auto& [id, at] : nodes_of_deck(saved))
+      if (const Point d = minus(at, nodes_.at(id)); length(d) > 0) by[id] = d;
+    return by;
+  }
+
+  std::unique_ptr<Station> station_;
+  std::string original_;
+  std::map<std::int64_t, Point> nodes_;
+};
+
+TEST_F(ToolsTest, a_lasso_takes_what_it_goes_round_though_the_view_moves_meanwhile) {
+  station_->start_kiosk();
+  const Pixel centre = station_->pixel_of(middle());
+  std::vector<Pixel> way{{-90, -60}, {100, -45}, {60, 70}, {5, 10}, {-80, 65}};
+  for (Pixel& at : way) at = {std::round(centre[0] + at[0]), std::round(centre[1] + at[1])};
+  station_->kiosk().skip_lines();
+  station_->move(way[0][0], way[0][1]);
+  station_->press();
+  station_->move(way[1][0], way[1][1]);
+  station_->move(way[2][0], way[2][1]);
+  station_->press(3);  // the view turns, the lasso waits
+  station_->move(way[2][0] + 40, way[2][1] - 10);
+  station_->move(way[2][0], way[2][1]);
+  station_->release(3);
+  station_->click(way[2][0], way[2][1], 4);
+  for (std::size_t i = 3; i < way.size(); ++i) station_->move(way[i][0], way[i][1]);
+  ASSERT_FALSE(station_->kiosk().wait_for("picture ").empty());
+  station_->show_people("lasso");
+  station_->release();
+  ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  const Station::Aim aim = station_->aim();
+  std::size_t expected = 0;
+  for (const auto& [id, point] : nodes_) expected += inside(way, aim.pixel_of(point)) ? 1 : 0;
+  ASSERT_GT(expected, 15u);
+  EXPECT_NE(station_->kiosk().last("generation ").find("selected " + std::to_string(expected) + " "), std::string::npos)
+      << "expected " << expected << ", got: " << station_->kiosk().last("generation ");
+}
+
+TEST_F(ToolsTest, expressions_are_counted_while_they_are_typed_and_come_back_with_up) {
+  station_->start_kiosk();
+  select_by_expression("1001-1025", 25);
+  station_->key("e");
+  station_->type("1001-1005,9");
+  EXPECT_FALSE(station_->kiosk().wait_for("counted none 1001-1005,9").empty()) << "there is no node 9";
+  station_->show_people("expression");
+  station_->key("Escape");
+  station_->key("e");
+  station_->key("Up");
+  ASSERT_FALSE(station_->kiosk().wait_for("counted 25 1001-1025").empty());
+  station_->key("ctrl+Return");
+  EXPECT_TRUE(station_->wait_for_selection(0)) << "Ctrl takes away";
+}
+
+TEST_F(ToolsTest, a_typed_number_is_the_edit_to_the_last_digit_and_c_shows_before_and_after) {
+  station_->start_kiosk();
+  select_by_expression("all", nodes_.size());
+  const auto handle = station_->handle();
+  ASSERT_TRUE(handle.has_value());
+  station_->kiosk().skip_lines();
+  station_->move(handle->tip_x, handle->tip_y);
+  station_->type("2.5");
+  station_->show_people("number");
+  station_->key("Return");
+  EXPECT_EQ(station_->kiosk().wait_for("typed "), "typed Lift 2.5");
+  committed();
+  const std::string lifted = station_->save_as("typed.k");
+  double most = 0;
+  for (const auto& [id, by] : moved(lifted)) most = std::max(most, length(by));
+  EXPECT_NEAR(most, 2.5, 2e-4);
+  station_->kiosk().skip_lines();
+  station_->key("c");
+  ASSERT_EQ(station_->kiosk().wait_for("comparing "), "comparing before lift");
+  station_->show_people("before");
+  EXPECT_EQ(station_->save_as("before.k"), original_);
+  station_->kiosk().skip_lines();
+  station_->key("c");
+  ASSERT_EQ(station_->kiosk().wait_for("comparing "), "comparing after lift");
+  EXPECT_EQ(station_->save_as("after.k"), lifted);
+}
+
+TEST_F(ToolsTest, the_disk_slides_on_the_sheet_and_goes_on_after_the_view_was_turned) {
+  station_->start_kiosk();
+  station_->select_middle();
+  const auto handle = station_->handle();
+  ASSERT_TRUE(handle.has_value());
+  const Pixel on_disk{handle->foot_x + 24, handle->foot_y}, pulled{on_disk[0] + 30, on_disk[1]};
+  pull(on_disk, {{on_disk[0] + 15, on_disk[1]}, pulled});
+  station_->show_people("slide");
+  station_->press(3);
+  station_->move(pulled[0] + 60, pulled[1] - 20);
+  station_->release(3);
+  station_->click(pulled[0] + 60, pulled[1] - 20, 4);
+  station_->move(pulled[0] + 75, pulled[1] - 20);
+  station_->release();
+  committed();
+  const auto by = moved(station_->save_as("slid.k"));
+  ASSERT_GT(by.size(), 20u);
+  double most = 0;
+  for (const auto& [id, d] : by) most = std::max(most, length(d));
+  EXPECT_GT(most, 3);
+  for (const auto& [id, d] : by) {
+    const Point normal = sheet_normal(nodes_.at(id));
+    EXPECT_LT(std::abs(d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]), 0.35 * length(d) + 0.05)
+        << "node " << id << " left the sheet";
+  }
+}
+
+TEST_F(ToolsTest, a_turn_about_a_picked_axis_keeps_each_nodes_distance_from_it) {
+  station_->start_kiosk();
+  station_->select_middle();
+  station_->kiosk().skip_lines();
+  const std::int64_t first = kFirstNode + 12 * kSheetSide + 2, second = kFirstNode + 16 * kSheetSide + 2;
+  station_->key("a");
+  const Pixel one = station_->pixel_of(nodes_.at(first));
+  station_->click(one[0], one[1]);
+  ASSERT_FALSE(station_->kiosk().wait_for("axis first node").empty());
+  station_->drag(one[0], one[1], one[0] + 30, one[1] + 10, 3);  // the pick outlives another view
+  ASSERT_FALSE(station_->kiosk().wait_for("picture ").empty());
+  const Pixel two = station_->pixel_of(nodes_.at(second));
+  station_->click(two[0], two[1]);
+  ASSERT_FALSE(station_->kiosk().wait_for("axis through two nodes").empty());
+  ASSERT_FALSE(station_->kiosk().wait_for("picture ").empty());
+  const auto handle = station_->handle();
+  ASSERT_TRUE(handle.has_value());
+  const Pixel ball{handle->foot_x, handle->foot_y};
+  pull(ball, {{ball[0], ball[1] - 10}, {ball[0], ball[1] - 24}});
+  station_->show_people("turn");
+  station_->release();
+  committed();
+  const auto by = moved(station_->save_as("turned.k"));
+  ASSERT_GT(by.size(), 20u);
+  const Point from = nodes_.at(first), way = minus(nodes_.at(second), from);
+  const auto distance = [&](const Point& at) {
+    const Point d = minus(at, from);
+    const double along = (d[0] * way[0] + d[1] * way[1] + d[2] * way[2]) / length(way);
+    return std::sqrt(std::max(0.0, length(d) * length(d) - along * along));
+  };
+  double most = 0;
+  for (const auto& [id, d] : by) {
+    const Point& at = nodes_.at(id);
+    EXPECT_NEAR(distance({at[0] + d[0], at[1] + d[1], at[2] + d[2]}), distance(at), 2e-3) << "node " << id;
+    most = std::max(most, length(d));
+  }
+  EXPECT_GT(most, 1);
+}
+
+TEST_F(ToolsTest, the_file_under_the_pointer_is_locked_and_hidden_whole) {
+  const HatDeck hat = write_closed_hat(station_->folder() / "hat.k");
+  std::ofstream(station_->deck()) << "*KEYWORD\n*INCLUDE\nhat.k\n*END\n";
+  station_->start_kiosk();
+  station_->kiosk().skip_lines();
+  station_->key("5");
+  ASSERT_FALSE(station_->kiosk().wait_for("picture ").empty());
+  const Pixel roof = station_->pixel_of({4, 57, 30});
+  station_->kiosk().skip_lines();
+  station_->move(roof[0], roof[1]);
+  station_->key("shift+k");
+  ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  select_by_expression("all", hat.hat.size() + hat.plate.size());
+  station_->kiosk().skip_lines();
+  station_->key("n");
+  station_->type("3");
+  station_->key("Return");
+  EXPECT_NE(station_->kiosk().wait_for("notice error").find("lock"), std::string::npos);
+  station_->key("Escape");
+  station_->move(roof[0], roof[1]);
+  station_->key("shift+h");
+  EXPECT_TRUE(station_->wait_for_selection(0)) << "what went out of sight isn't selected";
+  station_->show_people("files");
+}
+
+}  // namespace
+}  // namespace prismesh::test
