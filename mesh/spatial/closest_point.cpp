@@ -88,7 +88,7 @@ void ShellTree::divide() {
   entries.reserve(triangles_.size());
   for (const Triangle& t : triangles_)
     entries.push_back({t.corner[0] / 3 + t.corner[1] / 3 + t.corner[2] / 3, static_cast<std::uint32_t>(entries.size())});
-  nodes_.reserve(triangles_.size());
+  nodes_.reserve(triangles_.size() / 2 + 1);
   nodes_.emplace_back();
   std::vector<Range> open{{0, 0, static_cast<std::uint32_t>(entries.size())}};
   while (!open.empty()) {

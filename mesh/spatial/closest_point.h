@@ -20,7 +20,7 @@ struct SurfacePoint {
 };
 
 /// A quad counts as the two triangles at its diagonal from the first corner to the third. Positions are those at building time; a
-/// triangle with a corner that isn't finite is left out. Of equally close shells the first. Some 200 bytes a quad.
+/// triangle with a corner that isn't finite is left out. Of equally close shells the first. Some 220 bytes a quad.
 class ShellTree {
  public:
   ShellTree(const Model& model, const ShellSet& shells);

@@ -52,7 +52,8 @@ inline constexpr double kUnreached = std::numeric_limits<double>::infinity();
 /// is longer than `radius`. Multi-source fast marching on the triangles of both diagonals of each quad; obtuse corners are
 /// unfolded (Kimmel & Sethian 1998). Where the wave comes from one source its centre is unfolded into each triangle
 /// (Novotni & Klein 2002), so on surfaces that unroll into a plane the result is exact but for rounding; between waves of
-/// different sources it counts as plane. Sources out of range are ignored. The same bits on every processor.
+/// different sources it counts as plane, and where two waves of one source meet behind turns both go on. Sources out of range are ignored.
+/// The same bits on every processor.
 std::vector<double> geodesic_distance(const Patch& patch, std::span<const std::uint32_t> sources, double radius = kUnreached);
 
 }  // namespace prismesh::mesh::spatial

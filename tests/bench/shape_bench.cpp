@@ -125,21 +125,6 @@ void oriented_normals_of_10000_nodes(benchmark::State& state) {
 }
 BENCHMARK(oriented_normals_of_10000_nodes)->Unit(benchmark::kMillisecond);
 
-void lasso_of_256_points_over_a_million(benchmark::State& state) {
-  const Model& model = whole();
-  std::vector<std::array<double, 2>> outline;
-  for (int k = 0; k < 256; ++k) {
-    const double t = 2 * 3.14159265358979 * k / 256;
-    const double r = 0.5 + 0.2 * std::sin(5 * t) + 0.05 * std::cos(31 * t);
-    outline.push_back({r * std::cos(t), r * std::sin(t)});
-  }
-  // the plate of 5 m fills the picture
-  const double s = 1.0 / 2500;
-  const std::array<double, 16> view{s, 0, 0, 0, 0, s, 0, 0, 0, 0, s, 0, -1, -1, 0, 1};
-  for (auto _ : state) benchmark::DoNotOptimize(select::inside_outline(model, view, outline));
-}
-BENCHMARK(lasso_of_256_points_over_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
-
 void nearest_node_of_a_million(benchmark::State& state) {
   const Model& model = whole();
   for (auto _ : state) benchmark::DoNotOptimize(select::nearest_node(model, Vec3(2500, 2500, 0)));

@@ -2,21 +2,17 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "base/deterministic_math.h"
-#include "mesh/deck/deck.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/features.h"
 #include "mesh/shape/move.h"
 #include "tests/support/make_model.h"
+#include "tests/support/real_deck.h"
 
 namespace prismesh::mesh::shape {
 namespace {
@@ -166,15 +162,11 @@ TEST(Normals, take_the_first_shell_where_a_folded_sheet_cancels_itself) {
 
 /// Decks whose neighbouring shells disagree. Across smooth edges the normals of the ends have to agree all the same.
 TEST(Normals, hang_together_on_real_decks) {
-  const char* models = std::getenv("PRISMESH_MODELS");
-  if (models == nullptr) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
+  const auto decks = test::real_decks();
+  if (!decks) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
   for (const char* name : {"wing_ferig", "wheel_k", "gsa_car6_comma"}) {
     SCOPED_TRACE(name);
-    std::ifstream in(std::filesystem::path(models) / "counts.json");
-    const auto counts = nlohmann::json::parse(in);
-    const auto opened = deck::open(std::filesystem::path(models) / counts[name]["main"].get<std::string>());
-    ASSERT_TRUE(opened.has_value()) << opened.error().text();
-    const Model& model = opened->model;
+    const Model model = test::open_real(*decks, name);
     const std::vector<Vec3> normals = oriented_normals(model, all_nodes(model), model.shell(ShellIndex(0)).node[0]);
     EXPECT_EQ(normals, oriented_normals(model, all_nodes(model), model.shell(ShellIndex(0)).node[0]));
     const std::vector<EdgeKind> kinds = classify_edges(model, 20);

@@ -1,19 +1,15 @@
 // Weights that carry to sheets which are welded, not joined.
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include "mesh/deck/deck.h"
 #include "mesh/shape/weights_carried.h"
 #include "tests/mesh/shape/weighed.h"
 #include "tests/support/make_model.h"
+#include "tests/support/real_deck.h"
 
 namespace prismesh::mesh::shape {
 namespace {
@@ -143,15 +139,11 @@ TEST(WeightsAcrossWelds, leave_the_constant_profile_as_it_is) {
 
 /// A real bumper: a beam, its flanges, and sheets that share no nodes with them.
 TEST(WeightsAcrossWelds, carry_over_the_flanges_of_a_real_deck) {
-  const char* models = std::getenv("PRISMESH_MODELS");
-  if (models == nullptr) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
+  const auto decks = test::real_decks();
+  if (!decks) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
   for (const char* name : {"bumper_beam_rad", "simplecar_nas"}) {
     SCOPED_TRACE(name);
-    std::ifstream in(std::filesystem::path(models) / "counts.json");
-    const auto counts = nlohmann::json::parse(in);
-    const auto opened = deck::open(std::filesystem::path(models) / counts[name]["main"].get<std::string>());
-    ASSERT_TRUE(opened.has_value()) << opened.error().text();
-    const Model& model = opened->model;
+    const Model model = test::open_real(*decks, name);
     // everything near a node in the middle of the first part, whichever sheet it belongs to
     const Vec3 middle = model.position(model.shell(ShellIndex(model.shell_count() / 2)).node[0]);
     double widest = 0;

@@ -3,23 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include "mesh/deck/deck.h"
 #include "mesh/spatial/geodesic.h"
 #include "tests/mesh/spatial/exact_geodesic.h"
 #include "tests/mesh/spatial/trial_sheets.h"
+#include "tests/support/real_deck.h"
 
 namespace prismesh::mesh::spatial {
 namespace {
@@ -43,16 +37,6 @@ test::TriangleSurface triangles_of(const Patch& patch, bool other_diagonal) {
     }
   }
   return surface;
-}
-
-std::optional<Model> open_real(const std::filesystem::path& models, const std::string& name) {
-  std::ifstream in(models / "counts.json");
-  const auto counts = nlohmann::json::parse(in);
-  auto opened = deck::open(models / counts[name]["main"].get<std::string>());
-  if (!opened) return std::nullopt;
-  Model model = std::move(opened->model);
-  if (!model.adjacency) model.adjacency = std::make_shared<Adjacency>(build_adjacency(model));
-  return model;
 }
 
 struct Errors {
@@ -209,14 +193,13 @@ ShellSet around(const Model& model, NodeIndex node, std::size_t enough) {
 
 /// Real panels: mixed, warped, with holes, beads and junctions. From a few nodes of each deck, within half of what was cut out.
 TEST(GeodesicAccuracy, of_real_decks) {
-  const char* models = std::getenv("PRISMESH_MODELS");
-  if (models == nullptr) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
+  const auto decks = test::real_decks();
+  if (!decks) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
   for (const char* file : {"wing_ferig", "bumper_beam_rad", "pillars_open_airbag_v135"}) {
-    const std::optional<Model> model = open_real(std::filesystem::path(models), file);
-    ASSERT_TRUE(model) << file;
+    const Model model = test::open_real(*decks, file);
     for (const double share : {0.3, 0.6}) {
-      const NodeIndex start = model->shell(ShellIndex(static_cast<std::size_t>(share * static_cast<double>(model->shell_count())))).node[0];
-      const Patch patch = cut_patch(*model, around(*model, start, 6000));
+      const NodeIndex start = model.shell(ShellIndex(static_cast<std::size_t>(share * static_cast<double>(model.shell_count())))).node[0];
+      const Patch patch = cut_patch(model, around(model, start, 6000));
       const auto source = static_cast<std::uint32_t>(std::lower_bound(patch.nodes.begin(), patch.nodes.end(), start) - patch.nodes.begin());
       double farthest = 0;
       for (const double d : geodesic_distance(patch, std::vector<std::uint32_t>{source}))

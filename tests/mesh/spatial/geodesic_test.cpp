@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "tests/mesh/spatial/trial_sheets.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::spatial {
@@ -22,18 +23,9 @@ namespace {
 using test::grid_node;
 using test::make_grid;
 using test::make_model;
+using test::noise;
 
 constexpr double kPiValue = 3.14159265358979323846;
-
-/// A number in -1..1 that looks random and is the same in every run.
-double noise(int i, int j, int which) {
-  std::uint32_t h =
-      static_cast<std::uint32_t>(i) * 73856093u ^ static_cast<std::uint32_t>(j) * 19349663u ^ static_cast<std::uint32_t>(which) * 83492791u;
-  h ^= h >> 13;
-  h *= 0x5bd1e995u;
-  h ^= h >> 15;
-  return static_cast<double>(h % 200001u) / 100000.0 - 1.0;
-}
 
 /// Where node (i, j) of a grid of unit squares stands in the plane, moved by up to `jitter` both ways.
 std::array<double, 2> jittered(int i, int j, double jitter) { return {i + jitter * noise(i, j, 1), j + jitter * noise(i, j, 2)}; }
