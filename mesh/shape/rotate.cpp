@@ -53,9 +53,11 @@ std::size_t rotate(std::span<const Vec3> start, std::span<const double> weight, 
           ++stopped_here;
         }
       }
-      // as a move, so that a turn by nothing leaves every bit
-      out[i] =
-          start[i] + ((deterministic_cos_degrees(angle) - 1) * radial + deterministic_sin_degrees(angle) * axis.direction.cross(radial));
+      const double cosine = deterministic_cos_degrees(angle);
+      // a turn by nothing leaves every bit
+      out[i] = cosine == 1
+                   ? start[i]
+                   : Vec3((start[i] - radial) + (cosine * radial + deterministic_sin_degrees(angle) * axis.direction.cross(radial)));
     }
     stopped += stopped_here;
   });

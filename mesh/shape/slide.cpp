@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t kNodesAtATime = 128;
 constexpr double kOnTheSpot = 1e-9;      // shares of a face, and sines of angles: nearer counts as the same
+constexpr double kAlongside = 1e-6;      // sine of the angle of a line that counts as lying in a plane
+constexpr std::size_t kMostAround = 24;  // shells at a node that its normal is taken of
 constexpr int kMostFaces = 100'000;      // of one way
 constexpr int kMostFacesOnTheSpot = 64;  // without getting on: round a needle's point there is no straight on
 
@@ -49,19 +51,20 @@ Vec3 inward(const Vec3& a, const Vec3& along, const Vec3& third) {
   return height > kOnTheSpot * to_third.norm() ? Vec3(across / height) : Vec3::Zero();
 }
 
-/// Turned by the smallest turn that takes one unit vector to another; as it is where they are opposite.
-Vec3 turned_with(const Vec3& from, const Vec3& to, const Vec3& direction) {
+/// The smallest turn from one unit vector to another; none where they are opposite.
+Eigen::Quaterniond turn_between(const Vec3& from, const Vec3& to) {
   const double cosine = from.dot(to);
-  if (!(1 + cosine > kOnTheSpot)) return direction;
+  if (!(1 + cosine > kOnTheSpot)) return Eigen::Quaterniond::Identity();
   const Vec3 axis = from.cross(to);
-  const Vec3 across = axis.cross(direction);
-  return direction + across + axis.cross(across) / (1 + cosine);
+  return Eigen::Quaterniond(1 + cosine, axis.x(), axis.y(), axis.z()).normalized();
 }
 
 /// One node's way.
 class Walk {
  public:
-  Walk(const Model& model, NodeIndex node, double max_move) : model_(model), start_(model.position(node)), here_(start_), most_(max_move) {}
+  /// `plane`: the normal of a plane that it doesn't leave; null: none.
+  Walk(const Model& model, NodeIndex node, double max_move, const Vec3* plane)
+      : model_(model), start_(model.position(node)), here_(start_), most_(max_move), plane_(plane) {}
 
   const Vec3& here() const { return here_; }
   bool stopped() const { return stopped_; }
@@ -87,6 +90,7 @@ class Walk {
     const auto towards = [&](NodeIndex other) -> Vec3 { return (model_.position(other) - model_.position(node)).normalized(); };
     const Vec3 line = towards(both[0]) - towards(both[1]);
     const double length = line.norm();
+    if (plane_ != nullptr && std::abs(line.dot(*plane_)) > kAlongside * length) return;
     left_ = length > 0 ? by.dot(line) / length : 0;
     NodeIndex to = left_ >= 0 ? both[0] : both[1];
     left_ = std::abs(left_);
@@ -123,7 +127,7 @@ class Walk {
 
   /// The face at a node over which a direction leads away: the one whose picture in the node's plane holds it.
   bool set_out(NodeIndex node, const Vec3& normal, const Vec3& direction) {
-    double best = 0;
+    double best = 0;  // how squarely the best face looks along the normal
     const auto consider = [&](ShellIndex shell, bool second) {
       const Face face = face_of(model_, shell, second);
       const auto at = static_cast<std::size_t>(std::find(face.node.begin(), face.node.end(), node) - face.node.begin());
@@ -135,12 +139,16 @@ class Walk {
       const double turned = across.dot(normal);
       const double facing = std::abs(turned) / across.norm();
       if (!(facing > kOnTheSpot)) return;
-      double share_b = direction.cross(side_c).dot(normal) / turned;
-      double share_c = side_b.cross(direction).dot(normal) / turned;
-      if (share_b * side_b.norm() < -kOnTheSpot || share_c * side_c.norm() < -kOnTheSpot || !(facing > best)) return;
+      // in the picture: whether the direction leads over this face
+      const double picture_b = direction.cross(side_c).dot(normal) / turned * side_b.norm();
+      const double picture_c = side_b.cross(direction).dot(normal) / turned * side_c.norm();
+      if (picture_b < -kOnTheSpot || picture_c < -kOnTheSpot || !(facing > best)) return;
       best = facing;
-      share_b = share_b * side_b.norm() < kOnTheSpot ? 0 : share_b;
-      share_c = share_c * side_c.norm() < kOnTheSpot ? 0 : share_c;
+      // in the face, where it turns about the line in which face and plane meet: that keeps angles at a crease
+      const Vec3 face_normal = across * ((turned < 0 ? -1 : 1) / across.norm());
+      const Vec3 in_face = turn_between(normal, face_normal) * direction;
+      const double share_b = picture_b < kOnTheSpot ? 0 : std::max(0.0, in_face.cross(side_c).dot(across) / across.squaredNorm());
+      const double share_c = picture_c < kOnTheSpot ? 0 : std::max(0.0, side_b.cross(in_face).dot(across) / across.squaredNorm());
       face_ = face;
       entered_by_ = 3;
       share_ = {0, 0, 0};
@@ -151,7 +159,16 @@ class Walk {
       consider(shell, false);
       if (!model_.shell(shell).is_triangle()) consider(shell, true);
     }
+    if (best > 0) keep_in_plane();
     return best > 0;
+  }
+
+  /// Turns the direction within the face into the plane that the way keeps to.
+  void keep_in_plane() {
+    if (plane_ == nullptr) return;
+    const Vec3 cut = area_normal(face_).cross(*plane_);
+    const double sense = cut.dot(direction_);
+    if (std::abs(sense) > 0) direction_ = cut.normalized() * (sense < 0 ? -1.0 : 1.0);
   }
 
   /// To the end of the way or over the face's side. False where the surface ends.
@@ -226,6 +243,7 @@ class Walk {
     direction_ = (direction_.dot(along) * along - direction_.dot(back) * on).normalized();
     face_ = *beyond;
     entered_by_ = entered_by;
+    keep_in_plane();
     return true;
   }
 
@@ -234,20 +252,50 @@ class Walk {
     return face_.second ? side == 0 : side == 2;
   }
 
+  /// The area-weighted normal of the shells at a node, oriented as the face in hand and from shell to shell over the sides at the node.
+  Vec3 normal_at(NodeIndex node, const Vec3& face_normal) const {
+    const auto shells = model_.adjacency->shells_of(node);
+    struct Around {
+      Vec3 normal;
+      NodeIndex after, before;
+      int sense = 0;  ///< 0: not known yet
+    };
+    std::array<Around, kMostAround> around;
+    const std::size_t count = std::min(shells.size(), around.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const ShellNodes& shell = model_.shell(shells[i]);
+      const auto corners = static_cast<std::size_t>(shell.corners());
+      const auto at =
+          static_cast<std::size_t>(std::find(shell.node.begin(), shell.node.begin() + shell.corners(), node) - shell.node.begin());
+      Vec3 normal = area_normal(face_of(model_, shells[i], false));
+      if (!shell.is_triangle()) normal += area_normal(face_of(model_, shells[i], true));
+      around[i] = {normal, shell.node[(at + 1) % corners], shell.node[(at + corners - 1) % corners], 0};
+      if (shells[i] == face_.shell) around[i].sense = normal.dot(face_normal) < 0 ? -1 : 1;
+    }
+    for (bool spread = true; spread;) {
+      spread = false;
+      for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < count && around[i].sense == 0; ++k) {
+          if (around[k].sense == 0) continue;
+          if (around[i].after == around[k].before || around[i].before == around[k].after) around[i].sense = around[k].sense;
+          if (around[i].after == around[k].after || around[i].before == around[k].before) around[i].sense = -around[k].sense;
+          spread = spread || around[i].sense != 0;
+        }
+    }
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < count; ++i) sum += around[i].sense * around[i].normal;
+    return sum;
+  }
+
   /// Straight on over a node: as over its own plane, of which all faces at it are pictures.
   bool pass_node(std::size_t corner, const Vec3& face_normal) {
     const NodeIndex node = face_.node[corner];
-    Vec3 sum = Vec3::Zero();
-    for (const ShellIndex shell : model_.adjacency->shells_of(node)) {
-      const Vec3 normal = area_normal(face_of(model_, shell, false)) +
-                          (model_.shell(shell).is_triangle() ? Vec3(Vec3::Zero()) : area_normal(face_of(model_, shell, true)));
-      sum += normal.dot(face_normal) < 0 ? Vec3(-normal) : normal;
-    }
+    const Vec3 sum = normal_at(node, face_normal);
     const double length = sum.norm();
     std::array<NodeIndex, 2> unused{};
     if (!(length > 0) || free_edges_at(model_, node, unused) > 0) return false;
     const Vec3 normal = sum / length;
-    const Vec3 turned = turned_with(face_normal, normal, direction_);
+    const Vec3 turned = turn_between(face_normal, normal) * direction_;
     const Vec3 flat = turned - turned.dot(normal) * normal;
     return flat.squaredNorm() > 0 && set_out(node, normal, flat.normalized());
   }
@@ -261,6 +309,7 @@ class Walk {
   Vec3 start_;
   Vec3 here_;
   double most_;
+  const Vec3* plane_;
   bool stopped_ = false;
   double left_ = 0;
   Face face_;
@@ -279,12 +328,18 @@ Slideway::Slideway(const Model& surface, const NodeSet& nodes, std::vector<Vec3>
   });
 }
 
+void Slideway::keep_in_plane(const Vec3& normal, std::vector<std::uint8_t> nodes) {
+  plane_ = normal;
+  in_plane_ = std::move(nodes);
+}
+
 std::size_t Slideway::positions(std::span<const Vec3> by, std::optional<double> max_move, std::span<Vec3> out) const {
   std::atomic<std::size_t> stopped = 0;
   parallel_for(nodes_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
     std::size_t stopped_here = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      Walk walk(surface_, nodes_[i], max_move.value_or(std::numeric_limits<double>::infinity()));
+      Walk walk(surface_, nodes_[i], max_move.value_or(std::numeric_limits<double>::infinity()),
+                !in_plane_.empty() && in_plane_[i] != 0 ? &plane_ : nullptr);
       if (on_free_edge_[i] != 0)
         walk.along_free_edge(nodes_[i], by[i]);
       else
@@ -295,6 +350,28 @@ std::size_t Slideway::positions(std::span<const Vec3> by, std::optional<double> 
     stopped += stopped_here;
   });
   return stopped;
+}
+
+std::vector<Eigen::Quaterniond> turns_along(const Model& model, const NodeSet& nodes, std::span<const Vec3> normals, NodeIndex from) {
+  std::vector<Eigen::Quaterniond> turns(nodes.size(), Eigen::Quaterniond::Identity());
+  std::vector<std::uint8_t> reached(nodes.size(), 0);
+  std::vector<std::uint32_t> queue;
+  const auto reach = [&](NodeIndex node, const std::uint32_t* before) {
+    const auto found = std::lower_bound(nodes.begin(), nodes.end(), node);
+    if (found == nodes.end() || *found != node) return;
+    const auto at = static_cast<std::uint32_t>(found - nodes.begin());
+    if (reached[at] != 0) return;
+    reached[at] = 1;
+    if (before != nullptr) turns[at] = (turn_between(normals[*before], normals[at]) * turns[*before]).normalized();
+    queue.push_back(at);
+  };
+  reach(from, nullptr);
+  for (std::size_t next_up = 0; next_up < queue.size(); ++next_up) {
+    const std::uint32_t here = queue[next_up];
+    for (const ShellIndex shell : model.adjacency->shells_of(nodes[here]))
+      for (const NodeIndex corner : model.shell(shell).node) reach(corner, &here);
+  }
+  return turns;
 }
 
 }  // namespace prismesh::mesh::shape

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
 
@@ -23,6 +25,10 @@ class Slideway {
   /// `nodes` with their `normals` (of unit length; zero without a shell). Copies no mesh: it shares the model's chunks.
   Slideway(const Model& surface, const NodeSet& nodes, std::vector<Vec3> normals);
 
+  /// These nodes keep to the plane at right angles to `normal` that they lie in: they walk where it cuts the surface. `nodes` has one
+  /// entry for each, other than 0 for those.
+  void keep_in_plane(const Vec3& normal, std::vector<std::uint8_t> nodes);
+
   /// Where the nodes come to for a displacement of each. With `max_move` a way ends where it is that far from its start, as the crow
   /// flies. Returns how many ended so.
   std::size_t positions(std::span<const Vec3> by, std::optional<double> max_move, std::span<Vec3> out) const;
@@ -32,6 +38,13 @@ class Slideway {
   NodeSet nodes_;
   std::vector<Vec3> normals_;
   std::vector<std::uint8_t> on_free_edge_;  ///< of each
+  Vec3 plane_ = Vec3::Zero();               ///< normal
+  std::vector<std::uint8_t> in_plane_;      ///< of each; empty: none
 };
+
+/// How a direction at `from` turns on its way over the surface to each of `nodes`: from node to node by the smallest turn that takes one's
+/// normal to the other's. So what leads along a sheet at one place leads along it everywhere, round a bend or a crease too. As it is
+/// where no way within the nodes leads.
+std::vector<Eigen::Quaterniond> turns_along(const Model& model, const NodeSet& nodes, std::span<const Vec3> normals, NodeIndex from);
 
 }  // namespace prismesh::mesh::shape

@@ -1,0 +1,132 @@
+#include "mesh/shape/mirror.h"
+
+#include <cstring>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/make_model.h"
+
+namespace prismesh::mesh::shape {
+namespace {
+
+const Plane kAcrossX{Vec3::Zero(), Vec3::UnitX()};
+
+/// Nodes (i, j) at x = 5 (i - 5), so that column 5 lies in the plane x = 0.
+Model sheet() {
+  return test::make_grid(10, 4, [](int i, int j) { return Vec3(5.0 * (i - 5), 5.0 * j, 0); });
+}
+
+TEST(Mirror, FindsTheNodeAtTheMirroredPlace) {
+  const Model model = sheet();
+  NodeSet nodes;
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 10; ++i) nodes.push_back(test::grid_node(10, i, j));
+  const std::vector<NodeIndex> images = find_images(model, nodes, kAcrossX);
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 10; ++i) EXPECT_EQ(images[test::grid_node(10, i, j).value], test::grid_node(10, 10 - i, j));
+}
+
+TEST(Mirror, AllowsAQuarterOfASide) {
+  Model model = sheet();
+  const NodeIndex node = test::grid_node(10, 8, 2), near = test::grid_node(10, 2, 2);
+  model.positions.set(near.value, model.position(near) + Vec3(0.8, 0.8, 0));
+  EXPECT_EQ(find_images(model, {node}, kAcrossX)[0], near);
+  model.positions.set(near.value, model.position(near) + Vec3(0.4, 0.4, 0));
+  EXPECT_FALSE(find_images(model, {node}, kAcrossX)[0].valid());
+  // a sheet a thousand times as coarse allows a thousand times as much
+  const Model coarse = test::make_grid(10, 4, [](int i, int j) { return Vec3(5e3 * (i - 5) + (i < 5 ? 900 : 0), 5e3 * j, 0); });
+  EXPECT_EQ(find_images(coarse, {node}, kAcrossX)[0], near);
+}
+
+TEST(Mirror, OneImageForOneNodeAndTheClosestFirst) {
+  // two nodes close together on the right, one on the left
+  const Model model = test::make_shells(
+      {{10, 0, 0}, {20, 0, 0}, {20, 10, 0}, {10, 0, 1}, {20, 0, 1}, {20, 10, 1}, {-10, 0, 0.9}, {-20, 0, 9}, {-20, 10, 9}},
+      {{0, 1, 2, 2}, {3, 4, 5, 5}, {6, 7, 8, 8}});
+  const std::vector<NodeIndex> images = find_images(model, {NodeIndex(std::size_t{0}), NodeIndex(std::size_t{3})}, kAcrossX);
+  EXPECT_FALSE(images[0].valid());
+  EXPECT_EQ(images[1], NodeIndex(std::size_t{6}));
+}
+
+TEST(Mirror, SheetsOnTopOfEachOtherKeepToTheirPart) {
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  // left part 2 stands before left part 1 in the deck, right the other way round
+  const auto add = [&](std::int64_t part, double x) {
+    const auto first = static_cast<std::int64_t>(nodes.size()) + 1;
+    for (const Vec3& at : {Vec3(x, 0, 0), Vec3(2 * x, 0, 0), Vec3(2 * x, 10, 0)})
+      nodes.push_back({static_cast<std::int64_t>(nodes.size()) + 1, at});
+    shells.push_back({first, part, {first, first + 1, first + 2}});
+  };
+  add(2, -10);
+  add(1, -10);
+  add(1, 10);
+  add(2, 10);
+  const Model model = test::make_model(nodes, shells);
+  const std::vector<NodeIndex> images = find_images(model, {model.find_node(7), model.find_node(11)}, kAcrossX);
+  EXPECT_EQ(images[0], model.find_node(4));
+  EXPECT_EQ(images[1], model.find_node(2));
+}
+
+std::vector<Vec3> mirrored_moves(const Plane& plane, const std::vector<Vec3>& start, const std::vector<double>& weight, const Vec3& grab,
+                                 const std::vector<std::uint32_t>& images, const std::vector<Vec3>& moves) {
+  std::vector<Mirrored> nodes(start.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].image = images[i];
+  find_shares(plane, start, weight, grab, nodes);
+  return mirror_moves(plane, nodes, moves);
+}
+
+TEST(Mirror, OneHalfActedOnMovesAndTheOtherMirrorsIt) {
+  const std::vector<Vec3> moves =
+      mirrored_moves(kAcrossX, {{7, 0, 0}, {-7, 0, 0}}, {0.5, 0}, Vec3(20, 0, 0), {1, 0}, {{1, 2, 3}, Vec3::Zero()});
+  EXPECT_EQ(moves[0], Vec3(1, 2, 3));
+  EXPECT_EQ(moves[1], Vec3(-1, 2, 3));
+}
+
+TEST(Mirror, InThePlaneNothingMovesAcrossIt) {
+  const std::vector<Vec3> moves = mirrored_moves(kAcrossX, {{0, 5, 0}}, {1}, Vec3(20, 0, 0), {0}, {{1, 2, 3}});
+  EXPECT_EQ(moves[0], Vec3(0, 2, 3));
+}
+
+TEST(Mirror, WithBothHalvesActedOnTheyMeetInThePlaneWithoutAStep) {
+  // all follow whole: from the grab's distance on each half moves as one, between them the move across grows evenly
+  std::vector<Vec3> start, moves;
+  std::vector<std::uint32_t> images;
+  for (int i = -8; i <= 8; ++i) {
+    start.emplace_back(i, 0, 0);
+    moves.emplace_back(4, 1, 0);
+    images.push_back(static_cast<std::uint32_t>(8 - i));
+  }
+  const std::vector<Vec3> both = mirrored_moves(kAcrossX, start, std::vector<double>(17, 1.0), Vec3(4, 0, 0), images, moves);
+  for (int i = -8; i <= 8; ++i) EXPECT_EQ(both[static_cast<std::size_t>(i + 8)], Vec3(std::clamp(i, -4, 4), 1, 0)) << i;
+  // a grab in the plane moves nothing across it
+  const std::vector<Vec3> inside = mirrored_moves(kAcrossX, start, std::vector<double>(17, 1.0), Vec3(0, 9, 0), images, moves);
+  for (const Vec3& move : inside) EXPECT_EQ(move, Vec3(0, 1, 0));
+}
+
+TEST(Mirror, WhatIsSymmetricAlreadyStaysAsItIs) {
+  const std::vector<Vec3> moves =
+      mirrored_moves(kAcrossX, {{3, 0, 0}, {-3, 0, 0}}, {0.75, 0.75}, Vec3(6, 0, 0), {1, 0}, {{1, 2, 3}, {-1, 2, 3}});
+  EXPECT_EQ(moves[0], Vec3(1, 2, 3));
+  EXPECT_EQ(moves[1], Vec3(-1, 2, 3));
+}
+
+TEST(Mirror, ImagesMoveAsMirrorImagesToTheBit) {
+  std::vector<Vec3> start, moves;
+  std::vector<double> weight;
+  std::vector<std::uint32_t> images;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 place(std::abs(std::sin(i / 2)) * 9, i / 2, std::cos(i / 2));
+    start.push_back(i % 2 == 0 ? place : kAcrossX.mirrored_place(place));
+    moves.emplace_back(std::sin(3 * i), std::cos(7 * i), std::sin(11 * i));
+    weight.push_back(i % 7 == 0 ? 0 : std::abs(std::sin(5 * i)));
+    if (weight.back() == 0) moves.back().setZero();
+    images.push_back(static_cast<std::uint32_t>(i ^ 1));
+  }
+  const std::vector<Vec3> both = mirrored_moves(kAcrossX, start, weight, Vec3(4.4, 0, 0), images, moves);
+  for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(both[i ^ 1], kAcrossX.mirrored(both[i]));
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::shape
