@@ -5,6 +5,7 @@
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
 #include "cli/report_text.h"
+#include "mesh/document/surroundings.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::cli {
@@ -58,7 +59,8 @@ int check(const CheckOptions& options, const Common& common, const Surroundings&
   const mesh::Model& model = document->current().model;
   mesh::ShellSet shells;
   if (options.select) {
-    Result<mesh::select::Chosen> chosen = mesh::select::evaluate(model, *options.select, mesh::select::Kind::element);
+    Result<mesh::select::Chosen> chosen =
+        mesh::select::evaluate(model, *options.select, mesh::select::Kind::element, document->current().around->names);
     if (!chosen) return refuse(chosen.error());
     shells = std::move(chosen->shells);
   }

@@ -8,8 +8,8 @@
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
 #include "cli/report_text.h"
+#include "mesh/document/surroundings.h"
 #include "mesh/select/expression.h"
-#include "mesh/select/parse.h"
 
 namespace prismesh::cli {
 
@@ -18,19 +18,16 @@ namespace {
 namespace select = mesh::select;
 namespace spatial = mesh::spatial;
 
-/// Shells and parts count with their surfaces (and parts with the nodes of their other elements); as soon as an expression
-/// names anything else, with all its nodes.
-Result<spatial::Shape> shape_of(const mesh::Model& model, const std::string& expression) {
-  const Result<std::vector<select::Item>> items = select::parse(expression);
-  if (!items) return fail(items.error());
-  Result<select::Chosen> nodes = select::evaluate(model, expression, select::Kind::node);
+/// Shells, parts, sets of those and files count with their surfaces (and with the nodes of their other elements); as soon as an
+/// expression names anything else, with all its nodes.
+Result<spatial::Shape> shape_of(const mesh::document::Generation& generation, const std::string& expression) {
+  const mesh::Model& model = generation.model;
+  const select::Names& names = generation.around->names;
+  Result<select::Chosen> nodes = select::evaluate(model, expression, select::Kind::node, names);
   if (!nodes) return fail(nodes.error());
-  const bool has_surface = std::all_of(items->begin(), items->end(), [](const select::Item& item) {
-    return item.item_class == select::ItemClass::shell || item.item_class == select::ItemClass::part;
-  });
-  if (!has_surface) return spatial::Shape{std::move(nodes->nodes), {}};
-  Result<select::Chosen> shells = select::evaluate(model, expression, select::Kind::element);
-  if (!shells) return fail(shells.error());
+  if (!nodes->of_surfaces) return spatial::Shape{std::move(nodes->nodes), {}};
+  Result<select::Chosen> shells = select::evaluate(model, expression, select::Kind::element, names);
+  if (!shells) return spatial::Shape{std::move(nodes->nodes), {}};  // a file without shells
   spatial::Shape shape;
   shape.shells = std::move(shells->shells);
   const mesh::NodeSet covered = mesh::nodes_of(model, shape.shells);
@@ -55,9 +52,9 @@ int distance(const DistanceOptions& options, const Common& common, const Surroun
   if (!document) return refuse(document.error());
   say_warnings(surroundings, *document);
   const mesh::Model& model = document->current().model;
-  const Result<spatial::Shape> from = shape_of(model, options.from);
+  const Result<spatial::Shape> from = shape_of(document->current(), options.from);
   if (!from) return refuse(from.error());
-  const Result<spatial::Shape> to = shape_of(model, options.to);
+  const Result<spatial::Shape> to = shape_of(document->current(), options.to);
   if (!to) return refuse(to.error());
   const std::optional<spatial::Closest> closest = spatial::shortest_distance(model, *from, *to);
   if (!closest) return refuse({"expression", 1, "names nothing that has a place"});

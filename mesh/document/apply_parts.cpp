@@ -45,7 +45,7 @@ PartFlags parts_of_selection(const Document& document) {
 Result<PartFlags> parts_named(const Document& document, const SetParts& edit) {
   const Model& model = document.current().model;
   if (edit.on) {
-    const Result<select::Chosen> chosen = select::evaluate(model, *edit.on, select::Kind::part);
+    const Result<select::Chosen> chosen = select::evaluate(model, *edit.on, select::Kind::part, document.current().around->names);
     if (!chosen) return fail(chosen.error());
     PartFlags flags(model.parts->size(), 0);
     for (const PartIndex part : chosen->parts) flags[part.value] = 1;

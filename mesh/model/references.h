@@ -76,7 +76,8 @@ struct Reference {
   std::int64_t last = 0;
   std::int64_t step = 1;
   std::uint32_t referrer = 0;
-  std::uint64_t card = 0;  ///< offset of the line
+  std::uint64_t card = 0;   ///< offset of the line
+  bool takes_away = false;  ///< the set is to be without it
 
   bool names(std::int64_t id) const { return first <= id && id <= last && (id - first) % step == 0; }
 };

@@ -1,19 +1,21 @@
 #include "mesh/select/expression.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "mesh/model/adjacency.h"
+#include "mesh/select/marking.h"
 #include "mesh/select/parse.h"
 
 namespace prismesh::mesh::select {
 
 namespace {
+
+/// Sets may be made of sets; decks may be hostile.
+constexpr int kDeepestSets = 32;
+constexpr int kMostSets = 10'000;  ///< looked into by one expression
 
 ItemClass class_of(Kind kind) {
   switch (kind) {
@@ -24,98 +26,134 @@ ItemClass class_of(Kind kind) {
   return ItemClass::node;
 }
 
-/// The class of elements kept in Model::elements, or nothing for nodes, parts and shells.
-std::optional<ElementClass> block_class(ItemClass item_class) {
+Referred set_of(Kind kind) {
+  return kind == Kind::node ? Referred::node_set : kind == Kind::element ? Referred::shell_set : Referred::part_set;
+}
+
+/// What a card's number is the id of, as items call it; in_hand for elements of any class and for sets.
+ItemClass class_of(Referred referred) {
+  switch (referred) {
+    case Referred::node: return ItemClass::node;
+    case Referred::shell: return ItemClass::shell;
+    case Referred::beam: return ItemClass::beam;
+    case Referred::solid: return ItemClass::solid;
+    case Referred::tshell: return ItemClass::tshell;
+    case Referred::discrete: return ItemClass::discrete;
+    case Referred::mass: return ItemClass::mass;
+    case Referred::sph: return ItemClass::sph;
+    case Referred::other: return ItemClass::other;
+    case Referred::part: return ItemClass::part;
+    default: return ItemClass::in_hand;
+  }
+}
+
+/// The kind of set that an item's class asks for; nothing where it leaves that open.
+std::optional<Referred> wanted_kind(ItemClass item_class) {
   switch (item_class) {
-    case ItemClass::beam: return ElementClass::beam;
-    case ItemClass::solid: return ElementClass::solid;
-    case ItemClass::tshell: return ElementClass::tshell;
-    case ItemClass::discrete: return ElementClass::discrete;
-    case ItemClass::mass: return ElementClass::mass;
-    case ItemClass::sph: return ElementClass::sph;
+    case ItemClass::node_set: return Referred::node_set;
+    case ItemClass::shell_set: return Referred::shell_set;
+    case ItemClass::beam_set: return Referred::beam_set;
+    case ItemClass::solid_set: return Referred::solid_set;
+    case ItemClass::tshell_set: return Referred::tshell_set;
+    case ItemClass::discrete_set: return Referred::discrete_set;
+    case ItemClass::part_set: return Referred::part_set;
+    case ItemClass::segment_set: return Referred::segment_set;
+    case ItemClass::element_set: return Referred::element_set;
     default: return std::nullopt;
   }
 }
 
-/// Marks what the items name, one after the other.
+void combine(Marks& into, const Marks& other, Step::Action action) {
+  std::uint8_t* a = into.data();
+  const std::uint8_t* b = other.data();
+  const std::size_t count = into.size();
+  if (action == Step::Action::add)
+    for (std::size_t i = 0; i < count; ++i) a[i] = static_cast<std::uint8_t>(a[i] | b[i]);
+  else if (action == Step::Action::take)
+    for (std::size_t i = 0; i < count; ++i) a[i] = static_cast<std::uint8_t>(a[i] & (b[i] ^ 1));
+  else
+    for (std::size_t i = 0; i < count; ++i) a[i] = static_cast<std::uint8_t>(a[i] & b[i]);
+}
+
+/// Does an expression's steps on marks.
 class Evaluator {
  public:
-  Evaluator(const Model& model, Kind kind) : model_(model), kind_(kind) {
-    const std::size_t count = kind == Kind::node ? model.node_count() : kind == Kind::element ? model.shell_count() : model.parts->size();
-    marks_.assign(count, 0);
+  Evaluator(const Model& model, Kind kind, const Names& names) : model_(model), names_(names), marking_(model, kind) {}
+
+  Result<Chosen> run(const Parsed& parsed) {
+    for (const Step& step : parsed.steps)
+      if (const Result<void> done = take(step, parsed); !done) return fail(done.error());
+    Chosen chosen = marking_.chosen(stack_.back());
+    chosen.of_surfaces = of_surfaces_;
+    return chosen;
   }
 
-  Result<void> take(const Item& item) {
-    const ItemClass item_class = item.item_class == ItemClass::in_hand ? class_of(kind_) : item.item_class;
-    if (block_class(item_class) && kind_ == Kind::element)
+ private:
+  Result<void> take(const Step& step, const Parsed& parsed) {
+    using Action = Step::Action;
+    switch (step.action) {
+      case Action::nothing: stack_.push_back(marking_.nothing()); return {};
+      case Action::everything: stack_.push_back(marking_.everything()); return {};
+      case Action::push: stack_.push_back(marking_.nothing()); return mark_item(parsed.items[step.item], stack_.back(), 1);
+      case Action::add_item: return mark_item(parsed.items[step.item], stack_.back(), 1);
+      case Action::take_item: return mark_item(parsed.items[step.item], stack_.back(), 0);
+      case Action::add:
+      case Action::take:
+      case Action::meet:
+        combine(stack_[stack_.size() - 2], stack_.back(), step.action);
+        stack_.pop_back();
+        return {};
+      case Action::complement: {
+        Marks others = marking_.everything();
+        combine(others, stack_.back(), Action::take);
+        stack_.back() = std::move(others);
+        return {};
+      }
+    }
+    return {};
+  }
+
+  static tl::unexpected<Error> error(const Item& item, std::string message) {
+    return fail("expression", static_cast<long>(item.column), std::move(message));
+  }
+
+  Result<void> mark_item(const Item& item, Marks& marks, std::uint8_t value) {
+    const ItemClass item_class = item.item_class == ItemClass::in_hand ? class_of(marking_.kind()) : item.item_class;
+    if (is_set(item_class)) return mark_sets(item, marks, value);
+    if (item_class != ItemClass::file) of_surfaces_ = of_surfaces_ && (item_class == ItemClass::shell || item_class == ItemClass::part);
+    if (item_class == ItemClass::file) return mark_file(item, marks, value);
+    if (item.by == Item::By::name) return mark_parts_called(item, marks, value);
+    if (block_class(item_class) && marking_.kind() == Kind::element)
       return error(item, "only shells can be selected as elements; select " + std::string(name(item_class)) + " nodes with kind node");
-    const IdIndex& ids = ids_of(item_class);
+    const IdIndex& ids = marking_.ids_of(item_class);
     if (ids.size() == 0) return error(item, "there is no " + std::string(name(item_class)) + " in the model");
-    std::size_t rank = item.all ? 0 : ids.lower_bound(item.first);
+    const auto [least, greatest] = std::pair(ids.at(0).first, ids.at(ids.size() - 1).first);
     bool found = false;
-    for (; rank < ids.size(); ++rank) {
-      const auto [id, index] = ids.at(rank);
-      if (!item.all && id > item.last) break;
-      if (!item.all && (id - item.first) % item.step != 0) continue;
-      found = true;
-      mark_entity(item_class, index, item.remove ? 0 : 1);
+    if (item.by == Item::By::all) {
+      found = marking_.mark_ids(marks, item_class, least, greatest, 1, value);
+    } else if (item.by == Item::By::other_ids) {
+      if (item.first > least) found = marking_.mark_ids(marks, item_class, least, item.first - 1, 1, value);
+      if (item.first < greatest) found = marking_.mark_ids(marks, item_class, item.first + 1, greatest, 1, value) || found;
+    } else {
+      found = marking_.mark_ids(marks, item_class, item.first, item.last, item.step, value);
     }
     if (!found) return names_nothing(item, item_class, ids);
     return {};
   }
 
-  Chosen finish() const {
-    Chosen chosen;
-    switch (kind_) {
-      case Kind::node: chosen.nodes = marked<NodeIndex>(marks_); break;
-      case Kind::element:
-        chosen.shells = marked<ShellIndex>(marks_);
-        chosen.nodes = nodes_of(model_, chosen.shells);
-        break;
-      case Kind::part: {
-        chosen.parts = marked<PartIndex>(marks_);
-        std::vector<std::uint8_t> nodes(model_.node_count(), 0);
-        each_shell([&](std::size_t shell, PartIndex part) {
-          if (part.value < marks_.size() && marks_[part.value] != 0) chosen.shells.push_back(ShellIndex(shell));
-        });
-        for (const NodeIndex node : nodes_of(model_, chosen.shells)) nodes[node.value] = 1;
-        for (const PartIndex part : chosen.parts) mark_part_blocks(part, nodes, 1);
-        chosen.nodes = marked<NodeIndex>(nodes);
-        break;
-      }
-    }
-    return chosen;
-  }
-
- private:
-  template <class Index>
-  static std::vector<Index> marked(const std::vector<std::uint8_t>& marks) {
-    std::vector<Index> set;
-    set.reserve(static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1)));
-    for (std::size_t i = 0; i < marks.size(); ++i)
-      if (marks[i] != 0) set.push_back(Index(i));
-    return set;
-  }
-
-  template <class Body>
-  void each_shell(const Body& body) const {
-    std::size_t shell = 0;
-    for (std::size_t c = 0; c < model_.shell_parts.chunk_count(); ++c)
-      for (const PartIndex part : model_.shell_parts.chunk(c)) body(shell++, part);
-  }
-
-  tl::unexpected<Error> error(const Item& item, std::string message) const {
-    return fail("expression", static_cast<long>(item.column), std::move(message));
-  }
-
-  tl::unexpected<Error> names_nothing(const Item& item, ItemClass item_class, const IdIndex& ids) const {
+  static tl::unexpected<Error> names_nothing(const Item& item, ItemClass item_class, const IdIndex& ids) {
     const bool single = item.first == item.last;
-    std::string message = single ? "there is no " : "no ";
-    message += name(item_class);
-    message += single ? " " : " lies in ";
-    message += std::to_string(item.first);
-    if (!single) message += '-' + std::to_string(item.last);
-    if (item.step > 1) message += ':' + std::to_string(item.step);
+    std::string message;
+    if (item.by == Item::By::comparison || item.by == Item::By::other_ids) {
+      message = "no " + std::string(name(item_class)) + " has such an id";
+    } else {
+      message = single ? "there is no " : "no ";
+      message += name(item_class);
+      message += single ? " " : " lies in ";
+      message += std::to_string(item.first);
+      if (!single) message += '-' + std::to_string(item.last);
+      if (item.step > 1) message += ':' + std::to_string(item.step);
+    }
     message += "; the nearest is ";
     message += name(item_class);
     message += ':' + std::to_string(nearest_id(ids, item));
@@ -135,131 +173,178 @@ class Evaluator {
     return below <= over ? low : high;
   }
 
-  /// Ids of a class; those without an index in the model get one here, once.
-  const IdIndex& ids_of(ItemClass item_class) {
-    if (item_class == ItemClass::node) return *model_.node_index;
-    if (item_class == ItemClass::shell) return *model_.shell_index;
-    std::unique_ptr<IdIndex>& index = indices_[static_cast<std::size_t>(item_class)];
-    if (index) return *index;
+  Result<void> mark_parts_called(const Item& item, Marks& marks, std::uint8_t value) {
+    const std::vector<PartIndex> found = parts_called(*model_.parts, item.name);
+    if (found.empty()) return error(item, no_part_called(*model_.parts, item.name));
+    for (const PartIndex part : found) marking_.mark(marks, ItemClass::part, part.value, value);
+    return {};
+  }
+
+  // --- sets ----------------------------------------------------------------------------------------------------------
+
+  const std::vector<NamedSet>& sets() {
+    if (!sets_) sets_ = names_.references != nullptr ? find_sets(*names_.references) : std::vector<NamedSet>();
+    return *sets_;
+  }
+
+  Result<void> mark_sets(const Item& item, Marks& marks, std::uint8_t value) {
+    WantedSet wanted{wanted_kind(item.item_class), set_of(marking_.kind()), 0, item.name};
+    const bool single = item.by == Item::By::ids && item.first == item.last;
+    if (single && item.first == 0) return error(item, "sets are numbered from 1");
+    if (single) wanted.id = item.first;
+    if (single || item.by == Item::By::name) {
+      const Result<bool> marked = mark_wanted(item, wanted, marks, value);
+      if (!marked) return fail(marked.error());
+      if (!*marked) return error(item, find_set(sets(), wanted).set->label() + " holds nothing that can be selected here");
+      return {};
+    }
+    // several: each id once, of several kinds under one id the preferred one
+    std::int64_t before = 0;
+    bool found = false;
     std::vector<std::int64_t> ids;
-    if (const auto element_class = block_class(item_class)) {
-      if (const auto& block = model_.elements[static_cast<std::size_t>(*element_class)]) ids = block->id;
-    } else {
-      for (const Part& part : *model_.parts) ids.push_back(part.id);
+    for (const NamedSet& set : sets())
+      if (set.id > 0 && (!wanted.kind || set.kind == *wanted.kind) && is_among(item, set.id)) ids.push_back(set.id);
+    std::sort(ids.begin(), ids.end());
+    for (const std::int64_t id : ids) {
+      if (id == before) continue;
+      before = wanted.id = id;
+      const Result<bool> marked = mark_wanted(item, wanted, marks, value);
+      if (!marked) return fail(marked.error());
+      found = found || *marked;
     }
-    index = std::make_unique<IdIndex>(ids);
-    return *index;
-  }
-
-  void mark_entity(ItemClass item_class, std::uint32_t index, std::uint8_t value) {
-    switch (kind_) {
-      case Kind::node: mark_nodes(item_class, index, value); break;
-      case Kind::element: mark_shells(item_class, index, value); break;
-      case Kind::part: mark_parts(item_class, index, value); break;
+    if (found) return {};
+    if (item.by == Item::By::ids && ids.empty()) {
+      wanted.id = std::max<std::int64_t>(item.first, 1);
+      return error(item, find_set(sets(), wanted).problem);
     }
+    return error(item, ids.empty() ? "no set has such an id" : "these sets hold nothing that can be selected here");
   }
 
-  void mark_nodes(ItemClass item_class, std::uint32_t index, std::uint8_t value) {
-    if (item_class == ItemClass::node) {
-      marks_[index] = value;
-    } else if (item_class == ItemClass::shell) {
-      for (const NodeIndex node : model_.shell(ShellIndex(index)).node) marks_[node.value] = value;
-      mark_midside(index, value);
-    } else if (item_class == ItemClass::part) {
-      mark_part_shells(PartIndex(index), value);
-      mark_part_blocks(PartIndex(index), marks_, value);
-    } else {
-      const ElementBlock& block = *model_.elements[static_cast<std::size_t>(*block_class(item_class))];
-      for (std::uint32_t n = block.first_node[index]; n < block.first_node[index + 1]; ++n) marks_[block.nodes[n].value] = value;
+  static bool is_among(const Item& item, std::int64_t id) {
+    if (item.by == Item::By::all) return true;
+    if (item.by == Item::By::other_ids) return id != item.first;
+    return item.first <= id && id <= item.last && (item.step <= 1 || (id - item.first) % item.step == 0);
+  }
+
+  /// False: the set holds nothing.
+  Result<bool> mark_wanted(const Item& item, const WantedSet& wanted, Marks& marks, std::uint8_t value) {
+    const FoundSet found = find_set(sets(), wanted);
+    if (found.set == nullptr) return error(item, found.problem);
+    Result<Marks> members = marks_of(item, *found.set, 0);
+    if (!members) return fail(members.error());
+    combine(marks, *members, value != 0 ? Step::Action::add : Step::Action::take);
+    return std::find(members->begin(), members->end(), 1) != members->end();
+  }
+
+  Result<Marks> marks_of(const Item& item, const NamedSet& set, int depth) {
+    if (depth > kDeepestSets) return error(item, set.label() + " is made of itself, or of sets within sets deeper than 32");
+    if (++sets_seen_ > kMostSets) return error(item, set.label() + " is made of too many sets");
+    of_surfaces_ = of_surfaces_ && (set.kind == Referred::shell_set || set.kind == Referred::part_set);
+    Marks marks = marking_.nothing();
+    bool first = true;
+    // a set that names nodes and elements alike means the one or the other: who uses it decides
+    const auto named = [&](Referred referred) {
+      return std::any_of(set.members.begin(), set.members.end(), [&](const Reference& m) { return m.referred == referred; });
+    };
+    const bool both = set.kind == Referred::node_set && named(Referred::node) && named(Referred::any_element);
+    for (const Reference& member : set.members) {
+      if (both && (member.referred == Referred::any_element) != (marking_.kind() == Kind::element)) continue;
+      if (!mesh::is_set(member.referred)) {
+        mark_member(member, marks);
+        continue;
+      }
+      for (const NamedSet* inner : sets_named(member)) {
+        Result<Marks> of_inner = marks_of(item, *inner, depth + 1);
+        if (!of_inner) return of_inner;
+        const Step::Action action = member.takes_away          ? Step::Action::take
+                                    : set.intersects && !first ? Step::Action::meet
+                                                               : Step::Action::add;
+        combine(marks, *of_inner, action);
+        first = false;
+      }
     }
+    return marks;
   }
 
-  void mark_midside(std::uint32_t shell, std::uint8_t value) {
-    if (!model_.midside || model_.midside->empty()) return;
-    const auto& all = *model_.midside;
-    auto entry =
-        std::lower_bound(all.begin(), all.end(), ShellIndex(shell), [](const MidsideNodes& m, ShellIndex s) { return m.shell < s; });
-    if (entry == all.end() || entry->shell != ShellIndex(shell)) return;
-    for (const NodeIndex node : entry->node)
-      if (node.valid()) marks_[node.value] = value;
+  std::vector<const NamedSet*> sets_named(const Reference& member) {
+    std::vector<const NamedSet*> out;
+    const std::vector<NamedSet>& all = sets();
+    auto set = std::lower_bound(all.begin(), all.end(), std::pair(member.referred, member.first),
+                                [](const NamedSet& s, const auto& key) { return std::pair(s.kind, s.id) < key; });
+    for (; set != all.end() && set->kind == member.referred && set->id <= member.last; ++set)
+      if (member.names(set->id)) out.push_back(&*set);
+    return out;
   }
 
-  void mark_part_shells(PartIndex part, std::uint8_t value) {
-    for (const std::uint32_t shell : shells_of(part)) {
-      for (const NodeIndex node : model_.shell(ShellIndex(shell)).node) marks_[node.value] = value;
-      mark_midside(shell, value);
+  void mark_member(const Reference& member, Marks& marks) {
+    const std::uint8_t value = member.takes_away ? 0 : 1;
+    const ItemClass entity = class_of(member.referred);
+    if (entity != ItemClass::in_hand) {
+      marking_.mark_ids(marks, entity, member.first, member.last, member.step, value);
+      return;
     }
+    for (const ItemClass each : {ItemClass::shell, ItemClass::beam, ItemClass::solid, ItemClass::tshell, ItemClass::discrete,
+                                 ItemClass::mass, ItemClass::sph, ItemClass::other})
+      marking_.mark_ids(marks, each, member.first, member.last, member.step, value);
   }
 
-  /// Nodes of a part's elements other than shells.
-  void mark_part_blocks(PartIndex part, std::vector<std::uint8_t>& marks, std::uint8_t value) const {
+  // --- files ---------------------------------------------------------------------------------------------------------
+
+  Result<void> mark_file(const Item& item, Marks& marks, std::uint8_t value) {
+    std::string problem;
+    const std::optional<std::uint32_t> file = find_file(names_.files, item.name, problem);
+    if (!file) return error(item, std::move(problem));
+    bool found = false;
+    const auto mark = [&](ItemClass entity, std::size_t index) {
+      found = true;
+      marking_.mark(marks, entity, static_cast<std::uint32_t>(index), value);
+    };
+    if (names_.file_of_shell)
+      for (std::size_t s = 0; s < model_.shell_count(); ++s)
+        if (names_.file_of_shell(ShellIndex(s)) == *file && !model_.is_removed(ShellIndex(s))) mark(ItemClass::shell, s);
+    if (marking_.kind() == Kind::node && names_.file_of_node)
+      for (std::size_t n = 0; n < model_.node_count(); ++n)
+        if (names_.file_of_node(NodeIndex(n)) == *file && !model_.is_removed(NodeIndex(n))) mark(ItemClass::node, n);
+    if (marking_.kind() == Kind::part) mark_lone_parts(*file, mark);
+    if (found) return {};
+    const std::string_view what = marking_.kind() == Kind::node ? "node" : marking_.kind() == Kind::element ? "shell" : "part's mesh";
+    return error(item, "no " + std::string(what) + " stands in the file \"" + names_.files[*file] + "\"");
+  }
+
+  /// Parts without shells are where the nodes of an element of theirs stand.
+  template <class Mark>
+  void mark_lone_parts(std::uint32_t file, const Mark& mark) {
+    if (!names_.file_of_node) return;
+    std::vector<std::uint8_t> has_shells(model_.parts->size(), 0);
+    for (std::size_t s = 0; s < model_.shell_count(); ++s)
+      if (const PartIndex part = model_.shell_parts[s]; part.valid()) has_shells[part.value] = 1;
     for (const auto& block : model_.elements) {
       if (!block) continue;
-      for (std::size_t e = 0; e < block->size(); ++e)
-        if (block->part[e] == part)
-          for (std::uint32_t n = block->first_node[e]; n < block->first_node[e + 1]; ++n) marks[block->nodes[n].value] = value;
+      for (std::size_t e = 0; e < block->size(); ++e) {
+        const PartIndex part = block->part[e];
+        if (!part.valid() || has_shells[part.value] != 0) continue;
+        const auto stands_there = [&](NodeIndex node) { return node.valid() && names_.file_of_node(node) == file; };
+        const auto first = block->nodes.begin() + block->first_node[e], last = block->nodes.begin() + block->first_node[e + 1];
+        if (first != last && std::all_of(first, last, stands_there)) mark(ItemClass::part, part.value);
+      }
     }
-  }
-
-  void mark_shells(ItemClass item_class, std::uint32_t index, std::uint8_t value) {
-    if (item_class == ItemClass::shell) {
-      marks_[index] = value;
-    } else if (item_class == ItemClass::node) {
-      for (const ShellIndex shell : model_.adjacency->shells_of(NodeIndex(index))) marks_[shell.value] = value;
-    } else {
-      for (const std::uint32_t shell : shells_of(PartIndex(index))) marks_[shell] = value;
-    }
-  }
-
-  void mark_parts(ItemClass item_class, std::uint32_t index, std::uint8_t value) {
-    const auto mark = [&](PartIndex part) {
-      if (part.value < marks_.size()) marks_[part.value] = value;
-    };
-    if (item_class == ItemClass::part) {
-      marks_[index] = value;
-    } else if (item_class == ItemClass::shell) {
-      mark(model_.shell_parts[index]);
-    } else if (item_class == ItemClass::node) {
-      for (const ShellIndex shell : model_.adjacency->shells_of(NodeIndex(index))) mark(model_.shell_parts[shell.value]);
-    } else {
-      mark(model_.elements[static_cast<std::size_t>(*block_class(item_class))]->part[index]);
-    }
-  }
-
-  /// Shells of a part; the lists of all parts are made at the first call, so that `part:1-1000` costs one pass.
-  std::span<const std::uint32_t> shells_of(PartIndex part) {
-    if (part_first_.empty()) {
-      part_first_.assign(model_.parts->size() + 2, 0);
-      const std::size_t parts = model_.parts->size();
-      each_shell([&](std::size_t, PartIndex p) {
-        if (p.value < parts) ++part_first_[p.value + 2];
-      });
-      for (std::size_t i = 2; i < part_first_.size(); ++i) part_first_[i] += part_first_[i - 1];
-      part_shells_.resize(part_first_.back());
-      each_shell([&](std::size_t shell, PartIndex p) {
-        if (p.value < parts) part_shells_[part_first_[p.value + 1]++] = static_cast<std::uint32_t>(shell);
-      });
-    }
-    return std::span(part_shells_).subspan(part_first_[part.value], part_first_[part.value + 1] - part_first_[part.value]);
   }
 
   const Model& model_;
-  Kind kind_;
-  std::vector<std::uint8_t> marks_;  ///< of the kind's entities
-  std::array<std::unique_ptr<IdIndex>, 10> indices_;
-  std::vector<std::uint32_t> part_first_;
-  std::vector<std::uint32_t> part_shells_;
+  const Names& names_;
+  Marking marking_;
+  std::vector<Marks> stack_;
+  std::optional<std::vector<NamedSet>> sets_;
+  int sets_seen_ = 0;
+  bool of_surfaces_ = true;
 };
 
 }  // namespace
 
-Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind) {
-  const Result<std::vector<Item>> items = parse(expression);
-  if (!items) return fail(items.error());
-  Evaluator evaluator(model, kind);
-  for (const Item& item : *items)
-    if (const Result<void> taken = evaluator.take(item); !taken) return fail(taken.error());
-  return evaluator.finish();
+Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind, const Names& names) {
+  const Result<Parsed> parsed = parse(expression);
+  if (!parsed) return fail(parsed.error());
+  return Evaluator(model, kind, names).run(*parsed);
 }
 
 std::string to_expression(std::vector<std::int64_t> ids) {

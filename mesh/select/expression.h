@@ -1,4 +1,4 @@
-// Id expressions: `1-100,205,!17,part:3,1-1000:10`, left to right. Grammar: docs/selecting.md.
+// Expressions of ids, sets and files: `1-100,205,!17,part:3,1-1000:10`, `set:"flange" & ~part:7`. Grammar: docs/selecting.md.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
+#include "mesh/select/names.h"
 
 namespace prismesh::mesh::select {
 
@@ -20,12 +21,13 @@ struct Chosen {
   NodeSet nodes;                 ///< kind node: the nodes; element: the nodes of `shells`; part: of all the parts' elements
   ShellSet shells;               ///< kind element: the shells; part: the shells of `parts`; else empty
   std::vector<PartIndex> parts;  ///< kind part: the parts, ascending, also those without shells; else empty
+  bool of_surfaces = false;      ///< every item names shells, parts, sets of those or files
 };
 
-/// Evaluates an expression from left to right, starting with nothing. Cost: the model's size once, then what each item names,
-/// never the width of a range.
-/// Errors: file "expression", line the column (from 1). An item that names nothing is one, with the nearest id that exists.
-Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind);
+/// Evaluates an expression, its items from left to right, starting with nothing. Cost: the model's size once and for each operator, then
+/// what each item names, never the width of a range; the reverse index once if a set is named.
+/// Errors: file "expression", line the column (from 1). An item that names nothing is one, with the nearest id, set or file that exists.
+Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind, const Names& names = {});
 
 /// The shortest expression of these ids in ascending ranges: "1-100,205". For tools that send what they picked.
 std::string to_expression(std::vector<std::int64_t> ids);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <limits>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -18,7 +19,7 @@ struct ClassName {
   std::string_view name;
   ItemClass item_class;
 };
-constexpr std::array<ClassName, 10> kClassNames{{{"node", ItemClass::node},
+constexpr std::array<ClassName, 21> kClassNames{{{"node", ItemClass::node},
                                                  {"part", ItemClass::part},
                                                  {"shell", ItemClass::shell},
                                                  {"element", ItemClass::shell},
@@ -27,8 +28,21 @@ constexpr std::array<ClassName, 10> kClassNames{{{"node", ItemClass::node},
                                                  {"tshell", ItemClass::tshell},
                                                  {"discrete", ItemClass::discrete},
                                                  {"mass", ItemClass::mass},
-                                                 {"sph", ItemClass::sph}}};
+                                                 {"sph", ItemClass::sph},
+                                                 {"set", ItemClass::set},
+                                                 {"node_set", ItemClass::node_set},
+                                                 {"shell_set", ItemClass::shell_set},
+                                                 {"beam_set", ItemClass::beam_set},
+                                                 {"solid_set", ItemClass::solid_set},
+                                                 {"tshell_set", ItemClass::tshell_set},
+                                                 {"discrete_set", ItemClass::discrete_set},
+                                                 {"part_set", ItemClass::part_set},
+                                                 {"segment_set", ItemClass::segment_set},
+                                                 {"element_set", ItemClass::element_set},
+                                                 {"file", ItemClass::file}}};
 constexpr std::string_view kAll = "all";
+constexpr std::string_view kId = "id";
+constexpr std::int64_t kGreatestId = std::numeric_limits<std::int64_t>::max();
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -49,26 +63,27 @@ std::string shown(char c) {
   return std::string("the byte \\x") + kDigits[byte >> 4] + kDigits[byte & 15];
 }
 
+/// Ends a name that isn't quoted.
+bool ends_name(char c) {
+  return is_space(c) || c == ',' || c == '&' || c == '|' || c == '!' || c == '~' || c == '(' || c == ')' || c == '"' || c == '\'';
+}
+
 class Parser {
  public:
   explicit Parser(std::string_view text) : text_(text) {}
 
-  Result<std::vector<Item>> run() {
-    std::vector<Item> items;
+  Result<Parsed> run() {
     skip_spaces();
     if (at_end()) return fail("expression", 1, "the expression is empty: write ids such as 1-100,205 or all");
-    while (true) {
-      Result<Item> item = read_item();
-      if (!item) return fail(std::move(item.error()));
-      items.push_back(*item);
-      skip_spaces();
-      if (at_end()) return items;
-      if (text_[at_] != ',') return error("unexpected " + shown(text_[at_]) + ": items are separated by commas");
-      ++at_;
-    }
+    if (const auto read = read_list(false); !read) return fail(read.error());
+    if (at(')')) return error("this ) closes no (");
+    if (!at_end()) return error("unexpected " + shown(text_[at_]) + ": items are separated by commas");
+    return std::move(parsed_);
   }
 
  private:
+  using Action = Step::Action;
+
   bool at_end() const { return at_ >= text_.size(); }
   bool at(char c) const { return !at_end() && text_[at_] == c; }
   void skip_spaces() {
@@ -88,43 +103,149 @@ class Parser {
     return true;
   }
 
-  Result<Item> read_item() {
+  void step(Action action, std::size_t item = 0) { parsed_.steps.push_back({action, static_cast<std::uint32_t>(item)}); }
+
+  Result<void> count_operator(std::size_t place) {
+    if (++operators_ <= kMostOperators) return {};
+    return error_at(place, "there are more than " + std::to_string(kMostOperators) + " of & | ~ ( in the expression");
+  }
+
+  /// Items by commas, each added to what those before it left or taken from it. Within parentheses a list that begins by taking away
+  /// takes from everything.
+  Result<void> read_list(bool nested) {
+    for (bool first = true;; first = false) {
+      skip_spaces();
+      const bool removes = take('!');
+      if (first) step(nested && removes ? Action::everything : Action::nothing);
+      const std::size_t before = parsed_.steps.size();
+      if (const auto read = read_union(); !read) return read;
+      if (parsed_.steps.size() == before + 1 && parsed_.steps.back().action == Action::push)
+        parsed_.steps.back().action = removes ? Action::take_item : Action::add_item;
+      else
+        step(removes ? Action::take : Action::add);
+      if (!take(',')) return {};
+    }
+  }
+
+  Result<void> read_union() {
+    if (const auto read = read_intersection(); !read) return read;
+    for (;;) {
+      skip_spaces();
+      const std::size_t place = at_;
+      if (!take('|')) return {};
+      if (const auto counted = count_operator(place); !counted) return counted;
+      if (const auto read = read_intersection(); !read) return read;
+      step(Action::add);
+    }
+  }
+
+  Result<void> read_intersection() {
+    if (const auto read = read_factor(false); !read) return read;
+    for (;;) {
+      skip_spaces();
+      const std::size_t place = at_;
+      if (!take('&')) return {};
+      if (const auto counted = count_operator(place); !counted) return counted;
+      if (const auto read = read_factor(true); !read) return read;
+      step(Action::meet);
+    }
+  }
+
+  /// `~` is the complement anywhere, `!` behind an operator only: at the beginning of an item it takes the whole item away.
+  Result<void> read_factor(bool behind_operator) {
+    bool complement = false;
+    for (skip_spaces(); at('~') || (behind_operator && at('!')); skip_spaces()) {
+      if (const auto counted = count_operator(at_); !counted) return counted;
+      complement = !complement;
+      ++at_;
+    }
+    const auto read = at('(') ? read_parentheses() : read_item();
+    if (!read) return read;
+    if (complement) step(Action::complement);
+    return {};
+  }
+
+  Result<void> read_parentheses() {
+    const std::size_t open = at_;
+    if (const auto counted = count_operator(open); !counted) return counted;
+    if (++depth_ > kDeepestParentheses) return error("parentheses go deeper than " + std::to_string(kDeepestParentheses));
+    ++at_;
+    if (const auto read = read_list(true); !read) return read;
+    if (at_end()) return error("the expression ends where a ) should stand: the ( at column " + std::to_string(open + 1) + " is open");
+    if (!at(')')) return error("unexpected " + shown(text_[at_]) + " within parentheses: items are separated by commas");
+    ++at_;
+    --depth_;
+    return {};
+  }
+
+  Result<void> read_item() {
     Item item;
-    skip_spaces();
-    item.remove = take('!');
     const std::size_t begin = at_;
     item.column = begin + 1;
-    if (!at_end() && is_letter(text_[at_])) {
-      const auto word = read_word(item);
-      if (!word) return fail(word.error());
-    }
-    if (!item.all) {
-      const auto ids = read_ids(item);
-      if (!ids) return fail(ids.error());
-    }
+    const bool has_word = !at_end() && is_letter(text_[at_]);
+    if (const Result<void> read = has_word ? read_word(item) : read_ids(item); !read) return read;
     std::size_t end = at_;
     while (end > begin && is_space(text_[end - 1])) --end;
     item.text = text_.substr(begin, end - begin);
-    return item;
+    step(Action::push, parsed_.items.size());
+    parsed_.items.push_back(std::move(item));
+    return {};
   }
 
-  /// `all`, or a class and its colon, which `all` may follow.
+  /// `all`, a comparison, or a class and its colon, which both or a name may follow.
   Result<void> read_word(Item& item) {
     const std::size_t begin = at_;
     const std::string word = take_word();
     if (word == kAll) {
-      item.all = true;
+      item.by = Item::By::all;
       return {};
     }
+    if (word == kId) return read_comparison(item);
     const auto known = std::find_if(kClassNames.begin(), kClassNames.end(), [&](const ClassName& c) { return c.name == word; });
     if (known == kClassNames.end()) return unknown_word(begin, word);
     item.item_class = known->item_class;
-    if (!take(':')) return error("a colon and an id must follow \"" + word + "\", as in " + word + ":3");
-    if (at_end() || !is_letter(text_[at_])) return {};
+    const bool has_name = is_set(item.item_class) || item.item_class == ItemClass::file || item.item_class == ItemClass::part;
+    if (!take(':')) {
+      if (item.item_class == ItemClass::file) return error("a colon and a name must follow \"file\", as in file:bumper.k");
+      return error("a colon and an id must follow \"" + word + "\", as in " + word + ":3");
+    }
+    if (has_name && (at('"') || at('\''))) return read_quoted(item);
+    if (item.item_class == ItemClass::file) return read_name(item);
+    if (at_end() || !is_letter(text_[at_])) return read_ids(item);
     const std::size_t second = at_;
     const std::string after = take_word();
-    if (after != kAll) return error_at(second, "an id or all must follow \"" + word + ":\", not \"" + after + "\"");
-    item.all = true;
+    if (after == kId) {
+      std::size_t next = at_;
+      while (next < text_.size() && is_space(text_[next])) ++next;
+      if (next < text_.size() && (text_[next] == '<' || text_[next] == '>' || text_[next] == '=' || text_[next] == '!'))
+        return read_comparison(item);
+    }
+    if (is_set(item.item_class)) {
+      at_ = second;
+      return read_name(item);
+    }
+    if (after != kAll) return error_at(second, "an id or all must follow \"" + word + ":\", not \"" + after.substr(0, 40) + "\"");
+    item.by = Item::By::all;
+    return {};
+  }
+
+  Result<void> read_quoted(Item& item) {
+    const std::size_t begin = at_;
+    const std::size_t end = text_.find(text_[at_], at_ + 1);
+    if (end == std::string_view::npos) return error_at(begin, "the name that begins here has no closing " + shown(text_[begin]));
+    item.by = Item::By::name;
+    item.name = text_.substr(begin + 1, end - begin - 1);
+    at_ = end + 1;
+    if (item.name.empty()) return error_at(begin, "there is no name between the quotes");
+    return {};
+  }
+
+  Result<void> read_name(Item& item) {
+    const std::size_t begin = at_;
+    while (!at_end() && !ends_name(text_[at_])) ++at_;
+    item.by = Item::By::name;
+    item.name = text_.substr(begin, at_ - begin);
+    if (item.name.empty()) return error(at_end() ? "the expression ends where a name should stand" : "a name should stand here");
     return {};
   }
 
@@ -135,10 +256,40 @@ class Parser {
   }
 
   Result<void> unknown_word(std::size_t place, const std::string& word) const {
-    std::array<std::string_view, kClassNames.size() + 1> known;
+    std::array<std::string_view, kClassNames.size() + 2> known;
     std::transform(kClassNames.begin(), kClassNames.end(), known.begin(), [](const ClassName& c) { return c.name; });
-    known.back() = kAll;
+    known[kClassNames.size()] = kAll;
+    known[kClassNames.size() + 1] = kId;
     return error_at(place, "unknown word \"" + word.substr(0, 40) + "\"; did you mean \"" + std::string(nearest_name(word, known)) + "\"?");
+  }
+
+  /// "> 5000" and so on, behind `id`.
+  Result<void> read_comparison(Item& item) {
+    skip_spaces();
+    const std::size_t place = at_;
+    const std::string_view rest = text_.substr(at_);
+    std::string_view sign;
+    for (const std::string_view known : {"<=", ">=", "!=", "==", "<", ">", "="})
+      if (sign.empty() && rest.substr(0, known.size()) == known) sign = known;
+    if (sign.empty()) return error("a comparison must follow \"id\", as in id>5000");
+    at_ += sign.size();
+    skip_spaces();
+    std::int64_t id = 0;
+    if (auto read = read_number(id, "an id"); !read) return read;
+    item.by = Item::By::comparison;
+    item.first = std::numeric_limits<std::int64_t>::min();
+    item.last = kGreatestId;
+    if (sign == "<=") item.last = id;
+    if (sign == "<") item.last = id - 1;
+    if (sign == ">=") item.first = id;
+    if (sign == ">" && id == kGreatestId) return error_at(place, "no id is greater than " + std::to_string(id));
+    if (sign == ">") item.first = id + 1;
+    if (sign == "=" || sign == "==") item.first = item.last = id;
+    if (sign == "!=") {
+      item.by = Item::By::other_ids;
+      item.first = item.last = id;
+    }
+    return {};
   }
 
   Result<void> read_ids(Item& item) {
@@ -171,16 +322,20 @@ class Parser {
 
   std::string_view text_;
   std::size_t at_ = 0;
+  int depth_ = 0;
+  int operators_ = 0;
+  Parsed parsed_;
 };
 
 }  // namespace
 
 std::string_view name(ItemClass item_class) {
+  if (item_class == ItemClass::other) return "other element";
   for (const ClassName& known : kClassNames)
     if (known.item_class == item_class) return known.name;
   return "in hand";
 }
 
-Result<std::vector<Item>> parse(std::string_view expression) { return Parser(expression).run(); }
+Result<Parsed> parse(std::string_view expression) { return Parser(expression).run(); }
 
 }  // namespace prismesh::mesh::select

@@ -194,6 +194,7 @@ class BlockReader {
   void add(Referred referred, ReferenceRole role, std::int64_t first, std::int64_t last, std::int64_t step, std::size_t card) {
     if (first == 0 && last == 0) return;
     Reference reference;
+    reference.takes_away = takes_away_;
     reference.referred = referred;
     reference.role = role;
     reference.first = first == 0 ? 0 : with_offset(referred, first);
@@ -431,6 +432,13 @@ class BlockReader {
   bool read_general(char letter, Referred member, Referred set, const Line& line) {
     std::string word(card_.text(0));
     std::transform(word.begin(), word.end(), word.begin(), upper);
+    takes_away_ = !word.empty() && word.front() == 'D';
+    const bool understood = read_general(letter, member, set, word, line);
+    takes_away_ = false;
+    return understood;
+  }
+
+  bool read_general(char letter, Referred member, Referred set, std::string word, const Line& line) {
     if (word.empty()) return true;
     if (word == "ALL") {
       if (letter != 'g') add(member, ReferenceRole::range, 1, kEveryId, 1, line.offset);
@@ -524,7 +532,8 @@ class BlockReader {
   Card card_;
   std::vector<std::string_view> set_lines_;  ///< of the entity being read, by card
   Line header_;
-  bool own_ = false;  ///< the entity has a header
+  bool own_ = false;         ///< the entity has a header
+  bool takes_away_ = false;  ///< the line being read takes out of its set what it names
   bool header_has_id_ = false;
   std::optional<std::uint32_t> current_;
   bool unclear_ = false;

@@ -266,7 +266,7 @@ class BlockReader {
     // A negative id takes its entity out of the set.
     if (id < 0) role = ReferenceRole::single;
     const std::int64_t named = std::abs(id) + added();
-    if (id != 0) references_.add(Reference{rule_.referred, role, named, named, 1, referrer_index_, line.offset});
+    if (id != 0) references_.add(Reference{rule_.referred, role, named, named, 1, referrer_index_, line.offset, id < 0});
   }
 
   void read_card(const Line& line, int card) {
