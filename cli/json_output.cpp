@@ -46,15 +46,24 @@ Json bad_shells(const quality::Counts& counts) { return {{"warn", counts.warn}, 
 Json edit_object(const document::EditReport& report) {
   Json notes = Json::array();
   for (const std::string& note : report.notes) notes.push_back(printable(note));
-  return {{"edit", report.edit},
-          {"ok", true},
-          {"nodes_moved", report.nodes_moved},
-          {"elements_added", report.elements_added},
-          {"elements_removed", report.elements_removed},
-          {"before", bad_shells(report.before)},
-          {"after", bad_shells(report.after)},
-          {"notes", std::move(notes)},
-          {"ms", std::round(report.milliseconds * 1000) / 1000}};
+  Json object{{"edit", report.edit},
+              {"ok", true},
+              {"nodes_moved", report.nodes_moved},
+              {"elements_added", report.elements_added},
+              {"elements_removed", report.elements_removed},
+              {"before", bad_shells(report.before)},
+              {"after", bad_shells(report.after)},
+              {"inverted", report.inverted},
+              {"notes", std::move(notes)},
+              {"ms", std::round(report.milliseconds * 1000) / 1000}};
+  object["lost"] = Json::array();
+  for (const std::string& lost : report.lost) object["lost"].push_back(printable(lost));
+  object["lost_connections"] = report.lost_connections;
+  if (report.mass_before) object["mass_before"] = *report.mass_before;
+  if (report.mass_after) object["mass_after"] = *report.mass_after;
+  if (report.centre_before) object["cog_before"] = *report.centre_before;
+  if (report.centre_after) object["cog_after"] = *report.centre_after;
+  return object;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "base/counted.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/hanging.h"
 #include "mesh/document/motion.h"
 #include "mesh/document/surroundings.h"
 
@@ -41,6 +42,18 @@ void note_attached(const Attached& attached, const NodeSet& moved, EditReport& r
   }
 }
 
+void report_inverted(const Model& before, const Model& after, const ShellSet& touched, const Motion& motion, double degrees,
+                     EditReport& report) {
+  const ShellSet inverted = inverted_shells(before, after, touched, motion, degrees);
+  report.inverted = inverted.size();
+  if (inverted.empty()) return;
+  std::string note =
+      counted(inverted.size(), "element") + " turned over or folded: shell:" + std::to_string(before.shell_ids[inverted[0].value]);
+  for (std::size_t i = 1; i < std::min<std::size_t>(inverted.size(), 5); ++i)
+    note += ", shell:" + std::to_string(before.shell_ids[inverted[i].value]);
+  report.notes.push_back(note + (inverted.size() > 5 ? ", ..." : ""));
+}
+
 Result<void> move(const Document& document, const Edit& edit, Generation& next, EditReport& report) {
   const Result<Motion> motion = plan_motion(document.current(), edit, &document);
   if (!motion) return fail(motion.error());
@@ -50,16 +63,26 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
     if (!position.allFinite()) return fail("", std::string(name(edit)) + ": the displacement is too large to be a coordinate");
   const NodeSet moved = put_positions(motion->nodes, positions, next.model.positions);
   report.nodes_moved = moved.size();
-  quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, shells_touching(next.model, moved), next.quality,
-                   next.counts);
+  const ShellSet touched = shells_touching(next.model, moved);
+  quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, touched, next.quality, next.counts);
+  update_weight(document.current(), touched, next);
   if (motion->unreached > 0)
     report.notes.push_back(counted(motion->unreached, "node") + " can't be reached from the grab along what is moved; left in place");
+  if (motion->without_image > 0)
+    report.notes.push_back(counted(motion->without_image, "node") + " without an image on the other side of the plane of symmetry");
   if (held_back > 0) report.notes.push_back(counted(held_back, "node") + " held back by max_move");
   note_attached(document.current().around->attached, moved, report);
+  report_hanging(document.current(), next, moved, report);
+  report_inverted(document.current().model, next.model, touched, *motion, displacement_of(edit).degrees, report);
   return {};
 }
 
 }  // namespace
+
+void update_weight(const Generation& before, const ShellSet& shells, Generation& next) {
+  next.weight -= quality::weigh_shells(before.model, shells);
+  next.weight += quality::weigh_shells(next.model, shells);
+}
 
 Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report) {
   return move(document, edit, next, report);

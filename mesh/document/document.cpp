@@ -37,6 +37,7 @@ std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const d
   first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
   first->quality = quality::judge_model(model, settings.criteria, settings.target_size);
   first->counts = quality::count(first->quality);
+  first->weight = quality::weigh_model(model);
   first->model = std::move(model);
   first->made_by = "open";
   return first;
@@ -96,6 +97,17 @@ Result<Prepared> prepare_push(const Document& document, const E& edit, std::stri
   return prepared;
 }
 
+void say_weights(const quality::Weight& before, const quality::Weight& after, EditReport& report) {
+  const auto point = [](const quality::Weight& weight) {
+    const std::optional<Vec3> at = weight.centre();
+    return at ? std::optional<std::array<double, 3>>({at->x(), at->y(), at->z()}) : std::nullopt;
+  };
+  if (before.shells > 0) report.mass_before = before.mass;
+  if (after.shells > 0) report.mass_after = after.mass;
+  report.centre_before = point(before);
+  report.centre_after = point(after);
+}
+
 }  // namespace
 
 Result<Prepared> prepare(const Document& document, const Edit& edit) {
@@ -112,6 +124,7 @@ Result<Prepared> prepare(const Document& document, const Edit& edit) {
       edit);
   if (!prepared) return prepared;
   prepared->report.edit = name(edit);
+  if (prepared->report.nodes_moved > 0) say_weights(document.current().weight, prepared->next->weight, prepared->report);
   prepared->report.before = document.current().counts;
   prepared->report.after = prepared->next->counts;
   prepared->report.milliseconds = static_cast<double>(clock.now_ns() - start_ns) * 1e-6;

@@ -1,6 +1,7 @@
 // A document: a deck, its settings, and generations of (model + selection + part states). See docs/architecture.md.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "base/progress.h"
 #include "mesh/deck/deck.h"
 #include "mesh/document/edit.h"
+#include "mesh/quality/mass.h"
 #include "mesh/quality/report.h"
 
 namespace prismesh::mesh::document {
@@ -59,6 +61,7 @@ struct Generation {
   std::shared_ptr<const Surroundings> around;           ///< what the deck says besides the mesh; never null once opened
   ChunkedArray<quality::ShellState> quality;
   quality::Counts counts;     ///< all shells
+  quality::Weight weight;     ///< of all shells; kept up with each edit, so its last digits tell of the way here
   std::uint64_t number = 0;   ///< counts up over the document's life, never reused
   std::string made_by;        ///< the edit's name; "open" for the first
   std::size_t own_bytes = 0;  ///< of chunks that the generation before doesn't share: what keeping that one costs
@@ -73,6 +76,14 @@ struct EditReport {
   std::size_t elements_removed = 0;
   quality::Counts before;
   quality::Counts after;
+  // of edits that move nodes:
+  std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)
+  std::size_t lost_connections = 0;   ///< nodes that lay on a sheet and no longer do (docs/connections.md)
+  std::vector<std::string> lost;      ///< the first hundred of them, a sentence each
+  std::optional<double> mass_before;  ///< of the shells whose mass is known; absent if none is
+  std::optional<double> mass_after;
+  std::optional<std::array<double, 3>> centre_before;  ///< of gravity
+  std::optional<std::array<double, 3>> centre_after;
   std::vector<std::string> notes;
   double milliseconds = 0;
 };

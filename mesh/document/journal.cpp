@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/base64.h"
+#include "mesh/document/apply.h"
 #include "mesh/document/delta.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/history.h"
@@ -76,8 +77,9 @@ Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, cons
   auto next = std::make_shared<Generation>(document.current());
   const Result<NodeSet> moved = apply_delta(*delta, *next);
   if (!moved) return fail(moved.error());
-  quality::rejudge(next->model, document.settings.criteria, document.settings.target_size, shells_touching(next->model, *moved),
-                   next->quality, next->counts);
+  const ShellSet touched = shells_touching(next->model, *moved);
+  quality::rejudge(next->model, document.settings.criteria, document.settings.target_size, touched, next->quality, next->counts);
+  update_weight(document.current(), touched, *next);
   next->number = document.next_number;
   next->made_by = edit_name(record.intent);
   next->own_bytes = own_bytes(document.current(), *next);

@@ -24,11 +24,23 @@ Attached find_attached(const Model& model) {
   return attached;
 }
 
+/// Points into the deck.
+select::Names find_names(const deck::Deck& deck) {
+  select::Names names;
+  names.references = deck.references.get();
+  for (const deck::SourceFile& file : deck.files) names.files.push_back(file.relative.generic_string());
+  if (!deck.node_runs.empty()) names.file_of_node = [&deck](NodeIndex node) { return deck.run_of(node).file; };
+  if (!deck.shell_runs.empty()) names.file_of_shell = [&deck](ShellIndex shell) { return deck.run_of(shell).file; };
+  return names;
+}
+
 }  // namespace
 
 std::shared_ptr<const Surroundings> find_surroundings(std::shared_ptr<const deck::Deck> deck, const Model& model) {
   auto around = std::make_shared<Surroundings>();
   around->attached = find_attached(model);
+  around->names = find_names(*deck);
+  around->hanging = find_hanging(*deck, model, around->attached);
   around->deck = std::move(deck);
   return around;
 }

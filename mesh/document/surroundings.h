@@ -7,6 +7,7 @@
 
 #include "mesh/deck/deck.h"
 #include "mesh/document/document.h"
+#include "mesh/document/hanging.h"
 #include "mesh/select/names.h"
 
 namespace prismesh::mesh::document {
@@ -26,6 +27,7 @@ struct Surroundings {
   std::shared_ptr<const deck::Deck> deck;  ///< keeps what `names` points into
   select::Names names;
   Attached attached;
+  Hanging hanging;
 };
 
 std::shared_ptr<const Surroundings> find_surroundings(std::shared_ptr<const deck::Deck> deck, const Model& model);

@@ -11,6 +11,7 @@
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/quality/judging.h"
+#include "mesh/quality/mass.h"
 #include "mesh/quality/time_step.h"
 
 namespace prismesh::mesh::quality {
@@ -116,23 +117,15 @@ void weigh(const Model& model, const TimeStepControl& control, std::size_t shell
   const ShellNodes& nodes = model.shell_nodes[shell];
   std::array<Vec3, 4> p;
   for (std::size_t c = 0; c < 4; ++c) p[c] = model.position(nodes.node[c]);
-  const double thickness = thickness_of(model, shell);
-  double mass = 0;
-  if (part.density && thickness > 0) {
-    // two triangles, so that the centre of a slanted quad is right
-    const double first = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
-    const double second = 0.5 * (p[2] - p[0]).cross(p[3] - p[0]).norm();
-    const double surface_density = *part.density * thickness;
-    mass = surface_density * (first + second);
-    partial.mass += mass;
-    partial.moment += surface_density / 3.0 * (first * (p[0] + p[1] + p[2]) + second * (p[0] + p[2] + p[3]));
-    partial.has_mass = true;
-  }
+  const Weight weight = weigh_shell(model, ShellIndex(shell));
+  partial.mass += weight.mass;
+  partial.moment += weight.moment;
+  partial.has_mass = partial.has_mass || weight.shells > 0;
   const std::optional<double> step =
       shell_time_step(part, std::span(p.data(), static_cast<std::size_t>(nodes.corners())), control.shell_option);
   if (!step) return;
   const double wanted = std::abs(control.mass_scaled);
-  if (wanted > 0 && *step<wanted&& * step> 0) partial.added_mass += mass * ((wanted / *step) * (wanted / *step) - 1.0);
+  if (wanted > 0 && *step<wanted&& * step> 0) partial.added_mass += weight.mass * ((wanted / *step) * (wanted / *step) - 1.0);
   const double seconds = control.scale * *step;
   if (!partial.report.time_step || seconds < partial.report.time_step->seconds) partial.report.time_step = {seconds, ShellIndex(shell)};
 }

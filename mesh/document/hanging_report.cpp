@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "base/counted.h"
+#include "base/deterministic_math.h"
+#include "mesh/deck/naming.h"
+#include "mesh/document/hanging.h"
+#include "mesh/document/motion.h"
+#include "mesh/document/surroundings.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/spatial/closest_point.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+constexpr std::size_t kMostNamed = 5;   ///< cards and nodes that a note names
+constexpr std::size_t kMostLost = 100;  ///< connections that a report lists
+constexpr int kRings = 4;               ///< how far along its sheet a node may have come and still be found there
+
+bool contains(const NodeSet& nodes, NodeIndex node) { return std::binary_search(nodes.begin(), nodes.end(), node); }
+
+std::string card_of(const Surroundings& around, std::uint32_t referrer) {
+  return deck::card_name(around.deck->format, around.deck->references->referrers()[referrer]);
+}
+
+/// Cards that join nodes of which only some moved.
+void note_split_joins(const Generation& before, const NodeSet& moved, EditReport& report) {
+  const Hanging& hanging = before.around->hanging;
+  std::map<std::uint32_t, std::size_t> moved_of;
+  auto at = hanging.joined.begin();
+  for (const NodeIndex node : moved) {
+    if (at == hanging.joined.end()) break;
+    at = std::lower_bound(at, hanging.joined.end(), node, [](const Hanging::Joined& j, NodeIndex n) { return j.node < n; });
+    for (; at != hanging.joined.end() && at->node == node; ++at) ++moved_of[at->join];
+  }
+  std::size_t named = 0, more = 0;
+  for (const auto& [join, count] : moved_of) {
+    const NodeSet& nodes = hanging.joins[join].nodes;
+    if (count == nodes.size()) continue;
+    if (named++ >= kMostNamed) {
+      ++more;
+      continue;
+    }
+    std::string note = card_of(*before.around, hanging.joins[join].referrer) + ": " + std::to_string(count) + " of its " +
+                       std::to_string(nodes.size()) + " nodes moved; left in place: ";
+    std::size_t left = 0;
+    for (const NodeIndex node : nodes) {
+      if (contains(moved, node)) continue;
+      if (left++ < kMostNamed) note += (left > 1 ? ", node:" : "node:") + std::to_string(before.model.node_ids[node.value]);
+    }
+    if (left > kMostNamed) note += " and " + std::to_string(left - kMostNamed) + " more";
+    report.notes.push_back(std::move(note));
+  }
+  if (more > 0) report.notes.push_back("so it is with " + counted(more, "more card") + " that join nodes");
+}
+
+/// The shells around one, ring by ring over shared nodes.
+ShellSet around(const Model& model, ShellIndex shell) {
+  ShellSet shells{shell};
+  for (int ring = 0; ring < kRings; ++ring) shells = shells_touching(model, nodes_of(model, shells));
+  return shells;
+}
+
+/// How far the node is from the sheet it lies on; looks at the shell alone first.
+double gap_at(const Model& model, const Hanging::Rest& rest) {
+  const Vec3& point = model.position(rest.node);
+  const auto distance = [&](const ShellSet& shells) {
+    const auto on = spatial::ShellTree(model, shells).closest(point);
+    return on ? on->distance : std::numeric_limits<double>::infinity();
+  };
+  const double close = distance({rest.shell});
+  return close <= rest.reach ? close : std::min(close, distance(around(model, rest.shell)));
+}
+
+/// Three digits are enough to say how far apart things are.
+std::string short_length(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", length);
+  return text;
+}
+
+std::string lost_connection(const Generation& before, const Hanging::Rest& rest, double gap) {
+  const Model& model = before.model;
+  const std::string node = "node:" + std::to_string(model.node_ids[rest.node.value]);
+  std::string what;
+  if (rest.tied)
+    what = node + ", which " + card_of(*before.around, rest.of) + " ties,";
+  else
+    what = std::string(name(rest.element_class)) + ":" +
+           std::to_string(model.elements[static_cast<std::size_t>(rest.element_class)]->id[rest.of]) + " at " + node;
+  std::string why =
+      " no longer lies on shell:" + std::to_string(model.shell_ids[rest.shell.value]) + ", it is " + short_length(gap) + " away";
+  if ((before.node_marks[rest.node.value] & kLocked) != 0)
+    why += " (it belongs to a locked part)";
+  else if (model.node_holds[rest.node.value] != 0)
+    why += " (it " + std::string(why_held(model.node_holds[rest.node.value])) + ")";
+  return what + why;
+}
+
+/// Nodes that lay on a sheet and don't any more.
+void list_lost(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report) {
+  const Hanging& hanging = before.around->hanging;
+  if (hanging.rests.empty()) return;
+  std::vector<std::uint32_t> doubtful;
+  auto rest = hanging.rests.begin();
+  for (const NodeIndex node : moved) {
+    rest = std::lower_bound(rest, hanging.rests.end(), node, [](const Hanging::Rest& r, NodeIndex n) { return r.node < n; });
+    if (rest == hanging.rests.end()) break;
+    if (rest->node == node) doubtful.push_back(static_cast<std::uint32_t>(rest - hanging.rests.begin()));
+  }
+  auto by_shell = hanging.rests_by_shell.begin();
+  for (const ShellIndex shell : shells_touching(before.model, moved)) {
+    by_shell = std::lower_bound(by_shell, hanging.rests_by_shell.end(), shell,
+                                [&](std::uint32_t r, ShellIndex s) { return hanging.rests[r].shell < s; });
+    for (; by_shell != hanging.rests_by_shell.end() && hanging.rests[*by_shell].shell == shell; ++by_shell) doubtful.push_back(*by_shell);
+  }
+  std::sort(doubtful.begin(), doubtful.end());
+  doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
+  std::size_t carried = 0;
+  for (const std::uint32_t r : doubtful) {
+    const Hanging::Rest& each = hanging.rests[r];
+    const double gap = gap_at(after.model, each);
+    if (gap <= each.reach) {
+      carried += !each.tied && contains(moved, each.node);
+      continue;
+    }
+    if (gap_at(before.model, each) > each.reach) continue;  // lost before
+    if (++report.lost_connections <= kMostLost) report.lost.push_back(lost_connection(before, each, gap));
+  }
+  if (carried > 0) report.notes.push_back(counted(carried, "node") + " of welds moved along with the sheets they lie on");
+  if (report.lost_connections > 0)
+    report.notes.push_back(counted(report.lost_connections, "connection") + " would be lost: " + report.lost.front() +
+                           (report.lost_connections > 1 ? ", ..." : ""));
+}
+
+Vec3 normal_of(const Model& model, ShellIndex shell) {
+  const ShellNodes& nodes = model.shell(shell);
+  const auto at = [&](std::size_t i) { return model.position(nodes.node[i]); };
+  return nodes.is_triangle() ? Vec3((at(1) - at(0)).cross(at(2) - at(0))) : Vec3((at(2) - at(0)).cross(at(3) - at(1)));
+}
+
+/// Whether every corner turns the same way as the whole: the Jacobian is greater than 0 there.
+bool is_convex(const Model& model, ShellIndex shell, const Vec3& normal) {
+  const ShellNodes& nodes = model.shell(shell);
+  const int corners = nodes.corners();
+  for (int i = 0; i < corners; ++i) {
+    const Vec3& here = model.position(nodes.node[static_cast<std::size_t>(i)]);
+    const Vec3 out = model.position(nodes.node[static_cast<std::size_t>((i + 1) % corners)]) - here;
+    const Vec3 in = here - model.position(nodes.node[static_cast<std::size_t>((i + corners - 1) % corners)]);
+    if (!(in.cross(out).dot(normal) > 0)) return false;
+  }
+  return true;
+}
+
+/// A direction turned about an axis (Rodrigues).
+Vec3 turned(const Vec3& direction, const Vec3& axis, double degrees) {
+  const double cosine = deterministic_cos_degrees(degrees);
+  return cosine * direction + deterministic_sin_degrees(degrees) * axis.cross(direction) + (1 - cosine) * axis.dot(direction) * axis;
+}
+
+/// A shell's normal turned as its corners turn on average, by their own weights and by those of their images.
+Vec3 turned_with(const Motion& motion, const ShellNodes& shell, double degrees, const Vec3& normal) {
+  double own = 0, mirrored = 0;
+  const int corners = shell.corners();
+  for (int i = 0; i < corners; ++i) {
+    const NodeIndex node = shell.node[static_cast<std::size_t>(i)];
+    const auto at = std::lower_bound(motion.nodes.begin(), motion.nodes.end(), node);
+    if (at == motion.nodes.end() || *at != node) continue;
+    const auto place = static_cast<std::size_t>(at - motion.nodes.begin());
+    const std::uint32_t image = motion.plane ? motion.mirrored[place].image : shape::Mirrored::kNone;
+    own += (image != shape::Mirrored::kNone ? motion.mirrored[place].own : 1.0) * motion.weight[place] / corners;
+    if (image != shape::Mirrored::kNone) mirrored += motion.mirrored[image].own * motion.weight[image] / corners;
+  }
+  const Vec3 turn = turned(normal, motion.axis.direction, degrees * own);
+  return motion.plane ? turned(turn, motion.plane->mirrored(motion.axis.direction), -degrees * mirrored) : turn;
+}
+
+}  // namespace
+
+void report_hanging(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report) {
+  note_split_joins(before, moved, report);
+  list_lost(before, after, moved, report);
+}
+
+std::vector<ShellIndex> inverted_shells(const Model& before, const Model& after, const ShellSet& shells, const Motion& motion,
+                                        double degrees) {
+  std::vector<ShellIndex> inverted;
+  for (const ShellIndex shell : shells) {
+    Vec3 was = normal_of(before, shell);
+    if (!(was.squaredNorm() > 0)) continue;
+    const Vec3 is = normal_of(after, shell);
+    const bool was_convex = is_convex(before, shell, was);
+    if (motion.kind == Motion::Kind::rotate) was = turned_with(motion, before.shell(shell), degrees, was);
+    if (!(is.dot(was) > 0) || (was_convex && !is_convex(after, shell, is))) inverted.push_back(shell);
+  }
+  return inverted;
+}
+
+}  // namespace prismesh::mesh::document

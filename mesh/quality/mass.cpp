@@ -1,0 +1,71 @@
+#include "mesh/quality/mass.h"
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <Eigen/Geometry>
+
+#include "base/parallel_for.h"
+#include "mesh/quality/judging.h"
+
+namespace prismesh::mesh::quality {
+
+namespace {
+
+constexpr std::size_t kShellsAtATime = 16384;
+
+}  // namespace
+
+Weight& Weight::operator+=(const Weight& more) {
+  mass += more.mass;
+  moment += more.moment;
+  shells += more.shells;
+  return *this;
+}
+
+Weight& Weight::operator-=(const Weight& less) {
+  mass -= less.mass;
+  moment -= less.moment;
+  shells -= less.shells;
+  return *this;
+}
+
+std::optional<Vec3> Weight::centre() const {
+  if (!(mass > 0)) return std::nullopt;
+  return Vec3(moment / mass);
+}
+
+Weight weigh_shell(const Model& model, ShellIndex shell) {
+  const PartIndex part = model.shell_parts[shell.value];
+  if (!part.valid() || model.is_removed(shell)) return {};
+  const std::optional<double>& density = (*model.parts)[part.value].density;
+  const double thickness = thickness_of(model, shell.value);
+  if (!density || !(thickness > 0)) return {};
+  const ShellNodes& nodes = model.shell(shell);
+  std::array<Vec3, 4> p;
+  for (std::size_t c = 0; c < 4; ++c) p[c] = model.position(nodes.node[c]);
+  const double first = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
+  const double second = 0.5 * (p[2] - p[0]).cross(p[3] - p[0]).norm();
+  const double surface_density = *density * thickness;
+  return {surface_density * (first + second), surface_density / 3.0 * (first * (p[0] + p[1] + p[2]) + second * (p[0] + p[2] + p[3])), 1};
+}
+
+Weight weigh_model(const Model& model) {
+  std::vector<Weight> parts((model.shell_count() + kShellsAtATime - 1) / kShellsAtATime);
+  parallel_for(model.shell_count(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) parts[begin / kShellsAtATime] += weigh_shell(model, ShellIndex(s));
+  });
+  Weight sum;
+  for (const Weight& part : parts) sum += part;
+  return sum;
+}
+
+Weight weigh_shells(const Model& model, const ShellSet& shells) {
+  Weight sum;
+  for (const ShellIndex shell : shells) sum += weigh_shell(model, shell);
+  return sum;
+}
+
+}  // namespace prismesh::mesh::quality

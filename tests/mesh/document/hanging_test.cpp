@@ -1,0 +1,251 @@
+// What hangs on nodes that move: welds that lie on sheets, cards that join nodes, contacts that tie them.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mesh/document/drag.h"
+#include "mesh/document/hanging.h"
+#include "mesh/document/surroundings.h"
+#include "tests/mesh/document/document_fixture.h"
+
+namespace prismesh::mesh::document {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// An LS-DYNA deck of sheets and what lies on them, written card by card.
+class DeckText {
+ public:
+  void node(int id, double x, double y, double z) { add(nodes_, "%8d%16.6f%16.6f%16.6f\n", id, x, y, z); }
+  /// 4 x 4 shells of 10 with nodes first .. first + 24 in the plane z.
+  void sheet(int part, int first, double z) {
+    for (int j = 0; j <= 4; ++j)
+      for (int i = 0; i <= 4; ++i) node(first + i + 5 * j, 10.0 * i, 10.0 * j, z);
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) {
+        const int corner = first + i + 5 * j;
+        add(shells_, "%8d%8d%8d%8d%8d%8d\n", first + i + 4 * j, part, corner, corner + 1, corner + 6, corner + 5);
+      }
+    this->part(part);
+  }
+  void beam(int id, int part, int a, int b) { add(beams_, "%8d%8d%8d%8d%8d\n", id, part, a, b, 0); }
+  void part(int id) { add(parts_, "*PART\npart %d\n%10d%10d%10d\n", id, id, 1, 1); }
+  void cards(const std::string& text) { more_ += text; }
+  std::string text() const {
+    return "*KEYWORD\n" + parts_ + "*SECTION_SHELL\n         1         2\n       1.0       1.0       1.0       1.0\n" +
+           "*MAT_ELASTIC\n         1    7.9E-9    210000       0.3\n*NODE\n" + nodes_ + "*ELEMENT_SHELL\n" + shells_ +
+           (beams_.empty() ? "" : "*ELEMENT_BEAM\n" + beams_) + more_ + "*END\n";
+  }
+
+ private:
+  template <class... Values>
+  static void add(std::string& to, const char* format, Values... values) {
+    char line[200];
+    std::snprintf(line, sizeof line, format, values...);
+    to += line;
+  }
+  std::string nodes_, shells_, beams_, parts_, more_;
+};
+
+/// Two sheets, 1.6 apart (nodes 1-25 of part 1, 101-125 of part 2), joined by weld beams: 9 at (12, 13), 10 at (35, 35).
+DeckText two_sheets() {
+  DeckText deck;
+  deck.sheet(1, 1, 0);
+  deck.sheet(2, 101, 1.6);
+  deck.part(9);
+  deck.node(901, 12, 13, 0.1);
+  deck.node(902, 12, 13, 1.5);
+  deck.node(903, 35, 35, 0);
+  deck.node(904, 35, 35, 1.6);
+  deck.beam(9, 9, 901, 902);
+  deck.beam(10, 9, 903, 904);
+  return deck;
+}
+
+class HangingTest : public ::testing::Test {
+ protected:
+  Document open_text(const DeckText& deck) {
+    put_content(folder_ / "main.k", deck.text());
+    OpenOptions options;
+    options.target_size = 10;
+    Result<Document> document = open(folder_ / "main.k", options);
+    if (!document) ADD_FAILURE() << document.error().text();
+    return std::move(*document);
+  }
+  static Vec3 at(const Document& document, std::int64_t id) {
+    const Model& model = document.current().model;
+    return model.position(model.find_node(id));
+  }
+  Folder folder_;
+};
+
+TEST_F(HangingTest, welds_follow_the_sheet_they_lie_on) {
+  Document document = open_text(two_sheets());
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[1,2,3],"on":"part:1","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(report.nodes_moved, 27u);
+  EXPECT_NEAR((at(document, 901) - Vec3(13, 15, 3.1)).norm(), 0, 1e-12);
+  EXPECT_EQ(at(document, 902), Vec3(12, 13, 1.5));
+  EXPECT_NEAR((at(document, 903) - Vec3(36, 37, 3)).norm(), 0, 1e-12);
+  EXPECT_EQ(at(document, 904), Vec3(35, 35, 1.6));
+  EXPECT_THAT(report.notes, Contains(HasSubstr("2 nodes of welds moved along with the sheets they lie on")));
+  EXPECT_EQ(report.lost_connections, 0u);
+}
+
+TEST_F(HangingTest, a_weld_moves_by_the_shares_of_its_shells_corners) {
+  Document document = open_text(two_sheets());
+  // node 13 at (20, 20) alone: weld node 901 at (12, 13) lies in the shell from (10, 10) to (20, 20), in the triangle at the corner (10,
+  // 20)
+  must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"13","falloff":{"profile":"constant"}})");
+  EXPECT_NEAR(at(document, 901).z(), 0.1 + 0.2, 1e-12);
+  EXPECT_EQ(at(document, 903), Vec3(35, 35, 0));
+}
+
+TEST_F(HangingTest, a_drag_carries_what_its_edit_carries) {
+  Document document = open_text(two_sheets());
+  for (const char* json :
+       {R"({"edit":"translate","by":[0,0,0],"on":"part:1"})",
+        R"({"edit":"rotate","point":[0,0,0],"axis":[0,0,1],"degrees":0,"on":"part:1"})", R"({"edit":"slide","by":[0,0,0],"on":"part:1"})",
+        R"({"edit":"lift","distance":0,"normals":"each","on":"part:1"})"}) {
+    Document one = document;
+    Result<Drag> drag = Drag::begin(one.generations[one.cursor], one.settings, edit_of(json));
+    ASSERT_TRUE(drag) << drag.error().text();
+    Displacement far;
+    far.by = Vec3(0.5, 0.25, 0.125);
+    far.distance = 1.5;
+    far.degrees = 10;
+    drag->step(far);
+    ASSERT_TRUE(try_apply(one, drag->edit()));
+    const NodeIndex weld = one.current().model.find_node(901);
+    ASSERT_THAT(drag->nodes(), Contains(weld)) << json;
+    for (std::size_t i = 0; i < drag->nodes().size(); ++i)
+      EXPECT_EQ(drag->positions()[i], one.current().model.position(drag->nodes()[i])) << json;
+    EXPECT_GT((at(one, 901) - Vec3(12, 13, 0.1)).norm(), 1e-3) << json;
+  }
+}
+
+TEST_F(HangingTest, undo_and_saving_bring_welds_along) {
+  Document document = open_text(two_sheets());
+  must_apply(document, R"({"edit":"translate","by":[0,0,4],"on":"part:1","falloff":{"profile":"constant"}})");
+  ASSERT_TRUE(save(document, folder_ / "out.k"));
+  OpenOptions options;
+  options.target_size = 10;
+  const Result<Document> again = open(folder_ / "out.k", options);
+  ASSERT_TRUE(again);
+  EXPECT_NEAR(at(*again, 901).z(), 4.1, 1e-9);
+  must_apply(document, R"({"edit":"undo"})");
+  EXPECT_EQ(at(document, 901), Vec3(12, 13, 0.1));
+}
+
+TEST_F(HangingTest, what_cannot_follow_is_left_and_listed_as_lost) {
+  Document document = open_text(two_sheets());
+  must_apply(document, R"({"edit":"lock","on":"9"})");
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,-8],"on":"part:1","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(at(document, 901), Vec3(12, 13, 0.1));
+  EXPECT_EQ(report.lost_connections, 2u);
+  ASSERT_EQ(report.lost.size(), 2u);
+  EXPECT_EQ(report.lost[0], "beam:9 at node:901 no longer lies on shell:6, it is 8.1 away (it belongs to a locked part)");
+  // what is lost already isn't lost again
+  EXPECT_EQ(must_apply(document, R"({"edit":"translate","by":[0,0,-1],"on":"part:1","falloff":{"profile":"constant"}})").lost_connections,
+            0u);
+}
+
+TEST_F(HangingTest, welds_that_are_moved_away_by_themselves_are_lost) {
+  Document document = open_text(two_sheets());
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,30],"on":"902","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(report.nodes_moved, 1u);
+  ASSERT_EQ(report.lost.size(), 1u);
+  EXPECT_THAT(report.lost[0], HasSubstr("beam:9 at node:902 no longer lies on shell:106"));
+  // along its sheet it stays on it, also on another shell
+  EXPECT_EQ(must_apply(document, R"({"edit":"translate","by":[14,0,0],"on":"904","falloff":{"profile":"constant"}})").lost_connections, 1u);
+  EXPECT_EQ(must_apply(document, R"({"edit":"translate","by":[-14,-9,0],"on":"903","falloff":{"profile":"constant"}})").lost_connections,
+            0u);
+}
+
+TEST_F(HangingTest, frames_of_beams_and_far_things_are_no_welds) {
+  DeckText deck = two_sheets();
+  deck.part(8);
+  for (int i = 0; i <= 20; ++i) deck.node(800 + i, 0.5 * i, 5, 0.2);  // a chain of twenty beams close to the sheet
+  for (int i = 0; i < 20; ++i) deck.beam(20 + i, 8, 800 + i, 801 + i);
+  deck.node(950, 5, 5, -4);  // farther from the sheet than a quarter of its shells
+  deck.node(951, 5, 5, -9);
+  deck.beam(60, 8, 950, 951);
+  Document document = open_text(deck);
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"part:1","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(report.nodes_moved, 27u);
+  EXPECT_EQ(at(document, 801), Vec3(0.5, 5, 0.2));
+}
+
+TEST_F(HangingTest, cards_of_which_only_some_nodes_move_are_flagged) {
+  DeckText deck = two_sheets();
+  deck.cards("*SET_NODE_LIST_TITLE\nbracket\n         7\n         1         2         3       101       102\n");
+  deck.cards("*CONSTRAINED_NODAL_RIGID_BODY\n        50         0         7\n");
+  deck.cards("*CONSTRAINED_SPOTWELD\n        25       125\n        11        12\n");
+  Document document = open_text(deck);
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,0.2],"on":"part:1","falloff":{"profile":"constant"}})");
+  EXPECT_THAT(report.notes, Contains("*CONSTRAINED_NODAL_RIGID_BODY 50: 3 of its 5 nodes moved; left in place: node:101, node:102"));
+  EXPECT_THAT(report.notes, Contains("*CONSTRAINED_SPOTWELD: 1 of its 2 nodes moved; left in place: node:125"));
+  // nothing of the spot weld that moved whole
+  EXPECT_EQ(std::count_if(report.notes.begin(), report.notes.end(), [](const std::string& n) { return n.find("SPOTWELD") != n.npos; }), 1);
+  // as a whole it moves without a word
+  const EditReport whole = must_apply(document, R"({"edit":"translate","by":[0,0,0.2],"on":"all","falloff":{"profile":"constant"}})");
+  for (const std::string& note : whole.notes) EXPECT_THAT(note, Not(HasSubstr("CONSTRAINED")));
+}
+
+TEST_F(HangingTest, tied_nodes_that_leave_their_master_are_lost) {
+  DeckText deck = two_sheets();
+  deck.cards("*SET_NODE_LIST\n         8\n       101       102       103\n");
+  deck.cards("*CONTACT_TIED_NODES_TO_SURFACE\n         8         1         4         3\n\n\n");
+  Document document = open_text(deck);
+  const EditReport near = must_apply(document, R"({"edit":"translate","by":[1,0,0.3],"on":"part:2","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(near.lost_connections, 0u);
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,9],"on":"101-102","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(report.lost_connections, 2u);
+  ASSERT_FALSE(report.lost.empty());
+  EXPECT_THAT(report.lost[0], HasSubstr("node:101, which *CONTACT_TIED_NODES_TO_SURFACE ties, no longer lies on shell:1"));
+}
+
+TEST_F(HangingTest, tells_mass_and_centre_before_and_after) {
+  Document document = open_text(two_sheets());
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,-6],"on":"part:1","falloff":{"profile":"constant"}})");
+  const double sheet = 40.0 * 40.0 * 7.9e-9;
+  ASSERT_TRUE(report.mass_before && report.mass_after && report.centre_before && report.centre_after);
+  EXPECT_NEAR(*report.mass_before, 2 * sheet, 1e-15);
+  EXPECT_NEAR(*report.mass_after, 2 * sheet, 1e-15);
+  EXPECT_NEAR((*report.centre_before)[2], 0.8, 1e-12);
+  EXPECT_NEAR((*report.centre_after)[2], -2.2, 1e-12);
+  // stretched to twice its length it weighs twice as much
+  must_apply(document, R"({"edit":"undo"})");
+  for (int i = 1; i <= 4; ++i) {
+    const std::string on = std::to_string(1 + i) + "-25:5";
+    must_apply(document, R"({"edit":"translate","by":[)" + std::to_string(10 * i) + R"(,0,0],"on":")" + on +
+                             R"(","falloff":{"profile":"constant"}})");
+  }
+  EXPECT_NEAR(document.current().weight.mass, 3 * sheet, 1e-14);
+  EXPECT_NEAR(document.current().weight.mass, quality::weigh_model(document.current().model).mass, 1e-15);
+}
+
+TEST_F(HangingTest, counts_what_a_move_turns_over) {
+  Document document = open_text(two_sheets());
+  EXPECT_EQ(must_apply(document, R"({"edit":"translate","by":[0,0,5],"on":"13","falloff":{"profile":"constant"}})").inverted, 0u);
+  must_apply(document, R"({"edit":"undo"})");
+  // the inner node far beyond its neighbours folds the shells on that side
+  const EditReport folded = must_apply(document, R"({"edit":"translate","by":[25,0,0],"on":"13","falloff":{"profile":"constant"}})");
+  EXPECT_EQ(folded.inverted, 2u);
+  EXPECT_THAT(folded.notes, Contains(HasSubstr("2 elements turned over or folded: shell:7, shell:11")));
+  must_apply(document, R"({"edit":"undo"})");
+  // a turn as a whole turns nothing over, whatever its angle
+  EXPECT_EQ(must_apply(document,
+                       R"({"edit":"rotate","point":[0,0,0],"axis":[1,0,0],"degrees":170,"on":"part:1","falloff":{"profile":"constant"}})")
+                .inverted,
+            0u);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::document
