@@ -3,6 +3,7 @@
 
 #include "mesh/document/apply.h"
 #include "mesh/document/selecting.h"
+#include "mesh/document/surroundings.h"
 #include "mesh/select/region.h"
 
 namespace prismesh::mesh::document {
@@ -46,20 +47,15 @@ void select_into(const Document& document, Picked added, SelectMode mode, Genera
   if (after.nodes.empty()) report.notes.push_back("nothing is selected now");
 }
 
-/// The selection with its nodes replaced; elements stay those whose nodes are all in.
-Picked follow_nodes(const Model& model, const Picked& before, NodeSet nodes) {
-  if (before.kind == Kind::node) return {std::move(nodes), {}, Kind::node};
-  Picked after{{}, shells_inside(model, nodes), Kind::element};
-  after.nodes = nodes_of(model, after.shells);
+/// The selection with other shells. Nodes of a selected part's beams and solids, which belong to no shell, stay.
+Picked with_shells(const Model& model, const Picked& before, ShellSet shells) {
+  const NodeSet beyond = combined(before.nodes, nodes_of(model, before.shells), SelectMode::subtract);
+  Picked after{combined(nodes_of(model, shells), beyond, SelectMode::add), {}, Kind::element};
+  after.shells = std::move(shells);
   return after;
 }
 
 bool hidden(const Generation& generation, NodeIndex node) { return (generation.node_marks[node.value] & kHidden) != 0; }
-
-bool in_hidden_part(const Generation& generation, ShellIndex shell) {
-  const PartIndex part = generation.model.shell_parts[shell.value];
-  return part.valid() && (*generation.parts)[part.value].hidden;
-}
 
 Result<void> need_selection(const Generation& generation, std::string_view edit) {
   if (generation.selected_nodes == 0) return fail("", std::string(edit) + ": nothing is selected");
@@ -69,7 +65,7 @@ Result<void> need_selection(const Generation& generation, std::string_view edit)
 }  // namespace
 
 Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report) {
-  Result<select::Chosen> chosen = select::evaluate(next.model, edit.expr, edit.kind);
+  Result<select::Chosen> chosen = select::evaluate(next.model, edit.expr, edit.kind, next.around->names);
   if (!chosen) return fail(chosen.error());
   Picked added{std::move(chosen->nodes), {}, edit.kind};
   if (edit.kind != Kind::node) added.shells = std::move(chosen->shells);
@@ -78,15 +74,14 @@ Result<void> apply_edit(const Document& document, const Select& edit, Generation
 }
 
 Result<void> apply_edit(const Document& document, const SelectRegion& edit, Generation& next, EditReport& report) {
-  Result<ShellSet> shells = visible_region(next, edit);
-  if (!shells) return fail(shells.error());
-  Picked added{nodes_of(next.model, *shells), std::move(*shells), Kind::element};
-  select_into(document, std::move(added), edit.mode, next, report);
+  Result<Picked> added = region_at(next, edit);
+  if (!added) return fail(added.error());
+  select_into(document, std::move(*added), edit.mode, next, report);
   return {};
 }
 
 Result<void> apply_edit(const Document& document, const SelectLasso& edit, Generation& next, EditReport& report) {
-  Result<NodeSet> nodes = visible_in_outline(next, edit);
+  Result<NodeSet> nodes = nodes_in_outline(next, edit);
   if (!nodes) return fail(nodes.error());
   select_into(document, {std::move(*nodes), {}, Kind::node}, edit.mode, next, report);
   return {};
@@ -95,23 +90,12 @@ Result<void> apply_edit(const Document& document, const SelectLasso& edit, Gener
 Result<void> apply_edit(const Document& document, const Grow& edit, Generation& next, EditReport&) {
   if (const Result<void> some = need_selection(next, "grow"); !some) return some;
   const Picked before = picked(document.current());
-  Picked after{{}, {}, before.kind == Kind::node ? Kind::node : Kind::element};
-  if (before.kind == Kind::node) {
-    NodeSet grown = select::grow(next.model, before.nodes, edit.rings);
-    std::erase_if(grown, [&](NodeIndex node) { return hidden(next, node); });
-    after.nodes = combined(before.nodes, grown, SelectMode::add);
-  } else {
-    after.nodes = before.nodes;
-    after.shells = before.shells;
-    for (int ring = 0; ring < edit.rings; ++ring) {
-      ShellSet around = shells_touching(next.model, after.nodes);
-      std::erase_if(around, [&](ShellIndex shell) { return in_hidden_part(next, shell); });
-      ShellSet grown = combined(after.shells, around, SelectMode::add);
-      if (grown.size() == after.shells.size()) break;
-      after.shells = std::move(grown);
-      after.nodes = nodes_of(next.model, after.shells);
-    }
-  }
+  const std::vector<std::uint8_t> out_of_sight = hidden_parts(next);
+  Picked after{{}, {}, Kind::node};
+  if (before.kind == Kind::node)
+    after.nodes = select::grow(next.model, before.nodes, edit.rings, out_of_sight);
+  else
+    after = with_shells(next.model, before, select::grow_shells(next.model, before.shells, edit.rings, out_of_sight));
   put_selection(next, before, after);
   return {};
 }
@@ -119,7 +103,12 @@ Result<void> apply_edit(const Document& document, const Grow& edit, Generation& 
 Result<void> apply_edit(const Document& document, const Shrink& edit, Generation& next, EditReport& report) {
   if (const Result<void> some = need_selection(next, "shrink"); !some) return some;
   const Picked before = picked(document.current());
-  const Picked after = follow_nodes(next.model, before, select::shrink(next.model, before.nodes, edit.rings));
+  const std::vector<std::uint8_t> out_of_sight = hidden_parts(next);
+  Picked after{{}, {}, Kind::node};
+  if (before.kind == Kind::node)
+    after.nodes = select::shrink(next.model, before.nodes, edit.rings, out_of_sight);
+  else
+    after = with_shells(next.model, before, select::shrink_shells(next.model, before.shells, edit.rings, out_of_sight));
   put_selection(next, before, after);
   if (after.nodes.empty()) report.notes.push_back("nothing is selected now");
   return {};
@@ -132,10 +121,11 @@ Result<void> apply_edit(const Document& document, const Invert&, Generation& nex
     after.nodes = select::invert(next.model, before.nodes);
     std::erase_if(after.nodes, [&](NodeIndex node) { return hidden(next, node); });
   } else {
+    const std::vector<std::uint8_t> out_of_sight = hidden_parts(next);
     for (std::size_t s = 0, b = 0; s < next.model.shell_count(); ++s) {
       const bool was = b < before.shells.size() && before.shells[b].value == s;
       if (was) ++b;
-      if (!was && !in_hidden_part(next, ShellIndex(s))) after.shells.emplace_back(s);
+      if (!was && select::in_sight(next.model, ShellIndex(s), out_of_sight)) after.shells.emplace_back(s);
     }
     after.nodes = nodes_of(next.model, after.shells);
   }

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <iterator>
 
+#include "mesh/document/surroundings.h"
 #include "mesh/model/adjacency.h"
+#include "mesh/select/loops.h"
+#include "mesh/select/outline.h"
 #include "mesh/select/region.h"
+#include "mesh/select/visible.h"
 
 namespace prismesh::mesh::document {
 
@@ -44,9 +48,35 @@ void put_marks(ChunkedArray<std::uint8_t>& marks, const std::vector<IndexType>& 
   }
 }
 
-bool in_sight(const Generation& generation, ShellIndex shell) {
-  const PartIndex part = generation.model.shell_parts[shell.value];
-  return !part.valid() || !(*generation.parts)[part.value].hidden;
+/// What a region begins with. Errors: no such node, no shell in sight.
+Result<ShellSet> region_start(const Model& model, const Place& place, select::OutOfSight hidden) {
+  if (const auto* point = std::get_if<std::array<double, 3>>(&place)) {
+    ShellSet near = select::shells_near(model, Vec3((*point)[0], (*point)[1], (*point)[2]), hidden);
+    if (near.empty()) return fail("", "no shell is in sight, so there is no region");
+    return near;
+  }
+  const Result<NodeIndex> node = find_place(model, place);
+  if (!node) return fail(node.error());
+  ShellSet around = select::shells_at(model, *node, hidden);
+  if (around.empty())
+    return fail("", "node " + std::to_string(model.node_ids[node->value]) + " lies on no shell in sight, so there is no region around it");
+  return around;
+}
+
+/// Errors: no free edge there.
+Result<Picked> loop_at(const Generation& generation, const SelectRegion& recipe, const ShellSet& start, select::OutOfSight hidden) {
+  const Model& model = generation.model;
+  if (recipe.across_welds)
+    return fail("", "select_region: a loop of free edges ends with its sheet, so \"across_welds\" doesn't go with \"by\": \"free_edge\"");
+  Vec3 place;
+  if (const auto* point = std::get_if<std::array<double, 3>>(&recipe.at))
+    place = Vec3((*point)[0], (*point)[1], (*point)[2]);
+  else
+    place = model.position(model.find_node(std::get<std::int64_t>(recipe.at)));
+  Picked loop{select::free_edge_loop(model, start, place, hidden), {}, select::Kind::node};
+  if (loop.nodes.empty())
+    return fail("", "the sheet at shell " + std::to_string(model.shell_ids[start.front().value]) + " has no free edge in sight");
+  return loop;
 }
 
 }  // namespace
@@ -80,40 +110,56 @@ Result<NodeIndex> find_place(const Model& model, const Place& place) {
   return fail("", "there is no node " + std::to_string(id) + "; the nearest id is " + std::to_string(ids.at(rank).first));
 }
 
-Result<ShellSet> visible_region(const Generation& generation, const SelectRegion& recipe) {
-  const Model& model = generation.model;
-  const Result<NodeIndex> start = find_place(model, recipe.at);
-  if (!start) return fail(start.error());
-  const auto around = model.adjacency->shells_of(*start);
-  if (std::none_of(around.begin(), around.end(), [&](ShellIndex shell) { return in_sight(generation, shell); }))
-    return fail("", "node " + std::to_string(model.node_ids[start->value]) + " lies on no shell in sight, so there is no region around it");
-  ShellSet shells = select::region(model, *start, recipe.angle);
-  std::erase_if(shells, [&](ShellIndex shell) { return !in_sight(generation, shell); });
-  return shells;
+std::vector<std::uint8_t> hidden_parts(const Generation& generation) {
+  const std::vector<PartState>& states = *generation.parts;
+  if (std::none_of(states.begin(), states.end(), [](const PartState& state) { return state.hidden; })) return {};
+  std::vector<std::uint8_t> hidden(states.size());
+  for (std::size_t part = 0; part < states.size(); ++part) hidden[part] = states[part].hidden ? 1 : 0;
+  return hidden;
 }
 
-Result<NodeSet> visible_in_outline(const Generation& generation, const SelectLasso& recipe) {
-  if (recipe.visible)
-    return fail("",
-                "select_lasso: \"visible\": true takes a picture of the model, which only a view has; leave it false to select through");
+Result<Picked> region_at(const Generation& generation, const SelectRegion& recipe) {
+  const Model& model = generation.model;
+  const std::vector<std::uint8_t> hidden = hidden_parts(generation);
+  const Result<ShellSet> start = region_start(model, recipe.at, hidden);
+  if (!start) return fail(start.error());
+  if (recipe.by == RegionBy::free_edge) return loop_at(generation, recipe, *start, hidden);
+  select::RegionOptions options{select::RegionBound::features, recipe.angle, hidden, nullptr};
+  if (recipe.by == RegionBy::part) options.bound = select::RegionBound::part;
+  if (recipe.by == RegionBy::piece) options.bound = select::RegionBound::piece;
+  select::WeldedShells welds;
+  if (recipe.across_welds) {
+    const auto& deck = generation.around->deck;
+    welds = select::find_welds(model, deck ? deck->references.get() : nullptr, hidden);
+    options.across = &welds;
+  }
+  ShellSet shells = select::region(model, *start, options);
+  NodeSet nodes = nodes_of(model, shells);
+  return Picked{std::move(nodes), std::move(shells), select::Kind::element};
+}
+
+Result<NodeSet> nodes_in_outline(const Generation& generation, const SelectLasso& recipe) {
   NodeSet nodes = select::inside_outline(generation.model, recipe.view, recipe.outline);
   std::erase_if(nodes, [&](NodeIndex node) { return (generation.node_marks[node.value] & kHidden) != 0; });
-  return nodes;
+  if (!recipe.visible) return nodes;
+  Result<NodeSet> visible = select::visible_nodes(generation.model, recipe.view, nodes, hidden_parts(generation));
+  if (!visible) return fail("", "select_lasso: " + visible.error().message);
+  return visible;
 }
 
 Result<NodeSet> nodes_at(const Generation& generation, const Where& where) {
   const Model& model = generation.model;
   const auto expression_nodes = [&](std::string_view expression, select::Kind kind) -> Result<NodeSet> {
-    Result<select::Chosen> chosen = select::evaluate(model, expression, kind);
+    Result<select::Chosen> chosen = select::evaluate(model, expression, kind, generation.around->names);
     if (!chosen) return fail(chosen.error());
     return std::move(chosen->nodes);
   };
   if (const auto* expression = std::get_if<std::string>(&where)) return expression_nodes(*expression, select::Kind::node);
   if (const auto* recipe = std::get_if<Select>(&where)) return expression_nodes(recipe->expr, recipe->kind);
-  if (const auto* lasso = std::get_if<SelectLasso>(&where)) return visible_in_outline(generation, *lasso);
-  const Result<ShellSet> shells = visible_region(generation, std::get<SelectRegion>(where));
-  if (!shells) return fail(shells.error());
-  return nodes_of(model, *shells);
+  if (const auto* lasso = std::get_if<SelectLasso>(&where)) return nodes_in_outline(generation, *lasso);
+  Result<Picked> region = region_at(generation, std::get<SelectRegion>(where));
+  if (!region) return fail(region.error());
+  return std::move(region->nodes);
 }
 
 namespace {

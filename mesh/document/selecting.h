@@ -25,10 +25,13 @@ Result<NodeIndex> find_place(const Model& model, const Place& place);
 /// The nodes that `where` names on this generation. Errors: those of the expression, no such node, nothing there.
 Result<NodeSet> nodes_at(const Generation& generation, const Where& where);
 
-/// The shells of a region that belong to parts in sight.
-Result<ShellSet> visible_region(const Generation& generation, const SelectRegion& recipe);
-/// The nodes in an outline that are in sight.
-Result<NodeSet> visible_in_outline(const Generation& generation, const SelectLasso& recipe);
+/// An entry for each part, 1 where it is hidden; empty if none is.
+std::vector<std::uint8_t> hidden_parts(const Generation& generation);
+
+/// A region of what is in sight: shells, or the nodes of a loop of free edges. Errors: no such node, no shell in sight there, no free edge.
+Result<Picked> region_at(const Generation& generation, const SelectRegion& recipe);
+/// The nodes in an outline that belong to parts in sight; if asked, those that no shell hides. Errors: a view without depth.
+Result<NodeSet> nodes_in_outline(const Generation& generation, const SelectLasso& recipe);
 
 /// The parts' states as they bear on nodes: sets kLocked and kHidden in `marks`, leaving the other bits. Costs the model.
 void mark_parts(const Model& model, const std::vector<PartState>& states, ChunkedArray<std::uint8_t>& marks);

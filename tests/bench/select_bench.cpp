@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/model/adjacency.h"
+#include "mesh/select/loops.h"
 #include "mesh/select/outline.h"
 #include "mesh/select/region.h"
 #include "mesh/select/visible.h"
@@ -133,6 +134,43 @@ BENCHMARK_CAPTURE(visible, all_of_25_layers, stacked(), kStackView, kWholePictur
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+
+ShellSet middle() { return select::shells_at(whole(), NodeIndex(500 * kStride + 500), {}); }
+
+void region_by_features(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(select::region(whole(), middle(), {select::RegionBound::features, 60, {}, nullptr}));
+}
+BENCHMARK(region_by_features)->Unit(benchmark::kMillisecond);
+
+void region_by_part(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(select::region(whole(), middle(), {select::RegionBound::part, 60, {}, nullptr}));
+}
+BENCHMARK(region_by_part)->Unit(benchmark::kMillisecond);
+
+void region_by_piece(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(select::region(whole(), middle(), {select::RegionBound::piece, 60, {}, nullptr}));
+}
+BENCHMARK(region_by_piece)->Unit(benchmark::kMillisecond);
+
+void region_across_welds(benchmark::State& state) {
+  for (auto _ : state) {
+    const select::WeldedShells welds = select::find_welds(whole(), nullptr, {});
+    benchmark::DoNotOptimize(select::region(whole(), middle(), {select::RegionBound::features, 60, {}, &welds}));
+  }
+}
+BENCHMARK(region_across_welds)->Unit(benchmark::kMillisecond);
+
+/// From the middle, as far from a free edge as can be.
+void free_edge_loop_from_the_middle(benchmark::State& state) {
+  const Vec3 place = whole().positions[500 * kStride + 500];
+  for (auto _ : state) benchmark::DoNotOptimize(select::free_edge_loop(whole(), middle(), place, {}));
+}
+BENCHMARK(free_edge_loop_from_the_middle)->Unit(benchmark::kMillisecond);
+
+void shells_near_a_point(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(select::shells_near(whole(), Vec3(2500, 2500, 0), {}));
+}
+BENCHMARK(shells_near_a_point)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 }  // namespace prismesh::mesh

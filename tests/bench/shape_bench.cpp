@@ -8,6 +8,7 @@
 
 #include "mesh/model/adjacency.h"
 #include "mesh/select/expression.h"
+#include "mesh/select/outline.h"
 #include "mesh/select/region.h"
 #include "mesh/shape/move.h"
 #include "mesh/shape/normals.h"
@@ -140,7 +141,9 @@ BENCHMARK(expression_over_a_million)->Unit(benchmark::kMillisecond);
 
 void region_of_a_million(benchmark::State& state) {
   const Model& model = whole();
-  for (auto _ : state) benchmark::DoNotOptimize(select::region(model, NodeIndex(500 * kStride + 500), 60));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(select::region(model, select::shells_at(model, NodeIndex(500 * kStride + 500), {}),
+                                            {select::RegionBound::features, 60, {}, nullptr}));
 }
 BENCHMARK(region_of_a_million)->Unit(benchmark::kMillisecond);
 

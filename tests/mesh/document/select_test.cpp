@@ -64,14 +64,53 @@ TEST(Select, RegionStopsAtACrease) {
   EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":30})"), HasSubstr("there is no node 30; the nearest id is 27"));
 }
 
-TEST(Select, LassoSelectsThroughAndRefusesVisible) {
-  Document document = make_sheet(4, 4);
-  // orthographic along z: x and y from 0..20 to -1..1
-  const std::string view = R"("view":[0.1,0,0,0, 0,0.1,0,0, 0,0,0.1,0, -1,-1,0,1])";
-  must_apply(document, R"({"edit":"select_lasso","outline":[[-2,-2],[0.1,-2],[0.1,-0.4],[-2,-0.4]],)" + view + "}");
+TEST(Select, RegionByPartPieceAndFreeEdge) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"select_region","at":[2,2,0],"by":"part"})");
+  EXPECT_EQ(document.current().selected_shells, 16u);
+  must_apply(document, R"({"edit":"select_region","at":[2,2,0],"by":"part","across_welds":true})");
+  EXPECT_EQ(document.current().selected_shells, 32u);
+  must_apply(document, R"({"edit":"select_region","at":122,"by":"piece"})");
+  EXPECT_EQ(document.current().selected_shells, 32u);
+  must_apply(document, R"({"edit":"select_region","at":122,"by":"free_edge"})");
+  EXPECT_EQ(document.current().selection_kind, select::Kind::node);
+  EXPECT_EQ(selected_ids(document).size(), 24u);
+  must_apply(document, R"({"edit":"hide","on":"2"})");
+  must_apply(document, R"({"edit":"select_region","at":122,"by":"piece"})");
+  EXPECT_EQ(document.current().selected_shells, 16u);
+  EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":122,"by":"free_edge","across_welds":true})"),
+              HasSubstr("ends with its sheet"));
+  EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":118,"by":"piece"})"), HasSubstr("no shell in sight"));
+  must_apply(document, R"({"edit":"hide","on":"all"})");
+  EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":[0,0,0]})"), HasSubstr("no shell is in sight"));
+}
+
+TEST(Select, LassoSelectsThroughOrWhatIsVisible) {
+  // a sheet of 4 x 4 shells, and a smaller one, part 2, above its middle
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 4; ++i) nodes.push_back({1 + i + 5 * j, Vec3(5.0 * i, 5.0 * j, 0)});
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) shells.push_back({1 + i + 4 * j, 1, {1 + i + 5 * j, 2 + i + 5 * j, 7 + i + 5 * j, 6 + i + 5 * j}});
+  for (int k = 0; k < 4; ++k) nodes.push_back({101 + k, Vec3(k == 1 || k == 2 ? 16 : 4, k > 1 ? 16 : 4, 3)});
+  shells.push_back({101, 2, {101, 102, 103, 104}});
+  Document document = make_document(test::make_model(nodes, shells));
+  // orthographic, from above: x and y from 0..20 to -1..1, and down along z
+  const std::string view = R"("view":[0.1,0,0,0, 0,0.1,0,0, 0,0,-0.1,0, -1,-1,0,1])";
+  const std::string below = R"("view":[0.1,0,0,0, 0,0.1,0,0, 0,0,0.1,0, -1,-1,0,1])";
+  const std::string left = R"({"edit":"select_lasso","outline":[[-2,-2],[0.1,-2],[0.1,-0.4],[-2,-0.4]],)";
+  must_apply(document, left + view + "}");
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 3, 6, 7, 8, 101));
+  must_apply(document, left + R"("visible":true,)" + view + "}");
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 3, 6, 101));
+  must_apply(document, left + R"("visible":true,)" + below + "}");
   EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 3, 6, 7, 8));
-  EXPECT_THAT(refusal(document, R"({"edit":"select_lasso","visible":true,"outline":[[0,0],[1,0],[0,1]],)" + view + "}"),
-              HasSubstr("only a view has"));
+  must_apply(document, R"({"edit":"hide","on":"2"})");
+  must_apply(document, left + R"("visible":true,)" + view + "}");
+  EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 3, 6, 7, 8)) << "hidden parts hide nothing";
+  EXPECT_THAT(refusal(document, left + R"("visible":true,"view":[0.1,0,0,0, 0,0.1,0,0, 0,0,0,0, -1,-1,0,1]})"),
+              HasSubstr("the view keeps no depth"));
 }
 
 TEST(Select, GrowShrinkInvert) {

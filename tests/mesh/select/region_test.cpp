@@ -1,12 +1,15 @@
 #include "mesh/select/region.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "base/deterministic_math.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::select {
@@ -19,6 +22,10 @@ Model flat_grid(int columns, int rows) {
   return make_grid(columns, rows, [](int i, int j) { return Vec3(i, j, 0); });
 }
 
+ShellSet region_at(const Model& model, NodeIndex start, double angle, OutOfSight out_of_sight = {}) {
+  return region(model, shells_at(model, start, out_of_sight), {RegionBound::features, angle, out_of_sight, nullptr});
+}
+
 TEST(Region, stops_at_creases_sharper_than_the_angle) {
   // a plate folded by 40 degrees at x = 3 and by 20 at x = 6
   const double fold = 40 * 3.14159265358979 / 180;
@@ -28,12 +35,12 @@ TEST(Region, stops_at_creases_sharper_than_the_angle) {
     const double c = std::max(i - 6, 0);
     return Vec3(a + b * std::cos(fold) + c * std::cos(1.5 * fold), j, b * std::sin(fold) + c * std::sin(1.5 * fold));
   });
-  EXPECT_EQ(region(model, grid_node(9, 1, 1), 30).size(), 6u);
-  EXPECT_EQ(region(model, grid_node(9, 4, 1), 30).size(), 12u);
-  EXPECT_EQ(region(model, grid_node(9, 4, 1), 10).size(), 6u);
-  EXPECT_EQ(region(model, grid_node(9, 4, 1), 45).size(), 18u);
+  EXPECT_EQ(region_at(model, grid_node(9, 1, 1), 30).size(), 6u);
+  EXPECT_EQ(region_at(model, grid_node(9, 4, 1), 30).size(), 12u);
+  EXPECT_EQ(region_at(model, grid_node(9, 4, 1), 10).size(), 6u);
+  EXPECT_EQ(region_at(model, grid_node(9, 4, 1), 45).size(), 18u);
   // on the crease: both sides
-  EXPECT_EQ(region(model, grid_node(9, 3, 1), 30).size(), 18u);
+  EXPECT_EQ(region_at(model, grid_node(9, 3, 1), 30).size(), 18u);
 }
 
 TEST(Region, stops_at_junctions_and_needs_shells) {
@@ -48,9 +55,179 @@ TEST(Region, stops_at_junctions_and_needs_shells) {
                                         {8, {1, 1, 1}},
                                         {9, {7, 7, 7}}},
                                        {{1, 1, {1, 2, 3, 4}}, {2, 1, {2, 5, 6, 3}}, {3, 1, {2, 7, 8, 3}}});
-  EXPECT_EQ(region(model, NodeIndex(0), 30), ShellSet{ShellIndex(0)});
-  EXPECT_TRUE(region(model, NodeIndex(8), 30).empty());
-  EXPECT_TRUE(region(model, NodeIndex(), 30).empty());
+  EXPECT_EQ(region_at(model, NodeIndex(0), 30), ShellSet{ShellIndex(0)});
+  EXPECT_TRUE(region_at(model, NodeIndex(8), 30).empty());
+  EXPECT_TRUE(region_at(model, NodeIndex(), 30).empty());
+}
+
+/// A roof of two slopes of 4 x 6 shells, 50 degrees apart, whose shells' node order is turned over where `turned` says so.
+Model roof(const std::function<bool(int, int)>& turned) {
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 4>> shells;
+  for (int j = 0; j <= 6; ++j)
+    for (int i = 0; i <= 8; ++i) points.emplace_back(i, j, -std::abs(i - 4) * 0.4663);  // tan 25 degrees
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 8; ++i) {
+      const int corner = i + 9 * j;
+      if (turned(i, j))
+        shells.push_back({corner, corner + 9, corner + 10, corner + 1});
+      else
+        shells.push_back({corner, corner + 1, corner + 10, corner + 9});
+    }
+  return test::make_shells(points, shells);
+}
+
+TEST(Region, does_not_ask_normals) {
+  for (const bool mixed : {false, true}) {
+    const Model model = roof([&](int i, int j) { return mixed && (i * 7 + j * 5) % 3 == 0; });
+    EXPECT_EQ(region_at(model, NodeIndex(9 * 3 + 1), 45).size(), 24u);
+    EXPECT_EQ(region_at(model, NodeIndex(9 * 3 + 1), 55).size(), 48u);
+  }
+}
+
+/// Two strips of 6 shells side by side, the second turned up by `degrees`; between them a row of shells of width `gap`, turned up by
+/// `noise` degrees alone. Every second shell's node order is turned over.
+Model strips_with_slivers(double degrees, double gap, double noise) {
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 4>> shells;
+  const auto turned = [](double angle) { return Vec3(deterministic_cos_degrees(angle), 0, deterministic_sin_degrees(angle)); };
+  for (int j = 0; j <= 6; ++j) {
+    const Vec3 edge(1, j, 0), beyond = edge + gap * turned(noise);
+    for (const Vec3& point : {Vec3(0, j, 0), edge, beyond, Vec3(beyond + turned(degrees))}) points.push_back(point);
+  }
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 3; ++i) {
+      const int corner = i + 4 * j;
+      if ((i + j) % 2 == 0)
+        shells.push_back({corner, corner + 1, corner + 5, corner + 4});
+      else
+        shells.push_back({corner, corner + 4, corner + 5, corner + 1});
+    }
+  return test::make_shells(points, shells);
+}
+
+TEST(Region, looks_through_slivers) {
+  for (const double gap : {1e-3, 1e-9, 0.0})
+    for (const double noise : {0.0, 70.0, 170.0}) {
+      EXPECT_EQ(region_at(strips_with_slivers(10, gap, noise), NodeIndex(4), 30).size(), 18u) << gap << " " << noise;
+      // the sliver belongs to what it was reached from, the crease behind it still ends the region
+      EXPECT_EQ(region_at(strips_with_slivers(80, gap, noise), NodeIndex(4), 30).size(), 12u) << gap << " " << noise;
+      EXPECT_EQ(region_at(strips_with_slivers(80, gap, noise), NodeIndex(7), 30).size(), 12u) << gap << " " << noise;
+    }
+  // wide enough to have a plane of its own
+  EXPECT_EQ(region_at(strips_with_slivers(10, 0.1, 70), NodeIndex(4), 30).size(), 6u);
+}
+
+TEST(Region, begins_at_the_side_of_the_crease_that_is_closest) {
+  const Model model = roof([](int, int) { return false; });
+  const auto at = [&](const Vec3& point) { return region(model, shells_near(model, point, {}), {RegionBound::features, 30, {}, nullptr}); };
+  EXPECT_EQ(at(Vec3(3.9, 2.5, 0)).size(), 24u);
+  EXPECT_EQ(at(Vec3(3.9, 2.5, 0)).front(), ShellIndex(0));
+  EXPECT_EQ(at(Vec3(4.1, 2.5, 0)).front(), ShellIndex(4));
+  EXPECT_EQ(at(Vec3(4, 2.5, 9)).size(), 48u) << "on the crease: both sides";
+  EXPECT_EQ(shells_near(model, Vec3(4, 3, 0), {}).size(), 4u) << "at a node: all around it";
+  EXPECT_EQ(shells_near(model, Vec3(2.3, 3, 0.5), {}).size(), 2u) << "above the line between two rows";
+}
+
+TEST(Region, ends_with_the_part_or_the_piece) {
+  // parts 1 and 2 share an edge, part 3 touches part 2 in a node only, part 1 has a second piece
+  std::vector<test::NodeSpec> nodes;
+  for (int j = 0; j <= 2; ++j)
+    for (int i = 0; i <= 5; ++i) nodes.push_back({1 + i + 10 * j, Vec3(i, j, 0)});
+  const Model model =
+      test::make_model(nodes, {{1, 1, {1, 2, 12, 11}}, {2, 2, {2, 3, 13, 12}}, {3, 3, {13, 14, 24, 23}}, {4, 1, {5, 6, 16, 15}}});
+  const auto grown = [&](RegionBound bound, const WeldedShells* across, OutOfSight out = {}) {
+    return region(model, shells_at(model, NodeIndex(0), out), {bound, 30, out, across});
+  };
+  const WeldedShells none;
+  EXPECT_EQ(grown(RegionBound::part, nullptr), (ShellSet{ShellIndex(0), ShellIndex(3)}));
+  EXPECT_EQ(grown(RegionBound::piece, nullptr), (ShellSet{ShellIndex(0), ShellIndex(1)}));
+  EXPECT_EQ(grown(RegionBound::piece, &none), (ShellSet{ShellIndex(0), ShellIndex(1), ShellIndex(2)})) << "a shared node is a weld";
+  EXPECT_EQ(grown(RegionBound::part, &none).size(), 4u);
+  const std::vector<std::uint8_t> second_hidden{0, 1, 0};
+  EXPECT_EQ(grown(RegionBound::piece, &none, second_hidden), ShellSet{ShellIndex(0)});
+  EXPECT_EQ(grown(RegionBound::part, &none, second_hidden).size(), 2u);
+}
+
+/// Two parallel sheets of 4 x 4 shells, 1.5 apart; their nodes are 1 + i + 10 j and 1001 + i + 10 j, shells 1.. and 101..
+struct Sheets {
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  Sheets() {
+    for (int sheet = 0; sheet < 2; ++sheet)
+      for (int j = 0; j <= 4; ++j)
+        for (int i = 0; i <= 4; ++i) nodes.push_back({1 + 1000 * sheet + i + 10 * j, Vec3(5.0 * i + sheet, 5.0 * j + sheet, 1.5 * sheet)});
+    for (int sheet = 0; sheet < 2; ++sheet)
+      for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) {
+          const std::int64_t corner = 1 + 1000 * sheet + i + 10 * j;
+          shells.push_back({1 + 100 * sheet + i + 4 * j, 1 + sheet, {corner, corner + 1, corner + 11, corner + 10}});
+        }
+  }
+  /// How many shells a click on the first sheet takes, across welds.
+  std::size_t across(const std::vector<test::ElementSpec>& welds, const References* references = nullptr) const {
+    const Model model = test::make_model(nodes, shells, welds);
+    const WeldedShells joined = find_welds(model, references, {});
+    return region(model, shells_at(model, NodeIndex(0), {}), {RegionBound::features, 30, {}, &joined}).size();
+  }
+};
+
+TEST(Welds, of_every_kind_join_sheets) {
+  using enum ElementClass;
+  Sheets sheets;
+  EXPECT_EQ(sheets.across({}), 16u);
+  EXPECT_EQ(sheets.across({{beam, 1, 9, {23, 1023}}}), 32u) << "with the sheets' own nodes";
+  EXPECT_EQ(sheets.across({{discrete, 1, 9, {23, 1023}}}), 32u);
+  EXPECT_EQ(sheets.across({{beam, 1, 9, {22, 24}}}), 16u) << "a stiffener";
+  EXPECT_EQ(sheets.across({{beam, 1, 9, {1, 1045}}}), 16u) << "too long for a weld";
+  EXPECT_EQ(sheets.across({{mass, 1, 9, {23, 1023}}}), 16u);
+  // nodes of their own, as welds in a file of their own have
+  sheets.nodes.push_back({5001, Vec3(11.2, 12.1, 0.2)});
+  sheets.nodes.push_back({5002, Vec3(11.2, 12.1, 1.4)});
+  sheets.nodes.push_back({5003, Vec3(11.2, 12.1, 9.0)});
+  EXPECT_EQ(sheets.across({{beam, 1, 9, {5001, 5002}}}), 32u);
+  EXPECT_EQ(sheets.across({{beam, 1, 9, {5001, 5003}}}), 16u) << "one end is nowhere near a sheet";
+  for (int k = 0; k < 8; ++k) {
+    const int round = k % 4;
+    sheets.nodes.push_back({6001 + k, Vec3(8.0 + 4 * (round == 1 || round == 2), 8.0 + 4 * (round > 1), k < 4 ? 0.1 : 1.45)});
+  }
+  EXPECT_EQ(sheets.across({{solid, 1, 9, {6001, 6002, 6003, 6004, 6005, 6006, 6007, 6008}}}), 32u);
+}
+
+TEST(Welds, of_constraints_join_sheets) {
+  const Sheets sheets;
+  const auto across = [&](const char* keyword, Referred referred, std::int64_t first, std::int64_t last) {
+    References references;
+    Referrer weld, list;
+    weld.keyword = keyword;
+    list.keyword = "SET_NODE_LIST";
+    list.id = 77;
+    list.defines = Referred::node_set;
+    list.group = "node";
+    const std::uint32_t card = references.add(weld);
+    references.add({.referred = referred, .first = first, .last = first, .referrer = card, .card = 30});
+    if (last != first) references.add({.referred = referred, .first = last, .last = last, .referrer = card, .card = 30});
+    const std::uint32_t set = references.add(list);
+    for (const std::int64_t id : {23, 1023})
+      references.add({.referred = Referred::node, .role = ReferenceRole::list, .first = id, .last = id, .referrer = set, .card = 120});
+    references.finish();
+    return sheets.across({}, &references);
+  };
+  EXPECT_EQ(across("CONSTRAINED_SPOTWELD_ID", Referred::node, 23, 1023), 32u);
+  EXPECT_EQ(across("CONSTRAINED_RIVET", Referred::node, 23, 1023), 32u);
+  EXPECT_EQ(across("CONSTRAINED_GENERALIZED_WELD_SPOT", Referred::node_set, 77, 77), 32u);
+  EXPECT_EQ(across("CONSTRAINED_GENERALIZED_WELD_SPOT", Referred::node_set, 78, 78), 16u);
+  EXPECT_EQ(across("BOUNDARY_SPC_NODE", Referred::node, 23, 1023), 16u);
+}
+
+TEST(Welds, lead_over_junctions_too) {
+  // the web of the junction test, asked for across welds
+  const Model model = test::make_model(
+      {{1, {0, 0, 0}}, {2, {1, 0, 0}}, {3, {1, 1, 0}}, {4, {0, 1, 0}}, {5, {2, 0, 0}}, {6, {2, 1, 0}}, {7, {1, 0, 1}}, {8, {1, 1, 1}}},
+      {{1, 1, {1, 2, 3, 4}}, {2, 1, {2, 5, 6, 3}}, {3, 1, {2, 7, 8, 3}}});
+  const WeldedShells none = find_welds(model, nullptr, {});
+  EXPECT_EQ(region(model, {ShellIndex(0)}, {RegionBound::features, 30, {}, &none}).size(), 3u);
+  EXPECT_EQ(region(model, {ShellIndex(0)}, {RegionBound::features, 30, {}, nullptr}).size(), 1u);
 }
 
 TEST(NearestNode, finds_it_and_prefers_the_first_of_equals) {
@@ -81,6 +258,38 @@ TEST(Rings, end_at_the_sheets_own_boundary) {
     for (int i = 0; i <= 3; ++i) left.push_back(grid_node(6, i, j));
   EXPECT_EQ(shrink(model, left, 1).size(), 21u);
   EXPECT_EQ(shrink(model, grow(model, left, 3), 5).size(), 49u) << "all is selected: there is no rim";
+}
+
+TEST(Rings, of_shells_leave_holes_open) {
+  // a ring of 8 shells around one that isn't selected: all its corners are selected nodes, but it isn't
+  const Model model = flat_grid(7, 7);
+  ShellSet ring;
+  for (int j = 2; j <= 4; ++j)
+    for (int i = 2; i <= 4; ++i)
+      if (i != 3 || j != 3) ring.emplace_back(static_cast<std::size_t>(i + 7 * j));
+  EXPECT_TRUE(shrink_shells(model, ring, 1).empty()) << "each of them touches the hole or what is outside";
+  const ShellSet grown = grow_shells(model, ring, 1);
+  EXPECT_EQ(grown.size(), 25u);
+  EXPECT_EQ(shrink_shells(model, grown, 1).size(), 9u);
+  EXPECT_EQ(shrink_shells(model, grow_shells(model, {ShellIndex(24)}, 2), 2), ShellSet{ShellIndex(24)});
+}
+
+TEST(Rings, take_hidden_shells_for_not_there) {
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  for (int j = 0; j <= 1; ++j)
+    for (int i = 0; i <= 6; ++i) nodes.push_back({1 + i + 10 * j, Vec3(i, j, 0)});
+  for (int i = 0; i < 6; ++i) shells.push_back({1 + i, 1 + (i == 3), {1 + i, 2 + i, 12 + i, 11 + i}});
+  const Model model = test::make_model(nodes, shells);
+  const std::vector<std::uint8_t> middle_hidden{0, 1};
+  EXPECT_EQ(grow(model, {NodeIndex(0)}, 9, middle_hidden).size(), 8u);
+  EXPECT_EQ(grow_shells(model, {ShellIndex(0)}, 9, middle_hidden).size(), 3u);
+  // what is in sight of the left side is selected whole: nothing there is rim
+  const NodeSet left = grow(model, {NodeIndex(0)}, 9, middle_hidden);
+  EXPECT_EQ(shrink(model, left, 1, middle_hidden), left);
+  EXPECT_EQ(shrink(model, left, 1).size(), 6u);
+  EXPECT_EQ(shrink_shells(model, {ShellIndex(0), ShellIndex(1), ShellIndex(2)}, 1, middle_hidden).size(), 3u);
+  EXPECT_EQ(shrink_shells(model, {ShellIndex(0), ShellIndex(1), ShellIndex(2)}, 1).size(), 2u);
 }
 
 TEST(Invert, swaps_selected_and_unselected) {
