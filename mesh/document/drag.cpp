@@ -1,6 +1,7 @@
 #include "mesh/document/drag.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel_for.h"
 #include "mesh/document/motion.h"
@@ -90,8 +91,12 @@ NodeIndex Drag::grab() const { return motion_->grab; }
 const Vec3& Drag::normal() const { return motion_->normal; }
 
 void Drag::step(const Displacement& displacement) {
+  if (!displacement.by.allFinite() || !std::isfinite(displacement.distance) || !std::isfinite(displacement.degrees)) return;
+  std::vector<Vec3> positions(positions_.size());
+  positions_at(*motion_, displacement, positions);
+  if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& position) { return position.allFinite(); })) return;
   displacement_ = displacement;
-  positions_at(*motion_, displacement, positions_);
+  positions_ = std::move(positions);
   std::vector<quality::Counts> counts((corners_.size() + kShellsAtATime - 1) / kShellsAtATime);
   parallel_for(corners_.size(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;

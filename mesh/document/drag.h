@@ -25,7 +25,7 @@ class Drag {
   /// The unit normal at the grab: the direction of a lift.
   const Vec3& normal() const;
 
-  /// Moves to a displacement. Bit for bit what applying the edit will give.
+  /// Moves to a displacement. Bit for bit what applying the edit will give. A displacement that no coordinate can hold is passed over.
   void step(const Displacement& displacement);
   const std::vector<Vec3>& positions() const { return positions_; }           ///< of nodes()
   const std::vector<quality::ShellState>& states() const { return states_; }  ///< of shells()

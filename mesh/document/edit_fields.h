@@ -15,6 +15,7 @@ struct Limit {
 
 inline constexpr double kLargest = 1e300;  ///< coordinates: finite, with room for arithmetic
 inline constexpr Limit kAnyLength{-kLargest, kLargest};
+inline constexpr Limit kTurns{-36000, 36000};  ///< degrees: a hundred turns either way
 
 template <class Visitor>
 void fields(Visitor& v, auto& edit, const Select*) {
@@ -92,7 +93,7 @@ template <class Visitor>
 void fields(Visitor& v, auto& edit, const Rotate*) {
   v.required("point", edit.point);
   v.direction("axis", edit.axis);
-  v.required("degrees", edit.degrees, kAnyLength);
+  v.required("degrees", edit.degrees, kTurns);
   fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
 }
 template <class Visitor>

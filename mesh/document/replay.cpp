@@ -75,7 +75,7 @@ SelectionUse selection_use(const Edit& edit) {
           return {true, true};
         else if constexpr (std::is_same_v<T, SetParts>)
           return {!e.on, false};
-        else if constexpr (std::is_same_v<T, Translate> || std::is_same_v<T, Lift>)
+        else if constexpr (requires { e.shaping; })
           return {!e.shaping.on, false};
         else
           return {};

@@ -20,7 +20,7 @@ constexpr std::size_t kNodesAtATime = 128;
 constexpr double kOnTheSpot = 1e-9;      // shares of a face, and sines of angles: nearer counts as the same
 constexpr double kAlongside = 1e-6;      // sine of the angle of a line that counts as lying in a plane
 constexpr std::size_t kMostAround = 24;  // shells at a node that its normal is taken of
-constexpr int kMostFaces = 100'000;      // of one way
+constexpr int kMostFaces = 10'000;       // of one way
 constexpr int kMostFacesOnTheSpot = 64;  // without getting on: round a needle's point there is no straight on
 
 /// One triangle of a shell. Its side i runs from corner i to the next and lies opposite corner (i + 2) % 3.

@@ -16,10 +16,10 @@ namespace prismesh::mesh::shape {
 
 /// The surface under nodes that are about to slide. A quad counts as the two triangles at its diagonal from the first corner to the
 /// third. A node sets out in the direction in which its displacement points along the surface, and goes as far as the displacement is long
-/// there. On each face it goes straight; at an edge it goes on as if the two faces lay in one plane, however sharp the crease: only faces
-/// that hang together with its own are ever reached, never a sheet close by. Where three or more shells meet in an edge it goes on over the
-/// one that leads straightest on. A node on a free edge stays on the line of free edges and stops at its corners (as FreeEdges has them);
-/// a way that meets a free edge from within ends there. A node without a shell stays.
+/// there, over 10,000 faces at most. On each face it goes straight; at an edge it goes on as if the two faces lay in one plane, however
+/// sharp the crease: only faces that hang together with its own are ever reached, never a sheet close by. Where three or more shells meet
+/// in an edge it goes on over the one that leads straightest on. A node on a free edge stays on the line of free edges and stops at its
+/// corners (as FreeEdges has them); a way that meets a free edge from within ends there. A node without a shell stays.
 class Slideway {
  public:
   /// `nodes` with their `normals` (of unit length; zero without a shell). Copies no mesh: it shares the model's chunks.

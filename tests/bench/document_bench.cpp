@@ -60,19 +60,53 @@ void translate_10k(benchmark::State& state) {
 }
 BENCHMARK(translate_10k)->Unit(benchmark::kMillisecond);
 
-void drag_step_10k(benchmark::State& state) {
+/// A drag of the patch in the middle of the million quads. `symmetric`: about a plane beside the patch, which doubles what moves.
+Edit drag_of(const char* kind, bool symmetric) {
+  Edit edit = parse_edit(std::string("{") + kind + "}").value();
+  if (symmetric) shaping_of(edit)->symmetry = Symmetry{Vec3(2500, 0, 0), Vec3::UnitX()};
+  return edit;
+}
+
+void drag_begin_10k(benchmark::State& state, const char* kind, bool symmetric) {
   const Document& document = million();
-  Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, pull(0));
-  if (!drag) return state.SkipWithError(drag.error().text().c_str());
-  double z = 0;
+  const Edit edit = drag_of(kind, symmetric);
   for (auto _ : state) {
-    drag->step({Vec3(0, 0, z), 0, 0});
-    benchmark::DoNotOptimize(drag->states().data());
-    z += 0.01;
+    Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, edit);
+    if (!drag) return state.SkipWithError(drag.error().text().c_str());
+    benchmark::DoNotOptimize(drag);
   }
+}
+
+void drag_step_10k(benchmark::State& state, const char* kind, bool symmetric) {
+  const Document& document = million();
+  Result<Drag> drag = Drag::begin(document.generations[document.cursor], document.settings, drag_of(kind, symmetric));
+  if (!drag) return state.SkipWithError(drag.error().text().c_str());
+  double size = 0;
+  for (auto _ : state) {
+    drag->step({Vec3(0.6, 0.7, 0.1) * size, size, size});
+    benchmark::DoNotOptimize(drag->states().data());
+    size = size < 20 ? size + 0.05 : 0;  // as a hand moves: up to some elements far
+  }
+  state.counters["nodes"] = static_cast<double>(drag->nodes().size());
   state.counters["shells"] = static_cast<double>(drag->shells().size());
 }
-BENCHMARK(drag_step_10k)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+
+constexpr const char* kTranslate = R"("edit":"translate","by":[0,0,0])";
+constexpr const char* kLift = R"("edit":"lift","distance":0)";
+constexpr const char* kLiftEach = R"("edit":"lift","distance":0,"normals":"each")";
+constexpr const char* kRotate = R"("edit":"rotate","point":[2500,2500,0],"axis":[0.2,1,0],"degrees":0)";
+constexpr const char* kSlide = R"("edit":"slide","by":[0,0,0])";
+#define BENCHMARK_DRAG(name, kind, symmetric)                                                             \
+  BENCHMARK_CAPTURE(drag_begin_10k, name, kind, symmetric)->Unit(benchmark::kMillisecond)->UseRealTime(); \
+  BENCHMARK_CAPTURE(drag_step_10k, name, kind, symmetric)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime()
+BENCHMARK_DRAG(translate, kTranslate, false);
+BENCHMARK_DRAG(lift, kLift, false);
+BENCHMARK_DRAG(lift_each, kLiftEach, false);
+BENCHMARK_DRAG(rotate, kRotate, false);
+BENCHMARK_DRAG(slide, kSlide, false);
+BENCHMARK_DRAG(translate_symmetric, kTranslate, true);
+BENCHMARK_DRAG(slide_symmetric, kSlide, true);
+#undef BENCHMARK_DRAG
 
 void undo_redo_10k(benchmark::State& state) {
   Document document = million();

@@ -36,6 +36,9 @@ TEST(EditJson, EveryEditReadsItsExample) {
           R"({"edit":"unlock"})",
           R"({"edit":"translate","by":[0,0,1],"on":"1-100","grab":7,"falloff":{"profile":"gaussian","flat":0.5,"along":[1,0,0]},"free_ends":false,"origin":"free_edge","max_move":2})",
           R"({"edit":"lift","distance":-2.5,"normals":"each","grab":[1,2,3],"on":{"edit":"select_region","at":[0,0,0],"angle":20}})",
+          R"({"edit":"slide","by":[3,0,0],"grab":7,"max_move":2,"across_welds":true})",
+          R"({"edit":"rotate","point":[0,0,1],"axis":[0,2,0],"degrees":-30,"on":"1-9","free_ends":true})",
+          R"({"edit":"translate","by":[0,0,1],"symmetry":{"point":[0,1,0],"normal":[0,1,0]}})",
           R"({"edit":"undo"})",
           R"({"edit":"redo"})",
       }) {
@@ -85,7 +88,7 @@ TEST(EditJson, NamesTheNearestKnown) {
   EXPECT_EQ(
       why_not(R"({"edit":"lift","distence":1})"),
       "lift has no field \"distence\"; the nearest is \"distance\" (known: edit, distance, normals, on, grab, grab_at, falloff, free_ends, "
-      "origin, max_move)");
+      "origin, across_welds, symmetry, max_move)");
   EXPECT_THAT(why_not(R"({"edit":"tranlsate","by":[0,0,1]})"), HasSubstr("there is no edit \"tranlsate\"; the nearest is \"translate\""));
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"falloff":{"profil":"smooth"}})"),
               HasSubstr("lift: \"falloff\" has no field \"profil\"; the nearest is \"profile\""));
@@ -113,8 +116,18 @@ TEST(EditJson, NamesTheWrongType) {
 
 TEST(EditJson, WhatIsNotThereYetIsRefusedByName) {
   EXPECT_THAT(why_not(R"({"edit":"relax","mode":"full"})"), HasSubstr("\"relax\" isn't there yet in this version"));
-  EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"symmetry":{"point":[0,0,0],"normal":[1,0,0]}})"),
-              HasSubstr("lift: \"symmetry\" isn't there yet"));
+}
+
+TEST(EditJson, AxesAndPlanesAreCheckedWhereTheyAreWritten) {
+  EXPECT_EQ(why_not(R"({"edit":"rotate","point":[0,0,0],"axis":[0,0,0],"degrees":5})"),
+            "rotate: \"axis\" must be a direction, not [0, 0, 0]");
+  EXPECT_THAT(why_not(R"({"edit":"rotate","point":[0,0,0],"axis":[0,0,1]})"), HasSubstr("needs the field \"degrees\""));
+  EXPECT_THAT(why_not(R"({"edit":"rotate","point":[0,0,0],"axis":[0,0,1],"degrees":36001})"), HasSubstr("between -36000"));
+  EXPECT_THAT(why_not(R"({"edit":"slide","by":1})"), HasSubstr("slide: \"by\" must be a list of 3 numbers"));
+  EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"symmetry":{"point":[0,0,0],"normal":[0,0,0]}})"),
+              HasSubstr("lift: \"symmetry\": \"normal\" must be a direction"));
+  EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"symmetry":{"point":[0,0,0]}})"), HasSubstr("needs the field \"normal\""));
+  EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"symmetry":[1,0,0]})"), HasSubstr("must be an object like {\"point\""));
 }
 
 TEST(EditJson, NumbersThatAreNotFiniteAreRefused) {

@@ -243,7 +243,7 @@ TEST(Drag, RefusesAsTheEditDoes) {
   };
   EXPECT_THAT(refuse(R"({"edit":"translate","by":[0,0,1],"on":"100"})"), HasSubstr("locked part 1"));
   EXPECT_THAT(refuse(R"({"edit":"lift","distance":1})"), HasSubstr("nothing is selected"));
-  EXPECT_THAT(refuse(R"({"edit":"undo"})"), HasSubstr("only translate and lift can be dragged"));
+  EXPECT_THAT(refuse(R"({"edit":"undo"})"), HasSubstr("only shaping edits can be dragged"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/document/journal.h"
+#include "mesh/spatial/closest_point.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {
@@ -13,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A lift of a region around the middle shell, an undo, a redo, a second pull, and a part locked.
+/// A lift of a region around the middle shell, an undo, a redo, a second pull, a slide, a turn on both sides of a plane, and all locked.
 std::vector<Edit> session_for(const Document& document) {
   const Model& model = document.current().model;
   const NodeIndex node = model.shell_nodes[model.shell_count() / 2].node[0];
@@ -27,7 +28,28 @@ std::vector<Edit> session_for(const Document& document) {
   pull.by = Vec3(0.1, 0.2, -0.3) * size;
   pull.shaping.on = Where(region);
   pull.shaping.max_move = 0.2 * size;
-  return {Edit(region), Edit(lift), Edit(Undo{}), Edit(Redo{}), Edit(Grow{2}), Edit(pull), Edit(SetParts{VisibilityAction::lock, "all"})};
+  Slide slide;
+  slide.by = Vec3(2.1, 1.3, 0.7) * size;
+  slide.shaping.on = Where(region);
+  Rotate rotate{at - Vec3(0, 0, 5) * size, Vec3(1, 0.2, 0), 2, {}};
+  rotate.shaping.on = Where(region);
+  rotate.shaping.symmetry = Symmetry{Vec3::Zero(), Vec3::UnitY()};
+  return {Edit(region), Edit(lift),    Edit(Undo{}),
+          Edit(Redo{}), Edit(Grow{2}), Edit(pull),
+          Edit(slide),  Edit(rotate),  Edit(SetParts{VisibilityAction::lock, "all"})};
+}
+
+/// The nodes that moved, mid-side nodes left out, lie on the faces as they were.
+void expect_on_faces(const Model& before, const Model& after) {
+  ShellSet shells;
+  for (std::size_t i = 0; i < before.shell_count(); ++i) shells.emplace_back(i);
+  const spatial::ShellTree faces(before, shells);
+  for (const NodeIndex node : moved_nodes(before, after)) {
+    if (before.adjacency->shells_of(node).empty()) continue;
+    const double size = (after.position(node) - before.position(node)).norm();
+    const double coordinates = after.position(node).norm();
+    ASSERT_LE(faces.closest(after.position(node))->distance, 1e-9 * size + 1e-12 * coordinates) << before.node_ids[node.value];
+  }
 }
 
 /// Applies and journals; returns how many edits were done. Refusals must have words.
@@ -41,6 +63,7 @@ std::size_t run_session(Document& document, Journal& journal) {
     }
     EXPECT_EQ(quality::count(prepared->next->quality), prepared->next->counts);
     EXPECT_TRUE(journal.append(document, edit, *prepared));
+    if (std::holds_alternative<Slide>(edit)) expect_on_faces(document.current().model, prepared->next->model);
     commit(document, std::move(*prepared));
     ++done;
   }
