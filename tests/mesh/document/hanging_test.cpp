@@ -2,8 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Geometry>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,6 +39,8 @@ class DeckText {
       }
     this->part(part);
   }
+  /// Of the nodes first .. first + 3.
+  void shell(int id, int part, int first) { add(shells_, "%8d%8d%8d%8d%8d%8d\n", id, part, first, first + 1, first + 2, first + 3); }
   void beam(int id, int part, int a, int b) { add(beams_, "%8d%8d%8d%8d%8d\n", id, part, a, b, 0); }
   void part(int id) { add(parts_, "*PART\npart %d\n%10d%10d%10d\n", id, id, 1, 1); }
   void cards(const std::string& text) { more_ += text; }
@@ -245,6 +251,51 @@ TEST_F(HangingTest, counts_what_a_move_turns_over) {
                        R"({"edit":"rotate","point":[0,0,0],"axis":[1,0,0],"degrees":170,"on":"part:1","falloff":{"profile":"constant"}})")
                 .inverted,
             0u);
+}
+
+/// The welds of a real car in a file of their own, and a small sheet of ours under each end of each beam, across the beam.
+TEST_F(HangingTest, welds_of_a_real_car_follow_the_sheets_under_them) {
+  const char* models = std::getenv("PRISMESH_MODELS");
+  if (models == nullptr) GTEST_SKIP() << "PRISMESH_MODELS isn't set";
+  const std::filesystem::path welds = std::filesystem::path(models) / "camry_weld7_beams/weld7.k";
+  const Result<Document> alone = open(welds, OpenOptions{});
+  ASSERT_TRUE(alone) << alone.error().text();
+  const Model& model = alone->current().model;
+  std::filesystem::copy_file(welds, folder_ / "weld7.k");
+  const ElementBlock& beams = *model.elements[static_cast<std::size_t>(ElementClass::beam)];
+  std::vector<std::uint8_t> has_sheet(model.node_count(), 0);
+  DeckText deck;
+  deck.part(1);
+  deck.cards("*INCLUDE\nweld7.k\n");
+  int next = 1;
+  for (std::size_t e = 0; e < beams.size(); ++e) {
+    const NodeIndex a = beams.nodes[beams.first_node[e]], b = beams.nodes[beams.first_node[e] + 1];
+    const Vec3 along = (model.position(b) - model.position(a)).normalized();
+    const Vec3 x = along.unitOrthogonal();
+    const Vec3 y = along.cross(x);
+    for (const NodeIndex node : {a, b}) {
+      if (std::exchange(has_sheet[node.value], 1) != 0) continue;
+      const Vec3 middle = model.position(node) + (node == a ? -0.05 : 0.05) * along;
+      for (const auto& [u, v] : {std::pair(-4, -4), std::pair(4, -4), std::pair(4, 4), std::pair(-4, 4)}) {
+        const Vec3 corner = middle + u * 0.25 * x + v * 0.25 * y;
+        deck.node(next++, corner.x(), corner.y(), corner.z());
+      }
+      deck.shell(next - 4, 1, next - 4);
+    }
+  }
+  Document document = open_text(deck);
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[3,-2,5],"on":"shell:all","falloff":{"profile":"constant"}})");
+  const Model& after = document.current().model;
+  std::size_t carried = 0;
+  for (std::size_t n = 0; n < model.node_count(); ++n) {
+    if (has_sheet[n] == 0) continue;
+    const Vec3 way = after.position(after.find_node(model.node_ids[n])) - model.position(NodeIndex(n));
+    EXPECT_NEAR((way - Vec3(3, -2, 5)).norm(), 0, 1e-9) << model.node_ids[n];
+    ++carried;
+  }
+  EXPECT_GT(carried, 4000u);
+  EXPECT_EQ(report.nodes_moved, 5 * carried);
+  EXPECT_EQ(report.lost_connections, 0u);
 }
 
 }  // namespace
