@@ -16,6 +16,7 @@ constexpr double kSliver2 = 1e-16;  ///< square of the height, as a share of the
 struct OnTriangle {
   Vec3 point;
   std::array<double, 3> share;
+  double distance2 = 0;  ///< from what was asked for
 };
 
 /// Ericson, "Real-Time Collision Detection", 5.1.5: by the regions of corners, sides and face. Degenerate triangles end in a side.
@@ -26,9 +27,10 @@ OnTriangle closest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
     const Vec3 along = t[j] - t[i];
     const double length2 = along.squaredNorm();
     const double s = length2 > 0 ? std::clamp((p - t[i]).dot(along) / length2, 0.0, 1.0) : 0.0;
-    OnTriangle on{t[i] + s * along, {}};
+    OnTriangle on{t[i] + s * along, {}, 0};
     on.share[static_cast<std::size_t>(i)] = 1 - s;
     on.share[static_cast<std::size_t>(j)] = s;
+    on.distance2 = (on.point - p).squaredNorm();
     return on;
   };
   const Vec3 normal = ab.cross(ac);
@@ -37,12 +39,15 @@ OnTriangle closest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
     const Vec3 ap = p - t[0];
     const double v = ap.cross(ac).dot(normal) / area2;
     const double w = ab.cross(ap).dot(normal) / area2;
-    if (v >= 0 && w >= 0 && v + w <= 1) return {t[0] + v * ab + w * ac, {1 - v - w, v, w}};
+    if (v >= 0 && w >= 0 && v + w <= 1) {
+      const Vec3 foot = t[0] + v * ab + w * ac;
+      return {foot, {1 - v - w, v, w}, (foot - p).squaredNorm()};
+    }
   }
   OnTriangle best = on_side(0, 1);
   for (const auto& [i, j] : {std::pair(1, 2), std::pair(2, 0)}) {
     const OnTriangle other = on_side(i, j);
-    if ((other.point - p).squaredNorm() < (best.point - p).squaredNorm()) best = other;
+    if (other.distance2 < best.distance2) best = other;
   }
   return best;
 }
@@ -172,8 +177,8 @@ void ShellTree::walk(const Vec3& point, double& radius2, Visit&& visit) const {
 
 namespace {
 
-SurfacePoint surface_point(ShellIndex shell, bool second, const OnTriangle& on, double distance2) {
-  SurfacePoint point{shell, on.point, std::sqrt(distance2), {}};
+SurfacePoint surface_point(ShellIndex shell, bool second, const OnTriangle& on) {
+  SurfacePoint point{shell, on.point, std::sqrt(on.distance2), {}};
   point.share[0] = on.share[0];
   point.share[second ? 2 : 1] = on.share[1];
   point.share[second ? 3 : 2] = on.share[2];
@@ -187,11 +192,10 @@ std::optional<SurfacePoint> ShellTree::closest(const Vec3& point, double radius)
   double least2 = square(radius);
   walk(point, least2, [&](const Triangle& triangle) {
     const OnTriangle on = closest_on(triangle.corner, point);
-    const double distance2 = (on.point - point).squaredNorm();
-    const bool nearer = best ? distance2 < least2 || (distance2 == least2 && triangle.shell < best->shell) : distance2 <= least2;
+    const bool nearer = on.distance2 < least2 || (on.distance2 == least2 && (!best || triangle.shell < best->shell));
     if (!nearer) return;
-    least2 = distance2;
-    best = surface_point(triangle.shell, triangle.second, on, distance2);
+    least2 = on.distance2;
+    best = surface_point(triangle.shell, triangle.second, on);
   });
   return best;
 }
@@ -201,8 +205,7 @@ std::vector<SurfacePoint> ShellTree::within(const Vec3& point, double radius) co
   double radius2 = square(radius);
   walk(point, radius2, [&](const Triangle& triangle) {
     const OnTriangle on = closest_on(triangle.corner, point);
-    const double distance2 = (on.point - point).squaredNorm();
-    if (distance2 <= radius2) found.push_back(surface_point(triangle.shell, triangle.second, on, distance2));
+    if (on.distance2 <= radius2) found.push_back(surface_point(triangle.shell, triangle.second, on));
   });
   std::sort(found.begin(), found.end(),
             [](const SurfacePoint& a, const SurfacePoint& b) { return a.shell != b.shell ? a.shell < b.shell : a.distance < b.distance; });
