@@ -183,7 +183,7 @@ class Walk {
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 gradient = normal.cross(face_.at[next(next(i))] - face_.at[next(i)]) / area2;
       rate[i] = gradient.dot(direction_);
-      if (std::abs(rate[i]) < kOnTheSpot * gradient.norm()) rate[i] = 0;
+      if (rate[i] * rate[i] < kOnTheSpot * kOnTheSpot * gradient.squaredNorm()) rate[i] = 0;
       if (rate[i] < 0 && next(i) != entered_by_ && share_[i] < -rate[i] * length) {
         length = share_[i] / -rate[i];
         leaves = i;
@@ -225,15 +225,14 @@ class Walk {
       }
     };
     const ShellNodes& shell = model_.shell(face_.shell);
-    if (!shell.is_triangle() && is_diagonal(a, b)) {
-      consider(face_.shell, !face_.second);
-    } else {
-      for (const ShellIndex other : model_.adjacency->shells_of(model_.adjacency->find_edge(face_.node[a], face_.node[b])))
+    if (!shell.is_triangle() && is_diagonal(a, b)) consider(face_.shell, !face_.second);
+    // a quad that names a corner twice has a half without area, and a side where its diagonal would be
+    if (const EdgeIndex edge = model_.adjacency->find_edge(face_.node[a], face_.node[b]); !beyond && edge.valid())
+      for (const ShellIndex other : model_.adjacency->shells_of(edge))
         if (other != face_.shell) {
           consider(other, false);
           if (!model_.shell(other).is_triangle()) consider(other, true);
         }
-    }
     if (!beyond) return false;
     const double share_b = share_[b];
     const bool same_sense = beyond->node[entered_by] == face_.node[a];
@@ -352,15 +351,42 @@ std::size_t Slideway::positions(std::span<const Vec3> by, std::optional<double> 
   return stopped;
 }
 
+namespace {
+
+/// Where nodes stand in a set, by a table as long as the set's span where that isn't out of proportion.
+class NodePlaces {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  explicit NodePlaces(const NodeSet& nodes) : nodes_(nodes) {
+    const std::size_t span = nodes.empty() ? 0 : nodes.back().value - nodes.front().value + std::size_t{1};
+    if (span > 256 * nodes.size()) return;
+    table_.assign(span, kNone);
+    for (std::size_t i = 0; i < nodes.size(); ++i) table_[nodes[i].value - nodes.front().value] = static_cast<std::uint32_t>(i);
+  }
+
+  std::uint32_t find(NodeIndex node) const {
+    if (nodes_.empty() || node < nodes_.front() || nodes_.back() < node) return kNone;
+    if (!table_.empty()) return table_[node.value - nodes_.front().value];
+    const auto found = std::lower_bound(nodes_.begin(), nodes_.end(), node);
+    return *found == node ? static_cast<std::uint32_t>(found - nodes_.begin()) : kNone;
+  }
+
+ private:
+  const NodeSet& nodes_;
+  std::vector<std::uint32_t> table_;
+};
+
+}  // namespace
+
 std::vector<Eigen::Quaterniond> turns_along(const Model& model, const NodeSet& nodes, std::span<const Vec3> normals, NodeIndex from) {
   std::vector<Eigen::Quaterniond> turns(nodes.size(), Eigen::Quaterniond::Identity());
   std::vector<std::uint8_t> reached(nodes.size(), 0);
   std::vector<std::uint32_t> queue;
+  const NodePlaces places(nodes);
   const auto reach = [&](NodeIndex node, const std::uint32_t* before) {
-    const auto found = std::lower_bound(nodes.begin(), nodes.end(), node);
-    if (found == nodes.end() || *found != node) return;
-    const auto at = static_cast<std::uint32_t>(found - nodes.begin());
-    if (reached[at] != 0) return;
+    const std::uint32_t at = places.find(node);
+    if (at == NodePlaces::kNone || reached[at] != 0) return;
     reached[at] = 1;
     if (before != nullptr) turns[at] = (turn_between(normals[*before], normals[at]) * turns[*before]).normalized();
     queue.push_back(at);

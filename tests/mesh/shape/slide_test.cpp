@@ -211,6 +211,30 @@ TEST(Slide, ALimitStopsOnTheSurface) {
   EXPECT_NEAR((out[test::grid_node(20, 4, 5).value] - Vec3(20, 25, 0)).norm(), 11, 1e-12);
 }
 
+TEST(Slide, AQuadThatNamesACornerTwiceIsATriangle) {
+  // the plane's middle column: each quad cut in two, one half a triangle, the other written as a quad with its first corner twice
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 4>> shells;
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 6; ++i) points.emplace_back(5.0 * i, 5.0 * j, 0);
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 6; ++i) {
+      const int a = i + 7 * j;
+      if (i != 3) {
+        shells.push_back({a, a + 1, a + 8, a + 7});
+      } else {
+        shells.push_back({a, a, a + 1, a + 8});
+        shells.push_back({a, a + 8, a + 7, a + 7});
+      }
+    }
+  const Model model = test::make_shells(points, shells);
+  for (const Vec3& by : {Vec3(13, 1, 0), Vec3(13, 0, 0), Vec3(12, -3, 0)}) {
+    const std::vector<Vec3> out = slid(model, test::grid_node(6, 1, 2), by);
+    EXPECT_LT((out[test::grid_node(6, 1, 2).value] - (Vec3(5, 10, 0) + by)).norm(), 1e-12);
+    EXPECT_LT((out[test::grid_node(6, 2, 2).value] - (Vec3(10, 10, 0) + by)).norm(), 1e-12);
+  }
+}
+
 TEST(Slide, NothingIsAskedOfNodesWithoutAShellOrOfCollapsedShells) {
   std::vector<Vec3> points{{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {0, 5, 0}, {99, 0, 0}, {10, 0, 0}, {10, 5, 0}};
   // a quad, one without area, a lone node
