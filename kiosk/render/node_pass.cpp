@@ -1,5 +1,7 @@
 #include "kiosk/render/node_pass.h"
 
+#include <algorithm>
+
 namespace prismesh::kiosk::render {
 
 namespace {
@@ -13,6 +15,28 @@ constexpr float kHiddenLight = 0.80F;  ///< behind a surface: lighter than any p
 
 constexpr std::array<std::uint8_t, 24> kOctahedron{0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
 constexpr std::array<std::uint8_t, 6> kSquare{0, 1, 2, 0, 2, 3};
+
+/// Nodes that are drawn in one call: places in the rows.
+struct Run {
+  std::size_t first = 0, count = 0;
+};
+
+std::vector<Run> runs_in_picture(const SelectionRows& rows, const Eigen::Matrix4d& clip_from_model) {
+  std::vector<Run> runs;
+  for (std::size_t c = 0; c < rows.chunks().size(); ++c) {
+    const SelectionRows::Chunk& chunk = rows.chunks()[c];
+    for (std::size_t b = 0; b < chunk.blocks.size(); ++b) {
+      if (!may_be_seen(chunk.blocks[b], clip_from_model)) continue;
+      const std::size_t begin = b * SelectionRows::kBlockSize, first = c * mesh::kChunkSize + begin;
+      const std::size_t count = std::min<std::size_t>(SelectionRows::kBlockSize, chunk.count - begin);
+      if (b > 0 && !runs.empty() && runs.back().first + runs.back().count == first)
+        runs.back().count += count;
+      else
+        runs.push_back({first, count});
+    }
+  }
+  return runs;
+}
 
 }  // namespace
 
@@ -45,9 +69,7 @@ void NodePass::draw(const ModelLayer& model, const Frame& frame) const {
   solid.program.set("selection", static_cast<int>(unit::kSelection));
   solid.program.set("radius_pixels", radius);
   const Eigen::Matrix4d clip_from_model = frame.clip_from_model.cast<double>();
-  std::vector<std::size_t> seen;
-  for (std::size_t c = 0; c < rows.chunks().size(); ++c)
-    if (rows.chunks()[c].count > 0 && may_be_seen(rows.chunks()[c].box, clip_from_model)) seen.push_back(c);
+  const std::vector<Run> seen = runs_in_picture(rows, clip_from_model);
   glBindVertexArray(solid.array.get());
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
@@ -55,9 +77,9 @@ void NodePass::draw(const ModelLayer& model, const Frame& frame) const {
   const auto draw = [&](float grow, const Colour& colour) {
     solid.program.set("grow", grow);
     solid.program.set("ink", colour.x(), colour.y(), colour.z(), 1.0F);
-    for (const std::size_t c : seen) {
-      solid.program.set("first", static_cast<int>(c * mesh::kChunkSize));
-      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(rows.chunks()[c].count) * solid.indices_each, GL_UNSIGNED_SHORT, nullptr);
+    for (const Run& run : seen) {
+      solid.program.set("first", static_cast<int>(run.first));
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(run.count) * solid.indices_each, GL_UNSIGNED_SHORT, nullptr);
     }
   };
   glDepthMask(GL_FALSE);

@@ -33,8 +33,9 @@ Result<void> SelectionRows::update(const ModelTable& table, const mesh::Vec3& or
       if (table.any_hidden() && visible()[node] == 0) continue;
       const mesh::Vec3 at = table.position(node) - origin;
       if (!finite(at)) continue;
+      if (nodes.size() % kBlockSize == 0) chunks_[c].blocks.emplace_back();
       nodes.push_back(static_cast<std::uint32_t>(node));
-      chunks_[c].box.add(at);
+      chunks_[c].blocks.back().add(at);
     }
     chunks_[c].count = static_cast<std::uint32_t>(nodes.size());
     texture_.upload_row(c, std::as_bytes(std::span(nodes)));

@@ -13,9 +13,11 @@ namespace prismesh::kiosk::render {
 
 class SelectionRows {
  public:
+  /// What is drawn or left out together: neighbours in the row, which mostly are neighbours on the sheet.
+  static constexpr std::size_t kBlockSize = 256;
   struct Chunk {
-    std::uint32_t count = 0;  ///< of its row's first indices
-    stereo::Box box;          ///< around these nodes, from the model's origin
+    std::uint32_t count = 0;          ///< of its row's first indices
+    std::vector<stereo::Box> blocks;  ///< around each kBlockSize of them, from the model's origin
   };
 
   /// Takes over a model. `all`: visibility or origin may have changed; `moved_chunks`: chunks of positions that differ, ascending;
