@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
@@ -26,18 +27,14 @@ class Carrying {
     for (std::uint32_t i = 0; i < reached_.size(); ++i)
       if (reached_[i] != 0) source.push_back(i);
     while (!source.empty() && !waiting_.empty()) {
-      look_for_closest(spatial::ShellTree(model_, shells_at(source)));
+      const ShellSet shells = shells_at(source);
+      trees_.emplace_back(model_, shells);
+      mark_near(farthest_reach(shells));
       source = carry_near_pieces();
     }
   }
 
  private:
-  struct Closest {
-    double distance = std::numeric_limits<double>::infinity();
-    bool near = false;
-    double weight = 0;
-  };
-
   /// Numbers the connected pieces among the nodes that aren't reached; a node without a shell is one of its own.
   void find_pieces() {
     piece_.assign(reached_.size(), 0);
@@ -59,25 +56,31 @@ class Carrying {
       }
     }
     std::sort(waiting_.begin(), waiting_.end());
-    closest_.resize(reached_.size());
+    near_.assign(reached_.size(), 0);
   }
 
   ShellSet shells_at(const std::vector<std::uint32_t>& nodes) const {
     ShellSet shells;
     for (const std::uint32_t node : nodes)
-      for (const ShellIndex shell : model_.adjacency->shells_of(patch_.nodes[node])) shells.push_back(shell);
+      for (const ShellIndex shell : model_.adjacency->shells_of(patch_.nodes[node]))
+        if (!model_.is_removed(shell)) shells.push_back(shell);
     std::sort(shells.begin(), shells.end());
     shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
     return shells;
   }
 
-  void look_for_closest(const spatial::ShellTree& tree) {
+  double farthest_reach(const ShellSet& shells) const {
+    double farthest = 0;
+    for (const ShellIndex shell : shells) farthest = std::max(farthest, reach_of(shell));
+    return farthest;
+  }
+
+  /// Marks the waiting nodes that are near what was reached last.
+  void mark_near(double farthest) {
     parallel_for(waiting_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        Closest& best = closest_[waiting_[i]];
-        const auto found = tree.closest(patch_.positions[waiting_[i]], best.distance);
-        if (found && found->distance < best.distance)
-          best = {found->distance, found->distance <= reach_of(found->shell), weight_at(*found)};
+        const auto found = trees_.back().closest(patch_.positions[waiting_[i]], farthest);
+        near_[waiting_[i]] = found && found->distance <= reach_of(found->shell) ? 1 : 0;
       }
     });
   }
@@ -101,19 +104,33 @@ class Carrying {
     return std::clamp(weight, 0.0, 1.0);
   }
 
+  /// The weight at the closest point of all that was reached before.
+  double carried_weight(std::uint32_t node) const {
+    std::optional<spatial::SurfacePoint> closest;
+    for (const spatial::ShellTree& tree : trees_) {
+      const auto found = tree.closest(patch_.positions[node], closest ? closest->distance : std::numeric_limits<double>::infinity());
+      if (found && (!closest || found->distance < closest->distance)) closest = found;
+    }
+    return closest ? weight_at(*closest) : 0.0;
+  }
+
   /// Returns the nodes of the pieces that are near, which now have their weight.
   std::vector<std::uint32_t> carry_near_pieces() {
     std::vector<std::uint8_t> near(pieces_ + std::size_t{1}, 0);
     for (const std::uint32_t node : waiting_)
-      if (closest_[node].near) near[piece_[node]] = 1;
+      if (near_[node] != 0) near[piece_[node]] = 1;
     std::vector<std::uint32_t> carried;
     for (const std::uint32_t node : waiting_)
-      if (near[piece_[node]] != 0 && closest_[node].distance < std::numeric_limits<double>::infinity()) {
-        reached_[node] = 1;
-        weight_[node] = closest_[node].weight;
-        carried.push_back(node);
-      }
+      if (near[piece_[node]] != 0 && patch_.positions[node].allFinite()) carried.push_back(node);
     std::erase_if(waiting_, [&](std::uint32_t node) { return near[piece_[node]] != 0; });
+    std::vector<double> weights(carried.size());
+    parallel_for(carried.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) weights[i] = carried_weight(carried[i]);
+    });
+    for (std::size_t i = 0; i < carried.size(); ++i) {
+      reached_[carried[i]] = 1;
+      weight_[carried[i]] = weights[i];
+    }
     return carried;
   }
 
@@ -122,9 +139,10 @@ class Carrying {
   std::vector<std::uint8_t>& reached_;
   std::vector<double>& weight_;
   std::uint32_t pieces_ = 0;
-  std::vector<std::uint32_t> piece_;    ///< of each node, from 1; 0: reached from the grab
-  std::vector<std::uint32_t> waiting_;  ///< nodes without a weight yet, ascending
-  std::vector<Closest> closest_;        ///< of each node, on what is reached so far
+  std::vector<std::uint32_t> piece_;       ///< of each node, from 1; 0: reached from the grab
+  std::vector<std::uint32_t> waiting_;     ///< nodes without a weight yet, ascending
+  std::vector<std::uint8_t> near_;         ///< of each node
+  std::vector<spatial::ShellTree> trees_;  ///< of what was reached, round by round
 };
 
 }  // namespace
