@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
@@ -57,6 +58,7 @@ class Carrying {
     }
     std::sort(waiting_.begin(), waiting_.end());
     near_.assign(reached_.size(), 0);
+    last_.resize(reached_.size());
   }
 
   ShellSet shells_at(const std::vector<std::uint32_t>& nodes) const {
@@ -79,7 +81,8 @@ class Carrying {
   void mark_near(double farthest) {
     parallel_for(waiting_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const auto found = trees_.back().closest(patch_.positions[waiting_[i]], farthest);
+        auto& found = last_[waiting_[i]];
+        found = trees_.back().closest(patch_.positions[waiting_[i]], farthest);
         near_[waiting_[i]] = found && found->distance <= reach_of(found->shell) ? 1 : 0;
       }
     });
@@ -106,8 +109,9 @@ class Carrying {
 
   /// The weight at the closest point of all that was reached before.
   double carried_weight(std::uint32_t node) const {
-    std::optional<spatial::SurfacePoint> closest;
-    for (const spatial::ShellTree& tree : trees_) {
+    std::optional<spatial::SurfacePoint> closest = last_[node];
+    const std::size_t unasked = closest ? trees_.size() - 1 : trees_.size();
+    for (const spatial::ShellTree& tree : std::span(trees_).first(unasked)) {
       const auto found = tree.closest(patch_.positions[node], closest ? closest->distance : std::numeric_limits<double>::infinity());
       if (found && (!closest || found->distance < closest->distance)) closest = found;
     }
@@ -139,10 +143,11 @@ class Carrying {
   std::vector<std::uint8_t>& reached_;
   std::vector<double>& weight_;
   std::uint32_t pieces_ = 0;
-  std::vector<std::uint32_t> piece_;       ///< of each node, from 1; 0: reached from the grab
-  std::vector<std::uint32_t> waiting_;     ///< nodes without a weight yet, ascending
-  std::vector<std::uint8_t> near_;         ///< of each node
-  std::vector<spatial::ShellTree> trees_;  ///< of what was reached, round by round
+  std::vector<std::uint32_t> piece_;                        ///< of each node, from 1; 0: reached from the grab
+  std::vector<std::uint32_t> waiting_;                      ///< nodes without a weight yet, ascending
+  std::vector<std::uint8_t> near_;                          ///< of each node
+  std::vector<std::optional<spatial::SurfacePoint>> last_;  ///< of each node, the closest point in the last of the trees, if not too far
+  std::vector<spatial::ShellTree> trees_;                   ///< of what was reached, round by round
 };
 
 }  // namespace
