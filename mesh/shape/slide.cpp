@@ -127,6 +127,7 @@ class Walk {
 
   /// The face at a node over which a direction leads away: the one whose picture in the node's plane holds it.
   bool set_out(NodeIndex node, const Vec3& normal, const Vec3& direction) {
+    const Vec3 aside = normal.cross(direction);
     double best = 0;  // how squarely the best face looks along the normal
     const auto consider = [&](ShellIndex shell, bool second) {
       const Face face = face_of(model_, shell, second);
@@ -136,24 +137,27 @@ class Walk {
       const Vec3 side_b = face.at[b] - face.at[at];
       const Vec3 side_c = face.at[c] - face.at[at];
       const Vec3 across = side_b.cross(side_c);
-      const double turned = across.dot(normal);
-      const double facing = std::abs(turned) / across.norm();
-      if (!(facing > kOnTheSpot)) return;
+      const double sense = across.dot(normal) < 0 ? -1 : 1;
+      const double area = sense * across.dot(normal);
       // in the picture: whether the direction leads over this face
-      const double picture_b = direction.cross(side_c).dot(normal) / turned * side_b.norm();
-      const double picture_c = side_b.cross(direction).dot(normal) / turned * side_c.norm();
-      if (picture_b < -kOnTheSpot || picture_c < -kOnTheSpot || !(facing > best)) return;
+      const double share_b = sense * side_c.dot(aside);
+      const double share_c = -sense * side_b.dot(aside);
+      const double along_b2 = share_b * share_b * side_b.squaredNorm();
+      const double along_c2 = share_c * share_c * side_c.squaredNorm();
+      const double on_the_spot2 = kOnTheSpot * kOnTheSpot * area * area;
+      if ((share_b < 0 && along_b2 > on_the_spot2) || (share_c < 0 && along_c2 > on_the_spot2)) return;
+      const double facing = area / across.norm();
+      if (!(facing > std::max(kOnTheSpot, best))) return;
       best = facing;
       // in the face, where it turns about the line in which face and plane meet: that keeps angles at a crease
-      const Vec3 face_normal = across * ((turned < 0 ? -1 : 1) / across.norm());
-      const Vec3 in_face = turn_between(normal, face_normal) * direction;
-      const double share_b = picture_b < kOnTheSpot ? 0 : std::max(0.0, in_face.cross(side_c).dot(across) / across.squaredNorm());
-      const double share_c = picture_c < kOnTheSpot ? 0 : std::max(0.0, side_b.cross(in_face).dot(across) / across.squaredNorm());
+      const Vec3 in_face = turn_between(normal, across * (sense / across.norm())) * direction;
+      const double in_face_b = along_b2 < on_the_spot2 ? 0 : std::max(0.0, in_face.cross(side_c).dot(across));
+      const double in_face_c = along_c2 < on_the_spot2 ? 0 : std::max(0.0, side_b.cross(in_face).dot(across));
       face_ = face;
       entered_by_ = 3;
       share_ = {0, 0, 0};
       share_[at] = 1;
-      direction_ = (share_b * side_b + share_c * side_c).normalized();
+      direction_ = (in_face_b * side_b + in_face_c * side_c).normalized();
     };
     for (const ShellIndex shell : model_.adjacency->shells_of(node)) {
       consider(shell, false);

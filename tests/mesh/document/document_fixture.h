@@ -81,6 +81,12 @@ inline std::vector<std::int64_t> selected_ids(const Document& document) {
   return ids;
 }
 
+/// Where the node with this id is now.
+inline Vec3 place_of(const Document& document, std::int64_t id) {
+  const Model& model = document.current().model;
+  return model.position(model.find_node(id));
+}
+
 template <class T>
 bool same_bytes(const ChunkedArray<T>& a, const ChunkedArray<T>& b) {
   if (a.size() != b.size()) return false;

@@ -12,11 +12,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-Vec3 at(const Document& document, std::int64_t id) {
-  const Model& model = document.current().model;
-  return model.position(model.find_node(id));
-}
-
 TEST(Move, ConstantMovesAllByTheSame) {
   Document document = make_sheet(4, 4);
   const EditReport report = must_apply(document, R"({"edit":"translate","by":[1,-2,3],"on":"1-25","falloff":{"profile":"constant"}})");
@@ -32,17 +27,17 @@ TEST(Move, FreeEndStretchesEvenly) {
   for (int j = 0; j < 3; ++j)
     for (int i = 2; i <= 8; ++i) {
       const std::int64_t id = 1 + i + 9 * j;
-      EXPECT_NEAR(at(document, id).x(), 5.0 * i + (i - 2.0), 1e-9) << id;
+      EXPECT_NEAR(place_of(document, id).x(), 5.0 * i + (i - 2.0), 1e-9) << id;
     }
 }
 
 TEST(Move, LiftGoesAlongTheNormal) {
   Document document = make_sheet(6, 6);
   must_apply(document, R"({"edit":"lift","distance":2,"on":"1-49","grab":25,"free_ends":false})");
-  EXPECT_NEAR(std::abs(at(document, 25).z()), 2, 1e-12);
-  EXPECT_EQ(at(document, 1).z(), 0);
-  EXPECT_GT(std::abs(at(document, 24).z()), 0);
-  EXPECT_LT(std::abs(at(document, 24).z()), 2);
+  EXPECT_NEAR(std::abs(place_of(document, 25).z()), 2, 1e-12);
+  EXPECT_EQ(place_of(document, 1).z(), 0);
+  EXPECT_GT(std::abs(place_of(document, 24).z()), 0);
+  EXPECT_LT(std::abs(place_of(document, 24).z()), 2);
 }
 
 TEST(Move, MaxMoveHoldsBack) {
@@ -50,7 +45,7 @@ TEST(Move, MaxMoveHoldsBack) {
   const EditReport report =
       must_apply(document, R"({"edit":"translate","by":[3,0,4],"on":"1-25","max_move":2.5,"falloff":{"profile":"constant"}})");
   EXPECT_THAT(report.notes, Contains("25 nodes held back by max_move"));
-  EXPECT_LT((at(document, 1) - Vec3(1.5, 0, 2)).norm(), 1e-12);
+  EXPECT_LT((place_of(document, 1) - Vec3(1.5, 0, 2)).norm(), 1e-12);
 }
 
 TEST(Move, SaysWhatMovesAlong) {
@@ -65,7 +60,7 @@ TEST(Move, SaysWhatItCantReach) {
   // two islands of the sheet; the grab is on the first
   const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"1-3,12-14,9-11,20-22","grab":1})");
   EXPECT_THAT(report.notes, Contains(HasSubstr("6 nodes can't be reached from the grab")));
-  EXPECT_EQ(at(document, 11), Vec3(50, 0, 0));
+  EXPECT_EQ(place_of(document, 11), Vec3(50, 0, 0));
 }
 
 TEST(Move, CountsFollow) {
@@ -118,8 +113,8 @@ TEST(Move, ARecipeActsWithoutSelecting) {
   must_apply(document,
              R"({"edit":"translate","by":[0,0,1],"on":{"edit":"select","expr":"1","kind":"part"},"falloff":{"profile":"constant"}})");
   EXPECT_TRUE(selected_ids(document).empty());
-  EXPECT_EQ(at(document, 104).z(), 1);
-  EXPECT_EQ(at(document, 105).z(), 0);
+  EXPECT_EQ(place_of(document, 104).z(), 1);
+  EXPECT_EQ(place_of(document, 105).z(), 0);
 }
 
 TEST(Move, MidsideNodesFollowTheirEdge) {
@@ -139,16 +134,16 @@ TEST(Move, MidsideNodesFollowTheirEdge) {
   must_apply(
       document,
       R"({"edit":"translate","by":[4,0,0],"on":{"edit":"select","expr":"2","kind":"element"},"grab":3,"falloff":{"profile":"linear"}})");
-  EXPECT_EQ(at(document, 2).x(), 5);
-  EXPECT_EQ(at(document, 3).x(), 14);
-  EXPECT_EQ(at(document, 50).x(), 9.5);
-  EXPECT_EQ(at(document, 51).x(), 14);
+  EXPECT_EQ(place_of(document, 2).x(), 5);
+  EXPECT_EQ(place_of(document, 3).x(), 14);
+  EXPECT_EQ(place_of(document, 50).x(), 9.5);
+  EXPECT_EQ(place_of(document, 51).x(), 14);
   // A corner alone takes them along too.
   must_apply(document, R"({"edit":"translate","by":[0,0,3],"on":"3","falloff":{"profile":"constant"}})");
-  EXPECT_EQ(at(document, 3).z(), 3);
-  EXPECT_EQ(at(document, 50).z(), 1.5);
-  EXPECT_EQ(at(document, 51).z(), 1.5);
-  EXPECT_EQ(at(document, 2).z(), 0);
+  EXPECT_EQ(place_of(document, 3).z(), 3);
+  EXPECT_EQ(place_of(document, 50).z(), 1.5);
+  EXPECT_EQ(place_of(document, 51).z(), 1.5);
+  EXPECT_EQ(place_of(document, 2).z(), 0);
 }
 
 TEST(Move, OnlyTouchedChunksAreCopied) {

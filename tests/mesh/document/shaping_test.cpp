@@ -17,11 +17,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-Vec3 at(const Document& document, std::int64_t id) {
-  const Model& model = document.current().model;
-  return model.position(model.find_node(id));
-}
-
 /// A sheet of quads, symmetric in x = 0 to the bit, that bends along y only: its faces are flat. Node (i, j) has the id 1 + i + 21 j.
 Model symmetric_sheet() {
   return test::make_grid(20, 20, [](int i, int j) {
@@ -74,7 +69,7 @@ TEST(Shaping, ABentFlangeKeepsItsWidth) {
       document,
       R"({"edit":"rotate","point":[50,0,0],"axis":[0,-3,0],"degrees":90,"on":{"edit":"select","expr":"11-21,32-42,53-63,74-84,95-105"},"falloff":{"profile":"constant"}})");
   EXPECT_EQ(report.nodes_moved, 50u);  // the nodes on the axis stay
-  for (int i = 10; i <= 20; ++i) EXPECT_EQ(at(document, 1 + i), Vec3(50, 0, 5.0 * (i - 10)));
+  for (int i = 10; i <= 20; ++i) EXPECT_EQ(place_of(document, 1 + i), Vec3(50, 0, 5.0 * (i - 10)));
 }
 
 TEST(Shaping, FreeEndsTurnAsAWhole) {
@@ -85,7 +80,7 @@ TEST(Shaping, FreeEndsTurnAsAWhole) {
       R"({"edit":"rotate","point":[0,0,20],"axis":[0,1,0],"degrees":30,"on":"2-9,11-18,20-27","grab":18,"falloff":{"profile":"linear"}})");
   for (int j = 0; j <= 2; ++j)
     for (int i = 1; i <= 8; ++i) {
-      const Vec3 from(5.0 * i, 5.0 * j, 0), to = at(document, 1 + i + 9 * j);
+      const Vec3 from(5.0 * i, 5.0 * j, 0), to = place_of(document, 1 + i + 9 * j);
       const Vec3 radius_before = from - Vec3(0, from.y(), 20), radius_after = to - Vec3(0, to.y(), 20);
       EXPECT_NEAR(radius_before.norm(), radius_after.norm(), 1e-12);
       const double turned = 2 * std::asin((to - from).norm() / (2 * radius_before.norm()));
@@ -121,12 +116,12 @@ TEST(Shaping, BothSidesOfAPlane) {
     double farthest = 0;
     for (int j = 0; j <= 20; ++j)
       for (int i = 0; i <= 20; ++i) {
-        const Vec3 here = at(document, 1 + i + 21 * j), there = at(document, 1 + 20 - i + 21 * j);
+        const Vec3 here = place_of(document, 1 + i + 21 * j), there = place_of(document, 1 + 20 - i + 21 * j);
         EXPECT_LE((here - Vec3(-there.x(), there.y(), there.z())).norm(), tolerance) << text << i << ' ' << j;
         farthest = std::max(farthest, (here - document.opened->model.positions[static_cast<std::size_t>(i + 21 * j)]).norm());
       }
     EXPECT_GT(farthest, 3) << text;
-    EXPECT_EQ(at(document, 1 + 10 + 21 * 5).x(), 0);
+    EXPECT_EQ(place_of(document, 1 + 10 + 21 * 5).x(), 0);
   }
 }
 
@@ -186,7 +181,9 @@ TEST(Shaping, ADragShowsBitForBitWhatItsEditWillDo) {
         for (std::size_t i = 0; i < drag->shells().size(); ++i) ASSERT_EQ(drag->states()[i], generation.quality[drag->shells()[i].value]);
         EXPECT_EQ(drag->counts(), generation.counts);
         EXPECT_GT(report->nodes_moved, 300u);
-        if (option == kOptions[1]) EXPECT_THAT(report->notes, Contains(HasSubstr("held back by max_move")));
+        if (option == kOptions[1]) {
+          EXPECT_THAT(report->notes, Contains(HasSubstr("held back by max_move")));
+        }
         if (option.find("max_move") != std::string::npos) {
           for (std::size_t i = 0; i < drag->nodes().size(); ++i)
             ASSERT_LT((drag->positions()[i] - document.current().model.position(drag->nodes()[i])).norm(), 5.5 + 1e-12);
