@@ -112,6 +112,7 @@ void Editor::follow_notices() {
 void Editor::follow_comparison() {
   if (!comparison_ || !shown_) return;
   const std::uint64_t now = shown_->info().generation;
+  if (!comparison_->before && now == comparison_->after) return;  // the undo is on its way
   if (!comparison_->before && now != comparison_->after) comparison_->before = now;
   if (now != comparison_->after && now != comparison_->before) return comparison_.reset();
   trace_.line((now == comparison_->after ? "comparing after " : "comparing before ") + comparison_->edit);

@@ -44,7 +44,10 @@ std::optional<render::Handle> Editor::shown_handle() const {
   if (!anchor_ || !link_.connected() || link_.drag() != nullptr) return std::nullopt;
   handle.at = anchor_->at;
   handle.direction = tools::arrow_direction(aim(), *anchor_);
-  if (axis_) handle.turn = render::Handle::Turn{axis_->point, axis_->direction, 0};
+  if (axis_) {
+    handle.turn = render::Handle::Turn{axis_->point, axis_->direction, 0};
+    handle.at = tools::ball_place(aim(), *axis_, anchor_->at);
+  }
   return handle;
 }
 
@@ -57,7 +60,8 @@ void Editor::begin_pull(Under handle, const Pixel& at) {
   const stereo::Aim now = aim();
   const bool turning = handle == Under::turn_handle;
   if (turning && !axis_) return;
-  pull_.emplace(handle, anchor_->at, tools::arrow_direction(now, *anchor_), turning ? axis_ : std::nullopt, now, at);
+  const mesh::Vec3 foot = turning ? tools::ball_place(now, *axis_, anchor_->at) : anchor_->at;
+  pull_.emplace(handle, foot, tools::arrow_direction(now, *anchor_), turning ? axis_ : std::nullopt, now, at);
   tool_ = handle;
   pulled_ = {};
   pulled_to_ = at;
@@ -144,7 +148,10 @@ void Editor::set_axis(const std::optional<tools::Axis>& axis, const std::string&
   axis_pick_.cancel();
   axis_ = axis;
   tool_ = axis ? Under::turn_handle : Under::lift_handle;
-  trace_.line("axis " + what);
+  std::string text = "axis " + what;
+  if (axis)
+    for (const mesh::Vec3& each : {axis->point, axis->direction}) text += fmt::format(" {} {} {}", each.x(), each.y(), each.z());
+  trace_.line(text);
 }
 
 void Editor::pick_axis() {

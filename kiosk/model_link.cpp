@@ -104,7 +104,7 @@ void ModelLink::heard(const ipc::Event& event) {
   ++changes_;
   std::visit(Overloaded{
                  [&](const ipc::GenerationPublished& published) {
-                   made_by_ = published.made_by;
+                   if (published.made_by != "save") made_by_ = published.made_by;  // a save makes no other state
                    history_bytes_ = published.history_bytes;
                    history_cap_ = published.history_cap;
                    stale_ = true;

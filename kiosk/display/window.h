@@ -2,6 +2,7 @@
 // (x11.h). Coordinates are pixels of the picture, x right, y down, from its upper left corner.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -69,6 +70,7 @@ constexpr Key letter(char upper_case) { return static_cast<Key>(upper_case); }
 struct PointerMoved {
   double x = 0, y = 0;
   Modifiers modifiers;
+  std::vector<std::array<double, 2>> passed{};  ///< where it was since the last event, oldest first, without where it is now
 };
 struct ButtonChanged {
   MouseButton button = MouseButton::left;

@@ -249,12 +249,15 @@ void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
   }
   switch (event.type) {
     case MotionNotify: {
-      const PointerMoved moved{static_cast<double>(event.xmotion.x), static_cast<double>(event.xmotion.y),
-                               modifiers_from(event.xmotion.state)};
-      if (!out.empty() && std::holds_alternative<PointerMoved>(out.back()))
-        out.back() = moved;
-      else
-        out.emplace_back(moved);
+      PointerMoved moved{
+          static_cast<double>(event.xmotion.x), static_cast<double>(event.xmotion.y), modifiers_from(event.xmotion.state), {}};
+      if (auto* before = out.empty() ? nullptr : std::get_if<PointerMoved>(&out.back())) {
+        moved.passed = std::move(before->passed);
+        moved.passed.push_back({before->x, before->y});
+        out.back() = std::move(moved);
+      } else {
+        out.emplace_back(std::move(moved));
+      }
       break;
     }
     case ButtonPress:

@@ -60,11 +60,6 @@ void help_panel(const PanelData& data, display::PixelSize picture) {
   ImGui::End();
 }
 
-bool command_button(Command command) {
-  const KeyBinding& binding = binding_of(command);
-  return ImGui::SmallButton(fmt::format("{}  ({})", binding.meaning, binding.label).c_str());
-}
-
 void setting(const char* label, const std::string& value, Command next, Actions& actions) {
   ImGui::PushID(label);
   ImGui::AlignTextToFramePadding();
@@ -111,9 +106,11 @@ void menu_panel(const PanelData&, display::PixelSize picture, Actions& actions) 
       ImGui::PushID(static_cast<int>(binding.command));
       if (ImGui::Selectable("##entry", false, 0, ImVec2(room, 0))) actions.emplace_back(binding.command);
       ImGui::PopID();
-      ImGui::SameLine(left);
+      ImGui::SameLine();
+      ImGui::SetCursorPosX(left);
       elided_text(std::string(binding.meaning), room - key_width - 2 * kGrid);
-      ImGui::SameLine(left + room - key_width);
+      ImGui::SameLine();
+      ImGui::SetCursorPosX(left + room - key_width);
       ImGui::TextDisabled("%s", binding.label.data());
     }
     ImGui::Dummy(ImVec2(0, kGrid));

@@ -44,13 +44,31 @@ void selecting_section(const SelectFacts& facts, Actions& actions) {
 
 /// What is being pulled, and how far.
 void pull_section(const PanelData& data) {
-  if (!data.pull) return;
   section(data.pull->what.c_str());
   if (data.pull->degrees)
     fact("angle", fmt::format("{:.2f}\u00b0", *data.pull->degrees));
   else
     fact("distance", length_text(data.pull->length, data.document->length_unit));
   fact("nodes that move", grouped(data.pull->nodes));
+}
+
+void picture_section(const PanelData& data, Actions& actions) {
+  section("Picture");
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("colour by");
+  ImGui::SameLine();
+  if (ImGui::RadioButton("part", !data.colour_by_quality) && data.colour_by_quality) actions.emplace_back(Command::colour_mode);
+  ImGui::SameLine();
+  if (ImGui::RadioButton("quality", data.colour_by_quality) && !data.colour_by_quality) actions.emplace_back(Command::colour_mode);
+  ImGui::TextDisabled("display");
+  ImGui::SameLine();
+  if (ImGui::SmallButton(data.profile.c_str())) actions.emplace_back(Command::next_profile);
+
+  if (data.history_cap > 0) {
+    section("History");
+    fact("kept for undo",
+         fmt::format("{:.1f} of {} MB", static_cast<double>(data.history_bytes) / kMegabyte, data.history_cap / kMegabyte));
+  }
 }
 
 }  // namespace
@@ -85,23 +103,11 @@ void document_panel(const PanelData& data, display::PixelSize picture, Actions& 
   if (document.selected_shells > 0) fact("shells", grouped(document.selected_shells));
   selecting_section(data.selecting, actions);
 
-  section("Picture");
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("colour by");
-  ImGui::SameLine();
-  if (ImGui::RadioButton("part", !data.colour_by_quality) && data.colour_by_quality) actions.emplace_back(Command::colour_mode);
-  ImGui::SameLine();
-  if (ImGui::RadioButton("quality", data.colour_by_quality) && !data.colour_by_quality) actions.emplace_back(Command::colour_mode);
-  ImGui::TextDisabled("display");
-  ImGui::SameLine();
-  if (ImGui::SmallButton(data.profile.c_str())) actions.emplace_back(Command::next_profile);
-
-  if (data.history_cap > 0) {
-    section("History");
-    fact("kept for undo",
-         fmt::format("{:.1f} of {} MB", static_cast<double>(data.history_bytes) / kMegabyte, data.history_cap / kMegabyte));
-  }
-  pull_section(data);
+  // What is pulled needs the room.
+  if (data.pull)
+    pull_section(data);
+  else
+    picture_section(data, actions);
   ImGui::Dummy(ImVec2(0, kGrid / 2));
   ImGui::PushFont(small_font());
   ImGui::TextDisabled("F1 keys   F10 menu   T shaping");

@@ -60,10 +60,12 @@ void keep_keyboard(EntryState& entry, bool opened) {
   ImGui::SetKeyboardFocusHere();
 }
 
+/// Below the model, between the panels at the sides.
 void begin_low(const char* name, display::PixelSize picture, float width) {
+  const float free = static_cast<float>(picture.width) - 2 * side_width(picture) - 4 * kMargin;
   ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(picture.width) / 2), static_cast<float>(picture.height) - 8 * kGrid), 0,
                           ImVec2(0.5f, 1));
-  ImGui::SetNextWindowSize(ImVec2(on_grid(std::min(width, static_cast<float>(picture.width) - 2 * kMargin)), 0));
+  ImGui::SetNextWindowSize(ImVec2(on_grid(std::min(width, free)), 0));
   ImGui::Begin(name, nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
 }
 
@@ -114,12 +116,10 @@ void expression_box(const PanelData& data, display::PixelSize picture, bool open
   count_lines(*data.expression, entry, field_x);
   const Kind kind_before = entry.kind;
   for (const auto& [kind, label] : kKinds) {
+    if (kind != Kind::node) ImGui::SameLine();
     if (ImGui::RadioButton(label, entry.kind == kind)) entry.kind = kind;
-    ImGui::SameLine();
   }
-  ImGui::PushFont(small_font());
-  ImGui::TextDisabled("Enter selects, Shift adds, Ctrl takes away, both keep; Esc closes");
-  ImGui::PopFont();
+  small_line("Enter selects, Shift adds, Ctrl takes away, both keep; Esc closes", kFaintInk);
   if (entry.told != entry.text || entry.kind != kind_before || opened) {
     entry.told = entry.text;
     actions.emplace_back(ExpressionTyped{entry.text, entry.kind});

@@ -19,8 +19,6 @@ void menu_panel(const PanelData& data, display::PixelSize picture, Actions& acti
 void expression_box(const PanelData& data, display::PixelSize picture, bool opened, EntryState& entry, Actions& actions);
 void number_box(const PanelData& data, display::PixelSize picture, bool opened, EntryState& entry, Actions& actions);
 
-/// A button whose text says what it does and which key does it too.
-bool command_button(tools::Command command);
 /// What is set, and a button that takes the next: "falloff ..... smooth".
 void setting(const char* label, const std::string& value, tools::Command next, Actions& actions);
 void begin_centred(const char* name, display::PixelSize picture, float width);

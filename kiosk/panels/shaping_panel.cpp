@@ -89,7 +89,7 @@ void shaping_panel(const PanelData& data, display::PixelSize picture, Actions& a
             actions);
   section("By number");
   setting("typed numbers", std::string(tools::name_of(data.tool)), Command::next_tool, actions);
-  if (command_button(Command::type_number)) actions.emplace_back(Command::type_number);
+  setting("how far", "type it", Command::type_number, actions);
   ImGui::End();
 }
 

@@ -24,9 +24,17 @@ std::vector<Gesture> Gestures::moved(const display::PointerMoved& event) {
   const Pixel at(event.x, event.y);
   position_ = at;
   if (navigation_) return navigated(at);
-  if (drag_ == Drag::pressed && distance(at, down_) > kClickRadius) return begin_drag(at);
+  if (drag_ == Drag::pressed && distance(at, down_) > kClickRadius) {
+    std::vector<Gesture> begun = begin_drag(at);
+    if (drag_ != Drag::outline || event.passed.empty()) return begun;
+    way_ = {down_};
+    for (const auto& [x, y] : event.passed) lengthen({x, y});
+    lengthen(at);
+    return {OutlineDrawn{way_, outline_ == DragDoes::other_outline}};
+  }
   if (drag_ == Drag::handle) return {HandleMoved{at}};
   if (drag_ != Drag::outline) return {};
+  for (const auto& [x, y] : event.passed) lengthen({x, y});
   lengthen(at);
   return {OutlineDrawn{way_, outline_ == DragDoes::other_outline}};
 }

@@ -99,7 +99,8 @@ namespace {
 
 constexpr double kSlackPixels = 8;
 constexpr int kCircleSteps = 180;
-constexpr double kLeastFacing = 0.12;  ///< of a plane to the line of sight: under it a pointer can't be followed in the plane
+constexpr double kLeastBallShare = 0.25;  ///< of the arrow's length
+constexpr double kLeastFacing = 0.12;     ///< of a plane to the line of sight: under it a pointer can't be followed in the plane
 
 bool on_disk_at(const stereo::Aim& aim, const Vec3& at, const Vec3& direction, const Pixel& pixel) {
   const Vec3 edge = stereo::handle_tip(aim, at, direction) - at;  // as long as the arrow
@@ -147,6 +148,17 @@ Vec3 arrow_direction(const stereo::Aim& aim, const Anchor& anchor) {
   const std::optional<Pixel> foot = stereo::pixel_of(aim, anchor.at);
   if (!foot) return anchor.normal;
   return anchor.normal.dot(stereo::ray_through(aim, *foot).direction) > 0 ? Vec3(-anchor.normal) : anchor.normal;
+}
+
+Vec3 ball_place(const stereo::Aim& aim, const Axis& axis, const Vec3& at) {
+  const Vec3 centre = axis.point + axis.direction * (at - axis.point).dot(axis.direction);
+  const double length = (stereo::handle_tip(aim, centre, axis.direction) - centre).norm();
+  if ((at - centre).norm() >= kLeastBallShare * length) return at;
+  const auto pixel = stereo::pixel_of(aim, centre);
+  const Vec3 sight = stereo::ray_through(aim, pixel.value_or(Pixel::Zero())).direction.normalized();
+  Vec3 across = axis.direction.cross(sight);
+  if (across.norm() < 1e-3) across = axis.direction.unitOrthogonal();
+  return centre + across.normalized() * length;
 }
 
 HandlePull::HandlePull(Under handle, const Vec3& at, const Vec3& direction, const std::optional<Axis>& axis, const stereo::Aim& aim,
@@ -230,6 +242,7 @@ Vec3 HandlePull::foot(const Pull& pull) const {
 }
 
 void HandlePull::set_axis(const stereo::Aim& aim, const Vec3& at, const Vec3& normal) {
+  if (handle_ == Under::turn_handle) return;  // its ball may stand beside the grab
   start_ = at;
   if (normal.norm() > 0) {
     sense_ = normal.dot(direction_) < 0 ? -1 : 1;

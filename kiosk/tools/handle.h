@@ -47,6 +47,10 @@ struct Axis {
   bool operator==(const Axis&) const = default;
 };
 
+/// Where the ball of an axis stands: at the grab, unless that is so near to the axis that nobody could turn it; then beside it, as seen
+/// from here, as far as the arrow is long.
+Vec3 ball_place(const stereo::Aim& aim, const Axis& axis, const Vec3& at);
+
 /// How far a handle has been pulled, in the deck's length unit and degrees: what an edit of the handle's kind takes.
 using Pull = mesh::document::Displacement;
 

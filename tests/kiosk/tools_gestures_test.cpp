@@ -126,6 +126,15 @@ TEST_F(GesturesTest, a_left_drag_draws_an_outline_from_where_the_button_went_dow
   EXPECT_EQ(done.mode, SelectMode::add);
 }
 
+TEST_F(GesturesTest, a_slow_picture_loses_no_corner_of_an_outline) {
+  press(100, 50);
+  gestures_.moved(PointerMoved{200, 60, {}, {{150, 20}, {190, 90}}});
+  gestures_.moved(PointerMoved{120, 160, {}, {{220, 130}}});
+  const auto done = only<OutlineDone>(release(110, 150));
+  for (const Pixel& corner : {Pixel(100, 50), Pixel(150, 20), Pixel(190, 90), Pixel(200, 60), Pixel(220, 130), Pixel(120, 160)})
+    EXPECT_GE(std::count(done.way.begin(), done.way.end(), corner), 1) << corner.transpose();
+}
+
 TEST_F(GesturesTest, a_trembling_pointer_doesnt_lengthen_the_outline) {
   press(100, 50);
   move(160, 90);

@@ -143,6 +143,17 @@ TEST(HandleTest, a_handle_with_an_axis_has_its_ball_and_circle_only) {
   EXPECT_EQ(part_of_handle(aim, handle, *stereo::pixel_of(aim, Vec3(40, 40, 0))), Under::picture);
 }
 
+TEST(HandleTest, the_ball_of_an_axis_through_the_grab_stands_beside_it) {
+  const stereo::Aim aim = aim_from("iso");
+  const Vec3 at(40, 40, 0);
+  const Axis through{at, Vec3::UnitZ()};
+  const Vec3 ball = ball_place(aim, through, at);
+  EXPECT_NEAR((ball - at).dot(Vec3::UnitZ()), 0, 1e-9) << "on a circle about the axis";
+  EXPECT_GT((*stereo::pixel_of(aim, ball) - *stereo::pixel_of(aim, at)).norm(), 60);
+  const Axis beside{Vec3(-20, 40, 0), Vec3::UnitZ()};
+  EXPECT_EQ(ball_place(aim, beside, at), at);
+}
+
 TEST(HandleTest, the_disk_keeps_what_is_under_the_pointer_in_its_plane) {
   const stereo::Aim aim = aim_from("iso");
   const Vec3 at(40, 40, 0), taken(43, 41, 0), to(70, 25, 0);
