@@ -136,6 +136,28 @@ TEST_F(HangingTest, a_drag_carries_what_its_edit_carries) {
   }
 }
 
+TEST_F(HangingTest, symmetric_edits_carry_welds_on_both_sides) {
+  DeckText deck;
+  deck.part(9);
+  deck.node(901, 12, 13, 0.1);  // before the sheet's nodes: those that follow come in between
+  deck.node(902, 12, 13, 9);
+  deck.sheet(1, 1, 0);
+  deck.node(903, 28, 13, 0.1);
+  deck.node(904, 28, 13, 9);
+  deck.beam(9, 9, 901, 902);
+  deck.beam(10, 9, 903, 904);
+  Document document = open_text(deck);
+  must_apply(document, R"({"edit":"translate","by":[1,0,2],"on":"part:1 & id<=25","grab":6,"falloff":{"profile":"constant"},)"
+                       R"("symmetry":{"point":[20,0,0],"normal":[1,0,0]}})");
+  const Vec3 left = at(document, 901) - Vec3(12, 13, 0.1);
+  const Vec3 right = at(document, 903) - Vec3(28, 13, 0.1);
+  EXPECT_NEAR(left.z(), 2, 1e-12);
+  EXPECT_GT(left.x(), 0.1);
+  EXPECT_NEAR(right.x(), -left.x(), 0.2);  // the diagonals of quads aren't mirrored
+  EXPECT_NEAR(right.z(), left.z(), 1e-12);
+  EXPECT_EQ(at(document, 902), Vec3(12, 13, 9));
+}
+
 TEST_F(HangingTest, undo_and_saving_bring_welds_along) {
   Document document = open_text(two_sheets());
   must_apply(document, R"({"edit":"translate","by":[0,0,4],"on":"part:1","falloff":{"profile":"constant"}})");
