@@ -216,7 +216,7 @@ TEST(HandleTest, what_is_pulled_stays_where_it_is_when_the_view_moves) {
     EXPECT_NEAR(held.distance, pulled.distance, 1e-9) << name_of(handle);
     EXPECT_NEAR(held.degrees, pulled.degrees, 1e-9) << name_of(handle);
     const Pull on = pull.at(after, pointer + Pixel(20, -20), held);
-    EXPECT_GT((pull.foot(on) - pull.foot(pulled)).norm(), 1) << name_of(handle) << " goes on from there";
+    EXPECT_GT((pull.foot(on) - pull.foot(pulled)).norm(), 0.1) << name_of(handle) << " goes on from there";
     EXPECT_LT((pull.foot(on) - pull.foot(pulled)).norm(), 60) << name_of(handle);
   }
 }

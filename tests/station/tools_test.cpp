@@ -141,7 +141,7 @@ TEST_F(ToolsTest, a_typed_number_is_the_edit_to_the_last_digit_and_c_shows_befor
   EXPECT_EQ(station_->save_as("before.k"), original_);
   station_->kiosk().skip_lines();
   station_->key("c");
-  ASSERT_EQ(station_->kiosk().wait_for("comparing "), "comparing after lift");
+  ASSERT_EQ(station_->kiosk().wait_for("comparing after"), "comparing after lift");
   EXPECT_EQ(station_->save_as("after.k"), lifted);
 }
 
