@@ -220,6 +220,18 @@ TEST(Welds, of_constraints_join_sheets) {
   EXPECT_EQ(across("BOUNDARY_SPC_NODE", Referred::node, 23, 1023), 16u);
 }
 
+TEST(Welds, a_stiffener_over_a_crease_is_none) {
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  for (int j = 0; j <= 2; ++j)
+    for (int i = 0; i <= 4; ++i) nodes.push_back({1 + i + 10 * j, Vec3(i, j, -std::abs(i - 2))});
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < 4; ++i) shells.push_back({1 + i + 4 * j, 1, {1 + i + 10 * j, 2 + i + 10 * j, 12 + i + 10 * j, 11 + i + 10 * j}});
+  const Model model = test::make_model(nodes, shells, {{ElementClass::beam, 1, 9, {12, 14}}});
+  const WeldedShells welds = find_welds(model, nullptr, {});
+  EXPECT_EQ(region(model, {ShellIndex(0)}, {RegionBound::features, 30, {}, &welds}).size(), 4u);
+}
+
 TEST(Welds, lead_over_junctions_too) {
   // the web of the junction test, asked for across welds
   const Model model = test::make_model(
