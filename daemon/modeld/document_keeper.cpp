@@ -327,7 +327,8 @@ ipc::State DocumentKeeper::state() const {
   state.changed = changed();
   state.recovered_edits = open_->recovered;
   state.journalled_edits = open_->journal.records();
-  for (const auto& generation : document.generations) state.history_bytes += generation->own_bytes;
+  // A generation's own bytes are what keeping the one before it costs.
+  for (std::size_t i = 1; i < document.generations.size(); ++i) state.history_bytes += document.generations[i]->own_bytes;
   state.history_cap = document.history_bytes;
   state.files = open_->files;
   state.warnings = document.deck->warnings;

@@ -134,9 +134,10 @@ TEST_F(Serving, AnExpressionIsCountedAndSelectsNothing) {
   const auto parts = std::get<ipc::Counted>(ask("all", mesh::select::Kind::part));
   EXPECT_EQ(parts.parts, before.parts);
   EXPECT_EQ(parts.shells, before.shells);
-  const auto failed = std::get<ipc::Failed>(ask("1001,9", mesh::select::Kind::node));
-  EXPECT_EQ(failed.file, "expression");
-  EXPECT_EQ(failed.line, 6) << "the column";
+  const auto refused = client.call(ipc::Count{"1001,9", mesh::select::Kind::node}, kPatience);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().file, "expression");
+  EXPECT_EQ(refused.error().line, 6) << "the column";
   const auto after = std::get<ipc::State>(client.call(ipc::GetState{}, kPatience).value());
   EXPECT_EQ(after.generation, before.generation);
   EXPECT_EQ(after.selected_nodes, 0u);
