@@ -378,9 +378,15 @@ void ModelLink::drop_drag(const char* how) {
 }
 
 void ModelLink::say_report(const mesh::document::EditReport& report) {
-  if (report.notes.empty()) return;
   std::string text;
   for (const std::string& note : report.notes) text += (text.empty() ? "" : "\n") + note;
+  if (report.mass_before && report.mass_after) {
+    text += fmt::format("{}mass {:.6g} \u2192 {:.6g}", text.empty() ? "" : "\n", *report.mass_before, *report.mass_after);
+    if (const auto& from = report.centre_before, &to = report.centre_after; from && to)
+      text += fmt::format(", centre of gravity ({:.6g} {:.6g} {:.6g}) \u2192 ({:.6g} {:.6g} {:.6g})", (*from)[0], (*from)[1], (*from)[2],
+                          (*to)[0], (*to)[1], (*to)[2]);
+  }
+  if (text.empty()) return;
   say(Notice::Kind::information, std::move(text));
 }
 
