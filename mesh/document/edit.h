@@ -85,7 +85,7 @@ struct Lift {
   bool each_normal = false;  ///< "normals": "each": every node along its own normal
   Shaping shaping;
 };
-/// On the surface: nodes go where `by` takes them and then lie on the faces as they were when the edit began.
+/// On the surface: nodes walk their share of `by` over the faces as they were; `by` is meant at the grab and turns with the sheet.
 struct Slide {
   Vec3 by = Vec3::Zero();
   Shaping shaping;
