@@ -121,6 +121,17 @@ class Proving(Decks):
         text = text.replace("       1       1       1       2       5       4\n", "       1       1       1       7       5       4\n" + twin)
         return text.replace("         2         5\n", members)
 
+    def test_welds_follow_their_sheet(self):
+        def node(id, x, y, z):
+            return f"{id:8d}{x:16}{y:16}{z:16}\n"
+        weld = "*ELEMENT_BEAM\n" + "".join(f"{n:8d}" for n in (9, 9, 7, 8)) + "\n"
+        text = PLATE.replace("*ELEMENT_SHELL", node(7, 5.0, 5.0, 1.0) + node(8, 5.0, 5.0, 20.0) + "*ELEMENT_SHELL").replace("*SET_NODE_LIST\n", weld + "*SET_NODE_LIST\n", 1)
+        pulled = text.replace(node(1, 0.0, 0.0, 0.0), node(1, 0.0, 0.0, 4.0))
+        expected = {"moved": {"by": [0, 0, 4], "nodes": [1]}}
+        self.assertEqual(self.wrong(text, pulled.replace(node(7, 5.0, 5.0, 1.0), node(7, 5.0, 5.0, 3.0)), expected), [])
+        self.assertNotEqual(self.wrong(text, pulled.replace(node(7, 5.0, 5.0, 1.0), node(7, 5.0, 5.0, 3.5)), expected), [])
+        self.assertNotEqual(self.wrong(text, pulled.replace(node(8, 5.0, 5.0, 20.0), node(8, 5.0, 5.0, 22.0)), expected), [])
+
     def test_new_entities(self):
         expected = {"nodes_added": 1, "elements_added": 1, "elements_changed": 1}
         both = PLATE.replace("         2         5\n", "         1         2\n")
