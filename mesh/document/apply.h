@@ -17,6 +17,9 @@ Result<void> apply_edit(const Document& document, const Translate& edit, Generat
 Result<void> apply_edit(const Document& document, const Lift& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Slide& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Rotate& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Relax& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Repair& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report);
 
 /// Brings the weight of `next` up to date after the shells given have changed since `before`.
 void update_weight(const Generation& before, const ShellSet& shells, Generation& next);

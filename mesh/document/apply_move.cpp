@@ -63,6 +63,7 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
     if (!position.allFinite()) return fail("", std::string(name(edit)) + ": the displacement is too large to be a coordinate");
   const NodeSet moved = put_positions(motion->nodes, positions, next.model.positions);
   report.nodes_moved = moved.size();
+  next.surface = std::make_shared<const Model>(next.model);
   const ShellSet touched = shells_touching(next.model, moved);
   quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, touched, next.quality, next.counts);
   update_weight(document.current(), touched, next);

@@ -38,6 +38,7 @@ std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const d
   first->quality = quality::judge_model(model, settings.criteria, settings.target_size);
   first->counts = quality::count(first->quality);
   first->weight = quality::weigh_model(model);
+  first->surface = std::make_shared<const Model>(model);
   first->model = std::move(model);
   first->made_by = "open";
   return first;

@@ -58,7 +58,9 @@ struct Generation {
   std::size_t selected_nodes = 0;
   std::size_t selected_shells = 0;
   std::shared_ptr<const std::vector<PartState>> parts;  ///< by PartIndex
-  std::shared_ptr<const Surroundings> around;           ///< what the deck says besides the mesh; never null once opened
+  /// The surface that relaxing and repairing hold nodes on: the model as it was opened or last shaped. Never null once opened.
+  std::shared_ptr<const Model> surface;
+  std::shared_ptr<const Surroundings> around;  ///< what the deck says besides the mesh; never null once opened
   ChunkedArray<quality::ShellState> quality;
   quality::Counts counts;     ///< all shells
   quality::Weight weight;     ///< of all shells; kept up with each edit, so its last digits tell of the way here

@@ -28,6 +28,9 @@ struct Namer {
   std::string_view operator()(const Lift&) const { return "lift"; }
   std::string_view operator()(const Slide&) const { return "slide"; }
   std::string_view operator()(const Rotate&) const { return "rotate"; }
+  std::string_view operator()(const Relax&) const { return "relax"; }
+  std::string_view operator()(const Repair&) const { return "repair"; }
+  std::string_view operator()(const Restructure& edit) const { return repair::name(edit.operation); }
   std::string_view operator()(const Undo&) const { return "undo"; }
   std::string_view operator()(const Redo&) const { return "redo"; }
 };

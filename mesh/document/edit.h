@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mesh/model/model.h"
+#include "mesh/repair/operation.h"
 #include "mesh/select/expression.h"
 #include "mesh/shape/weights.h"
 
@@ -104,10 +105,46 @@ struct Displacement {
   double degrees = 0;      ///< rotate
 };
 
+/// Which shells relaxing and repairing look at.
+enum class Scope : std::uint8_t {
+  selection,  ///< relax: the selected nodes; repair: the shells at them
+  part,       ///< the parts of the selection
+  all,
+  damaged,  ///< what this document's edits made worse (damage.h)
+  failed,   ///< whatever fails
+};
+enum class RelaxMode : std::uint8_t { full, from };
+/// How far nodes may go, by what they are on; deck's length unit. Absent: as far as it takes.
+struct MoveLimits {
+  std::optional<double> free;  ///< inside a sheet
+  std::optional<double> line;  ///< on a feature line
+};
+/// Nodes find better places on the surface they are on.
+struct Relax {
+  RelaxMode mode = RelaxMode::full;
+  std::optional<Place> at;          ///< mode from: where it begins
+  std::optional<double> threshold;  ///< mode from: neighbours join while a node is displaced farther; absent: 0.01 of the target size
+  Scope scope = Scope::selection;
+  double angle = 30;  ///< degrees; sharper edges are features
+  MoveLimits max_move;
+};
+/// Local changes to the structure until what is bad is valid or nothing gets better.
+struct Repair {
+  Scope scope = Scope::damaged;
+  double angle = 30;
+  MoveLimits max_move;
+};
+/// One operation by hand, on shells ("shell:12") or the edge between two nodes ("node:7").
+struct Restructure {
+  repair::Operation operation = repair::Operation::split;
+  std::vector<std::string> at;
+};
+
 struct Undo {};
 struct Redo {};
 
-using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, Translate, Lift, Slide, Rotate, Undo, Redo>;
+using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, Translate, Lift, Slide, Rotate, Relax, Repair,
+                          Restructure, Undo, Redo>;
 
 /// What a shaping edit says of where and how; null for the others.
 const Shaping* shaping_of(const Edit& edit);

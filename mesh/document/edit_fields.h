@@ -103,4 +103,29 @@ void fields(Visitor& v, auto& edit, const Lift*) {
   fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
 }
 
+template <class Visitor>
+void fields(Visitor& v, auto& limits, const MoveLimits*) {
+  v.optional("free", limits.free, Limit{0, kLargest, true});
+  v.optional("line", limits.line, Limit{0, kLargest});
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Relax*) {
+  v.optional("mode", edit.mode);
+  v.optional("at", edit.at);
+  v.optional("threshold", edit.threshold, Limit{0, kLargest, true});
+  v.optional("scope", edit.scope);
+  v.optional("angle", edit.angle, Limit{0, 180});
+  v.nested("max_move", edit.max_move);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Repair*) {
+  v.optional("scope", edit.scope);
+  v.optional("angle", edit.angle, Limit{0, 180});
+  v.nested("max_move", edit.max_move);
+}
+template <class Visitor>
+void fields(Visitor& v, auto& edit, const Restructure*) {
+  v.required("at", edit.at);
+}
+
 }  // namespace prismesh::mesh::document

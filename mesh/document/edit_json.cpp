@@ -39,6 +39,15 @@ const Names<RegionBy>& names(RegionBy) {
       {"features", RegionBy::features}, {"part", RegionBy::part}, {"piece", RegionBy::piece}, {"free_edge", RegionBy::free_edge}};
   return table;
 }
+const Names<Scope>& names(Scope) {
+  static const Names<Scope> table{
+      {"selection", Scope::selection}, {"part", Scope::part}, {"all", Scope::all}, {"damaged", Scope::damaged}, {"failed", Scope::failed}};
+  return table;
+}
+const Names<RelaxMode>& names(RelaxMode) {
+  static const Names<RelaxMode> table{{"full", RelaxMode::full}, {"from", RelaxMode::from}};
+  return table;
+}
 const Names<shape::Origin>& names(shape::Origin) {
   static const Names<shape::Origin> table{{"grab", shape::Origin::grab}, {"free_edge", shape::Origin::free_edge}};
   return table;
@@ -65,9 +74,13 @@ const std::vector<EditName>& edit_names() {
     for (const VisibilityAction action : {VisibilityAction::hide, VisibilityAction::show, VisibilityAction::only, VisibilityAction::reverse,
                                           VisibilityAction::lock, VisibilityAction::unlock})
       all.push_back({"", SetParts{action, std::nullopt}});
-    for (Edit edit : {Edit(Select{}), Edit(SelectRegion{}), Edit(SelectLasso{}), Edit(Grow{}), Edit(Shrink{}), Edit(Invert{}),
-                      Edit(Translate{}), Edit(Lift{}), Edit(Slide{}), Edit(Rotate{}), Edit(Undo{}), Edit(Redo{})})
+    for (Edit edit :
+         {Edit(Select{}), Edit(SelectRegion{}), Edit(SelectLasso{}), Edit(Grow{}), Edit(Shrink{}), Edit(Invert{}), Edit(Translate{}),
+          Edit(Lift{}), Edit(Slide{}), Edit(Rotate{}), Edit(Relax{}), Edit(Repair{}), Edit(Undo{}), Edit(Redo{})})
       all.push_back({"", std::move(edit)});
+    for (const repair::Operation operation :
+         {repair::Operation::split, repair::Operation::collapse, repair::Operation::merge, repair::Operation::swap})
+      all.push_back({"", Restructure{operation, {}}});
     for (EditName& entry : all) entry.name = name(entry.blank);
     std::sort(all.begin(), all.end(), [](const EditName& a, const EditName& b) { return a.name < b.name; });
     return all;
@@ -76,8 +89,7 @@ const std::vector<EditName>& edit_names() {
 }
 
 /// Edits that the command line's contract names and this version lacks.
-constexpr std::string_view kNotBuilt[] = {"relax", "repair",   "split", "collapse", "merge",
-                                          "swap",  "separate", "weld",  "bond",     "replace_part"};
+constexpr std::string_view kNotBuilt[] = {"separate", "weld", "bond", "replace_part"};
 
 // --- words for errors ---
 
@@ -167,6 +179,18 @@ Problem read(const Json& json, std::vector<std::array<double, 2>>& value) {
   return std::nullopt;
 }
 
+Problem read(const Json& json, std::vector<std::string>& value) {
+  constexpr std::size_t kMost = 1000;
+  const std::string what = "a list of 1 to " + std::to_string(kMost) + " entities like [\"shell:12\", \"shell:40\"]";
+  if (!json.is_array() || json.empty() || json.size() > kMost) return must_be(what, json);
+  value.clear();
+  for (const Json& each : json) {
+    if (!each.is_string()) return must_be(what, each);
+    value.push_back(each.get<std::string>());
+  }
+  return std::nullopt;
+}
+
 Problem read(const Json& json, Place& value) {
   if (json.is_array()) {
     std::array<double, 3> point{};
@@ -238,6 +262,14 @@ class Reader {
     value.emplace();
     Reader inner(*json, what_ + ": " + in_quotes(field));
     fields(inner, *value, static_cast<const Symmetry*>(nullptr));
+    if (!error_) error_ = inner.finish();
+  }
+  void nested(std::string_view field, MoveLimits& value) {
+    const Json* json = find(field);
+    if (json == nullptr) return;
+    if (!json->is_object()) return complain(field, must_be("an object like {\"free\": 2, \"line\": 0.5}", *json));
+    Reader inner(*json, what_ + ": " + in_quotes(field));
+    fields(inner, value, static_cast<const MoveLimits*>(nullptr));
     if (!error_) error_ = inner.finish();
   }
   void direction(std::string_view field, Vec3& value) {
@@ -327,6 +359,7 @@ Json written(const std::array<double, N>& value) {
   return value;
 }
 Json written(const std::vector<std::array<double, 2>>& value) { return value; }
+Json written(const std::vector<std::string>& value) { return value; }
 Json written(const Place& value) {
   return std::visit([](const auto& place) { return Json(place); }, value);
 }
@@ -377,6 +410,13 @@ class Writer {
     Json inner = Json::object();
     Writer writer(inner);
     fields(writer, *value, static_cast<const Symmetry*>(nullptr));
+    object_[std::string(field)] = std::move(inner);
+  }
+  void nested(std::string_view field, const MoveLimits& value) {
+    if (!value.free && !value.line) return;
+    Json inner = Json::object();
+    Writer writer(inner);
+    fields(writer, value, static_cast<const MoveLimits*>(nullptr));
     object_[std::string(field)] = std::move(inner);
   }
   void direction(std::string_view field, const Vec3& value) { required(field, value); }

@@ -77,6 +77,8 @@ SelectionUse selection_use(const Edit& edit) {
           return {!e.on, false};
         else if constexpr (requires { e.shaping; })
           return {!e.shaping.on, false};
+        else if constexpr (requires { e.scope; })
+          return {e.scope == Scope::selection || e.scope == Scope::part, false};
         else
           return {};
       },

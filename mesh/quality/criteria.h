@@ -42,7 +42,14 @@ Result<Criteria> parse_criteria(std::string_view text, const std::string& file);
 /// The criteria built in: the same text as mesh/quality/criteria/default.toml, compiled into the program.
 const Criteria& default_criteria();
 
-/// Which metrics of a shell are not ok; bit m is Metric m. fail is a subset of warn.
+/// What makes a shell no shell: always a failure, whatever the criteria. The bit in ShellState.
+enum class Defect : std::uint8_t {
+  not_finite = 15,     ///< a coordinate is no finite number
+  repeated_node = 14,  ///< one node at two corners (other than a triangle's last), or two corners at one place
+  no_area = 13,        ///< zero area, or folded onto itself
+};
+
+/// Which metrics of a shell are not ok; bit m is Metric m, the highest ones are defects. fail is a subset of warn.
 struct ShellState {
   std::uint16_t warn = 0;
   std::uint16_t fail = 0;

@@ -1,0 +1,28 @@
+#include "mesh/document/damage.h"
+
+#include "mesh/model/growth.h"
+
+namespace prismesh::mesh::document {
+
+ShellSet damaged_shells(const Generation& opened, const Generation& now, bool failures_only) {
+  ShellSet damaged;
+  const std::size_t of_deck = opened.quality.size();
+  for (std::size_t c = 0; c < now.quality.chunk_count(); ++c) {
+    // Compared by hand, not by shares_chunk: arrays of different sizes may share all chunks but the last.
+    if (c < opened.quality.chunk_count() && now.quality.chunk_owner(c) == opened.quality.chunk_owner(c) && (c + 1) * kChunkSize <= of_deck)
+      continue;
+    const std::span<const quality::ShellState> states = now.quality.chunk(c);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      if (states[i].grade() == quality::Grade::ok) continue;
+      const ShellIndex shell(c * kChunkSize + i);
+      if (now.model.is_removed(shell)) continue;
+      const quality::ShellState was = opened.quality[deck_ancestor(now.model, shell).value];
+      const bool fails_now = (states[i].fail & ~was.fail) != 0;
+      const bool warns_now = (states[i].warn & ~was.warn) != 0;
+      if (fails_now || (warns_now && !failures_only)) damaged.push_back(shell);
+    }
+  }
+  return damaged;
+}
+
+}  // namespace prismesh::mesh::document

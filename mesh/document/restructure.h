@@ -1,0 +1,18 @@
+// Carrying out what a repair wants: ids, cards, adjacency and judgements of what came and went. Private to mesh/document.
+#pragma once
+
+#include "mesh/document/document.h"
+#include "mesh/repair/restructuring.h"
+#include "mesh/repair/rules.h"
+
+namespace prismesh::mesh::document {
+
+/// What the deck and the document forbid around each node and shell: locked parts, held nodes, cards and elements that name them, mid-side
+/// nodes, formats that can't write it. The document must outlive it.
+repair::Rules rules_for(const Document& document, const Generation& generation);
+
+/// Carries it out on `next`, a copy of the current generation: model, adjacency, marks (a new node is selected if all it comes from are),
+/// judgement, weight, and the report's figures. Errors: no ids are left, or the deck can't be written so (deck::can_save): where and why.
+Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report);
+
+}  // namespace prismesh::mesh::document

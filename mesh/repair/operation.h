@@ -1,0 +1,19 @@
+// The names of what can be done to a mesh's structure.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace prismesh::mesh::repair {
+
+enum class Operation : std::uint8_t {
+  split,     ///< a quad into two triangles; a stretched shell (and its neighbour) across
+  collapse,  ///< an edge to a point
+  merge,     ///< two triangles into a quad
+  swap,      ///< the edge that two shells share turns
+  move,      ///< a warped quad's corner along the normal; not by hand
+};
+inline constexpr int kOperationCount = 5;
+std::string_view name(Operation operation);  ///< as in an edit's JSON
+
+}  // namespace prismesh::mesh::repair
