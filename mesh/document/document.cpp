@@ -82,11 +82,17 @@ Result<Prepared> prepare_step(const Document& document, bool back) {
 }
 
 template <class E>
-Result<Prepared> prepare_push(const Document& document, const E& edit, std::string_view edit_name) {
+Result<Prepared> prepare_push(const Document& document, const E& edit, std::string_view edit_name, const Progress& progress) {
   const Generation& current = document.current();
   auto next = std::make_shared<Generation>(current);
   Prepared prepared;
-  if (const Result<void> applied = apply_edit(document, edit, *next, prepared.report); !applied) return fail(applied.error());
+  const Result<void> applied = [&] {
+    if constexpr (requires { apply_edit(document, edit, *next, prepared.report, progress); })
+      return apply_edit(document, edit, *next, prepared.report, progress);
+    else
+      return apply_edit(document, edit, *next, prepared.report);
+  }();
+  if (!applied) return fail(applied.error());
   next->number = document.next_number;
   next->made_by = edit_name;
   next->own_bytes = own_bytes(current, *next);
@@ -111,7 +117,7 @@ void say_weights(const quality::Weight& before, const quality::Weight& after, Ed
 
 }  // namespace
 
-Result<Prepared> prepare(const Document& document, const Edit& edit) {
+Result<Prepared> prepare(const Document& document, const Edit& edit, const Progress& progress) {
   MonotonicClock clock;
   const std::int64_t start_ns = clock.now_ns();
   Result<Prepared> prepared = std::visit(
@@ -120,7 +126,7 @@ Result<Prepared> prepare(const Document& document, const Edit& edit) {
         if constexpr (std::is_same_v<E, Undo> || std::is_same_v<E, Redo>)
           return prepare_step(document, std::is_same_v<E, Undo>);
         else
-          return prepare_push(document, each, name(edit));
+          return prepare_push(document, each, name(edit), progress);
       },
       edit);
   if (!prepared) return prepared;
@@ -147,8 +153,8 @@ void commit(Document& document, Prepared prepared) {
   document.cursor = generations.size() - 1;
 }
 
-Result<EditReport> apply(Document& document, const Edit& edit) {
-  Result<Prepared> prepared = prepare(document, edit);
+Result<EditReport> apply(Document& document, const Edit& edit, const Progress& progress) {
+  Result<Prepared> prepared = prepare(document, edit, progress);
   if (!prepared) return fail(prepared.error());
   EditReport report = prepared->report;
   commit(document, std::move(*prepared));

@@ -120,12 +120,13 @@ struct Prepared {
 };
 
 /// Works the edit out on the current generation; the document doesn't change. Deterministic. Errors: expression:column,
-/// nothing selected, a locked or held node would move (named), nothing to undo.
-Result<Prepared> prepare(const Document& document, const Edit& edit);
+/// nothing selected, a locked or held node would move (named), nothing to undo, cancelled. `progress` hears of relax and repair, which may
+/// take long; the other edits don't look at it.
+Result<Prepared> prepare(const Document& document, const Edit& edit, const Progress& progress = {});
 /// Makes it the current generation; drops redo and, over the byte cap, the oldest generations. Can't fail.
 void commit(Document& document, Prepared prepared);
 /// prepare, then commit.
-Result<EditReport> apply(Document& document, const Edit& edit);
+Result<EditReport> apply(Document& document, const Edit& edit, const Progress& progress = {});
 
 /// Saves the current generation (deck::save).
 Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress = {});
