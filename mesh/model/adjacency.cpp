@@ -6,6 +6,7 @@
 
 #include "base/large_memory.h"
 #include "base/parallel_for.h"
+#include "mesh/model/edge_uses.h"
 #include "mesh/model/model.h"
 
 namespace prismesh::mesh {
@@ -13,23 +14,6 @@ namespace prismesh::mesh {
 namespace {
 
 constexpr std::size_t kNodeGrain = 32768;
-
-/// The distinct corners of a shell; a degenerate shell has fewer than it names, a removed one has none.
-struct Corners {
-  std::array<NodeIndex, 4> node;
-  int count = 0;
-};
-
-Corners distinct_corners(const ShellNodes& shell) {
-  Corners corners;
-  if (!shell.node[0].valid()) return corners;
-  for (const NodeIndex node : shell.node) {
-    bool seen = false;
-    for (int i = 0; i < corners.count; ++i) seen = seen || corners.node[i] == node;
-    if (!seen) corners.node[corners.count++] = node;
-  }
-  return corners;
-}
 
 /// Counting sort: the shells are walked in order, so each node's list comes out ascending.
 void fill_node_shells(const Model& model, Adjacency& adjacency) {
@@ -59,13 +43,6 @@ void fill_node_shells(const Model& model, Adjacency& adjacency) {
   first.pop_back();
 }
 
-/// A shell at an edge of the node in hand, which is the edge's low end.
-struct EdgeUse {
-  NodeIndex high;
-  ShellIndex shell;
-  auto operator<=>(const EdgeUse&) const = default;
-};
-
 /// The part of the edge table whose low ends lie in one range of nodes; positions count from the range's first.
 struct EdgePiece {
   std::vector<std::uint32_t> edges_of_node;
@@ -73,29 +50,6 @@ struct EdgePiece {
   std::vector<std::uint32_t> shell_first;
   std::vector<ShellIndex> shells;
 };
-
-void collect_uses(const Model& model, const Adjacency& adjacency, NodeIndex low, std::vector<EdgeUse>& uses) {
-  uses.clear();
-  for (const ShellIndex shell : adjacency.shells_of(low)) {
-    const ShellNodes& nodes = model.shell(shell);
-    const int corners = nodes.corners();
-    for (int i = 0; i < corners; ++i) {
-      if (nodes.node[i] != low) continue;
-      const NodeIndex next = nodes.node[i + 1 == corners ? 0 : i + 1];
-      const NodeIndex previous = nodes.node[i == 0 ? corners - 1 : i - 1];
-      if (next > low) uses.push_back({next, shell});
-      if (previous > low) uses.push_back({previous, shell});
-    }
-  }
-  // a handful of entries, half of them in place: insertion sort beats the general one
-  for (std::size_t i = 1; i < uses.size(); ++i) {
-    const EdgeUse use = uses[i];
-    std::size_t place = i;
-    for (; place > 0 && use < uses[place - 1]; --place) uses[place] = uses[place - 1];
-    uses[place] = use;
-  }
-  uses.erase(std::unique(uses.begin(), uses.end()), uses.end());
-}
 
 EdgePiece edge_piece(const Model& model, const Adjacency& adjacency, std::size_t begin, std::size_t end) {
   EdgePiece piece;
@@ -105,7 +59,7 @@ EdgePiece edge_piece(const Model& model, const Adjacency& adjacency, std::size_t
   piece.shells.reserve(4 * (end - begin) + 64);
   std::vector<EdgeUse> uses;
   for (std::size_t node = begin; node < end; ++node) {
-    collect_uses(model, adjacency, NodeIndex(node), uses);
+    collect_uses(model, adjacency.shells_of(NodeIndex(node)), NodeIndex(node), uses);
     const std::size_t before = piece.high.size();
     for (std::size_t i = 0; i < uses.size(); ++i) {
       if (i == 0 || uses[i].high != uses[i - 1].high) {

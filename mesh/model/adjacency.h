@@ -45,6 +45,10 @@ struct Adjacency {
 /// Adjacency of all shells. Degenerate shells contribute no edge from a node to itself.
 Adjacency build_adjacency(const Model& model);
 
+/// Adjacency of `after`, which was made from `before` (with its adjacency) by any number of edits: the same as building it anew, at the
+/// cost of copying what didn't change.
+Adjacency update_adjacency(const Model& before, const Model& after);
+
 /// Whether each node lies on a free edge (an edge of exactly one shell).
 std::vector<std::uint8_t> free_edge_nodes(const Adjacency& adjacency, std::size_t node_count);
 

@@ -24,19 +24,22 @@ EdgeKind classify(const Model& model, EdgeIndex edge, Edge ends, double cos_limi
   const auto shells = model.adjacency->shells_of(edge);
   if (shells.size() == 1) return EdgeKind::free;
   if (shells.size() > 2) return EdgeKind::junction;
+  return is_crease(model, shells[0], shells[1], ends, cos_limit) ? EdgeKind::crease : EdgeKind::smooth;
+}
+
+}  // namespace
+
+bool is_crease(const Model& model, ShellIndex first, ShellIndex second, Edge ends, double cos_limit) {
   const Vec3& a = model.position(ends.low);
   const Vec3& b = model.position(ends.high);
   const Vec3 middle = 0.5 * (a + b);
   const Vec3 along = b - a;
-  const Vec3 first = away_from_edge(model, shells[0], middle, along);
-  const Vec3 second = away_from_edge(model, shells[1], middle, along);
+  const Vec3 one = away_from_edge(model, first, middle, along);
+  const Vec3 other = away_from_edge(model, second, middle, along);
   // a shell without width says nothing about a plane
-  const double size = std::sqrt(first.squaredNorm() * second.squaredNorm());
-  if (!(size > 1e-12 * along.squaredNorm())) return EdgeKind::smooth;
-  return -first.dot(second) < cos_limit * size ? EdgeKind::crease : EdgeKind::smooth;
+  const double size = std::sqrt(one.squaredNorm() * other.squaredNorm());
+  return size > 1e-12 * along.squaredNorm() && -one.dot(other) < cos_limit * size;
 }
-
-}  // namespace
 
 EdgeKind classify_edge(const Model& model, EdgeIndex edge, Edge ends, double angle_degrees) {
   return classify(model, edge, ends, deterministic_cos_degrees(angle_degrees));

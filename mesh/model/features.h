@@ -14,6 +14,9 @@ enum class EdgeKind : std::uint8_t { smooth, crease, free, junction };  ///< jun
 /// regard to the normals' signs (neighbours of one sheet often disagree), from how the shells lie about the edge.
 EdgeKind classify_edge(const Model& model, EdgeIndex edge, Edge ends, double angle_degrees);
 
+/// The same question of two shells at one edge; `cos_limit` is the angle's cosine.
+bool is_crease(const Model& model, ShellIndex first, ShellIndex second, Edge ends, double cos_limit);
+
 /// The kind of every edge.
 std::vector<EdgeKind> classify_edges(const Model& model, double angle_degrees);
 

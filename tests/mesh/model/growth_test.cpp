@@ -167,5 +167,73 @@ TEST(IdIndex, changed_is_as_one_built_afresh) {
   }
 }
 
+void expect_same_adjacency(const Adjacency& updated, const Adjacency& built) {
+  EXPECT_EQ(updated.node_first, built.node_first);
+  EXPECT_EQ(updated.node_shells, built.node_shells);
+  EXPECT_EQ(updated.edge_first, built.edge_first);
+  EXPECT_EQ(updated.edge_high, built.edge_high);
+  EXPECT_EQ(updated.edge_shell_first, built.edge_shell_first);
+  EXPECT_EQ(updated.edge_shells, built.edge_shells);
+}
+
+/// Splits, collapses, cuts and removes at random, a few at a time.
+void change_at_random(std::mt19937& random, Model& model) {
+  const auto any_shell = [&] {
+    for (;;)
+      if (const ShellIndex s(random() % model.shell_count()); !model.is_removed(s)) return s;
+  };
+  std::int64_t next_id = 1'000'000 + static_cast<std::int64_t>(model.node_count() + model.shell_count());
+  for (std::size_t change = 0; change < 1 + random() % 6; ++change) {
+    const ShellIndex shell = any_shell();
+    const ShellNodes n = model.shell(shell);
+    switch (random() % 4) {
+      case 0: {
+        const NodeIndex middle = add_node(model, next_id++, Vec3(0.5, 0.5, 0), centre_origin(n));
+        for (std::size_t i = 1; i < static_cast<std::size_t>(n.corners()); ++i)
+          add_shell(model, next_id++, {{n.node[i], n.node[(i + 1) % static_cast<std::size_t>(n.corners())], middle, middle}}, shell);
+        set_shell_nodes(model, shell, {{n.node[0], n.node[1], middle, middle}});
+        break;
+      }
+      case 1: set_shell_nodes(model, shell, {{n.node[0], n.node[1], n.node[2], n.node[2]}}); break;
+      case 2:
+        if (live_shells(model) > 40) remove_shell(model, shell);
+        break;
+      default: {  // one corner becomes another shell's, which may make it degenerate
+        ShellNodes other = n;
+        other.node[1] = model.shell(any_shell()).node[0];
+        set_shell_nodes(model, shell, other);
+      }
+    }
+  }
+}
+
+TEST(Growth, adjacency_brought_up_to_date_is_that_built_anew) {
+  std::mt19937 random(20);
+  for (int round = 0; round < 20; ++round) {
+    Model before = sheet(20 + random() % 20, 15);
+    for (int step = 0; step < 10; ++step) {
+      Model after = before;
+      change_at_random(random, after);
+      if (round % 2 == 0) change_at_random(random, after);
+      auto updated = std::make_shared<const Adjacency>(update_adjacency(before, after));
+      expect_same_adjacency(*updated, build_adjacency(after));
+      ASSERT_FALSE(HasFailure()) << "round " << round << ", step " << step;
+      after.adjacency = std::move(updated);
+      before = std::move(after);
+    }
+  }
+}
+
+TEST(Growth, adjacency_of_what_is_only_taken_away_or_only_put_there) {
+  const Model before = sheet(12, 12);
+  Model less = before;
+  for (std::size_t s = 0; s < 6; ++s) remove_shell(less, ShellIndex(s * 24));
+  expect_same_adjacency(update_adjacency(before, less), build_adjacency(less));
+  Model more = before;
+  for (int i = 0; i < 5; ++i) add_node(more, 9000 + i, Vec3(i, -1, 0), edge_origin(NodeIndex(std::size_t{0}), NodeIndex(std::size_t{1})));
+  expect_same_adjacency(update_adjacency(before, more), build_adjacency(more));
+  expect_same_adjacency(update_adjacency(before, before), *before.adjacency);
+}
+
 }  // namespace
 }  // namespace prismesh::mesh
