@@ -6,11 +6,15 @@
 
 #include <Eigen/Geometry>
 
+#include "base/parallel_for.h"
+
 namespace prismesh::mesh::spatial {
 
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 4;
+constexpr std::size_t kTreesAtOnce = 64;
+constexpr std::size_t kTrianglesAtOnce = 16384;
 constexpr double kSliver2 = 1e-16;  ///< square of the height, as a share of the length, below which a triangle counts as its sides
 
 struct OnTriangle {
@@ -61,72 +65,108 @@ double distance2_to_box(const Vec3& low, const Vec3& high, const Vec3& point) {
 
 }  // namespace
 
-ShellTree::ShellTree(const Model& model, const ShellSet& shells) {
-  triangles_.reserve(2 * shells.size());
+ShellTree::ShellTree(const Model& model, const ShellSet& shells, const NodeSet& nodes) {
+  triangles_.reserve(2 * shells.size() + nodes.size());
+  const auto add = [&](const std::array<Vec3, 3>& corners, ShellIndex shell, bool second) {
+    // what has no place would leave the order undefined, and is close to nothing
+    for (const Vec3& corner : corners)
+      if (!corner.allFinite()) return;
+    triangles_.push_back({corners, shell, second});
+  };
   for (const ShellIndex index : shells) {
     if (model.is_removed(index)) continue;
     const ShellNodes& shell = model.shell(index);
-    const auto add = [&](std::size_t b, std::size_t c, bool second) {
-      const Triangle triangle{{model.position(shell.node[0]), model.position(shell.node[b]), model.position(shell.node[c])}, index, second};
-      // what has no place would leave the order undefined, and is close to nothing
-      for (const Vec3& corner : triangle.corner)
-        if (!corner.allFinite()) return;
-      triangles_.push_back(triangle);
+    const auto half = [&](std::size_t b, std::size_t c, bool second) {
+      add({model.position(shell.node[0]), model.position(shell.node[b]), model.position(shell.node[c])}, index, second);
     };
-    add(1, 2, false);
-    if (!shell.is_triangle()) add(2, 3, true);
+    half(1, 2, false);
+    if (!shell.is_triangle()) half(2, 3, true);
   }
+  for (const NodeIndex node : nodes)
+    if (!model.is_removed(node)) add({model.position(node), model.position(node), model.position(node)}, ShellIndex(), false);
   if (!triangles_.empty()) divide();
 }
 
-/// Halves ranges of triangles by their middles along the longest axis until few are left. What is sorted is a small entry of each; the
-/// triangles follow at the end.
+/// What is sorted is this of each triangle; the triangles follow at the end.
+struct ShellTree::Entry {
+  Vec3 middle;
+  std::uint32_t triangle;  ///< ascending by shell and half: ties by it make the tree the same wherever it is built
+};
+struct ShellTree::Range {
+  std::uint32_t node, begin, end;
+};
+
+namespace {
+
+/// Halves entries by their middles along the longest axis. Returns where the second half begins.
+template <class Entry>
+std::uint32_t halve(std::vector<Entry>& entries, std::uint32_t begin, std::uint32_t end) {
+  Vec3 low = entries[begin].middle;
+  Vec3 high = low;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    low = low.cwiseMin(entries[i].middle);
+    high = high.cwiseMax(entries[i].middle);
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  std::nth_element(entries.begin() + begin, entries.begin() + middle, entries.begin() + end, [axis](const Entry& a, const Entry& b) {
+    return a.middle[axis] != b.middle[axis] ? a.middle[axis] < b.middle[axis] : a.triangle < b.triangle;
+  });
+  return middle;
+}
+
+}  // namespace
+
+/// Halves ranges of triangles until few are left: the first ranges one after the other, the trees under them side by side. Where each
+/// stands among the nodes doesn't depend on who has built it.
 void ShellTree::divide() {
-  struct Entry {
-    Vec3 middle;
-    std::uint32_t triangle;  ///< ascending by shell and half: ties by it make the tree the same wherever it is built
-  };
-  struct Range {
-    std::uint32_t node, begin, end;
-  };
   std::vector<Entry> entries;
   entries.reserve(triangles_.size());
   for (const Triangle& t : triangles_)
     entries.push_back({t.corner[0] / 3 + t.corner[1] / 3 + t.corner[2] / 3, static_cast<std::uint32_t>(entries.size())});
-  nodes_.reserve(triangles_.size() / 2 + 1);
-  nodes_.emplace_back();
+  // Takes ranges apart from the front until `enough` are open or all are leaves.
+  const auto split = [&entries](std::vector<Node>& nodes, std::vector<Range>& open, std::size_t enough) {
+    std::vector<Range> rest;
+    while (!open.empty() && open.size() + rest.size() < enough) {
+      const std::vector<Range> level = std::exchange(open, {});
+      for (const Range& range : level) {
+        if (range.end - range.begin <= kLeafTriangles) {
+          nodes[range.node].first = range.begin;
+          nodes[range.node].count = range.end - range.begin;
+          continue;
+        }
+        const std::uint32_t middle = halve(entries, range.begin, range.end);
+        const auto left = static_cast<std::uint32_t>(nodes.size());
+        nodes[range.node].first = left;
+        nodes.resize(nodes.size() + 2);
+        open.push_back({left, range.begin, middle});
+        open.push_back({left + 1, middle, range.end});
+      }
+    }
+  };
+  nodes_.resize(1);
   std::vector<Range> open{{0, 0, static_cast<std::uint32_t>(entries.size())}};
-  while (!open.empty()) {
-    const Range range = open.back();
-    open.pop_back();
-    if (range.end - range.begin <= kLeafTriangles) {
-      nodes_[range.node].first = range.begin;
-      nodes_[range.node].count = range.end - range.begin;
-      continue;
+  split(nodes_, open, kTreesAtOnce);
+  std::vector<std::vector<Node>> below(open.size());
+  parallel_for(open.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      below[i].resize(1);
+      std::vector<Range> own{{0, open[i].begin, open[i].end}};
+      split(below[i], own, std::numeric_limits<std::size_t>::max());
     }
-    Vec3 low = entries[range.begin].middle;
-    Vec3 high = low;
-    for (std::uint32_t i = range.begin; i < range.end; ++i) {
-      low = low.cwiseMin(entries[i].middle);
-      high = high.cwiseMax(entries[i].middle);
-    }
-    int axis = 0;
-    (high - low).maxCoeff(&axis);
-    const std::uint32_t middle = range.begin + (range.end - range.begin) / 2;
-    std::nth_element(entries.begin() + range.begin, entries.begin() + middle, entries.begin() + range.end,
-                     [axis](const Entry& a, const Entry& b) {
-                       return a.middle[axis] != b.middle[axis] ? a.middle[axis] < b.middle[axis] : a.triangle < b.triangle;
-                     });
-    const auto left = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[range.node].first = left;
-    nodes_.emplace_back();
-    nodes_.emplace_back();
-    open.push_back({left, range.begin, middle});
-    open.push_back({left + 1, middle, range.end});
+  });
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const auto shift = static_cast<std::uint32_t>(nodes_.size()) - 1;  // the root stands in its parent's place
+    for (Node& node : below[i])
+      if (node.count == 0) node.first += shift;
+    nodes_[open[i].node] = below[i].front();
+    nodes_.insert(nodes_.end(), below[i].begin() + 1, below[i].end());
   }
-  std::vector<Triangle> sorted;
-  sorted.reserve(triangles_.size());
-  for (const Entry& entry : entries) sorted.push_back(triangles_[entry.triangle]);
+  std::vector<Triangle> sorted(triangles_.size());
+  parallel_for(entries.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sorted[i] = triangles_[entries[i].triangle];
+  });
   triangles_ = std::move(sorted);
   fit_boxes();
 }
@@ -198,6 +238,20 @@ std::optional<SurfacePoint> ShellTree::closest(const Vec3& point, double radius)
     best = surface_point(triangle.shell, triangle.second, on);
   });
   return best;
+}
+
+double ShellTree::distance(const Vec3& point, Vec3& near) const {
+  const double from_near2 = (near - point).squaredNorm();
+  double least2 = from_near2 * (1 + 1e-12);  // so that the triangle under `near` is asked as well, and the answer is its own
+  bool found = false;
+  walk(point, least2, [&](const Triangle& triangle) {
+    const OnTriangle on = closest_on(triangle.corner, point);
+    if (!(on.distance2 < least2)) return;
+    least2 = on.distance2;
+    near = on.point;
+    found = true;
+  });
+  return std::sqrt(found ? least2 : from_near2);
 }
 
 std::vector<SurfacePoint> ShellTree::within(const Vec3& point, double radius) const {

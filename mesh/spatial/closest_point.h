@@ -20,13 +20,20 @@ struct SurfacePoint {
 };
 
 /// A quad counts as the two triangles at its diagonal from the first corner to the third. Positions are those at building time; a
-/// triangle with a corner that isn't finite is left out. Of equally close shells the first. Some 220 bytes a quad.
+/// triangle with a corner that isn't finite is left out. Of equally close shells the first. Some 220 bytes a quad. Built on all cores; the
+/// tree is the same whatever their number.
 class ShellTree {
  public:
-  ShellTree(const Model& model, const ShellSet& shells);
+  /// `nodes` are points of the surface too; they have no shell.
+  ShellTree(const Model& model, const ShellSet& shells, const NodeSet& nodes = {});
 
   /// Nothing if no shell is within `radius` (reckoned as within), nor for a point that isn't finite or a radius that is no number >= 0.
   std::optional<SurfacePoint> closest(const Vec3& point, double radius = std::numeric_limits<double>::infinity()) const;
+  /// The distance alone. `near` is any point of the surface: the closer it is, the sooner the answer, which doesn't depend on it but for
+  /// rounding; it becomes the closest point. Precondition: not empty, `point` is finite.
+  double distance(const Vec3& point, Vec3& near) const;
+  /// Any point of the surface. Precondition: not empty.
+  const Vec3& some_point() const { return triangles_.front().corner[0]; }
   /// One for each shell within `radius` of the point, ascending by shell.
   std::vector<SurfacePoint> within(const Vec3& point, double radius) const;
   bool empty() const { return triangles_.empty(); }
@@ -42,6 +49,8 @@ class ShellTree {
     std::uint32_t first = 0;  ///< of triangles_ for a leaf; else the left child, which the right one follows
     std::uint32_t count = 0;  ///< triangles of a leaf; 0: not one
   };
+  struct Entry;
+  struct Range;
   void divide();
   void fit_boxes();
   template <class Visit>
