@@ -1,0 +1,98 @@
+#include "mesh/relax/line_curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "mesh/relax/feature_lines.h"
+
+namespace prismesh::mesh::relax {
+
+namespace {
+
+constexpr int kMostPieces = 64;  ///< walked in one go
+constexpr double kAtEnd = 1e-9;
+
+/// The end of the line's next edge beyond `at`; invalid at a corner.
+NodeIndex next_on_line(const Model& model, NodeIndex at, NodeIndex from, double cos_limit) {
+  const LineEnds ends = line_ends(model, at, cos_limit, true);
+  if (!passes_through(model, at, ends, cos_limit)) return {};
+  return ends.other[0] == from ? ends.other[1] : ends.other[1] == from ? ends.other[0] : NodeIndex();
+}
+
+/// Unit tangent at `b` of the circle through a, b, c, from a to c.
+Vec3 circle_tangent(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 in = b - a, out = c - b;
+  // weights that make it exact on circles, whatever the spacing
+  return (in / in.squaredNorm() + out / out.squaredNorm()).normalized();
+}
+
+/// Turns the other end's tangent about the chord's middle: an arc from an end without a tangent of its own.
+Vec3 mirrored(const Vec3& tangent, const Vec3& chord) { return 2 * tangent.dot(chord) * chord - tangent; }
+
+struct Curve {
+  Vec3 a, b, at_a, at_b;  ///< ends and the derivatives there
+
+  Vec3 point(double t) const {
+    const double s = 1 - t;
+    return s * s * (1 + 2 * t) * a + t * t * (3 - 2 * t) * b + t * s * s * at_a - t * t * s * at_b;
+  }
+  Vec3 derivative(double t) const { return 6 * t * (1 - t) * (b - a) + (1 - t) * (1 - 3 * t) * at_a + t * (3 * t - 2) * at_b; }
+};
+
+Curve curve_of(const Model& model, LinePiece piece, double cos_limit) {
+  const Vec3& a = model.position(piece.from);
+  const Vec3& b = model.position(piece.to);
+  const double length = (b - a).norm();
+  const Vec3 chord = (b - a) / length;
+  const NodeIndex before = next_on_line(model, piece.from, piece.to, cos_limit);
+  const NodeIndex after = next_on_line(model, piece.to, piece.from, cos_limit);
+  Vec3 first = before.valid() ? circle_tangent(model.position(before), a, b) : Vec3::Zero();
+  Vec3 last = after.valid() ? circle_tangent(a, b, model.position(after)) : Vec3::Zero();
+  if (!before.valid()) first = after.valid() ? mirrored(last, chord) : chord;
+  if (!after.valid()) last = before.valid() ? mirrored(first, chord) : chord;
+  // so long that an arc of a circle comes out as one, to the sixth order
+  const auto derivative = [&](const Vec3& tangent) { return Vec3(tangent * (2 * length / (1 + std::max(tangent.dot(chord), 0.0)))); };
+  return {a, b, derivative(first), derivative(last)};
+}
+
+}  // namespace
+
+LinePlace place_on_piece(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
+  const Vec3 chord = model.position(piece.to) - model.position(piece.from);
+  const double length2 = chord.squaredNorm();
+  LinePlace place{piece, model.position(piece.from), Vec3::Zero(), 0};
+  if (length2 > 0) {
+    const Curve curve = curve_of(model, piece, cos_limit);
+    double t = std::clamp((point - curve.a).dot(chord) / length2, 0.0, 1.0);
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 along = curve.derivative(t);
+      const double step = (point - curve.point(t)).dot(along) / along.squaredNorm();
+      if (!std::isfinite(step)) break;
+      t = std::clamp(t + step, 0.0, 1.0);
+    }
+    place.point = t < kAtEnd ? curve.a : t > 1 - kAtEnd ? curve.b : curve.point(t);
+    place.tangent = curve.derivative(t).normalized();
+  }
+  place.distance = (point - place.point).norm();
+  return place;
+}
+
+LinePlace follow_line(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
+  LinePlace best = place_on_piece(model, piece, point, cos_limit);
+  for (int i = 0; i < kMostPieces; ++i) {
+    const bool at_from = best.point == model.position(best.piece.from);
+    const bool at_to = best.point == model.position(best.piece.to);
+    if (!at_from && !at_to) break;
+    const NodeIndex turn = at_from ? best.piece.from : best.piece.to;
+    const NodeIndex next = next_on_line(model, turn, at_from ? best.piece.to : best.piece.from, cos_limit);
+    if (!next.valid()) break;
+    const LinePlace beyond = place_on_piece(model, at_from ? LinePiece{next, turn} : LinePiece{turn, next}, point, cos_limit);
+    if (!(beyond.distance < best.distance)) break;
+    best = beyond;
+  }
+  return best;
+}
+
+}  // namespace prismesh::mesh::relax

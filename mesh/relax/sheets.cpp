@@ -1,0 +1,169 @@
+#include "mesh/relax/sheets.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "mesh/relax/feature_lines.h"
+
+namespace prismesh::mesh::relax {
+
+namespace {
+
+constexpr std::size_t kEnoughNodes = 8;  ///< about a node for a fit; at ends of sheets one looks farther for them
+constexpr int kMostRings = 4;
+constexpr std::uint8_t kSmooth = 1;
+constexpr std::uint8_t kKinked = 2;
+
+template <class T>
+T* zeroed(std::size_t count) {
+  void* memory = std::calloc(std::max<std::size_t>(count, 1), sizeof(T));
+  if (memory == nullptr) throw std::bad_alloc();
+  return static_cast<T*>(memory);
+}
+
+int corner_of(const ShellNodes& shell, NodeIndex node) {
+  for (int i = 0; i < shell.corners(); ++i)
+    if (shell.node[i] == node) return i;
+  return -1;
+}
+
+bool contains(const std::vector<ShellIndex>& shells, ShellIndex shell) {
+  return std::find(shells.begin(), shells.end(), shell) != shells.end();
+}
+
+/// The shells at a node that hang together over smooth edges at it, ascending.
+std::vector<ShellIndex> shells_about(const Model& model, const Sheets& sheets, ShellIndex shell, NodeIndex node) {
+  std::vector<ShellIndex> found;
+  if (sheets.is_smooth(node)) {
+    const auto all = model.adjacency->shells_of(node);
+    found.assign(all.begin(), all.end());
+    return found;
+  }
+  found.push_back(shell);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const ShellNodes& nodes = model.shell(found[i]);
+    const int corners = nodes.corners(), at = corner_of(nodes, node);
+    for (const int side : {at, (at + corners - 1) % corners}) {
+      const ShellIndex next = sheets.beyond(found[i], nodes.node[side], nodes.node[(side + 1) % corners]);
+      if (next.valid() && !contains(found, next)) found.push_back(next);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// Adds the shells across smooth edges of shells from `begin` on.
+void add_ring(const Model& model, const Sheets& sheets, std::size_t begin, std::vector<ShellIndex>& shells) {
+  const std::size_t end = shells.size();
+  for (std::size_t s = begin; s < end; ++s) {
+    const ShellNodes& nodes = model.shell(shells[s]);
+    const int corners = nodes.corners();
+    for (int i = 0; i < corners; ++i) {
+      const ShellIndex next = sheets.beyond(shells[s], nodes.node[i], nodes.node[(i + 1) % corners]);
+      if (next.valid() && !contains(shells, next)) shells.push_back(next);
+    }
+  }
+}
+
+void add_nodes(const Model& model, const std::vector<ShellIndex>& shells, std::size_t begin, NodeIndex centre,
+               std::vector<NodeIndex>& nodes) {
+  for (std::size_t s = begin; s < shells.size(); ++s)
+    for (const NodeIndex node : model.shell(shells[s]).node)
+      if (node != centre && model.position(node).allFinite() && std::find(nodes.begin(), nodes.end(), node) == nodes.end())
+        nodes.push_back(node);
+}
+
+Vec3 normal_about(const Model& model, const std::vector<ShellIndex>& shells) {
+  Vec3 sum = Vec3::Zero();
+  for (const ShellIndex shell : shells) {
+    const Vec3 normal = shell_normal(model, model.shell(shell));
+    sum += normal.dot(sum) < 0 ? Vec3(-normal) : normal;
+  }
+  return sum.squaredNorm() > 0 ? sum.normalized() : Vec3::UnitZ();
+}
+
+LocalFit fit_sheet(const Model& model, const Sheets& sheets, NodeIndex node, std::vector<ShellIndex> shells) {
+  const Vec3 normal = normal_about(model, shells);
+  std::vector<NodeIndex> nodes;
+  add_nodes(model, shells, 0, node, nodes);
+  const std::size_t ring = nodes.size();
+  std::size_t begin = 0;
+  for (int i = 0; i < kMostRings && (i == 0 || nodes.size() < kEnoughNodes); ++i) {
+    const std::size_t end = shells.size();
+    add_ring(model, sheets, begin, shells);
+    add_nodes(model, shells, end, node, nodes);
+    begin = end;
+    if (shells.size() == end) break;
+  }
+  std::vector<Vec3> around(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) around[i] = model.position(nodes[i]);
+  return fit_about(model.position(node), normal, around, ring);
+}
+
+}  // namespace
+
+void Sheets::Free::operator()(void* memory) const { std::free(memory); }
+
+Sheets::Sheets(const Model& model, double cos_limit)
+    : model_(model),
+      cos_limit_(cos_limit),
+      slots_(zeroed<Slot>(4 * model.shell_count())),
+      node_states_(zeroed<std::atomic<std::uint8_t>>(model.node_count())) {}
+
+bool Sheets::is_smooth(NodeIndex node) const {
+  std::atomic<std::uint8_t>& state = node_states_[node.value];
+  std::uint8_t known = state.load(std::memory_order_relaxed);
+  if (known == 0) {
+    known = line_ends(model_, node, cos_limit_, false).count == 0 ? kSmooth : kKinked;
+    state.store(known, std::memory_order_relaxed);
+  }
+  return known == kSmooth;
+}
+
+ShellIndex Sheets::beyond(ShellIndex shell, NodeIndex a, NodeIndex b) const {
+  if (a == b) return {};
+  if (!is_smooth(a) && !is_smooth(b)) return across(model_, shell, a, b, cos_limit_);
+  for (const ShellIndex other : model_.adjacency->shells_of(a))
+    if (other != shell && corner_of(model_.shell(other), b) >= 0) {
+      const ShellNodes& nodes = model_.shell(other);
+      const int corners = nodes.corners(), i = corner_of(nodes, a), j = corner_of(nodes, b);
+      if ((i + 1) % corners == j || (j + 1) % corners == i) return other;
+    }
+  return {};
+}
+
+const LocalFit& Sheets::at(ShellIndex shell, int corner) const {
+  const LocalFit* fit =
+      slots_[4 * static_cast<std::size_t>(shell.value) + static_cast<std::size_t>(corner)].load(std::memory_order_acquire);
+  return fit != nullptr ? *fit : make(shell, corner);
+}
+
+const LocalFit& Sheets::make(ShellIndex shell, int corner) const {
+  const NodeIndex node = model_.shell(shell).node[corner];
+  const std::vector<ShellIndex> shells = shells_about(model_, *this, shell, node);
+  const LocalFit made = fit_sheet(model_, *this, node, shells);
+  const auto slot_of = [&](ShellIndex of, int at) -> Slot& {
+    return slots_[4 * static_cast<std::size_t>(of.value) + static_cast<std::size_t>(at)];
+  };
+  const std::lock_guard lock(mutex_);
+  Slot& own = slot_of(shell, corner);
+  if (const LocalFit* other = own.load(std::memory_order_relaxed)) return *other;
+  const LocalFit* kept = &fits_.emplace_back(made);
+  own.store(kept, std::memory_order_release);
+  for (const ShellIndex of : shells)
+    if (const int at = corner_of(model_.shell(of), node); at >= 0) slot_of(of, at).store(kept, std::memory_order_release);
+  return *kept;
+}
+
+Vec3 shell_normal(const Model& model, const ShellNodes& shell) {
+  const auto at = [&](int i) -> const Vec3& { return model.position(shell.node[i]); };
+  const Vec3 normal = shell.is_triangle() ? Vec3((at(1) - at(0)).cross(at(2) - at(0))) : Vec3((at(2) - at(0)).cross(at(3) - at(1)));
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : Vec3::Zero();
+}
+
+}  // namespace prismesh::mesh::relax
