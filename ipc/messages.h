@@ -57,16 +57,50 @@ struct Count {  ///< what an id expression names; selects nothing
   std::string expr;
   mesh::select::Kind kind = mesh::select::Kind::node;
 };
+/// What is wrong with the shells, in figures. Costs a pass over the shells: ask where they are looked at, once a generation.
+struct GetQuality {
+  std::string metric;    ///< whose histogram and errors; empty: no histogram, the errors of all metrics
+  bool damaged = false;  ///< only shells that the document's edits made worse
+};
+/// The shells whose metric is in [from, to); absent bounds are open.
+struct FindShells {
+  std::string metric;
+  std::optional<double> from, to;
+  bool damaged = false;
+};
+struct PreviewEdit {  ///< what an edit would do; nothing is done
+  mesh::document::Edit edit;
+};
+/// One number for each node or shell, for colours and figures (mesh/document/field.h).
+struct GetField {
+  std::string field = "displacement";               ///< as mesh::document::field_wish takes it
+  std::optional<std::uint64_t> generation;          ///< absent: the current one
+  std::string against = "opened";                   ///< or "surface": as last shaped; or another deck's path
+  std::optional<std::uint64_t> against_generation;  ///< goes before `against`
+  std::string from, to;                             ///< of "distance": expressions
+};
+/// From where a view looks, for views that move together. Screen millimetres and deck coordinates, as kiosk/stereo/view.h has them.
+struct Camera {
+  std::array<double, 3> pivot{};
+  std::vector<double> rotation{1, 0, 0, 0};  ///< a unit quaternion, real part first
+  double mm_per_unit = 1;
+  std::array<double, 3> stands_mm{};  ///< the pivot: right, up, before the screen
+  bool operator==(const Camera&) const = default;
+};
+struct ShareCamera {  ///< no answer; the other clients hear CameraMoved
+  Camera camera;
+};
 struct GetState {};
 struct GetSnapshot {
+  std::optional<std::uint64_t> generation;   ///< one of State::generations; absent: the current one
   std::vector<std::uint64_t> have_segments;  ///< segments the client still has mapped
 };
 struct ReturnSnapshot {  ///< no answer
   std::uint64_t lease = 0;
 };
 
-using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Count, GetState, GetSnapshot,
-                             ReturnSnapshot>;
+using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Count, GetQuality,
+                             FindShells, PreviewEdit, GetField, ShareCamera, GetState, GetSnapshot, ReturnSnapshot>;
 
 // --- answers ---
 struct Failed {
@@ -86,6 +120,11 @@ struct DeckFile {
   std::uint64_t shells = 0;
   std::vector<std::int64_t> parts;  ///< ids, ascending
 };
+/// A generation that can be asked for.
+struct ListedGeneration {
+  std::uint64_t number = 0;
+  std::string made_by;
+};
 struct State {
   bool open = false;
   bool busy = false;
@@ -102,6 +141,7 @@ struct State {
   std::uint64_t recovered_edits = 0;   ///< brought back from the journal when the document was opened
   std::uint64_t journalled_edits = 0;  ///< acknowledged since the deck was opened or last saved in place: what a restart brings back
   std::uint64_t history_bytes = 0, history_cap = 0;  ///< what the states kept for undo and redo take, and may take
+  std::vector<ListedGeneration> generations;         ///< oldest first: what undo and redo walk
   std::vector<DeckFile> files;
   std::vector<mesh::deck::Warning> warnings;
 };
@@ -117,6 +157,71 @@ struct Edited {
 struct Counted {
   std::uint64_t nodes = 0, shells = 0, parts = 0;
 };
+struct QualityMetric {
+  std::string name;                  ///< a metric's, or a defect's: "not_finite", "repeated_node", "no_area"
+  std::string unit;                  ///< "deg", the deck's length unit, or nothing
+  std::uint64_t warn = 0, fail = 0;  ///< a shell counts in one of them, or neither
+};
+struct QualityBar {
+  double from = 0, to = 0;
+  bool open_below = false, open_above = false;  ///< holds all that lies farther out
+  std::uint64_t ok = 0, warn = 0, fail = 0;     ///< shells, by what the metric alone says
+};
+/// A shell that warns or fails, and the metric by which it does most.
+struct QualityError {
+  std::int64_t shell = 0;
+  std::string metric;
+  std::string unit;
+  std::optional<double> value;  ///< absent for a defect
+  bool fail = false;
+  std::array<double, 3> at{};  ///< its centre
+};
+struct QualityPart {
+  std::int64_t part = 0;
+  std::uint64_t shells = 0, warn = 0, fail = 0;
+  double composite = 1, least_composite = 1;  ///< mean and least over its shells: docs/quality/README.md
+};
+struct Quality {
+  std::uint64_t generation = 0;
+  std::vector<QualityMetric> metrics;
+  std::string metric;
+  std::vector<QualityBar> bars;      ///< ascending
+  std::vector<QualityError> errors;  ///< worst first; not more than kMostQualityErrors
+  std::uint64_t error_count = 0;
+  std::vector<QualityPart> parts;  ///< with shells that are looked at, ascending by id
+};
+inline constexpr std::size_t kMostQualityErrors = 500;
+struct ShellsFound {
+  std::uint64_t shells = 0;
+  std::string expr;  ///< their ids, as an expression of kind element; empty: none
+};
+/// Shells as an edit would leave them: those it would make, and those whose corners it would move or change.
+struct PreviewedShell {
+  std::int64_t shell = 0;
+  std::vector<std::uint32_t> corners;  ///< four, into `points`; a triangle repeats its third
+  std::uint32_t warn = 0, fail = 0;    ///< mesh::quality::ShellState
+};
+struct EditPreviewed {
+  std::uint64_t generation = 0;  ///< that the edit would begin from
+  mesh::document::EditReport report;
+  std::vector<std::array<double, 3>> points;
+  std::vector<PreviewedShell> shells;  ///< not more than kMostPreviewedShells
+  std::uint64_t shell_count = 0;       ///< so many there would be
+  std::vector<std::int64_t> replaced;  ///< ids of shells that would be gone or look otherwise
+};
+inline constexpr std::size_t kMostPreviewedShells = 2000;
+struct FieldMade {          ///< descriptor: the values (ipc/field_page.h)
+  std::uint64_t field = 0;  ///< a number of its own
+  std::string title, unit;
+  std::string of;       ///< which state, in words
+  std::string against;  ///< compared with what, in words; empty: nothing
+  std::uint64_t generation = 0;
+  bool on_nodes = true;
+  std::uint64_t measured = 0;  ///< nodes or shells with a value
+  double min = 0, mean = 0, max = 0;
+  std::string min_at, max_at;  ///< "node:7", "shell:12"
+  double clear = 0, full = 1;  ///< suggested limits of a colour map
+};
 struct DragBegun {  ///< descriptor: the preview
   std::uint64_t drag = 0;
   std::uint64_t base_generation = 0;
@@ -131,7 +236,8 @@ struct Snapshot {  ///< descriptors: the table, then the segments listed in new_
   std::vector<std::uint64_t> segments;      ///< all that the table uses, in the table's order
   std::vector<std::uint64_t> new_segments;  ///< those that ride with this message, in this order
 };
-using Answer = std::variant<Failed, Done, Welcome, State, Saved, Edited, Counted, DragBegun, Snapshot>;
+using Answer =
+    std::variant<Failed, Done, Welcome, State, Saved, Edited, Counted, Quality, ShellsFound, EditPreviewed, DragBegun, Snapshot, FieldMade>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {
@@ -152,6 +258,10 @@ struct DragEnded {
   bool committed = false;
   std::string why;
 };
-using Event = std::variant<GenerationPublished, DocumentOpened, DocumentClosed, ProgressMade, DragEnded>;
+struct CameraMoved {  ///< not sent to the client that moved it
+  std::uint64_t client = 0;
+  Camera camera;
+};
+using Event = std::variant<GenerationPublished, DocumentOpened, DocumentClosed, ProgressMade, DragEnded, CameraMoved>;
 
 }  // namespace prismesh::ipc

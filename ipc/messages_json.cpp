@@ -44,8 +44,16 @@ PRISMESH_MESSAGE(DragStep, "drag_step", f("drag", m.drag), f("sequence", m.seque
 PRISMESH_MESSAGE(CommitDrag, "commit_drag", f("drag", m.drag));
 PRISMESH_MESSAGE(CancelDrag, "cancel_drag", f("drag", m.drag));
 PRISMESH_MESSAGE(Count, "count", f("expr", m.expr), f("kind", m.kind));
+PRISMESH_MESSAGE(GetQuality, "get_quality", f("metric", m.metric), f("damaged", m.damaged));
+PRISMESH_MESSAGE(FindShells, "find_shells", f("metric", m.metric), f("from", m.from), f("to", m.to), f("damaged", m.damaged));
+PRISMESH_MESSAGE(PreviewEdit, "preview_edit", f("edit", m.edit));
 PRISMESH_MESSAGE(GetState, "get_state", );
-PRISMESH_MESSAGE(GetSnapshot, "get_snapshot", f("have_segments", m.have_segments));
+PRISMESH_MESSAGE(GetField, "get_field", f("field", m.field), f("generation", m.generation), f("against", m.against),
+                 f("against_generation", m.against_generation), f("from", m.from), f("to", m.to));
+PRISMESH_PART(Camera, f("pivot", m.pivot), f("rotation", m.rotation), f("mm_per_unit", m.mm_per_unit), f("stands_mm", m.stands_mm));
+PRISMESH_MESSAGE(ShareCamera, "share_camera", f("camera", m.camera));
+PRISMESH_MESSAGE(CameraMoved, "camera_moved", f("client", m.client), f("camera", m.camera));
+PRISMESH_MESSAGE(GetSnapshot, "get_snapshot", f("generation", m.generation), f("have_segments", m.have_segments));
 PRISMESH_MESSAGE(ReturnSnapshot, "return_snapshot", f("lease", m.lease));
 PRISMESH_MESSAGE(Welcome, "welcome", f("protocol", m.protocol), f("version", m.version), f("client", m.client));
 PRISMESH_MESSAGE(State, "state", f("open", m.open), f("busy", m.busy), f("path", m.path), f("length_unit", m.length_unit),
@@ -54,12 +62,29 @@ PRISMESH_MESSAGE(State, "state", f("open", m.open), f("busy", m.busy), f("path",
                  f("parts", m.parts), f("selected_nodes", m.selected_nodes), f("counts", m.counts), f("can_undo", m.can_undo),
                  f("can_redo", m.can_redo), f("changed", m.changed), f("recovered_edits", m.recovered_edits),
                  f("journalled_edits", m.journalled_edits), f("history_bytes", m.history_bytes), f("history_cap", m.history_cap),
-                 f("files", m.files), f("warnings", m.warnings));
+                 f("generations", m.generations), f("files", m.files), f("warnings", m.warnings));
+PRISMESH_PART(ListedGeneration, f("number", m.number), f("made_by", m.made_by));
 PRISMESH_PART(DeckFile, f("name", m.name), f("shells", m.shells), f("parts", m.parts));
 PRISMESH_MESSAGE(Saved, "saved", f("path", m.path), f("nodes_written", m.nodes_written), f("lines_changed", m.lines_changed),
                  f("notes", m.notes));
 PRISMESH_MESSAGE(Edited, "edited", f("report", m.report), f("generation", m.generation));
+PRISMESH_MESSAGE(FieldMade, "field", f("field", m.field), f("title", m.title), f("unit", m.unit), f("of", m.of), f("against", m.against),
+                 f("generation", m.generation), f("on_nodes", m.on_nodes), f("measured", m.measured), f("min", m.min), f("mean", m.mean),
+                 f("max", m.max), f("min_at", m.min_at), f("max_at", m.max_at), f("clear", m.clear), f("full", m.full));
 PRISMESH_MESSAGE(Counted, "counted", f("nodes", m.nodes), f("shells", m.shells), f("parts", m.parts));
+PRISMESH_MESSAGE(Quality, "quality", f("generation", m.generation), f("metrics", m.metrics), f("metric", m.metric), f("bars", m.bars),
+                 f("errors", m.errors), f("error_count", m.error_count), f("parts", m.parts));
+PRISMESH_PART(QualityMetric, f("name", m.name), f("unit", m.unit), f("warn", m.warn), f("fail", m.fail));
+PRISMESH_PART(QualityBar, f("from", m.from), f("to", m.to), f("open_below", m.open_below), f("open_above", m.open_above), f("ok", m.ok),
+              f("warn", m.warn), f("fail", m.fail));
+PRISMESH_PART(QualityError, f("shell", m.shell), f("metric", m.metric), f("unit", m.unit), f("value", m.value), f("fail", m.fail),
+              f("at", m.at));
+PRISMESH_PART(QualityPart, f("part", m.part), f("shells", m.shells), f("warn", m.warn), f("fail", m.fail), f("composite", m.composite),
+              f("least_composite", m.least_composite));
+PRISMESH_MESSAGE(ShellsFound, "shells_found", f("shells", m.shells), f("expr", m.expr));
+PRISMESH_MESSAGE(EditPreviewed, "edit_previewed", f("generation", m.generation), f("report", m.report), f("points", m.points),
+                 f("shells", m.shells), f("shell_count", m.shell_count), f("replaced", m.replaced));
+PRISMESH_PART(PreviewedShell, f("shell", m.shell), f("corners", m.corners), f("warn", m.warn), f("fail", m.fail));
 PRISMESH_MESSAGE(DragBegun, "drag_begun", f("drag", m.drag), f("base_generation", m.base_generation), f("nodes", m.nodes),
                  f("grab", m.grab), f("grab_position", m.grab_position), f("normal", m.normal));
 PRISMESH_MESSAGE(Snapshot, "snapshot", f("lease", m.lease), f("generation", m.generation), f("segments", m.segments),

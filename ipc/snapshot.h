@@ -24,10 +24,11 @@ enum class SnapshotArray : std::uint8_t {
   shell_parts,
   shell_marks,
   shell_quality,
+  shell_damage,  ///< ShellState: by what the document's edits made the shell worse (mesh/document/damage.h)
   line_nodes,
   line_parts
 };
-inline constexpr int kSnapshotArrayCount = 10;
+inline constexpr int kSnapshotArrayCount = 11;
 
 /// Bytes of one element of an array.
 std::size_t element_size(SnapshotArray array);
@@ -88,6 +89,9 @@ class SnapshotView {
   mesh::PartIndex shell_part(std::size_t shell) const { return at<mesh::PartIndex>(SnapshotArray::shell_parts, shell); }
   mesh::quality::ShellState shell_quality(std::size_t shell) const {
     return at<mesh::quality::ShellState>(SnapshotArray::shell_quality, shell);
+  }
+  mesh::quality::ShellState shell_damage(std::size_t shell) const {
+    return at<mesh::quality::ShellState>(SnapshotArray::shell_damage, shell);
   }
   // line_nodes: pairs of NodeIndex, what is drawn as lines: beams, discrete elements and the outlines of solids' outer faces;
   // line_parts: the PartIndex of each pair (invalid where the card names none).

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "ipc/outlines.h"
+#include "ipc/shell_damage.h"
 #include "ipc/snapshot_table.h"
 
 namespace prismesh::ipc {
@@ -109,6 +110,7 @@ struct SnapshotPublisher::State {
   std::shared_ptr<Published> current;
   std::map<std::uint64_t, std::shared_ptr<Published>> leases;
   PerModel per_model;
+  ShellDamage damage;
 
   void look_at(const mesh::Model& model) {
     if (per_model.elements != model.elements) {
@@ -231,7 +233,8 @@ struct SnapshotPublisher::State {
     return {};
   }
 
-  Result<void> add_arrays(const Generation& generation, Published& published, SnapshotTable& table) {
+  Result<void> add_arrays(const Document& document, Published& published, SnapshotTable& table) {
+    const Generation& generation = document.current();
     const mesh::Model& model = generation.model;
     Result<void> done = add(SnapshotArray::positions, model.positions, published, table);
     const auto next = [&](SnapshotArray array, const auto& source) {
@@ -244,6 +247,7 @@ struct SnapshotPublisher::State {
     next(SnapshotArray::shell_parts, model.shell_parts);
     next(SnapshotArray::shell_marks, generation.shell_marks);
     next(SnapshotArray::shell_quality, generation.quality);
+    next(SnapshotArray::shell_damage, damage.of(document.opened, generation));
     next(SnapshotArray::line_nodes, per_model.lines.nodes);
     next(SnapshotArray::line_parts, per_model.lines.parts);
     return done;
@@ -277,7 +281,7 @@ struct SnapshotPublisher::State {
     auto published = std::make_shared<Published>();
     SnapshotTable table;
     table.info = describe(document, changed);
-    Result<void> added = add_arrays(document.current(), *published, table);
+    Result<void> added = add_arrays(document, *published, table);
     if (added) {
       Result<Descriptor> sealed = make_sealed_memory("prismesh-table", encode_table(table));
       if (sealed) {
@@ -290,12 +294,12 @@ struct SnapshotPublisher::State {
     return fail(std::move(added.error()));
   }
 
-  Result<PublishedSnapshot> lease() {
-    Result<Descriptor> table = current->table.duplicate();
+  Result<PublishedSnapshot> lease(const std::shared_ptr<Published>& published) {
+    Result<Descriptor> table = published->table.duplicate();
     if (!table) return fail(std::move(table.error()));
     const std::uint64_t number = next_lease++;
-    leases.emplace(number, current);
-    return PublishedSnapshot{number, std::move(*table), current->segments};
+    leases.emplace(number, published);
+    return PublishedSnapshot{number, std::move(*table), published->segments};
   }
 };
 
@@ -313,7 +317,19 @@ Result<PublishedSnapshot> SnapshotPublisher::publish(const Document& document, b
     state_->drop(*made);
     state_->shrink();
   }
-  return state_->lease();
+  return state_->lease(state_->current);
+}
+
+Result<PublishedSnapshot> SnapshotPublisher::publish_other(const Document& document, std::size_t generation, bool changed) {
+  if (generation == document.cursor) return publish(document, changed);
+  Document at_it = document;
+  at_it.cursor = generation;
+  const std::lock_guard lock(state_->mutex);
+  Result<std::shared_ptr<Published>> made = state_->make(at_it, changed);
+  if (!made) return fail(std::move(made.error()));
+  Result<PublishedSnapshot> leased = state_->lease(*made);
+  if (!leased) state_->drop(*made);
+  return leased;
 }
 
 void SnapshotPublisher::forget() {
@@ -321,6 +337,7 @@ void SnapshotPublisher::forget() {
   state_->current_of.reset();
   state_->drop(state_->current);
   state_->per_model = {};
+  state_->damage = {};
   state_->shrink();
 }
 

@@ -24,6 +24,8 @@ class SnapshotPublisher {
   /// Costs the chunks that changed since the snapshots still leased or current, and a pointer a chunk.
   /// The generation published last stays current (its memory isn't reused) without a lease. Publishing it again costs nothing.
   Result<PublishedSnapshot> publish(const mesh::document::Document& document, bool changed);
+  /// Another generation of the document than its current one, leased; what is current stays so. Costs what no snapshot in use has.
+  Result<PublishedSnapshot> publish_other(const mesh::document::Document& document, std::size_t generation, bool changed);
   /// The document was closed: nothing is current any more.
   void forget();
   /// The memory of a snapshot may be reused.

@@ -8,7 +8,7 @@ namespace prismesh::ipc {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3154'534d'5350'5250;  // "PRPSMST1"
+constexpr std::uint64_t kMagic = 0x3254'534d'5350'5250;  // "PRPSMST2"
 // Indices into the arrays are 32 bits wide, and the last value means none.
 constexpr std::uint64_t kMostElements = 2 * std::uint64_t{0xffff'fffe};
 
@@ -85,8 +85,8 @@ bool counts_agree(const SnapshotTable& table) {
   const auto count = [&](SnapshotArray array) { return table.arrays[static_cast<std::size_t>(array)].count; };
   for (const SnapshotArray array : {SnapshotArray::node_ids, SnapshotArray::node_marks})
     if (count(array) != count(SnapshotArray::positions)) return false;
-  for (const SnapshotArray array :
-       {SnapshotArray::shell_ids, SnapshotArray::shell_parts, SnapshotArray::shell_marks, SnapshotArray::shell_quality})
+  for (const SnapshotArray array : {SnapshotArray::shell_ids, SnapshotArray::shell_parts, SnapshotArray::shell_marks,
+                                    SnapshotArray::shell_quality, SnapshotArray::shell_damage})
     if (count(array) != count(SnapshotArray::shell_nodes)) return false;
   return count(SnapshotArray::line_nodes) == 2 * count(SnapshotArray::line_parts);
 }
@@ -103,7 +103,8 @@ std::size_t element_size(SnapshotArray array) {
     case SnapshotArray::shell_nodes: return sizeof(mesh::ShellNodes);
     case SnapshotArray::shell_parts:
     case SnapshotArray::line_parts: return sizeof(mesh::PartIndex);
-    case SnapshotArray::shell_quality: return sizeof(mesh::quality::ShellState);
+    case SnapshotArray::shell_quality:
+    case SnapshotArray::shell_damage: return sizeof(mesh::quality::ShellState);
     case SnapshotArray::line_nodes: return sizeof(mesh::NodeIndex);
   }
   return 1;

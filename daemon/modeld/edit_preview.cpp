@@ -1,0 +1,80 @@
+#include "daemon/modeld/edit_preview.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "mesh/model/growth.h"
+#include "mesh/model/node_set.h"
+
+namespace prismesh::modeld {
+
+namespace {
+
+using mesh::Model;
+using mesh::ShellIndex;
+using mesh::ShellSet;
+
+ShellSet united(std::initializer_list<const ShellSet*> sets) {
+  ShellSet all;
+  for (const ShellSet* set : sets) all.insert(all.end(), set->begin(), set->end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+/// Shells at the moved nodes, each as it is in a model where it is there.
+ShellSet at_nodes(const Model& model, const mesh::NodeSet& nodes) {
+  return nodes.empty() ? ShellSet() : mesh::shells_touching(model, nodes);
+}
+
+void add_shell(const mesh::document::Generation& next, ShellIndex shell, std::unordered_map<std::uint32_t, std::uint32_t>& known,
+               ipc::EditPreviewed& preview) {
+  const Model& model = next.model;
+  ipc::PreviewedShell shown;
+  shown.shell = model.shell_ids[shell.value];
+  const mesh::quality::ShellState state = next.quality[shell.value];
+  shown.warn = state.warn;
+  shown.fail = state.fail;
+  for (const mesh::NodeIndex node : model.shell(shell).node) {
+    const auto [place, is_new] = known.try_emplace(node.value, static_cast<std::uint32_t>(preview.points.size()));
+    if (is_new) {
+      const mesh::Vec3& at = model.position(node);
+      if (!at.allFinite()) return;
+      preview.points.push_back({at.x(), at.y(), at.z()});
+    }
+    shown.corners.push_back(place->second);
+  }
+  preview.shells.push_back(std::move(shown));
+}
+
+}  // namespace
+
+Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document, const mesh::document::Edit& edit) {
+  Result<mesh::document::Prepared> prepared = mesh::document::prepare(document, edit);
+  if (!prepared) return fail(std::move(prepared.error()));
+  const mesh::document::Generation& now = document.current();
+  const mesh::document::Generation& next = *prepared->next;
+  const mesh::Changes changes = mesh::changes_between(now.model, next.model);
+  const mesh::NodeSet moved = mesh::moved_nodes(now.model, next.model);
+  ShellSet after = at_nodes(next.model, moved);
+  after = united({&after, &changes.added_shells, &changes.reshaped_shells});
+  ShellSet before = at_nodes(now.model, moved);
+  before = united({&before, &changes.removed_shells, &changes.reshaped_shells});
+
+  ipc::EditPreviewed preview;
+  preview.generation = now.number;
+  preview.report = std::move(prepared->report);
+  preview.shell_count = after.size();
+  std::unordered_map<std::uint32_t, std::uint32_t> known;
+  for (const ShellIndex shell : after) {
+    if (preview.shells.size() == ipc::kMostPreviewedShells) break;
+    add_shell(next, shell, known, preview);
+  }
+  for (const ShellIndex shell : before) {
+    if (preview.replaced.size() == ipc::kMostPreviewedShells) break;
+    preview.replaced.push_back(now.model.shell_ids[shell.value]);
+  }
+  return preview;
+}
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,349 @@
+#include "daemon/modeld/quality_figures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/nearest_name.h"
+#include "base/parallel_for.h"
+#include "mesh/document/damage.h"
+#include "mesh/model/growth.h"
+#include "mesh/quality/composite.h"
+
+namespace prismesh::modeld {
+
+namespace {
+
+using mesh::ShellIndex;
+using mesh::document::Document;
+using mesh::document::Generation;
+using mesh::quality::Defect;
+using mesh::quality::kMetricCount;
+using mesh::quality::Metric;
+using mesh::quality::ShellState;
+using mesh::quality::Threshold;
+using mesh::quality::Values;
+
+constexpr std::size_t kGrain = mesh::kChunkSize;
+constexpr std::size_t kBars = 24;
+constexpr int kStateBits = 16;
+constexpr double kTail = 0.002;  ///< the share of the shells at either end that may stretch the histogram by nothing
+
+bool has(std::uint16_t bits, int bit) { return (bits >> bit & 1) != 0; }
+
+std::string unit_of(int metric, const std::string& length_unit) {
+  switch (static_cast<Metric>(metric)) {
+    case Metric::min_length:
+    case Metric::max_length: return length_unit;
+    case Metric::warpage:
+    case Metric::skew:
+    case Metric::min_angle_quad:
+    case Metric::max_angle_quad:
+    case Metric::min_angle_tri:
+    case Metric::max_angle_tri: return "deg";
+    default: return {};
+  }
+}
+
+Result<int> metric_named(const std::string& wanted) {
+  std::vector<std::string_view> known;
+  for (int m = 0; m < kMetricCount; ++m) {
+    known.push_back(mesh::quality::name(static_cast<Metric>(m)));
+    if (known.back() == wanted) return m;
+  }
+  return fail("", "there is no metric \"" + wanted + "\"; the nearest is \"" + std::string(nearest_name(wanted, known)) + "\"");
+}
+
+/// The shells that are looked at: all that are there, or the damaged ones.
+class Shells {
+ public:
+  Shells(const Document& document, bool damaged) : model_(document.current().model) {
+    if (damaged) {
+      listed_ = true;
+      list_ = mesh::document::damaged_shells(*document.opened, document.current());
+    } else if (model_.growth) {
+      listed_ = true;
+      for (std::size_t s = 0; s < model_.shell_count(); ++s)
+        if (!model_.is_removed(ShellIndex(s))) list_.push_back(ShellIndex(s));
+    }
+  }
+  std::size_t size() const { return listed_ ? list_.size() : model_.shell_count(); }
+  std::size_t operator[](std::size_t i) const { return listed_ ? list_[i].value : i; }
+  void measure(std::size_t begin, std::size_t end, std::span<Values> out) const {
+    if (listed_)
+      mesh::quality::measure_shells(model_, std::span(list_).subspan(begin, end - begin), out);
+    else
+      mesh::quality::measure_range(model_, begin, end, out);
+  }
+  mesh::ShellSet range(std::size_t begin, std::size_t end) const {
+    mesh::ShellSet shells;
+    for (std::size_t i = begin; i < end; ++i) shells.emplace_back((*this)[i]);
+    return shells;
+  }
+
+ private:
+  const mesh::Model& model_;
+  bool listed_ = false;
+  mesh::ShellSet list_;
+};
+
+/// How far a value lies beyond its limits: 0 at the one that warns, 1 at the one that fails, and on; whatever the metric's unit. What has
+/// one limit only counts from the other end by its size.
+double severity(double value, const Threshold& limit) {
+  const auto beyond = [](double v, double warn, double failing) {
+    if (!std::isfinite(warn) && !std::isfinite(failing)) return 0.0;
+    if (!std::isfinite(failing)) return v > warn ? 0.5 : 0.0;
+    if (!std::isfinite(warn) || !(failing > warn)) warn = failing - std::max(std::abs(failing), 1e-30);
+    return std::max(0.0, (v - warn) / (failing - warn));
+  };
+  return std::max(beyond(value, limit.warn_high, limit.fail_high), beyond(-value, -limit.warn_low, -limit.fail_low));
+}
+
+struct Wrong {
+  std::size_t shell = 0;
+  int metric = -1;  ///< a metric, or a defect's bit
+  float value = 0;
+  double severity = 0;
+  bool fails = false;
+};
+bool worse(const Wrong& a, const Wrong& b) {
+  if (a.fails != b.fails) return a.fails;
+  if (a.severity != b.severity) return a.severity > b.severity;
+  return a.shell < b.shell;
+}
+
+struct PartSum {
+  std::uint64_t shells = 0, warn = 0, fail = 0;
+  double sum = 0;
+  double least = 1;
+};
+
+/// Figures of a range of shells; ranges are added in order, so sums don't depend on the number of threads.
+struct Figures {
+  std::array<std::uint64_t, kStateBits> warn{}, fail{};
+  std::vector<Wrong> wrong;
+  std::map<std::uint32_t, PartSum> parts;
+
+  void add(Figures&& next) {
+    for (std::size_t bit = 0; bit < warn.size(); ++bit) {
+      warn[bit] += next.warn[bit];
+      fail[bit] += next.fail[bit];
+    }
+    wrong.insert(wrong.end(), next.wrong.begin(), next.wrong.end());
+    for (const auto& [part, sum] : next.parts) {
+      PartSum& all = parts[part];
+      all.shells += sum.shells;
+      all.warn += sum.warn;
+      all.fail += sum.fail;
+      all.sum += sum.sum;
+      all.least = std::min(all.least, sum.least);
+    }
+  }
+};
+
+class Gathering {
+ public:
+  Gathering(const Document& document, const ipc::GetQuality& request, int metric)
+      : document_(document), generation_(document.current()), shells_(document, request.damaged), metric_(metric) {
+    if (metric_ >= 0) values_.resize(shells_.size());
+  }
+
+  ipc::Quality figures() {
+    std::vector<Figures> ranges((shells_.size() + kGrain - 1) / kGrain);
+    parallel_for(shells_.size(), kGrain,
+                 [&](std::size_t begin, std::size_t end) { ranges[begin / kGrain] = figures_of_range(begin, end); });
+    Figures all;
+    for (Figures& range : ranges) all.add(std::move(range));
+    ipc::Quality quality;
+    quality.generation = generation_.number;
+    add_metrics(all, quality);
+    add_errors(all, quality);
+    add_parts(all, quality);
+    if (metric_ >= 0) add_bars(quality);
+    return quality;
+  }
+
+ private:
+  Figures figures_of_range(std::size_t begin, std::size_t end) {
+    std::vector<Values> values(end - begin);
+    shells_.measure(begin, end, values);
+    std::vector<float> composites(end - begin);
+    mesh::quality::composites(generation_.model, shells_.range(begin, end), document_.settings.criteria, document_.settings.target_size,
+                              composites);
+    Figures figures;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t shell = shells_[i];
+      const ShellState state = generation_.quality[shell];
+      const Values& measured = values[i - begin];
+      for (int bit = 0; bit < kStateBits; ++bit) {
+        const bool fails = has(state.fail, bit);
+        figures.fail[static_cast<std::size_t>(bit)] += fails;
+        figures.warn[static_cast<std::size_t>(bit)] += !fails && has(state.warn, bit);
+      }
+      if (metric_ >= 0) values_[i] = measured[static_cast<std::size_t>(metric_)];
+      if (const Wrong wrong = worst_of(shell, state, measured); wrong.metric >= 0) figures.wrong.push_back(wrong);
+      PartSum& part = figures.parts[generation_.model.shell_parts[shell].value];
+      const double whole = composites[i - begin];
+      ++part.shells;
+      part.warn += state.grade() == mesh::quality::Grade::warn;
+      part.fail += state.grade() == mesh::quality::Grade::fail;
+      part.sum += whole;
+      part.least = std::min(part.least, whole);
+    }
+    return figures;
+  }
+
+  /// Of the metric that is asked for, or of all.
+  Wrong worst_of(std::size_t shell, ShellState state, const Values& values) const {
+    Wrong worst;
+    for (const Defect defect : mesh::quality::kDefects)
+      if (metric_ < 0 && state.has(defect)) worst = {shell, static_cast<int>(defect), 0, std::numeric_limits<double>::infinity(), true};
+    const bool triangle = generation_.model.shell_nodes[shell].is_triangle();
+    for (int m = 0; m < kMetricCount; ++m) {
+      // A shell that is none has no values to speak of.
+      if (state.has_defect() || !has(state.warn, m) || (metric_ >= 0 && m != metric_)) continue;
+      const auto at = static_cast<std::size_t>(m);
+      const Wrong candidate{shell, m, values[at], severity(values[at], limits_of(m, triangle)), has(state.fail, m)};
+      if (worst.metric < 0 || worse(candidate, worst)) worst = candidate;
+    }
+    return worst;
+  }
+
+  void add_metrics(const Figures& all, ipc::Quality& quality) const {
+    for (int m = 0; m < kMetricCount; ++m)
+      quality.metrics.push_back({std::string(mesh::quality::name(static_cast<Metric>(m))), unit(m), all.warn[static_cast<std::size_t>(m)],
+                                 all.fail[static_cast<std::size_t>(m)]});
+    for (const Defect defect : mesh::quality::kDefects)
+      quality.metrics.push_back({std::string(name(defect)), "", 0, all.fail[static_cast<std::size_t>(defect)]});
+  }
+
+  void add_errors(Figures& all, ipc::Quality& quality) const {
+    quality.error_count = all.wrong.size();
+    const auto most = static_cast<std::ptrdiff_t>(std::min(all.wrong.size(), ipc::kMostQualityErrors));
+    std::partial_sort(all.wrong.begin(), all.wrong.begin() + most, all.wrong.end(), worse);
+    all.wrong.resize(static_cast<std::size_t>(most));
+    for (const Wrong& wrong : all.wrong) {
+      ipc::QualityError error;
+      error.shell = generation_.model.shell_ids[wrong.shell];
+      error.fail = wrong.fails;
+      if (wrong.metric < kMetricCount) {
+        error.metric = mesh::quality::name(static_cast<Metric>(wrong.metric));
+        error.unit = unit(wrong.metric);
+        if (std::isfinite(wrong.value)) error.value = wrong.value;
+      } else {
+        error.metric = name(static_cast<Defect>(wrong.metric));
+      }
+      error.at = centre(wrong.shell);
+      quality.errors.push_back(std::move(error));
+    }
+  }
+
+  void add_parts(const Figures& all, ipc::Quality& quality) const {
+    for (const auto& [index, sum] : all.parts) {
+      if (!mesh::PartIndex(index).valid()) continue;
+      quality.parts.push_back(
+          {(*generation_.model.parts)[index].id, sum.shells, sum.warn, sum.fail, sum.sum / static_cast<double>(sum.shells), sum.least});
+    }
+  }
+
+  void add_bars(ipc::Quality& quality) const {
+    quality.metric = mesh::quality::name(static_cast<Metric>(metric_));
+    std::vector<float> sorted;
+    for (const float value : values_)
+      if (!std::isnan(value)) sorted.push_back(value);
+    if (sorted.empty()) return;
+    const auto nth = [&](std::size_t n) {
+      std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n), sorted.end());
+      return static_cast<double>(sorted[n]);
+    };
+    const auto tail = static_cast<std::size_t>(kTail * static_cast<double>(sorted.size()));
+    const double least = nth(0), most = nth(sorted.size() - 1);
+    double low = nth(tail), high = nth(sorted.size() - 1 - tail);
+    // What warns and fails shall be seen as far as there is any of it, but a value of a million shall not push all others into one bar.
+    const Threshold limit = limits_of(metric_, metric_ == int(Metric::min_angle_tri) || metric_ == int(Metric::max_angle_tri));
+    const double reach = 0.25;
+    if (std::isfinite(limit.fail_high)) high = std::min(std::max(high, limit.fail_high * (1 + reach)), most);
+    if (std::isfinite(limit.fail_low)) low = std::max(std::min(low, limit.fail_low * (1 - reach)), least);
+    if (!(high > low)) high = low + std::max(1e-6, std::abs(low) * 1e-3);
+    quality.bars.resize(kBars);
+    for (std::size_t b = 0; b < kBars; ++b) {
+      quality.bars[b].from = low + (high - low) * static_cast<double>(b) / kBars;
+      quality.bars[b].to = low + (high - low) * static_cast<double>(b + 1) / kBars;
+    }
+    quality.bars.front().open_below = least < low;
+    quality.bars.back().open_above = true;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const double value = values_[i];
+      if (std::isnan(value)) continue;
+      const double share = std::clamp((value - low) / (high - low), 0.0, 1.0);
+      auto b = std::min(static_cast<std::size_t>(share * kBars), kBars - 1);
+      // By the bars' own ends, so that who asks for a bar's shells gets as many as it says.
+      while (b > 0 && value < quality.bars[b].from) --b;
+      while (b + 1 < kBars && value >= quality.bars[b].to) ++b;
+      const ShellState state = generation_.quality[shells_[i]];
+      ipc::QualityBar& bar = quality.bars[b];
+      ++(has(state.fail, metric_) ? bar.fail : has(state.warn, metric_) ? bar.warn : bar.ok);
+    }
+  }
+
+  /// As the criteria file has them, for this target size.
+  Threshold limits_of(int metric, bool triangle) const {
+    const mesh::quality::Criteria& criteria = document_.settings.criteria;
+    Threshold limits = (triangle ? criteria.triangle : criteria.quad)[static_cast<std::size_t>(metric)];
+    if (metric != int(Metric::min_length) && metric != int(Metric::max_length)) return limits;
+    for (float* limit : {&limits.warn_low, &limits.warn_high, &limits.fail_low, &limits.fail_high})
+      *limit *= static_cast<float>(document_.settings.target_size);
+    return limits;
+  }
+
+  std::string unit(int metric) const { return unit_of(metric, std::string(mesh::name(document_.settings.length_unit))); }
+
+  std::array<double, 3> centre(std::size_t shell) const {
+    const mesh::ShellNodes& nodes = generation_.model.shell_nodes[shell];
+    mesh::Vec3 sum = mesh::Vec3::Zero();
+    for (int corner = 0; corner < nodes.corners(); ++corner)
+      sum += generation_.model.position(nodes.node[static_cast<std::size_t>(corner)]) / nodes.corners();
+    return sum.allFinite() ? std::array<double, 3>{sum.x(), sum.y(), sum.z()} : std::array<double, 3>{};
+  }
+
+  const Document& document_;
+  const Generation& generation_;
+  Shells shells_;
+  int metric_ = -1;
+  std::vector<float> values_;
+};
+
+}  // namespace
+
+Result<ipc::Quality> quality_figures(const Document& document, const ipc::GetQuality& request) {
+  int metric = -1;
+  if (!request.metric.empty()) {
+    const Result<int> named = metric_named(request.metric);
+    if (!named) return fail(named.error());
+    metric = *named;
+  }
+  return Gathering(document, request, metric).figures();
+}
+
+Result<ipc::ShellsFound> find_shells(const Document& document, const ipc::FindShells& request) {
+  const Result<int> metric = metric_named(request.metric);
+  if (!metric) return fail(metric.error());
+  const Shells shells(document, request.damaged);
+  std::vector<Values> values(shells.size());
+  parallel_for(shells.size(), kGrain,
+               [&](std::size_t begin, std::size_t end) { shells.measure(begin, end, std::span(values).subspan(begin, end - begin)); });
+  std::vector<std::int64_t> ids;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = values[i][static_cast<std::size_t>(*metric)];
+    if (std::isnan(value) || (request.from && value < *request.from) || (request.to && !(value < *request.to))) continue;
+    ids.push_back(document.current().model.shell_ids[shells[i]]);
+  }
+  ipc::ShellsFound found;
+  found.shells = ids.size();
+  if (!ids.empty()) found.expr = mesh::select::to_expression(std::move(ids));
+  return found;
+}
+
+}  // namespace prismesh::modeld
