@@ -44,7 +44,7 @@ class Drag {
   std::vector<Vec3> positions_;
   std::vector<std::array<std::int32_t, 4>> corners_;  ///< of shells_: >= 0 index into nodes(), < 0: ~index into fixed_
   std::vector<Vec3> fixed_;
-  std::vector<float> thickness_;  ///< of shells_
+  std::vector<quality::Sheet> sheets_;  ///< of shells_
   std::vector<quality::ShellState> states_;
   quality::Counts counts_elsewhere_;  ///< of the shells that don't change
   quality::Counts counts_;

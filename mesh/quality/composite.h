@@ -1,12 +1,18 @@
 // One figure for an element and for a part: how far it is from failing. Definition: docs/quality/README.md.
 #pragma once
 
+#include <span>
+
 #include "mesh/quality/criteria.h"
 
 namespace prismesh::mesh::quality {
 
-/// 1: ideal by every metric the criteria judge; 0: at the fail limit of the worst one; below 0 it fails, down to -1. An element with a
-/// defect (Defect) has -1. Never NaN. `thickness` as in judge().
-float composite(const Values& values, const Criteria& criteria, double target_size, double thickness = 0);
+/// 1: ideal by every metric the criteria judge; 0: at the fail limit of the worst one; below 0 it fails, the worse the nearer to -1. An
+/// element with a defect (Defect) has -1, nothing else has. Never NaN. `sheet` as in judge(). Metrics without a fail limit don't count.
+float composite(const Values& values, const Criteria& criteria, double target_size, const Sheet& sheet = {});
+
+/// The same of shells of a model, measured in batches; `out` has one entry each. Removed shells have 1. Of shells given by points:
+/// judge_points().
+void composites(const Model& model, std::span<const ShellIndex> shells, const Criteria& criteria, double target_size, std::span<float> out);
 
 }  // namespace prismesh::mesh::quality

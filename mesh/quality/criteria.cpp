@@ -1,81 +1,42 @@
 #include "mesh/quality/criteria.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 
 #include "base/file.h"
 #include "mesh/quality/default_text.h"
 #include "mesh/quality/judging.h"
+#include "mesh/quality/time_step.h"
 
 namespace prismesh::mesh::quality {
 
-namespace {
-
-Threshold scaled(const Threshold& threshold, double by) {
-  const auto scale = [by](float limit) { return static_cast<float>(limit * by); };
-  return {scale(threshold.warn_low), scale(threshold.warn_high), scale(threshold.fail_low), scale(threshold.fail_high)};
-}
-
-bool is_length(int metric) { return metric == int(Metric::min_length) || metric == int(Metric::max_length); }
-
-/// Bit `metric` of each lane that lies outside.
-void mark_outside(const float* value, std::size_t lanes, float lowest, float highest, int metric, std::uint16_t* bits) {
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const unsigned outside = unsigned(value[lane] < lowest) | unsigned(value[lane] > highest);
-    bits[lane] = static_cast<std::uint16_t>(bits[lane] | (outside << metric));
+std::string_view name(Defect defect) {
+  switch (defect) {
+    case Defect::not_finite: return "not_finite";
+    case Defect::repeated_node: return "repeated_node";
+    case Defect::no_area: break;
   }
+  return "no_area";
 }
 
-void mark_thin(const BatchValues& values, std::size_t lanes, float factor, const float* thickness, std::uint16_t* bits) {
-  constexpr int kMetric = int(Metric::min_length);
-  for (std::size_t lane = 0; lane < lanes; ++lane)
-    if (values.value[kMetric][lane] < factor * thickness[lane]) bits[lane] = static_cast<std::uint16_t>(bits[lane] | (1u << kMetric));
+Sheet sheet_of(const Model& model, ShellIndex shell) {
+  const PartIndex part = model.shell_parts[shell.value];
+  const double speed = part.valid() ? wave_speed((*model.parts)[part.value]).value_or(0.0) : 0.0;
+  return {thickness_of(model, shell.value), speed};
 }
 
-}  // namespace
-
-Limits limits_for(const Criteria& criteria, double target_size) {
-  Limits limits;
-  for (int m = 0; m < kMetricCount; ++m) {
-    const double by = is_length(m) ? target_size : 1.0;
-    limits.quad[m] = scaled(criteria.quad[m], by);
-    limits.triangle[m] = scaled(criteria.triangle[m], by);
-  }
-  limits.warn_thicknesses = criteria.warn_min_length_thicknesses;
-  limits.fail_thicknesses = criteria.fail_min_length_thicknesses;
-  return limits;
-}
-
-void judge_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const float* thickness, ShellState* out) {
-  std::uint16_t warn[kLanes] = {}, failed[kLanes] = {};
-  // a batch is of one shape, and warpage applies to quads only
-  const auto& thresholds = std::isnan(values.value[int(Metric::warpage)][0]) ? limits.triangle : limits.quad;
-  for (int m = 0; m < kMetricCount; ++m) {
-    const Threshold& t = thresholds[m];
-    mark_outside(values.value[m], count, t.warn_low, t.warn_high, m, warn);
-    mark_outside(values.value[m], count, t.fail_low, t.fail_high, m, failed);
-  }
-  if (thickness != nullptr) {
-    mark_thin(values, count, limits.warn_thicknesses, thickness, warn);
-    mark_thin(values, count, limits.fail_thicknesses, thickness, failed);
-  }
-  for (std::size_t lane = 0; lane < count; ++lane) out[lane] = {static_cast<std::uint16_t>(warn[lane] | failed[lane]), failed[lane]};
-}
-
-ShellState judge(const Values& values, const Criteria& criteria, double target_size, double thickness) {
-  BatchValues batch;
-  for (int m = 0; m < kMetricCount; ++m) batch.value[m][0] = values[m];
-  const float lane_thickness = static_cast<float>(thickness);
+ShellState judge(const Values& values, const Criteria& criteria, double target_size, const Sheet& sheet) {
+  const BatchValues batch = batch_of(values);
+  const Limits limits = limits_for(criteria, target_size);
   ShellState state;
-  judge_lanes(batch, 1, limits_for(criteria, target_size), &lane_thickness, &state);
+  judge_lanes(batch, 1, limits, limits.need_sheets() ? &sheet : nullptr, &state);
   return state;
 }
 
 void judge_points(std::span<const Vec3> moving, std::span<const Vec3> fixed, std::span<const std::array<std::int32_t, 4>> corners,
-                  std::span<const float> thickness, const Criteria& criteria, double target_size, std::span<ShellState> out) {
+                  std::span<const Sheet> sheets, const Criteria& criteria, double target_size, std::span<ShellState> out,
+                  std::span<float> composites) {
   const Limits limits = limits_for(criteria, target_size);
-  const bool by_thickness = limits.needs_thickness() && !thickness.empty();
+  const bool by_sheet = limits.need_sheets() && !sheets.empty();
   measure_in_batches(
       corners.size(),
       [&](std::size_t i, const Vec3*(&corner)[4]) {
@@ -83,15 +44,20 @@ void judge_points(std::span<const Vec3> moving, std::span<const Vec3> fixed, std
           const std::int32_t at = corners[i][c];
           corner[c] = at >= 0 ? &moving[static_cast<std::size_t>(at)] : &fixed[static_cast<std::uint32_t>(~at)];
         }
-        return corners[i][3] == corners[i][2];
+        return corners[i][3] == corners[i][2] ? Shape::triangle : Shape::quad;
       },
       [&](const ShellBatch& batch, const BatchValues& values) {
         ShellState states[kLanes];
-        float lane_thickness[kLanes] = {};
-        if (by_thickness)
-          for (std::size_t lane = 0; lane < batch.count; ++lane) lane_thickness[lane] = thickness[batch.slot[lane]];
-        judge_lanes(values, batch.count, limits, by_thickness ? lane_thickness : nullptr, states);
+        Sheet room[kLanes];
+        if (by_sheet)
+          for (std::size_t lane = 0; lane < batch.count; ++lane) room[lane] = sheets[batch.slot[lane]];
+        const Sheet* lane_sheets = by_sheet ? room : nullptr;
+        judge_lanes(values, batch.count, limits, lane_sheets, states);
         for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = states[lane];
+        if (composites.empty()) return;
+        float rated[kLanes];
+        rate_lanes(values, batch.count, limits, lane_sheets, rated);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) composites[batch.slot[lane]] = rated[lane];
       });
 }
 

@@ -1,9 +1,8 @@
 #include "mesh/quality/mass.h"
 
 #include <array>
+#include <cmath>
 #include <vector>
-
-#include <Eigen/Geometry>
 
 #include <Eigen/Geometry>
 
@@ -48,6 +47,7 @@ Weight weigh_shell(const Model& model, ShellIndex shell) {
   for (std::size_t c = 0; c < 4; ++c) p[c] = model.position(nodes.node[c]);
   const double first = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
   const double second = 0.5 * (p[2] - p[0]).cross(p[3] - p[0]).norm();
+  if (!std::isfinite(first + second)) return {};
   const double surface_density = *density * thickness;
   return {surface_density * (first + second), surface_density / 3.0 * (first * (p[0] + p[1] + p[2]) + second * (p[0] + p[2] + p[3])), 1};
 }

@@ -31,24 +31,33 @@ bool low_is_worse(int metric) {
   }
 }
 
-void tally(Counts& counts, Grade grade, std::ptrdiff_t by) {
+void tally(Counts& counts, ShellState state, std::ptrdiff_t by) {
+  if (state.is_removed()) return;
+  const Grade grade = state.grade();
   std::size_t& count = grade == Grade::fail ? counts.fail : grade == Grade::warn ? counts.warn : counts.ok;
   count += static_cast<std::size_t>(by);
 }
 
-/// Measures and judges shells `shell_of(i)`, i in [0, count); `sink(i, state, values, lane)`.
+/// Measures and judges shells `shell_of(i)`, i in [0, count), without removed ones; `sink(batch, values, states, sheets)`.
 template <class ShellOf, class Sink>
-void judge_shells(const Model& model, const Limits& limits, std::size_t count, const ShellOf& shell_of, const Sink& sink) {
+void judge_batches(const Model& model, const Limits& limits, std::size_t count, const ShellOf& shell_of, const Sink& sink) {
   measure_in_batches(
       count, [&](std::size_t i, const Vec3*(&corner)[4]) { return corners_of(model, shell_of(i), corner); },
       [&](const ShellBatch& batch, const BatchValues& values) {
         ShellState states[kLanes];
-        float thickness[kLanes] = {};
-        if (limits.needs_thickness())
-          for (std::size_t lane = 0; lane < batch.count; ++lane) thickness[lane] = thickness_of(model, shell_of(batch.slot[lane]));
-        judge_lanes(values, batch.count, limits, limits.needs_thickness() ? thickness : nullptr, states);
-        for (std::size_t lane = 0; lane < batch.count; ++lane) sink(batch.slot[lane], states[lane], values, lane);
+        Sheet room[kLanes];
+        const Sheet* sheets = sheets_of(model, limits, batch, shell_of, room);
+        judge_lanes(values, batch.count, limits, sheets, states);
+        sink(batch, values, states, sheets);
       });
+}
+
+/// Only the states, into out[i].
+template <class ShellOf>
+void judge_shells(const Model& model, const Limits& limits, std::size_t count, const ShellOf& shell_of, std::span<ShellState> out) {
+  judge_batches(model, limits, count, shell_of, [&](const ShellBatch& batch, const BatchValues&, const ShellState* states, const Sheet*) {
+    for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = states[lane];
+  });
 }
 
 /// Figures of one range of shells; ranges are added in order, so sums don't depend on the number of threads.
@@ -60,6 +69,18 @@ struct Partial {
   Vec3 moment = Vec3::Zero();
   bool has_mass = false;
   double added_mass = 0;
+  double composite_sum = 0;
+
+  void add_shell(const Model& model, std::size_t shell, const Values& values, ShellState state, float composite) {
+    ++report.elements;
+    triangles += model.shell_nodes[shell].is_triangle();
+    tally(report.counts, state, 1);
+    report.least_composite = std::min<double>(report.least_composite, composite);
+    composite_sum += composite;
+    for (std::size_t d = 0; d < kDefectCount; ++d) report.defects[d] += state.has(kDefects[d]);
+    if (state.has_defect()) return;
+    for (int m = 0; m < kMetricCount; ++m) add_metric(m, values[m], ShellIndex(shell), state);
+  }
 
   void add_metric(int m, float value, ShellIndex shell, ShellState state) {
     if (std::isnan(value)) return;
@@ -81,6 +102,9 @@ struct Partial {
     report.counts.warn += next.report.counts.warn;
     report.counts.fail += next.report.counts.fail;
     triangles += next.triangles;
+    report.least_composite = std::min(report.least_composite, next.report.least_composite);
+    composite_sum += next.composite_sum;
+    for (std::size_t d = 0; d < kDefectCount; ++d) report.defects[d] += next.report.defects[d];
     for (int m = 0; m < kMetricCount; ++m) add_summary(m, next);
     mass += next.mass;
     moment += next.moment;
@@ -136,21 +160,33 @@ Partial figures_of_range(const Model& model, const Limits& limits, const TimeSte
                          const ShellSet* shells) {
   const auto shell_of = [&](std::size_t i) { return shells != nullptr ? (*shells)[begin + i].value : begin + i; };
   std::vector<Values> values(end - begin);
-  std::vector<ShellState> states(end - begin);
-  judge_shells(model, limits, end - begin, shell_of, [&](std::size_t i, ShellState state, const BatchValues& batch, std::size_t lane) {
-    values[i] = batch.at(lane);
-    states[i] = state;
-  });
+  std::vector<ShellState> states(end - begin, ShellState::removed());
+  std::vector<float> composites(end - begin, 1.0F);
+  judge_batches(model, limits, end - begin, shell_of,
+                [&](const ShellBatch& batch, const BatchValues& measured, const ShellState* judged, const Sheet* sheets) {
+                  float rated[kLanes];
+                  rate_lanes(measured, batch.count, limits, sheets, rated);
+                  for (std::size_t lane = 0; lane < batch.count; ++lane) {
+                    values[batch.slot[lane]] = measured.at(lane);
+                    states[batch.slot[lane]] = judged[lane];
+                    composites[batch.slot[lane]] = rated[lane];
+                  }
+                });
   Partial partial;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t shell = shell_of(i);
-    ++partial.report.elements;
-    partial.triangles += model.shell_nodes[shell].is_triangle();
-    tally(partial.report.counts, states[i].grade(), 1);
-    for (int m = 0; m < kMetricCount; ++m) partial.add_metric(m, values[i][m], ShellIndex(shell), states[i]);
-    weigh(model, control, shell, partial);
+    if (states[i].is_removed()) continue;
+    partial.add_shell(model, shell_of(i), values[i], states[i], composites[i]);
+    if (!states[i].has(Defect::not_finite)) weigh(model, control, shell_of(i), partial);
   }
   return partial;
+}
+
+/// Gives the states the model's size; returns how many shells they have told of before. New ones count as removed until they are judged.
+std::size_t fit(ChunkedArray<ShellState>& states, std::size_t shells, Counts& counts) {
+  const std::size_t known = std::min(states.size(), shells);
+  for (std::size_t s = shells; s < states.size(); ++s) tally(counts, states[s], -1);
+  if (states.size() != shells) states.resize(shells, ShellState::removed());
+  return known;
 }
 
 /// Length with two significant digits.
@@ -164,39 +200,41 @@ double rounded_to_two_digits(double value) {
 }  // namespace
 
 ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteria, double target_size) {
-  ChunkedArray<ShellState> states(model.shell_count());
+  ChunkedArray<ShellState> states(model.shell_count(), ShellState::removed());
   const Limits limits = limits_for(criteria, target_size);
   parallel_for(model.shell_count(), kGrain, [&](std::size_t begin, std::size_t end) {
     const std::span<ShellState> out = states.own_chunk(begin / kGrain);
     judge_shells(
-        model, limits, end - begin, [&](std::size_t i) { return begin + i; },
-        [&](std::size_t i, ShellState state, const BatchValues&, std::size_t) { out[i] = state; });
+        model, limits, end - begin, [&](std::size_t i) { return begin + i; }, out);
   });
   return states;
 }
 
 void rejudge(const Model& model, const Criteria& criteria, double target_size, const ShellSet& shells, ChunkedArray<ShellState>& states,
              Counts& counts) {
+  const std::size_t known = fit(states, model.shell_count(), counts);
+  ShellSet dirty(shells.begin(), std::lower_bound(shells.begin(), shells.end(), ShellIndex(known)));
+  for (std::size_t s = known; s < model.shell_count(); ++s) dirty.emplace_back(s);
+
   const Limits limits = limits_for(criteria, target_size);
-  std::vector<ShellState> fresh(shells.size());
-  parallel_for(shells.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<ShellState> fresh(dirty.size(), ShellState::removed());
+  parallel_for(dirty.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     judge_shells(
-        model, limits, end - begin, [&](std::size_t i) { return shells[begin + i].value; },
-        [&](std::size_t i, ShellState state, const BatchValues&, std::size_t) { fresh[begin + i] = state; });
+        model, limits, end - begin, [&](std::size_t i) { return dirty[begin + i].value; }, std::span(fresh).subspan(begin, end - begin));
   });
-  for (std::size_t i = 0; i < shells.size(); ++i) {
-    const ShellState old = states[shells[i].value];
+  for (std::size_t i = 0; i < dirty.size(); ++i) {
+    const ShellState old = states[dirty[i].value];
     if (old == fresh[i]) continue;  // an unchanged chunk stays shared
-    tally(counts, old.grade(), -1);
-    tally(counts, fresh[i].grade(), 1);
-    states.set(shells[i].value, fresh[i]);
+    tally(counts, old, -1);
+    tally(counts, fresh[i], 1);
+    states.set(dirty[i].value, fresh[i]);
   }
 }
 
 Counts count(const ChunkedArray<ShellState>& states) {
   Counts counts;
   for (std::size_t c = 0; c < states.chunk_count(); ++c)
-    for (const ShellState state : states.chunk(c)) tally(counts, state.grade(), 1);
+    for (const ShellState state : states.chunk(c)) tally(counts, state, 1);
   return counts;
 }
 
@@ -213,6 +251,7 @@ Report report(const Model& model, const Criteria& criteria, double target_size, 
   Report& report = all.report;
   for (int m = 0; m < kMetricCount; ++m)
     if (report.metrics[m].measured > 0) report.metrics[m].mean = all.sum[m] / static_cast<double>(report.metrics[m].measured);
+  if (report.elements > 0) report.mean_composite = all.composite_sum / static_cast<double>(report.elements);
   if (report.elements > 0) report.triangles_percent = 100.0 * static_cast<double>(all.triangles) / static_cast<double>(report.elements);
   if (all.has_mass) report.mass = all.mass;
   if (all.mass > 0) report.centre_of_gravity = all.moment / all.mass;
@@ -228,6 +267,7 @@ double guess_target_size(const Model& model) {
       for (std::size_t e = adjacency.edge_first[low]; e < adjacency.edge_first[low + 1]; ++e)
         lengths[e] = static_cast<float>((model.position(adjacency.edge_high[e]) - model.positions[low]).norm());
   });
+  std::erase_if(lengths, [](float length) { return !std::isfinite(length); });
   if (lengths.empty()) return 1.0;
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
   std::nth_element(lengths.begin(), middle, lengths.end());

@@ -15,16 +15,16 @@ struct Counts {
   bool operator==(const Counts&) const = default;
 };
 
-/// State of every shell.
+/// State of every shell; a removed one has ShellState::removed().
 ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteria, double target_size);
-/// Re-judges only the given shells; `counts` follows.
+/// Re-judges only the given shells, and those that were added since `states` was made; `counts` follows. Removed shells count no more.
 void rejudge(const Model& model, const Criteria& criteria, double target_size, const ShellSet& shells, ChunkedArray<ShellState>& states,
              Counts& counts);
-Counts count(const ChunkedArray<ShellState>& states);
+Counts count(const ChunkedArray<ShellState>& states);  ///< without removed shells
 
 struct MetricSummary {
   double min = 0, mean = 0, max = 0;
-  std::size_t measured = 0;        ///< shells the metric applies to
+  std::size_t measured = 0;        ///< shells the metric applies to, without those that have a defect
   std::size_t warn = 0, fail = 0;  ///< a shell counts in one of them
   std::optional<ShellIndex> worst;
 };
@@ -37,6 +37,9 @@ struct Report {
   Counts counts;
   double triangles_percent = 0;
   std::array<MetricSummary, kMetricCount> metrics;
+  std::array<std::size_t, kDefectCount> defects{};  ///< by kDefects; a shell may have several
+  double least_composite = 1;                       ///< mesh/quality/composite.h; 1 without shells
+  double mean_composite = 1;
   std::optional<double> mass;             ///< of the shells whose thickness and density are known; absent if none is
   std::optional<Vec3> centre_of_gravity;  ///< of that mass
   std::optional<TimeStep> time_step;      ///< the smallest, with TSSFAC, before any mass scaling

@@ -22,9 +22,15 @@ struct ShellBatch {
   std::size_t padded() const { return (count + 7) / 8 * 8; }
 };
 
+/// What defects do to the values, so that they can be told from them: a shell that isn't finite has none, one with corners at one
+/// place has exactly this aspect, one without area exactly this skew, and no other shell has.
+inline constexpr float kRepeatedAspect = 1e9F;
+inline constexpr float kNoAreaSkew = 90.0F;
+
 /// Metrics lane by lane, indexed by Metric; those that don't apply are NaN.
 struct BatchValues {
   alignas(64) float value[kMetricCount][kLanes];
+  bool of_triangles = false;
 
   Values at(std::size_t lane) const {
     Values values;
@@ -33,12 +39,24 @@ struct BatchValues {
   }
 };
 
+/// One shell's values in the first lane, as they came from there. A shell without any counts as a triangle:
+/// it has a defect anyhow.
+inline BatchValues batch_of(const Values& values) {
+  BatchValues batch;
+  for (int m = 0; m < kMetricCount; ++m) batch.value[m][0] = values[m];
+  const float warpage = values[int(Metric::warpage)];
+  batch.of_triangles = !(warpage == warpage);  // it applies to quads only
+  return batch;
+}
+
 /// All metrics of a batch. The same bits for a shell whatever its lane, its neighbours and the processor.
 void measure_quads(const ShellBatch& batch, BatchValues& values);
 void measure_triangles(const ShellBatch& batch, BatchValues& values);
 
-/// Measures `count` shells: `corners(i, corner)` returns, for shell i, its four corner positions as pointers in `corner`
-/// and whether it is a triangle; `sink(batch, values)` gets every full batch and the rests.
+enum class Shape : std::uint8_t { quad, triangle, none };
+
+/// Measures `count` shells: `corners(i, corner)` puts the four corner positions of shell i into `corner` as pointers and returns its
+/// shape; one without (it was removed) is passed over. `sink(batch, values)` gets every full batch and the rests.
 template <class CornersOf, class Sink>
 void measure_in_batches(std::size_t count, const CornersOf& corners, const Sink& sink) {
   ShellBatch quads, triangles;
@@ -55,7 +73,9 @@ void measure_in_batches(std::size_t count, const CornersOf& corners, const Sink&
   };
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3* corner[4];
-    const bool is_triangle = corners(i, corner);
+    const Shape shape = corners(i, corner);
+    if (shape == Shape::none) continue;
+    const bool is_triangle = shape == Shape::triangle;
     ShellBatch& batch = is_triangle ? triangles : quads;
     const std::size_t lane = batch.count++;
     batch.slot[lane] = static_cast<std::uint32_t>(i);
@@ -73,10 +93,11 @@ void measure_in_batches(std::size_t count, const CornersOf& corners, const Sink&
 }
 
 /// Corner positions of a model's shell, for measure_in_batches.
-inline bool corners_of(const Model& model, std::size_t shell, const Vec3* (&corner)[4]) {
+inline Shape corners_of(const Model& model, std::size_t shell, const Vec3* (&corner)[4]) {
   const ShellNodes& nodes = model.shell_nodes[shell];
+  if (!nodes.node[0].valid()) return Shape::none;
   for (std::size_t c = 0; c < 4; ++c) corner[c] = &model.position(nodes.node[c]);
-  return nodes.is_triangle();
+  return nodes.is_triangle() ? Shape::triangle : Shape::quad;
 }
 
 }  // namespace prismesh::mesh::quality

@@ -11,7 +11,9 @@
 namespace prismesh::mesh::quality::kernels {
 
 inline constexpr float kNotApplicable = std::numeric_limits<float>::quiet_NaN();
-inline constexpr double kWorstAspect = 1e9;
+inline constexpr double kWorstAspect = 999999936.0;         ///< the float below kRepeatedAspect
+inline constexpr double kWorstSkew = 89.99999237060546875;  ///< the float below kNoAreaSkew
+inline constexpr double kLargest2 = 1e76;                   ///< squared lengths beyond it aren't finite as figures
 /// Added to divisors that may be zero; far below any product of lengths that means something.
 inline constexpr double kTiny = 1e-300;
 
@@ -71,6 +73,7 @@ PRISMESH_INLINE double corner_turn(Vector before, Vector after, double area, dou
 }
 
 PRISMESH_INLINE void quads(const ShellBatch& batch, BatchValues& values) {
+  values.of_triangles = false;
   constexpr double kGauss = 0.57735026918962576;  // 1 / sqrt 3
   const std::size_t lanes = batch.padded();
   for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -85,46 +88,56 @@ PRISMESH_INLINE void quads(const ShellBatch& batch, BatchValues& values) {
     const double a0 = norm(n0), a1 = norm(n1), a2 = norm(n2), a3 = norm(n3), area = norm(whole);
     const double j0 = dot(n0, whole), j1 = dot(n1, whole), j2 = dot(n2, whole), j3 = dot(n3, whole);
 
+    const bool finite = l0 + l1 + l2 + l3 < kLargest2;  // no for NaN
     const double no_plane = 1e-10 * longest2;
-    const bool has_area = area > no_plane;
-    const bool has_edges = shortest2 > 1e-24 * longest2 && longest2 > kTiny;
+    // folded onto itself: its sides cross, so that two corners are turned in
+    const double turned_in = -1e-10 * area * longest2;
+    const int inward = int(j0 < turned_in) + int(j1 < turned_in) + int(j2 < turned_in) + int(j3 < turned_in);
+    const bool has_area = (area > no_plane) & (inward < 2);
+    const Vector d0 = p2 - p0, d1 = p3 - p1;
+    const double closest2 = low(shortest2, low(dot(d0, d0), dot(d1, d1)));
+    const bool has_edges = (closest2 > 1e-24 * longest2) & (longest2 > kTiny);
+    const auto put = [&](Metric metric, double value) {
+      values.value[int(metric)][lane] = finite ? static_cast<float>(value) : kNotApplicable;
+    };
 
     const double folded = low(fold(n1, n3, a1, a3, no_plane), fold(n0, n2, a0, a2, no_plane));
     const double warpage = degrees(folded);
-    values.value[int(Metric::warpage)][lane] = static_cast<float>(has_area ? warpage : 180.0);
+    put(Metric::warpage, has_area ? warpage : 180.0);
 
     const double aspect = longest / (shortest + kTiny);
-    values.value[int(Metric::aspect)][lane] = static_cast<float>(has_edges ? low(aspect, kWorstAspect) : kWorstAspect);
+    put(Metric::aspect, has_edges ? low(aspect, kWorstAspect) : double{kRepeatedAspect});
 
     const double askew = 90.0 - degrees(turn(__builtin_fabs(dot(e0 - e2, e1 - e3)), 2.0 * area));
-    values.value[int(Metric::skew)][lane] = static_cast<float>(has_area ? askew : 90.0);
+    put(Metric::skew, has_area ? low(askew, kWorstSkew) : double{kNoAreaSkew});
 
     // the determinant runs linearly over the quad, so the Gauss points follow from the corners
     const double mean = j0 + j1 + j2 + j3;
     const double spread = kGauss * (__builtin_fabs(j1 + j2 - j0 - j3) + __builtin_fabs(j2 + j3 - j0 - j1));
     const double jacobian = (mean - spread) / (mean + spread + kTiny);
-    values.value[int(Metric::jacobian)][lane] = static_cast<float>(has_area ? jacobian : -1.0);
+    put(Metric::jacobian, has_area ? jacobian : -1.0);
 
     const double smallest =
         low(__builtin_copysign(a0, j0), __builtin_copysign(a1, j1), __builtin_copysign(a2, j2), __builtin_copysign(a3, j3));
     const double taper = 1.0 - 2.0 * smallest / (area + kTiny);
-    values.value[int(Metric::taper)][lane] = static_cast<float>(has_area ? high(low(taper, 2.0), 0.0) : 2.0);
+    put(Metric::taper, has_area ? high(low(taper, 2.0), 0.0) : 2.0);
 
     const double t0 = corner_turn(e3, e0, a0, j0), t1 = corner_turn(e0, e1, a1, j1);
     const double t2 = corner_turn(e1, e2, a2, j2), t3 = corner_turn(e2, e3, a3, j3);
     const double widest = low(t0, t1, t2, t3);
     const double narrow = degrees(high(t0, t1, t2, t3));
     const double wide = widest < -1.0 ? 360.0 - degrees(-2.0 - widest) : degrees(widest);
-    values.value[int(Metric::min_angle_quad)][lane] = static_cast<float>(has_edges ? narrow : 0.0);
-    values.value[int(Metric::max_angle_quad)][lane] = static_cast<float>(has_edges ? wide : 360.0);
+    put(Metric::min_angle_quad, has_edges ? narrow : 0.0);
+    put(Metric::max_angle_quad, has_edges ? wide : 360.0);
     values.value[int(Metric::min_angle_tri)][lane] = kNotApplicable;
     values.value[int(Metric::max_angle_tri)][lane] = kNotApplicable;
-    values.value[int(Metric::min_length)][lane] = static_cast<float>(shortest);
-    values.value[int(Metric::max_length)][lane] = static_cast<float>(longest);
+    put(Metric::min_length, shortest);
+    put(Metric::max_length, longest);
   }
 }
 
 PRISMESH_INLINE void triangles(const ShellBatch& batch, BatchValues& values) {
+  values.of_triangles = true;
   const std::size_t lanes = batch.padded();
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const Vector p0 = point(batch, 0, lane), p1 = point(batch, 1, lane), p2 = point(batch, 2, lane);
@@ -137,25 +150,29 @@ PRISMESH_INLINE void triangles(const ShellBatch& batch, BatchValues& values) {
     // half the difference of two sides' squares: median times side, without its sine, which is `area` for all three
     const double m0 = l0 - l2, m1 = l1 - l0, m2 = l2 - l1;
 
+    const bool finite = l0 + l1 + l2 < kLargest2;  // no for NaN
     const bool has_area = area > 1e-10 * longest2;
-    const bool has_edges = shortest2 > 1e-24 * longest2 && longest2 > kTiny;
+    const bool has_edges = (shortest2 > 1e-24 * longest2) & (longest2 > kTiny);
+    const auto put = [&](Metric metric, double value) {
+      values.value[int(metric)][lane] = finite ? static_cast<float>(value) : kNotApplicable;
+    };
 
     values.value[int(Metric::warpage)][lane] = kNotApplicable;
     const double aspect = longest / (shortest + kTiny);
-    values.value[int(Metric::aspect)][lane] = static_cast<float>(has_edges ? low(aspect, kWorstAspect) : kWorstAspect);
+    put(Metric::aspect, has_edges ? low(aspect, kWorstAspect) : double{kRepeatedAspect});
     const double flattest = 0.5 * high(high(__builtin_fabs(m0), __builtin_fabs(m1)), __builtin_fabs(m2));
     const double askew = 90.0 - degrees(turn(flattest, area));
-    values.value[int(Metric::skew)][lane] = static_cast<float>(has_area ? askew : 90.0);
+    put(Metric::skew, has_area ? low(askew, kWorstSkew) : double{kNoAreaSkew});
     values.value[int(Metric::jacobian)][lane] = kNotApplicable;
     values.value[int(Metric::taper)][lane] = kNotApplicable;
     values.value[int(Metric::min_angle_quad)][lane] = kNotApplicable;
     values.value[int(Metric::max_angle_quad)][lane] = kNotApplicable;
     const double narrow = degrees(turn(high(high(c0, c1), c2), area));
     const double wide = degrees(turn(low(low(c0, c1), c2), area));
-    values.value[int(Metric::min_angle_tri)][lane] = static_cast<float>(has_edges ? narrow : 0.0);
-    values.value[int(Metric::max_angle_tri)][lane] = static_cast<float>(has_edges ? wide : 180.0);
-    values.value[int(Metric::min_length)][lane] = static_cast<float>(area / (longest + kTiny));
-    values.value[int(Metric::max_length)][lane] = static_cast<float>(longest);
+    put(Metric::min_angle_tri, has_edges ? narrow : 0.0);
+    put(Metric::max_angle_tri, has_edges ? wide : 180.0);
+    put(Metric::min_length, area / (longest + kTiny));
+    put(Metric::max_length, longest);
   }
 }
 

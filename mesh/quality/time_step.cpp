@@ -25,13 +25,19 @@ double characteristic_length(std::span<const Vec3> corners, int shell_option) {
   return over(longest);
 }
 
-std::optional<double> shell_time_step(const Part& part, std::span<const Vec3> corners, int shell_option) {
+std::optional<double> wave_speed(const Part& part) {
   if (!part.limits_time_step || !part.youngs_modulus || !part.density || !part.poissons_ratio) return std::nullopt;
   const double plane = *part.density * (1.0 - *part.poissons_ratio * *part.poissons_ratio);
   if (!(*part.youngs_modulus > 0) || !(plane > 0)) return std::nullopt;
+  return std::sqrt(*part.youngs_modulus / plane);
+}
+
+std::optional<double> shell_time_step(const Part& part, std::span<const Vec3> corners, int shell_option) {
+  const std::optional<double> speed = wave_speed(part);
+  if (!speed) return std::nullopt;
   const double length = characteristic_length(corners, shell_option);
   if (!(length > 0)) return std::nullopt;
-  return length / std::sqrt(*part.youngs_modulus / plane);
+  return length / *speed;
 }
 
 }  // namespace prismesh::mesh::quality

@@ -13,6 +13,10 @@ namespace prismesh::mesh::quality {
 /// Source: LS-DYNA theory manual, "Time step size control".
 double characteristic_length(std::span<const Vec3> corners, int shell_option);
 
+/// The plate wave speed sqrt(E / (rho (1 - nu^2))) in a part's material, deck's units. Absent if the material is unknown or doesn't limit
+/// the step (rigid, null).
+std::optional<double> wave_speed(const Part& part);
+
 /// Characteristic length over the plate wave speed sqrt(E / (rho (1 - nu^2))), without TSSFAC, in the deck's time unit. Absent if
 /// the part's material is unknown or doesn't limit the step (rigid, null), or the shell has no area.
 std::optional<double> shell_time_step(const Part& part, std::span<const Vec3> corners, int shell_option);

@@ -78,7 +78,7 @@ TEST(Criteria, the_default_has_the_thresholds_it_documents) {
 TEST(Criteria, a_metric_that_is_not_named_is_not_judged) {
   Values values = good_quad();
   values[int(Metric::warpage)] = 170;
-  values[int(Metric::aspect)] = 1e9f;
+  values[int(Metric::aspect)] = 1e8f;
   EXPECT_EQ(judge(values, parsed("[metrics.skew]\nfail_above = 40"), 10.0), ShellState());
 }
 
@@ -145,13 +145,13 @@ TEST(Criteria, points_are_judged_as_shells_are) {
     fixed.emplace_back(anywhere(random), anywhere(random), 0.2 * anywhere(random));
   }
   std::vector<std::array<std::int32_t, 4>> corners;
-  std::vector<float> thickness;
+  std::vector<Sheet> thickness;
   std::uniform_int_distribution<std::int32_t> pick(-60, 59);
   for (int s = 0; s < 500; ++s) {
     std::array<std::int32_t, 4> c = {pick(random), pick(random), pick(random), pick(random)};
     if (s % 3 == 0) c[3] = c[2];
     corners.push_back(c);
-    thickness.push_back(static_cast<float>(anywhere(random)));
+    thickness.emplace_back(anywhere(random));
   }
   const Criteria criteria = parsed("[metrics.min_length]\nfail_below_thicknesses = 0.5\n[metrics.aspect]\nwarn_above = 2\n");
   std::vector<ShellState> states(corners.size());

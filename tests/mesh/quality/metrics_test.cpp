@@ -24,7 +24,7 @@ struct Shape {
   Values expected;  ///< warpage aspect skew jacobian taper | min max angle quad | min max angle tri | min max length
 };
 
-// Every figure is worked out by hand from the definitions in docs/metrics.md.
+// Every figure is worked out by hand from the definitions in docs/quality/metrics.md.
 const std::vector<Shape>& shapes() {
   static const std::vector<Shape> all = {
       {"unit square", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {0, 1, 0, 1, 0, 90, 90, kNone, kNone, 1, 1}},

@@ -1,0 +1,32 @@
+#include "mesh/quality/composite.h"
+
+#include <algorithm>
+
+#include "mesh/quality/judging.h"
+
+namespace prismesh::mesh::quality {
+
+float composite(const Values& values, const Criteria& criteria, double target_size, const Sheet& sheet) {
+  const BatchValues batch = batch_of(values);
+  const Limits limits = limits_for(criteria, target_size);
+  float rated = 0;
+  rate_lanes(batch, 1, limits, limits.need_sheets() ? &sheet : nullptr, &rated);
+  return rated;
+}
+
+void composites(const Model& model, std::span<const ShellIndex> shells, const Criteria& criteria, double target_size,
+                std::span<float> out) {
+  const Limits limits = limits_for(criteria, target_size);
+  const auto shell_of = [&](std::size_t i) { return shells[i].value; };
+  std::fill(out.begin(), out.end(), 1.0F);
+  measure_in_batches(
+      shells.size(), [&](std::size_t i, const Vec3*(&corner)[4]) { return corners_of(model, shell_of(i), corner); },
+      [&](const ShellBatch& batch, const BatchValues& values) {
+        Sheet room[kLanes];
+        float rated[kLanes];
+        rate_lanes(values, batch.count, limits, sheets_of(model, limits, batch, shell_of, room), rated);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = rated[lane];
+      });
+}
+
+}  // namespace prismesh::mesh::quality

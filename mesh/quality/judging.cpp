@@ -1,0 +1,155 @@
+#include "mesh/quality/judging.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prismesh::mesh::quality {
+
+namespace {
+
+constexpr int kMinLength = int(Metric::min_length);
+constexpr float kWorstWithoutDefect = -0.99999994F;  ///< the float above -1
+
+Threshold scaled(const Threshold& threshold, double by) {
+  const auto scale = [by](float limit) { return static_cast<float>(limit * by); };
+  return {scale(threshold.warn_low), scale(threshold.warn_high), scale(threshold.fail_low), scale(threshold.fail_high)};
+}
+
+bool is_length(int metric) { return metric == kMinLength || metric == int(Metric::max_length); }
+
+/// What an element of the target size has that is a square or an equilateral triangle.
+float ideal(Metric metric, bool of_triangle, double target_size) {
+  switch (metric) {
+    case Metric::warpage:
+    case Metric::skew:
+    case Metric::taper: return 0;
+    case Metric::aspect:
+    case Metric::jacobian: return 1;
+    case Metric::min_angle_quad:
+    case Metric::max_angle_quad: return 90;
+    case Metric::min_angle_tri:
+    case Metric::max_angle_tri: return 60;
+    case Metric::min_length: return static_cast<float>(of_triangle ? 0.8660254037844386 * target_size : target_size);
+    case Metric::max_length: break;
+  }
+  return static_cast<float>(target_size);
+}
+
+/// How far it is from a limit to the ideal; where a file's limit leaves no way, a twentieth of it.
+float span_of(float limit, float best) { return std::max(std::abs(best - limit), std::max(0.05F * std::abs(limit), 1e-30F)); }
+
+ShapeLimits shape_limits(const std::array<Threshold, kMetricCount>& thresholds, bool of_triangle, double target_size) {
+  ShapeLimits shape;
+  for (int m = 0; m < kMetricCount; ++m) {
+    const Threshold& t = shape.threshold[m] = scaled(thresholds[m], is_length(m) ? target_size : 1.0);
+    const float best = ideal(static_cast<Metric>(m), of_triangle, target_size);
+    if (std::isfinite(t.fail_low))
+      shape.side[m][0] = {t.fail_low, best > t.fail_low ? 1 / span_of(t.fail_low, best) : 1 / span_of(t.fail_low, t.fail_low)};
+    if (std::isfinite(t.fail_high))
+      shape.side[m][1] = {t.fail_high, best < t.fail_high ? -1 / span_of(t.fail_high, best) : -1 / span_of(t.fail_high, t.fail_high)};
+  }
+  shape.ideal_min_length = ideal(Metric::min_length, of_triangle, target_size);
+  return shape;
+}
+
+/// Bit `metric` of each lane that lies outside.
+void mark_outside(const float* value, std::size_t lanes, float lowest, float highest, int metric, std::uint16_t* bits) {
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const unsigned outside = unsigned(value[lane] < lowest) | unsigned(value[lane] > highest);
+    bits[lane] = static_cast<std::uint16_t>(bits[lane] | (outside << metric));
+  }
+}
+
+void mark_short(const float* value, std::size_t lanes, const float* least, std::uint16_t* bits) {
+  for (std::size_t lane = 0; lane < lanes; ++lane)
+    bits[lane] = static_cast<std::uint16_t>(bits[lane] | (unsigned(value[lane] < least[lane]) << kMinLength));
+}
+
+/// Defects show in the values (shell_batch.h).
+unsigned defects(const BatchValues& values, std::size_t lane) {
+  const float aspect = values.value[int(Metric::aspect)][lane];
+  const float skew = values.value[int(Metric::skew)][lane];
+  return unsigned(!(aspect == aspect)) << int(Defect::not_finite) | unsigned(aspect == kRepeatedAspect) << int(Defect::repeated_node) |
+         unsigned(skew == kNoAreaSkew) << int(Defect::no_area);
+}
+
+}  // namespace
+
+Limits limits_for(const Criteria& criteria, double target_size) {
+  Limits limits;
+  limits.quad = shape_limits(criteria.quad, false, target_size);
+  limits.triangle = shape_limits(criteria.triangle, true, target_size);
+  limits.warn_thicknesses = criteria.warn_min_length_thicknesses;
+  limits.fail_thicknesses = criteria.fail_min_length_thicknesses;
+  limits.warn_step = static_cast<float>(criteria.warn_time_step / criteria.time_step_scale);
+  limits.fail_step = static_cast<float>(criteria.fail_time_step / criteria.time_step_scale);
+  return limits;
+}
+
+void least_lengths(const ShapeLimits& shape, const Limits& limits, const Sheet* sheets, std::size_t count, float* warn, float* fail) {
+  const Threshold& t = shape.threshold[kMinLength];
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const Sheet& sheet = sheets[lane];
+    const auto least = [&](float fraction, float step, float thicknesses) {
+      const float length = step > 0 && sheet.wave_speed > 0 ? step * sheet.wave_speed : fraction;
+      return thicknesses > 0 ? std::max(length, thicknesses * sheet.thickness) : length;
+    };
+    warn[lane] = least(t.warn_low, limits.warn_step, limits.warn_thicknesses);
+    fail[lane] = least(t.fail_low, limits.fail_step, limits.fail_thicknesses);
+  }
+}
+
+void judge_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const Sheet* sheets, ShellState* out) {
+  std::uint16_t warn[kLanes] = {}, failed[kLanes] = {};
+  const ShapeLimits& shape = limits.of(values);
+  for (int m = 0; m < kMetricCount; ++m) {
+    Threshold t = shape.threshold[m];
+    if (m == kMinLength && sheets != nullptr) {
+      float least_warn[kLanes], least_fail[kLanes];
+      least_lengths(shape, limits, sheets, count, least_warn, least_fail);
+      mark_short(values.value[m], count, least_warn, warn);
+      mark_short(values.value[m], count, least_fail, failed);
+      t.warn_low = t.fail_low = -std::numeric_limits<float>::infinity();
+    }
+    mark_outside(values.value[m], count, t.warn_low, t.warn_high, m, warn);
+    mark_outside(values.value[m], count, t.fail_low, t.fail_high, m, failed);
+  }
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const auto fail = static_cast<std::uint16_t>(failed[lane] | defects(values, lane));
+    out[lane] = {static_cast<std::uint16_t>(warn[lane] | fail), fail};
+  }
+}
+
+void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const Sheet* sheets, float* out) {
+  const ShapeLimits& shape = limits.of(values);
+  for (std::size_t lane = 0; lane < count; ++lane) out[lane] = 1;
+  // a metric that doesn't apply is NaN, and so is its score: no less than anything
+  const auto take = [&](const float* value, const Side& side) {
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      const float score = (value[lane] - side.limit) * side.per;
+      out[lane] = score < out[lane] ? score : out[lane];
+    }
+  };
+  for (int m = 0; m < kMetricCount; ++m) {
+    if (m == kMinLength && sheets != nullptr) {
+      float warn[kLanes], least[kLanes];
+      least_lengths(shape, limits, sheets, count, warn, least);
+      for (std::size_t lane = 0; lane < count; ++lane) {
+        if (!std::isfinite(least[lane])) continue;
+        const float best = std::max(shape.ideal_min_length, least[lane]);
+        const float score = (values.value[m][lane] - least[lane]) / span_of(least[lane], best);
+        out[lane] = score < out[lane] ? score : out[lane];
+      }
+    } else if (shape.side[m][0].per != 0) {
+      take(values.value[m], shape.side[m][0]);
+    }
+    if (shape.side[m][1].per != 0) take(values.value[m], shape.side[m][1]);
+  }
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    // what fails goes towards -1 without reaching it, so that of two bad shells the better one is known
+    const float score = out[lane] < 0 ? out[lane] / (1 - out[lane]) : out[lane];
+    out[lane] = defects(values, lane) != 0 ? -1.0F : std::max(score, kWorstWithoutDefect);
+  }
+}
+
+}  // namespace prismesh::mesh::quality
