@@ -1,0 +1,227 @@
+#include "mesh/repair/appraisal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "mesh/quality/shell_batch.h"
+
+namespace prismesh::mesh::repair {
+
+namespace {
+
+// How things are weighed against each other: curing a failing shell is worth a pair of triangles, curing a warning isn't.
+constexpr double kFailing = 3, kWarning = 1, kTriangle = 0.2, kTrianglePair = 0.8, kImperfect = 0.15;
+
+double weight_of(float composite, quality::ShellState state) {
+  if (state.fail != 0) return kFailing * (1 - static_cast<double>(composite));
+  return (state.warn != 0 ? kWarning : 0) + kImperfect * (1 - static_cast<double>(composite));
+}
+
+void weigh(Burden& burden, const PatchShell& shell) {
+  burden.weight += weight_of(shell.composite, shell.state);
+  burden.worst = std::min(burden.worst, shell.composite);
+  burden.failing += shell.state.fail != 0 ? 1 : 0;
+  burden.warning += shell.state.fail == 0 && shell.state.warn != 0 ? 1 : 0;
+  burden.triangles += corner_count(shell.corners) == 3 ? 1 : 0;
+}
+
+bool is_changed(const Patch& patch, const std::vector<LocalShell>& changed, LocalShell shell) {
+  if (patch.is_new_since_begin(shell)) return true;
+  return std::find(changed.begin(), changed.end(), shell) != changed.end();
+}
+
+/// Edges between two triangles, one of which at least is in the list; `changed` names the list's shells in the patch.
+int triangle_pairs(const Patch& patch, const std::vector<Corners>& list, const std::vector<LocalShell>& changed) {
+  std::vector<std::pair<LocalNode, LocalNode>> edges;
+  int with_others = 0;
+  for (const Corners& corners : list) {
+    if (corner_count(corners) != 3) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(corners[i], corners[(i + 1) % 3]);
+      edges.emplace_back(low, high);
+      for (const LocalShell other : patch.shells_at(low, high))
+        if (corner_count(patch.shell(other).corners) == 3 && !is_changed(patch, changed, other)) ++with_others;
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  int among = 0;
+  for (std::size_t i = 1; i < edges.size(); ++i) among += edges[i] == edges[i - 1] ? 1 : 0;
+  return among + with_others;
+}
+
+void finish(Burden& burden) { burden.weight += kTriangle * burden.triangles + kTrianglePair * burden.triangle_pairs; }
+
+std::vector<LocalShell> old_list(const Patch& patch) {
+  std::vector<LocalShell> list;
+  for (const auto& [shell, was] : patch.old_shells()) list.push_back(shell);
+  return list;
+}
+
+bool is_sound(const Patch& patch, LocalShell shell) {
+  const Corners& corners = patch.shell(shell).corners;
+  const int count = corner_count(corners);
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < i; ++j)
+      if (corners[static_cast<std::size_t>(i)] == corners[static_cast<std::size_t>(j)]) return false;
+  // A shell on the same nodes has three of them in common with this one's first.
+  for (const LocalShell other : patch.node(corners[0]).shells) {
+    if (other == shell) continue;
+    int common = 0;
+    const Corners& theirs = patch.shell(other).corners;
+    for (int i = 0; i < count; ++i)
+      common += std::find(theirs.begin(), theirs.end(), corners[static_cast<std::size_t>(i)]) != theirs.end() ? 1 : 0;
+    if (common == count || common >= 3) return false;
+  }
+  return true;
+}
+
+/// The direction in which a shell leaves an edge, square to it.
+Vec3 leaving(const Patch& patch, LocalShell shell, const Vec3& a, const Vec3& b) {
+  const Corners& corners = patch.shell(shell).corners;
+  const int count = corner_count(corners);
+  Vec3 centre = Vec3::Zero();
+  for (int i = 0; i < count; ++i) centre += patch.position(corners[static_cast<std::size_t>(i)]);
+  const Vec3 along = b - a, out = centre / count - 0.5 * (a + b);
+  const double length2 = along.squaredNorm();
+  return length2 > 0 ? Vec3(out - along * (out.dot(along) / length2)) : out;
+}
+
+bool edge_conforms(const Patch& patch, LocalNode a, LocalNode b) {
+  const std::vector<LocalShell> shells = patch.shells_at(a, b);
+  const LineEnd* line = patch.line(a, b);
+  if (shells.size() != (line != nullptr ? line->shells : 2U)) return false;
+  if (shells.size() != 2) return true;
+  const Vec3 first = leaving(patch, shells[0], patch.position(a), patch.position(b));
+  const Vec3 second = leaving(patch, shells[1], patch.position(a), patch.position(b));
+  const double size = std::sqrt(first.squaredNorm() * second.squaredNorm());
+  // A crease may be sharp, a sheet may not be folded onto itself.
+  return first.dot(second) < (line != nullptr ? 0.9 : 0.3) * size;
+}
+
+template <class PositionOf>
+Vec3 area_normal_of(const Corners& corners, const PositionOf& at) {
+  const bool is_triangle = corner_count(corners) == 3;
+  const Vec3 across = at(corners[is_triangle ? 1 : 2]) - at(corners[0]);
+  return across.cross(is_triangle ? Vec3(at(corners[2]) - at(corners[0])) : Vec3(at(corners[3]) - at(corners[1])));
+}
+
+template <class PositionOf>
+double farthest_off(const Site& site, const std::vector<Corners>& list, const PositionOf& at) {
+  double farthest = 0;
+  const auto look = [&](const Vec3& point, const Vec3& normal, double size) {
+    const auto place = site.surface.project(point, size, normal);
+    farthest = std::max(farthest, place ? place->distance : size);
+  };
+  for (const Corners& corners : list) {
+    const int count = corner_count(corners);
+    Vec3 centre = Vec3::Zero();
+    for (int i = 0; i < count; ++i) centre += at(corners[static_cast<std::size_t>(i)]) / count;
+    const Vec3 normal = area_normal_of(corners, at);
+    const double size = 2 * site.judge.target_size;
+    for (int i = 0; i < count; ++i) {
+      const LocalNode a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>((i + 1) % count)];
+      if (a < b && site.patch.line(a, b) == nullptr) look(0.5 * (at(a) + at(b)), normal, size);
+    }
+    if (count == 4) look(centre, normal, size);
+  }
+  return farthest;
+}
+
+}  // namespace
+
+void judge_shells(const Site& site, std::span<const LocalShell> shells) {
+  Patch& patch = site.patch;
+  quality::measure_in_batches(
+      shells.size(),
+      [&](std::size_t i, const Vec3*(&corner)[4]) {
+        const Corners& corners = patch.shell(shells[i]).corners;
+        for (std::size_t c = 0; c < 4; ++c) corner[c] = &patch.position(corners[c]);
+        return corner_count(corners) == 3 ? quality::Shape::triangle : quality::Shape::quad;
+      },
+      [&](const quality::ShellBatch& batch, const quality::BatchValues& values) {
+        quality::Sheet sheets[quality::kLanes];
+        quality::ShellState states[quality::kLanes];
+        float composites[quality::kLanes];
+        for (std::size_t lane = 0; lane < batch.count; ++lane) sheets[lane] = patch.shell(shells[batch.slot[lane]]).sheet;
+        quality::judge_lanes(values, batch.count, site.limits, sheets, states);
+        quality::rate_lanes(values, batch.count, site.limits, sheets, composites);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) patch.set_judged(shells[batch.slot[lane]], composites[lane], states[lane]);
+      });
+}
+
+Burden burden_before(const Patch& patch) {
+  Burden burden;
+  std::vector<Corners> list;
+  for (const auto& [shell, was] : patch.old_shells()) {
+    weigh(burden, was);
+    list.push_back(was.corners);
+  }
+  burden.triangle_pairs = triangle_pairs(patch, list, old_list(patch));
+  finish(burden);
+  return burden;
+}
+
+Burden burden_now(const Patch& patch) {
+  Burden burden;
+  std::vector<Corners> list;
+  for (const LocalShell shell : patch.changed_shells()) {
+    weigh(burden, patch.shell(shell));
+    list.push_back(patch.shell(shell).corners);
+  }
+  burden.triangle_pairs = triangle_pairs(patch, list, old_list(patch));
+  finish(burden);
+  return burden;
+}
+
+bool conforms(const Patch& patch) {
+  for (const LocalShell shell : patch.changed_shells()) {
+    if (!is_sound(patch, shell)) return false;
+    const Corners& corners = patch.shell(shell).corners;
+    const int count = corner_count(corners);
+    for (int i = 0; i < count; ++i)
+      if (!edge_conforms(patch, corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>((i + 1) % count)])) return false;
+  }
+  return true;
+}
+
+bool harms(const Patch& patch) {
+  int failing_before = 0, failing_now = 0;
+  bool new_one_fails = false;
+  for (const auto& [shell, was] : patch.old_shells()) {
+    failing_before += was.state.fail != 0 ? 1 : 0;
+    if (patch.shell(shell).is_alive && was.state.fail == 0 && patch.shell(shell).state.fail != 0) return true;
+  }
+  for (const LocalShell shell : patch.changed_shells()) {
+    if (patch.shell(shell).state.fail == 0) continue;
+    ++failing_now;
+    new_one_fails = new_one_fails || patch.is_new_since_begin(shell);
+  }
+  return new_one_fails && failing_now >= failing_before;
+}
+
+bool keeps_to_surface(const Site& site) {
+  const Patch& patch = site.patch;
+  std::vector<Corners> now, before;
+  for (const LocalShell shell : patch.changed_shells()) now.push_back(patch.shell(shell).corners);
+  const double allowed = site.options.most_off_surface * site.judge.target_size;
+  const double off = farthest_off(site, now, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
+  if (off <= allowed) return true;
+  for (const auto& [shell, was] : patch.old_shells()) before.push_back(was.corners);
+  return off <= 1.0001 * farthest_off(site, before, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
+}
+
+std::optional<Vec3> on_surface(const Site& site, const Vec3& point, const Vec3& toward, double radius) {
+  const auto place =
+      site.surface.project(point, radius, toward.squaredNorm() > 0 ? std::optional<Vec3>(toward.normalized()) : std::nullopt);
+  if (!place || !place->point.allFinite()) return std::nullopt;
+  return place->point;
+}
+
+Vec3 area_normal(const Patch& patch, const Corners& corners) {
+  return area_normal_of(corners, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
+}
+
+}  // namespace prismesh::mesh::repair

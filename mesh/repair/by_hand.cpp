@@ -1,0 +1,226 @@
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "mesh/model/adjacency.h"
+#include "mesh/repair/operations.h"
+#include "mesh/repair/patch.h"
+#include "mesh/repair/repair.h"
+
+namespace prismesh::mesh::repair {
+
+namespace {
+
+constexpr int kRings = 2;
+
+std::string shell_text(const Model& model, ShellIndex shell) { return "shell " + std::to_string(model.shell_ids[shell.value]); }
+std::string node_text(const Model& model, NodeIndex node) { return "node " + std::to_string(model.node_ids[node.value]); }
+
+std::string pair_text(const Model& model, std::span<const ShellIndex> shells) {
+  return shell_text(model, shells[0]) + " and " + shell_text(model, shells[1]);
+}
+
+Result<void> refused(const std::string& who, std::string_view why) { return fail("", who + ": " + std::string(why)); }
+
+struct Hand {
+  const Site& site;
+  const Model& model;
+  std::span<const ShellIndex> shells;
+  std::span<const NodeIndex> nodes;
+
+  LocalShell shell(std::size_t i) const { return site.patch.find(shells[i]); }
+
+  Result<void> done(const Refusal& refusal, const std::string& who) const {
+    if (refusal) return refused(who, *refusal);
+    if (!conforms(site.patch)) return refused(who, "the mesh would be torn or folded");
+    return {};
+  }
+};
+
+/// The edge two shells share; none with the reason why.
+Result<std::pair<LocalNode, LocalNode>> common_edge(const Hand& hand) {
+  const Patch& patch = hand.site.patch;
+  const Corners& corners = patch.shell(hand.shell(0)).corners;
+  const int count = corner_count(corners);
+  for (int i = 0; i < count; ++i) {
+    const LocalNode a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>((i + 1) % count)];
+    const std::vector<LocalShell> at = patch.shells_at(a, b);
+    if (std::find(at.begin(), at.end(), hand.shell(1)) != at.end()) return std::pair(a, b);
+  }
+  return fail("", pair_text(hand.model, hand.shells) + " have no edge in common");
+}
+
+/// How far the middle of a quad's diagonal is from the surface.
+double off_surface(const Site& site, LocalNode a, LocalNode b, const Vec3& normal) {
+  const Vec3 middle = 0.5 * (site.patch.position(a) + site.patch.position(b));
+  const double size = (site.patch.position(a) - site.patch.position(b)).norm();
+  const auto place = site.surface.project(middle, size, normal);
+  return place ? place->distance : size;
+}
+
+Result<void> split_one(const Hand& hand) {
+  const Patch& patch = hand.site.patch;
+  const LocalShell quad = hand.shell(0);
+  const Corners c = patch.shell(quad).corners;
+  const std::string who = shell_text(hand.model, hand.shells[0]);
+  if (corner_count(c) != 4) return refused(who, "a triangle has no diagonal; name a neighbour to divide it with");
+  const Vec3 normal = area_normal(patch, c).normalized();
+  const double off0 = off_surface(hand.site, c[0], c[2], normal), off1 = off_surface(hand.site, c[1], c[3], normal);
+  const double noise = 1e-3 * (patch.position(c[0]) - patch.position(c[2])).norm();
+  // The one nearer to the surface; of equals the shorter, whose triangles have the better angles.
+  const bool second = std::abs(off0 - off1) > noise ? off1 < off0
+                                                    : (patch.position(c[1]) - patch.position(c[3])).squaredNorm() <
+                                                          (patch.position(c[0]) - patch.position(c[2])).squaredNorm();
+  return hand.done(split_quad(hand.site, quad, second ? 1 : 0), who);
+}
+
+/// The best of several ways that can be gone: the one whose worst shell is best by its angles.
+template <class Ways>
+Result<void> best_way(const Hand& hand, const std::string& who, const Ways& ways) {
+  Patch& patch = hand.site.patch;
+  std::optional<std::size_t> best;
+  double most = -1;
+  Result<void> why = refused(who, "there is no other way");
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    patch.begin();
+    const Result<void> done = hand.done(ways[i](), who);
+    if (done) {
+      judge_shells(hand.site, patch.changed_shells());
+      const double worst = static_cast<double>(burden_now(patch).worst) + 2;
+      if (worst > most) {
+        most = worst;
+        best = i;
+      }
+    } else {
+      why = done;
+    }
+    patch.take_back();
+  }
+  if (!best) return why;
+  patch.begin();
+  ways[*best]();
+  return {};
+}
+
+Result<void> split_two(const Hand& hand) {
+  const auto edge = common_edge(hand);
+  if (!edge) return fail(edge.error());
+  std::vector<std::function<Refusal()>> ways;
+  for (const RowEnd forward : {RowEnd::low_triangle, RowEnd::high_triangle})
+    for (const RowEnd back : {RowEnd::low_triangle, RowEnd::high_triangle})
+      ways.push_back([&hand, edge = *edge, forward, back] { return divide_edge(hand.site, edge.first, edge.second, forward, back); });
+  return best_way(hand, pair_text(hand.model, hand.shells), ways);
+}
+
+Result<void> collapse(const Hand& hand) {
+  const Patch& patch = hand.site.patch;
+  LocalNode a, b;
+  if (hand.nodes.size() == 2) {
+    a = patch.find(hand.nodes[0]);
+    b = patch.find(hand.nodes[1]);
+    if (patch.shells_at(a, b).empty())
+      return fail("", node_text(hand.model, hand.nodes[0]) + " and " + node_text(hand.model, hand.nodes[1]) + " have no edge between them");
+  } else if (hand.shells.size() == 2) {
+    const auto edge = common_edge(hand);
+    if (!edge) return fail(edge.error());
+    std::tie(a, b) = *edge;
+  } else {
+    const Corners& corners = patch.shell(hand.shell(0)).corners;
+    const int count = corner_count(corners);
+    double shortest = -1;
+    for (int i = 0; i < count; ++i) {
+      const LocalNode c = corners[static_cast<std::size_t>(i)], d = corners[static_cast<std::size_t>((i + 1) % count)];
+      const double length = (patch.position(c) - patch.position(d)).squaredNorm();
+      if (shortest >= 0 && length >= shortest) continue;
+      shortest = length;
+      a = c;
+      b = d;
+    }
+  }
+  const std::string who =
+      "the edge from " + node_text(hand.model, patch.node(a).model) + " to " + node_text(hand.model, patch.node(b).model);
+  const auto pair = union_of(hand.site, a, b);
+  if (!pair) return refused(who, "both nodes hold the part's shape or are needed by something else");
+  return hand.done(unite(hand.site, {*pair}), who);
+}
+
+Result<void> merge(const Hand& hand) {
+  const Patch& patch = hand.site.patch;
+  const std::string who = pair_text(hand.model, hand.shells);
+  if (const auto edge = common_edge(hand); !edge) return fail(edge.error());
+  for (std::size_t i = 0; i < 2; ++i)
+    if (corner_count(patch.shell(hand.shell(i)).corners) != 3)
+      return refused(shell_text(hand.model, hand.shells[i]), "it isn't a triangle");
+  const Loop loop = loop_of(patch, hand.shell(0), hand.shell(1));
+  if (loop.empty()) return refused(who, "they have more than an edge in common");
+  return hand.done(redivide(hand.site, hand.shell(0), hand.shell(1), {loop}), who);
+}
+
+Result<void> swap(const Hand& hand) {
+  if (const auto edge = common_edge(hand); !edge) return fail(edge.error());
+  const Loop loop = loop_of(hand.site.patch, hand.shell(0), hand.shell(1));
+  if (loop.empty()) return refused(pair_text(hand.model, hand.shells), "they have more than an edge in common");
+  std::vector<std::function<Refusal()>> ways;
+  const Corners corners = hand.site.patch.shell(hand.shell(0)).corners;
+  for (const std::vector<Loop>& pieces : divisions(loop, loop.size() == 6 ? 0 : 2)) {
+    if (pieces.size() != 2) continue;
+    // As it is: both pieces are what is there.
+    Loop first(corners.begin(), corners.begin() + corner_count(corners)), piece = pieces[0], other = pieces[1];
+    std::sort(first.begin(), first.end());
+    std::sort(piece.begin(), piece.end());
+    std::sort(other.begin(), other.end());
+    if (first == piece || first == other) continue;
+    ways.push_back([&hand, pieces] { return redivide(hand.site, hand.shell(0), hand.shell(1), pieces); });
+  }
+  return best_way(hand, pair_text(hand.model, hand.shells), ways);
+}
+
+Result<void> carry_out(const Hand& hand, Operation operation) {
+  const bool two = hand.shells.size() == 2;
+  switch (operation) {
+    case Operation::split:
+      if (hand.shells.size() == 1) return split_one(hand);
+      if (two) return split_two(hand);
+      return fail("", "name one quad, or two shells with an edge in common");
+    case Operation::collapse:
+      if (two || hand.shells.size() == 1 || hand.nodes.size() == 2) return collapse(hand);
+      return fail("", "name a shell, two shells with an edge in common, or the two nodes of an edge");
+    case Operation::merge:
+      if (two) return merge(hand);
+      return fail("", "name two triangles with an edge in common");
+    case Operation::swap:
+      if (two) return swap(hand);
+      return fail("", "name two shells with an edge in common");
+    case Operation::move: break;
+  }
+  return fail("", "nodes are moved by translate, lift, slide or rotate");
+}
+
+}  // namespace
+
+Result<Restructuring> by_hand(const Model& model, const relax::ReferenceSurface& surface, Operation operation,
+                              std::span<const ShellIndex> shells, std::span<const NodeIndex> nodes, const Rules& rules,
+                              const Options& options) {
+  ShellSet scope(shells.begin(), shells.end());
+  for (const NodeIndex node : nodes)
+    for (const ShellIndex shell : model.adjacency->shells_of(node)) scope.push_back(shell);
+  std::sort(scope.begin(), scope.end());
+  scope.erase(std::unique(scope.begin(), scope.end()), scope.end());
+  if (scope.empty()) return fail("", "there is no shell");
+  Patch patch(model, scope, kRings, rules, options.relax.feature_angle);
+  double size = 0;
+  for (const ShellIndex shell : scope) {
+    const ShellNodes& corners = model.shell(shell);
+    for (std::size_t i = 0; i < 4; ++i)
+      size = std::max(size, (model.position(corners.node[i]) - model.position(corners.node[(i + 1) % 4])).norm());
+  }
+  const relax::Judge judge{quality::default_criteria(), size};
+  const Site site{patch, surface, judge, options, quality::limits_for(judge.criteria, size)};
+  patch.begin();
+  const Result<void> done = carry_out({site, model, shells, nodes}, operation);
+  if (!done) return fail(done.error());
+  patch.keep();
+  return patch.result();
+}
+
+}  // namespace prismesh::mesh::repair

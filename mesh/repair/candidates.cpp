@@ -1,0 +1,163 @@
+#include "mesh/repair/candidates.h"
+
+#include <algorithm>
+#include <array>
+
+namespace prismesh::mesh::repair {
+
+namespace {
+
+struct EdgeOf {
+  LocalNode a, b;
+};
+
+EdgeOf edge_of(const Corners& corners, int edge) {
+  const int count = corner_count(corners);
+  return {corners[static_cast<std::size_t>(edge % count)], corners[static_cast<std::size_t>((edge + 1) % count)]};
+}
+
+double length_of(const Patch& patch, const EdgeOf& edge) { return (patch.position(edge.a) - patch.position(edge.b)).norm(); }
+
+void add_redivisions(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
+  const Patch& patch = site.patch;
+  const Corners& corners = patch.shell(shell).corners;
+  for (int e = 0; e < corner_count(corners); ++e) {
+    const EdgeOf edge = edge_of(corners, e);
+    if (patch.line(edge.a, edge.b) != nullptr) continue;
+    for (const LocalShell other : patch.shells_at(edge.a, edge.b)) {
+      if (other == shell) continue;
+      const Loop loop = loop_of(patch, shell, other);
+      for (std::vector<Loop>& pieces : divisions(loop, 2)) {
+        const Operation operation = pieces.size() == 1 ? Operation::merge : Operation::swap;
+        found.push_back({operation, [&site, shell, other, pieces = std::move(pieces)] { return redivide(site, shell, other, pieces); }});
+      }
+    }
+  }
+}
+
+void add_union(const Site& site, LocalNode a, LocalNode b, std::vector<Candidate>& found) {
+  if (const auto pair = union_of(site, a, b)) found.push_back({Operation::collapse, [&site, pair = *pair] { return unite(site, {pair}); }});
+}
+
+void add_unions(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
+  const Corners corners = site.patch.shell(shell).corners;
+  const int count = corner_count(corners);
+  double shortest = 1e300, longest = 0;
+  for (int e = 0; e < count; ++e) {
+    shortest = std::min(shortest, length_of(site.patch, edge_of(corners, e)));
+    longest = std::max(longest, length_of(site.patch, edge_of(corners, e)));
+  }
+  for (int e = 0; e < count; ++e) {
+    const EdgeOf edge = edge_of(corners, e);
+    // Only what is short: the others only move trouble elsewhere.
+    if (length_of(site.patch, edge) <= std::max(1.5 * shortest, 0.5 * site.judge.target_size)) add_union(site, edge.a, edge.b, found);
+  }
+  if (count != 4) return;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (length_of(site.patch, {corners[i], corners[i + 2]}) < 0.9 * longest) add_union(site, corners[i], corners[i + 2], found);
+}
+
+/// How many quads from a shell's edge on are worth dividing in one row with it: bad ones, or with long edges across.
+int run_of(const Patch& patch, const Row& start, bool is_forward, double long_edge) {
+  constexpr int kMost = 12;
+  Row row = start;
+  int& length = is_forward ? row.forward : row.back;
+  LocalShell at = start.start;
+  int edge = is_forward ? (start.edge + 2) % 4 : start.edge;
+  for (int run = 0; run < kMost; ++run) {
+    const EdgeOf out = edge_of(patch.shell(at).corners, edge);
+    const std::vector<LocalShell> shells = patch.shells_at(out.a, out.b);
+    if (shells.size() != 2) return run;
+    const LocalShell next = shells[0] == at ? shells[1] : shells[0];
+    const PatchShell& shell = patch.shell(next);
+    if (corner_count(shell.corners) != 4) return run;
+    int entered = 0;
+    for (int e = 0; e < 4; ++e) {
+      const EdgeOf theirs = edge_of(shell.corners, e);
+      if (theirs.a == std::max(out.a, out.b) || theirs.b == std::max(out.a, out.b))
+        if (theirs.a == std::min(out.a, out.b) || theirs.b == std::min(out.a, out.b)) entered = e;
+    }
+    const double beyond = length_of(patch, edge_of(shell.corners, entered + 2));
+    if (shell.state.grade() == quality::Grade::ok && beyond < long_edge) return run;
+    length = run + 1;
+    at = next;
+    edge = (entered + 2) % 4;
+  }
+  return kMost;
+}
+
+void add_row(const Site& site, const Row& row, std::vector<Candidate>& found) {
+  const auto ends = ends_of(site.patch, row);
+  if (!ends) return;
+  const auto ways = [](int corners) -> std::vector<RowEnd> {
+    if (corners == 4) return {RowEnd::low_triangle, RowEnd::high_triangle};
+    if (corners == 3) return {RowEnd::absorb, RowEnd::two_triangles};
+    return {RowEnd::low_triangle};
+  };
+  for (const RowEnd forward : ways(ends->forward_corners))
+    for (const RowEnd back : ways(ends->back_corners)) {
+      Row way = row;
+      way.forward_end = forward;
+      way.back_end = back;
+      found.push_back({Operation::split, [&site, way] { return divide_row(site, way); }});
+    }
+}
+
+void add_rows(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
+  const Patch& patch = site.patch;
+  const Corners& corners = patch.shell(shell).corners;
+  if (corner_count(corners) != 4) return;
+  std::array<double, 4> lengths;
+  for (int e = 0; e < 4; ++e) lengths[static_cast<std::size_t>(e)] = length_of(patch, edge_of(corners, e));
+  for (int direction = 0; direction < 2; ++direction) {
+    const auto d = static_cast<std::size_t>(direction);
+    const double across = 0.5 * (lengths[d] + lengths[d + 2]);
+    // Halves of what is short already are no use.
+    if (across < 0.6 * site.judge.target_size) continue;
+    Row row{shell, direction};
+    const double long_edge = std::max(1.25 * site.judge.target_size, 0.8 * across);
+    const int forward = run_of(patch, row, true, long_edge), back = run_of(patch, row, false, long_edge);
+    std::vector<std::pair<int, int>> lengths_tried = {{forward, back}, {forward + 1, back + 1}, {0, 0}};
+    if (forward + back == 0) lengths_tried.pop_back();
+    for (const auto& [f, b] : lengths_tried) {
+      row.forward = f;
+      row.back = b;
+      add_row(site, row, found);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Candidate> candidates_for(const Site& site, LocalShell shell) {
+  std::vector<Candidate> found;
+  const Patch& patch = site.patch;
+  const Corners corners = patch.shell(shell).corners;
+  const int count = corner_count(corners);
+  add_unions(site, shell, found);
+  add_redivisions(site, shell, found);
+  add_rows(site, shell, found);
+  for (int e = 0; e < count; ++e) {
+    const LocalNode node = corners[static_cast<std::size_t>(e)];
+    if (patch.node(node).lines.empty()) found.push_back({Operation::split, [&site, node] { return divide_about(site, node); }});
+  }
+  if (count == 4) {
+    const double most = site.options.most_off_surface * site.judge.target_size;
+    const auto warped = 1U << static_cast<unsigned>(quality::Metric::warpage);
+    if ((patch.shell(shell).state.warn & warped) != 0)
+      for (std::size_t c = 0; c < 4; ++c)
+        for (const double distance : {most, -most})
+          found.push_back({Operation::move, [&site, node = corners[c], distance] { return lift_node(site, node, distance); }});
+    for (int first = 0; first < 2; ++first)
+      found.push_back({Operation::split, [&site, shell, first] { return split_quad(site, shell, first); }});
+  }
+  return found;
+}
+
+std::vector<Candidate> redivisions_for(const Site& site, LocalShell shell) {
+  std::vector<Candidate> found;
+  add_redivisions(site, shell, found);
+  return found;
+}
+
+}  // namespace prismesh::mesh::repair

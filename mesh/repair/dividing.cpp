@@ -1,0 +1,244 @@
+// Dividing shells in a row or about a node: new nodes on their edges, no hanging nodes at the ends.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "mesh/repair/pieces.h"
+
+namespace prismesh::mesh::repair {
+
+namespace {
+
+using EdgeKey = std::pair<LocalNode, LocalNode>;
+EdgeKey key(LocalNode a, LocalNode b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// New nodes on edges, each made once.
+class EdgeCuts {
+ public:
+  explicit EdgeCuts(const Site& site) : site_(site) {}
+
+  /// The node in the middle of an edge; a refusal is remembered.
+  LocalNode cut(LocalNode a, LocalNode b) {
+    const auto [place, is_new] = cuts_.try_emplace(key(a, b));
+    if (is_new) place->second = make(a, b);
+    return place->second;
+  }
+  const Refusal& refusal() const { return refusal_; }
+
+ private:
+  LocalNode make(LocalNode a, LocalNode b) {
+    Patch& patch = site_.patch;
+    if (!patch.may_divide(a, b)) refusal_ = "no node can come between two nodes there";
+    const Vec3 middle = 0.5 * (patch.position(a) + patch.position(b));
+    const double size = (patch.position(a) - patch.position(b)).norm();
+    const bool is_line = patch.line(a, b) != nullptr;
+    std::optional<Vec3> place;
+    if (is_line)
+      place = site_.surface.project_on_line(middle, 0.5 * size);
+    else if (const auto shells = patch.shells_at(a, b); !shells.empty())
+      place = on_surface(site_, middle, area_normal(patch, patch.shell(shells[0]).corners), size);
+    // A straight edge whose middle isn't near anything known is divided where it is.
+    const LocalNode parents[2] = {std::min(a, b), std::max(a, b)};
+    constexpr double kHalves[2] = {0.5, 0.5};
+    const LocalNode node =
+        patch.add_node(place.value_or(middle), parents, kHalves, is_line ? relax::Freedom::line : relax::Freedom::surface);
+    if (is_line) patch.divide_line(a, b, node);
+    return node;
+  }
+
+  const Site& site_;
+  std::map<EdgeKey, LocalNode> cuts_;
+  Refusal refusal_;
+};
+
+struct EdgeAt {
+  LocalShell shell;
+  std::size_t edge = 0;  ///< from corner `edge` to the next
+};
+
+std::optional<EdgeAt> across(const Patch& patch, const EdgeAt& at, bool& is_end) {
+  const Corners& corners = patch.shell(at.shell).corners;
+  const auto count = static_cast<std::size_t>(corner_count(corners));
+  const LocalNode a = corners[at.edge], b = corners[(at.edge + 1) % count];
+  const std::vector<LocalShell> shells = patch.shells_at(a, b);
+  is_end = shells.size() == 1;
+  if (shells.size() != 2) return std::nullopt;
+  const LocalShell other = shells[0] == at.shell ? shells[1] : shells[0];
+  const Corners& theirs = patch.shell(other).corners;
+  const auto their_count = static_cast<std::size_t>(corner_count(theirs));
+  for (std::size_t e = 0; e < their_count; ++e)
+    if (key(theirs[e], theirs[(e + 1) % their_count]) == key(a, b)) return EdgeAt{other, e};
+  return std::nullopt;
+}
+
+/// The row's quads with the edge by which each is entered, from the start in one direction, and what is beyond.
+struct Walk {
+  std::vector<EdgeAt> quads;
+  std::optional<EdgeAt> beyond;
+};
+
+std::optional<Walk> walk(const Patch& patch, EdgeAt out, int steps) {
+  Walk found;
+  bool is_end = false;
+  for (int step = 0;; ++step) {
+    const std::optional<EdgeAt> next = across(patch, out, is_end);
+    if (!next) {
+      if (!is_end || step < steps) return std::nullopt;
+      return found;
+    }
+    if (step == steps) {
+      found.beyond = next;
+      return found;
+    }
+    if (corner_count(patch.shell(next->shell).corners) != 4) return std::nullopt;
+    found.quads.push_back(*next);
+    out = {next->shell, (next->edge + 2) % 4};
+  }
+}
+
+Refusal end_row(const Site& site, const EdgeAt& at, LocalNode middle, RowEnd end) {
+  Patch& patch = site.patch;
+  const Corners c = patch.shell(at.shell).corners;
+  const Vec3 direction = first_edge(patch, at.shell);
+  const auto count = static_cast<std::size_t>(corner_count(c));
+  const LocalNode a = c[at.edge], b = c[(at.edge + 1) % count], d = c[(at.edge + 2) % count];
+  if (count == 3 && end == RowEnd::absorb) {
+    if (const Refusal refusal = refuse_reshaping(patch, at.shell, 4)) return refusal;
+    patch.set_corners(at.shell, turned_like(patch, {a, middle, b, d}, direction));
+    return std::nullopt;
+  }
+  if (const Refusal refusal = refuse_dividing(patch, at.shell, count)) return refusal;
+  if ((patch.shell(at.shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
+  if (count == 3) {
+    patch.set_corners(at.shell, turned_like(patch, {a, middle, d}, direction));
+    patch.add_shell(turned_like(patch, {middle, b, d}, direction), at.shell);
+    return std::nullopt;
+  }
+  const LocalNode e = c[(at.edge + 3) % count];
+  const bool low = end == RowEnd::low_triangle;
+  const Loop quad = low ? Loop{middle, b, d, e} : Loop{a, middle, d, e};
+  const Loop small = low ? Loop{a, middle, e} : Loop{middle, b, d};
+  patch.set_corners(at.shell, turned_like(patch, quad, direction));
+  patch.add_shell(turned_like(patch, small, direction), at.shell);
+  return std::nullopt;
+}
+
+Refusal divide_quad(const Site& site, const EdgeAt& at, EdgeCuts& cuts) {
+  Patch& patch = site.patch;
+  if (const Refusal refusal = refuse_dividing(patch, at.shell, 4)) return refusal;
+  const Corners c = patch.shell(at.shell).corners;
+  const Vec3 direction = first_edge(patch, at.shell);
+  const LocalNode a = c[at.edge], b = c[(at.edge + 1) % 4], d = c[(at.edge + 2) % 4], e = c[(at.edge + 3) % 4];
+  const LocalNode m = cuts.cut(a, b), n = cuts.cut(d, e);
+  if (cuts.refusal()) return cuts.refusal();
+  patch.set_corners(at.shell, turned_like(patch, {a, m, n, e}, direction));
+  patch.add_shell(turned_like(patch, {m, b, d, n}, direction), at.shell);
+  return std::nullopt;
+}
+
+struct RowWalk {
+  Walk forward, back;
+};
+std::optional<RowWalk> walk_row(const Patch& patch, const Row& row) {
+  const auto edge = static_cast<std::size_t>(row.edge);
+  const auto forward = walk(patch, {row.start, (edge + 2) % 4}, row.forward);
+  const auto back = walk(patch, {row.start, edge}, row.back);
+  if (!forward || !back) return std::nullopt;
+  // A row that runs into itself isn't one.
+  std::vector<LocalShell> all = {row.start};
+  for (const Walk* side : {&*forward, &*back}) {
+    for (const EdgeAt& at : side->quads) all.push_back(at.shell);
+    if (side->beyond) all.push_back(side->beyond->shell);
+  }
+  std::sort(all.begin(), all.end());
+  if (std::adjacent_find(all.begin(), all.end()) != all.end()) return std::nullopt;
+  return RowWalk{*forward, *back};
+}
+
+}  // namespace
+
+std::optional<RowEnds> ends_of(const Patch& patch, const Row& row) {
+  const auto walked = walk_row(patch, row);
+  if (!walked) return std::nullopt;
+  const auto corners = [&](const Walk& side) { return side.beyond ? corner_count(patch.shell(side.beyond->shell).corners) : 0; };
+  return RowEnds{corners(walked->forward), corners(walked->back)};
+}
+
+Refusal divide_row(const Site& site, const Row& row) {
+  Patch& patch = site.patch;
+  if (corner_count(patch.shell(row.start).corners) != 4) return "a row begins with a quad";
+  const auto walked = walk_row(patch, row);
+  if (!walked) return "there is no row of quads";
+  EdgeCuts cuts(site);
+  struct End {
+    EdgeAt at;
+    LocalNode a, b;
+    RowEnd end;
+  };
+  std::vector<End> ends;
+  for (const auto& [side, end] : {std::pair(&walked->forward, row.forward_end), std::pair(&walked->back, row.back_end)}) {
+    if (!side->beyond) continue;
+    const Corners& c = patch.shell(side->beyond->shell).corners;
+    const auto count = static_cast<std::size_t>(corner_count(c));
+    ends.push_back({*side->beyond, c[side->beyond->edge], c[(side->beyond->edge + 1) % count], end});
+  }
+  if (const Refusal refusal = divide_quad(site, {row.start, static_cast<std::size_t>(row.edge)}, cuts)) return refusal;
+  for (const Walk* side : {&walked->forward, &walked->back})
+    for (const EdgeAt& at : side->quads)
+      if (const Refusal refusal = divide_quad(site, at, cuts)) return refusal;
+  for (const End& end : ends)
+    if (const Refusal refusal = end_row(site, end.at, cuts.cut(end.a, end.b), end.end)) return refusal;
+  return cuts.refusal();
+}
+
+Refusal divide_edge(const Site& site, LocalNode a, LocalNode b, RowEnd first_end, RowEnd second_end) {
+  const Patch& patch = site.patch;
+  const std::vector<LocalShell> shells = patch.shells_at(a, b);
+  EdgeCuts cuts(site);
+  const LocalNode middle = cuts.cut(a, b);
+  if (cuts.refusal()) return cuts.refusal();
+  for (std::size_t i = 0; i < shells.size(); ++i) {
+    const Corners& c = patch.shell(shells[i]).corners;
+    const auto count = static_cast<std::size_t>(corner_count(c));
+    std::size_t edge = 0;
+    while (key(c[edge], c[(edge + 1) % count]) != key(a, b)) ++edge;
+    if (const Refusal refusal = end_row(site, {shells[i], edge}, middle, i == 0 ? first_end : second_end)) return refusal;
+  }
+  return std::nullopt;
+}
+
+Refusal divide_about(const Site& site, LocalNode node) {
+  Patch& patch = site.patch;
+  if (!patch.node(node).is_whole) return "the node can't be worked on";
+  const std::vector<LocalShell> shells = patch.node(node).shells;
+  EdgeCuts cuts(site);
+  for (const LocalShell shell : shells) {
+    if (const Refusal refusal = refuse_dividing(patch, shell, static_cast<std::size_t>(corner_count(patch.shell(shell).corners))))
+      return refusal;
+    const Corners c = patch.shell(shell).corners;
+    const auto count = static_cast<std::size_t>(corner_count(c));
+    const auto at = static_cast<std::size_t>(std::find(c.begin(), c.end(), node) - c.begin());
+    const LocalNode next = c[(at + 1) % count], last = c[(at + count - 1) % count];
+    const Vec3 direction = first_edge(patch, shell), normal = area_normal(patch, c);
+    const LocalNode m = cuts.cut(node, next), n = cuts.cut(last, node);
+    if (cuts.refusal()) return cuts.refusal();
+    if (count == 3) {
+      patch.set_corners(shell, turned_like(patch, {node, m, n}, direction));
+      patch.add_shell(turned_like(patch, {m, next, last, n}, direction), shell);
+      continue;
+    }
+    const LocalNode far = c[(at + 2) % 4];
+    const Vec3 middle = 0.25 * (patch.position(node) + patch.position(next) + patch.position(far) + patch.position(last));
+    const double size = (patch.position(node) - patch.position(far)).norm();
+    constexpr double kQuarters[4] = {0.25, 0.25, 0.25, 0.25};
+    const LocalNode parents[4] = {c[0], c[1], c[2], c[3]};
+    const LocalNode p =
+        patch.add_node(on_surface(site, middle, normal, size).value_or(middle), parents, kQuarters, relax::Freedom::surface);
+    patch.set_corners(shell, turned_like(patch, {node, m, p, n}, direction));
+    patch.add_shell(turned_like(patch, {m, next, far, p}, direction), shell);
+    patch.add_shell(turned_like(patch, {p, far, last, n}, direction), shell);
+  }
+  return std::nullopt;
+}
+
+}  // namespace prismesh::mesh::repair

@@ -1,0 +1,237 @@
+#include "mesh/repair/repair.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "mesh/repair/appraisal.h"
+#include "mesh/repair/candidates.h"
+#include "mesh/repair/patch.h"
+
+namespace prismesh::mesh::repair {
+
+namespace {
+
+constexpr int kRings = 4;
+constexpr double kLeastGain = 0.05;
+constexpr int kSweeps = 4;
+
+std::size_t triangles_in(const Model& model) {
+  std::size_t triangles = 0;
+  for (std::size_t c = 0; c < model.shell_nodes.chunk_count(); ++c)
+    for (const ShellNodes& nodes : model.shell_nodes.chunk(c)) triangles += nodes.is_triangle() && nodes.node[0].valid() ? 1 : 0;
+  return triangles;
+}
+
+class Repairer {
+ public:
+  Repairer(const Model& model, const relax::ReferenceSurface& surface, const ShellSet& scope, const Rules& rules, const relax::Judge& judge,
+           const Options& options)
+      : patch_(model, scope, kRings, rules, options.relax.feature_angle),
+        site_{patch_, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)},
+        model_(model) {
+    std::vector<LocalShell> all;
+    for (std::size_t s = 0; s < patch_.shell_count(); ++s) all.push_back(LocalShell(s));
+    judge_shells(site_, all);
+    in_scope_.assign(all.size(), 0);
+    for (const ShellIndex shell : scope)
+      if (const LocalShell local = patch_.find(shell); local.valid()) in_scope_[local.value] = 1;
+    triangles_ = static_cast<long>(triangles_in(model));
+    const auto allowed = static_cast<long>(options.most_triangles_percent / 100 * static_cast<double>(live_shells(model)));
+    most_triangles_ = std::max(allowed, triangles_);
+  }
+
+  Result<Repaired> run(const Progress& progress) {
+    repaired_.bad_before = bad_shells(quality::Grade::warn).size();
+    for (int round = 0; round < site_.options.most_rounds; ++round) {
+      repaired_.rounds = round + 1;
+      bool better = false;
+      // The worst first; warnings when nothing fails that could be cured.
+      for (const quality::Grade least : {quality::Grade::fail, quality::Grade::warn}) {
+        const Result<bool> improved = sweep(least, round, progress);
+        if (!improved) return fail(improved.error());
+        better = better || *improved;
+      }
+      tidy();
+      if (!better) break;
+      const Result<void> relaxed = relax_neighbourhood();
+      if (!relaxed) return fail(relaxed.error());
+    }
+    finish();
+    return std::move(repaired_);
+  }
+
+ private:
+  bool is_in_scope(LocalShell shell) const { return shell.value >= in_scope_.size() || in_scope_[shell.value] != 0; }
+
+  /// Live shells in scope that are at least that bad, the worst first.
+  std::vector<LocalShell> bad_shells(quality::Grade least) const {
+    std::vector<LocalShell> bad;
+    for (std::size_t s = 0; s < patch_.shell_count(); ++s) {
+      const PatchShell& shell = patch_.shell(LocalShell(s));
+      if (shell.is_alive && shell.state.grade() >= least && is_in_scope(LocalShell(s))) bad.push_back(LocalShell(s));
+    }
+    std::stable_sort(bad.begin(), bad.end(),
+                     [&](LocalShell a, LocalShell b) { return patch_.shell(a).composite < patch_.shell(b).composite; });
+    return bad;
+  }
+
+  Result<bool> sweep(quality::Grade least, int round, const Progress& progress) {
+    bool better = false;
+    const std::vector<LocalShell> bad = bad_shells(least);
+    for (std::size_t i = 0; i < bad.size(); ++i) {
+      const PatchShell& shell = patch_.shell(bad[i]);
+      if (!shell.is_alive || shell.state.grade() < least) continue;
+      better = improve(candidates_for(site_, bad[i]), bad[i], false) || better;
+      const double done = (round + static_cast<double>(i) / static_cast<double>(bad.size())) / site_.options.most_rounds;
+      if (progress && i % 16 == 0 && !progress(done)) return fail(cancelled());
+    }
+    return better;
+  }
+
+  /// Triangles that a repair left side by side are joined or moved apart where that makes nothing worse.
+  void tidy() {
+    for (std::size_t s = 0; s < patch_.shell_count(); ++s) {
+      const LocalShell shell(s);
+      if (!patch_.shell(shell).is_alive || !is_touched(shell) || !is_beside_triangle(shell)) continue;
+      improve(redivisions_for(site_, shell), shell, true);
+    }
+  }
+
+  bool is_touched(LocalShell shell) const {
+    return !patch_.shell(shell).model.valid() || (shell.value < touched_.size() && touched_[shell.value] != 0);
+  }
+
+  bool is_beside_triangle(LocalShell shell) const {
+    const Corners& corners = patch_.shell(shell).corners;
+    if (corner_count(corners) != 3) return false;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (const LocalShell other : patch_.shells_at(corners[i], corners[(i + 1) % 3]))
+        if (other != shell && corner_count(patch_.shell(other).corners) == 3) return true;
+    return false;
+  }
+
+  struct Outcome {
+    double gain = 0;
+    std::string_view why;
+    int rank = 0;  ///< how telling the reason is
+  };
+
+  Outcome try_out(const Candidate& candidate, bool only_tidy) {
+    if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
+    judge_shells(site_, patch_.changed_shells());
+    settle(site_, only_tidy ? 2 : kSweeps);
+    judge_shells(site_, patch_.changed_shells());
+    const Burden before = burden_before(patch_), now = burden_now(patch_);
+    const double gain = before.weight - now.weight;
+    if (gain < kLeastGain) return {0, "no operation makes it better", 4};
+    if (only_tidy) {
+      if (now.failing > before.failing || now.warning > before.warning) return {};
+    } else {
+      const bool cures = now.failing + now.warning < before.failing + before.warning;
+      if (now.worst < before.worst + (cures ? -1e-4F : 1e-3F)) return {0, "no operation makes it better", 4};
+    }
+    if (harms(patch_)) return {0, "every operation makes a neighbour fail", 2};
+    if (!conforms(patch_)) return {0, "every operation would tear or fold the mesh", 1};
+    if (now.triangles > before.triangles && triangles_ + now.triangles - before.triangles > most_triangles_)
+      return {0, "there would be too many triangles", 3};
+    if (!keeps_to_surface(site_)) return {0, "every operation leaves the surface", 3};
+    return {gain, {}, 0};
+  }
+
+  /// Carries out the best of the candidates; false: none makes it better.
+  bool improve(const std::vector<Candidate>& candidates, LocalShell shell, bool only_tidy) {
+    const Candidate* best = nullptr;
+    Outcome reason{0, "no operation is possible", -1};
+    double most = 0;
+    for (const Candidate& candidate : candidates) {
+      patch_.begin();
+      const Outcome outcome = try_out(candidate, only_tidy);
+      patch_.take_back();
+      if (outcome.gain > most * 1.0001) {
+        most = outcome.gain;
+        best = &candidate;
+      }
+      if (outcome.rank > reason.rank) reason = outcome;
+    }
+    if (best == nullptr) {
+      if (!only_tidy) why_[shell] = reason.why;
+      return false;
+    }
+    patch_.begin();
+    try_out(*best, only_tidy);
+    triangles_ += burden_now(patch_).triangles - burden_before(patch_).triangles;
+    touched_.resize(std::max(touched_.size(), patch_.shell_count()), 0);
+    for (const LocalShell changed : patch_.changed_shells()) touched_[changed.value] = 1;
+    for (const auto& [changed, was] : patch_.old_shells())
+      if (patch_.shell(changed).is_alive && patch_.shell(changed).state.grade() > was.state.grade() && changed.value < in_scope_.size())
+        in_scope_[changed.value] = 1;
+    patch_.keep();
+    ++repaired_.done[static_cast<std::size_t>(best->operation)];
+    return true;
+  }
+
+  /// Nodes of shells that were changed or are bad, and of those about them.
+  NodeSet movable() const {
+    std::vector<std::uint8_t> near(patch_.node_count(), 0);
+    for (std::size_t s = 0; s < patch_.shell_count(); ++s) {
+      const LocalShell shell(s);
+      if (!patch_.shell(shell).is_alive) continue;
+      if (!is_touched(shell) && (patch_.shell(shell).state.grade() == quality::Grade::ok || !is_in_scope(shell))) continue;
+      for (const LocalNode corner : patch_.shell(shell).corners)
+        for (const LocalShell other : patch_.node(corner).shells)
+          for (const LocalNode node : patch_.shell(other).corners) near[node.value] = 1;
+    }
+    NodeSet nodes;
+    for (std::size_t n = 0; n < near.size(); ++n) {
+      const PatchNode& node = patch_.node(LocalNode(n));
+      if (near[n] != 0 && node.is_alive && node.is_whole && (node.rules & kStays) == 0 && !node.is_off_surface)
+        nodes.push_back(NodeIndex(n));
+    }
+    return nodes;
+  }
+
+  Result<void> relax_neighbourhood() {
+    std::vector<LocalShell> shells;
+    const Model small = patch_.as_model(shells);
+    const Result<relax::Relaxed> relaxed = relax::relax(small, site_.surface, movable(), site_.judge, site_.options.relax);
+    if (!relaxed) return fail(relaxed.error());
+    patch_.begin();
+    for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) patch_.move(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
+    judge_shells(site_, patch_.changed_shells());
+    if (harms(patch_) || !conforms(patch_))
+      patch_.take_back();
+    else
+      patch_.keep();
+    return {};
+  }
+
+  void finish() {
+    std::vector<ShellIndex> index_of;
+    repaired_.change = patch_.result(&index_of);
+    repaired_.relaxed = repaired_.change.moved.size();
+    for (const LocalShell shell : bad_shells(quality::Grade::fail)) {
+      const auto why = why_.find(shell);
+      repaired_.left.push_back({index_of[shell.value], std::string(why == why_.end() ? "no operation makes it better" : why->second)});
+    }
+    std::sort(repaired_.left.begin(), repaired_.left.end(), [](const Left& a, const Left& b) { return a.shell < b.shell; });
+  }
+
+  Patch patch_;
+  Site site_;
+  const Model& model_;
+  std::vector<std::uint8_t> in_scope_;  ///< of the patch's first shells; what came later is
+  std::vector<std::uint8_t> touched_;
+  std::map<LocalShell, std::string_view> why_;
+  long triangles_ = 0, most_triangles_ = 0;
+  Repaired repaired_;
+};
+
+}  // namespace
+
+Result<Repaired> repair(const Model& model, const relax::ReferenceSurface& surface, const ShellSet& scope, const Rules& rules,
+                        const relax::Judge& judge, const Options& options, const Progress& progress) {
+  return Repairer(model, surface, scope, rules, judge, options).run(progress);
+}
+
+}  // namespace prismesh::mesh::repair

@@ -1,0 +1,123 @@
+// Where nodes go after the structure about them changed: each in turn to the place near it where its shells are best.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "mesh/quality/shell_batch.h"
+#include "mesh/repair/appraisal.h"
+
+namespace prismesh::mesh::repair {
+
+namespace {
+
+/// exp(-4 c) by squaring: how much a composite counts; the worst far more than the rest.
+double pressure(float composite) {
+  const double x = 1 - 4 * static_cast<double>(composite) / 64;
+  double p = x;
+  for (int i = 0; i < 6; ++i) p *= p;
+  return p;
+}
+
+bool may_settle(const Patch& patch, LocalNode node) {
+  const PatchNode& n = patch.node(node);
+  return n.is_alive && n.is_whole && n.freedom == relax::Freedom::surface && n.lines.empty() && (n.rules & kStays) == 0 &&
+         !n.is_off_surface && !n.shells.empty();
+}
+
+/// The sum of the pressures of a node's shells for each of several places of the node.
+void weigh_places(const Site& site, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
+  const Patch& patch = site.patch;
+  const std::vector<LocalShell>& shells = patch.node(node).shells;
+  std::fill(sums.begin(), sums.end(), 0.0);
+  quality::measure_in_batches(
+      places.size() * shells.size(),
+      [&](std::size_t i, const Vec3*(&corner)[4]) {
+        const Corners& corners = patch.shell(shells[i % shells.size()]).corners;
+        for (std::size_t c = 0; c < 4; ++c) corner[c] = corners[c] == node ? &places[i / shells.size()] : &patch.position(corners[c]);
+        return corner_count(corners) == 3 ? quality::Shape::triangle : quality::Shape::quad;
+      },
+      [&](const quality::ShellBatch& batch, const quality::BatchValues& values) {
+        quality::Sheet sheets[quality::kLanes];
+        float composites[quality::kLanes];
+        for (std::size_t lane = 0; lane < batch.count; ++lane) sheets[lane] = patch.shell(shells[batch.slot[lane] % shells.size()]).sheet;
+        quality::rate_lanes(values, batch.count, site.limits, sheets, composites);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) sums[batch.slot[lane] / shells.size()] += pressure(composites[lane]);
+      });
+}
+
+struct Surroundings {
+  Vec3 normal = Vec3::Zero();  ///< unit
+  Vec3 centre = Vec3::Zero();  ///< of the neighbours along edges
+  double size = 0;             ///< mean distance of them
+};
+
+Surroundings around(const Patch& patch, LocalNode node) {
+  Surroundings found;
+  int count = 0;
+  for (const LocalShell shell : patch.node(node).shells) {
+    const Corners& corners = patch.shell(shell).corners;
+    const int corners_used = corner_count(corners);
+    Vec3 normal = area_normal(patch, corners);
+    if (normal.dot(found.normal) < 0) normal = -normal;
+    found.normal += normal;
+    for (int i = 0; i < corners_used; ++i) {
+      const LocalNode a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>((i + 1) % corners_used)];
+      if (a != node && b != node) continue;
+      const Vec3& other = patch.position(a == node ? b : a);
+      found.centre += other;
+      found.size += (other - patch.position(node)).norm();
+      ++count;
+    }
+  }
+  if (count > 0) {
+    found.centre /= count;
+    found.size /= count;
+  }
+  const double length = found.normal.norm();
+  if (length > 0) found.normal /= length;
+  return found;
+}
+
+/// How far a node of the model may be from where it was.
+bool within_limit(const Site& site, LocalNode node, const Vec3& place) {
+  const PatchNode& n = site.patch.node(node);
+  if (!n.model.valid() || !site.options.relax.most_on_surface) return true;
+  return (place - site.patch.model().position(n.model)).norm() <= *site.options.relax.most_on_surface;
+}
+
+void settle_node(const Site& site, LocalNode node, double step) {
+  const Surroundings here = around(site.patch, node);
+  if (!(here.size > 0) || here.normal.squaredNorm() < 0.5) return;
+  const Vec3 at = site.patch.position(node);
+  const Vec3 across = (here.normal.unitOrthogonal()), along = here.normal.cross(across);
+  std::array<Vec3, 10> places;
+  places[0] = at;
+  constexpr double kDiagonal = 0.7071067811865476;
+  constexpr double kWay[8][2] = {
+      {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {kDiagonal, kDiagonal}, {-kDiagonal, kDiagonal}, {kDiagonal, -kDiagonal}, {-kDiagonal, -kDiagonal}};
+  for (std::size_t i = 0; i < 8; ++i) places[i + 1] = at + step * here.size * (kWay[i][0] * across + kWay[i][1] * along);
+  const Vec3 inward = here.centre - at;
+  places[9] = at + inward - here.normal * inward.dot(here.normal);
+  std::array<double, 10> sums{};
+  weigh_places(site, node, places, sums);
+  const auto best = static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
+  if (best == 0) return;
+  const auto place = on_surface(site, places[best], here.normal, here.size);
+  if (!place || !within_limit(site, node, *place)) return;
+  double settled = 0;
+  weigh_places(site, node, std::span(&*place, 1), std::span(&settled, 1));
+  if (settled < sums[0]) site.patch.move(node, *place);
+}
+
+}  // namespace
+
+void settle(const Site& site, int sweeps) {
+  std::vector<LocalNode> nodes = site.patch.changed_nodes();
+  std::erase_if(nodes, [&](LocalNode n) { return !may_settle(site.patch, n); });
+  double step = 0.2;
+  for (int sweep = 0; sweep < sweeps; ++sweep, step *= 0.6)
+    for (const LocalNode node : nodes) settle_node(site, node, step);
+}
+
+}  // namespace prismesh::mesh::repair
