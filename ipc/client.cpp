@@ -55,6 +55,7 @@ struct Client::State final : Connection<ModelProtocol> {
   std::optional<StatePageReader> page;
   std::map<std::uint64_t, std::uint64_t> drag_requests;   ///< drag -> request, of drags whose preview wasn't taken
   std::map<std::uint64_t, std::uint64_t> lease_requests;  ///< lease -> request, of snapshots that weren't taken
+  std::map<std::uint64_t, std::uint64_t> field_requests;  ///< field -> request, of fields that weren't taken
   std::map<std::uint64_t, std::shared_ptr<const Mapping>> segments;
   std::shared_ptr<Returns> returns = std::make_shared<Returns>();
 
@@ -71,6 +72,7 @@ struct Client::State final : Connection<ModelProtocol> {
 
   void arrived(std::uint64_t to, const Answer& answer) override {
     if (const auto* begun = std::get_if<DragBegun>(&answer)) drag_requests[begun->drag] = to;
+    if (const auto* made = std::get_if<FieldMade>(&answer)) field_requests[made->field] = to;
     if (const auto* snapshot = std::get_if<Snapshot>(&answer)) lease_requests[snapshot->lease] = to;
   }
 
@@ -167,6 +169,15 @@ Result<std::shared_ptr<const SnapshotView>> Client::take_snapshot(const Snapshot
   // The caller's pointer keeps both the view and the lease.
   auto both = std::make_shared<std::pair<std::shared_ptr<void>, std::shared_ptr<const SnapshotView>>>(std::move(lease), std::move(*view));
   return std::shared_ptr<const SnapshotView>(both, both->second.get());
+}
+
+Result<std::shared_ptr<const FieldValues>> Client::take_field(const FieldMade& made) {
+  const Result<std::vector<Descriptor>> descriptors = state_->take_riders_of(state_->field_requests, made.field, "field");
+  if (!descriptors) return fail(descriptors.error());
+  Result<std::shared_ptr<const FieldValues>> values = FieldValues::map(descriptors->front());
+  if (values && ((*values)->generation() != made.generation || (*values)->on_nodes() != made.on_nodes))
+    return fail(state_->path().string(), "a field's values are of something else than it says");
+  return values;
 }
 
 Result<PreviewReader> Client::take_preview(const DragBegun& begun) {

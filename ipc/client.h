@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "ipc/field_page.h"
 #include "ipc/messages.h"
 #include "ipc/preview.h"
 #include "ipc/snapshot.h"
@@ -53,6 +54,8 @@ class Client {
   std::vector<std::uint64_t> segments() const;
   /// The snapshot that came with a Snapshot answer to `send`.
   Result<std::shared_ptr<const SnapshotView>> take_snapshot(const Snapshot& answer);
+  /// The values that came with a FieldMade answer.
+  Result<std::shared_ptr<const FieldValues>> take_field(const FieldMade& made);
   /// The preview that came with a DragBegun answer.
   Result<PreviewReader> take_preview(const DragBegun& begun);
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "daemon/modeld/edit_preview.h"
+#include "daemon/modeld/quality_figures.h"
 #include "mesh/document/surroundings.h"
 
 namespace prismesh::modeld {
@@ -9,6 +11,13 @@ namespace prismesh::modeld {
 namespace {
 
 ipc::Failed failed(const Error& error) { return {error.file, error.line, error.message}; }
+
+/// The outcome of a question that changes nothing: its answer, or why there is none.
+template <class Found>
+Outcome told(Result<Found> found) {
+  if (!found) return {failed(found.error()), {}, {}, {}};
+  return {std::move(*found), {}, {}, {}};
+}
 
 }  // namespace
 
@@ -61,6 +70,31 @@ Outcome Bench::count(const ipc::Count& request) const {
   const Result<mesh::select::Chosen> chosen = mesh::select::evaluate(current.model, request.expr, request.kind, current.around->names);
   if (!chosen) return {failed(chosen.error()), {}, {}, {}};
   return {ipc::Counted{chosen->nodes.size(), chosen->shells.size(), chosen->parts.size()}, {}, {}, {}};
+}
+
+Outcome Bench::quality(const ipc::GetQuality& request) const {
+  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  return told(quality_figures(keeper_.document(), request));
+}
+
+Outcome Bench::find(const ipc::FindShells& request) const {
+  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  return told(find_shells(keeper_.document(), request));
+}
+
+Outcome Bench::preview(const ipc::PreviewEdit& request) const {
+  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  return told(preview_edit(keeper_.document(), request.edit));
+}
+
+Outcome Bench::field(const ipc::GetField& request, const Progress& progress) {
+  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  Result<FieldMaker::Made> made = fields_.make(keeper_.document(), request, progress);
+  if (!made) return {failed(made.error()), {}, {}, {}};
+  Outcome outcome;
+  outcome.answer = std::move(made->answer);
+  outcome.descriptors.push_back(std::move(made->values));
+  return outcome;
 }
 
 Outcome Bench::save(const ipc::Save& request) {

@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "daemon/modeld/document_keeper.h"
 #include "daemon/modeld/drag_session.h"
+#include "daemon/modeld/field_maker.h"
 #include "ipc/messages.h"
 #include "ipc/snapshot_publisher.h"
 
@@ -37,6 +38,11 @@ class Bench {
   Outcome reopen(const Progress& progress);
   Outcome edit(const mesh::document::Edit& edit);
   Outcome count(const ipc::Count& request) const;
+  Outcome quality(const ipc::GetQuality& request) const;
+  Outcome find(const ipc::FindShells& request) const;
+  Outcome preview(const ipc::PreviewEdit& request) const;
+  /// A field as views colour by it; another deck that it is compared with is read here, and kept for the next time.
+  Outcome field(const ipc::GetField& request, const Progress& progress);
   Outcome save(const ipc::Save& request);
   Outcome close(const ipc::Close& request);
   /// The answer is DragBegun, or Failed and there is no drag.
@@ -50,6 +56,7 @@ class Bench {
   void show(const std::string& made_by, Outcome& outcome);
 
   DocumentKeeper keeper_;
+  FieldMaker fields_;
   ipc::SnapshotPublisher& publisher_;
   std::optional<DragSession> drag_;
   std::uint64_t drag_number_ = 0;

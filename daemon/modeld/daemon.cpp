@@ -94,6 +94,10 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
     server->send(client, ipc::encode_answer(number, answer, count), std::move(descriptors));
   }
 
+  void tell(ipc::ClientId client, const ipc::Event& event) override {
+    if (greeted.contains(client)) server->send(client, ipc::encode_event(event));
+  }
+
   void tell_all(const ipc::Event& event) override {
     const std::string line = ipc::encode_event(event);
     // A copy: sending to a client that is cut off for it changes the set.

@@ -44,6 +44,7 @@ void Desk::request(ipc::ClientId client, std::uint64_t number, ipc::Request requ
   if (const auto* cancel = std::get_if<ipc::CancelDrag>(&request)) return end_drag(client, number, cancel->drag, false);
   if (const auto* returned = std::get_if<ipc::ReturnSnapshot>(&request)) return give_back(client, returned->lease);
   if (const auto* snapshot = std::get_if<ipc::GetSnapshot>(&request)) return give_snapshot(client, number, *snapshot);
+  if (const auto* camera = std::get_if<ipc::ShareCamera>(&request)) return share_camera(client, *camera);
   if (std::holds_alternative<ipc::GetState>(request)) return outlet_.answer(client, number, state(), {});
   line_up(client, number, std::move(request), bytes);
 }
@@ -88,9 +89,17 @@ void Desk::give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::
   if (!face_.document) return refuse(client, number, running_ ? "the document is still being opened" : "no document is open");
   Client& to = clients_[client];
   if (to.leases.size() >= kMostLeases) return refuse(client, number, "you hold too many snapshots; return some first");
-  Result<ipc::PublishedSnapshot> published = publisher_.publish(*face_.document, face_.state.changed);
+  const mesh::document::Document& document = *face_.document;
+  std::size_t at = document.cursor;
+  if (request.generation) {
+    at = 0;
+    while (at < document.generations.size() && document.generations[at]->number != *request.generation) ++at;
+    if (at == document.generations.size())
+      return refuse(client, number, "the history has no state " + std::to_string(*request.generation) + " any more");
+  }
+  Result<ipc::PublishedSnapshot> published = publisher_.publish_other(document, at, face_.state.changed);
   if (!published) return outlet_.answer(client, number, ipc::Failed{published.error().file, 0, published.error().message}, {});
-  ipc::Snapshot snapshot{published->lease, face_.state.generation, published->segments, {}};
+  ipc::Snapshot snapshot{published->lease, document.generations[at]->number, published->segments, {}};
   std::vector<ipc::Descriptor> descriptors;
   descriptors.push_back(std::move(published->table));
   for (const std::uint64_t segment : snapshot.segments) {
@@ -105,6 +114,14 @@ void Desk::give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::
   }
   to.leases.insert(snapshot.lease);
   outlet_.answer(client, number, snapshot, std::move(descriptors));
+}
+
+/// Views that move together: whoever hears it decides whether to follow.
+void Desk::share_camera(ipc::ClientId client, const ipc::ShareCamera& shared) {
+  std::vector<ipc::ClientId> others;  // a list of its own: telling a client that is cut off for it changes the map
+  for (const auto& [other, facts] : clients_)
+    if (other != client) others.push_back(other);
+  for (const ipc::ClientId other : others) outlet_.tell(other, ipc::CameraMoved{client, shared.camera});
 }
 
 void Desk::give_back(ipc::ClientId client, std::uint64_t lease) {
@@ -175,6 +192,14 @@ void Desk::begin(Waiting next) {
     run([this, request = std::move(*edit)] { return bench_.edit(request.edit); }, answer);
   else if (auto* count = std::get_if<ipc::Count>(&next.request))
     run([this, request = std::move(*count)] { return bench_.count(request); }, answer);
+  else if (auto* quality = std::get_if<ipc::GetQuality>(&next.request))
+    run([this, request = std::move(*quality)] { return bench_.quality(request); }, answer);
+  else if (auto* find = std::get_if<ipc::FindShells>(&next.request))
+    run([this, request = std::move(*find)] { return bench_.find(request); }, answer);
+  else if (auto* preview = std::get_if<ipc::PreviewEdit>(&next.request))
+    run([this, request = std::move(*preview)] { return bench_.preview(request); }, answer);
+  else if (auto* field = std::get_if<ipc::GetField>(&next.request))
+    run([this, request = std::move(*field), progress = watch("compare")] { return bench_.field(request, progress); }, answer);
   else if (auto* save = std::get_if<ipc::Save>(&next.request))
     run([this, request = std::move(*save)] { return bench_.save(request); }, answer);
   else if (auto* close = std::get_if<ipc::Close>(&next.request))

@@ -24,6 +24,7 @@ class Outlet {
  public:
   virtual ~Outlet() = default;
   virtual void answer(ipc::ClientId client, std::uint64_t number, const ipc::Answer& answer, std::vector<ipc::Descriptor> descriptors) = 0;
+  virtual void tell(ipc::ClientId client, const ipc::Event& event) = 0;
   virtual void tell_all(const ipc::Event& event) = 0;
   /// From any thread: runs in the loop, soon.
   virtual void post(std::function<void()> work) = 0;
@@ -75,6 +76,7 @@ class Desk {
   void take_step(ipc::ClientId client, const ipc::DragStep& step);
   void end_drag(ipc::ClientId client, std::uint64_t number, std::uint64_t drag, bool commit);
   void give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::GetSnapshot& request);
+  void share_camera(ipc::ClientId client, const ipc::ShareCamera& shared);
   void give_back(ipc::ClientId client, std::uint64_t lease);
   ipc::State state() const;
 

@@ -330,6 +330,7 @@ ipc::State DocumentKeeper::state() const {
   // A generation's own bytes are what keeping the one before it costs.
   for (std::size_t i = 1; i < document.generations.size(); ++i) state.history_bytes += document.generations[i]->own_bytes;
   state.history_cap = document.history_bytes;
+  for (const auto& generation : document.generations) state.generations.push_back({generation->number, generation->made_by});
   state.files = open_->files;
   state.warnings = document.deck->warnings;
   state.warnings.insert(state.warnings.end(), open_->warnings.begin(), open_->warnings.end());

@@ -1,0 +1,43 @@
+// Makes the fields that clients ask for: finds what is compared with what, and seals the values.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/progress.h"
+#include "ipc/field_page.h"
+#include "ipc/messages.h"
+#include "mesh/document/document.h"
+
+namespace prismesh::modeld {
+
+class FieldMaker {
+ public:
+  struct Made {
+    ipc::FieldMade answer;
+    ipc::Descriptor values;
+  };
+  /// Errors: those of the field and of the other deck, a state that the history has no more, cancelled.
+  Result<Made> make(const mesh::document::Document& document, const ipc::GetField& request, const Progress& progress);
+
+ private:
+  /// A state, and what to call it.
+  struct State {
+    const mesh::Model* model = nullptr;
+    std::string words;
+  };
+  Result<State> other_state(const mesh::document::Document& document, const mesh::document::Generation& of, const ipc::GetField& request,
+                            const Progress& progress);
+
+  /// The deck that was compared with last.
+  struct OtherDeck {
+    std::filesystem::path path;
+    std::filesystem::file_time_type written;
+    mesh::Model model;
+  };
+  std::optional<OtherDeck> other_;
+  std::uint64_t next_ = 1;
+};
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,107 @@
+// Fields of the shells' quality.
+#include <algorithm>
+#include <array>
+
+#include "mesh/document/field.h"
+#include "mesh/document/field_values.h"
+#include "mesh/quality/composite.h"
+#include "mesh/quality/time_step.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+using quality::Metric;
+
+constexpr double kClearComposite = 0.5, kFailingComposite = 0;
+constexpr double kClearTimeSteps = 2;  ///< of the smallest
+
+bool is_length(Metric metric) { return metric == Metric::min_length || metric == Metric::max_length; }
+
+std::string unit_of(Metric metric, LengthUnit unit) {
+  switch (metric) {
+    case Metric::min_length:
+    case Metric::max_length: return std::string(name(unit));
+    case Metric::aspect:
+    case Metric::jacobian:
+    case Metric::taper: return {};
+    default: return "deg";
+  }
+}
+
+std::string title_of(Metric metric) {
+  std::string title(quality::name(metric));
+  std::replace(title.begin(), title.end(), '_', ' ');
+  return title;
+}
+
+/// From warning to failing where the criteria say both on one side; else from the harmless end of the values to the other.
+FieldLimits limits_of(Metric metric, const Settings& settings, const FieldFigures& figures) {
+  const auto at = static_cast<std::size_t>(metric);
+  const bool of_triangles = metric == Metric::min_angle_tri || metric == Metric::max_angle_tri;
+  const quality::Threshold& threshold = of_triangles ? settings.criteria.triangle[at] : settings.criteria.quad[at];
+  const double scale = is_length(metric) ? settings.target_size : 1;
+  if (std::isfinite(threshold.warn_high) && std::isfinite(threshold.fail_high))
+    return apart(scale * threshold.warn_high, scale * threshold.fail_high);
+  if (std::isfinite(threshold.warn_low) && std::isfinite(threshold.fail_low))
+    return apart(scale * threshold.warn_low, scale * threshold.fail_low);
+  return apart(figures.min, figures.max);
+}
+
+/// The shells of a chunk that are there.
+std::vector<ShellIndex> live_shells_in(const Model& model, std::size_t begin, std::size_t end) {
+  std::vector<ShellIndex> shells;
+  for (std::size_t s = begin; s < end; ++s)
+    if (!model.is_removed(ShellIndex(s))) shells.emplace_back(s);
+  return shells;
+}
+
+Result<Field> unless_empty(Field field, const char* why) {
+  if (field.figures.measured == 0) return fail(field.title, why);
+  return field;
+}
+
+}  // namespace
+
+Result<Field> metric_field(const Model& model, Metric metric, const Settings& settings) {
+  Field field{title_of(metric), unit_of(metric, settings.length_unit), false, {}, {}, {}};
+  fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
+    const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
+    std::vector<quality::Values> values(shells.size());
+    quality::measure_shells(model, shells, values);
+    for (std::size_t i = 0; i < shells.size(); ++i) out[shells[i].value - begin] = values[i][static_cast<std::size_t>(metric)];
+  });
+  field.limits = limits_of(metric, settings, field.figures);
+  return unless_empty(std::move(field), "there is no shell that it applies to");
+}
+
+Result<Field> composite_field(const Model& model, const Settings& settings) {
+  Field field{"composite quality", {}, false, {}, {}, {kClearComposite, kFailingComposite}};
+  fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
+    const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
+    std::vector<float> values(shells.size());
+    quality::composites(model, shells, settings.criteria, settings.target_size, values);
+    for (std::size_t i = 0; i < shells.size(); ++i) out[shells[i].value - begin] = values[i];
+  });
+  return unless_empty(std::move(field), "there are no shells");
+}
+
+Result<Field> time_step_field(const Model& model, const TimeStepControl& control) {
+  Field field{"time step", "deck's time unit", false, {}, {}, {}};
+  fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const PartIndex part = model.shell_parts[s];
+      if (model.is_removed(ShellIndex(s)) || !part.valid() || part.value >= model.parts->size()) continue;
+      const ShellNodes& nodes = model.shell_nodes[s];
+      std::array<Vec3, 4> corners;
+      for (std::size_t c = 0; c < 4; ++c) corners[c] = model.position(nodes.node[c]);
+      const std::span<const Vec3> used(corners.data(), static_cast<std::size_t>(nodes.corners()));
+      if (const auto step = quality::shell_time_step((*model.parts)[part.value], used, control.shell_option))
+        out[s - begin] = control.scale * *step;
+    }
+  });
+  field.limits = apart(kClearTimeSteps * field.figures.min, field.figures.min);
+  return unless_empty(std::move(field), "no shell's density and stiffness are known, so there is no time step");
+}
+
+}  // namespace prismesh::mesh::document
