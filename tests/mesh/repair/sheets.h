@@ -80,7 +80,9 @@ struct Grid {
   }
 };
 
-inline Grid flat(std::size_t columns = 12, std::size_t rows = 12) { return {columns, rows, [](double x, double y) { return Vec3(x, y, 0); }, {}}; }
+inline Grid flat(std::size_t columns = 12, std::size_t rows = 12) {
+  return {columns, rows, [](double x, double y) { return Vec3(x, y, 0); }, {}};
+}
 /// A quarter of a tube of radius 12 about the y axis.
 inline Grid cylinder() {
   return {18, 12, [](double x, double y) { return Vec3(12 * std::sin(x / 12), y, 12 * std::cos(x / 12)); }, {}};

@@ -1,0 +1,131 @@
+// Defects planted in good meshes: all are found, all are repaired, and the shape stays what it was.
+#include <gtest/gtest.h>
+
+#include "mesh/quality/metrics.h"
+#include "sheets.h"
+#include "validator.h"
+
+namespace prismesh::mesh::repair {
+namespace {
+
+using Shells = std::vector<std::array<std::size_t, 4>>;
+struct Mesh {
+  std::vector<Vec3> positions;
+  Shells shells;
+  Model model() const { return model_of(positions, shells); }
+};
+
+quality::Grade grade_of(const Model& model, ShellIndex shell) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < model.shell(shell).corners(); ++i)
+    corners.push_back(model.position(model.shell(shell).node[static_cast<std::size_t>(i)]));
+  return quality::judge(quality::measure(corners), quality::default_criteria(), 1.0).grade();
+}
+
+ShellSet bad_shells(const Model& model, quality::Grade least) {
+  ShellSet bad;
+  for (const ShellIndex shell : all_shells(model))
+    if (grade_of(model, shell) >= least) bad.push_back(shell);
+  return bad;
+}
+
+struct Mended {
+  Model model;
+  Repaired repaired;
+};
+
+/// Repairs all bad shells; the surface is that of `good`.
+Mended mend(const Model& bad, const Model& good, const Rules& rules = {}) {
+  const relax::ReferenceSurface surface(good, all_shells(good), 30);
+  const relax::Judge judge{quality::default_criteria(), 1.0};
+  Options options;
+  options.most_triangles_percent = 25;  // of a hundred shells
+  Result<Repaired> repaired = repair(bad, surface, bad_shells(bad, quality::Grade::warn), rules, judge, options);
+  EXPECT_TRUE(repaired.has_value());
+  return {carried_out(bad, repaired->change), std::move(*repaired)};
+}
+
+void expect_same_shape(const Model& before, const Model& after, double area_tolerance = 0.005) {
+  const Shape a = shape_of(before), b = shape_of(after);
+  EXPECT_EQ(what_is_wrong(after), "");
+  EXPECT_EQ(a.euler, b.euler);
+  EXPECT_EQ(a.free_loops, b.free_loops);
+  EXPECT_EQ(a.pieces, b.pieces);
+  EXPECT_EQ(a.most_shells_an_edge, b.most_shells_an_edge);
+  EXPECT_NEAR(a.free_length, b.free_length, 1e-3 * a.free_length);
+  EXPECT_NEAR(a.junction_length, b.junction_length, 1e-6 * a.junction_length);
+  EXPECT_NEAR(a.crease_length, b.crease_length, 1e-6 * a.crease_length);
+  EXPECT_NEAR(a.area, b.area, area_tolerance * a.area);
+}
+
+/// A defect: what it does to a mesh at a grid's place.
+struct Defect {
+  const char* name;
+  void (*plant)(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j);
+};
+
+/// Two neighbouring nodes of a row nearly meet.
+void plant_short_edge(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j) {
+  const double x = static_cast<double>(i), y = static_cast<double>(j);
+  mesh.positions[grid.node(i, j)] = grid.place(x + 0.45, y);
+  mesh.positions[grid.node(i + 1, j)] = grid.place(x + 0.55, y);
+}
+/// A quad's diagonal is so long that the corner across is nearly straight.
+void plant_sliver(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j) {
+  const std::size_t shell = grid.shell(i, j);
+  const auto q = mesh.shells[shell];
+  mesh.shells[shell] = {q[0], q[1], q[2], q[2]};
+  mesh.shells.push_back({q[0], q[2], q[3], q[3]});
+  mesh.positions[q[1]] = grid.place(static_cast<double>(i) + 0.6, static_cast<double>(j) + 0.4);
+}
+/// A quad with a triangle's shape: one corner on the line between its neighbours.
+void plant_flat_corner(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j) {
+  mesh.positions[grid.node(i + 1, j + 1)] = grid.place(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5);
+}
+/// The quad's triangles.
+void plant_pair(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j) {
+  const std::size_t shell = grid.shell(i, j);
+  const auto q = mesh.shells[shell];
+  mesh.shells[shell] = {q[0], q[1], q[2], q[2]};
+  mesh.shells.push_back({q[0], q[2], q[3], q[3]});
+  // Flat enough triangles for a warning, which the quad doesn't have.
+  mesh.positions[q[2]] = grid.place(static_cast<double>(i) + 1.2, static_cast<double>(j) + 1.25);
+}
+/// Two quads divided along the wrong edge of their hexagon.
+void plant_wrong_edge(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j) {
+  const std::size_t left = grid.shell(i, j), right = grid.shell(i + 1, j);
+  const auto a = mesh.shells[left], b = mesh.shells[right];
+  mesh.shells[left] = {a[0], a[1], b[1], b[2]};
+  mesh.shells[right] = {a[0], b[2], b[3], a[3]};
+}
+/// Four quads in a row whose nodes lie two and a half times as far apart as they ought to.
+void plant_stretched(Mesh& mesh, const Grid& grid, std::size_t, std::size_t) {
+  for (std::size_t n = 0; n < mesh.positions.size(); ++n) {
+    const double x = static_cast<double>(n % (grid.columns + 1)), y = static_cast<double>(n / (grid.columns + 1));
+    mesh.positions[n] = grid.place(x <= 5 ? x : x <= 6 ? 5 + 2.6 * (x - 5) : x + 1.6, y);
+  }
+}
+
+class Planted : public testing::TestWithParam<Defect> {};
+
+TEST_P(Planted, is_repaired_on_a_flat_sheet) {
+  const Grid grid = flat();
+  Mesh mesh{grid.positions(), grid.shells()};
+  GetParam().plant(mesh, grid, 5, 5);
+  const Model bad = mesh.model();
+  ASSERT_FALSE(bad_shells(bad, quality::Grade::fail).empty());
+  const Mended mended = mend(bad, bad);
+  EXPECT_TRUE(bad_shells(mended.model, quality::Grade::fail).empty());
+  EXPECT_TRUE(mended.repaired.left.empty());
+  EXPECT_LE(triangle_pairs(mended.model), triangle_pairs(bad));
+  expect_same_shape(bad, mended.model);
+}
+
+INSTANTIATE_TEST_SUITE_P(Repair, Planted,
+                         testing::Values(Defect{"short_edge", plant_short_edge}, Defect{"sliver", plant_sliver},
+                                         Defect{"flat_corner", plant_flat_corner}, Defect{"pair", plant_pair},
+                                         Defect{"wrong_edge", plant_wrong_edge}, Defect{"stretched", plant_stretched}),
+                         [](const auto& defect) { return defect.param.name; });
+
+}  // namespace
+}  // namespace prismesh::mesh::repair
