@@ -17,6 +17,7 @@ struct LocalFit {
   Vec3 normal = Vec3::Zero();
   double scale = 1;                ///< length that counts as 1 in the polynomial
   std::array<double, 9> height{};  ///< of u, v, u², uv, v², u³, u²v, uv², v³, times scale
+  double edge = 0;                 ///< mean length of the edges of the shells at the node
   int terms = 0;                   ///< of them in use: 2, 5 or 9; 0: a plane square to the normal
 
   struct Place {

@@ -94,6 +94,13 @@ OnFacet on_facet(const Model& model, const ShellNodes& shell, const Vec3& point)
   return shell.is_triangle() ? on_triangle(p, 0, 1, 2, point) : on_quad(p, point);
 }
 
+OnLine on_line(const Model& model, const LinePlace& place) {
+  const auto [from, to] = place.piece;
+  const double before = (place.point - model.position(from)).norm(), after = (place.point - model.position(to)).norm();
+  const double share = before + after > 0 ? before / (before + after) : 0;
+  return {from, to, place.point, place.tangent, place.distance, (1 - share) * mean_edge(model, from) + share * mean_edge(model, to)};
+}
+
 double longest_diagonal(const Model& model, const ShellNodes& shell) {
   const auto length = [&](int i, int j) { return (model.position(shell.node[i]) - model.position(shell.node[j])).norm(); };
   return std::max(length(0, 2), shell.is_triangle() ? std::max(length(0, 1), length(1, 2)) : length(1, 3));
@@ -151,11 +158,14 @@ std::pair<ShellIndex, OnFacet> ReferenceSurface::State::walk(ShellIndex from, co
 
 OnSurface ReferenceSurface::State::blend(ShellIndex shell, const OnFacet& facet) const {
   const ShellNodes& nodes = model.shell(shell);
-  OnSurface on{shell, Vec3::Zero(), Vec3::Zero(), 0};
+  OnSurface on;
+  on.shell = shell;
   const Vec3 side = shell_normal(model, nodes);
   for (int i = 0; i < nodes.corners(); ++i) {
     if (facet.share[i] == 0) continue;
-    const LocalFit::Place place = sheets.at(shell, i).over(facet.point);
+    const LocalFit& fit = sheets.at(shell, i);
+    const LocalFit::Place place = fit.over(facet.point);
+    on.size += facet.share[i] * fit.edge;
     on.point += facet.share[i] * place.point;
     on.normal += facet.share[i] * (place.normal.dot(side) < 0 ? -1.0 : 1.0) / place.normal.norm() * place.normal;
   }
@@ -187,8 +197,7 @@ OnSurface ReferenceSurface::follow(ShellIndex from, const Vec3& point) const {
 }
 
 OnLine ReferenceSurface::follow_line(NodeIndex from, NodeIndex to, const Vec3& point) const {
-  const LinePlace place = relax::follow_line(state_->model, {from, to}, point, state_->cos_limit);
-  return {place.piece.from, place.piece.to, place.point, place.tangent, place.distance};
+  return on_line(state_->model, relax::follow_line(state_->model, {from, to}, point, state_->cos_limit));
 }
 
 std::optional<OnSurface> ReferenceSurface::project(const Vec3& point, double radius, const std::optional<Vec3>& toward) const {
@@ -224,7 +233,12 @@ std::optional<OnLine> ReferenceSurface::find_line(const Vec3& point, double radi
     }
   }
   if (!best || !(best->distance <= radius)) return std::nullopt;
-  return OnLine{best->piece.from, best->piece.to, best->point, best->tangent, best->distance};
+  return on_line(model, *best);
+}
+
+std::vector<NodeIndex> ReferenceSurface::lines_at(NodeIndex node) const {
+  const LineEnds ends = line_ends(state_->model, node, state_->cos_limit, true);
+  return {ends.other.begin(), ends.other.begin() + static_cast<std::ptrdiff_t>(ends.count)};
 }
 
 std::optional<Vec3> ReferenceSurface::project_on_line(const Vec3& point, double radius) const {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
@@ -16,6 +17,7 @@ struct OnSurface {
   Vec3 point = Vec3::Zero();   ///< on the smooth surface
   Vec3 normal = Vec3::Zero();  ///< unit, of the smooth surface; its sign is the shell's
   double distance = 0;         ///< from the point asked for
+  double size = 0;             ///< mean length of the reference's edges about it
 };
 
 /// A place on a feature line: between two nodes that a feature edge joins, of the model the surface was made of.
@@ -25,6 +27,7 @@ struct OnLine {
   Vec3 point = Vec3::Zero();    ///< on the smooth curve
   Vec3 tangent = Vec3::Zero();  ///< unit, from `from` to `to`
   double distance = 0;          ///< from the point asked for
+  double size = 0;              ///< as of OnSurface
 };
 
 /// Nothing is worked out before it is asked for, and then once: making one costs next to nothing, asking first costs some 5 us a node,
@@ -51,6 +54,9 @@ class ReferenceSurface {
   OnSurface follow(ShellIndex from, const Vec3& point) const;
   /// The nearest place that a walk along a feature line leads to, from one of its edges and not beyond corners.
   OnLine follow_line(NodeIndex from, NodeIndex to, const Vec3& point) const;
+
+  /// The other ends of the feature edges at a node, ascending; of more than three only three.
+  std::vector<NodeIndex> lines_at(NodeIndex node) const;
 
   const Model& model() const;  ///< that it was made of
 

@@ -1,6 +1,7 @@
 #include "mesh/relax/sheets.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 #include <vector>
@@ -101,7 +102,9 @@ LocalFit fit_sheet(const Model& model, const Sheets& sheets, NodeIndex node, std
   }
   std::vector<Vec3> around(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) around[i] = model.position(nodes[i]);
-  return fit_about(model.position(node), normal, around, ring);
+  LocalFit fit = fit_about(model.position(node), normal, around, ring);
+  fit.edge = mean_edge(model, node);
+  return fit;
 }
 
 }  // namespace
@@ -157,6 +160,22 @@ const LocalFit& Sheets::make(ShellIndex shell, int corner) const {
   for (const ShellIndex of : shells)
     if (const int at = corner_of(model_.shell(of), node); at >= 0) slot_of(of, at).store(kept, std::memory_order_release);
   return *kept;
+}
+
+double mean_edge(const Model& model, NodeIndex node) {
+  double sum = 0;
+  int count = 0;
+  for (const ShellIndex shell : model.adjacency->shells_of(node)) {
+    const ShellNodes& nodes = model.shell(shell);
+    const int corners = nodes.corners();
+    for (int i = 0; i < corners; ++i) {
+      const double length = (model.position(nodes.node[(i + 1) % corners]) - model.position(nodes.node[i])).norm();
+      if (!(length > 0 && std::isfinite(length))) continue;
+      sum += length;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0;
 }
 
 Vec3 shell_normal(const Model& model, const ShellNodes& shell) {

@@ -42,6 +42,8 @@ class Sheets {
   mutable std::deque<LocalFit> fits_;
 };
 
+/// Mean length of the edges of the shells at a node; 0 if there is none.
+double mean_edge(const Model& model, NodeIndex node);
 /// The unit normal by a shell's diagonals (a triangle's sides); zero if it has none.
 Vec3 shell_normal(const Model& model, const ShellNodes& shell);
 

@@ -22,18 +22,14 @@ TEST(reference_surface, is_near_the_true_surface) {
     for (const double jitter : {0.0, 0.15, 0.3}) {
       const Model model = sheet_on(known, 20, 16, jitter);
       const relax::ReferenceSurface surface(model, all_shells(model), 30);
-      double farthest = 0, moved = 0;
+      double farthest = 0;
       for (int i = 0; i <= 200; ++i)
         for (int j = 0; j <= 160; ++j) {
           const std::optional<relax::OnSurface> on = surface.project(known.at(i * 0.1, j * 0.1), kSize);
           ASSERT_TRUE(on);
-          const double off = known.off(on->point);
-          farthest = std::max(farthest, off);
-          moved = std::max(moved, on->distance);
+          farthest = std::max(farthest, known.off(on->point));
         }
-                  100 * inner / known.sagitta);
-                  EXPECT_LE(moved, 0.1 * known.sagitta) << known.name << ", jitter " << jitter;
-                  EXPECT_LE(farthest, 0.1 * known.sagitta) << known.name << ", jitter " << jitter;
+      EXPECT_LE(farthest, 0.1 * known.sagitta) << known.name << ", jitter " << jitter;
     }
 }
 

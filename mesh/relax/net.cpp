@@ -1,0 +1,214 @@
+#include "mesh/relax/net.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel_for.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/relax/sheets.h"
+
+namespace prismesh::mesh::relax {
+
+namespace {
+
+constexpr std::size_t kNodesAtOnce = 1024;
+constexpr int kSmoothings = 10;  ///< of the sizes: how many elements away what is longer lends its length
+constexpr double kSqrt2 = 1.4142135623730951;
+constexpr double kOnSurface = 0.25;  ///< a node that is farther from the surface, as a share of its size, isn't of it
+constexpr double kReach = 8;         ///< sizes that a node may be from where it was on the reference
+constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+
+/// The line through or from the reference's node that is nearest.
+std::optional<OnLine> line_at(const ReferenceSurface& surface, NodeIndex node, const Vec3& point) {
+  std::optional<OnLine> best;
+  for (const NodeIndex other : surface.lines_at(node)) {
+    const OnLine line = surface.follow_line(node, other, point);
+    if (!best || line.distance < best->distance) best = line;
+  }
+  return best;
+}
+
+/// Where on the reference the node is. The way begins at the reference's node of the same number, where it isn't far off: in a document it
+/// is mostly the same one.
+Footing find_footing(const Model& model, const ReferenceSurface& surface, NodeIndex node, Freedom freedom) {
+  if (freedom == Freedom::fixed) return {};
+  const Model& reference = surface.model();
+  const Vec3& point = model.position(node);
+  const double size = mean_edge(model, node), near = kOnSurface * size, within_reach = kReach * size;
+  const bool is_there = node.value < reference.node_count() && !reference.is_removed(node) &&
+                        (reference.position(node) - point).squaredNorm() <= within_reach * within_reach &&
+                        !reference.adjacency->shells_of(node).empty();
+  if (freedom == Freedom::line) {
+    std::optional<OnLine> line;
+    if (is_there) line = line_at(surface, node, point);
+    if (!line || line->distance > near) line = surface.find_line(point, near);
+    return line ? Footing{freedom, {}, line->from, line->to, line->tangent, line->size} : Footing();
+  }
+  std::optional<OnSurface> on;
+  if (is_there) on = surface.follow(reference.adjacency->shells_of(node).front(), point);
+  if (!on || on->distance > near) on = surface.project(point, near);
+  return on ? Footing{freedom, on->shell, {}, {}, on->normal, on->size} : Footing();
+}
+
+/// Local numbers by the model's; made for one net.
+class Numbers {
+ public:
+  explicit Numbers(const Model& model) : number_(model.node_count(), kNobody) {}
+  std::uint32_t of(NodeIndex node) const { return number_[node.value]; }
+  std::uint32_t add(NodeIndex node, Net& net) {
+    std::uint32_t& number = number_[node.value];
+    if (number == kNobody) {
+      number = static_cast<std::uint32_t>(net.nodes.size());
+      net.nodes.push_back(node);
+    }
+    return number;
+  }
+
+ private:
+  std::vector<std::uint32_t> number_;
+};
+
+void add_shells(const Model& model, Numbers& numbers, Net& net) {
+  net.shells = shells_touching(model, NodeSet(net.nodes.begin(), net.nodes.end()));
+  net.corners.resize(net.shells.size());
+  for (std::size_t s = 0; s < net.shells.size(); ++s)
+    for (std::size_t c = 0; c < 4; ++c) net.corners[s][c] = static_cast<std::int32_t>(numbers.add(model.shell(net.shells[s]).node[c], net));
+}
+
+/// A shell's springs at one of its corners go to `to`, each with its rest length as a multiple of an edge's.
+template <class Add>
+void springs_in(const ShellNodes& shell, NodeIndex node, const Add& add) {
+  const int corners = shell.corners();
+  for (int i = 0; i < corners; ++i) {
+    if (shell.node[i] != node) continue;
+    add(shell.node[(i + 1) % corners], false);
+    add(shell.node[(i + corners - 1) % corners], false);
+    if (corners == 4) add(shell.node[(i + 2) % 4], true);
+    return;
+  }
+}
+
+/// Springs of each movable node; `rest` is 1 for edges and the root of 2 for diagonals until sizes are known.
+void add_springs(const Model& model, const Numbers& numbers, Net& net) {
+  net.first_spring.assign(1, 0);
+  std::vector<Spring> own;
+  for (std::size_t i = 0; i < net.movable; ++i) {
+    own.clear();
+    for (const ShellIndex shell : model.adjacency->shells_of(net.nodes[i]))
+      springs_in(model.shell(shell), net.nodes[i], [&](NodeIndex other, bool is_diagonal) {
+        const std::uint32_t to = numbers.of(other);
+        const float rest = is_diagonal ? static_cast<float>(kSqrt2) : 1.0F;
+        if (to == i || !net.start[to].allFinite()) return;
+        const auto known = std::find_if(own.begin(), own.end(), [&](const Spring& s) { return s.to == to && s.rest == rest; });
+        if (known != own.end())
+          known->weight += 1;
+        else
+          own.push_back({to, 1, rest});
+      });
+    net.springs.insert(net.springs.end(), own.begin(), own.end());
+    net.first_spring.push_back(static_cast<std::uint32_t>(net.springs.size()));
+  }
+}
+
+/// One more averaging of each movable node's size with its neighbours'.
+void smooth_once(Net& net, std::vector<double>& next) {
+  parallel_for(net.movable, kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double sum = net.size[i];
+      for (const Spring& spring : net.springs_of(i)) sum += net.size[spring.to];
+      next[i] = sum / static_cast<double>(1 + net.springs_of(i).size());
+    }
+  });
+  std::swap(net.size, next);
+}
+
+/// How long the springs are beside what they should be, summed over all.
+double length_share(const Net& net) {
+  double is = 0, should_be = 0;
+  for (std::size_t i = 0; i < net.movable; ++i)
+    for (const Spring& spring : net.springs_of(i)) {
+      is += spring.weight * (net.start[spring.to] - net.start[i]).norm();
+      should_be += spring.weight * spring.rest;
+    }
+  return is > 0 && should_be > 0 ? is / should_be : 1;
+}
+
+/// Sizes that change slowly from node to node, so that what was stretched in one place shares it with its surroundings. They are the
+/// reference's at the node's place, not the mesh's own: relaxing again finds nearly the same, and a mesh that is finer in places stays so.
+void set_lengths(const Model& model, Net& net) {
+  net.size.resize(net.nodes.size());
+  parallel_for(net.nodes.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) net.size[i] = i < net.movable ? net.footing[i].size : mean_edge(model, net.nodes[i]);
+  });
+  std::vector<double> next = net.size;
+  for (int round = 0; round < kSmoothings; ++round) smooth_once(net, next);
+  for (std::size_t i = 0; i < net.movable; ++i)
+    for (std::uint32_t s = net.first_spring[i]; s < net.first_spring[i + 1]; ++s)
+      net.springs[s].rest *= static_cast<float>(0.5 * (net.size[i] + net.size[net.springs[s].to]));
+  // Repairing may have made the mesh finer than the reference.
+  const double share = length_share(net);
+  for (Spring& spring : net.springs) spring.rest *= static_cast<float>(share);
+  for (double& size : net.size) size *= share;
+}
+
+void colour(Net& net) {
+  std::vector<std::uint8_t> colour_of(net.movable, 64);
+  for (std::size_t i = 0; i < net.movable; ++i) {
+    std::uint64_t taken = 0;
+    for (const Spring& spring : net.springs_of(i))
+      if (spring.to < net.movable && colour_of[spring.to] < 64) taken |= std::uint64_t{1} << colour_of[spring.to];
+    const int free = std::countr_one(taken);
+    if (free >= 64) {
+      net.footing[i].freedom = Freedom::fixed;  // 64 neighbours that all differ: no mesh
+      continue;
+    }
+    colour_of[i] = static_cast<std::uint8_t>(free);
+    if (net.colours.size() <= static_cast<std::size_t>(free)) net.colours.resize(static_cast<std::size_t>(free) + 1);
+    net.colours[static_cast<std::size_t>(free)].push_back(static_cast<std::uint32_t>(i));
+  }
+}
+
+}  // namespace
+
+Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footing) {
+  if (footing.freedom == Freedom::line) {
+    const OnLine on = surface.follow_line(footing.from, footing.to, point);
+    footing.from = on.from;
+    footing.to = on.to;
+    // the piece may run the other way
+    if (on.tangent.squaredNorm() > 0) footing.direction = on.tangent;
+    return on.point;
+  }
+  const OnSurface on = surface.follow(footing.shell, point);
+  footing.shell = on.shell;
+  footing.direction = on.normal;
+  return on.point;
+}
+
+Net make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle) {
+  const std::vector<Freedom> freedoms = node_freedoms(model, movable, feature_angle);
+  std::vector<Footing> footings(movable.size());
+  parallel_for(movable.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (freedoms[i] != Freedom::fixed) footings[i] = find_footing(model, surface, movable[i], freedoms[i]);
+  });
+  Net net;
+  Numbers numbers(model);
+  for (std::size_t i = 0; i < movable.size(); ++i)
+    if (footings[i].freedom != Freedom::fixed) {
+      numbers.add(movable[i], net);
+      net.footing.push_back(footings[i]);
+    }
+  net.movable = net.nodes.size();
+  add_shells(model, numbers, net);
+  net.start.reserve(net.nodes.size());
+  for (const NodeIndex node : net.nodes) net.start.push_back(model.position(node));
+  add_springs(model, numbers, net);
+  set_lengths(model, net);
+  colour(net);
+  return net;
+}
+
+}  // namespace prismesh::mesh::relax

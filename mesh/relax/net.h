@@ -1,0 +1,57 @@
+// The springs of the nodes to be relaxed, and where these are: edges of shells and diagonals of quads. Private to mesh/relax.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
+#include "mesh/relax/freedom.h"
+#include "mesh/relax/reference_surface.h"
+#include "mesh/relax/relax.h"
+
+namespace prismesh::mesh::relax {
+
+struct Spring {
+  std::uint32_t to = 0;
+  float weight = 0;  ///< how many shells it is in
+  float rest = 0;    ///< length at rest; deck's unit
+};
+
+/// Where a movable node is on the surface.
+struct Footing {
+  Freedom freedom = Freedom::fixed;
+  ShellIndex shell;               ///< surface: of the reference
+  NodeIndex from, to;             ///< line: of the reference
+  Vec3 direction = Vec3::Zero();  ///< surface: unit normal; line: unit tangent
+  double size = 0;                ///< of the reference's elements there
+};
+
+/// Local numbers: movable nodes first, then those around them that stay.
+struct Net {
+  std::size_t movable = 0;
+  std::vector<NodeIndex> nodes;
+  std::vector<Vec3> start;
+  std::vector<double> size;                 ///< of the elements about each node: how long its edges should be
+  std::vector<Footing> footing;             ///< of the movable ones
+  std::vector<std::uint32_t> first_spring;  ///< of the movable ones, and one more
+  std::vector<Spring> springs;
+  std::vector<std::vector<std::uint32_t>> colours;   ///< movable nodes, no two of a colour in one shell
+  ShellSet shells;                                   ///< with a movable node
+  std::vector<std::array<std::int32_t, 4>> corners;  ///< of each, local numbers; a triangle repeats its third
+
+  std::span<const Spring> springs_of(std::size_t node) const {
+    return std::span(springs).subspan(first_spring[node], first_spring[node + 1] - first_spring[node]);
+  }
+};
+
+/// Nodes of `movable` that are corners, not finite, in no shell or not near the surface stay.
+Net make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle);
+
+/// The place on the node's line or sheet that is nearest to a point; `footing` follows.
+Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footing);
+
+}  // namespace prismesh::mesh::relax

@@ -1,0 +1,132 @@
+#include "mesh/relax/relax.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/model/adjacency.h"
+#include "mesh/relax/guard.h"
+#include "mesh/relax/net.h"
+#include "mesh/relax/settling.h"
+
+namespace prismesh::mesh::relax {
+
+namespace {
+
+constexpr double kShareOfNet = 0.1;  ///< of the progress, for finding out what is where
+constexpr double kShareOfSettling = 0.8;
+constexpr int kFirstRings = 12;      ///< about the node a hierarchical relaxation begins with
+constexpr double kLeastMove = 1e-9;  ///< of the size: less is rounding, and the node stays as it is to the bit
+
+bool goes_on(const Progress& progress, double fraction) { return !progress || progress(fraction); }
+
+Relaxed gather(const Net& net, const Settling& settling, const Settled& settled, std::size_t held_back) {
+  Relaxed relaxed;
+  relaxed.rounds = settled.rounds;
+  relaxed.converged = settled.converged;
+  relaxed.held_back = held_back;
+  for (std::size_t i = 0; i < net.movable; ++i) {
+    const double moved = (settling.at[i] - net.start[i]).norm();
+    if (!(moved > kLeastMove * net.size[i])) continue;
+    relaxed.nodes.push_back(net.nodes[i]);
+    relaxed.positions.push_back(settling.at[i]);
+    relaxed.limited += settling.limited[i];
+    relaxed.farthest = std::max(relaxed.farthest, moved);
+  }
+  return relaxed;
+}
+
+/// Progress that only grows, between the share that finding out took and that of the settling.
+class Watch {
+ public:
+  explicit Watch(const Progress& progress) : progress_(progress) {}
+  bool operator()(double at_rest) {
+    done_ = std::max(done_ + 0.02 * (1 - done_), at_rest);
+    return goes_on(progress_, kShareOfNet + kShareOfSettling * std::min(done_, 1.0));
+  }
+
+ private:
+  const Progress& progress_;
+  double done_ = 0;
+};
+
+/// Settles, then holds back.
+Result<Relaxed> settle(const Model& model, const ReferenceSurface& surface, const Net& net, const Judge& judge, const Options& options,
+                       const Progress& progress, Spreading* spreading) {
+  if (!goes_on(progress, kShareOfNet)) return fail(cancelled());
+  const Guard guard(model, net, judge);
+  Settling settling(net, surface, options);
+  Watch watch(progress);
+  const Settled settled = settling.run(spreading, [&](double at_rest) { return watch(at_rest); });
+  if (settled.was_stopped || !goes_on(progress, kShareOfNet + kShareOfSettling)) return fail(cancelled());
+  const std::size_t held_back = guard.hold_back(surface, settling.at, settling.footing);
+  if (!goes_on(progress, 1)) return fail(cancelled());
+  return gather(net, settling, settled, held_back);
+}
+
+/// Nodes of `movable` within so many shells of a node, ascending; `rim`: those of the last ring, ascending.
+struct Block {
+  NodeSet nodes;
+  NodeSet rim;
+};
+Block block_about(const Model& model, NodeIndex at, int rings, const NodeSet& movable) {
+  Block block;
+  NodeSet reached{at}, front{at};
+  for (int ring = 0; ring < rings && !front.empty(); ++ring) {
+    NodeSet next;
+    for (const NodeIndex node : front)
+      for (const ShellIndex shell : model.adjacency->shells_of(node))
+        for (const NodeIndex other : model.shell(shell).node)
+          if (!std::binary_search(reached.begin(), reached.end(), other) && std::binary_search(movable.begin(), movable.end(), other))
+            next.push_back(other);
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    NodeSet merged;
+    std::set_union(reached.begin(), reached.end(), next.begin(), next.end(), std::back_inserter(merged));
+    reached = std::move(merged);
+    front = std::move(next);
+  }
+  block.rim = std::move(front);
+  std::set_intersection(reached.begin(), reached.end(), movable.begin(), movable.end(), std::back_inserter(block.nodes));
+  return block;
+}
+
+/// The node and those around it.
+std::vector<std::uint8_t> allowed_at_first(const Model& model, const Net& net, NodeIndex at) {
+  NodeSet around{at};
+  for (const ShellIndex shell : model.adjacency->shells_of(at))
+    around.insert(around.end(), model.shell(shell).node.begin(), model.shell(shell).node.end());
+  std::sort(around.begin(), around.end());
+  std::vector<std::uint8_t> allowed(net.movable);
+  for (std::size_t i = 0; i < net.movable; ++i) allowed[i] = std::binary_search(around.begin(), around.end(), net.nodes[i]) ? 1 : 0;
+  return allowed;
+}
+
+bool reaches_rim(const Net& net, const Spreading& spreading, const NodeSet& rim) {
+  for (std::size_t i = 0; i < net.movable; ++i)
+    if (spreading.allowed[i] != 0 && std::binary_search(rim.begin(), rim.end(), net.nodes[i])) return true;
+  return false;
+}
+
+}  // namespace
+
+Result<Relaxed> relax(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Judge& judge,
+                      const Options& options, const Progress& progress) {
+  if (!goes_on(progress, 0)) return fail(cancelled());
+  const Net net = make_net(model, surface, movable, options.feature_angle);
+  return settle(model, surface, net, judge, options, progress, nullptr);
+}
+
+Result<Relaxed> relax_from(const Model& model, const ReferenceSurface& surface, NodeIndex at, double threshold, const NodeSet& movable,
+                           const Judge& judge, const Options& options, const Progress& progress) {
+  if (!goes_on(progress, 0)) return fail(cancelled());
+  // In a block about the node; where it turns out too small, again in one twice as wide.
+  for (int rings = kFirstRings;; rings *= 2) {
+    const Block block = block_about(model, at, rings, movable);
+    const Net net = make_net(model, surface, block.nodes, options.feature_angle);
+    Spreading spreading{threshold, allowed_at_first(model, net, at)};
+    Result<Relaxed> relaxed = settle(model, surface, net, judge, options, progress, &spreading);
+    if (!relaxed || block.rim.empty() || !reaches_rim(net, spreading, block.rim)) return relaxed;
+  }
+}
+
+}  // namespace prismesh::mesh::relax

@@ -1,0 +1,158 @@
+#include "mesh/relax/settling.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "base/parallel_for.h"
+
+namespace prismesh::mesh::relax {
+
+namespace {
+
+constexpr std::size_t kNodesAtOnce = 256;
+constexpr double kAtRest = 2e-3;         ///< of the size: a node that moves less in a round is at rest
+constexpr double kMostStep = 0.25;       ///< of the size, in a round
+constexpr double kMostDrift = 0.1;       ///< of the size: then a node is put back on the surface
+constexpr double kOverRelaxation = 1.5;  ///< steps go so far beyond the balance, which the neighbours follow
+
+/// Force along the directions a node may take, and how it grows with displacement there: 2x2, symmetric.
+struct Pull {
+  double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
+};
+
+Pull pull_on(const Vec3& at, std::span<const Spring> springs, const std::vector<Vec3>& places, const Vec3& u, const Vec3& v) {
+  Pull pull;
+  for (const Spring& spring : springs) {
+    const Vec3 d = places[spring.to] - at;
+    const double length2 = d.squaredNorm();
+    if (!(length2 > 0)) continue;
+    const double stretch = 1 - spring.rest / std::sqrt(length2);
+    const double du = d.dot(u), dv = d.dot(v);
+    pull.u += spring.weight * stretch * du;
+    pull.v += spring.weight * stretch * dv;
+    // a compressed spring would give way sideways: that part is left out, so that the step leads downhill
+    const double sideways = std::max(stretch, 0.0);
+    const double along = spring.weight * (1 - sideways) / length2;
+    pull.uu += spring.weight * sideways + along * du * du;
+    pull.uv += along * du * dv;
+    pull.vv += spring.weight * sideways + along * dv * dv;
+  }
+  return pull;
+}
+
+}  // namespace
+
+Settling::Settling(const Net& net, const ReferenceSurface& surface, const Options& options)
+    : at(net.start),
+      footing(net.footing),
+      limited(net.movable, 0),
+      net_(net),
+      surface_(surface),
+      options_(options),
+      drift_(net.movable, 0),
+      awake_(net.movable, 1) {}
+
+std::optional<double> Settling::limit_of(std::size_t node) const {
+  return footing[node].freedom == Freedom::line ? options_.most_on_line : options_.most_on_surface;
+}
+
+/// Back on the surface, and within the limit.
+void Settling::land(std::size_t node) {
+  at[node] = put_back(surface_, at[node], footing[node]);
+  drift_[node] = 0;
+  const std::optional<double> limit = limit_of(node);
+  for (int i = 0; limit && i < 4; ++i) {
+    const Vec3 move = at[node] - net_.start[node];
+    const double length = move.norm();
+    if (!(length > *limit)) return;
+    limited[node] = 1;
+    at[node] = put_back(surface_, net_.start[node] + move * (*limit / length * (1 - 1e-3 * i)), footing[node]);
+  }
+  if (limit && (at[node] - net_.start[node]).norm() > *limit) at[node] = net_.start[node];
+}
+
+/// Returns whether the node is still on the move.
+bool Settling::step(std::size_t node) {
+  Footing& foot = footing[node];
+  Vec3 move = Vec3::Zero();
+  if (foot.freedom == Freedom::line) {
+    const Pull pull = pull_on(at[node], net_.springs_of(node), at, foot.direction, Vec3::Zero());
+    if (pull.uu > 0) move = pull.u / pull.uu * foot.direction;
+  } else {
+    int axis = 0;
+    foot.direction.cwiseAbs().minCoeff(&axis);
+    const Vec3 u = foot.direction.cross(Vec3::Unit(axis)).normalized();
+    const Vec3 v = foot.direction.cross(u);
+    Pull pull = pull_on(at[node], net_.springs_of(node), at, u, v);
+    const double little = 1e-3 * (pull.uu + pull.vv);
+    pull.uu += little;
+    pull.vv += little;
+    const double determinant = pull.uu * pull.vv - pull.uv * pull.uv;
+    if (determinant > 0) move = ((pull.vv * pull.u - pull.uv * pull.v) * u + (pull.uu * pull.v - pull.uv * pull.u) * v) / determinant;
+  }
+  const double most = kMostStep * net_.size[node];
+  move *= kOverRelaxation;
+  double length = move.norm();
+  if (!std::isfinite(length)) return false;
+  if (length > most) move *= most / length, length = most;
+  const Vec3 was = at[node];
+  at[node] += move;
+  limited[node] = 0;
+  if (const std::optional<double> limit = limit_of(node)) {
+    const Vec3 away = at[node] - net_.start[node];
+    if (const double distance = away.norm(); distance > *limit) {
+      at[node] = net_.start[node] + away * (*limit / distance);
+      limited[node] = 1;
+    }
+  }
+  drift_[node] += static_cast<float>((at[node] - was).norm());
+  if (drift_[node] > kMostDrift * net_.size[node]) land(node);
+  return (at[node] - was).squaredNorm() > kAtRest * kAtRest * net_.size[node] * net_.size[node];
+}
+
+Settled Settling::run(Spreading* spreading, const std::function<bool(double at_rest)>& watch) {
+  Settled settled;
+  const auto wake = [this](std::uint32_t node) { std::atomic_ref(awake_[node]).store(1, std::memory_order_relaxed); };
+  const auto step_one = [&](std::uint32_t node) {
+    // Only nodes of other colours wake this one or allow it: nobody does while it is asked.
+    if (awake_[node] == 0 || (spreading != nullptr && spreading->allowed[node] == 0)) return false;
+    awake_[node] = 0;
+    if (!step(node)) return true;
+    wake(node);
+    const bool spreads = spreading != nullptr && (at[node] - net_.start[node]).squaredNorm() > spreading->threshold * spreading->threshold;
+    for (const Spring& spring : net_.springs_of(node))
+      if (spring.to < net_.movable) {
+        wake(spring.to);
+        if (spreads) std::atomic_ref(spreading->allowed[spring.to]).store(1, std::memory_order_relaxed);
+      }
+    return true;
+  };
+  while (settled.rounds < options_.most_rounds) {
+    std::atomic<std::size_t> stepped = 0;
+    for (const std::vector<std::uint32_t>& colour : net_.colours)
+      parallel_for(colour.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+        std::size_t here = 0;
+        for (std::size_t i = begin; i < end; ++i) here += step_one(colour[i]) ? 1 : 0;
+        stepped.fetch_add(here, std::memory_order_relaxed);
+      });
+    if (stepped == 0) {
+      settled.converged = true;
+      break;
+    }
+    ++settled.rounds;
+    if (!watch(1 - static_cast<double>(stepped) / static_cast<double>(net_.movable))) {
+      settled.was_stopped = true;
+      return settled;
+    }
+  }
+  parallel_for(net_.movable, kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (at[i] != net_.start[i]) land(i);
+  });
+  return settled;
+}
+
+}  // namespace prismesh::mesh::relax
