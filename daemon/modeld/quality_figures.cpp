@@ -298,7 +298,7 @@ class Gathering {
     return limits;
   }
 
-  std::string unit(int metric) const { return unit_of(metric, std::string(mesh::name(document_.settings.length_unit))); }
+  std::string unit(int metric) const { return unit_of(metric, std::string(name(document_.settings.length_unit))); }
 
   std::array<double, 3> centre(std::size_t shell) const {
     const mesh::ShellNodes& nodes = generation_.model.shell_nodes[shell];
