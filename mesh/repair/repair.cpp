@@ -14,7 +14,10 @@ namespace {
 
 constexpr int kRings = 4;
 constexpr double kLeastGain = 0.05;
-constexpr int kSweeps = 4;
+constexpr int kSweeps = 4, kSweepsAtAGlance = 1;
+// Candidates that after a glance gain less aren't looked at closer; of the others so many, or until one can be done.
+constexpr double kLeastPromise = -2;
+constexpr std::size_t kLooksCloser = 4, kLooksLonger = 12;
 
 std::size_t triangles_in(const Model& model) {
   std::size_t triangles = 0;
@@ -43,6 +46,7 @@ class Repairer {
 
   Result<Repaired> run(const Progress& progress) {
     repaired_.bad_before = bad_shells(quality::Grade::warn).size();
+    if (const Result<void> relaxed = relax_neighbourhood(); !relaxed) return fail(relaxed.error());
     for (int round = 0; round < site_.options.most_rounds; ++round) {
       repaired_.rounds = round + 1;
       bool better = false;
@@ -82,7 +86,11 @@ class Repairer {
     for (std::size_t i = 0; i < bad.size(); ++i) {
       const PatchShell& shell = patch_.shell(bad[i]);
       if (!shell.is_alive || shell.state.grade() < least) continue;
-      better = improve(candidates_for(site_, bad[i]), bad[i], false) || better;
+      if (!is_worth_trying(bad[i])) continue;
+      if (improve(candidates_for(site_, bad[i]), bad[i], false))
+        better = true;
+      else
+        tried_[bad[i]] = changes_;
       const double done = (round + static_cast<double>(i) / static_cast<double>(bad.size())) / site_.options.most_rounds;
       if (progress && i % 16 == 0 && !progress(done)) return fail(cancelled());
     }
@@ -117,10 +125,24 @@ class Repairer {
     int rank = 0;  ///< how telling the reason is
   };
 
+  /// What a candidate gains after a glance, without its neighbours having been moved much; nothing if it can't be done.
+  std::optional<double> glance(const Candidate& candidate, Outcome& reason) {
+    patch_.begin();
+    std::optional<double> gain;
+    if (const Refusal refusal = candidate.apply()) {
+      if (reason.rank < 0) reason = {0, *refusal, 0};
+    } else {
+      settle(site_, kSweepsAtAGlance);
+      judge_shells(site_, patch_.changed_shells());
+      gain = burden_before(patch_).weight - burden_now(patch_).weight;
+    }
+    patch_.take_back();
+    return gain;
+  }
+
   Outcome try_out(const Candidate& candidate, bool only_tidy) {
     if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
-    judge_shells(site_, patch_.changed_shells());
-    settle(site_, only_tidy ? 2 : kSweeps);
+    settle(site_, kSweeps);
     judge_shells(site_, patch_.changed_shells());
     const Burden before = burden_before(patch_), now = burden_now(patch_);
     const double gain = before.weight - now.weight;
@@ -141,10 +163,15 @@ class Repairer {
 
   /// Carries out the best of the candidates; false: none makes it better.
   bool improve(const std::vector<Candidate>& candidates, LocalShell shell, bool only_tidy) {
-    const Candidate* best = nullptr;
     Outcome reason{0, "no operation is possible", -1};
+    std::vector<std::pair<double, std::size_t>> promising;
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      if (const auto gain = glance(candidates[i], reason); gain && *gain > kLeastPromise) promising.emplace_back(*gain, i);
+    std::stable_sort(promising.begin(), promising.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    const Candidate* best = nullptr;
     double most = 0;
-    for (const Candidate& candidate : candidates) {
+    for (std::size_t i = 0; i < promising.size() && i < (best != nullptr ? kLooksCloser : kLooksLonger); ++i) {
+      const Candidate& candidate = candidates[promising[i].second];
       patch_.begin();
       const Outcome outcome = try_out(candidate, only_tidy);
       patch_.take_back();
@@ -160,15 +187,32 @@ class Repairer {
     }
     patch_.begin();
     try_out(*best, only_tidy);
+    keep_change();
+    ++repaired_.done[static_cast<std::size_t>(best->operation)];
+    return true;
+  }
+
+  void keep_change() {
     triangles_ += burden_now(patch_).triangles - burden_before(patch_).triangles;
-    touched_.resize(std::max(touched_.size(), patch_.shell_count()), 0);
-    for (const LocalShell changed : patch_.changed_shells()) touched_[changed.value] = 1;
+    touched_.resize(patch_.shell_count(), 0);
+    ++changes_;
+    for (const LocalShell changed : patch_.changed_shells()) touched_[changed.value] = changes_;
     for (const auto& [changed, was] : patch_.old_shells())
       if (patch_.shell(changed).is_alive && patch_.shell(changed).state.grade() > was.state.grade() && changed.value < in_scope_.size())
         in_scope_[changed.value] = 1;
     patch_.keep();
-    ++repaired_.done[static_cast<std::size_t>(best->operation)];
-    return true;
+  }
+
+  /// Whether something near a shell changed since nothing could be done for it.
+  bool is_worth_trying(LocalShell shell) {
+    const auto tried = tried_.find(shell);
+    if (tried == tried_.end()) return true;
+    for (const LocalNode corner : patch_.shell(shell).corners)
+      for (const LocalShell near : patch_.node(corner).shells)
+        for (const LocalNode node : patch_.shell(near).corners)
+          for (const LocalShell other : patch_.node(node).shells)
+            if (other.value < touched_.size() && touched_[other.value] > tried->second) return true;
+    return false;
   }
 
   /// Nodes of shells that were changed or are bad, and of those about them.
@@ -202,7 +246,7 @@ class Repairer {
     if (harms(patch_) || !conforms(patch_))
       patch_.take_back();
     else
-      patch_.keep();
+      keep_change();
     return {};
   }
 
@@ -221,7 +265,9 @@ class Repairer {
   Site site_;
   const Model& model_;
   std::vector<std::uint8_t> in_scope_;  ///< of the patch's first shells; what came later is
-  std::vector<std::uint8_t> touched_;
+  std::vector<std::uint32_t> touched_;  ///< the last change of each shell
+  std::map<LocalShell, std::uint32_t> tried_;
+  std::uint32_t changes_ = 0;
   std::map<LocalShell, std::string_view> why_;
   long triangles_ = 0, most_triangles_ = 0;
   Repaired repaired_;
