@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "base/file.h"
-#include "mesh/quality/default_text.h"
+#include "mesh/quality/built_in.h"
 #include "mesh/quality/judging.h"
 #include "mesh/quality/time_step.h"
 
@@ -62,6 +62,8 @@ void judge_points(std::span<const Vec3> moving, std::span<const Vec3> fixed, std
 }
 
 Result<Criteria> load_criteria(const std::filesystem::path& path) {
+  for (const BuiltIn& built_in : kBuiltIn)
+    if (path.native() == built_in.name) return parse_criteria(built_in.text, std::string(built_in.name));
   const Result<FileBytes> bytes = read_file(path);
   if (!bytes) return fail(bytes.error());
   return parse_criteria(bytes->text(), path.string());
@@ -69,7 +71,7 @@ Result<Criteria> load_criteria(const std::filesystem::path& path) {
 
 const Criteria& default_criteria() {
   static const Criteria kCriteria = [] {
-    const Result<Criteria> parsed = parse_criteria(kDefaultCriteriaText, "mesh/quality/criteria/default.toml");
+    const Result<Criteria> parsed = parse_criteria(kBuiltIn[0].text, "mesh/quality/criteria/default.toml");
     if (!parsed) std::abort();  // the text is compiled in and tested
     return *parsed;
   }();

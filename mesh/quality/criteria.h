@@ -39,9 +39,11 @@ struct Criteria {
   double time_step_scale = 0.9;         ///< TSSFAC of the deck: not from the file, set by whoever knows the deck
   double warn_triangles_percent = 100;  ///< of the elements of a model or part
   double fail_triangles_percent = 100;
+  double warn_triangles_at_node = 4;  ///< more about one node are a cluster (mesh/quality/structure.h)
 };
 
-/// Reads a TOML criteria file. Errors name the line and, for an unknown metric, the nearest known one.
+/// Reads a TOML criteria file, or takes the built-in criteria of that name ("default", "strict"; a file of such a name is ./strict). Errors
+/// name the line and, for an unknown metric, the nearest known one.
 Result<Criteria> load_criteria(const std::filesystem::path& path);
 /// The same from text; `file` names it in errors.
 Result<Criteria> parse_criteria(std::string_view text, const std::string& file);

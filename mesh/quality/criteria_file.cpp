@@ -28,7 +28,7 @@ class Reader {
   Reader(std::string file, Criteria& criteria) : file_(std::move(file)), criteria_(criteria) {}
 
   Result<void> read(const toml::table& root) {
-    if (auto known = check_keys(root, {"name", "metrics", "triangles"}, "a criteria file"); !known) return known;
+    if (auto known = check_keys(root, {"name", "metrics", "triangles", "time_step"}, "a criteria file"); !known) return known;
     if (const toml::node* name = root.get("name")) {
       const auto text = name->value<std::string>();
       if (!text) return error(*name, "name must be a string");
@@ -38,6 +38,8 @@ class Reader {
       if (auto done = read_metrics(*metrics); !done) return done;
     if (const toml::node* triangles = root.get("triangles"))
       if (auto done = read_triangles(*triangles); !done) return done;
+    if (const toml::node* step = root.get("time_step"))
+      if (auto done = read_time_step(*step); !done) return done;
     return {};
   }
 
@@ -130,11 +132,36 @@ class Reader {
   Result<void> read_triangles(const toml::node& node) {
     const auto table = table_of(node, "triangles");
     if (!table) return fail(table.error());
-    if (auto checked = check_keys(**table, {"warn_above", "fail_above"}, "triangles"); !checked) return checked;
+    if (auto checked = check_keys(**table, {"warn_above", "fail_above", "warn_above_at_node"}, "triangles"); !checked) return checked;
     float warn = 100, failed = 100;
-    if (auto done = read_limits(**table, {{"warn_above", &warn}, {"fail_above", &failed}}, "triangles"); !done) return done;
+    float at_node = static_cast<float>(criteria_.warn_triangles_at_node);
+    if (auto done = read_limits(**table, {{"warn_above", &warn}, {"fail_above", &failed}, {"warn_above_at_node", &at_node}}, "triangles");
+        !done)
+      return done;
+    if (at_node < 0) return error(*(*table)->get("warn_above_at_node"), "triangles: warn_above_at_node must be 0 or more");
+    if (const toml::node* given = (*table)->get("warn_above"); given != nullptr && warn > failed)
+      return error(*given, "triangles: warn_above lies beyond fail_above: a part would fail before it warns");
     criteria_.warn_triangles_percent = warn;
     criteria_.fail_triangles_percent = failed;
+    criteria_.warn_triangles_at_node = at_node;
+    return {};
+  }
+
+  Result<void> read_time_step(const toml::node& node) {
+    const auto table = table_of(node, "time_step");
+    if (!table) return fail(table.error());
+    if (auto checked = check_keys(**table, {"wanted", "warn_below"}, "time_step"); !checked) return checked;
+    const toml::node* wanted = (*table)->get("wanted");
+    if (wanted == nullptr)
+      return error(node, "time_step needs \"wanted\": the time step that no shell may go below, in the deck's time unit");
+    float fails = 0, warns = 0;
+    if (auto done = read_limits(**table, {{"wanted", &fails}, {"warn_below", &warns}}, "time_step"); !done) return done;
+    if (!(fails > 0)) return error(*wanted, "time_step: wanted must be above 0");
+    const toml::node* warn = (*table)->get("warn_below");
+    if (warn != nullptr && warns < fails)
+      return error(*warn, "time_step: warn_below lies below wanted: a shell would fail before it warns");
+    criteria_.fail_time_step = fails;
+    criteria_.warn_time_step = warns;
     return {};
   }
 

@@ -66,11 +66,15 @@ void mark_short(const float* value, std::size_t lanes, const float* least, std::
 }
 
 /// Defects show in the values (shell_batch.h).
-unsigned defects(const BatchValues& values, std::size_t lane) {
-  const float aspect = values.value[int(Metric::aspect)][lane];
-  const float skew = values.value[int(Metric::skew)][lane];
-  return unsigned(!(aspect == aspect)) << int(Defect::not_finite) | unsigned(aspect == kRepeatedAspect) << int(Defect::repeated_node) |
-         unsigned(skew == kNoAreaSkew) << int(Defect::no_area);
+void mark_defects(const BatchValues& values, std::size_t lanes, std::uint16_t* bits) {
+  const float* aspect = values.value[int(Metric::aspect)];
+  const float* skew = values.value[int(Metric::skew)];
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const unsigned found = unsigned(!(aspect[lane] == aspect[lane])) << int(Defect::not_finite) |
+                           unsigned(aspect[lane] == kRepeatedAspect) << int(Defect::repeated_node) |
+                           unsigned(skew[lane] == kNoAreaSkew) << int(Defect::no_area);
+    bits[lane] = static_cast<std::uint16_t>(bits[lane] | found);
+  }
 }
 
 }  // namespace
@@ -114,10 +118,8 @@ void judge_lanes(const BatchValues& values, std::size_t count, const Limits& lim
     mark_outside(values.value[m], count, t.warn_low, t.warn_high, m, warn);
     mark_outside(values.value[m], count, t.fail_low, t.fail_high, m, failed);
   }
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    const auto fail = static_cast<std::uint16_t>(failed[lane] | defects(values, lane));
-    out[lane] = {static_cast<std::uint16_t>(warn[lane] | fail), fail};
-  }
+  mark_defects(values, count, failed);
+  for (std::size_t lane = 0; lane < count; ++lane) out[lane] = {static_cast<std::uint16_t>(warn[lane] | failed[lane]), failed[lane]};
 }
 
 void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const Sheet* sheets, float* out) {
@@ -145,10 +147,12 @@ void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limi
     }
     if (shape.side[m][1].per != 0) take(values.value[m], shape.side[m][1]);
   }
+  std::uint16_t defect[kLanes] = {};
+  mark_defects(values, count, defect);
   for (std::size_t lane = 0; lane < count; ++lane) {
     // what fails goes towards -1 without reaching it, so that of two bad shells the better one is known
     const float score = out[lane] < 0 ? out[lane] / (1 - out[lane]) : out[lane];
-    out[lane] = defects(values, lane) != 0 ? -1.0F : std::max(score, kWorstWithoutDefect);
+    out[lane] = defect[lane] != 0 ? -1.0F : std::max(score, kWorstWithoutDefect);
   }
 }
 

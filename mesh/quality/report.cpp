@@ -259,6 +259,23 @@ Report report(const Model& model, const Criteria& criteria, double target_size, 
   return report;
 }
 
+std::vector<PartReport> report_by_part(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
+                                       const ShellSet* shells) {
+  std::vector<ShellSet> of_part(model.parts->size());
+  const auto add = [&](ShellIndex shell) {
+    const PartIndex part = model.shell_parts[shell.value];
+    if (part.valid() && !model.is_removed(shell)) of_part[part.value].push_back(shell);
+  };
+  if (shells != nullptr)
+    std::for_each(shells->begin(), shells->end(), add);
+  else
+    for (std::size_t s = 0; s < model.shell_count(); ++s) add(ShellIndex(s));
+  std::vector<PartReport> reports;
+  for (std::size_t p = 0; p < of_part.size(); ++p)
+    if (!of_part[p].empty()) reports.push_back({PartIndex(p), report(model, criteria, target_size, control, &of_part[p])});
+  return reports;
+}
+
 double guess_target_size(const Model& model) {
   const Adjacency& adjacency = *model.adjacency;
   std::vector<float> lengths(adjacency.edge_count());

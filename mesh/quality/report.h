@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "mesh/model/node_set.h"
 #include "mesh/quality/criteria.h"
@@ -49,6 +50,14 @@ struct Report {
 /// Figures of the given shells (all shells: pass nullptr).
 Report report(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
               const ShellSet* shells = nullptr);
+
+struct PartReport {
+  PartIndex part;
+  Report report;
+};
+/// The same by part: of those that have some of the shells, ascending.
+std::vector<PartReport> report_by_part(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
+                                       const ShellSet* shells = nullptr);
 
 /// A target size for a model that states none: the median edge length, rounded to two digits; 1 for a model without shells.
 double guess_target_size(const Model& model);

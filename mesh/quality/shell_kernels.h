@@ -92,8 +92,9 @@ PRISMESH_INLINE void quads(const ShellBatch& batch, BatchValues& values) {
     const double no_plane = 1e-10 * longest2;
     // folded onto itself: its sides cross, so that two corners are turned in
     const double turned_in = -1e-10 * area * longest2;
-    const int inward = int(j0 < turned_in) + int(j1 < turned_in) + int(j2 < turned_in) + int(j3 < turned_in);
-    const bool has_area = (area > no_plane) & (inward < 2);
+    const auto counts = [&](double j) { return j < turned_in ? 1.0 : 0.0; };
+    const double inward = counts(j0) + counts(j1) + counts(j2) + counts(j3);
+    const bool has_area = (area > no_plane) & (inward < 1.5);
     const Vector d0 = p2 - p0, d1 = p3 - p1;
     const double closest2 = low(shortest2, low(dot(d0, d0), dot(d1, d1)));
     const bool has_edges = (closest2 > 1e-24 * longest2) & (longest2 > kTiny);

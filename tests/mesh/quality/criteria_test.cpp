@@ -106,7 +106,53 @@ TEST(Criteria, quads_and_triangles_apart_and_lengths_by_thickness) {
   EXPECT_EQ(judge(good_quad(), criteria, 10.0, 0.0).grade(), Grade::ok);  // unknown
 }
 
+TEST(Criteria, a_wanted_time_step_sets_the_least_length_by_the_material) {
+  Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 5e-7\nwarn_below = 6e-7");
+  const double steel = 5.4219e6;  // mm/s
+  const auto grade = [&](float length, const Sheet& sheet) {
+    Values values = good_quad();
+    values[int(Metric::min_length)] = length;
+    return judge(values, criteria, 10.0, sheet).grade();
+  };
+  // 0.5 microseconds of a step that is 0.9 of what the length takes: 3.01 mm
+  EXPECT_EQ(grade(3.0f, Sheet(0, steel)), Grade::fail);
+  EXPECT_EQ(grade(3.02f, Sheet(0, steel)), Grade::warn);
+  EXPECT_EQ(grade(3.60f, Sheet(0, steel)), Grade::warn);
+  EXPECT_EQ(grade(3.62f, Sheet(0, steel)), Grade::ok);
+  // where the material isn't known the fraction of the target size counts
+  EXPECT_EQ(grade(2.1f, Sheet()), Grade::ok);
+  EXPECT_EQ(grade(1.9f, Sheet()), Grade::fail);
+  criteria.time_step_scale = 0.45;
+  EXPECT_EQ(grade(6.0f, Sheet(0, steel)), Grade::fail);
+  EXPECT_EQ(grade(6.04f, Sheet(0, steel)), Grade::warn);
+}
+
+TEST(Criteria, of_our_own_are_known_by_name) {
+  EXPECT_EQ(load_criteria("default")->name, "default");
+  const Criteria strict = load_criteria("strict").value();
+  EXPECT_EQ(strict.name, "strict");
+  EXPECT_FALSE(load_criteria("./strict"));
+  // nothing that the strict ones let pass fails by the default ones
+  for (int m = 0; m < kMetricCount; ++m) {
+    for (const auto shape : {&Criteria::quad, &Criteria::triangle}) {
+      const Threshold &a = (strict.*shape)[m], &b = (default_criteria().*shape)[m];
+      EXPECT_GE(a.fail_low, b.fail_low) << name(static_cast<Metric>(m));
+      EXPECT_GE(a.warn_low, b.warn_low) << name(static_cast<Metric>(m));
+      EXPECT_LE(a.fail_high, b.fail_high) << name(static_cast<Metric>(m));
+      EXPECT_LE(a.warn_high, b.warn_high) << name(static_cast<Metric>(m));
+    }
+  }
+  EXPECT_LE(strict.fail_triangles_percent, default_criteria().fail_triangles_percent);
+}
+
 TEST(Criteria, mistakes_are_named_with_their_line) {
+  EXPECT_EQ(refused("[time_step]\nwarn_below = 1").text(),
+            "mine.toml:1: time_step needs \"wanted\": the time step that no shell may go below, in the deck's time unit");
+  EXPECT_EQ(refused("[time_step]\nwanted = -1").text(), "mine.toml:2: time_step: wanted must be above 0");
+  EXPECT_EQ(refused("[time_step]\nwanted = 2\nwarn_below = 1").line, 3);
+  EXPECT_EQ(refused("[triangles]\nwarn_above = 9\nfail_above = 8").line, 2);
+  EXPECT_EQ(parsed("[triangles]\nfail_above = 8").fail_triangles_percent, 8);
+  EXPECT_EQ(refused("[triangles]\nwarn_above_at_node = -1").line, 2);
   EXPECT_EQ(refused("[metrics.warpag]\nwarn_above = 3").text(),
             "mine.toml:1: the list of metrics has no \"warpag\"; the nearest known is \"warpage\"");
   EXPECT_EQ(refused("\n[metrics.warpage]\nwarn_abov = 3").text(),

@@ -153,6 +153,31 @@ TEST(Report, of_some_shells_only) {
   EXPECT_EQ(r.metrics[int(Metric::aspect)].worst, ShellIndex(std::size_t{3}));
 }
 
+TEST(Report, by_part_adds_up_to_the_whole) {
+  Model model = steel_grid(20, 10, 5);
+  Part unknown;
+  unknown.id = 7;
+  set_parts(model, {steel(), Part(), unknown});
+  for (std::size_t s = 0; s < model.shell_count(); ++s)
+    if (s % 3 == 0) model.shell_parts.set(s, PartIndex(std::size_t{2}));
+  model.positions.set(100, model.positions[100] + Vec3(3, 3, 3));
+  const std::vector<PartReport> parts = report_by_part(model, default_criteria(), 5.0, {});
+  ASSERT_EQ(parts.size(), 2u);  // nothing is of the middle one
+  EXPECT_EQ(parts[0].part, PartIndex(std::size_t{0}));
+  EXPECT_EQ(parts[1].part, PartIndex(std::size_t{2}));
+  const Report whole = report_of(model);
+  EXPECT_EQ(parts[0].report.elements + parts[1].report.elements, 200u);
+  EXPECT_EQ(parts[0].report.counts.fail + parts[1].report.counts.fail, whole.counts.fail);
+  EXPECT_GT(whole.counts.fail, 0u);
+  EXPECT_EQ(std::min(parts[0].report.least_composite, parts[1].report.least_composite), whole.least_composite);
+  // one without material and thickness has neither
+  EXPECT_EQ(parts[0].report.mass, whole.mass);
+  EXPECT_FALSE(parts[1].report.mass);
+  EXPECT_FALSE(parts[1].report.time_step);
+  const ShellSet first = {ShellIndex(std::size_t{0})};
+  EXPECT_EQ(report_by_part(model, default_criteria(), 5.0, {}, &first).size(), 1u);
+}
+
 TEST(Report, judging_again_what_changed_equals_judging_everything) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> away(-3, 3);
