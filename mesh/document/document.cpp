@@ -26,6 +26,7 @@ Result<Settings> find_settings(const deck::Deck& deck, const Model& model, const
     if (!criteria) return fail(criteria.error());
     settings.criteria = std::move(*criteria);
   }
+  settings.criteria.time_step_scale = deck.time_step.scale;
   return settings;
 }
 
