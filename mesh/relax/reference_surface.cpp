@@ -19,6 +19,7 @@ namespace prismesh::mesh::relax {
 namespace {
 
 constexpr double kMostLean = 60;       ///< degrees
+constexpr double kNearFoot = 1e-2;     ///< of the size: so far beside the nearest place another one is good enough
 constexpr int kMostSteps = 256;        ///< of a walk over shells
 constexpr double kFarthestOff = 0.25;  ///< of a shell's longest diagonal: farther from its facets the fits aren't believed
 
@@ -188,7 +189,7 @@ OnSurface ReferenceSurface::follow(ShellIndex from, const Vec3& point) const {
   OnSurface on = state_->blend(first_shell, first_facet);
   // The foot on the facets isn't quite the foot on the surface for a point off it: again from where the surface's normal leads.
   const double off = (point - on.point).dot(on.normal);
-  if (Vec3 foot = point - off * on.normal; (foot - on.point).squaredNorm() > 1e-16 * (foot - first_facet.point).squaredNorm()) {
+  if (const Vec3 foot = point - off * on.normal; (foot - on.point).squaredNorm() > kNearFoot * kNearFoot * on.size * on.size) {
     const auto [shell, facet] = state_->walk(first_shell, foot);
     on = state_->blend(shell, facet);
   }

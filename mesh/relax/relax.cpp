@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kShareOfNet = 0.1;  ///< of the progress, for finding out what is where
 constexpr double kShareOfSettling = 0.8;
-constexpr int kFirstRings = 12;      ///< about the node a hierarchical relaxation begins with
+constexpr int kFirstRings = 6;       ///< about the node a hierarchical relaxation begins with
 constexpr double kLeastMove = 1e-9;  ///< of the size: less is rounding, and the node stays as it is to the bit
 
 bool goes_on(const Progress& progress, double fraction) { return !progress || progress(fraction); }

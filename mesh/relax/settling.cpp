@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kNodesAtOnce = 256;
 constexpr double kAtRest = 2e-3;         ///< of the size: a node that moves less in a round is at rest
 constexpr double kMostStep = 0.25;       ///< of the size, in a round
-constexpr double kMostDrift = 0.1;       ///< of the size: then a node is put back on the surface
+constexpr double kMostDrift = 0.2;       ///< of the size: then a node is put back on the surface
 constexpr double kOverRelaxation = 1.5;  ///< steps go so far beyond the balance, which the neighbours follow
 
 /// Force along the directions a node may take, and how it grows with displacement there: 2x2, symmetric.
