@@ -1,12 +1,138 @@
+#include <algorithm>
+#include <array>
+
+#include "base/counted.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/restructure.h"
+#include "mesh/document/scope.h"
+#include "mesh/document/unwritable.h"
+#include "mesh/repair/repair.h"
 
 namespace prismesh::mesh::document {
 
-Result<void> apply_edit(const Document&, const Repair&, Generation&, EditReport&, const Progress&) {
-  return fail("", "repair: not there yet");
+namespace {
+
+constexpr int kMostAttempts = 5;        ///< until all that is wanted can be written
+constexpr std::size_t kMostNamed = 10;  ///< elements that a note names
+
+repair::Options options_of(double angle, const MoveLimits& limits) {
+  repair::Options options;
+  options.relax.feature_angle = angle;
+  options.relax.most_on_surface = limits.free;
+  options.relax.most_on_line = limits.line;
+  return options;
 }
-Result<void> apply_edit(const Document&, const Restructure& edit, Generation&, EditReport&) {
-  return fail("", std::string(repair::name(edit.operation)) + ": not there yet");
+
+relax::Judge judge_of(const Document& document) { return {document.settings.criteria, document.settings.target_size}; }
+
+std::string shell_name(const Model& model, ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
+
+void say_operations(const repair::Repaired& repaired, EditReport& report) {
+  std::string said;
+  constexpr std::array<std::string_view, repair::kOperationCount> kDone{"split", "collapsed", "merged", "swapped", "moved"};
+  for (std::size_t i = 0; i < repaired.done.size(); ++i)
+    if (repaired.done[i] > 0) said += (said.empty() ? "" : ", ") + std::to_string(repaired.done[i]) + " " + std::string(kDone[i]);
+  if (repaired.relaxed > 0) said += (said.empty() ? "" : ", ") + counted(repaired.relaxed, "node") + " relaxed";
+  if (said.empty()) said = "nothing changed";
+  report.notes.push_back("of " + counted(repaired.bad_before, "element") + " that failed or warned in the scope: " + said);
+}
+
+void say_left(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
+  if (repaired.left.empty()) return;
+  report.notes.push_back(counted(repaired.left.size(), "element") + " still " + (repaired.left.size() == 1 ? "fails" : "fail"));
+  for (std::size_t i = 0; i < std::min(repaired.left.size(), kMostNamed); ++i) {
+    const repair::Left& left = repaired.left[i];
+    const auto known = frozen.shells.find(left.shell);
+    report.notes.push_back(shell_name(model, left.shell) + ": " +
+                           (known == frozen.shells.end() ? left.why : "can't be changed: " + known->second));
+  }
+}
+
+/// Repairs, and again without what can't be written. Errors: cancelled; what can't be written however often it is tried.
+Result<repair::Repaired> repair_writable(const Document& document, const ShellSet& scope, const repair::Options& options, Frozen& frozen,
+                                         Generation& next, EditReport& report, const Progress& progress) {
+  const Generation& current = document.current();
+  const relax::ReferenceSurface surface = surface_about(current, scope, options.relax.feature_angle);
+  const repair::Rules rules = with_frozen(rules_for(document, current), frozen);
+  for (int attempt = 1;; ++attempt) {
+    Result<repair::Repaired> repaired = repair::repair(current.model, surface, scope, rules, judge_of(document), options, progress);
+    if (!repaired || repaired->change.empty()) return repaired;
+    Generation trial = current;
+    const Result<void> done = restructure(document, repaired->change, trial, report);
+    if (done) {
+      next = std::move(trial);
+      return repaired;
+    }
+    if (attempt == kMostAttempts || find_unwritable(document, current.model, repaired->change, frozen) == 0) return fail(done.error());
+  }
+}
+
+}  // namespace
+
+Result<void> apply_edit(const Document& document, const Repair& edit, Generation& next, EditReport& report, const Progress& progress) {
+  const Result<ShellSet> scope = shells_in(document, edit.scope, "repair");
+  if (!scope) return fail(scope.error());
+  if (std::all_of(scope->begin(), scope->end(),
+                  [&](ShellIndex shell) { return next.quality[shell.value].grade() == quality::Grade::ok; })) {
+    report.notes.push_back(edit.scope == Scope::damaged ? "nothing to repair: no edit made an element fail or warn"
+                                                        : "nothing to repair: every element in the scope is fine");
+    return {};
+  }
+  Frozen frozen;
+  const Result<repair::Repaired> repaired =
+      repair_writable(document, *scope, options_of(edit.angle, edit.max_move), frozen, next, report, progress);
+  if (!repaired) return fail(repaired.error());
+  say_operations(*repaired, report);
+  say_left(*repaired, frozen, next.model, report);
+  if (!frozen.shells.empty())
+    report.notes.push_back(counted(frozen.shells.size(), "element") +
+                           " left as they are, since the deck can't be written otherwise: " + frozen.shells.begin()->second);
+  return {};
+}
+
+namespace {
+
+/// What an operation by hand acts on.
+struct Hand {
+  ShellSet shells;
+  NodeSet nodes;
+};
+
+Result<Hand> find_hand(const Model& model, const Restructure& edit) {
+  const std::string what(repair::name(edit.operation));
+  Hand hand;
+  for (const std::string& at : edit.at) {
+    const std::size_t colon = at.find(':');
+    const std::string kind = at.substr(0, colon), digits = colon == std::string::npos ? "" : at.substr(colon + 1);
+    const bool is_id = !digits.empty() && digits.size() <= 18 && digits.find_first_not_of("0123456789") == std::string::npos;
+    if (!is_id || (kind != "shell" && kind != "node")) return fail("", what + ": \"" + at + "\" is neither \"shell:ID\" nor \"node:ID\"");
+    const std::int64_t id = std::stoll(digits);
+    const ShellIndex shell = kind == "shell" ? model.find_shell(id) : ShellIndex();
+    const NodeIndex node = kind == "node" ? model.find_node(id) : NodeIndex();
+    if (!shell.valid() && !node.valid()) return fail("", what + ": there is no " + kind + " " + digits);
+    if (shell.valid()) hand.shells.push_back(shell);
+    if (node.valid()) hand.nodes.push_back(node);
+  }
+  if (hand.shells.empty() && hand.nodes.empty()) return fail("", what + ": \"at\" names no shell and no node");
+  return hand;
+}
+
+}  // namespace
+
+Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report) {
+  const Generation& current = document.current();
+  const Result<Hand> hand = find_hand(current.model, edit);
+  if (!hand) return fail(hand.error());
+  const repair::Options options = options_of(30, {});
+  NodeSet nodes = hand->nodes;
+  std::sort(nodes.begin(), nodes.end());
+  ShellSet about = shells_touching(current.model, nodes);
+  about.insert(about.end(), hand->shells.begin(), hand->shells.end());
+  const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
+  const Result<repair::Restructuring> change =
+      repair::by_hand(current.model, surface, edit.operation, hand->shells, hand->nodes, rules_for(document, current), options);
+  if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
+  return restructure(document, *change, next, report);
 }
 
 }  // namespace prismesh::mesh::document

@@ -2,12 +2,16 @@
 
 #include <bit>
 #include <cstring>
+#include <limits>
+
+#include "mesh/model/growth.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr std::uint8_t kVersion = 1;
+constexpr std::uint8_t kVersion = 2;
+constexpr std::uint8_t kVersionWithoutGrowth = 1;  ///< of journals that were written before edits could change the structure
 
 // --- writing ---
 
@@ -41,21 +45,68 @@ void write_moved(const Generation& before, const Generation& after, Writer& out)
   }
 }
 
+void write_corners(const ShellNodes& nodes, Writer& out) {
+  for (const NodeIndex node : nodes.node) out.number(node.value);
+}
+
+/// Ascending indices as gaps.
+template <class IndexType, class Body>
+void write_indices(const std::vector<IndexType>& indices, Writer& out, const Body& body) {
+  out.number(indices.size());
+  std::size_t next = 0;
+  for (const IndexType index : indices) {
+    out.number(index.value - next);
+    next = index.value + 1;
+    body(index);
+  }
+}
+
+/// New entries one by one. What an edit adds is still there after it.
+void write_added(const Model& before, const Model& model, Writer& out) {
+  out.number(model.node_count() - before.node_count());
+  for (std::size_t n = before.node_count(); n < model.node_count(); ++n) {
+    out.number(static_cast<std::uint64_t>(model.node_ids[n]));
+    const NodeOrigin& origin = origin_of(model, NodeIndex(n));
+    out.byte(static_cast<std::uint8_t>(origin.count()));
+    for (std::size_t p = 0; p < static_cast<std::size_t>(origin.count()); ++p) {
+      out.number(origin.parent[p].value);
+      out.bits(origin.weight[p]);
+    }
+    for (int k = 0; k < 3; ++k) out.bits(model.positions[n][k]);
+  }
+  out.number(model.shell_count() - before.shell_count());
+  for (std::size_t s = before.shell_count(); s < model.shell_count(); ++s) {
+    out.number(static_cast<std::uint64_t>(model.shell_ids[s]));
+    out.number(model.growth->shell_parents[s - model.growth->deck_shells].value);
+    write_corners(model.shell_nodes[s], out);
+  }
+}
+
+void write_growth(const Model& before, const Model& after, Writer& out) {
+  write_added(before, after, out);
+  Changes changes = changes_between(before, after);
+  write_indices(changes.reshaped_shells, out, [&](ShellIndex shell) { write_corners(after.shell(shell), out); });
+  write_indices(changes.removed_shells, out, [](ShellIndex) {});
+  write_indices(changes.removed_nodes, out, [](NodeIndex) {});
+}
+
 struct Run {
   std::size_t first = 0;
   std::size_t count = 0;
   std::uint8_t mark = 0;
 };
 
-/// Runs of entries that differ and got the same mark.
+/// Runs of entries that differ and got the same mark; new ones had none.
 std::vector<Run> changed_runs(const ChunkedArray<std::uint8_t>& before, const ChunkedArray<std::uint8_t>& after) {
   std::vector<Run> runs;
   for (std::size_t c = 0; c < after.chunk_count(); ++c) {
-    if (after.shares_chunk(before, c)) continue;
-    const std::span<const std::uint8_t> a = before.chunk(c);
+    // Compared by hand, not by shares_chunk: a grown array shares all chunks but the last.
+    const bool known = c < before.chunk_count();
+    if (known && after.chunk_owner(c) == before.chunk_owner(c)) continue;
+    const std::span<const std::uint8_t> a = known ? before.chunk(c) : std::span<const std::uint8_t>();
     const std::span<const std::uint8_t> b = after.chunk(c);
     for (std::size_t i = 0; i < b.size(); ++i) {
-      if (a[i] == b[i]) continue;
+      if ((i < a.size() ? a[i] : 0) == b[i]) continue;
       const std::size_t at = c * kChunkSize + i;
       if (!runs.empty() && runs.back().first + runs.back().count == at && runs.back().mark == b[i])
         ++runs.back().count;
@@ -134,6 +185,93 @@ class Reader {
   bool ok_ = true;
 };
 
+/// A node that is there; `end`: one past the last that may be named.
+NodeIndex read_node(Reader& in, const Model& model, std::size_t end) {
+  const std::uint64_t value = in.number();
+  if (!in.ok() || value >= end || model.is_removed(NodeIndex(static_cast<std::size_t>(value)))) {
+    in.refuse();
+    return {};
+  }
+  return NodeIndex(static_cast<std::size_t>(value));
+}
+
+ShellNodes read_corners(Reader& in, const Model& model) {
+  ShellNodes nodes;
+  for (NodeIndex& node : nodes.node) node = read_node(in, model, model.node_count());
+  return nodes;
+}
+
+/// An id that nothing in the index has.
+std::int64_t read_id(Reader& in, const IdIndex& taken) {
+  const std::uint64_t value = in.number();
+  const auto id = static_cast<std::int64_t>(value);
+  if (!in.ok() || value == 0 || value > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) ||
+      taken.find(id) != IdIndex::kNotFound) {
+    in.refuse();
+    return 0;
+  }
+  return id;
+}
+
+void read_added_nodes(Reader& in, Model& model) {
+  const std::uint64_t count = in.count(35);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::int64_t id = read_id(in, *model.node_index);
+    const std::uint8_t parents = in.byte();
+    if (!in.ok() || parents < 1 || parents > 4) return in.refuse();
+    NodeOrigin origin;
+    for (std::size_t p = 0; p < parents; ++p) {
+      origin.parent[p] = read_node(in, model, model.node_count());
+      origin.weight[p] = in.bits();
+      if (!in.ok() || !(origin.weight[p] > 0 && origin.weight[p] <= 1)) return in.refuse();
+    }
+    Vec3 position;
+    for (int k = 0; k < 3; ++k) position[k] = in.bits();
+    if (!in.ok() || !position.allFinite()) return in.refuse();
+    add_node(model, id, position, origin);
+  }
+}
+
+/// Calls `body` with each of ascending indices below `end`.
+template <class IndexType, class Body>
+void read_indices(Reader& in, std::size_t bytes_each, std::size_t end, const Body& body) {
+  const std::uint64_t count = in.count(bytes_each);
+  std::uint64_t next = 0;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t gap = in.number();
+    if (!in.ok() || gap >= end - next) return in.refuse();
+    body(IndexType(static_cast<std::size_t>(next + gap)));
+    if (!in.ok()) return;
+    next += gap + 1;
+  }
+}
+
+void read_growth(Reader& in, Model& model) {
+  const std::size_t nodes_before = model.node_count(), shells_before = model.shell_count();
+  read_added_nodes(in, model);
+  const std::uint64_t count = in.ok() ? in.count(6) : 0;
+  for (std::uint64_t i = 0; i < count && in.ok(); ++i) {
+    const std::int64_t id = read_id(in, *model.shell_index);
+    const std::uint64_t parent = in.number();
+    const ShellNodes corners = read_corners(in, model);
+    if (!in.ok() || parent >= shells_before || model.is_removed(ShellIndex(static_cast<std::size_t>(parent)))) return in.refuse();
+    add_shell(model, id, corners, ShellIndex(static_cast<std::size_t>(parent)));
+  }
+  read_indices<ShellIndex>(in, 5, shells_before, [&](ShellIndex shell) {
+    const ShellNodes corners = read_corners(in, model);
+    if (!in.ok() || model.is_removed(shell)) return in.refuse();
+    set_shell_nodes(model, shell, corners);
+  });
+  read_indices<ShellIndex>(in, 1, shells_before, [&](ShellIndex shell) {
+    if (model.is_removed(shell)) return in.refuse();
+    remove_shell(model, shell);
+  });
+  read_indices<NodeIndex>(in, 1, nodes_before, [&](NodeIndex node) {
+    if (model.is_removed(node)) return in.refuse();
+    remove_node(model, node);
+  });
+}
+
 NodeSet read_moved(Reader& in, Model& model) {
   NodeSet moved;
   const std::uint64_t count = in.count(25);
@@ -148,6 +286,10 @@ NodeSet read_moved(Reader& in, Model& model) {
       return moved;
     }
     moved.emplace_back(static_cast<std::size_t>(next + gap));
+    if (model.is_removed(moved.back())) {
+      in.refuse();
+      return moved;
+    }
     model.positions.set(moved.back().value, position);
     next += gap + 1;
   }
@@ -197,6 +339,7 @@ std::size_t grown(std::size_t size, std::int64_t by) { return static_cast<std::s
 std::vector<std::byte> encode_delta(const Generation& before, const Generation& after) {
   Writer out;
   out.byte(kVersion);
+  write_growth(before.model, after.model, out);
   write_moved(before, after, out);
   write_runs(changed_runs(before.node_marks, after.node_marks), out);
   write_runs(changed_runs(before.shell_marks, after.shell_marks), out);
@@ -207,7 +350,11 @@ std::vector<std::byte> encode_delta(const Generation& before, const Generation& 
 
 Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& generation) {
   Reader in(delta);
-  if (in.byte() != kVersion) return fail("", "its delta is of another version");
+  const std::uint8_t version = in.byte();
+  if (version != kVersion && version != kVersionWithoutGrowth) return fail("", "its delta is of another version");
+  if (version == kVersion) read_growth(in, generation.model);
+  generation.node_marks.resize(generation.model.node_count());
+  generation.shell_marks.resize(generation.model.shell_count());
   NodeSet moved = read_moved(in, generation.model);
   generation.selected_nodes = grown(generation.selected_nodes, read_runs(in, kSelected | kLocked | kHidden, generation.node_marks));
   generation.selected_shells = grown(generation.selected_shells, read_runs(in, kSelected, generation.shell_marks));

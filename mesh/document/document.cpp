@@ -7,6 +7,7 @@
 #include "mesh/document/apply.h"
 #include "mesh/document/history.h"
 #include "mesh/document/surroundings.h"
+#include "mesh/model/growth.h"
 
 namespace prismesh::mesh::document {
 
@@ -77,7 +78,11 @@ Result<Prepared> prepare_step(const Document& document, bool back) {
   Prepared prepared;
   prepared.step = back ? Prepared::Step::undo : Prepared::Step::redo;
   prepared.next = document.generations[back ? document.cursor - 1 : document.cursor + 1];
-  prepared.report.nodes_moved = moved_nodes(document.current().model, prepared.next->model).size();
+  const Model &from = document.current().model, &to = prepared.next->model;
+  const Changes changes = back ? changes_between(to, from) : changes_between(from, to);
+  prepared.report.nodes_moved = moved_nodes(from, to).size();
+  prepared.report.elements_added = (back ? changes.removed_shells : changes.added_shells).size();
+  prepared.report.elements_removed = (back ? changes.added_shells : changes.removed_shells).size();
   prepared.report.notes.push_back((back ? "undid " : "did again: ") + (back ? document.current() : *prepared.next).made_by);
   return prepared;
 }
@@ -132,7 +137,8 @@ Result<Prepared> prepare(const Document& document, const Edit& edit, const Progr
       edit);
   if (!prepared) return prepared;
   prepared->report.edit = name(edit);
-  if (prepared->report.nodes_moved > 0) say_weights(document.current().weight, prepared->next->weight, prepared->report);
+  if (const EditReport& done = prepared->report; done.nodes_moved + done.elements_added + done.elements_removed > 0)
+    say_weights(document.current().weight, prepared->next->weight, prepared->report);
   prepared->report.before = document.current().counts;
   prepared->report.after = prepared->next->counts;
   prepared->report.milliseconds = static_cast<double>(clock.now_ns() - start_ns) * 1e-6;

@@ -339,7 +339,7 @@ std::vector<Carried> find_carried(const Generation& generation, const Motion& mo
                             [&](std::uint32_t r, ShellIndex s) { return hanging.rests[r].shell < s; });
     for (; rest != hanging.rests_by_shell.end() && hanging.rests[*rest].shell == shell; ++rest) {
       const Hanging::Rest& each = hanging.rests[*rest];
-      if (each.tied || std::binary_search(motion.nodes.begin(), motion.nodes.end(), each.node)) continue;
+      if (each.tied || model.is_removed(each.node) || std::binary_search(motion.nodes.begin(), motion.nodes.end(), each.node)) continue;
       if ((generation.node_marks[each.node.value] & kLocked) != 0 || model.node_holds[each.node.value] != 0) continue;
       const auto on = spatial::ShellTree(model, {shell}).closest(model.position(each.node), each.reach);
       if (on) carried.push_back({each.node, *on});

@@ -72,6 +72,7 @@ ShellSet around(const Model& model, ShellIndex shell) {
 
 /// How far the node is from the sheet it lies on; looks at the shell alone first.
 double gap_at(const Model& model, const Hanging::Rest& rest) {
+  if (model.is_removed(rest.node) || model.is_removed(rest.shell)) return 0;  // nothing is left that could be lost
   const Vec3& point = model.position(rest.node);
   const auto distance = [&](const ShellSet& shells) {
     const auto on = spatial::ShellTree(model, shells).closest(point);

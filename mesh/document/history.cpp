@@ -1,5 +1,8 @@
 #include "mesh/document/history.h"
 
+#include "mesh/model/adjacency.h"
+#include "mesh/model/growth.h"
+
 namespace prismesh::mesh::document {
 
 namespace {
@@ -8,8 +11,27 @@ template <class T>
 std::size_t own_bytes(const ChunkedArray<T>& before, const ChunkedArray<T>& next) {
   std::size_t chunks = 0;
   for (std::size_t c = 0; c < next.chunk_count(); ++c)
-    if (!next.shares_chunk(before, c)) ++chunks;
+    // Compared by hand, not by shares_chunk: a grown array shares all chunks but the last.
+    if (c >= before.chunk_count() || next.chunk_owner(c) != before.chunk_owner(c)) ++chunks;
   return chunks * sizeof(typename ChunkedArray<T>::Chunk);
+}
+
+/// What an edit of the structure makes anew whatever it changed.
+std::size_t own_bytes(const Model& before, const Model& next) {
+  std::size_t bytes = 0;
+  const auto add = [&](const auto& values) { bytes += values.size() * sizeof(values[0]); };
+  if (next.adjacency && next.adjacency != before.adjacency) {
+    const Adjacency& table = *next.adjacency;
+    add(table.node_first), add(table.node_shells), add(table.edge_first);
+    add(table.edge_high), add(table.edge_shell_first), add(table.edge_shells);
+  }
+  if (next.growth && next.growth != before.growth) {
+    static const Growth none;
+    const Growth& old = before.growth ? *before.growth : none;
+    bytes += own_bytes(old.node_origins, next.growth->node_origins) + own_bytes(old.shell_parents, next.growth->shell_parents);
+    add(next.growth->removed_nodes), add(next.growth->removed_shells), add(next.growth->reshaped_shells);
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -25,6 +47,7 @@ std::size_t own_bytes(const Generation& before, const Generation& next) {
   bytes += own_bytes(a.shell_thickness, b.shell_thickness);
   bytes += own_bytes(before.node_marks, next.node_marks) + own_bytes(before.shell_marks, next.shell_marks);
   bytes += own_bytes(before.quality, next.quality);
+  bytes += own_bytes(a, b);
   if (before.parts != next.parts) bytes += next.parts->size() * sizeof(PartState);
   return bytes;
 }

@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/base64.h"
-#include "mesh/document/apply.h"
 #include "mesh/document/delta.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/history.h"
 #include "mesh/document/journal_file.h"
 #include "mesh/document/journal_records.h"
+#include "mesh/document/restructure.h"
 
 namespace prismesh::mesh::document {
 
@@ -70,6 +70,13 @@ std::string edit_name(std::string_view intent) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : "edit";
 }
 
+/// Whether the edit gave the model a new shape to relax and repair towards. A step back or forth beyond a save stands as an edit of its
+/// own.
+bool reshapes(std::string_view intent) {
+  const Result<Edit> edit = parse_edit(intent);
+  return edit && (shaping_of(*edit) != nullptr || std::holds_alternative<Undo>(*edit) || std::holds_alternative<Redo>(*edit));
+}
+
 /// The generation that the record's delta makes out of the current one.
 Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, const JournalRecord& record) {
   const std::optional<std::vector<std::byte>> delta = base64_decode(record.delta);
@@ -77,9 +84,8 @@ Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, cons
   auto next = std::make_shared<Generation>(document.current());
   const Result<NodeSet> moved = apply_delta(*delta, *next);
   if (!moved) return fail(moved.error());
-  const ShellSet touched = shells_touching(next->model, *moved);
-  quality::rejudge(next->model, document.settings.criteria, document.settings.target_size, touched, next->quality, next->counts);
-  update_weight(document.current(), touched, *next);
+  settle_growth(document.settings, document.current(), *moved, *next);
+  if (reshapes(record.intent)) next->surface = std::make_shared<const Model>(next->model);
   next->number = document.next_number;
   next->made_by = edit_name(record.intent);
   next->own_bytes = own_bytes(document.current(), *next);

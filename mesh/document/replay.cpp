@@ -139,7 +139,11 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
       meant.push(false, use);
       continue;
     }
-    Result<EditReport> report = apply(document, edit);
+    const auto within = [&](double fraction) {
+      return progress((static_cast<double>(i) + fraction) / static_cast<double>(intents.edits.size()));
+    };
+    Result<EditReport> report = apply(document, edit, progress ? Progress(within) : Progress());
+    if (!report && report.error().message == cancelled().message) break;
     step.applied = report.has_value();
     if (report)
       step.report = std::move(*report);

@@ -15,4 +15,11 @@ repair::Rules rules_for(const Document& document, const Generation& generation);
 /// judgement, weight, and the report's figures. Errors: no ids are left, or the deck can't be written so (deck::can_save): where and why.
 Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report);
 
+/// The second half of it, for who has changed the model of `next` otherwise: brings adjacency, judgements and weight up to date, and gives
+/// the marks their size. `moved`: nodes in both with other positions, ascending.
+void settle_growth(const Settings& settings, const Generation& before, const NodeSet& moved, Generation& next);
+
+/// The first half of it: the model alone. Errors: as restructure.
+Result<void> carry_out(const Document& document, const repair::Restructuring& change, Model& model);
+
 }  // namespace prismesh::mesh::document

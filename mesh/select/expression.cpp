@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mesh/model/adjacency.h"
+#include "mesh/model/growth.h"
 #include "mesh/select/marking.h"
 #include "mesh/select/parse.h"
 
@@ -301,14 +302,21 @@ class Evaluator {
     };
     if (names_.file_of_shell)
       for (std::size_t s = 0; s < model_.shell_count(); ++s)
-        if (names_.file_of_shell(ShellIndex(s)) == *file && !model_.is_removed(ShellIndex(s))) mark(ItemClass::shell, s);
+        if (names_.file_of_shell(deck_ancestor(model_, ShellIndex(s))) == *file && !model_.is_removed(ShellIndex(s)))
+          mark(ItemClass::shell, s);
     if (marking_.kind() == Kind::node && names_.file_of_node)
       for (std::size_t n = 0; n < model_.node_count(); ++n)
-        if (names_.file_of_node(NodeIndex(n)) == *file && !model_.is_removed(NodeIndex(n))) mark(ItemClass::node, n);
+        if (names_.file_of_node(first_ancestor(NodeIndex(n))) == *file && !model_.is_removed(NodeIndex(n))) mark(ItemClass::node, n);
     if (marking_.kind() == Kind::part) mark_lone_parts(*file, mark);
     if (found) return {};
     const std::string_view what = marking_.kind() == Kind::node ? "node" : marking_.kind() == Kind::element ? "shell" : "part's mesh";
     return error(item, "no " + std::string(what) + " stands in the file \"" + names_.files[*file] + "\"");
+  }
+
+  /// The first node of the deck that a node comes from.
+  NodeIndex first_ancestor(NodeIndex node) const {
+    while (is_added(model_, node)) node = origin_of(model_, node).parent[0];
+    return node;
   }
 
   /// Parts without shells are where the nodes of an element of theirs stand.

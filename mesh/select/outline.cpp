@@ -108,6 +108,7 @@ NodeSet inside_outline(const Model& model, const ViewMatrix& view, const std::ve
         const double w = clip_row(view, 3, positions[i]);
         if (!(w > 0)) continue;  // behind the eye
         if (!inside.contains(clip_row(view, 0, positions[i]) / w, clip_row(view, 1, positions[i]) / w)) continue;
+        if (model.is_removed(NodeIndex(c * kChunkSize + i))) continue;
         found[count++] = NodeIndex(c * kChunkSize + i);
       }
       of_chunk[c].assign(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));

@@ -321,7 +321,7 @@ NodeIndex nearest_node(const Model& model, const Vec3& point) {
       for (std::size_t i = 0; i < positions.size(); ++i) {
         const std::size_t node = c * kChunkSize + i;
         const Nearest candidate{(positions[i] - point).squaredNorm(), NodeIndex(node)};
-        if (closer(candidate, of_range[c])) of_range[c] = candidate;
+        if (closer(candidate, of_range[c]) && !model.is_removed(candidate.node)) of_range[c] = candidate;
       }
     }
   });

@@ -10,6 +10,7 @@
 #include "mesh/document/delta.h"
 #include "mesh/document/document.h"
 #include "mesh/document/journal_records.h"
+#include "mesh/model/adjacency.h"
 #include "tests/support/make_model.h"
 
 using namespace prismesh;                  // NOLINT: a fuzz target is a program of its own
@@ -36,7 +37,13 @@ void check(const Generation& generation) {
   for (std::size_t n = 0; n < generation.node_marks.size(); ++n) nodes += (generation.node_marks[n] & kSelected) != 0;
   for (std::size_t s = 0; s < generation.shell_marks.size(); ++s) shells += (generation.shell_marks[s] & kSelected) != 0;
   require(nodes == generation.selected_nodes && shells == generation.selected_shells);
-  for (std::size_t n = 0; n < generation.model.node_count(); ++n) require(generation.model.positions[n].allFinite());
+  const mesh::Model& model = generation.model;
+  require(generation.node_marks.size() == model.node_count() && generation.shell_marks.size() == model.shell_count());
+  for (std::size_t n = 0; n < model.node_count(); ++n) require(model.positions[n].allFinite());
+  for (std::size_t s = 0; s < model.shell_count(); ++s)
+    if (!model.is_removed(mesh::ShellIndex(s)))
+      for (const mesh::NodeIndex node : model.shell(mesh::ShellIndex(s)).node) require(node.value < model.node_count());
+  static_cast<void>(mesh::build_adjacency(model));
 }
 
 void fuzz_delta(std::span<const std::byte> bytes) {
@@ -49,6 +56,8 @@ void fuzz_delta(std::span<const std::byte> bytes) {
   const Result<mesh::NodeSet> same = apply_delta(encode_delta(sample().current(), generation), again);
   require(same.has_value());
   require(mesh::moved_nodes(generation.model, again.model).empty());
+  require(generation.model.node_count() == again.model.node_count() && generation.model.shell_count() == again.model.shell_count());
+  for (std::size_t s = 0; s < again.model.shell_count(); ++s) require(generation.model.shell_nodes[s] == again.model.shell_nodes[s]);
 }
 
 void fuzz_text(std::string_view text) {

@@ -1,0 +1,175 @@
+#include "mesh/document/restructure.h"
+
+#include <algorithm>
+#include <array>
+
+#include "mesh/deck/new_ids.h"
+#include "mesh/document/apply.h"
+#include "mesh/document/selecting.h"
+#include "mesh/document/surroundings.h"
+#include "mesh/model/adjacency.h"
+#include "mesh/model/growth.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+/// Corners of the shells, before and after, that are still there: what part states say of them may be otherwise now.
+NodeSet corners_of_changed(const Model& before, const Model& after, const Changes& changes) {
+  NodeSet nodes;
+  const auto add = [&](const Model& model, const ShellSet& shells) {
+    for (const ShellIndex shell : shells)
+      for (const NodeIndex node : model.shell(shell).node) nodes.push_back(node);
+  };
+  add(before, changes.removed_shells);
+  add(before, changes.reshaped_shells);
+  add(after, changes.reshaped_shells);
+  add(after, changes.added_shells);
+  nodes.insert(nodes.end(), changes.added_nodes.begin(), changes.added_nodes.end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  std::erase_if(nodes, [&](NodeIndex node) { return after.is_removed(node); });
+  return nodes;
+}
+
+/// What the parts' states say of one node.
+std::uint8_t part_marks_of(const Generation& generation, NodeIndex node) {
+  const Model& model = generation.model;
+  const std::vector<PartState>& states = *generation.parts;
+  bool in_sight = false, hidden = false, locked = false;
+  const auto note = [&](PartIndex part) {
+    const PartState state = part.valid() ? states[part.value] : PartState{};
+    (state.hidden ? hidden : in_sight) = true;
+    locked = locked || state.locked;
+  };
+  for (const ShellIndex shell : model.adjacency->shells_of(node)) note(model.shell_parts[shell.value]);
+  const auto& uses = generation.around->attached.uses;
+  auto use = std::lower_bound(uses.begin(), uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
+  for (; use != uses.end() && use->node == node; ++use)
+    note(model.elements[static_cast<std::size_t>(use->element_class)]->part[use->element]);
+  if (model.midside)
+    for (const MidsideNodes& midside : *model.midside)
+      if (std::find(midside.node.begin(), midside.node.end(), node) != midside.node.end()) note(model.shell_parts[midside.shell.value]);
+  return static_cast<std::uint8_t>((locked ? kLocked : 0) | (hidden && !in_sight ? kHidden : 0));
+}
+
+void mark_parts_at(const NodeSet& nodes, Generation& next) {
+  const std::vector<PartState>& states = *next.parts;
+  if (std::all_of(states.begin(), states.end(), [](const PartState& state) { return state == PartState{}; })) return;
+  for (const NodeIndex node : nodes) {
+    const std::uint8_t old = next.node_marks[node.value];
+    const auto mark = static_cast<std::uint8_t>((old & kSelected) | part_marks_of(next, node));
+    if (mark != old) next.node_marks.set(node.value, mark);
+  }
+}
+
+/// A new node is selected if all it comes from are, a new shell if its parent is; what is gone isn't.
+void carry_selection(const Changes& changes, Generation& next) {
+  const auto node_selected = [&](NodeIndex node) { return (next.node_marks[node.value] & kSelected) != 0; };
+  for (const NodeIndex node : changes.added_nodes) {
+    const NodeOrigin& origin = origin_of(next.model, node);
+    bool all = true;
+    for (int p = 0; p < origin.count(); ++p) all = all && node_selected(origin.parent[static_cast<std::size_t>(p)]);
+    if (!all) continue;
+    next.node_marks.set(node.value, kSelected);
+    ++next.selected_nodes;
+  }
+  for (const ShellIndex shell : changes.added_shells) {
+    const ShellIndex parent = next.model.growth->shell_parents[shell.value - next.model.growth->deck_shells];
+    if ((next.shell_marks[parent.value] & kSelected) == 0) continue;
+    next.shell_marks.set(shell.value, kSelected);
+    ++next.selected_shells;
+  }
+  for (const NodeIndex node : changes.removed_nodes) {
+    if (node_selected(node)) --next.selected_nodes;
+    if (next.node_marks[node.value] != 0) next.node_marks.set(node.value, 0);
+  }
+  for (const ShellIndex shell : changes.removed_shells) {
+    if (next.shell_marks[shell.value] == 0) continue;
+    --next.selected_shells;
+    next.shell_marks.set(shell.value, 0);
+  }
+}
+
+std::size_t& count_of(quality::Counts& counts, quality::Grade grade) {
+  if (grade == quality::Grade::fail) return counts.fail;
+  return grade == quality::Grade::warn ? counts.warn : counts.ok;
+}
+
+/// States and counts of what came, changed and went; `touched`: live shells of `next` that differ.
+void judge_again(const Settings& settings, const Changes& changes, const ShellSet& touched, Generation& next) {
+  next.counts.ok += next.model.shell_count() - next.quality.size();
+  next.quality.resize(next.model.shell_count());
+  for (const ShellIndex shell : changes.removed_shells) {
+    --count_of(next.counts, next.quality[shell.value].grade());
+    next.quality.set(shell.value, {});
+  }
+  quality::rejudge(next.model, settings.criteria, settings.target_size, touched, next.quality, next.counts);
+}
+
+/// Live shells of `after` whose corners or places differ.
+ShellSet touched_shells(const Model& after, const Changes& changes, const NodeSet& moved) {
+  ShellSet touched = shells_touching(after, moved);
+  touched.insert(touched.end(), changes.added_shells.begin(), changes.added_shells.end());
+  touched.insert(touched.end(), changes.reshaped_shells.begin(), changes.reshaped_shells.end());
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  return touched;
+}
+
+void weigh_again(const Generation& before, const Changes& changes, const ShellSet& touched, Generation& next) {
+  ShellSet old = touched;
+  std::erase_if(old, [&](ShellIndex shell) { return shell.value >= before.model.shell_count() || before.model.is_removed(shell); });
+  old.insert(old.end(), changes.removed_shells.begin(), changes.removed_shells.end());
+  std::sort(old.begin(), old.end());
+  next.weight -= quality::weigh_shells(before.model, old);
+  next.weight += quality::weigh_shells(next.model, touched);
+}
+
+}  // namespace
+
+Result<void> carry_out(const Document& document, const repair::Restructuring& change, Model& model) {
+  deck::NewIds ids(*document.deck, model);
+  for (const repair::NewNode& node : change.new_nodes) {
+    const Result<std::int64_t> id = ids.node(node.origin);
+    if (!id) return fail(id.error());
+    add_node(model, *id, node.position, node.origin);
+  }
+  for (const repair::NewShell& shell : change.new_shells) {
+    const Result<std::int64_t> id = ids.shell(shell.parent);
+    if (!id) return fail(id.error());
+    add_shell(model, *id, shell.nodes, shell.parent);
+  }
+  for (const auto& [shell, nodes] : change.reshaped) set_shell_nodes(model, shell, nodes);
+  for (const auto& [node, position] : change.moved) model.positions.set(node.value, position);
+  for (const ShellIndex shell : change.removed_shells) remove_shell(model, shell);
+  for (const NodeIndex node : change.removed_nodes) remove_node(model, node);
+  return deck::can_save(*document.deck, document.opened->model, model);
+}
+
+void settle_growth(const Settings& settings, const Generation& before, const NodeSet& moved, Generation& next) {
+  const Changes changes = changes_between(before.model, next.model);
+  if (!changes.empty() && !next.model.adjacency)
+    next.model.adjacency = std::make_shared<const Adjacency>(update_adjacency(before.model, next.model));
+  next.node_marks.resize(next.model.node_count());
+  next.shell_marks.resize(next.model.shell_count());
+  const ShellSet touched = touched_shells(next.model, changes, moved);
+  judge_again(settings, changes, touched, next);
+  weigh_again(before, changes, touched, next);
+}
+
+Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report) {
+  const Generation& before = document.current();
+  if (const Result<void> done = carry_out(document, change, next.model); !done) return done;
+  const NodeSet moved = moved_nodes(before.model, next.model);
+  settle_growth(document.settings, before, moved, next);
+  const Changes changes = changes_between(before.model, next.model);
+  carry_selection(changes, next);
+  mark_parts_at(corners_of_changed(before.model, next.model, changes), next);
+  report.nodes_moved = moved.size();
+  report.elements_added = changes.added_shells.size();
+  report.elements_removed = changes.removed_shells.size();
+  return {};
+}
+
+}  // namespace prismesh::mesh::document

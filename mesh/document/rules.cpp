@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+#include "mesh/deck/naming.h"
+#include "mesh/document/restructure.h"
+#include "mesh/document/surroundings.h"
+#include "mesh/model/adjacency.h"
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+constexpr std::uint8_t kAllNodeRules = repair::kStays | repair::kNeeded;
+constexpr std::uint8_t kAllShellRules = repair::kKeepsNodes | repair::kIndivisible | repair::kLasting | repair::kNoTriangle;
+
+/// Answers one question after the other, from any thread; each is worked out once.
+class Rulebook {
+ public:
+  Rulebook(const Document& document, const Generation& generation)
+      : deck_(*document.deck), generation_(generation), deletion_(*document.deck) {
+    for (const Hanging::Rest& rest : generation.around->hanging.rests)
+      if (!rest.tied)
+        welded_shells_.push_back(rest.shell);
+      else
+        tied_shells_.push_back(rest.shell);
+    sort_unique(welded_shells_);
+    sort_unique(tied_shells_);
+    if (generation.model.midside)
+      for (const MidsideNodes& midside : *generation.model.midside) {
+        middled_shells_.push_back(midside.shell);
+        for (const NodeIndex node : midside.node)
+          if (node.valid()) middle_nodes_.push_back(node);
+      }
+    sort_unique(middle_nodes_);
+  }
+
+  std::uint8_t node(NodeIndex node) {
+    const std::scoped_lock lock(mutex_);
+    const auto [known, is_new] = nodes_.try_emplace(node, std::uint8_t{0});
+    if (is_new) known->second = find_node(node);
+    return known->second;
+  }
+  std::uint8_t shell(ShellIndex shell) {
+    const std::scoped_lock lock(mutex_);
+    const auto [known, is_new] = shells_.try_emplace(shell, std::uint8_t{0});
+    if (is_new) known->second = find_shell(shell);
+    return known->second;
+  }
+  bool may_divide(NodeIndex a, NodeIndex b) const {
+    if (of_held_file(a) && of_held_file(b)) return false;
+    const auto of_a = uses_of(a), of_b = uses_of(b);
+    return std::none_of(of_a.begin(), of_a.end(), [&](const Attached::Use& use) {
+      return std::any_of(of_b.begin(), of_b.end(), [&](const Attached::Use& other) {
+        return use.element_class == other.element_class && use.element == other.element;
+      });
+    });
+  }
+
+ private:
+  template <class IndexType>
+  static void sort_unique(std::vector<IndexType>& set) {
+    std::sort(set.begin(), set.end());
+    set.erase(std::unique(set.begin(), set.end()), set.end());
+  }
+  template <class IndexType>
+  static bool contains(const std::vector<IndexType>& set, IndexType index) {
+    return std::binary_search(set.begin(), set.end(), index);
+  }
+  const Model& model() const { return generation_.model; }
+
+  /// Added nodes have cards of their own in files that may be written to.
+  bool of_held_file(NodeIndex node) const {
+    return node.value < deck_.node_line.size() && !deck_.node_runs.empty() && deck_.is_held(deck_.run_of(node).file);
+  }
+  std::span<const Attached::Use> uses_of(NodeIndex node) const {
+    const auto& uses = generation_.around->attached.uses;
+    const auto begin = std::lower_bound(uses.begin(), uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
+    auto end = begin;
+    while (end != uses.end() && end->node == node) ++end;
+    return {begin, end};
+  }
+  bool is_joined(NodeIndex node) const {
+    const auto& joined = generation_.around->hanging.joined;
+    const auto at = std::lower_bound(joined.begin(), joined.end(), node, [](const Hanging::Joined& j, NodeIndex n) { return j.node < n; });
+    return at != joined.end() && at->node == node;
+  }
+  bool is_middled(ShellIndex shell) const { return contains(middled_shells_, shell); }
+
+  std::uint8_t find_node(NodeIndex node) {
+    if (node.value >= model().node_count()) return 0;
+    if ((generation_.node_marks[node.value] & kLocked) != 0 || model().node_holds[node.value] != 0 || !uses_of(node).empty() ||
+        is_joined(node) || contains(middle_nodes_, node))
+      return kAllNodeRules;
+    for (const ShellIndex shell : model().adjacency->shells_of(node))
+      if (is_middled(shell)) return kAllNodeRules;
+    return deletion_.may_be_deleted(Referred::node, model().node_ids[node.value]) ? std::uint8_t{0} : std::uint8_t{repair::kNeeded};
+  }
+
+  std::uint8_t find_shell(ShellIndex shell) {
+    if (shell.value >= model().shell_count()) return 0;
+    if (const PartIndex part = model().shell_parts[shell.value]; part.valid() && (*generation_.parts)[part.value].locked)
+      return kAllShellRules;
+    if (is_middled(shell) || contains(welded_shells_, shell)) return kAllShellRules;
+    if (!deck_.shell_runs.empty() && deck_.is_held(deck_.run_of(deck_ancestor(model(), shell)).file)) return kAllShellRules;
+    const bool lasts = contains(tied_shells_, shell) || !deletion_.may_be_deleted(Referred::shell, model().shell_ids[shell.value]);
+    return lasts ? std::uint8_t{repair::kLasting} : std::uint8_t{0};
+  }
+
+  const deck::Deck& deck_;
+  const Generation& generation_;
+  deck::DeletionCheck deletion_;
+  ShellSet welded_shells_;   ///< a weld lies on them and follows their corners
+  ShellSet tied_shells_;     ///< a tied node lies on them
+  ShellSet middled_shells_;  ///< with mid-side nodes
+  NodeSet middle_nodes_;
+  std::mutex mutex_;
+  std::unordered_map<NodeIndex, std::uint8_t> nodes_;
+  std::unordered_map<ShellIndex, std::uint8_t> shells_;
+};
+
+}  // namespace
+
+repair::Rules rules_for(const Document& document, const Generation& generation) {
+  const auto book = std::make_shared<Rulebook>(document, generation);
+  repair::Rules rules;
+  rules.node = [book](NodeIndex node) { return book->node(node); };
+  rules.shell = [book](ShellIndex shell) { return book->shell(shell); };
+  rules.may_divide = [book](NodeIndex a, NodeIndex b) { return book->may_divide(a, b); };
+  return rules;
+}
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,398 @@
+// Edits that add, remove and reshape shells, through the whole document: figures, marks, history, journal, saving.
+#include "mesh/document/restructure.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mesh/document/delta.h"
+#include "mesh/document/journal.h"
+#include "mesh/document/selecting.h"
+#include "mesh/document/surroundings.h"
+#include "mesh/quality/mass.h"
+#include "tests/mesh/document/restructuring.h"
+
+namespace prismesh::mesh::document {
+namespace {
+
+using testing::HasSubstr;
+
+/// Everything that is kept up with each edit is what it would be if it were worked out from the model alone.
+void expect_sound(const Document& document) {
+  const Generation& now = document.current();
+  const Model& model = now.model;
+  ASSERT_TRUE(model.adjacency);
+  const Adjacency fresh = build_adjacency(model);
+  EXPECT_EQ(model.adjacency->node_shells, fresh.node_shells);
+  EXPECT_EQ(model.adjacency->edge_high, fresh.edge_high);
+  EXPECT_EQ(model.adjacency->edge_shells, fresh.edge_shells);
+  ASSERT_EQ(now.node_marks.size(), model.node_count());
+  ASSERT_EQ(now.shell_marks.size(), model.shell_count());
+  ASSERT_EQ(now.quality.size(), model.shell_count());
+  std::size_t nodes = 0, shells = 0;
+  for (std::size_t n = 0; n < model.node_count(); ++n) {
+    if ((now.node_marks[n] & kSelected) != 0) ++nodes;
+    if (model.is_removed(NodeIndex(n))) {
+      EXPECT_EQ(now.node_marks[n], 0);
+    }
+  }
+  for (std::size_t s = 0; s < model.shell_count(); ++s) {
+    if ((now.shell_marks[s] & kSelected) != 0) ++shells;
+    if (model.is_removed(ShellIndex(s))) {
+      EXPECT_EQ(now.shell_marks[s], 0);
+    }
+  }
+  EXPECT_EQ(now.selected_nodes, nodes);
+  EXPECT_EQ(now.selected_shells, shells);
+  EXPECT_EQ(now.counts.ok + now.counts.warn + now.counts.fail, live_shells(model));
+  quality::Counts counts;
+  for (std::size_t s = 0; s < model.shell_count(); ++s) {
+    if (model.is_removed(ShellIndex(s))) continue;
+    const quality::Grade grade = now.quality[s].grade();
+    ++(grade == quality::Grade::fail ? counts.fail : grade == quality::Grade::warn ? counts.warn : counts.ok);
+  }
+  EXPECT_EQ(now.counts, counts);
+  const quality::Weight weight = quality::weigh_model(model);
+  EXPECT_NEAR(now.weight.mass, weight.mass, 1e-9 * weight.mass);
+  EXPECT_EQ(now.weight.shells, weight.shells);
+  // marks that follow from the parts' states
+  ChunkedArray<std::uint8_t> marks(model.node_count());
+  mark_parts(model, *now.parts, marks);
+  for (std::size_t n = 0; n < model.node_count(); ++n)
+    if (!model.is_removed(NodeIndex(n))) {
+      EXPECT_EQ(now.node_marks[n] & (kLocked | kHidden), marks[n]) << "node " << n;
+    }
+}
+
+/// The entities by id.
+struct ByIds {
+  std::map<std::int64_t, std::array<double, 3>> nodes;
+  std::map<std::int64_t, std::pair<std::array<std::int64_t, 4>, std::int64_t>> shells;
+  std::map<std::int64_t, quality::ShellState> states;
+};
+ByIds by_ids(const Generation& generation) {
+  const Model& model = generation.model;
+  ByIds out;
+  for (std::size_t n = 0; n < model.node_count(); ++n)
+    if (!model.is_removed(NodeIndex(n)))
+      out.nodes[model.node_ids[n]] = {model.positions[n][0], model.positions[n][1], model.positions[n][2]};
+  for (std::size_t s = 0; s < model.shell_count(); ++s) {
+    if (model.is_removed(ShellIndex(s))) continue;
+    auto& [corners, part] = out.shells[model.shell_ids[s]];
+    for (std::size_t c = 0; c < 4; ++c) corners[c] = model.node_ids[model.shell_nodes[s].node[c].value];
+    part = (*model.parts)[model.shell_parts[s].value].id;
+    out.states[model.shell_ids[s]] = generation.quality[s];
+  }
+  return out;
+}
+
+/// Saved and read again it is the same model, of the same quality.
+void expect_saved(const Document& document, const std::filesystem::path& target) {
+  const Result<deck::SaveReport> saved = save(document, target);
+  ASSERT_TRUE(saved) << saved.error().text();
+  OpenOptions options;
+  options.length_unit = LengthUnit::mm;
+  options.target_size = 5.0;
+  const Result<Document> again = open(target, options);
+  ASSERT_TRUE(again) << again.error().text();
+  const ByIds here = by_ids(document.current()), there = by_ids(again->current());
+  ASSERT_EQ(here.nodes.size(), there.nodes.size());
+  for (const auto& [id, at] : here.nodes) {
+    ASSERT_TRUE(there.nodes.contains(id)) << id;
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(at[k], there.nodes.at(id)[k], 1e-4);
+  }
+  EXPECT_EQ(here.shells, there.shells);
+  EXPECT_EQ(document.current().counts, again->current().counts);
+}
+
+ShellIndex shell(std::size_t i) { return ShellIndex(i); }
+
+TEST(Restructure, SplittingCountsMarksAndSaves) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(6, 4));
+  must_apply(document, R"({"edit":"select","expr":"1,2","kind":"element"})");
+  const quality::Weight weight = document.current().weight;
+  Change change{document.current().model, {}};
+  change.split(shell(0));
+  change.star(shell(3));
+  const EditReport report = must_change(document, change.finish());
+  EXPECT_EQ(report.elements_added, 4u);
+  EXPECT_EQ(report.elements_removed, 0u);
+  EXPECT_EQ(report.nodes_moved, 0u);
+  const Generation& now = document.current();
+  EXPECT_EQ(now.selected_shells, 3u) << "both halves are selected";
+  EXPECT_EQ(now.selected_nodes, document.generations[1]->selected_nodes) << "the star's shells aren't, so neither is its middle";
+  EXPECT_EQ(live_shells(now.model), 28u);
+  EXPECT_NEAR(now.weight.mass, weight.mass, 0.02 * weight.mass);
+  expect_sound(document);
+  expect_saved(document, folder / "b.k");
+  const EditReport undone = must_apply(document, R"({"edit":"undo"})");
+  EXPECT_EQ(undone.elements_removed, 4u);
+  EXPECT_EQ(undone.elements_added, 0u);
+  expect_sound(document);
+  const EditReport redone = must_apply(document, R"({"edit":"redo"})");
+  EXPECT_EQ(redone.elements_added, 4u);
+  expect_sound(document);
+}
+
+TEST(Restructure, AMiddleOfSelectedCornersIsSelected) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(6, 4));
+  must_apply(document, R"({"edit":"select","expr":"1,2,8,9"})");
+  Change change{document.current().model, {}};
+  change.star(shell(0));
+  must_change(document, change.finish());
+  EXPECT_EQ(document.current().selected_nodes, 5u);
+  expect_sound(document);
+}
+
+TEST(Restructure, CollapsingTakesNodesAndShellsOutOfAll) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(6, 6));
+  must_apply(document, R"({"edit":"select","expr":"all","kind":"node"})");
+  const std::size_t all = document.current().selected_nodes;
+  const Model& model = document.current().model;
+  Change change{model, {}};
+  change.collapse(model.find_node(17), model.find_node(18));
+  const EditReport report = must_change(document, change.finish());
+  EXPECT_EQ(report.elements_removed, 0u);
+  EXPECT_EQ(document.current().selected_nodes, all - 1);
+  EXPECT_FALSE(document.current().model.find_node(18).valid());
+  expect_sound(document);
+  expect_saved(document, folder / "b.k");
+}
+
+TEST(Restructure, NewNodesBelongToPartsInSightHiddenOrLocked) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(6, 4));
+  must_apply(document, R"({"edit":"hide","on":"1"})");
+  Change change{document.current().model, {}};
+  change.star(shell(0));
+  change.star(shell(5));
+  must_change(document, change.finish());
+  const Generation& now = document.current();
+  EXPECT_EQ(now.node_marks[now.model.node_count() - 2] & kHidden, kHidden);
+  EXPECT_EQ(now.node_marks[now.model.node_count() - 1] & kHidden, 0);
+  expect_sound(document);
+  must_apply(document, R"({"edit":"show","on":"1"})");
+  expect_sound(document);
+  must_apply(document, R"({"edit":"lock","on":"1"})");
+  expect_sound(document);
+}
+
+/// What a user does with a model after its structure changed.
+TEST(Restructure, EveryOtherEditWorksOnWhatHasGrown) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(12, 10));
+  std::mt19937 random(4);
+  must_change(document, any_change(document.current().model, random, 40));
+  must_change(document, any_change(document.current().model, random, 40));
+  ASSERT_GT(document.current().model.growth->node_origins.size(), 0u);
+  ASSERT_GT(document.current().model.growth->removed_nodes.size(), 0u);
+  const auto view = R"([0.02,0,0,0, 0,0.02,0,0, 0,0,-0.01,0, -0.6,-0.5,0,1])";
+  for (const std::string& edit : {
+           std::string(R"({"edit":"select","expr":"all","kind":"node"})"),
+           std::string(R"({"edit":"select","expr":"all","kind":"element"})"),
+           std::string(R"({"edit":"select","expr":"1","kind":"part"})"),
+           std::string(R"({"edit":"select_region","at":[20,20,0],"by":"features","angle":60})"),
+           std::string(R"({"edit":"select_region","at":[20,20,0],"by":"piece"})"),
+           std::string(R"({"edit":"select_region","at":[0,0,0],"by":"free_edge"})"),
+           R"({"edit":"select_lasso","outline":[[-1,-1],[0.2,-1],[0.2,1],[-1,1]],"view":)" + std::string(view) + "}",
+           R"({"edit":"select_lasso","visible":true,"outline":[[-1,-1],[0.2,-1],[0.2,1],[-1,1]],"view":)" + std::string(view) + "}",
+           std::string(R"({"edit":"grow","rings":1})"),
+           std::string(R"({"edit":"shrink","rings":1})"),
+           std::string(R"({"edit":"invert"})"),
+           std::string(R"({"edit":"hide","on":"2"})"),
+           std::string(R"({"edit":"show","on":"2"})"),
+           std::string(R"({"edit":"lift","distance":0.2,"on":{"edit":"select_region","at":[20,20,0],"by":"part"}})"),
+           std::string(R"({"edit":"translate","by":[0.1,0.1,0],"on":"all"})"),
+           std::string(R"({"edit":"slide","by":[0.1,0,0],"on":"30-60"})"),
+           std::string(R"({"edit":"rotate","point":[30,25,0],"axis":[0,0,1],"degrees":3,"on":"all"})"),
+       }) {
+    SCOPED_TRACE(edit);
+    must_apply(document, edit);
+    expect_sound(document);
+    if (::testing::Test::HasFailure()) return;
+  }
+  expect_saved(document, folder / "b.k");
+  while (document.can_undo()) must_apply(document, R"({"edit":"undo"})");
+  expect_sound(document);
+  EXPECT_EQ(&document.current(), document.opened.get());
+}
+
+TEST(Restructure, RulesSayWhatIsToBeLeftAlone) {
+  const Folder folder;
+  std::string text = sheet_deck(6, 4);
+  text.insert(text.find("*END"),
+              "*ELEMENT_BEAM\n      99       3      17      18       0\n*PART\nbar\n         3         1         1\n"
+              "*BOUNDARY_SPC_NODE\n        25         0         1         1         1         0         0         0\n"
+              "*LOAD_SHELL_ELEMENT\n        20         1       1.0\n");
+  Document document = open_text(folder / "a.k", text);
+  must_apply(document, R"({"edit":"lock","on":"2"})");
+  const Model& model = document.current().model;
+  const repair::Rules rules = rules_for(document, document.current());
+  const auto node = [&](std::int64_t id) { return int{rules.node(model.find_node(id))}; };
+  EXPECT_EQ(node(9), 0) << "inside the left part, named by nobody";
+  EXPECT_EQ(node(2), 0) << "a set lists it: it can be taken out of that";
+  EXPECT_EQ(node(17), repair::kStays | repair::kNeeded) << "a beam ends there";
+  EXPECT_EQ(node(25), repair::kStays | repair::kNeeded) << "on the border to the locked part";
+  EXPECT_EQ(node(7), repair::kStays | repair::kNeeded) << "of the locked part";
+  EXPECT_FALSE(rules.may_divide(model.find_node(17), model.find_node(18))) << "the beam lies along this edge";
+  EXPECT_TRUE(rules.may_divide(model.find_node(9), model.find_node(10)));
+  EXPECT_EQ(rules.shell(model.find_shell(1)), 0);
+  EXPECT_EQ(rules.shell(model.find_shell(20)) & repair::kLasting, repair::kLasting) << "a pressure acts on it";
+  EXPECT_NE(rules.shell(model.find_shell(6)) & repair::kKeepsNodes, 0) << "of the locked part";
+  must_apply(document, R"({"edit":"unlock","on":"2"})");
+  EXPECT_EQ(int{rules_for(document, document.current()).node(model.find_node(25))}, int{repair::kNeeded}) << "a constraint names it";
+}
+
+TEST(Restructure, WhatCannotBeSavedIsRefusedAndNothingChanges) {
+  const Folder folder;
+  std::string text = sheet_deck(6, 6);
+  text.insert(text.find("*END"), "*BOUNDARY_SPC_NODE\n        18         0         1         1         1         0         0         0\n");
+  const Document document = open_text(folder / "a.k", text);
+  const Model& model = document.current().model;
+  Change change{model, {}};
+  change.collapse(model.find_node(17), model.find_node(18));
+  const Result<Prepared> prepared = prepare_change(document, change.finish());
+  ASSERT_FALSE(prepared);
+  EXPECT_THAT(prepared.error().text(), HasSubstr("BOUNDARY_SPC_NODE"));
+  expect_sound(document);
+}
+
+// --- journal ---------------------------------------------------------------------------------------------------------
+
+void expect_same_growth(const Model& a, const Model& b) {
+  EXPECT_TRUE(same_bytes(a.node_ids, b.node_ids));
+  EXPECT_TRUE(same_bytes(a.node_holds, b.node_holds));
+  EXPECT_TRUE(same_bytes(a.shell_ids, b.shell_ids));
+  EXPECT_TRUE(same_bytes(a.shell_nodes, b.shell_nodes));
+  EXPECT_TRUE(same_bytes(a.shell_parts, b.shell_parts));
+  EXPECT_TRUE(same_bytes(a.shell_thickness, b.shell_thickness));
+  ASSERT_EQ(a.growth != nullptr, b.growth != nullptr);
+  if (!a.growth) return;
+  EXPECT_EQ(a.growth->removed_nodes, b.growth->removed_nodes);
+  EXPECT_EQ(a.growth->removed_shells, b.growth->removed_shells);
+  ASSERT_EQ(a.growth->node_origins.size(), b.growth->node_origins.size());
+  for (std::size_t i = 0; i < a.growth->node_origins.size(); ++i) EXPECT_EQ(a.growth->node_origins[i], b.growth->node_origins[i]);
+  EXPECT_TRUE(same_bytes(a.growth->shell_parents, b.growth->shell_parents));
+  EXPECT_EQ(changes_between(a, b).empty(), true);
+}
+
+void append(Document& document, Journal& journal, const Edit& edit, Result<Prepared> prepared) {
+  ASSERT_TRUE(prepared) << prepared.error().text();
+  const Result<void> kept = journal.append(document, edit, *prepared);
+  ASSERT_TRUE(kept) << kept.error().text();
+  commit(document, std::move(*prepared));
+}
+
+/// A session of edits of all kinds by chance; ends after `steps` records.
+void work_at_random(Document& document, Journal& journal, std::mt19937& random, int steps) {
+  const Edit split = edit_of(R"({"edit":"split","at":["shell:1"]})");
+  for (int step = 0; step < steps; ++step) {
+    switch (random() % 8) {
+      case 0: {
+        const Edit edit = edit_of(R"({"edit":"select","expr":"all","kind":"element"})");
+        append(document, journal, edit, prepare(document, edit));
+        break;
+      }
+      case 1: {
+        const Edit edit = edit_of(R"({"edit":"lift","distance":0.3,"on":")" + std::to_string(1 + random() % 40) + R"("})");
+        if (Result<Prepared> prepared = prepare(document, edit)) append(document, journal, edit, std::move(prepared));
+        break;
+      }
+      case 2:
+      case 3: {
+        const Edit edit = random() % 3 != 0 ? Edit(Undo{}) : Edit(Redo{});
+        if (Result<Prepared> prepared = prepare(document, edit)) append(document, journal, edit, std::move(prepared));
+        break;
+      }
+      default: {
+        const repair::Restructuring change = any_change(document.current().model, random, 6);
+        if (Result<Prepared> prepared = prepare_change(document, change)) append(document, journal, split, std::move(prepared));
+      }
+    }
+    if (::testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(RestructureJournal, BringsBackTheSameBytesAfterAnySession) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const Folder folder;
+    const std::string text = sheet_deck(8, 7);
+    Document document = open_text(folder / "a.k", text);
+    std::mt19937 random(seed);
+    {
+      Result<Journal> journal = Journal::create(folder / "j", document);
+      ASSERT_TRUE(journal);
+      work_at_random(document, *journal, random, 40);
+    }
+    ASSERT_TRUE(document.current().model.growth);
+    for (int life = 0; life < 2; ++life) {  // what was brought back goes on and is brought back again
+      Document recovered = open_text(folder / "a.k", text);
+      Result<Journal> journal = Journal::recover(folder / "j", recovered);
+      ASSERT_TRUE(journal) << journal.error().text();
+      expect_same(document, recovered);
+      for (std::size_t g = 0; g < document.generations.size(); ++g) {
+        expect_same_growth(document.generations[g]->model, recovered.generations[g]->model);
+        EXPECT_TRUE(same_bytes(document.generations[g]->surface->positions, recovered.generations[g]->surface->positions));
+        EXPECT_EQ(document.generations[g]->weight.mass, recovered.generations[g]->weight.mass);
+        EXPECT_EQ(document.generations[g]->own_bytes, recovered.generations[g]->own_bytes);
+      }
+      expect_sound(recovered);
+      ASSERT_FALSE(HasFailure());
+      document = recovered;
+      if (life == 0) work_at_random(document, *journal, random, 10);
+    }
+    expect_saved(document, folder / "b.k");
+  }
+}
+
+TEST(RestructureJournal, DeltaThatIsNoneIsRefused) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(6, 6));
+  std::mt19937 random(3);
+  const Result<Prepared> prepared = prepare_change(document, any_change(document.current().model, random, 20));
+  ASSERT_TRUE(prepared);
+  ASSERT_GT(prepared->report.elements_added, 0u);
+  const std::vector<std::byte> delta = encode_delta(document.current(), *prepared->next);
+  Generation good = document.current();
+  ASSERT_TRUE(apply_delta(delta, good));
+  for (std::size_t cut = 0; cut < delta.size(); ++cut) {
+    Generation next = document.current();
+    EXPECT_FALSE(apply_delta(std::span(delta).first(cut), next)) << cut;
+  }
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < delta.size(); ++at)
+    for (const int flip : {1, 0x40, 0x80, 0xff}) {
+      std::vector<std::byte> other = delta;
+      other[at] ^= static_cast<std::byte>(flip);
+      Generation next = document.current();
+      if (!apply_delta(other, next)) {
+        ++refused;
+        continue;
+      }
+      // Taken for another change: then all it names must be there.
+      for (std::size_t s = 0; s < next.model.shell_count(); ++s)
+        if (!next.model.is_removed(shell(s)))
+          for (const NodeIndex node : next.model.shell(shell(s)).node) {
+            ASSERT_LT(node.value, next.model.node_count());
+          }
+      static_cast<void>(build_adjacency(next.model));
+    }
+  EXPECT_GT(refused, delta.size());
+}
+
+TEST(RestructureJournal, WhatAnOlderProgramWroteIsStillRead) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(3, 3));
+  const std::vector<std::byte> old{std::byte{1}, std::byte{0}, std::byte{1}, std::byte{2}, std::byte{1},
+                                   std::byte{1}, std::byte{0}, std::byte{0}, std::byte{0}};
+  Generation next = document.current();
+  ASSERT_TRUE(apply_delta(old, next));
+  EXPECT_EQ(next.node_marks[2], kSelected);
+  EXPECT_EQ(next.selected_nodes, 1u);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::document
