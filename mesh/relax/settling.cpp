@@ -13,10 +13,12 @@ namespace prismesh::mesh::relax {
 namespace {
 
 constexpr std::size_t kNodesAtOnce = 256;
-constexpr double kAtRest = 2e-3;         ///< of the size: a node that moves less in a round is at rest
-constexpr double kMostStep = 0.25;       ///< of the size, in a round
-constexpr double kMostDrift = 0.2;       ///< of the size: then a node is put back on the surface
-constexpr double kOverRelaxation = 1.5;  ///< steps go so far beyond the balance, which the neighbours follow
+constexpr double kAtRest = 2e-3;       ///< of the size: a node that moves less in a round is at rest
+constexpr double kMostStep = 0.25;     ///< of the size, in a round
+constexpr double kMostDrift = 0.2;     ///< of the size: then a node is put back on the surface
+constexpr float kMostGain = 1.5F;      ///< steps go so far beyond the balance, which the neighbours follow
+constexpr int kRecoveringRounds = 50;  ///< until then a node that turned back gathers pace again
+constexpr float kLeastGain = 0.02F;    ///< and so far towards it where they turned back again and again
 
 /// Force along the directions a node may take, and how it grows with displacement there: 2x2, symmetric.
 struct Pull {
@@ -52,6 +54,8 @@ Settling::Settling(const Net& net, const ReferenceSurface& surface, const Option
       net_(net),
       surface_(surface),
       options_(options),
+      last_(net.movable, Vec3::Zero()),
+      gain_(net.movable, kMostGain),
       drift_(net.movable, 0),
       awake_(net.movable, 1) {}
 
@@ -94,7 +98,10 @@ bool Settling::step(std::size_t node) {
     if (determinant > 0) move = ((pull.vv * pull.u - pull.uv * pull.v) * u + (pull.uu * pull.v - pull.uv * pull.u) * v) / determinant;
   }
   const double most = kMostStep * net_.size[node];
-  move *= kOverRelaxation;
+  // A node that turns back has gone too far: that ends what would swing for ever in meshes with very long or crushed elements.
+  float& gain = gain_[node];
+  gain = move.dot(last_[node]) < 0 ? std::max(0.5F * gain, kLeastGain) : std::min(recovery_ * gain, kMostGain);
+  move *= gain;
   double length = move.norm();
   if (!std::isfinite(length)) return false;
   if (length > most) move *= most / length, length = most;
@@ -110,6 +117,7 @@ bool Settling::step(std::size_t node) {
   }
   drift_[node] += static_cast<float>((at[node] - was).norm());
   if (drift_[node] > kMostDrift * net_.size[node]) land(node);
+  last_[node] = at[node] - was;  // being put back or stopped at the limit turns it too
   return (at[node] - was).squaredNorm() > kAtRest * kAtRest * net_.size[node] * net_.size[node];
 }
 
@@ -131,6 +139,7 @@ Settled Settling::run(Spreading* spreading, const std::function<bool(double at_r
     return true;
   };
   while (settled.rounds < options_.most_rounds) {
+    if (settled.rounds == kRecoveringRounds) recovery_ = 1;
     std::atomic<std::size_t> stepped = 0;
     for (const std::vector<std::uint32_t>& colour : net_.colours)
       parallel_for(colour.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {

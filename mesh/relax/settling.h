@@ -42,6 +42,9 @@ class Settling {
   const Net& net_;
   const ReferenceSurface& surface_;
   const Options& options_;
+  std::vector<Vec3> last_;  ///< each node's last step
+  float recovery_ = 1.05F;
+  std::vector<float> gain_;          ///< how far beyond its balance, or short of it, each node goes
   std::vector<float> drift_;         ///< since each was last put back on the surface
   std::vector<std::uint8_t> awake_;  ///< it or a neighbour has moved
 };

@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/mesh/relax/relaxing.h"
+#include "tests/support/real_deck.h"
+
+namespace prismesh::test {
+
+namespace {
+
+using namespace mesh;
+
+/// Nodes inside sheets slid by up to a third of an element, as a careless slide would.
+Model slid(const Model& model, const relax::ReferenceSurface& surface) {
+  const NodeSet nodes = all_nodes(model);
+  const std::vector<relax::Freedom> freedoms = relax::node_freedoms(model, nodes, 30);
+  Model out = model;
+  for (std::size_t n = 0; n < nodes.size(); n += 3) {
+    if (freedoms[n] != relax::Freedom::surface) continue;
+    const ShellIndex shell = model.adjacency->shells_of(nodes[n]).front();
+    const ShellNodes& corners = model.shell(shell);
+    const int at = corners.node[0] == nodes[n] ? 1 : 0;
+    const Vec3 towards = model.position(corners.node[at]) - model.position(nodes[n]);
+    out.positions.set(n, surface.follow(shell, model.position(nodes[n]) + 0.33 * noise(static_cast<int>(n), 0, 1) * towards).point);
+  }
+  return out;
+}
+
+TEST(relax_real_decks, makes_nothing_worse_and_slid_meshes_better) {
+  const auto decks = real_decks();
+  if (!decks) GTEST_SKIP() << "PRISMESH_MODELS names no folder of decks";
+  for (const char* name : {"bumper_beam_rad", "hatprofile", "seat_adyrel_rad", "wheel_k"}) {
+    SCOPED_TRACE(name);
+    const Model original = open_real(*decks, name);
+    const double size = quality::guess_target_size(original);
+    const relax::ReferenceSurface surface(original, all_shells(original), 30);
+    for (const bool by_sliding : {false, true}) {
+      const Model before = by_sliding ? slid(original, surface) : original;
+      const relax::Relaxed relaxed = relax::relax(before, surface, all_nodes(before), judge_of(size), {}).value();
+      const Model after = moved(before, relaxed);
+      expect_nothing_worse(before, after, size);
+      const std::vector<float> was = composites(before, size), is = composites(after, size);
+      const auto bad = [](const std::vector<float>& values) {
+        return std::count_if(values.begin(), values.end(), [](float v) { return v < 0; });
+      };
+      EXPECT_LE(bad(is), bad(was));
+      if (by_sliding) {
+        EXPECT_GT(mean(is), mean(was));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+}  // namespace prismesh::test
