@@ -1,9 +1,176 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <span>
+
+#include "base/counted.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/hanging.h"
+#include "mesh/document/scope.h"
+#include "mesh/document/selecting.h"
+#include "mesh/document/surroundings.h"
+#include "mesh/relax/relax.h"
 
 namespace prismesh::mesh::document {
 
-Result<void> apply_edit(const Document&, const Relax&, Generation&, EditReport&, const Progress&) {
-  return fail("", "relax: not there yet");
+namespace {
+
+constexpr double kThreshold = 0.01;  ///< of the target size, where the edit says none
+
+Result<void> refuse_unsound(const Relax& edit) {
+  const auto positive = [](const std::optional<double>& value) { return !value || (*value > 0 && std::isfinite(*value)); };
+  if (!positive(edit.max_move.free) || !positive(edit.max_move.line)) return fail("", "relax: max_move must be greater than 0");
+  if (!positive(edit.threshold)) return fail("", "relax: the threshold must be greater than 0");
+  if (!(edit.angle > 0 && edit.angle <= 180)) return fail("", "relax: the angle must be above 0 and at most 180 degrees");
+  if (edit.mode == RelaxMode::from && !edit.at) return fail("", "relax: mode \"from\" needs \"at\", the node to begin with");
+  return {};
+}
+
+/// Where relaxing looks, before anything is left out.
+struct Reach {
+  ShellSet shells;
+  NodeSet nodes;
+};
+
+Result<Reach> find_reach(const Document& document, const Relax& edit) {
+  const Generation& current = document.current();
+  const bool by_selection = edit.scope == Scope::selection && (edit.mode == RelaxMode::full || current.selected_nodes > 0);
+  Result<ShellSet> shells = shells_in(document, by_selection || edit.scope != Scope::selection ? edit.scope : Scope::all, "relax");
+  if (!shells) return fail(shells.error());
+  Reach reach;
+  if (by_selection) {
+    reach.nodes = selection(current);
+    reach.shells = shells_touching(current.model, reach.nodes);
+    return reach;
+  }
+  reach.nodes = nodes_of(current.model, *shells);
+  if (edit.scope == Scope::damaged || edit.scope == Scope::failed) {
+    *shells = shells_touching(current.model, reach.nodes);
+    reach.nodes = nodes_of(current.model, *shells);
+  }
+  reach.shells = std::move(*shells);
+  return reach;
+}
+
+/// Why nodes stay, in the order in which the reasons are asked for.
+enum class Stays : std::uint8_t { locked, held, other_element, joined, mid_side, goes };
+constexpr std::array<std::string_view, 5> kWhyStays{"of locked parts", "held by the deck", "with elements other than shells",
+                                                    "that cards join", "of shells with mid-side nodes"};
+
+class Pins {
+ public:
+  explicit Pins(const Generation& generation) : generation_(generation) {
+    const Model& model = generation.model;
+    if (model.midside)
+      for (const MidsideNodes& midside : *model.midside) {
+        for (const NodeIndex node : midside.node)
+          if (node.valid()) mid_side_.push_back(node);
+        const ShellNodes& corners = model.shell(midside.shell);
+        if (!model.is_removed(midside.shell)) mid_side_.insert(mid_side_.end(), corners.node.begin(), corners.node.end());
+      }
+    std::sort(mid_side_.begin(), mid_side_.end());
+  }
+
+  Stays of(NodeIndex node) const {
+    if ((generation_.node_marks[node.value] & kLocked) != 0) return Stays::locked;
+    if (generation_.model.node_holds[node.value] != 0) return Stays::held;
+    if (names(generation_.around->attached.uses, node)) return Stays::other_element;
+    if (names(generation_.around->hanging.joined, node)) return Stays::joined;
+    return std::binary_search(mid_side_.begin(), mid_side_.end(), node) ? Stays::mid_side : Stays::goes;
+  }
+
+ private:
+  template <class Entry>
+  static bool names(const std::vector<Entry>& entries, NodeIndex node) {
+    const auto at = std::lower_bound(entries.begin(), entries.end(), node, [](const Entry& e, NodeIndex n) { return e.node < n; });
+    return at != entries.end() && at->node == node;
+  }
+
+  const Generation& generation_;
+  NodeSet mid_side_;  ///< and the corners between them
+};
+
+/// The nodes that may go; says how many may not.
+NodeSet movable_of(const Generation& generation, const NodeSet& nodes, EditReport& report) {
+  const Pins pins(generation);
+  std::array<std::size_t, kWhyStays.size()> stay{};
+  NodeSet movable;
+  movable.reserve(nodes.size());
+  for (const NodeIndex node : nodes) {
+    const Stays why = pins.of(node);
+    if (why == Stays::goes)
+      movable.push_back(node);
+    else
+      ++stay[static_cast<std::size_t>(why)];
+  }
+  for (std::size_t i = 0; i < stay.size(); ++i)
+    if (stay[i] > 0)
+      report.notes.push_back(counted(stay[i], "node") + " " + std::string(kWhyStays[i]) + (stay[i] == 1 ? " stays" : " stay"));
+  return movable;
+}
+
+std::string short_number(double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+void say_how(const relax::Relaxed& relaxed, EditReport& report) {
+  if (relaxed.nodes.empty())
+    report.notes.push_back("nothing to relax: every node is where it is best");
+  else
+    report.notes.push_back((relaxed.converged ? "at rest after " : "not yet at rest after ") +
+                           counted(static_cast<std::size_t>(relaxed.rounds), "round") + "; the farthest node moved " +
+                           short_number(relaxed.farthest));
+  if (relaxed.held_back > 0)
+    report.notes.push_back(counted(relaxed.held_back, "node") + " held back, so that no element becomes worse than it may");
+  if (relaxed.limited > 0) report.notes.push_back(counted(relaxed.limited, "node") + " stopped at max_move");
+}
+
+void put_positions(const Document& document, const relax::Relaxed& relaxed, Generation& next, EditReport& report) {
+  for (std::size_t i = 0; i < relaxed.nodes.size(); ++i) next.model.positions.set(relaxed.nodes[i].value, relaxed.positions[i]);
+  report.nodes_moved = relaxed.nodes.size();
+  const ShellSet touched = shells_touching(next.model, relaxed.nodes);
+  quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, touched, next.quality, next.counts);
+  update_weight(document.current(), touched, next);
+  report_hanging(document.current(), next, relaxed.nodes, report);
+}
+
+}  // namespace
+
+Result<void> apply_edit(const Document& document, const Relax& edit, Generation& next, EditReport& report, const Progress& progress) {
+  if (const Result<void> sound = refuse_unsound(edit); !sound) return sound;
+  const Generation& current = document.current();
+  NodeIndex at;
+  if (edit.mode == RelaxMode::from) {
+    const Result<NodeIndex> found = find_place(current.model, *edit.at);
+    if (!found) return fail("", "relax: " + found.error().message);
+    at = *found;
+  }
+  const Result<Reach> reach = find_reach(document, edit);
+  if (!reach) return fail(reach.error());
+  const NodeSet movable = movable_of(current, reach->nodes, report);
+  if (movable.empty()) {
+    report.notes.push_back(!reach->nodes.empty()          ? "nothing to relax: every node in the scope stays"
+                           : edit.scope == Scope::damaged ? "nothing to relax: no edit made an element fail or warn"
+                                                          : "nothing to relax: no element in the scope");
+    return {};
+  }
+  relax::Options options;
+  options.feature_angle = edit.angle;
+  options.most_on_surface = edit.max_move.free;
+  options.most_on_line = edit.max_move.line;
+  const relax::Judge judge{document.settings.criteria, document.settings.target_size};
+  const relax::ReferenceSurface surface = surface_about(current, reach->shells, edit.angle);
+  const double threshold = edit.threshold.value_or(kThreshold * document.settings.target_size);
+  const Result<relax::Relaxed> relaxed = edit.mode == RelaxMode::from
+                                             ? relax::relax_from(current.model, surface, at, threshold, movable, judge, options, progress)
+                                             : relax::relax(current.model, surface, movable, judge, options, progress);
+  if (!relaxed) return fail(relaxed.error());
+  say_how(*relaxed, report);
+  put_positions(document, *relaxed, next, report);
+  return {};
 }
 
 }  // namespace prismesh::mesh::document
