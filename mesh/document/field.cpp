@@ -28,10 +28,10 @@ NodeIndex counterpart(const Model& other, const Model& model, std::size_t node) 
   return other.find_node(id);
 }
 
-/// Both models have the same nodes at the same places in this chunk.
+/// Both models have the same nodes at the same places in this chunk of the second.
 bool same_nodes(const Model& a, const Model& b, std::size_t chunk) {
-  return a.positions.shares_chunk(b.positions, chunk) && a.node_ids.shares_chunk(b.node_ids, chunk) &&
-         a.node_holds.shares_chunk(b.node_holds, chunk);
+  return b.positions.shares_chunk(a.positions, chunk) && b.node_ids.shares_chunk(a.node_ids, chunk) &&
+         b.node_holds.shares_chunk(a.node_holds, chunk);
 }
 
 /// 1 for each corner of a shell that is there.
