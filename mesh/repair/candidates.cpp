@@ -127,6 +127,32 @@ void add_rows(const Site& site, LocalShell shell, std::vector<Candidate>& found)
   }
 }
 
+/// From a triangle over quads to another one: both become quads.
+void add_rows_between_triangles(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
+  constexpr int kFarthest = 8;
+  const Patch& patch = site.patch;
+  const Corners corners = patch.shell(shell).corners;
+  if (corner_count(corners) != 3) return;
+  for (int e = 0; e < 3; ++e) {
+    const EdgeOf edge = edge_of(corners, e);
+    for (const LocalShell next : patch.shells_at(edge.a, edge.b)) {
+      const Corners& theirs = patch.shell(next).corners;
+      if (next == shell || corner_count(theirs) != 4) continue;
+      Row row{next};
+      for (int i = 0; i < 4; ++i)
+        if (const EdgeOf entry = edge_of(theirs, i); std::minmax(entry.a, entry.b) == std::minmax(edge.a, edge.b)) row.edge = i;
+      for (row.forward = 0; row.forward < kFarthest; ++row.forward) {
+        const auto ends = ends_of(patch, row);
+        if (!ends) break;
+        if (ends->forward_corners == 4) continue;
+        row.forward_end = row.back_end = RowEnd::absorb;
+        found.push_back({Operation::split, [&site, row] { return divide_row(site, row); }});
+        break;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Candidate> candidates_for(const Site& site, LocalShell shell) {
@@ -137,6 +163,8 @@ std::vector<Candidate> candidates_for(const Site& site, LocalShell shell) {
   add_unions(site, shell, found);
   add_redivisions(site, shell, found);
   add_rows(site, shell, found);
+  add_rows_between_triangles(site, shell, found);
+  found.push_back({std::nullopt, [&site, shell] { return stir(site, shell); }});
   for (int e = 0; e < count; ++e) {
     const LocalNode node = corners[static_cast<std::size_t>(e)];
     if (patch.node(node).lines.empty()) found.push_back({Operation::split, [&site, node] { return divide_about(site, node); }});
@@ -154,9 +182,15 @@ std::vector<Candidate> candidates_for(const Site& site, LocalShell shell) {
   return found;
 }
 
-std::vector<Candidate> redivisions_for(const Site& site, LocalShell shell) {
+std::vector<Candidate> tidying_for(const Site& site, LocalShell shell) {
   std::vector<Candidate> found;
-  add_redivisions(site, shell, found);
+  const Corners corners = site.patch.shell(shell).corners;
+  bool is_paired = false;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const LocalShell other : site.patch.shells_at(corners[i], corners[(i + 1) % 3]))
+      is_paired = is_paired || (other != shell && corner_count(site.patch.shell(other).corners) == 3);
+  if (is_paired) add_redivisions(site, shell, found);
+  add_rows_between_triangles(site, shell, found);
   return found;
 }
 

@@ -283,6 +283,18 @@ Refusal unite(const Site& site, const std::vector<Union>& unions) {
   return std::nullopt;
 }
 
+Refusal stir(const Site& site, LocalShell shell) {
+  Patch& patch = site.patch;
+  std::vector<LocalNode> nodes;
+  for (const LocalNode corner : patch.shell(shell).corners)
+    for (const LocalShell near : patch.node(corner).shells)
+      for (const LocalNode node : patch.shell(near).corners) nodes.push_back(node);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  for (const LocalNode node : nodes) patch.move(node, patch.position(node), patch.node(node).is_off_surface);
+  return std::nullopt;
+}
+
 Refusal lift_node(const Site& site, LocalNode node, double distance) {
   const PatchNode& n = site.patch.node(node);
   if (!n.is_whole || n.freedom != relax::Freedom::surface || !n.lines.empty() || (n.rules & kStays) != 0) return "the node can't be moved";

@@ -64,6 +64,9 @@ Refusal divide_edge(const Site& site, LocalNode a, LocalNode b, RowEnd first_end
 /// All shells about a node, divided between it and what is around: quads into three, triangles into two.
 Refusal divide_about(const Site& site, LocalNode node);
 
+/// Changes nothing, but counts the shells about a shell's corners as changed, so that their nodes settle.
+Refusal stir(const Site& site, LocalShell shell);
+
 /// Moves a node along the surface's normal.
 Refusal lift_node(const Site& site, LocalNode node, double distance);
 

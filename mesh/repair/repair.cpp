@@ -101,22 +101,13 @@ class Repairer {
   void tidy() {
     for (std::size_t s = 0; s < patch_.shell_count(); ++s) {
       const LocalShell shell(s);
-      if (!patch_.shell(shell).is_alive || !is_touched(shell) || !is_beside_triangle(shell)) continue;
-      improve(redivisions_for(site_, shell), shell, true);
+      if (!patch_.shell(shell).is_alive || !is_touched(shell) || corner_count(patch_.shell(shell).corners) != 3) continue;
+      improve(tidying_for(site_, shell), shell, true);
     }
   }
 
   bool is_touched(LocalShell shell) const {
     return !patch_.shell(shell).model.valid() || (shell.value < touched_.size() && touched_[shell.value] != 0);
-  }
-
-  bool is_beside_triangle(LocalShell shell) const {
-    const Corners& corners = patch_.shell(shell).corners;
-    if (corner_count(corners) != 3) return false;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (const LocalShell other : patch_.shells_at(corners[i], corners[(i + 1) % 3]))
-        if (other != shell && corner_count(patch_.shell(other).corners) == 3) return true;
-    return false;
   }
 
   struct Outcome {
@@ -188,7 +179,7 @@ class Repairer {
     patch_.begin();
     try_out(*best, only_tidy);
     keep_change();
-    ++repaired_.done[static_cast<std::size_t>(best->operation)];
+    if (best->operation) ++repaired_.done[static_cast<std::size_t>(*best->operation)];
     return true;
   }
 

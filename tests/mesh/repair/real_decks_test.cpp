@@ -108,9 +108,11 @@ double deviation(const Model& model, const relax::ReferenceSurface& surface, con
   double farthest = 0;
   const auto look = [&](const Vec3& point) {
     const auto place = surface.project(point, size);
-    farthest = std::max(farthest, place ? place->distance : size);
+    const auto line = surface.project_on_line(point, size);
+    farthest = std::max(farthest, std::min(place ? place->distance : size, line ? (*line - point).norm() : size));
   };
   for (const NewNode& node : repaired.change.new_nodes) look(node.position);
+
   for (const auto& [node, position] : repaired.change.moved) look(position);
   (void)model;
   return farthest;
