@@ -23,7 +23,10 @@ Editor::Editor(const EditorOptions& options, ModelLink& link, render::Renderer& 
       trace_(trace),
       profile_(options.profile),
       expressions_(options.expressions),
-      mouse_words_(options.mouse.in_words()) {
+      mouse_words_(options.mouse.in_words()),
+      quality_(link),
+      comparing_(link, renderer, trace),
+      follows_others_(options.follows_others) {
   view_.rotation = *stereo::named_rotation("iso");
 }
 
@@ -35,7 +38,9 @@ void Editor::set_picture_size(display::PixelSize size) {
 
 void Editor::look_from(const stereo::SeenFrom& seen) {
   seen_ = seen;
-  const stereo::View fitted = depth_.fitted(view_, seen.between_eyes_mm, clock_.now_ns());
+  const std::int64_t now = clock_.now_ns();
+  share_view();
+  const stereo::View fitted = depth_.fitted(glide_.along(view_, now), seen.between_eyes_mm, now);
   if (fitted == view_) return;
   view_ = fitted;
   ++changes_;
@@ -53,7 +58,13 @@ void Editor::set_panel(const render::PanelPlace& panel) {
   ++changes_;
 }
 
-stereo::Aim Editor::aim() const { return render::aim_for(plain_picture(), size_.width, size_.height); }
+/// Of the view that things are picked in: the right one of two.
+stereo::Aim Editor::aim() const {
+  render::Picture picture = plain_picture();
+  if (comparing_.two_views())
+    picture.view = stereo::pan(view_, {pane_shift() * stereo::screen_size_mm(profile_, size_.width, size_.height).x(), 0});
+  return render::aim_for(picture, size_.width, size_.height);
+}
 
 // --- following the model server ---
 
@@ -62,10 +73,11 @@ Result<void> Editor::follow() {
   link_changes_ = link_.changes();
   ++changes_;
   follow_notices();
+  take_shared_view();
+  if (Result<void> followed = follow_states(); !followed) return followed;
   if (link_.snapshot() != shown_) {
     const auto& next = link_.snapshot();
     const bool other_document = next && (!shown_ || shown_->info().document != next->info().document);
-    if (Result<void> set = renderer_.set_model(next ? render::snapshot_source(next) : nullptr); !set) return set;
     shown_ = next;
     // What stays within comfortable depth is what is shown now.
     if (const stereo::Box box = renderer_.bounds(); !box.empty()) view_.bounds = stereo::sphere_around(box);
@@ -74,10 +86,13 @@ Result<void> Editor::follow() {
       axis_.reset();
       axis_pick_.cancel();
       comparison_.reset();
+      leave_error();
+      leave_operation();
       fit();
     }
     follow_comparison();
   }
+  follow_quality();
   return follow_drag();
 }
 
@@ -122,6 +137,10 @@ void Editor::follow_comparison() {
 
 void Editor::gesture(const tools::Gesture& gesture) {
   ++changes_;
+  if (const auto* click = std::get_if<tools::NodeClicked>(&gesture); click != nullptr && !pickable(click->at)) return;
+  if (const auto* outline = std::get_if<tools::OutlineDone>(&gesture);
+      outline != nullptr && !outline->way.empty() && !pickable(outline->way.front()))
+    return cancel_gesture();
   std::visit([this](const auto& what) { handle(what); }, gesture);
 }
 
@@ -151,7 +170,11 @@ void Editor::handle(const tools::Panned& pan) {
 }
 
 void Editor::handle(const tools::Zoomed& zoom) {
-  view_ = stereo::zoom(view_, std::pow(kZoomPerStep, zoom.steps), stereo::mm_of_pixel(aim(), zoom.at));
+  Eigen::Vector2d place = stereo::mm_of_pixel(aim(), zoom.at);
+  if (comparing_.two_views())
+    place.x() -=
+        (zoom.at.x() > 0.5 * size_.width ? 1 : -1) * pane_shift() * stereo::screen_size_mm(profile_, size_.width, size_.height).x();
+  view_ = stereo::zoom(view_, std::pow(kZoomPerStep, zoom.steps), place);
   view_moved();
 }
 

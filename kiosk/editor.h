@@ -10,12 +10,15 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "kiosk/comparing.h"
 #include "kiosk/display/window.h"
 #include "kiosk/model_link.h"
 #include "kiosk/panels/panels.h"
+#include "kiosk/quality_link.h"
 #include "kiosk/render/renderer.h"
 #include "kiosk/stereo/tracked_eyes.h"
 #include "kiosk/tools/axis_pick.h"
+#include "kiosk/tools/by_hand.h"
 #include "kiosk/tools/command.h"
 #include "kiosk/tools/depth.h"
 #include "kiosk/tools/gestures.h"
@@ -23,6 +26,7 @@
 #include "kiosk/tools/history_file.h"
 #include "kiosk/tools/shaping_options.h"
 #include "kiosk/tools/typed_number.h"
+#include "kiosk/tools/view_glide.h"
 
 namespace prismesh::kiosk {
 
@@ -30,6 +34,7 @@ struct EditorOptions {
   stereo::Profile profile;
   tools::MouseLayout mouse = tools::default_mouse_layout();
   std::filesystem::path expressions{};  ///< where entered expressions are kept; empty: nowhere
+  bool follows_others = false;          ///< moves together with other kiosks that do
 };
 
 class Editor {
@@ -68,7 +73,7 @@ class Editor {
   bool large_model() const;
   const stereo::Profile& profile() const { return profile_; }
   /// The view is on its way to another, without the hand.
-  bool gliding() const { return depth_.moving(); }
+  bool gliding() const { return depth_.moving() || glide_.moving(); }
   /// Counts up with everything that changes the picture or the panels.
   std::uint64_t changes() const { return changes_; }
   std::optional<std::uint64_t> shown_generation() const { return shown_ ? std::optional(shown_->info().generation) : std::nullopt; }
@@ -123,6 +128,26 @@ class Editor {
   void enter_number(const std::string& text);
   bool change_shaping(tools::Command command);
 
+  // --- editor_quality.cpp ---
+  QualityLink::Wish quality_wish() const;
+  bool quality_command(tools::Command command, const std::optional<tools::Pixel>& pointer);
+  bool quality_action(const panels::PanelAction& action);
+  std::optional<panels::QualityFacts> quality_facts() const;
+  void relax(mesh::document::Scope scope);
+  void relax_from(const std::optional<tools::Pixel>& pointer);
+  void repair(mesh::document::Scope scope);
+  void follow_quality();
+  void step_error(int by);
+  void go_to_error(std::size_t error);
+  void leave_error();
+  std::optional<mesh::ShellIndex> shell_with_id(std::int64_t id) const;
+  void pick_operation(mesh::repair::Operation operation, const std::optional<tools::Pixel>& pointer);
+  void operation_clicked(const tools::Pixel& at);
+  void do_operation();
+  void leave_operation();
+  void follow_operation();
+  std::string operation_words() const;
+
   // --- editor_commands.cpp ---
   bool select_command(tools::Command command, const std::optional<tools::Pixel>& pointer);
   bool shape_command(tools::Command command, const std::optional<tools::Pixel>& pointer);
@@ -139,6 +164,15 @@ class Editor {
   void bring_selection();
   void follow_notices();
   void follow_comparison();
+
+  // --- editor_compare.cpp ---
+  bool compare_command(tools::Command command);
+  bool compare_action(const panels::PanelAction& action);
+  Result<void> follow_states();
+  double pane_shift() const;
+  bool pickable(const tools::Pixel& pixel) const;
+  void share_view();
+  void take_shared_view();
 
   // --- editor_facts.cpp ---
   panels::DocumentFacts document_facts() const;
@@ -186,8 +220,34 @@ class Editor {
     bool showing_before = true;
   };
   std::optional<Comparison> comparison_;
+  QualityLink quality_;
+  /// What is looked at of the shells' quality.
+  struct Review {
+    bool open = false;
+    std::string metric;  ///< empty: all
+    bool damaged = false;
+    std::optional<std::size_t> error;  ///< which of the errors is gone to, and of which shell it is
+    std::int64_t shell = 0;
+    std::optional<mesh::ShellIndex> marked;
+  };
+  Review review_;
+  tools::ViewGlide glide_;
+  /// An operation by hand that is picked, and what it would be done to.
+  struct ByHand {
+    std::optional<mesh::repair::Operation> operation;
+    std::optional<tools::HandTarget> target;
+    std::optional<mesh::document::Restructure> edit;
+    std::uint64_t generation = 0;
+    std::uint64_t shown = 0;  ///< the preview that is in the picture; 0: none
+  };
+  ByHand by_hand_;
   panels::Dialog dialog_ = panels::Dialog::none;
   bool help_ = false;
+
+  Comparing comparing_;
+  std::shared_ptr<const ipc::SnapshotView> drawn_;  ///< the renderer's model: the current state, or an older one
+  bool follows_others_ = false;
+  std::optional<ipc::Camera> shared_;  ///< said or heard last
 
   std::shared_ptr<const ipc::SnapshotView> shown_;
   std::uint64_t link_changes_ = 0;
@@ -211,6 +271,7 @@ class Editor {
   std::uint64_t changes_ = 0;
   std::string traced_aim_;
   std::string traced_handle_;
+  std::string traced_quality_;
 };
 
 }  // namespace prismesh::kiosk

@@ -39,7 +39,9 @@ bool Editor::command(Command command, const std::optional<Pixel>& pointer) {
       return true;
     case Command::fullscreen:
     case Command::rearm: return false;
-    default: return select_command(command, pointer) || shape_command(command, pointer) || view_command(command);
+    default:
+      return compare_command(command) || select_command(command, pointer) || shape_command(command, pointer) ||
+             quality_command(command, pointer) || view_command(command);
   }
 }
 
@@ -100,7 +102,9 @@ bool Editor::view_command(Command command) {
     case Command::view_bottom: look("bottom"); return true;
     case Command::view_oblique: look("iso"); return true;
     case Command::colour_mode:
-      colour_ = colour_ == render::ColourMode::parts ? render::ColourMode::quality : render::ColourMode::parts;
+      colour_ = colour_ == render::ColourMode::parts     ? render::ColourMode::quality
+                : colour_ == render::ColourMode::quality ? render::ColourMode::part_states
+                                                         : render::ColourMode::parts;
       return true;
     case Command::shadows: shadows_ = !shadows_; return true;
     case Command::next_profile: next_profile(); return true;
@@ -124,6 +128,7 @@ void Editor::open_dialog(panels::Dialog dialog) {
 
 /// What lies on top goes first.
 void Editor::cancel() {
+  if (link_.long_edit()) return link_.cancel_edit();
   if (pull_ || rubber_band_ || !lasso_way_.empty()) return cancel_gesture();
   if (dialog_ != panels::Dialog::none)
     dialog_ = panels::Dialog::none;
@@ -131,6 +136,8 @@ void Editor::cancel() {
     help_ = menu_ = false;
   else if (axis_pick_.active())
     axis_pick_.cancel();
+  else if (by_hand_.operation)
+    leave_operation();
   else if (!notices_.empty())
     notices_.pop_front();
   else if (axis_)
@@ -163,6 +170,7 @@ void Editor::fit() {
   if (renderer_.bounds().empty()) return;
   Eigen::Vector2d free = stereo::screen_size_mm(profile_, size_.width, size_.height);
   free.x() *= std::max(0.2, 1 - covered_width_ / std::max(size_.width, 1));
+  if (comparing_.two_views()) free.x() *= 0.5;
   view_ = renderer_.fitted(view_, free, seen_.between_eyes_mm.z());
   if (depth_.keeps_selection()) bring_selection();
   view_moved();
@@ -179,6 +187,7 @@ void Editor::next_profile() {
 
 void Editor::panel_action(const panels::PanelAction& action) {
   ++changes_;
+  if (quality_action(action) || compare_action(action)) return;
   if (const auto* ask = std::get_if<panels::AskParts>(&action)) {
     mesh::document::SetParts edit;
     edit.action = ask->action;

@@ -49,6 +49,9 @@ render::Picture Editor::picture() const {
   picture.rubber_band = rubber_band_;
   picture.lasso = lasso_way_;
   picture.shadows = shadows_;
+  comparing_.dress(picture, pane_shift());
+  picture.damaged_only = review_.damaged;
+  picture.marked = review_.marked;
   return picture;
 }
 
@@ -65,6 +68,9 @@ panels::PanelData Editor::panel_data() const {
   data.history_cap = link_.history_cap();
   data.shadows = shadows_;
   data.colour_by_quality = colour_ == render::ColourMode::quality;
+  data.colour_by_state = colour_ == render::ColourMode::part_states;
+  data.compare = comparing_.facts(pane_shift());
+  data.quality = quality_facts();
   data.profile = profile_.name;
   data.eyes = eyes_facts_;
   if (profile_.stereo()) data.depth = panels::DepthFacts{depth_.percent(), depth_.degrees(), depth_.keeps_selection()};
@@ -110,6 +116,7 @@ panels::PanelData Editor::panel_data() const {
 std::string Editor::guidance() const {
   if (axis_pick_.active())
     return axis_pick_.first() ? "Axis: click the second node, Esc gives up" : "Axis: click the first node, Esc gives up";
+  if (by_hand_.operation) return operation_words();
   if (comparison_ && shown_) {
     const std::string edit = comparison_->edit.empty() ? "the last edit" : comparison_->edit;
     return shown_->info().generation == comparison_->after ? "B: after " + edit + "   C shows A" : "A: before " + edit + "   C shows B";

@@ -36,7 +36,9 @@ std::vector<std::array<double, 2>> outline_of(const std::vector<Pixel>& pixels, 
 
 }  // namespace
 
-std::optional<mesh::NodeIndex> Editor::node_at(const Pixel& pixel) { return renderer_.node_near(aim(), pixel, kPickRadiusPixels); }
+std::optional<mesh::NodeIndex> Editor::node_at(const Pixel& pixel) {
+  return pickable(pixel) ? renderer_.node_near(aim(), pixel, kPickRadiusPixels) : std::nullopt;
+}
 
 void Editor::select_nodes(const mesh::NodeSet& nodes, SelectMode mode) {
   last_region_.reset();
@@ -63,6 +65,7 @@ void Editor::clear_selection() {
 void Editor::handle(const tools::NodeClicked& click) {
   if (!shown_) return;
   if (axis_pick_.active()) return axis_clicked(click.at);
+  if (by_hand_.operation) return operation_clicked(click.at);
   const std::optional<mesh::NodeIndex> node = node_at(click.at);
   if (!node) {
     if (click.mode == SelectMode::set) clear_selection();
@@ -74,6 +77,7 @@ void Editor::handle(const tools::NodeClicked& click) {
 
 void Editor::handle(const tools::RegionClicked& click) {
   if (axis_pick_.active()) return axis_clicked(click.at);
+  if (by_hand_.operation) return operation_clicked(click.at);
   select_region(click.at, click.mode);
 }
 
@@ -157,7 +161,7 @@ void Editor::enter_expression(const panels::ExpressionEntered& entered) {
 // --- parts and files ---
 
 std::optional<mesh::PartIndex> Editor::part_at(const std::optional<Pixel>& pointer) {
-  const auto shell = pointer && shown_ ? renderer_.shell_at(aim(), *pointer) : std::nullopt;
+  const auto shell = pointer && shown_ && pickable(*pointer) ? renderer_.shell_at(aim(), *pointer) : std::nullopt;
   if (!shell || shell->value >= shown_->shell_count()) return std::nullopt;
   const mesh::PartIndex part = shown_->shell_part(shell->value);
   return part.value < shown_->info().parts.size() ? std::optional(part) : std::nullopt;

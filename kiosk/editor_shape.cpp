@@ -29,7 +29,7 @@ Use use_of(Under handle) {
 
 Under Editor::under(const Pixel& pixel) const {
   const std::optional<render::Handle> shown = shown_handle();
-  return shown && !pull_ && !axis_pick_.active() ? tools::part_of_handle(aim(), *shown, pixel) : Under::picture;
+  return shown && !pull_ && !axis_pick_.active() && !by_hand_.operation ? tools::part_of_handle(aim(), *shown, pixel) : Under::picture;
 }
 
 std::optional<render::Handle> Editor::shown_handle() const {
@@ -41,7 +41,7 @@ std::optional<render::Handle> Editor::shown_handle() const {
     if (pull_->axis()) handle.turn = render::Handle::Turn{pull_->axis()->point, pull_->axis()->direction, pulled_.degrees};
     return handle;
   }
-  if (!anchor_ || !link_.connected() || link_.drag() != nullptr) return std::nullopt;
+  if (!anchor_ || comparing_.shows_older() || !link_.connected() || link_.drag() != nullptr || by_hand_.operation) return std::nullopt;
   handle.at = anchor_->at;
   handle.direction = tools::arrow_direction(aim(), *anchor_);
   if (axis_) {
@@ -57,6 +57,7 @@ void Editor::handle(const tools::HandleTaken& taken) { begin_pull(taken.handle, 
 
 void Editor::begin_pull(Under handle, const Pixel& at) {
   if (!anchor_ || link_.drag() != nullptr) return;
+  leave_operation();
   const stereo::Aim now = aim();
   const bool turning = handle == Under::turn_handle;
   if (turning && !axis_) return;

@@ -33,6 +33,16 @@ bool is_selecting(std::string_view edit) {
   return std::find(kSelecting.begin(), kSelecting.end(), edit) != kSelecting.end();
 }
 
+/// What the server is at, for people.
+static std::string busy_words(const std::string& what) {
+  return is_mending(what) ? fmt::format("{}ing ..   Esc stops it", what == "relax" ? "Relax" : "Repair") : what;
+}
+
+bool is_mending(std::string_view edit) {
+  constexpr std::array<std::string_view, 6> kMending{"relax", "repair", "split", "collapse", "merge", "swap"};
+  return std::find(kMending.begin(), kMending.end(), edit) != kMending.end();
+}
+
 ModelLink::ModelLink(std::filesystem::path socket, std::optional<std::filesystem::path> deck, Clock& clock, Trace trace)
     : socket_(std::move(socket)), deck_(std::move(deck)), clock_(clock), trace_(trace) {}
 
@@ -62,6 +72,7 @@ void ModelLink::try_connect() {
   client_ = std::move(*client);
   back_off_ns_ = 0;
   ++changes_;
+  ++connections_;
   trace_.line("connected");
   ask_state();
 }
@@ -71,6 +82,7 @@ void ModelLink::lost(const Error& error) {
   waiting_.clear();
   busy_.clear();
   stale_ = fetching_ = fetched_ = counting_ = false;
+  edits_ = 0;
   if (drag_) drop_drag("lost");
   next_attempt_ns_ = clock_.now_ns();
   ++changes_;
@@ -82,6 +94,10 @@ void ModelLink::ask(const ipc::Request& request, Then then) {
   const Result<std::uint64_t> sent = client_->send(request);
   if (!sent) return lost(sent.error());
   waiting_.emplace(*sent, std::move(then));
+}
+
+void ModelLink::question(const ipc::Request& request, Then then) {
+  if (client_) ask(request, std::move(then));
 }
 
 void ModelLink::read() {
@@ -107,6 +123,7 @@ void ModelLink::heard(const ipc::Event& event) {
                    if (published.made_by != "save") made_by_ = published.made_by;  // a save makes no other state
                    history_bytes_ = published.history_bytes;
                    history_cap_ = published.history_cap;
+                   busy_.clear();
                    stale_ = true;
                  },
                  [&](const ipc::DocumentOpened& opened) {
@@ -122,9 +139,10 @@ void ModelLink::heard(const ipc::Event& event) {
                    ask_state();
                  },
                  [&](const ipc::ProgressMade& progress) {
-                   busy_ = progress.fraction < 1 ? progress.what : std::string();
+                   busy_ = progress.fraction < 1 ? busy_words(progress.what) : std::string();
                    busy_fraction_ = progress.fraction;
                  },
+                 [&](const ipc::CameraMoved& moved) { camera_ = moved.camera; },
                  [&](const ipc::DragEnded& ended) {
                    if (!drag_ || !drag_->begun() || drag_->facts().drag != ended.drag) return;
                    if (!ended.committed && !drag_->end_sent_) say(Notice::Kind::warning, "The drag has ended: " + ended.why);
@@ -253,13 +271,25 @@ void ModelLink::save(const std::optional<std::filesystem::path>& path) {
 
 void ModelLink::edit(mesh::document::Edit edit) {
   const bool selecting = is_selecting(mesh::document::name(edit));
+  if (client_) ++edits_;
   ask(ipc::ApplyEdit{std::move(edit)}, [this, selecting](const ipc::Answer& answer) {
+    --edits_;
+    busy_.clear();
     if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say(Notice::Kind::error, text_of(*failed));
     const auto* edited = std::get_if<ipc::Edited>(&answer);
     if (edited == nullptr) return;
     if (!fetched_ || !snapshot_ || snapshot_->info().generation != edited->generation) stale_ = true;
     if (!selecting) say_report(edited->report);  // what a selection did is in the picture
   });
+}
+
+void ModelLink::share_camera(const ipc::Camera& camera) {
+  if (!client_) return;
+  if (const Result<std::uint64_t> sent = client_->send(ipc::ShareCamera{camera}); !sent) lost(sent.error());
+}
+
+void ModelLink::cancel_edit() {
+  if (client_ && edits_ > 0) ask(ipc::Cancel{}, [](const ipc::Answer&) {});  // that it was over already is no news
 }
 
 void ModelLink::begin_drag(mesh::document::Edit edit) {
@@ -379,6 +409,9 @@ void ModelLink::drop_drag(const char* how) {
 
 void ModelLink::say_report(const mesh::document::EditReport& report) {
   std::string text;
+  if (is_mending(report.edit))
+    text = fmt::format("{}: warn {} \u2192 {}, fail {} \u2192 {}", report.edit, report.before.warn, report.after.warn, report.before.fail,
+                       report.after.fail);
   for (const std::string& note : report.notes) text += (text.empty() ? "" : "\n") + note;
   if (report.mass_before && report.mass_after) {
     text += fmt::format("{}mass {:.6g} \u2192 {:.6g}", text.empty() ? "" : "\n", *report.mass_before, *report.mass_after);

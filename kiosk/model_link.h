@@ -22,6 +22,8 @@ namespace prismesh::kiosk {
 
 /// Whether an edit of this name changes the selection only.
 bool is_selecting(std::string_view edit);
+/// Whether it mends the mesh: its report is worth a notice whatever it says.
+bool is_mending(std::string_view edit);
 
 /// A drag as the model server works on it.
 class RemoteDrag {
@@ -80,6 +82,25 @@ class ModelLink {
   void open(const std::filesystem::path& deck);
   void save(const std::optional<std::filesystem::path>& path);
   void edit(mesh::document::Edit edit);
+  /// An edit of this client's is under way that takes long enough to say how far it is.
+  bool long_edit() const { return edits_ > 0 && !busy_.empty(); }
+  /// Asks it to stop: then nothing has happened.
+  void cancel_edit();
+
+  using Then = std::function<void(const ipc::Answer&)>;
+  /// Asks what changes nothing, and hands the answer on when it is here; never, if the server goes away before.
+  void question(const ipc::Request& request, Then then);
+  // What came with an answer to a question.
+  Result<std::shared_ptr<const ipc::FieldValues>> take(const ipc::FieldMade& made) { return client_->take_field(made); }
+  Result<std::shared_ptr<const ipc::SnapshotView>> take(const ipc::Snapshot& snapshot) { return client_->take_snapshot(snapshot); }
+  /// For GetSnapshot: what needn't be sent again.
+  std::vector<std::uint64_t> segments() const { return client_ ? client_->segments() : std::vector<std::uint64_t>(); }
+  /// Tells the other views where this one looks from.
+  void share_camera(const ipc::Camera& camera);
+  /// Where another view looks from, if one has said so since.
+  std::optional<ipc::Camera> take_camera() { return std::exchange(camera_, std::nullopt); }
+  /// Counts up with each connection: what was asked on an older one isn't answered any more.
+  std::uint64_t connections() const { return connections_; }
 
   /// How many entities an expression names, as far as the server has answered: `expr` is what it was asked last.
   struct Count {
@@ -107,8 +128,6 @@ class ModelLink {
   std::vector<panels::Notice> take_notices() { return std::exchange(notices_, {}); }
 
  private:
-  using Then = std::function<void(const ipc::Answer&)>;
-
   void try_connect();
   void lost(const Error& error);
   void ask(const ipc::Request& request, Then then);
@@ -151,6 +170,9 @@ class ModelLink {
   std::uint64_t history_bytes_ = 0, history_cap_ = 0;
   std::vector<panels::Notice> notices_;
   std::uint64_t changes_ = 0;
+  std::uint64_t connections_ = 0;
+  std::size_t edits_ = 0;  ///< that aren't answered yet
+  std::optional<ipc::Camera> camera_;
 };
 
 }  // namespace prismesh::kiosk

@@ -68,11 +68,14 @@ void setting(const char* label, const std::string& value, Command next, Actions&
   ImGui::SameLine();
   ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowContentRegionMax().x - width));
   if (ImGui::Button(value.c_str())) actions.emplace_back(next);
-  if (ImGui::IsItemHovered()) {
-    const KeyBinding& binding = binding_of(next);
-    ImGui::SetTooltip("%s (%s)", std::string(binding.meaning).c_str(), std::string(binding.label).c_str());
-  }
+  hint(next);
   ImGui::PopID();
+}
+
+void hint(Command command) {
+  if (!ImGui::IsItemHovered()) return;
+  const KeyBinding& binding = binding_of(command);
+  ImGui::SetTooltip("%s (%s)", std::string(binding.meaning).c_str(), std::string(binding.label).c_str());
 }
 
 /// All commands in columns, menu by menu; a click does one.

@@ -57,9 +57,9 @@ void picture_section(const PanelData& data, Actions& actions) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("colour by");
   ImGui::SameLine();
-  if (ImGui::RadioButton("part", !data.colour_by_quality) && data.colour_by_quality) actions.emplace_back(Command::colour_mode);
-  ImGui::SameLine();
-  if (ImGui::RadioButton("quality", data.colour_by_quality) && !data.colour_by_quality) actions.emplace_back(Command::colour_mode);
+  const char* colour = data.colour_by_quality ? "quality" : data.colour_by_state ? "parts' state" : "part";
+  if (ImGui::SmallButton(colour)) actions.emplace_back(Command::colour_mode);
+  hint(Command::colour_mode);
   ImGui::TextDisabled("display");
   ImGui::SameLine();
   if (ImGui::SmallButton(data.profile.c_str())) actions.emplace_back(Command::next_profile);
@@ -110,7 +110,7 @@ void document_panel(const PanelData& data, display::PixelSize picture, Actions& 
     picture_section(data, actions);
   ImGui::Dummy(ImVec2(0, kGrid / 2));
   ImGui::PushFont(small_font());
-  ImGui::TextDisabled("F1 keys   F10 menu   T shaping");
+  ImGui::TextDisabled("F1 keys   F10 menu   J quality");
   ImGui::PopFont();
   ImGui::End();
 }

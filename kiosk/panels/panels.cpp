@@ -101,11 +101,18 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
   covered_width_ = 2.0 * static_cast<double>(side_width(picture) + kMargin);
   const bool covered = data.help || data.menu || data.dialog == Dialog::open || data.dialog == Dialog::save_as;
   if (data.document && data.connected && !covered) {
-    if (data.shaping_open)
+    if (data.compare && data.compare->panel_open)
+      compare_panel(data, picture, actions);
+    else if (data.quality)
+      quality_panel(data, picture, actions);
+    else if (data.shaping_open)
       shaping_panel(data, picture, actions);
     else
       document_panel(data, picture, actions);
     model_panel(data, picture, actions);
+    if (data.compare)
+      for (const LegendFacts& facts : data.compare->legends)
+        if (const auto wanted = legend(facts, picture)) actions.emplace_back(*wanted);
   }
   state_panel(data, picture);
   if (data.connected && data.dialog != Dialog::none)

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "kiosk/display/window.h"
+#include "kiosk/panels/legend.h"
+#include "kiosk/panels/quality_facts.h"
 #include "kiosk/tools/command.h"
 #include "kiosk/tools/shaping_options.h"
 #include "mesh/document/edit.h"
@@ -120,11 +122,14 @@ struct PanelData {
   SelectFacts selecting;
   tools::ShapingOptions shaping;
   bool shaping_open = false;
+  std::optional<CompareFacts> compare;
+  std::optional<QualityFacts> quality;            ///< while its panel is open
   tools::Under tool = tools::Under::lift_handle;  ///< what a typed number would do
   std::string guidance;                           ///< what to do next, or which state is shown; empty: nothing
   std::uint64_t history_bytes = 0, history_cap = 0;
   bool shadows = false;
   bool colour_by_quality = false;
+  bool colour_by_state = false;
   std::string profile;
   std::optional<EyesFacts> eyes;
   std::optional<DepthFacts> depth;
@@ -173,8 +178,9 @@ struct SetRegion {
 };
 struct NoticeRead {};
 struct DialogClosed {};
-using PanelAction = std::variant<tools::Command, AskParts, AskOpen, AskSaveAs, ExpressionTyped, ExpressionEntered, NumberEntered,
-                                 SetShaping, SetRegion, NoticeRead, DialogClosed>;
+using PanelAction =
+    std::variant<tools::Command, AskParts, AskOpen, AskSaveAs, ExpressionTyped, ExpressionEntered, NumberEntered, SetShaping, SetRegion,
+                 ChooseMetric, BarClicked, ErrorClicked, SetCompare, SetLimits, NoticeRead, DialogClosed>;
 
 /// What a field that is typed into remembers from one layout to the next.
 struct EntryState {

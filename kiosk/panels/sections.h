@@ -12,7 +12,9 @@ using Actions = std::vector<PanelAction>;
 
 void document_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
 void shaping_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
+void quality_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
 void model_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
+void compare_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
 void help_panel(const PanelData& data, display::PixelSize picture);
 void menu_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
 /// `opened`: it wasn't there the last time.
@@ -21,6 +23,8 @@ void number_box(const PanelData& data, display::PixelSize picture, bool opened, 
 
 /// What is set, and a button that takes the next: "falloff ..... smooth".
 void setting(const char* label, const std::string& value, tools::Command next, Actions& actions);
+/// What the command of the item before does, while the pointer is over it.
+void hint(tools::Command command);
 void begin_centred(const char* name, display::PixelSize picture, float width);
 
 }  // namespace prismesh::kiosk::panels

@@ -1,30 +1,15 @@
 #include "kiosk/render/glyphs.h"
 
 #include <algorithm>
+#include <unordered_map>
+#include <utility>
 
 namespace prismesh::kiosk::render {
 
 using ipc::SnapshotArray;
-using mesh::quality::Metric;
 using mesh::quality::ShellState;
 
 namespace {
-
-constexpr std::uint16_t bits(std::initializer_list<Metric> metrics) {
-  unsigned all = 0;
-  for (const Metric metric : metrics) all |= 1U << static_cast<unsigned>(metric);
-  return static_cast<std::uint16_t>(all);
-}
-
-struct ShapeMetrics {
-  GlyphShape shape;
-  std::uint16_t metrics;
-};
-constexpr std::array<ShapeMetrics, 4> kShapes{{{GlyphShape::warped, bits({Metric::warpage})},
-                                               {GlyphShape::length, bits({Metric::min_length, Metric::max_length})},
-                                               {GlyphShape::angle, bits({Metric::min_angle_quad, Metric::max_angle_quad,
-                                                                         Metric::min_angle_tri, Metric::max_angle_tri, Metric::skew})},
-                                               {GlyphShape::aspect, bits({Metric::aspect})}}};
 
 /// Adds the glyphs of every n-th of these so that about `room` remain.
 template <class List, class Add>
@@ -35,22 +20,21 @@ std::size_t spread(const List& list, std::size_t room, const Add& add) {
   return list.size() - drawn;
 }
 
+/// Triangles at a node, and one of them.
+struct AtNode {
+  int triangles = 0;
+  bool quads = false;
+  std::uint32_t shell = 0;
+  std::uint8_t corner = 0;
+};
+
 }  // namespace
 
-GlyphShape shape_of(const ShellState& state) {
-  const std::uint16_t wrong = state.fail != 0 ? state.fail : state.warn;
-  for (const ShapeMetrics& candidate : kShapes)
-    if ((wrong & candidate.metrics) != 0) return candidate.shape;
-  return GlyphShape::other;
-}
-
-std::uint32_t glyph_kind(const ShellState& state) {
-  return static_cast<std::uint32_t>(shape_of(state)) + (state.fail != 0 ? kFailingGlyph : 0);
-}
-
-void GlyphList::update(const ModelTable& table, bool visibility_changed) {
+void GlyphList::update(const ModelTable& table, bool visibility_changed, bool topology_changed, bool damaged) {
   const ModelSource& source = table.source();
-  chunks_.resize(source.chunk_count(SnapshotArray::shell_quality));
+  const SnapshotArray array = damaged ? SnapshotArray::shell_damage : SnapshotArray::shell_quality;
+  if (damaged != std::exchange(damaged_, damaged)) chunks_.clear();
+  chunks_.resize(source.chunk_count(array));
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     Chunk& chunk = chunks_[c];
     const std::size_t begin = c * mesh::kChunkSize;
@@ -58,32 +42,66 @@ void GlyphList::update(const ModelTable& table, bool visibility_changed) {
       chunk = {};
       continue;
     }
-    const std::array<std::uint64_t, 2> versions{source.chunk_version(SnapshotArray::shell_quality, c),
-                                                source.chunk_version(SnapshotArray::shell_parts, c)};
-    if (chunk.known && chunk.versions == versions && !visibility_changed) continue;
+    const std::array<std::uint64_t, 2> versions{source.chunk_version(array, c), source.chunk_version(SnapshotArray::shell_parts, c)};
+    if (chunk.known && chunk.versions == versions && !visibility_changed && !topology_changed) continue;
     chunk.known = true;
     chunk.versions = versions;
     chunk.bad.clear();
-    const std::span<const ShellState> states = source.chunk<ShellState>(SnapshotArray::shell_quality, c);
+    const std::span<const ShellState> states = source.chunk<ShellState>(array, c);
     const std::size_t count = std::min(states.size(), table.shell_count() - begin);
-    for (std::size_t i = 0; i < count; ++i)
-      if ((states[i].warn | states[i].fail) != 0 && table.shell_visible(begin + i))
-        chunk.bad.push_back({static_cast<std::uint32_t>(begin + i), glyph_kind(states[i])});
+    for (std::size_t i = 0; i < count; ++i) {
+      if ((states[i].warn | states[i].fail) == 0 || !table.shell_visible(begin + i)) continue;
+      for (const GlyphShape shape : shapes_of(states[i]))
+        chunk.bad.push_back({static_cast<std::uint32_t>(begin + i), shape, states[i].fail != 0, 0});
+    }
   }
+  if (visibility_changed || topology_changed) find_clusters(table);
 }
 
-GlyphList::Chosen GlyphList::choose(const ModelTable& table, const mesh::Vec3& origin, std::size_t cap,
-                                    const std::unordered_set<std::uint32_t>& except) const {
+void GlyphList::find_clusters(const ModelTable& table) {
+  clusters_.clear();
+  std::unordered_map<std::uint32_t, AtNode> nodes;
+  mesh::ShellNodes shell;
+  for (std::size_t s = 0; s < table.shell_count(); ++s) {
+    if (!table.shell(s, shell) || !shell.is_triangle() || !table.shell_visible(s)) continue;
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      AtNode& at = nodes[shell.node[k].value];
+      if (at.triangles++ == 0) {
+        at.shell = static_cast<std::uint32_t>(s);
+        at.corner = k;
+      }
+    }
+  }
+  std::erase_if(nodes, [](const auto& entry) { return entry.second.triangles <= kMostTrianglesAtNode; });
+  if (nodes.empty()) return;
+  for (std::size_t s = 0; s < table.shell_count(); ++s) {
+    if (!table.shell(s, shell) || shell.is_triangle()) continue;
+    for (const mesh::NodeIndex node : shell.node)
+      if (const auto found = nodes.find(node.value); found != nodes.end()) found->second.quads = true;
+  }
+  for (const auto& [node, at] : nodes)
+    if (at.quads) clusters_.push_back({at.shell, GlyphShape::cluster, false, at.corner});
+  std::sort(clusters_.begin(), clusters_.end(), [](const Bad& a, const Bad& b) { return a.shell < b.shell; });
+}
+
+GlyphList::Chosen GlyphList::choose(const ModelTable& table, std::size_t cap, const std::unordered_set<std::uint32_t>& except) const {
   std::vector<Bad> failing, warning;
-  for (const Chunk& chunk : chunks_)
-    for (const Bad& bad : chunk.bad)
-      if (!except.contains(bad.shell)) ((bad.kind & kFailingGlyph) != 0 ? failing : warning).push_back(bad);
+  const auto sort_in = [&](const Bad& bad) {
+    if (!except.contains(bad.shell)) (bad.failing ? failing : warning).push_back(bad);
+  };
+  for (const Chunk& chunk : chunks_) std::for_each(chunk.bad.begin(), chunk.bad.end(), sort_in);
+  if (!damaged_) std::for_each(clusters_.begin(), clusters_.end(), sort_in);
   Chosen chosen;
   const auto add = [&](const Bad& bad) {
-    mesh::Vec3 centre;
-    if (!table.shell_centre(bad.shell, centre)) return;
-    const Eigen::Vector3f at = (centre - origin).cast<float>();
-    chosen.glyphs.push_back({{at.x(), at.y(), at.z()}, bad.kind});
+    mesh::ShellNodes nodes;
+    if (!table.shell(bad.shell, nodes)) return;
+    std::array<mesh::Vec3, 4> corner;
+    for (std::size_t k = 0; k < 4; ++k) corner[k] = table.position(nodes.node[k].value);
+    const unsigned place = bad.shape == GlyphShape::cluster
+                               ? bad.corner
+                               : glyph_place(bad.shape, std::span(corner).first(static_cast<std::size_t>(nodes.corners())));
+    chosen.glyphs.push_back(
+        {bad.shell, static_cast<std::uint32_t>(bad.shape) | (bad.failing ? kFailingGlyph : 0) | place << kGlyphPlaceShift});
   };
   chosen.left_out = spread(warning, cap - std::min(cap, failing.size()), add);
   chosen.left_out += spread(failing, cap, add);

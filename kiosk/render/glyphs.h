@@ -1,35 +1,24 @@
-// Which shells get a quality glyph, and of what shape: pure.
+// Which shells get quality glyphs: pure.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
 #include <unordered_set>
 #include <vector>
 
+#include "kiosk/render/glyph_shape.h"
 #include "kiosk/render/model_table.h"
-#include "mesh/quality/criteria.h"
 
 namespace prismesh::kiosk::render {
 
-/// What is wrong, by the shape that shows it.
-enum class GlyphShape : std::uint8_t { warped, length, angle, aspect, other };
-inline constexpr int kGlyphShapeCount = 5;
+/// More triangles at a node are a cluster, as the default criteria have it; where no quad meets them it is a mesh of triangles.
+inline constexpr int kMostTrianglesAtNode = 4;
 
-/// The shape of a state's worst: of the failing metrics if any fails, else of the warning ones; the first in the order of GlyphShape.
-/// Precondition: the state isn't ok.
-GlyphShape shape_of(const mesh::quality::ShellState& state);
-
-struct Glyph {
-  std::array<float, 3> at;  ///< deck coordinates from the model's origin
-  std::uint32_t kind = 0;   ///< GlyphShape, plus kFailingGlyph
-};
-inline constexpr std::uint32_t kFailingGlyph = 8;
-std::uint32_t glyph_kind(const mesh::quality::ShellState& state);
-
-/// Shells that aren't ok, kept per chunk so that a change costs what it touches.
+/// Glyphs of shells that aren't ok and of nodes where triangles crowd, kept per chunk so that a change costs what it touches.
 class GlyphList {
  public:
-  void update(const ModelTable& table, bool visibility_changed);
+  /// `damaged`: only by what the document's edits made worse. Clusters cost a pass over the shells where these have changed.
+  void update(const ModelTable& table, bool visibility_changed, bool topology_changed, bool damaged);
 
   struct Chosen {
     std::vector<Glyph> glyphs;  ///< warnings first, so that failures are drawn over them
@@ -37,19 +26,25 @@ class GlyphList {
   };
   /// At most `cap`, failures before warnings, evenly spread over the list where not all find room. `except`: shells that show
   /// something newer.
-  Chosen choose(const ModelTable& table, const mesh::Vec3& origin, std::size_t cap, const std::unordered_set<std::uint32_t>& except) const;
+  Chosen choose(const ModelTable& table, std::size_t cap, const std::unordered_set<std::uint32_t>& except) const;
 
  private:
   struct Bad {
     std::uint32_t shell = 0;
-    std::uint32_t kind = 0;
+    GlyphShape shape{};
+    bool failing = false;
+    std::uint8_t corner = 0;  ///< of a cluster
   };
   struct Chunk {
-    std::array<std::uint64_t, 2> versions{};  ///< of quality and parts
+    std::array<std::uint64_t, 2> versions{};  ///< of quality (or damage) and parts
     bool known = false;
     std::vector<Bad> bad;
   };
+  void find_clusters(const ModelTable& table);
+
   std::vector<Chunk> chunks_;
+  std::vector<Bad> clusters_;
+  bool damaged_ = false;
 };
 
 }  // namespace prismesh::kiosk::render

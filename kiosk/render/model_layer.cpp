@@ -15,12 +15,9 @@ void make_glyph_instances(Instances& instances) {
   instances.buffer = gl::Buffer::make();
   glBindVertexArray(instances.array.get());
   glBindBuffer(GL_ARRAY_BUFFER, instances.buffer.get());
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Glyph), nullptr);
-  glVertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(Glyph), reinterpret_cast<const void*>(offsetof(Glyph, kind)));
-  for (const GLuint attribute : {0U, 1U}) {
-    glEnableVertexAttribArray(attribute);
-    glVertexAttribDivisor(attribute, 1);
-  }
+  glVertexAttribIPointer(0, 2, GL_UNSIGNED_INT, sizeof(Glyph), nullptr);
+  glEnableVertexAttribArray(0);
+  glVertexAttribDivisor(0, 1);
   glBindVertexArray(0);
 }
 
@@ -61,11 +58,14 @@ Result<void> LineSet::upload(const std::vector<NodePair>& lines, const char* wha
 ModelLayer::ModelLayer() {
   make_glyph_instances(model_glyphs_.instances);
   make_glyph_instances(preview_glyphs_.instances);
+  make_glyph_instances(marked_);
 }
 
 Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   ++shape_version_;
   model_glyphs_.stale = selection_casting_.stale = true;
+  marked_shell_.reset();
+  part_looks_stale_ = true;
   if (!source) {
     table_.reset();
     visible_nodes_.reset();
@@ -90,7 +90,7 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
     if (const auto done = creases_.upload(outline_.creases(), "creases"); !done) return done;
   }
   if (const auto done = update_line_elements(first || changes->topology || changes->visibility); !done) return done;
-  glyph_list_.update(*table_, changes->topology || changes->visibility);
+  glyph_list_.update(*table_, changes->visibility, changes->topology, glyphs_of_damage_);
   const bool others_seen = !visible_nodes_ && table_->any_hidden();
   return selected_.update(*table_, textures_.origin(), changes->topology || changes->visibility || others_seen, changes->moved_chunks,
                           [this]() -> const std::vector<std::uint8_t>& { return visible_nodes(); });
@@ -135,10 +135,24 @@ Result<void> ModelLayer::update_preview(const ipc::PreviewFrame& frame) {
   if (!preview_->update(frame)) return {};
   preview_glyphs_.stale = true;
   if (first) model_glyphs_.stale = true;  // the shells that it shows aren't the model's to mark any more
+  if (const auto done = upload_preview_positions(); !done) return done;
+  return first ? preview_edges_.upload(preview_->edges(), "moving edges") : Result<void>();
+}
+
+Result<void> ModelLayer::upload_preview_positions() {
   if (const auto reserved = preview_positions_.reserve(preview_->positions().size(), "moving nodes"); !reserved)
     return fail(reserved.error());
   preview_positions_.upload(std::as_bytes(std::span(preview_->positions())));
-  return first ? preview_edges_.upload(preview_->edges(), "moving edges") : Result<void>();
+  return {};
+}
+
+Result<void> ModelLayer::show_change(const MeshChange& change) {
+  end_preview();
+  if (!table_) return {};
+  preview_.emplace(textures_.origin(), change);
+  preview_casting_.stale = preview_glyphs_.stale = model_glyphs_.stale = true;
+  if (const auto done = upload_preview_positions(); !done) return done;
+  return preview_edges_.upload(preview_->edges(), "changed edges");
 }
 
 void ModelLayer::end_preview() {
@@ -146,30 +160,52 @@ void ModelLayer::end_preview() {
   preview_.reset();
 }
 
-void ModelLayer::choose_preview_glyphs(std::size_t cap) {
+Result<void> ModelLayer::choose_preview_glyphs(std::size_t cap) {
   std::vector<Glyph> live;
-  if (previewing()) live = preview_->glyphs();
+  if (previewing()) live = preview_->glyphs(glyphs_of_damage_);
   preview_glyphs_.left_out = live.size() - std::min(live.size(), cap);
   live.erase(live.begin(), live.begin() + static_cast<std::ptrdiff_t>(preview_glyphs_.left_out));  // failures come last: they stay
   upload_instances(preview_glyphs_.instances, live);
   preview_glyphs_.stale = false;
+  if (live.empty() || !preview_casting_.stale) return {};
+  return upload_casting(preview_casting_, preview_->corners());
 }
 
-ModelLayer::Glyphs ModelLayer::glyphs(std::size_t cap) {
-  if (cap != glyph_cap_) model_glyphs_.stale = preview_glyphs_.stale = true;
+Result<ModelLayer::Glyphs> ModelLayer::glyphs(std::size_t cap, bool damaged) {
+  if (cap != glyph_cap_ || damaged != glyphs_of_damage_) model_glyphs_.stale = preview_glyphs_.stale = true;
+  if (damaged != glyphs_of_damage_ && table_) glyph_list_.update(*table_, false, false, damaged);
   glyph_cap_ = cap;
+  glyphs_of_damage_ = damaged;
   // The preview's share is set aside for all of the drag, so that none of the model's signs come and go with its frames.
-  const std::size_t set_aside = previewing() ? std::min(preview_->shells().size(), cap / 2) : 0;
-  if (preview_glyphs_.stale) choose_preview_glyphs(set_aside);
+  const std::size_t set_aside = previewing() ? std::min(2 * preview_->shells().size(), cap / 2) : 0;
+  if (preview_glyphs_.stale)
+    if (const auto chosen = choose_preview_glyphs(set_aside); !chosen) return fail(chosen.error());
   if (model_glyphs_.stale) {
     static const std::unordered_set<std::uint32_t> kNone;
     GlyphList::Chosen chosen;
-    if (table_) chosen = glyph_list_.choose(*table_, textures_.origin(), cap - set_aside, previewing() ? preview_->shells() : kNone);
+    if (table_) chosen = glyph_list_.choose(*table_, cap - set_aside, previewing() ? preview_->shells() : kNone);
     upload_instances(model_glyphs_.instances, chosen.glyphs);
     model_glyphs_.left_out = chosen.left_out;
     model_glyphs_.stale = false;
   }
-  return {model_glyphs_.instances, preview_glyphs_.instances, model_glyphs_.left_out + preview_glyphs_.left_out};
+  return Glyphs{model_glyphs_.instances, preview_glyphs_.instances, model_glyphs_.left_out + preview_glyphs_.left_out};
+}
+
+Result<void> ModelLayer::update_part_looks(bool damaged) {
+  if (!table_ || (!part_looks_stale_ && damaged == part_looks_of_damage_)) return {};
+  part_looks_stale_ = false;
+  part_looks_of_damage_ = damaged;
+  return part_looks_.update(*table_, damaged);
+}
+
+const Instances& ModelLayer::marked(mesh::ShellIndex shell) {
+  if (marked_shell_ == shell) return marked_;
+  marked_shell_ = shell;
+  mesh::ShellNodes nodes;
+  const bool there =
+      table_ && shell.value < table_->shell_count() && table_->shell(shell.value, nodes) && table_->shell_visible(shell.value);
+  upload_instances(marked_, there ? std::vector<Glyph>{{shell.value, kMarkedGlyph}} : std::vector<Glyph>{});
+  return marked_;
 }
 
 Result<void> ModelLayer::upload_casting(Casting& casting, const std::vector<std::array<std::uint32_t, 4>>& shells) const {
@@ -203,7 +239,7 @@ Result<ModelLayer::ShadowCaster> ModelLayer::shadow_caster() {
 }
 
 std::size_t ModelLayer::bytes_uploaded() const {
-  std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded;
+  std::size_t bytes = model_glyphs_.instances.bytes_uploaded + preview_glyphs_.instances.bytes_uploaded + marked_.bytes_uploaded;
   for (const RowTexture* texture : {&textures_.positions(), &textures_.connectivity(), &textures_.surface(), &borders_.texture,
                                     &creases_.texture, &line_elements_.texture, &selected_.texture(), &preview_positions_,
                                     &preview_casting_.connectivity, &selection_casting_.connectivity, &preview_edges_.texture})

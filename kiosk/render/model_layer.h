@@ -8,6 +8,7 @@
 #include "kiosk/render/glyphs.h"
 #include "kiosk/render/model_textures.h"
 #include "kiosk/render/outline.h"
+#include "kiosk/render/part_looks.h"
 #include "kiosk/render/preview_patch.h"
 #include "kiosk/render/selection_rows.h"
 
@@ -47,6 +48,8 @@ class ModelLayer {
 
   void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
   Result<void> update_preview(const ipc::PreviewFrame& frame);
+  /// What an edit would make of some shells, in a preview's place.
+  Result<void> show_change(const MeshChange& change);
   void end_preview();
   bool previewing() const { return preview_ && preview_->any_frame(); }
   const RowTexture& preview_positions() const { return preview_positions_; }
@@ -59,7 +62,14 @@ class ModelLayer {
     const Instances& preview;
     std::size_t left_out = 0;
   };
-  Glyphs glyphs(std::size_t cap);
+  Result<Glyphs> glyphs(std::size_t cap, bool damaged);
+  /// The shells of the preview, by their corners: what its glyphs are pulled from.
+  const RowTexture& preview_connectivity() const { return preview_casting_.connectivity; }
+  /// Parts by their state; a pass over the shells where these have changed.
+  Result<void> update_part_looks(bool damaged);
+  const PartLooks& part_looks() const { return part_looks_; }
+  /// A glyph about one shell of the model; nothing where it isn't shown.
+  const Instances& marked(mesh::ShellIndex shell);
 
   /// What throws shadows: the shells of the preview, else those with all nodes selected. The latter are found by a pass over the model
   /// where it has changed. Errors: no graphics memory.
@@ -83,7 +93,8 @@ class ModelLayer {
  private:
   Result<void> update_line_elements(bool changed);
   void forget_visible_nodes();
-  void choose_preview_glyphs(std::size_t cap);
+  Result<void> choose_preview_glyphs(std::size_t cap);
+  Result<void> upload_preview_positions();
 
   std::optional<ModelTable> table_;
   ModelTextures textures_;
@@ -112,6 +123,11 @@ class ModelLayer {
   };
   GlyphBatch model_glyphs_, preview_glyphs_;
   std::size_t glyph_cap_ = 0;
+  bool glyphs_of_damage_ = false;
+  PartLooks part_looks_;
+  bool part_looks_stale_ = true, part_looks_of_damage_ = false;
+  Instances marked_;
+  std::optional<mesh::ShellIndex> marked_shell_;  ///< that marked_ is of
   std::optional<std::vector<std::uint8_t>> visible_nodes_;
   std::vector<std::uint64_t> visible_versions_;  ///< of the chunks that visible_nodes_ is made of
   double typical_side_ = 0;

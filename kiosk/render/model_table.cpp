@@ -36,6 +36,15 @@ ModelTable::ModelTable(std::shared_ptr<const ModelSource> source)
     node_marks_.push_back(source_->chunk<std::uint8_t>(SnapshotArray::node_marks, c));
 }
 
+mesh::quality::ShellState ModelTable::shell_was(std::size_t shell) const {
+  using ipc::SnapshotArray;
+  using mesh::quality::ShellState;
+  if (shell >= source_->size(SnapshotArray::shell_quality) || shell >= source_->size(SnapshotArray::shell_damage)) return {};
+  const auto now = source_->at<ShellState>(SnapshotArray::shell_quality, shell);
+  const auto worse = source_->at<ShellState>(SnapshotArray::shell_damage, shell);
+  return {static_cast<std::uint16_t>(now.warn & ~worse.warn), static_cast<std::uint16_t>(now.fail & ~worse.fail)};
+}
+
 bool ModelTable::line(std::size_t line, std::array<std::uint32_t, 2>& ends) const {
   const std::size_t chunk = line / kChunkSize, at = line % kChunkSize;
   if (chunk < line_parts_.size() && at < line_parts_[chunk].size() && part_hidden(line_parts_[chunk][at].value)) return false;

@@ -38,6 +38,8 @@ class ModelTable {
     const std::size_t chunk = node / mesh::kChunkSize, at = node % mesh::kChunkSize;
     return chunk < node_marks_.size() && at < node_marks_[chunk].size() && (node_marks_[chunk][at] & mesh::document::kSelected) != 0;
   }
+  /// What of a shell's state it had when the deck was opened already.
+  mesh::quality::ShellState shell_was(std::size_t shell) const;
   mesh::PartIndex shell_part(std::size_t shell) const { return parts_[shell / mesh::kChunkSize][shell % mesh::kChunkSize]; }
   bool shell_visible(std::size_t shell) const { return !part_hidden(shell_part(shell).value); }
   bool part_hidden(std::size_t part) const { return part < hidden_.size() && hidden_[part] != 0; }

@@ -187,7 +187,8 @@ ModelTextures::ShellRow ModelTextures::build_row(const ModelTable& table, std::s
     }
     std::uint32_t word = static_cast<std::uint32_t>(colour_of_part(table.shell_part(s).value, source.part_count())) |
                          static_cast<std::uint32_t>(entry(states, i).grade()) << shell_word::kGradeShift |
-                         ((entry(marks, i) & mesh::document::kSelected) != 0 ? shell_word::kSelected : 0);
+                         ((entry(marks, i) & mesh::document::kSelected) != 0 ? shell_word::kSelected : 0) |
+                         std::min(table.shell_part(s).value, shell_word::kNoPart) << shell_word::kPartShift;
     if (!whole) {
       row.nodes[i] = {};
       word |= shell_word::kGone;

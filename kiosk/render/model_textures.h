@@ -23,6 +23,8 @@ inline constexpr std::uint32_t kColourMask = 31;
 inline constexpr std::uint32_t kGradeShift = 5;  ///< two bits
 inline constexpr std::uint32_t kSelected = 1U << 7;
 inline constexpr std::uint32_t kGone = 1U << 8;  ///< of a hidden part, or not whole
+inline constexpr std::uint32_t kPartShift = 9;   ///< the rest: which part, the highest number for none
+inline constexpr std::uint32_t kNoPart = (1U << (32 - kPartShift)) - 1;
 }  // namespace shell_word
 
 class ModelTextures {

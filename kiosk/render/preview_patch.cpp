@@ -40,13 +40,30 @@ PreviewPatch::PreviewPatch(const ModelTable& table, const Vec3& origin, std::spa
   for (const auto& [corners, state] : shown) {
     Shell shell;
     shell.state = state;
+    shell.was = table.shell_was(shells[state].value);
     for (std::size_t k = 0; k < 4; ++k) shell.corner[k] = local(corners.node[k].value);
     shells_.push_back(shell);
+  }
+  add_edges();
+}
+
+PreviewPatch::PreviewPatch(const Vec3& origin, const MeshChange& change) : origin_(origin), states_(change.states), any_frame_(true) {
+  for (const Vec3& point : change.points) positions_.push_back(texel(point - origin));
+  states_.resize(change.corners.size());
+  for (std::size_t s = 0; s < change.corners.size(); ++s) {
+    const std::array<std::uint32_t, 4>& corner = change.corners[s];
+    if (*std::max_element(corner.begin(), corner.end()) < positions_.size()) shells_.push_back({corner, static_cast<std::uint32_t>(s), {}});
+  }
+  for (const mesh::ShellIndex shell : change.replaced) touched_.insert(shell.value);
+  add_edges();
+}
+
+void PreviewPatch::add_edges() {
+  for (const Shell& shell : shells_)
     for (std::size_t k = 0; k < 4; ++k) {
       const std::uint32_t a = shell.corner[k], b = shell.corner[(k + 1) % 4];
       if (a != b) edges_.push_back({std::min(a, b), std::max(a, b)});
     }
-  }
   std::sort(edges_.begin(), edges_.end());
   edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
 }
@@ -66,18 +83,30 @@ std::vector<std::array<std::uint32_t, 4>> PreviewPatch::corners() const {
   return corners;
 }
 
-std::vector<Glyph> PreviewPatch::glyphs() const {
+std::vector<Glyph> PreviewPatch::glyphs(bool damaged) const {
   std::vector<Glyph> glyphs;
   if (!any_frame_) return glyphs;
   for (const bool failing : {false, true})
-    for (const Shell& shell : shells_) {
-      const mesh::quality::ShellState& state = states_[shell.state];
+    for (std::size_t s = 0; s < shells_.size(); ++s) {
+      const Shell& shell = shells_[s];
+      mesh::quality::ShellState state = states_[shell.state];
+      if (damaged) {
+        state.warn = static_cast<std::uint16_t>(state.warn & ~shell.was.warn);
+        state.fail = static_cast<std::uint16_t>(state.fail & ~shell.was.fail);
+      }
       if ((state.warn | state.fail) == 0 || (state.fail != 0) != failing) continue;
       const std::size_t corners = shell.corner[3] == shell.corner[2] ? 3 : 4;
-      Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-      for (std::size_t k = 0; k < corners; ++k) sum += Eigen::Vector4f(positions_[shell.corner[k]].data());
-      if (sum.w() != static_cast<float>(corners)) continue;  // a corner that stands nowhere
-      glyphs.push_back({{sum.x() / sum.w(), sum.y() / sum.w(), sum.z() / sum.w()}, glyph_kind(state)});
+      std::array<Vec3, 4> at;
+      bool whole = true;
+      for (std::size_t k = 0; k < corners; ++k) {
+        const std::array<float, 4>& place = positions_[shell.corner[k]];
+        at[k] = Vec3(place[0], place[1], place[2]);
+        whole = whole && place[3] != 0;
+      }
+      if (!whole) continue;  // a corner that stands nowhere
+      for (const GlyphShape shape : shapes_of(state))
+        glyphs.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(shape) | (failing ? kFailingGlyph : 0) |
+                                                             glyph_place(shape, std::span(at).first(corners)) << kGlyphPlaceShift});
     }
   return glyphs;
 }

@@ -24,6 +24,7 @@ std::optional<ColourMode> colour_mode_from(std::string_view name) {
 namespace {
 
 constexpr double kNearestViewerMm = 20;
+constexpr double kHalfGapPixels = 4;  ///< of ground between two views, to each side
 
 /// What the scene in the eyes' images was drawn from.
 struct Drawn {
@@ -35,8 +36,8 @@ struct Drawn {
   bool same_scene(const Drawn& other) const {
     const auto facts = [](const Drawn& d) {
       const Picture& p = d.picture;
-      return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.selected_nodes,
-                      p.handle, p.shadows, d.images, d.width, d.height, d.scene_version);
+      return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.damaged_only,
+                      p.marked, p.selected_nodes, p.handle, p.shadows, p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
     };
     return facts(*this) == facts(other);
   }
@@ -78,6 +79,9 @@ struct Renderer::State {
   FlatPass flat;
   ModelLayer layer;
   std::shared_ptr<const ModelSource> model;
+  ModelLayer other_layer;
+  std::shared_ptr<const ModelSource> other;
+  std::array<FieldColours, 2> fields;
   struct Images {
     EyeImages eyes;
     std::optional<Drawn> kept;  ///< what they show, but for what is flat
@@ -104,6 +108,7 @@ struct Renderer::State {
   State& operator=(const State&) = delete;
 
   Result<void> draw_scene(Images& images, const Picture& picture, int width, int height, int samples);
+  void draw_views(const Picture& picture, const EyeView& eye, int width);
   void compose_for(const Picture& picture, int width, int height);
   bool make_item_buffer(int width, int height);
   void read_items(int width, int height);
@@ -128,6 +133,22 @@ Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
   return done;
 }
 
+Result<void> Renderer::set_other(std::shared_ptr<const ModelSource> model) {
+  ++state_->scene_version;
+  Result<void> done = state_->other_layer.set_model(model);
+  state_->other = done ? std::move(model) : nullptr;
+  return done;
+}
+
+const ModelSource* Renderer::other() const { return state_->other.get(); }
+
+Result<void> Renderer::set_field(Pane pane, std::span<const float> values, bool on_nodes) {
+  ++state_->scene_version;
+  FieldColours& field = state_->fields[static_cast<std::size_t>(pane)];
+  field.clear();
+  return values.empty() ? Result<void>() : field.set(values, on_nodes);
+}
+
 const ModelSource* Renderer::model() const { return state_->model.get(); }
 
 stereo::Box Renderer::bounds() const { return state_->layer.shown_box(); }
@@ -145,6 +166,11 @@ void Renderer::begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<c
 Result<void> Renderer::update_preview(const ipc::PreviewFrame& frame) {
   ++state_->scene_version;
   return state_->layer.update_preview(frame);
+}
+
+Result<void> Renderer::show_change(const MeshChange& change) {
+  ++state_->scene_version;
+  return state_->layer.show_change(change);
 }
 
 void Renderer::end_preview() {
@@ -183,9 +209,10 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
     return fail(woven.error());
   DrawReport report;
   if (picture.quality_glyphs && !state_->layer.empty()) {
-    const ModelLayer::Glyphs glyphs = state_->layer.glyphs(state_->options.glyph_cap);
-    report.glyphs = glyphs.model.count + glyphs.preview.count;
-    report.glyphs_left_out = glyphs.left_out;
+    const Result<ModelLayer::Glyphs> glyphs = state_->layer.glyphs(state_->options.glyph_cap, picture.damaged_only);
+    if (!glyphs) return fail(glyphs.error());
+    report.glyphs = glyphs->model.count + glyphs->preview.count;
+    report.glyphs_left_out = glyphs->left_out;
   }
   return report;
 }
@@ -203,13 +230,39 @@ Result<void> Renderer::State::draw_scene(Images& images, const Picture& picture,
   const std::vector<ComposedImage>& composed = composition.images;
   if (Result<void> sized = images.eyes.resize(composed.front().width, composed.front().height, samples); !sized) return sized;
   if (Result<void> prepared = scene.prepare(picture, layer); !prepared) return prepared;
+  if (picture.two_views) {
+    Picture beside = picture;
+    beside.shadows = false;
+    if (Result<void> prepared = scene.prepare(beside, other_layer); !prepared) return prepared;
+  }
   for (std::size_t i = 0; i < composed.size(); ++i) {
     images.eyes.bind_scene();
-    scene.draw(picture, layer, eye_view(picture, composed[i], width, height), options.glyph_cap);
+    draw_views(picture, eye_view(picture, composed[i], width, height), width);
     images.eyes.keep_scene(static_cast<int>(i));
   }
   ++figures.scenes_drawn;
   return {};
+}
+
+/// The model over the whole picture, or two views that share it.
+void Renderer::State::draw_views(const Picture& picture, const EyeView& eye, int width) {
+  scene.begin(eye);
+  if (!picture.two_views) return scene.draw(picture, layer, fields[0], picture.field[0], eye, options.glyph_cap);
+  for (const Pane pane : {Pane::model, Pane::other}) {
+    const bool right = (pane == Pane::model) == picture.two_views->model_on_right;
+    Picture half = picture;
+    half.view = stereo::pan(picture.view, {picture.two_views->shift_mm(right, eye.mm_per_pixel * width), 0});
+    if (pane == Pane::other) {
+      half.handle.reset();
+      half.marked.reset();
+      half.shadows = false;
+    }
+    const double middle = 0.5 * width;
+    scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels);
+    const auto at = static_cast<std::size_t>(pane);
+    scene.draw(half, pane == Pane::model ? layer : other_layer, fields[at], picture.field[at], eye, options.glyph_cap);
+  }
+  glDisable(GL_STENCIL_TEST);
 }
 
 bool Renderer::State::make_item_buffer(int width, int height) {
@@ -287,7 +340,8 @@ mesh::NodeSet Renderer::nodes_in(const stereo::Aim& aim, const PixelRect& rect, 
 
 Renderer::Figures Renderer::figures() const {
   Figures figures = state_->figures;
-  figures.bytes_uploaded = state_->layer.bytes_uploaded();
+  figures.bytes_uploaded = state_->layer.bytes_uploaded() + state_->other_layer.bytes_uploaded();
+  for (const FieldColours& field : state_->fields) figures.bytes_uploaded += field.bytes_uploaded();
   return figures;
 }
 

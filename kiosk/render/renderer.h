@@ -13,6 +13,8 @@
 
 #include "base/error.h"
 #include "ipc/preview.h"
+#include "kiosk/render/field_colours.h"
+#include "kiosk/render/mesh_change.h"
 #include "kiosk/render/model_source.h"
 #include "kiosk/stereo/pointer.h"
 #include "kiosk/stereo/profile.h"
@@ -22,8 +24,13 @@ namespace prismesh::kiosk::render {
 
 using mesh::Vec3;
 
-enum class ColourMode : std::uint8_t { parts, quality };
-inline constexpr std::array<std::string_view, 2> kColourModeNames{"parts", "quality"};
+enum class ColourMode : std::uint8_t {
+  parts,
+  quality,
+  part_states,  ///< each part by the share of its shells that fails, or else warns
+  field,        ///< by what Picture::field says; not among the names
+};
+inline constexpr std::array<std::string_view, 3> kColourModeNames{"parts", "quality", "part-states"};
 std::optional<ColourMode> colour_mode_from(std::string_view name);
 
 /// What is dragged: an arrow along the normal, a disk across it about its foot (slides), a ring about the foot in the screen's plane
@@ -74,6 +81,17 @@ struct PanelPlace {
   bool operator==(const PanelPlace&) const = default;
 };
 
+enum class Pane : std::uint8_t { model, other };
+/// Two views in a picture: the model, and beside it another that set_other gave, seen from the same side. The picture is cut in the middle,
+/// in both eyes' images alike, and each view stands aside by the same way.
+struct TwoViews {
+  bool model_on_right = true;
+  double shift = 0.25;  ///< of each view from the middle, as a share of the picture's width
+  bool operator==(const TwoViews&) const = default;
+
+  double shift_mm(bool right, double screen_width_mm) const { return (right ? shift : -shift) * screen_width_mm; }
+};
+
 /// All that a picture depends on, but for the model and the preview.
 struct Picture {
   stereo::View view;
@@ -86,9 +104,13 @@ struct Picture {
   std::optional<double> mask_mm;  ///< where a movable mask will be when this lights up; empty: where it should be for these eyes
   PanelPlace panel;               ///< where the picture lies on the display's panel: eyes and mask count from the panel's centre
   ColourMode colour = ColourMode::parts;
+  std::array<FieldLook, 2> field{};  ///< by Pane
+  std::optional<TwoViews> two_views;
   bool element_edges = true;
   bool outlines = true;  ///< free edges and creases
   bool quality_glyphs = true;
+  bool damaged_only = false;               ///< glyphs only of what the document's edits made worse
+  std::optional<mesh::ShellIndex> marked;  ///< the shell that is looked at: a frame about it
   bool selected_nodes = true;
   bool moving = false;  ///< the view is being turned or something dragged: drawn without multisampling, so that large models keep up
   std::optional<Handle> handle;
@@ -129,11 +151,19 @@ class Renderer {
   /// The view that frames them closely, from the side that `view` is seen from. Costs the model.
   stereo::View fitted(const stereo::View& view, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650) const;
 
+  /// What stands beside the model in a picture of two views; null: nothing. Errors: too large for the GPU.
+  Result<void> set_other(std::shared_ptr<const ModelSource> model);
+  const ModelSource* other() const;
+  /// Values to colour a view by, for each of its nodes or shells; none: no colours. Uploads what differs from the last ones.
+  Result<void> set_field(Pane pane, std::span<const float> values, bool on_nodes);
+
   /// A drag's preview over the model: nodes that move and shells they touch, as PreviewReader gives them.
   void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
   /// A frame: one position per node, one state per shell; other sizes are ignored. Until the first, nothing is drawn. Errors: no graphics
   /// memory.
   Result<void> update_preview(const ipc::PreviewFrame& frame);
+  /// What an edit would make of some shells, in a preview's place, until end_preview. Errors: no graphics memory.
+  Result<void> show_change(const MeshChange& change);
   void end_preview();
 
   /// Draws into `framebuffer` (0: the window's), width x height pixels. Lower rows are first, as OpenGL counts. A picture that differs

@@ -16,7 +16,7 @@ constexpr float kLineElementHalfWidth = 0.9F;
 constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels short
 constexpr float kPreviewHalfWidth = 0.65F;
 // Signs keep their size on the screen, but make room where elements are small.
-constexpr float kGlyphRadius = 8.0F, kLeastGlyphRadius = 5.0F, kGlyphShareOfSide = 0.55F;
+constexpr float kGlyphRadius = 9.0F, kLeastGlyphRadius = 5.0F, kGlyphShareOfSide = 0.7F;
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: what lifts lines off the surface they lie on
 
 }  // namespace
@@ -25,34 +25,63 @@ ScenePass::ScenePass(const Shaders& shaders)
     : shaders_(shaders), no_attributes_(gl::VertexArray::make()), nodes_(shaders), handle_(shaders), shadows_(shaders) {}
 
 Result<void> ScenePass::prepare(const Picture& picture, ModelLayer& model) {
+  if (picture.colour == ColourMode::part_states)
+    if (Result<void> looked = model.update_part_looks(picture.damaged_only); !looked) return looked;
   return picture.shadows ? shadows_.cast(model, picture.view) : Result<void>();
 }
 
-void ScenePass::draw(const Picture& picture, ModelLayer& model, const EyeView& eye, std::size_t glyph_cap) const {
-  const Frame frame(eye, picture, model);
-  glDisable(GL_SCISSOR_TEST);
-  glDisable(GL_STENCIL_TEST);
-  glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
+void ScenePass::begin(const EyeView& eye) const {
+  for (const GLenum capability : {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_BLEND, GL_CULL_FACE}) glDisable(capability);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
+  glStencilMask(0xffU);
   glClearDepthf(1);
-  glClear(GL_DEPTH_BUFFER_BIT);
+  glClearStencil(0);
+  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   draw_ground(eye);
+}
+
+void ScenePass::begin_pane(const EyeView& eye, double from, double to) const {
+  const auto place = [&](const char* corner, double x, double y) {
+    const Eigen::Vector2f at = (eye.image.from_picture * Eigen::Vector3d(x, y, 1)).cast<float>();
+    shaders_.pane.set(corner, at.x(), at.y());
+  };
+  glDisable(GL_STENCIL_TEST);
+  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  glDisable(GL_DEPTH_TEST);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glEnable(GL_STENCIL_TEST);
+  glStencilFunc(GL_ALWAYS, 1, 0xffU);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  shaders_.pane.use();
+  place("corner_a", from, 0);
+  place("corner_b", to, 0);
+  place("corner_c", to, eye.image.picture_height);
+  place("corner_d", from, eye.image.picture_height);
+  glBindVertexArray(no_attributes_.get());
+  glDrawArrays(GL_TRIANGLES, 0, 6);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glStencilFunc(GL_EQUAL, 1, 0xffU);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+}
+
+void ScenePass::draw(const Picture& picture, ModelLayer& model, FieldColours& field, const FieldLook& look, const EyeView& eye,
+                     std::size_t glyph_cap) const {
+  const Frame frame(eye, picture, model);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   if (!model.empty()) {
     model.textures().positions().bind(unit::kPositions);
     model.textures().connectivity().bind(unit::kConnectivity);
     model.textures().surface().bind(unit::kSurface);
-    draw_shells(picture, model, frame);
+    draw_shells(picture, model, field, look, frame);
     if (picture.shadows) shadows_.draw(model, frame);
     model.textures().positions().bind(unit::kPositions);
     draw_model_lines(picture, model, frame);
     if (model.previewing()) draw_preview(model, frame);
     model.textures().positions().bind(unit::kPositions);
     if (picture.selected_nodes) nodes_.draw(model, frame);
-    if (picture.quality_glyphs) draw_glyphs(model, glyph_cap, frame);
+    if (picture.quality_glyphs || picture.marked) draw_glyphs(picture, model, glyph_cap, frame);
   }
   if (picture.handle) handle_.draw(handle_pieces(*picture.handle, {picture.view, eye.mm_per_pixel, eye.viewer_mm, model.shown_box()}), eye);
   glDisable(GL_DEPTH_TEST);
@@ -69,13 +98,25 @@ void ScenePass::draw_ground(const EyeView& eye) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void ScenePass::draw_shells(const Picture& picture, const ModelLayer& model, const Frame& frame) const {
+void ScenePass::draw_shells(const Picture& picture, const ModelLayer& model, FieldColours& field, const FieldLook& look,
+                            const Frame& frame) const {
   frame.set(shaders_.shells);
   const auto& palette = part_colours();
   for (std::size_t i = 0; i < palette.size(); ++i) shaders_.shells.set(("palette[" + std::to_string(i) + "]").c_str(), palette[i]);
   const auto& grades = grade_colours();
   for (std::size_t i = 0; i < grades.size(); ++i) shaders_.shells.set(("grades[" + std::to_string(i) + "]").c_str(), grades[i]);
-  shaders_.shells.set("by_grade", picture.colour == ColourMode::quality ? 1 : 0);
+  shaders_.shells.set("by_grade", picture.colour == ColourMode::quality ? 1 : picture.colour == ColourMode::part_states ? 2 : 0);
+  const PartLooks& looks = model.part_looks();
+  looks.texture().bind(unit::kPartLooks);
+  shaders_.shells.set("part_looks", static_cast<int>(unit::kPartLooks));
+  shaders_.shells.set("part_count", static_cast<int>(looks.count()));
+  const bool coloured = picture.colour == ColourMode::field && look.on;
+  field.bind(unit::kField, unit::kColourMap, look);
+  shaders_.shells.set("field", static_cast<int>(unit::kField));
+  shaders_.shells.set("colour_map", static_cast<int>(unit::kColourMap));
+  shaders_.shells.set("field_kind", coloured ? field.kind_for(model.table()) : 0);
+  shaders_.shells.set("limits", Eigen::Vector3f(static_cast<float>(look.clear), static_cast<float>(1 / (look.full - look.clear)),
+                                                static_cast<float>(look.bands)));
   shaders_.shells.set("eye_in_model", frame.eye_in_model);
   shaders_.shells.set("edge_strength", picture.element_edges ? 0.42F : 0.0F);
   draw_chunks(model, frame.clip_from_deck);
@@ -166,18 +207,34 @@ void ScenePass::draw_preview(const ModelLayer& model, const Frame& frame) const 
   glDepthMask(GL_TRUE);
 }
 
-void ScenePass::draw_glyphs(ModelLayer& model, std::size_t cap, const Frame& frame) const {
-  const ModelLayer::Glyphs glyphs = model.glyphs(cap);
-  if (glyphs.model.count + glyphs.preview.count == 0) return;
+void ScenePass::draw_glyphs(const Picture& picture, ModelLayer& model, std::size_t cap, const Frame& frame) const {
+  const Result<ModelLayer::Glyphs> glyphs = model.glyphs(cap, picture.damaged_only);
+  if (!glyphs) return;  // said when the picture is reported
+  struct Batch {
+    const Instances& instances;
+    const RowTexture& positions;
+    const RowTexture& connectivity;
+  };
+  std::vector<Batch> batches;
+  const ModelTextures& textures = model.textures();
+  if (picture.quality_glyphs) {
+    batches.push_back({glyphs->model, textures.positions(), textures.connectivity()});
+    if (model.previewing()) batches.push_back({glyphs->preview, model.preview_positions(), model.preview_connectivity()});
+  }
+  if (picture.marked) batches.push_back({model.marked(*picture.marked), textures.positions(), textures.connectivity()});
   frame.set(shaders_.glyphs);
-  shaders_.glyphs.set("radius_pixels", frame.fitting_radius(kGlyphRadius, kLeastGlyphRadius, kGlyphShareOfSide, model.typical_side()));
+  shaders_.glyphs.set("least_pixels", frame.fitting_radius(kGlyphRadius, kLeastGlyphRadius, kGlyphShareOfSide, model.typical_side()));
   shaders_.glyphs.set("warn_ink", kWarnColour);
   shaders_.glyphs.set("fail_ink", kFailColour);
+  shaders_.glyphs.set("mark_ink", kInformationColour);
   blend_by_alpha();
   glDepthMask(GL_FALSE);
-  for (const Instances* batch : {&glyphs.model, &glyphs.preview}) {
-    glBindVertexArray(batch->array.get());
-    glDrawArraysInstanced(GL_TRIANGLES, 0, 6, static_cast<GLsizei>(batch->count));
+  for (const Batch& batch : batches) {
+    if (batch.instances.count == 0) continue;
+    batch.positions.bind(unit::kPositions);
+    batch.connectivity.bind(unit::kConnectivity);
+    glBindVertexArray(batch.instances.array.get());
+    glDrawArraysInstanced(GL_TRIANGLES, 0, 6, static_cast<GLsizei>(batch.instances.count));
   }
   glDepthMask(GL_TRUE);
 }

@@ -58,9 +58,15 @@ const char* const kShellVertex = R"(
 uniform vec3 palette[22];
 uniform vec3 grades[3];
 uniform int by_grade;
+uniform sampler2D field;
+uniform int field_kind;
+uniform usampler2D part_looks;
+uniform int part_count;
 uniform mat3 screen_from_normal;
 uniform vec3 eye_in_model;
 out vec2 place;
+out vec2 value;
+flat out float shade;
 flat out vec3 look;
 flat out float triangle;
 vec3 unpack_normal(uint halves) {
@@ -77,6 +83,8 @@ void main() {
   uvec2 word = texelFetch(surface, texel(shell), 0).xy;
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   place = vec2(0.0);
+  value = vec2(0.0);
+  shade = 1.0;
   look = vec3(0.0);
   triangle = 0.0;
   if ((word.x & 256u) != 0u) return;
@@ -93,9 +101,14 @@ void main() {
   const vec3 kFill = vec3(0.2747, -0.7325, 0.6229);
   float key = max(dot(normal, kKey), 0.0), fill = max(dot(normal, kFill), 0.0);
   float light = 0.48 + 0.40 * key + 0.12 * fill + 0.14 * max(normal.z, 0.0);
-  vec3 base = by_grade != 0 ? grades[min((word.x >> 5) & 3u, 2u)] : palette[min(word.x & 31u, 21u)];
+  uint part = word.x >> 9;
+  vec3 base = by_grade == 1 ? grades[min((word.x >> 5) & 3u, 2u)] : palette[min(word.x & 31u, 21u)];
+  if (by_grade == 2) base = part < uint(part_count) ? unpackUnorm4x8(texelFetch(part_looks, texel(part), 0).x).rgb : grades[0];
   if ((word.x & 128u) != 0u) base = mix(base, vec3(1.0), 0.55);
   look = base * light;
+  shade = mix(light, 1.0, 0.3);  // a value's colour depends less on where the light is
+  if (field_kind == 1) value = texelFetch(field, texel(node_of(nodes, corner)), 0).xy;
+  if (field_kind == 2) value = texelFetch(field, texel(shell), 0).xy;
 }
 )";
 
@@ -105,10 +118,14 @@ void main() {
 // Distance to the nearest side, in the shell's own square or triangle, over how fast that changes: no diagonal can appear.
 const char* const kShellFragment = R"(
 in vec2 place;
+in vec2 value;
+flat in float shade;
 flat in vec3 look;
 flat in float triangle;
 uniform mat2 texels_from_pixels, pixels_from_texels;
 uniform float edge_strength;
+uniform sampler2D colour_map;
+uniform vec3 limits;  // where it begins, one over how far it goes, bands
 out vec4 colour;
 float cover(float distance, vec2 gradient) {
   gradient = gradient * texels_from_pixels;
@@ -128,8 +145,29 @@ void main() {
     edge = max(edge, max(cover(1.0 - place.x, s), cover(1.0 - place.y, t)));
   // Where elements are a few pixels small their edges would turn the part into mud.
   float room = smoothstep(3.0, 14.0, min(extent(s), extent(t)));
-  colour = vec4(look * (1.0 - edge_strength * edge * room), 1.0);
+  vec3 painted = look;
+  float share = (value.x - limits.x) * limits.y;
+  if (value.y > 0.999 && share > 0.0) {
+    share = min(share, 1.0);
+    if (limits.z > 0.0) share = (floor(min(share, 0.9999) * limits.z) + 0.5) / limits.z;
+    painted = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, 0.5)).rgb * shade;
+  }
+  colour = vec4(painted * (1.0 - edge_strength * edge * room), 1.0);
 }
+)";
+
+const char* const kPaneVertex = R"(
+uniform vec2 corner_a, corner_b, corner_c, corner_d;
+const int kOf[6] = int[6](0, 1, 2, 0, 2, 3);
+void main() {
+  int i = kOf[gl_VertexID];
+  gl_Position = vec4(i == 0 ? corner_a : i == 1 ? corner_b : i == 2 ? corner_c : corner_d, 0.0, 1.0);
+}
+)";
+
+const char* const kPaneFragment = R"(
+out vec4 colour;
+void main() { colour = vec4(0.0); }
 )";
 
 const char* const kItemVertex = R"(
@@ -221,6 +259,7 @@ Result<Shaders> Shaders::link() {
       {&Shaders::flat_nodes, "flat nodes", pull + flat + kNodeVertex, head + flat + kNodeFragment},
       {&Shaders::glyphs, "glyphs", pull + kSquareCorner + kGlyphVertex, head + kGlyphFragment},
       {&Shaders::handle, "handle", head + kHandleVertex, head + kHandleFragment},
+      {&Shaders::pane, "pane", head + kPaneVertex, head + kPaneFragment},
       {&Shaders::rectangle, "rectangle", cover_vertex_shader(), head + kRectangleFragment},
       {&Shaders::pencil, "pencil", head + kSquareCorner + kPencilVertex, head + kPencilFragment},
       {&Shaders::shadow_caster, "shadow caster", head + kShadowCasterVertex, head + kShadowCasterFragment},

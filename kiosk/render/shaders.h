@@ -17,6 +17,9 @@ inline constexpr unsigned kSelection = kLines;  ///< never drawn together
 inline constexpr unsigned kLeft = 4;
 inline constexpr unsigned kRight = 5;
 inline constexpr unsigned kPhases = 6;
+inline constexpr unsigned kPartLooks = 7;
+inline constexpr unsigned kField = 8;
+inline constexpr unsigned kColourMap = 9;
 }  // namespace unit
 
 /// What every shader begins with.
@@ -33,6 +36,7 @@ struct Shaders {
   gl::Program flat_nodes;  ///< squares in their place, four vertices
   gl::Program glyphs;      ///< flat signs, six vertices an instance
   gl::Program handle;      ///< a mesh in screen millimetres
+  gl::Program pane;        ///< where one of two views lies: six vertices given as corners, no colour
   gl::Program rectangle;
   gl::Program pencil;         ///< lines in the plane of the screen
   gl::Program shadow_caster;  ///< shells on a plane

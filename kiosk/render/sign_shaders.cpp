@@ -57,63 +57,155 @@ void main() {
 }
 )";
 
+// A glyph stands on its shell: the corners come to the picture, in pixels, and what lies between them is drawn there by the fragments. A
+// shell that is too small to see is drawn larger about its middle. Depth is that of the corner nearest to the eye.
 const char* const kGlyphVertex = R"(
-layout(location = 0) in vec3 centre;
-layout(location = 1) in uint kind;
-uniform mat2 clip_from_pixels;
-uniform float radius_pixels;
+layout(location = 0) in uvec2 glyph;
+uniform usampler2D connectivity;
+uniform mat2 clip_from_pixels, pixels_from_clip;
+uniform float least_pixels;
 uniform float mm_per_pixel;
-out vec2 place;
+out vec2 at;
+flat out vec4 ab, cd, mark;
+flat out vec2 before, middle;
+flat out float reach;
 flat out uint sign_kind;
+const float kRim = 9.0;
 void main() {
-  place = square_corner(gl_VertexID);
-  sign_kind = kind;
-  vec4 clip = clip_from_model * vec4(centre, 1.0);
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  if (clip.w <= 0.0) return;
-  clip = nearer(clip, radius_pixels * mm_per_pixel);
-  gl_Position = clip + vec4(clip_from_pixels * place * radius_pixels * clip.w, 0.0, 0.0);
+  at = before = middle = vec2(0.0);
+  ab = cd = mark = vec4(0.0);
+  reach = 1.0;
+  sign_kind = glyph.y;
+  uvec4 nodes = texelFetch(connectivity, texel(glyph.x), 0);
+  int count = nodes.z == nodes.w ? 3 : 4, k = int(glyph.y >> 5) & 3;
+  vec4 place[4] = vec4[4](texelFetch(positions, texel(nodes.x), 0), texelFetch(positions, texel(nodes.y), 0),
+                          texelFetch(positions, texel(nodes.z), 0), texelFetch(positions, texel(nodes.w), 0));
+  vec2 seen[4];
+  float nearest = 1e30;
+  for (int i = 0; i < 4; ++i) {
+    vec4 clip = clip_from_model * vec4(place[i].xyz, 1.0);
+    if (place[i].w == 0.0 || clip.w <= 0.0) return;
+    seen[i] = pixels_from_clip * (clip.xy / clip.w);
+    nearest = min(nearest, clip.w);
+  }
+  int next = (k + 1) % count, last = (k + count - 1) % count;
+  uint kind = glyph.y & 15u;
+  vec2 other = seen[next];
+  if (kind == 0u) other = seen[(k + 2) % 4];
+  if (kind == 1u && count == 3) {  // a triangle's height: from the corner to the foot on the side across
+    vec3 side = place[last].xyz - place[next].xyz;
+    float share = clamp(dot(place[k].xyz - place[next].xyz, side) / max(dot(side, side), 1e-30), 0.0, 1.0);
+    vec4 clip = clip_from_model * vec4(place[next].xyz + share * side, 1.0);
+    other = pixels_from_clip * (clip.xy / clip.w);
+  }
+  middle = count == 3 ? (seen[0] + seen[1] + seen[2]) / 3.0 : 0.25 * (seen[0] + seen[1] + seen[2] + seen[3]);
+  if (kind == 6u) middle = seen[k];
+  for (int i = 0; i < 4; ++i) reach = max(reach, distance(seen[i], middle));
+  float grow = max(1.0, least_pixels / reach);
+  reach = kind == 6u ? least_pixels : reach * grow;
+  for (int i = 0; i < 4; ++i) seen[i] = middle + (seen[i] - middle) * grow;
+  other = middle + (other - middle) * grow;
+  ab = vec4(seen[0], seen[1]);
+  cd = vec4(seen[2], seen[3]);
+  mark = vec4(seen[k], other);
+  before = seen[last];
+  vec2 low = kind == 6u ? middle - reach : min(min(seen[0], seen[1]), min(seen[2], seen[3]));
+  vec2 high = kind == 6u ? middle + reach : max(max(seen[0], seen[1]), max(seen[2], seen[3]));
+  float rim = kRim + (kind == 15u ? 0.3 * reach : 0.0);
+  at = mix(low - rim, high + rim, 0.5 + 0.5 * square_corner(gl_VertexID));
+  float w = max(nearest - (grow > 1.0 ? least_pixels : 1.5) * mm_per_pixel, 0.001);
+  gl_Position = vec4(clip_from_pixels * at, depth_terms.x - depth_terms.y / w, 1.0);
 }
 )";
 
-// Signs by signed distance (negative inside). 0 warped quad: a bow tie with its bent diagonal; 1 length: a short bar between stops;
-// 2 angle: an open wedge; 3 aspect: a slender box; 4 other: a disc.
+// Signs by signed distance in pixels (negative inside); their kinds are GlyphShape's.
 const char* const kGlyphFragment = R"(
-in vec2 place;
+in vec2 at;
+flat in vec4 ab, cd, mark;
+flat in vec2 before, middle;
+flat in float reach;
 flat in uint sign_kind;
-uniform vec3 warn_ink, fail_ink;
+uniform vec3 warn_ink, fail_ink, mark_ink;
 out vec4 colour;
-float box(vec2 p, vec2 half_size) {
-  vec2 d = abs(p) - half_size;
-  return length(max(d, 0.0)) + min(max(d.x, d.y), 0.0);
-}
 float segment(vec2 p, vec2 a, vec2 b) {
   vec2 along = b - a;
-  return length(p - a - along * clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0));
+  return length(p - a - along * clamp(dot(p - a, along) / max(dot(along, along), 1e-6), 0.0, 1.0));
+}
+float outline(vec2 p, float share) {
+  vec2 a = mix(middle, ab.xy, share), b = mix(middle, ab.zw, share), c = mix(middle, cd.xy, share), d = mix(middle, cd.zw, share);
+  return min(min(segment(p, a, b), segment(p, b, c)), min(segment(p, c, d), segment(p, d, a)));
+}
+vec2 unit(vec2 v) { return v / max(length(v), 1e-6); }
+float stop(vec2 p, vec2 end, vec2 across, float size) { return segment(p, end - across * size, end + across * size); }
+float arrow(vec2 p, vec2 end, vec2 back, float size) {
+  vec2 side = vec2(-back.y, back.x);
+  return min(segment(p, end, end + size * (back + 0.6 * side)), segment(p, end, end + size * (back - 0.6 * side)));
+}
+/// 1 inside the corner's angle, as a cosine test about the middle of it.
+float corner_sign(vec2 p, uint kind, float w) {
+  vec2 c = mark.xy, to_next = unit(mark.zw - c), to_last = unit(before - c);
+  float legs = min(length(mark.zw - c), length(before - c));
+  float r = clamp(0.42 * legs, 5.5, 22.0);
+  vec2 half_way = unit(to_next + to_last + 1e-4 * unit(middle - c));
+  float half_cosine = dot(half_way, to_next);
+  if (dot(half_way, middle - c) < 0.0) {  // the corner is turned in: the angle is the other one
+    half_way = -half_way;
+    half_cosine = -half_cosine;
+  }
+  vec2 from = p - c;
+  float d = length(from);
+  bool inside = dot(unit(from), half_way) >= half_cosine;
+  float sides = min(segment(p, c, c + to_next * r * 1.5), segment(p, c, c + to_last * r * 1.5)) - 0.9 * w;
+  float rays = min(segment(p, c, c + to_next * r), segment(p, c, c + to_last * r));
+  if (kind == 3u) return min(sides, inside ? max(d - r, -rays) : max(rays, d - r));
+  float ends = min(distance(p, c + to_next * r), distance(p, c + to_last * r));
+  return min(sides, (inside ? abs(d - r) : ends) - 1.7 * w);
 }
 float shape(vec2 p, uint kind) {
-  if (kind == 0u) {
-    vec2 q = abs(p);
-    float wings = max(max(q.x - 0.66, (q.y - q.x) * 0.7071), -1.0);
-    return min(wings, segment(p, vec2(-0.62, -0.62), vec2(0.62, 0.62)) - 0.13);
+  float w = clamp(reach / 14.0, 0.65, 1.0);
+  vec2 along = unit(mark.zw - mark.xy), across = vec2(-along.y, along.x);
+  if (kind == 0u) return min(outline(p, 0.8) - 0.8 * w, segment(p, mark.xy, mark.zw) - 2.3 * w);
+  if (kind == 1u) {
+    float stops = min(stop(p, mark.xy, across, 5.0 * w), stop(p, mark.zw, across, 5.0 * w)) - 1.1 * w;
+    return min(segment(p, mark.xy, mark.zw) - 2.1 * w, stops);
   }
-  if (kind == 1u) return min(box(p, vec2(0.5, 0.14)), box(vec2(abs(p.x) - 0.5, p.y), vec2(0.14, 0.55)));
-  if (kind == 2u)
-    return min(segment(p, vec2(-0.55, -0.42), vec2(0.62, -0.42)), segment(p, vec2(-0.55, -0.42), vec2(0.36, 0.55))) - 0.16;
-  if (kind == 3u) return box(p, vec2(0.72, 0.26));
-  return length(p) - 0.48;
+  if (kind == 2u) {
+    float heads = min(arrow(p, mark.xy, along, 6.0 * w), arrow(p, mark.zw, -along, 6.0 * w));
+    return min(segment(p, mark.xy, mark.zw), heads) - 1.2 * w;
+  }
+  if (kind == 3u || kind == 4u) return corner_sign(p, kind, w);
+  if (kind == 5u) {
+    vec2 q = abs(vec2(dot(p - middle, along), dot(p - middle, across)));
+    float size = max(0.33 * distance(mark.xy, mark.zw), 6.0);
+    vec2 d = q - vec2(size, max(0.22 * size, 2.6));
+    return abs(length(max(d, 0.0)) + min(max(d.x, d.y), 0.0)) - 1.1 * w;
+  }
+  if (kind == 6u) {
+    vec2 q = p - middle;
+    float spokes = min(segment(q, vec2(0.0), vec2(0.0, reach)), min(segment(q, vec2(0.0), vec2(0.866, -0.5) * reach),
+                                                                    segment(q, vec2(0.0), vec2(-0.866, -0.5) * reach)));
+    return min(abs(length(q) - reach), spokes) - 1.1 * w;
+  }
+  if (kind == 7u) {
+    vec2 q = abs(p - middle);
+    float size = clamp(0.6 * reach, 5.0, 12.0);
+    return segment(q, vec2(0.0), vec2(size)) - 2.0 * w;
+  }
+  if (kind == 15u) return min(outline(p, 1.22) - 1.5, outline(p, 1.22 + 4.0 / max(reach, 1.0)) - 0.5);
+  return abs(distance(p, middle) - clamp(0.45 * reach, 4.5, 12.0)) - 1.6 * w;
 }
 void main() {
-  uint kind = sign_kind & 7u;
-  bool failing = (sign_kind & 8u) != 0u;
-  float distance = shape(place, kind);
-  float soft = max(fwidth(place.x), fwidth(place.y)) * 0.5;
+  uint kind = sign_kind & 15u;
+  bool failing = (sign_kind & 16u) != 0u;
+  float distance = shape(at, kind);
+  float soft = max(fwidth(at.x), fwidth(at.y)) * 0.5;
   float body = 1.0 - smoothstep(-soft, soft, distance);
-  float rim = 1.0 - smoothstep(-soft, soft, distance - 0.17);
+  float rim = 1.0 - smoothstep(-soft, soft, distance - 1.2);
   if (rim < 0.02) discard;
-  vec3 ink = failing ? fail_ink : warn_ink;
-  vec3 outline = failing ? vec3(0.25, 0.02, 0.02) : vec3(0.20, 0.16, 0.02);
-  colour = vec4(mix(outline, ink, body), rim);
+  vec3 ink = kind == 15u ? mark_ink : failing ? fail_ink : warn_ink;
+  vec3 dark = kind == 15u ? vec3(0.03, 0.08, 0.2) : failing ? vec3(0.25, 0.02, 0.02) : vec3(0.20, 0.16, 0.02);
+  colour = vec4(mix(dark, ink, body), rim);
 }
 )";
 

@@ -15,6 +15,8 @@ constexpr std::array kKeys = {
     KeyBinding{letter('Z'), true, false, Command::undo, Menu::edit, "Ctrl+Z", "undo the last edit, selections included"},
     KeyBinding{letter('Y'), true, false, Command::redo, Menu::edit, "Ctrl+Y", "redo"},
     KeyBinding{letter('C'), false, false, Command::compare, Menu::edit, "C", "compare: show the state before the last edit, or after it"},
+    KeyBinding{letter('C'), false, true, Command::compare_panel, Menu::view, "Shift+C", "colours by distance and the like, two views"},
+    KeyBinding{letter('C'), true, false, Command::two_views, Menu::view, "Ctrl+C", "two views side by side: before and after, or one"},
     KeyBinding{Key::escape, false, false, Command::cancel, Menu::edit, "Esc", "cancel a drag, close a panel, or clear the selection"},
     KeyBinding{letter('E'), false, false, Command::expression, Menu::select, "E", "select by an id expression"},
     KeyBinding{letter('L'), false, false, Command::outline_kind, Menu::select, "L", "draw outlines as a lasso, or as rectangles"},
@@ -51,6 +53,23 @@ constexpr std::array kKeys = {
     KeyBinding{letter('M'), false, false, Command::symmetry, Menu::shape, "M", "mirror the pull: off, at x, y or z"},
     KeyBinding{letter('M'), false, true, Command::symmetry_place, Menu::shape, "Shift+M", "type where the mirror stands"},
     KeyBinding{letter('W'), false, true, Command::weights_across_welds, Menu::shape, "Shift+W", "pulls go on over welded sheets, or not"},
+    KeyBinding{letter('J'), false, false, Command::quality_panel, Menu::mesh, "J", "show or hide quality in figures"},
+    KeyBinding{Key::right, false, false, Command::next_error, Menu::mesh, "Right", "go to the next error, worst first"},
+    KeyBinding{Key::left, false, false, Command::previous_error, Menu::mesh, "Left", "back to the error before"},
+    KeyBinding{letter('J'), false, true, Command::damaged_only, Menu::mesh, "Shift+J",
+               "signs and errors: all, or only what edits made worse"},
+    KeyBinding{letter('L'), true, false, Command::relax_selection, Menu::mesh, "Ctrl+L", "relax the selected nodes"},
+    KeyBinding{letter('L'), true, true, Command::relax_part, Menu::mesh, "Ctrl+Shift+L", "relax the selection's parts"},
+    KeyBinding{letter('L'), false, true, Command::relax_from, Menu::mesh, "Shift+L", "relax outwards from the node under the pointer"},
+    KeyBinding{letter('J'), true, false, Command::relax_failed, Menu::mesh, "Ctrl+J", "relax what fails"},
+    KeyBinding{letter('E'), true, false, Command::repair_damaged, Menu::mesh, "Ctrl+E", "repair what edits made worse"},
+    KeyBinding{letter('E'), true, true, Command::repair_selection, Menu::mesh, "Ctrl+Shift+E", "repair the shells at the selected nodes"},
+    KeyBinding{letter('J'), true, true, Command::repair_all, Menu::mesh, "Ctrl+Shift+J", "repair all that warns or fails"},
+    KeyBinding{letter('D'), true, false, Command::split, Menu::mesh, "Ctrl+D", "split: the shell under the pointer, or two at their edge"},
+    KeyBinding{letter('B'), true, false, Command::collapse, Menu::mesh, "Ctrl+B", "collapse the edge under the pointer to a point"},
+    KeyBinding{letter('M'), true, false, Command::merge, Menu::mesh, "Ctrl+M", "merge the triangles at the edge under the pointer"},
+    KeyBinding{letter('W'), true, false, Command::swap, Menu::mesh, "Ctrl+W", "swap the edge under the pointer"},
+    KeyBinding{Key::enter, false, false, Command::do_previewed, Menu::mesh, "Enter", "do what is shown as a preview"},
     KeyBinding{letter('H'), false, false, Command::hide, Menu::parts, "H", "hide the part under the pointer, else the selection's parts"},
     KeyBinding{letter('O'), false, false, Command::only, Menu::parts, "O", "show only that part or those parts"},
     KeyBinding{letter('S'), false, false, Command::show_all, Menu::parts, "S", "show all parts"},
@@ -69,7 +88,7 @@ constexpr std::array kKeys = {
     KeyBinding{digit(5), false, false, Command::view_top, Menu::view, "5", "view from above"},
     KeyBinding{digit(6), false, false, Command::view_bottom, Menu::view, "6", "view from below"},
     KeyBinding{digit(7), false, false, Command::view_oblique, Menu::view, "7", "oblique view"},
-    KeyBinding{letter('Q'), false, false, Command::colour_mode, Menu::view, "Q", "colour by part or by quality"},
+    KeyBinding{letter('Q'), false, false, Command::colour_mode, Menu::view, "Q", "colour by part, by quality, or parts by their state"},
     KeyBinding{letter('Y'), false, false, Command::shadows, Menu::view, "Y", "shadows of the pulled surface beside the model, or none"},
     KeyBinding{letter('P'), false, false, Command::next_profile, Menu::display, "P", "next display profile"},
     KeyBinding{letter('Z'), false, false, Command::selection_to_plane, Menu::display, "Z",
@@ -94,6 +113,8 @@ bool repeats(Command command) {
   switch (command) {
     case Command::undo:
     case Command::redo:
+    case Command::next_error:
+    case Command::previous_error:
     case Command::grow:
     case Command::shrink:
     case Command::wider_angle:

@@ -19,6 +19,8 @@ enum class Command : std::uint8_t {
   undo,
   redo,
   compare,
+  compare_panel,
+  two_views,
   cancel,
   expression,
   outline_kind,
@@ -51,6 +53,22 @@ enum class Command : std::uint8_t {
   symmetry,
   symmetry_place,
   weights_across_welds,
+  quality_panel,
+  next_error,
+  previous_error,
+  damaged_only,
+  relax_selection,
+  relax_part,
+  relax_from,
+  relax_failed,
+  repair_damaged,
+  repair_selection,
+  repair_all,
+  split,
+  collapse,
+  merge,
+  swap,
+  do_previewed,
   hide,
   only,
   show_all,
@@ -84,8 +102,8 @@ enum class Command : std::uint8_t {
 };
 inline constexpr std::size_t kCommandCount = static_cast<std::size_t>(Command::help) + 1;
 
-enum class Menu : std::uint8_t { file, edit, select, shape, parts, view, display, help };
-inline constexpr std::array<std::string_view, 8> kMenuNames{"File", "Edit", "Select", "Shape", "Parts", "View", "Display", "Help"};
+enum class Menu : std::uint8_t { file, edit, select, shape, mesh, parts, view, display, help };
+inline constexpr std::array<std::string_view, 9> kMenuNames{"File", "Edit", "Select", "Shape", "Mesh", "Parts", "View", "Display", "Help"};
 
 struct KeyBinding {
   display::Key key = display::Key::none;

@@ -76,6 +76,37 @@ TEST(Snapshot, CopiesOnlyTheChunksThatChanged) {
   EXPECT_EQ(after->chunk_version(SnapshotArray::shell_nodes, 3), before->chunk_version(SnapshotArray::shell_nodes, 3));
 }
 
+TEST(Snapshot, SaysOfEachShellByWhatEditsMadeItWorseAndCopiesOnlyThat) {
+  using mesh::quality::ShellState;
+  mesh::document::Document document = grid_document(300, 300);
+  auto opened = std::make_shared<mesh::document::Generation>(document.current());
+  opened->quality.set(7, ShellState{1, 1});
+  document.generations = {opened};
+  document.opened = opened;
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const PublishedSnapshot first = publisher.publish(document, false).value();
+  const auto before = reader.map(first);
+  EXPECT_EQ(before->shell_damage(7), ShellState{}) << "it was so when the deck was opened";
+
+  auto next = std::make_shared<mesh::document::Generation>(*opened);
+  next->quality.set(7, ShellState{5, 1});
+  next->quality.set(60000, ShellState{2, 2});
+  next->number = 2;
+  document.generations.push_back(next);
+  document.cursor = 1;
+  const std::size_t copied = publisher.bytes_copied();
+  const auto after = reader.map(publisher.publish(document, true).value());
+  EXPECT_EQ(after->shell_damage(7), (ShellState{4, 0}));
+  EXPECT_EQ(after->shell_damage(60000), (ShellState{2, 2}));
+  EXPECT_EQ(after->shell_damage(60001), ShellState{});
+  EXPECT_EQ(publisher.bytes_copied() - copied, 2 * 2 * mesh::kChunkSize * sizeof(ShellState)) << "two chunks of quality, two of damage";
+
+  document.cursor = 0;
+  const auto undone = reader.map(publisher.publish(document, false).value());
+  EXPECT_EQ(undone->shell_damage(60000), ShellState{});
+}
+
 TEST(Snapshot, PublishingTheSameAgainCopiesNothing) {
   mesh::document::Document document = grid_document(100, 100);
   SnapshotPublisher publisher;

@@ -101,17 +101,6 @@ mesh::quality::ShellState state(std::initializer_list<mesh::quality::Metric> war
   return made;
 }
 
-TEST(Glyphs, ShowTheWorstInItsShape) {
-  using mesh::quality::Metric;
-  EXPECT_EQ(shape_of(state({Metric::warpage}, {})), GlyphShape::warped);
-  EXPECT_EQ(shape_of(state({Metric::min_length}, {})), GlyphShape::length);
-  EXPECT_EQ(shape_of(state({Metric::max_angle_tri}, {})), GlyphShape::angle);
-  EXPECT_EQ(shape_of(state({Metric::aspect}, {})), GlyphShape::aspect);
-  EXPECT_EQ(shape_of(state({Metric::taper}, {})), GlyphShape::other);
-  EXPECT_EQ(shape_of(state({Metric::warpage, Metric::taper}, {Metric::taper})), GlyphShape::other) << "what fails goes before what warns";
-  EXPECT_EQ(glyph_kind(state({Metric::aspect}, {Metric::aspect})), 3U + kFailingGlyph);
-}
-
 TEST(Glyphs, FailuresFindRoomFirstAndTheRestIsCounted) {
   auto source = std::make_shared<TestSource>();
   test::add_grid(*source, 100, 100, 0, [](double u, double v) { return mesh::Vec3(u, v, 0); });
@@ -119,22 +108,22 @@ TEST(Glyphs, FailuresFindRoomFirstAndTheRestIsCounted) {
   for (std::size_t s = 5000; s < 5030; ++s) source->shell_quality[s] = state({mesh::quality::Metric::skew}, {mesh::quality::Metric::skew});
   const ModelTable table(source);
   GlyphList list;
-  list.update(table, false);
+  list.update(table, false, false, false);
   const auto failing = [](const std::vector<Glyph>& glyphs) {
     return std::count_if(glyphs.begin(), glyphs.end(), [](const Glyph& glyph) { return (glyph.kind & kFailingGlyph) != 0; });
   };
-  const auto all = list.choose(table, mesh::Vec3::Zero(), 5000, {});
+  const auto all = list.choose(table, 5000, {});
   EXPECT_EQ(all.glyphs.size(), 1030U);
   EXPECT_EQ(all.left_out, 0U);
   EXPECT_NE(all.glyphs.back().kind & kFailingGlyph, 0U) << "failures are drawn over warnings";
-  const auto some = list.choose(table, mesh::Vec3::Zero(), 100, {});
+  const auto some = list.choose(table, 100, {});
   EXPECT_EQ(some.glyphs.size(), 100U);
   EXPECT_EQ(failing(some.glyphs), 30);
   EXPECT_EQ(some.left_out, 930U);
-  const auto few = list.choose(table, mesh::Vec3::Zero(), 10, {});
+  const auto few = list.choose(table, 10, {});
   EXPECT_EQ(failing(few.glyphs), 10);
   EXPECT_EQ(few.left_out, 1020U);
-  EXPECT_EQ(list.choose(table, mesh::Vec3::Zero(), 5000, {5000, 5001, 3}).glyphs.size(), 1027U);
+  EXPECT_EQ(list.choose(table, 5000, {5000, 5001, 3}).glyphs.size(), 1027U);
 }
 
 TEST(PreviewPatch, TakesOnlyFramesOfItsDrag) {
@@ -154,7 +143,10 @@ TEST(PreviewPatch, TakesOnlyFramesOfItsDrag) {
   ASSERT_TRUE(patch.update(frame));
   EXPECT_THAT(patch.positions(), testing::Contains(std::array<float, 4>{9, 9, 9, 1}));
   ASSERT_THAT(patch.glyphs(), SizeIs(1));
-  EXPECT_EQ(patch.glyphs()[0].kind, 3U + kFailingGlyph);
+  const std::uint32_t stretched = static_cast<std::uint32_t>(GlyphShape::stretched);
+  EXPECT_EQ(patch.glyphs()[0].kind & 31U, stretched + kFailingGlyph);
+  EXPECT_EQ(patch.glyphs()[0].shell, 1U) << "by its place in the patch";
+  EXPECT_EQ(patch.corners().size(), 2U);
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ TEST_F(Scene, SelectedNodesAreWhiteAndShowThrough) {
 
 TEST_F(Scene, QualityHasItsColoursAndSigns) {
   TestSource source = two_plates();
-  source.shell_quality[44].fail = source.shell_quality[44].warn = 1;
+  source.shell_quality[44].fail = source.shell_quality[44].warn = 1;  // warpage: its sign's diagonals cross in the middle
   source.shell_quality[46].warn = 2;
   show(source);
   Picture picture = fitted("mono", "top", kWidth, kHeight);

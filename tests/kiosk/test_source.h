@@ -20,6 +20,7 @@ class TestSource final : public kiosk::render::ModelSource {
   std::vector<mesh::PartIndex> shell_parts;
   std::vector<std::uint8_t> shell_marks;
   std::vector<mesh::quality::ShellState> shell_quality;
+  std::vector<mesh::quality::ShellState> shell_damage;  ///< may be empty
   std::vector<mesh::NodeIndex> line_nodes;
   std::vector<mesh::PartIndex> line_parts;
   std::vector<bool> hidden;
@@ -76,6 +77,7 @@ class TestSource final : public kiosk::render::ModelSource {
       case SnapshotArray::shell_parts: return std::as_bytes(std::span(shell_parts));
       case SnapshotArray::shell_marks: return std::as_bytes(std::span(shell_marks));
       case SnapshotArray::shell_quality: return std::as_bytes(std::span(shell_quality));
+      case SnapshotArray::shell_damage: return std::as_bytes(std::span(shell_damage));
       case SnapshotArray::line_nodes: return std::as_bytes(std::span(line_nodes));
       case SnapshotArray::line_parts: return std::as_bytes(std::span(line_parts));
       default: return {};

@@ -1,0 +1,54 @@
+#include "kiosk/quality_link.h"
+
+#include <utility>
+
+namespace prismesh::kiosk {
+
+void QualityLink::want(const Wish& wish, std::uint64_t generation) {
+  if (asking_ && asked_on_ != link_.connections()) asking_ = false;
+  if (asking_ || !link_.connected() || up_to_date(wish, generation)) return;
+  asking_ = true;
+  asked_on_ = link_.connections();
+  link_.question(ipc::GetQuality{wish.metric, wish.damaged}, [this, wish](const ipc::Answer& answer) {
+    asking_ = false;
+    if (const auto* quality = std::get_if<ipc::Quality>(&answer)) {
+      figures_ = *quality;
+      figures_of_ = wish;
+    }
+  });
+}
+
+void QualityLink::select(const ipc::QualityBar& bar, const Wish& wish, mesh::document::SelectMode mode) {
+  ipc::FindShells find;
+  find.metric = wish.metric;
+  find.damaged = wish.damaged;
+  if (!bar.open_below) find.from = bar.from;
+  if (!bar.open_above) find.to = bar.to;
+  link_.question(find, [this, mode](const ipc::Answer& answer) {
+    const auto* found = std::get_if<ipc::ShellsFound>(&answer);
+    if (found == nullptr || found->expr.empty()) return;
+    mesh::document::Select edit;
+    edit.expr = found->expr;
+    edit.kind = mesh::select::Kind::element;
+    edit.mode = mode;
+    link_.edit(std::move(edit));
+  });
+}
+
+void QualityLink::preview(const mesh::document::Edit& edit) {
+  previewed_.reset();
+  link_.question(ipc::PreviewEdit{edit}, [this, number = ++preview_number_](const ipc::Answer& answer) {
+    if (number != preview_number_) return;
+    Previewed& previewed = previewed_.emplace();
+    previewed.number = number;
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) previewed.problem = failed->message;
+    if (const auto* would = std::get_if<ipc::EditPreviewed>(&answer)) previewed.would = *would;
+  });
+}
+
+void QualityLink::forget_preview() {
+  ++preview_number_;
+  previewed_.reset();
+}
+
+}  // namespace prismesh::kiosk

@@ -1,0 +1,21 @@
+// What an edit would make of some shells, shown before it is done.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
+#include "mesh/quality/criteria.h"
+
+namespace prismesh::kiosk::render {
+
+struct MeshChange {
+  std::vector<mesh::Vec3> points;                     ///< deck coordinates
+  std::vector<std::array<std::uint32_t, 4>> corners;  ///< of each shell, into `points`; a triangle repeats its third
+  std::vector<mesh::quality::ShellState> states;      ///< of each shell
+  std::vector<mesh::ShellIndex> replaced;             ///< shells of the model that would be gone or look otherwise
+};
+
+}  // namespace prismesh::kiosk::render

@@ -1,0 +1,178 @@
+// Quality in figures and what an edit would do, against counts of the test's own.
+#include "daemon/modeld/quality_figures.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/modeld/edit_preview.h"
+#include "mesh/model/node_set.h"
+#include "tests/daemon/modeld/folder.h"
+
+namespace prismesh::modeld {
+namespace {
+
+using namespace mesh::document;
+using mesh::quality::Metric;
+
+constexpr std::int64_t kMiddle = 1313;  ///< a node with four shells about it
+
+class Figures : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    Result<Document> opened = mesh::document::open(folder_.sheet(), {});
+    ASSERT_TRUE(opened) << opened.error().text();
+    document_ = std::move(*opened);
+  }
+  void lift(std::int64_t node, double by) {
+    Translate edit;
+    edit.by = {0, 0, by};
+    edit.shaping.on = std::to_string(node);
+    const auto done = apply(document_, edit);
+    ASSERT_TRUE(done) << done.error().text();
+  }
+  ipc::Quality figures(const std::string& metric = {}, bool damaged = false) const {
+    const Result<ipc::Quality> made = quality_figures(document_, {metric, damaged});
+    EXPECT_TRUE(made) << made.error().text();
+    return made.value_or(ipc::Quality{});
+  }
+  std::set<std::int64_t> ids_at(std::int64_t node) const {
+    const mesh::Model& model = document_.current().model;
+    std::set<std::int64_t> ids;
+    for (const mesh::ShellIndex shell : shells_touching(model, {model.find_node(node)})) ids.insert(model.shell_ids[shell.value]);
+    return ids;
+  }
+  std::uint64_t count(Metric metric, bool fail) const {
+    std::uint64_t counted = 0;
+    const auto& quality = document_.current().quality;
+    for (std::size_t s = 0; s < quality.size(); ++s) {
+      const bool fails = (quality[s].fail >> int(metric) & 1) != 0, warns = (quality[s].warn >> int(metric) & 1) != 0;
+      counted += fail ? fails : warns && !fails;
+    }
+    return counted;
+  }
+
+  test::Folder folder_;
+  Document document_;
+};
+
+TEST_F(Figures, CountByMetricWhatTheStatesSay) {
+  lift(kMiddle, 3);
+  lift(kMiddle + 60, 1.1);
+  const ipc::Quality quality = figures();
+  EXPECT_EQ(quality.generation, document_.current().number);
+  std::uint64_t wrong = 0;
+  for (int m = 0; m < mesh::quality::kMetricCount; ++m) {
+    const ipc::QualityMetric& metric = quality.metrics.at(static_cast<std::size_t>(m));
+    EXPECT_EQ(metric.name, mesh::quality::name(static_cast<Metric>(m)));
+    EXPECT_EQ(metric.warn, count(static_cast<Metric>(m), false)) << metric.name;
+    EXPECT_EQ(metric.fail, count(static_cast<Metric>(m), true)) << metric.name;
+    wrong += metric.warn + metric.fail;
+  }
+  EXPECT_GT(wrong, 0u) << "the edit must have done some harm";
+  EXPECT_EQ(quality.error_count, document_.current().counts.warn + document_.current().counts.fail);
+  ASSERT_EQ(quality.parts.size(), 1u);
+  EXPECT_EQ(quality.parts[0].fail, document_.current().counts.fail);
+  EXPECT_LT(quality.parts[0].least_composite, 0) << "something fails";
+  EXPECT_GT(quality.parts[0].composite, quality.parts[0].least_composite);
+}
+
+TEST_F(Figures, TheWorstErrorComesFirstWithItsValueAndPlace) {
+  lift(kMiddle + 120, 1.2);
+  lift(kMiddle, 4);
+  const ipc::Quality quality = figures("warpage");
+  ASSERT_GT(quality.errors.size(), 4u);
+  const std::set<std::int64_t> expected = ids_at(kMiddle);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(expected.contains(quality.errors[i].shell)) << i;
+  for (std::size_t i = 1; i < quality.errors.size(); ++i) {
+    EXPECT_GE(quality.errors[i - 1].fail, quality.errors[i].fail);
+    EXPECT_GE(*quality.errors[i - 1].value, *quality.errors[i].value) << "one metric, no thickness: worse is more";
+  }
+  EXPECT_EQ(quality.errors[0].unit, "deg");
+  const mesh::Model& model = document_.current().model;
+  const auto& nodes = model.shell(model.find_shell(quality.errors[0].shell)).node;
+  mesh::Vec3 centre = mesh::Vec3::Zero();
+  for (const mesh::NodeIndex node : nodes) centre += 0.25 * model.position(node);
+  EXPECT_NEAR((centre - mesh::Vec3(quality.errors[0].at[0], quality.errors[0].at[1], quality.errors[0].at[2])).norm(), 0, 1e-12);
+}
+
+TEST_F(Figures, EveryBarSelectsAsManyShellsAsItShows) {
+  lift(kMiddle, 3);
+  for (int m = 0; m < mesh::quality::kMetricCount; ++m) {
+    const std::string metric(mesh::quality::name(static_cast<Metric>(m)));
+    const ipc::Quality quality = figures(metric);
+    std::uint64_t shown = 0, failing = 0;
+    for (const ipc::QualityBar& bar : quality.bars) {
+      ipc::FindShells find{metric, std::nullopt, std::nullopt, false};
+      if (!bar.open_below) find.from = bar.from;
+      if (!bar.open_above) find.to = bar.to;
+      const Result<ipc::ShellsFound> found = find_shells(document_, find);
+      ASSERT_TRUE(found);
+      EXPECT_EQ(found->shells, bar.ok + bar.warn + bar.fail) << metric << " from " << bar.from << " to " << bar.to;
+      shown += found->shells;
+      failing += bar.fail;
+    }
+    const bool of_triangles = static_cast<Metric>(m) == Metric::min_angle_tri || static_cast<Metric>(m) == Metric::max_angle_tri;
+    EXPECT_EQ(shown, of_triangles ? 0u : document_.current().model.shell_count()) << metric;
+    EXPECT_EQ(failing, count(static_cast<Metric>(m), true)) << metric;
+  }
+}
+
+TEST_F(Figures, DamageIsWhatTheEditsDid) {
+  EXPECT_EQ(figures("", true).error_count, 0u);
+  lift(kMiddle, 3);
+  const ipc::Quality quality = figures("", true);
+  ASSERT_GT(quality.error_count, 0u);
+  const std::set<std::int64_t> touched = ids_at(kMiddle);
+  for (const ipc::QualityError& error : quality.errors) EXPECT_TRUE(touched.contains(error.shell)) << error.shell;
+  ASSERT_TRUE(apply(document_, Undo{}));
+  EXPECT_EQ(figures("", true).error_count, 0u);
+}
+
+TEST_F(Figures, AnUnknownMetricIsRefusedWithTheNearest) {
+  const auto refused = quality_figures(document_, {"warpege", false});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("\"warpage\""), std::string::npos);
+}
+
+TEST_F(Figures, APreviewSaysWhatAnEditWouldDoAndDoesNothing) {
+  const std::uint64_t number = document_.current().number;
+  const std::set<std::int64_t> touched = ids_at(kMiddle);
+  Translate edit;
+  edit.by = {0, 0, 3};
+  edit.shaping.on = std::to_string(kMiddle);
+  const Result<ipc::EditPreviewed> preview = preview_edit(document_, edit);
+  ASSERT_TRUE(preview) << preview.error().text();
+  EXPECT_EQ(document_.current().number, number);
+  EXPECT_FALSE(document_.can_undo());
+  EXPECT_EQ(preview->generation, number);
+  EXPECT_EQ(std::set(preview->replaced.begin(), preview->replaced.end()), touched);
+  EXPECT_EQ(preview->shell_count, touched.size());
+  EXPECT_EQ(preview->points.size(), 9u) << "four quads about a node";
+  ASSERT_TRUE(apply(document_, edit));
+  const mesh::Model& model = document_.current().model;
+  for (const ipc::PreviewedShell& shell : preview->shells) {
+    const mesh::ShellIndex index = model.find_shell(shell.shell);
+    EXPECT_EQ(shell.fail, document_.current().quality[index.value].fail);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto& at = preview->points.at(shell.corners.at(k));
+      EXPECT_EQ(mesh::Vec3(at[0], at[1], at[2]), model.position(model.shell(index).node[k]));
+    }
+  }
+}
+
+TEST_F(Figures, AnEditThatCantBeDoneIsRefusedInItsOwnWords) {
+  Translate edit;
+  edit.by = {0, 0, 3};
+  edit.shaping.on = "99999999";
+  const auto preview = preview_edit(document_, edit);
+  const auto done = apply(document_, edit);
+  ASSERT_FALSE(preview);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(preview.error().text(), done.error().text());
+}
+
+}  // namespace
+}  // namespace prismesh::modeld

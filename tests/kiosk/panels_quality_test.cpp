@@ -1,0 +1,103 @@
+// The quality panel gives back what was clicked: a metric's row, a bar, an error.
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kiosk/panels/gui.h"
+#include "kiosk/panels/panels.h"
+#include "tests/kiosk/render_test.h"
+
+namespace prismesh::kiosk::panels {
+namespace {
+
+using mesh::document::SelectMode;
+
+constexpr display::PixelSize kPicture{900, 700};
+
+class QualityPanel : public render::RenderTest {
+ protected:
+  void SetUp() override {
+    RenderTest::SetUp();
+    if (IsSkipped()) return;
+    auto gui = Gui::create();
+    ASSERT_TRUE(gui) << gui.error().text();
+    gui_.emplace(std::move(*gui));
+    ASSERT_TRUE(gui_->set_type(kFlatType));
+    figures_.metrics = {{"warpage", "deg", 12, 3}, {"aspect", "", 0, 2}, {"skew", "deg", 0, 0}};
+    figures_.metric = "warpage";
+    for (int i = 0; i < 8; ++i) figures_.bars.push_back({i * 2.0, i * 2.0 + 2, false, i == 7, 100, i > 5 ? 6U : 0U, i > 6 ? 3U : 0U});
+    figures_.errors = {{11, "warpage", "deg", 31.5, true, {}}, {12, "warpage", "deg", 20, true, {}}};
+    figures_.error_count = 15;
+    figures_.parts = {{7, 800, 12, 5, 0.61, -0.4}};
+    data_.connected = true;
+    data_.document.emplace();
+    data_.quality.emplace();
+    data_.quality->figures = &figures_;
+    data_.quality->metric = "warpage";
+    lay_out();
+    lay_out();
+  }
+  void TearDown() override {
+    gui_.reset();
+    RenderTest::TearDown();
+  }
+  std::vector<PanelAction> lay_out() {
+    std::vector<PanelAction> actions;
+    gui_->layout(kPicture, 0.016, [&] { actions = panels_.build(data_, kPicture); });
+    return actions;
+  }
+  std::vector<PanelAction> click(double x, double y, bool shift = false) {
+    const display::Modifiers modifiers{shift, false, false};
+    gui_->feed(display::PointerMoved{x, y, modifiers});
+    lay_out();
+    gui_->feed(display::ButtonChanged{display::MouseButton::left, true, x, y, modifiers});
+    lay_out();
+    gui_->feed(display::ButtonChanged{display::MouseButton::left, false, x, y, modifiers});
+    return lay_out();
+  }
+  /// What clicks down the panel give, one every few pixels.
+  template <class Action>
+  std::vector<Action> clicked_down(double x, bool shift = false) {
+    std::vector<Action> found;
+    for (double y = 20; y < kPicture.height; y += 5)
+      for (const PanelAction& action : click(x, y, shift))
+        if (const auto* wanted = std::get_if<Action>(&action)) found.push_back(*wanted);
+    return found;
+  }
+
+  ipc::Quality figures_;
+  PanelData data_;
+  Panels panels_;
+  std::optional<Gui> gui_;
+};
+
+TEST_F(QualityPanel, ARowChoosesItsMetricAndTheChosenOneLetsGo) {
+  std::set<std::string> chosen;
+  for (const ChooseMetric& choice : clicked_down<ChooseMetric>(60)) chosen.insert(choice.metric);
+  EXPECT_EQ(chosen, (std::set<std::string>{"", "aspect"})) << "warpage is chosen already, of skew nothing is wrong";
+}
+
+TEST_F(QualityPanel, ABarSelectsItsShells) {
+  std::set<double> from;
+  bool last_open = false;
+  for (double x = 20; x < 300; x += 12)
+    for (const BarClicked& clicked : clicked_down<BarClicked>(x)) {
+      from.insert(clicked.bar.from);
+      last_open = last_open || clicked.bar.open_above;
+      EXPECT_EQ(clicked.mode, SelectMode::set);
+    }
+  EXPECT_EQ(from.size(), figures_.bars.size());
+  EXPECT_TRUE(last_open);
+}
+
+TEST_F(QualityPanel, AnErrorIsGoneToAndNamed) {
+  std::set<std::size_t> errors;
+  for (const ErrorClicked& clicked : clicked_down<ErrorClicked>(60)) errors.insert(clicked.error);
+  EXPECT_EQ(errors, (std::set<std::size_t>{0, 1}));
+  EXPECT_EQ(error_words(figures_.errors[0]), "shell 11: warpage 31.5\u00b0 fails");
+  EXPECT_EQ(error_words({12, "no_area", "", std::nullopt, true, {}}), "shell 12: no area");
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::panels

@@ -1,0 +1,177 @@
+// Where a glyph stands on its shell, on shapes whose answer is known.
+#include "kiosk/render/glyph_shape.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kiosk/render/glyphs.h"
+#include "kiosk/render/part_looks.h"
+#include "tests/kiosk/test_source.h"
+
+namespace prismesh::kiosk::render {
+namespace {
+
+using mesh::Vec3;
+using mesh::quality::Metric;
+using mesh::quality::ShellState;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Corners = std::vector<Vec3>;
+
+const Corners kSquare{{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
+
+ShellState failing(std::initializer_list<Metric> metrics) {
+  ShellState state;
+  for (const Metric metric : metrics) state.fail = static_cast<std::uint16_t>(state.fail | 1U << static_cast<unsigned>(metric));
+  state.warn = state.fail;
+  return state;
+}
+
+/// The same shell begun at another corner.
+Corners turned(const Corners& corners, std::size_t by) {
+  Corners made;
+  for (std::size_t k = 0; k < corners.size(); ++k) made.push_back(corners[(k + by) % corners.size()]);
+  return made;
+}
+
+TEST(GlyphShape, TheDiagonalThatBendsMoreIsThick) {
+  // A kite 20 long and 8 wide, folded along its length: one corner 3 up at 4 from the fold, a bend of 36.9 degrees. About the short
+  // diagonal, whose middle is 1.5 up, it bends by twice atan(1.5 cos 20.6 / 10), 16.0 degrees.
+  const Corners kite{{0, 0, 0}, {10, -4, 0}, {20, 0, 0}, {10, 4, 3}};
+  EXPECT_EQ(glyph_place(GlyphShape::warped, kite), 0U);
+  EXPECT_EQ(glyph_place(GlyphShape::warped, turned(kite, 1)), 1U) << "the same diagonal under its other name";
+  EXPECT_EQ(glyph_place(GlyphShape::warped, turned(kite, 2)), 0U);
+  // With its tip 3 up: 16.7 degrees about the short diagonal, twice atan(1.5 cos 8.5 / 4), 40.7 degrees, about the long one.
+  const Corners raised_tip{{0, 0, 0}, {10, -4, 0}, {20, 0, 3}, {10, 4, 0}};
+  EXPECT_EQ(glyph_place(GlyphShape::warped, raised_tip), 0U);
+  EXPECT_EQ(glyph_place(GlyphShape::warped, turned(raised_tip, 3)), 1U);
+}
+
+TEST(GlyphShape, TheShortestAndTheLongestEdge) {
+  const Corners quad{{0, 0, 0}, {10, 0, 0}, {10, 4, 0}, {0, 9, 0}};  // edges 10, 4, 11.2, 9
+  EXPECT_EQ(glyph_place(GlyphShape::short_edge, quad), 1U);
+  EXPECT_EQ(glyph_place(GlyphShape::long_edge, quad), 2U);
+  EXPECT_EQ(glyph_place(GlyphShape::stretched, quad), 2U);
+  EXPECT_EQ(glyph_place(GlyphShape::short_edge, turned(quad, 1)), 0U);
+}
+
+TEST(GlyphShape, ATrianglesSmallestHeightFallsFromTheCornerAcrossItsLongestEdge) {
+  const Corners triangle{{0, 0, 0}, {10, 0, 0}, {5, 1, 0}};  // longest: edge 0; across: corner 2
+  EXPECT_EQ(glyph_place(GlyphShape::short_edge, triangle), 2U);
+  EXPECT_EQ(glyph_place(GlyphShape::short_edge, turned(triangle, 1)), 1U);
+  EXPECT_EQ(glyph_place(GlyphShape::long_edge, triangle), 0U);
+}
+
+TEST(GlyphShape, TheSharpestAndTheBluntestCorner) {
+  const Corners kite{{0, 0, 0}, {20, -2, 0}, {24, 0, 0}, {20, 2, 0}};  // sharp at 0, blunt at 1, 2 or 3
+  EXPECT_EQ(glyph_place(GlyphShape::small_angle, kite), 0U);
+  EXPECT_EQ(glyph_place(GlyphShape::large_angle, {{{0, 0, 0}, {10, 0, 0}, {5, 1, 0}}}), 2U);
+  EXPECT_EQ(glyph_place(GlyphShape::small_angle, {{{0, 0, 0}, {10, 0, 0}, {9, 2, 0}}}), 0U);
+}
+
+TEST(GlyphShape, ACornerThatIsTurnedInIsTheBluntest) {
+  const Corners dart{{0, 0, 0}, {10, 0, 0}, {2, 2, 0}, {0, 10, 0}};
+  EXPECT_EQ(glyph_place(GlyphShape::large_angle, dart), 2U) << "more than 180 degrees";
+  for (const std::size_t by : {1U, 2U, 3U}) EXPECT_EQ(glyph_place(GlyphShape::large_angle, turned(dart, by)), (6 - by) % 4);
+}
+
+TEST(GlyphShape, NumbersThatAreNoneChooseNothing) {
+  Corners quad = kSquare;
+  quad[2].x() = std::numeric_limits<double>::quiet_NaN();
+  for (int shape = 0; shape < kGlyphShapeCount; ++shape) EXPECT_EQ(glyph_place(static_cast<GlyphShape>(shape), quad), 0U);
+}
+
+TEST(GlyphShape, EachMetricHasItsShapeAndTheVagueOnesGiveWay) {
+  EXPECT_THAT(shapes_of({}), IsEmpty());
+  EXPECT_THAT(shapes_of(failing({Metric::warpage, Metric::aspect})), ElementsAre(GlyphShape::warped, GlyphShape::stretched));
+  EXPECT_THAT(shapes_of(failing({Metric::min_length})), ElementsAre(GlyphShape::short_edge));
+  EXPECT_THAT(shapes_of(failing({Metric::max_length})), ElementsAre(GlyphShape::long_edge));
+  EXPECT_THAT(shapes_of(failing({Metric::min_angle_tri, Metric::max_angle_tri})),
+              ElementsAre(GlyphShape::small_angle, GlyphShape::large_angle));
+  EXPECT_THAT(shapes_of(failing({Metric::taper})), ElementsAre(GlyphShape::other));
+  EXPECT_THAT(shapes_of(failing({Metric::taper, Metric::warpage})), ElementsAre(GlyphShape::warped));
+  ShellState both = failing({Metric::skew});
+  both.warn = static_cast<std::uint16_t>(both.warn | 1U << static_cast<unsigned>(Metric::warpage));
+  EXPECT_THAT(shapes_of(both), ElementsAre(GlyphShape::other)) << "what fails goes before what warns";
+  ShellState defect = failing({Metric::aspect});
+  defect.fail = static_cast<std::uint16_t>(defect.fail | 1U << static_cast<unsigned>(mesh::quality::Defect::no_area));
+  EXPECT_THAT(shapes_of(defect), ElementsAre(GlyphShape::defect)) << "what is no shell has no angles";
+  EXPECT_THAT(shapes_of(ShellState::removed()), IsEmpty());
+}
+
+/// A fan of triangles about a node in a grid of quads.
+std::shared_ptr<test::TestSource> fan(int triangles) {
+  auto source = std::make_shared<test::TestSource>();
+  test::add_grid(*source, 2, 2, 0, [](double u, double v) { return Vec3(u * 20, v * 20 - 20, 0); });
+  const std::uint32_t centre = 7;  // in the middle of the grid's upper side
+  std::vector<std::uint32_t> rim;
+  for (int i = 0; i <= triangles; ++i) {
+    const double angle = 3.14159 * i / triangles;
+    rim.push_back(source->add_node(source->positions[centre] + Vec3(10 * std::cos(angle), 10 * std::sin(angle), 0)));
+  }
+  for (int i = 0; i < triangles; ++i) source->add_shell(centre, rim[i], rim[i + 1], rim[i + 1], 0);
+  return source;
+}
+
+TEST(Clusters, TrianglesThatCrowdAtANodeOfAQuadAreMarkedThere) {
+  for (const auto& [triangles, marks] : {std::pair{4, 0U}, {5, 1U}, {7, 1U}}) {
+    const auto source = fan(triangles);
+    const ModelTable table(source);
+    GlyphList list;
+    list.update(table, true, true, false);
+    const auto chosen = list.choose(table, 100, {});
+    ASSERT_EQ(chosen.glyphs.size(), marks) << triangles;
+    if (marks == 0) continue;
+    EXPECT_EQ(chosen.glyphs[0].kind & 15U, static_cast<std::uint32_t>(GlyphShape::cluster));
+    const std::uint32_t corner = chosen.glyphs[0].kind >> kGlyphPlaceShift & 3U;
+    EXPECT_EQ(source->shell_nodes[chosen.glyphs[0].shell].node[corner].value, 7U) << "at the node itself";
+  }
+}
+
+TEST(Clusters, AMeshOfTrianglesHasNone) {
+  auto source = fan(6);
+  source->shell_nodes.erase(source->shell_nodes.begin(), source->shell_nodes.begin() + 4);
+  source->shell_quality.resize(source->shell_nodes.size());
+  const ModelTable table(source);
+  GlyphList list;
+  list.update(table, true, true, false);
+  EXPECT_THAT(list.choose(table, 100, {}).glyphs, IsEmpty());
+}
+
+TEST(Damage, OnlyWhatEditsMadeWorseGetsGlyphsOnDemand) {
+  auto source = std::make_shared<test::TestSource>(test::two_plates());
+  source->shell_damage.resize(source->shell_nodes.size());
+  source->shell_quality[3] = failing({Metric::warpage});
+  source->shell_quality[5] = failing({Metric::warpage, Metric::aspect});
+  source->shell_damage[5] = failing({Metric::aspect});
+  const ModelTable table(source);
+  GlyphList list;
+  list.update(table, false, false, false);
+  EXPECT_EQ(list.choose(table, 100, {}).glyphs.size(), 3U);
+  list.update(table, false, false, true);
+  const auto chosen = list.choose(table, 100, {});
+  ASSERT_EQ(chosen.glyphs.size(), 1U);
+  EXPECT_EQ(chosen.glyphs[0].shell, 5U);
+  EXPECT_EQ(chosen.glyphs[0].kind & 15U, static_cast<std::uint32_t>(GlyphShape::stretched)) << "the warpage was there before";
+}
+
+TEST(PartStates, APartIsTheRedderTheMoreOfItFails) {
+  auto source = std::make_shared<test::TestSource>(test::two_plates());
+  for (std::size_t s = 0; s < 3; ++s) source->shell_quality[s] = failing({Metric::aspect});
+  source->shell_quality[150].warn = 1;
+  const std::vector<PartState> parts = part_states(ModelTable(source), false);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].shells, 100U);
+  EXPECT_EQ(parts[0].fail, 3U);
+  EXPECT_EQ(parts[1].warn, 1U);
+  EXPECT_EQ(colour_of_state({100, 0, 0}), grade_colours()[0]);
+  EXPECT_EQ(colour_of_state({100, 0, 10}), grade_colours()[2]);
+  EXPECT_EQ(colour_of_state({100, 50, 0}), grade_colours()[1]);
+  EXPECT_GT(colour_of_state({100, 0, 1}).z(), colour_of_state({100, 0, 5}).z()) << "paler";
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::render

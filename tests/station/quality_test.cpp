@@ -1,0 +1,144 @@
+// Checking and mending in the hand: figures, errors gone to one after the other, and an operation by hand with its preview.
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "tests/station/station.h"
+
+namespace prismesh::test {
+namespace {
+
+/// Of shell cards in fixed columns of 8: id, part, four nodes.
+std::map<std::int64_t, std::array<std::int64_t, 4>> shells_of_deck(const std::string& text) {
+  std::map<std::int64_t, std::array<std::int64_t, 4>> shells;
+  bool inside = false;
+  for (const std::string& line : lines_of(text)) {
+    if (line.empty() || line[0] == '$') continue;
+    if (line[0] == '*') {
+      inside = line.rfind("*ELEMENT_SHELL", 0) == 0;
+      continue;
+    }
+    if (!inside || line.size() < 48) continue;
+    std::array<std::int64_t, 6> number{};
+    for (std::size_t i = 0; i < 6; ++i) number[i] = std::stoll(line.substr(8 * i, 8));
+    shells[number[0]] = {number[2], number[3], number[4], number[5]};
+  }
+  return shells;
+}
+
+class QualityTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_programs(); !missing.empty())
+      GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
+    station_ = std::make_unique<Station>();
+    station_->set_picture_size(1000, 640);
+    original_ = whole_file(station_->deck());
+    nodes_ = nodes_of_deck(original_);
+    shells_ = shells_of_deck(original_);
+  }
+  /// One node pulled out of the sheet: the shells about it fail.
+  void dent(std::int64_t node, const std::string& by) {
+    station_->key("e");
+    station_->type(std::to_string(node));
+    ASSERT_FALSE(station_->kiosk().wait_for("counted 1").empty());
+    station_->key("Return");
+    ASSERT_TRUE(station_->wait_for_selection(1));
+    station_->kiosk().skip_lines();
+    station_->key("n");
+    station_->type(by);
+    station_->key("Return");
+    ASSERT_FALSE(station_->kiosk().wait_for("drag committed").empty());
+  }
+  Point centre(std::int64_t shell, const std::map<std::int64_t, Point>& nodes) const {
+    Point at{};
+    for (const std::int64_t node : shells_.at(shell))
+      for (std::size_t i = 0; i < 3; ++i) at[i] += nodes.at(node)[i] / 4;
+    return at;
+  }
+  std::array<double, 2> settled_pixel(const Point& at) {
+    for (std::string before, now = station_->kiosk().last("aim ");; before = now) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      now = station_->kiosk().last("aim ");
+      if (now == before) return Station::aim_from(now).pixel_of(at);
+    }
+  }
+
+  std::unique_ptr<Station> station_;
+  std::string original_;
+  std::map<std::int64_t, Point> nodes_;
+  std::map<std::int64_t, std::array<std::int64_t, 4>> shells_;
+};
+
+TEST_F(QualityTest, errors_are_gone_to_worst_first_and_named) {
+  const std::int64_t middle = kFirstNode + (kSheetSide / 2) * kSheetSide + kSheetSide / 2;
+  station_->start_kiosk();
+  dent(middle, "4");
+  station_->kiosk().skip_lines();
+  station_->key("j");
+  ASSERT_FALSE(station_->kiosk().wait_for("quality generation").empty());
+  station_->show_people("quality panel");
+  const std::string saved = station_->save_as("dented.k");
+  const auto dented = nodes_of_deck(saved);
+  std::set<std::int64_t> seen;
+  for (int i = 1; i <= 3; ++i) {
+    station_->kiosk().skip_lines();
+    station_->key("Right");
+    std::stringstream line(station_->kiosk().wait_for("error "));
+    std::string word, of;
+    int number = 0;
+    std::int64_t total = 0, shell = 0;
+    line >> word >> number >> of >> total >> word >> shell;
+    ASSERT_TRUE(line) << "no error was gone to";
+    EXPECT_EQ(number, i);
+    ASSERT_TRUE(shells_.contains(shell)) << shell;
+    seen.insert(shell);
+    const auto& corners = shells_.at(shell);
+    EXPECT_NE(std::find(corners.begin(), corners.end(), middle), corners.end()) << "the worst are those about the dent";
+    const auto at = settled_pixel(centre(shell, dented));
+    EXPECT_NEAR(at[0], 500, 3);
+    EXPECT_NEAR(at[1], 320, 3);
+  }
+  EXPECT_EQ(seen.size(), 3u);
+  station_->show_people("error");
+  station_->kiosk().skip_lines();
+  station_->key("Left");
+  EXPECT_NE(station_->kiosk().wait_for("error ").find("error 2 of"), std::string::npos);
+}
+
+TEST_F(QualityTest, an_operation_by_hand_is_shown_before_it_is_done) {
+  station_->start_kiosk();
+  const std::int64_t shell = shells_.begin()->first + 12 * (kSheetSide - 1) + 12;
+  const auto at = station_->pixel_of(centre(shell, nodes_));
+  station_->move(at[0], at[1]);
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+d");
+  const std::string previewed = station_->kiosk().wait_for("operation previewed");
+  EXPECT_NE(previewed.find("shells 2 "), std::string::npos) << previewed;
+  station_->show_people("split");
+  station_->key("Escape");
+  EXPECT_FALSE(station_->kiosk().wait_for("operation none").empty());
+  EXPECT_EQ(station_->save_as("untouched.k"), original_) << "a preview changes nothing";
+  station_->kiosk().skip_lines();
+  station_->move(at[0], at[1]);
+  station_->key("ctrl+d");
+  ASSERT_FALSE(station_->kiosk().wait_for("operation previewed").empty());
+  station_->kiosk().skip_lines();
+  station_->key("Return");
+  ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  const auto split = shells_of_deck(station_->save_as("split.k"));
+  ASSERT_EQ(split.size(), shells_.size() + 1);
+  std::set<std::int64_t> corners;
+  for (const auto& [id, nodes] : split) {
+    if (shells_.contains(id) && shells_.at(id) == nodes) continue;
+    EXPECT_EQ(std::set(nodes.begin(), nodes.end()).size(), 3u) << "a triangle";
+    corners.insert(nodes.begin(), nodes.end());
+  }
+  EXPECT_EQ(corners, std::set(shells_.at(shell).begin(), shells_.at(shell).end())) << "of the quad that was under the pointer";
+}
+
+}  // namespace
+}  // namespace prismesh::test
