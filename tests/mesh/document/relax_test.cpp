@@ -1,0 +1,174 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/mesh/document/document_fixture.h"
+
+namespace prismesh::mesh::document {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+/// A 20 x 10 sheet of which three nodes were slid by 4 of 5 mm.
+Document slid_sheet() {
+  Document document = make_sheet(20, 10);
+  must_apply(document, R"({"edit":"slide","by":[3.2,2.4,0],"on":"95,116,137","grab":116,"falloff":{"profile":"constant"}})");
+  return document;
+}
+
+bool same_bits(const Vec3& a, const Vec3& b) { return std::equal(a.data(), a.data() + 3, b.data()); }
+
+std::size_t differing(const Model& a, const Model& b) {
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < a.node_count(); ++n) count += same_bits(a.positions[n], b.positions[n]) ? 0 : 1;
+  return count;
+}
+
+TEST(Relax, MakesWhatASlideCrushedFineAgain) {
+  Document document = slid_sheet();
+  ASSERT_GT(document.current().counts.fail, 0u);
+  const auto surface = document.current().surface;
+  const EditReport report = must_apply(document, R"({"edit":"relax","scope":"damaged"})");
+  EXPECT_EQ(report.after.fail, 0u);
+  EXPECT_LT(report.after.warn, report.before.warn + report.before.fail);
+  EXPECT_GT(report.nodes_moved, 0u);
+  EXPECT_THAT(report.notes, Contains(HasSubstr("at rest after")));
+  EXPECT_EQ(document.current().surface, surface);  // relaxing doesn't shape
+  EXPECT_EQ(document.current().counts, quality::count(quality::judge_model(document.current().model, document.settings.criteria, 5)));
+  for (std::size_t n = 0; n < document.current().model.node_count(); ++n) EXPECT_NEAR(document.current().model.positions[n].z(), 0, 1e-12);
+  must_apply(document, R"({"edit":"undo"})");
+  EXPECT_EQ(document.current().counts.fail, report.before.fail);
+}
+
+TEST(Relax, MovesSelectedNodesOnly) {
+  Document document = slid_sheet();
+  const Model before = document.current().model;
+  must_apply(document, R"({"edit":"select","expr":"115-117"})");
+  const EditReport report = must_apply(document, R"({"edit":"relax"})");
+  EXPECT_LE(report.nodes_moved, 3u);
+  EXPECT_GT(report.nodes_moved, 0u);
+  EXPECT_EQ(differing(before, document.current().model), report.nodes_moved);
+}
+
+TEST(Relax, OfFailingElementsLooksOneRingFurther) {
+  Document document = slid_sheet();
+  const Model before = document.current().model;
+  const EditReport report = must_apply(document, R"({"edit":"relax","scope":"failed"})");
+  EXPECT_GT(report.nodes_moved, 0u);
+  EXPECT_LT(report.nodes_moved, before.node_count() / 2);
+  EXPECT_LT(report.after.fail, report.before.fail);
+}
+
+TEST(Relax, LeavesWhatElseHangsOnNodesInPlace) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"slide","by":[3.5,0,0],"on":"111-137","grab":122})");
+  const Vec3 beam = place_of(document, 100), solid = place_of(document, 148);
+  const EditReport report = must_apply(document, R"({"edit":"relax","scope":"all"})");
+  EXPECT_TRUE(same_bits(place_of(document, 100), beam));
+  EXPECT_TRUE(same_bits(place_of(document, 148), solid));
+  EXPECT_THAT(report.notes, Contains("2 nodes with elements other than shells stay"));
+}
+
+TEST(Relax, LeavesLockedAndHeldNodesAndSaysSo) {
+  Model model = make_assembly();
+  model.node_holds.set(model.find_node(112).value, kHeldByParameter);
+  Document document = make_document(std::move(model));
+  must_apply(document, R"({"edit":"slide","by":[3.5,0,0],"on":"121-128","grab":126})");
+  must_apply(document, R"({"edit":"lock","on":"part:2"})");
+  const Model before = document.current().model;
+  const EditReport report = must_apply(document, R"({"edit":"relax","scope":"all"})");
+  EXPECT_THAT(report.notes, Contains("1 node held by the deck stays"));
+  EXPECT_THAT(report.notes, Contains("25 nodes of locked parts stay"));
+  for (std::size_t n = 0; n < before.node_count(); ++n) {
+    const bool stays = before.positions[n].x() >= 20 || before.node_ids[n] == 112;
+    if (stays) {
+      EXPECT_TRUE(same_bits(before.positions[n], document.current().model.positions[n])) << before.node_ids[n];
+    }
+  }
+}
+
+TEST(Relax, SaysWhereThereIsNothingToDo) {
+  Document document = make_sheet(6, 6);
+  const Model before = document.current().model;
+  EXPECT_THAT(must_apply(document, R"({"edit":"relax","scope":"damaged"})").notes,
+              Contains("nothing to relax: no edit made an element fail or warn"));
+  EXPECT_THAT(must_apply(document, R"({"edit":"relax","scope":"failed"})").notes, Contains("nothing to relax: no element in the scope"));
+  EXPECT_THAT(must_apply(document, R"({"edit":"relax","scope":"all"})").notes,
+              Contains("nothing to relax: every node is where it is best"));
+  must_apply(document, R"({"edit":"lock","on":"part:1"})");
+  EXPECT_THAT(must_apply(document, R"({"edit":"relax","scope":"all"})").notes, Contains("nothing to relax: every node in the scope stays"));
+  EXPECT_EQ(differing(before, document.current().model), 0u);
+  EXPECT_THAT(refusal(document, R"({"edit":"relax"})"), HasSubstr("nothing is selected"));
+  EXPECT_THAT(refusal(document, R"({"edit":"relax","mode":"from","scope":"all"})"), HasSubstr("needs \"at\""));
+  EXPECT_THAT(refusal(document, R"({"edit":"relax","mode":"from","at":99999,"scope":"all"})"), HasSubstr("99999"));
+}
+
+TEST(Relax, RefusesNumbersWithoutSense) {
+  Document document = make_sheet(6, 6);
+  Relax relax;
+  relax.scope = Scope::all;
+  relax.max_move.free = -1;
+  EXPECT_FALSE(try_apply(document, relax));
+  relax.max_move.free.reset();
+  relax.threshold = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(try_apply(document, relax));
+  relax.threshold.reset();
+  relax.angle = 0;
+  EXPECT_FALSE(try_apply(document, relax));
+}
+
+TEST(Relax, FromANodeWithoutASelectionGoesAsFarAsItMust) {
+  Document document = make_sheet(20, 20);
+  must_apply(document, R"({"edit":"translate","by":[2.5,1.5,0],"on":"221","falloff":{"profile":"constant"}})");
+  const EditReport report = must_apply(document, R"({"edit":"relax","mode":"from","at":221,"threshold":0.25})");
+  EXPECT_GT(report.nodes_moved, 1u);
+  EXPECT_LT(report.nodes_moved, 100u);
+  EXPECT_LT((place_of(document, 221) - Vec3(50, 50, 0)).norm(), 0.75);
+}
+
+TEST(Relax, KeepsToItsLimits) {
+  Document document = slid_sheet();
+  const Model before = document.current().model;
+  const EditReport report = must_apply(document, R"({"edit":"relax","scope":"all","max_move":{"free":0.3,"line":0.1}})");
+  EXPECT_THAT(report.notes, Contains(HasSubstr("stopped at max_move")));
+  for (std::size_t n = 0; n < before.node_count(); ++n)
+    EXPECT_LE((document.current().model.positions[n] - before.positions[n]).norm(), 0.3);
+}
+
+TEST(Relax, LeavesTheDocumentAsItWasWhenStopped) {
+  Document document = slid_sheet();
+  const auto current = &document.current();
+  int heard = 0;
+  const Result<Prepared> stopped = prepare(document, edit_of(R"({"edit":"relax","scope":"all"})"), [&](double) { return ++heard < 4; });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().message, "cancelled");
+  EXPECT_EQ(heard, 4);
+  EXPECT_EQ(&document.current(), current);
+}
+
+TEST(Relax, PinsCornersAndMiddlesOfShellsWithMidSideNodes) {
+  Model model = test::make_grid(8, 8, [](int i, int j) { return Vec3(5.0 * i + (i == 3 && j == 3 ? 2 : 0), 5.0 * j, 0.0); });
+  const NodeIndex middle(model.node_count());
+  model.node_ids.resize(model.node_count() + 1);
+  model.node_ids.set(middle.value, 1000);
+  model.node_holds.resize(model.node_ids.size());
+  model.positions.resize(model.node_ids.size(), Vec3(18.5, 15, 0));
+  MidsideNodes midside{ShellIndex(std::size_t{3 + 8 * 3}), {}};
+  midside.node[0] = middle;
+  model.midside = std::make_shared<std::vector<MidsideNodes>>(1, midside);
+  model.adjacency = std::make_shared<Adjacency>(build_adjacency(model));
+  std::vector<std::int64_t> ids;
+  for (std::size_t n = 0; n < model.node_count(); ++n) ids.push_back(model.node_ids[n]);
+  model.node_index = std::make_shared<IdIndex>(ids);
+  Document document = make_document(std::move(model));
+  const EditReport report = must_apply(document, R"({"edit":"relax","scope":"all"})");
+  EXPECT_THAT(report.notes, Contains("5 nodes of shells with mid-side nodes stay"));
+  EXPECT_EQ(place_of(document, 1 + 3 + 9 * 3), Vec3(17, 15, 0));
+  EXPECT_GT(report.nodes_moved, 0u);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::document
