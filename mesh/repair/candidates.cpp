@@ -117,7 +117,8 @@ void add_rows(const Site& site, LocalShell shell, std::vector<Candidate>& found)
     Row row{shell, direction};
     const double long_edge = std::max(1.25 * site.judge.target_size, 0.8 * across);
     const int forward = run_of(patch, row, true, long_edge), back = run_of(patch, row, false, long_edge);
-    std::vector<std::pair<int, int>> lengths_tried = {{forward, back}, {forward + 1, back + 1}, {0, 0}};
+    std::vector<std::pair<int, int>> lengths_tried = {
+        {forward, back}, {forward + 1, back + 1}, {forward + 1, back}, {forward, back + 1}, {0, 0}};
     if (forward + back == 0) lengths_tried.pop_back();
     for (const auto& [f, b] : lengths_tried) {
       row.forward = f;

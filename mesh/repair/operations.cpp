@@ -133,10 +133,10 @@ Refusal redivide(const Site& site, LocalShell first, LocalShell second, const st
   const PatchShell f = patch.shell(first), g = patch.shell(second);
   if (f.part != g.part || f.sheet.thickness != g.sheet.thickness) return "they differ in part or thickness";
   const bool same_sense = passes(g.corners, v, u);
-  const bool swaps = pieces.size() == 1 && (f.rules & kLasting) != 0;  // the second one goes
+  // Of two that become one the first stays, unless the second has to.
+  const bool swaps = (g.rules & kLasting) != 0;
   const LocalShell stays = swaps ? second : first, goes = swaps ? first : second;
-  (void)goes;
-  if (pieces.size() == 1 && (patch.shell(swaps ? first : second).rules & kLasting) != 0) return "neither of them can be removed";
+  if (pieces.size() == 1 && (patch.shell(goes).rules & kLasting) != 0) return "neither of them can be removed";
   for (std::size_t i = 0; i < 2; ++i) {
     const LocalShell shell = i == 0 ? first : second;
     if (pieces.size() == 1 && shell != stays) continue;
@@ -147,7 +147,7 @@ Refusal redivide(const Site& site, LocalShell first, LocalShell second, const st
   }
   const Vec3 f_edge = first_edge(patch, first), g_edge = first_edge(patch, second);
   if (pieces.size() == 1) {
-    patch.remove_shell(swaps ? first : second);
+    patch.remove_shell(goes);
     const bool turn = swaps && !same_sense;
     patch.set_corners(stays, turned_like(patch, turn ? reversed(pieces[0]) : pieces[0], swaps ? g_edge : f_edge));
     return std::nullopt;

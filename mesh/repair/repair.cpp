@@ -147,7 +147,7 @@ class Repairer {
     if (harms(patch_)) return {0, "every operation makes a neighbour fail", 2};
     if (!conforms(patch_)) return {0, "every operation would tear or fold the mesh", 1};
     if (now.triangles > before.triangles && triangles_ + now.triangles - before.triangles > most_triangles_)
-      return {0, "there would be too many triangles", 3};
+      return {0, "there would be too many triangles", 5};
     if (!keeps_to_surface(site_)) return {0, "every operation leaves the surface", 3};
     return {gain, {}, 0};
   }

@@ -88,9 +88,11 @@ void plant_pair(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j) {
   const auto q = mesh.shells[shell];
   mesh.shells[shell] = {q[0], q[1], q[2], q[2]};
   mesh.shells.push_back({q[0], q[2], q[3], q[3]});
-  // Flat enough triangles for a warning, which the quad doesn't have.
-  mesh.positions[q[2]] = grid.place(static_cast<double>(i) + 1.2, static_cast<double>(j) + 1.25);
+  // The triangles' corners become sharper than those of the quad.
+  mesh.positions[q[2]] = grid.place(static_cast<double>(i) + 1.42, static_cast<double>(j) + 1.42);
 }
+/// A corner stands out of the sheet, and the sheet is meant so.
+void plant_warped(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j) { mesh.positions[grid.node(i, j)] += Vec3(0.25, 0.1, 0.25); }
 /// Two quads divided along the wrong edge of their hexagon.
 void plant_wrong_edge(Mesh& mesh, const Grid& grid, std::size_t i, std::size_t j) {
   const std::size_t left = grid.shell(i, j), right = grid.shell(i + 1, j);
@@ -106,26 +108,104 @@ void plant_stretched(Mesh& mesh, const Grid& grid, std::size_t, std::size_t) {
   }
 }
 
-class Planted : public testing::TestWithParam<Defect> {};
+struct Place {
+  const char* name;
+  Grid (*grid)();
+  std::size_t i, j;
+};
 
-TEST_P(Planted, is_repaired_on_a_flat_sheet) {
-  const Grid grid = flat();
+class Planted : public testing::TestWithParam<std::tuple<Defect, Place>> {};
+
+TEST_P(Planted, is_found_and_repaired) {
+  const auto& [defect, place] = GetParam();
+  const Grid grid = place.grid();
   Mesh mesh{grid.positions(), grid.shells()};
-  GetParam().plant(mesh, grid, 5, 5);
+  const Model good = mesh.model();
+  ASSERT_TRUE(bad_shells(good, quality::Grade::warn).empty());
+  defect.plant(mesh, grid, place.i, place.j);
   const Model bad = mesh.model();
-  ASSERT_FALSE(bad_shells(bad, quality::Grade::fail).empty());
-  const Mended mended = mend(bad, bad);
-  EXPECT_TRUE(bad_shells(mended.model, quality::Grade::fail).empty());
+  const ShellSet failing = bad_shells(bad, quality::Grade::fail);
+  ASSERT_FALSE(failing.empty());
+  const bool is_meant = defect.plant == plant_warped || defect.plant == plant_stretched;
+  const Mended mended = mend(bad, is_meant ? bad : good);
+  EXPECT_GE(mended.repaired.bad_before, failing.size());
+  EXPECT_EQ(bad_shells(mended.model, quality::Grade::fail).size(), 0U);
   EXPECT_TRUE(mended.repaired.left.empty());
-  EXPECT_LE(triangle_pairs(mended.model), triangle_pairs(bad));
-  expect_same_shape(bad, mended.model);
+  // Where one quad alone is warped its triangles may have no other place.
+  EXPECT_LE(triangle_pairs(mended.model), triangle_pairs(bad) + (defect.plant == plant_warped ? 1 : 0));
+  expect_same_shape(is_meant ? bad : good, mended.model);
 }
 
 INSTANTIATE_TEST_SUITE_P(Repair, Planted,
-                         testing::Values(Defect{"short_edge", plant_short_edge}, Defect{"sliver", plant_sliver},
-                                         Defect{"flat_corner", plant_flat_corner}, Defect{"pair", plant_pair},
-                                         Defect{"wrong_edge", plant_wrong_edge}, Defect{"stretched", plant_stretched}),
-                         [](const auto& defect) { return defect.param.name; });
+                         testing::Combine(testing::Values(Defect{"short_edge", plant_short_edge}, Defect{"sliver", plant_sliver},
+                                                          Defect{"flat_corner", plant_flat_corner}, Defect{"pair", plant_pair},
+                                                          Defect{"wrong_edge", plant_wrong_edge}, Defect{"warped", plant_warped},
+                                                          Defect{"stretched", plant_stretched}),
+                                          testing::Values(Place{"flat", [] { return flat(); }, 5, 5}, Place{"cylinder", cylinder, 9, 5},
+                                                          Place{"l_profile", l_profile, 5, 10})),
+                         [](const auto& info) {
+                           return std::string(std::get<0>(info.param).name) + "_on_" + std::get<1>(info.param).name;
+                         });
+
+TEST(PlantedTogether, are_all_repaired) {
+  const Grid grid = flat(16, 16);
+  Mesh mesh{grid.positions(), grid.shells()};
+  const Model good = mesh.model();
+  plant_short_edge(mesh, grid, 3, 3);
+  plant_wrong_edge(mesh, grid, 10, 3);
+  plant_flat_corner(mesh, grid, 3, 10);
+  plant_sliver(mesh, grid, 11, 11);
+  plant_pair(mesh, grid, 7, 7);
+  const Mended mended = mend(mesh.model(), good);
+  EXPECT_TRUE(bad_shells(mended.model, quality::Grade::fail).empty());
+  EXPECT_TRUE(mended.repaired.left.empty());
+  expect_same_shape(good, mended.model);
+}
+
+TEST(PlantedTogether, give_the_same_result_every_time) {
+  const Grid grid = cylinder();
+  Mesh mesh{grid.positions(), grid.shells()};
+  const Model good = mesh.model();
+  plant_short_edge(mesh, grid, 3, 3);
+  plant_wrong_edge(mesh, grid, 10, 3);
+  const Mended once = mend(mesh.model(), good), again = mend(mesh.model(), good);
+  ASSERT_EQ(once.model.shell_count(), again.model.shell_count());
+  for (std::size_t s = 0; s < once.model.shell_count(); ++s) EXPECT_EQ(once.model.shell_nodes[s], again.model.shell_nodes[s]);
+  ASSERT_EQ(once.model.node_count(), again.model.node_count());
+  for (std::size_t n = 0; n < once.model.node_count(); ++n) EXPECT_EQ(once.model.positions[n], again.model.positions[n]);
+}
+
+TEST(Untouched, shells_far_from_the_scope_keep_their_nodes_and_places) {
+  const Grid grid = flat(40, 12);
+  Mesh mesh{grid.positions(), grid.shells()};
+  const Model good = mesh.model();
+  plant_short_edge(mesh, grid, 3, 5);
+  plant_short_edge(mesh, grid, 35, 5);
+  const Model bad = mesh.model();
+  ShellSet scope;
+  for (const ShellIndex shell : bad_shells(bad, quality::Grade::warn))
+    if (bad.position(bad.shell(shell).node[0]).x() < 20) scope.push_back(shell);
+  const relax::ReferenceSurface surface(good, all_shells(good), 30);
+  const auto repaired = repair(bad, surface, scope, {}, {quality::default_criteria(), 1.0}, {});
+  ASSERT_TRUE(repaired.has_value());
+  EXPECT_FALSE(repaired->change.empty());
+  for (const auto& [shell, nodes] : repaired->change.reshaped) EXPECT_LT(bad.position(bad.shell(shell).node[0]).x(), 20);
+  for (const ShellIndex shell : repaired->change.removed_shells) EXPECT_LT(bad.position(bad.shell(shell).node[0]).x(), 20);
+  for (const auto& [node, position] : repaired->change.moved) EXPECT_LT(bad.position(node).x(), 20);
+}
+
+TEST(Cancelled, a_repair_says_so) {
+  const Grid grid = flat();
+  Mesh mesh{grid.positions(), grid.shells()};
+  plant_short_edge(mesh, grid, 5, 5);
+  plant_wrong_edge(mesh, grid, 8, 8);
+  const Model bad = mesh.model();
+  const relax::ReferenceSurface surface(bad, all_shells(bad), 30);
+  const auto repaired =
+      repair(bad, surface, bad_shells(bad, quality::Grade::warn), {}, {quality::default_criteria(), 1.0}, {}, [](double) { return false; });
+  ASSERT_FALSE(repaired.has_value());
+  EXPECT_EQ(repaired.error().message, cancelled().message);
+}
 
 }  // namespace
 }  // namespace prismesh::mesh::repair

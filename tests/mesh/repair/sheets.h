@@ -47,6 +47,11 @@ inline Model model_of(const std::vector<Vec3>& positions, const std::vector<std:
   part.id = 1;
   part.thickness = 1.0;
   model.parts = std::make_shared<const std::vector<Part>>(2, part);
+  std::vector<bool> has_shell(positions.size(), false);
+  for (const auto& shell : shells)
+    for (const std::size_t node : shell) has_shell[node] = true;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (!has_shell[i]) remove_node(model, at(i));  // inside a hole
   model.adjacency = std::make_shared<const Adjacency>(build_adjacency(model));
   return model;
 }

@@ -1,0 +1,150 @@
+// Random meshes, random rules: nothing forbidden is touched, the mesh stays whole, the worst shell isn't worse.
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "mesh/quality/report.h"
+#include "sheets.h"
+#include "validator.h"
+
+namespace prismesh::mesh::repair {
+namespace {
+
+struct Shaken {
+  Model model;
+  Grid grid;
+};
+
+/// A sheet whose inner nodes are shaken hard, some of whose quads are triangles.
+Shaken shaken(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> shake(-0.45, 0.45);
+  const Grid grid = seed % 3 == 0 ? flat(9, 8) : seed % 3 == 1 ? cylinder() : l_profile();
+  const Grid still = grid;
+  std::vector<Vec3> positions = grid.positions();
+  const auto shells_of_grid = grid.shells();
+  std::vector<int> uses(positions.size(), 0);
+  for (const auto& shell : shells_of_grid)
+    for (const std::size_t node : shell) ++uses[node];
+  for (std::size_t j = 1; j < grid.rows; ++j)
+    for (std::size_t i = 1; i < grid.columns; ++i) {
+      if (uses[grid.node(i, j)] != 4 || (seed % 3 == 2 && i == 8)) continue;  // free edges and the crease keep their shape
+      const double dx = shake(random), dy = shake(random);
+      const bool near_crease = seed % 3 == 2 && (i == 7 || i == 9);
+      positions[grid.node(i, j)] = grid.place(static_cast<double>(i) + (near_crease ? 0 : dx), static_cast<double>(j) + dy);
+    }
+  std::vector<std::array<std::size_t, 4>> shells;
+  for (const auto& q : shells_of_grid) {
+    if (random() % 8 == 0) {
+      shells.push_back({q[0], q[1], q[2], q[2]});
+      shells.push_back({q[0], q[2], q[3], q[3]});
+    } else {
+      shells.push_back(q);
+    }
+  }
+  return {model_of(positions, shells), still};
+}
+
+std::size_t failing(const Model& model) {
+  std::size_t count = 0;
+  for (const ShellIndex shell : all_shells(model)) {
+    std::vector<Vec3> corners;
+    for (int i = 0; i < model.shell(shell).corners(); ++i)
+      corners.push_back(model.position(model.shell(shell).node[static_cast<std::size_t>(i)]));
+    count += quality::judge(quality::measure(corners), quality::default_criteria(), 1.0).fail != 0 ? 1 : 0;
+  }
+  return count;
+}
+
+class Random : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Random, shaking_is_repaired_and_the_sheet_stays_whole) {
+  const Shaken sheet = shaken(GetParam());
+  const Model good = model_of(sheet.grid.positions(), sheet.grid.shells());
+  const relax::ReferenceSurface surface(good, all_shells(good), 30);
+  const auto repaired = repair(sheet.model, surface, all_shells(sheet.model), {}, {quality::default_criteria(), 1.0}, {});
+  ASSERT_TRUE(repaired.has_value());
+  const Model next = carried_out(sheet.model, repaired->change);
+  const Shape a = shape_of(sheet.model), b = shape_of(next);
+  EXPECT_EQ(what_is_wrong(next), "");
+  EXPECT_EQ(a.euler, b.euler);
+  EXPECT_EQ(a.free_loops, b.free_loops);
+  EXPECT_EQ(a.pieces, b.pieces);
+  // On the tube's ends a new node lies on the arc, not on its chord.
+  EXPECT_NEAR(a.free_length, b.free_length, (GetParam() % 3 == 1 ? 1e-3 : 1e-9) * a.free_length);
+  EXPECT_LE(failing(next), failing(sheet.model) / 10);
+  EXPECT_EQ(failing(next), repaired->left.size());
+}
+
+/// What a seed forbids of each node and shell.
+struct Forbidden {
+  std::vector<std::uint8_t> node, shell;
+  std::set<std::pair<NodeIndex, NodeIndex>> edges;
+
+  Forbidden(const Model& model, unsigned seed) {
+    std::mt19937 random(seed + 1000);
+    for (std::size_t n = 0; n < model.node_count(); ++n) node.push_back(static_cast<std::uint8_t>(random() % 3 == 0 ? random() % 4 : 0));
+    for (std::size_t s = 0; s < model.shell_count(); ++s) shell.push_back(static_cast<std::uint8_t>(random() % 3 == 0 ? random() % 16 : 0));
+    for (const ShellIndex s : all_shells(model))
+      for (std::size_t c = 0; c < 4; ++c)
+        if (random() % 5 == 0) edges.insert(std::minmax(model.shell(s).node[c], model.shell(s).node[(c + 1) % 4]));
+  }
+  Rules rules() const {
+    return {[this](NodeIndex n) { return node[n.value]; }, [this](ShellIndex s) { return shell[s.value]; },
+            [this](NodeIndex a, NodeIndex b) { return edges.count(std::minmax(a, b)) == 0; }};
+  }
+};
+
+TEST_P(Random, nothing_forbidden_is_touched) {
+  const Shaken sheet = shaken(GetParam());
+  const Model good = model_of(sheet.grid.positions(), sheet.grid.shells());
+  const relax::ReferenceSurface surface(good, all_shells(good), 30);
+  const Forbidden forbidden(sheet.model, GetParam());
+  const auto repaired = repair(sheet.model, surface, all_shells(sheet.model), forbidden.rules(), {quality::default_criteria(), 1.0}, {});
+  ASSERT_TRUE(repaired.has_value());
+  const Restructuring& change = repaired->change;
+  EXPECT_FALSE(change.empty());
+  for (const auto& [node, position] : change.moved) EXPECT_EQ(forbidden.node[node.value] & kStays, 0);
+  for (const NodeIndex node : change.removed_nodes) EXPECT_EQ(forbidden.node[node.value] & kNeeded, 0);
+  for (const ShellIndex shell : change.removed_shells) EXPECT_EQ(forbidden.shell[shell.value] & kLasting, 0);
+  for (const NewShell& shell : change.new_shells) EXPECT_EQ(forbidden.shell[shell.parent.value] & kIndivisible, 0);
+  for (const auto& [shell, nodes] : change.reshaped) {
+    EXPECT_EQ(forbidden.shell[shell.value] & kKeepsNodes, 0);
+    if (nodes.is_triangle() != sheet.model.shell(shell).is_triangle()) {
+      EXPECT_EQ(forbidden.shell[shell.value] & kNoTriangle, 0);
+    }
+  }
+  for (const NewNode& node : change.new_nodes) {
+    const NodeIndex a = node.origin.parent[0], b = node.origin.parent[1];
+    const bool is_on_edge = node.origin.count() == 2 && a.value < sheet.model.node_count() && b.value < sheet.model.node_count();
+    EXPECT_FALSE(is_on_edge && forbidden.edges.count(std::minmax(a, b)) != 0);
+  }
+  const Model next = carried_out(sheet.model, change);
+  EXPECT_EQ(what_is_wrong(next), "");
+  EXPECT_EQ(shape_of(sheet.model).euler, shape_of(next).euler);
+}
+
+INSTANTIATE_TEST_SUITE_P(Repair, Random, testing::Range(0U, 6U));
+
+TEST(Bad, input_is_left_alone_and_said) {
+  const Grid grid = flat(8, 8);
+  std::vector<Vec3> positions = grid.positions();
+  auto shells = grid.shells();
+  positions[grid.node(2, 2)] = Vec3(std::nan(""), 0, 0);
+  shells[grid.shell(5, 5)] = {grid.node(5, 5), grid.node(6, 5), grid.node(5, 5), grid.node(5, 6)};
+  positions[grid.node(6, 2)] = positions[grid.node(7, 2)];
+  const Model model = model_of(positions, shells);
+  const Model good = model_of(grid.positions(), grid.shells());
+  const relax::ReferenceSurface surface(good, all_shells(good), 30);
+  const auto repaired = repair(model, surface, all_shells(model), {}, {quality::default_criteria(), 1.0}, {});
+  ASSERT_TRUE(repaired.has_value());
+  EXPECT_FALSE(repaired->left.empty());
+  for (const auto& [node, position] : repaired->change.moved) EXPECT_TRUE(position.allFinite());
+  for (const NewNode& node : repaired->change.new_nodes) EXPECT_TRUE(node.position.allFinite());
+  for (const Left& left : repaired->left) EXPECT_FALSE(left.why.empty());
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::repair
