@@ -14,7 +14,8 @@ namespace prismesh::mesh::relax {
 namespace {
 
 constexpr std::size_t kNodesAtOnce = 1024;
-constexpr int kSmoothings = 10;  ///< of the sizes: how many elements away what is longer lends its length
+constexpr std::size_t kNodesAPause = 65536;  ///< then whoever watches is told
+constexpr int kSmoothings = 10;              ///< of the sizes: how many elements away what is longer lends its length
 constexpr double kSqrt2 = 1.4142135623730951;
 constexpr double kOnSurface = 0.25;  ///< a node that is farther from the surface, as a share of its size, isn't of it
 constexpr double kReach = 8;         ///< sizes that a node may be from where it was on the reference
@@ -187,13 +188,16 @@ Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footi
   return on.point;
 }
 
-Net make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle) {
+Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle,
+                     const Progress& progress) {
   const std::vector<Freedom> freedoms = node_freedoms(model, movable, feature_angle);
   std::vector<Footing> footings(movable.size());
-  parallel_for(movable.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (freedoms[i] != Freedom::fixed) footings[i] = find_footing(model, surface, movable[i], freedoms[i]);
-  });
+  for (std::size_t first = 0; first < movable.size(); first += kNodesAPause) {
+    parallel_for(std::min(kNodesAPause, movable.size() - first), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = first + begin; i < first + end; ++i) footings[i] = find_footing(model, surface, movable[i], freedoms[i]);
+    });
+    if (progress && !progress(static_cast<double>(first) / static_cast<double>(movable.size()))) return fail(cancelled());
+  }
   Net net;
   Numbers numbers(model);
   for (std::size_t i = 0; i < movable.size(); ++i)

@@ -48,8 +48,9 @@ struct Net {
   }
 };
 
-/// Nodes of `movable` that are corners, not finite, in no shell or not near the surface stay.
-Net make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle);
+/// Nodes of `movable` that are corners, not finite, in no shell or not near the surface stay. Errors: cancelled.
+Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle,
+                     const Progress& progress);
 
 /// The place on the node's line or sheet that is nearest to a point; `footing` follows.
 Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footing);

@@ -12,8 +12,8 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr double kShareOfNet = 0.1;  ///< of the progress, for finding out what is where
-constexpr double kShareOfSettling = 0.8;
+constexpr double kShareOfNet = 0.25;  ///< of the progress, for finding out what is where
+constexpr double kShareOfSettling = 0.65;
 constexpr int kFirstRings = 6;       ///< about the node a hierarchical relaxation begins with
 constexpr double kLeastMove = 1e-9;  ///< of the size: less is rounding, and the node stays as it is to the bit
 
@@ -48,6 +48,13 @@ class Watch {
   const Progress& progress_;
   double done_ = 0;
 };
+
+/// Of the first share of the progress.
+Result<Net> find_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Options& options,
+                     const Progress& progress) {
+  return make_net(model, surface, movable, options.feature_angle,
+                  [&](double fraction) { return goes_on(progress, kShareOfNet * fraction); });
+}
 
 /// Settles, then holds back.
 Result<Relaxed> settle(const Model& model, const ReferenceSurface& surface, const Net& net, const Judge& judge, const Options& options,
@@ -112,20 +119,24 @@ bool reaches_rim(const Net& net, const Spreading& spreading, const NodeSet& rim)
 Result<Relaxed> relax(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Judge& judge,
                       const Options& options, const Progress& progress) {
   if (!goes_on(progress, 0)) return fail(cancelled());
-  const Net net = make_net(model, surface, movable, options.feature_angle);
-  return settle(model, surface, net, judge, options, progress, nullptr);
+  const Result<Net> net = find_net(model, surface, movable, options, progress);
+  if (!net) return fail(net.error());
+  return settle(model, surface, *net, judge, options, progress, nullptr);
 }
 
 Result<Relaxed> relax_from(const Model& model, const ReferenceSurface& surface, NodeIndex at, double threshold, const NodeSet& movable,
                            const Judge& judge, const Options& options, const Progress& progress) {
   if (!goes_on(progress, 0)) return fail(cancelled());
+  double furthest = 0;  // beginning again in a wider block isn't less done
+  const Progress forward = [&](double fraction) { return goes_on(progress, furthest = std::max(furthest, fraction)); };
   // In a block about the node; where it turns out too small, again in one twice as wide.
   for (int rings = kFirstRings;; rings *= 2) {
     const Block block = block_about(model, at, rings, movable);
-    const Net net = make_net(model, surface, block.nodes, options.feature_angle);
-    Spreading spreading{threshold, allowed_at_first(model, net, at)};
-    Result<Relaxed> relaxed = settle(model, surface, net, judge, options, progress, &spreading);
-    if (!relaxed || block.rim.empty() || !reaches_rim(net, spreading, block.rim)) return relaxed;
+    const Result<Net> net = find_net(model, surface, block.nodes, options, forward);
+    if (!net) return fail(net.error());
+    Spreading spreading{threshold, allowed_at_first(model, *net, at)};
+    Result<Relaxed> relaxed = settle(model, surface, *net, judge, options, forward, &spreading);
+    if (!relaxed || block.rim.empty() || !reaches_rim(*net, spreading, block.rim)) return relaxed;
   }
 }
 
