@@ -1,0 +1,72 @@
+// Colours by a field and views of older states: asks the model server for what is wanted, and gives it to the renderer.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kiosk/model_link.h"
+#include "kiosk/panels/legend.h"
+#include "kiosk/render/renderer.h"
+#include "kiosk/tools/compare_wish.h"
+
+namespace prismesh::kiosk {
+
+class Comparing {
+ public:
+  Comparing(ModelLink& link, render::Renderer& renderer, Trace trace) : link_(link), renderer_(renderer), trace_(trace) {}
+
+  const tools::CompareWish& wish() const { return wish_; }
+  void set(const tools::CompareWish& wish);
+  void set_limits(const panels::SetLimits& limits);
+  void toggle_panel() { panel_open_ = !panel_open_; }
+  bool panel_open() const { return panel_open_; }
+  /// The renderer's model is an older state than the current one: nothing in it can be picked.
+  bool shows_older() const { return main_.view != nullptr; }
+  bool two_views() const { return wish_.two_views && renderer_.other() != nullptr; }
+
+  /// After the link has turned, and before the renderer is given the current state: asks for what is missing. Errors: too large for the
+  /// GPU.
+  Result<void> follow();
+  /// What the renderer should show as its model: an older state, or else the current one.
+  std::shared_ptr<const ipc::SnapshotView> model() const { return main_.view ? main_.view : link_.snapshot(); }
+  /// `shift`: as in render::TwoViews.
+  void dress(render::Picture& picture, double shift) const;
+  panels::CompareFacts facts(double shift) const;
+
+ private:
+  /// One of the two views: which state it shows, and by what it is coloured.
+  struct View {
+    std::shared_ptr<const ipc::SnapshotView> view;  ///< of an older state; null: the current one
+    std::optional<std::uint64_t> asked_view;
+    std::optional<ipc::GetField> asked;  ///< answered or under way
+    std::optional<ipc::FieldMade> made;
+    render::FieldLook look;
+    std::string problem;
+  };
+  using Pane = render::Pane;
+
+  View& of(Pane pane) { return pane == Pane::model ? main_ : other_; }
+  const View& of(Pane pane) const { return pane == Pane::model ? main_ : other_; }
+  void follow_states();
+  void follow_view(Pane pane, const std::optional<std::uint64_t>& generation);
+  void follow_field(Pane pane, const std::optional<std::uint64_t>& generation);
+  void took_field(Pane pane, const ipc::GetField& asked, const ipc::Answer& answer);
+  void forget_field(Pane pane);
+
+  ModelLink& link_;
+  render::Renderer& renderer_;
+  Trace trace_;
+  tools::CompareWish wish_;
+  bool panel_open_ = false;
+  View main_, other_;
+  std::shared_ptr<const ipc::SnapshotView> beside_;  ///< what the renderer has as the other model
+  std::vector<ipc::ListedGeneration> states_;
+  std::optional<std::uint64_t> states_of_;  ///< the current generation when they were asked for
+  std::uint64_t connection_ = 0;
+  std::string document_;
+  std::optional<Error> failed_;  ///< of the renderer, in an answer
+};
+
+}  // namespace prismesh::kiosk

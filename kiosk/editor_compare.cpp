@@ -1,0 +1,88 @@
+// Comparing by hand: colours by a field, two views, and views that move together.
+#include <algorithm>
+#include <utility>
+
+#include "kiosk/editor.h"
+
+namespace prismesh::kiosk {
+
+bool Editor::compare_command(tools::Command command) {
+  if (command == tools::Command::compare_panel) {
+    comparing_.toggle_panel();
+  } else if (command == tools::Command::two_views) {
+    tools::CompareWish wish = comparing_.wish();
+    wish.two_views = !wish.two_views;
+    // Before and after: what was opened stands beside what is.
+    if (const auto& state = link_.state(); wish.two_views && !wish.beside && state && !state->generations.empty())
+      wish.beside = state->generations.front().number;
+    compare_action(panels::SetCompare{wish});
+  } else {
+    return false;
+  }
+  link_changes_ = ~std::uint64_t{0};  // follow, though the server has said nothing
+  return true;
+}
+
+bool Editor::compare_action(const panels::PanelAction& action) {
+  if (const auto* limits = std::get_if<panels::SetLimits>(&action)) {
+    comparing_.set_limits(*limits);
+    return true;
+  }
+  const auto* wanted = std::get_if<panels::SetCompare>(&action);
+  if (wanted == nullptr) return false;
+  cancel_gesture();
+  comparing_.set(wanted->wish);
+  link_changes_ = ~std::uint64_t{0};
+  return true;
+}
+
+/// Gives the renderer the state that is wanted.
+Result<void> Editor::follow_states() {
+  const bool two = comparing_.two_views();
+  if (Result<void> followed = comparing_.follow(); !followed) return followed;
+  if (const auto wanted = comparing_.model(); wanted != drawn_) {
+    if (Result<void> set = renderer_.set_model(wanted ? render::snapshot_source(wanted) : nullptr); !set) return set;
+    drawn_ = wanted;
+    if (shown_ && link_.snapshot() == shown_) take_model();
+  }
+  if (two != comparing_.two_views() && shown_) fit();
+  return {};
+}
+
+/// How far each of two views stands from the middle: in the middle of what panels leave of its half.
+double Editor::pane_shift() const { return 0.25 * std::max(0.2, 1 - covered_width_ / std::max(size_.width, 1)); }
+
+/// What is there belongs to the current state.
+bool Editor::pickable(const tools::Pixel& pixel) const {
+  return !comparing_.shows_older() && (!comparing_.two_views() || pixel.x() > 0.5 * size_.width);
+}
+
+void Editor::share_view() {
+  if (!follows_others_ || !shown_) return;
+  ipc::Camera camera;
+  camera.pivot = {view_.pivot.x(), view_.pivot.y(), view_.pivot.z()};
+  camera.rotation = {view_.rotation.w(), view_.rotation.x(), view_.rotation.y(), view_.rotation.z()};
+  camera.mm_per_unit = view_.mm_per_unit;
+  camera.stands_mm = {view_.pan_mm.x(), view_.pan_mm.y(), view_.before_mm};
+  if (shared_ == camera) return;
+  // Whoever comes last doesn't move the others by coming.
+  if (std::exchange(shared_, camera)) link_.share_camera(camera);
+}
+
+void Editor::take_shared_view() {
+  const std::optional<ipc::Camera> heard = link_.take_camera();
+  if (!heard || !follows_others_ || heard->rotation.size() != 4 || !(heard->mm_per_unit > 0)) return;
+  const Eigen::Quaterniond rotation(heard->rotation[0], heard->rotation[1], heard->rotation[2], heard->rotation[3]);
+  if (!(rotation.norm() > 0.5 && rotation.norm() < 2)) return;
+  view_.pivot = {heard->pivot[0], heard->pivot[1], heard->pivot[2]};
+  view_.rotation = rotation.normalized();
+  view_.mm_per_unit = heard->mm_per_unit;
+  view_.pan_mm = {heard->stands_mm[0], heard->stands_mm[1]};
+  view_.before_mm = heard->stands_mm[2];
+  shared_ = heard;
+  shared_->rotation = {view_.rotation.w(), view_.rotation.x(), view_.rotation.y(), view_.rotation.z()};
+  view_moved();
+  trace_.line("view follows");
+}
+
+}  // namespace prismesh::kiosk

@@ -1,0 +1,225 @@
+#include "kiosk/panels/legend.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "kiosk/panels/sections.h"
+#include "kiosk/panels/text.h"
+#include "mesh/document/field.h"
+
+namespace prismesh::kiosk::panels {
+
+namespace {
+
+constexpr int kBarSteps = 96;
+constexpr double kDragsAcross = 300;  ///< pixels of the pointer for all of the map
+
+ImU32 packed(const render::Colour& colour) { return ImGui::GetColorU32(ImVec4(colour.x(), colour.y(), colour.z(), 1)); }
+
+std::string short_number(double value) { return fmt::format("{:.4g}", value); }
+
+/// The map from where it begins to the limit, and a notch where the largest value is.
+void draw_bar(const LegendFacts& facts, float width) {
+  const float height = 2 * kGrid;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const render::FieldLook& look = facts.look;
+  for (int i = 0; i < kBarSteps; ++i) {
+    const double value = look.clear + (look.full - look.clear) * (i + 0.5) / kBarSteps;
+    const float from = at.x + width * static_cast<float>(i) / kBarSteps, to = at.x + width * static_cast<float>(i + 1) / kBarSteps;
+    if (const auto colour = look.colour_of(value))
+      list.AddRectFilled(ImVec2(from, at.y), ImVec2(to + 0.5f, at.y + height), packed(*colour));
+  }
+  const double worst = look.full >= look.clear ? facts.max : facts.min;
+  const auto share = static_cast<float>((worst - look.clear) / (look.full - look.clear));
+  if (share > 0 && share <= 1) {
+    const float x = at.x + width * share;
+    list.AddTriangleFilled(ImVec2(x - 5, at.y + height + 7), ImVec2(x + 5, at.y + height + 7), ImVec2(x, at.y + height), kInk);
+  }
+  ImGui::Dummy(ImVec2(width, height + kGrid));
+}
+
+/// A limit that can be dragged, or typed after a double click.
+bool edit_limit(const char* name, double& value, double span, float width) {
+  ImGui::SetNextItemWidth(width);
+  double wanted = value;
+  const auto speed = static_cast<float>(std::abs(span) / kDragsAcross);
+  if (!ImGui::DragScalar(name, ImGuiDataType_Double, &wanted, speed, nullptr, nullptr, "%.4g") || !std::isfinite(wanted)) return false;
+  value = wanted;
+  return true;
+}
+
+}  // namespace
+
+std::optional<SetLimits> legend(const LegendFacts& facts, display::PixelSize picture) {
+  const float font = ImGui::GetFontSize(), width = on_grid(std::min(22 * font, 0.36f * static_cast<float>(picture.width)));
+  const float limit_width = 5.5f * font;
+  ImGui::SetNextWindowPos(
+      ImVec2(std::floor(static_cast<float>(facts.centre * picture.width)), static_cast<float>(picture.height) - kMargin), 0,
+      ImVec2(0.5f, 1));
+  ImGui::SetNextWindowSize(ImVec2(width + 2 * kGrid, 0));
+  const std::string name = "Legend" + std::to_string(facts.pane.value_or(9));
+  ImGui::Begin(name.c_str(), nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+  const float inner = ImGui::GetContentRegionAvail().x;
+  ImGui::TextUnformatted(printable(facts.unit.empty() ? facts.title : facts.title + ", " + facts.unit).c_str());
+  if (!facts.of.empty()) {
+    ImGui::PushFont(small_font());
+    elided_text(printable(facts.of), inner);
+    ImGui::PopFont();
+  }
+  draw_bar(facts, inner);
+  std::optional<SetLimits> wanted;
+  double clear = facts.look.clear, full = facts.look.full;
+  if (facts.pane) {
+    const bool clear_set = edit_limit("##clear", clear, full - clear, limit_width);
+    ImGui::SameLine(inner - limit_width + ImGui::GetStyle().WindowPadding.x);
+    const bool full_set = edit_limit("##full", full, full - clear, limit_width);
+    if ((clear_set || full_set) && clear != full) wanted = SetLimits{*facts.pane, clear, full};
+  } else {
+    const std::string left = short_number(clear), right = short_number(full);
+    ImGui::TextUnformatted(left.c_str());
+    ImGui::SameLine(inner - ImGui::CalcTextSize(right.c_str()).x + ImGui::GetStyle().WindowPadding.x);
+    ImGui::TextUnformatted(right.c_str());
+  }
+  ImGui::PushFont(small_font());
+  const bool up = full >= clear;
+  ImGui::TextDisabled("%s", printable(fmt::format("{} {}: own colour   {} {} at {}", up ? "up to" : "from", short_number(clear), "most",
+                                                  short_number(facts.max), facts.max_at))
+                                .c_str());
+  ImGui::PopFont();
+  ImGui::End();
+  return wanted;
+}
+
+namespace {
+
+struct Choice {
+  const char* words;
+  std::string field;
+};
+
+std::vector<Choice> choices() {
+  std::vector<Choice> all{{"other colours", ""},
+                          {"node displacement", "displacement"},
+                          {"distance to the surface", "distance-to-original"},
+                          {"distance of two parts", "distance"},
+                          {"composite quality", "composite"},
+                          {"time step", "time-step"}};
+  for (int m = 0; m < mesh::quality::kMetricCount; ++m) {
+    const std::string_view metric = mesh::quality::name(static_cast<mesh::quality::Metric>(m));
+    all.push_back({metric.data(), "metric:" + std::string(metric)});
+  }
+  return all;
+}
+
+std::string words_of(const CompareFacts& facts, const std::optional<std::uint64_t>& generation) {
+  if (!generation) return "current";
+  for (const CompareFacts::State& state : facts.states)
+    if (state.number == *generation) return state.words;
+  return "state " + std::to_string(*generation) + ", gone";
+}
+
+/// A list of states, the newest first. True: another was chosen.
+bool choose_state(const char* label, const CompareFacts& facts, std::optional<std::uint64_t>& generation) {
+  bool chosen = false;
+  ImGui::SetNextItemWidth(-1);
+  if (!ImGui::BeginCombo(label, printable(words_of(facts, generation)).c_str())) return false;
+  if (ImGui::Selectable("current", !generation)) generation.reset(), chosen = true;
+  for (auto state = facts.states.rbegin(); state != facts.states.rend(); ++state) {
+    ImGui::PushID(static_cast<int>(state->number));
+    if (ImGui::Selectable(printable(state->words).c_str(), generation == state->number)) generation = state->number, chosen = true;
+    ImGui::PopID();
+  }
+  ImGui::EndCombo();
+  return chosen;
+}
+
+void choose_field(const CompareFacts& facts, tools::CompareWish& wanted) {
+  section("Colours");
+  const std::vector<Choice> all = choices();
+  const auto now = std::find_if(all.begin(), all.end(), [&](const Choice& each) { return each.field == wanted.field; });
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##field", now != all.end() ? now->words : "")) {
+    for (const Choice& each : all)
+      if (ImGui::Selectable(each.words, each.field == wanted.field)) wanted.field = each.field;
+    ImGui::EndCombo();
+  }
+  if (wanted.field == "displacement" || wanted.field == "distance-to-original") {
+    ImGui::TextDisabled("against");
+    ImGui::SetNextItemWidth(-1);
+    const std::string words = wanted.against_generation     ? words_of(facts, wanted.against_generation)
+                              : wanted.against == "surface" ? "the surface as last shaped"
+                                                            : "the deck as opened";
+    if (ImGui::BeginCombo("##against", printable(words).c_str())) {
+      const auto fixed = [&](const char* label, const char* against) {
+        if (ImGui::Selectable(label, !wanted.against_generation && wanted.against == against)) {
+          wanted.against = against;
+          wanted.against_generation.reset();
+        }
+      };
+      fixed("the deck as opened", "opened");
+      fixed("the surface as last shaped", "surface");
+      for (const CompareFacts::State& state : facts.states) {
+        ImGui::PushID(static_cast<int>(state.number));
+        if (ImGui::Selectable(printable(state.words).c_str(), wanted.against_generation == state.number))
+          wanted.against_generation = state.number;
+        ImGui::PopID();
+      }
+      ImGui::EndCombo();
+    }
+  }
+  if (wanted.field == "distance")
+    for (const auto& [label, hint, text] :
+         {std::tuple("##from", "from: part:1", &wanted.from), std::tuple("##to", "to: part:2", &wanted.to)}) {
+      ImGui::SetNextItemWidth(-1);
+      std::string typed = *text;
+      if (ImGui::InputTextWithHint(label, hint, &typed, ImGuiInputTextFlags_EnterReturnsTrue)) *text = typed;
+    }
+  ImGui::Checkbox("in bands", &wanted.bands);
+  ImGui::SameLine();
+  bool one_hue = wanted.map == render::ColourMap::blues;
+  if (ImGui::Checkbox("one hue", &one_hue)) wanted.map = one_hue ? render::ColourMap::blues : render::ColourMap::crimson;
+}
+
+}  // namespace
+
+void compare_panel(const PanelData& data, display::PixelSize picture, Actions& actions) {
+  const CompareFacts& facts = *data.compare;
+  tools::CompareWish wanted = facts.wish;
+  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
+  ImGui::SetNextWindowSize(ImVec2(side_width(picture), 0));
+  ImGui::Begin("Comparing", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PushFont(title_font());
+  ImGui::TextUnformatted("Comparing");
+  ImGui::PopFont();
+  ImGui::PushFont(small_font());
+  ImGui::TextDisabled("Shift+C closes; colours and views stay");
+  ImGui::PopFont();
+  choose_field(facts, wanted);
+  if (!facts.problem.empty()) ImGui::TextWrapped("%s", printable(facts.problem).c_str());
+  section("Views");
+  ImGui::Checkbox("two views, side by side", &wanted.two_views);
+  if (wanted.two_views) {
+    ImGui::TextDisabled("left");
+    choose_state("##left", facts, wanted.beside);
+    ImGui::TextDisabled("right");
+  }
+  choose_state("##shown", facts, wanted.shown);
+  if (wanted.shown) ImGui::TextDisabled("an older state is only shown");
+  if (!facts.legends.empty()) {
+    section("Values");
+    const LegendFacts& legend = facts.legends.front();
+    fact("least", short_number(legend.min));
+    fact("most", short_number(legend.max));
+    fact("at", legend.max_at);
+  }
+  ImGui::End();
+  if (wanted != facts.wish) actions.emplace_back(SetCompare{wanted});
+}
+
+}  // namespace prismesh::kiosk::panels

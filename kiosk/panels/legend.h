@@ -1,0 +1,52 @@
+// What the colours of a field mean, and the panel on which they are chosen.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kiosk/display/window.h"
+#include "kiosk/render/field_colours.h"
+#include "kiosk/tools/compare_wish.h"
+
+namespace prismesh::kiosk::panels {
+
+struct LegendFacts {
+  std::string title, unit;
+  std::string of;  ///< "state 3 (lift) against the deck as it was opened"
+  render::FieldLook look;
+  double min = 0, max = 0;          ///< of the values
+  std::string max_at;               ///< "node:12"
+  double centre = 0.5;              ///< of the legend, as a share of the picture's width
+  std::optional<std::size_t> pane;  ///< whose limits may be changed here; empty: only shown
+};
+
+/// New limits for the field of a pane.
+struct SetLimits {
+  std::size_t pane = 0;
+  double clear = 0, full = 1;
+};
+
+/// Lays it out at the bottom of the picture (inside Gui::layout). New limits, if they were dragged or typed.
+std::optional<SetLimits> legend(const LegendFacts& facts, display::PixelSize picture);
+
+/// What can be compared, and what is.
+struct CompareFacts {
+  struct State {
+    std::uint64_t number = 0;
+    std::string words;
+  };
+  tools::CompareWish wish;
+  std::vector<State> states;  ///< oldest first
+  std::uint64_t current = 0;
+  bool panel_open = false;
+  std::vector<LegendFacts> legends;
+  std::string problem;  ///< why there are no colours; empty: there are, or none are wanted
+};
+
+struct SetCompare {
+  tools::CompareWish wish;
+};
+
+}  // namespace prismesh::kiosk::panels

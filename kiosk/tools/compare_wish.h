@@ -1,0 +1,25 @@
+// What the user wants to compare: the field that colours show, the states that are shown, how values become colours.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "kiosk/render/colour_map.h"
+
+namespace prismesh::kiosk::tools {
+
+struct CompareWish {
+  std::string field;                                ///< as mesh::document::field_wish takes it; empty: other colours
+  std::string against = "opened";                   ///< or "surface"
+  std::optional<std::uint64_t> against_generation;  ///< goes before it
+  std::string from, to;                             ///< expressions, of "distance"
+  std::optional<std::uint64_t> shown;               ///< a generation; empty: the current one, always
+  bool two_views = false;
+  std::optional<std::uint64_t> beside;  ///< what the left one of two views shows; empty: the current one
+  render::ColourMap map = render::ColourMap::crimson;
+  bool bands = false;
+  bool operator==(const CompareWish&) const = default;
+};
+
+}  // namespace prismesh::kiosk::tools
