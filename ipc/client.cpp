@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include <unistd.h>
 
@@ -57,6 +58,8 @@ struct Client::State final : Connection<ModelProtocol> {
   std::map<std::uint64_t, std::uint64_t> lease_requests;  ///< lease -> request, of snapshots that weren't taken
   std::map<std::uint64_t, std::uint64_t> field_requests;  ///< field -> request, of fields that weren't taken
   std::map<std::uint64_t, std::shared_ptr<const Mapping>> segments;
+  /// Those of the snapshot before: when two are under way, what the second counts on mustn't go with the first.
+  std::map<std::uint64_t, std::shared_ptr<const Mapping>> earlier_segments;
   std::shared_ptr<Returns> returns = std::make_shared<Returns>();
 
   std::vector<Request> due() override {
@@ -150,6 +153,7 @@ Result<std::shared_ptr<const SnapshotView>> Client::take_snapshot(const Snapshot
   if (descriptors->size() != answer.new_segments.size() + 1)
     return fail(state_->path().string(), "a snapshot came with the wrong number of segments");
   std::map<std::uint64_t, std::shared_ptr<const Mapping>> known = state_->segments;
+  known.insert(state_->earlier_segments.begin(), state_->earlier_segments.end());
   for (std::size_t i = 0; i < answer.new_segments.size(); ++i) {
     Result<Mapping> mapping = Mapping::map((*descriptors)[i + 1], false);
     if (!mapping) return fail(std::move(mapping.error()));
@@ -165,7 +169,7 @@ Result<std::shared_ptr<const SnapshotView>> Client::take_snapshot(const Snapshot
   }
   Result<std::shared_ptr<const SnapshotView>> view = SnapshotView::map(descriptors->front(), segments);
   if (!view) return fail(std::move(view.error()));
-  state_->segments = std::move(used);
+  state_->earlier_segments = std::exchange(state_->segments, std::move(used));
   // The caller's pointer keeps both the view and the lease.
   auto both = std::make_shared<std::pair<std::shared_ptr<void>, std::shared_ptr<const SnapshotView>>>(std::move(lease), std::move(*view));
   return std::shared_ptr<const SnapshotView>(both, both->second.get());

@@ -73,6 +73,7 @@ Result<void> run(const AppOptions& options) {
   what.profile = *profile;
   what.fixed_eyes_mm = options.fixed_eyes_mm;
   what.panel_latency_ms = settings->display.latency_ms;
+  what.follows_others = options.follow;
   what.trace = options.trace;
   if (options.calibrate) return run_calibration(options, what);
   return options.headless_frames > 0 ? run_headless(options, what) : run_in_window(options, what);

@@ -23,6 +23,7 @@ struct AppOptions {
   double pace_seconds = 0;                  ///< between those pictures
   std::filesystem::path shots;
   bool calibrate = false;  ///< lead through the display's calibration instead
+  bool follow = false;     ///< move together with other kiosks that follow
   bool trace = false;      ///< what happens goes to standard output, a line each
 };
 

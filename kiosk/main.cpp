@@ -58,6 +58,7 @@ int run_interactive(int argc, char** argv) {
   frames->needs(folder);
   folder->needs(frames);
   app.add_flag("--calibrate", options.calibrate, "Lead through the calibration of this display; covers it")->excludes(frames);
+  app.add_flag("--follow", options.follow, "Move together with other kiosks of this model server that follow");
   app.add_flag("--trace", options.trace, "Say what happens on standard output, a line each (docs/kiosk.md)");
   app.set_version_flag("--version", PRISMESH_VERSION);
   app.footer("`prismesh-kiosk --render` draws one picture of a snapshot; `prismesh render` calls it.");

@@ -10,8 +10,11 @@
 #include <optional>
 #include <vector>
 
+#include "ipc/field_page.h"
 #include "ipc/snapshot.h"
 #include "kiosk/display/headless.h"
+#include "kiosk/panels/gui.h"
+#include "kiosk/panels/legend.h"
 #include "kiosk/render/offscreen.h"
 #include "kiosk/render/renderer.h"
 
@@ -32,6 +35,8 @@ struct RenderOptions {
   std::optional<double> mask_mm;  ///< empty: where it should be
   std::string view = "iso";
   std::string colour = "parts";
+  std::optional<int> field;  ///< descriptor of a field's values
+  panels::LegendFacts legend;
   int samples = 4;
 };
 
@@ -112,7 +117,47 @@ Result<void> read_view(const std::string& text, RenderOptions& options) {
 Result<void> read_colour(const std::string& text, RenderOptions& options) {
   options.colour = text;
   if (render::colour_mode_from(text)) return {};
-  return wrong("--colour", text, "there is no colour mode of this name; modes are " + list_of(render::kColourModeNames));
+  return wrong("--colour", text,
+               "there is no colour mode of this name; modes are " + list_of(render::kColourModeNames) +
+                   ", displacement, distance-to-original, distance, metric:NAME, composite, time-step");
+}
+
+Result<void> read_limits(const std::string& text, RenderOptions& options) {
+  const std::vector<double> limits = numbers<double>(text, ',');
+  if (limits.size() != 2 || !std::isfinite(limits[0]) || !std::isfinite(limits[1]) || limits[0] == limits[1])
+    return wrong("--limits", text,
+                 "write where the colour map begins and where it ends as CLEAR,FULL, two different numbers, for example 1,5");
+  options.legend.look.clear = limits[0];
+  options.legend.look.full = limits[1];
+  return {};
+}
+
+Result<void> read_map(const std::string& text, RenderOptions& options) {
+  const auto map = render::colour_map_from(text);
+  if (!map) return wrong("--map", text, "there is no colour map of this name; maps are " + list_of(render::kColourMapNames));
+  options.legend.look.map = *map;
+  return {};
+}
+
+Result<void> read_bands(const std::string& text, RenderOptions& options) {
+  const std::vector<int> bands = numbers<int>(text, ',');
+  if (bands.size() != 1 || bands[0] < 2 || bands[0] > 64) return wrong("--bands", text, "write how many colours, 2 to 64");
+  options.legend.look.bands = bands[0];
+  return {};
+}
+
+Result<void> read_field(const std::string& option, const std::string& text, RenderOptions& options) {
+  const std::vector<double> values = numbers<double>(text, ',');
+  if (option == "--field-fd" && values.size() == 1) {
+    options.field = static_cast<int>(values[0]);
+    options.legend.look.on = true;
+  } else if (option == "--field-range" && values.size() == 2) {
+    options.legend.min = values[0];
+    options.legend.max = values[1];
+  } else {
+    return wrong(option, text, "isn't what `prismesh render` gives");
+  }
+  return {};
 }
 
 Result<RenderOptions> parse(std::span<const std::string> arguments) {
@@ -127,6 +172,15 @@ Result<RenderOptions> parse(std::span<const std::string> arguments) {
       {"--mask", [&](const std::string& text) { return read_mask(text, options); }},
       {"--view", [&](const std::string& text) { return read_view(text, options); }},
       {"--colour", [&](const std::string& text) { return read_colour(text, options); }},
+      {"--limits", [&](const std::string& text) { return read_limits(text, options); }},
+      {"--map", [&](const std::string& text) { return read_map(text, options); }},
+      {"--bands", [&](const std::string& text) { return read_bands(text, options); }},
+      {"--field-fd", [&](const std::string& text) { return read_field("--field-fd", text, options); }},
+      {"--field-range", [&](const std::string& text) { return read_field("--field-range", text, options); }},
+      {"--field-title", [&](const std::string& text) { return options.legend.title = text, Result<void>(); }},
+      {"--field-unit", [&](const std::string& text) { return options.legend.unit = text, Result<void>(); }},
+      {"--field-of", [&](const std::string& text) { return options.legend.of = text, Result<void>(); }},
+      {"--field-most", [&](const std::string& text) { return options.legend.max_at = text, Result<void>(); }},
       {"--samples", [&](const std::string& text) { return read_samples(text, options); }}};
   for (std::size_t i = 0; i < arguments.size(); i += 2) {
     const auto reader = readers.find(arguments[i]);
@@ -151,6 +205,24 @@ Result<std::shared_ptr<const ipc::SnapshotView>> map_snapshot(const std::vector<
   return ipc::SnapshotView::map(table, segments);
 }
 
+/// Gives the renderer the field, and lays its legend out.
+Result<panels::Gui> show_field(const RenderOptions& options, render::Renderer& renderer, render::Picture& picture) {
+  const ipc::Descriptor descriptor(*options.field);
+  const auto values = ipc::FieldValues::map(descriptor);
+  if (!values) return fail(values.error());
+  if (const auto set = renderer.set_field(render::Pane::model, (*values)->values(), (*values)->on_nodes()); !set) return fail(set.error());
+  picture.colour = render::ColourMode::field;
+  picture.field[0] = options.legend.look;
+  picture.quality_glyphs = false;  // yellow and red would be read as values
+  Result<panels::Gui> gui = panels::Gui::create();
+  if (!gui) return gui;
+  if (const auto type = gui->set_type(picture.profile.stereo() ? panels::kStereoType : panels::kFlatType); !type) return fail(type.error());
+  // Panels that fit their content have their size after the second time.
+  for (int round = 0; round < 3; ++round)
+    gui->layout({options.width, options.height}, 0.02, [&] { panels::legend(options.legend, {options.width, options.height}); });
+  return gui;
+}
+
 Result<void> render_picture(const RenderOptions& options, const stereo::Profile& profile) {
   const auto snapshot = map_snapshot(options.descriptors);
   if (!snapshot) return fail(snapshot.error());
@@ -171,6 +243,13 @@ Result<void> render_picture(const RenderOptions& options, const stereo::Profile&
   picture.view.rotation = *stereo::named_rotation(options.view);
   picture.view.bounds = stereo::sphere_around((*renderer)->bounds());
   picture.view = (*renderer)->fitted(picture.view, stereo::screen_size_mm(profile, options.width, options.height), options.eye_mm.z());
+  std::optional<panels::Gui> gui;
+  if (options.field) {
+    Result<panels::Gui> shown = show_field(options, **renderer, picture);
+    if (!shown) return fail(shown.error());
+    gui = std::move(*shown);
+    picture.overlay = [&](const render::EyeImage& image) { gui->draw({image.width, image.height}, image.from_picture); };
+  }
   const auto report = (*renderer)->draw(picture, offscreen->framebuffer(), options.width, options.height);
   if (!report) return fail(report.error());
   if (report->glyphs_left_out > 0)

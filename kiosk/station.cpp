@@ -33,7 +33,7 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
       devices(ipc::device_socket_path(options.runtime_dir), trace),
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
-      editor({options.profile, options.mouse, expressions_file()}, link, *renderer, clock, trace),
+      editor({options.profile, options.mouse, expressions_file(), options.follows_others}, link, *renderer, clock, trace),
       screen(std::move(gui), *renderer, editor, clock),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),
       resting_mm_(options.fixed_eyes_mm.value_or(kRestingEyesMm)),

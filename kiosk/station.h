@@ -23,6 +23,7 @@ struct StationOptions {
   std::optional<mesh::Vec3> fixed_eyes_mm;  ///< the eyes are here, whatever a tracker says
   double panel_latency_ms = 10;
   bool trace = false;
+  bool follows_others = false;  ///< moves together with other kiosks that do
 };
 
 /// Where the eyes are taken to be while nobody knows: between them, mm from the screen's centre.

@@ -19,10 +19,10 @@ Result<void> EyeImages::resize(int width, int height, int samples) {
   glBindRenderbuffer(GL_RENDERBUFFER, scene_colour_.get());
   glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_RGBA8, width, height);
   glBindRenderbuffer(GL_RENDERBUFFER, depth_.get());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_DEPTH_COMPONENT24, width, height);
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_DEPTH24_STENCIL8, width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, scene_.get());
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, scene_colour_.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth_.get());
   bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   for (Flat& flat : flat_) {
     flat.colour = gl::Texture::make();

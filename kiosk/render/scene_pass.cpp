@@ -47,6 +47,7 @@ void ScenePass::begin_pane(const EyeView& eye, double from, double to) const {
     shaders_.pane.set(corner, at.x(), at.y());
   };
   glDisable(GL_STENCIL_TEST);
+  glDepthMask(GL_TRUE);
   glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   glDisable(GL_DEPTH_TEST);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);

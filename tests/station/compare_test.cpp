@@ -1,0 +1,75 @@
+// Two views side by side, colours by a field, and two kiosks that move together.
+#include <cmath>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "tests/station/station.h"
+
+namespace prismesh::test {
+namespace {
+
+class CompareTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_programs(); !missing.empty())
+      GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
+    station_ = std::make_unique<Station>();
+    station_->set_picture_size(1000, 640);
+  }
+  /// Lifts a few nodes in the middle by typing how far.
+  void lift() {
+    station_->key("e");
+    station_->type("1200-1260");
+    ASSERT_FALSE(station_->kiosk().wait_for("counted 61").empty());
+    station_->key("Return");
+    ASSERT_TRUE(station_->wait_for_selection(61));
+    station_->kiosk().skip_lines();
+    station_->key("n");
+    station_->type("6");
+    station_->key("Return");
+    ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  }
+  std::unique_ptr<Station> station_;
+};
+
+TEST_F(CompareTest, the_opened_deck_stands_beside_the_edited_one) {
+  station_->start_kiosk();
+  lift();
+  const Station::Aim alone = Station::aim_from(station_->kiosk().last("aim "));
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+c");
+  ASSERT_FALSE(station_->kiosk().wait_for("compare nothing views 2").empty());
+  const std::string view = station_->kiosk().wait_for("view beside generation ");
+  ASSERT_FALSE(view.empty());
+  EXPECT_NE(view.substr(view.rfind(' ') + 1), station_->kiosk().last("generation ").substr(11, 1)) << "an older state";
+  ASSERT_FALSE(station_->kiosk().wait_for("picture ").empty());
+  station_->show_people("two_views");
+  // What is picked is picked in the right half.
+  const Station::Aim aim = Station::aim_from(station_->kiosk().last("aim "));
+  const auto nodes = nodes_of_deck(whole_file(station_->deck()));
+  const Point middle = nodes.at(kFirstNode + (kSheetSide / 2) * kSheetSide + kSheetSide / 2);
+  EXPECT_GT(aim.pixel_of(middle)[0], 500);
+  EXPECT_NEAR(alone.pixel_of(middle)[0], 500, 120);
+  station_->kiosk().skip_lines();
+  station_->click(aim.pixel_of(middle)[0], aim.pixel_of(middle)[1]);
+  EXPECT_TRUE(station_->wait_for_selection(1));
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+c");
+  EXPECT_FALSE(station_->kiosk().wait_for("compare nothing views 1").empty());
+}
+
+TEST_F(CompareTest, kiosks_that_follow_move_together) {
+  station_->start_kiosk({"--follow"});
+  const std::filesystem::path programs = PRISMESH_PROGRAMS;
+  Process other({(programs / "prismesh-kiosk").string(), "--runtime-dir", (station_->folder() / "run").string(), "--follow", "--trace",
+                 "--headless-frames", "1000", "--pace", "0.5", "--shots", (station_->folder() / "shots").string(), "--size", "320x240"},
+                {});
+  ASSERT_FALSE(other.wait_for("shot ").empty()) << other.standard_error();
+  EXPECT_TRUE(other.last("view follows").empty());
+  station_->key("1");
+  EXPECT_FALSE(other.wait_for("view follows").empty());
+}
+
+}  // namespace
+}  // namespace prismesh::test
