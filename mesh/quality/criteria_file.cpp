@@ -17,6 +17,8 @@ namespace {
 
 using Names = std::vector<std::string_view>;
 
+constexpr double kLargestNumber = 1e30;
+
 /// Where a limit of a file goes.
 struct Target {
   std::string_view key;
@@ -67,7 +69,7 @@ class Reader {
       const toml::node* node = table.get(target.key);
       if (node == nullptr) continue;
       const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
-      if (!value || !std::isfinite(*value)) return error(*node, what + ": " + std::string(target.key) + " must be a number");
+      if (!value || !(std::abs(*value) <= kLargestNumber)) return error(*node, what + ": " + std::string(target.key) + " must be a number");
       *target.limit = static_cast<float>(*value);
     }
     return {};

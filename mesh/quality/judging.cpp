@@ -10,8 +10,14 @@ namespace {
 constexpr int kMinLength = int(Metric::min_length);
 constexpr float kWorstWithoutDefect = -0.99999994F;  ///< the float above -1
 
+constexpr float kMost = 3e38F;  ///< of a limit: what is beyond a float is still a limit
+
+float in_float(double limit) {
+  return std::isfinite(limit) ? static_cast<float>(std::clamp<double>(limit, -kMost, kMost)) : static_cast<float>(limit);
+}
+
 Threshold scaled(const Threshold& threshold, double by) {
-  const auto scale = [by](float limit) { return static_cast<float>(limit * by); };
+  const auto scale = [by](float limit) { return in_float(limit * by); };
   return {scale(threshold.warn_low), scale(threshold.warn_high), scale(threshold.fail_low), scale(threshold.fail_high)};
 }
 
@@ -95,8 +101,8 @@ void least_lengths(const ShapeLimits& shape, const Limits& limits, const Sheet* 
   for (std::size_t lane = 0; lane < count; ++lane) {
     const Sheet& sheet = sheets[lane];
     const auto least = [&](float fraction, float step, float thicknesses) {
-      const float length = step > 0 && sheet.wave_speed > 0 ? step * sheet.wave_speed : fraction;
-      return thicknesses > 0 ? std::max(length, thicknesses * sheet.thickness) : length;
+      const float length = step > 0 && sheet.wave_speed > 0 ? std::min(step * sheet.wave_speed, kMost) : fraction;
+      return thicknesses > 0 && sheet.thickness > 0 ? std::max(length, std::min(thicknesses * sheet.thickness, kMost)) : length;
     };
     warn[lane] = least(t.warn_low, limits.warn_step, limits.warn_thicknesses);
     fail[lane] = least(t.fail_low, limits.fail_step, limits.fail_thicknesses);
@@ -151,7 +157,8 @@ void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limi
   mark_defects(values, count, defect);
   for (std::size_t lane = 0; lane < count; ++lane) {
     // what fails goes towards -1 without reaching it, so that of two bad shells the better one is known
-    const float score = out[lane] < 0 ? out[lane] / (1 - out[lane]) : out[lane];
+    const float bad = std::max(out[lane], -1e30F);
+    const float score = bad < 0 ? bad / (1 - bad) : bad;
     out[lane] = defect[lane] != 0 ? -1.0F : std::max(score, kWorstWithoutDefect);
   }
 }

@@ -11,7 +11,6 @@
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/quality/judging.h"
-#include "mesh/quality/mass.h"
 #include "mesh/quality/time_step.h"
 
 namespace prismesh::mesh::quality {
@@ -133,50 +132,79 @@ struct Partial {
   }
 };
 
+/// What a part's shells have in common.
+struct PartFactors {
+  double density = 0;
+  double wave_speed = 0;  ///< 0: it doesn't limit the time step, or isn't known
+};
+
+std::vector<PartFactors> factors_of(const Model& model) {
+  std::vector<PartFactors> factors;
+  for (const Part& part : *model.parts) factors.push_back({part.density.value_or(0.0), wave_speed(part).value_or(0.0)});
+  return factors;
+}
+
+/// What the measuring of a range leaves behind for the gathering.
+struct Measured {
+  Values values;
+  ShellState state = ShellState::removed();
+  float composite = 1;
+  double area = 0;
+  Vec3 moment = Vec3::Zero();
+  double step_length = 0;
+};
+
+/// How a report is made.
+struct Making {
+  const Model& model;
+  const Limits& limits;
+  const TimeStepControl& control;
+  const std::vector<PartFactors>& parts;
+};
+
 /// Mass and time step of one shell.
-void weigh(const Model& model, const TimeStepControl& control, std::size_t shell, Partial& partial) {
-  const PartIndex part_index = model.shell_parts[shell];
-  if (!part_index.valid()) return;
-  const Part& part = (*model.parts)[part_index.value];
-  const ShellNodes& nodes = model.shell_nodes[shell];
-  std::array<Vec3, 4> p;
-  for (std::size_t c = 0; c < 4; ++c) p[c] = model.position(nodes.node[c]);
-  const Weight weight = weigh_shell(model, ShellIndex(shell));
-  partial.mass += weight.mass;
-  partial.moment += weight.moment;
-  partial.has_mass = partial.has_mass || weight.shells > 0;
-  const std::optional<double> step =
-      shell_time_step(part, std::span(p.data(), static_cast<std::size_t>(nodes.corners())), control.shell_option);
-  if (!step) return;
-  const double wanted = std::abs(control.mass_scaled);
-  if (wanted > 0 && *step<wanted&& * step> 0) partial.added_mass += weight.mass * ((wanted / *step) * (wanted / *step) - 1.0);
-  const double seconds = control.scale * *step;
+void weigh(const Making& making, std::size_t shell, const Measured& measured, Partial& partial) {
+  const PartIndex part = making.model.shell_parts[shell];
+  if (!part.valid()) return;
+  const PartFactors& factors = making.parts[part.value];
+  const double thickness = thickness_of(making.model, shell);
+  const bool has_mass = thickness > 0 && (*making.model.parts)[part.value].density.has_value();
+  const double surface_density = has_mass ? factors.density * thickness : 0.0;
+  partial.mass += surface_density * measured.area;
+  partial.moment += surface_density * measured.moment;
+  partial.has_mass = partial.has_mass || has_mass;
+  if (!(factors.wave_speed > 0) || !(measured.step_length > 0)) return;
+  const double step = measured.step_length / factors.wave_speed;
+  if (const double wanted = std::abs(making.control.mass_scaled); wanted > 0 && step < wanted)
+    partial.added_mass += surface_density * measured.area * ((wanted / step) * (wanted / step) - 1.0);
+  const double seconds = making.control.scale * step;
   if (!partial.report.time_step || seconds < partial.report.time_step->seconds) partial.report.time_step = {seconds, ShellIndex(shell)};
 }
 
 /// The measuring order inside a range is by shape; of equal extremes the one that comes first in the model shall count, so the
 /// figures are gathered in the shells' order.
-Partial figures_of_range(const Model& model, const Limits& limits, const TimeStepControl& control, std::size_t begin, std::size_t end,
-                         const ShellSet* shells) {
+Partial figures_of_range(const Making& making, std::size_t begin, std::size_t end, const ShellSet* shells) {
   const auto shell_of = [&](std::size_t i) { return shells != nullptr ? (*shells)[begin + i].value : begin + i; };
-  std::vector<Values> values(end - begin);
-  std::vector<ShellState> states(end - begin, ShellState::removed());
-  std::vector<float> composites(end - begin, 1.0F);
-  judge_batches(model, limits, end - begin, shell_of,
-                [&](const ShellBatch& batch, const BatchValues& measured, const ShellState* judged, const Sheet* sheets) {
+  std::vector<Measured> all(end - begin);
+  judge_batches(making.model, making.limits, end - begin, shell_of,
+                [&](const ShellBatch& batch, const BatchValues& values, const ShellState* states, const Sheet* sheets) {
                   float rated[kLanes];
-                  rate_lanes(measured, batch.count, limits, sheets, rated);
-                  for (std::size_t lane = 0; lane < batch.count; ++lane) {
-                    values[batch.slot[lane]] = measured.at(lane);
-                    states[batch.slot[lane]] = judged[lane];
-                    composites[batch.slot[lane]] = rated[lane];
-                  }
+                  rate_lanes(values, batch.count, making.limits, sheets, rated);
+                  BatchExtents extents;
+                  (values.of_triangles ? extend_triangles : extend_quads)(batch, making.control.shell_option, extents);
+                  for (std::size_t lane = 0; lane < batch.count; ++lane)
+                    all[batch.slot[lane]] = {values.at(lane),
+                                             states[lane],
+                                             rated[lane],
+                                             extents.area[lane],
+                                             {extents.moment[0][lane], extents.moment[1][lane], extents.moment[2][lane]},
+                                             extents.step_length[lane]};
                 });
   Partial partial;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (states[i].is_removed()) continue;
-    partial.add_shell(model, shell_of(i), values[i], states[i], composites[i]);
-    if (!states[i].has(Defect::not_finite)) weigh(model, control, shell_of(i), partial);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].state.is_removed()) continue;
+    partial.add_shell(making.model, shell_of(i), all[i].values, all[i].state, all[i].composite);
+    if (!all[i].state.has(Defect::not_finite)) weigh(making, shell_of(i), all[i], partial);
   }
   return partial;
 }
@@ -241,9 +269,10 @@ Counts count(const ChunkedArray<ShellState>& states) {
 Report report(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control, const ShellSet* shells) {
   const Limits limits = limits_for(criteria, target_size);
   const std::size_t elements = shells != nullptr ? shells->size() : model.shell_count();
+  const std::vector<PartFactors> parts = factors_of(model);
   std::vector<Partial> partials((elements + kGrain - 1) / kGrain);
   parallel_for(elements, kGrain, [&](std::size_t begin, std::size_t end) {
-    partials[begin / kGrain] = figures_of_range(model, limits, control, begin, end, shells);
+    partials[begin / kGrain] = figures_of_range({model, limits, control, parts}, begin, end, shells);
   });
   Partial all;
   for (const Partial& partial : partials) all.add(partial);

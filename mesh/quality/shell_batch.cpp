@@ -14,5 +14,11 @@ namespace prismesh::mesh::quality {
 
 PRISMESH_CLONES void measure_quads(const ShellBatch& batch, BatchValues& values) { kernels::quads(batch, values); }
 PRISMESH_CLONES void measure_triangles(const ShellBatch& batch, BatchValues& values) { kernels::triangles(batch, values); }
+PRISMESH_CLONES void extend_quads(const ShellBatch& batch, int shell_option, BatchExtents& extents) {
+  kernels::extents<false>(batch, shell_option, extents);
+}
+PRISMESH_CLONES void extend_triangles(const ShellBatch& batch, int shell_option, BatchExtents& extents) {
+  kernels::extents<true>(batch, shell_option, extents);
+}
 
 }  // namespace prismesh::mesh::quality

@@ -39,6 +39,13 @@ struct BatchValues {
   }
 };
 
+/// What mass and time step follow from, lane by lane.
+struct BatchExtents {
+  alignas(64) double area[kLanes];         ///< of the two triangles that p0 p2 cuts a quad into
+  alignas(64) double moment[3][kLanes];    ///< area times place
+  alignas(64) double step_length[kLanes];  ///< characteristic_length(), mesh/quality/time_step.h
+};
+
 /// One shell's values in the first lane, as they came from there. A shell without any counts as a triangle:
 /// it has a defect anyhow.
 inline BatchValues batch_of(const Values& values) {
@@ -54,6 +61,9 @@ void measure_quads(const ShellBatch& batch, BatchValues& values);
 void measure_triangles(const ShellBatch& batch, BatchValues& values);
 
 enum class Shape : std::uint8_t { quad, triangle, none };
+
+void extend_quads(const ShellBatch& batch, int shell_option, BatchExtents& extents);
+void extend_triangles(const ShellBatch& batch, int shell_option, BatchExtents& extents);
 
 /// Measures `count` shells: `corners(i, corner)` puts the four corner positions of shell i into `corner` as pointers and returns its
 /// shape; one without (it was removed) is passed over. `sink(batch, values)` gets every full batch and the rests.

@@ -177,6 +177,33 @@ PRISMESH_INLINE void triangles(const ShellBatch& batch, BatchValues& values) {
   }
 }
 
+/// Mass and time step: areas, their moments, and the length that the step goes by.
+template <bool kTriangles>
+PRISMESH_INLINE void extents(const ShellBatch& batch, int shell_option, BatchExtents& out) {
+  const std::size_t lanes = batch.padded();
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const Vector p0 = point(batch, 0, lane), p1 = point(batch, 1, lane), p2 = point(batch, 2, lane);
+    const Vector p3 = kTriangles ? p2 : point(batch, 3, lane);
+    const Vector d0 = p2 - p0, d1 = p3 - p1;
+    const double first = 0.5 * norm(cross(p1 - p0, d0));
+    const double second = kTriangles ? 0.0 : 0.5 * norm(cross(d0, p3 - p0));
+    out.area[lane] = first + second;
+    const Vector a = p0 + p1 + p2, b = p0 + p2 + p3;
+    out.moment[0][lane] = (first * a.x + second * b.x) / 3.0;
+    out.moment[1][lane] = (first * a.y + second * b.y) / 3.0;
+    out.moment[2][lane] = (first * a.z + second * b.z) / 3.0;
+
+    const Vector e0 = p1 - p0, e1 = p2 - p1, e2 = p3 - p2, e3 = p0 - p3;
+    const double l0 = dot(e0, e0), l1 = dot(e1, e1), l2 = dot(e2, e2), l3 = dot(e3, e3);
+    const double flat = (kTriangles ? 1.0 : 0.5) * norm(cross(d0, d1));
+    const double diagonal = __builtin_sqrt(high(dot(d0, d0), dot(d1, d1)));
+    const double longest = shell_option == 1 ? diagonal : __builtin_sqrt(high(l0, l1, l2, l3));
+    const double shortest = __builtin_sqrt(kTriangles ? low(low(l0, l1), l3) : low(l0, l1, l2, l3));
+    const double over = longest > 0 ? flat / longest : 0.0;
+    out.step_length[lane] = shell_option == 2 ? high(over, shortest) : over;
+  }
+}
+
 }  // namespace prismesh::mesh::quality::kernels
 
 #undef PRISMESH_INLINE

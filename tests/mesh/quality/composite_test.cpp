@@ -66,6 +66,26 @@ TEST(Composite, thickness_and_wanted_time_step_set_the_least_length) {
   EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, Sheet(0.1)), 0.5, 1e-6);
   EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, Sheet(0.2)), 0.2 / 0.6, 1e-6);
   EXPECT_LT(rated(rectangle(0.6, 1), thick, 1, Sheet(0.4)), 0);
+  // 0.5 of a time step (the deck takes 0.9 of what the length gives) at 1.08 a time unit: 0.6
+  const Criteria step = parsed("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 0.5");
+  EXPECT_NEAR(rated(rectangle(0.8, 1), step, 1, Sheet(0, 1.08)), 0.5, 1e-6);
+  EXPECT_NEAR(rated(rectangle(0.6, 1), step, 1), 0.5, 1e-6);
+  // where nothing is known nothing is judged
+  EXPECT_EQ(rated(rectangle(0.6, 1), parsed("[metrics.min_length]\nfail_below_thicknesses = 2"), 1), 1);
+}
+
+TEST(Composite, is_a_number_whatever_the_limits) {
+  for (const char* limit : {"fail_above = 1e30", "fail_above = -1e30", "fail_above = 0", "fail_below = 1e30", "fail_below = -1e30",
+                            "fail_above = 1e-30", "fail_below = 1\nfail_above = 1"})
+    for (const char* metric : {"aspect", "warpage", "min_length", "min_angle_quad"}) {
+      const Criteria criteria = parsed("[metrics." + std::string(metric) + "]\n" + limit);
+      for (const double size : {1.0, 1e20, 1e-20}) {
+        const Values values = measure(rectangle(3, 1));
+        const float figure = composite(values, criteria, size);
+        EXPECT_TRUE(figure > -1 && figure <= 1) << metric << ' ' << limit;
+        EXPECT_EQ(figure < 0, judge(values, criteria, size).grade() == Grade::fail) << metric << ' ' << limit << ' ' << size;
+      }
+    }
 }
 
 /// Shells of all sorts, from good to crossed.

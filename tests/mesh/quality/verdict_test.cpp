@@ -1,5 +1,6 @@
 #include "mesh/quality/verdict.h"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -91,6 +92,19 @@ TEST(VerdictOracle, agrees_about_quads) {
               {"quad_warpage", [](const auto& p) { return measure_verdict(p).verdict_warpage; }},
               {"quad_taper", [](const auto& p) { return measure_verdict(p).verdict_taper; }},
               {"quad_scaled_jacobian", [](const auto& p) { return measure_verdict(p).verdict_scaled_jacobian; }}});
+}
+
+TEST(VerdictOracle, has_the_same_figures_in_one_call) {
+  const VerdictLibrary& library = VerdictLibrary::get();
+  if (!library.is_there()) GTEST_SKIP() << VerdictLibrary::how_to_get();
+  const auto all = library.all_of_quad();
+  ASSERT_NE(all, nullptr);
+  constexpr std::array<const char*, 9> kNames = {"quad_skew",          "quad_taper",           "quad_warpage",
+                                                 "quad_area",          "quad_stretch",         "quad_minimum_angle",
+                                                 "quad_maximum_angle", "quad_scaled_jacobian", "quad_max_edge_ratio"};
+  double coordinates[4][3] = {{0, 0, 0}, {5, 0.3, 0}, {6, 4, 1}, {0, 5, 0.2}};
+  const VerdictLibrary::QuadValues together = all(coordinates);
+  for (std::size_t m = 0; m < kNames.size(); ++m) EXPECT_NEAR(together[m], library.metric(kNames[m])(4, coordinates), 1e-9) << kNames[m];
 }
 
 TEST(VerdictOracle, agrees_about_triangles) {
