@@ -65,7 +65,7 @@ void add_common(Parser& parser) {
             return good ? std::string() : "must be a number greater than 0, not \"" + text + "\"";
           },
           "SIZE > 0"));
-  add_optional(&app, "--criteria", common.criteria, "a file of quality criteria (TOML)");
+  add_optional(&app, "--criteria", common.criteria, "a file of quality criteria (TOML), or one of ours: default, strict");
   app.add_flag("--json", common.json, "print JSON and nothing else");
 }
 
@@ -76,6 +76,7 @@ void add_reading_commands(Parser& parser) {
   const auto [check_app, check_options] = add_command<CheckOptions>(parser, "check", "measure and judge the shells of a deck", check);
   check_app->add_option("DECK", check_options->deck, "the deck's main file")->required();
   add_optional(check_app, "--select", check_options->select, "only these shells, e.g. part:3,shell:100-200");
+  check_app->add_flag("--chordal", check_options->chordal, "also how far edges are from the smooth surface through the mesh");
 
   const auto [diff_app, diff_options] = add_command<DiffOptions>(parser, "diff", "compare two decks by ids and by lines", diff);
   diff_app->add_option("A", diff_options->a, "a deck")->required();

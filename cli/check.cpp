@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <iomanip>
 #include <ostream>
 
+#include "base/counted.h"
+#include "cli/check_figures.h"
 #include "cli/commands.h"
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
@@ -13,6 +16,12 @@ namespace prismesh::cli {
 namespace {
 
 namespace quality = mesh::quality;
+
+constexpr std::size_t kPartsShown = 40;
+
+const char* in_brackets(quality::Grade grade) {
+  return grade == quality::Grade::fail ? " (fail)" : grade == quality::Grade::warn ? " (warn)" : "";
+}
 
 void print_metrics(std::ostream& out, const mesh::Model& model, const quality::Report& report) {
   out << "metric                min        mean         max    warn    fail  worst\n";
@@ -27,19 +36,60 @@ void print_metrics(std::ostream& out, const mesh::Model& model, const quality::R
   }
 }
 
-void print_text(std::ostream& out, const mesh::document::Document& document, const quality::Report& report) {
+/// Shells that are no shells; nothing if there are none.
+void print_defects(std::ostream& out, const quality::Report& report) {
+  constexpr const char* kWhat[quality::kDefectCount] = {"with a coordinate that is no number", "with corners at one place",
+                                                        "without area or folded"};
+  for (std::size_t d = 0; d < quality::kDefectCount; ++d)
+    if (report.defects[d] > 0) out << counted(report.defects[d], "shell") << ' ' << kWhat[d] << " (fail)\n";
+}
+
+void print_structure(std::ostream& out, const mesh::Model& model, const quality::Structure& found) {
+  const auto say = [&](std::size_t count, const char* one, const char* more) {
+    if (count > 0) out << count << ' ' << (count == 1 ? one : more) << '\n';
+  };
+  say(found.duplicates.size(), "shell has the corners of another", "shells have the corners of another");
+  say(found.opposed.size(), "edge has shells with opposed normals", "edges have shells with opposed normals");
+  say(found.multiple.size(), "edge has three shells or more", "edges have three shells or more");
+  say(found.unjoined.size(), "free edge lies on another that it isn't joined to", "free edges lie on another that they aren't joined to");
+  say(found.free_inside.size(), "free edge about a hole of one shell", "free edges about holes of one shell");
+  say(found.clusters.size(), "node has a cluster of triangles", "nodes have a cluster of triangles");
+  if (found.most_triangles > 0)
+    out << "most triangles about a node " << found.most_triangles << " at node:" << model.node_ids[found.most_triangles_at.value] << '\n';
+}
+
+void print_parts(std::ostream& out, const mesh::Model& model, const std::vector<quality::PartReport>& parts) {
+  if (parts.empty()) return;
+  out << "part          shells    warn    fail  tri %  composite least    mean  name\n";
+  for (std::size_t i = 0; i < std::min(parts.size(), kPartsShown); ++i) {
+    const quality::Report& report = parts[i].report;
+    const mesh::Part& part = (*model.parts)[parts[i].part.value];
+    out << std::left << std::setw(10) << part.id << std::right << std::setw(10) << report.elements << std::setw(8) << report.counts.warn
+        << std::setw(8) << report.counts.fail << std::setw(7) << std::setprecision(3) << report.triangles_percent << std::setw(17)
+        << report.least_composite << std::setw(8) << report.mean_composite << std::setprecision(6) << "  " << printable(part.name) << '\n';
+  }
+  if (parts.size() > kPartsShown) out << "and " << parts.size() - kPartsShown << " more parts; all are in the JSON\n";
+}
+
+void print_text(std::ostream& out, const mesh::document::Document& document, const CheckFigures& figures) {
   const mesh::document::Settings& settings = document.settings;
   const mesh::Model& model = document.current().model;
+  const quality::Report& report = figures.report;
   out << report.elements << " shells: " << report.counts.ok << " ok, " << report.counts.warn << " warn, " << report.counts.fail
       << " fail\n";
   out << "target size " << shortest(settings.target_size) << ' ' << name(settings.length_unit)
       << (settings.target_size_guessed ? " (guessed), criteria " : ", criteria ") << printable(settings.criteria.name) << '\n';
-  const double percent = report.triangles_percent;
-  const char* grade = percent > settings.criteria.fail_triangles_percent   ? " (fail)"
-                      : percent > settings.criteria.warn_triangles_percent ? " (warn)"
-                                                                           : "";
-  out << "triangles " << percent << " %" << grade << '\n';
-  if (report.elements > 0) print_metrics(out, model, report);
+  out << "triangles " << report.triangles_percent << " %" << in_brackets(figures.triangles) << '\n';
+  print_defects(out, report);
+  if (report.elements > 0) {
+    print_metrics(out, model, report);
+    out << "composite: least " << report.least_composite << ", mean " << report.mean_composite << '\n';
+  }
+  print_structure(out, model, figures.structure);
+  if (figures.chordal && figures.chordal->worst)
+    out << "chordal deviation: mean " << figures.chordal->mean << ", max " << figures.chordal->max
+        << " at shell:" << model.shell_ids[figures.chordal->worst->value] << '\n';
+  print_parts(out, model, figures.parts);
   if (report.mass) out << "mass " << *report.mass << '\n';
   if (report.centre_of_gravity) out << "centre of gravity " << report.centre_of_gravity->transpose() << '\n';
   if (report.time_step)
@@ -65,12 +115,12 @@ int check(const CheckOptions& options, const Common& common, const Surroundings&
     shells = std::move(chosen->shells);
   }
   say_warnings(surroundings, *document);
-  const quality::Report report = quality::report(model, document->settings.criteria, document->settings.target_size,
-                                                 document->deck->time_step, options.select ? &shells : nullptr);
+  const CheckFigures figures = check_figures(*document, options.select ? &shells : nullptr, options.chordal);
+  for (const std::string& sentence : figures.unknown) say(surroundings, Error{document->path.string(), 0, "note: " + sentence});
   if (common.json)
-    surroundings.out << check_json(*document, report) << '\n';
+    surroundings.out << check_json(*document, figures) << '\n';
   else
-    print_text(surroundings.out, *document, report);
+    print_text(surroundings.out, *document, figures);
   return kDone;
 }
 

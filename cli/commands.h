@@ -32,6 +32,7 @@ int info(const InfoOptions& options, const Common& common, const Surroundings& s
 struct CheckOptions {
   std::filesystem::path deck;
   std::optional<std::string> select;  ///< an expression: judge the shells it names
+  bool chordal = false;               ///< also how far edges are from the smooth surface
 };
 int check(const CheckOptions& options, const Common& common, const Surroundings& surroundings);
 

@@ -22,23 +22,9 @@ Json or_null(const std::optional<T>& value) {
 
 Json point(const mesh::Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); }
 
-std::string shell_name(const mesh::Model& model, mesh::ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
-
 Json counts_of_elements(const deck::ElementCounts& counts) {
   return {{"quad", counts.quad}, {"tri", counts.tri},     {"quad8", counts.quad8},   {"tri6", counts.tri6},
           {"beam", counts.beam}, {"solid", counts.solid}, {"tshell", counts.tshell}, {"other", counts.other}};
-}
-
-Json summary(const mesh::Model& model, const quality::MetricSummary& s) {
-  const bool measured = s.measured > 0;
-  const auto figure = [measured](double value) { return measured ? Json(value) : Json(nullptr); };
-  return {{"min", figure(as_written(static_cast<float>(s.min)))},
-          {"mean", figure(s.mean)},
-          {"max", figure(as_written(static_cast<float>(s.max)))},
-          {"warn", s.warn},
-          {"fail", s.fail},
-          {"worst", s.worst ? Json(shell_name(model, *s.worst)) : Json(nullptr)},
-          {"measured", s.measured}};
 }
 
 Json bad_shells(const quality::Counts& counts) { return {{"warn", counts.warn}, {"fail", counts.fail}}; }
@@ -97,30 +83,6 @@ std::string info_json(const document::Document& document, const std::vector<Part
                      {"element_cards", std::move(cards)},
                      {"parts", std::move(listed)},
                      {"warnings", std::move(warnings)}};
-  return json.dump();
-}
-
-std::string check_json(const document::Document& document, const quality::Report& report) {
-  const mesh::Model& model = document.current().model;
-  Json metrics = Json::object();
-  for (int m = 0; m < quality::kMetricCount; ++m)
-    metrics[std::string(name(static_cast<quality::Metric>(m)))] = summary(model, report.metrics[m]);
-  const Json time_step =
-      report.time_step ? Json{{"min", report.time_step->seconds}, {"element", shell_name(model, report.time_step->shell)}} : Json(nullptr);
-  const Json json = {{"elements", report.elements},
-                     {"ok", report.counts.ok},
-                     {"warn", report.counts.warn},
-                     {"fail", report.counts.fail},
-                     {"triangles_percent", report.triangles_percent},
-                     {"metrics", std::move(metrics)},
-                     {"mass", or_null(report.mass)},
-                     {"cog", report.centre_of_gravity ? point(*report.centre_of_gravity) : Json(nullptr)},
-                     {"time_step", time_step},
-                     {"added_mass", or_null(report.added_mass)},
-                     {"length_unit", name(document.settings.length_unit)},
-                     {"target_size", document.settings.target_size},
-                     {"target_size_guessed", document.settings.target_size_guessed},
-                     {"criteria", printable(document.settings.criteria.name)}};
   return json.dump();
 }
 

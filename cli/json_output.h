@@ -1,22 +1,22 @@
-// The JSON that --json prints, field for field as scripts rely on it. The only file with the JSON library in it is
-// json_output.cpp. Inner to cli.
+// The JSON that --json prints, field for field as scripts rely on it. The only files with the JSON library in
+// them are json_output.cpp and check_json.cpp. Inner to cli.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/check_figures.h"
 #include "cli/device_figures.h"
 #include "cli/figures.h"
 #include "mesh/document/document.h"
 #include "mesh/document/journal.h"
-#include "mesh/quality/report.h"
 
 namespace prismesh::cli {
 
 // Each returns one line without its end.
 std::string info_json(const mesh::document::Document& document, const std::vector<PartFigures>& parts);
-std::string check_json(const mesh::document::Document& document, const mesh::quality::Report& report);
+std::string check_json(const mesh::document::Document& document, const CheckFigures& figures);
 std::string edit_json(const mesh::document::EditReport& report);
 std::string failed_edit_json(const std::string& edit, const std::string& reason);
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);

@@ -97,6 +97,61 @@ TEST_F(Cli, check_has_every_field) {
   EXPECT_THAT(check["time_step"]["element"].get<std::string>(), StartsWith("shell:"));
 }
 
+TEST_F(Cli, check_counts_defects_apart_and_puts_them_into_no_mean) {
+  std::string text = plate_text();
+  const std::string flat = node_card(109, 5, 5, 0);
+  text.replace(text.find(flat), flat.size(), node_card(109, 0, 0, 0));  // onto node 101: one shell has two corners at one place
+  const Outcome outcome = prismesh({"check", write("plate.k", text), "--json"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const json check = outcome.json();
+  EXPECT_EQ(check["defects"]["not_finite"], 0);
+  EXPECT_EQ(check["defects"]["repeated_node"], 1);
+  EXPECT_EQ(check["composite"]["min"], -1);
+  EXPECT_LT(check["metrics"]["aspect"]["max"].get<double>(), 1e6);
+  EXPECT_EQ(check["metrics"]["aspect"]["measured"].get<int>() + 1, check["elements"].get<int>());
+}
+
+TEST_F(Cli, check_says_how_shells_are_joined_and_how_parts_do) {
+  const json check = prismesh({"check", write("plate.k", plate_text()), "--json"}).json();
+  for (const char* name :
+       {"duplicates", "normals_not_aligned", "multiply_connected_edges", "unjoined_edges", "free_edges_inside", "triangle_clusters"}) {
+    EXPECT_EQ(check["structure"][name]["count"], 0) << name;
+    EXPECT_TRUE(check["structure"][name]["first"].empty()) << name;
+  }
+  ASSERT_EQ(check["parts"].size(), 1u);
+  const json& part = check["parts"][0];
+  EXPECT_EQ(part["id"], 7);
+  EXPECT_EQ(part["elements"], 24);
+  EXPECT_EQ(part["fail"], 0);
+  EXPECT_EQ(part["composite"]["min"], 1);
+  EXPECT_EQ(part["composite"]["mean"], 1);
+  EXPECT_EQ(part["mass"], check["mass"]);
+  EXPECT_TRUE(check["unknown"].empty());
+  EXPECT_FALSE(check.contains("chordal_deviation"));
+  const json chordal = prismesh({"check", write("plate.k", plate_text()), "--chordal", "--json"}).json()["chordal_deviation"];
+  EXPECT_EQ(chordal["measured"], 24);
+  EXPECT_NEAR(chordal["max"].get<double>(), 0, 1e-6);
+}
+
+TEST_F(Cli, check_says_once_what_cannot_be_known) {
+  std::string text = plate_text();
+  text.replace(text.find("*MAT_ELASTIC"), 12, "*MAT_UNKNOWN");
+  const Outcome outcome = prismesh({"check", write("plate.k", text), "--json"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_TRUE(outcome.json()["mass"].is_null());
+  EXPECT_TRUE(outcome.json()["time_step"].is_null());
+  EXPECT_EQ(outcome.json()["unknown"].size(), 2u);
+  const std::string sentence = "part 7 has no thickness or no density: its mass isn't known";
+  EXPECT_EQ(outcome.err.find(sentence), outcome.err.rfind(sentence));
+  EXPECT_THAT(outcome.err, HasSubstr(sentence));
+}
+
+TEST_F(Cli, strict_criteria_by_name) {
+  const std::string deck = write("plate.k", plate_text());
+  EXPECT_EQ(prismesh({"check", deck, "--criteria", "strict", "--json"}).json()["criteria"], "strict");
+  EXPECT_EQ(prismesh({"check", deck, "--criteria", "default", "--json"}).json()["criteria"], "default");
+}
+
 TEST_F(Cli, check_of_a_selection) {
   const std::string deck = write("plate.k", plate_text());
   EXPECT_EQ(prismesh({"check", deck, "--select", "1001-1006", "--json"}).json()["elements"], 6);

@@ -1,0 +1,34 @@
+// What `check` has to say about a deck, gathered. Inner to cli.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/document/document.h"
+#include "mesh/quality/report.h"
+#include "mesh/quality/structure.h"
+
+namespace prismesh::cli {
+
+struct ChordalFigures {
+  double mean = 0, max = 0;  ///< deck's length unit
+  std::size_t measured = 0;
+  std::optional<mesh::ShellIndex> worst;
+};
+
+struct CheckFigures {
+  mesh::quality::Report report;
+  std::vector<mesh::quality::PartReport> parts;
+  mesh::quality::Structure structure;
+  std::optional<ChordalFigures> chordal;  ///< where it was asked for
+  mesh::quality::Grade triangles = mesh::quality::Grade::ok;
+  std::vector<std::string> unknown;  ///< what can't be said, a sentence each
+};
+
+/// Of the shells given; of all: nullptr. `chordal`: also how far edges are from the smooth surface through the mesh, which takes longer.
+CheckFigures check_figures(const mesh::document::Document& document, const mesh::ShellSet* shells, bool chordal);
+
+mesh::quality::Grade grade_of_triangles(double percent, const mesh::quality::Criteria& criteria);
+
+}  // namespace prismesh::cli
