@@ -14,10 +14,16 @@ namespace {
 
 constexpr int kRings = 4;
 constexpr double kLeastGain = 0.05;
-constexpr int kSweeps = 4, kSweepsAtAGlance = 1;
-// Candidates that after a glance gain less aren't looked at closer; of the others so many, or until one can be done.
+constexpr int kSweepsAtAGlance = 1;
+// Candidates that after a glance gain less aren't looked at closer.
 constexpr double kLeastPromise = -2;
-constexpr std::size_t kLooksCloser = 4, kLooksLonger = 12;
+
+/// How hard is tried: how often nodes settle, and how many candidates are looked at closely, before and after one could be accepted.
+struct Effort {
+  int sweeps;
+  std::size_t looks_longer, looks_closer;
+};
+constexpr Effort kQuick{4, 12, 4}, kThorough{10, 40, 12};
 
 std::size_t triangles_in(const Model& model) {
   std::size_t triangles = 0;
@@ -57,7 +63,10 @@ class Repairer {
         better = better || *improved;
       }
       tidy();
-      if (!better) break;
+      if (!better && effort_.sweeps == kThorough.sweeps) break;
+      // What is left when nothing is better any more is worth more effort.
+      effort_ = better ? kQuick : kThorough;
+      if (!better) tried_.clear();
       const Result<void> relaxed = relax_neighbourhood();
       if (!relaxed) return fail(relaxed.error());
     }
@@ -133,7 +142,7 @@ class Repairer {
 
   Outcome try_out(const Candidate& candidate, bool only_tidy) {
     if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
-    settle(site_, kSweeps);
+    settle(site_, effort_.sweeps);
     judge_shells(site_, patch_.changed_shells());
     const Burden before = burden_before(patch_), now = burden_now(patch_);
     const double gain = before.weight - now.weight;
@@ -161,7 +170,7 @@ class Repairer {
     std::stable_sort(promising.begin(), promising.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     const Candidate* best = nullptr;
     double most = 0;
-    for (std::size_t i = 0; i < promising.size() && i < (best != nullptr ? kLooksCloser : kLooksLonger); ++i) {
+    for (std::size_t i = 0; i < promising.size() && i < (best != nullptr ? effort_.looks_closer : effort_.looks_longer); ++i) {
       const Candidate& candidate = candidates[promising[i].second];
       patch_.begin();
       const Outcome outcome = try_out(candidate, only_tidy);
@@ -260,6 +269,7 @@ class Repairer {
   std::map<LocalShell, std::uint32_t> tried_;
   std::uint32_t changes_ = 0;
   std::map<LocalShell, std::string_view> why_;
+  Effort effort_ = kQuick;
   long triangles_ = 0, most_triangles_ = 0;
   Repaired repaired_;
 };

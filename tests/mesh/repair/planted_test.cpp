@@ -143,8 +143,8 @@ INSTANTIATE_TEST_SUITE_P(Repair, Planted,
                                                           Defect{"stretched", plant_stretched}),
                                           testing::Values(Place{"flat", [] { return flat(); }, 5, 5}, Place{"cylinder", cylinder, 9, 5},
                                                           Place{"l_profile", l_profile, 5, 10})),
-                         [](const auto& info) {
-                           return std::string(std::get<0>(info.param).name) + "_on_" + std::get<1>(info.param).name;
+                         [](const auto& planted) {
+                           return std::string(std::get<0>(planted.param).name) + "_on_" + std::get<1>(planted.param).name;
                          });
 
 TEST(PlantedTogether, are_all_repaired) {
