@@ -8,6 +8,8 @@
 
 #include <Eigen/Geometry>
 
+#include "kiosk/tools/seen_shell.h"
+
 namespace prismesh::kiosk::tools {
 
 namespace {
@@ -23,17 +25,6 @@ struct Edge {
   /// Unit normals of the shells at the edge, turned as if these ran against each other along it.
   std::vector<Vec3> normals;
 };
-
-double distance_to_line(const Pixel& from, const Pixel& to, const Pixel& pixel) {
-  const Pixel way = to - from;
-  const double length = way.squaredNorm(), share = length > 0 ? std::clamp((pixel - from).dot(way) / length, 0.0, 1.0) : 0;
-  return (pixel - (from + share * way)).norm();
-}
-
-bool inside(const ModelSource& model, const ShellNodes& shell) {
-  const std::size_t nodes = model.size(SnapshotArray::positions);
-  return std::all_of(shell.node.begin(), shell.node.end(), [&](NodeIndex node) { return node.value < nodes; });
-}
 
 Vec3 position(const ModelSource& model, NodeIndex node) { return model.at<Vec3>(SnapshotArray::positions, node.value); }
 
@@ -73,19 +64,19 @@ std::optional<EdgeAxis> edge_at(const ModelSource& model, const stereo::Aim& aim
                                 double crease_degrees) {
   if (shell.value >= model.size(SnapshotArray::shell_nodes)) return std::nullopt;
   const auto nodes = model.at<ShellNodes>(SnapshotArray::shell_nodes, shell.value);
-  if (!inside(model, nodes)) return std::nullopt;
+  if (!is_whole(model, nodes)) return std::nullopt;
   std::vector<Edge> edges;
   for (std::size_t i = 0; i < 4; ++i) {
     Edge edge{nodes.node[i], nodes.node[(i + 1) % 4], 0, {}};
     const auto from = stereo::pixel_of(aim, position(model, edge.a)), to = stereo::pixel_of(aim, position(model, edge.b));
     if (edge.a == edge.b || !from || !to) continue;  // a triangle has its last corner twice
-    edge.pixels = distance_to_line(*from, *to, pixel);
+    edge.pixels = pixels_from_line(*from, *to, pixel);
     edges.push_back(edge);
   }
   for (std::size_t c = 0; c < model.chunk_count(SnapshotArray::shell_nodes); ++c)
     for (const ShellNodes& each : model.chunk<ShellNodes>(SnapshotArray::shell_nodes, c))
       for (Edge& edge : edges)
-        if (const int sense = sense_of(each, edge); sense != 0 && inside(model, each))
+        if (const int sense = sense_of(each, edge); sense != 0 && is_whole(model, each))
           edge.normals.push_back(normal_of(model, each) * sense * (edge.normals.empty() ? 1 : -1));
   const Edge* best = nullptr;
   double best_rank = 0;

@@ -1,7 +1,6 @@
 #include "kiosk/tools/by_hand.h"
 
-#include <algorithm>
-#include <cmath>
+#include "kiosk/tools/seen_shell.h"
 
 namespace prismesh::kiosk::tools {
 
@@ -20,17 +19,6 @@ struct SeenEdge {
   double nearness = 0;  ///< 0 on the edge, 1 in the shell's middle
 };
 
-bool inside(const ModelSource& model, const ShellNodes& shell) {
-  const std::size_t nodes = model.size(SnapshotArray::positions);
-  return std::all_of(shell.node.begin(), shell.node.end(), [&](NodeIndex node) { return node.value < nodes; });
-}
-
-double distance_to_line(const Pixel& from, const Pixel& to, const Pixel& pixel) {
-  const Pixel way = to - from;
-  const double length = way.squaredNorm(), share = length > 0 ? std::clamp((pixel - from).dot(way) / length, 0.0, 1.0) : 0;
-  return (pixel - (from + share * way)).norm();
-}
-
 std::optional<SeenEdge> nearest_edge(const ModelSource& model, const stereo::Aim& aim, const ShellNodes& shell, const Pixel& pixel) {
   const auto corners = static_cast<std::size_t>(shell.corners());
   std::vector<Pixel> seen;
@@ -46,7 +34,7 @@ std::optional<SeenEdge> nearest_edge(const ModelSource& model, const stereo::Aim
   for (std::size_t k = 0; k < corners; ++k) {
     const std::size_t next = (k + 1) % corners;
     if (shell.node[k] == shell.node[next]) continue;
-    const double pixels = distance_to_line(seen[k], seen[next], pixel), deep = distance_to_line(seen[k], seen[next], middle);
+    const double pixels = pixels_from_line(seen[k], seen[next], pixel), deep = pixels_from_line(seen[k], seen[next], middle);
     if (nearest && pixels >= least) continue;
     least = pixels;
     nearest = SeenEdge{shell.node[k], shell.node[next], deep > 0 ? pixels / deep : 0};
@@ -81,7 +69,7 @@ std::optional<HandTarget> hand_target(const ModelSource& model, const stereo::Ai
                                       const Pixel& pixel) {
   if (shell.value >= model.size(SnapshotArray::shell_nodes)) return std::nullopt;
   const auto nodes = model.at<ShellNodes>(SnapshotArray::shell_nodes, shell.value);
-  if (!inside(model, nodes)) return std::nullopt;
+  if (!is_whole(model, nodes)) return std::nullopt;
   const std::optional<SeenEdge> edge = nearest_edge(model, aim, nodes, pixel);
   if (!edge) return std::nullopt;
   if (operation == Operation::collapse) return HandTarget{{}, {edge->a, edge->b}};
