@@ -103,6 +103,13 @@ class GoldenPicture : public RenderTest {
   }
 };
 
+/// The middle of the selection, nearer.
+Picture nearer(Picture picture, const mesh::Vec3& at, double factor) {
+  const Eigen::Vector2d seen = stereo::to_screen(picture.view, at).head<2>();
+  picture.view = stereo::zoom(stereo::pan(picture.view, -seen), factor, {0, 0});
+  return picture;
+}
+
 TEST_F(GoldenPicture, EveryProfile) {
   show(model());
   for (const auto& profile : stereo::built_in_profiles()) {
@@ -143,6 +150,78 @@ TEST_F(GoldenPicture, Quality) {
   compare("quality", draw(picture, kWidth, kHeight));
 }
 
+/// A shell of each kind that has a sign of its own, failing before, warning behind, in a plate of good ones.
+test::TestSource bad_shells() {
+  using mesh::quality::Metric;
+  test::TestSource source;
+  struct Bad {
+    std::array<mesh::Vec3, 4> corner;
+    int bit;
+    bool triangle = false;
+  };
+  const std::array<Bad, 8> kinds{{{{{{0, 0, 0}, {20, 0, 0}, {20, 20, 9}, {0, 20, 0}}}, int(Metric::warpage)},
+                                  {{{{0, 0, 0}, {20, 0, 0}, {12, 20, 0}, {8, 20, 0}}}, int(Metric::min_length)},
+                                  {{{{0, 0, 0}, {20, 0, 0}, {20, 20, 0}, {0, 16, 0}}}, int(Metric::max_length)},
+                                  {{{{0, 0, 0}, {20, 0, 0}, {16, 7, 0}, {16, 7, 0}}}, int(Metric::min_angle_tri), true},
+                                  {{{{0, 0, 0}, {20, 0, 0}, {12, 9, 0}, {0, 20, 0}}}, int(Metric::max_angle_quad)},
+                                  {{{{0, 7, 0}, {20, 7, 0}, {20, 12, 0}, {0, 12, 0}}}, int(Metric::aspect)},
+                                  {{{{0, 0, 0}, {20, 0, 0}, {20, 14, 0}, {0, 20, 0}}}, int(Metric::taper)},
+                                  {{{{0, 0, 0}, {14, 0, 0}, {14, 20, 0}, {0, 20, 0}}}, int(mesh::quality::Defect::no_area)}}};
+  for (const double row : {0.0, 1.0})
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      std::array<std::uint32_t, 4> nodes{};
+      for (std::size_t k = 0; k < 4; ++k)
+        nodes[k] = kinds[i].triangle && k == 3
+                       ? nodes[2]
+                       : source.add_node(kinds[i].corner[k] + mesh::Vec3(26.0 * static_cast<double>(i), 28 * row, 0));
+      const std::uint32_t shell = source.add_shell(nodes[0], nodes[1], nodes[2], nodes[3], static_cast<std::uint32_t>(i % 3));
+      auto& state = source.shell_quality[shell];
+      state.warn = static_cast<std::uint16_t>(1U << kinds[i].bit);
+      if (row == 0 || kinds[i].bit >= mesh::quality::kMetricCount) state.fail = state.warn;
+    }
+  // A fan of triangles beside a quad, for the cluster.
+  const std::uint32_t centre = source.add_node({222, 10, 0});
+  std::vector<std::uint32_t> rim;
+  for (int n = 0; n <= 6; ++n) rim.push_back(source.add_node({222 + 11 * std::cos(0.6 * n), 10 + 11 * std::sin(0.6 * n), 0}));
+  for (std::size_t n = 0; n < 6; ++n) source.add_shell(centre, rim[n], rim[n + 1], rim[n + 1], 1);
+  source.add_shell(centre, rim[6], source.add_node({222 + 4, -4, 0}), rim[0], 1);
+  return source;
+}
+
+TEST_F(GoldenPicture, Signs) {
+  const test::TestSource source = bad_shells();
+  show(source);
+  Picture picture = fitted("mono", "top", 2 * kWidth, kHeight);
+  compare("signs", draw(picture, 2 * kWidth, kHeight));
+  picture.view = stereo::orbit(picture.view, 0.3, -0.7);
+  picture.marked = mesh::ShellIndex(4);
+  compare("signs_aslant", draw(picture, 2 * kWidth, kHeight));
+  picture.view = stereo::zoom(picture.view, 0.16, {0, 0});
+  compare("signs_far", draw(picture, kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, PartsByTheirState) {
+  show(model());
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  picture.colour = ColourMode::part_states;
+  picture.quality_glyphs = false;
+  compare("part_states", draw(picture, kWidth, kHeight));
+}
+
+TEST_F(GoldenPicture, WhatASplitWouldDo) {
+  test::TestSource source = model();
+  show(source);
+  const mesh::ShellNodes quad = source.shell_nodes[22 * 12 + 11];
+  MeshChange change;
+  for (const mesh::NodeIndex node : quad.node) change.points.push_back(source.positions[node.value]);
+  change.corners = {{0, 1, 2, 2}, {0, 2, 3, 3}};
+  change.states.resize(2);
+  change.states[1].warn = 1U << static_cast<unsigned>(mesh::quality::Metric::min_angle_tri);
+  change.replaced = {mesh::ShellIndex(22 * 12 + 11)};
+  ASSERT_TRUE(renderer_->show_change(change));
+  compare("split", draw(nearer(fitted("mono", "iso", kWidth, kHeight), change.points[0], 4), kWidth, kHeight));
+}
+
 TEST_F(GoldenPicture, Lifting) {
   Picture picture = lifted();
   picture.rubber_band = PixelRect{420, 40, 600, 130};
@@ -156,13 +235,6 @@ TEST_F(GoldenPicture, Shadows) {
   renderer_->end_preview();
   picture.handle.reset();
   compare("shadows_of_the_selection", draw(picture, kWidth, kHeight));
-}
-
-/// The middle of the selection, nearer.
-Picture nearer(Picture picture, const mesh::Vec3& at, double factor) {
-  const Eigen::Vector2d seen = stereo::to_screen(picture.view, at).head<2>();
-  picture.view = stereo::zoom(stereo::pan(picture.view, -seen), factor, {0, 0});
-  return picture;
 }
 
 TEST_F(GoldenPicture, SelectedNodesBehindSomethingShowThrough) {
