@@ -18,6 +18,7 @@ constexpr double kMostStep = 0.25;     ///< of the size, in a round
 constexpr double kMostDrift = 0.2;     ///< of the size: then a node is put back on the surface
 constexpr float kMostGain = 1.5F;      ///< steps go so far beyond the balance, which the neighbours follow
 constexpr int kRecoveringRounds = 50;  ///< until then a node that turned back gathers pace again
+constexpr double kSwing = 0.25;        ///< of the last step: going back farther is swinging, not settling
 constexpr float kLeastGain = 0.02F;    ///< and so far towards it where they turned back again and again
 
 /// Force along the directions a node may take, and how it grows with displacement there: 2x2, symmetric.
@@ -100,7 +101,8 @@ bool Settling::step(std::size_t node) {
   const double most = kMostStep * net_.size[node];
   // A node that turns back has gone too far: that ends what would swing for ever in meshes with very long or crushed elements.
   float& gain = gain_[node];
-  gain = move.dot(last_[node]) < 0 ? std::max(0.5F * gain, kLeastGain) : std::min(recovery_ * gain, kMostGain);
+  gain = move.dot(last_[node]) < -kSwing * last_[node].squaredNorm() ? std::max(0.5F * gain, kLeastGain)
+                                                                     : std::min(recovery_ * gain, kMostGain);
   move *= gain;
   double length = move.norm();
   if (!std::isfinite(length)) return false;

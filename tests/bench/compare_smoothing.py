@@ -16,12 +16,10 @@ import sys
 import tempfile
 
 try:
-    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
     from vtkmodules.vtkFiltersCore import (vtkImplicitPolyDataDistance, vtkSmoothPolyDataFilter, vtkTriangleFilter,
                                            vtkWindowedSincPolyDataFilter)
-    import numpy
 except ImportError as missing:
     print(f"skipped: VTK for Python is missing ({missing})")
     sys.exit(77)
@@ -74,7 +72,7 @@ def jittered(place):
         for i in range(COLUMNS):
             a = j * (COLUMNS + 1) + i
             quads.append((a, a + 1, a + COLUMNS + 2, a + COLUMNS + 1))
-    return numpy.array(points), quads
+    return points, quads
 
 
 def write_deck(path, points, shells):
@@ -96,13 +94,14 @@ def read_points(path):
             inside = line.startswith("*NODE")
         elif inside and not line.startswith("$"):
             points.append([float(line[8 + 16 * k:24 + 16 * k]) for k in range(3)])
-    return numpy.array(points)
+    return points
 
 
 def mesh_of(points, shells):
     mesh, places, cells = vtkPolyData(), vtkPoints(), vtkCellArray()
     places.SetDataTypeToDouble()
-    places.SetData(numpy_to_vtk(numpy.ascontiguousarray(points), deep=True))
+    for point in points:
+        places.InsertNextPoint(point)
     for shell in shells:
         cells.InsertNextCell(len(shell))
         for corner in shell:
@@ -112,14 +111,19 @@ def mesh_of(points, shells):
     return mesh
 
 
+def places_of(filter):
+    filter.Update()
+    places = filter.GetOutput().GetPoints()
+    return [places.GetPoint(n) for n in range(places.GetNumberOfPoints())]
+
+
 def laplacian(points, shells, rounds):
     smooth = vtkSmoothPolyDataFilter()
     smooth.SetInputData(mesh_of(points, shells))
     smooth.SetNumberOfIterations(rounds)
     smooth.SetRelaxationFactor(0.1)
     smooth.SetOutputPointsPrecision(1)
-    smooth.Update()
-    return vtk_to_numpy(smooth.GetOutput().GetPoints().GetData()).astype(float)
+    return places_of(smooth)
 
 
 def windowed_sinc(points, shells):
@@ -128,8 +132,7 @@ def windowed_sinc(points, shells):
     smooth.SetNumberOfIterations(20)
     smooth.SetPassBand(0.1)
     smooth.NormalizeCoordinatesOn()
-    smooth.Update()
-    return vtk_to_numpy(smooth.GetOutput().GetPoints().GetData()).astype(float)
+    return places_of(smooth)
 
 
 def relaxed(program, folder, size):
@@ -140,22 +143,36 @@ def relaxed(program, folder, size):
     return read_points(folder / "relaxed.k")
 
 
+def report_on(program, path, *options):
+    run = subprocess.run([program, "check", path, "--json", *options], capture_output=True, text=True)
+    return json.loads(run.stdout)
+
+
 def quality(program, path, size):
-    run = subprocess.run([program, "check", path, "--target-size", str(size), "--json"], capture_output=True, text=True)
-    report = json.loads(run.stdout)
-    elements = report.get("quality", report)
-    return elements["composite"]["mean"], elements["composite"]["min"], elements["counts"]["fail"]
+    report = report_on(program, path, "--target-size", str(size))
+    return report["composite"]["mean"], report["composite"]["min"], report["fail"]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def normal_of(corners):
+    u, v = ([b - a for a, b in zip(corners[0], corners[2])], [b - a for a, b in zip(corners[1], corners[-1])])
+    normal = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+    length = math.sqrt(dot(normal, normal))
+    return tuple(x / length for x in normal) if length > 0 else normal
 
 
 def real_part(models):
-    """A real part whose inner nodes were moved in its surface, and how far places are from its facets."""
+    """A real part of which every third node inside its sheets was moved in the surface, and how far places are from its facets."""
     sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "checker"))
     import check_deck
     main = json.loads((models / "counts.json").read_text())["bumper_beam_rad"]["main"]
     deck = check_deck.read(models / main)
     ids = sorted({n for e in deck.elements if e.cls == "shell" for n in e.nodes})
     number = {node: n for n, node in enumerate(ids)}
-    points = numpy.array([deck.nodes[node].basic() for node in ids], dtype=float)
+    points = [tuple(deck.nodes[node].basic()) for node in ids]
     shells = []
     for element in deck.elements:
         if element.cls == "shell":
@@ -169,24 +186,27 @@ def real_part(models):
 
     def off(p):
         return abs(facets.EvaluateFunction(p))
-    uses = {}
-    for shell in shells:
+
+    at_edge = {}
+    for n, shell in enumerate(shells):
         for k, corner in enumerate(shell):
-            for other in (shell[k - 1], shell[(k + 1) % len(shell)]):
-                edge = (min(corner, other), max(corner, other))
-                uses[edge] = uses.get(edge, 0) + 1
-    border = {node for edge, count in uses.items() if count != 4 for node in edge}
-    chance, moved = random.Random(1), points.copy()
+            at_edge.setdefault(tuple(sorted((shell[k - 1], corner))), []).append(n)
+    normals = [normal_of([points[corner] for corner in shell]) for shell in shells]
+
+    def is_feature(at):
+        return len(at) != 2 or abs(dot(normals[at[0]], normals[at[1]])) < math.cos(math.radians(30))
+    feature_nodes = {node for edge, at in at_edge.items() if is_feature(at) for node in edge}
+    chance, moved = random.Random(1), list(points)
     neighbour = {}
-    for a, b in uses:
+    for a, b in at_edge:
         neighbour.setdefault(a, b)
         neighbour.setdefault(b, a)
     for n in range(0, len(points), 3):
-        if n in border:
+        if n in feature_nodes:
             continue
-        towards, closest = points[n] + chance.uniform(-0.35, 0.35) * (points[neighbour[n]] - points[n]), [0.0, 0.0, 0.0]
-        facets.EvaluateFunctionAndGetClosestPoint(towards, closest)
-        moved[n] = closest
+        share, closest = chance.uniform(-0.35, 0.35), [0.0, 0.0, 0.0]
+        facets.EvaluateFunctionAndGetClosestPoint([a + share * (b - a) for a, b in zip(points[n], points[neighbour[n]])], closest)
+        moved[n] = tuple(closest)
     return moved, shells, off
 
 
@@ -197,13 +217,14 @@ def main():
     parts = [(name, *jittered(place), off, SIZE) for name, place, off in
              (("cylinder", cylinder, off_cylinder), ("cone", cone, off_cone), ("torus", torus, off_torus))]
     if models and (models / "counts.json").exists():
-        parts.append(("bumper beam", *real_part(models), 10.0))
+        parts.append(("bumper beam", *real_part(models), None))
     print("| part | smoothed by | composite mean | least | failing | off the surface: mean | most |")
     print("|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         for name, points, shells, off, size in parts:
             write_deck(folder / "before.k", points, shells)
+            size = size or report_on(program, folder / "before.k")["target_size"]
             for how, places in (("nothing", points), ("relaxing", relaxed(program, folder, size)),
                                 ("Laplace, 20 rounds", laplacian(points, shells, 20)), ("Laplace, 100 rounds", laplacian(points, shells, 100)),
                                 ("windowed sinc", windowed_sinc(points, shells))):
