@@ -134,7 +134,16 @@ void add_render(Parser& parser) {
   pass_on("--eye", "X,Y,Z: the point between the eyes, mm from the screen's centre (default 0,0,650)");
   pass_on("--mask", "where a movable mask stands, mm (default: where it should for these eyes)");
   pass_on("--view", "front, back, left, right, top, bottom or iso (default)");
-  pass_on("--colour", "parts (default) or quality");
+  add_optional(
+      app, "--colour", options->colour,
+      "parts (default), quality, part-states, or a field: displacement, distance-to-original, distance, metric:NAME, composite, time-step");
+  add_optional(app, "--against", options->against, "the deck that displacement and distance-to-original compare with");
+  app->add_option("--from", options->from, "of the field distance: the nodes that are coloured, an expression");
+  app->add_option("--to", options->to, "of the field distance: what their distance is measured to, an expression");
+  add_optional(app, "--limits", options->limits,
+               "CLEAR,FULL: values that keep the part's colour, and that have the map's last (default: the field's own)");
+  pass_on("--map", "colour map of fields: crimson (default) or blues");
+  pass_on("--bands", "so many even colours instead of a gradient");
 }
 
 void add_session(Parser& parser) {

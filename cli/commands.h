@@ -74,8 +74,13 @@ int sample(const SampleOptions& options, const Common& common, const Surrounding
 struct RenderOptions {
   std::filesystem::path deck;
   std::filesystem::path output;
-  std::optional<std::string> select;   ///< an expression: these nodes are shown as selected
-  std::vector<std::string> passed_on;  ///< options and values that the kiosk reads: --size, --profile, --eye, --mask, --view, --colour
+  std::optional<std::string> select;             ///< an expression: these nodes are shown as selected
+  std::optional<std::string> colour;             ///< a mode that the kiosk knows, or a field (mesh/document/field.h)
+  std::optional<std::filesystem::path> against;  ///< the deck that a field compares with
+  std::string from, to;                          ///< expressions, of the field "distance"
+  std::optional<std::string> limits;             ///< CLEAR,FULL of the colour map
+  std::vector<std::string>
+      passed_on;  ///< options and values that the kiosk reads: --size, --profile, --eye, --mask, --view, --map, --bands
 };
 int render(const RenderOptions& options, const Common& common, const Surroundings& surroundings);
 

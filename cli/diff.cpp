@@ -40,7 +40,15 @@ void compare_elements(const mesh::Model& a, const mesh::Model& b, Difference& di
     difference.elements_added += added;
     difference.elements_removed += removed;
   };
-  add(*a.shell_index, *b.shell_index);
+  const auto [added, removed] = walk(*a.shell_index, *b.shell_index, [&](std::uint32_t in_a, std::uint32_t in_b) {
+    const mesh::ShellNodes& from = a.shell_nodes[in_a];
+    const mesh::ShellNodes& to = b.shell_nodes[in_b];
+    bool same = true;
+    for (std::size_t c = 0; c < 4; ++c) same = same && a.node_ids[from.node[c].value] == b.node_ids[to.node[c].value];
+    if (!same) ++difference.elements_changed;
+  });
+  difference.elements_added += added;
+  difference.elements_removed += removed;
   for (std::size_t c = 0; c < a.elements.size(); ++c)
     if (a.elements[c] && b.elements[c]) add(mesh::IdIndex(a.elements[c]->id), mesh::IdIndex(b.elements[c]->id));
 }
@@ -68,8 +76,13 @@ Difference compare(const OpenedDeck& a, const OpenedDeck& b) {
         const mesh::Vec3& to = b.model.positions[in_b];
         if (from == to) return;
         ++difference.nodes_moved;
-        difference.max_displacement = std::max(difference.max_displacement, (to - from).norm());
       });
+  // The same fields that views are coloured by. Without common nodes or shells there is no figure.
+  if (const auto field = mesh::document::displacement_field(a.model, b.model, LengthUnit::mm))
+    difference.displacement = figures_of(*field, b.model);
+  if (const auto field = mesh::document::surface_distance_field(a.model, b.model, LengthUnit::mm))
+    difference.surface_distance = figures_of(*field, b.model);
+  if (difference.displacement) difference.max_displacement = difference.displacement->max;
   compare_elements(a.model, b.model, difference);
   difference.lines_changed = compare_lines(*a.deck, *b.deck);
   return difference;
@@ -99,8 +112,17 @@ int diff(const DiffOptions& options, const Common& common, const Surroundings& s
   }
   surroundings.out << "nodes: " << d.nodes_moved << " moved (at most " << shortest(d.max_displacement) << "), " << d.nodes_added
                    << " added, " << d.nodes_removed << " removed\n"
-                   << "elements: " << d.elements_added << " added, " << d.elements_removed << " removed\n"
+                   << "elements: " << d.elements_added << " added, " << d.elements_removed << " removed, " << d.elements_changed
+                   << " changed\n"
                    << "lines: " << d.lines_changed << " changed\n";
+  const auto say_field = [&](const char* what, const std::optional<FieldFigures>& field) {
+    if (field && field->max > 0)
+      surroundings.out << what << ": at most " << shortest(field->max) << " (" << field->max_at << "), mean " << shortest(field->mean)
+                       << " over " << field->measured << " nodes\n";
+  };
+  if (!d.displacement) surroundings.out << "displacement: the two decks have no node in common\n";
+  say_field("displacement", d.displacement);
+  say_field("distance of the second's shells from the first's", d.surface_distance);
   return kDone;
 }
 

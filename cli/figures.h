@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/document/field.h"
 #include "mesh/model/model.h"
 
 namespace prismesh::cli {
@@ -22,6 +23,14 @@ struct PartFigures {
 /// Parts ascending by id, with their shells counted.
 std::vector<PartFigures> part_figures(const mesh::Model& model);
 
+/// A field's values in short.
+struct FieldFigures {
+  std::size_t measured = 0;
+  double min = 0, mean = 0, max = 0;
+  std::string max_at;  ///< "node:7"
+};
+FieldFigures figures_of(const mesh::document::Field& field, const mesh::Model& model);
+
 struct Difference {
   std::size_t nodes_moved = 0;
   double max_displacement = 0;
@@ -29,7 +38,10 @@ struct Difference {
   std::size_t nodes_removed = 0;
   std::size_t elements_added = 0;
   std::size_t elements_removed = 0;
+  std::size_t elements_changed = 0;  ///< shells in both with other corners
   std::size_t lines_changed = 0;
+  std::optional<FieldFigures> displacement;      ///< of nodes in both; absent if there are none
+  std::optional<FieldFigures> surface_distance;  ///< of the shells' corners of the second from the shells of the first
 };
 
 /// The shortest way between two sets.
@@ -41,6 +53,7 @@ struct Gap {
   };
   End from;
   End to;
+  std::optional<FieldFigures> nodes;  ///< of the first: each one's distance from the second
 };
 
 }  // namespace prismesh::cli

@@ -106,17 +106,34 @@ std::string replay_json(const std::vector<document::ReplayStep>& steps, const st
       .dump();
 }
 
+namespace {
+
+Json field_json(const std::optional<FieldFigures>& field) {
+  if (!field) return nullptr;
+  return Json{{"nodes", field->measured}, {"min", field->min}, {"mean", field->mean}, {"max", field->max}, {"max_at", field->max_at}};
+}
+
+}  // namespace
+
 std::string diff_json(const Difference& d) {
-  return Json{{"nodes_moved", d.nodes_moved},     {"max_displacement", d.max_displacement}, {"nodes_added", d.nodes_added},
-              {"nodes_removed", d.nodes_removed}, {"elements_added", d.elements_added},     {"elements_removed", d.elements_removed},
-              {"lines_changed", d.lines_changed}}
+  return Json{{"nodes_moved", d.nodes_moved},
+              {"max_displacement", d.max_displacement},
+              {"nodes_added", d.nodes_added},
+              {"nodes_removed", d.nodes_removed},
+              {"elements_added", d.elements_added},
+              {"elements_removed", d.elements_removed},
+              {"elements_changed", d.elements_changed},
+              {"lines_changed", d.lines_changed},
+              {"displacement", field_json(d.displacement)},
+              {"surface_distance", field_json(d.surface_distance)}}
       .dump();
 }
 
 std::string distance_json(const Gap& gap) {
   return Json{{"distance", gap.distance},
               {"from", {{"entity", gap.from.entity}, {"point", point(gap.from.point)}}},
-              {"to", {{"entity", gap.to.entity}, {"point", point(gap.to.point)}}}}
+              {"to", {{"entity", gap.to.entity}, {"point", point(gap.to.point)}}},
+              {"nodes", field_json(gap.nodes)}}
       .dump();
 }
 

@@ -12,9 +12,14 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/figures.h"
 #include "cli/open_deck.h"
+#include "cli/progress_bar.h"
 #include "cli/report_text.h"
+#include "ipc/field_page.h"
 #include "ipc/snapshot_publisher.h"
+#include "mesh/deck/deck.h"
+#include "mesh/document/field.h"
 
 namespace prismesh::cli {
 
@@ -54,6 +59,42 @@ Result<std::unique_ptr<SealedSnapshot>> seal(const mesh::document::Document& doc
     if (!segment) return fail(segment.error());
     sealed->segments.push_back(std::move(*segment));
   }
+  return sealed;
+}
+
+/// A field on its way to the kiosk.
+struct SealedField {
+  ipc::Descriptor values;
+  std::vector<std::string> arguments;
+};
+
+Result<SealedField> seal_field(const mesh::document::Document& document, const mesh::document::FieldWish& wish,
+                               const RenderOptions& options, const Surroundings& surroundings) {
+  std::optional<mesh::deck::OpenedDeck> other;
+  if (needs_other(wish)) {
+    if (!options.against) return fail("--colour " + *options.colour, "say with --against which deck to compare with");
+    MonotonicClock clock;
+    ProgressBar bar(surroundings, "reading " + options.against->filename().string(), clock);
+    Result<mesh::deck::OpenedDeck> opened = mesh::deck::open(*options.against, bar.progress());
+    if (!opened && opened.error().file.empty()) opened.error().file = options.against->string();
+    if (!opened) return fail(std::move(opened.error()));
+    other = std::move(*opened);
+  }
+  const mesh::document::Generation& current = document.current();
+  const auto field = make_field(wish, current, document, other ? &other->model : nullptr);
+  if (!field) return fail(field.error());
+  Result<ipc::Descriptor> values = ipc::seal_field(current.number, field->on_nodes, field->values);
+  if (!values) return fail(std::move(values.error()));
+  const FieldFigures figures = figures_of(*field, current.model);
+  const std::string limits = options.limits.value_or(shortest(field->limits.clear) + "," + shortest(field->limits.full));
+  SealedField sealed{std::move(*values), {}};
+  sealed.arguments = {"--field-fd",    std::to_string(sealed.values.get()),
+                      "--field-title", field->title,
+                      "--field-unit",  field->unit,
+                      "--field-of",    options.against ? "against " + options.against->filename().string() : "",
+                      "--field-range", shortest(figures.min) + "," + shortest(figures.max),
+                      "--field-most",  figures.max_at,
+                      "--limits",      limits};
   return sealed;
 }
 
@@ -105,13 +146,28 @@ int render(const RenderOptions& options, const Common& common, const Surrounding
   const auto sealed = seal(*document);
   if (!sealed) return refuse(sealed.error());
   const std::vector<int> descriptors = (*sealed)->descriptors();
+  std::vector<int> inherited = descriptors;
   std::string list;
   for (const int descriptor : descriptors) list += (list.empty() ? "" : ",") + std::to_string(descriptor);
 
   std::vector<std::string> arguments{kKiosk, "--render", options.output.string(), "--snapshot-fds", list};
   arguments.insert(arguments.end(), options.passed_on.begin(), options.passed_on.end());
+  std::optional<SealedField> coloured;
+  if (options.colour) {
+    if (auto wish = mesh::document::field_wish(*options.colour)) {
+      wish->from = options.from;
+      wish->to = options.to;
+      Result<SealedField> field = seal_field(*document, *wish, options, surroundings);
+      if (!field) return refuse(field.error());
+      coloured = std::move(*field);
+      arguments.insert(arguments.end(), coloured->arguments.begin(), coloured->arguments.end());
+      inherited.push_back(coloured->values.get());
+    } else {
+      arguments.insert(arguments.end(), {"--colour", *options.colour});
+    }
+  }
   surroundings.err.flush();
-  const Result<pid_t> child = start(*kiosk, arguments, descriptors);
+  const Result<pid_t> child = start(*kiosk, arguments, inherited);
   if (!child) return refuse(child.error());
   const int status = wait_for(*child, surroundings);
   if (WIFEXITED(status)) return WEXITSTATUS(status);
