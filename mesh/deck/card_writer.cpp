@@ -12,6 +12,14 @@ Result<WrittenCard> CardWriter::shell_in_manner(std::string_view, std::size_t, s
   return fail("", "stands on a card whose kind says how many corners it has");
 }
 
+Result<CardWriter::NewBlock> CardWriter::block_of_kind(std::string_view, std::size_t, std::uint16_t, bool) const {
+  return fail("", "stands on a card whose kind says how many corners it has, and its part has none of the other kind");
+}
+
+Result<WrittenCard> CardWriter::shell_in_block(std::string_view, std::size_t, std::uint16_t, const ShellCard&) const {
+  return fail("", "stands on a card whose kind says how many corners it has");
+}
+
 Result<std::vector<Replacement>> CardWriter::change_list(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
                                                          std::span<const std::int64_t> leaving) const {
   if (leaving.empty()) return join(text, set, joining);

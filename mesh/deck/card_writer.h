@@ -88,6 +88,20 @@ class CardWriter {
   virtual Result<WrittenCard> shell_in_manner(std::string_view text, std::size_t offset, std::uint16_t style, std::string_view manner_text,
                                               std::size_t manner_offset, std::uint16_t manner_style, const ShellCard& shell) const;
 
+  /// Whether a card that names shells can name one with so many corners (false: it names only those of the other kind).
+  virtual bool can_name(const Referrer&, bool) const { return true; }
+
+  /// Where the part has no card of the wanted kind: a block of its own for those shells, to be put in at `offset`. The cards follow its
+  /// header in the given order.
+  struct NewBlock {
+    std::size_t offset = 0;
+    std::string header;  ///< keyword line, without its end
+  };
+  /// Beside the block that the card at `offset` stands in. Errors: the reason.
+  virtual Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t style, bool triangles) const;
+  /// As shell, as a card of such a block.
+  virtual Result<WrittenCard> shell_in_block(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const;
+
   /// More ids for a set that lists them (ReferenceRole::list), in the manner of its lines. Errors: the reason.
   virtual Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const = 0;
   /// As join, and some ids taken out. Unless `leaving` is empty, saving calls this alone. Errors: the reason; also if nothing would be

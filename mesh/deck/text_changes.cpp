@@ -7,6 +7,7 @@
 
 #include "mesh/deck/carrying.h"
 #include "mesh/deck/descent.h"
+#include "mesh/deck/naming.h"
 #include "mesh/deck/number.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/growth.h"
@@ -296,6 +297,7 @@ class Differ {
       remove_lines(run, offset, writer_->shell_end(text_of(run), offset, run.style));
       ++out_.shells_removed;
     }
+    put_in_blocks();
     return {};
   }
 
@@ -325,10 +327,17 @@ class Differ {
     ShellIndex beside = ancestor;
     Result<WrittenCard> card = WrittenCard();
     if (other_kind) {
+      if (const std::string card = names_other_kind(ancestor, triangle); !card.empty())
+        return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") + ", but " + card +
+                            " names it, which can't name one");
       beside = neighbour_of_kind(ancestor, triangle);
-      if (!beside.valid())
-        return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") +
-                            ", and in its file there is none of its part beside which it could stand");
+      if (!beside.valid()) {
+        if (const Result<void> written = write_in_new_block(run, offset, wanted, triangle); !written)
+          return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") + " and " + written.error().message);
+        ++(added ? out_.shells_added : out_.shells_changed);
+        if (!added) remove_lines(run, offset, end);
+        return {};
+      }
       const CardRun& manner = deck_.run_of(beside);
       card = writer_->shell_in_manner(text, offset, run.style, text_of(manner), deck_.shell_line[beside.value], manner.style, wanted);
     } else {
@@ -347,6 +356,41 @@ class Differ {
     const CardRun& there = deck_.run_of(beside);
     insert_behind(there, writer_->shell_end(text_of(there), deck_.shell_line[beside.value], there.style), std::move(card->text));
     return {};
+  }
+
+  /// The first card that names the shell and couldn't name it with another number of corners; empty if there is none.
+  std::string names_other_kind(ShellIndex shell, bool triangle) const {
+    for (const Reference& reference : deck_.references->naming(Referred::shell, original_.shell_ids[shell.value])) {
+      const Referrer& card = deck_.references->referrers()[reference.referrer];
+      if (!reference.takes_away && !writer_->can_name(card, triangle)) return card_name(deck_.format, card);
+    }
+    return "";
+  }
+
+  /// The first of its part that has so many corners: in a block of its own, which the others join.
+  Result<void> write_in_new_block(const CardRun& run, std::size_t offset, const ShellCard& wanted, bool triangle) {
+    const std::string_view text = text_of(run);
+    Result<CardWriter::NewBlock> block = writer_->block_of_kind(text, offset, run.style, triangle);
+    if (!block) return fail(block.error());
+    const Result<WrittenCard> card = writer_->shell_in_block(text, offset, run.style, wanted);
+    if (!card) return fail(card.error());
+    if (card->by_parameter) return fail("", "has a field that a parameter gives");
+    std::string& cards = new_blocks_[{run.file, block->offset, block->header}];
+    const std::string eol(line_end(text, end_of_card_line(text, offset)));
+    if (cards.empty()) cards = block->header + eol;
+    cards += card->text + eol;
+    return {};
+  }
+
+  static std::size_t end_of_card_line(std::string_view text, std::size_t offset) { return std::min(text.find('\n', offset), text.size()); }
+
+  void put_in_blocks() {
+    for (auto& [place, cards] : new_blocks_) {
+      const auto& [file, offset, header] = place;
+      const std::string_view text = deck_.files[file].bytes.text();
+      const bool unended = offset == text.size() && offset > 0 && text[offset - 1] != '\n';
+      by_file_[file].push_back({offset, 0, unended ? "\n" + cards : std::move(cards)});
+    }
   }
 
   bool has_midside(ShellIndex shell) const {
@@ -422,6 +466,7 @@ class Differ {
   const Changes changes_;
   std::vector<std::vector<Replacement>> by_file_;
   std::map<std::tuple<std::uint32_t, PartIndex, bool>, ShellIndex> neighbours_;
+  std::map<std::tuple<std::uint32_t, std::size_t, std::string>, std::string> new_blocks_;  ///< by file, place and header: with their cards
   TextChanges out_;
 };
 

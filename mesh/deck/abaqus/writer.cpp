@@ -64,6 +64,18 @@ std::string number_text(double value, WrittenCard& card) {
   return text;
 }
 
+/// The type with so many corners that goes with another; empty if there is none.
+std::string other_type(std::string_view type, bool triangles) {
+  constexpr std::pair<std::string_view, std::string_view> kPairs[] = {
+      {"S4R", "S3R"},    {"S4", "S3"},     {"S4RS", "S3RS"},  {"M3D4R", "M3D3"}, {"M3D4", "M3D3"}, {"R3D4", "R3D3"},
+      {"CPS4R", "CPS3"}, {"CPS4", "CPS3"}, {"CPE4R", "CPE3"}, {"CPE4", "CPE3"},  {"DS4", "DS3"}};
+  for (const auto& [quad, triangle] : kPairs) {
+    if (triangles && type == quad) return std::string(triangle);
+    if (!triangles && type == triangle) return std::string(quad);
+  }
+  return "";
+}
+
 class Writer : public CardWriter {
  public:
   std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override {
@@ -134,6 +146,58 @@ class Writer : public CardWriter {
   }
 
   bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
+
+  /// A keyword like the one above the card, but for its TYPE.
+  Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t, bool triangles) const override {
+    const auto is_keyword = [&](std::size_t at) { return text[at] == '*' && text.substr(at, 2) != "**"; };
+    std::size_t begin = offset;
+    while (begin > 0 && !is_keyword(begin)) {
+      const std::size_t newline = begin < 2 ? std::string_view::npos : text.rfind('\n', begin - 2);
+      begin = newline == std::string_view::npos ? 0 : newline + 1;
+    }
+    Keywords keywords(text.substr(begin));
+    Keyword keyword;
+    if (!is_keyword(begin) || !keywords.next(keyword)) return fail("", "has no keyword above it in its file");
+    NewBlock block;
+    block.header = std::string(text.substr(begin, keyword.end));
+    while (!block.header.empty() && (block.header.back() == '\n' || block.header.back() == '\r' || block.header.back() == ' '))
+      block.header.pop_back();
+    std::string upper = block.header;
+    for (char& c : upper)
+      if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    if (upper.compare(0, 8, "*ELEMENT") != 0 || upper.find("INPUT") != std::string::npos)
+      return fail("", "has no keyword above it in its file");
+    const std::size_t type = upper.find("TYPE");
+    const std::size_t equals = type == std::string::npos ? type : upper.find('=', type);
+    if (equals == std::string::npos) return fail("", "has a keyword that names no type");
+    const std::size_t first = upper.find_first_not_of(" \t", equals + 1);
+    const std::size_t last = std::min(upper.find_first_of(", \t\r\n", first), upper.size());
+    const std::string other = other_type(upper.substr(first, last - first), triangles);
+    if (other.empty()) return fail("", "is of a type that has no other with " + std::string(triangles ? "three" : "four") + " corners");
+    block.header.replace(first, last - first, other);
+    for (block.offset = offset; block.offset < text.size() && !is_keyword(block.offset);)
+      block.offset = std::min(text.find('\n', block.offset), text.size() - 1) + 1;
+    return block;
+  }
+
+  Result<WrittenCard> shell_in_block(std::string_view text, std::size_t offset, std::uint16_t style,
+                                     const ShellCard& shell) const override {
+    if ((style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
+    if ((style & kStyleShifted) != 0) return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
+    const std::size_t corners = nodes_of(style), wanted = shell.nodes[3] == shell.nodes[2] ? 3 : 4;
+    std::size_t end = offset;
+    const std::vector<Place> places = cut(text, offset, corners + 1, end);
+    if (places.size() < corners + 1) return fail("", "has a card that can't be read");
+    WrittenCard card;
+    for (std::size_t f = 0; f <= wanted; ++f) {
+      const std::string_view old = f <= corners ? text.substr(places[f].begin, places[f].length) : std::string_view(" ");
+      card.by_parameter |= old.find('<') != std::string_view::npos;
+      const bool one_line = old.find('\n') == std::string_view::npos;
+      const std::string id = std::to_string(f == 0 ? shell.id : shell.nodes[f - 1]);
+      card.text += (f > 0 ? "," : "") + (one_line && !trim(old).empty() ? in_place_of(old, id, starts_with_blanks(old)) : " " + id);
+    }
+    return card;
+  }
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
     if ((set.style & kStyleNamesAndIds) != 0) return fail("", "isn't a set that lists what it has");

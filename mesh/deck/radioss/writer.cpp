@@ -19,6 +19,13 @@ std::size_t end_of_line(std::string_view text, std::size_t offset) {
 
 std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
 
+/// Where the line before the one that begins at `offset` begins.
+std::size_t line_before(std::string_view text, std::size_t offset) {
+  if (offset < 2) return 0;
+  const std::size_t newline = text.rfind('\n', offset - 2);
+  return newline == std::string_view::npos ? 0 : newline + 1;
+}
+
 /// Tabs count as one blank each.
 std::string without_tabs(std::string_view line) {
   std::string out(line);
@@ -221,6 +228,37 @@ class Writer : public CardWriter {
     if (line.size() > 4 * width)
       line.replace(4 * width, std::min(line.size(), 6 * width) - 4 * width, std::string(std::min(line.size(), 6 * width) - 4 * width, ' '));
     return with_corners(std::move(line), manner, shell);
+  }
+
+  /// Groups and histories of quads and of triangles have keywords of their own.
+  bool can_name(const Referrer& card, bool triangle) const override {
+    const auto begins = [&](std::string_view word) { return card.keyword.compare(0, word.size(), word) == 0; };
+    if (begins("GRSHEL") || begins("TH/SHEL")) return !triangle;
+    return !begins("GRSH3N") && !begins("TH/SH3N") ? true : triangle;
+  }
+
+  /// "/SHELL/7" and "/SH3N/7" hold the shells of one part in the same file.
+  Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t, bool triangles) const override {
+    std::size_t keyword = offset;
+    while (keyword > 0 && text[keyword] != '/') keyword = line_before(text, keyword);
+    NewBlock block;
+    block.header = std::string(line_at(text, keyword));
+    const std::size_t slash = block.header.find('/', 1);
+    if (slash == std::string::npos || text[keyword] != '/') return fail("", "has no keyword that could be found");
+    block.header.replace(0, slash, triangles ? "/SH3N" : "/SHELL");
+    // Behind the block's last card: comments in between belong to it, or to what follows.
+    for (block.offset = offset; block.offset < text.size() && text[block.offset] != '/';) {
+      if (text.substr(block.offset, 8) == "#include") return fail("", "stands in a block that goes on in an include");
+      block.offset = std::min(text.find('\n', block.offset), text.size() - 1) + 1;
+    }
+    return block;
+  }
+
+  Result<WrittenCard> shell_in_block(std::string_view text, std::size_t offset, std::uint16_t style,
+                                     const ShellCard& shell) const override {
+    Style other = Style::of(style);
+    other.triangle = !other.triangle;
+    return shell_in_manner(text, offset, style, text, offset, other.number(), shell);
   }
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {

@@ -1,0 +1,119 @@
+// Quads that become triangles where their part has no triangle yet, in formats whose keywords say how many corners a card has.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/mesh/deck/deck_files.h"
+#include "tests/mesh/deck/growing.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Quads 1 and 2 of part 1 side by side, in /SHELL cards with an angle and a thickness; `more` stands behind them.
+std::string radioss(const std::string& more) {
+  return "#RADIOSS STARTER\n/BEGIN\ntwo quads\n      2022         0\n                  kg                  mm                  ms\n"
+         "                  kg                  mm                  ms\n/NODE\n"
+         "         1                 0.0                 0.0                 0.0\n         2                 1.0                 0.0       "
+         "          0.0\n"
+         "         3                 2.0                 0.0                 0.0\n         4                 0.0                 1.0       "
+         "          0.0\n"
+         "         5                 1.0                 1.0                 0.0\n         6                 2.0                 1.0       "
+         "          0.0\n"
+         "/SHELL/1\n# a comment\n"
+         "         1         1         2         5         4                          30.0                 1.5\n"
+         "# another\n"
+         "         2         2         3         6         5\n" +
+         more + "/PART/1\nplate\n         1         1         0\n/END\n";
+}
+
+std::string abaqus(const std::string& keyword) {
+  return "*HEADING\ntwo quads\n*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 2., 0., 0.\n4, 0., 1., 0.\n5, 1., 1., 0.\n6, 2., 1., 0.\n" +
+         keyword +
+         "\n1, 1, 2, 5, 4\n2, 2, 3, 6, 5\n*SHELL SECTION, ELSET=PLATE, MATERIAL=STEEL\n1.5,\n*MATERIAL, NAME=STEEL\n*ELASTIC\n210000., "
+         "0.3\n";
+}
+
+/// Both quads into triangles.
+void split_both(Growing& edit) {
+  for (const std::int64_t id : {1, 2}) {
+    const auto n = edit.model.shell(edit.shell(id)).node;
+    set_shell_nodes(edit.model, edit.shell(id), {{n[0], n[1], n[2], n[2]}});
+    edit.child(edit.shell(id), n[0], n[2], n[3], n[3]);
+  }
+}
+
+std::string saved(const DeckFolder& folder, const Growing& edit, const std::string& name) {
+  const auto report = save(edit.deck, edit.original, edit.model, folder / name);
+  EXPECT_TRUE(report) << report.error().text();
+  const auto again = open(folder / name);
+  EXPECT_TRUE(again) << again.error().text();
+  if (!report || !again) return "";
+  const ByIds here = by_ids(edit.model), there = by_ids(again->model);
+  EXPECT_EQ(here.nodes, there.nodes);
+  EXPECT_EQ(here.shells, there.shells);
+  return content(folder / name);
+}
+
+TEST(OtherKind, radioss_gets_a_block_of_triangles_behind_that_of_its_quads) {
+  const DeckFolder folder;
+  const auto opened = open(folder.write("a_0000.rad", radioss("")));
+  ASSERT_TRUE(opened) << opened.error().text();
+  Growing edit(*opened);
+  split_both(edit);
+  const std::string text = saved(folder, edit, "b_0000.rad");
+  EXPECT_THAT(text,
+              HasSubstr("/SH3N/1\n         1         1         2         5                                    30.0                 1.5\n"));
+  EXPECT_THAT(text, HasSubstr("         3         1         5         4                                    30.0                 1.5\n"));
+  EXPECT_THAT(text, HasSubstr("# another\n/SH3N/1\n")) << "behind the comments of the block";
+}
+
+TEST(OtherKind, radioss_keeps_the_quads_that_follow_a_comment) {
+  const DeckFolder folder;
+  const auto opened = open(folder.write("a_0000.rad", radioss("")));
+  ASSERT_TRUE(opened);
+  Growing edit(*opened);
+  const auto n = edit.model.shell(edit.shell(1)).node;
+  set_shell_nodes(edit.model, edit.shell(1), {{n[0], n[1], n[2], n[2]}});
+  edit.child(edit.shell(1), n[0], n[2], n[3], n[3]);
+  const std::string text = saved(folder, edit, "b_0000.rad");
+  EXPECT_LT(text.find("         2         2         3         6         5\n"), text.find("/SH3N/1"));
+}
+
+TEST(OtherKind, radioss_refuses_where_a_group_of_quads_names_the_shell) {
+  const DeckFolder folder;
+  const auto opened = open(folder.write("a_0000.rad", radioss("/GRSHEL/SHEL/29\nquads\n         2\n")));
+  ASSERT_TRUE(opened);
+  Growing edit(*opened);
+  split_both(edit);
+  const auto possible = can_save(edit.deck, edit.original, edit.model);
+  ASSERT_FALSE(possible);
+  EXPECT_THAT(possible.error().text(), HasSubstr("GRSHEL/SHEL 29"));
+  EXPECT_THAT(possible.error().text(), HasSubstr("shell 2"));
+}
+
+TEST(OtherKind, abaqus_gets_a_keyword_like_that_of_its_quads) {
+  const DeckFolder folder;
+  for (const char* keyword : {"*ELEMENT, TYPE=S4R, ELSET=PLATE", "*element, elset=PLATE, type=S4"}) {
+    const auto opened = open(folder.write("a.inp", abaqus(keyword)));
+    ASSERT_TRUE(opened) << opened.error().text();
+    Growing edit(*opened);
+    split_both(edit);
+    const std::string text = saved(folder, edit, "b.inp");
+    EXPECT_THAT(text, testing::AnyOf(HasSubstr("*ELEMENT, TYPE=S3R, ELSET=PLATE\n1, 1, 2, 5\n"),
+                                     HasSubstr("*element, elset=PLATE, type=S3\n1, 1, 2, 5\n")));
+  }
+}
+
+TEST(OtherKind, abaqus_refuses_a_type_that_has_no_triangle) {
+  const DeckFolder folder;
+  const auto opened = open(folder.write("a.inp", abaqus("*ELEMENT, TYPE=S4R5, ELSET=PLATE")));
+  ASSERT_TRUE(opened);
+  Growing edit(*opened);
+  split_both(edit);
+  EXPECT_FALSE(can_save(edit.deck, edit.original, edit.model));
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::deck
