@@ -8,6 +8,7 @@
 #include "cli/edit_list.h"
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
+#include "cli/progress_bar.h"
 #include "cli/report_text.h"
 #include "mesh/document/journal.h"
 
@@ -61,11 +62,18 @@ void refuse_edit(const Surroundings& surroundings, const Common& common, const W
   say(surroundings, Error{wanted.file, wanted.line, "this " + edit + " was not done, and nothing is written"});
 }
 
+/// Edits that take long show how far they are, and stop when the user asks.
+Result<document::Prepared> prepare_shown(const document::Document& document, const document::Edit& edit, const Surroundings& surroundings) {
+  MonotonicClock clock;
+  ProgressBar bar(surroundings, std::string(name(edit)), clock);
+  return document::prepare(document, edit, bar.progress());
+}
+
 /// Does the edits one after the other. False: one was refused, and said.
 bool apply_all(const std::vector<WantedEdit>& wanted, document::Document& document, JournalGuard& journal, const Common& common,
                const Surroundings& surroundings) {
   for (const WantedEdit& one : wanted) {
-    Result<document::Prepared> prepared = document::prepare(document, one.edit);
+    Result<document::Prepared> prepared = prepare_shown(document, one.edit, surroundings);
     if (!prepared) {
       refuse_edit(surroundings, common, one, prepared.error());
       return false;

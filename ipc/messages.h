@@ -90,6 +90,8 @@ struct Camera {
 struct ShareCamera {  ///< no answer; the other clients hear CameraMoved
   Camera camera;
 };
+/// Asks the edit under way, if it is this client's, to stop: it is answered as failed and leaves everything as it was.
+struct Cancel {};
 struct GetState {};
 struct GetSnapshot {
   std::optional<std::uint64_t> generation;   ///< one of State::generations; absent: the current one
@@ -99,7 +101,7 @@ struct ReturnSnapshot {  ///< no answer
   std::uint64_t lease = 0;
 };
 
-using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Count, GetQuality,
+using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count, GetQuality,
                              FindShells, PreviewEdit, GetField, ShareCamera, GetState, GetSnapshot, ReturnSnapshot>;
 
 // --- answers ---

@@ -43,6 +43,7 @@ PRISMESH_MESSAGE(DragStep, "drag_step", f("drag", m.drag), f("sequence", m.seque
                  f("degrees", m.degrees));
 PRISMESH_MESSAGE(CommitDrag, "commit_drag", f("drag", m.drag));
 PRISMESH_MESSAGE(CancelDrag, "cancel_drag", f("drag", m.drag));
+PRISMESH_MESSAGE(Cancel, "cancel", );
 PRISMESH_MESSAGE(Count, "count", f("expr", m.expr), f("kind", m.kind));
 PRISMESH_MESSAGE(GetQuality, "get_quality", f("metric", m.metric), f("damaged", m.damaged));
 PRISMESH_MESSAGE(FindShells, "find_shells", f("metric", m.metric), f("from", m.from), f("to", m.to), f("damaged", m.damaged));

@@ -54,8 +54,8 @@ Outcome Bench::reopen(const Progress& progress) {
   return *done ? opened() : Outcome{};
 }
 
-Outcome Bench::edit(const mesh::document::Edit& edit) {
-  Result<mesh::document::EditReport> report = keeper_.edit(edit);
+Outcome Bench::edit(const mesh::document::Edit& edit, const Progress& progress) {
+  Result<mesh::document::EditReport> report = keeper_.edit(edit, progress);
   if (!report) return {failed(report.error()), {}, {}, {}};
   Outcome outcome;
   const std::string made_by = report->edit;
@@ -89,11 +89,21 @@ Outcome Bench::preview(const ipc::PreviewEdit& request) const {
 
 Outcome Bench::field(const ipc::GetField& request, const Progress& progress) {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
-  Result<FieldMaker::Made> made = fields_.make(keeper_.document(), request, progress);
-  if (!made) return {failed(made.error()), {}, {}, {}};
+  bool told = false;
+  const auto tell = [&](double fraction) {
+    if (fraction <= 0) return true;  // most fields are there before anybody could read how far they are
+    told = true;
+    return progress(fraction);
+  };
+  Result<FieldMaker::Made> made = fields_.make(keeper_.document(), request, tell);
   Outcome outcome;
-  outcome.answer = std::move(made->answer);
-  outcome.descriptors.push_back(std::move(made->values));
+  if (told) outcome.events.emplace_back(ipc::ProgressMade{"Comparing", 1});
+  if (made) {
+    outcome.answer = std::move(made->answer);
+    outcome.descriptors.push_back(std::move(made->values));
+  } else {
+    outcome.answer = failed(made.error());
+  }
   return outcome;
 }
 

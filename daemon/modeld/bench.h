@@ -36,7 +36,8 @@ class Bench {
   Outcome open(const ipc::Open& request, const Progress& progress);
   /// What was open when the last life ended. The answer is Failed if that couldn't be opened.
   Outcome reopen(const Progress& progress);
-  Outcome edit(const mesh::document::Edit& edit);
+  /// `progress` is asked by long edits only; told to stop, they leave everything as it was.
+  Outcome edit(const mesh::document::Edit& edit, const Progress& progress = {});
   Outcome count(const ipc::Count& request) const;
   Outcome quality(const ipc::GetQuality& request) const;
   Outcome find(const ipc::FindShells& request) const;

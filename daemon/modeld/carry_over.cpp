@@ -59,4 +59,14 @@ Result<void> carry_over(const Generation& current, Document& recorded, Journal& 
   return {};
 }
 
+Result<void> carry_over_by_ids(const Generation& current, Document& recorded, Journal& journal) {
+  for (const Edit& step : steps_to(current)) {
+    Result<Prepared> prepared = prepare(recorded, step);
+    if (!prepared) return fail(prepared.error());
+    if (Result<void> appended = journal.append(recorded, step, *prepared); !appended) return appended;
+    commit(recorded, std::move(*prepared));
+  }
+  return {};
+}
+
 }  // namespace prismesh::modeld

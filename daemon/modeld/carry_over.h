@@ -13,4 +13,8 @@ namespace prismesh::modeld {
 /// `current`, and takes `recorded` there. Positions that the deck's columns couldn't hold to the last digit come along.
 Result<void> carry_over(const mesh::document::Generation& current, mesh::document::Document& recorded, mesh::document::Journal& journal);
 
+/// The same where `recorded` has other indices, since nodes or shells came or went: by ids. Positions are those of the saved deck.
+Result<void> carry_over_by_ids(const mesh::document::Generation& current, mesh::document::Document& recorded,
+                               mesh::document::Journal& journal);
+
 }  // namespace prismesh::modeld

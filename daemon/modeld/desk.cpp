@@ -45,6 +45,7 @@ void Desk::request(ipc::ClientId client, std::uint64_t number, ipc::Request requ
   if (const auto* returned = std::get_if<ipc::ReturnSnapshot>(&request)) return give_back(client, returned->lease);
   if (const auto* snapshot = std::get_if<ipc::GetSnapshot>(&request)) return give_snapshot(client, number, *snapshot);
   if (const auto* camera = std::get_if<ipc::ShareCamera>(&request)) return share_camera(client, *camera);
+  if (std::holds_alternative<ipc::Cancel>(request)) return cancel_edit(client, number);
   if (std::holds_alternative<ipc::GetState>(request)) return outlet_.answer(client, number, state(), {});
   line_up(client, number, std::move(request), bytes);
 }
@@ -129,6 +130,12 @@ void Desk::give_back(ipc::ClientId client, std::uint64_t lease) {
   if (clients_[client].leases.erase(lease) > 0) publisher_.release(lease);
 }
 
+void Desk::cancel_edit(ipc::ClientId client, std::uint64_t number) {
+  if (editing_ != client) return refuse(client, number, "no edit of yours is under way");
+  cancelled_ = true;
+  outlet_.answer(client, number, ipc::Done{}, {});
+}
+
 ipc::State Desk::state() const {
   ipc::State state = face_.state;
   state.busy = running_ && !stepping_;
@@ -189,7 +196,7 @@ void Desk::begin(Waiting next) {
   if (auto* open = std::get_if<ipc::Open>(&next.request))
     run([this, request = std::move(*open), progress = watch("open")] { return bench_.open(request, progress); }, answer);
   else if (auto* edit = std::get_if<ipc::ApplyEdit>(&next.request))
-    run([this, request = std::move(*edit)] { return bench_.edit(request.edit); }, answer);
+    begin_edit(next, std::move(edit->edit));
   else if (auto* count = std::get_if<ipc::Count>(&next.request))
     run([this, request = std::move(*count)] { return bench_.count(request); }, answer);
   else if (auto* quality = std::get_if<ipc::GetQuality>(&next.request))
@@ -199,7 +206,7 @@ void Desk::begin(Waiting next) {
   else if (auto* preview = std::get_if<ipc::PreviewEdit>(&next.request))
     run([this, request = std::move(*preview)] { return bench_.preview(request); }, answer);
   else if (auto* field = std::get_if<ipc::GetField>(&next.request))
-    run([this, request = std::move(*field), progress = watch("compare")] { return bench_.field(request, progress); }, answer);
+    run([this, request = std::move(*field), progress = watch("Comparing")] { return bench_.field(request, progress); }, answer);
   else if (auto* save = std::get_if<ipc::Save>(&next.request))
     run([this, request = std::move(*save)] { return bench_.save(request); }, answer);
   else if (auto* close = std::get_if<ipc::Close>(&next.request))
@@ -208,6 +215,18 @@ void Desk::begin(Waiting next) {
     begin_drag(next, drag->edit);
   else
     refuse(next.client, next.number, "this can't be asked now");
+}
+
+void Desk::begin_edit(const Waiting& next, mesh::document::Edit edit) {
+  editing_ = next.client;
+  cancelled_ = false;
+  Progress progress = watch(std::string(mesh::document::name(edit)));
+  run([this, edit = std::move(edit), progress = std::move(progress)] { return bench_.edit(edit, progress); },
+      [this, client = next.client, number = next.number](Outcome& outcome) {
+        editing_.reset();
+        cancelled_ = false;
+        finish(client, number, outcome);
+      });
 }
 
 void Desk::begin_drag(Waiting next, const mesh::document::Edit& edit) {
@@ -262,7 +281,7 @@ Progress Desk::watch(std::string what) {
         outlet_.tell_all(ipc::ProgressMade{what, fraction});
       });
     }
-    return !worker_.stopping();
+    return !worker_.stopping() && !cancelled_;
   };
 }
 

@@ -2,6 +2,7 @@
 // under way. Everything here belongs to the loop's thread.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -78,6 +79,7 @@ class Desk {
   void give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::GetSnapshot& request);
   void share_camera(ipc::ClientId client, const ipc::ShareCamera& shared);
   void give_back(ipc::ClientId client, std::uint64_t lease);
+  void cancel_edit(ipc::ClientId client, std::uint64_t number);
   ipc::State state() const;
 
   /// Starts the next piece of work if none is under way.
@@ -85,6 +87,7 @@ class Desk {
   void pump_drag();
   void begin(Waiting next);
   void run(std::function<Outcome()> work, std::function<void(Outcome&)> then);
+  void begin_edit(const Waiting& next, mesh::document::Edit edit);
   void begin_drag(Waiting next, const mesh::document::Edit& edit);
   void finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome);
   void tell(Outcome& outcome);
@@ -102,6 +105,8 @@ class Desk {
   bool running_ = false;
   bool stepping_ = false;  ///< what runs is a drag's step: too short to call it busy
   double progress_ = 0;
+  std::optional<ipc::ClientId> editing_;  ///< whose edit runs
+  std::atomic<bool> cancelled_ = false;   ///< that edit is to stop; the worker looks at it
 };
 
 }  // namespace prismesh::modeld

@@ -8,6 +8,7 @@
 #include "daemon/modeld/deck_files.h"
 #include "daemon/modeld/save_intent.h"
 #include "mesh/deck/deck.h"
+#include "mesh/model/growth.h"
 
 namespace prismesh::modeld {
 
@@ -52,7 +53,12 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, problem) && !problem;
 }
 
-bool differs(const Generation& a, const Generation& b) { return &a != &b && !mesh::moved_nodes(a.model, b.model).empty(); }
+bool differs(const Generation& a, const Generation& b) {
+  return &a != &b && (a.model.growth != b.model.growth || !mesh::moved_nodes(a.model, b.model).empty());
+}
+
+/// Whether nodes or shells came, went or have other corners since the deck was read.
+bool has_grown(const Document& document) { return !mesh::changes_between(document.opened->model, document.current().model).empty(); }
 
 ipc::Saved report_of(const fs::path& target, const mesh::deck::SaveReport& report) {
   return {target.string(), report.nodes_written, report.lines_changed, report.notes};
@@ -73,23 +79,6 @@ std::size_t over_cap(const Document& recorded, const Generation& next) {
   std::size_t drop = 0;
   for (; total > recorded.history_bytes && drop <= recorded.cursor; ++drop) total -= recorded.generations[drop]->own_bytes;
   return drop;
-}
-
-/// The journal's form of an undo or redo that its own history, shorter than the document's after a save, can't make.
-Prepared as_push(const Document& recorded, const Prepared& prepared, const Edit& edit) {
-  auto next = std::make_shared<Generation>(*prepared.next);
-  next->number = recorded.next_number;
-  next->made_by = name(edit);
-  Prepared push;
-  push.drop_oldest = over_cap(recorded, *next);
-  push.next = std::move(next);
-  return push;
-}
-
-/// The generation that `recorded` would go to by itself; null if it has none.
-const Generation* own_step(const Document& recorded, Prepared::Step step) {
-  if (step == Prepared::Step::undo) return recorded.can_undo() ? recorded.generations[recorded.cursor - 1].get() : nullptr;
-  return recorded.can_redo() ? recorded.generations[recorded.cursor + 1].get() : nullptr;
 }
 
 }  // namespace
@@ -148,8 +137,9 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
   Document recorded = *document;
   const std::shared_ptr<const Generation> saved = document->opened;
   std::vector<ipc::DeckFile> files = files_with_shells(*document);
-  return OpenDocument{request,   std::move(*document), std::move(recorded), std::move(*journal), saved,
-                      recovered, std::move(warnings),  std::move(files),    std::nullopt};
+  return OpenDocument{
+      request, std::move(*document), std::move(recorded), std::move(*journal), saved, recovered, std::move(warnings), std::move(files),
+      {},      std::nullopt};
 }
 
 Result<bool> DocumentKeeper::open(const ipc::Open& request, const Progress& progress) {
@@ -189,15 +179,58 @@ Result<bool> DocumentKeeper::reopen(const Progress& progress) {
   return true;
 }
 
-Result<EditReport> DocumentKeeper::edit(const Edit& edit) {
+/// The document's generation that one of `recorded` is, or is a copy of.
+const Generation* DocumentKeeper::original_of(const Generation* recorded) const {
+  for (const Twin& twin : open_->twins)
+    if (twin.recorded.get() == recorded) return twin.of.get();
+  return recorded;
+}
+
+/// The generation that `recorded` would go to by itself; null if it has none.
+const Generation* DocumentKeeper::own_step(Prepared::Step step) const {
+  const Document& recorded = open_->recorded;
+  if (step == Prepared::Step::undo) return recorded.can_undo() ? original_of(recorded.generations[recorded.cursor - 1].get()) : nullptr;
+  return recorded.can_redo() ? original_of(recorded.generations[recorded.cursor + 1].get()) : nullptr;
+}
+
+/// The journal's form of an undo or redo that its own history, shorter than the document's after a save, can't make.
+Prepared DocumentKeeper::as_push(const Prepared& prepared, const Edit& edit) {
+  auto next = std::make_shared<Generation>(*prepared.next);
+  next->number = open_->recorded.next_number;
+  next->made_by = name(edit);
+  Prepared push;
+  push.drop_oldest = over_cap(open_->recorded, *next);
+  push.next = std::move(next);
+  std::erase_if(open_->twins, [](const Twin& twin) { return twin.recorded.use_count() == 1; });
+  open_->twins.push_back({push.next, prepared.next});
+  return push;
+}
+
+/// How many of the oldest of `recorded` go, so that it has no less than the document keeps.
+std::size_t DocumentKeeper::same_drop(const Prepared& prepared) const {
+  const Document &document = open_->document, &recorded = open_->recorded;
+  if (prepared.drop_oldest == 0) return 0;
+  if (prepared.drop_oldest > document.cursor) return recorded.cursor + 1;
+  const Generation* oldest = document.generations[prepared.drop_oldest].get();
+  for (std::size_t i = 0; i <= recorded.cursor; ++i)
+    if (original_of(recorded.generations[i].get()) == oldest) return i;
+  return 0;
+}
+
+Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progress) {
   if (!open_) return fail("", "no document is open");
   OpenDocument& open = *open_;
   if (open.stuck) return fail(*open.stuck);
-  Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, edit); }, "");
+  Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, edit, progress); }, "");
   if (!prepared) return fail(std::move(prepared.error()));
   EditReport report = prepared->report;
-  const bool follows = prepared->step == Prepared::Step::push || own_step(open.recorded, prepared->step) == prepared->next.get();
-  Prepared recorded = follows ? *prepared : as_push(open.recorded, *prepared, edit);
+  const bool push = prepared->step == Prepared::Step::push;
+  const bool follows = push || own_step(prepared->step) == prepared->next.get();
+  // A delta only ever adds to the structure.
+  if (!follows && prepared->step == Prepared::Step::undo && prepared->next->model.growth != open.recorded.current().model.growth)
+    return fail("", "this step can't be undone any more: it changed the structure, and the journal no longer has the state before it");
+  Prepared recorded = follows ? *prepared : as_push(*prepared, edit);
+  if (push) recorded.drop_oldest = same_drop(*prepared);
   if (Result<void> appended = open.journal.append(open.recorded, edit, recorded); !appended) return fail(std::move(appended.error()));
   commit(open.recorded, std::move(recorded));
   commit(open.document, std::move(*prepared));
@@ -240,7 +273,7 @@ Result<ipc::Saved> DocumentKeeper::save_in_place() {
     fs::remove(intent, problem);
     return saved;
   }
-  if (const Result<void> rebased = rebase(); !rebased) {
+  if (const Result<void> rebased = rebase(saved); !rebased) {
     open.stuck = Error{rebased.error().file, rebased.error().line,
                        "after saving, no new journal could be started: " + rebased.error().message +
                            "; the deck is saved: close it and open it again to go on editing"};
@@ -249,13 +282,15 @@ Result<ipc::Saved> DocumentKeeper::save_in_place() {
   return saved;
 }
 
-/// After a save in place: the deck on disk is another one, so its text is read again and a new journal begins. The history stays.
-Result<void> DocumentKeeper::rebase() {
+/// After a save in place: the deck on disk is another one, so its text is read again and a new journal begins. The history stays, unless
+/// nodes or shells came or went: then what was read has other indices, and the history begins anew.
+Result<void> DocumentKeeper::rebase(ipc::Saved& saved) {
   OpenDocument& open = *open_;
   Result<OpenedDeck> opened = mesh::deck::open(open.document.path);
   if (!opened) return fail(std::move(opened.error()));
-  if (opened->model.node_count() != open.document.opened->model.node_count() ||
-      opened->model.shell_count() != open.document.opened->model.shell_count())
+  const bool grown = has_grown(open.document);
+  const mesh::Model& model = grown ? open.document.current().model : open.document.opened->model;
+  if (mesh::live_nodes(opened->model) != mesh::live_nodes(model) || mesh::live_shells(opened->model) != mesh::live_shells(model))
     return fail(open.document.path.string(), "something else changed the deck while it was saved");
   OpenOptions options;
   options.length_unit = open.document.settings.length_unit;
@@ -265,15 +300,31 @@ Result<void> DocumentKeeper::rebase() {
   Result<Document> fresh = mesh::document::open(open.document.path, std::move(*opened), options);
   if (!fresh) return fail(std::move(fresh.error()));
   fresh->next_number = open.document.next_number;
+  if (grown) {
+    auto first = std::make_shared<Generation>(*fresh->opened);
+    first->number = fresh->next_number++;
+    fresh->opened = first;
+    fresh->generations = {fresh->opened};
+  }
   Result<Journal> journal = start_journal(folder_, folder_.journal(fresh->path, fresh->deck->content), *fresh);
   if (!journal) return fail(std::move(journal.error()));
-  if (Result<void> carried = carry_over(open.document.current(), *fresh, *journal); !carried) return carried;
+  Result<void> carried =
+      grown ? carry_over_by_ids(open.document.current(), *fresh, *journal) : carry_over(open.document.current(), *fresh, *journal);
+  if (!carried) return carried;
 
   const fs::path old = open.journal.path();
   open.journal = std::move(*journal);
-  open.document.deck = fresh->deck;
-  open.document.opened = fresh->opened;
-  open.document.next_number = std::max(open.document.next_number, fresh->next_number);
+  open.twins.clear();
+  if (grown) {
+    open.document = *fresh;
+    open.saved = open.document.generations[open.document.cursor];
+    saved.notes.emplace_back("the history begins anew with the saved deck, since nodes or elements came, went or were given other corners");
+  } else {
+    open.twins.push_back({fresh->generations[fresh->cursor], open.document.generations[open.document.cursor]});
+    open.document.deck = fresh->deck;
+    open.document.opened = fresh->opened;
+    open.document.next_number = std::max(open.document.next_number, fresh->next_number);
+  }
   open.recorded = std::move(*fresh);
   std::error_code problem;
   if (const Result<fs::path> retired = folder_.retire(old, ".saved"); !retired) return fail(retired.error());
@@ -317,8 +368,8 @@ ipc::State DocumentKeeper::state() const {
   state.target_size = document.settings.target_size;
   state.target_size_guessed = document.settings.target_size_guessed;
   state.generation = current.number;
-  state.nodes = current.model.node_count();
-  state.shells = current.model.shell_count();
+  state.nodes = mesh::live_nodes(current.model);
+  state.shells = mesh::live_shells(current.model);
   state.parts = current.model.parts->size();
   state.selected_nodes = current.selected_nodes;
   state.counts = current.counts;

@@ -26,7 +26,7 @@ class DocumentKeeper {
   /// What was open when the last life ended; false if nothing was. Errors: as `open`; a deck that ended several lives is left.
   Result<bool> reopen(const Progress& progress);
   /// Prepares, journals, commits.
-  Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit);
+  Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit, const Progress& progress = {});
   Result<ipc::Saved> save(const std::optional<std::string>& path);
   Result<void> close(bool discard);
 
@@ -38,6 +38,11 @@ class DocumentKeeper {
   ipc::State state() const;
 
  private:
+  /// A generation of `recorded` and the document's that it is a copy of.
+  struct Twin {
+    std::shared_ptr<const mesh::document::Generation> recorded;
+    std::shared_ptr<const mesh::document::Generation> of;
+  };
   struct OpenDocument {
     ipc::Open request;
     mesh::document::Document document;
@@ -49,6 +54,7 @@ class DocumentKeeper {
     std::uint64_t recovered = 0;
     std::vector<mesh::deck::Warning> warnings;  ///< beside the deck's
     std::vector<ipc::DeckFile> files;
+    std::vector<Twin> twins;
     std::optional<Error> stuck;  ///< why no edit can be journalled any more
   };
 
@@ -57,7 +63,11 @@ class DocumentKeeper {
                                            std::vector<mesh::deck::Warning>& warnings);
   Result<ipc::Saved> save_elsewhere(const std::filesystem::path& target);
   Result<ipc::Saved> save_in_place();
-  Result<void> rebase();
+  Result<void> rebase(ipc::Saved& saved);
+  mesh::document::Prepared as_push(const mesh::document::Prepared& prepared, const mesh::document::Edit& edit);
+  const mesh::document::Generation* own_step(mesh::document::Prepared::Step step) const;
+  const mesh::document::Generation* original_of(const mesh::document::Generation* recorded) const;
+  std::size_t same_drop(const mesh::document::Prepared& prepared) const;
   Result<void> let_go();
 
   StateFolder folder_;

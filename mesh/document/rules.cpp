@@ -86,6 +86,9 @@ class Rulebook {
     const auto at = std::lower_bound(joined.begin(), joined.end(), node, [](const Hanging::Joined& j, NodeIndex n) { return j.node < n; });
     return at != joined.end() && at->node == node;
   }
+  bool may_be_deleted(Referred referred, std::int64_t id) {
+    return !deck_.references || deletion_.may_be_deleted(referred, id).has_value();
+  }
   bool is_middled(ShellIndex shell) const { return contains(middled_shells_, shell); }
 
   std::uint8_t find_node(NodeIndex node) {
@@ -95,7 +98,7 @@ class Rulebook {
       return kAllNodeRules;
     for (const ShellIndex shell : model().adjacency->shells_of(node))
       if (is_middled(shell)) return kAllNodeRules;
-    return deletion_.may_be_deleted(Referred::node, model().node_ids[node.value]) ? std::uint8_t{0} : std::uint8_t{repair::kNeeded};
+    return may_be_deleted(Referred::node, model().node_ids[node.value]) ? std::uint8_t{0} : std::uint8_t{repair::kNeeded};
   }
 
   std::uint8_t find_shell(ShellIndex shell) {
@@ -104,7 +107,7 @@ class Rulebook {
       return kAllShellRules;
     if (is_middled(shell) || contains(welded_shells_, shell)) return kAllShellRules;
     if (!deck_.shell_runs.empty() && deck_.is_held(deck_.run_of(deck_ancestor(model(), shell)).file)) return kAllShellRules;
-    const bool lasts = contains(tied_shells_, shell) || !deletion_.may_be_deleted(Referred::shell, model().shell_ids[shell.value]);
+    const bool lasts = contains(tied_shells_, shell) || !may_be_deleted(Referred::shell, model().shell_ids[shell.value]);
     return lasts ? std::uint8_t{repair::kLasting} : std::uint8_t{0};
   }
 

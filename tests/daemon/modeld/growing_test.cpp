@@ -1,0 +1,180 @@
+// The keeper of documents whose shells come and go: restarts, saves in place, saves that are cut off, steps back beyond a save.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "daemon/modeld/document_keeper.h"
+#include "daemon/modeld/save_intent.h"
+#include "mesh/document/edit_json.h"
+#include "mesh/model/growth.h"
+#include "tests/daemon/modeld/folder.h"
+
+namespace prismesh::modeld {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace mesh::document;
+using test::Folder;
+
+std::string content_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Growing : public ::testing::Test {
+ protected:
+  DocumentKeeper keeper() const { return DocumentKeeper(StateFolder(folder_.state())); }
+  static void open(DocumentKeeper& keeper, const fs::path& deck) {
+    ipc::Open request;
+    request.path = deck.string();
+    const Result<bool> opened = keeper.open(request, {});
+    ASSERT_TRUE(opened) << opened.error().text();
+  }
+  static EditReport edit(DocumentKeeper& keeper, const std::string& json) {
+    const Result<EditReport> report = keeper.edit(parse_edit(json).value());
+    EXPECT_TRUE(report) << json << ": " << report.error().text();
+    return report.value_or(EditReport{});
+  }
+  static void expect_same(const Generation& a, const Generation& b) {
+    ASSERT_EQ(a.model.node_count(), b.model.node_count());
+    ASSERT_EQ(a.model.shell_count(), b.model.shell_count());
+    for (std::size_t n = 0; n < a.model.node_count(); ++n) {
+      EXPECT_EQ(a.model.positions[n], b.model.positions[n]);
+      EXPECT_EQ(a.model.node_ids[n], b.model.node_ids[n]);
+      EXPECT_EQ(a.node_marks[n], b.node_marks[n]);
+    }
+    for (std::size_t s = 0; s < a.model.shell_count(); ++s) EXPECT_EQ(a.model.shell_nodes[s], b.model.shell_nodes[s]);
+    EXPECT_EQ(a.counts, b.counts);
+  }
+  Folder folder_;
+};
+
+constexpr auto kSplit = R"({"edit":"split","at":["shell:1"]})";
+constexpr auto kMove = R"({"edit":"translate","by":[0,0,0.05],"on":"1"})";
+
+TEST_F(Growing, ComesBackAfterARestartAndCanBeUndone) {
+  const fs::path deck = folder_.two_files();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  EXPECT_EQ(edit(first, kSplit).elements_added, 1u);
+  EXPECT_EQ(first.state().shells, 3u);
+  EXPECT_TRUE(first.changed());
+  edit(first, kMove);
+  {
+    const Generation before = first.document().current();
+    first = keeper();  // ends without a word
+    DocumentKeeper second = keeper();
+    open(second, deck);
+    expect_same(before, second.document().current());
+    edit(second, R"({"edit":"undo"})");
+    EXPECT_EQ(edit(second, R"({"edit":"undo"})").elements_removed, 1u);
+    EXPECT_EQ(second.state().shells, 2u);
+    EXPECT_FALSE(second.changed());
+  }
+}
+
+TEST_F(Growing, ASaveInPlaceBeginsAnewWithWhatIsSelected) {
+  const fs::path deck = folder_.two_files();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, kSplit);
+  edit(first, R"({"edit":"select","expr":"4,5,6"})");
+  const std::uint64_t number = first.document().current().number;
+  const Result<ipc::Saved> saved = first.save(std::nullopt);
+  ASSERT_TRUE(saved) << saved.error().text();
+  ASSERT_FALSE(saved->notes.empty());
+  EXPECT_NE(saved->notes.back().find("begins anew"), std::string::npos);
+  EXPECT_EQ(first.state().shells, 3u);
+  EXPECT_EQ(first.state().selected_nodes, 3u);
+  EXPECT_FALSE(first.changed());
+  EXPECT_GT(first.document().current().number, number) << "views see another state";
+  edit(first, kMove);
+  EXPECT_TRUE(first.changed());
+  const Generation before = first.document().current();
+  first = keeper();
+  DocumentKeeper second = keeper();
+  open(second, deck);
+  expect_same(before, second.document().current());
+  EXPECT_EQ(second.state().shells, 3u);
+}
+
+TEST_F(Growing, ASaveThatWasCutOffBetweenTheFilesIsFinished) {
+  const fs::path deck = folder_.two_files();
+  const std::string main_before = content_of(deck);
+  std::string main_after, rest_after;
+  {
+    DocumentKeeper first = keeper();
+    open(first, deck);
+    edit(first, kSplit);
+    edit(first, kMove);
+    const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
+    ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
+    ASSERT_TRUE(mesh::document::save(first.document(), deck));
+    main_after = content_of(deck);
+    rest_after = content_of(folder_.path() / "rest.k");
+    ASSERT_NE(main_after, main_before);
+  }
+  std::ofstream(deck, std::ios::binary | std::ios::trunc) << main_before;  // the main file, which is written last, wasn't
+  DocumentKeeper second = keeper();
+  open(second, deck);
+  EXPECT_EQ(content_of(deck), main_after);
+  EXPECT_EQ(content_of(folder_.path() / "rest.k"), rest_after);
+  EXPECT_EQ(second.state().shells, 3u);
+  const auto& warnings = second.state().warnings;
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const auto& w) { return w.kind == "save-finished"; }));
+}
+
+TEST_F(Growing, StepsBackBeyondASaveAndForthAgainAreBroughtBack) {
+  const fs::path deck = folder_.two_files();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, kMove);
+  ASSERT_TRUE(first.save(std::nullopt));
+  edit(first, kSplit);
+  const std::vector<std::string> steps{"undo", "undo", "redo", "redo", "undo", "redo", "undo", "undo", "redo", "redo"};
+  for (const std::string& step : steps) {
+    edit(first, R"({"edit":")" + step + "\"}");
+    const Generation before = first.document().current();
+    const bool can_undo = first.state().can_undo;
+    first = keeper();
+    open(first, deck);
+    expect_same(before, first.document().current());
+    if (HasFailure()) return;
+    if (!first.state().can_undo && can_undo) break;  // the history beyond the save isn't kept over a restart
+  }
+}
+
+TEST_F(Growing, StepsBackBeyondASaveInOneLife) {
+  const fs::path deck = folder_.two_files();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, kMove);
+  ASSERT_TRUE(first.save(std::nullopt));
+  edit(first, kSplit);
+  for (const std::string step : {"undo", "undo", "redo", "redo", "undo", "redo"}) edit(first, R"({"edit":")" + step + "\"}");
+  const Generation before = first.document().current();
+  EXPECT_EQ(mesh::live_shells(before.model), 3u);
+  first = keeper();
+  open(first, deck);
+  expect_same(before, first.document().current());
+}
+
+TEST_F(Growing, AnEditThatIsToldToStopLeavesEverythingAsItWas) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, R"({"edit":"translate","by":[3,3,9],"on":"1313"})");
+  const std::uint64_t number = first.document().current().number;
+  const std::uint64_t journalled = first.state().journalled_edits;
+  const Result<EditReport> stopped = first.edit(parse_edit(R"({"edit":"repair","scope":"all"})").value(), [](double) { return false; });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().message, "cancelled");
+  EXPECT_EQ(first.document().current().number, number);
+  EXPECT_EQ(first.state().journalled_edits, journalled);
+}
+
+}  // namespace
+}  // namespace prismesh::modeld
