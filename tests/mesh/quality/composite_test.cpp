@@ -1,13 +1,12 @@
 #include "mesh/quality/composite.h"
 
 #include <cmath>
-#include <random>
 
 #include <gtest/gtest.h>
 
 #include "mesh/model/growth.h"
 #include "mesh/quality/report.h"
-#include "tests/support/make_model.h"
+#include "tests/mesh/quality/mixed_grid.h"
 
 namespace prismesh::mesh::quality {
 namespace {
@@ -88,28 +87,8 @@ TEST(Composite, is_a_number_whatever_the_limits) {
     }
 }
 
-/// Shells of all sorts, from good to crossed.
-Model random_model() {
-  std::mt19937 random(21);
-  std::uniform_real_distribution<double> away(-0.6, 0.6);
-  std::vector<Vec3> points;
-  std::vector<std::array<int, 4>> shells;
-  constexpr int kSide = 30;
-  for (int j = 0; j <= kSide; ++j)
-    for (int i = 0; i <= kSide; ++i) {
-      const double wild = static_cast<double>(i) / kSide;
-      points.emplace_back(i + wild * away(random), j + wild * away(random), wild * away(random));
-    }
-  for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i) {
-      const int a = j * (kSide + 1) + i;
-      shells.push_back({a, a + 1, a + kSide + 2, (i + j) % 4 == 0 ? a + kSide + 2 : a + kSide + 1});
-    }
-  return test::make_shells(points, shells);
-}
-
 TEST(Composite, is_negative_exactly_where_a_shell_fails) {
-  const Model model = random_model();
+  const Model model = test::mixed_grid(30, 0.6, true, 21);
   for (const double size : {0.4, 1.0, 3.0}) {
     const ChunkedArray<ShellState> states = judge_model(model, default_criteria(), size);
     std::vector<ShellIndex> shells;
@@ -133,7 +112,7 @@ TEST(Composite, is_negative_exactly_where_a_shell_fails) {
 }
 
 TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
-  Model model = random_model();
+  Model model = test::mixed_grid(30, 0.6, true, 21);
   remove_shell(model, ShellIndex(std::size_t{17}));
   const Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 1\n[metrics.skew]\nfail_above = 40");
   for (std::size_t s = 0; s < model.shell_count(); ++s) model.shell_thickness.set(s, 0.1f + 0.01f * static_cast<float>(s % 50));

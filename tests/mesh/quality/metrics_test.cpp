@@ -11,7 +11,7 @@
 
 #include "mesh/quality/shell_batch.h"
 #include "mesh/quality/shell_kernels.h"
-#include "tests/support/make_model.h"
+#include "tests/mesh/quality/mixed_grid.h"
 
 namespace prismesh::mesh::quality {
 namespace {
@@ -192,30 +192,8 @@ bool same_bits(const Values& a, const Values& b) {
   return true;
 }
 
-/// A jittered grid with every third quad cut in two.
-Model mixed_model() {
-  std::mt19937 random(14);
-  std::uniform_real_distribution<double> away(-0.3, 0.3);
-  std::vector<Vec3> points;
-  std::vector<std::array<int, 4>> shells;
-  constexpr int kSide = 40;
-  for (int j = 0; j <= kSide; ++j)
-    for (int i = 0; i <= kSide; ++i) points.emplace_back(i + away(random), j + away(random), away(random));
-  for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i) {
-      const int a = j * (kSide + 1) + i;
-      if ((i + j) % 3 == 0) {
-        shells.push_back({a, a + 1, a + kSide + 2, a + kSide + 2});
-        shells.push_back({a, a + kSide + 2, a + kSide + 1, a + kSide + 1});
-      } else {
-        shells.push_back({a, a + 1, a + kSide + 2, a + kSide + 1});
-      }
-    }
-  return test::make_shells(points, shells);
-}
-
 TEST(Metrics, one_by_one_in_ranges_and_in_lists_give_the_same_bits) {
-  const Model model = mixed_model();
+  const Model model = test::mixed_grid(40, 0.3, false, 14);
   std::vector<Values> range(model.shell_count() - 7), list;
   measure_range(model, 7, model.shell_count(), range);
   std::vector<ShellIndex> shells;
