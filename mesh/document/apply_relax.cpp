@@ -20,7 +20,9 @@ constexpr double kThreshold = 0.01;  ///< of the target size, where the edit say
 
 Result<void> refuse_unsound(const Relax& edit) {
   const auto positive = [](const std::optional<double>& value) { return !value || (*value > 0 && std::isfinite(*value)); };
-  if (!positive(edit.max_move.free) || !positive(edit.max_move.line)) return fail("", "relax: max_move must be greater than 0");
+  const std::optional<double>& line = edit.max_move.line;  // 0: nodes on feature lines stay
+  if (!positive(edit.max_move.free) || (line && !(*line >= 0 && std::isfinite(*line))))
+    return fail("", "relax: max_move must be greater than 0, or 0 on lines");
   if (!positive(edit.threshold)) return fail("", "relax: the threshold must be greater than 0");
   if (!(edit.angle > 0 && edit.angle <= 180)) return fail("", "relax: the angle must be above 0 and at most 180 degrees");
   if (edit.mode == RelaxMode::from && !edit.at) return fail("", "relax: mode \"from\" needs \"at\", the node to begin with");

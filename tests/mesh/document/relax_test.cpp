@@ -138,6 +138,19 @@ TEST(Relax, KeepsToItsLimits) {
     EXPECT_LE((document.current().model.positions[n] - before.positions[n]).norm(), 0.3);
 }
 
+TEST(Relax, KeepsBordersInPlaceWhereLinesMayNotMove) {
+  Document document =
+      make_document(test::make_grid(12, 12, [](int i, int j) { return Vec3(5.0 * i + (i > 0 && i < 12 ? j % 2 : 0), 5.0 * j, 0); }));
+  const Model before = document.current().model;
+  EXPECT_GT(must_apply(document, R"({"edit":"relax","scope":"all","max_move":{"line":0}})").nodes_moved, 0u);
+  for (std::size_t n = 0; n < before.node_count(); ++n) {
+    const Vec3& at = before.positions[n];
+    if (at.y() == 0 || at.y() == 60 || at.x() == 0 || at.x() == 60) {
+      EXPECT_TRUE(same_bits(document.current().model.positions[n], at)) << n;
+    }
+  }
+}
+
 TEST(Relax, LeavesTheDocumentAsItWasWhenStopped) {
   Document document = slid_sheet();
   const auto current = &document.current();
