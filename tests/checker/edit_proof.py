@@ -25,6 +25,7 @@ import welds
 from deck_text import real
 
 MOST_TOLD = 5
+SHELL_CLASSES = {"shell", "sh3n"}  # Radioss counts triangles in ids of their own; a quad may become one
 
 
 class Proof:
@@ -424,11 +425,14 @@ def neighbours(proof, id):
 
 
 def parents(proof, element):
-    """Old elements of its part that were removed or changed and that share two nodes with it, or all but the new ones."""
+    """Old elements of its part that were removed or changed and that share two nodes with it, or all but the new ones. After a repair, which
+    divides, swaps and collapses what it has divided, one node is enough."""
+    shared = 1 if proof.expected.get("moved_freely") else 2
     mine = set(element.nodes) & proof.before.nodes.keys()
     after = {(e.cls, e.id): e.nodes for e in proof.after.elements}
+    family = SHELL_CLASSES if element.cls in SHELL_CLASSES else {element.cls}
     return [e for e in proof.before.elements
-            if e.cls == element.cls and e.part == element.part and after.get((e.cls, e.id)) != e.nodes and len(mine & set(e.nodes)) >= min(2, len(mine))]
+            if e.cls in family and e.part == element.part and after.get((e.cls, e.id)) != e.nodes and len(mine & set(e.nodes)) >= min(shared, len(mine))]
 
 
 def membership(deck, kind, id):

@@ -1,0 +1,256 @@
+#!/usr/bin/env python3
+"""Strong edits on real decks, then a repair, judged by means of its own: decks are read by the checker's readers, never by the program's.
+
+    repair_proof.py --prismesh PROGRAM [--models FOLDER] [DECK ..]      a table as in docs/repairing.md; status 1 if anything is wrong
+
+For each deck: half of its largest part (by shells) is lifted or stretched. The deck is written shaped, and written shaped and repaired. Then
+- the text: every line that no edit had to touch is the same, sets and ids are right (edit_proof.py);
+- the mesh: every edge has as many shells as before or is divided as a whole, no shell names a node twice, none is folded;
+- the damage: elements that fail or warn after the lift and didn't before, as the program says, and the shells whose corner angles or edge ratio are
+  bad by this file's own count, before and after;
+- triangles, pairs of triangles with an edge in common where there were none, and how far nodes are off the shaped surface.
+"""
+import argparse
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.dont_write_bytecode = True
+import check_deck  # noqa: E402
+import edit_proof  # noqa: E402
+from deck_text import cross, dot, minus, unit  # noqa: E402
+
+DECKS = ["bumper_beam_rad", "seat_adyrel_rad", "simplecar_nas", "hatprofile", "wheel_k", "joint_screw"]
+MOST_WRONG = 5
+
+
+def main_file(folder):
+    names = sorted(os.listdir(folder))
+    return os.path.join(folder, max(names, key=lambda n: os.path.getsize(os.path.join(folder, n))))
+
+
+def length(a):
+    return math.sqrt(dot(a, a))
+
+
+class Mesh:
+    """The shells of a deck with three or four corners."""
+
+    def __init__(self, deck):
+        self.at = {id: node.basic() for id, node in deck.nodes.items()}
+        self.shells, self.parts, self.broken = {}, {}, 0
+        for e in deck.elements:
+            if e.cls not in edit_proof.SHELL_CLASSES:
+                continue
+            corners = [n for n in e.nodes[:4] if n]
+            if len(corners) == 4 and corners[3] == corners[2]:
+                corners.pop()
+            if any(n not in self.at for n in corners) or len(corners) < 3:
+                continue
+            self.broken += len(set(corners)) != len(corners)
+            self.shells[e.cls, e.id] = corners
+            self.parts[e.cls, e.id] = e.part
+
+    def edges(self):
+        out = {}
+        for id, corners in self.shells.items():
+            for i, a in enumerate(corners):
+                out.setdefault(frozenset((a, corners[i - 1])), []).append(id)
+        return out
+
+    def angles(self, id):
+        p = [self.at[n] for n in self.shells[id]]
+        out = []
+        for i in range(len(p)):
+            a, b = minus(p[i - 1], p[i]), minus(p[(i + 1) % len(p)], p[i])
+            scale = length(a) * length(b)
+            out.append(math.degrees(math.acos(max(-1.0, min(1.0, dot(a, b) / scale)))) if scale else 0.0)
+        return out
+
+    def is_bad(self, id):
+        """By angles and edge ratio alone: what anyone would call a bad shell."""
+        corners, angles = self.shells[id], self.angles(id)
+        p = [self.at[n] for n in corners]
+        sides = [length(minus(p[i], p[i - 1])) for i in range(len(p))]
+        low, high = (20, 120) if len(p) == 3 else (45, 135)
+        return min(angles) < low or max(angles) > high or min(sides) <= 0 or max(sides) / min(sides) > 5
+
+    def triangle_pairs(self):
+        return {e for e, shells in self.edges().items() if len([s for s in shells if len(self.shells[s]) == 3]) > 1}
+
+    def facets(self):
+        for id, c in self.shells.items():
+            p = [self.at[n] for n in c]
+            yield p[0], p[1], p[2]
+            if len(p) == 4:
+                yield p[0], p[2], p[3]
+
+
+def point_to_triangle(p, a, b, c):
+    """Distance, by the regions of the plane around the triangle."""
+    ab, ac, ap = minus(b, a), minus(c, a), minus(p, a)
+    d1, d2 = dot(ab, ap), dot(ac, ap)
+    if d1 <= 0 and d2 <= 0:
+        return length(ap)
+    bp = minus(p, b)
+    d3, d4 = dot(ab, bp), dot(ac, bp)
+    if d3 >= 0 and d4 <= d3:
+        return length(bp)
+    cp = minus(p, c)
+    d5, d6 = dot(ab, cp), dot(ac, cp)
+    if d6 >= 0 and d5 <= d6:
+        return length(cp)
+
+    def along(from_, way, t):
+        return length(minus(p, tuple(f + t * w for f, w in zip(from_, way))))
+    vc = d1 * d4 - d3 * d2
+    if vc <= 0 <= d1 and d3 <= 0:
+        return along(a, ab, d1 / (d1 - d3))
+    vb = d5 * d2 - d1 * d6
+    if vb <= 0 <= d2 and d6 <= 0:
+        return along(a, ac, d2 / (d2 - d6))
+    va = d3 * d6 - d5 * d4
+    if va <= 0 and d4 >= d3 and d5 >= d6:
+        return along(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)))
+    n = cross(ab, ac)
+    return abs(dot(unit(n), ap)) if length(n) > 0 else length(ap)
+
+
+class Grid:
+    def __init__(self, mesh, size):
+        self.size, self.cells = size, {}
+        for facet in mesh.facets():
+            low = [min(p[k] for p in facet) for k in range(3)]
+            high = [max(p[k] for p in facet) for k in range(3)]
+            ranges = [range(math.floor((low[k] - size / 4) / size), math.floor((high[k] + size / 4) / size) + 1) for k in range(3)]
+            if len(ranges[0]) * len(ranges[1]) * len(ranges[2]) > 4000:
+                continue
+            for x in ranges[0]:
+                for y in ranges[1]:
+                    for z in ranges[2]:
+                        self.cells.setdefault((x, y, z), []).append(facet)
+
+    def distance(self, p):
+        near = self.cells.get(tuple(math.floor(c / self.size) for c in p), [])
+        return min((point_to_triangle(p, *facet) for facet in near), default=math.inf)
+
+
+def target_part(mesh):
+    count = {}
+    for part in mesh.parts.values():
+        count[part] = count.get(part, 0) + 1
+    return max(count, key=lambda part: (count[part], str(part)))
+
+
+def edits_of(mesh, target_size):
+    """{name: edit}: half of the largest part, along its longest extent."""
+    part = target_part(mesh)
+    nodes = {n for id, corners in mesh.shells.items() if mesh.parts[id] == part for n in corners}
+    low = [min(mesh.at[n][k] for n in nodes) for k in range(3)]
+    high = [max(mesh.at[n][k] for n in nodes) for k in range(3)]
+    axis = max(range(3), key=lambda k: high[k] - low[k])
+    middle = sorted(mesh.at[n][axis] for n in nodes)[len(nodes) // 2]
+    half = sorted(n for n in nodes if mesh.at[n][axis] >= middle)
+    expression = ",".join(map(str, half))
+    by = [0.0, 0.0, 0.0]
+    by[axis] = 0.25 * (high[axis] - low[axis])
+    return {"lift": {"edit": "lift", "distance": 0.15 * (high[axis] - low[axis]), "on": expression},
+            "stretch": {"edit": "translate", "by": by, "on": expression}}
+
+
+def check_mesh(before, after, wrong):
+    if after.broken > before.broken:
+        wrong.append(f"{after.broken - before.broken} shells name a node twice")
+    old, new = before.edges(), after.edges()
+    # A hanging node is a free edge where there was none: such edges may only lie on old free edges' nodes or between new nodes on them.
+    free_before = {n for e, shells in old.items() if len(shells) == 1 for n in e}
+    for e, shells in new.items():
+        if len(shells) == 1 and e not in old and not any(n in free_before or n not in before.at for n in e):
+            wrong.append(f"the edge {sorted(e)} of shell {shells[0]} has become free")
+    opened = sum(len(s) == 1 for s in new.values()) - sum(len(s) == 1 for s in old.values())
+    many = sum(len(s) > 2 for s in new.values()) - sum(len(s) > 2 for s in old.values())
+    return opened, many
+
+
+def run(prismesh, deck, edits, out):
+    arguments = [a for e in edits for a in ("--edit", json.dumps(e))]
+    done = subprocess.run([prismesh, "edit", deck, *arguments, "-o", out, "--json"], capture_output=True, text=True)
+    told = [json.loads(line) for line in done.stdout.splitlines()]
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip()[-400:])
+    return told
+
+
+def counts(prismesh, deck, target_size):
+    done = subprocess.run([prismesh, "check", deck, "--json", "--target-size", str(target_size)], capture_output=True, text=True)
+    told = json.loads(done.stdout)
+    return {"warn": told["warn"], "fail": told["fail"]}
+
+
+def prove(prismesh, main, name, edit, original, before, target_size, folder):
+    wrong = []
+    shaped_path, repaired_path = (os.path.join(folder, f"{k}_" + os.path.basename(main)) for k in ("shaped", "repaired"))
+    shaping = run(prismesh, main, [edit], shaped_path)[-1]
+    told = run(prismesh, main, [edit, {"edit": "repair"}], repaired_path)[-1]
+    shaped, repaired_deck = Mesh(check_deck.read(shaped_path)), check_deck.read(repaired_path)
+    repaired = Mesh(repaired_deck)
+    proof = edit_proof.compare(original, repaired_deck, {"moved_freely": True, "nodes_added": "any", "elements_added": "any",
+                                                         "elements_removed": "any", "elements_changed": "any"})
+    wrong += proof["wrong"]
+    opened, many = check_mesh(shaped, repaired, wrong)
+    if many > 0:
+        wrong.append(f"{many} more edges with more than two shells")
+    found = len(repaired.shells) - len(shaped.shells)
+    if found != told["elements_added"] - told["elements_removed"]:
+        wrong.append(f"{found} shells more, not {told['elements_added']} - {told['elements_removed']}")
+    again = counts(prismesh, repaired_path, target_size)
+    if again != told["after"]:
+        wrong.append(f"reopened it has {again}, the edit said {told['after']}")
+    grid = Grid(shaped, 2 * target_size)
+    touched = [n for n, at in repaired.at.items() if shaped.at.get(n) != at]
+    off = max((grid.distance(repaired.at[n]) for n in touched), default=0.0)
+    bad = {kind: sum(mesh.is_bad(id) for id in mesh.shells) for kind, mesh in (("before", before), ("shaped", shaped), ("after", repaired))}
+    triangles = [100 * sum(len(c) == 3 for c in m.shells.values()) / len(m.shells) for m in (before, repaired)]
+    pairs = len(repaired.triangle_pairs()) - len(before.triangle_pairs())
+    damage = [told["before"][k] - shaping["before"][k] for k in ("fail", "warn")], [told["after"][k] - shaping["before"][k] for k in ("fail", "warn")]
+    print(f"| {name} | {edit['edit'] if edit['edit'] == 'lift' else 'stretch'} | {damage[0][0]} / {damage[0][1]} | {damage[1][0]} / {damage[1][1]} | "
+          f"{bad['shaped'] - bad['before']} → {bad['after'] - bad['before']} | {triangles[0]:.1f} → {triangles[1]:.1f} | {pairs} | "
+          f"{100 * off / target_size:.1f} | {told['ms'] / 1000:.1f} | {'yes' if not wrong else 'NO'} |", flush=True)
+    return wrong
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--prismesh", required=True)
+    parser.add_argument("--models", default=os.environ.get("PRISMESH_MODELS", ""))
+    parser.add_argument("decks", nargs="*", default=DECKS)
+    options = parser.parse_args()
+    if not os.path.isdir(options.models):
+        print("no folder of real decks: give --models or set PRISMESH_MODELS", file=sys.stderr)
+        return 77
+    print("| deck | edit | damage: fail / warn more than before | after repair | bad by angles and edge ratio | triangles % | new triangle pairs | "
+          "off the shaped surface, % of element size | s | proved |\n|---|---|---|---|---|---|---|---|---|---|")
+    failed = 0
+    for name in options.decks:
+        path = main_file(os.path.join(options.models, name))
+        deck = check_deck.read(path)
+        before = Mesh(deck)
+        size = json.loads(subprocess.run([options.prismesh, "info", path, "--json"], capture_output=True, text=True).stdout)["target_size"]
+        for edit in edits_of(before, size).values():
+            with tempfile.TemporaryDirectory(prefix="prismesh-repair-") as folder:
+                try:
+                    wrong = prove(options.prismesh, path, name, edit, deck, before, size, folder)
+                except (RuntimeError, subprocess.SubprocessError) as error:
+                    wrong = [str(error)]
+                for sentence in wrong[:MOST_WRONG]:
+                    print(f"{name}: {sentence}", file=sys.stderr)
+                failed += bool(wrong)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
