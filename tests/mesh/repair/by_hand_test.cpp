@@ -44,6 +44,16 @@ Hand flat_hand() {
   return Hand(model_of(grid.positions(), grid.shells()));
 }
 
+/// Shell 14 is split: shell 36 is its other triangle.
+Hand hand_with_triangles() {
+  const Grid grid = flat(6, 6);
+  auto shells = grid.shells();
+  const auto q = shells[14];
+  shells[14] = {q[0], q[1], q[2], q[2]};
+  shells.push_back({q[0], q[2], q[3], q[3]});
+  return Hand(model_of(grid.positions(), shells));
+}
+
 TEST(ByHand, splits_a_quad_into_two_triangles_one_of_which_stays) {
   const Hand hand = flat_hand();
   const auto change = hand.does(Operation::split, {14});
@@ -90,12 +100,7 @@ TEST(ByHand, divides_two_quads_across_their_common_edge) {
 }
 
 TEST(ByHand, divides_a_triangle_and_the_quad_beside_it) {
-  Grid grid = flat(6, 6);
-  auto shells = grid.shells();
-  const auto q = shells[14];
-  shells[14] = {q[0], q[1], q[2], q[2]};
-  shells.push_back({q[0], q[2], q[3], q[3]});
-  const Hand hand(model_of(grid.positions(), shells));
+  const Hand hand = hand_with_triangles();
   const auto change = hand.does(Operation::split, {14, 15});
   hand.after(change);
   EXPECT_EQ(change->new_nodes.size(), 1U);
@@ -113,24 +118,14 @@ TEST(ByHand, collapses_an_edge_to_the_node_that_holds_the_shape) {
 }
 
 TEST(ByHand, joins_two_triangles) {
-  Grid grid = flat(6, 6);
-  auto shells = grid.shells();
-  const auto q = shells[14];
-  shells[14] = {q[0], q[1], q[2], q[2]};
-  shells.push_back({q[0], q[2], q[3], q[3]});
-  const Hand hand(model_of(grid.positions(), shells));
+  const Hand hand = hand_with_triangles();
   const auto change = hand.does(Operation::merge, {14, 36});
   EXPECT_EQ(triangles(hand.after(change)), 0U);
   EXPECT_EQ(change->removed_shells, ShellSet{shell_at(36)});
 }
 
 TEST(ByHand, keeps_the_triangle_that_has_to_last) {
-  Grid grid = flat(6, 6);
-  auto shells = grid.shells();
-  const auto q = shells[14];
-  shells[14] = {q[0], q[1], q[2], q[2]};
-  shells.push_back({q[0], q[2], q[3], q[3]});
-  const Hand hand(model_of(grid.positions(), shells));
+  const Hand hand = hand_with_triangles();
   Rules rules;
   rules.shell = [](ShellIndex shell) { return shell == shell_at(36) ? std::uint8_t{kLasting} : std::uint8_t{0}; };
   const auto change = hand.does(Operation::merge, {14, 36}, {}, rules);
@@ -139,15 +134,11 @@ TEST(ByHand, keeps_the_triangle_that_has_to_last) {
 }
 
 TEST(ByHand, turns_the_edge_between_two_triangles) {
-  Grid grid = flat(6, 6);
-  auto shells = grid.shells();
-  const auto q = shells[14];
-  shells[14] = {q[0], q[1], q[2], q[2]};
-  shells.push_back({q[0], q[2], q[3], q[3]});
-  const Hand hand(model_of(grid.positions(), shells));
+  const Hand hand = hand_with_triangles();
   const auto change = hand.does(Operation::swap, {14, 36});
   const Model next = hand.after(change);
   EXPECT_EQ(change->reshaped.size(), 2U);
+  const std::array<std::size_t, 4> q = flat(6, 6).shells()[14];
   EXPECT_EQ(next.adjacency->find_edge(at(q[0]), at(q[2])).valid(), false);
   EXPECT_EQ(next.adjacency->find_edge(at(q[1]), at(q[3])).valid(), true);
 }

@@ -172,6 +172,11 @@ TEST_P(RealDecks, are_repaired_where_a_bump_damaged_them) {
   std::map<std::string, int> why;
   for (const Left& shell : repaired->left) ++why[shell.why];
   for (const auto& [reason, count] : why) std::cout << "    left, " << reason << ": " << count << '\n';
+  // Slopes up to 56 degrees; with steeper ones it is the table that counts.
+  if (GetParam().height <= 1.0) {
+    EXPECT_LE(10 * fails_left.size(), fails.size());
+  }
+  EXPECT_LE(triangles(good), std::max(triangles(bad), live_shells(bad) / 20));
   const Shape a = shape_of(bad), b = shape_of(good);
   EXPECT_EQ(a.euler, b.euler);
   EXPECT_EQ(a.free_loops, b.free_loops);
