@@ -30,7 +30,7 @@ TEST(KeysTest, every_key_finds_its_command) {
 TEST(KeysTest, shift_tells_save_from_save_as_but_does_not_stop_a_plain_key) {
   EXPECT_EQ(command_for(display::letter('S'), {false, true, false}), Command::save);
   EXPECT_EQ(command_for(display::letter('S'), {true, true, false}), Command::save_as);
-  EXPECT_EQ(command_for(display::letter('C'), {true, false, false}), Command::compare);
+  EXPECT_EQ(command_for(display::letter('V'), {true, false, false}), Command::toggle_through);
   EXPECT_EQ(command_for(display::letter('R'), {true, false, false}), Command::region_by) << "Shift+R has a meaning of its own";
 }
 
