@@ -7,8 +7,6 @@
 #include "base/nearest_name.h"
 #include "mesh/quality/criteria.h"
 
-#define TOML_EXCEPTIONS 0
-#define TOML_ENABLE_FORMATTERS 0
 #include <toml++/toml.h>
 
 namespace prismesh::mesh::quality {
@@ -174,13 +172,12 @@ class Reader {
 }  // namespace
 
 Result<Criteria> parse_criteria(std::string_view text, const std::string& file) {
-  const toml::parse_result parsed = toml::parse(text, file);
-  if (!parsed) {
-    const toml::parse_error& error = parsed.error();
+  Criteria criteria;
+  try {
+    if (auto done = Reader(file, criteria).read(toml::parse(text, file)); !done) return fail(done.error());
+  } catch (const toml::parse_error& error) {
     return fail(file, static_cast<long>(error.source().begin.line), "not TOML: " + std::string(error.description()));
   }
-  Criteria criteria;
-  if (auto done = Reader(file, criteria).read(parsed.table()); !done) return fail(done.error());
   return criteria;
 }
 
