@@ -51,7 +51,9 @@ TEST(KeysTest, a_label_says_which_key_it_is) {
     EXPECT_EQ(binding.label.find("Ctrl+") != std::string_view::npos, binding.ctrl) << binding.label;
     EXPECT_EQ(binding.label.find("Shift+") != std::string_view::npos, binding.shift) << binding.label;
     const std::string_view key = binding.label.substr(binding.label.rfind('+') + 1);
-    if (key.size() == 1) EXPECT_EQ(static_cast<int>(binding.key), key[0]) << binding.label;
+    if (key.size() == 1) {
+      EXPECT_EQ(static_cast<int>(binding.key), key[0]) << binding.label;
+    }
   }
 }
 
