@@ -115,7 +115,7 @@ TEST(EditJson, NamesTheWrongType) {
 }
 
 TEST(EditJson, WhatIsNotThereYetIsRefusedByName) {
-  EXPECT_THAT(why_not(R"({"edit":"relax","mode":"full"})"), HasSubstr("\"relax\" isn't there yet in this version"));
+  EXPECT_THAT(why_not(R"({"edit":"weld","mode":"full"})"), HasSubstr("\"weld\" isn't there yet in this version"));
 }
 
 TEST(EditJson, AxesAndPlanesAreCheckedWhereTheyAreWritten) {
