@@ -1,8 +1,8 @@
 // Operations by hand: what each does, and what it says where it can't.
 #include <gtest/gtest.h>
 
-#include "sheets.h"
-#include "validator.h"
+#include "tests/mesh/repair/sheets.h"
+#include "tests/mesh/repair/validator.h"
 
 namespace prismesh::mesh::repair {
 namespace {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "mesh/quality/report.h"
-#include "sheets.h"
-#include "validator.h"
+#include "tests/mesh/repair/sheets.h"
+#include "tests/mesh/repair/validator.h"
 
 namespace prismesh::mesh::repair {
 namespace {

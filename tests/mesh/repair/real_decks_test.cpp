@@ -11,9 +11,9 @@
 #include "mesh/deck/opening.h"
 #include "mesh/quality/report.h"
 #include "mesh/relax/freedom.h"
-#include "sheets.h"
+#include "tests/mesh/repair/sheets.h"
+#include "tests/mesh/repair/validator.h"
 #include "tests/support/real_deck.h"
-#include "validator.h"
 
 namespace prismesh::mesh::repair {
 namespace {

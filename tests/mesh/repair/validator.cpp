@@ -1,4 +1,4 @@
-#include "validator.h"
+#include "tests/mesh/repair/validator.h"
 
 #include <algorithm>
 #include <cmath>
