@@ -180,7 +180,18 @@ TEST_F(Cli, diff_counts_by_id_and_by_line) {
   const std::string a = write("a.k", plate_text());
   const json nothing = {{"nodes_moved", 0},    {"max_displacement", 0.0}, {"nodes_added", 0},  {"nodes_removed", 0},
                         {"elements_added", 0}, {"elements_removed", 0},   {"lines_changed", 0}};
-  EXPECT_EQ(prismesh({"diff", a, a, "--json"}).json(), nothing);
+  const auto counts_of = [](const json& difference) {
+    json counts;
+    for (const char* name :
+         {"nodes_moved", "max_displacement", "nodes_added", "nodes_removed", "elements_added", "elements_removed", "lines_changed"})
+      counts[name] = difference.at(name);
+    return counts;
+  };
+  const json same = prismesh({"diff", a, a, "--json"}).json();
+  EXPECT_EQ(counts_of(same), nothing);
+  EXPECT_EQ(same["elements_changed"], 0);
+  EXPECT_EQ(same["displacement"]["nodes"], 35);
+  EXPECT_EQ(same["surface_distance"]["max"], 0.0);
   std::string text = plate_text();
   const std::string moved = node_card(109, 5, 5, 0);
   text.replace(text.find(moved), moved.size(), node_card(109, 8, 9, 0));
@@ -188,13 +199,17 @@ TEST_F(Cli, diff_counts_by_id_and_by_line) {
   text.insert(text.find("*ELEMENT_SHELL"), node_card(500, 1, 2, 3) + node_card(501, 1, 2, 3));
   const std::string b = write("b.k", text);
   const json difference = prismesh({"diff", a, b, "--json"}).json();
-  EXPECT_EQ(difference, (json{{"nodes_moved", 1},
-                              {"max_displacement", 5.0},
-                              {"nodes_added", 2},
-                              {"nodes_removed", 0},
-                              {"elements_added", 0},
-                              {"elements_removed", 1},
-                              {"lines_changed", 4}}));
+  EXPECT_EQ(counts_of(difference), (json{{"nodes_moved", 1},
+                                         {"max_displacement", 5.0},
+                                         {"nodes_added", 2},
+                                         {"nodes_removed", 0},
+                                         {"elements_added", 0},
+                                         {"elements_removed", 1},
+                                         {"lines_changed", 4}}));
+  EXPECT_EQ(difference["elements_changed"], 0);
+  EXPECT_EQ(difference["displacement"]["max"], 5.0);
+  EXPECT_EQ(difference["displacement"]["max_at"], "node:109");
+  EXPECT_EQ(difference["surface_distance"]["max"], 0.0) << "it moved in the plate's plane";
   EXPECT_EQ(prismesh({"diff", b, a, "--json"}).json()["nodes_removed"], 2);
   EXPECT_EQ(prismesh({"diff", a, path("absent.k")}).status, kFailed);
   EXPECT_THAT(prismesh({"diff", a, path("absent.k")}).err, StartsWith(path("absent.k")));
