@@ -110,14 +110,14 @@ int diff(const DiffOptions& options, const Common& common, const Surroundings& s
     surroundings.out << diff_json(d) << '\n';
     return kDone;
   }
-  surroundings.out << "nodes: " << d.nodes_moved << " moved (at most " << shortest(d.max_displacement) << "), " << d.nodes_added
+  surroundings.out << "nodes: " << d.nodes_moved << " moved (at most " << rounded(d.max_displacement) << "), " << d.nodes_added
                    << " added, " << d.nodes_removed << " removed\n"
                    << "elements: " << d.elements_added << " added, " << d.elements_removed << " removed, " << d.elements_changed
                    << " changed\n"
                    << "lines: " << d.lines_changed << " changed\n";
   const auto say_field = [&](const char* what, const std::optional<FieldFigures>& field) {
     if (field && field->max > 0)
-      surroundings.out << what << ": at most " << shortest(field->max) << " (" << field->max_at << "), mean " << shortest(field->mean)
+      surroundings.out << what << ": at most " << rounded(field->max) << " (" << field->max_at << "), mean " << rounded(field->mean)
                        << " over " << field->measured << " nodes\n";
   };
   if (!d.displacement) surroundings.out << "displacement: the two decks have no node in common\n";

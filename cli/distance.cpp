@@ -45,11 +45,11 @@ int distance(const DistanceOptions& options, const Common& common, const Surroun
     surroundings.out << distance_json(gap) << '\n';
     return kDone;
   }
-  surroundings.out << shortest(gap.distance) << ' ' << name(document->settings.length_unit) << " from " << gap.from.entity << " ("
+  surroundings.out << rounded(gap.distance) << ' ' << name(document->settings.length_unit) << " from " << gap.from.entity << " ("
                    << gap.from.point.transpose() << ") to " << gap.to.entity << " (" << gap.to.point.transpose() << ")\n";
   if (gap.nodes)
-    surroundings.out << gap.nodes->measured << " nodes: " << shortest(gap.nodes->min) << " to " << shortest(gap.nodes->max) << " ("
-                     << gap.nodes->max_at << "), mean " << shortest(gap.nodes->mean) << '\n';
+    surroundings.out << gap.nodes->measured << " nodes: " << rounded(gap.nodes->min) << " to " << rounded(gap.nodes->max) << " ("
+                     << gap.nodes->max_at << "), mean " << rounded(gap.nodes->mean) << '\n';
   return kDone;
 }
 

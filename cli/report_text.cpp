@@ -50,6 +50,12 @@ std::string shortest(double value) {
   return std::string(text, end);
 }
 
+std::string rounded(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
+  return std::string(text, end);
+}
+
 double as_written(float value) {
   if (!std::isfinite(value)) return value;
   char text[32];

@@ -17,6 +17,8 @@ std::string printable(std::string_view text);
 
 /// A number in the fewest digits that give it back.
 std::string shortest(double value);
+/// The same, of at most six digits: a measured length for people to read.
+std::string rounded(double value);
 /// The double that has a float's shortest digits: 8.07f as 8.07, not 8.06999969482422.
 double as_written(float value);
 
