@@ -57,8 +57,8 @@ class Groups {
   }
   /// The lower one stands for both, so that the numbers don't depend on the order.
   void join(NodeIndex a, NodeIndex b) {
-    const auto [low, high] = std::minmax(root(a.value), root(b.value));
-    if (low != high) up_[high] = low;
+    const std::uint32_t one = root(a.value), other = root(b.value);
+    if (one != other) up_[std::max(one, other)] = std::min(one, other);
   }
   void join_corners(const ShellNodes& nodes) {
     for (const NodeIndex node : nodes.node) join(nodes.node[0], node);
