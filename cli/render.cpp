@@ -157,11 +157,16 @@ int render(const RenderOptions& options, const Common& common, const Surrounding
     if (auto wish = mesh::document::field_wish(*options.colour)) {
       wish->from = options.from;
       wish->to = options.to;
+      if (wish->of == mesh::document::FieldWish::Of::gap && (wish->from.empty() || wish->to.empty()))
+        return refuse(
+            Error{"--colour distance", 0, "say with --from which nodes are coloured, and with --to what their distance is measured to"});
       Result<SealedField> field = seal_field(*document, *wish, options, surroundings);
       if (!field) return refuse(field.error());
       coloured = std::move(*field);
       arguments.insert(arguments.end(), coloured->arguments.begin(), coloured->arguments.end());
       inherited.push_back(coloured->values.get());
+    } else if (options.colour->find(':') != std::string::npos) {
+      return refuse(wish.error());
     } else {
       arguments.insert(arguments.end(), {"--colour", *options.colour});
     }

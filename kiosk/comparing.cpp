@@ -61,9 +61,10 @@ Result<void> Comparing::follow() {
   follow_view(Pane::model, wish_.shown);
   follow_view(Pane::other, wish_.two_views ? wish_.beside : std::nullopt);
   const auto beside = !wish_.two_views ? nullptr : other_.view ? other_.view : link_.snapshot();
-  if (beside != beside_) {
+  const bool other_hidden = follow_hidden();
+  if (beside != beside_ || (beside && other_hidden)) {
     beside_ = beside;
-    if (Result<void> set = renderer_.set_other(beside ? render::snapshot_source(beside) : nullptr); !set) return set;
+    if (Result<void> set = renderer_.set_other(beside ? render::snapshot_source(beside, hidden_) : nullptr); !set) return set;
   }
   follow_field(Pane::model, wish_.shown);
   if (wish_.two_views)
@@ -71,6 +72,12 @@ Result<void> Comparing::follow() {
   else
     forget_field(Pane::other);
   return {};
+}
+
+bool Comparing::follow_hidden() {
+  std::vector<std::uint8_t> hidden;
+  for (const ipc::SnapshotPart& part : link_.snapshot()->info().parts) hidden.push_back(part.hidden ? 1 : 0);
+  return std::exchange(hidden_, hidden) != hidden_;
 }
 
 void Comparing::follow_states() {
@@ -196,7 +203,10 @@ panels::CompareFacts Comparing::facts(double shift) const {
     legend.max = view.made->max;
     legend.max_at = view.made->max_at;
     legend.pane = static_cast<std::size_t>(pane);
-    if (two_views()) legend.centre = 0.5 + (pane == Pane::model ? shift : -shift);
+    if (two_views()) {
+      legend.centre = 0.5 + (pane == Pane::model ? shift : -shift);
+      legend.widest = 2 * shift;
+    }
     facts.legends.push_back(std::move(legend));
   }
   return facts;

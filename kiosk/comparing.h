@@ -32,6 +32,8 @@ class Comparing {
   /// What the renderer should show as its model: an older state, or else the current one.
   std::shared_ptr<const ipc::SnapshotView> model() const { return main_.view ? main_.view : link_.snapshot(); }
   /// `shift`: as in render::TwoViews.
+  /// By part, 1: hidden in the current state, and so in all that are shown.
+  const std::vector<std::uint8_t>& hidden() const { return hidden_; }
   void dress(render::Picture& picture, double shift) const;
   panels::CompareFacts facts(double shift) const;
 
@@ -49,12 +51,15 @@ class Comparing {
 
   View& of(Pane pane) { return pane == Pane::model ? main_ : other_; }
   const View& of(Pane pane) const { return pane == Pane::model ? main_ : other_; }
+  /// Older states hide the parts that the current one does. True: others than before.
+  bool follow_hidden();
   void follow_states();
   void follow_view(Pane pane, const std::optional<std::uint64_t>& generation);
   void follow_field(Pane pane, const std::optional<std::uint64_t>& generation);
   void took_field(Pane pane, const ipc::GetField& asked, const ipc::Answer& answer);
   void forget_field(Pane pane);
 
+  std::vector<std::uint8_t> hidden_;
   ModelLink& link_;
   render::Renderer& renderer_;
   Trace trace_;

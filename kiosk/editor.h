@@ -145,6 +145,7 @@ class Editor {
   void operation_clicked(const tools::Pixel& at);
   void do_operation();
   void leave_operation();
+  void leave_operation_picked();
   void follow_operation();
   std::string operation_words() const;
 
@@ -241,10 +242,12 @@ class Editor {
     std::uint64_t shown = 0;  ///< the preview that is in the picture; 0: none
   };
   ByHand by_hand_;
+  std::optional<std::uint64_t> preview_kept_;  ///< the generation whose preview stays until what it shows is done
   panels::Dialog dialog_ = panels::Dialog::none;
   bool help_ = false;
 
   Comparing comparing_;
+  std::vector<std::uint8_t> drawn_hidden_;          ///< parts that the renderer was told to hide
   std::shared_ptr<const ipc::SnapshotView> drawn_;  ///< the renderer's model: the current state, or an older one
   bool follows_others_ = false;
   std::optional<ipc::Camera> shared_;  ///< said or heard last

@@ -5,6 +5,15 @@
 #include "kiosk/editor.h"
 
 namespace prismesh::kiosk {
+namespace {
+
+/// What one looked at is looked at in both of two views, and again in the one.
+void resize(stereo::View& view, double by) {
+  view.mm_per_unit *= by;
+  view.pan_mm *= by;
+}
+
+}  // namespace
 
 bool Editor::compare_command(tools::Command command) {
   if (command == tools::Command::compare_panel) {
@@ -31,7 +40,9 @@ bool Editor::compare_action(const panels::PanelAction& action) {
   const auto* wanted = std::get_if<panels::SetCompare>(&action);
   if (wanted == nullptr) return false;
   cancel_gesture();
+  const bool two = comparing_.two_views();
   comparing_.set(wanted->wish);
+  if (two && !comparing_.two_views()) resize(view_, 2), view_moved();
   link_changes_ = ~std::uint64_t{0};
   return true;
 }
@@ -40,12 +51,13 @@ bool Editor::compare_action(const panels::PanelAction& action) {
 Result<void> Editor::follow_states() {
   const bool two = comparing_.two_views();
   if (Result<void> followed = comparing_.follow(); !followed) return followed;
-  if (const auto wanted = comparing_.model(); wanted != drawn_) {
-    if (Result<void> set = renderer_.set_model(wanted ? render::snapshot_source(wanted) : nullptr); !set) return set;
+  if (const auto wanted = comparing_.model(); wanted != drawn_ || (wanted && comparing_.hidden() != drawn_hidden_)) {
+    if (Result<void> set = renderer_.set_model(wanted ? render::snapshot_source(wanted, comparing_.hidden()) : nullptr); !set) return set;
     drawn_ = wanted;
+    drawn_hidden_ = comparing_.hidden();
     if (shown_ && link_.snapshot() == shown_) take_model();
   }
-  if (two != comparing_.two_views() && shown_) fit();
+  if (two != comparing_.two_views() && shown_) resize(view_, two ? 2 : 0.5), view_moved();
   return {};
 }
 

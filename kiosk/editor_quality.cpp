@@ -1,6 +1,7 @@
 // The editor's checking and mending: errors gone to one after the other, relaxing and repairing, and operations by hand with a preview.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -212,11 +213,18 @@ void Editor::operation_clicked(const Pixel& at) {
 void Editor::do_operation() {
   if (!by_hand_.edit || !quality_.previewed() || !quality_.previewed()->would) return;
   link_.edit(*by_hand_.edit);
-  leave_operation();
+  // What was seen before stays to be seen until it is so.
+  const std::uint64_t generation = by_hand_.generation;
+  if (std::exchange(by_hand_.shown, 0) != 0) preview_kept_ = generation;
+  leave_operation_picked();
 }
 
 void Editor::leave_operation() {
-  if (by_hand_.shown != 0) renderer_.end_preview();
+  if (by_hand_.shown != 0 || std::exchange(preview_kept_, std::nullopt)) renderer_.end_preview();
+  leave_operation_picked();
+}
+
+void Editor::leave_operation_picked() {
   if (by_hand_.operation) trace_.line("operation none");
   by_hand_ = {};
   quality_.forget_preview();
@@ -224,6 +232,11 @@ void Editor::leave_operation() {
 
 /// Shows the preview when it has come; one of another generation would lie about this one.
 void Editor::follow_operation() {
+  const bool in_doubt = link_.editing() || !link_.up_to_date();
+  if (preview_kept_ && !(shown_ && shown_->info().generation == *preview_kept_ && in_doubt)) {
+    preview_kept_.reset();
+    renderer_.end_preview();
+  }
   if (!by_hand_.edit) return;
   if (!shown_ || shown_->info().generation != by_hand_.generation) return leave_operation();
   const auto& previewed = quality_.previewed();

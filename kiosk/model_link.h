@@ -83,6 +83,7 @@ class ModelLink {
   void save(const std::optional<std::filesystem::path>& path);
   void edit(mesh::document::Edit edit);
   /// An edit of this client's is under way that takes long enough to say how far it is.
+  bool editing() const { return edits_ > 0; }
   bool long_edit() const { return edits_ > 0 && !busy_.empty(); }
   /// Asks it to stop: then nothing has happened.
   void cancel_edit();

@@ -56,9 +56,10 @@ bool edit_limit(const char* name, double& value, double span, float width) {
 
 }  // namespace
 
-std::optional<SetLimits> legend(const LegendFacts& facts, display::PixelSize picture) {
-  const float font = ImGui::GetFontSize(), width = on_grid(std::min(22 * font, 0.36f * static_cast<float>(picture.width)));
-  const float limit_width = 5.5f * font;
+DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture) {
+  const float font = ImGui::GetFontSize(), share = static_cast<float>(std::min(0.36, facts.widest));
+  const float width = on_grid(std::min(22 * font, share * static_cast<float>(picture.width) - 3 * kGrid));
+  const float limit_width = std::min(5.5f * font, 0.4f * width);
   ImGui::SetNextWindowPos(
       ImVec2(std::floor(static_cast<float>(facts.centre * picture.width)), static_cast<float>(picture.height) - kMargin), 0,
       ImVec2(0.5f, 1));
@@ -69,17 +70,17 @@ std::optional<SetLimits> legend(const LegendFacts& facts, display::PixelSize pic
   ImGui::TextUnformatted(printable(facts.unit.empty() ? facts.title : facts.title + ", " + facts.unit).c_str());
   if (!facts.of.empty()) {
     ImGui::PushFont(small_font());
-    elided_text(printable(facts.of), inner);
+    ImGui::TextWrapped("%s", printable(facts.of).c_str());
     ImGui::PopFont();
   }
   draw_bar(facts, inner);
-  std::optional<SetLimits> wanted;
+  DrawnLegend drawn;
   double clear = facts.look.clear, full = facts.look.full;
   if (facts.pane) {
     const bool clear_set = edit_limit("##clear", clear, full - clear, limit_width);
     ImGui::SameLine(inner - limit_width + ImGui::GetStyle().WindowPadding.x);
     const bool full_set = edit_limit("##full", full, full - clear, limit_width);
-    if ((clear_set || full_set) && clear != full) wanted = SetLimits{*facts.pane, clear, full};
+    if ((clear_set || full_set) && clear != full) drawn.wanted = SetLimits{*facts.pane, clear, full};
   } else {
     const std::string left = short_number(clear), right = short_number(full);
     ImGui::TextUnformatted(left.c_str());
@@ -88,12 +89,15 @@ std::optional<SetLimits> legend(const LegendFacts& facts, display::PixelSize pic
   }
   ImGui::PushFont(small_font());
   const bool up = full >= clear;
-  ImGui::TextDisabled("%s", printable(fmt::format("{} {}: own colour   {} {} at {}", up ? "up to" : "from", short_number(clear), "most",
-                                                  short_number(facts.max), facts.max_at))
-                                .c_str());
+  const std::string own = printable(fmt::format("{} {}: own colour", up ? "up to" : "from", short_number(clear)));
+  const std::string most = printable(fmt::format("most {} at {}", short_number(facts.max), facts.max_at));
+  ImGui::TextDisabled("%s", own.c_str());
+  if (ImGui::CalcTextSize((own + most).c_str()).x + 2 * kGrid <= inner) ImGui::SameLine(0, 2 * kGrid);
+  ImGui::TextDisabled("%s", most.c_str());
   ImGui::PopFont();
+  drawn.top = ImGui::GetWindowPos().y;
   ImGui::End();
-  return wanted;
+  return drawn;
 }
 
 namespace {

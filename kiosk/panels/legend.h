@@ -19,6 +19,7 @@ struct LegendFacts {
   double min = 0, max = 0;          ///< of the values
   std::string max_at;               ///< "node:12"
   double centre = 0.5;              ///< of the legend, as a share of the picture's width
+  double widest = 1;                ///< the same of the room that it has
   std::optional<std::size_t> pane;  ///< whose limits may be changed here; empty: only shown
 };
 
@@ -28,8 +29,13 @@ struct SetLimits {
   double clear = 0, full = 1;
 };
 
-/// Lays it out at the bottom of the picture (inside Gui::layout). New limits, if they were dragged or typed.
-std::optional<SetLimits> legend(const LegendFacts& facts, display::PixelSize picture);
+struct DrawnLegend {
+  std::optional<SetLimits> wanted;  ///< new limits, if they were dragged or typed
+  float top = 0;                    ///< its upper edge, pixels
+};
+
+/// Lays it out at the bottom of the picture (inside Gui::layout).
+DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture);
 
 /// What can be compared, and what is.
 struct CompareFacts {

@@ -16,11 +16,12 @@ namespace {
 
 using tools::Command;
 
-void notice_panel(const PanelData& data, display::PixelSize picture, Actions& actions) {
+/// `bottom`: the legends stand below it.
+void notice_panel(const PanelData& data, display::PixelSize picture, float bottom, Actions& actions) {
   if (!data.notice) return;
   const float side = data.document ? side_width(picture) + 2 * kMargin : kMargin;
   const float width = static_cast<float>(picture.width) - 2 * side;
-  ImGui::SetNextWindowPos(ImVec2(side, static_cast<float>(picture.height) - kMargin), 0, ImVec2(0, 1));
+  ImGui::SetNextWindowPos(ImVec2(side, bottom), 0, ImVec2(0, 1));
   ImGui::SetNextWindowSize(ImVec2(width, 0));
   ImGui::Begin("Notice", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
   const Notice::Kind kind = data.notice->kind;
@@ -32,7 +33,7 @@ void notice_panel(const PanelData& data, display::PixelSize picture, Actions& ac
   const std::string read = data.more_notices > 0 ? fmt::format("next ({})", data.more_notices) : "close";
   const float button = ImGui::CalcTextSize(read.c_str()).x + 4 * kGrid;
   ImGui::PushTextWrapPos(ImGui::GetWindowContentRegionMax().x - button);
-  ImGui::TextUnformatted(printable(data.notice->text).c_str());
+  ImGui::TextUnformatted(printable_lines(data.notice->text).c_str());
   ImGui::PopTextWrapPos();
   ImGui::SameLine();
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - button + 2 * kGrid);
@@ -98,6 +99,7 @@ int complete(ImGuiInputTextCallbackData* data) {
 
 Actions Panels::build(const PanelData& data, display::PixelSize picture) {
   Actions actions;
+  float bottom = static_cast<float>(picture.height) - kMargin;
   covered_width_ = 2.0 * static_cast<double>(side_width(picture) + kMargin);
   const bool covered = data.help || data.menu || data.dialog == Dialog::open || data.dialog == Dialog::save_as;
   if (data.document && data.connected && !covered) {
@@ -111,8 +113,11 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
       document_panel(data, picture, actions);
     model_panel(data, picture, actions);
     if (data.compare)
-      for (const LegendFacts& facts : data.compare->legends)
-        if (const auto wanted = legend(facts, picture)) actions.emplace_back(*wanted);
+      for (const LegendFacts& facts : data.compare->legends) {
+        const DrawnLegend drawn = legend(facts, picture);
+        if (drawn.wanted) actions.emplace_back(*drawn.wanted);
+        bottom = std::min(bottom, drawn.top - kGrid);
+      }
   }
   state_panel(data, picture);
   if (data.connected && data.dialog != Dialog::none)
@@ -122,7 +127,7 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
   if (data.help) help_panel(data, picture);
   if (data.menu) menu_panel(data, picture, actions);
   guidance_panel(data, picture);
-  notice_panel(data, picture, actions);
+  notice_panel(data, picture, bottom, actions);
   return actions;
 }
 

@@ -31,6 +31,13 @@ namespace {
 using mesh::document::SelectMode;
 using tools::Command;
 
+/// Error words for a line behind a sign, which says already whether it fails.
+std::string error_row(const ipc::QualityError& error) {
+  std::string words = fmt::format("{}  {}", error.shell, metric_words(error.metric));
+  if (error.value) words += "  " + value_words(*error.value, error.unit);
+  return words;
+}
+
 constexpr unsigned kOkBar = 0xffb4b0acu;
 constexpr std::size_t kMostPartRows = 6;
 constexpr float kHistogramHeight = 11 * kGrid;
@@ -155,7 +162,7 @@ void errors_section(const QualityFacts& facts, Actions& actions) {
     ImGui::SetCursorPosX(left);
     draw_signal(error.fail ? Signal::fail : Signal::warn, ImGui::GetFontSize() * 0.65f);
     ImGui::SameLine();
-    elided_text(error_words(error), ImGui::GetWindowContentRegionMax().x - ImGui::GetCursorPosX());
+    elided_text(error_row(error), ImGui::GetWindowContentRegionMax().x - ImGui::GetCursorPosX());
   }
 }
 

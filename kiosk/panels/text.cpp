@@ -72,6 +72,15 @@ std::string printable(std::string_view bytes) {
   return out;
 }
 
+std::string printable_lines(std::string_view bytes) {
+  std::string out;
+  for (std::size_t end = bytes.find('\n'); end != std::string_view::npos; end = bytes.find('\n')) {
+    out += printable(bytes.substr(0, end)) + '\n';
+    bytes.remove_prefix(end + 1);
+  }
+  return out + printable(bytes);
+}
+
 std::string elide_middle(const std::string& text, double available, const std::function<double(std::string_view)>& width) {
   if (text.empty() || width(text) <= available) return text;
   const std::vector<std::string_view> all = characters(text);

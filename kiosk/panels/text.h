@@ -18,6 +18,8 @@ std::string length_text(double length, std::string_view unit);
 
 /// Valid UTF-8 from any bytes: what isn't becomes \xNN, control characters too.
 std::string printable(std::string_view bytes);
+/// The same for a text of several lines: line feeds stay.
+std::string printable_lines(std::string_view bytes);
 
 /// The text with its middle replaced by an ellipsis so that `width(text)` <= `available`; whole characters are dropped. `width`
 /// grows with the text.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "ipc/snapshot.h"
 
@@ -34,6 +35,7 @@ class ModelSource {
   }
 };
 
-std::shared_ptr<const ModelSource> snapshot_source(std::shared_ptr<const ipc::SnapshotView> view);
+/// `hidden`: by part, 1 = hidden, in place of what the snapshot says; parts beyond its end are as the snapshot has them.
+std::shared_ptr<const ModelSource> snapshot_source(std::shared_ptr<const ipc::SnapshotView> view, std::vector<std::uint8_t> hidden = {});
 
 }  // namespace prismesh::kiosk::render

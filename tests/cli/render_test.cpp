@@ -67,6 +67,19 @@ TEST_F(Render, WrongUsageListsWhatThereIs) {
   }
 }
 
+TEST_F(Render, AFieldThatCannotBeShownSaysWhatIsMissing) {
+  const std::pair<std::vector<std::string>, const char*> wrong[] = {
+      {{"--colour", "displacement"}, "--colour displacement: say with --against which deck to compare with"},
+      {{"--colour", "distance", "--from", "1"}, "--colour distance: say with --from which nodes are coloured, and with --to"},
+      {{"--colour", "metric:warpige"}, "the nearest is \"metric:warpage\""},
+      {{"--colour", "displacement", "--against", "none.k"}, "none.k: can't be opened"}};
+  for (const auto& [options, words] : wrong) {
+    EXPECT_EQ(draw(options).status, kFailed) << options[1];
+    EXPECT_THAT(said_, HasSubstr(words));
+    EXPECT_FALSE(exists("a.png"));
+  }
+}
+
 TEST_F(Render, NothingIsWrittenOnFailure) {
   EXPECT_EQ(draw({"--select", "1,99"}).status, kFailed);
   EXPECT_THAT(said_, StartsWith("expression:3: "));

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -59,13 +58,6 @@ class QualityTest : public ::testing::Test {
       for (std::size_t i = 0; i < 3; ++i) at[i] += nodes.at(node)[i] / 4;
     return at;
   }
-  std::array<double, 2> settled_pixel(const Point& at) {
-    for (std::string before, now = station_->kiosk().last("aim ");; before = now) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
-      now = station_->kiosk().last("aim ");
-      if (now == before) return Station::aim_from(now).pixel_of(at);
-    }
-  }
 
   std::unique_ptr<Station> station_;
   std::string original_;
@@ -98,7 +90,7 @@ TEST_F(QualityTest, errors_are_gone_to_worst_first_and_named) {
     seen.insert(shell);
     const auto& corners = shells_.at(shell);
     EXPECT_NE(std::find(corners.begin(), corners.end(), middle), corners.end()) << "the worst are those about the dent";
-    const auto at = settled_pixel(centre(shell, dented));
+    const auto at = station_->settled_aim().pixel_of(centre(shell, dented));
     EXPECT_NEAR(at[0], 500, 3);
     EXPECT_NEAR(at[1], 320, 3);
   }

@@ -185,6 +185,14 @@ Station::Aim Station::aim_from(const std::string& said) {
   return aim;
 }
 
+Station::Aim Station::settled_aim() {
+  for (std::string before, now = kiosk_->last("aim ");; before = now) {
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    now = kiosk_->last("aim ");
+    if (now == before) return aim_from(now);
+  }
+}
+
 Station::Aim Station::aim() { return aim_from(kiosk_->last("aim ")); }
 
 std::array<double, 2> Station::Aim::pixel_of(const Point& point) const {

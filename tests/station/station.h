@@ -79,6 +79,8 @@ class Station {
   };
   static Aim aim_from(const std::string& line);
   Aim aim();
+  /// The same once the view has come to rest: nothing new was said of it for a second.
+  Aim settled_aim();
   /// Where a deck point is on the picture.
   std::array<double, 2> pixel_of(const Point& point) { return aim().pixel_of(point); }
   /// Waits until `selected` nodes are selected in the newest generation and the handle for them is on the picture.

@@ -3,7 +3,6 @@
 #include <fstream>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -37,14 +36,6 @@ class ToolsTest : public ::testing::Test {
     nodes_ = nodes_of_deck(original_);
   }
   const Point& middle() const { return nodes_.at(kFirstNode + (kSheetSide / 2) * kSheetSide + kSheetSide / 2); }
-  /// Waits until the view has come to rest.
-  Station::Aim settled() {
-    for (std::string before, now = station_->kiosk().last("aim ");; before = now) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(250));
-      now = station_->kiosk().last("aim ");
-      if (now == before) return Station::aim_from(now);
-    }
-  }
   void select_by_expression(const std::string& expression, std::size_t nodes) {
     station_->key("e");
     station_->type(expression);
@@ -91,7 +82,7 @@ TEST_F(ToolsTest, a_lasso_takes_what_it_goes_round_though_the_view_moves_meanwhi
   station_->release(3);
   station_->click(way[2][0], way[2][1], 4);
   for (std::size_t i = 3; i < way.size(); ++i) station_->move(way[i][0], way[i][1]);
-  const Station::Aim aim = settled();
+  const Station::Aim aim = station_->settled_aim();
   station_->show_people("lasso");
   station_->kiosk().skip_lines();
   station_->release();
@@ -182,7 +173,7 @@ TEST_F(ToolsTest, a_turn_about_a_picked_axis_keeps_each_nodes_distance_from_it) 
   station_->click(one[0], one[1]);
   ASSERT_FALSE(station_->kiosk().wait_for("axis first node").empty());
   station_->drag(one[0], one[1], one[0] + 30, one[1] + 10, 3);  // the pick outlives another view
-  const Pixel two = settled().pixel_of(nodes_.at(second));
+  const Pixel two = station_->settled_aim().pixel_of(nodes_.at(second));
   station_->click(two[0], two[1]);
   std::stringstream axis(station_->kiosk().wait_for("axis through two nodes"));
   std::string word;
