@@ -204,11 +204,23 @@ class Differ {
       const std::string_view old = text.substr(offset, end - offset);
       WrittenCard card = writer_->move_node(text, offset, run.style, move->from, move->to);
       if (card.by_parameter) return refuse_node(by_parameter(old) + "; it can't be moved");
+      leave_equal_coordinates(card, run, offset, *move);
       note_rounding(card, run, offset, node_name(node));
       ++out_.nodes_moved;
       if (card.text != old) replace(run, offset, end, std::move(card.text));
     }
     return {};
+  }
+
+  /// Where a coordinate moved by less than its field holds, its old digits stay.
+  void leave_equal_coordinates(WrittenCard& card, const CardRun& run, std::size_t offset, const CardMove& move) const {
+    const std::optional<Vec3> was = writer_->node_coordinates(text_of(run), offset, run.style);
+    const std::optional<Vec3> is = writer_->node_coordinates(card.text, 0, run.style);
+    if (!was || !is) return;
+    Vec3 to = move.to;
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      if ((*was)[axis] == (*is)[axis]) to[axis] = move.from[axis];
+    if (to != move.to) card.text = writer_->move_node(text_of(run), offset, run.style, move.from, to).text;
   }
 
   Result<void> nodes() {

@@ -159,6 +159,20 @@ TEST(Save, reads_back_within_the_fields_precision) {
   }
 }
 
+TEST(Save, leaves_a_coordinates_digits_where_the_field_holds_no_difference) {
+  const DeckFolder folder;
+  const std::string first = "*NODE\n       1       2500.0000            2.50            3.00\n";
+  const auto opened = folder.open(first);
+  ASSERT_OPENED(opened);
+  const auto moved_to = [&](const Vec3& at) {
+    const auto saved = save(*opened->deck, opened->model, with_node_at(opened->model, 1, at), folder / "out/deck.k");
+    EXPECT_TRUE(saved) << saved.error().text();
+    return content(folder / "out/deck.k");
+  };
+  EXPECT_EQ(moved_to({2500 + 1e-12, 2.5, 3}), first);
+  EXPECT_EQ(moved_to({2500 + 1e-12, 2.75, 3}), "*NODE\n       1       2500.0000            2.75            3.00\n");
+}
+
 TEST(Save, in_place_writes_only_the_files_that_change) {
   const DeckFolder folder;
   folder.write("a.k", "*NODE\n2,2.,0.,0.\n");
