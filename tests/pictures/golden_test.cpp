@@ -208,6 +208,34 @@ TEST_F(GoldenPicture, PartsByTheirState) {
   compare("part_states", draw(picture, kWidth, kHeight));
 }
 
+/// Before on the left, after on the right, by how far nodes went.
+TEST_F(GoldenPicture, BeforeAndAfterByDisplacement) {
+  test::TestSource before = model(), after = model();
+  std::vector<float> way(after.positions.size(), 0);
+  for (std::size_t n = 0; n < after.positions.size(); ++n) {
+    after.node_marks[n] = before.node_marks[n] = 0;
+    const double far = (after.positions[n] - model().positions[23 * 14 + 11]).norm() / 70;
+    const double lift = 9 * std::max(0.0, 1 - far * far);
+    after.positions[n].z() += lift;
+    way[n] = n % 23 == 13 ? std::nanf("") : static_cast<float>(lift);  // a row that is new has no way
+  }
+  show(after);
+  ASSERT_TRUE(renderer_->set_field(Pane::model, way, true));
+  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  picture.colour = ColourMode::field;
+  picture.quality_glyphs = false;
+  picture.field[0] = {true, 1, 8, ColourMap::crimson, 0};
+  compare("field", draw(picture, kWidth, kHeight));
+  picture.field[0].map = ColourMap::blues;
+  picture.field[0].bands = 6;
+  ASSERT_TRUE(renderer_->set_other(std::make_shared<test::TestSource>(before)));
+  picture.two_views = TwoViews{true, 0.25};
+  picture.view.mm_per_unit *= 0.5;
+  compare("two_views", draw(picture, kWidth, kHeight));
+  picture.profile = *stereo::find_profile("prism-mask");
+  compare("two_views_prism_mask", draw(picture, kWidth, kHeight));
+}
+
 TEST_F(GoldenPicture, WhatASplitWouldDo) {
   test::TestSource source = model();
   show(source);
