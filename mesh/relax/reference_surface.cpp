@@ -19,7 +19,8 @@ namespace prismesh::mesh::relax {
 namespace {
 
 constexpr double kMostLean = 60;       ///< degrees
-constexpr double kNearFoot = 1e-2;     ///< of the size: so far beside the nearest place another one is good enough
+constexpr double kNearFoot = 1e-3;     ///< of the size: so far beside the nearest place another one is good enough
+constexpr int kMostFeet = 6;           ///< places tried on the way to the nearest one
 constexpr int kMostSteps = 256;        ///< of a walk over shells
 constexpr double kFarthestOff = 0.25;  ///< of a shell's longest diagonal: farther from its facets the fits aren't believed
 
@@ -185,15 +186,22 @@ ReferenceSurface& ReferenceSurface::operator=(ReferenceSurface&&) noexcept = def
 const Model& ReferenceSurface::model() const { return state_->model; }
 
 OnSurface ReferenceSurface::follow(ShellIndex from, const Vec3& point) const {
-  const auto [first_shell, first_facet] = state_->walk(from, point);
-  OnSurface on = state_->blend(first_shell, first_facet);
-  // The foot on the facets isn't quite the foot on the surface for a point off it: again from where the surface's normal leads.
-  const double off = (point - on.point).dot(on.normal);
-  if (const Vec3 foot = point - off * on.normal; (foot - on.point).squaredNorm() > kNearFoot * kNearFoot * on.size * on.size) {
-    const auto [shell, facet] = state_->walk(first_shell, foot);
-    on = state_->blend(shell, facet);
-  }
+  auto [shell, facet] = state_->walk(from, point);
+  OnSurface on = state_->blend(shell, facet);
   on.distance = (point - on.point).norm();
+  // The foot on the facets isn't quite the foot on the surface: along the facets by as much as the point is beside the place that it led
+  // to.
+  for (int i = 1; i < kMostFeet; ++i) {
+    const Vec3 off = point - on.point, beside = off - on.normal * off.dot(on.normal);
+    if (!(beside.squaredNorm() > kNearFoot * kNearFoot * on.size * on.size)) break;
+    const auto [next_shell, next_facet] = state_->walk(shell, facet.point + beside);
+    OnSurface next = state_->blend(next_shell, next_facet);
+    next.distance = (point - next.point).norm();
+    if (!(next.distance < on.distance)) break;
+    on = next;
+    shell = next_shell;
+    facet = next_facet;
+  }
   return on;
 }
 

@@ -214,17 +214,9 @@ bool keeps_to_surface(const Site& site) {
 }
 
 std::optional<Vec3> on_surface(const Site& site, const Vec3& point, const Vec3& toward, double radius) {
-  // Where the smooth surface bends, the nearest place of a nearest place may be another one; a few times on they agree.
   const std::optional<Vec3> direction = toward.squaredNorm() > 0 ? std::optional<Vec3>(toward.normalized()) : std::nullopt;
-  const double close = 0.25 * site.options.most_off_surface * site.judge.target_size;
-  std::optional<Vec3> found;
-  for (int time = 0; time < 3; ++time) {
-    const auto place = site.surface.project(found.value_or(point), radius, direction);
-    if (!place || !place->point.allFinite()) return std::nullopt;
-    found = place->point;
-    if (place->distance <= close) break;
-  }
-  return found;
+  const auto place = site.surface.project(point, radius, direction);
+  return place && place->point.allFinite() ? std::optional<Vec3>(place->point) : std::nullopt;
 }
 
 Vec3 area_normal(const Patch& patch, const Corners& corners) {
