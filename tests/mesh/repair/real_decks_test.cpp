@@ -103,6 +103,7 @@ struct Damage {
   double radius;  ///< in target sizes
   double height;  ///< in radii
 };
+void PrintTo(const Damage& damage, std::ostream* out) { *out << damage.deck << ", a bump " << damage.height << " radii high"; }
 
 double deviation(const Model& model, const relax::ReferenceSurface& surface, const Repaired& repaired, double size) {
   double farthest = 0;
@@ -123,6 +124,9 @@ class RealDecks : public testing::TestWithParam<Damage> {};
 TEST_P(RealDecks, are_repaired_where_a_bump_damaged_them) {
   const auto models = test::real_decks();
   if (!models) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
+#ifdef __SANITIZE_ADDRESS__
+  if (GetParam().height > 0.6) GTEST_SKIP() << "the steeper bumps take the same ways oftener: minutes where every access is checked";
+#endif
   auto opened = deck::open(*models / GetParam().deck);
   ASSERT_TRUE(opened.has_value());
   Model model = opened->model;
@@ -195,7 +199,10 @@ std::vector<Damage> damages() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Repair, RealDecks, testing::ValuesIn(damages()));
+INSTANTIATE_TEST_SUITE_P(Repair, RealDecks, testing::ValuesIn(damages()), [](const auto& info) {
+  const std::string deck = info.param.deck;
+  return deck.substr(0, deck.find('/')) + "_" + std::to_string(static_cast<int>(10 * info.param.height + 0.5));
+});
 
 }  // namespace
 }  // namespace prismesh::mesh::repair
