@@ -199,9 +199,9 @@ std::vector<Damage> damages() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Repair, RealDecks, testing::ValuesIn(damages()), [](const auto& info) {
-  const std::string deck = info.param.deck;
-  return deck.substr(0, deck.find('/')) + "_" + std::to_string(static_cast<int>(10 * info.param.height + 0.5));
+INSTANTIATE_TEST_SUITE_P(Repair, RealDecks, testing::ValuesIn(damages()), [](const auto& bump) {
+  const std::string deck = bump.param.deck;
+  return deck.substr(0, deck.find('/')) + "_" + std::to_string(static_cast<int>(10 * bump.param.height + 0.5));
 });
 
 }  // namespace
