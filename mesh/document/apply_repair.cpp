@@ -130,7 +130,8 @@ Result<void> apply_edit(const Document& document, const Restructure& edit, Gener
   about.insert(about.end(), hand->shells.begin(), hand->shells.end());
   const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
   const Result<repair::Restructuring> change =
-      repair::by_hand(current.model, surface, edit.operation, hand->shells, hand->nodes, rules_for(document, current), options);
+      repair::by_hand(current.model, surface, edit.operation, hand->shells, hand->nodes, rules_for(document, current),
+                      {document.settings.criteria, document.settings.target_size}, options);
   if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
   return restructure(document, *change, next, report);
 }

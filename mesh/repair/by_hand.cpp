@@ -200,7 +200,7 @@ Result<void> carry_out(const Hand& hand, Operation operation) {
 
 Result<Restructuring> by_hand(const Model& model, const relax::ReferenceSurface& surface, Operation operation,
                               std::span<const ShellIndex> shells, std::span<const NodeIndex> nodes, const Rules& rules,
-                              const Options& options) {
+                              const relax::Judge& judge, const Options& options) {
   ShellSet scope(shells.begin(), shells.end());
   for (const NodeIndex node : nodes)
     for (const ShellIndex shell : model.adjacency->shells_of(node)) scope.push_back(shell);
@@ -208,14 +208,7 @@ Result<Restructuring> by_hand(const Model& model, const relax::ReferenceSurface&
   scope.erase(std::unique(scope.begin(), scope.end()), scope.end());
   if (scope.empty()) return fail("", "there is no shell");
   Patch patch(model, scope, kRings, rules, options.relax.feature_angle);
-  double size = 0;
-  for (const ShellIndex shell : scope) {
-    const ShellNodes& corners = model.shell(shell);
-    for (std::size_t i = 0; i < 4; ++i)
-      size = std::max(size, (model.position(corners.node[i]) - model.position(corners.node[(i + 1) % 4])).norm());
-  }
-  const relax::Judge judge{quality::default_criteria(), size};
-  const Site site{patch, surface, judge, options, quality::limits_for(judge.criteria, size)};
+  const Site site{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)};
   patch.begin();
   const Result<void> done = carry_out({site, model, shells, nodes}, operation);
   if (!done) return fail(done.error());
