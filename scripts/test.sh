@@ -16,7 +16,7 @@ attribute() { sed -n "s/.*<testsuite.*[[:space:]]$2=\"\([0-9]*\)\".*/\1/p; t" "$
 
 # run_ctest NAME BUILD_FOLDER [ctest arguments]
 run_ctest() {
-  local name=$1 folder=$2 status=0 junit=out/test/$1.xml total=0 bad=0 left=0
+  local name=$1 folder=$2 status=0 junit=out/test/$1.xml total=0 bad=0 left=0 which=
   shift 2
   say "Tests: $name"
   rm -f "$junit"
@@ -28,6 +28,7 @@ run_ctest() {
     total=$(attribute "$junit.flat" tests)
     bad=$(attribute "$junit.flat" failures)
     left=$(($(attribute "$junit.flat" skipped) + $(attribute "$junit.flat" disabled)))
+    which=$(sed -n 's/.*<testcase.* name="\([^"]*\)".*status="fail".*/\1/p' "$junit.flat")
     rm -f "$junit.flat"
   fi
   # A run that ended badly without a failed test (no test found, a crash of the runner) is a failure all the same.
@@ -38,7 +39,7 @@ run_ctest() {
   passed=$((passed + total - bad - left))
   failed=$((failed + bad))
   skipped=$((skipped + left))
-  [ "$bad" -gt 0 ] && failures+=("$name: $bad")
+  [ "$bad" -gt 0 ] && failures+=("$name: $bad${which:+$(printf '\n        %s' $which)}")
   return 0
 }
 
