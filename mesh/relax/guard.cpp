@@ -12,93 +12,152 @@ namespace prismesh::mesh::relax {
 namespace {
 
 constexpr std::size_t kShellsAtOnce = 1024;
-constexpr int kHalvings = 3;  ///< then a node stays where it was
+constexpr int kHalvings = 3;  ///< then a node goes back to where it was when its shells were last looked at, and then to its start
 
-Vec3 normal_of(const std::array<std::int32_t, 4>& corners, const std::vector<Vec3>& places) {
-  const auto at = [&](std::size_t c) -> const Vec3& { return places[static_cast<std::size_t>(corners[c])]; };
-  if (corners[3] == corners[2]) return (at(1) - at(0)).cross(at(2) - at(0));
+bool is_triangle(const std::array<std::int32_t, 4>& corners) { return corners[3] == corners[2]; }
+
+template <class PlaceOf>
+Vec3 normal_of(const std::array<std::int32_t, 4>& corners, const PlaceOf& place_of) {
+  const auto at = [&](std::size_t c) -> const Vec3& { return place_of(static_cast<std::uint32_t>(corners[c])); };
+  if (is_triangle(corners)) return (at(1) - at(0)).cross(at(2) - at(0));
   return (at(2) - at(0)).cross(at(3) - at(1));
+}
+
+auto in(const std::vector<Vec3>& places) {
+  return [&places](std::uint32_t node) -> const Vec3& { return places[node]; };
 }
 
 }  // namespace
 
-Guard::Guard(const Model& model, const Net& net, const Judge& judge) : net_(net), judge_(judge) {
+template <class PlaceOf, class Sink>
+void Guard::measure(std::span<const std::uint32_t> shells, const PlaceOf& place_of, const Sink& sink) const {
+  quality::measure_in_batches(
+      shells.size(),
+      [&](std::size_t i, const Vec3*(&corner)[4]) {
+        const std::array<std::int32_t, 4>& corners = net_.corners[shells[i]];
+        for (std::size_t c = 0; c < 4; ++c) corner[c] = &place_of(static_cast<std::uint32_t>(corners[c]));
+        return is_triangle(corners) ? quality::Shape::triangle : quality::Shape::quad;
+      },
+      [&](const quality::ShellBatch& batch, const quality::BatchValues& values) {
+        quality::Sheet room[quality::kLanes];
+        if (!sheets_.empty())
+          for (std::size_t lane = 0; lane < batch.count; ++lane) room[lane] = sheets_[shells[batch.slot[lane]]];
+        const quality::Sheet* sheets = sheets_.empty() ? nullptr : room;
+        quality::ShellState states[quality::kLanes];
+        float composites[quality::kLanes];
+        quality::judge_lanes(values, batch.count, limits_, sheets, states);
+        quality::rate_lanes(values, batch.count, limits_, sheets, composites);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) sink(batch.slot[lane], Verdict{states[lane], composites[lane]});
+      });
+}
+
+template <class PlaceOf>
+bool Guard::is_bad(std::uint32_t shell, const Verdict& verdict, const PlaceOf& place_of) const {
+  const bool new_mark = (verdict.state.fail & ~state_[shell].fail) != 0 || (verdict.state.warn & ~state_[shell].warn) != 0;
+  if (new_mark || !(verdict.composite >= least_[shell])) return true;
+  return normal_of(net_.corners[shell], place_of).dot(normal_of(net_.corners[shell], in(net_.start))) < 0;  // turned over
+}
+
+Guard::Guard(const Model& model, const Net& net, const Judge& judge)
+    : net_(net), limits_(quality::limits_for(judge.criteria, judge.target_size)) {
   const std::size_t count = net.shells.size();
-  sheets_.resize(count);
-  for (std::size_t s = 0; s < count; ++s) sheets_[s] = quality::sheet_of(model, net.shells[s]);
+  if (limits_.need_sheets()) {
+    sheets_.resize(count);
+    for (std::size_t s = 0; s < count; ++s) sheets_[s] = quality::sheet_of(model, net.shells[s]);
+  }
   state_.resize(count);
   least_.resize(count);
   std::vector<std::uint32_t> all(count);
   std::iota(all.begin(), all.end(), 0u);
-  rate(all, net.start, state_, least_);
+  parallel_for(count, kShellsAtOnce, [&](std::size_t begin, std::size_t end) {
+    measure(std::span(all).subspan(begin, end - begin), in(net_.start), [&](std::size_t i, const Verdict& verdict) {
+      state_[begin + i] = verdict.state;
+      least_[begin + i] = verdict.composite;
+    });
+  });
   // One that fails doesn't get worse; of the others none becomes the new worst.
   const float worst = count > 0 ? std::max(*std::min_element(least_.begin(), least_.end()), 0.0F) : 0.0F;
   for (float& least : least_) least = least < 0 ? least : std::min(least, worst);
+  find_shells_of_nodes();
 }
 
-void Guard::rate(std::span<const std::uint32_t> shells, const std::vector<Vec3>& places, std::span<quality::ShellState> states,
-                 std::span<float> composites) const {
+void Guard::find_shells_of_nodes() {
+  const auto each_corner = [&](const auto& use) {
+    for (std::size_t s = 0; s < net_.corners.size(); ++s)
+      for (std::size_t c = 0; c < (is_triangle(net_.corners[s]) ? 3u : 4u); ++c)
+        if (const auto node = static_cast<std::uint32_t>(net_.corners[s][c]); node < net_.movable) use(node, static_cast<std::uint32_t>(s));
+  };
+  first_shell_.assign(net_.movable + 1, 0);
+  each_corner([&](std::uint32_t node, std::uint32_t) { ++first_shell_[node + 1]; });
+  std::partial_sum(first_shell_.begin(), first_shell_.end(), first_shell_.begin());
+  shells_.resize(first_shell_.back());
+  std::vector<std::uint32_t> next(first_shell_.begin(), first_shell_.end() - 1);
+  each_corner([&](std::uint32_t node, std::uint32_t shell) { shells_[next[node]++] = shell; });
+}
+
+bool Guard::allows(std::uint32_t node, const Vec3& place, const std::vector<Vec3>& places) const {
+  const auto place_of = [&](std::uint32_t n) -> const Vec3& { return n == node ? place : places[n]; };
+  const std::span<const std::uint32_t> shells = shells_of(node);
+  bool all_well = true;
+  measure(shells, place_of, [&](std::size_t i, const Verdict& verdict) { all_well = all_well && !is_bad(shells[i], verdict, place_of); });
+  return all_well;
+}
+
+std::vector<std::uint8_t> Guard::find_bad(std::span<const std::uint32_t> shells, const std::vector<Vec3>& places) const {
+  std::vector<std::uint8_t> bad(shells.size());
   parallel_for(shells.size(), kShellsAtOnce, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::array<std::int32_t, 4>> corners;
-    std::vector<quality::Sheet> sheets;
-    for (std::size_t i = begin; i < end; ++i) {
-      corners.push_back(net_.corners[shells[i]]);
-      sheets.push_back(sheets_[shells[i]]);
-    }
-    quality::judge_points(places, {}, corners, sheets, judge_.criteria, judge_.target_size, states.subspan(begin, end - begin),
-                          composites.subspan(begin, end - begin));
+    measure(shells.subspan(begin, end - begin), in(places),
+            [&](std::size_t i, const Verdict& verdict) { bad[begin + i] = is_bad(shells[begin + i], verdict, in(places)) ? 1 : 0; });
   });
+  return bad;
 }
 
-void Guard::judge(std::span<const std::uint32_t> shells, const std::vector<Vec3>& places, std::span<std::uint8_t> is_bad) const {
-  std::vector<quality::ShellState> states(shells.size());
-  std::vector<float> composites(shells.size());
-  rate(shells, places, states, composites);
-  parallel_for(shells.size(), kShellsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t s = shells[i];
-      const bool new_mark = (states[i].fail & ~state_[s].fail) != 0 || (states[i].warn & ~state_[s].warn) != 0;
-      const bool turned_over = normal_of(net_.corners[s], places).dot(normal_of(net_.corners[s], net_.start)) < 0;
-      is_bad[i] = new_mark || turned_over || !(composites[i] >= least_[s]) ? 1 : 0;
-    }
-  });
-}
-
-std::size_t Guard::hold_back(const ReferenceSurface& surface, std::vector<Vec3>& places, std::vector<Footing>& footing) const {
-  const std::vector<Vec3> wanted = places;
-  std::vector<std::uint8_t> halvings(net_.movable, 0), changed(net_.nodes.size(), 0);
-  std::vector<std::uint32_t> shells(net_.shells.size());
-  std::iota(shells.begin(), shells.end(), 0u);
+Guard::Held Guard::hold_back(const ReferenceSurface& surface, const std::vector<Vec3>& good, std::vector<Vec3>& places,
+                             std::vector<Footing>& footing) const {
+  Held held;
+  std::vector<std::uint32_t> shells;
+  for (std::uint32_t s = 0; s < net_.corners.size(); ++s)
+    if (std::any_of(net_.corners[s].begin(), net_.corners[s].end(),
+                    [&](std::int32_t n) { return places[static_cast<std::size_t>(n)] != good[static_cast<std::size_t>(n)]; }))
+      shells.push_back(s);
+  std::vector<Vec3> wanted;
+  std::vector<std::uint8_t> times(net_.movable, 0), is_listed(net_.movable, 0);
   while (!shells.empty()) {
-    std::vector<std::uint8_t> is_bad(shells.size());
-    judge(shells, places, is_bad);
+    const std::vector<std::uint8_t> bad = find_bad(shells, places);
     std::vector<std::uint32_t> back;
-    for (std::size_t i = 0; i < shells.size(); ++i)
-      if (is_bad[i] != 0)
-        for (const std::int32_t node : net_.corners[shells[i]])
-          if (const auto n = static_cast<std::uint32_t>(node); n < net_.movable && changed[n] == 0 && places[n] != net_.start[n]) {
-            changed[n] = 1;
-            ++halvings[n];
-            back.push_back(n);
-          }
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+      if (bad[i] == 0) continue;
+      held.shells.push_back(shells[i]);
+      for (const std::int32_t corner : net_.corners[shells[i]])
+        if (const auto n = static_cast<std::uint32_t>(corner); n < net_.movable && is_listed[n] == 0 && places[n] != net_.start[n]) {
+          is_listed[n] = 1;
+          ++times[n];
+          back.push_back(n);
+        }
+    }
+    if (wanted.empty() && !back.empty()) wanted = places;
     parallel_for(back.size(), kShellsAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const std::uint32_t n = back[i];
-        const double share = 1.0 / static_cast<double>(1 << halvings[n]);
-        if (halvings[n] > kHalvings)
-          places[n] = net_.start[n];
-        else
-          places[n] = put_back(surface, net_.start[n] + share * (wanted[n] - net_.start[n]), footing[n]);
+        const double share = times[n] > kHalvings ? 0 : 1.0 / static_cast<double>(1 << times[n]);
+        const Vec3& from = times[n] > kHalvings + 1 ? net_.start[n] : good[n];
+        places[n] = put_back(surface, from + share * (wanted[n] - good[n]), footing[n]);
+        if (times[n] > kHalvings + 1) places[n] = net_.start[n];
       }
     });
     shells.clear();
-    for (std::size_t s = 0; !back.empty() && s < net_.corners.size(); ++s)
-      if (std::any_of(net_.corners[s].begin(), net_.corners[s].end(),
-                      [&](std::int32_t n) { return changed[static_cast<std::size_t>(n)] != 0; }))
-        shells.push_back(static_cast<std::uint32_t>(s));
-    for (const std::uint32_t n : back) changed[n] = 0;
+    for (const std::uint32_t n : back) {
+      is_listed[n] = 0;
+      shells.insert(shells.end(), shells_of(n).begin(), shells_of(n).end());
+    }
+    std::sort(shells.begin(), shells.end());
+    shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
   }
-  return static_cast<std::size_t>(std::count_if(halvings.begin(), halvings.end(), [](std::uint8_t h) { return h > 0; }));
+  std::sort(held.shells.begin(), held.shells.end());
+  held.shells.erase(std::unique(held.shells.begin(), held.shells.end()), held.shells.end());
+  for (std::uint32_t n = 0; n < net_.movable; ++n)
+    if (times[n] > 0) held.nodes.push_back(n);
+  return held;
 }
 
 }  // namespace prismesh::mesh::relax

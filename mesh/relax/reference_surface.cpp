@@ -72,7 +72,7 @@ OnFacet on_quad(const std::array<Vec3, 4>& p, const Vec3& point) {
   double s = half.share[1] + half.share[2], t = half.share[2] + half.share[3];
   const auto bilinear = [&] { return at_shares(p, {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t}, point); };
   OnFacet best = bilinear();
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3 && best.distance2 > 0; ++i) {
     const Vec3 by_s = (1 - t) * (p[1] - p[0]) + t * (p[2] - p[3]);
     const Vec3 by_t = (1 - s) * (p[3] - p[0]) + s * (p[2] - p[1]);
     const Vec3 off = point - best.point;
@@ -134,7 +134,8 @@ struct ReferenceSurface::State {
 std::pair<ShellIndex, OnFacet> ReferenceSurface::State::walk(ShellIndex from, const Vec3& point) const {
   ShellIndex at = from;
   OnFacet best = on_facet(model, model.shell(at), point);
-  for (int step = 0; step < kMostSteps; ++step) {
+  // none is nearer than where the point is
+  for (int step = 0; step < kMostSteps && best.distance2 > 0; ++step) {
     const ShellNodes& nodes = model.shell(at);
     const int corners = nodes.corners();
     ShellIndex better;

@@ -19,12 +19,12 @@ constexpr double kLeastMove = 1e-9;  ///< of the size: less is rounding, and the
 
 bool goes_on(const Progress& progress, double fraction) { return !progress || progress(fraction); }
 
-Relaxed gather(const Net& net, const Settling& settling, const Settled& settled, std::size_t held_back) {
+Relaxed gather(const Net& net, const Settling& settling, const Settled& settled) {
   Relaxed relaxed;
   relaxed.rounds = settled.rounds;
   relaxed.converged = settled.converged;
-  relaxed.held_back = held_back;
   for (std::size_t i = 0; i < net.movable; ++i) {
+    relaxed.held_back += settling.held[i];
     const double moved = (settling.at[i] - net.start[i]).norm();
     if (!(moved > kLeastMove * net.size[i])) continue;
     relaxed.nodes.push_back(net.nodes[i]);
@@ -56,18 +56,17 @@ Result<Net> find_net(const Model& model, const ReferenceSurface& surface, const 
                   [&](double fraction) { return goes_on(progress, kShareOfNet * fraction); });
 }
 
-/// Settles, then holds back.
+/// Settles, within what the guard allows.
 Result<Relaxed> settle(const Model& model, const ReferenceSurface& surface, const Net& net, const Judge& judge, const Options& options,
                        const Progress& progress, Spreading* spreading) {
   if (!goes_on(progress, kShareOfNet)) return fail(cancelled());
   const Guard guard(model, net, judge);
-  Settling settling(net, surface, options);
+  Settling settling(net, surface, guard, options);
   Watch watch(progress);
   const Settled settled = settling.run(spreading, [&](double at_rest) { return watch(at_rest); });
   if (settled.was_stopped || !goes_on(progress, kShareOfNet + kShareOfSettling)) return fail(cancelled());
-  const std::size_t held_back = guard.hold_back(surface, settling.at, settling.footing);
   if (!goes_on(progress, 1)) return fail(cancelled());
-  return gather(net, settling, settled, held_back);
+  return gather(net, settling, settled);
 }
 
 /// Nodes of `movable` within so many shells of a node, ascending; `rim`: those of the last ring, ascending.

@@ -19,6 +19,9 @@ constexpr double kMostDrift = 0.2;     ///< of the size: then a node is put back
 constexpr float kMostGain = 1.5F;      ///< steps go so far beyond the balance, which the neighbours follow
 constexpr int kRecoveringRounds = 50;  ///< until then a node that turned back gathers pace again
 constexpr double kSwing = 0.25;        ///< of the last step: going back farther is swinging, not settling
+constexpr double kMostInVain = 0.5;    ///< of its way, that being put back on the surface undoes: more, and the node leads nowhere
+constexpr int kFirstCheck = 12;        ///< rounds until the guard looks first
+constexpr int kChecksApart = 3;        ///< times as many rounds before each next time
 constexpr float kLeastGain = 0.02F;    ///< and so far towards it where they turned back again and again
 
 /// Force along the directions a node may take, and how it grows with displacement there: 2x2, symmetric.
@@ -48,17 +51,21 @@ Pull pull_on(const Vec3& at, std::span<const Spring> springs, const std::vector<
 
 }  // namespace
 
-Settling::Settling(const Net& net, const ReferenceSurface& surface, const Options& options)
+Settling::Settling(const Net& net, const ReferenceSurface& surface, const Guard& guard, const Options& options)
     : at(net.start),
       footing(net.footing),
       limited(net.movable, 0),
+      held(net.movable, 0),
       net_(net),
       surface_(surface),
+      guard_(guard),
       options_(options),
+      good_(net.start),
       last_(net.movable, Vec3::Zero()),
       gain_(net.movable, kMostGain),
       drift_(net.movable, 0),
-      awake_(net.movable, 1) {}
+      awake_(net.movable, 1),
+      careful_(net.movable, 0) {}
 
 std::optional<double> Settling::limit_of(std::size_t node) const {
   return footing[node].freedom == Freedom::line ? options_.most_on_line : options_.most_on_surface;
@@ -79,37 +86,68 @@ void Settling::land(std::size_t node) {
   if (limit && (at[node] - net_.start[node]).norm() > *limit) at[node] = net_.start[node];
 }
 
-/// Returns whether the node is still on the move.
-bool Settling::step(std::size_t node) {
-  Footing& foot = footing[node];
-  Vec3 move = Vec3::Zero();
+/// To where the node's springs balance.
+Vec3 Settling::balancing_step(std::size_t node) const {
+  const Footing& foot = footing[node];
   if (foot.freedom == Freedom::line) {
     const Pull pull = pull_on(at[node], net_.springs_of(node), at, foot.direction, Vec3::Zero());
-    if (pull.uu > 0) move = pull.u / pull.uu * foot.direction;
-  } else {
-    int axis = 0;
-    foot.direction.cwiseAbs().minCoeff(&axis);
-    const Vec3 u = foot.direction.cross(Vec3::Unit(axis)).normalized();
-    const Vec3 v = foot.direction.cross(u);
-    Pull pull = pull_on(at[node], net_.springs_of(node), at, u, v);
-    const double little = 1e-3 * (pull.uu + pull.vv);
-    pull.uu += little;
-    pull.vv += little;
-    const double determinant = pull.uu * pull.vv - pull.uv * pull.uv;
-    if (determinant > 0) move = ((pull.vv * pull.u - pull.uv * pull.v) * u + (pull.uu * pull.v - pull.uv * pull.u) * v) / determinant;
+    return pull.uu > 0 ? Vec3(pull.u / pull.uu * foot.direction) : Vec3::Zero();
   }
+  int axis = 0;
+  foot.direction.cwiseAbs().minCoeff(&axis);
+  const Vec3 u = foot.direction.cross(Vec3::Unit(axis)).normalized();
+  const Vec3 v = foot.direction.cross(u);
+  Pull pull = pull_on(at[node], net_.springs_of(node), at, u, v);
+  const double little = 1e-3 * (pull.uu + pull.vv);
+  pull.uu += little;
+  pull.vv += little;
+  const double determinant = pull.uu * pull.vv - pull.uv * pull.uv;
+  if (!(determinant > 0)) return Vec3::Zero();
+  return ((pull.vv * pull.u - pull.uv * pull.v) * u + (pull.uu * pull.v - pull.uv * pull.u) * v) / determinant;
+}
+
+/// All of the way, a half or a quarter of it, or none.
+void Settling::go_carefully(std::size_t node, const Vec3& move) {
+  const Vec3 was = at[node];
+  const Footing foot = footing[node];
+  held[node] = 0;
+  for (const double share : {1.0, 0.5, 0.25}) {
+    at[node] = was + share * move;
+    land(node);
+    if (guard_.allows(static_cast<std::uint32_t>(node), at[node], at)) return;
+    held[node] = 1;
+    footing[node] = foot;
+  }
+  at[node] = was;
+}
+
+/// Returns whether the node is still on the move.
+bool Settling::step(std::size_t node) {
+  Vec3 move = balancing_step(node);
   const double most = kMostStep * net_.size[node];
   // A node that turns back has gone too far: that ends what would swing for ever in meshes with very long or crushed elements.
   float& gain = gain_[node];
   gain = move.dot(last_[node]) < -kSwing * last_[node].squaredNorm() ? std::max(0.5F * gain, kLeastGain)
                                                                      : std::min(recovery_ * gain, kMostGain);
   move *= gain;
-  double length = move.norm();
+  const double length = move.norm();
   if (!std::isfinite(length)) return false;
-  if (length > most) move *= most / length, length = most;
+  if (length > most) move *= most / length;
+  const Vec3 was = at[node];
+  limited[node] = 0;
+  if (careful_[node] != 0) {
+    go_carefully(node, move);
+  } else {
+    go(node, move);
+  }
+  last_[node] = at[node] - was;  // being put back or stopped at the limit turns it too
+  return (at[node] - was).squaredNorm() > kAtRest * kAtRest * net_.size[node] * net_.size[node];
+}
+
+/// Along its tangent, and back on the surface now and then.
+void Settling::go(std::size_t node, const Vec3& move) {
   const Vec3 was = at[node];
   at[node] += move;
-  limited[node] = 0;
   if (const std::optional<double> limit = limit_of(node)) {
     const Vec3 away = at[node] - net_.start[node];
     if (const double distance = away.norm(); distance > *limit) {
@@ -118,9 +156,38 @@ bool Settling::step(std::size_t node) {
     }
   }
   drift_[node] += static_cast<float>((at[node] - was).norm());
-  if (drift_[node] > kMostDrift * net_.size[node]) land(node);
-  last_[node] = at[node] - was;  // being put back or stopped at the limit turns it too
-  return (at[node] - was).squaredNorm() > kAtRest * kAtRest * net_.size[node] * net_.size[node];
+  if (!(drift_[node] > kMostDrift * net_.size[node])) return;
+  const Vec3 drifted = at[node];
+  const double drift = drift_[node];
+  land(node);
+  // Most of its way was off the surface: it pushes against the end of its sheet, and would go on for ever.
+  if ((at[node] - drifted).norm() > kMostInVain * drift) careful_[node] = 1;
+}
+
+void Settling::land_all() {
+  parallel_for(net_.movable, kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (drift_[i] > 0) land(i);
+  });
+}
+
+/// Whether the shells are as they may be. Where they weren't, their nodes have been taken back, and go on with care.
+bool Settling::check(bool at_rest) {
+  if (at_rest) land_all();
+  const Guard::Held back = guard_.hold_back(surface_, good_, at, footing);
+  for (const std::uint32_t node : back.nodes) {
+    held[node] = 1;
+    drift_[node] = 0;
+    last_[node] = Vec3::Zero();
+  }
+  for (const std::uint32_t shell : back.shells)
+    for (const std::int32_t corner : net_.corners[shell])
+      if (const auto node = static_cast<std::uint32_t>(corner); node < net_.movable) careful_[node] = awake_[node] = 1;
+  for (const std::uint32_t node : back.nodes)
+    for (const Spring& spring : net_.springs_of(node))
+      if (spring.to < net_.movable) awake_[spring.to] = 1;
+  good_ = at;
+  return back.shells.empty();
 }
 
 Settled Settling::run(Spreading* spreading, const std::function<bool(double at_rest)>& watch) {
@@ -140,6 +207,7 @@ Settled Settling::run(Spreading* spreading, const std::function<bool(double at_r
       }
     return true;
   };
+  int next_check = kFirstCheck;
   while (settled.rounds < options_.most_rounds) {
     if (settled.rounds == kRecoveringRounds) recovery_ = 1;
     std::atomic<std::size_t> stepped = 0;
@@ -150,19 +218,21 @@ Settled Settling::run(Spreading* spreading, const std::function<bool(double at_r
         stepped.fetch_add(here, std::memory_order_relaxed);
       });
     if (stepped == 0) {
-      settled.converged = true;
-      break;
+      settled.converged = check(true);
+      if (settled.converged) return settled;
+      continue;
     }
     ++settled.rounds;
     if (!watch(1 - static_cast<double>(stepped) / static_cast<double>(net_.movable))) {
       settled.was_stopped = true;
       return settled;
     }
+    if (settled.rounds == next_check) {
+      check(false);
+      next_check *= kChecksApart;
+    }
   }
-  parallel_for(net_.movable, kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      if (at[i] != net_.start[i]) land(i);
-  });
+  check(true);
   return settled;
 }
 

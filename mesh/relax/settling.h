@@ -1,4 +1,4 @@
-// Springs settling: node after node goes where its springs balance, over the surface. Private to mesh/relax.
+// Springs settling: node after node goes where its springs balance, over the surface, as far as its shells allow. Private to mesh/relax.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/relax/guard.h"
 #include "mesh/relax/net.h"
 
 namespace prismesh::mesh::relax {
@@ -24,29 +25,38 @@ struct Spreading {
 
 class Settling {
  public:
-  Settling(const Net& net, const ReferenceSurface& surface, const Options& options);
+  Settling(const Net& net, const ReferenceSurface& surface, const Guard& guard, const Options& options);
 
-  /// Rounds until nothing moves any more. `watch` hears the share of nodes at rest after each round; false stops. `spreading`: null to let
-  /// all move at once.
+  /// Rounds until nothing moves any more and the guard has nothing to hold back. `watch` hears the share of nodes at rest after each
+  /// round; false stops. `spreading`: null to let all move at once.
   Settled run(Spreading* spreading, const std::function<bool(double at_rest)>& watch);
 
   std::vector<Vec3> at;               ///< of all nodes of the net; on the surface after run()
   std::vector<Footing> footing;       ///< of the movable ones
   std::vector<std::uint8_t> limited;  ///< those that stopped at their limit
+  std::vector<std::uint8_t> held;     ///< those that would go on, if their shells allowed it
 
  private:
   bool step(std::size_t node);
+  Vec3 balancing_step(std::size_t node) const;
+  void go(std::size_t node, const Vec3& move);
+  void go_carefully(std::size_t node, const Vec3& move);
   void land(std::size_t node);
+  void land_all();
+  bool check(bool at_rest);
   std::optional<double> limit_of(std::size_t node) const;
 
   const Net& net_;
   const ReferenceSurface& surface_;
+  const Guard& guard_;
   const Options& options_;
+  std::vector<Vec3> good_;  ///< where the nodes were when the guard last looked, and found nothing or took back what it found
   std::vector<Vec3> last_;  ///< each node's last step
   float recovery_ = 1.05F;
-  std::vector<float> gain_;          ///< how far beyond its balance, or short of it, each node goes
-  std::vector<float> drift_;         ///< since each was last put back on the surface
-  std::vector<std::uint8_t> awake_;  ///< it or a neighbour has moved
+  std::vector<float> gain_;            ///< how far beyond its balance, or short of it, each node goes
+  std::vector<float> drift_;           ///< since each was last put back on the surface
+  std::vector<std::uint8_t> awake_;    ///< it or a neighbour has moved
+  std::vector<std::uint8_t> careful_;  ///< each step ends on the surface, and where the node's shells allow it
 };
 
 }  // namespace prismesh::mesh::relax
