@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "base/counted.h"
+#include "base/readable_number.h"
 #include "cli/check_figures.h"
 #include "cli/commands.h"
 #include "cli/json_output.h"
@@ -91,7 +92,7 @@ void print_text(std::ostream& out, const mesh::document::Document& document, con
         << " at shell:" << model.shell_ids[figures.chordal->worst->value] << '\n';
   print_parts(out, model, figures.parts);
   if (report.mass) out << "mass " << *report.mass << '\n';
-  if (report.centre_of_gravity) out << "centre of gravity " << report.centre_of_gravity->transpose() << '\n';
+  if (const auto& at = report.centre_of_gravity) out << "centre of gravity " << readable({at->x(), at->y(), at->z()}, 6) << '\n';
   if (report.time_step)
     out << "time step " << report.time_step->seconds << " at shell:" << model.shell_ids[report.time_step->shell.value] << '\n';
   if (report.added_mass) out << "mass added by mass scaling " << *report.added_mass << '\n';

@@ -1,5 +1,6 @@
 #include "cli/report_text.h"
 #include "base/counted.h"
+#include "base/readable_number.h"
 
 #include <charconv>
 #include <cmath>
@@ -50,11 +51,7 @@ std::string shortest(double value) {
   return std::string(text, end);
 }
 
-std::string rounded(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
-  return std::string(text, end);
-}
+std::string rounded(double value) { return readable(value, 6); }
 
 double as_written(float value) {
   if (!std::isfinite(value)) return value;

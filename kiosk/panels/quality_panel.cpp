@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "base/readable_number.h"
 #include "kiosk/panels/sections.h"
 #include "kiosk/panels/text.h"
 
@@ -16,7 +17,7 @@ std::string metric_words(const std::string& name) {
 }
 
 std::string value_words(double value, const std::string& unit) {
-  const std::string number = std::abs(value) >= 1e6 ? fmt::format("{:.1e}", value) : fmt::format("{:.4g}", value);
+  const std::string number = std::abs(value) >= 1e6 ? fmt::format("{:.1e}", value) : readable(value, 4);
   return unit.empty() ? number : unit == "deg" ? number + "\u00b0" : number + " " + unit;
 }
 

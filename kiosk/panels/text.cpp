@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "base/readable_number.h"
+
 namespace prismesh::kiosk::panels {
 namespace {
 
@@ -51,10 +53,7 @@ std::string grouped(std::uint64_t number) {
   return out;
 }
 
-std::string length_text(double length, std::string_view unit) {
-  if (length == 0) length = 0;  // no "-0"
-  return fmt::format("{:.4g}{}{}", length, kNoBreakSpace, unit);
-}
+std::string length_text(double length, std::string_view unit) { return fmt::format("{}{}{}", readable(length, 4), kNoBreakSpace, unit); }
 
 std::string printable(std::string_view bytes) {
   std::string out;

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <span>
 
 #include "base/counted.h"
+#include "base/readable_number.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/hanging.h"
 #include "mesh/document/scope.h"
@@ -112,19 +112,13 @@ NodeSet movable_of(const Generation& generation, const NodeSet& nodes, EditRepor
   return movable;
 }
 
-std::string short_number(double value) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
-
 void say_how(const relax::Relaxed& relaxed, EditReport& report) {
   if (relaxed.nodes.empty())
     report.notes.push_back("nothing to relax: every node is where it is best");
   else
     report.notes.push_back((relaxed.converged ? "at rest after " : "not yet at rest after ") +
                            counted(static_cast<std::size_t>(relaxed.rounds), "round") + "; the farthest node moved " +
-                           short_number(relaxed.farthest));
+                           readable(relaxed.farthest, 3));
   if (relaxed.held_back > 0)
     report.notes.push_back(counted(relaxed.held_back, "node") + " held back, so that no element becomes worse than it may");
   if (relaxed.limited > 0) report.notes.push_back(counted(relaxed.limited, "node") + " stopped at max_move");

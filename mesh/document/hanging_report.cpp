@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "base/counted.h"
 #include "base/deterministic_math.h"
+#include "base/readable_number.h"
 #include "mesh/deck/naming.h"
 #include "mesh/document/hanging.h"
 #include "mesh/document/motion.h"
@@ -83,11 +83,7 @@ double gap_at(const Model& model, const Hanging::Rest& rest) {
 }
 
 /// Three digits are enough to say how far apart things are.
-std::string short_length(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", length);
-  return text;
-}
+std::string short_length(double length) { return readable(length, 3); }
 
 std::string lost_connection(const Generation& before, const Hanging::Rest& rest, double gap) {
   const Model& model = before.model;
