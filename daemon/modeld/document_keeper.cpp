@@ -146,7 +146,8 @@ Result<bool> DocumentKeeper::open(const ipc::Open& request, const Progress& prog
   if (open_) {
     if (same_file(open_->document.path, request.path)) return false;
     if (changed())
-      return fail(open_->document.path.string(), "has unsaved edits: save it, or close it with discard, before another deck is opened");
+      return fail(open_->document.path.string(),
+                  "has unsaved edits: save it, or give them up (prismesh session close --discard), before another deck is opened");
   }
   Result<OpenDocument> loaded = if_memory_allows([&] { return load(request, progress); }, request.path);
   if (!loaded) return fail(std::move(loaded.error()));
@@ -334,7 +335,8 @@ Result<void> DocumentKeeper::rebase(ipc::Saved& saved) {
 
 Result<void> DocumentKeeper::close(bool discard) {
   if (!open_) return fail("", "no document is open");
-  if (!discard && changed()) return fail(open_->document.path.string(), "has unsaved edits: save it, or close it with discard");
+  if (!discard && changed())
+    return fail(open_->document.path.string(), "has unsaved edits: save it, or give them up (prismesh session close --discard)");
   if (Result<void> gone = let_go(); !gone) return gone;
   folder_.forget_session();
   return {};
