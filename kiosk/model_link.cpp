@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "base/readable_number.h"
+
 namespace prismesh::kiosk {
 namespace {
 
@@ -16,6 +18,7 @@ constexpr std::int64_t kFirstBackOff = 100 * kMillisecond;
 constexpr std::int64_t kLongestBackOff = 2000 * kMillisecond;
 /// A step whose picture hasn't come after this long is taken for lost.
 constexpr std::int64_t kStepPatience = 250 * kMillisecond;
+constexpr int kDigits = 6;  ///< of what an edit reports
 
 template <class... Visitors>
 struct Overloaded : Visitors... {
@@ -233,9 +236,13 @@ void ModelLink::open(const std::filesystem::path& deck) {
   ask(request, [this, whole](const ipc::Answer& answer) {
     busy_.clear();
     if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
-      if (!snapshot_) deck_.reset();
-      say(Notice::Kind::error, text_of(*failed));
-      return;
+      const bool unsaved = snapshot_ ? snapshot_->info().changed : state_ && state_->open && state_->changed;
+      say(Notice::Kind::error, fmt::format("{} was not opened. {}{}", whole.filename().string(), text_of(*failed),
+                                           unsaved ? "\nCtrl+S saves what is open; then Ctrl+O opens the other." : ""));
+      if (snapshot_) return;
+      // What the server has open instead is shown: nobody could save it unseen.
+      deck_.reset();
+      return ask_state();
     }
     deck_ = whole;
     fetched_ = false;
@@ -414,10 +421,10 @@ void ModelLink::say_report(const mesh::document::EditReport& report) {
                        report.after.fail);
   for (const std::string& note : report.notes) text += (text.empty() ? "" : "\n") + note;
   if (report.mass_before && report.mass_after) {
-    text += fmt::format("{}mass {:.6g} \u2192 {:.6g}", text.empty() ? "" : "\n", *report.mass_before, *report.mass_after);
+    text += fmt::format("{}mass {} \u2192 {}", text.empty() ? "" : "\n", readable(*report.mass_before, kDigits),
+                        readable(*report.mass_after, kDigits));
     if (const auto& from = report.centre_before, &to = report.centre_after; from && to)
-      text += fmt::format(", centre of gravity ({:.6g} {:.6g} {:.6g}) \u2192 ({:.6g} {:.6g} {:.6g})", (*from)[0], (*from)[1], (*from)[2],
-                          (*to)[0], (*to)[1], (*to)[2]);
+      text += fmt::format(", centre of gravity ({}) \u2192 ({})", readable(*from, kDigits), readable(*to, kDigits));
   }
   if (text.empty()) return;
   say(Notice::Kind::information, std::move(text));

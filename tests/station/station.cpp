@@ -134,6 +134,12 @@ void Station::start_kiosk(const std::vector<std::string>& more_arguments) {
   find_window();
 }
 
+void Station::open_in_another_kiosk(const std::filesystem::path& deck) {
+  kiosk_.reset();
+  run_kiosk({"--open", deck.string()});
+  find_window();
+}
+
 void Station::start_calibration(const std::vector<std::string>& more_arguments) {
   std::vector<std::string> arguments{"--calibrate", "--window", "--config", (folder_ / "prismesh.toml").string()};
   arguments.insert(arguments.end(), more_arguments.begin(), more_arguments.end());
