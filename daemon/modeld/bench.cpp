@@ -89,15 +89,10 @@ Outcome Bench::preview(const ipc::PreviewEdit& request) const {
 
 Outcome Bench::field(const ipc::GetField& request, const Progress& progress) {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
-  bool told = false;
-  const auto tell = [&](double fraction) {
-    if (fraction <= 0) return true;  // most fields are there before anybody could read how far they are
-    told = true;
-    return progress(fraction);
-  };
+  // Most fields are there before anybody could read how far they are.
+  const auto tell = [&](double fraction) { return fraction <= 0 || progress(fraction); };
   Result<FieldMaker::Made> made = fields_.make(keeper_.document(), request, tell);
   Outcome outcome;
-  if (told) outcome.events.emplace_back(ipc::ProgressMade{"Comparing", 1});
   if (made) {
     outcome.answer = std::move(made->answer);
     outcome.descriptors.push_back(std::move(made->values));
@@ -107,8 +102,8 @@ Outcome Bench::field(const ipc::GetField& request, const Progress& progress) {
   return outcome;
 }
 
-Outcome Bench::save(const ipc::Save& request) {
-  Result<ipc::Saved> saved = keeper_.save(request.path);
+Outcome Bench::save(const ipc::Save& request, const Progress& progress) {
+  Result<ipc::Saved> saved = keeper_.save(request.path, progress);
   if (!saved) return {failed(saved.error()), {}, {}, {}};
   Outcome outcome;
   outcome.answer = std::move(*saved);

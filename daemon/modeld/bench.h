@@ -44,7 +44,8 @@ class Bench {
   Outcome preview(const ipc::PreviewEdit& request) const;
   /// A field as views colour by it; another deck that it is compared with is read here, and kept for the next time.
   Outcome field(const ipc::GetField& request, const Progress& progress);
-  Outcome save(const ipc::Save& request);
+  /// Told to stop before the first file is put in place, it leaves all files as they were; from then on it goes on.
+  Outcome save(const ipc::Save& request, const Progress& progress = {});
   Outcome close(const ipc::Close& request);
   /// The answer is DragBegun, or Failed and there is no drag.
   Outcome begin_drag(std::uint64_t number, const mesh::document::Edit& edit);

@@ -34,6 +34,7 @@ void Desk::left(ipc::ClientId client) {
   clients_.erase(found);
   std::erase_if(waiting_, [&](const Waiting& each) { return each.client == client; });
   if (drag_ && drag_->owner == client) drag_->orphaned = true;
+  if (long_ && long_->asker == client && long_->on_death == OnDeath::stops) cancelled_ = true;
   pump();
 }
 
@@ -45,7 +46,7 @@ void Desk::request(ipc::ClientId client, std::uint64_t number, ipc::Request requ
   if (const auto* returned = std::get_if<ipc::ReturnSnapshot>(&request)) return give_back(client, returned->lease);
   if (const auto* snapshot = std::get_if<ipc::GetSnapshot>(&request)) return give_snapshot(client, number, *snapshot);
   if (const auto* camera = std::get_if<ipc::ShareCamera>(&request)) return share_camera(client, *camera);
-  if (std::holds_alternative<ipc::Cancel>(request)) return cancel_edit(client, number);
+  if (std::holds_alternative<ipc::Cancel>(request)) return cancel(client, number);
   if (std::holds_alternative<ipc::GetState>(request)) return outlet_.answer(client, number, state(), {});
   line_up(client, number, std::move(request), bytes);
 }
@@ -130,8 +131,8 @@ void Desk::give_back(ipc::ClientId client, std::uint64_t lease) {
   if (clients_[client].leases.erase(lease) > 0) publisher_.release(lease);
 }
 
-void Desk::cancel_edit(ipc::ClientId client, std::uint64_t number) {
-  if (editing_ != client) return refuse(client, number, "no edit of yours is under way");
+void Desk::cancel(ipc::ClientId client, std::uint64_t number) {
+  if (!long_ || long_->asker != client) return refuse(client, number, "nothing of yours is under way that can be stopped");
   cancelled_ = true;
   outlet_.answer(client, number, ipc::Done{}, {});
 }
@@ -194,9 +195,11 @@ void Desk::pump_drag() {
 void Desk::begin(Waiting next) {
   const auto answer = [this, client = next.client, number = next.number](Outcome& outcome) { finish(client, number, outcome); };
   if (auto* open = std::get_if<ipc::Open>(&next.request))
-    run([this, request = std::move(*open), progress = watch("open")] { return bench_.open(request, progress); }, answer);
+    run_long(next, "open", OnDeath::goes_on,
+             [this, request = std::move(*open)](const Progress& progress) { return bench_.open(request, progress); });
   else if (auto* edit = std::get_if<ipc::ApplyEdit>(&next.request))
-    begin_edit(next, std::move(edit->edit));
+    run_long(next, std::string(mesh::document::name(edit->edit)), OnDeath::stops,
+             [this, edit = std::move(edit->edit)](const Progress& progress) { return bench_.edit(edit, progress); });
   else if (auto* count = std::get_if<ipc::Count>(&next.request))
     run([this, request = std::move(*count)] { return bench_.count(request); }, answer);
   else if (auto* quality = std::get_if<ipc::GetQuality>(&next.request))
@@ -206,9 +209,11 @@ void Desk::begin(Waiting next) {
   else if (auto* preview = std::get_if<ipc::PreviewEdit>(&next.request))
     run([this, request = std::move(*preview)] { return bench_.preview(request); }, answer);
   else if (auto* field = std::get_if<ipc::GetField>(&next.request))
-    run([this, request = std::move(*field), progress = watch("Comparing")] { return bench_.field(request, progress); }, answer);
+    run_long(next, "Comparing", OnDeath::stops,
+             [this, request = std::move(*field)](const Progress& progress) { return bench_.field(request, progress); });
   else if (auto* save = std::get_if<ipc::Save>(&next.request))
-    run([this, request = std::move(*save)] { return bench_.save(request); }, answer);
+    run_long(next, "Saving", OnDeath::goes_on,
+             [this, request = std::move(*save)](const Progress& progress) { return bench_.save(request, progress); });
   else if (auto* close = std::get_if<ipc::Close>(&next.request))
     run([this, request = *close] { return bench_.close(request); }, answer);
   else if (auto* drag = std::get_if<ipc::BeginDrag>(&next.request))
@@ -217,13 +222,12 @@ void Desk::begin(Waiting next) {
     refuse(next.client, next.number, "this can't be asked now");
 }
 
-void Desk::begin_edit(const Waiting& next, mesh::document::Edit edit) {
-  editing_ = next.client;
+void Desk::run_long(const Waiting& next, std::string what, OnDeath on_death, const std::function<Outcome(const Progress&)>& work) {
+  long_ = Long{next.client, on_death};
   cancelled_ = false;
-  Progress progress = watch(std::string(mesh::document::name(edit)));
-  run([this, edit = std::move(edit), progress = std::move(progress)] { return bench_.edit(edit, progress); },
+  run([work, progress = watch(std::move(what))] { return work(progress); },
       [this, client = next.client, number = next.number](Outcome& outcome) {
-        editing_.reset();
+        long_.reset();
         cancelled_ = false;
         finish(client, number, outcome);
       });
@@ -253,6 +257,8 @@ void Desk::run(std::function<Outcome()> work, std::function<void(Outcome&)> then
       stepping_ = false;
       progress_ = 0;
       then(*outcome);
+      // However it ended: who was told how far it is learns that it is over.
+      if (!told_.empty()) outlet_.tell_all(ipc::ProgressMade{std::exchange(told_, {}), 1});
       pump();
     });
   });
@@ -278,6 +284,7 @@ Progress Desk::watch(std::string what) {
       last_ns = now_ns;
       outlet_.post([this, what, fraction] {
         progress_ = fraction;
+        told_ = what;
         outlet_.tell_all(ipc::ProgressMade{what, fraction});
       });
     }

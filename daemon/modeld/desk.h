@@ -79,7 +79,7 @@ class Desk {
   void give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::GetSnapshot& request);
   void share_camera(ipc::ClientId client, const ipc::ShareCamera& shared);
   void give_back(ipc::ClientId client, std::uint64_t lease);
-  void cancel_edit(ipc::ClientId client, std::uint64_t number);
+  void cancel(ipc::ClientId client, std::uint64_t number);
   ipc::State state() const;
 
   /// Starts the next piece of work if none is under way.
@@ -87,7 +87,9 @@ class Desk {
   void pump_drag();
   void begin(Waiting next);
   void run(std::function<Outcome()> work, std::function<void(Outcome&)> then);
-  void begin_edit(const Waiting& next, mesh::document::Edit edit);
+  /// Whether long work outlives the client that asked for it.
+  enum class OnDeath : std::uint8_t { stops, goes_on };
+  void run_long(const Waiting& next, std::string what, OnDeath on_death, const std::function<Outcome(const Progress&)>& work);
   void begin_drag(Waiting next, const mesh::document::Edit& edit);
   void finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome);
   void tell(Outcome& outcome);
@@ -105,8 +107,13 @@ class Desk {
   bool running_ = false;
   bool stepping_ = false;  ///< what runs is a drag's step: too short to call it busy
   double progress_ = 0;
-  std::optional<ipc::ClientId> editing_;  ///< whose edit runs
-  std::atomic<bool> cancelled_ = false;   ///< that edit is to stop; the worker looks at it
+  std::string told_;  ///< what clients have been told the progress of
+  struct Long {
+    ipc::ClientId asker = 0;
+    OnDeath on_death = OnDeath::stops;
+  };
+  std::optional<Long> long_;             ///< the work under way, if its asker may stop it
+  std::atomic<bool> cancelled_ = false;  ///< it is to stop; the worker looks at it
 };
 
 }  // namespace prismesh::modeld

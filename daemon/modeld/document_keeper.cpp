@@ -22,6 +22,10 @@ using mesh::deck::Warning;
 /// A deck that ended so many lives of the daemon isn't opened by itself again.
 constexpr std::uint64_t kMostAttempts = 3;
 
+/// Of a save in place: what is going to be written is put on record first, and read again last.
+constexpr double kShareOfIntent = 0.2;
+constexpr double kShareOfWriting = 0.4;
+
 Result<OpenOptions> options_of(const ipc::Open& request) {
   OpenOptions options;
   if (request.length_unit) {
@@ -41,6 +45,19 @@ auto if_memory_allows(const Work& work, const std::string& file) -> decltype(wor
   } catch (const std::bad_alloc&) {
     return fail(file, "there isn't enough memory to do this; everything is as it was");
   }
+}
+
+/// A progress of its own for the part of the work from `begin` to `begin + share`.
+Progress part_of(const Progress& whole, double begin, double share) {
+  return [&whole, begin, share](double fraction) { return !whole || whole(begin + fraction * share); };
+}
+
+/// Of work that must come to its end: tells how far it is, and doesn't stop.
+Progress telling(const Progress& progress) {
+  return [&progress](double fraction) {
+    if (progress) progress(fraction);
+    return true;
+  };
 }
 
 bool is_there(const fs::path& path) {
@@ -238,34 +255,38 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   return report;
 }
 
-Result<ipc::Saved> DocumentKeeper::save(const std::optional<std::string>& path) {
+Result<ipc::Saved> DocumentKeeper::save(const std::optional<std::string>& path, const Progress& progress) {
   if (!open_) return fail("", "no document is open");
   const fs::path own = open_->document.path;
-  if (!path || same_file(own, *path)) return save_in_place();
+  if (!path || same_file(own, *path)) return save_in_place(progress);
   const fs::path target = *path;
   if (!target.is_absolute()) return fail(*path, "the path must be absolute: the daemon has its own working folder");
-  return save_elsewhere(target);
+  return save_elsewhere(target, progress);
 }
 
-Result<ipc::Saved> DocumentKeeper::save_elsewhere(const fs::path& target) {
-  const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, target);
+Result<ipc::Saved> DocumentKeeper::save_elsewhere(const fs::path& target, const Progress& progress) {
+  const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, target, progress);
   if (!report) return fail(report.error());
   open_->saved = open_->document.generations[open_->document.cursor];
   return report_of(target, *report);
 }
 
-Result<ipc::Saved> DocumentKeeper::save_in_place() {
+Result<ipc::Saved> DocumentKeeper::save_in_place(const Progress& progress) {
   OpenDocument& open = *open_;
   if (open.stuck) return fail(*open.stuck);
   const fs::path intent = StateFolder::save_intent(open.journal.path());
-  if (Result<void> written = write_save_intent(intent, open.document); !written) return fail(std::move(written.error()));
-  const Result<mesh::deck::SaveReport> report = mesh::document::save(open.document, open.document.path);
+  if (Result<void> written = write_save_intent(intent, open.document, part_of(progress, 0, kShareOfIntent)); !written)
+    return fail(std::move(written.error()));
+  const Result<mesh::deck::SaveReport> report =
+      mesh::document::save(open.document, open.document.path, part_of(progress, kShareOfIntent, kShareOfWriting));
   std::error_code problem;
   if (!report) {
     // Some files may have been replaced before the error; then the next opening finishes the save.
-    std::vector<Warning> none;
-    const Result<OpenedDeck> now = mesh::deck::open(open.document.path);
-    if (now && now->deck->content == open.document.deck->content) fs::remove(intent, problem);
+    const auto is_as_it_was = [&] {
+      const Result<OpenedDeck> now = mesh::deck::open(open.document.path);
+      return now && now->deck->content == open.document.deck->content;
+    };
+    if (report.error().message == cancelled().message || is_as_it_was()) fs::remove(intent, problem);
     return fail(report.error());
   }
   open.saved = open.document.generations[open.document.cursor];
@@ -274,7 +295,7 @@ Result<ipc::Saved> DocumentKeeper::save_in_place() {
     fs::remove(intent, problem);
     return saved;
   }
-  if (const Result<void> rebased = rebase(saved); !rebased) {
+  if (const Result<void> rebased = rebase(saved, telling(progress)); !rebased) {
     open.stuck = Error{rebased.error().file, rebased.error().line,
                        "after saving, no new journal could be started: " + rebased.error().message +
                            "; the deck is saved: close it and open it again to go on editing"};
@@ -285,9 +306,10 @@ Result<ipc::Saved> DocumentKeeper::save_in_place() {
 
 /// After a save in place: the deck on disk is another one, so its text is read again and a new journal begins. The history stays, unless
 /// nodes or shells came or went: then what was read has other indices, and the history begins anew.
-Result<void> DocumentKeeper::rebase(ipc::Saved& saved) {
+Result<void> DocumentKeeper::rebase(ipc::Saved& saved, const Progress& progress) {
   OpenDocument& open = *open_;
-  Result<OpenedDeck> opened = mesh::deck::open(open.document.path);
+  Result<OpenedDeck> opened =
+      mesh::deck::open(open.document.path, part_of(progress, kShareOfIntent + kShareOfWriting, 1 - kShareOfIntent - kShareOfWriting));
   if (!opened) return fail(std::move(opened.error()));
   const bool grown = has_grown(open.document);
   const mesh::Model& model = grown ? open.document.current().model : open.document.opened->model;

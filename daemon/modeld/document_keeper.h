@@ -27,7 +27,8 @@ class DocumentKeeper {
   Result<bool> reopen(const Progress& progress);
   /// Prepares, journals, commits.
   Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit, const Progress& progress = {});
-  Result<ipc::Saved> save(const std::optional<std::string>& path);
+  /// Told to stop before the first file is put in place, it leaves all files as they were; from then on it goes on.
+  Result<ipc::Saved> save(const std::optional<std::string>& path, const Progress& progress = {});
   Result<void> close(bool discard);
 
   bool is_open() const { return open_.has_value(); }
@@ -61,9 +62,9 @@ class DocumentKeeper {
   Result<OpenDocument> load(const ipc::Open& request, const Progress& progress);
   Result<mesh::deck::OpenedDeck> read_deck(const std::filesystem::path& path, const Progress& progress,
                                            std::vector<mesh::deck::Warning>& warnings);
-  Result<ipc::Saved> save_elsewhere(const std::filesystem::path& target);
-  Result<ipc::Saved> save_in_place();
-  Result<void> rebase(ipc::Saved& saved);
+  Result<ipc::Saved> save_elsewhere(const std::filesystem::path& target, const Progress& progress);
+  Result<ipc::Saved> save_in_place(const Progress& progress);
+  Result<void> rebase(ipc::Saved& saved, const Progress& progress);
   mesh::document::Prepared as_push(const mesh::document::Prepared& prepared, const mesh::document::Edit& edit);
   const mesh::document::Generation* own_step(mesh::document::Prepared::Step step) const;
   const mesh::document::Generation* original_of(const mesh::document::Generation* recorded) const;

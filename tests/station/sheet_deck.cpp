@@ -30,25 +30,38 @@ std::int64_t id_of(const std::string& card) { return std::stoll(card.substr(0, 8
 
 }  // namespace
 
-void write_sheet(const std::filesystem::path& path) {
+namespace {
+
+/// A number from -1 to 1 that looks random, the same everywhere.
+double scatter(int row, int column, std::uint32_t which) {
+  std::uint32_t x = static_cast<std::uint32_t>(row) * 2654435761u + static_cast<std::uint32_t>(column) * 40503u + which * 97u;
+  x = (x ^ (x >> 15)) * 2246822519u;
+  x = (x ^ (x >> 13)) * 3266489917u;
+  return static_cast<double>(x >> 8) / (1 << 23) - 1;
+}
+
+/// `jitter`: how far nodes inside lie beside their place on the cylinder, as a share of a step.
+void write_sheet_of(const std::filesystem::path& path, int side, double jitter) {
+  const double radius = kRadius * side / kSheetSide;
   std::FILE* file = std::fopen(path.c_str(), "w");
   std::fprintf(file,
                "$ a curved sheet for the station test\n*KEYWORD\n*TITLE\nCurved sheet   with   odd spacing\n*NODE\n$#   nid               "
                "x               y               z\n");
   std::int64_t id = kFirstNode;
-  for (int row = 0; row < kSheetSide; ++row)
-    for (int column = 0; column < kSheetSide; ++column) {
-      const double angle = (column - (kSheetSide - 1) / 2) * kStep / kRadius;
-      std::fprintf(file, "%8lld%16.6f%16.6f%16.6f%8d%8d\n", static_cast<long long>(id++), kRadius * std::sin(angle), row * kStep,
-                   kRadius * std::cos(angle), 0, 0);
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column) {
+      const bool inside = row > 0 && column > 0 && row + 1 < side && column + 1 < side;
+      const double along = inside ? jitter * scatter(row, column, 1) : 0, across = inside ? jitter * scatter(row, column, 2) : 0;
+      const double angle = (column + across - (side - 1) / 2) * kStep / radius;
+      std::fprintf(file, "%8lld%16.6f%16.6f%16.6f%8d%8d\n", static_cast<long long>(id++), radius * std::sin(angle), (row + along) * kStep,
+                   radius * std::cos(angle), 0, 0);
     }
   std::fprintf(file, "*ELEMENT_SHELL\n$#   eid     pid      n1      n2      n3      n4\n");
   std::int64_t element = 1;
-  for (int row = 0; row + 1 < kSheetSide; ++row)
-    for (int column = 0; column + 1 < kSheetSide; ++column) {
-      const long long n = kFirstNode + row * kSheetSide + column;
-      std::fprintf(file, "%8lld%8d%8lld%8lld%8lld%8lld\n", static_cast<long long>(element++), 7, n, n + 1, n + kSheetSide + 1,
-                   n + kSheetSide);
+  for (int row = 0; row + 1 < side; ++row)
+    for (int column = 0; column + 1 < side; ++column) {
+      const long long n = kFirstNode + row * side + column;
+      std::fprintf(file, "%8lld%8d%8lld%8lld%8lld%8lld\n", static_cast<long long>(element++), 7, n, n + 1, n + side + 1, n + side);
     }
   std::fprintf(file,
                "*PART\nRoof panel, drawn\n%10d%10d%10d\n*SECTION_SHELL\n%10d%10d\n%10.2f%10.2f%10.2f%10.2f\n"
@@ -56,6 +69,12 @@ void write_sheet(const std::filesystem::path& path) {
                7, 1, 1, 1, 2, 0.8, 0.8, 0.8, 0.8, 1, 7.85e-9, 210000.0, 0.3);
   std::fclose(file);
 }
+
+}  // namespace
+
+void write_sheet(const std::filesystem::path& path) { write_sheet_of(path, kSheetSide, 0); }
+
+void write_uneven_sheet(const std::filesystem::path& path, int side) { write_sheet_of(path, side, 0.3); }
 
 HatDeck write_closed_hat(const std::filesystem::path& path) {
   constexpr int kRows = 13;

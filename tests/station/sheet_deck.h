@@ -16,6 +16,8 @@ using Point = std::array<double, 3>;
 void write_sheet(const std::filesystem::path& path);
 inline constexpr std::int64_t kFirstNode = 1001;
 inline constexpr int kSheetSide = 25;
+/// The same with `side` x `side` nodes and as much curved, its nodes unevenly apart: relaxing has something to do everywhere.
+void write_uneven_sheet(const std::filesystem::path& path, int side);
 /// The outward normal of the sheet at a point of it.
 Point sheet_normal(const Point& point);
 

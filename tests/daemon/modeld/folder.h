@@ -33,6 +33,10 @@ class Folder {
     write_sheet(path_ / name);
     return path_ / name;
   }
+  std::filesystem::path uneven_sheet(int side) const {
+    write_uneven_sheet(path_ / "uneven.k", side);
+    return path_ / "uneven.k";
+  }
   /// Two quads over two files: nodes 1 to 3 in the main file, 4 to 6 in the include.
   std::filesystem::path two_files() const {
     std::ofstream(path_ / "main.k") << "*KEYWORD\n*NODE\n"

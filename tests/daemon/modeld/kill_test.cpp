@@ -1,24 +1,19 @@
 // modeld is killed at random moments while it edits and saves: no edit that it acknowledged may be lost, and at most the one under
 // way may have been done. PRISMESH_KILL_CYCLES raises the number of kills.
-#include <csignal>
 #include <cstdlib>
 #include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-#include "ipc/reconnecting_client.h"
-#include "tests/daemon/modeld/folder.h"
-#include "tests/station/process.h"
+#include "tests/daemon/modeld/lives.h"
 
 namespace prismesh::modeld {
 namespace {
 
-namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using namespace mesh::document;
 using test::Folder;
-using test::Process;
 
 constexpr auto kPatience = 90s;
 constexpr std::int64_t kNodes = test::kSheetSide * test::kSheetSide;
@@ -33,41 +28,8 @@ struct Expected {
 
 class Killing : public ::testing::Test {
  protected:
-  Killing() : deck_(folder_.sheet()), client_(ipc::model_socket_path(folder_.path() / "run"), "kill test") {}
-
-  void start() {
-    daemon_ =
-        std::make_unique<Process>(std::vector<std::string>{std::string(PRISMESH_PROGRAMS) + "/prismesh-modeld", "--runtime-dir",
-                                                           (folder_.path() / "run").string(), "--state-dir", folder_.state().string()},
-                                  std::map<std::string, std::string>{});
-  }
-
-  /// Connects and waits until the document is open: by itself, or by hand if the daemon was killed while it opened it too often.
-  ipc::State wait_until_open() {
-    const auto until = std::chrono::steady_clock::now() + kPatience;
-    while (std::chrono::steady_clock::now() < until) {
-      const Result<ipc::Client*> client = client_.wait(5s);
-      if (!client) continue;
-      const auto answer = (*client)->call(ipc::GetState{}, kPatience);
-      if (!answer) {
-        client_.lost(answer.error());
-        continue;
-      }
-      const auto& state = std::get<ipc::State>(*answer);
-      if (state.open) return state;
-      if (!state.busy) {
-        ipc::Open open;
-        open.path = deck_.string();
-        (void)(*client)->call(open, kPatience);
-      }
-      std::this_thread::sleep_for(2ms);
-    }
-    ADD_FAILURE() << "the document didn't come back: " << daemon_->standard_error();
-    return {};
-  }
-
   Heights heights() {
-    const auto view = client_.client()->snapshot();
+    const auto view = lives_.client().snapshot();
     if (!view) {
       ADD_FAILURE() << view.error().text();
       return {};
@@ -131,9 +93,7 @@ class Killing : public ::testing::Test {
   }
 
   Folder folder_;
-  fs::path deck_;
-  std::unique_ptr<Process> daemon_;
-  ipc::ReconnectingClient client_;
+  test::Lives lives_{folder_, folder_.sheet()};
   std::mt19937 random_{20040601};
 };
 
@@ -143,36 +103,35 @@ int cycles() {
 }
 
 TEST_F(Killing, NoAcknowledgedEditIsLost) {
-  const std::string original = test::whole_file(deck_);
-  start();
-  wait_until_open();
+  const std::string original = test::whole_file(lives_.deck());
+  lives_.start();
+  lives_.wait_until_open();
   Expected expected{heights(), std::nullopt};
   std::size_t acknowledged = 0, done_unacknowledged = 0, lost_under_way = 0;
   for (int cycle = 0; cycle < cycles() && !HasFailure(); ++cycle) {
     const auto life = std::chrono::microseconds(random_() % (cycle % 4 == 0 ? 10'000 : 120'000));
     std::thread killer([&] {
       std::this_thread::sleep_for(life);
-      daemon_->kill(SIGKILL);
+      lives_.shoot();
     });
     Step step;
     for (;;) {
       step = random_step(expected);
-      if (!take(*client_.client(), step)) break;
+      if (!take(lives_.client(), step)) break;
       expected = step.after;
       ++acknowledged;
     }
     killer.join();
-    client_.lost({"", 0, "killed"});
-    if (daemon_->wait_for_exit() != 128 + SIGKILL) ADD_FAILURE() << daemon_->standard_error();
+    lives_.bury();
 
-    start();
+    lives_.start();
     if (cycle % 10 == 9) {  // once more while it opens the deck again
       std::this_thread::sleep_for(std::chrono::microseconds(random_() % 60'000));
-      daemon_->kill(SIGKILL);
-      daemon_->wait_for_exit();
-      start();
+      lives_.shoot();
+      lives_.bury();
+      lives_.start();
     }
-    wait_until_open();
+    lives_.wait_until_open();
     const Heights found = heights();
     if (same(found, expected.now)) {
       ++lost_under_way;
@@ -190,9 +149,9 @@ TEST_F(Killing, NoAcknowledgedEditIsLost) {
   EXPECT_GT(acknowledged, static_cast<std::size_t>(cycles())) << "too few edits to mean anything";
 
   // The deck then differs in the moved nodes' lines alone.
-  const auto saved = client_.client()->call(ipc::Save{}, kPatience);
+  const auto saved = lives_.client().call(ipc::Save{}, kPatience);
   ASSERT_TRUE(saved) << saved.error().text();
-  const std::string edited = test::whole_file(deck_);
+  const std::string edited = test::whole_file(lives_.deck());
   const auto before = test::nodes_of_deck(original);
   const auto after = test::nodes_of_deck(edited);
   std::vector<std::int64_t> moved;
@@ -205,8 +164,7 @@ TEST_F(Killing, NoAcknowledgedEditIsLost) {
   EXPECT_TRUE(difference.same_line_count);
   EXPECT_TRUE(difference.other_changes.empty());
   EXPECT_EQ(difference.nodes, moved);
-  daemon_->kill(SIGTERM);
-  EXPECT_EQ(daemon_->wait_for_exit(), 0) << daemon_->standard_error();
+  lives_.end_in_order();
 }
 
 }  // namespace

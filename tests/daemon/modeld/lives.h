@@ -1,0 +1,81 @@
+// modeld as a program of its own that may be killed and started again, and a client that lives through it.
+#pragma once
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "ipc/reconnecting_client.h"
+#include "tests/daemon/modeld/folder.h"
+#include "tests/station/process.h"
+
+namespace prismesh::test {
+
+/// All lives of a daemon with one deck. Its programs die with the thread that started them, so `start` belongs to the test's own.
+class Lives {
+ public:
+  /// The sockets and journals lie in `folder`, which must outlive this.
+  Lives(const Folder& folder, std::filesystem::path deck)
+      : run_(folder.path() / "run"), state_(folder.state()), deck_(std::move(deck)), client_(ipc::model_socket_path(run_), "test") {}
+
+  void start() {
+    daemon_ = std::make_unique<Process>(std::vector<std::string>{std::string(PRISMESH_PROGRAMS) + "/prismesh-modeld", "--runtime-dir",
+                                                                 run_.string(), "--state-dir", state_.string()},
+                                        std::map<std::string, std::string>{});
+  }
+
+  /// Connects and waits until the document is open: by itself, or by hand if the daemon was killed while it opened it too often.
+  ipc::State wait_until_open() {
+    using namespace std::chrono_literals;
+    const auto until = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < until) {
+      const Result<ipc::Client*> client = client_.wait(5s);
+      if (!client) continue;
+      const auto answer = (*client)->call(ipc::GetState{}, kPatience);
+      if (!answer) {
+        client_.lost(answer.error());
+        continue;
+      }
+      const auto& state = std::get<ipc::State>(*answer);
+      if (state.open && !state.busy) return state;
+      if (!state.busy) {
+        ipc::Open open;
+        open.path = deck_.string();
+        (void)(*client)->call(open, kPatience);
+      }
+      std::this_thread::sleep_for(2ms);
+    }
+    ADD_FAILURE() << "the document didn't come back: " << daemon_->standard_error();
+    return {};
+  }
+
+  /// The signal alone, from any thread.
+  void shoot() { daemon_->kill(SIGKILL); }
+  /// What is left to do after it.
+  void bury() {
+    client_.lost({"", 0, "killed"});
+    if (daemon_->wait_for_exit() != 128 + SIGKILL) ADD_FAILURE() << daemon_->standard_error();
+  }
+  void end_in_order() {
+    daemon_->kill(SIGTERM);
+    EXPECT_EQ(daemon_->wait_for_exit(), 0) << daemon_->standard_error();
+  }
+
+  ipc::Client& client() { return *client_.client(); }
+  const std::filesystem::path& deck() const { return deck_; }
+
+ private:
+  std::filesystem::path run_, state_, deck_;
+  std::unique_ptr<Process> daemon_;
+  ipc::ReconnectingClient client_;
+};
+
+}  // namespace prismesh::test
