@@ -19,4 +19,9 @@ enum class Freedom : std::uint8_t {
 /// sharper than that, and a line bends at a corner by more than that. Cost: the shells about `nodes`.
 std::vector<Freedom> node_freedoms(const Model& model, const NodeSet& nodes, double feature_angle);
 
+/// Of one node; `feature_cos` is the angle's cosine.
+Freedom freedom_of(const Model& model, NodeIndex node, double feature_cos);
+/// The same where only free edges, junctions and borders between parts are feature lines: what doesn't change when nodes move.
+Freedom freedom_by_borders(const Model& model, NodeIndex node, double feature_cos);
+
 }  // namespace prismesh::mesh::relax

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/deterministic_math.h"
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/relax/sheets.h"
@@ -17,41 +18,7 @@ constexpr std::size_t kNodesAtOnce = 1024;
 constexpr std::size_t kNodesAPause = 65536;  ///< then whoever watches is told
 constexpr int kSmoothings = 10;              ///< of the sizes: how many elements away what is longer lends its length
 constexpr double kSqrt2 = 1.4142135623730951;
-constexpr double kOnSurface = 0.25;  ///< a node that is farther from the surface, as a share of its size, isn't of it
-constexpr double kReach = 8;         ///< sizes that a node may be from where it was on the reference
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-
-/// The line through or from the reference's node that is nearest.
-std::optional<OnLine> line_at(const ReferenceSurface& surface, NodeIndex node, const Vec3& point) {
-  std::optional<OnLine> best;
-  for (const NodeIndex other : surface.lines_at(node)) {
-    const OnLine line = surface.follow_line(node, other, point);
-    if (!best || line.distance < best->distance) best = line;
-  }
-  return best;
-}
-
-/// Where on the reference the node is. The way begins at the reference's node of the same number, where it isn't far off: in a document it
-/// is mostly the same one.
-Footing find_footing(const Model& model, const ReferenceSurface& surface, NodeIndex node, Freedom freedom) {
-  if (freedom == Freedom::fixed) return {};
-  const Model& reference = surface.model();
-  const Vec3& point = model.position(node);
-  const double size = mean_edge(model, node), near = kOnSurface * size, within_reach = kReach * size;
-  const bool is_there = node.value < reference.node_count() && !reference.is_removed(node) &&
-                        (reference.position(node) - point).squaredNorm() <= within_reach * within_reach &&
-                        !reference.adjacency->shells_of(node).empty();
-  if (freedom == Freedom::line) {
-    std::optional<OnLine> line;
-    if (is_there) line = line_at(surface, node, point);
-    if (!line || line->distance > near) line = surface.find_line(point, near);
-    return line ? Footing{freedom, {}, line->from, line->to, line->tangent, line->size} : Footing();
-  }
-  std::optional<OnSurface> on;
-  if (is_there) on = surface.follow(reference.adjacency->shells_of(node).front(), point);
-  if (!on || on->distance > near) on = surface.project(point, near);
-  return on ? Footing{freedom, on->shell, {}, {}, on->normal, on->size} : Footing();
-}
 
 /// Local numbers by the model's; made for one net.
 class Numbers {
@@ -173,28 +140,13 @@ void colour(Net& net) {
 
 }  // namespace
 
-Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footing) {
-  if (footing.freedom == Freedom::line) {
-    const OnLine on = surface.follow_line(footing.from, footing.to, point);
-    footing.from = on.from;
-    footing.to = on.to;
-    // the piece may run the other way
-    if (on.tangent.squaredNorm() > 0) footing.direction = on.tangent;
-    return on.point;
-  }
-  const OnSurface on = surface.follow(footing.shell, point);
-  footing.shell = on.shell;
-  footing.direction = on.normal;
-  return on.point;
-}
-
 Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle,
                      const Progress& progress) {
-  const std::vector<Freedom> freedoms = node_freedoms(model, movable, feature_angle);
+  const double feature_cos = deterministic_cos_degrees(feature_angle);
   std::vector<Footing> footings(movable.size());
   for (std::size_t first = 0; first < movable.size(); first += kNodesAPause) {
     parallel_for(std::min(kNodesAPause, movable.size() - first), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = first + begin; i < first + end; ++i) footings[i] = find_footing(model, surface, movable[i], freedoms[i]);
+      for (std::size_t i = first + begin; i < first + end; ++i) footings[i] = find_footing(model, surface, movable[i], feature_cos);
     });
     if (progress && !progress(static_cast<double>(first) / static_cast<double>(movable.size()))) return fail(cancelled());
   }

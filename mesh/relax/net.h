@@ -3,13 +3,12 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
-#include "mesh/relax/freedom.h"
+#include "mesh/relax/footing.h"
 #include "mesh/relax/reference_surface.h"
 #include "mesh/relax/relax.h"
 
@@ -19,15 +18,6 @@ struct Spring {
   std::uint32_t to = 0;
   float weight = 0;  ///< how many shells it is in
   float rest = 0;    ///< length at rest; deck's unit
-};
-
-/// Where a movable node is on the surface.
-struct Footing {
-  Freedom freedom = Freedom::fixed;
-  ShellIndex shell;               ///< surface: of the reference
-  NodeIndex from, to;             ///< line: of the reference
-  Vec3 direction = Vec3::Zero();  ///< surface: unit normal; line: unit tangent
-  double size = 0;                ///< of the reference's elements there
 };
 
 /// Local numbers: movable nodes first, then those around them that stay.
@@ -51,8 +41,5 @@ struct Net {
 /// Nodes of `movable` that are corners, not finite, in no shell or not near the surface stay. Errors: cancelled.
 Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle,
                      const Progress& progress);
-
-/// The place on the node's line or sheet that is nearest to a point; `footing` follows.
-Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footing);
 
 }  // namespace prismesh::mesh::relax

@@ -251,6 +251,16 @@ std::vector<NodeIndex> ReferenceSurface::lines_at(NodeIndex node) const {
   return {ends.other.begin(), ends.other.begin() + static_cast<std::ptrdiff_t>(ends.count)};
 }
 
+Freedom ReferenceSurface::freedom_at(NodeIndex node) const {
+  const Model& model = state_->model;
+  const auto shells = model.adjacency->shells_of(node);
+  const bool one_part = std::all_of(shells.begin(), shells.end(), [&](ShellIndex shell) {
+    return model.shell_parts[shell.value] == model.shell_parts[shells.front().value];
+  });
+  if (one_part && !shells.empty() && state_->sheets.is_smooth(node)) return Freedom::surface;
+  return freedom_of(model, node, state_->cos_limit);
+}
+
 std::optional<Vec3> ReferenceSurface::project_on_line(const Vec3& point, double radius) const {
   const std::optional<OnLine> line = find_line(point, radius);
   return line ? std::optional(line->point) : std::nullopt;

@@ -8,6 +8,7 @@
 
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
+#include "mesh/relax/freedom.h"
 
 namespace prismesh::mesh::relax {
 
@@ -57,6 +58,9 @@ class ReferenceSurface {
 
   /// The other ends of the feature edges at a node, ascending; of more than three only three.
   std::vector<NodeIndex> lines_at(NodeIndex node) const;
+
+  /// The freedom of a node of the model that it was made of. Quick inside a sheet.
+  Freedom freedom_at(NodeIndex node) const;
 
   const Model& model() const;  ///< that it was made of
 

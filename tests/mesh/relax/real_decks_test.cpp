@@ -57,6 +57,33 @@ TEST(relax_real_decks, makes_nothing_worse_and_slid_meshes_better) {
   }
 }
 
+/// Elements of a rough mesh lean otherwise once they are relaxed: edges become creases of the mesh that are none of the surface, and
+/// creases of the surface become flat.
+TEST(relax_real_decks, keeps_corners_and_lines_however_often) {
+  const auto decks = real_decks();
+  if (!decks) GTEST_SKIP() << "PRISMESH_MODELS names no folder of decks";
+  const Model original = open_real(*decks, "seat_adyrel_rad");
+  const double size = quality::guess_target_size(original);
+  const relax::ReferenceSurface surface(original, all_shells(original), 30);
+  const std::vector<relax::Freedom> freedoms = relax::node_freedoms(original, all_nodes(original), 30);
+  Model model = original;
+  for (int time = 0; time < 3; ++time) model = moved(model, relax::relax(model, surface, all_nodes(model), judge_of(size), {}).value());
+  std::size_t changed_classes = 0, moved_corners = 0, off_lines = 0;
+  const std::vector<relax::Freedom> by_mesh = relax::node_freedoms(model, all_nodes(model), 30);
+  for (std::size_t n = 0; n < model.node_count(); ++n) {
+    const Vec3& place = model.position(NodeIndex(n));
+    changed_classes += by_mesh[n] != freedoms[n] ? 1 : 0;
+    if (freedoms[n] == relax::Freedom::fixed) moved_corners += place != original.position(NodeIndex(n)) ? 1 : 0;
+    if (freedoms[n] == relax::Freedom::line) {
+      const std::optional<relax::OnLine> line = surface.find_line(place, size);
+      off_lines += line && line->distance <= 1e-3 * size ? 0 : 1;
+    }
+  }
+  EXPECT_GT(changed_classes, 50u);  // or it was no trial
+  EXPECT_EQ(moved_corners, 0u);
+  EXPECT_EQ(off_lines, 0u);
+}
+
 }  // namespace
 
 }  // namespace prismesh::test

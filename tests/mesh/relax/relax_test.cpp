@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -122,6 +123,31 @@ TEST(relax, keeps_a_crease_straight) {
     const Vec3& p = after.position(NodeIndex(n));
     EXPECT_NEAR(n % 21 <= 10 ? p.z() : p.x(), n % 21 <= 10 ? 0 : 50, 1e-9);
   }
+}
+
+TEST(relax, takes_creases_of_a_coarse_mesh_on_a_round_surface_for_none) {
+  // 10 facets on 240 degrees of a tube: they meet at 24 degrees, and at 32 where the neighbours of a node that slid have slid apart
+  constexpr std::array kSlid = {-0.35, 0.4, 0.35};
+  const auto tube = [&](double share) {
+    return make_grid(10, 8, [&](int i, int j) {
+      const bool inside = i > 0 && i < 10 && j > 0 && j < 8;
+      const double angle = (i + (inside ? share * kSlid[static_cast<std::size_t>(i % 3)] : 0)) * 24 * kPi / 180;
+      return Vec3(20 * std::cos(angle), 20 * std::sin(angle), 8.0 * j);
+    });
+  };
+  const Model round = tube(0), slid = tube(1);
+  const std::vector<relax::Freedom> by_mesh = relax::node_freedoms(slid, all_nodes(slid), 30);
+  std::size_t inside = 0;
+  for (const relax::Freedom freedom : by_mesh) inside += freedom == relax::Freedom::surface ? 1 : 0;
+  ASSERT_LT(inside, 9u * 7u);  // or it was no trial
+  const relax::ReferenceSurface surface(round, all_shells(round), 30);
+  const relax::Relaxed relaxed = relax::relax(slid, surface, all_nodes(slid), judge_of(8), {}).value();
+  const Model after = moved(slid, relaxed);
+  for (int j = 1; j < 8; ++j)
+    for (int i = 1; i < 10; ++i) {
+      const NodeIndex node(static_cast<std::size_t>(i + 11 * j));
+      EXPECT_LT((after.position(node) - round.position(node)).norm(), 1) << i << ' ' << j;  // slid by 3
+    }
 }
 
 TEST(relax, moves_nodes_between_parts_along_the_border_only) {

@@ -1,0 +1,99 @@
+#include "mesh/relax/footing.h"
+
+#include <optional>
+
+#include "mesh/model/adjacency.h"
+#include "mesh/relax/sheets.h"
+
+namespace prismesh::mesh::relax {
+
+namespace {
+
+constexpr double kOnSurface = 0.25;  ///< of the size: a node that is farther from the surface isn't of it
+constexpr double kReach = 8;         ///< sizes that a node may be from where it was on the reference
+constexpr double kOnFeature = 1e-3;  ///< of the size: a node that is nearer to a line or a corner is on it
+constexpr double kNoFeature = 1e-2;  ///< and one that is farther isn't
+
+/// A node, and the reference's node of its number where that isn't far off: in a document it is mostly the same one.
+struct Standing {
+  const Model& model;
+  const ReferenceSurface& surface;
+  NodeIndex node;
+  Vec3 point;
+  double size;
+  bool is_known;
+
+  Standing(const Model& in, const ReferenceSurface& on, NodeIndex which)
+      : model(in), surface(on), node(which), point(in.position(which)), size(mean_edge(in, which)) {
+    const Model& reference = on.model();
+    const double reach = kReach * size;
+    is_known = node.value < reference.node_count() && !reference.is_removed(node) &&
+               (reference.position(node) - point).squaredNorm() <= reach * reach && !reference.adjacency->shells_of(node).empty();
+  }
+};
+
+/// The line through or from the reference's node that is nearest.
+std::optional<OnLine> line_at(const Standing& at) {
+  std::optional<OnLine> best;
+  for (const NodeIndex other : at.surface.lines_at(at.node)) {
+    const OnLine line = at.surface.follow_line(at.node, other, at.point);
+    if (!best || line.distance < best->distance) best = line;
+  }
+  return best;
+}
+
+bool is_on_line(const Standing& at) {
+  const std::optional<OnLine> line = line_at(at);
+  return line && line->distance <= kOnFeature * at.size;
+}
+
+/// Creases of the mesh come and go as its nodes move over a bent surface; the surface's stay.
+Freedom freedom_there(const Standing& at, double feature_cos) {
+  const Freedom by_mesh = freedom_of(at.model, at.node, feature_cos);
+  const Freedom on_surface = at.is_known ? at.surface.freedom_at(at.node) : Freedom::surface;
+  if (on_surface == Freedom::surface && by_mesh == Freedom::surface) return Freedom::surface;
+  if (on_surface == Freedom::fixed && (at.surface.model().position(at.node) - at.point).norm() <= kOnFeature * at.size)
+    return Freedom::fixed;
+  const Freedom by_borders = freedom_by_borders(at.model, at.node, feature_cos);
+  if (by_borders == Freedom::fixed) return Freedom::fixed;
+  if (on_surface == Freedom::line && is_on_line(at)) return Freedom::line;
+  if (by_borders == Freedom::surface && !at.surface.find_line(at.point, kNoFeature * at.size)) return Freedom::surface;
+  return by_mesh;
+}
+
+}  // namespace
+
+Footing find_footing(const Model& model, const ReferenceSurface& surface, NodeIndex node, double feature_cos) {
+  if (model.adjacency->shells_of(node).empty() || !model.position(node).allFinite()) return {};
+  const Standing at(model, surface, node);
+  const Freedom freedom = freedom_there(at, feature_cos);
+  if (freedom == Freedom::fixed) return {};
+  const double near = kOnSurface * at.size;
+  if (freedom == Freedom::line) {
+    std::optional<OnLine> line;
+    if (at.is_known) line = line_at(at);
+    if (!line || line->distance > near) line = surface.find_line(at.point, near);
+    return line ? Footing{freedom, {}, line->from, line->to, line->tangent, line->size} : Footing();
+  }
+  std::optional<OnSurface> on;
+  if (at.is_known) on = surface.follow(surface.model().adjacency->shells_of(node).front(), at.point);
+  if (!on || on->distance > near) on = surface.project(at.point, near);
+  return on ? Footing{freedom, on->shell, {}, {}, on->normal, on->size} : Footing();
+}
+
+Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footing) {
+  if (footing.freedom == Freedom::line) {
+    const OnLine on = surface.follow_line(footing.from, footing.to, point);
+    footing.from = on.from;
+    footing.to = on.to;
+    // the piece may run the other way
+    if (on.tangent.squaredNorm() > 0) footing.direction = on.tangent;
+    return on.point;
+  }
+  const OnSurface on = surface.follow(footing.shell, point);
+  footing.shell = on.shell;
+  footing.direction = on.normal;
+  return on.point;
+}
+
+}  // namespace prismesh::mesh::relax
