@@ -1,21 +1,13 @@
 // Any bytes as a criteria file: no crash, errors say file and line, and whatever is read judges shells without a NaN.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 #include <vector>
 
 #include "mesh/quality/composite.h"
+#include "tests/fuzz/require.h"
 
 using namespace prismesh;  // NOLINT: a fuzz target is a program of its own
-
-namespace {
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace mesh::quality;

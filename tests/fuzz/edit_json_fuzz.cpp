@@ -1,22 +1,14 @@
 // Any bytes as an edit: no crash, an error in words, and what is read is written and read again as the same edit.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
 #include "mesh/document/edit_json.h"
+#include "tests/fuzz/require.h"
 
 using namespace prismesh;  // NOLINT: a fuzz target is a program of its own
-
-namespace {
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

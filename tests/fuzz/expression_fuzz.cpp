@@ -2,22 +2,18 @@
 // read again.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mesh/select/expression.h"
+#include "tests/fuzz/require.h"
 #include "tests/support/make_model.h"
 
 using namespace prismesh;  // NOLINT: a fuzz target is a program of its own
 
 namespace {
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 const mesh::Model& sample() {
   static const mesh::Model model = [] {

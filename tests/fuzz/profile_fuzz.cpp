@@ -1,20 +1,12 @@
 // Any bytes as a display profile: no crash, errors say file and line, and what is read can be written and read again.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "drivers/display/profile.h"
+#include "tests/fuzz/require.h"
 
 using namespace prismesh;  // NOLINT: a fuzz target is a program of its own
-
-namespace {
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace drivers::display;

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/station/station.h"
+#include "tests/station/station_test_case.h"
 
 namespace prismesh::test {
 namespace {
@@ -28,15 +28,11 @@ std::map<std::int64_t, std::array<std::int64_t, 4>> shells_of_deck(const std::st
   return shells;
 }
 
-class QualityTest : public ::testing::Test {
+class QualityTest : public StationTestCase {
  protected:
   void SetUp() override {
-    if (const std::string missing = missing_programs(); !missing.empty())
-      GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
-    station_ = std::make_unique<Station>();
-    station_->set_picture_size(1000, 640);
-    original_ = whole_file(station_->deck());
-    nodes_ = nodes_of_deck(original_);
+    StationTestCase::SetUp();
+    if (IsSkipped()) return;
     shells_ = shells_of_deck(original_);
   }
   /// One node pulled out of the sheet: the shells about it fail.
@@ -59,9 +55,6 @@ class QualityTest : public ::testing::Test {
     return at;
   }
 
-  std::unique_ptr<Station> station_;
-  std::string original_;
-  std::map<std::int64_t, Point> nodes_;
   std::map<std::int64_t, std::array<std::int64_t, 4>> shells_;
 };
 

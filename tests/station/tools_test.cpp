@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/station/station.h"
+#include "tests/station/station_test_case.h"
 
 namespace prismesh::test {
 namespace {
@@ -25,16 +25,8 @@ bool inside(const std::vector<Pixel>& outline, const Pixel& at) {
 Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 double length(const Point& a) { return std::hypot(a[0], a[1], a[2]); }
 
-class ToolsTest : public ::testing::Test {
+class ToolsTest : public StationTestCase {
  protected:
-  void SetUp() override {
-    if (const std::string missing = missing_programs(); !missing.empty())
-      GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
-    station_ = std::make_unique<Station>();
-    station_->set_picture_size(1000, 640);
-    original_ = whole_file(station_->deck());
-    nodes_ = nodes_of_deck(original_);
-  }
   const Point& middle() const { return nodes_.at(kFirstNode + (kSheetSide / 2) * kSheetSide + kSheetSide / 2); }
   void select_by_expression(const std::string& expression, std::size_t nodes) {
     station_->key("e");
@@ -60,10 +52,6 @@ class ToolsTest : public ::testing::Test {
       if (const Point d = minus(at, nodes_.at(id)); length(d) > 0) by[id] = d;
     return by;
   }
-
-  std::unique_ptr<Station> station_;
-  std::string original_;
-  std::map<std::int64_t, Point> nodes_;
 };
 
 TEST_F(ToolsTest, a_lasso_takes_what_it_goes_round_though_the_view_moves_meanwhile) {
