@@ -24,6 +24,8 @@ using Action = SessionOptions::Action;
 constexpr std::chrono::seconds kPatience{15};
 constexpr std::chrono::seconds kFirstPatience{5};
 constexpr std::chrono::milliseconds kTurn{100};
+/// How long work may take to stop when it was asked to.
+constexpr std::int64_t kPatienceWithCancel_ns = 5'000'000'000;
 
 class Session {
  public:
@@ -52,12 +54,19 @@ class Session {
     MonotonicClock clock;
     ProgressBar bar(surroundings_, what, clock);
     const Progress progress = bar.progress();
+    std::optional<std::int64_t> stopped_ns;
     for (;;) {
       while (auto reply = (*client)->next_reply())
         if (reply->request == *number) return unfailed(std::move(reply->answer));
       while (const auto event = (*client)->next_event())
         if (const auto* made = std::get_if<ipc::ProgressMade>(&*event); made != nullptr) progress(made->fraction);
-      if (surroundings_.stop()) return fail("", "stopped waiting; what was asked for may still be done");
+      if (surroundings_.stop()) {
+        if (!stopped_ns) {
+          stopped_ns = clock.now_ns();
+          if (const Result<std::uint64_t> sent = (*client)->send(ipc::Cancel{}); !sent) return gone(sent.error());
+        }
+        if (clock.now_ns() - *stopped_ns > kPatienceWithCancel_ns) return fail("", "stopped waiting; what was asked for may still be done");
+      }
       if (const Result<void> polled = (*client)->poll(kTurn); !polled) return gone(polled.error());
     }
   }

@@ -61,9 +61,10 @@ Result<void> write_whole(const std::filesystem::path& path, const ipc::ByteWrite
   return replace_files(std::span(&file, 1));
 }
 
-Result<void> write_text_intent(const std::filesystem::path& path, const mesh::document::Document& document) {
+Result<void> write_text_intent(const std::filesystem::path& path, const mesh::document::Document& document, const Progress& progress) {
   const mesh::deck::Deck& deck = *document.deck;
-  const Result<mesh::deck::TextChanges> changes = mesh::deck::text_changes(deck, document.opened->model, document.current().model);
+  const Result<mesh::deck::TextChanges> changes =
+      mesh::deck::text_changes(deck, document.opened->model, document.current().model, progress);
   if (!changes) return fail(changes.error());
   std::vector<std::size_t> files;
   for (std::size_t f = 0; f < changes->by_file.size(); ++f)
@@ -152,8 +153,8 @@ Result<SaveIntent> read_intent(const std::filesystem::path& path) {
 
 }  // namespace
 
-Result<void> write_save_intent(const std::filesystem::path& path, const mesh::document::Document& document) {
-  if (has_grown(document)) return write_text_intent(path, document);
+Result<void> write_save_intent(const std::filesystem::path& path, const mesh::document::Document& document, const Progress& progress) {
+  if (has_grown(document)) return write_text_intent(path, document, progress);
   const mesh::deck::Deck& deck = *document.deck;
   const mesh::Model& model = document.current().model;
   const std::vector<NodeIndex> moved = mesh::moved_nodes(document.opened->model, model);

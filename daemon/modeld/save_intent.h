@@ -6,12 +6,13 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/progress.h"
 #include "mesh/document/document.h"
 
 namespace prismesh::modeld {
 
-/// Writes the intent of saving the document's current generation to its own deck.
-Result<void> write_save_intent(const std::filesystem::path& path, const mesh::document::Document& document);
+/// Writes the intent of saving the document's current generation to its own deck. Errors: those of saving, cancelled.
+Result<void> write_save_intent(const std::filesystem::path& path, const mesh::document::Document& document, const Progress& progress = {});
 
 enum class SaveOutcome : std::uint8_t {
   not_begun,  ///< the deck is as it was

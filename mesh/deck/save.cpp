@@ -14,7 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPackingShare = 0.9;
+/// Of the progress: making new cards takes longer than writing files, and packing many times as long as both.
+constexpr double kShareOfCards = 0.8;
+constexpr double kShareOfCardsWithPacking = 0.2;
+constexpr double kShareOfPacking = 0.7;
 
 std::vector<std::string_view> content_of(const SourceFile& file, const std::vector<Replacement>& replacements) {
   const std::string_view text = file.bytes.text();
@@ -151,14 +154,18 @@ std::string encrypted_note(const Deck& deck) {
   return "";
 }
 
-/// Files with their content, ready to be written; `packed` keeps what packing makes. Packing brings the progress to `share`.
+/// A progress of its own for the part of the work from `begin` to `begin + share`.
+Progress part_of(const Progress& progress, double begin, double share) {
+  return [&progress, begin, share](double fraction) { return !progress || progress(begin + fraction * share); };
+}
+
+/// Files with their content, ready to be written; `packed` keeps what packing makes.
 Result<std::vector<PendingFile>> pending_files(const Deck& deck, const std::vector<Plan>& plans, const TextChanges& text,
-                                               std::deque<std::string>& packed, double share, const Progress& progress) {
+                                               std::deque<std::string>& packed, const Progress& progress) {
   std::vector<PendingFile> pending;
   for (const Plan& plan : plans) {
-    const double done = share * static_cast<double>(pending.size()) / static_cast<double>(plans.size());
-    const double part = share / static_cast<double>(plans.size());
-    const Progress packing = [&](double fraction) { return !progress || progress(done + fraction * part); };
+    const double part = 1 / static_cast<double>(plans.size());
+    const Progress packing = part_of(progress, static_cast<double>(pending.size()) * part, part);
     Result<std::vector<std::string_view>> stored = stored_content_of(deck.files[plan.file], text.by_file[plan.file], packed, packing);
     if (!stored) return fail(stored.error());
     pending.push_back({plan.target, std::move(*stored)});
@@ -197,22 +204,19 @@ Result<void> can_save(const Deck& deck, const Model& original, const Model& mode
 
 Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const fs::path& target, const Progress& progress) {
   const std::lock_guard lock(deck.on_disk->mutex);
-  const Result<TextChanges> text = text_changes(deck, original, model);
+  const bool packs = std::any_of(deck.files.begin(), deck.files.end(), [](const SourceFile& file) { return file.bytes.is_packed(); });
+  const double of_cards = packs ? kShareOfCardsWithPacking : kShareOfCards, before_writing = of_cards + (packs ? kShareOfPacking : 0);
+  const Result<TextChanges> text = text_changes(deck, original, model, part_of(progress, 0, of_cards));
   if (!text) return fail(text.error());
   const bool in_place = same_file(target, deck.files[0].path);
   const Result<std::vector<Plan>> plans = in_place ? plan_in_place(deck, *text) : plan_elsewhere(deck, *text, target);
   if (!plans) return fail(plans.error());
 
-  // Packing takes many times as long as writing.
-  const bool packs = std::any_of(plans->begin(), plans->end(), [&](const Plan& plan) {
-    return deck.files[plan.file].bytes.is_packed() && !text->by_file[plan.file].empty();
-  });
-  const double share = packs ? kPackingShare : 0;
   std::deque<std::string> packed;
-  const Result<std::vector<PendingFile>> pending = pending_files(deck, *plans, *text, packed, share, progress);
+  const Result<std::vector<PendingFile>> pending =
+      pending_files(deck, *plans, *text, packed, part_of(progress, of_cards, before_writing - of_cards));
   if (!pending) return fail(pending.error());
-  const Progress writing = [&](double fraction) { return !progress || progress(share + fraction * (1 - share)); };
-  const Result<void> replaced = replace_files(*pending, writing);
+  const Result<void> replaced = replace_files(*pending, part_of(progress, before_writing, 1 - before_writing));
   if (in_place) remember_written(deck, *pending, *plans, *text, replaced.has_value());
   if (!replaced) return fail(replaced.error());
   return report_of(deck, *text, *plans);

@@ -9,6 +9,7 @@
 #include "mesh/deck/descent.h"
 #include "mesh/deck/naming.h"
 #include "mesh/deck/number.h"
+#include "mesh/deck/text_lines.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/growth.h"
 
@@ -23,6 +24,8 @@ struct CardMove {
 /// Coordinates of a card in a frame of its own that differ by no more than this share of the node's distance from the frame's origin
 /// are the same: the way there and back costs the last digits.
 constexpr double kSameInFrame = 1e-13;
+
+constexpr std::size_t kCardsBetween = 4096;  ///< two looks at the progress
 
 constexpr const char* kFlattened = "stands in a coordinate system that flattens it, so its place can't be written";
 
@@ -40,48 +43,16 @@ std::optional<CardMove> in_card(const Deck& deck, const CardWriter& writer, cons
   return CardMove{*before, *after};
 }
 
-std::vector<std::string_view> lines_of(std::string_view text) {
-  std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    lines.push_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return lines;
-}
-
-/// Lines that come, go or change: what is alike at both ends doesn't count.
-std::size_t lines_that_differ(std::string_view before, std::string_view after) {
-  // Behind a last line without an end, the end that it gets makes no line of its own.
-  if (before.empty()) after.remove_prefix(std::min(after.find_first_not_of("\r\n"), after.size()));
-  const std::vector<std::string_view> a = lines_of(before), b = lines_of(after);
-  if (a.size() == b.size()) {
-    std::size_t differ = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) differ += a[i] != b[i];
-    return differ;
-  }
-  const std::size_t common = std::min(a.size(), b.size());
-  std::size_t front = 0, back = 0;
-  while (front < common && a[front] == b[front]) ++front;
-  while (back < common - front && a[a.size() - 1 - back] == b[b.size() - 1 - back]) ++back;
-  return std::max(a.size(), b.size()) - front - back;
-}
-
-/// What follows a line: "\n" or "\r\n"; at the end of the text that of the line before it.
-std::string_view line_end(std::string_view text, std::size_t at) {
-  std::size_t newline = text.find('\n', at);
-  if (newline == std::string_view::npos) newline = text.rfind('\n');
-  return newline != std::string_view::npos && newline > 0 && text[newline - 1] == '\r' ? "\r\n" : "\n";
-}
-
 class Differ {
  public:
-  Differ(const Deck& deck, const Model& original, const Model& model)
+  Differ(const Deck& deck, const Model& original, const Model& model, const Progress& progress)
       : deck_(deck),
         original_(original),
         model_(model),
         writer_(card_writer(deck.format)),
+        moved_(moved_nodes(original, model)),
         changes_(changes_between(original, model)),
+        progress_(progress),
         by_file_(deck.files.size()) {}
 
   Result<TextChanges> run() {
@@ -107,6 +78,13 @@ class Differ {
   }
   std::string node_name(NodeIndex node) const { return "node " + std::to_string(model_.node_ids[node.value]); }
   std::string shell_name(ShellIndex shell) const { return "shell " + std::to_string(model_.shell_ids[shell.value]); }
+
+  /// Asked for each card that is made.
+  bool goes_on() {
+    if (!progress_ || done_++ % kCardsBetween != 0) return true;
+    const std::size_t all = moved_.size() + changes_.added_nodes.size() + changes_.reshaped_shells.size() + changes_.added_shells.size();
+    return progress_(static_cast<double>(done_ - 1) / static_cast<double>(all));
+  }
 
   // --- what can't be saved at all ---
 
@@ -190,7 +168,8 @@ class Differ {
   }
 
   Result<void> moved() {
-    for (const NodeIndex node : moved_nodes(original_, model_)) {
+    for (const NodeIndex node : moved_) {
+      if (!goes_on()) return fail(cancelled());
       const CardRun& run = deck_.run_of(node);
       const std::string_view text = text_of(run);
       const std::size_t offset = deck_.node_line[node.value];
@@ -224,8 +203,10 @@ class Differ {
   }
 
   Result<void> nodes() {
-    for (const NodeIndex node : changes_.added_nodes)
+    for (const NodeIndex node : changes_.added_nodes) {
+      if (!goes_on()) return fail(cancelled());
       if (Result<void> done = add_node(node); !done) return done;
+    }
     for (const NodeIndex node : changes_.removed_nodes) {
       const CardRun& run = deck_.run_of(node);
       const std::size_t offset = deck_.node_line[node.value];
@@ -295,10 +276,11 @@ class Differ {
   // --- shells ---
 
   Result<void> shells() {
-    for (const ShellIndex shell : changes_.reshaped_shells)
-      if (Result<void> done = write_shell(shell, false); !done) return done;
-    for (const ShellIndex shell : changes_.added_shells)
-      if (Result<void> done = write_shell(shell, true); !done) return done;
+    for (const auto* shells : {&changes_.reshaped_shells, &changes_.added_shells})
+      for (const ShellIndex shell : *shells) {
+        if (!goes_on()) return fail(cancelled());
+        if (Result<void> done = write_shell(shell, shells == &changes_.added_shells); !done) return done;
+      }
     for (const ShellIndex shell : changes_.removed_shells) {
       const CardRun& run = deck_.run_of(shell);
       const std::size_t offset = deck_.shell_line[shell.value];
@@ -339,8 +321,8 @@ class Differ {
     ShellIndex beside = ancestor;
     Result<WrittenCard> card = WrittenCard();
     if (other_kind) {
-      if (const std::string card = names_other_kind(ancestor, triangle); !card.empty())
-        return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") + ", but " + card +
+      if (const std::string namer = names_other_kind(ancestor, triangle); !namer.empty())
+        return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") + ", but " + namer +
                             " names it, which can't name one");
       beside = neighbour_of_kind(ancestor, triangle);
       if (!beside.valid()) {
@@ -475,7 +457,10 @@ class Differ {
   const Model& original_;
   const Model& model_;
   const std::unique_ptr<const CardWriter> writer_;
+  const std::vector<NodeIndex> moved_;
   const Changes changes_;
+  const Progress& progress_;
+  std::size_t done_ = 0;  ///< cards made
   std::vector<std::vector<Replacement>> by_file_;
   std::map<std::tuple<std::uint32_t, PartIndex, bool>, ShellIndex> neighbours_;
   std::map<std::tuple<std::uint32_t, std::size_t, std::string>, std::string> new_blocks_;  ///< by file, place and header: with their cards
@@ -488,8 +473,8 @@ std::string place_of(const Deck& deck, std::uint32_t file, std::size_t offset) {
   return deck.files[file].path.string() + ":" + std::to_string(line_number(deck.files[file].bytes.text(), offset));
 }
 
-Result<TextChanges> text_changes(const Deck& deck, const Model& original, const Model& model) {
-  return Differ(deck, original, model).run();
+Result<TextChanges> text_changes(const Deck& deck, const Model& original, const Model& model, const Progress& progress) {
+  return Differ(deck, original, model, progress).run();
 }
 
 }  // namespace prismesh::mesh::deck

@@ -33,8 +33,8 @@ struct TextChanges {
   std::size_t lines = 0;          ///< lines that come, go or change
 };
 
-/// Errors: what can't be saved safely, with the reason and, where there is one, file and line. Costs what differs.
-Result<TextChanges> text_changes(const Deck& deck, const Model& original, const Model& model);
+/// Errors: what can't be saved safely, with the reason and, where there is one, file and line; cancelled. Costs what differs.
+Result<TextChanges> text_changes(const Deck& deck, const Model& original, const Model& model, const Progress& progress = {});
 
 /// Where something stands, for messages: "deck.k:12".
 std::string place_of(const Deck& deck, std::uint32_t file, std::size_t offset);

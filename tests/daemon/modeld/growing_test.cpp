@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -174,6 +176,50 @@ TEST_F(Growing, AnEditThatIsToldToStopLeavesEverythingAsItWas) {
   EXPECT_EQ(stopped.error().message, "cancelled");
   EXPECT_EQ(first.document().current().number, number);
   EXPECT_EQ(first.state().journalled_edits, journalled);
+}
+
+/// All files in a folder and below, with their content.
+std::map<std::string, std::string> everything_in(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) all[entry.path().string()] = content_of(entry.path());
+  return all;
+}
+
+TEST_F(Growing, ASaveThatIsToldToStopLeavesEveryFileUntilItPutsTheFirstInPlace) {
+  const fs::path deck = folder_.two_files();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, kSplit);
+  edit(first, kMove);
+  const std::map<std::string, std::string> before = everything_in(folder_.path());
+  int stops = 0;
+  for (bool elsewhere : {true, false}) {
+    const auto target = elsewhere ? std::optional((folder_.path() / "other" / "main.k").string()) : std::nullopt;
+    for (int wanted = 0;; ++wanted) {
+      int calls = 0;
+      double reached = 0;
+      const Result<ipc::Saved> saved = first.save(target, [&](double fraction) {
+        EXPECT_GE(fraction, reached);
+        EXPECT_LE(reached = fraction, 1 + 1e-9);
+        return calls++ < wanted;
+      });
+      if (saved) {
+        EXPECT_GT(reached, 0.99);
+        break;
+      }
+      ++stops;
+      EXPECT_EQ(saved.error().message, "cancelled");
+      ASSERT_EQ(everything_in(folder_.path()), before) << "told to stop at call " << wanted;
+      EXPECT_TRUE(first.changed());
+    }
+    if (elsewhere) fs::remove_all(folder_.path() / "other");
+  }
+  EXPECT_GE(stops, 4) << "before and while the cards are made, and before the files are put in place, of both saves";
+  EXPECT_NE(content_of(deck), before.at(deck.string()));
+  EXPECT_FALSE(first.changed());
+  edit(first, kMove);
+  EXPECT_TRUE(first.save(std::nullopt));
 }
 
 }  // namespace
