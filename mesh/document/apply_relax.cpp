@@ -1,22 +1,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 
 #include "base/counted.h"
 #include "base/readable_number.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/edge_middles.h"
 #include "mesh/document/hanging.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/selecting.h"
 #include "mesh/document/surroundings.h"
+#include "mesh/model/adjacency.h"
 #include "mesh/relax/relax.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr double kThreshold = 0.01;  ///< of the target size, where the edit says none
+constexpr double kThreshold = 0.15;  ///< of the target size, where the edit says none
 
 Result<void> refuse_unsound(const Relax& edit) {
   const auto positive = [](const std::optional<double>& value) { return !value || (*value > 0 && std::isfinite(*value)); };
@@ -58,31 +61,43 @@ Result<Reach> find_reach(const Document& document, const Relax& edit) {
 /// Why nodes stay, in the order in which the reasons are asked for.
 enum class Stays : std::uint8_t { locked, held, other_element, joined, mid_side, goes };
 constexpr std::array<std::string_view, 5> kWhyStays{"of locked parts", "held by the deck", "with elements other than shells",
-                                                    "that cards join", "of shells with mid-side nodes"};
+                                                    "that cards join", "beside mid-side nodes that can't follow"};
 
 class Pins {
  public:
   explicit Pins(const Generation& generation) : generation_(generation) {
     const Model& model = generation.model;
     if (model.midside)
-      for (const MidsideNodes& midside : *model.midside) {
-        for (const NodeIndex node : midside.node)
-          if (node.valid()) mid_side_.push_back(node);
-        const ShellNodes& corners = model.shell(midside.shell);
-        if (!model.is_removed(midside.shell)) mid_side_.insert(mid_side_.end(), corners.node.begin(), corners.node.end());
-      }
-    std::sort(mid_side_.begin(), mid_side_.end());
+      for (const MidsideNodes& midside : *model.midside)
+        if (!model.is_removed(midside.shell)) pin_beside_middles(midside);
+    std::sort(beside_middles_.begin(), beside_middles_.end());
   }
 
   Stays of(NodeIndex node) const {
-    if ((generation_.node_marks[node.value] & kLocked) != 0) return Stays::locked;
-    if (generation_.model.node_holds[node.value] != 0) return Stays::held;
-    if (names(generation_.around->attached.uses, node)) return Stays::other_element;
-    if (names(generation_.around->hanging.joined, node)) return Stays::joined;
-    return std::binary_search(mid_side_.begin(), mid_side_.end(), node) ? Stays::mid_side : Stays::goes;
+    const Stays why = by_itself(node);
+    return why == Stays::goes && std::binary_search(beside_middles_.begin(), beside_middles_.end(), node) ? Stays::mid_side : why;
   }
 
  private:
+  Stays by_itself(NodeIndex node) const {
+    if ((generation_.node_marks[node.value] & kLocked) != 0) return Stays::locked;
+    if (generation_.model.node_holds[node.value] != 0) return Stays::held;
+    if (names(generation_.around->attached.uses, node)) return Stays::other_element;
+    return names(generation_.around->hanging.joined, node) ? Stays::joined : Stays::goes;
+  }
+
+  /// A mid-side node follows the ends of its edge. Where it can't, or is a corner of another shell, they stay, and it with them.
+  void pin_beside_middles(const MidsideNodes& midside) {
+    const Model& model = generation_.model;
+    const ShellNodes& corners = model.shell(midside.shell);
+    const int count = corners.corners();
+    for (int i = 0; i < count; ++i) {
+      const NodeIndex node = midside.node[i];
+      if (!node.valid() || (model.adjacency->shells_of(node).empty() && by_itself(node) == Stays::goes)) continue;
+      beside_middles_.insert(beside_middles_.end(), {node, corners.node[i], corners.node[(i + 1) % count]});
+    }
+  }
+
   template <class Entry>
   static bool names(const std::vector<Entry>& entries, NodeIndex node) {
     const auto at = std::lower_bound(entries.begin(), entries.end(), node, [](const Entry& e, NodeIndex n) { return e.node < n; });
@@ -90,7 +105,7 @@ class Pins {
   }
 
   const Generation& generation_;
-  NodeSet mid_side_;  ///< and the corners between them
+  NodeSet beside_middles_;
 };
 
 /// The nodes that may go; says how many may not.
@@ -124,13 +139,28 @@ void say_how(const relax::Relaxed& relaxed, EditReport& report) {
   if (relaxed.limited > 0) report.notes.push_back(counted(relaxed.limited, "node") + " stopped at max_move");
 }
 
+/// Half of what each end of its edge moved by.
+NodeSet let_middles_follow(const Model& before, const relax::Relaxed& relaxed, Generation& next) {
+  NodeSet followed;
+  for (const EdgeMiddle& middle : middles_in(before, relaxed.nodes, shells_touching(before, relaxed.nodes))) {
+    Vec3 by = Vec3::Zero();
+    for (const NodeIndex end : middle.end) by += 0.5 * (next.model.position(end) - before.position(end));
+    next.model.positions.set(middle.node.value, before.position(middle.node) + by);
+    followed.push_back(middle.node);
+  }
+  return followed;
+}
+
 void put_positions(const Document& document, const relax::Relaxed& relaxed, Generation& next, EditReport& report) {
   for (std::size_t i = 0; i < relaxed.nodes.size(); ++i) next.model.positions.set(relaxed.nodes[i].value, relaxed.positions[i]);
-  report.nodes_moved = relaxed.nodes.size();
+  const NodeSet followed = let_middles_follow(document.current().model, relaxed, next);
+  NodeSet moved;
+  std::set_union(relaxed.nodes.begin(), relaxed.nodes.end(), followed.begin(), followed.end(), std::back_inserter(moved));
+  report.nodes_moved = moved.size();
   const ShellSet touched = shells_touching(next.model, relaxed.nodes);
   quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, touched, next.quality, next.counts);
   update_weight(document.current(), touched, next);
-  report_hanging(document.current(), next, relaxed.nodes, report);
+  report_hanging(document.current(), next, moved, report);
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ struct MoveLimits {
 struct Relax {
   RelaxMode mode = RelaxMode::full;
   std::optional<Place> at;          ///< mode from: where it begins
-  std::optional<double> threshold;  ///< mode from: neighbours join while a node is displaced farther; absent: 0.01 of the target size
+  std::optional<double> threshold;  ///< mode from: neighbours join while a node is displaced farther; absent: 0.15 of the target size
   Scope scope = Scope::selection;
   double angle = 30;  ///< degrees; sharper edges are features
   MoveLimits max_move;
