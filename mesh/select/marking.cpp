@@ -34,11 +34,15 @@ std::optional<ElementClass> block_class(ItemClass item_class) {
   }
 }
 
+/// Those that are there, with their parts.
 template <class Body>
 void Marking::each_shell(const Body& body) const {
   std::size_t shell = 0;
   for (std::size_t c = 0; c < model_.shell_parts.chunk_count(); ++c)
-    for (const PartIndex part : model_.shell_parts.chunk(c)) body(shell++, part);
+    for (const PartIndex part : model_.shell_parts.chunk(c)) {
+      if (!model_.growth || !model_.is_removed(ShellIndex(shell))) body(shell, part);
+      ++shell;
+    }
 }
 
 Marks Marking::nothing() const {

@@ -186,6 +186,9 @@ TEST(Restructure, EveryOtherEditWorksOnWhatHasGrown) {
   std::mt19937 random(4);
   must_change(document, any_change(document.current().model, random, 40));
   must_change(document, any_change(document.current().model, random, 40));
+  for (int i = 0; i < 20 && document.current().model.growth->removed_shells.empty(); ++i)
+    must_change(document, any_change(document.current().model, random, 40));
+  ASSERT_GT(document.current().model.growth->removed_shells.size(), 0u);
   ASSERT_GT(document.current().model.growth->node_origins.size(), 0u);
   ASSERT_GT(document.current().model.growth->removed_nodes.size(), 0u);
   const auto view = R"([0.02,0,0,0, 0,0.02,0,0, 0,0,-0.01,0, -0.6,-0.5,0,1])";
@@ -193,6 +196,11 @@ TEST(Restructure, EveryOtherEditWorksOnWhatHasGrown) {
            std::string(R"({"edit":"select","expr":"all","kind":"node"})"),
            std::string(R"({"edit":"select","expr":"all","kind":"element"})"),
            std::string(R"({"edit":"select","expr":"1","kind":"part"})"),
+           std::string(R"({"edit":"select","expr":"part:1","kind":"node"})"),
+           std::string(R"({"edit":"select","expr":"part:1-2","kind":"element"})"),
+           std::string(R"({"edit":"lock","on":"all"})"),
+           std::string(R"({"edit":"unlock","on":"1"})"),
+           std::string(R"({"edit":"unlock"})"),
            std::string(R"({"edit":"select_region","at":[20,20,0],"by":"features","angle":60})"),
            std::string(R"({"edit":"select_region","at":[20,20,0],"by":"piece"})"),
            std::string(R"({"edit":"select_region","at":[0,0,0],"by":"free_edge"})"),
