@@ -108,24 +108,28 @@ Vec3 area_normal_of(const Corners& corners, const PositionOf& at) {
   return across.cross(is_triangle ? Vec3(at(corners[2]) - at(corners[0])) : Vec3(at(corners[3]) - at(corners[1])));
 }
 
+/// How far shells are off the surface: at the points that divide edges, but those in lines, and quads into so many parts.
 template <class PositionOf>
-double farthest_off(const Site& site, const std::vector<Corners>& list, const PositionOf& at) {
+double farthest_off(const Site& site, const std::vector<Corners>& list, int parts, const PositionOf& at) {
   double farthest = 0;
-  const auto look = [&](const Vec3& point, const Vec3& normal, double size) {
+  const double size = 2 * site.judge.target_size;
+  const auto look = [&](const Vec3& point, const Vec3& normal) {
     const auto place = site.surface.project(point, size, normal);
     farthest = std::max(farthest, place ? place->distance : size);
   };
   for (const Corners& corners : list) {
     const int count = corner_count(corners);
-    Vec3 centre = Vec3::Zero();
-    for (int i = 0; i < count; ++i) centre += at(corners[static_cast<std::size_t>(i)]) / count;
     const Vec3 normal = area_normal_of(corners, at);
-    const double size = 2 * site.judge.target_size;
     for (int i = 0; i < count; ++i) {
       const LocalNode a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>((i + 1) % count)];
-      if (a < b && site.patch.line(a, b) == nullptr) look(0.5 * (at(a) + at(b)), normal, size);
+      if (b < a || site.patch.line(a, b) != nullptr) continue;
+      for (int p = 1; p < parts; ++p) look(at(a) + static_cast<double>(p) / parts * (at(b) - at(a)), normal);
     }
-    if (count == 4) look(centre, normal, size);
+    for (int p = 1; count == 4 && p < parts; ++p)
+      for (int q = 1; q < parts; ++q) {
+        const double u = static_cast<double>(p) / parts, v = static_cast<double>(q) / parts;
+        look((1 - v) * ((1 - u) * at(corners[0]) + u * at(corners[1])) + v * ((1 - u) * at(corners[3]) + u * at(corners[2])), normal);
+      }
   }
   return farthest;
 }
@@ -207,10 +211,11 @@ bool keeps_to_surface(const Site& site) {
   std::vector<Corners> now, before;
   for (const LocalShell shell : patch.changed_shells()) now.push_back(patch.shell(shell).corners);
   const double allowed = site.options.most_off_surface * site.judge.target_size;
-  const double off = farthest_off(site, now, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
+  const double off = farthest_off(site, now, 2, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
   if (off <= allowed) return true;
   for (const auto& [shell, was] : patch.old_shells()) before.push_back(was.corners);
-  return off <= 1.0001 * farthest_off(site, before, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
+  // What was there is looked at in more places: its halves have their middles where it has its quarters.
+  return off <= 1.0001 * farthest_off(site, before, 4, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
 }
 
 std::optional<Vec3> on_surface(const Site& site, const Vec3& point, const Vec3& toward, double radius) {

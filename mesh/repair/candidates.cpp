@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <set>
+
+#include "mesh/repair/strips.h"
 
 namespace prismesh::mesh::repair {
 
@@ -16,7 +20,15 @@ EdgeOf edge_of(const Corners& corners, int edge) {
   return {corners[static_cast<std::size_t>(edge % count)], corners[static_cast<std::size_t>((edge + 1) % count)]};
 }
 
+// An edge so many target sizes long is worth dividing.
+constexpr double kLong = 1.25;
+
 double length_of(const Patch& patch, const EdgeOf& edge) { return (patch.position(edge.a) - patch.position(edge.b)).norm(); }
+
+/// The mean length of a quad's edge and the opposite one.
+double width_of(const Patch& patch, const Corners& corners, int edge) {
+  return 0.5 * (length_of(patch, edge_of(corners, edge)) + length_of(patch, edge_of(corners, edge + 2)));
+}
 
 void add_redivisions(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
   const Patch& patch = site.patch;
@@ -107,15 +119,12 @@ void add_rows(const Site& site, LocalShell shell, std::vector<Candidate>& found)
   const Patch& patch = site.patch;
   const Corners& corners = patch.shell(shell).corners;
   if (corner_count(corners) != 4) return;
-  std::array<double, 4> lengths;
-  for (int e = 0; e < 4; ++e) lengths[static_cast<std::size_t>(e)] = length_of(patch, edge_of(corners, e));
   for (int direction = 0; direction < 2; ++direction) {
-    const auto d = static_cast<std::size_t>(direction);
-    const double across = 0.5 * (lengths[d] + lengths[d + 2]);
+    const double across = width_of(patch, corners, direction);
     // Halves of what is short already are no use.
     if (across < 0.6 * site.judge.target_size) continue;
     Row row{shell, direction};
-    const double long_edge = std::max(1.25 * site.judge.target_size, 0.8 * across);
+    const double long_edge = std::max(kLong * site.judge.target_size, 0.8 * across);
     const int forward = run_of(patch, row, true, long_edge), back = run_of(patch, row, false, long_edge);
     std::vector<std::pair<int, int>> lengths_tried = {
         {forward, back}, {forward + 1, back + 1}, {forward + 1, back}, {forward, back + 1}, {0, 0}};
@@ -180,6 +189,24 @@ std::vector<Candidate> candidates_for(const Site& site, LocalShell shell) {
     for (int first = 0; first < 2; ++first)
       found.push_back({Operation::split, [&site, shell, first] { return split_quad(site, shell, first); }});
   }
+  return found;
+}
+
+std::vector<Candidate> strips_for(const Site& site, LocalShell shell, int edge) {
+  std::vector<Candidate> found;
+  const Corners& corners = site.patch.shell(shell).corners;
+  if (corner_count(corners) != 4) return found;
+  const double width = width_of(site.patch, corners, edge), size = site.judge.target_size;
+  if (width < kLong * size) return found;
+  std::set<int> pieces = {2};
+  for (int count = static_cast<int>(std::lround(width / size)); count > 2; count = count > 3 ? 3 : 2) pieces.insert(count);
+  for (const double least : {0.0, size, kLong * size})
+    for (const int count : pieces)
+      for (const bool absorbs : {true, false}) {
+        if (count > 2 && !absorbs) continue;
+        const Strip strip{shell, edge, count, least, absorbs};
+        found.push_back({Operation::split, [&site, strip] { return divide_strip(site, strip); }});
+      }
   return found;
 }
 

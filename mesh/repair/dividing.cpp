@@ -1,60 +1,13 @@
-// Dividing shells in a row or about a node: new nodes on their edges, no hanging nodes at the ends.
+// Dividing shells in a row or about a node: no hanging nodes at the ends.
 #include <algorithm>
 #include <cmath>
-#include <map>
 
+#include "mesh/repair/cuts.h"
 #include "mesh/repair/pieces.h"
 
 namespace prismesh::mesh::repair {
 
 namespace {
-
-using EdgeKey = std::pair<LocalNode, LocalNode>;
-EdgeKey key(LocalNode a, LocalNode b) { return {std::min(a, b), std::max(a, b)}; }
-
-/// New nodes on edges, each made once.
-class EdgeCuts {
- public:
-  explicit EdgeCuts(const Site& site) : site_(site) {}
-
-  /// The node in the middle of an edge; a refusal is remembered.
-  LocalNode cut(LocalNode a, LocalNode b) {
-    const auto [place, is_new] = cuts_.try_emplace(key(a, b));
-    if (is_new) place->second = make(a, b);
-    return place->second;
-  }
-  const Refusal& refusal() const { return refusal_; }
-
- private:
-  LocalNode make(LocalNode a, LocalNode b) {
-    Patch& patch = site_.patch;
-    if (!patch.may_divide(a, b)) refusal_ = "no node can come between two nodes there";
-    const Vec3 middle = 0.5 * (patch.position(a) + patch.position(b));
-    const double size = (patch.position(a) - patch.position(b)).norm();
-    const bool is_line = patch.line(a, b) != nullptr;
-    std::optional<Vec3> place;
-    if (is_line)
-      place = site_.surface.project_on_line(middle, 0.5 * size);
-    else if (const auto shells = patch.shells_at(a, b); !shells.empty())
-      place = on_surface(site_, middle, area_normal(patch, patch.shell(shells[0]).corners), size);
-    // A straight edge whose middle isn't near anything known is divided where it is.
-    const LocalNode parents[2] = {std::min(a, b), std::max(a, b)};
-    constexpr double kHalves[2] = {0.5, 0.5};
-    const LocalNode node =
-        patch.add_node(place.value_or(middle), parents, kHalves, is_line ? relax::Freedom::line : relax::Freedom::surface);
-    if (is_line) patch.divide_line(a, b, node);
-    return node;
-  }
-
-  const Site& site_;
-  std::map<EdgeKey, LocalNode> cuts_;
-  Refusal refusal_;
-};
-
-struct EdgeAt {
-  LocalShell shell;
-  std::size_t edge = 0;  ///< from corner `edge` to the next
-};
 
 std::optional<EdgeAt> across(const Patch& patch, const EdgeAt& at, bool& is_end) {
   const Corners& corners = patch.shell(at.shell).corners;
@@ -67,7 +20,7 @@ std::optional<EdgeAt> across(const Patch& patch, const EdgeAt& at, bool& is_end)
   const Corners& theirs = patch.shell(other).corners;
   const auto their_count = static_cast<std::size_t>(corner_count(theirs));
   for (std::size_t e = 0; e < their_count; ++e)
-    if (key(theirs[e], theirs[(e + 1) % their_count]) == key(a, b)) return EdgeAt{other, e};
+    if (edge_key(theirs[e], theirs[(e + 1) % their_count]) == edge_key(a, b)) return EdgeAt{other, e};
   return std::nullopt;
 }
 
@@ -94,46 +47,6 @@ std::optional<Walk> walk(const Patch& patch, EdgeAt out, int steps) {
     found.quads.push_back(*next);
     out = {next->shell, (next->edge + 2) % 4};
   }
-}
-
-Refusal end_row(const Site& site, const EdgeAt& at, LocalNode middle, RowEnd end) {
-  Patch& patch = site.patch;
-  const Corners c = patch.shell(at.shell).corners;
-  const Vec3 direction = first_edge(patch, at.shell);
-  const auto count = static_cast<std::size_t>(corner_count(c));
-  const LocalNode a = c[at.edge], b = c[(at.edge + 1) % count], d = c[(at.edge + 2) % count];
-  if (count == 3 && end == RowEnd::absorb) {
-    if (const Refusal refusal = refuse_reshaping(patch, at.shell, 4)) return refusal;
-    patch.set_corners(at.shell, turned_like(patch, {a, middle, b, d}, direction));
-    return std::nullopt;
-  }
-  if (const Refusal refusal = refuse_dividing(patch, at.shell, count)) return refusal;
-  if ((patch.shell(at.shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
-  if (count == 3) {
-    patch.set_corners(at.shell, turned_like(patch, {a, middle, d}, direction));
-    patch.add_shell(turned_like(patch, {middle, b, d}, direction), at.shell);
-    return std::nullopt;
-  }
-  const LocalNode e = c[(at.edge + 3) % count];
-  const bool low = end == RowEnd::low_triangle;
-  const Loop quad = low ? Loop{middle, b, d, e} : Loop{a, middle, d, e};
-  const Loop small = low ? Loop{a, middle, e} : Loop{middle, b, d};
-  patch.set_corners(at.shell, turned_like(patch, quad, direction));
-  patch.add_shell(turned_like(patch, small, direction), at.shell);
-  return std::nullopt;
-}
-
-Refusal divide_quad(const Site& site, const EdgeAt& at, EdgeCuts& cuts) {
-  Patch& patch = site.patch;
-  if (const Refusal refusal = refuse_dividing(patch, at.shell, 4)) return refusal;
-  const Corners c = patch.shell(at.shell).corners;
-  const Vec3 direction = first_edge(patch, at.shell);
-  const LocalNode a = c[at.edge], b = c[(at.edge + 1) % 4], d = c[(at.edge + 2) % 4], e = c[(at.edge + 3) % 4];
-  const LocalNode m = cuts.cut(a, b), n = cuts.cut(d, e);
-  if (cuts.refusal()) return cuts.refusal();
-  patch.set_corners(at.shell, turned_like(patch, {a, m, n, e}, direction));
-  patch.add_shell(turned_like(patch, {m, b, d, n}, direction), at.shell);
-  return std::nullopt;
 }
 
 struct RowWalk {
@@ -187,7 +100,7 @@ Refusal divide_row(const Site& site, const Row& row) {
     for (const EdgeAt& at : side->quads)
       if (const Refusal refusal = divide_quad(site, at, cuts)) return refusal;
   for (const End& end : ends)
-    if (const Refusal refusal = end_row(site, end.at, cuts.cut(end.a, end.b), end.end)) return refusal;
+    if (const Refusal refusal = end_row(site, end.at, cuts.middle(end.a, end.b), end.end)) return refusal;
   return cuts.refusal();
 }
 
@@ -195,13 +108,13 @@ Refusal divide_edge(const Site& site, LocalNode a, LocalNode b, RowEnd first_end
   const Patch& patch = site.patch;
   const std::vector<LocalShell> shells = patch.shells_at(a, b);
   EdgeCuts cuts(site);
-  const LocalNode middle = cuts.cut(a, b);
+  const LocalNode middle = cuts.middle(a, b);
   if (cuts.refusal()) return cuts.refusal();
   for (std::size_t i = 0; i < shells.size(); ++i) {
     const Corners& c = patch.shell(shells[i]).corners;
     const auto count = static_cast<std::size_t>(corner_count(c));
     std::size_t edge = 0;
-    while (key(c[edge], c[(edge + 1) % count]) != key(a, b)) ++edge;
+    while (edge_key(c[edge], c[(edge + 1) % count]) != edge_key(a, b)) ++edge;
     if (const Refusal refusal = end_row(site, {shells[i], edge}, middle, i == 0 ? first_end : second_end)) return refusal;
   }
   return std::nullopt;
@@ -220,7 +133,7 @@ Refusal divide_about(const Site& site, LocalNode node) {
     const auto at = static_cast<std::size_t>(std::find(c.begin(), c.end(), node) - c.begin());
     const LocalNode next = c[(at + 1) % count], last = c[(at + count - 1) % count];
     const Vec3 direction = first_edge(patch, shell), normal = area_normal(patch, c);
-    const LocalNode m = cuts.cut(node, next), n = cuts.cut(last, node);
+    const LocalNode m = cuts.middle(node, next), n = cuts.middle(last, node);
     if (cuts.refusal()) return cuts.refusal();
     if (count == 3) {
       patch.set_corners(shell, turned_like(patch, {node, m, n}, direction));

@@ -163,7 +163,7 @@ std::vector<LocalShell> Patch::shells_at(LocalNode a, LocalNode b) const {
 
 bool Patch::may_divide(LocalNode a, LocalNode b) const {
   const LineEnd* end = line(a, b);
-  if (end != nullptr && (end->is_rim || end->shells > 2)) return false;
+  if (end != nullptr && end->is_rim) return false;
   if (!rules_->may_divide || !node(a).model.valid() || !node(b).model.valid()) return true;
   return rules_->may_divide(node(a).model, node(b).model);
 }

@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "mesh/repair/appraisal.h"
 #include "mesh/repair/candidates.h"
 #include "mesh/repair/patch.h"
+#include "mesh/repair/strips.h"
 
 namespace prismesh::mesh::repair {
 
 namespace {
 
 constexpr int kRings = 4;
+constexpr int kStripPasses = 4;
 constexpr double kLeastGain = 0.05;
 constexpr int kSweepsAtAGlance = 1;
 // Candidates that after a glance gain less aren't looked at closer.
@@ -56,6 +59,10 @@ class Repairer {
     for (int round = 0; round < site_.options.most_rounds; ++round) {
       repaired_.rounds = round + 1;
       bool better = false;
+      for (int pass = 0; pass < kStripPasses && divide_strips(); ++pass) {
+        better = true;
+        if (const Result<void> relaxed = relax_neighbourhood(); !relaxed) return fail(relaxed.error());
+      }
       // The worst first; warnings when nothing fails that could be cured.
       for (const quality::Grade least : {quality::Grade::fail, quality::Grade::warn}) {
         const Result<bool> improved = sweep(least, round, progress);
@@ -106,6 +113,25 @@ class Repairer {
     return better;
   }
 
+  /// Whole strips of quads where shells are long across: that leaves no triangles, or few.
+  bool divide_strips() {
+    bool better = false;
+    // Strips that were refused aren't tried again from each of their shells.
+    std::set<std::pair<LocalShell, int>> refused;
+    for (const LocalShell shell : bad_shells(quality::Grade::warn))
+      for (int edge = 0; edge < 2; ++edge) {
+        if (!patch_.shell(shell).is_alive || patch_.shell(shell).state.grade() == quality::Grade::ok) break;
+        if (refused.contains({shell, edge})) continue;
+        const std::vector<Candidate> found = strips_for(site_, shell, edge);
+        if (found.empty()) continue;
+        if (improve(found, shell, false))
+          better = true;
+        else
+          for (const StripQuad& quad : quads_of(patch_, {shell, edge})) refused.emplace(quad.shell, quad.edge);
+      }
+    return better;
+  }
+
   /// Triangles that a repair left side by side are joined or moved apart where that makes nothing worse.
   void tidy() {
     for (std::size_t s = 0; s < patch_.shell_count(); ++s) {
@@ -151,12 +177,15 @@ class Repairer {
       if (now.failing > before.failing || now.warning > before.warning) return {};
     } else {
       const bool cures = now.failing + now.warning < before.failing + before.warning;
-      if (now.worst < before.worst + (cures ? -1e-4F : 1e-3F)) return {0, "no operation makes it better", 4};
+      if (now.failing >= before.failing && now.worst < before.worst + (cures ? -1e-4F : 1e-3F))
+        return {0, "no operation makes it better", 4};
     }
     if (harms(patch_)) return {0, "every operation makes a neighbour fail", 2};
     if (!conforms(patch_)) return {0, "every operation would tear or fold the mesh", 1};
     if (now.triangles > before.triangles && triangles_ + now.triangles - before.triangles > most_triangles_)
       return {0, "there would be too many triangles", 5};
+    if (now.triangle_pairs > before.triangle_pairs && pairs_ + now.triangle_pairs - before.triangle_pairs > 0)
+      return {0, "there would be two triangles side by side", 5};
     if (!keeps_to_surface(site_)) return {0, "every operation leaves the surface", 3};
     return {gain, {}, 0};
   }
@@ -193,7 +222,9 @@ class Repairer {
   }
 
   void keep_change() {
-    triangles_ += burden_now(patch_).triangles - burden_before(patch_).triangles;
+    const Burden before = burden_before(patch_), now = burden_now(patch_);
+    triangles_ += now.triangles - before.triangles;
+    pairs_ += now.triangle_pairs - before.triangle_pairs;
     touched_.resize(patch_.shell_count(), 0);
     ++changes_;
     for (const LocalShell changed : patch_.changed_shells()) touched_[changed.value] = changes_;
@@ -271,6 +302,7 @@ class Repairer {
   std::map<LocalShell, std::string_view> why_;
   Effort effort_ = kQuick;
   long triangles_ = 0, most_triangles_ = 0;
+  int pairs_ = 0;  ///< of triangles side by side, more than there were
   Repaired repaired_;
 };
 

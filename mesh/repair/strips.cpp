@@ -1,0 +1,171 @@
+#include "mesh/repair/strips.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <optional>
+
+#include "mesh/repair/cuts.h"
+#include "mesh/repair/pieces.h"
+
+namespace prismesh::mesh::repair {
+
+namespace {
+
+constexpr unsigned kAcross = 0b0101, kAlong = 0b1010;  ///< opposite edges of a quad
+
+/// Which edges of each shell a strip cuts.
+class Plan {
+ public:
+  Plan(const Patch& patch, const Strip& strip) : patch_(patch), least_(strip.least) {
+    if (corner_count(patch.shell(strip.start).corners) != 4) return;
+    const unsigned edges = strip.edge % 2 == 0 ? kAcross : kAlong;
+    for (std::size_t e = 0; e < 4; ++e)
+      if ((edges >> e & 1) != 0 && !may_cut(strip.start, e)) return;
+    for (std::size_t e = 0; e < 4; ++e)
+      if ((edges >> e & 1) != 0) cut(strip.start, e);
+    is_possible_ = follow();
+  }
+
+  bool is_possible() const { return is_possible_; }
+  const std::map<LocalShell, unsigned>& edges() const { return edges_; }
+  static bool divides(unsigned edges) { return edges == kAcross || edges == kAlong; }
+
+ private:
+  EdgeKey nodes_of(LocalShell shell, std::size_t edge) const {
+    const Corners& corners = patch_.shell(shell).corners;
+    const auto count = static_cast<std::size_t>(corner_count(corners));
+    return edge_key(corners[edge], corners[(edge + 1) % count]);
+  }
+
+  bool may_cut(LocalShell shell, std::size_t edge) const {
+    const auto [a, b] = nodes_of(shell, edge);
+    return patch_.may_divide(a, b);
+  }
+
+  void cut(LocalShell shell, std::size_t edge) {
+    const EdgeKey nodes = nodes_of(shell, edge);
+    for (const LocalShell other : patch_.shells_at(nodes.first, nodes.second)) {
+      const int count = corner_count(patch_.shell(other).corners);
+      for (std::size_t e = 0; e < static_cast<std::size_t>(count); ++e)
+        if (nodes_of(other, e) == nodes) edges_[other] |= 1U << e;
+      reached_.push_back(other);
+    }
+  }
+
+  /// Cuts on from every shell reached; false: the strip crosses itself.
+  bool follow() {
+    for (std::size_t i = 0; i < reached_.size(); ++i) {
+      const LocalShell shell = reached_[i];
+      const unsigned edges = edges_[shell];
+      const int count = corner_count(patch_.shell(shell).corners);
+      if (count == 3) {
+        if (std::popcount(edges) > 2) return false;
+        continue;
+      }
+      if (std::popcount(edges) > 1) {
+        if (!divides(edges)) return false;
+        continue;
+      }
+      const auto opposite = static_cast<std::size_t>(std::countr_zero(edges) + 2) % 4;
+      const auto [a, b] = nodes_of(shell, opposite);
+      const bool goes_on =
+          (patch_.position(a) - patch_.position(b)).norm() >= least_ && patch_.may_divide(a, b) && !refuse_dividing(patch_, shell, 4);
+      if (goes_on) cut(shell, opposite);
+    }
+    return true;
+  }
+
+  const Patch& patch_;
+  double least_;
+  bool is_possible_ = false;
+  std::map<LocalShell, unsigned> edges_;  ///< a bit an edge
+  std::vector<LocalShell> reached_;
+};
+
+/// Where only one edge of a quad is cut: the triangle at the corner to which the diagonal is the shorter one.
+RowEnd better_end(const Patch& patch, const EdgeAt& at, LocalNode middle) {
+  const Corners& c = patch.shell(at.shell).corners;
+  const auto diagonal = [&](std::size_t corner) {
+    return (patch.position(c[(at.edge + corner) % 4]) - patch.position(middle)).squaredNorm();
+  };
+  return diagonal(3) <= diagonal(2) * (1 + 1e-9) ? RowEnd::low_triangle : RowEnd::high_triangle;
+}
+
+/// A triangle whose edges at a corner are both cut: a triangle there, and a quad.
+Refusal turn_about(const Site& site, LocalShell shell, unsigned edges, EdgeCuts& cuts) {
+  Patch& patch = site.patch;
+  if (const Refusal refusal = refuse_dividing(patch, shell, 3)) return refusal;
+  if ((patch.shell(shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
+  const auto whole = static_cast<std::size_t>(std::countr_zero(~edges & 0b111));  // the edge that isn't cut
+  const Corners c = patch.shell(shell).corners;
+  const Vec3 direction = first_edge(patch, shell);
+  const LocalNode a = c[whole], b = c[(whole + 1) % 3], top = c[(whole + 2) % 3];
+  const LocalNode m = cuts.middle(b, top), n = cuts.middle(top, a);
+  if (cuts.refusal()) return cuts.refusal();
+  patch.set_corners(shell, turned_like(patch, {a, b, m, n}, direction));
+  patch.add_shell(turned_like(patch, {n, m, top}, direction), shell);
+  return std::nullopt;
+}
+
+/// Where only one edge of a quad is cut into three: a quad between two triangles.
+Refusal narrow(const Site& site, const EdgeAt& at, const std::vector<LocalNode>& nodes) {
+  Patch& patch = site.patch;
+  if (const Refusal refusal = refuse_dividing(patch, at.shell, 4)) return refusal;
+  if ((patch.shell(at.shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
+  const Corners c = patch.shell(at.shell).corners;
+  const Vec3 direction = first_edge(patch, at.shell);
+  const LocalNode a = c[at.edge], b = c[(at.edge + 1) % 4], d = c[(at.edge + 2) % 4], e = c[(at.edge + 3) % 4];
+  patch.set_corners(at.shell, turned_like(patch, {nodes[0], nodes[1], d, e}, direction));
+  patch.add_shell(turned_like(patch, {a, nodes[0], e}, direction), at.shell);
+  patch.add_shell(turned_like(patch, {nodes[1], b, d}, direction), at.shell);
+  return std::nullopt;
+}
+
+/// What becomes of a shell that isn't divided across as a quad.
+Refusal end_strip(const Site& site, const Strip& strip, LocalShell shell, unsigned edges, EdgeCuts& cuts) {
+  const Corners c = site.patch.shell(shell).corners;
+  const int count = corner_count(c);
+  if (strip.pieces > (count == 4 ? 3 : 2)) return "a strip there would have to end in more pieces than there is a way for";
+  if (std::popcount(edges) == 2) return turn_about(site, shell, edges, cuts);
+  const EdgeAt at{shell, static_cast<std::size_t>(std::countr_zero(edges))};
+  const std::vector<LocalNode> nodes = cuts.cut(c[at.edge], c[(at.edge + 1) % static_cast<std::size_t>(count)]);
+  if (strip.pieces == 3) return narrow(site, at, nodes);
+  const RowEnd end = count == 4 ? better_end(site.patch, at, nodes[0]) : strip.absorbs ? RowEnd::absorb : RowEnd::two_triangles;
+  return end_row(site, at, nodes[0], end);
+}
+
+}  // namespace
+
+std::vector<StripQuad> quads_of(const Patch& patch, const Strip& strip) {
+  const Plan plan(patch, strip);
+  std::vector<StripQuad> quads;
+  if (!plan.is_possible()) return quads;
+  for (const auto& [shell, edges] : plan.edges())
+    if (corner_count(patch.shell(shell).corners) == 4 && Plan::divides(edges)) quads.push_back({shell, edges == kAcross ? 0 : 1});
+  return quads;
+}
+
+Refusal divide_strip(const Site& site, const Strip& strip) {
+  const Patch& patch = site.patch;
+  const Plan plan(patch, strip);
+  if (!plan.is_possible()) return "the strip of quads there crosses itself";
+  EdgeCuts cuts(site, strip.pieces);
+  // All cuts first: an edge is found by its nodes only as long as its shells are whole.
+  for (const auto& [shell, edges] : plan.edges()) {
+    const Corners& c = patch.shell(shell).corners;
+    const auto count = static_cast<std::size_t>(corner_count(c));
+    for (std::size_t e = 0; e < count; ++e)
+      if ((edges >> e & 1) != 0) cuts.cut(c[e], c[(e + 1) % count]);
+  }
+  if (cuts.refusal()) return cuts.refusal();
+  for (const auto& [shell, edges] : plan.edges()) {
+    const bool divides = corner_count(patch.shell(shell).corners) == 4 && Plan::divides(edges);
+    const Refusal refusal =
+        divides ? divide_quad(site, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(site, strip, shell, edges, cuts);
+    if (refusal) return refusal;
+  }
+  return std::nullopt;
+}
+
+}  // namespace prismesh::mesh::repair
