@@ -179,7 +179,8 @@ void Gui::feed(const display::WindowEvent& event) { std::visit(Feed{}, event); }
 
 bool Gui::on_panel(double x, double y) const {
   for (const ImGuiWindow* window : state_->context->Windows) {
-    if (!window->WasActive || window->Hidden || (window->Flags & ImGuiWindowFlags_NoInputs) != 0) continue;
+    // NoInputs would be wrong: it holds the flags of the keyboard's navigation too, which no panel has.
+    if (!window->WasActive || window->Hidden || (window->Flags & ImGuiWindowFlags_NoMouseInputs) != 0) continue;
     if (window->Rect().Contains(ImVec2(static_cast<float>(x), static_cast<float>(y)))) return true;
   }
   return false;

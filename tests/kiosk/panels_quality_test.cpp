@@ -99,5 +99,15 @@ TEST_F(QualityPanel, AnErrorIsGoneToAndNamed) {
   EXPECT_EQ(error_words({12, "no_area", "", std::nullopt, true, {}}), "shell 12: no area");
 }
 
+TEST_F(QualityPanel, PanelsKeepThePointerFromThePictureAndWordsOnItDoNot) {
+  data_.guidance = "Axis: click the first node, Esc gives up";
+  lay_out();
+  lay_out();
+  EXPECT_TRUE(gui_->on_panel(60, 60)) << "the panel at the left";
+  EXPECT_TRUE(gui_->on_panel(kPicture.width - 60, 60)) << "and at the right";
+  EXPECT_FALSE(gui_->on_panel(kPicture.width / 2.0, 20)) << "a line that says what to do next is in nobody's way";
+  EXPECT_FALSE(gui_->on_panel(kPicture.width / 2.0, kPicture.height / 2.0));
+}
+
 }  // namespace
 }  // namespace prismesh::kiosk::panels

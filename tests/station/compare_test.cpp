@@ -59,6 +59,28 @@ TEST_F(CompareTest, the_opened_deck_stands_beside_the_edited_one) {
   EXPECT_FALSE(station_->kiosk().wait_for("compare nothing views 1").empty());
 }
 
+TEST_F(CompareTest, a_click_or_the_wheel_on_a_panel_is_the_panels_alone) {
+  station_->start_kiosk();
+  lift();
+  ASSERT_TRUE(station_->handle());
+  const Station::Aim aim = station_->settled_aim();
+  const std::string generation = station_->kiosk().last("generation ");
+  station_->click(940, 40);     // on the shells' quality
+  station_->click(60, 40);      // on the document
+  station_->click(940, 40, 4);  // the wheel
+  station_->drag(940, 40, 900, 60);
+  // Whatever the picture had made of these would be there before what this key does.
+  station_->kiosk().skip_lines();
+  station_->key("ctrl+c");
+  ASSERT_FALSE(station_->kiosk().wait_for("compare nothing views 2").empty());
+  EXPECT_EQ(station_->kiosk().last("generation "), generation) << "the selection stays";
+  station_->key("ctrl+c");
+  ASSERT_FALSE(station_->kiosk().wait_for("compare nothing views 1").empty());
+  const Station::Aim after = station_->settled_aim();
+  for (const Point& point : {Point{0, 0, 80}, Point{20, 100, 100}})
+    for (const std::size_t i : {0U, 1U}) EXPECT_NEAR(after.pixel_of(point)[i], aim.pixel_of(point)[i], 0.01) << "the view stays";
+}
+
 TEST_F(CompareTest, kiosks_that_follow_move_together) {
   station_->start_kiosk({"--follow"});
   const std::filesystem::path programs = PRISMESH_PROGRAMS;
