@@ -189,16 +189,40 @@ TEST_F(EyesTest, a_kiosk_that_is_killed_is_nobody_elses_matter) {
   }
 }
 
+/// A busy machine starves the simulated tracker; then the eyes are lost and found, and fading takes pictures. Those are counted that come
+/// while nothing of the kind is said, nor was in the second before. (By how few pictures a head at rest gets by is proven in virtual time,
+/// tests/kiosk/stereo_tracked_eyes_test.cpp.)
 TEST_F(EyesTest, a_head_at_rest_lets_the_picture_rest) {
   station_->start_device_daemon(simulated("still"));
   start_tracked_kiosk();
   ASSERT_FALSE(wait_for_depth().empty());
-  ::usleep(1'000'000);
-  const std::int64_t before = number_after(station_->kiosk().last("picture "), "picture");
-  ::usleep(5'000'000);
-  const std::int64_t pictures = number_after(station_->kiosk().last("picture "), "picture") - before;
-  RecordProperty("pictures_in_5_s", std::to_string(pictures));
-  EXPECT_LE(pictures, 25) << "in 5 s; 300 where every refresh is drawn";
+  const auto events = [&] {
+    std::string all;
+    for (const char* what : {"eyes ", "shows ", "device ", "devices "}) all += station_->kiosk().last(what) + "\n";
+    return all;
+  };
+  const auto pictures = [&] { return number_after(station_->kiosk().last("picture "), "picture"); };
+  constexpr double kMeasured = 5, kSettled = 1, kGivenUp = 60;
+  double quiet = 0, watched = 0, counted_for = 0;
+  std::int64_t counted = 0;
+  while (counted_for < kMeasured && watched < kGivenUp) {
+    const std::string events_before = events();
+    const std::int64_t pictures_before = pictures(), start = clock_.now_ns();
+    ::usleep(250'000);
+    const std::int64_t drawn = pictures() - pictures_before;
+    const double seconds = since_ms(start, clock_.now_ns()) * 1e-3;
+    watched += seconds;
+    const bool followed =
+        station_->kiosk().last("eyes ").starts_with("eyes tracking") && station_->kiosk().last("shows ").starts_with("shows depth");
+    quiet = followed && events() == events_before ? quiet + seconds : 0;
+    if (quiet <= kSettled) continue;
+    counted += drawn;
+    counted_for += seconds;
+  }
+  RecordProperty("pictures", std::to_string(counted));
+  RecordProperty("of_seconds", std::to_string(counted_for));
+  if (counted_for < kMeasured) GTEST_SKIP() << "SKIPPED: this machine is too busy to keep a simulated tracker going for 5 s in a minute";
+  EXPECT_LE(static_cast<double>(counted), 5 * counted_for) << "in " << counted_for << " s; 60 a second where every refresh is drawn";
 }
 
 TEST_F(EyesTest, settings_choose_the_display) {
