@@ -147,6 +147,26 @@ class Proving(Decks):
         captured = self.split(150, "         1         2       150\n").replace("       7", "     150")
         self.assertTrue(self.wrong(both, captured, expected), "an id within another set's range")
 
+    def test_new_shells_after_a_repair(self):
+        def node(id, x, y):
+            return f"{id:8d}{x:16}{y:16}{0.0:16}\n"
+
+        def grown(nodes, shell):
+            text = PLATE.replace("*ELEMENT_SHELL", "".join(node(*n) for n in nodes) + "*ELEMENT_SHELL")
+            text = text.replace("       1       1       1       2       5       4\n", "       1       1       1       7       5       4\n" + shell)
+            return self.wrong(PLATE, text, {"moved_freely": True, "nodes_added": "any", "elements_added": "any", "elements_changed": "any"})
+
+        middle = (7, 5.0, 0.0)
+        self.assertEqual(grown([middle], "       3       1       7       2       5       5\n"), [])
+        one_old_node = "       3       1       7       8       5       5\n       4       1       7       2       8       8\n       5       1       8       2       5       5\n"
+        self.assertEqual(grown([middle, (8, 6.0, 4.0)], one_old_node), [], "in two rounds")
+        elsewhere = "       3       1       7       2       5       5\n       4       1       2       8       9       9\n"
+        self.assertTrue(grown([middle, (8, 90.0, 90.0), (9, 95.0, 90.0)], elsewhere), "one node in common, and placed elsewhere")
+        flap = "       3       1       7       2       5       5\n       4       1       3       8       9       6\n"
+        self.assertTrue(grown([middle, (8, 30.0, 0.0), (9, 30.0, 10.0)], flap), "at an edge of the part, where nothing was divided")
+        tip = "       3       1       7       2       5       5\n       4       1       2       8       9       9\n"
+        self.assertTrue(grown([middle, (8, 8.0, -3.0), (9, 6.0, -3.0)], tip), "near, but at a node only")
+
     def test_nastran_fields(self):
         before = ("GRID           1             1.0     2.0     3.0       7\nGRID*                  2                             1.0             2.0\n"
                   "*                    3.0\n")

@@ -22,15 +22,16 @@ import re
 
 import nastran
 import welds
+from ancestry import SHELL_CLASSES, Ancestry  # noqa: F401
 from deck_text import real
 
 MOST_TOLD = 5
-SHELL_CLASSES = {"shell", "sh3n"}  # Radioss counts triangles in ids of their own; a quad may become one
 
 
 class Proof:
     def __init__(self, before, after, expected):
         self.before, self.after, self.expected = before, after, expected
+        self.ancestry = Ancestry(before, after, expected.get("moved_freely", False))
         self.wrong, self.untold = [], 0
         self.found = {"nodes_moved": 0, "nodes_added": 0, "nodes_removed": 0, "elements_added": 0, "elements_removed": 0,
                       "elements_changed": 0, "lines_changed": 0, "files_changed": []}
@@ -417,22 +418,11 @@ def inherits(proof, kind, id, s):
     if kind == "node":
         return any(within(n) for n in neighbours(proof, id))
     element = next(e for e in proof.after.elements if (e.cls, e.id) == (kind, id))
-    return any(within(p.id) for p in parents(proof, element))
+    return any(within(p.id) for p in proof.ancestry.parents(element))
 
 
 def neighbours(proof, id):
     return {n for e in proof.after.elements if id in e.nodes for n in e.nodes if n in proof.before.nodes}
-
-
-def parents(proof, element):
-    """Old elements of its part that were removed or changed and that share two nodes with it, or all but the new ones. After a repair, which
-    divides, swaps and collapses what it has divided, one node is enough."""
-    shared = 1 if proof.expected.get("moved_freely") else 2
-    mine = set(element.nodes) & proof.before.nodes.keys()
-    after = {(e.cls, e.id): e.nodes for e in proof.after.elements}
-    family = SHELL_CLASSES if element.cls in SHELL_CLASSES else {element.cls}
-    return [e for e in proof.before.elements
-            if e.cls in family and e.part == element.part and after.get((e.cls, e.id)) != e.nodes and len(mine & set(e.nodes)) >= min(shared, len(mine))]
 
 
 def membership(deck, kind, id):
@@ -458,8 +448,10 @@ def check_memberships(proof, nodes, elements):
             lacking = must - membership(after, "node", id)
             if lacking:
                 proof.say(f"the new node {id} between {a} and {b} isn't in the sets {sorted(lacking)[:MOST_TOLD]}")
+    for e in proof.ancestry.loose(elements[1]):
+        proof.say(f"the new {e.kind} {e.id} has no way over edges to an old one of part {e.part}")
     for e in elements[1]:
-        came_from = parents(proof, e)
+        came_from = proof.ancestry.parents(e)
         if not came_from:
             proof.say(f"the new {e.kind} {e.id} of part {e.part} comes from no element of its part")
         elif not any(membership(before, e.cls, old.id) == membership(after, e.cls, e.id) for old in came_from):
