@@ -46,6 +46,7 @@ struct SnapshotInfo {
   std::string document;     ///< path
   std::string length_unit;  ///< "mm", ...
   double target_size = 1;
+  double most_triangles_at_node = 0;  ///< more are a cluster (mesh::quality::Criteria::warn_triangles_at_node)
   mesh::quality::Counts counts;
   std::uint64_t selected_nodes = 0;
   std::uint64_t selected_shells = 0;

@@ -266,6 +266,7 @@ struct SnapshotPublisher::State {
     info.document = document.path.string();
     info.length_unit = std::string(name(document.settings.length_unit));
     info.target_size = document.settings.target_size;
+    info.most_triangles_at_node = document.settings.criteria.warn_triangles_at_node;
     info.counts = generation.counts;
     info.selected_nodes = generation.selected_nodes;
     info.selected_shells = generation.selected_shells;

@@ -8,7 +8,7 @@ namespace prismesh::ipc {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3254'534d'5350'5250;  // "PRPSMST2"
+constexpr std::uint64_t kMagic = 0x3354'534d'5350'5250;  // "PRPSMST3"
 // Indices into the arrays are 32 bits wide, and the last value means none.
 constexpr std::uint64_t kMostElements = 2 * std::uint64_t{0xffff'fffe};
 
@@ -19,6 +19,7 @@ void put_info(ByteWriter& out, const SnapshotInfo& info) {
   out.put(info.document);
   out.put(info.length_unit);
   out.put(info.target_size);
+  out.put(info.most_triangles_at_node);
   for (const std::size_t number : {info.counts.ok, info.counts.warn, info.counts.fail}) out.put(std::uint64_t{number});
   out.put(info.selected_nodes);
   out.put(info.selected_shells);
@@ -39,6 +40,7 @@ SnapshotInfo get_info(ByteReader& in) {
   info.document = in.text();
   info.length_unit = in.text();
   info.target_size = in.get<double>();
+  info.most_triangles_at_node = in.get<double>();
   info.counts.ok = in.get<std::uint64_t>();
   info.counts.warn = in.get<std::uint64_t>();
   info.counts.fail = in.get<std::uint64_t>();

@@ -1,7 +1,7 @@
 #include "kiosk/render/glyphs.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <limits>
 #include <utility>
 
 namespace prismesh::kiosk::render {
@@ -19,14 +19,6 @@ std::size_t spread(const List& list, std::size_t room, const Add& add) {
   for (std::size_t i = 0; i < drawn; ++i) add(list[i * list.size() / drawn]);
   return list.size() - drawn;
 }
-
-/// Triangles at a node, and one of them.
-struct AtNode {
-  int triangles = 0;
-  bool quads = false;
-  std::uint32_t shell = 0;
-  std::uint8_t corner = 0;
-};
 
 }  // namespace
 
@@ -60,28 +52,28 @@ void GlyphList::update(const ModelTable& table, bool visibility_changed, bool to
 
 void GlyphList::find_clusters(const ModelTable& table) {
   clusters_.clear();
-  std::unordered_map<std::uint32_t, AtNode> nodes;
+  const double most = table.source().most_triangles_at_node();
   mesh::ShellNodes shell;
+  std::vector<std::uint16_t> triangles(table.node_count());
+  bool any = false;
   for (std::size_t s = 0; s < table.shell_count(); ++s) {
     if (!table.shell(s, shell) || !shell.is_triangle() || !table.shell_visible(s)) continue;
-    for (std::uint8_t k = 0; k < 3; ++k) {
-      AtNode& at = nodes[shell.node[k].value];
-      if (at.triangles++ == 0) {
-        at.shell = static_cast<std::uint32_t>(s);
-        at.corner = k;
-      }
-    }
+    for (std::size_t k = 0; k < 3; ++k)
+      if (std::uint16_t& at = triangles[shell.node[k].value]; at < std::numeric_limits<std::uint16_t>::max()) any |= ++at > most;
   }
-  std::erase_if(nodes, [](const auto& entry) { return entry.second.triangles <= kMostTrianglesAtNode; });
-  if (nodes.empty()) return;
+  if (!any) return;
+  std::vector<std::uint8_t> crowded(table.node_count());  // and a quad's corner
   for (std::size_t s = 0; s < table.shell_count(); ++s) {
     if (!table.shell(s, shell) || shell.is_triangle()) continue;
-    for (const mesh::NodeIndex node : shell.node)
-      if (const auto found = nodes.find(node.value); found != nodes.end()) found->second.quads = true;
+    for (const mesh::NodeIndex node : shell.node) crowded[node.value] = triangles[node.value] > most;
   }
-  for (const auto& [node, at] : nodes)
-    if (at.quads) clusters_.push_back({at.shell, GlyphShape::cluster, false, at.corner});
-  std::sort(clusters_.begin(), clusters_.end(), [](const Bad& a, const Bad& b) { return a.shell < b.shell; });
+  // The sign stands at the first of the triangles.
+  for (std::size_t s = 0; s < table.shell_count(); ++s) {
+    if (!table.shell(s, shell) || !shell.is_triangle() || !table.shell_visible(s)) continue;
+    for (std::uint8_t k = 0; k < 3; ++k)
+      if (std::exchange(crowded[shell.node[k].value], std::uint8_t{0}) != 0)
+        clusters_.push_back({static_cast<std::uint32_t>(s), GlyphShape::cluster, false, k});
+  }
 }
 
 GlyphList::Chosen GlyphList::choose(const ModelTable& table, std::size_t cap, const std::unordered_set<std::uint32_t>& except) const {

@@ -11,9 +11,6 @@
 
 namespace prismesh::kiosk::render {
 
-/// More triangles at a node are a cluster, as the default criteria have it; where no quad meets them it is a mesh of triangles.
-inline constexpr int kMostTrianglesAtNode = 4;
-
 /// Glyphs of shells that aren't ok and of nodes where triangles crowd, kept per chunk so that a change costs what it touches.
 class GlyphList {
  public:
@@ -40,6 +37,7 @@ class GlyphList {
     bool known = false;
     std::vector<Bad> bad;
   };
+  /// Nodes with more triangles about them than the source's limit; where no quad meets them it is a mesh of triangles.
   void find_clusters(const ModelTable& table);
 
   std::vector<Chunk> chunks_;

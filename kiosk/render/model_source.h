@@ -20,6 +20,8 @@ class ModelSource {
   virtual std::span<const std::byte> chunk_bytes(ipc::SnapshotArray array, std::size_t chunk) const = 0;
   virtual std::size_t part_count() const = 0;
   virtual bool part_hidden(std::size_t part) const = 0;
+  /// More triangles about a node are a cluster.
+  virtual double most_triangles_at_node() const = 0;
   /// Changes with the document; versions of two documents aren't compared.
   virtual std::uint64_t document_key() const = 0;
 

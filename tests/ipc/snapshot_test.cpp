@@ -42,10 +42,12 @@ class Reader {
 
 TEST(Snapshot, HoldsWhatThePictureNeeds) {
   mesh::document::Document document = grid_document(100, 90);
+  document.settings.criteria.warn_triangles_at_node = 2;
   SnapshotPublisher publisher;
   Reader reader(publisher);
   const auto view = reader.map(publisher.publish(document, true).value());
   ASSERT_TRUE(view);
+  EXPECT_EQ(view->info().most_triangles_at_node, 2) << "by the document's own criteria";
   EXPECT_EQ(view->node_count(), 101u * 91);
   EXPECT_EQ(view->shell_count(), 9000u);
   EXPECT_EQ(view->position(9000), document.current().model.positions[9000]);

@@ -117,13 +117,19 @@ std::shared_ptr<test::TestSource> fan(int triangles) {
 }
 
 TEST(Clusters, TrianglesThatCrowdAtANodeOfAQuadAreMarkedThere) {
-  for (const auto& [triangles, marks] : {std::pair{4, 0U}, {5, 1U}, {7, 1U}}) {
+  struct Case {
+    int triangles;
+    double most;
+    std::size_t marks;
+  };
+  for (const auto& [triangles, most, marks] : {Case{4, 4, 0}, {5, 4, 1}, {7, 4, 1}, {4, 3, 1}, {3, 3, 0}, {7, 7, 0}, {5, 2.5, 1}}) {
     const auto source = fan(triangles);
+    source->most_triangles = most;
     const ModelTable table(source);
     GlyphList list;
     list.update(table, true, true, false);
     const auto chosen = list.choose(table, 100, {});
-    ASSERT_EQ(chosen.glyphs.size(), marks) << triangles;
+    ASSERT_EQ(chosen.glyphs.size(), marks) << triangles << " of " << most;
     if (marks == 0) continue;
     EXPECT_EQ(chosen.glyphs[0].kind & 15U, static_cast<std::uint32_t>(GlyphShape::cluster));
     const std::uint32_t corner = chosen.glyphs[0].kind >> kGlyphPlaceShift & 3U;

@@ -25,6 +25,7 @@ class TestSource final : public kiosk::render::ModelSource {
   std::vector<mesh::PartIndex> line_parts;
   std::vector<bool> hidden;
   std::uint64_t key = 1;
+  double most_triangles = 4;
 
   std::uint32_t add_node(const mesh::Vec3& at) {
     positions.push_back(at);
@@ -65,6 +66,7 @@ class TestSource final : public kiosk::render::ModelSource {
   }
   std::size_t part_count() const override { return hidden.size(); }
   bool part_hidden(std::size_t part) const override { return hidden[part]; }
+  double most_triangles_at_node() const override { return most_triangles; }
   std::uint64_t document_key() const override { return key; }
 
  private:
