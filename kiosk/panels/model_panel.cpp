@@ -36,7 +36,9 @@ void quality_section(const PanelData& data) {
   quality_row("fail", Signal::fail, before.fail, failed);
   if (data.glyphs_left_out > 0) {
     ImGui::PushFont(small_font());
-    ImGui::TextDisabled("%s more marks than can be drawn", grouped(data.glyphs_left_out).c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::TextWrapped("%s more marks than can be drawn", grouped(data.glyphs_left_out).c_str());
+    ImGui::PopStyleColor();
     ImGui::PopFont();
   }
 }

@@ -23,12 +23,13 @@ struct ShapeMetrics {
   GlyphShape shape;
   std::uint16_t metrics;
 };
-constexpr std::array<ShapeMetrics, 6> kShapes{{{GlyphShape::warped, bits({Metric::warpage})},
-                                               {GlyphShape::short_edge, bits({Metric::min_length})},
-                                               {GlyphShape::long_edge, bits({Metric::max_length})},
-                                               {GlyphShape::small_angle, bits({Metric::min_angle_quad, Metric::min_angle_tri})},
-                                               {GlyphShape::large_angle, bits({Metric::max_angle_quad, Metric::max_angle_tri})},
-                                               {GlyphShape::stretched, bits({Metric::aspect})}}};
+constexpr std::array<ShapeMetrics, kMostShapesOfShell> kShapes{
+    {{GlyphShape::warped, bits({Metric::warpage})},
+     {GlyphShape::short_edge, bits({Metric::min_length})},
+     {GlyphShape::long_edge, bits({Metric::max_length})},
+     {GlyphShape::small_angle, bits({Metric::min_angle_quad, Metric::min_angle_tri})},
+     {GlyphShape::large_angle, bits({Metric::max_angle_quad, Metric::max_angle_tri})},
+     {GlyphShape::stretched, bits({Metric::aspect})}}};
 constexpr std::uint16_t kAllMetrics = (1U << mesh::quality::kMetricCount) - 1;
 
 /// Angle between the normals of the triangles on either side of the diagonal from corner k to the one across.

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kiosk/render/glyph_shape.h"
 #include "tests/kiosk/render_test.h"
 
 namespace prismesh::kiosk::render {
@@ -225,6 +226,22 @@ TEST_F(Scene, APreviewIsAWhiteWireframeWithLiveSigns) {
   EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, during.rgb);
   renderer_->end_preview();
   EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, before.rgb);
+}
+
+TEST_F(Scene, APullThatMakesAShellWrongInEveryWayHasRoomForAllItsSigns) {
+  const TestSource source = two_plates();
+  show(source);
+  const std::vector<mesh::NodeIndex> nodes{mesh::NodeIndex(60)};
+  const std::vector<mesh::ShellIndex> shells{mesh::ShellIndex(44), mesh::ShellIndex(45), mesh::ShellIndex(54), mesh::ShellIndex(55)};
+  renderer_->begin_preview(nodes, shells);
+  ipc::PreviewFrame frame;
+  frame.positions = {source.positions[60] + Vec3(0, 0, 60)};
+  frame.states.resize(4);
+  for (auto& state : frame.states) state.warn = state.fail = static_cast<std::uint16_t>((1U << mesh::quality::kMetricCount) - 1);
+  ASSERT_TRUE(renderer_->update_preview(frame));
+  draw(fitted("mono", "front", kWidth, kHeight), kWidth, kHeight);
+  EXPECT_EQ(report_.glyphs, 4 * kMostShapesOfShell);
+  EXPECT_EQ(report_.glyphs_left_out, 0U);
 }
 
 TEST_F(Scene, TheActiveHandleIsGreen) {
