@@ -27,7 +27,7 @@ std::vector<PartFigures> part_figures(const mesh::Model& model);
 struct FieldFigures {
   std::size_t measured = 0;
   double min = 0, mean = 0, max = 0;
-  std::string max_at;  ///< "node:7"
+  std::string min_at, max_at;  ///< "node:7"
 };
 FieldFigures figures_of(const mesh::document::Field& field, const mesh::Model& model);
 

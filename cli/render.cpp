@@ -86,15 +86,19 @@ Result<SealedField> seal_field(const mesh::document::Document& document, const m
   Result<ipc::Descriptor> values = ipc::seal_field(current.number, field->on_nodes, field->values);
   if (!values) return fail(std::move(values.error()));
   const FieldFigures figures = figures_of(*field, current.model);
+  // Of a distance between two expressions only what the one names is meant to have values.
+  const std::size_t without = wish.of == mesh::document::FieldWish::Of::gap ? 0 : shells_without_value(current.model, *field);
   const std::string limits = options.limits.value_or(shortest(field->limits.clear) + "," + shortest(field->limits.full));
   SealedField sealed{std::move(*values), {}};
-  sealed.arguments = {"--field-fd",    std::to_string(sealed.values.get()),
-                      "--field-title", field->title,
-                      "--field-unit",  field->unit,
-                      "--field-of",    options.against ? "against " + options.against->filename().string() : "",
-                      "--field-range", shortest(figures.min) + "," + shortest(figures.max),
-                      "--field-most",  figures.max_at,
-                      "--limits",      limits};
+  sealed.arguments = {"--field-fd",      std::to_string(sealed.values.get()),
+                      "--field-title",   field->title,
+                      "--field-unit",    field->unit,
+                      "--field-of",      options.against ? "against " + options.against->filename().string() : "",
+                      "--field-range",   shortest(figures.min) + "," + shortest(figures.max),
+                      "--field-least",   figures.min_at,
+                      "--field-most",    figures.max_at,
+                      "--field-without", std::to_string(without),
+                      "--limits",        limits};
   return sealed;
 }
 

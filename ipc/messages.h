@@ -221,8 +221,10 @@ struct FieldMade {          ///< descriptor: the values (ipc/field_page.h)
   bool on_nodes = true;
   std::uint64_t measured = 0;  ///< nodes or shells with a value
   double min = 0, mean = 0, max = 0;
-  std::string min_at, max_at;  ///< "node:7", "shell:12"
-  double clear = 0, full = 1;  ///< suggested limits of a colour map
+  std::string min_at, max_at;        ///< "node:7", "shell:12"
+  double clear = 0, full = 1;        ///< suggested limits of a colour map
+  std::uint64_t new_nodes = 0;       ///< have a value, and count in no figure (mesh/document/field.h)
+  std::uint64_t shells_without = 0;  ///< without a value though they should have one
 };
 struct DragBegun {  ///< descriptor: the preview
   std::uint64_t drag = 0;

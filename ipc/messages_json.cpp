@@ -71,7 +71,8 @@ PRISMESH_MESSAGE(Saved, "saved", f("path", m.path), f("nodes_written", m.nodes_w
 PRISMESH_MESSAGE(Edited, "edited", f("report", m.report), f("generation", m.generation));
 PRISMESH_MESSAGE(FieldMade, "field", f("field", m.field), f("title", m.title), f("unit", m.unit), f("of", m.of), f("against", m.against),
                  f("generation", m.generation), f("on_nodes", m.on_nodes), f("measured", m.measured), f("min", m.min), f("mean", m.mean),
-                 f("max", m.max), f("min_at", m.min_at), f("max_at", m.max_at), f("clear", m.clear), f("full", m.full));
+                 f("max", m.max), f("min_at", m.min_at), f("max_at", m.max_at), f("clear", m.clear), f("full", m.full),
+                 f("new_nodes", m.new_nodes), f("shells_without", m.shells_without));
 PRISMESH_MESSAGE(Counted, "counted", f("nodes", m.nodes), f("shells", m.shells), f("parts", m.parts));
 PRISMESH_MESSAGE(Quality, "quality", f("generation", m.generation), f("metrics", m.metrics), f("metric", m.metric), f("bars", m.bars),
                  f("errors", m.errors), f("error_count", m.error_count), f("parts", m.parts));

@@ -201,7 +201,10 @@ panels::CompareFacts Comparing::facts(double shift) const {
     legend.look = view.look;
     legend.min = view.made->min;
     legend.max = view.made->max;
+    legend.min_at = view.made->min_at;
     legend.max_at = view.made->max_at;
+    legend.new_nodes = view.made->new_nodes;
+    legend.shells_without = view.made->shells_without;
     legend.pane = static_cast<std::size_t>(pane);
     if (two_views()) {
       legend.centre = 0.5 + (pane == Pane::model ? shift : -shift);

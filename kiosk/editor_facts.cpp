@@ -70,6 +70,9 @@ panels::PanelData Editor::panel_data() const {
   data.colour_by_quality = colour_ == render::ColourMode::quality;
   data.colour_by_state = colour_ == render::ColourMode::part_states;
   data.compare = comparing_.facts(pane_shift());
+  // Of the right one of two views: in the other nothing is pulled.
+  for (panels::LegendFacts& legend : data.compare->legends)
+    legend.before_pull = preview_shown_ && legend.pane == static_cast<std::size_t>(render::Pane::model);
   data.quality = quality_facts();
   data.profile = profile_.name;
   data.eyes = eyes_facts_;

@@ -154,6 +154,8 @@ Result<void> read_field(const std::string& option, const std::string& text, Rend
   } else if (option == "--field-range" && values.size() == 2) {
     options.legend.min = values[0];
     options.legend.max = values[1];
+  } else if (option == "--field-without" && values.size() == 1 && values[0] >= 0) {
+    options.legend.shells_without = static_cast<std::size_t>(values[0]);
   } else {
     return wrong(option, text, "isn't what `prismesh render` gives");
   }
@@ -176,10 +178,12 @@ Result<RenderOptions> parse(std::span<const std::string> arguments) {
       {"--map", [&](const std::string& text) { return read_map(text, options); }},
       {"--bands", [&](const std::string& text) { return read_bands(text, options); }},
       {"--field-fd", [&](const std::string& text) { return read_field("--field-fd", text, options); }},
+      {"--field-without", [&](const std::string& text) { return read_field("--field-without", text, options); }},
       {"--field-range", [&](const std::string& text) { return read_field("--field-range", text, options); }},
       {"--field-title", [&](const std::string& text) { return options.legend.title = text, Result<void>(); }},
       {"--field-unit", [&](const std::string& text) { return options.legend.unit = text, Result<void>(); }},
       {"--field-of", [&](const std::string& text) { return options.legend.of = text, Result<void>(); }},
+      {"--field-least", [&](const std::string& text) { return options.legend.min_at = text, Result<void>(); }},
       {"--field-most", [&](const std::string& text) { return options.legend.max_at = text, Result<void>(); }},
       {"--samples", [&](const std::string& text) { return read_samples(text, options); }}};
   for (std::size_t i = 0; i < arguments.size(); i += 2) {

@@ -91,6 +91,9 @@ Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::G
   answer.max_at = entity(of->model, *field, figures.max_at);
   answer.clear = field->limits.clear;
   answer.full = field->limits.full;
+  answer.new_nodes = field->new_nodes;
+  // Of a distance between two expressions only what the one names is meant to have values.
+  if (wish->of != mesh::document::FieldWish::Of::gap) answer.shells_without = shells_without_value(of->model, *field);
   return Made{std::move(answer), std::move(*values)};
 }
 

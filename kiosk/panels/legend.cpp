@@ -8,6 +8,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "base/counted.h"
+#include "base/readable_number.h"
 #include "kiosk/panels/sections.h"
 #include "kiosk/panels/text.h"
 #include "mesh/document/field.h"
@@ -21,7 +23,9 @@ constexpr double kDragsAcross = 300;  ///< pixels of the pointer for all of the 
 
 ImU32 packed(const render::Colour& colour) { return ImGui::GetColorU32(ImVec4(colour.x(), colour.y(), colour.z(), 1)); }
 
-std::string short_number(double value) { return fmt::format("{:.4g}", value); }
+std::string short_number(double value) { return readable(value, 4); }
+
+bool large_is_worse(const render::FieldLook& look) { return look.full >= look.clear; }
 
 /// The map from where it begins to the limit, and a notch where the largest value is.
 void draw_bar(const LegendFacts& facts, float width) {
@@ -35,7 +39,7 @@ void draw_bar(const LegendFacts& facts, float width) {
     if (const auto colour = look.colour_of(value))
       list.AddRectFilled(ImVec2(from, at.y), ImVec2(to + 0.5f, at.y + height), packed(*colour));
   }
-  const double worst = look.full >= look.clear ? facts.max : facts.min;
+  const double worst = large_is_worse(look) ? facts.max : facts.min;
   const auto share = static_cast<float>((worst - look.clear) / (look.full - look.clear));
   if (share > 0 && share <= 1) {
     const float x = at.x + width * share;
@@ -49,12 +53,28 @@ bool edit_limit(const char* name, double& value, double span, float width) {
   ImGui::SetNextItemWidth(width);
   double wanted = value;
   const auto speed = static_cast<float>(std::abs(span) / kDragsAcross);
-  if (!ImGui::DragScalar(name, ImGuiDataType_Double, &wanted, speed, nullptr, nullptr, "%.4g") || !std::isfinite(wanted)) return false;
+  const std::string shown = short_number(value);  // the format is the text itself: no format of C writes 0.00005
+  if (!ImGui::DragScalar(name, ImGuiDataType_Double, &wanted, speed, nullptr, nullptr, shown.c_str()) || !std::isfinite(wanted))
+    return false;
   value = wanted;
   return true;
 }
 
 }  // namespace
+
+std::string worst_words(const LegendFacts& facts) {
+  const bool large = large_is_worse(facts.look);
+  return fmt::format("{} {} at {}", large ? "most" : "least", short_number(large ? facts.max : facts.min),
+                     large ? facts.max_at : facts.min_at);
+}
+
+std::vector<std::string> legend_notes(const LegendFacts& facts) {
+  std::vector<std::string> notes;
+  if (facts.before_pull) notes.emplace_back("As before this pull: the colours follow when you let go.");
+  if (facts.new_nodes > 0) notes.push_back(counted(facts.new_nodes, "new node") + " measured from between those it was made of");
+  if (facts.shells_without > 0) notes.push_back(counted(facts.shells_without, "shell") + " without a value: own colour");
+  return notes;
+}
 
 DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture) {
   const float font = ImGui::GetFontSize(), share = static_cast<float>(std::min(0.36, facts.widest));
@@ -88,12 +108,12 @@ DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture) {
     ImGui::TextUnformatted(right.c_str());
   }
   ImGui::PushFont(small_font());
-  const bool up = full >= clear;
-  const std::string own = printable(fmt::format("{} {}: own colour", up ? "up to" : "from", short_number(clear)));
-  const std::string most = printable(fmt::format("most {} at {}", short_number(facts.max), facts.max_at));
+  const std::string own = printable(fmt::format("{} {}: own colour", large_is_worse(facts.look) ? "up to" : "from", short_number(clear)));
+  const std::string worst = printable(worst_words(facts));
   ImGui::TextDisabled("%s", own.c_str());
-  if (ImGui::CalcTextSize((own + most).c_str()).x + 2 * kGrid <= inner) ImGui::SameLine(0, 2 * kGrid);
-  ImGui::TextDisabled("%s", most.c_str());
+  if (ImGui::CalcTextSize((own + worst).c_str()).x + 2 * kGrid <= inner) ImGui::SameLine(0, 2 * kGrid);
+  ImGui::TextDisabled("%s", worst.c_str());
+  for (const std::string& note : legend_notes(facts)) ImGui::TextWrapped("%s", note.c_str());
   ImGui::PopFont();
   drawn.top = ImGui::GetWindowPos().y;
   ImGui::End();
@@ -219,6 +239,7 @@ void compare_panel(const PanelData& data, display::PixelSize picture, Actions& a
     section("Values");
     const LegendFacts& legend = facts.legends.front();
     fact("least", short_number(legend.min));
+    fact("at", legend.min_at);
     fact("most", short_number(legend.max));
     fact("at", legend.max_at);
   }

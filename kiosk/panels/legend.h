@@ -17,7 +17,10 @@ struct LegendFacts {
   std::string of;  ///< "state 3 (lift) against the deck as it was opened"
   render::FieldLook look;
   double min = 0, max = 0;          ///< of the values
-  std::string max_at;               ///< "node:12"
+  std::string min_at, max_at;       ///< "node:12"
+  std::size_t new_nodes = 0;        ///< coloured, and in no figure
+  std::size_t shells_without = 0;   ///< that should have a value
+  bool before_pull = false;         ///< something is being pulled, and the values are those from before
   double centre = 0.5;              ///< of the legend, as a share of the picture's width
   double widest = 1;                ///< the same of the room that it has
   std::optional<std::size_t> pane;  ///< whose limits may be changed here; empty: only shown
@@ -28,6 +31,11 @@ struct SetLimits {
   std::size_t pane = 0;
   double clear = 0, full = 1;
 };
+
+/// The value that is farthest toward the map's end, and where: "most 3.1 at node:12", or "least .." where small values are coloured.
+std::string worst_words(const LegendFacts& facts);
+/// What the colours don't show, a sentence each.
+std::vector<std::string> legend_notes(const LegendFacts& facts);
 
 struct DrawnLegend {
   std::optional<SetLimits> wanted;  ///< new limits, if they were dragged or typed

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "base/nearest_name.h"
+#include "base/parallel_for.h"
 #include "mesh/document/field_values.h"
 #include "mesh/document/surroundings.h"
+#include "mesh/model/growth.h"
 #include "mesh/select/expression.h"
 #include "mesh/spatial/surface_distance.h"
 
@@ -26,6 +29,37 @@ NodeIndex counterpart(const Model& other, const Model& model, std::size_t node) 
   const std::int64_t id = model.node_ids[node];
   if (node < other.node_count() && other.node_ids[node] == id && !other.is_removed(NodeIndex(node))) return NodeIndex(node);
   return other.find_node(id);
+}
+
+/// Where the nodes that were added to `now` would have been made in another state: between the nodes that they come from. By their place
+/// among the added ones; not finite where that state doesn't know those.
+std::vector<Vec3> makings_of_added(const Model& before, const Model& now) {
+  std::vector<Vec3> makings;
+  const auto making = [&](NodeIndex node) -> Vec3 {
+    const NodeIndex was = counterpart(before, now, node.value);
+    if (was.valid()) return before.position(was);
+    const std::size_t added = node.value - now.growth->deck_nodes;
+    return is_added(now, node) && added < makings.size() ? makings[added] : Vec3::Constant(kNoValue);
+  };
+  for (std::size_t n = now.growth->deck_nodes; n < now.node_count(); ++n) {
+    const NodeOrigin& origin = origin_of(now, NodeIndex(n));
+    Vec3 at = Vec3::Zero();
+    for (std::size_t p = 0; p < static_cast<std::size_t>(origin.count()); ++p) at += origin.weight[p] * making(origin.parent[p]);
+    makings.push_back(at);
+  }
+  return makings;
+}
+
+void measure_added(const Model& before, const Model& now, Field& field) {
+  const std::vector<Vec3> makings = makings_of_added(before, now);
+  for (std::size_t i = 0; i < makings.size(); ++i) {
+    const std::size_t n = now.growth->deck_nodes + i;
+    if (now.is_removed(NodeIndex(n)) || std::isfinite(field.values[n])) continue;
+    const double way = (now.positions[n] - makings[i]).norm();
+    if (!std::isfinite(way)) continue;
+    field.values[n] = static_cast<float>(way);
+    ++field.new_nodes;
+  }
 }
 
 /// Both models have the same nodes at the same places in this chunk of the second.
@@ -120,6 +154,7 @@ Result<Field> displacement_field(const Model& before, const Model& now, LengthUn
   if (field.figures.measured == 0)
     return fail("displacement",
                 "the two have no node in common whose coordinates are numbers; the distance between their surfaces needs none");
+  if (now.growth) measure_added(before, now, field);
   return field;
 }
 
@@ -215,6 +250,20 @@ std::string name(const FieldWish& wish) {
   for (const Named& named : kNamed)
     if (named.of == wish.of) return std::string(named.name);
   return std::string(kMetricPrefix) + std::string(quality::name(wish.metric));
+}
+
+std::size_t shells_without_value(const Model& model, const Field& field) {
+  std::vector<std::size_t> without((model.shell_count() + kChunkSize - 1) / kChunkSize);
+  parallel_for(model.shell_count(), kChunkSize, [&](std::size_t from, std::size_t to) {
+    for (std::size_t s = from; s < to; ++s) {
+      if (model.is_removed(ShellIndex(s))) continue;
+      bool has = field.on_nodes || std::isfinite(field.values[s]);
+      if (field.on_nodes)
+        for (const NodeIndex node : model.shell_nodes[s].node) has = has && std::isfinite(field.values[node.value]);
+      without[s / kChunkSize] += has ? 0 : 1;
+    }
+  });
+  return std::accumulate(without.begin(), without.end(), std::size_t{0});
 }
 
 Result<Field> make_field(const FieldWish& wish, const Generation& generation, const Document& document, const Model* other,

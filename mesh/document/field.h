@@ -37,13 +37,15 @@ struct Field {
   std::vector<float> values;  ///< by NodeIndex or ShellIndex, removed ones included; NaN: no value
   FieldFigures figures;       ///< of the values before they were rounded to floats
   FieldLimits limits;         ///< suggested
+  std::size_t new_nodes = 0;  ///< have a value in a displacement, but count in no figure: a saved deck doesn't know where they come from
 };
 
 // All fields: the same bits whatever the number of threads. Nodes and shells that are removed, aren't finite or have no counterpart have
 // no value. Errors: a sentence if nothing has a value.
 
-/// How far each node lies from where the node of the same id is in `before`. The same for two generations and two decks. Costs the
-/// nodes; between generations, chunks that both share cost nothing. Suggested limits: 1 mm and 5 mm.
+/// How far each node lies from where the node of the same id is in `before`. The same for two generations and two decks. A node that was
+/// added since, and whose origin is known, is measured from where it would have been made in `before`: between the nodes it comes from.
+/// Costs the nodes; between generations, chunks that both share cost nothing. Suggested limits: 1 mm and 5 mm.
 Result<Field> displacement_field(const Model& before, const Model& now, LengthUnit unit);
 
 /// How far each node of a shell lies from the closest point of the other model's shells: exactly 0 for nodes that haven't moved. Suggested
@@ -80,6 +82,8 @@ struct FieldWish {
 /// "displacement", "distance-to-original", "distance", "metric:NAME", "composite", "time-step". Errors: names the nearest.
 Result<FieldWish> field_wish(std::string_view name);
 std::string name(const FieldWish& wish);
+/// Shells that are there, but have no value of their own or at one of their corners: they keep their colour whatever the limits.
+std::size_t shells_without_value(const Model& model, const Field& field);
 /// Whether it compares with another state.
 inline bool needs_other(const FieldWish& wish) {
   return wish.of == FieldWish::Of::displacement || wish.of == FieldWish::Of::surface_distance;

@@ -93,7 +93,35 @@ TEST(FieldTest, looking_only_near_what_moved_gives_what_looking_everywhere_gives
   EXPECT_GT(near->figures.max, 1);
 }
 
-TEST(FieldTest, added_and_removed_nodes_have_no_displacement) {
+TEST(FieldTest, added_nodes_are_measured_from_between_their_origins_and_count_in_no_figure) {
+  const Model before = flat_sheet(4, 4, 0);
+  Model now = before;
+  // In the middle of an edge whose one end moves by 4, and one on the middle of that edge's half; both have gone up by 0.5 besides.
+  const NodeIndex a = now.shell_nodes[0].node[0], b = now.shell_nodes[0].node[1];
+  now.positions.set(b.value, Vec3(before.position(b) + Vec3(0, 0, 4)));
+  const NodeIndex middle = add_node(now, 5000, Vec3(0.5 * (now.position(a) + now.position(b)) + Vec3(0, 0, 0.5)), edge_origin(a, b));
+  const NodeIndex quarter = add_node(now, 5001, Vec3(0.5 * (now.position(a) + now.position(middle))), edge_origin(a, middle));
+  const NodeIndex gone = add_node(now, 5002, now.position(middle), edge_origin(a, b));
+  remove_node(now, gone);
+  const auto field = displacement_field(before, now, mm);
+  ASSERT_TRUE(field);
+  EXPECT_FLOAT_EQ(field->values[middle.value], 2.5);
+  EXPECT_FLOAT_EQ(field->values[quarter.value], 1.25);
+  EXPECT_TRUE(std::isnan(field->values[gone.value]));
+  EXPECT_EQ(field->new_nodes, 2u);
+  EXPECT_EQ(field->figures.measured, before.node_count()) << "what a comparison of the saved decks would count";
+  EXPECT_EQ(field->figures.max, 4);
+  // Against a state that has the node it is a node like any other.
+  Model after = now;
+  after.positions.set(middle.value, Vec3(now.position(middle) + Vec3(3, 0, 0)));
+  const auto since = displacement_field(now, after, mm);
+  ASSERT_TRUE(since);
+  EXPECT_EQ(since->new_nodes, 0u);
+  EXPECT_EQ(since->figures.max_at, middle.value);
+  EXPECT_EQ(since->figures.measured, before.node_count() + 2);
+}
+
+TEST(FieldTest, added_and_removed_nodes) {
   const Model before = flat_sheet(4, 4, 0);
   Model now = before;
   const NodeIndex added = add_node(now, 5000, Vec3(2.5, 2.5, 1), centre_origin(now.shell_nodes[0]));
@@ -104,7 +132,7 @@ TEST(FieldTest, added_and_removed_nodes_have_no_displacement) {
   const auto field = displacement_field(before, now, mm);
   ASSERT_TRUE(field);
   ASSERT_EQ(field->values.size(), now.node_count());
-  EXPECT_TRUE(std::isnan(field->values[added.value]));
+  EXPECT_FLOAT_EQ(field->values[added.value], 1) << "one above the middle of the quad it was made of";
   EXPECT_EQ(field->values[corner.value], 0);
   const auto off = surface_distance_field(before, now, mm);
   ASSERT_TRUE(off);
@@ -116,6 +144,8 @@ TEST(FieldTest, added_and_removed_nodes_have_no_displacement) {
   EXPECT_TRUE(std::isnan(warpage->values[15])) << "a removed shell";
   EXPECT_TRUE(std::isnan(warpage->values[0])) << "a triangle has no warpage";
   EXPECT_EQ(warpage->figures.measured, 14u);
+  EXPECT_EQ(shells_without_value(now, *warpage), 1u) << "removed shells aren't missed";
+  EXPECT_EQ(shells_without_value(now, *field), 0u);
 }
 
 TEST(FieldTest, the_distance_of_two_parts_is_that_of_the_firsts_nodes) {
@@ -143,6 +173,7 @@ TEST(FieldTest, what_is_no_number_counts_for_nothing) {
     EXPECT_EQ(field->figures.measured, 24u);
     EXPECT_TRUE(std::isfinite(field->figures.mean));
     EXPECT_DOUBLE_EQ(field->figures.max, 2);
+    EXPECT_EQ(shells_without_value(now, *field), 4u) << "the shells at the node";
   }
   const auto warpage = metric_field(now, quality::Metric::warpage, Settings{});
   ASSERT_TRUE(warpage);

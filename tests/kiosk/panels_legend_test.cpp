@@ -1,0 +1,125 @@
+// What a legend says besides its colours, and how the hand changes its limits.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kiosk/panels/gui.h"
+#include "kiosk/panels/legend.h"
+#include "tests/kiosk/render_test.h"
+
+namespace prismesh::kiosk::panels {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+LegendFacts facts_of(double clear, double full) {
+  LegendFacts facts;
+  facts.look = {true, clear, full, render::ColourMap::crimson, 0};
+  facts.min = -0.00002;
+  facts.min_at = "shell:7";
+  facts.max = 12.3456;
+  facts.max_at = "shell:12";
+  return facts;
+}
+
+TEST(Legend, NamesTheValueThatIsFarthestTowardTheMapsEnd) {
+  EXPECT_EQ(worst_words(facts_of(1, 5)), "most 12.35 at shell:12");
+  EXPECT_EQ(worst_words(facts_of(0.5, 0)), "least -0.00002 at shell:7") << "small values are the coloured ones";
+}
+
+TEST(Legend, SaysWhatTheColoursDoNotShow) {
+  LegendFacts facts = facts_of(1, 5);
+  EXPECT_THAT(legend_notes(facts), IsEmpty());
+  facts.shells_without = 1;
+  EXPECT_THAT(legend_notes(facts), ElementsAre("1 shell without a value: own colour"));
+  facts.new_nodes = 3;
+  facts.before_pull = true;
+  EXPECT_THAT(legend_notes(facts),
+              ElementsAre(HasSubstr("before this pull"), HasSubstr("3 new nodes"), "1 shell without a value: own colour"));
+}
+
+constexpr display::PixelSize kPicture{1000, 640};
+
+class LegendByHand : public render::RenderTest {
+ protected:
+  void SetUp() override {
+    RenderTest::SetUp();
+    if (IsSkipped()) return;
+    auto gui = Gui::create();
+    ASSERT_TRUE(gui) << gui.error().text();
+    gui_.emplace(std::move(*gui));
+    ASSERT_TRUE(gui_->set_type(kFlatType));
+    facts_.pane = 0;
+    for (int round = 0; round < 3; ++round) lay_out();
+  }
+  void TearDown() override {
+    gui_.reset();
+    RenderTest::TearDown();
+  }
+  /// Limits that are wanted become those of the legend, as the kiosk has it.
+  bool lay_out() {
+    std::optional<SetLimits> wanted;
+    gui_->layout(kPicture, 0.016, [&] { wanted = legend(facts_, kPicture).wanted; });
+    if (wanted) facts_.look.clear = wanted->clear, facts_.look.full = wanted->full;
+    return wanted.has_value();
+  }
+  void move(double x, double y) {
+    gui_->feed(display::PointerMoved{x, y, {}});
+    lay_out();
+  }
+  void button(bool down, double x, double y) {
+    gui_->feed(display::ButtonChanged{display::MouseButton::left, down, x, y, {}});
+    lay_out();
+  }
+  /// Drags by so many pixels, from wherever in a column of the legend that has an effect.
+  void drag_in_column(double x, double by) {
+    const render::FieldLook before = facts_.look;
+    for (double y = kPicture.height - 150; y < kPicture.height && facts_.look == before; y += 8) {
+      move(x, y);
+      button(true, x, y);
+      for (int step = 1; step <= 5; ++step) move(x + by * step / 5, y);
+      row_ = y;
+      button(false, x + by, y);
+    }
+  }
+  void press(display::Key key) {
+    for (const bool down : {true, false}) {
+      gui_->feed(display::KeyChanged{key, down, false, {}});
+      lay_out();
+    }
+  }
+  double left() const { return kPicture.width / 2.0 - 130; }
+  double right() const { return kPicture.width / 2.0 + 130; }
+
+  LegendFacts facts_ = facts_of(1, 5);
+  std::optional<Gui> gui_;
+  double row_ = 0;
+};
+
+TEST_F(LegendByHand, EachLimitIsDragged) {
+  drag_in_column(left(), -60);
+  EXPECT_LT(facts_.look.clear, 0.9);
+  EXPECT_EQ(facts_.look.full, 5);
+  drag_in_column(right(), 60);
+  EXPECT_GT(facts_.look.full, 5.1);
+}
+
+TEST_F(LegendByHand, ALimitIsTypedAfterADoubleClickAndReadAgainAsItWasTyped) {
+  drag_in_column(left(), -30);  // finds the row
+  for (const char* typed : {"0.00005", "0.25"}) {
+    move(left(), row_);
+    for (const bool down : {true, false, true, false}) button(down, left(), row_);
+    lay_out();
+    ASSERT_TRUE(gui_->wants_keys()) << "a field takes the keyboard";
+    gui_->feed(display::TextTyped{typed});
+    lay_out();
+    press(display::Key::enter);
+    EXPECT_EQ(facts_.look.clear, std::stod(typed));
+    for (int round = 0; round < 30; ++round) lay_out();  // the next clicks are others
+    EXPECT_FALSE(gui_->wants_keys());
+  }
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::panels
