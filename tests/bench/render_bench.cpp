@@ -1,5 +1,6 @@
 // What a picture costs with many selected nodes, and what selecting them costs; on whatever draws (say which: llvmpipe draws on the
 // processor, so that its figures hold the graphics card's work as well).
+#include <ctime>
 #include <memory>
 #include <string>
 
@@ -66,6 +67,51 @@ BENCHMARK(turning)
     ->Args({200000, 1})
     ->Args({0, 40})
     ->Args({200000, 40})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+/// From a snapshot in which an edit has judged 10,000 shells anew to the picture with their signs, without drawing the shells again from
+/// elsewhere; `taking_s` is the processor time until the renderer has it, the rest is drawing. Arguments: shells that aren't ok, out of a
+/// hundred; whether the edit made and removed shells (1), or moved nodes (0).
+void signs_after_an_edit(benchmark::State& state) {
+  Stage stage(0, "mono", 1);
+  stage.picture.moving = false;
+  const std::shared_ptr<test::TestSource> source = million(0);
+  const auto bad = static_cast<std::size_t>(state.range(0));
+  mesh::quality::ShellState warns;
+  warns.warn = 1;
+  for (std::size_t s = 0; s < source->shell_nodes.size(); ++s)
+    if (s % 100 < bad) source->shell_quality[s] = warns;
+  // One in eight is a triangle: nodes where they crowd are looked for.
+  for (std::size_t s = 0; s < source->shell_nodes.size(); s += 8) source->shell_nodes[s].node[3] = source->shell_nodes[s].node[2];
+  source->most_triangles = 3;
+  source->key = 77;
+  (void)stage.renderer->set_model(source);
+  std::size_t turn = 0, drawn = 0;
+  double taking = 0;
+  for (auto _ : state) {
+    for (std::size_t s = 400'000; s < 410'000; ++s) source->shell_quality[s] = ++turn % 3 == 0 ? warns : mesh::quality::ShellState{};
+    for (std::size_t chunk = 97; chunk < 101; ++chunk) {
+      source->touch(ipc::SnapshotArray::shell_quality, chunk);
+      if (state.range(1) != 0) source->touch(ipc::SnapshotArray::shell_nodes, chunk);
+    }
+    const auto start = std::clock();
+    benchmark::DoNotOptimize(stage.renderer->set_model(source));
+    taking += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const auto report = stage.renderer->draw(stage.picture, stage.target.framebuffer(), kWidth, kHeight);
+    glFinish();
+    drawn = report ? report->glyphs : 0;
+  }
+  state.counters["signs"] = static_cast<double>(drawn);
+  state.counters["taking_s"] = benchmark::Counter(taking, benchmark::Counter::kAvgIterations);
+}
+BENCHMARK(signs_after_an_edit)
+    ->ArgNames({"bad", "topology"})
+    ->Args({0, 0})
+    ->Args({10, 0})
+    ->Args({10, 1})
+    ->Args({100, 0})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
