@@ -72,7 +72,7 @@ std::vector<std::string> legend_notes(const LegendFacts& facts) {
   std::vector<std::string> notes;
   if (facts.before_pull) notes.emplace_back("As before this pull: the colours follow when you let go.");
   if (facts.new_nodes > 0) notes.push_back(counted(facts.new_nodes, "new node") + " measured from between those it was made of");
-  if (facts.shells_without > 0) notes.push_back(counted(facts.shells_without, "shell") + " without a value: own colour");
+  if (facts.shells_without > 0) notes.push_back(counted(facts.shells_without, "shell") + " without a value");
   return notes;
 }
 
@@ -112,7 +112,9 @@ DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture) {
   const std::string worst = printable(worst_words(facts));
   ImGui::TextDisabled("%s", own.c_str());
   if (ImGui::CalcTextSize((own + worst).c_str()).x + 2 * kGrid <= inner) ImGui::SameLine(0, 2 * kGrid);
+  ImGui::PushTextWrapPos(0);
   ImGui::TextDisabled("%s", worst.c_str());
+  ImGui::PopTextWrapPos();
   for (const std::string& note : legend_notes(facts)) ImGui::TextWrapped("%s", note.c_str());
   ImGui::PopFont();
   drawn.top = ImGui::GetWindowPos().y;

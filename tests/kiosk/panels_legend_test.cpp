@@ -2,9 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kiosk/panels/gui.h"
 #include "kiosk/panels/legend.h"
-#include "tests/kiosk/render_test.h"
+#include "tests/kiosk/gui_test.h"
 
 namespace prismesh::kiosk::panels {
 namespace {
@@ -32,30 +31,21 @@ TEST(Legend, SaysWhatTheColoursDoNotShow) {
   LegendFacts facts = facts_of(1, 5);
   EXPECT_THAT(legend_notes(facts), IsEmpty());
   facts.shells_without = 1;
-  EXPECT_THAT(legend_notes(facts), ElementsAre("1 shell without a value: own colour"));
+  EXPECT_THAT(legend_notes(facts), ElementsAre("1 shell without a value"));
   facts.new_nodes = 3;
   facts.before_pull = true;
-  EXPECT_THAT(legend_notes(facts),
-              ElementsAre(HasSubstr("before this pull"), HasSubstr("3 new nodes"), "1 shell without a value: own colour"));
+  EXPECT_THAT(legend_notes(facts), ElementsAre(HasSubstr("before this pull"), HasSubstr("3 new nodes"), "1 shell without a value"));
 }
 
 constexpr display::PixelSize kPicture{1000, 640};
 
-class LegendByHand : public render::RenderTest {
+class LegendByHand : public GuiTest {
  protected:
   void SetUp() override {
-    RenderTest::SetUp();
-    if (IsSkipped()) return;
-    auto gui = Gui::create();
-    ASSERT_TRUE(gui) << gui.error().text();
-    gui_.emplace(std::move(*gui));
-    ASSERT_TRUE(gui_->set_type(kFlatType));
+    GuiTest::SetUp();
+    if (HasFatalFailure() || IsSkipped()) return;
     facts_.pane = 0;
     for (int round = 0; round < 3; ++round) lay_out();
-  }
-  void TearDown() override {
-    gui_.reset();
-    RenderTest::TearDown();
   }
   /// Limits that are wanted become those of the legend, as the kiosk has it.
   bool lay_out() {
@@ -93,7 +83,6 @@ class LegendByHand : public render::RenderTest {
   double right() const { return kPicture.width / 2.0 + 130; }
 
   LegendFacts facts_ = facts_of(1, 5);
-  std::optional<Gui> gui_;
   double row_ = 0;
 };
 

@@ -4,9 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kiosk/panels/gui.h"
 #include "kiosk/panels/panels.h"
-#include "tests/kiosk/render_test.h"
+#include "tests/kiosk/gui_test.h"
 
 namespace prismesh::kiosk::panels {
 namespace {
@@ -15,15 +14,11 @@ using mesh::document::SelectMode;
 
 constexpr display::PixelSize kPicture{900, 700};
 
-class QualityPanel : public render::RenderTest {
+class QualityPanel : public GuiTest {
  protected:
   void SetUp() override {
-    RenderTest::SetUp();
-    if (IsSkipped()) return;
-    auto gui = Gui::create();
-    ASSERT_TRUE(gui) << gui.error().text();
-    gui_.emplace(std::move(*gui));
-    ASSERT_TRUE(gui_->set_type(kFlatType));
+    GuiTest::SetUp();
+    if (HasFatalFailure() || IsSkipped()) return;
     figures_.metrics = {{"warpage", "deg", 12, 3}, {"aspect", "", 0, 2}, {"skew", "deg", 0, 0}};
     figures_.metric = "warpage";
     for (int i = 0; i < 8; ++i) figures_.bars.push_back({i * 2.0, i * 2.0 + 2, false, i == 7, 100, i > 5 ? 6U : 0U, i > 6 ? 3U : 0U});
@@ -37,10 +32,6 @@ class QualityPanel : public render::RenderTest {
     data_.quality->metric = "warpage";
     lay_out();
     lay_out();
-  }
-  void TearDown() override {
-    gui_.reset();
-    RenderTest::TearDown();
   }
   std::vector<PanelAction> lay_out() {
     std::vector<PanelAction> actions;
@@ -69,7 +60,6 @@ class QualityPanel : public render::RenderTest {
   ipc::Quality figures_;
   PanelData data_;
   Panels panels_;
-  std::optional<Gui> gui_;
 };
 
 TEST_F(QualityPanel, ARowChoosesItsMetricAndTheChosenOneLetsGo) {

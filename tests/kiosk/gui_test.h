@@ -1,0 +1,30 @@
+// Panels laid out without a window, for tests that click on them.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "kiosk/panels/gui.h"
+#include "tests/kiosk/render_test.h"
+
+namespace prismesh::kiosk::panels {
+
+class GuiTest : public render::RenderTest {
+ protected:
+  void SetUp() override {
+    RenderTest::SetUp();
+    if (IsSkipped()) return;
+    auto gui = Gui::create();
+    ASSERT_TRUE(gui) << gui.error().text();
+    gui_.emplace(std::move(*gui));
+    ASSERT_TRUE(gui_->set_type(kFlatType));
+  }
+  void TearDown() override {
+    gui_.reset();
+    RenderTest::TearDown();
+  }
+
+  std::optional<Gui> gui_;
+};
+
+}  // namespace prismesh::kiosk::panels
