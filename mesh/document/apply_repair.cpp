@@ -54,8 +54,10 @@ Result<repair::Repaired> repair_writable(const Document& document, const ShellSe
   const Generation& current = document.current();
   const relax::ReferenceSurface surface = surface_about(current, scope, options.relax.feature_angle);
   const repair::Rules rules = with_frozen(rules_for(document, current), frozen);
+  double furthest = 0;  // an attempt more doesn't take the progress back
+  const Progress forward = [&](double fraction) { return !progress || progress(furthest = std::max(furthest, fraction)); };
   for (int attempt = 1;; ++attempt) {
-    Result<repair::Repaired> repaired = repair::repair(current.model, surface, scope, rules, judge_of(document), options, progress);
+    Result<repair::Repaired> repaired = repair::repair(current.model, surface, scope, rules, judge_of(document), options, forward);
     if (!repaired || repaired->change.empty()) return repaired;
     Generation trial = current;
     const Result<void> done = restructure(document, repaired->change, trial, report);
@@ -63,7 +65,10 @@ Result<repair::Repaired> repair_writable(const Document& document, const ShellSe
       next = std::move(trial);
       return repaired;
     }
-    if (attempt == kMostAttempts || find_unwritable(document, current.model, repaired->change, frozen) == 0) return fail(done.error());
+    if (attempt == kMostAttempts) return fail(done.error());
+    const Result<std::size_t> found = find_unwritable(document, current.model, repaired->change, frozen, forward);
+    if (!found) return fail(found.error());
+    if (*found == 0) return fail(done.error());
   }
 }
 

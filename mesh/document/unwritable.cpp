@@ -103,20 +103,34 @@ repair::Restructuring part_of(const Model& model, const repair::Restructuring& c
 
 class Search {
  public:
-  Search(const Document& document, const Model& model, const repair::Restructuring& change, Frozen& frozen)
-      : document_(document), model_(model), change_(change), groups_(model, change), frozen_(frozen) {}
+  Search(const Document& document, const Model& model, const repair::Restructuring& change, Frozen& frozen, const Progress& progress)
+      : document_(document),
+        model_(model),
+        change_(change),
+        groups_(model, change),
+        unmoved_(document.opened->model.positions),
+        frozen_(frozen),
+        progress_(progress) {
+    const std::size_t known = unmoved_.size();
+    unmoved_.resize(model.node_count());
+    for (std::size_t n = known; n < model.node_count(); ++n) unmoved_.set(n, model.positions[n]);
+  }
 
-  std::size_t run() {
+  Result<std::size_t> run() {
     const std::vector<std::uint32_t> all = groups_.all();
     look(all);
+    if (stopped_) return fail(cancelled());
     return found_;
   }
 
  private:
   void look(std::span<const std::uint32_t> groups) {
-    if (groups.empty() || ++trials_ > kMostTrials) return;
+    if (groups.empty() || stopped_ || ++trials_ > kMostTrials) return;
+    stopped_ = progress_ && !progress_(static_cast<double>(trials_ - 1) / kMostTrials);
+    if (stopped_) return;
     const repair::Restructuring part = part_of(model_, change_, groups_, groups);
     Model trial = model_;
+    trial.positions = unmoved_;  // a million nodes that only moved would cost a card each, in every trial
     const Result<void> possible = carry_out(document_, part, trial);
     if (possible) return;
     if (groups.size() == 1) return freeze(part, possible.error().text());
@@ -135,15 +149,19 @@ class Search {
   const Model& model_;
   const repair::Restructuring& change_;
   Groups groups_;
+  ChunkedArray<Vec3> unmoved_;  ///< where the deck has its nodes
   Frozen& frozen_;
+  const Progress& progress_;
   int trials_ = 0;
+  bool stopped_ = false;
   std::size_t found_ = 0;
 };
 
 }  // namespace
 
-std::size_t find_unwritable(const Document& document, const Model& model, const repair::Restructuring& change, Frozen& frozen) {
-  return Search(document, model, change, frozen).run();
+Result<std::size_t> find_unwritable(const Document& document, const Model& model, const repair::Restructuring& change, Frozen& frozen,
+                                    const Progress& progress) {
+  return Search(document, model, change, frozen, progress).run();
 }
 
 repair::Rules with_frozen(const repair::Rules& rules, const Frozen& frozen) {

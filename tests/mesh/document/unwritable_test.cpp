@@ -1,12 +1,16 @@
 // Repairs where the deck can't hold some of what would help: that is left as it is and named, the rest is repaired all the same.
 #include <algorithm>
 #include <cstdio>
+#include <set>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/document/unwritable.h"
 #include "mesh/model/growth.h"
 #include "tests/mesh/document/document_fixture.h"
+#include "tests/mesh/document/restructuring.h"
 
 namespace prismesh::mesh::document {
 namespace {
@@ -87,6 +91,66 @@ TEST(Unwritable, WhatCannotBeWrittenAnywhereIsLeftAndNothingIsDone) {
   EXPECT_THAT(report.notes, Contains(HasSubstr("can't be changed: ")));
   const Result<deck::SaveReport> saved = save(document, folder / "b.k");
   EXPECT_TRUE(saved) << saved.error().text();
+}
+
+TEST(Unwritable, TheSearchFindsEachPlaceHasAProgressAndStopsWhenTold) {
+  const Folder folder;
+  Document document = open_half_odd(folder / "a.k");
+  must_apply(document, R"({"edit":"translate","by":[0.125,0,0.25],"on":"all","falloff":{"profile":"constant"}})");
+  const Model& model = document.current().model;
+  // Quads two apart share no node: each is a place of its own, and those of the left half can't be written.
+  Change change{model, {}};
+  std::set<ShellIndex> wanted;
+  for (int j = 0; j < kRows; j += 2)
+    for (int i = 0; i < kColumns; i += 2) {
+      const ShellIndex shell = model.find_shell(1 + i + j * kColumns);
+      change.split(shell);
+      if (i < kOddColumns) wanted.insert(shell);
+    }
+  Frozen frozen;
+  std::vector<double> told;
+  const auto listen = [&](double fraction) {
+    told.push_back(fraction);
+    return true;
+  };
+  const Result<std::size_t> found = find_unwritable(document, model, change.want, frozen, listen);
+  ASSERT_TRUE(found) << found.error().text();
+  EXPECT_EQ(*found, wanted.size());
+  std::set<ShellIndex> named;
+  for (const auto& [shell, why] : frozen.shells) named.insert(shell);
+  EXPECT_EQ(named, wanted);
+  ASSERT_GT(told.size(), wanted.size());
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_LE(told.back(), 1);
+  for (std::size_t stop = 0; stop < told.size(); stop += 5) {
+    Frozen half;
+    std::size_t calls = 0;
+    const Result<std::size_t> stopped = find_unwritable(document, model, change.want, half, [&](double) { return calls++ < stop; });
+    ASSERT_FALSE(stopped) << "told to stop at " << stop;
+    EXPECT_EQ(stopped.error().message, "cancelled");
+    EXPECT_EQ(calls, stop + 1) << "asked no more";
+  }
+}
+
+TEST(Unwritable, ARepairStopsWhereverItIsToldAndItsProgressNeverGoesBack) {
+  const Folder folder;
+  Document document = open_half_odd(folder / "a.k");
+  must_apply(document, dent(node_at(3, 4)));
+  must_apply(document, dent(node_at(11, 4)));
+  const Edit repair = parse_edit(R"({"edit":"repair"})").value();
+  std::vector<double> told;
+  const auto listen = [&](double fraction) {
+    told.push_back(fraction);
+    return true;
+  };
+  ASSERT_TRUE(prepare(document, repair, listen));
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  for (std::size_t stop = 0; stop < told.size(); stop += 1 + told.size() / 20) {
+    std::size_t calls = 0;
+    const Result<Prepared> stopped = prepare(document, repair, [&](double) { return calls++ < stop; });
+    ASSERT_FALSE(stopped) << "told to stop at " << stop;
+    EXPECT_EQ(stopped.error().message, "cancelled");
+  }
 }
 
 }  // namespace
