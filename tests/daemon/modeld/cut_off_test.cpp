@@ -1,7 +1,7 @@
 // Long edits that are cut off in the middle, by a kill of modeld, by a cancel or by their client's death: the document is as it was, and
 // the same edit gives the same afterwards. Being in the middle is known by the progress that is told, never by waiting.
-#include <fstream>
-#include <tuple>
+#include <filesystem>
+#include <functional>
 
 #include <gtest/gtest.h>
 
@@ -223,11 +223,17 @@ TEST_P(CutOff, ACancelLeavesTheDocumentAsItWas) {
   apply(client, GetParam().edit);
 }
 
+/// Tries a stroke until it comes in the middle; false: none did.
+bool tried_until_it_hits(const std::function<bool()>& stroke) {
+  for (int attempt = 0; attempt < kMostTries && !::testing::Test::HasFailure(); ++attempt)
+    if (stroke()) return true;
+  return false;
+}
+
 TEST_P(CutOff, TheClientsDeathLeavesTheDocumentAsItWas) {
   const std::unique_ptr<Station> station = edited();
   ipc::Client& watcher = station->lives.client();
-  bool hit = false;
-  for (int attempt = 0; attempt < kMostTries && !hit && !HasFailure(); ++attempt) {
+  EXPECT_TRUE(tried_until_it_hits([&] {
     const Face before = face_of(watcher);
     const std::string record = journal_in(station->folder.state());
     {
@@ -235,22 +241,20 @@ TEST_P(CutOff, TheClientsDeathLeavesTheDocumentAsItWas) {
       reach_the_middle(dying, 1);
     }
     station->lives.wait_until_open();  // it isn't busy any more
-    if (journal_in(station->folder.state()) != record) {
+    const bool hit = journal_in(station->folder.state()) == record;
+    if (hit)
+      EXPECT_TRUE(face_of(watcher) == before);
+    else
       apply(watcher, R"({"edit":"undo"})");
-      continue;
-    }
-    hit = true;
-    EXPECT_TRUE(face_of(watcher) == before);
-  }
-  EXPECT_TRUE(hit) << "the edit of a client that had gone was done all the same";
+    return hit;
+  })) << "the edit of a client that had gone was done all the same";
   EXPECT_EQ(apply(watcher, R"({"edit":"translate","by":[0,0,0.25],"on":"1313"})").report.nodes_moved, 1u);
 }
 
 TEST_P(CutOff, AnInterruptedCommandLeavesTheDocumentAsItWas) {
   const std::unique_ptr<Station> station = edited();
   ipc::Client& watcher = station->lives.client();
-  bool hit = false;
-  for (int attempt = 0; attempt < kMostTries && !hit && !HasFailure(); ++attempt) {
+  EXPECT_TRUE(tried_until_it_hits([&] {
     const Face before = face_of(watcher);
     const std::string record = journal_in(station->folder.state());
     while (watcher.next_event()) {
@@ -262,20 +266,20 @@ TEST_P(CutOff, AnInterruptedCommandLeavesTheDocumentAsItWas) {
     for (const auto until = std::chrono::steady_clock::now() + kPatience; !begun && std::chrono::steady_clock::now() < until;) {
       while (const auto event = watcher.next_event())
         begun = begun || std::holds_alternative<ipc::ProgressMade>(*event) || std::holds_alternative<ipc::GenerationPublished>(*event);
-      ASSERT_TRUE(watcher.poll(100ms));
+      EXPECT_TRUE(watcher.poll(100ms));
     }
     command.kill(SIGINT);
     const int status = command.wait_for_exit();
-    hit = journal_in(station->folder.state()) == record;
+    const bool hit = journal_in(station->folder.state()) == record;
     EXPECT_EQ(status, hit ? 1 : 0) << command.standard_error();
-    if (hit) {
-      EXPECT_NE(command.standard_error().find("cancelled"), std::string::npos) << command.standard_error();
-      EXPECT_TRUE(face_of(watcher) == before);
-    } else {
+    if (!hit) {
       apply(watcher, R"({"edit":"undo"})");
+      return false;
     }
-  }
-  EXPECT_TRUE(hit) << "no interrupt came in the middle";
+    EXPECT_NE(command.standard_error().find("cancelled"), std::string::npos) << command.standard_error();
+    EXPECT_TRUE(face_of(watcher) == before);
+    return true;
+  })) << "no interrupt came in the middle";
 }
 
 INSTANTIATE_TEST_SUITE_P(LongEdits, CutOff, ::testing::Values(long_repair(), long_relax()),
