@@ -2,7 +2,6 @@
 // Checksums stop random bytes early, so records are also sealed here around the fuzzer's bytes.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -12,16 +11,13 @@
 #include "mesh/document/journal_records.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/growth.h"
+#include "tests/fuzz/require.h"
 #include "tests/support/make_model.h"
 
 using namespace prismesh;                  // NOLINT: a fuzz target is a program of its own
 using namespace prismesh::mesh::document;  // NOLINT
 
 namespace {
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 const Document& sample() {
   static const Document document = [] {
