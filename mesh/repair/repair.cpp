@@ -1,6 +1,7 @@
 #include "mesh/repair/repair.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string_view>
@@ -35,6 +36,22 @@ std::size_t triangles_in(const Model& model) {
   return triangles;
 }
 
+/// Limits to keep a little away from: a deck's fields hold fewer digits than the model.
+quality::Limits within(quality::Limits limits) {
+  constexpr float kMargin = 1e-3F;
+  for (quality::ShapeLimits* shape : {&limits.quad, &limits.triangle})
+    for (quality::Threshold& threshold : shape->threshold) {
+      const auto tighten = [](float& limit, float toward) {
+        if (std::isfinite(limit)) limit += toward * kMargin * std::abs(limit);
+      };
+      tighten(threshold.warn_low, 1);
+      tighten(threshold.fail_low, 1);
+      tighten(threshold.warn_high, -1);
+      tighten(threshold.fail_high, -1);
+    }
+  return limits;
+}
+
 class Repairer {
  public:
   Repairer(const Model& model, const relax::ReferenceSurface& surface, const ShellSet& scope, const Rules& rules, const relax::Judge& judge,
@@ -42,10 +59,7 @@ class Repairer {
       : patch_(model, scope, kRings, rules, options.relax.feature_angle),
         site_{patch_, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)},
         model_(model) {
-    std::vector<LocalShell> all;
-    for (std::size_t s = 0; s < patch_.shell_count(); ++s) all.push_back(LocalShell(s));
-    judge_shells(site_, all);
-    in_scope_.assign(all.size(), 0);
+    in_scope_.assign(patch_.shell_count(), 0);
     for (const ShellIndex shell : scope)
       if (const LocalShell local = patch_.find(shell); local.valid()) in_scope_[local.value] = 1;
     triangles_ = static_cast<long>(triangles_in(model));
@@ -54,7 +68,11 @@ class Repairer {
   }
 
   Result<Repaired> run(const Progress& progress) {
+    const quality::Limits limits = site_.limits;
+    judge_all();
     repaired_.bad_before = bad_shells(quality::Grade::warn).size();
+    site_.limits = within(limits);
+    judge_all();
     if (const Result<void> relaxed = relax_neighbourhood(); !relaxed) return fail(relaxed.error());
     for (int round = 0; round < site_.options.most_rounds; ++round) {
       repaired_.rounds = round + 1;
@@ -77,11 +95,22 @@ class Repairer {
       const Result<void> relaxed = relax_neighbourhood();
       if (!relaxed) return fail(relaxed.error());
     }
+    site_.limits = limits;
+    judge_all();
     finish();
     return std::move(repaired_);
   }
 
  private:
+  void judge_all() {
+    patch_.begin();
+    std::vector<LocalShell> all;
+    for (std::size_t s = 0; s < patch_.shell_count(); ++s)
+      if (patch_.shell(LocalShell(s)).is_alive) all.push_back(LocalShell(s));
+    judge_shells(site_, all);
+    patch_.keep();
+  }
+
   bool is_in_scope(LocalShell shell) const { return shell.value >= in_scope_.size() || in_scope_[shell.value] != 0; }
 
   /// Live shells in scope that are at least that bad, the worst first.

@@ -68,12 +68,20 @@ class Plan {
         continue;
       }
       const auto opposite = static_cast<std::size_t>(std::countr_zero(edges) + 2) % 4;
-      const auto [a, b] = nodes_of(shell, opposite);
-      const bool goes_on =
-          (patch_.position(a) - patch_.position(b)).norm() >= least_ && patch_.may_divide(a, b) && !refuse_dividing(patch_, shell, 4);
-      if (goes_on) cut(shell, opposite);
+      if (goes_on(shell, opposite)) cut(shell, opposite);
     }
     return true;
+  }
+
+  bool goes_on(LocalShell shell, std::size_t out) const {
+    const auto [a, b] = nodes_of(shell, out);
+    const double length = (patch_.position(a) - patch_.position(b)).norm();
+    if (length < least_ || !patch_.may_divide(a, b) || refuse_dividing(patch_, shell, 4)) return false;
+    // What is beyond has to be divided or ended in as well.
+    const std::vector<LocalShell> shells = patch_.shells_at(a, b);
+    return std::none_of(shells.begin(), shells.end(), [&](LocalShell other) {
+      return other != shell && refuse_dividing(patch_, other, static_cast<std::size_t>(corner_count(patch_.shell(other).corners)));
+    });
   }
 
   const Patch& patch_;

@@ -319,13 +319,31 @@ class Twins:
     def has(self, line):
         if line.upper().startswith("PLOAD4"):
             return self.has_load(line)
-        card = self.CARD.match(line.rstrip("\r"))
-        if not card or int(card.group(2)) not in self.proof.after.nodes or int(card.group(2)) in self.proof.before.nodes:
+        card = self.of_node(line)
+        if not card or card[0] not in self.proof.after.nodes or card[0] in self.proof.before.nodes:
             return False
         if self.known is None:
-            cards = (self.CARD.match(l.rstrip("\r")) for l in self.file.lines)
-            self.known = {(int(c.group(2)), c.group(3)) for c in cards if c}
-        return any((n, card.group(3)) in self.known for n in neighbours(self.proof, int(card.group(2))))
+            self.known = {c for c in map(self.of_node, self.file.lines) if c}
+        return any((n, card[1]) in self.known for n in self.old_about(card[0]))
+
+    def old_about(self, node):
+        """The nodes of before to which a way leads over new ones: an edge may have been divided into several."""
+        seen, reached = {node}, [node]
+        for n in reached:
+            for other in {o for e in self.proof.after.elements if n in e.nodes for o in e.nodes if o} - seen:
+                seen.add(other)
+                if other not in self.proof.before.nodes:
+                    reached.append(other)
+        return seen & self.proof.before.nodes.keys()
+
+    def of_node(self, line):
+        """(node, what else the card says), of a card that begins with a node or of a Nastran constraint of one."""
+        line = line.rstrip("\r")
+        if line.upper().startswith(("SPC ", "SPC,")):
+            name, load, node, *rest = [f.strip() for f in (line.split(",") if "," in line else (line[i:i + 8] for i in range(0, 72, 8)))]
+            return (int(node), (name, load, *(f for f in rest if f))) if node.isdigit() else None
+        card = self.CARD.match(line)
+        return (int(card.group(2)), card.group(3)) if card else None
 
     def has_load(self, line):
         """A load on an element: a new one may have a card like that of an old one, which may have been for a range of them."""
