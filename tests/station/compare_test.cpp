@@ -4,19 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/station/station.h"
+#include "tests/station/station_test_case.h"
 
 namespace prismesh::test {
 namespace {
 
-class CompareTest : public ::testing::Test {
+class CompareTest : public StationTestCase {
  protected:
-  void SetUp() override {
-    if (const std::string missing = missing_programs(); !missing.empty())
-      GTEST_SKIP() << "SKIPPED: the station can't be tested here, install " << missing;
-    station_ = std::make_unique<Station>();
-    station_->set_picture_size(1000, 640);
-  }
   /// Lifts a few nodes in the middle by typing how far.
   void lift() {
     station_->key("e");
@@ -30,7 +24,6 @@ class CompareTest : public ::testing::Test {
     station_->key("Return");
     ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
   }
-  std::unique_ptr<Station> station_;
 };
 
 TEST_F(CompareTest, the_opened_deck_stands_beside_the_edited_one) {
