@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "mesh/repair/strips.h"
@@ -22,6 +23,8 @@ EdgeOf edge_of(const Corners& corners, int edge) {
 
 // An edge so many target sizes long is worth dividing.
 constexpr double kLong = 1.25;
+// A strip so many target sizes wide may go.
+constexpr double kShort = 0.6;
 
 double length_of(const Patch& patch, const EdgeOf& edge) { return (patch.position(edge.a) - patch.position(edge.b)).norm(); }
 
@@ -197,6 +200,12 @@ std::vector<Candidate> strips_for(const Site& site, LocalShell shell, int edge) 
   const Corners& corners = site.patch.shell(shell).corners;
   if (corner_count(corners) != 4) return found;
   const double width = width_of(site.patch, corners, edge), size = site.judge.target_size;
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const double most : {kInfinite, 0.75 * size, kShort * size}) {
+    if (width > kShort * size) break;
+    const Strip strip{shell, edge, 0, most};
+    found.push_back({Operation::collapse, [&site, strip] { return collapse_strip(site, strip); }});
+  }
   if (width < kLong * size) return found;
   std::set<int> pieces = {2};
   for (int count = static_cast<int>(std::lround(width / size)); count > 2; count = count > 3 ? 3 : 2) pieces.insert(count);
@@ -204,8 +213,8 @@ std::vector<Candidate> strips_for(const Site& site, LocalShell shell, int edge) 
     for (const int count : pieces)
       for (const bool absorbs : {true, false}) {
         if (count > 2 && !absorbs) continue;
-        const Strip strip{shell, edge, count, least, absorbs};
-        found.push_back({Operation::split, [&site, strip] { return divide_strip(site, strip); }});
+        const Strip strip{shell, edge, least, kInfinite};
+        found.push_back({Operation::split, [&site, strip, count, absorbs] { return divide_strip(site, strip, count, absorbs); }});
       }
   return found;
 }

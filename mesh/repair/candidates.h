@@ -16,7 +16,8 @@ struct Candidate {
 /// Operations on a shell and its neighbours that are worth a try, the simplest first.
 std::vector<Candidate> candidates_for(const Site& site, LocalShell shell);
 
-/// Divisions of whole strips across edge `edge` of a quad (0 or 1) and the one opposite, if it is long there.
+/// What can be done with the strip across edge `edge` of a quad (0 or 1) and the one opposite: divided if it is wide there, or taken out if
+/// it is narrow.
 std::vector<Candidate> strips_for(const Site& site, LocalShell shell, int edge);
 
 /// Those that may rid a triangle's neighbourhood of triangles, or part it from another one.

@@ -4,6 +4,7 @@
 #include <bit>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "mesh/repair/cuts.h"
 #include "mesh/repair/pieces.h"
@@ -17,7 +18,7 @@ constexpr unsigned kAcross = 0b0101, kAlong = 0b1010;  ///< opposite edges of a 
 /// Which edges of each shell a strip cuts.
 class Plan {
  public:
-  Plan(const Patch& patch, const Strip& strip) : patch_(patch), least_(strip.least) {
+  Plan(const Patch& patch, const Strip& strip) : patch_(patch), strip_(strip) {
     if (corner_count(patch.shell(strip.start).corners) != 4) return;
     const unsigned edges = strip.edge % 2 == 0 ? kAcross : kAlong;
     for (std::size_t e = 0; e < 4; ++e)
@@ -29,6 +30,7 @@ class Plan {
 
   bool is_possible() const { return is_possible_; }
   const std::map<LocalShell, unsigned>& edges() const { return edges_; }
+  const std::set<EdgeKey>& cut_edges() const { return cut_; }
   static bool divides(unsigned edges) { return edges == kAcross || edges == kAlong; }
 
  private:
@@ -45,6 +47,7 @@ class Plan {
 
   void cut(LocalShell shell, std::size_t edge) {
     const EdgeKey nodes = nodes_of(shell, edge);
+    cut_.insert(nodes);
     for (const LocalShell other : patch_.shells_at(nodes.first, nodes.second)) {
       const int count = corner_count(patch_.shell(other).corners);
       for (std::size_t e = 0; e < static_cast<std::size_t>(count); ++e)
@@ -76,7 +79,7 @@ class Plan {
   bool goes_on(LocalShell shell, std::size_t out) const {
     const auto [a, b] = nodes_of(shell, out);
     const double length = (patch_.position(a) - patch_.position(b)).norm();
-    if (length < least_ || !patch_.may_divide(a, b) || refuse_dividing(patch_, shell, 4)) return false;
+    if (length < strip_.least || length > strip_.most || !patch_.may_divide(a, b) || refuse_dividing(patch_, shell, 4)) return false;
     // What is beyond has to be divided or ended in as well.
     const std::vector<LocalShell> shells = patch_.shells_at(a, b);
     return std::none_of(shells.begin(), shells.end(), [&](LocalShell other) {
@@ -85,8 +88,9 @@ class Plan {
   }
 
   const Patch& patch_;
-  double least_;
+  Strip strip_;
   bool is_possible_ = false;
+  std::set<EdgeKey> cut_;
   std::map<LocalShell, unsigned> edges_;  ///< a bit an edge
   std::vector<LocalShell> reached_;
 };
@@ -131,15 +135,15 @@ Refusal narrow(const Site& site, const EdgeAt& at, const std::vector<LocalNode>&
 }
 
 /// What becomes of a shell that isn't divided across as a quad.
-Refusal end_strip(const Site& site, const Strip& strip, LocalShell shell, unsigned edges, EdgeCuts& cuts) {
+Refusal end_strip(const Site& site, LocalShell shell, unsigned edges, EdgeCuts& cuts, int pieces, bool absorbs) {
   const Corners c = site.patch.shell(shell).corners;
   const int count = corner_count(c);
-  if (strip.pieces > (count == 4 ? 3 : 2)) return "a strip there would have to end in more pieces than there is a way for";
+  if (pieces > (count == 4 ? 3 : 2)) return "a strip there would have to end in more pieces than there is a way for";
   if (std::popcount(edges) == 2) return turn_about(site, shell, edges, cuts);
   const EdgeAt at{shell, static_cast<std::size_t>(std::countr_zero(edges))};
   const std::vector<LocalNode> nodes = cuts.cut(c[at.edge], c[(at.edge + 1) % static_cast<std::size_t>(count)]);
-  if (strip.pieces == 3) return narrow(site, at, nodes);
-  const RowEnd end = count == 4 ? better_end(site.patch, at, nodes[0]) : strip.absorbs ? RowEnd::absorb : RowEnd::two_triangles;
+  if (pieces == 3) return narrow(site, at, nodes);
+  const RowEnd end = count == 4 ? better_end(site.patch, at, nodes[0]) : absorbs ? RowEnd::absorb : RowEnd::two_triangles;
   return end_row(site, at, nodes[0], end);
 }
 
@@ -154,26 +158,33 @@ std::vector<StripQuad> quads_of(const Patch& patch, const Strip& strip) {
   return quads;
 }
 
-Refusal divide_strip(const Site& site, const Strip& strip) {
+Refusal divide_strip(const Site& site, const Strip& strip, int pieces, bool absorbs) {
   const Patch& patch = site.patch;
   const Plan plan(patch, strip);
   if (!plan.is_possible()) return "the strip of quads there crosses itself";
-  EdgeCuts cuts(site, strip.pieces);
+  EdgeCuts cuts(site, pieces);
   // All cuts first: an edge is found by its nodes only as long as its shells are whole.
-  for (const auto& [shell, edges] : plan.edges()) {
-    const Corners& c = patch.shell(shell).corners;
-    const auto count = static_cast<std::size_t>(corner_count(c));
-    for (std::size_t e = 0; e < count; ++e)
-      if ((edges >> e & 1) != 0) cuts.cut(c[e], c[(e + 1) % count]);
-  }
+  for (const auto& [a, b] : plan.cut_edges()) cuts.cut(a, b);
   if (cuts.refusal()) return cuts.refusal();
   for (const auto& [shell, edges] : plan.edges()) {
     const bool divides = corner_count(patch.shell(shell).corners) == 4 && Plan::divides(edges);
     const Refusal refusal =
-        divides ? divide_quad(site, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(site, strip, shell, edges, cuts);
+        divides ? divide_quad(site, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(site, shell, edges, cuts, pieces, absorbs);
     if (refusal) return refusal;
   }
   return std::nullopt;
+}
+
+Refusal collapse_strip(const Site& site, const Strip& strip) {
+  const Plan plan(site.patch, strip);
+  if (!plan.is_possible()) return "the strip of quads there crosses itself";
+  std::vector<Union> unions;
+  for (const auto& [a, b] : plan.cut_edges()) {
+    const auto pair = union_of(site, a, b);
+    if (!pair) return "both nodes hold the part's shape";
+    unions.push_back(*pair);
+  }
+  return unite(site, unions);
 }
 
 }  // namespace prismesh::mesh::repair

@@ -1,27 +1,31 @@
-// Strips: what is divided when an edge inside a sheet of quads is, from each quad to the next across its opposite edges.
+// Strips: what is divided, or goes, when an edge inside a sheet of quads does, from each quad to the next across its opposite edges.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "mesh/repair/operations.h"
 
 namespace prismesh::mesh::repair {
 
-/// A strip to divide lengthways into several: edge `edge` of `start` and all that follow from it in both directions, in each sheet at a
-/// junction. It ends where sheets end, closes upon itself, goes around a triangle, or ends before an edge shorter than `least`, or one that
-/// can't be divided: there a quad becomes a quad and a triangle (of three pieces: with one at each side), and a triangle a quad (`absorbs`)
-/// or two. Of more pieces it has to end by itself.
+/// Edge `edge` of `start` and all that follow from it in both directions, in each sheet at a junction. A strip ends where sheets end,
+/// closes upon itself, goes around a triangle, or ends before an edge shorter than `least`, longer than `most`, or one that can't be
+/// divided.
 struct Strip {
   LocalShell start;
   int edge = 0;
-  int pieces = 2;
   double least = 0;
-  bool absorbs = true;
+  double most = std::numeric_limits<double>::infinity();
 };
-Refusal divide_strip(const Site& site, const Strip& strip);
 
-/// The quads that such a strip divides, each with the edge by which it is entered (0 or 1, the one opposite is the same); empty: it can't
-/// be.
+/// Divides a strip lengthways. Where it ends a quad becomes a quad and a triangle (of three pieces: with one at each side), and a triangle
+/// a quad (`absorbs`) or two. Of more pieces it has to end by itself.
+Refusal divide_strip(const Site& site, const Strip& strip, int pieces = 2, bool absorbs = true);
+
+/// Takes a strip out: the two ends of each of its edges become one node. Where it ends a quad becomes a triangle.
+Refusal collapse_strip(const Site& site, const Strip& strip);
+
+/// The quads of a strip, each with the edge by which it is entered (0 or 1, the one opposite is the same); empty: there is none.
 struct StripQuad {
   LocalShell shell;
   int edge = 0;

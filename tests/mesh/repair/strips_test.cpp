@@ -18,9 +18,13 @@ struct Bench {
         patch(model, all_shells(model), 1, rules, options.relax.feature_angle),
         site{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {}
 
-  Refusal divide(const Strip& strip) {
+  Refusal divide(const Strip& strip, int pieces = 2, bool absorbs = true) {
     patch.begin();
-    return divide_strip(site, strip);
+    return divide_strip(site, strip, pieces, absorbs);
+  }
+  Refusal collapse(const Strip& strip) {
+    patch.begin();
+    return collapse_strip(site, strip);
   }
   Model after() const { return carried_out(model, patch.result()); }
   LocalShell shell(std::size_t s) const { return patch.find(shell_at(s)); }
@@ -57,7 +61,7 @@ TEST(Strips, go_from_one_end_of_the_sheet_to_the_other_without_a_triangle) {
 TEST(Strips, are_divided_into_as_many_as_asked_evenly) {
   const Grid grid{4, 3, [](double x, double y) { return Vec3(x < 3 ? x : x + 3, y, 0); }, {}};
   Bench bench(model_of(grid.positions(), grid.shells()));
-  ASSERT_FALSE(bench.divide({bench.shell(grid.shell(2, 1)), 0, 4}));
+  ASSERT_FALSE(bench.divide({bench.shell(grid.shell(2, 1)), 0}, 4));
   const Model after = bench.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(live_shells(after), 12U + 3 * 3);
@@ -123,7 +127,7 @@ TEST(Strips, end_before_short_edges_in_a_triangle_that_has_the_shorter_diagonal)
   // Columns get narrower from 3 to 0.75.
   const Grid grid{3, 6, [](double x, double y) { return Vec3(x == 2 || x == 3 ? 1 + (x - 1) * (3 - 0.375 * y) : x, y, 0); }, {}};
   Bench bench(model_of(grid.positions(), grid.shells()));
-  const Strip strip{bench.shell(grid.shell(1, 0)), 0, 2, 2.0};
+  const Strip strip{bench.shell(grid.shell(1, 0)), 0, 2.0};
   const std::vector<StripQuad> quads = quads_of(bench.patch, strip);
   EXPECT_EQ(quads.size(), 2U) << "the edges are 3, 2.625, 2.25 and then 1.875 long";
   ASSERT_FALSE(bench.divide(strip));
@@ -136,20 +140,20 @@ TEST(Strips, end_before_short_edges_in_a_triangle_that_has_the_shorter_diagonal)
 TEST(Strips, of_three_end_in_a_quad_between_two_triangles) {
   const Grid grid{3, 6, [](double x, double y) { return Vec3(x == 2 || x == 3 ? 1 + (x - 1) * (3 - 0.375 * y) : x, y, 0); }, {}};
   Bench bench(model_of(grid.positions(), grid.shells()));
-  ASSERT_FALSE(bench.divide({bench.shell(grid.shell(1, 0)), 0, 3, 2.0}));
+  ASSERT_FALSE(bench.divide({bench.shell(grid.shell(1, 0)), 0, 2.0}, 3));
   const Model after = bench.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(triangles(after), 2U);
   EXPECT_EQ(triangle_pairs(after), 0U);
   EXPECT_EQ(live_shells(after), 18U + 2 * 2 + 2);
-  EXPECT_TRUE(bench.divide({bench.shell(grid.shell(1, 0)), 0, 4, 2.0})) << "there is no way to end four";
+  EXPECT_TRUE(bench.divide({bench.shell(grid.shell(1, 0)), 0, 2.0}, 4)) << "there is no way to end four";
 }
 
 TEST(Strips, end_in_a_triangle) {
   const Model model = model_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 2, 0}}, {{0, 1, 3, 2}, {2, 3, 4, 4}});
   for (const bool absorbs : {true, false}) {
     Bench bench(model);
-    ASSERT_FALSE(bench.divide({bench.shell(0), 0, 2, 0, absorbs}));
+    ASSERT_FALSE(bench.divide({bench.shell(0), 0}, 2, absorbs));
     const Model after = bench.after();
     EXPECT_EQ(what_is_wrong(after), "");
     EXPECT_EQ(live_shells(after), absorbs ? 3U : 4U);
@@ -191,6 +195,57 @@ TEST(Strips, that_cross_themselves_are_refused) {
   ASSERT_TRUE(refusal);
   EXPECT_EQ(*refusal, "the strip of quads there crosses itself");
   EXPECT_TRUE(quads_of(bench.patch, strip).empty());
+}
+
+TEST(Strips, go_and_leave_the_sheet_whole) {
+  const Grid grid{5, 4, [](double x, double y) { return Vec3(x < 3 ? x : x - 0.75, y, 0); }, {}};
+  Bench bench(model_of(grid.positions(), grid.shells()));
+  ASSERT_FALSE(bench.collapse({bench.shell(grid.shell(2, 1)), 0}));
+  const Model after = bench.after();
+  EXPECT_EQ(what_is_wrong(after), "");
+  EXPECT_EQ(live_shells(after), 16U);
+  EXPECT_EQ(triangles(after), 0U);
+  const Shape was = shape_of(bench.model), is = shape_of(after);
+  EXPECT_EQ(is.euler, was.euler);
+  EXPECT_NEAR(is.free_length, was.free_length, 1e-9);
+  EXPECT_NEAR(is.area, was.area, 1e-9);
+}
+
+TEST(Strips, that_go_end_before_long_edges_in_a_triangle) {
+  // The third column widens from 0.25 upwards.
+  const Grid grid{4, 6, [](double x, double y) { return Vec3(x < 3 ? x : x - 0.75 + 0.2 * y, y, 0); }, {}};
+  Bench bench(model_of(grid.positions(), grid.shells()));
+  ASSERT_FALSE(bench.collapse({bench.shell(grid.shell(2, 0)), 0, 0, 0.7}));
+  const Model after = bench.after();
+  EXPECT_EQ(what_is_wrong(after), "");
+  EXPECT_EQ(triangles(after), 1U);
+  EXPECT_EQ(live_shells(after), 24U - 2) << "the edges are 0.25, 0.45, 0.65 and then 0.85 long";
+}
+
+TEST(Strips, between_two_lines_of_the_part_stay) {
+  // A sheet of one column between two free edges.
+  const Grid grid = flat(1, 4);
+  Bench bench(model_of(grid.positions(), grid.shells()));
+  EXPECT_TRUE(bench.collapse({bench.shell(1), 0}));
+}
+
+TEST(Repairs, cure_a_squeezed_sheet_by_taking_strips_out) {
+  const Grid grid{12,
+                  9,
+                  [](double x, double y) {
+                    const double at[13] = {0, 1, 2, 3, 4, 4.2, 4.4, 5.4, 6.4, 7.4, 8.4, 9.4, 10.4};
+                    return Vec3(at[static_cast<int>(x)], y, 0);
+                  },
+                  {}};
+  const Model model = model_of(grid.positions(), grid.shells());
+  const relax::ReferenceSurface surface(model, all_shells(model), Options{}.relax.feature_angle);
+  const auto repaired = repair(model, surface, all_shells(model), {}, {quality::default_criteria(), 1}, {});
+  ASSERT_TRUE(repaired) << repaired.error().message;
+  EXPECT_EQ(repaired->bad_before, 18U);
+  const Model after = carried_out(model, repaired->change);
+  EXPECT_EQ(what_is_wrong(after), "");
+  EXPECT_EQ(triangles(after), 0U);
+  EXPECT_TRUE(repaired->left.empty());
 }
 
 TEST(Repairs, cure_a_stretched_sheet_by_whole_strips) {
