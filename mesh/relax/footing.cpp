@@ -14,7 +14,8 @@ constexpr double kReach = 8;         ///< sizes that a node may be from where it
 constexpr double kOnFeature = 1e-3;  ///< of the size: a node that is nearer to a line or a corner is on it
 constexpr double kNoFeature = 1e-2;  ///< and one that is farther isn't
 
-/// A node, and the reference's node of its number where that isn't far off: in a document it is mostly the same one.
+/// A node, and the reference's node of its number where that is the same one and isn't far off: in a document, but not in a piece cut out
+/// of it, which numbers its nodes anew.
 struct Standing {
   const Model& model;
   const ReferenceSurface& surface;
@@ -27,7 +28,8 @@ struct Standing {
       : model(in), surface(on), node(which), point(in.position(which)), size(mean_edge(in, which)) {
     const Model& reference = on.model();
     const double reach = kReach * size;
-    is_known = node.value < reference.node_count() && !reference.is_removed(node) &&
+    is_known = node.value < reference.node_count() && node.value < in.node_ids.size() &&
+               in.node_ids[node.value] == reference.node_ids[node.value] && !reference.is_removed(node) &&
                (reference.position(node) - point).squaredNorm() <= reach * reach && !reference.adjacency->shells_of(node).empty();
   }
 };
@@ -50,7 +52,8 @@ bool is_on_line(const Standing& at) {
 /// Creases of the mesh come and go as its nodes move over a bent surface; the surface's stay.
 Freedom freedom_there(const Standing& at, double feature_cos) {
   const Freedom by_mesh = freedom_of(at.model, at.node, feature_cos);
-  const Freedom on_surface = at.is_known ? at.surface.freedom_at(at.node) : Freedom::surface;
+  if (!at.is_known) return by_mesh;
+  const Freedom on_surface = at.surface.freedom_at(at.node);
   if (on_surface == Freedom::surface && by_mesh == Freedom::surface) return Freedom::surface;
   if (on_surface == Freedom::fixed && (at.surface.model().position(at.node) - at.point).norm() <= kOnFeature * at.size)
     return Freedom::fixed;

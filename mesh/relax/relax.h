@@ -18,6 +18,9 @@ struct Options {
   std::optional<double> most_on_surface;  ///< no node inside a sheet moves farther; deck's length unit
   std::optional<double> most_on_line;     ///< no node on a feature line moves farther
   int most_rounds = 200;
+  /// Look on the way whether elements got worse, and let their nodes go on with care: rests sooner in rough meshes. Without, only at rest:
+  /// what stretches a long way shares its length with elements that are too long for a while.
+  bool checks_on_the_way = true;
 };
 
 /// What elements are judged by: nothing that passes may fail afterwards.

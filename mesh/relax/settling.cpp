@@ -227,7 +227,7 @@ Settled Settling::run(Spreading* spreading, const std::function<bool(double at_r
       settled.was_stopped = true;
       return settled;
     }
-    if (settled.rounds == next_check) {
+    if (options_.checks_on_the_way && settled.rounds == next_check) {
       check(false);
       next_check *= kChecksApart;
     }

@@ -98,10 +98,8 @@ Model Patch::as_model(std::vector<LocalShell>& shells_of_model) const {
   small.positions.resize(nodes_.size(), Vec3::Zero());
   small.node_ids.resize(nodes_.size());
   small.node_holds.resize(nodes_.size());
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    small.positions.set(i, nodes_[i].position);
-    small.node_ids.set(i, static_cast<std::int64_t>(i) + 1);
-  }
+  // No ids: the nodes are none of the model that a surface was made of, whatever their numbers.
+  for (std::size_t i = 0; i < nodes_.size(); ++i) small.positions.set(i, nodes_[i].position);
   shells_of_model.clear();
   for (std::size_t i = 0; i < shells_.size(); ++i)
     if (shells_[i].is_alive) shells_of_model.push_back(LocalShell(i));

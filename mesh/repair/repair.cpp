@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -17,6 +18,8 @@ namespace {
 
 constexpr int kRings = 4;
 constexpr int kStripPasses = 4;
+// How far a round is when shells are next, and what going through them takes of it.
+constexpr double kStripShare = 0.2, kSweepShare = 0.4, kFailShare = kStripShare + kSweepShare;
 constexpr double kLeastGain = 0.05;
 constexpr int kSweepsAtAGlance = 1;
 // Candidates that after a glance gain less aren't looked at closer.
@@ -68,33 +71,31 @@ class Repairer {
   }
 
   Result<Repaired> run(const Progress& progress) {
+    progress_ = &progress;
     const quality::Limits limits = site_.limits;
     judge_all();
     repaired_.bad_before = bad_shells(quality::Grade::warn).size();
     site_.limits = within(limits);
     judge_all();
-    if (const Result<void> relaxed = relax_neighbourhood(); !relaxed) return fail(relaxed.error());
-    for (int round = 0; round < site_.options.most_rounds; ++round) {
-      repaired_.rounds = round + 1;
+    relax_neighbourhood();
+    for (round_ = 0; round_ < site_.options.most_rounds && !stopped_; ++round_) {
+      repaired_.rounds = round_ + 1;
       bool better = false;
-      for (int pass = 0; pass < kStripPasses && divide_strips(); ++pass) {
+      for (int pass = 0; pass < kStripPasses && work_on_strips(); ++pass) {
         better = true;
-        if (const Result<void> relaxed = relax_neighbourhood(); !relaxed) return fail(relaxed.error());
+        relax_neighbourhood();
       }
       // The worst first; warnings when nothing fails that could be cured.
-      for (const quality::Grade least : {quality::Grade::fail, quality::Grade::warn}) {
-        const Result<bool> improved = sweep(least, round, progress);
-        if (!improved) return fail(improved.error());
-        better = better || *improved;
-      }
+      better = sweep(quality::Grade::fail, kStripShare) || better;
+      better = sweep(quality::Grade::warn, kFailShare) || better;
       tidy();
       if (!better && effort_.sweeps == kThorough.sweeps) break;
       // What is left when nothing is better any more is worth more effort.
       effort_ = better ? kQuick : kThorough;
       if (!better) tried_.clear();
-      const Result<void> relaxed = relax_neighbourhood();
-      if (!relaxed) return fail(relaxed.error());
+      relax_neighbourhood();
     }
+    if (stopped_) return fail(*stopped_);
     site_.limits = limits;
     judge_all();
     finish();
@@ -102,6 +103,12 @@ class Repairer {
   }
 
  private:
+  /// Tells how far a round is (0 to 1); false: cancelled. Nobody knows how many rounds it takes, but each finds less to do.
+  bool goes_on(double done) {
+    if (!stopped_ && *progress_ && !(*progress_)(1 - std::pow(0.6, round_ + done))) stopped_ = cancelled();
+    return !stopped_;
+  }
+
   void judge_all() {
     patch_.begin();
     std::vector<LocalShell> all;
@@ -125,25 +132,25 @@ class Repairer {
     return bad;
   }
 
-  Result<bool> sweep(quality::Grade least, int round, const Progress& progress) {
+  /// Shells that are at least that bad, one by one; `done`: how far the round is.
+  bool sweep(quality::Grade least, double done) {
     bool better = false;
     const std::vector<LocalShell> bad = bad_shells(least);
-    for (std::size_t i = 0; i < bad.size(); ++i) {
-      const PatchShell& shell = patch_.shell(bad[i]);
-      if (!shell.is_alive || shell.state.grade() < least) continue;
-      if (!is_worth_trying(bad[i])) continue;
-      if (improve(candidates_for(site_, bad[i]), bad[i], false))
+    const double each = kSweepShare / static_cast<double>(std::max<std::size_t>(bad.size(), 1));
+    for (const LocalShell shell : bad) {
+      if (!goes_on(done)) break;
+      done += each;
+      if (!patch_.shell(shell).is_alive || patch_.shell(shell).state.grade() < least || !is_worth_trying(shell)) continue;
+      if (improve(candidates_for(site_, shell), shell, false))
         better = true;
       else
-        tried_[bad[i]] = changes_;
-      const double done = (round + static_cast<double>(i) / static_cast<double>(bad.size())) / site_.options.most_rounds;
-      if (progress && i % 16 == 0 && !progress(done)) return fail(cancelled());
+        tried_[shell] = changes_;
     }
     return better;
   }
 
-  /// Whole strips of quads where shells are long across: that leaves no triangles, or few.
-  bool divide_strips() {
+  /// Whole strips of quads where shells are long or short across: that leaves no triangles, or few.
+  bool work_on_strips() {
     bool better = false;
     // Strips that were refused aren't tried again from each of their shells.
     std::set<std::pair<LocalShell, int>> refused;
@@ -153,6 +160,7 @@ class Repairer {
         if (refused.contains({shell, edge})) continue;
         const std::vector<Candidate> found = strips_for(site_, shell, edge);
         if (found.empty()) continue;
+        if (!goes_on(0)) return false;
         if (improve(found, shell, false))
           better = true;
         else
@@ -166,6 +174,7 @@ class Repairer {
     for (std::size_t s = 0; s < patch_.shell_count(); ++s) {
       const LocalShell shell(s);
       if (!patch_.shell(shell).is_alive || !is_touched(shell) || corner_count(patch_.shell(shell).corners) != 3) continue;
+      if (!goes_on(kFailShare + kSweepShare)) return;
       improve(tidying_for(site_, shell), shell, true);
     }
   }
@@ -295,11 +304,18 @@ class Repairer {
     return nodes;
   }
 
-  Result<void> relax_neighbourhood() {
+  void relax_neighbourhood() {
+    if (!goes_on(0)) return;
     std::vector<LocalShell> shells;
     const Model small = patch_.as_model(shells);
-    const Result<relax::Relaxed> relaxed = relax::relax(small, site_.surface, movable(), site_.judge, site_.options.relax);
-    if (!relaxed) return fail(relaxed.error());
+    relax::Options options = site_.options.relax;
+    options.checks_on_the_way = false;
+    const Result<relax::Relaxed> relaxed =
+        relax::relax(small, site_.surface, movable(), site_.judge, options, [&](double) { return goes_on(0); });
+    if (!relaxed) {
+      stopped_ = relaxed.error();
+      return;
+    }
     patch_.begin();
     for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) patch_.move(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
     judge_shells(site_, patch_.changed_shells());
@@ -307,7 +323,6 @@ class Repairer {
       patch_.take_back();
     else
       keep_change();
-    return {};
   }
 
   void finish() {
@@ -330,6 +345,9 @@ class Repairer {
   std::uint32_t changes_ = 0;
   std::map<LocalShell, std::string_view> why_;
   Effort effort_ = kQuick;
+  const Progress* progress_ = nullptr;
+  int round_ = 0;
+  std::optional<Error> stopped_;  ///< why nothing more is to be done
   long triangles_ = 0, most_triangles_ = 0;
   int pairs_ = 0;  ///< of triangles side by side, more than there were
   Repaired repaired_;
