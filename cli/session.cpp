@@ -24,8 +24,8 @@ using Action = SessionOptions::Action;
 constexpr std::chrono::seconds kPatience{15};
 constexpr std::chrono::seconds kFirstPatience{5};
 constexpr std::chrono::milliseconds kTurn{100};
-/// How long work may take to stop when it was asked to.
-constexpr std::int64_t kPatienceWithCancel_ns = 5'000'000'000;
+/// How long work may take to stop when it was asked to: in a large model on a busy machine it asks every few seconds only.
+constexpr std::int64_t kPatienceWithCancel_ns = 30'000'000'000;
 
 class Session {
  public:
