@@ -12,7 +12,7 @@ namespace prismesh::mesh::repair {
 
 namespace {
 
-// How things are weighed against each other: curing a failing shell is worth a pair of triangles, curing a warning isn't.
+// How things are weighed against each other. Pairs of triangles beyond those that were there are refused whatever they cure (repair.cpp).
 constexpr double kFailing = 3, kWarning = 1, kTriangle = 0.2, kTrianglePair = 0.8, kImperfect = 0.15;
 
 double weight_of(float composite, quality::ShellState state) {
