@@ -138,9 +138,9 @@ struct PartFactors {
   double wave_speed = 0;  ///< 0: it doesn't limit the time step, or isn't known
 };
 
-std::vector<PartFactors> factors_of(const Model& model) {
+std::vector<PartFactors> factors_of(const Model& model, int shell_option) {
   std::vector<PartFactors> factors;
-  for (const Part& part : *model.parts) factors.push_back({part.density.value_or(0.0), wave_speed(part).value_or(0.0)});
+  for (const Part& part : *model.parts) factors.push_back({part.density.value_or(0.0), wave_speed(part, shell_option).value_or(0.0)});
   return factors;
 }
 
@@ -162,6 +162,13 @@ struct Making {
   const std::vector<PartFactors>& parts;
 };
 
+/// What mass scaling adds to a shell: DT2MS < 0 brings those up to |DT2MS| that would step below it, DT2MS > 0 every shell to just that, so
+/// that long ones lose mass.
+double mass_added(double mass, double step, double mass_scaled) {
+  if (mass_scaled == 0 || (mass_scaled < 0 && step >= -mass_scaled)) return 0;
+  return mass * ((mass_scaled / step) * (mass_scaled / step) - 1.0);
+}
+
 /// Mass and time step of one shell.
 void weigh(const Making& making, std::size_t shell, const Measured& measured, Partial& partial) {
   const PartIndex part = making.model.shell_parts[shell];
@@ -173,10 +180,9 @@ void weigh(const Making& making, std::size_t shell, const Measured& measured, Pa
   partial.mass += surface_density * measured.area;
   partial.moment += surface_density * measured.moment;
   partial.has_mass = partial.has_mass || has_mass;
-  if (!(factors.wave_speed > 0) || !(measured.step_length > 0)) return;
+  if (!(factors.wave_speed > 0) || !(measured.step_length > 0) || measured.state.has(Defect::no_area)) return;
   const double step = measured.step_length / factors.wave_speed;
-  if (const double wanted = std::abs(making.control.mass_scaled); wanted > 0 && step < wanted)
-    partial.added_mass += surface_density * measured.area * ((wanted / step) * (wanted / step) - 1.0);
+  if (has_mass) partial.added_mass += mass_added(surface_density * measured.area, step, making.control.mass_scaled);
   const double seconds = making.control.scale * step;
   if (!partial.report.time_step || seconds < partial.report.time_step->seconds) partial.report.time_step = {seconds, ShellIndex(shell)};
 }
@@ -269,7 +275,7 @@ Counts count(const ChunkedArray<ShellState>& states) {
 Report report(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control, const ShellSet* shells) {
   const Limits limits = limits_for(criteria, target_size);
   const std::size_t elements = shells != nullptr ? shells->size() : model.shell_count();
-  const std::vector<PartFactors> parts = factors_of(model);
+  const std::vector<PartFactors> parts = factors_of(model, control.shell_option);
   std::vector<Partial> partials((elements + kGrain - 1) / kGrain);
   parallel_for(elements, kGrain, [&](std::size_t begin, std::size_t end) {
     partials[begin / kGrain] = figures_of_range({model, limits, control, parts}, begin, end, shells);
@@ -284,7 +290,7 @@ Report report(const Model& model, const Criteria& criteria, double target_size, 
   if (report.elements > 0) report.triangles_percent = 100.0 * static_cast<double>(all.triangles) / static_cast<double>(report.elements);
   if (all.has_mass) report.mass = all.mass;
   if (all.mass > 0) report.centre_of_gravity = all.moment / all.mass;
-  if (control.mass_scaled != 0) report.added_mass = all.added_mass;
+  if (control.mass_scaled != 0 && all.has_mass) report.added_mass = all.added_mass;
   return report;
 }
 

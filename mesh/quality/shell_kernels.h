@@ -89,9 +89,9 @@ PRISMESH_INLINE void quads(const ShellBatch& batch, BatchValues& values) {
     const double j0 = dot(n0, whole), j1 = dot(n1, whole), j2 = dot(n2, whole), j3 = dot(n3, whole);
 
     const bool finite = l0 + l1 + l2 + l3 < kLargest2;  // no for NaN
-    const double no_plane = 1e-10 * longest2;
+    const double no_plane = kLeastArea * longest2;
     // folded onto itself: its sides cross, so that two corners are turned in
-    const double turned_in = -1e-10 * area * longest2;
+    const double turned_in = -kLeastArea * area * longest2;
     const auto counts = [&](double j) { return j < turned_in ? 1.0 : 0.0; };
     const double inward = counts(j0) + counts(j1) + counts(j2) + counts(j3);
     const bool has_area = (area > no_plane) & (inward < 1.5);
@@ -152,7 +152,7 @@ PRISMESH_INLINE void triangles(const ShellBatch& batch, BatchValues& values) {
     const double m0 = l0 - l2, m1 = l1 - l0, m2 = l2 - l1;
 
     const bool finite = l0 + l1 + l2 < kLargest2;  // no for NaN
-    const bool has_area = area > 1e-10 * longest2;
+    const bool has_area = area > kLeastArea * longest2;
     const bool has_edges = (shortest2 > 1e-24 * longest2) & (longest2 > kTiny);
     const auto put = [&](Metric metric, double value) {
       values.value[int(metric)][lane] = finite ? static_cast<float>(value) : kNotApplicable;

@@ -13,12 +13,13 @@ namespace prismesh::mesh::quality {
 /// Source: LS-DYNA theory manual, "Time step size control".
 double characteristic_length(std::span<const Vec3> corners, int shell_option);
 
-/// The plate wave speed sqrt(E / (rho (1 - nu^2))) in a part's material, deck's units. Absent if the material is unknown or doesn't limit
-/// the step (rigid, null).
-std::optional<double> wave_speed(const Part& part);
+/// The speed of the waves in a part's material that the step goes by, deck's units: a plate's, sqrt(E / (rho (1 - nu^2))), with ISDO 2 a
+/// bar's, sqrt(E / rho). Absent if the material is unknown or doesn't limit the step (rigid, null). Source: LS-DYNA keyword manual,
+/// *CONTROL_TIMESTEP.
+std::optional<double> wave_speed(const Part& part, int shell_option = 0);
 
-/// Characteristic length over the plate wave speed sqrt(E / (rho (1 - nu^2))), without TSSFAC, in the deck's time unit. Absent if
-/// the part's material is unknown or doesn't limit the step (rigid, null), or the shell has no area.
+/// Characteristic length over wave speed, without TSSFAC, in the deck's time unit. Absent if the part's material is unknown or doesn't
+/// limit the step, the shell has no area (Defect::no_area) or its coordinates aren't finite.
 std::optional<double> shell_time_step(const Part& part, std::span<const Vec3> corners, int shell_option);
 
 }  // namespace prismesh::mesh::quality

@@ -102,6 +102,30 @@ TEST(Report, characteristic_lengths) {
   EXPECT_EQ(characteristic_length(std::vector<Vec3>{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, 0), 0);
 }
 
+TEST(Report, the_third_option_goes_by_the_waves_in_a_bar) {
+  Model model = steel_grid(3, 3, 5);
+  TimeStepControl control;
+  control.shell_option = 2;
+  EXPECT_NEAR(report_of(model, control).time_step->seconds, 0.9 * 5 / std::sqrt(210000.0 / 7.85e-9), 1e-18);
+  EXPECT_NEAR(*shell_time_step(steel(), std::vector<Vec3>{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}}, 2), 3 / std::sqrt(210000.0 / 7.85e-9), 1e-18);
+  // such a wave doesn't ask for Poisson's ratio
+  Part part = steel();
+  part.poissons_ratio.reset();
+  set_parts(model, {part});
+  EXPECT_TRUE(report_of(model, control).time_step);
+  EXPECT_FALSE(report_of(model).time_step);
+}
+
+TEST(Report, shells_without_area_have_no_time_step) {
+  // beside a good quad a triangle that is flat but for rounding
+  Model model = test::make_shells({{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {0, 5, 0}, {10, 1e-11, 0}}, {{0, 1, 2, 3}, {0, 4, 1, 1}});
+  set_parts(model, {steel()});
+  const Report r = report_of(model);
+  EXPECT_EQ(r.defects, (std::array<std::size_t, kDefectCount>{0, 0, 1}));
+  EXPECT_EQ(r.time_step->shell, ShellIndex(std::size_t{0}));
+  EXPECT_NEAR(r.time_step->seconds, 0.9 * 5 / std::sqrt(210000.0 / (7.85e-9 * (1 - 0.09))), 1e-18);
+}
+
 TEST(Report, rigid_parts_do_not_limit_the_step) {
   Model model = test::make_shells({{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {0, 5, 0}, {6, 0, 0}, {6, 5, 0}}, {{1, 4, 5, 2}, {0, 1, 2, 3}});
   Part rigid = steel();
@@ -126,6 +150,24 @@ TEST(Report, mass_scaling_says_what_it_adds) {
   EXPECT_EQ(scaled.time_step->seconds, plain.time_step->seconds);
   control.mass_scaled = -plain.time_step->seconds / 2;
   EXPECT_EQ(*report_of(model, control).added_mass, 0);
+}
+
+TEST(Report, a_positive_step_for_mass_scaling_takes_mass_away_too) {
+  // 5 x 5 and 20 x 20, by mass 1 : 16; with the step of 10 the small one has four times its mass, the large one a quarter
+  Model model = test::make_shells({{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {0, 5, 0}, {50, 0, 0}, {70, 0, 0}, {70, 20, 0}, {50, 20, 0}},
+                                  {{0, 1, 2, 3}, {4, 5, 6, 7}});
+  set_parts(model, {steel()});
+  const Report plain = report_of(model);
+  const double small = *plain.mass / 17, step_of_ten = 2 * plain.time_step->seconds / 0.9;
+  TimeStepControl control;
+  control.mass_scaled = step_of_ten;
+  EXPECT_NEAR(*report_of(model, control).added_mass / small, 3 - 12, 1e-9);
+  control.mass_scaled = -step_of_ten;
+  EXPECT_NEAR(*report_of(model, control).added_mass / small, 3, 1e-9);
+  Part part = steel();
+  part.thickness.reset();
+  set_parts(model, {part});
+  EXPECT_FALSE(report_of(model, control).added_mass) << "what has no known mass gains none";
 }
 
 TEST(Report, triangles_and_worst_shells) {
