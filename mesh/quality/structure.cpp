@@ -96,20 +96,19 @@ bool is_opposed(const Model& model, EdgeIndex edge, NodeIndex low) {
 /// Free edges and where they are.
 class FreeEdges {
  public:
-  FreeEdges(const Model& model, const std::vector<NodeIndex>& low, double tolerance) : model_(model), low_(low) {
+  FreeEdges(const Model& model, const std::vector<NodeIndex>& low, double tolerance) : model_(model), low_(low), tolerance_(tolerance) {
     const Adjacency& adjacency = *model.adjacency;
     const auto is_free = [&](EdgeIndex e) { return adjacency.shells_of(e).size() == 1; };
     for (const EdgeIndex edge : all_of<EdgeIndex>(adjacency.edge_count(), is_free)) {
       Entry entry{edge, part_of(edge), point(low[edge.value]), point(adjacency.edge_high[edge.value])};
-      entry.reach = tolerance * (entry.b - entry.a).norm();
+      entry.reach = tolerance * entry.length();
       if (!std::isfinite(entry.reach) || !(entry.reach > 0)) continue;
-      cell_ = std::max(cell_, 2 * entry.reach);
       edges_.push_back(entry);
       ends_.push_back({low[edge.value], edges_.size() - 1});
       ends_.push_back({adjacency.edge_high[edge.value], edges_.size() - 1});
     }
     std::sort(ends_.begin(), ends_.end());
-    for (std::size_t i = 0; i < edges_.size(); ++i) places_.push_back({place(i, {0, 0, 0}), i});
+    for (std::size_t i = 0; i < edges_.size(); ++i) places_.push_back({place(i, level_of(edges_[i].length()), {0, 0, 0}), i});
     std::sort(places_.begin(), places_.end());
   }
 
@@ -126,35 +125,54 @@ class FreeEdges {
   }
 
  private:
-  using Place = std::tuple<std::uint32_t, std::int64_t, std::int64_t, std::int64_t>;
+  /// Part, level, and the cell of the middle. Edges of about one length are on one level, so that a long one doesn't make the short ones'
+  /// cells large.
+  using Place = std::tuple<std::uint32_t, int, std::int64_t, std::int64_t, std::int64_t>;
   struct Entry {
     EdgeIndex edge;
     PartIndex part;
     Vec3 a, b;
     double reach = 0;
+    double length() const { return (b - a).norm(); }
   };
   using End = std::pair<NodeIndex, std::size_t>;
 
   const Vec3& point(NodeIndex node) const { return model_.position(node); }
   PartIndex part_of(EdgeIndex edge) const { return model_.shell_parts[model_.adjacency->shells_of(edge)[0].value]; }
 
-  Place place(std::size_t i, const std::array<int, 3>& shift) const {
-    const Entry& e = edges_[i];
-    std::array<std::int64_t, 3> at{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const double cell = std::floor(0.5 * (e.a[axis] + e.b[axis]) / cell_);
-      at[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::clamp(cell, -9e17, 9e17)) + shift[static_cast<std::size_t>(axis)];
-    }
-    return {e.part.value, at[0], at[1], at[2]};
+  /// Edges of a level are between half a power of two and that power long.
+  static int level_of(double length) {
+    int level = 0;
+    std::frexp(length, &level);
+    return level;
   }
 
+  Place place(std::size_t i, int level, const std::array<int, 3>& shift) const {
+    const Entry& e = edges_[i];
+    const double size = 2 * tolerance_ * std::ldexp(1.0, level);  // no less than twice what any edge of the level reaches
+    std::array<std::int64_t, 3> at{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double cell = std::floor(0.5 * (e.a[axis] + e.b[axis]) / size);
+      at[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::clamp(cell, -9e17, 9e17)) + shift[static_cast<std::size_t>(axis)];
+    }
+    return {e.part.value, level, at[0], at[1], at[2]};
+  }
+
+  /// A twin is as long, but for what both ends may be apart.
   bool has_twin(std::size_t i) const {
+    const double length = edges_[i].length(), apart = 1 + 2 * tolerance_;
+    for (int level = level_of(length / apart); level <= level_of(length * apart); ++level)
+      if (has_twin(i, level)) return true;
+    return false;
+  }
+
+  bool has_twin(std::size_t i, int level) const {
     const Entry& e = edges_[i];
     std::array<int, 3> shift{};
     for (shift[0] = -1; shift[0] <= 1; ++shift[0])
       for (shift[1] = -1; shift[1] <= 1; ++shift[1])
         for (shift[2] = -1; shift[2] <= 1; ++shift[2]) {
-          const Place at = place(i, shift);
+          const Place at = place(i, level, shift);
           for (auto it = std::lower_bound(places_.begin(), places_.end(), std::pair(at, std::size_t{0}));
                it != places_.end() && it->first == at; ++it) {
             if (it->second == i) continue;
@@ -191,7 +209,9 @@ class FreeEdges {
       if (first.second == i || edges_[first.second].part != edges_[i].part) continue;
       const NodeIndex between = other_end(first.second, a);
       for (const End& second : at(between))
-        if (second.second != first.second && other_end(second.second, between) == b && lies_on(between, edges_[i])) return true;
+        if (second.second != first.second && edges_[second.second].part == edges_[i].part && other_end(second.second, between) == b &&
+            lies_on(between, edges_[i]))
+          return true;
     }
     return false;
   }
@@ -201,7 +221,7 @@ class FreeEdges {
     for (const NodeIndex between : {a, b}) {
       const NodeIndex end = between == a ? b : a;
       for (const End& next : at(between)) {
-        if (next.second == i) continue;
+        if (next.second == i || edges_[next.second].part != edges_[i].part) continue;
         const NodeIndex far = other_end(next.second, between);
         for (const End& over : at(end))
           if (over.second != i && edges_[over.second].part == edges_[i].part && other_end(over.second, end) == far &&
@@ -226,16 +246,32 @@ class FreeEdges {
     }
     return false;
   }
-  /// The loop runs about the shells, not about a hole among them: they have no corner off it.
+  /// The loop runs about the shells, not about a hole among them: they have no corner off it, or lie on its inner side.
   bool is_border_of_piece(const std::vector<std::size_t>& loop) const {
     const auto on_loop = [&](NodeIndex node) {
       return std::any_of(loop.begin(), loop.end(),
                          [&](std::size_t i) { return low_[edge(i).value] == node || model_.adjacency->edge_high[edge(i).value] == node; });
     };
-    return std::all_of(loop.begin(), loop.end(), [&](std::size_t i) {
-      const ShellNodes& shell = model_.shell(model_.adjacency->shells_of(edge(i))[0]);
+    const bool all_on_loop = std::all_of(loop.begin(), loop.end(), [&](std::size_t i) {
+      const ShellNodes& shell = shell_at(i);
       return std::all_of(shell.node.begin(), shell.node.end(), on_loop);
     });
+    Vec3 centre = Vec3::Zero();
+    for (const std::size_t i : loop) centre += 0.5 * (edges_[i].a + edges_[i].b) / static_cast<double>(loop.size());
+    return all_on_loop || std::all_of(loop.begin(), loop.end(), [&](std::size_t i) { return lies_towards(i, centre); });
+  }
+  const ShellNodes& shell_at(std::size_t i) const { return model_.shell(model_.adjacency->shells_of(edge(i))[0]); }
+  /// The shell at an edge lies from it in about the direction of a point.
+  bool lies_towards(std::size_t i, const Vec3& to) const {
+    const Vec3 along = edges_[i].b - edges_[i].a;
+    const auto away = [&](const Vec3& p) {
+      const Vec3 from = p - edges_[i].a;
+      return Vec3(from - from.dot(along) / along.squaredNorm() * along);
+    };
+    Vec3 centre = Vec3::Zero();
+    for (const NodeIndex node : shell_at(i).node) centre += 0.25 * point(node);
+    const Vec3 own = away(centre), wanted = away(to);
+    return own.dot(wanted) > 0.5 * own.norm() * wanted.norm();
   }
 
   const Model& model_;
@@ -243,7 +279,7 @@ class FreeEdges {
   std::vector<Entry> edges_;
   std::vector<End> ends_;  ///< by node
   std::vector<std::pair<Place, std::size_t>> places_;
-  double cell_ = 0;
+  double tolerance_ = 0;
 };
 
 void find_free_inside(const Model& model, const std::vector<NodeIndex>& low, const Scope& scope, double tolerance, Structure& found) {
@@ -260,11 +296,12 @@ void find_free_inside(const Model& model, const std::vector<NodeIndex>& low, con
 }
 
 void find_clusters(const Model& model, const Scope& scope, std::size_t allowed, Structure& found) {
-  std::vector<std::uint16_t> triangles(model.node_count());
+  std::vector<std::uint32_t> triangles(model.node_count());
   for (std::size_t s = 0; s < model.shell_count(); ++s) {
     const ShellNodes& shell = model.shell_nodes[s];
     if (!shell.node[0].valid() || !shell.is_triangle() || !scope.has(ShellIndex(s))) continue;
-    for (std::size_t c = 0; c < 3; ++c) ++triangles[shell.node[c].value];
+    for (const NodeIndex corner : corner_set(shell))
+      if (corner.valid()) ++triangles[corner.value];
   }
   for (std::size_t n = 0; n < triangles.size(); ++n) {
     if (triangles[n] > allowed) found.clusters.emplace_back(n);

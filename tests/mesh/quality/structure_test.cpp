@@ -93,6 +93,40 @@ TEST(Structure, a_missing_shell_leaves_free_edges_inside) {
   EXPECT_TRUE(check_structure(test::make_shells(strip(1), {{0, 2, 3, 3}, {0, 3, 1, 1}})).free_inside.empty());
 }
 
+TEST(Structure, the_border_of_a_small_piece_with_a_node_inside_is_no_hole) {
+  for (const double up : {0.0, 0.3}) {  // flat, and a low pyramid
+    const std::vector<Vec3> four = {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {0, 1, 0}, {2, 0.5, up}};
+    EXPECT_TRUE(check_structure(test::make_shells(four, {{0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}})).free_inside.empty());
+    const std::vector<Vec3> three = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, up}};
+    EXPECT_TRUE(check_structure(test::make_shells(three, {{0, 1, 3, 3}, {1, 2, 3, 3}, {2, 0, 3, 3}})).free_inside.empty());
+  }
+  // a ring of quads about a triangle that is missing, its inner border as long as those
+  const std::vector<Vec3> ring = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-2, -1, 0}, {4, -1, 0}, {-2, 4, 0}};
+  EXPECT_EQ(check_structure(test::make_shells(ring, {{0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}})).free_inside.size(), 3u);
+}
+
+TEST(Structure, edges_at_one_place_are_found_whatever_the_length_of_others) {
+  for (const double size : {1e-3, 0.499, 0.5, 0.501, 1.0, 300.0}) {
+    std::vector<Vec3> points = {{0, 0, 0}, {1e9, 0, 0}, {0, 1e9, 0}};
+    const auto quad = [&](double x, double height) {
+      const double y = 10;
+      points.insert(points.end(), {Vec3(x, y, 0), Vec3(x + size, y, 0), Vec3(x + size, y + height, 0), Vec3(x, y + height, 0)});
+    };
+    quad(10, size);
+    quad(10 + size, 1.004 * size);
+    const Model model = test::make_shells(points, {{0, 1, 2, 2}, {3, 4, 5, 6}, {7, 8, 9, 10}});
+    EXPECT_EQ(check_structure(model).unjoined.size(), 2u) << size;
+  }
+}
+
+TEST(Structure, a_long_edge_of_one_part_is_not_joined_by_shells_of_another) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {2, 1, 0}, {3, 0, 0}, {3, 1, 0}, {3, 2, 0}};
+  Model model = test::make_shells(points, {{0, 1, 2, 3}, {1, 5, 6, 4}, {4, 6, 7, 2}});
+  model.parts = std::make_shared<std::vector<Part>>(2);
+  model.shell_parts.set(2, PartIndex(std::size_t{1}));
+  EXPECT_TRUE(check_structure(model).unjoined.empty());
+}
+
 TEST(Structure, triangles_about_a_node) {
   std::vector<Vec3> points = {{0, 0, 0}};
   std::vector<std::array<int, 4>> shells;
