@@ -16,6 +16,7 @@ namespace {
 using Names = std::vector<std::string_view>;
 
 constexpr double kLargestNumber = 1e30;
+constexpr float kMostTriangles = 1e6F;  ///< about a node
 
 /// Where a limit of a file goes.
 struct Target {
@@ -138,7 +139,8 @@ class Reader {
     if (auto done = read_limits(**table, {{"warn_above", &warn}, {"fail_above", &failed}, {"warn_above_at_node", &at_node}}, "triangles");
         !done)
       return done;
-    if (at_node < 0) return error(*(*table)->get("warn_above_at_node"), "triangles: warn_above_at_node must be 0 or more");
+    if (!(at_node >= 0 && at_node <= kMostTriangles))
+      return error(*(*table)->get("warn_above_at_node"), "triangles: warn_above_at_node must be from 0 to 1000000");
     if (const toml::node* given = (*table)->get("warn_above"); given != nullptr && warn > failed)
       return error(*given, "triangles: warn_above lies beyond fail_above: a part would fail before it warns");
     criteria_.warn_triangles_percent = warn;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/quality/limits.h"
+
 namespace prismesh::mesh::quality {
 
 namespace {
@@ -58,6 +60,16 @@ ShapeLimits shape_limits(const std::array<Threshold, kMetricCount>& thresholds, 
   return shape;
 }
 
+/// The least min_length: of a wanted time step, where there is one and the material is known, else a fraction of the target size; no less
+/// than the multiple of the thickness.
+float least_length(float fraction, float step, float thicknesses, const Sheet& sheet) {
+  const float length = step > 0 && sheet.wave_speed > 0 ? std::min(step * sheet.wave_speed, kMost) : fraction;
+  return thicknesses > 0 && sheet.thickness > 0 ? std::max(length, std::min(thicknesses * sheet.thickness, kMost)) : length;
+}
+
+/// For a wave speed of 1; the deck takes only a share of what the length gives.
+float length_of_step(double time_step, const Criteria& criteria) { return static_cast<float>(time_step / criteria.time_step_scale); }
+
 /// Bit `metric` of each lane that lies outside.
 void mark_outside(const float* value, std::size_t lanes, float lowest, float highest, int metric, std::uint16_t* bits) {
   for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -91,21 +103,28 @@ Limits limits_for(const Criteria& criteria, double target_size) {
   limits.triangle = shape_limits(criteria.triangle, true, target_size);
   limits.warn_thicknesses = criteria.warn_min_length_thicknesses;
   limits.fail_thicknesses = criteria.fail_min_length_thicknesses;
-  limits.warn_step = static_cast<float>(criteria.warn_time_step / criteria.time_step_scale);
-  limits.fail_step = static_cast<float>(criteria.fail_time_step / criteria.time_step_scale);
+  limits.warn_step = length_of_step(criteria.warn_time_step, criteria);
+  limits.fail_step = length_of_step(criteria.fail_time_step, criteria);
+  return limits;
+}
+
+Threshold limits_of(const Criteria& criteria, Metric metric, bool of_triangle, double target_size, const Sheet& sheet) {
+  const int m = int(metric);
+  const Threshold& given = (of_triangle ? criteria.triangle : criteria.quad)[static_cast<std::size_t>(m)];
+  if (!is_length(m)) return given;
+  Threshold limits = scaled(given, target_size);
+  if (m != kMinLength) return limits;
+  const float warn_step = length_of_step(criteria.warn_time_step, criteria), fail_step = length_of_step(criteria.fail_time_step, criteria);
+  limits.warn_low = least_length(limits.warn_low, warn_step, criteria.warn_min_length_thicknesses, sheet);
+  limits.fail_low = least_length(limits.fail_low, fail_step, criteria.fail_min_length_thicknesses, sheet);
   return limits;
 }
 
 void least_lengths(const ShapeLimits& shape, const Limits& limits, const Sheet* sheets, std::size_t count, float* warn, float* fail) {
   const Threshold& t = shape.threshold[kMinLength];
   for (std::size_t lane = 0; lane < count; ++lane) {
-    const Sheet& sheet = sheets[lane];
-    const auto least = [&](float fraction, float step, float thicknesses) {
-      const float length = step > 0 && sheet.wave_speed > 0 ? std::min(step * sheet.wave_speed, kMost) : fraction;
-      return thicknesses > 0 && sheet.thickness > 0 ? std::max(length, std::min(thicknesses * sheet.thickness, kMost)) : length;
-    };
-    warn[lane] = least(t.warn_low, limits.warn_step, limits.warn_thicknesses);
-    fail[lane] = least(t.fail_low, limits.fail_step, limits.fail_thicknesses);
+    warn[lane] = least_length(t.warn_low, limits.warn_step, limits.warn_thicknesses, sheets[lane]);
+    fail[lane] = least_length(t.fail_low, limits.fail_step, limits.fail_thicknesses, sheets[lane]);
   }
 }
 

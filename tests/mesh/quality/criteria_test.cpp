@@ -1,9 +1,12 @@
 #include "mesh/quality/criteria.h"
 
+#include <cmath>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "mesh/quality/limits.h"
 
 namespace prismesh::mesh::quality {
 namespace {
@@ -127,6 +130,33 @@ TEST(Criteria, a_wanted_time_step_sets_the_least_length_by_the_material) {
   EXPECT_EQ(grade(6.04f, Sheet(0, steel)), Grade::warn);
 }
 
+TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
+  const Criteria criteria = parsed(
+      "[metrics.min_length]\nwarn_below = 0.4\nfail_below = 0.2\nfail_below_thicknesses = 1.1\n[metrics.max_length]\nfail_above = 2\n"
+      "[metrics.skew.quad]\nwarn_above = 34\n[metrics.skew.triangle]\nfail_above = 60\n[time_step]\nwanted = 0.5\nwarn_below = 0.7");
+  for (const Sheet& sheet : {Sheet(), Sheet(1.0), Sheet(3.0), Sheet(0, 1.5), Sheet(0, 9.0), Sheet(7.0, 9.0)})
+    for (const bool of_triangle : {false, true})
+      for (const Metric metric : {Metric::min_length, Metric::max_length, Metric::skew, Metric::aspect}) {
+        const Threshold limits = limits_of(criteria, metric, of_triangle, 10, sheet);
+        const auto judged = [&](float value) {
+          Values values = of_triangle ? good_triangle() : good_quad();
+          values[int(metric)] = value;
+          const ShellState state = judge(values, criteria, 10, sheet);
+          return std::pair((state.warn >> int(metric) & 1) != 0, (state.fail >> int(metric) & 1) != 0);
+        };
+        for (const float limit : {limits.warn_low, limits.warn_high, limits.fail_low, limits.fail_high}) {
+          if (!std::isfinite(limit)) continue;
+          for (const float value : {std::nextafter(limit, -1e9F), limit, std::nextafter(limit, 1e9F)}) {
+            const bool fails = value < limits.fail_low || value > limits.fail_high;
+            EXPECT_EQ(judged(value), std::pair(fails || value < limits.warn_low || value > limits.warn_high, fails))
+                << name(metric) << ' ' << value << " of " << sheet.thickness << ' ' << sheet.wave_speed;
+          }
+        }
+      }
+  EXPECT_NEAR(limits_of(criteria, Metric::min_length, false, 10, Sheet(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
+  EXPECT_NEAR(limits_of(criteria, Metric::min_length, false, 10, Sheet(7.0, 9.0)).fail_low, 7.7, 1e-5);
+}
+
 TEST(Criteria, of_our_own_are_known_by_name) {
   EXPECT_EQ(load_criteria("default")->name, "default");
   const Criteria strict = load_criteria("strict").value();
@@ -153,6 +183,8 @@ TEST(Criteria, mistakes_are_named_with_their_line) {
   EXPECT_EQ(refused("[triangles]\nwarn_above = 9\nfail_above = 8").line, 2);
   EXPECT_EQ(parsed("[triangles]\nfail_above = 8").fail_triangles_percent, 8);
   EXPECT_EQ(refused("[triangles]\nwarn_above_at_node = -1").line, 2);
+  EXPECT_EQ(refused("[triangles]\nwarn_above_at_node = 1e30").text(),
+            "mine.toml:2: triangles: warn_above_at_node must be from 0 to 1000000");
   EXPECT_EQ(refused("[metrics.warpag]\nwarn_above = 3").text(),
             "mine.toml:1: the list of metrics has no \"warpag\"; the nearest known is \"warpage\"");
   EXPECT_EQ(refused("\n[metrics.warpage]\nwarn_abov = 3").text(),
