@@ -16,32 +16,34 @@ struct Others {
 };
 Others others_at(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b) {
   Others others;
-  for (const ShellIndex candidate : model.adjacency->shells_of(a)) {
-    if (candidate == shell) continue;
-    const ShellNodes& nodes = model.shell(candidate);
-    const int corners = nodes.corners();
-    for (int i = 0; i < corners; ++i) {
-      const NodeIndex from = nodes.node[i], to = nodes.node[(i + 1) % corners];
-      if ((from == a && to == b) || (from == b && to == a)) {
-        ++others.count;
-        others.shell = candidate;
-        break;
-      }
+  for (const ShellIndex candidate : model.adjacency->shells_of(a))
+    if (candidate != shell && has_edge(model.shell(candidate), a, b)) {
+      ++others.count;
+      others.shell = candidate;
     }
-  }
   return others;
 }
 
-Edge edge_of(NodeIndex a, NodeIndex b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+/// Whether the two shells at an edge make a crease; the lower shell first: the same rounding from either side.
+bool bends(const Model& model, ShellIndex one, ShellIndex other, NodeIndex a, NodeIndex b, double cos_limit) {
+  const Edge edge = a < b ? Edge{a, b} : Edge{b, a};
+  return is_crease(model, std::min(one, other), std::max(one, other), edge, cos_limit);
+}
 
 }  // namespace
 
+bool has_edge(const ShellNodes& shell, NodeIndex a, NodeIndex b) {
+  const int corners = shell.corners();
+  for (int i = 0; i < corners; ++i) {
+    const NodeIndex from = shell.node[i], to = shell.node[next_corner(i, corners)];
+    if ((from == a && to == b) || (from == b && to == a)) return true;
+  }
+  return false;
+}
+
 ShellIndex across(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b, double cos_limit) {
   const Others others = others_at(model, shell, a, b);
-  if (others.count != 1) return {};
-  // the lower shell first: the same rounding from either side
-  const ShellIndex low = std::min(shell, others.shell), high = std::max(shell, others.shell);
-  return is_crease(model, low, high, edge_of(a, b), cos_limit) ? ShellIndex() : others.shell;
+  return others.count == 1 && !bends(model, shell, others.shell, a, b, cos_limit) ? others.shell : ShellIndex();
 }
 
 LineEnds line_ends(const Model& model, NodeIndex node, double cos_limit, bool part_borders) {
@@ -58,10 +60,13 @@ LineEnds line_ends(const Model& model, NodeIndex node, double cos_limit, bool pa
     const ShellNodes& nodes = model.shell(shell);
     const int corners = nodes.corners();
     for (int i = 0; i < corners; ++i) {
-      const NodeIndex a = nodes.node[i], b = nodes.node[(i + 1) % corners];
+      const NodeIndex a = nodes.node[i], b = nodes.node[next_corner(i, corners)];
       if ((a != node && b != node) || a == b) continue;
-      const ShellIndex beyond = across(model, shell, a, b, cos_limit);
-      if (!beyond.valid() || (part_borders && model.shell_parts[beyond.value] != model.shell_parts[shell.value])) add(a == node ? b : a);
+      const Others others = others_at(model, shell, node, a == node ? b : a);
+      if (others.count == 1 && others.shell < shell) continue;  // asked from the other side already
+      if (others.count != 1 || (part_borders && model.shell_parts[others.shell.value] != model.shell_parts[shell.value]) ||
+          bends(model, shell, others.shell, a, b, cos_limit))
+        add(a == node ? b : a);
     }
   }
   return ends;

@@ -9,6 +9,12 @@
 
 namespace prismesh::mesh::relax {
 
+/// Around a shell's corners.
+inline int next_corner(int corner, int corners) { return corner + 1 < corners ? corner + 1 : 0; }
+inline int previous_corner(int corner, int corners) { return corner > 0 ? corner - 1 : corners - 1; }
+
+bool has_edge(const ShellNodes& shell, NodeIndex a, NodeIndex b);
+
 /// The other shell at the edge between two corners of `shell`, where exactly one is there and the two make no crease: where one sheet goes
 /// on smoothly. Invalid otherwise.
 ShellIndex across(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b, double cos_limit);

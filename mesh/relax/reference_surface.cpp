@@ -149,7 +149,8 @@ std::pair<ShellIndex, OnFacet> ReferenceSurface::State::walk(ShellIndex from, co
     const std::array<double, 4> share = best.share;
     for (int i = 0; i < corners; ++i) {
       // all of the place's share is on this side's two ends
-      if (share[i] + share[(i + 1) % corners] >= 1 - 1e-12) look(sheets.beyond(at, nodes.node[i], nodes.node[(i + 1) % corners]));
+      if (share[i] + share[next_corner(i, corners)] >= 1 - 1e-12)
+        look(sheets.beyond(at, nodes.node[i], nodes.node[next_corner(i, corners)]));
       if (share[i] >= 1 - 1e-12 && sheets.is_smooth(nodes.node[i]))
         for (const ShellIndex next : model.adjacency->shells_of(nodes.node[i])) look(next);
     }
@@ -233,8 +234,8 @@ std::optional<OnLine> ReferenceSurface::find_line(const Vec3& point, double radi
     const ShellNodes& nodes = model.shell(near.shell);
     const int corners = nodes.corners();
     for (int i = 0; i < corners; ++i) {
-      const NodeIndex a = std::min(nodes.node[i], nodes.node[(i + 1) % corners]),
-                      b = std::max(nodes.node[i], nodes.node[(i + 1) % corners]);
+      const NodeIndex a = std::min(nodes.node[i], nodes.node[next_corner(i, corners)]),
+                      b = std::max(nodes.node[i], nodes.node[next_corner(i, corners)]);
       if (a == b) continue;
       const ShellIndex beyond = across(model, near.shell, a, b, state_->cos_limit);
       if (beyond.valid() && model.shell_parts[beyond.value] == model.shell_parts[near.shell.value]) continue;

@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::size_t kEnoughNodes = 8;  ///< about a node for a fit; at ends of sheets one looks farther for them
 constexpr int kMostRings = 4;
+constexpr std::size_t kUsualNodes = 32;  ///< about a node of a mesh of quads and triangles, and shells
+constexpr std::size_t kUsualShells = 24;
 constexpr std::uint8_t kSmooth = 1;
 constexpr std::uint8_t kKinked = 2;
 
@@ -48,8 +50,8 @@ std::vector<ShellIndex> shells_about(const Model& model, const Sheets& sheets, S
   for (std::size_t i = 0; i < found.size(); ++i) {
     const ShellNodes& nodes = model.shell(found[i]);
     const int corners = nodes.corners(), at = corner_of(nodes, node);
-    for (const int side : {at, (at + corners - 1) % corners}) {
-      const ShellIndex next = sheets.beyond(found[i], nodes.node[side], nodes.node[(side + 1) % corners]);
+    for (const int side : {at, previous_corner(at, corners)}) {
+      const ShellIndex next = sheets.beyond(found[i], nodes.node[side], nodes.node[next_corner(side, corners)]);
       if (next.valid() && !contains(found, next)) found.push_back(next);
     }
   }
@@ -64,7 +66,7 @@ void add_ring(const Model& model, const Sheets& sheets, std::size_t begin, std::
     const ShellNodes& nodes = model.shell(shells[s]);
     const int corners = nodes.corners();
     for (int i = 0; i < corners; ++i) {
-      const ShellIndex next = sheets.beyond(shells[s], nodes.node[i], nodes.node[(i + 1) % corners]);
+      const ShellIndex next = sheets.beyond(shells[s], nodes.node[i], nodes.node[next_corner(i, corners)]);
       if (next.valid() && !contains(shells, next)) shells.push_back(next);
     }
   }
@@ -90,6 +92,8 @@ Vec3 normal_about(const Model& model, const std::vector<ShellIndex>& shells) {
 LocalFit fit_sheet(const Model& model, const Sheets& sheets, NodeIndex node, std::vector<ShellIndex> shells) {
   const Vec3 normal = normal_about(model, shells);
   std::vector<NodeIndex> nodes;
+  nodes.reserve(kUsualNodes);
+  shells.reserve(kUsualShells);
   add_nodes(model, shells, 0, node, nodes);
   const std::size_t ring = nodes.size();
   std::size_t begin = 0;
@@ -131,11 +135,7 @@ ShellIndex Sheets::beyond(ShellIndex shell, NodeIndex a, NodeIndex b) const {
   if (a == b) return {};
   if (!is_smooth(a) && !is_smooth(b)) return across(model_, shell, a, b, cos_limit_);
   for (const ShellIndex other : model_.adjacency->shells_of(a))
-    if (other != shell && corner_of(model_.shell(other), b) >= 0) {
-      const ShellNodes& nodes = model_.shell(other);
-      const int corners = nodes.corners(), i = corner_of(nodes, a), j = corner_of(nodes, b);
-      if ((i + 1) % corners == j || (j + 1) % corners == i) return other;
-    }
+    if (other != shell && has_edge(model_.shell(other), a, b)) return other;
   return {};
 }
 
@@ -169,7 +169,7 @@ double mean_edge(const Model& model, NodeIndex node) {
     const ShellNodes& nodes = model.shell(shell);
     const int corners = nodes.corners();
     for (int i = 0; i < corners; ++i) {
-      const double length = (model.position(nodes.node[(i + 1) % corners]) - model.position(nodes.node[i])).norm();
+      const double length = (model.position(nodes.node[next_corner(i, corners)]) - model.position(nodes.node[i])).norm();
       if (!(length > 0 && std::isfinite(length))) continue;
       sum += length;
       ++count;
