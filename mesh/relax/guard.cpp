@@ -6,12 +6,14 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
+#include "mesh/relax/stretches.h"
 
 namespace prismesh::mesh::relax {
 
 namespace {
 
 constexpr std::size_t kShellsAtOnce = 1024;
+constexpr std::size_t kNodesAtOnce = 256;
 constexpr int kHalvings = 3;  ///< then a node goes back to where it was when its shells were last looked at, and then to its start
 
 bool is_triangle(const std::array<std::int32_t, 4>& corners) { return corners[3] == corners[2]; }
@@ -25,6 +27,14 @@ Vec3 normal_of(const std::array<std::int32_t, 4>& corners, const PlaceOf& place_
 
 auto in(const std::vector<Vec3>& places) {
   return [&places](std::uint32_t node) -> const Vec3& { return places[node]; };
+}
+
+/// Of its way since its shells were last looked at: what a node keeps that has been taken back so many times.
+double share_after(int times) { return times > kHalvings ? 0 : 1.0 / static_cast<double>(1 << times); }
+
+void sort_unique(std::vector<std::uint32_t>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
 }  // namespace
@@ -112,19 +122,26 @@ std::vector<std::uint8_t> Guard::find_bad(std::span<const std::uint32_t> shells,
   return bad;
 }
 
-Guard::Held Guard::hold_back(const ReferenceSurface& surface, const std::vector<Vec3>& good, std::vector<Vec3>& places,
-                             std::vector<Footing>& footing) const {
-  Held held;
+std::vector<std::uint32_t> Guard::shells_off(const std::vector<Vec3>& good, const std::vector<Vec3>& places) const {
   std::vector<std::uint32_t> shells;
   for (std::uint32_t s = 0; s < net_.corners.size(); ++s)
     if (std::any_of(net_.corners[s].begin(), net_.corners[s].end(),
                     [&](std::int32_t n) { return places[static_cast<std::size_t>(n)] != good[static_cast<std::size_t>(n)]; }))
       shells.push_back(s);
+  return shells;
+}
+
+std::optional<Guard::Held> Guard::hold_back(const std::vector<Vec3>& good, std::vector<Vec3>& places,
+                                            const std::function<void(std::uint32_t, const Vec3&)>& land,
+                                            const std::function<bool()>& goes_on) const {
+  Held held;
+  std::vector<std::uint32_t> shells = shells_off(good, places), back;
   std::vector<Vec3> wanted;
   std::vector<std::uint8_t> times(net_.movable, 0), is_listed(net_.movable, 0);
   while (!shells.empty()) {
+    if (!goes_on()) return std::nullopt;
     const std::vector<std::uint8_t> bad = find_bad(shells, places);
-    std::vector<std::uint32_t> back;
+    back.clear();
     for (std::size_t i = 0; i < shells.size(); ++i) {
       if (bad[i] == 0) continue;
       held.shells.push_back(shells[i]);
@@ -136,25 +153,23 @@ Guard::Held Guard::hold_back(const ReferenceSurface& surface, const std::vector<
         }
     }
     if (wanted.empty() && !back.empty()) wanted = places;
-    parallel_for(back.size(), kShellsAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t n = back[i];
-        const double share = times[n] > kHalvings ? 0 : 1.0 / static_cast<double>(1 << times[n]);
-        const Vec3& from = times[n] > kHalvings + 1 ? net_.start[n] : good[n];
-        places[n] = put_back(surface, from + share * (wanted[n] - good[n]), footing[n]);
-        if (times[n] > kHalvings + 1) places[n] = net_.start[n];
-      }
-    });
+    const auto take_back = [&](std::uint32_t n) {
+      const bool to_start = times[n] > kHalvings + 1;
+      land(n, to_start ? net_.start[n] : good[n] + share_after(times[n]) * (wanted[n] - good[n]));
+      if (to_start) places[n] = net_.start[n];  // to the bit
+    };
+    const auto take_some_back = [&](std::size_t begin, std::size_t end) { std::for_each(&back[begin], &back[0] + end, take_back); };
+    if (!parallel_in_stretches(
+            back.size(), kNodesAtOnce, [&](double) { return goes_on(); }, take_some_back))
+      return std::nullopt;
     shells.clear();
     for (const std::uint32_t n : back) {
       is_listed[n] = 0;
       shells.insert(shells.end(), shells_of(n).begin(), shells_of(n).end());
     }
-    std::sort(shells.begin(), shells.end());
-    shells.erase(std::unique(shells.begin(), shells.end()), shells.end());
+    sort_unique(shells);
   }
-  std::sort(held.shells.begin(), held.shells.end());
-  held.shells.erase(std::unique(held.shells.begin(), held.shells.end()), held.shells.end());
+  sort_unique(held.shells);
   for (std::uint32_t n = 0; n < net_.movable; ++n)
     if (times[n] > 0) held.nodes.push_back(n);
   return held;

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,9 +27,11 @@ class Guard {
     std::vector<std::uint32_t> nodes;   ///< that were taken back, ascending
   };
   /// Takes nodes of shells that became too bad back to where they were at `good`, by halves and then altogether, or to their start, until
-  /// no shell is. Looks at shells with a node that isn't where it was at `good`. The nodes that it takes back are on the surface then.
-  Held hold_back(const ReferenceSurface& surface, const std::vector<Vec3>& good, std::vector<Vec3>& places,
-                 std::vector<Footing>& footing) const;
+  /// no shell is. Looks at shells with a node that isn't where it was at `good`. `land(node, point)` puts one as near to a point as it may
+  /// be, on the surface; by any thread. Nothing if `goes_on` says no, with nodes anywhere.
+  std::optional<Held> hold_back(const std::vector<Vec3>& good, std::vector<Vec3>& places,
+                                const std::function<void(std::uint32_t node, const Vec3& point)>& land,
+                                const std::function<bool()>& goes_on) const;
 
   std::span<const std::uint32_t> shells_of(std::uint32_t node) const {
     return std::span(shells_).subspan(first_shell_[node], first_shell_[node + 1] - first_shell_[node]);
@@ -45,6 +49,7 @@ class Guard {
   bool is_bad(std::uint32_t shell, const Verdict& verdict, const PlaceOf& place_of) const;
   void find_shells_of_nodes();
   std::vector<std::uint8_t> find_bad(std::span<const std::uint32_t> shells, const std::vector<Vec3>& places) const;
+  std::vector<std::uint32_t> shells_off(const std::vector<Vec3>& good, const std::vector<Vec3>& places) const;
 
   const Net& net_;
   quality::Limits limits_;

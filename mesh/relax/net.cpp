@@ -3,20 +3,24 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "base/deterministic_math.h"
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
+#include "mesh/relax/feature_lines.h"
 #include "mesh/relax/sheets.h"
+#include "mesh/relax/stretches.h"
 
 namespace prismesh::mesh::relax {
 
 namespace {
 
+constexpr std::size_t kFootingsAtOnce = 128;
 constexpr std::size_t kNodesAtOnce = 1024;
-constexpr std::size_t kNodesAPause = 65536;  ///< then whoever watches is told
-constexpr int kSmoothings = 10;              ///< of the sizes: how many elements away what is longer lends its length
+constexpr double kShareOfFootings = 0.8;  ///< of the progress
+constexpr int kSmoothings = 10;           ///< of the sizes: how many elements away what is longer lends its length
 constexpr double kSqrt2 = 1.4142135623730951;
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
 
@@ -51,18 +55,19 @@ void springs_in(const ShellNodes& shell, NodeIndex node, const Add& add) {
   const int corners = shell.corners();
   for (int i = 0; i < corners; ++i) {
     if (shell.node[i] != node) continue;
-    add(shell.node[(i + 1) % corners], false);
-    add(shell.node[(i + corners - 1) % corners], false);
+    add(shell.node[next_corner(i, corners)], false);
+    add(shell.node[previous_corner(i, corners)], false);
     if (corners == 4) add(shell.node[(i + 2) % 4], true);
     return;
   }
 }
 
-/// Springs of each movable node; `rest` is 1 for edges and the root of 2 for diagonals until sizes are known.
-void add_springs(const Model& model, const Numbers& numbers, Net& net) {
+/// Springs of each movable node; `rest` is 1 for edges and the root of 2 for diagonals until sizes are known. Returns whether it was let.
+bool add_springs(const Model& model, const Numbers& numbers, const std::function<bool()>& goes_on, Net& net) {
   net.first_spring.assign(1, 0);
   std::vector<Spring> own;
   for (std::size_t i = 0; i < net.movable; ++i) {
+    if (i % kStretch == kStretch - 1 && !goes_on()) return false;
     own.clear();
     for (const ShellIndex shell : model.adjacency->shells_of(net.nodes[i]))
       springs_in(model.shell(shell), net.nodes[i], [&](NodeIndex other, bool is_diagonal) {
@@ -78,6 +83,7 @@ void add_springs(const Model& model, const Numbers& numbers, Net& net) {
     net.springs.insert(net.springs.end(), own.begin(), own.end());
     net.first_spring.push_back(static_cast<std::uint32_t>(net.springs.size()));
   }
+  return true;
 }
 
 /// One more averaging of each movable node's size with its neighbours'.
@@ -105,13 +111,16 @@ double length_share(const Net& net) {
 
 /// Sizes that change slowly from node to node, so that what was stretched in one place shares it with its surroundings. They are the
 /// reference's at the node's place, not the mesh's own: relaxing again finds nearly the same, and a mesh that is finer in places stays so.
-void set_lengths(const Model& model, Net& net) {
+bool set_lengths(const Model& model, const std::function<bool()>& goes_on, Net& net) {
   net.size.resize(net.nodes.size());
   parallel_for(net.nodes.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) net.size[i] = i < net.movable ? net.footing[i].size : mean_edge(model, net.nodes[i]);
   });
   std::vector<double> next = net.size;
-  for (int round = 0; round < kSmoothings; ++round) smooth_once(net, next);
+  for (int round = 0; round < kSmoothings; ++round) {
+    if (!goes_on()) return false;
+    smooth_once(net, next);
+  }
   for (std::size_t i = 0; i < net.movable; ++i)
     for (std::uint32_t s = net.first_spring[i]; s < net.first_spring[i + 1]; ++s)
       net.springs[s].rest *= static_cast<float>(0.5 * (net.size[i] + net.size[net.springs[s].to]));
@@ -119,6 +128,7 @@ void set_lengths(const Model& model, Net& net) {
   const double share = length_share(net);
   for (Spring& spring : net.springs) spring.rest *= static_cast<float>(share);
   for (double& size : net.size) size *= share;
+  return true;
 }
 
 void colour(Net& net) {
@@ -144,12 +154,15 @@ Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const 
                      const Progress& progress) {
   const double feature_cos = deterministic_cos_degrees(feature_angle);
   std::vector<Footing> footings(movable.size());
-  for (std::size_t first = 0; first < movable.size(); first += kNodesAPause) {
-    parallel_for(std::min(kNodesAPause, movable.size() - first), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = first + begin; i < first + end; ++i) footings[i] = find_footing(model, surface, movable[i], feature_cos);
-    });
-    if (progress && !progress(static_cast<double>(first) / static_cast<double>(movable.size()))) return fail(cancelled());
-  }
+  const auto find_some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) footings[i] = find_footing(model, surface, movable[i], feature_cos);
+  };
+  const auto tell = [&](double fraction) { return !progress || progress(fraction); };
+  if (!parallel_in_stretches(
+          movable.size(), kFootingsAtOnce, [&](double done) { return tell(kShareOfFootings * done); }, find_some))
+    return fail(cancelled());
+  const auto goes_on = [&] { return tell(kShareOfFootings); };
+  if (!goes_on()) return fail(cancelled());
   Net net;
   Numbers numbers(model);
   for (std::size_t i = 0; i < movable.size(); ++i)
@@ -161,8 +174,7 @@ Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const 
   add_shells(model, numbers, net);
   net.start.reserve(net.nodes.size());
   for (const NodeIndex node : net.nodes) net.start.push_back(model.position(node));
-  add_springs(model, numbers, net);
-  set_lengths(model, net);
+  if (!goes_on() || !add_springs(model, numbers, goes_on, net) || !set_lengths(model, goes_on, net)) return fail(cancelled());
   colour(net);
   return net;
 }

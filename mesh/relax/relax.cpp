@@ -1,7 +1,8 @@
 #include "mesh/relax/relax.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "mesh/model/adjacency.h"
 #include "mesh/relax/guard.h"
@@ -13,9 +14,10 @@ namespace prismesh::mesh::relax {
 namespace {
 
 constexpr double kShareOfNet = 0.25;  ///< of the progress, for finding out what is where
-constexpr double kShareOfSettling = 0.65;
-constexpr int kFirstRings = 6;       ///< about the node a hierarchical relaxation begins with
-constexpr double kLeastMove = 1e-9;  ///< of the size: less is rounding, and the node stays as it is to the bit
+constexpr double kShareOfSettling = 0.7;
+constexpr double kShareOfBlocks = 0.95;  ///< for a hierarchical relaxation in all blocks but the last
+constexpr int kFirstRings = 6;           ///< about the node a hierarchical relaxation begins with
+constexpr double kLeastMove = 1e-9;      ///< of the size: less is rounding, and the node stays as it is to the bit
 
 bool goes_on(const Progress& progress, double fraction) { return !progress || progress(fraction); }
 
@@ -39,10 +41,11 @@ Relaxed gather(const Net& net, const Settling& settling, const Settled& settled)
 class Watch {
  public:
   explicit Watch(const Progress& progress) : progress_(progress) {}
-  bool operator()(double at_rest) {
+  bool round_done(double at_rest) {
     done_ = std::max(done_ + 0.02 * (1 - done_), at_rest);
-    return goes_on(progress_, kShareOfNet + kShareOfSettling * std::min(done_, 1.0));
+    return still_goes_on();
   }
+  bool still_goes_on() const { return goes_on(progress_, kShareOfNet + kShareOfSettling * std::min(done_, 1.0)); }
 
  private:
   const Progress& progress_;
@@ -63,9 +66,10 @@ Result<Relaxed> settle(const Model& model, const ReferenceSurface& surface, cons
   const Guard guard(model, net, judge);
   Settling settling(net, surface, guard, options);
   Watch watch(progress);
-  const Settled settled = settling.run(spreading, [&](double at_rest) { return watch(at_rest); });
-  if (settled.was_stopped || !goes_on(progress, kShareOfNet + kShareOfSettling)) return fail(cancelled());
-  if (!goes_on(progress, 1)) return fail(cancelled());
+  if (!watch.still_goes_on()) return fail(cancelled());
+  const Settled settled =
+      settling.run(spreading, {[&](double at_rest) { return watch.round_done(at_rest); }, [&] { return watch.still_goes_on(); }});
+  if (settled.was_stopped || !goes_on(progress, 1)) return fail(cancelled());
   return gather(net, settling, settled);
 }
 
@@ -75,22 +79,22 @@ struct Block {
   NodeSet rim;
 };
 Block block_about(const Model& model, NodeIndex at, int rings, const NodeSet& movable) {
-  Block block;
+  std::vector<std::uint8_t> is_known(model.node_count(), 0);
+  is_known[at.value] = 1;
   NodeSet reached{at}, front{at};
   for (int ring = 0; ring < rings && !front.empty(); ++ring) {
     NodeSet next;
     for (const NodeIndex node : front)
       for (const ShellIndex shell : model.adjacency->shells_of(node))
         for (const NodeIndex other : model.shell(shell).node)
-          if (!std::binary_search(reached.begin(), reached.end(), other) && std::binary_search(movable.begin(), movable.end(), other))
+          if (std::exchange(is_known[other.value], std::uint8_t{1}) == 0 && std::binary_search(movable.begin(), movable.end(), other))
             next.push_back(other);
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
-    NodeSet merged;
-    std::set_union(reached.begin(), reached.end(), next.begin(), next.end(), std::back_inserter(merged));
-    reached = std::move(merged);
+    reached.insert(reached.end(), next.begin(), next.end());
     front = std::move(next);
   }
+  std::sort(reached.begin(), reached.end());
+  std::sort(front.begin(), front.end());
+  Block block;
   block.rim = std::move(front);
   std::set_intersection(reached.begin(), reached.end(), movable.begin(), movable.end(), std::back_inserter(block.nodes));
   return block;
@@ -126,8 +130,8 @@ Result<Relaxed> relax(const Model& model, const ReferenceSurface& surface, const
 Result<Relaxed> relax_from(const Model& model, const ReferenceSurface& surface, NodeIndex at, double threshold, const NodeSet& movable,
                            const Judge& judge, const Options& options, const Progress& progress) {
   if (!goes_on(progress, 0)) return fail(cancelled());
-  double furthest = 0;  // beginning again in a wider block isn't less done
-  const Progress forward = [&](double fraction) { return goes_on(progress, furthest = std::max(furthest, fraction)); };
+  double furthest = 0;  // beginning again in a wider block isn't less done, and the end of one isn't the end
+  const Progress forward = [&](double fraction) { return goes_on(progress, furthest = std::max(furthest, kShareOfBlocks * fraction)); };
   // In a block about the node; where it turns out too small, again in one twice as wide.
   for (int rings = kFirstRings;; rings *= 2) {
     const Block block = block_about(model, at, rings, movable);
@@ -135,7 +139,10 @@ Result<Relaxed> relax_from(const Model& model, const ReferenceSurface& surface, 
     if (!net) return fail(net.error());
     Spreading spreading{threshold, allowed_at_first(model, *net, at)};
     Result<Relaxed> relaxed = settle(model, surface, *net, judge, options, forward, &spreading);
-    if (!relaxed || block.rim.empty() || !reaches_rim(*net, spreading, block.rim)) return relaxed;
+    if (!relaxed) return relaxed;
+    if (!block.rim.empty() && reaches_rim(*net, spreading, block.rim)) continue;
+    if (!goes_on(progress, 1)) return fail(cancelled());
+    return relaxed;
   }
 }
 

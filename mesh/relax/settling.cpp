@@ -6,23 +6,23 @@
 
 #include <Eigen/Geometry>
 
-#include "base/parallel_for.h"
+#include "mesh/relax/stretches.h"
 
 namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr std::size_t kNodesAtOnce = 256;
+constexpr std::size_t kNodesAtOnce = 512;
 constexpr double kAtRest = 2e-3;       ///< of the size: a node that moves less in a round is at rest
 constexpr double kMostStep = 0.25;     ///< of the size, in a round
 constexpr double kMostDrift = 0.2;     ///< of the size: then a node is put back on the surface
 constexpr float kMostGain = 1.5F;      ///< steps go so far beyond the balance, which the neighbours follow
+constexpr float kLeastGain = 0.02F;    ///< and so far towards it where they turned back again and again
 constexpr int kRecoveringRounds = 50;  ///< until then a node that turned back gathers pace again
 constexpr double kSwing = 0.25;        ///< of the last step: going back farther is swinging, not settling
 constexpr double kMostInVain = 0.5;    ///< of its way, that being put back on the surface undoes: more, and the node leads nowhere
 constexpr int kFirstCheck = 12;        ///< rounds until the guard looks first
 constexpr int kChecksApart = 3;        ///< times as many rounds before each next time
-constexpr float kLeastGain = 0.02F;    ///< and so far towards it where they turned back again and again
 
 /// Force along the directions a node may take, and how it grows with displacement there: 2x2, symmetric.
 struct Pull {
@@ -164,75 +164,97 @@ void Settling::go(std::size_t node, const Vec3& move) {
   if ((at[node] - drifted).norm() > kMostInVain * drift) careful_[node] = 1;
 }
 
-void Settling::land_all() {
-  parallel_for(net_.movable, kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+bool Settling::land_all(const Watcher& watcher) {
+  const auto land_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       if (drift_[i] > 0) land(i);
-  });
+  };
+  return parallel_in_stretches(
+      net_.movable, kNodesAtOnce, [&](double) { return watcher.goes_on(); }, land_some);
 }
 
-/// Whether the shells are as they may be. Where they weren't, their nodes have been taken back, and go on with care.
-bool Settling::check(bool at_rest) {
-  if (at_rest) land_all();
-  const Guard::Held back = guard_.hold_back(surface_, good_, at, footing);
-  for (const std::uint32_t node : back.nodes) {
+/// Whether there are shells that aren't as they may be. Their nodes have been taken back then, and go on with care.
+Settling::Found Settling::check(bool at_rest, const Watcher& watcher) {
+  if (at_rest && !land_all(watcher)) return Found::told_to_stop;
+  const auto land_at = [this](std::uint32_t node, const Vec3& point) {
+    at[node] = point;
+    land(node);
+  };
+  const std::optional<Guard::Held> back = guard_.hold_back(good_, at, land_at, watcher.goes_on);
+  if (!back) return Found::told_to_stop;
+  for (const std::uint32_t node : back->nodes) {
     held[node] = 1;
-    drift_[node] = 0;
     last_[node] = Vec3::Zero();
   }
-  for (const std::uint32_t shell : back.shells)
+  for (const std::uint32_t shell : back->shells)
     for (const std::int32_t corner : net_.corners[shell])
       if (const auto node = static_cast<std::uint32_t>(corner); node < net_.movable) careful_[node] = awake_[node] = 1;
-  for (const std::uint32_t node : back.nodes)
+  for (const std::uint32_t node : back->nodes)
     for (const Spring& spring : net_.springs_of(node))
       if (spring.to < net_.movable) awake_[spring.to] = 1;
   good_ = at;
-  return back.shells.empty();
+  return back->shells.empty() ? Found::nothing : Found::bad_shells;
 }
 
-Settled Settling::run(Spreading* spreading, const std::function<bool(double at_rest)>& watch) {
+/// Lets a node step that is awake and may move. Returns whether it was.
+bool Settling::visit(std::uint32_t node, Spreading* spreading) {
+  // Only nodes of other colours wake this one or allow it: nobody does while it is asked.
+  if (awake_[node] == 0 || (spreading != nullptr && spreading->allowed[node] == 0)) return false;
+  awake_[node] = 0;
+  if (!step(node)) return true;
+  const auto wake = [this](std::uint32_t other) { std::atomic_ref(awake_[other]).store(1, std::memory_order_relaxed); };
+  wake(node);
+  const bool spreads = spreading != nullptr && (at[node] - net_.start[node]).squaredNorm() > spreading->threshold * spreading->threshold;
+  for (const Spring& spring : net_.springs_of(node))
+    if (spring.to < net_.movable) {
+      wake(spring.to);
+      if (spreads) std::atomic_ref(spreading->allowed[spring.to]).store(1, std::memory_order_relaxed);
+    }
+  return true;
+}
+
+/// Every node once, colour by colour. Returns how many had to step; nothing if told to stop.
+std::optional<std::size_t> Settling::round(Spreading* spreading, const Watcher& watcher) {
+  std::atomic<std::size_t> stepped = 0;
+  for (const std::vector<std::uint32_t>& colour : net_.colours) {
+    const auto visit_some = [&](std::size_t begin, std::size_t end) {
+      std::size_t here = 0;
+      for (std::size_t i = begin; i < end; ++i) here += visit(colour[i], spreading) ? 1 : 0;
+      stepped.fetch_add(here, std::memory_order_relaxed);
+    };
+    if (!parallel_in_stretches(
+            colour.size(), kNodesAtOnce, [&](double) { return watcher.goes_on(); }, visit_some))
+      return std::nullopt;
+  }
+  return stepped.load();
+}
+
+Settled Settling::run(Spreading* spreading, const Watcher& watcher) {
   Settled settled;
-  const auto wake = [this](std::uint32_t node) { std::atomic_ref(awake_[node]).store(1, std::memory_order_relaxed); };
-  const auto step_one = [&](std::uint32_t node) {
-    // Only nodes of other colours wake this one or allow it: nobody does while it is asked.
-    if (awake_[node] == 0 || (spreading != nullptr && spreading->allowed[node] == 0)) return false;
-    awake_[node] = 0;
-    if (!step(node)) return true;
-    wake(node);
-    const bool spreads = spreading != nullptr && (at[node] - net_.start[node]).squaredNorm() > spreading->threshold * spreading->threshold;
-    for (const Spring& spring : net_.springs_of(node))
-      if (spring.to < net_.movable) {
-        wake(spring.to);
-        if (spreads) std::atomic_ref(spreading->allowed[spring.to]).store(1, std::memory_order_relaxed);
-      }
-    return true;
+  const auto stopped = [&settled] {
+    settled.was_stopped = true;
+    return settled;
   };
   int next_check = kFirstCheck;
   while (settled.rounds < options_.most_rounds) {
     if (settled.rounds == kRecoveringRounds) recovery_ = 1;
-    std::atomic<std::size_t> stepped = 0;
-    for (const std::vector<std::uint32_t>& colour : net_.colours)
-      parallel_for(colour.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
-        std::size_t here = 0;
-        for (std::size_t i = begin; i < end; ++i) here += step_one(colour[i]) ? 1 : 0;
-        stepped.fetch_add(here, std::memory_order_relaxed);
-      });
-    if (stepped == 0) {
-      settled.converged = check(true);
+    const std::optional<std::size_t> stepped = round(spreading, watcher);
+    if (!stepped) return stopped();
+    if (*stepped == 0) {
+      const Found found = check(true, watcher);
+      if (found == Found::told_to_stop) return stopped();
+      settled.converged = found == Found::nothing;
       if (settled.converged) return settled;
       continue;
     }
     ++settled.rounds;
-    if (!watch(1 - static_cast<double>(stepped) / static_cast<double>(net_.movable))) {
-      settled.was_stopped = true;
-      return settled;
-    }
+    if (!watcher.round_done(1 - static_cast<double>(*stepped) / static_cast<double>(net_.movable))) return stopped();
     if (options_.checks_on_the_way && settled.rounds == next_check) {
-      check(false);
+      if (check(false, watcher) == Found::told_to_stop) return stopped();
       next_check *= kChecksApart;
     }
   }
-  check(true);
+  settled.was_stopped = check(true, watcher) == Found::told_to_stop;
   return settled;
 }
 
