@@ -127,8 +127,7 @@ void ShellTree::divide() {
     entries.push_back({t.corner[0] / 3 + t.corner[1] / 3 + t.corner[2] / 3, static_cast<std::uint32_t>(entries.size())});
   // Takes ranges apart from the front until `enough` are open or all are leaves.
   const auto split = [&entries](std::vector<Node>& nodes, std::vector<Range>& open, std::size_t enough) {
-    std::vector<Range> rest;
-    while (!open.empty() && open.size() + rest.size() < enough) {
+    while (!open.empty() && open.size() < enough) {
       const std::vector<Range> level = std::exchange(open, {});
       for (const Range& range : level) {
         if (range.end - range.begin <= kLeafTriangles) {

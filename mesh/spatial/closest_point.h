@@ -34,7 +34,7 @@ class ShellTree {
   double distance(const Vec3& point, Vec3& near) const;
   /// Any point of the surface. Precondition: not empty.
   const Vec3& some_point() const { return triangles_.front().corner[0]; }
-  /// One for each shell within `radius` of the point, ascending by shell.
+  /// One for each shell within `radius` of the point, ascending by shell; of nodes without a shell the nearest one.
   std::vector<SurfacePoint> within(const Vec3& point, double radius) const;
   bool empty() const { return triangles_.empty(); }
 

@@ -33,14 +33,18 @@ std::vector<std::uint32_t> along_curve(std::span<const Vec3> points) {
       high = high.cwiseMax(point);
     }
   const double widest = (high - low).maxCoeff();
-  const double cells = widest > 0 && std::isfinite(widest) ? 2097151.0 / widest : 0;
+  // no cells where the points are too close together or too far apart for numbers: in the given order then
+  const double per_length = 2097151.0 / widest;
+  const double cells = widest > 0 && std::isfinite(widest) && std::isfinite(per_length) ? per_length : 0;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
   keyed.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) continue;
-    const Vec3 cell = (points[i] - low) * cells;
     std::uint64_t key = 0;
-    for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint64_t>(cell[axis])) << axis;
+    if (cells > 0) {
+      const Vec3 cell = (points[i] - low) * cells;
+      for (int axis = 0; axis < 3; ++axis) key |= spread(static_cast<std::uint64_t>(cell[axis])) << axis;
+    }
     keyed.emplace_back(key, static_cast<std::uint32_t>(i));
   }
   std::sort(keyed.begin(), keyed.end());
