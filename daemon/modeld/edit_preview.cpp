@@ -35,11 +35,12 @@ void add_shell(const mesh::document::Generation& next, ShellIndex shell, std::un
   const mesh::quality::ShellState state = next.quality[shell.value];
   shown.warn = state.warn;
   shown.fail = state.fail;
+  for (const mesh::NodeIndex node : model.shell(shell).node)
+    if (!model.position(node).allFinite()) return;
   for (const mesh::NodeIndex node : model.shell(shell).node) {
     const auto [place, is_new] = known.try_emplace(node.value, static_cast<std::uint32_t>(preview.points.size()));
     if (is_new) {
       const mesh::Vec3& at = model.position(node);
-      if (!at.allFinite()) return;
       preview.points.push_back({at.x(), at.y(), at.z()});
     }
     shown.corners.push_back(place->second);

@@ -11,6 +11,7 @@
 #include "mesh/document/damage.h"
 #include "mesh/model/growth.h"
 #include "mesh/quality/composite.h"
+#include "mesh/quality/limits.h"
 
 namespace prismesh::modeld {
 
@@ -22,6 +23,7 @@ using mesh::document::Generation;
 using mesh::quality::Defect;
 using mesh::quality::kMetricCount;
 using mesh::quality::Metric;
+using mesh::quality::Sheet;
 using mesh::quality::ShellState;
 using mesh::quality::Threshold;
 using mesh::quality::Values;
@@ -71,12 +73,6 @@ class Shells {
   }
   std::size_t size() const { return listed_ ? list_.size() : model_.shell_count(); }
   std::size_t operator[](std::size_t i) const { return listed_ ? list_[i].value : i; }
-  void measure(std::size_t begin, std::size_t end, std::span<Values> out) const {
-    if (listed_)
-      mesh::quality::measure_shells(model_, std::span(list_).subspan(begin, end - begin), out);
-    else
-      mesh::quality::measure_range(model_, begin, end, out);
-  }
   mesh::ShellSet range(std::size_t begin, std::size_t end) const {
     mesh::ShellSet shells;
     for (std::size_t i = begin; i < end; ++i) shells.emplace_back((*this)[i]);
@@ -114,6 +110,18 @@ bool worse(const Wrong& a, const Wrong& b) {
   return a.shell < b.shell;
 }
 
+/// A shell that is none fails by its defects only: its metrics mean nothing.
+ShellState counted(ShellState state) {
+  if (!state.has_defect()) return state;
+  const auto defects = static_cast<std::uint16_t>(state.fail & ShellState::kDefectBits);
+  return {defects, defects};
+}
+
+/// Not a number where a shell is in no bar.
+float value_for_bars(ShellState state, const Values& values, int metric) {
+  return state.has_defect() ? std::numeric_limits<float>::quiet_NaN() : values[static_cast<std::size_t>(metric)];
+}
+
 struct PartSum {
   std::uint64_t shells = 0, warn = 0, fail = 0;
   double sum = 0;
@@ -125,6 +133,15 @@ struct Figures {
   std::array<std::uint64_t, kStateBits> warn{}, fail{};
   std::vector<Wrong> wrong;
   std::map<std::uint32_t, PartSum> parts;
+
+  void count(ShellState state) {
+    if (state.warn == 0) return;
+    for (int bit = 0; bit < kStateBits; ++bit) {
+      const bool fails = has(state.fail, bit);
+      fail[static_cast<std::size_t>(bit)] += fails;
+      warn[static_cast<std::size_t>(bit)] += !fails && has(state.warn, bit);
+    }
+  }
 
   void add(Figures&& next) {
     for (std::size_t bit = 0; bit < warn.size(); ++bit) {
@@ -167,22 +184,17 @@ class Gathering {
 
  private:
   Figures figures_of_range(std::size_t begin, std::size_t end) {
-    std::vector<Values> values(end - begin);
-    shells_.measure(begin, end, values);
-    std::vector<float> composites(end - begin);
-    mesh::quality::composites(generation_.model, shells_.range(begin, end), document_.settings.criteria, document_.settings.target_size,
-                              composites);
+    const mesh::ShellSet shells = shells_.range(begin, end);
+    std::vector<Values> values(shells.size());
+    std::vector<float> composites(shells.size());
+    mesh::quality::composites(generation_.model, shells, document_.settings.criteria, document_.settings.target_size, composites, values);
     Figures figures;
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t shell = shells_[i];
-      const ShellState state = generation_.quality[shell];
+      const std::size_t shell = shells[i - begin].value;
+      const ShellState state = counted(generation_.quality[shell]);
       const Values& measured = values[i - begin];
-      for (int bit = 0; bit < kStateBits; ++bit) {
-        const bool fails = has(state.fail, bit);
-        figures.fail[static_cast<std::size_t>(bit)] += fails;
-        figures.warn[static_cast<std::size_t>(bit)] += !fails && has(state.warn, bit);
-      }
-      if (metric_ >= 0) values_[i] = measured[static_cast<std::size_t>(metric_)];
+      figures.count(state);
+      if (metric_ >= 0) values_[i] = value_for_bars(state, measured, metric_);
       if (const Wrong wrong = worst_of(shell, state, measured); wrong.metric >= 0) figures.wrong.push_back(wrong);
       PartSum& part = figures.parts[generation_.model.shell_parts[shell].value];
       const double whole = composites[i - begin];
@@ -198,14 +210,15 @@ class Gathering {
   /// Of the metric that is asked for, or of all.
   Wrong worst_of(std::size_t shell, ShellState state, const Values& values) const {
     Wrong worst;
+    if (state.warn == 0) return worst;
     for (const Defect defect : mesh::quality::kDefects)
       if (metric_ < 0 && state.has(defect)) worst = {shell, static_cast<int>(defect), 0, std::numeric_limits<double>::infinity(), true};
     const bool triangle = generation_.model.shell_nodes[shell].is_triangle();
     for (int m = 0; m < kMetricCount; ++m) {
-      // A shell that is none has no values to speak of.
-      if (state.has_defect() || !has(state.warn, m) || (metric_ >= 0 && m != metric_)) continue;
+      if (!has(state.warn, m) || (metric_ >= 0 && m != metric_)) continue;
       const auto at = static_cast<std::size_t>(m);
-      const Wrong candidate{shell, m, values[at], severity(values[at], limits_of(m, triangle)), has(state.fail, m)};
+      const Sheet sheet = m == int(Metric::min_length) ? mesh::quality::sheet_of(generation_.model, ShellIndex(shell)) : Sheet();
+      const Wrong candidate{shell, m, values[at], severity(values[at], limits_of(m, triangle, sheet)), has(state.fail, m)};
       if (worst.metric < 0 || worse(candidate, worst)) worst = candidate;
     }
     return worst;
@@ -288,14 +301,10 @@ class Gathering {
     }
   }
 
-  /// As the criteria file has them, for this target size.
-  Threshold limits_of(int metric, bool triangle) const {
-    const mesh::quality::Criteria& criteria = document_.settings.criteria;
-    Threshold limits = (triangle ? criteria.triangle : criteria.quad)[static_cast<std::size_t>(metric)];
-    if (metric != int(Metric::min_length) && metric != int(Metric::max_length)) return limits;
-    for (float* limit : {&limits.warn_low, &limits.warn_high, &limits.fail_low, &limits.fail_high})
-      *limit *= static_cast<float>(document_.settings.target_size);
-    return limits;
+  /// For this target size; without a sheet as if nothing were known of thickness and material.
+  Threshold limits_of(int metric, bool triangle, const Sheet& sheet = {}) const {
+    return mesh::quality::limits_of(document_.settings.criteria, static_cast<Metric>(metric), triangle, document_.settings.target_size,
+                                    sheet);
   }
 
   std::string unit(int metric) const { return unit_of(metric, std::string(name(document_.settings.length_unit))); }
@@ -330,15 +339,19 @@ Result<ipc::Quality> quality_figures(const Document& document, const ipc::GetQua
 Result<ipc::ShellsFound> find_shells(const Document& document, const ipc::FindShells& request) {
   const Result<int> metric = metric_named(request.metric);
   if (!metric) return fail(metric.error());
+  const Generation& generation = document.current();
   const Shells shells(document, request.damaged);
-  std::vector<Values> values(shells.size());
-  parallel_for(shells.size(), kGrain,
-               [&](std::size_t begin, std::size_t end) { shells.measure(begin, end, std::span(values).subspan(begin, end - begin)); });
+  std::vector<float> values(shells.size());
+  parallel_for(shells.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Values> measured(end - begin);
+    mesh::quality::measure_shells(generation.model, shells.range(begin, end), measured);
+    for (std::size_t i = begin; i < end; ++i) values[i] = value_for_bars(generation.quality[shells[i]], measured[i - begin], *metric);
+  });
   std::vector<std::int64_t> ids;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double value = values[i][static_cast<std::size_t>(*metric)];
+    const double value = values[i];
     if (std::isnan(value) || (request.from && value < *request.from) || (request.to && !(value < *request.to))) continue;
-    ids.push_back(document.current().model.shell_ids[shells[i]]);
+    ids.push_back(generation.model.shell_ids[shells[i]]);
   }
   ipc::ShellsFound found;
   found.shells = ids.size();

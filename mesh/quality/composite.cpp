@@ -1,6 +1,7 @@
 #include "mesh/quality/composite.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "mesh/quality/judging.h"
 
@@ -14,18 +15,21 @@ float composite(const Values& values, const Criteria& criteria, double target_si
   return rated;
 }
 
-void composites(const Model& model, std::span<const ShellIndex> shells, const Criteria& criteria, double target_size,
-                std::span<float> out) {
+void composites(const Model& model, std::span<const ShellIndex> shells, const Criteria& criteria, double target_size, std::span<float> out,
+                std::span<Values> values) {
   const Limits limits = limits_for(criteria, target_size);
   const auto shell_of = [&](std::size_t i) { return shells[i].value; };
   std::fill(out.begin(), out.end(), 1.0F);
+  for (Values& none : values) none.fill(std::numeric_limits<float>::quiet_NaN());
   measure_in_batches(
       shells.size(), [&](std::size_t i, const Vec3*(&corner)[4]) { return corners_of(model, shell_of(i), corner); },
-      [&](const ShellBatch& batch, const BatchValues& values) {
+      [&](const ShellBatch& batch, const BatchValues& measured) {
         Sheet room[kLanes];
         float rated[kLanes];
-        rate_lanes(values, batch.count, limits, sheets_of(model, limits, batch, shell_of, room), rated);
+        rate_lanes(measured, batch.count, limits, sheets_of(model, limits, batch, shell_of, room), rated);
         for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = rated[lane];
+        if (values.empty()) return;
+        for (std::size_t lane = 0; lane < batch.count; ++lane) values[batch.slot[lane]] = measured.at(lane);
       });
 }
 

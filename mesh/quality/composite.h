@@ -11,8 +11,9 @@ namespace prismesh::mesh::quality {
 /// element with a defect (Defect) has -1, nothing else has. Never NaN. `sheet` as in judge(). Metrics without a fail limit don't count.
 float composite(const Values& values, const Criteria& criteria, double target_size, const Sheet& sheet = {});
 
-/// The same of shells of a model, measured in batches; `out` has one entry each. Removed shells have 1. Of shells given by points:
-/// judge_points().
-void composites(const Model& model, std::span<const ShellIndex> shells, const Criteria& criteria, double target_size, std::span<float> out);
+/// The same of shells of a model, measured in batches; `out` has one entry each. Removed shells have 1. `values`: their metrics too, as
+/// measure_shells() gives them, or none. Of shells given by points: judge_points().
+void composites(const Model& model, std::span<const ShellIndex> shells, const Criteria& criteria, double target_size, std::span<float> out,
+                std::span<Values> values = {});
 
 }  // namespace prismesh::mesh::quality

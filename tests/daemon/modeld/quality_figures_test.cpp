@@ -2,6 +2,9 @@
 #include "daemon/modeld/quality_figures.h"
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -26,12 +29,18 @@ class Figures : public ::testing::Test {
     ASSERT_TRUE(opened) << opened.error().text();
     document_ = std::move(*opened);
   }
-  void lift(std::int64_t node, double by) {
+  void lift(std::int64_t node, double by) { move(node, mesh::Vec3(0, 0, by)); }
+  void move(std::int64_t node, const mesh::Vec3& by) {
     Translate edit;
-    edit.by = {0, 0, by};
+    edit.by = {by.x(), by.y(), by.z()};
     edit.shaping.on = std::to_string(node);
     const auto done = apply(document_, edit);
     ASSERT_TRUE(done) << done.error().text();
+  }
+  /// From one node to another, or a share of the way.
+  void move_towards(std::int64_t node, std::int64_t other, double share) {
+    const mesh::Model& model = document_.current().model;
+    move(node, share * (model.position(model.find_node(other)) - model.position(model.find_node(node))));
   }
   ipc::Quality figures(const std::string& metric = {}, bool damaged = false) const {
     const Result<ipc::Quality> made = quality_figures(document_, {metric, damaged});
@@ -120,6 +129,57 @@ TEST_F(Figures, EveryBarSelectsAsManyShellsAsItShows) {
   }
 }
 
+TEST_F(Figures, AShellThatIsNoneCountsAsADefectOnly) {
+  lift(kMiddle + 60, 3);
+  move_towards(kMiddle, kMiddle + 1, 1);  // two shells lose an edge
+  const std::uint64_t shells = document_.current().model.shell_count();
+  std::uint64_t failing = 0;
+  const auto& states = document_.current().quality;
+  for (std::size_t s = 0; s < states.size(); ++s) failing += !states[s].has_defect() && (states[s].fail >> int(Metric::aspect) & 1) != 0;
+  EXPECT_EQ(count(Metric::aspect, true), failing + 2) << "the states say both";
+
+  const ipc::Quality quality = figures("aspect");
+  EXPECT_EQ(quality.metrics.at(std::size_t(Metric::aspect)).fail, failing);
+  for (const ipc::QualityMetric& metric : quality.metrics)
+    if (metric.name == "repeated_node") {
+      EXPECT_EQ(metric.fail, 2u);
+    }
+  EXPECT_EQ(quality.error_count,
+            quality.metrics.at(std::size_t(Metric::aspect)).fail + quality.metrics.at(std::size_t(Metric::aspect)).warn)
+      << "as many to step through as are counted";
+  std::uint64_t in_bars = 0;
+  for (const ipc::QualityBar& bar : quality.bars) in_bars += bar.ok + bar.warn + bar.fail;
+  EXPECT_EQ(in_bars, shells - 2);
+  EXPECT_LT(quality.bars.back().to, 1e6) << "and no bar reaches for the value of a shell that is none";
+  const auto found = find_shells(document_, {"aspect", std::nullopt, std::nullopt, false});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->shells, shells - 2);
+}
+
+/// Criteria may look at thickness and material: then each shell has a limit of its own.
+TEST_F(Figures, TheWorstIsWorstByItsOwnLimit) {
+  const std::filesystem::path file = folder_.path() / "thick.toml";
+  std::ofstream(file) << "[metrics.min_length]\nfail_below_thicknesses = 5\n";  // of 0.8: below 4
+  OpenOptions options;
+  options.criteria = file;
+  Result<Document> opened = mesh::document::open(folder_.sheet(), options);
+  ASSERT_TRUE(opened) << opened.error().text();
+  document_ = std::move(*opened);
+  ASSERT_EQ(document_.current().counts.fail, 0u);
+  move_towards(kMiddle - 200, kMiddle - 199, 0.3);
+  move_towards(kMiddle, kMiddle + 1, 0.6);
+  move_towards(kMiddle + 120, kMiddle + 121, 0.4);
+  const ipc::Quality quality = figures();
+  ASSERT_GE(quality.errors.size(), 6u);
+  for (std::size_t i = 0; i < quality.errors.size(); ++i) {
+    EXPECT_EQ(quality.errors[i].metric, "min_length");
+    if (i > 0) {
+      EXPECT_LE(*quality.errors[i - 1].value, *quality.errors[i].value) << i;
+    }
+  }
+  EXPECT_TRUE(ids_at(kMiddle).contains(quality.errors[0].shell));
+}
+
 TEST_F(Figures, DamageIsWhatTheEditsDid) {
   EXPECT_EQ(figures("", true).error_count, 0u);
   lift(kMiddle, 3);
@@ -161,6 +221,33 @@ TEST_F(Figures, APreviewSaysWhatAnEditWouldDoAndDoesNothing) {
       EXPECT_EQ(mesh::Vec3(at[0], at[1], at[2]), model.position(model.shell(index).node[k]));
     }
   }
+}
+
+TEST_F(Figures, APreviewLeavesShellsOutWhoseCornersStandNowhere) {
+  // A corner of two of the shells about the node has no place.
+  auto broken = std::make_shared<Generation>(document_.current());
+  const std::set<std::int64_t> touched = ids_at(kMiddle), nowhere = ids_at(kMiddle + 1);
+  broken->model.positions.set(broken->model.find_node(kMiddle + 1).value, mesh::Vec3::Constant(std::nan("")));
+  document_.generations.back() = broken;
+  Translate edit;
+  edit.by = {0, 0, 3};
+  edit.shaping.on = std::to_string(kMiddle);
+  const Result<ipc::EditPreviewed> preview = preview_edit(document_, edit);
+  ASSERT_TRUE(preview) << preview.error().text();
+  std::set<std::int64_t> shown;
+  for (const ipc::PreviewedShell& shell : preview->shells) {
+    shown.insert(shell.shell);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const mesh::NodeIndex node = broken->model.shell(broken->model.find_shell(shell.shell)).node[k];
+      if (broken->model.node_ids[node.value] == kMiddle) continue;
+      const auto& at = preview->points.at(shell.corners.at(k));
+      EXPECT_EQ(mesh::Vec3(at[0], at[1], at[2]), broken->model.position(node)) << shell.shell;
+    }
+  }
+  std::set<std::int64_t> expected;
+  std::set_difference(touched.begin(), touched.end(), nowhere.begin(), nowhere.end(), std::inserter(expected, expected.end()));
+  EXPECT_EQ(expected.size(), 2u);
+  EXPECT_EQ(shown, expected);
 }
 
 TEST_F(Figures, AnEditThatCantBeDoneIsRefusedInItsOwnWords) {

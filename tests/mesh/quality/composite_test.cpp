@@ -111,6 +111,25 @@ TEST(Composite, is_negative_exactly_where_a_shell_fails) {
   }
 }
 
+TEST(Composite, comes_with_the_metrics_it_is_made_of) {
+  const Model model = test::mixed_grid(20, 0.6, true, 22);
+  std::vector<ShellIndex> shells;
+  for (std::size_t s = 0; s < model.shell_count(); s += 2) shells.emplace_back(s);
+  std::vector<float> alone(shells.size()), figures(shells.size());
+  std::vector<Values> measured(shells.size()), values(shells.size());
+  measure_shells(model, shells, measured);
+  composites(model, shells, default_criteria(), 1.0, alone);
+  composites(model, shells, default_criteria(), 1.0, figures, values);
+  EXPECT_EQ(figures, alone);
+  for (std::size_t i = 0; i < shells.size(); ++i)
+    for (std::size_t m = 0; m < kMetricCount; ++m) {
+      EXPECT_EQ(std::isnan(values[i][m]), std::isnan(measured[i][m]));
+      if (!std::isnan(measured[i][m])) {
+        EXPECT_EQ(values[i][m], measured[i][m]);
+      }
+    }
+}
+
 TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
   Model model = test::mixed_grid(30, 0.6, true, 21);
   remove_shell(model, ShellIndex(std::size_t{17}));
@@ -140,8 +159,10 @@ TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
   }
   const std::vector<ShellIndex> gone = {ShellIndex(std::size_t{17})};
   float figure = 0;
-  composites(model, gone, criteria, 1.0, std::span(&figure, 1));
+  Values of_gone{};
+  composites(model, gone, criteria, 1.0, std::span(&figure, 1), std::span(&of_gone, 1));
   EXPECT_EQ(figure, 1);
+  for (const float value : of_gone) EXPECT_TRUE(std::isnan(value));
 }
 
 }  // namespace
