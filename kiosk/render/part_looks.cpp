@@ -19,7 +19,8 @@ std::vector<PartState> part_states(const ModelTable& table, bool damaged) {
     const std::size_t begin = c * mesh::kChunkSize;
     for (std::size_t i = 0; i < states.size() && begin + i < table.shell_count(); ++i) {
       const std::size_t part = table.shell_part(begin + i).value;
-      if (part >= parts.size() || states[i].is_removed()) continue;
+      const bool removed = source.at<ShellState>(SnapshotArray::shell_quality, begin + i).is_removed();  // damage says nothing of it
+      if (part >= parts.size() || removed) continue;
       ++parts[part].shells;
       parts[part].warn += states[i].grade() == Grade::warn;
       parts[part].fail += states[i].grade() == Grade::fail;

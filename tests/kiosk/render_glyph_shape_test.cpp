@@ -173,6 +173,10 @@ TEST(PartStates, APartIsTheRedderTheMoreOfItFails) {
   EXPECT_EQ(parts[0].shells, 100U);
   EXPECT_EQ(parts[0].fail, 3U);
   EXPECT_EQ(parts[1].warn, 1U);
+  source->shell_damage.resize(source->shell_nodes.size());
+  source->shell_quality[4] = ShellState::removed();
+  EXPECT_EQ(part_states(ModelTable(source), false)[0].shells, 99U);
+  EXPECT_EQ(part_states(ModelTable(source), true)[0].shells, 99U) << "what is removed is no share of what edits damaged";
   EXPECT_EQ(colour_of_state({100, 0, 0}), grade_colours()[0]);
   EXPECT_EQ(colour_of_state({100, 0, 10}), grade_colours()[2]);
   EXPECT_EQ(colour_of_state({100, 50, 0}), grade_colours()[1]);
