@@ -6,6 +6,7 @@
 
 #include "kiosk/editor.h"
 #include "kiosk/tools/file_expression.h"
+#include "kiosk/tools/outline.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::kiosk {
@@ -122,8 +123,9 @@ void Editor::handle(const tools::OutlineDone& outline) {
   rubber_band_.reset();
   lasso_way_.clear();
   if (!shown_ || outline.way.empty()) return;
-  const std::vector<Pixel> way =
+  std::vector<Pixel> way =
       is_rectangle(outline.other_kind) ? corners_of(rectangle_of(outline.way.front(), outline.way.back())) : outline.way;
+  if (comparing_.two_views()) way = tools::kept_right_of(way, 0.5 * size_.width);  // beyond the cut nothing of this view is seen
   if (way.size() < kLeastLassoPoints) return;
   if (outline.mode == SelectMode::set) last_clicked_.reset();
   last_region_.reset();
