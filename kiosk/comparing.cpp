@@ -1,5 +1,7 @@
 #include "kiosk/comparing.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,28 +15,26 @@ bool same(const ipc::GetField& a, const ipc::GetField& b) {
          a.from == b.from && a.to == b.to;
 }
 
-std::string words_of(const ipc::ListedGeneration& state) {
+constexpr int kBands = 10;
+
+std::string words_of_state(const ipc::ListedGeneration& state) {
   return state.made_by == "open" ? fmt::format("{}: as opened", state.number) : fmt::format("{}: {}", state.number, state.made_by);
 }
 
 }  // namespace
 
 void Comparing::set(const tools::CompareWish& wish) {
-  const bool other_map = wish.map != wish_.map || wish.bands != wish_.bands;
   wish_ = wish;
-  for (View* view : {&main_, &other_}) {
-    if (other_map) view->look.map = wish.map;
-    view->look.bands = wish.bands ? 10 : 0;
-  }
+  look_.map = wish.map;
+  look_.bands = wish.bands ? kBands : 0;
   trace_.line(fmt::format("compare {} views {} shown {} beside {}", wish.field.empty() ? "nothing" : wish.field, wish.two_views ? 2 : 1,
                           wish.shown ? std::to_string(*wish.shown) : "current", wish.beside ? std::to_string(*wish.beside) : "current"));
 }
 
 void Comparing::set_limits(const panels::SetLimits& limits) {
-  if (limits.pane > 1 || limits.clear == limits.full) return;
-  View& view = of(static_cast<Pane>(limits.pane));
-  view.look.clear = limits.clear;
-  view.look.full = limits.full;
+  if (limits.clear == limits.full) return;
+  look_.clear = limits.clear;
+  look_.full = limits.full;
 }
 
 Result<void> Comparing::follow() {
@@ -49,6 +49,7 @@ Result<void> Comparing::follow() {
     document_ = document;
     wish_.shown.reset();
     wish_.beside.reset();
+    wish_.against_generation.reset();
     wish_.two_views = false;
     for (const Pane pane : {Pane::model, Pane::other}) {
       of(pane).view.reset();
@@ -85,7 +86,14 @@ void Comparing::follow_states() {
   if (states_of_ == current || (!panel_open_ && !wish_.two_views)) return;
   states_of_ = current;
   link_.question(ipc::GetState{}, [this](const ipc::Answer& answer) {
-    if (const auto* state = std::get_if<ipc::State>(&answer)) states_ = state->generations;
+    const auto* state = std::get_if<ipc::State>(&answer);
+    if (state == nullptr) return;
+    states_ = state->generations;
+    const auto known = [&](std::uint64_t number) {
+      return std::any_of(states_.begin(), states_.end(), [&](const ipc::ListedGeneration& each) { return each.number == number; });
+    };
+    // What was opened may have left the history meanwhile: then the oldest that is left stands beside.
+    if (wish_.beside && !other_.view && !states_.empty() && !known(*wish_.beside)) wish_.beside = states_.front().number;
   });
 }
 
@@ -95,24 +103,26 @@ void Comparing::follow_view(Pane pane, const std::optional<std::uint64_t>& gener
   if (current) {
     view.view.reset();
     view.asked_view.reset();
+    view.view_problem.clear();
     return;
   }
   if (view.asked_view == generation) return;
   view.asked_view = generation;
+  view.view_problem.clear();
   ipc::GetSnapshot request;
   request.generation = generation;
   request.have_segments = link_.segments();
   link_.question(request, [this, pane, generation](const ipc::Answer& answer) {
     View& asked = of(pane);
     if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
-      asked.problem = failed->message;
+      asked.view_problem = failed->message;
       return;
     }
     const auto* snapshot = std::get_if<ipc::Snapshot>(&answer);
     if (snapshot == nullptr) return;
     Result<std::shared_ptr<const ipc::SnapshotView>> taken = link_.take(*snapshot);
     if (!taken) {
-      asked.problem = taken.error().text();
+      asked.view_problem = taken.error().text();
       return;
     }
     if (asked.asked_view != generation) return;  // another is wanted by now
@@ -126,16 +136,24 @@ void Comparing::forget_field(Pane pane) {
   if (!view.asked && !view.made) return;
   view.asked.reset();
   view.made.reset();
-  view.problem.clear();
+  view.field_problem.clear();
+  if (!main_.made && !other_.made) look_of_.clear();
   if (Result<void> cleared = renderer_.set_field(pane, {}, true); !cleared) failed_ = cleared.error();
 }
 
+bool Comparing::field_wanted() const {
+  if (wish_.field.empty()) return false;
+  if (wish_.field == "distance") return !wish_.from.empty() && !wish_.to.empty();
+  return !tools::needs_against(wish_) || wish_.against_generation || !wish_.against.empty();
+}
+
 void Comparing::follow_field(Pane pane, const std::optional<std::uint64_t>& generation) {
-  if (wish_.field.empty() || (wish_.field == "distance" && (wish_.from.empty() || wish_.to.empty()))) return forget_field(pane);
+  if (!field_wanted()) return forget_field(pane);
   ipc::GetField request;
   request.field = wish_.field;
   request.generation = generation.value_or(link_.snapshot()->info().generation);
-  request.against = wish_.against;
+  std::error_code ignored;
+  request.against = tools::is_state(wish_.against) ? wish_.against : std::filesystem::absolute(wish_.against, ignored).string();
   request.against_generation = wish_.against_generation;
   request.from = wish_.from;
   request.to = wish_.to;
@@ -148,17 +166,18 @@ void Comparing::follow_field(Pane pane, const std::optional<std::uint64_t>& gene
 void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Answer& answer) {
   View& view = of(pane);
   if (!view.asked || !same(*view.asked, asked)) return;  // something else is wanted by now
-  view.problem.clear();
+  view.field_problem.clear();
   const auto* made = std::get_if<ipc::FieldMade>(&answer);
   if (made == nullptr) {
-    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) view.problem = Error{failed->file, failed->line, failed->message}.text();
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer))
+      view.field_problem = Error{failed->file, failed->line, failed->message}.text();
     view.made.reset();
     if (Result<void> cleared = renderer_.set_field(pane, {}, true); !cleared) failed_ = cleared.error();
     return;
   }
   const Result<std::shared_ptr<const ipc::FieldValues>> values = link_.take(*made);
   if (!values) {
-    view.problem = values.error().text();
+    view.field_problem = values.error().text();
     return;
   }
   if (Result<void> set = renderer_.set_field(pane, (*values)->values(), made->on_nodes); !set) {
@@ -166,8 +185,10 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
     return;
   }
   // Limits that were set stay with the kind of values that they were set for.
-  const bool other_kind = !view.made || view.made->title != made->title || view.made->unit != made->unit;
-  if (other_kind) view.look = {true, made->clear, made->full, wish_.map, wish_.bands ? 10 : 0};
+  if (std::string kind = made->title + ", " + made->unit; look_of_ != kind) {
+    look_ = {true, made->clear, made->full, wish_.map, wish_.bands ? kBands : 0};
+    look_of_ = std::move(kind);
+  }
   view.made = *made;
   trace_.line(fmt::format("field {} generation {} measured {} max {} at {}", asked.field, made->generation, made->measured, made->max,
                           made->max_at));
@@ -175,21 +196,37 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
 
 void Comparing::dress(render::Picture& picture, double shift) const {
   if (two_views()) picture.two_views = render::TwoViews{true, shift};
-  if (!main_.made && !other_.made) return;
+  if (!coloured()) return;
   picture.colour = render::ColourMode::field;
   picture.quality_glyphs = false;  // yellow and red would be read as values
-  picture.field[0] = main_.look;
-  picture.field[1] = other_.look;
+  picture.field.fill(look_);
   picture.field[0].on = main_.made.has_value();
   picture.field[1].on = other_.made.has_value();
+}
+
+std::string Comparing::words_of(const std::optional<std::uint64_t>& generation) const {
+  if (!generation || !link_.snapshot() || *generation == link_.snapshot()->info().generation) return "now";
+  for (const ipc::ListedGeneration& state : states_)
+    if (state.number == *generation) return words_of_state(state);
+  return fmt::format("state {}", *generation);
+}
+
+/// Which state is seen where, wherever that isn't the current one alone.
+std::vector<panels::CompareFacts::Caption> Comparing::captions(double shift) const {
+  if (two_views()) return {{words_of(wish_.beside), 0.5 - shift}, {words_of(wish_.shown), 0.5 + shift}};
+  if (shows_older()) return {{words_of(wish_.shown) + "   only shown: Shift+C chooses another state", 0.5}};
+  return {};
 }
 
 panels::CompareFacts Comparing::facts(double shift) const {
   panels::CompareFacts facts;
   facts.wish = wish_;
   facts.panel_open = panel_open_;
-  facts.problem = !main_.problem.empty() ? main_.problem : other_.problem;
-  for (const ipc::ListedGeneration& state : states_) facts.states.push_back({state.number, words_of(state)});
+  for (const View* view : {&other_, &main_})
+    for (const std::string& problem : {view->field_problem, view->view_problem})
+      if (!problem.empty()) facts.problem = problem;
+  for (const ipc::ListedGeneration& state : states_) facts.states.push_back({state.number, words_of_state(state)});
+  facts.captions = captions(shift);
   if (link_.snapshot()) facts.current = link_.snapshot()->info().generation;
   for (const Pane pane : {Pane::model, Pane::other}) {
     const View& view = of(pane);
@@ -198,7 +235,7 @@ panels::CompareFacts Comparing::facts(double shift) const {
     legend.title = view.made->title;
     legend.unit = view.made->unit;
     legend.of = view.made->against.empty() ? view.made->of : view.made->of + " against " + view.made->against;
-    legend.look = view.look;
+    legend.look = look_;
     legend.min = view.made->min;
     legend.max = view.made->max;
     legend.min_at = view.made->min_at;

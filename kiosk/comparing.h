@@ -20,10 +20,12 @@ class Comparing {
   const tools::CompareWish& wish() const { return wish_; }
   void set(const tools::CompareWish& wish);
   void set_limits(const panels::SetLimits& limits);
-  void toggle_panel() { panel_open_ = !panel_open_; }
+  void open_panel(bool open) { panel_open_ = open; }
   bool panel_open() const { return panel_open_; }
   /// The renderer's model is an older state than the current one: nothing in it can be picked.
   bool shows_older() const { return main_.view != nullptr; }
+  /// A field's colours are on the model, or on the one beside it.
+  bool coloured() const { return main_.made || other_.made; }
   bool two_views() const { return wish_.two_views && renderer_.other() != nullptr; }
 
   /// After the link has turned, and before the renderer is given the current state: asks for what is missing. Errors: too large for the
@@ -31,9 +33,9 @@ class Comparing {
   Result<void> follow();
   /// What the renderer should show as its model: an older state, or else the current one.
   std::shared_ptr<const ipc::SnapshotView> model() const { return main_.view ? main_.view : link_.snapshot(); }
-  /// `shift`: as in render::TwoViews.
   /// By part, 1: hidden in the current state, and so in all that are shown.
   const std::vector<std::uint8_t>& hidden() const { return hidden_; }
+  /// `shift`: as in render::TwoViews.
   void dress(render::Picture& picture, double shift) const;
   panels::CompareFacts facts(double shift) const;
 
@@ -44,8 +46,7 @@ class Comparing {
     std::optional<std::uint64_t> asked_view;
     std::optional<ipc::GetField> asked;  ///< answered or under way
     std::optional<ipc::FieldMade> made;
-    render::FieldLook look;
-    std::string problem;
+    std::string view_problem, field_problem;  ///< why there is no such state, no such field; empty: there is
   };
   using Pane = render::Pane;
 
@@ -58,14 +59,20 @@ class Comparing {
   void follow_field(Pane pane, const std::optional<std::uint64_t>& generation);
   void took_field(Pane pane, const ipc::GetField& asked, const ipc::Answer& answer);
   void forget_field(Pane pane);
+  /// Enough is chosen of the field to ask for it.
+  bool field_wanted() const;
+  std::string words_of(const std::optional<std::uint64_t>& generation) const;
+  std::vector<panels::CompareFacts::Caption> captions(double shift) const;
 
-  std::vector<std::uint8_t> hidden_;
   ModelLink& link_;
   render::Renderer& renderer_;
   Trace trace_;
   tools::CompareWish wish_;
   bool panel_open_ = false;
   View main_, other_;
+  render::FieldLook look_;  ///< of both views, so that they can be compared
+  std::string look_of_;     ///< title and unit of the values that its limits were set for
+  std::vector<std::uint8_t> hidden_;
   std::shared_ptr<const ipc::SnapshotView> beside_;  ///< what the renderer has as the other model
   std::vector<ipc::ListedGeneration> states_;
   std::optional<std::uint64_t> states_of_;  ///< the current generation when they were asked for

@@ -154,7 +154,7 @@ void Editor::handle(const tools::Orbited& orbit) {
     // The model turns about what was under the pointer when the drag began.
     pivot_found_ = true;
     orbit_from_ = orbit.from;
-    const std::optional<mesh::NodeIndex> node = shown_ ? node_at(orbit.from) : std::nullopt;
+    const std::optional<mesh::NodeIndex> node = shown_ ? node_at(in_picked_view(orbit.from)) : std::nullopt;
     if (node && node->value < shown_->node_count()) view_ = stereo::with_pivot(view_, shown_->position(node->value));
   }
   const double radians_per_pixel = std::numbers::pi / std::max(size_.height, 1);

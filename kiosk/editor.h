@@ -150,6 +150,10 @@ class Editor {
   std::string operation_words() const;
 
   // --- editor_commands.cpp ---
+  enum class LeftPanel : std::uint8_t { document, quality, comparing, shaping };
+  LeftPanel left_panel() const;
+  void show_left(LeftPanel panel);
+  void toggle_left(LeftPanel panel) { show_left(left_panel() == panel ? LeftPanel::document : panel); }
   bool select_command(tools::Command command, const std::optional<tools::Pixel>& pointer);
   bool shape_command(tools::Command command, const std::optional<tools::Pixel>& pointer);
   bool view_command(tools::Command command);
@@ -172,6 +176,8 @@ class Editor {
   Result<void> follow_states();
   double pane_shift() const;
   bool pickable(const tools::Pixel& pixel) const;
+  tools::Pixel in_picked_view(const tools::Pixel& pixel) const;
+  void resize_view(double by);
   void share_view();
   void take_shared_view();
 

@@ -14,6 +14,7 @@ using tools::Pixel;
 using tools::Under;
 
 constexpr double kAngleStep = 5;  ///< degrees
+constexpr std::array<const char*, 4> kLeftPanelNames{"document", "quality", "comparing", "shaping"};
 
 }  // namespace
 
@@ -43,6 +44,24 @@ bool Editor::command(Command command, const std::optional<Pixel>& pointer) {
       return compare_command(command) || select_command(command, pointer) || shape_command(command, pointer) ||
              quality_command(command, pointer) || view_command(command);
   }
+}
+
+Editor::LeftPanel Editor::left_panel() const {
+  return comparing_.panel_open() ? LeftPanel::comparing
+         : review_.open          ? LeftPanel::quality
+         : shaping_open_         ? LeftPanel::shaping
+                                 : LeftPanel::document;
+}
+
+/// There is one panel at the left: what is opened takes the other's place.
+void Editor::show_left(LeftPanel panel) {
+  comparing_.open_panel(panel == LeftPanel::comparing);
+  shaping_open_ = panel == LeftPanel::shaping;
+  review_.open = panel == LeftPanel::quality;
+  if (!review_.open) leave_error();
+  trace_.line(std::string("panel ") + kLeftPanelNames[static_cast<std::size_t>(panel)]);
+  follow_quality();
+  link_changes_ = ~std::uint64_t{0};  // follow, though the server has said nothing
 }
 
 bool Editor::select_command(Command command, const std::optional<Pixel>& pointer) {
@@ -86,7 +105,7 @@ bool Editor::shape_command(Command command, const std::optional<Pixel>& pointer)
     case Command::axis_y: axis_from_deck(tools::DeckAxis::y); return true;
     case Command::axis_z: axis_from_deck(tools::DeckAxis::z); return true;
     case Command::no_axis: set_axis(std::nullopt, "none"); return true;
-    case Command::shaping_panel: shaping_open_ = !shaping_open_; return true;
+    case Command::shaping_panel: toggle_left(LeftPanel::shaping); return true;
     default: return change_shaping(command);
   }
 }
@@ -102,6 +121,10 @@ bool Editor::view_command(Command command) {
     case Command::view_bottom: look("bottom"); return true;
     case Command::view_oblique: look("iso"); return true;
     case Command::colour_mode:
+      if (tools::CompareWish wish = comparing_.wish(); !wish.field.empty()) {
+        wish.field.clear();  // back to the colours before
+        return compare_action(panels::SetCompare{wish});
+      }
       colour_ = colour_ == render::ColourMode::parts     ? render::ColourMode::quality
                 : colour_ == render::ColourMode::quality ? render::ColourMode::part_states
                                                          : render::ColourMode::parts;

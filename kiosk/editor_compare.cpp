@@ -7,17 +7,14 @@
 namespace prismesh::kiosk {
 namespace {
 
-/// What one looked at is looked at in both of two views, and again in the one.
-void resize(stereo::View& view, double by) {
-  view.mm_per_unit *= by;
-  view.pan_mm *= by;
-}
+/// In two views each is half as large; what is told to other kiosks doesn't depend on how many there are here.
+constexpr double kTwoViewsSize = 0.5;
 
 }  // namespace
 
 bool Editor::compare_command(tools::Command command) {
   if (command == tools::Command::compare_panel) {
-    comparing_.toggle_panel();
+    toggle_left(LeftPanel::comparing);
   } else if (command == tools::Command::two_views) {
     tools::CompareWish wish = comparing_.wish();
     wish.two_views = !wish.two_views;
@@ -42,7 +39,7 @@ bool Editor::compare_action(const panels::PanelAction& action) {
   cancel_gesture();
   const bool two = comparing_.two_views();
   comparing_.set(wanted->wish);
-  if (two && !comparing_.two_views()) resize(view_, 2), view_moved();
+  if (two && !comparing_.two_views()) resize_view(1 / kTwoViewsSize);
   link_changes_ = ~std::uint64_t{0};
   return true;
 }
@@ -57,8 +54,15 @@ Result<void> Editor::follow_states() {
     drawn_hidden_ = comparing_.hidden();
     if (shown_ && link_.snapshot() == shown_) take_model();
   }
-  if (two != comparing_.two_views() && shown_) resize(view_, two ? 2 : 0.5), view_moved();
+  if (two != comparing_.two_views() && shown_) resize_view(two ? 1 / kTwoViewsSize : kTwoViewsSize);
   return {};
+}
+
+/// What one looked at is looked at in both of two views, and again in the one.
+void Editor::resize_view(double by) {
+  view_.mm_per_unit *= by;
+  view_.pan_mm *= by;
+  view_moved();
 }
 
 /// How far each of two views stands from the middle: in the middle of what panels leave of its half.
@@ -69,13 +73,20 @@ bool Editor::pickable(const tools::Pixel& pixel) const {
   return !comparing_.shows_older() && (!comparing_.two_views() || pixel.x() > 0.5 * size_.width);
 }
 
+/// What is there in the left one of two views is in the right one too, unless it came or went in between.
+tools::Pixel Editor::in_picked_view(const tools::Pixel& pixel) const {
+  const bool left = comparing_.two_views() && pixel.x() < 0.5 * size_.width;
+  return left ? tools::Pixel(pixel.x() + 2 * pane_shift() * size_.width, pixel.y()) : pixel;
+}
+
 void Editor::share_view() {
   if (!follows_others_ || !shown_) return;
   ipc::Camera camera;
   camera.pivot = {view_.pivot.x(), view_.pivot.y(), view_.pivot.z()};
   camera.rotation = {view_.rotation.w(), view_.rotation.x(), view_.rotation.y(), view_.rotation.z()};
-  camera.mm_per_unit = view_.mm_per_unit;
-  camera.stands_mm = {view_.pan_mm.x(), view_.pan_mm.y(), view_.before_mm};
+  const double size = comparing_.two_views() ? kTwoViewsSize : 1;
+  camera.mm_per_unit = view_.mm_per_unit / size;
+  camera.stands_mm = {view_.pan_mm.x() / size, view_.pan_mm.y() / size, view_.before_mm};
   if (shared_ == camera) return;
   // Whoever comes last doesn't move the others by coming.
   if (std::exchange(shared_, camera)) link_.share_camera(camera);
@@ -88,8 +99,9 @@ void Editor::take_shared_view() {
   if (!(rotation.norm() > 0.5 && rotation.norm() < 2)) return;
   view_.pivot = {heard->pivot[0], heard->pivot[1], heard->pivot[2]};
   view_.rotation = rotation.normalized();
-  view_.mm_per_unit = heard->mm_per_unit;
-  view_.pan_mm = {heard->stands_mm[0], heard->stands_mm[1]};
+  const double size = comparing_.two_views() ? kTwoViewsSize : 1;
+  view_.mm_per_unit = size * heard->mm_per_unit;
+  view_.pan_mm = size * Eigen::Vector2d(heard->stands_mm[0], heard->stands_mm[1]);
   view_.before_mm = heard->stands_mm[2];
   shared_ = heard;
   shared_->rotation = {view_.rotation.w(), view_.rotation.x(), view_.rotation.y(), view_.rotation.z()};

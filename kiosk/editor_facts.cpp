@@ -77,6 +77,7 @@ panels::PanelData Editor::panel_data() const {
   data.profile = profile_.name;
   data.eyes = eyes_facts_;
   if (profile_.stereo()) data.depth = panels::DepthFacts{depth_.percent(), depth_.degrees(), depth_.keeps_selection()};
+  data.signs = comparing_.coloured() ? "no signs while values are shown" : review_.damaged ? "signs only of what edits made worse" : "";
   data.glyphs_left_out = report_.glyphs_left_out;
   data.busy = link_.busy();
   data.busy_fraction = link_.busy_fraction();
@@ -132,7 +133,7 @@ panels::DocumentFacts Editor::document_facts() const {
   panels::DocumentFacts facts;
   facts.path = info.document;
   facts.nodes = shown_->node_count();
-  facts.shells = shown_->shell_count();
+  facts.shells = info.counts.ok + info.counts.warn + info.counts.fail;  // the arrays hold removed ones too
   facts.generation = info.generation;
   facts.length_unit = info.length_unit;
   facts.target_size = info.target_size;

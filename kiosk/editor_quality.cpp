@@ -35,11 +35,7 @@ QualityLink::Wish Editor::quality_wish() const { return {review_.metric, review_
 bool Editor::quality_command(Command command, const std::optional<Pixel>& pointer) {
   if (const auto operation = operation_of(command)) return pick_operation(*operation, pointer), true;
   switch (command) {
-    case Command::quality_panel:
-      review_.open = !review_.open;
-      if (!review_.open) leave_error();
-      follow_quality();
-      return true;
+    case Command::quality_panel: toggle_left(LeftPanel::quality); return true;
     case Command::next_error: step_error(1); return true;
     case Command::previous_error: step_error(-1); return true;
     case Command::damaged_only:
@@ -114,10 +110,7 @@ void Editor::leave_error() {
 
 void Editor::step_error(int by) {
   if (!shown_) return;
-  if (!review_.open) {
-    review_.open = true;
-    return follow_quality();
-  }
+  if (!review_.open) return show_left(LeftPanel::quality);
   const ipc::Quality* figures = quality_.figures();
   if (figures == nullptr || figures->errors.empty()) return;
   const auto count = static_cast<std::ptrdiff_t>(figures->errors.size());
@@ -196,6 +189,7 @@ void Editor::pick_operation(Operation operation, const std::optional<Pixel>& poi
 
 /// The first click shows what would be done, a second one on the same place does it.
 void Editor::operation_clicked(const Pixel& at) {
+  if (!pickable(at)) return;
   const auto shell = shown_ ? renderer_.shell_at(aim(), at) : std::nullopt;
   const auto target = shell ? tools::hand_target(*renderer_.model(), aim(), *by_hand_.operation, *shell, at) : std::nullopt;
   if (!target) return;

@@ -171,7 +171,7 @@ void Editor::axis_clicked(const Pixel& at) {
 }
 
 void Editor::axis_from_edge(const std::optional<Pixel>& pointer) {
-  const auto shell = pointer && shown_ ? renderer_.shell_at(aim(), *pointer) : std::nullopt;
+  const auto shell = pointer && shown_ && pickable(*pointer) ? renderer_.shell_at(aim(), *pointer) : std::nullopt;
   const auto edge = shell ? tools::edge_at(*renderer_.model(), aim(), *shell, *pointer, region_angle_) : std::nullopt;
   if (edge) return set_axis(edge->axis, edge->what);
   notices_.push_back({Notice::Kind::information, "Point at a shell: the axis is the edge nearest to the pointer."});

@@ -6,11 +6,13 @@ namespace prismesh::kiosk {
 
 void QualityLink::want(const Wish& wish, std::uint64_t generation) {
   if (asking_ && asked_on_ != link_.connections()) asking_ = false;
-  if (asking_ || !link_.connected() || up_to_date(wish, generation)) return;
+  if (asking_ || !link_.connected() || up_to_date(wish, generation) || refused_ == std::pair(wish, generation)) return;
   asking_ = true;
   asked_on_ = link_.connections();
-  link_.question(ipc::GetQuality{wish.metric, wish.damaged}, [this, wish](const ipc::Answer& answer) {
+  link_.question(ipc::GetQuality{wish.metric, wish.damaged}, [this, wish, generation](const ipc::Answer& answer) {
     asking_ = false;
+    refused_.reset();
+    if (std::holds_alternative<ipc::Failed>(answer)) refused_.emplace(wish, generation);
     if (const auto* quality = std::get_if<ipc::Quality>(&answer)) {
       figures_ = *quality;
       figures_of_ = wish;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "kiosk/model_link.h"
 
@@ -22,7 +23,10 @@ class QualityLink {
   /// Asks for the generation's figures unless they are here or on their way. To be called again with everything that is heard.
   void want(const Wish& wish, std::uint64_t generation);
   /// Nobody looks any more.
-  void forget() { figures_.reset(); }
+  void forget() {
+    figures_.reset();
+    refused_.reset();
+  }
   /// The newest that have come; possibly of another wish or generation.
   const ipc::Quality* figures() const { return figures_ ? &*figures_ : nullptr; }
   bool up_to_date(const Wish& wish, std::uint64_t generation) const {
@@ -47,6 +51,7 @@ class QualityLink {
   ModelLink& link_;
   std::optional<ipc::Quality> figures_;
   Wish figures_of_;
+  std::optional<std::pair<Wish, std::uint64_t>> refused_;  ///< of which generation: asking again would change nothing
   bool asking_ = false;
   std::uint64_t asked_on_ = 0;  ///< the connection that was asked: a newer one knows nothing of it
   std::optional<Previewed> previewed_;

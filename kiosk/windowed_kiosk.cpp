@@ -108,7 +108,7 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   const std::optional<tools::Command> command = tools::command_for(event.key, event.modifiers);
   if (!command || (event.repeat && !tools::repeats(*command))) return {};
   // While a path is typed the keyboard is the text field's.
-  if ((station_.editor.dialog_open() || station_.screen.gui().wants_keys()) && *command != tools::Command::cancel) return {};
+  if (station_.editor.dialog_open() ? *command != tools::Command::cancel : station_.screen.gui().wants_keys()) return {};
   gestures_.forget_click();
   if (*command == tools::Command::cancel) gestures_.cancel();
   do_command(*command);

@@ -57,7 +57,8 @@ void picture_section(const PanelData& data, Actions& actions) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("colour by");
   ImGui::SameLine();
-  const char* colour = data.colour_by_quality ? "quality" : data.colour_by_state ? "parts' state" : "part";
+  const bool field = data.compare && !data.compare->wish.field.empty();
+  const char* colour = field ? "values" : data.colour_by_quality ? "quality" : data.colour_by_state ? "parts' state" : "part";
   if (ImGui::SmallButton(colour)) actions.emplace_back(Command::colour_mode);
   hint(Command::colour_mode);
   ImGui::TextDisabled("display");
@@ -75,9 +76,7 @@ void picture_section(const PanelData& data, Actions& actions) {
 
 void document_panel(const PanelData& data, display::PixelSize picture, Actions& actions) {
   const DocumentFacts& document = *data.document;
-  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
-  ImGui::SetNextWindowSize(ImVec2(side_width(picture), 0));
-  ImGui::Begin("Document", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+  begin_left("Document", picture);
   const float width = ImGui::GetContentRegionAvail().x;
   const std::filesystem::path path(document.path);
   ImGui::PushFont(title_font());

@@ -1,5 +1,7 @@
 #include "kiosk/panels/layout.h"
 
+#include <algorithm>
+
 #include "kiosk/panels/text.h"
 
 namespace prismesh::kiosk::panels {
@@ -45,6 +47,13 @@ void section(const char* title) {
   ImGui::Dummy(ImVec2(0, kGrid / 2));
   ImGui::Separator();
   ImGui::TextUnformatted(title);
+}
+
+void begin_left(const char* name, display::PixelSize picture) {
+  const float width = side_width(picture), highest = std::max(kMargin, static_cast<float>(picture.height) - 2 * kMargin);
+  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, highest));
+  ImGui::Begin(name, nullptr, (kPanelFlags & ~ImGuiWindowFlags_NoScrollbar) | ImGuiWindowFlags_AlwaysAutoResize);
 }
 
 }  // namespace prismesh::kiosk::panels

@@ -36,4 +36,7 @@ void fact(const char* label, const std::string& value);
 
 void section(const char* title);
 
+/// The panel at the left, as high as its content but within the picture: then it scrolls.
+void begin_left(const char* name, display::PixelSize picture);
+
 }  // namespace prismesh::kiosk::panels

@@ -63,6 +63,7 @@ bool edit_limit(const char* name, double& value, double span, float width) {
 }  // namespace
 
 std::string worst_words(const LegendFacts& facts) {
+  if (facts.min == facts.max) return short_number(facts.max) + " everywhere";
   const bool large = large_is_worse(facts.look);
   return fmt::format("{} {} at {}", large ? "most" : "least", short_number(large ? facts.max : facts.min),
                      large ? facts.max_at : facts.min_at);
@@ -100,7 +101,7 @@ DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture) {
     const bool clear_set = edit_limit("##clear", clear, full - clear, limit_width);
     ImGui::SameLine(inner - limit_width + ImGui::GetStyle().WindowPadding.x);
     const bool full_set = edit_limit("##full", full, full - clear, limit_width);
-    if ((clear_set || full_set) && clear != full) drawn.wanted = SetLimits{*facts.pane, clear, full};
+    if ((clear_set || full_set) && clear != full) drawn.wanted = SetLimits{clear, full};
   } else {
     const std::string left = short_number(clear), right = short_number(full);
     ImGui::TextUnformatted(left.c_str());
@@ -125,7 +126,7 @@ DrawnLegend legend(const LegendFacts& facts, display::PixelSize picture) {
 namespace {
 
 struct Choice {
-  const char* words;
+  std::string words;
   std::string field;
 };
 
@@ -137,8 +138,8 @@ std::vector<Choice> choices() {
                           {"composite quality", "composite"},
                           {"time step", "time-step"}};
   for (int m = 0; m < mesh::quality::kMetricCount; ++m) {
-    const std::string_view metric = mesh::quality::name(static_cast<mesh::quality::Metric>(m));
-    all.push_back({metric.data(), "metric:" + std::string(metric)});
+    const std::string metric(mesh::quality::name(static_cast<mesh::quality::Metric>(m)));
+    all.push_back({metric_words(metric), "metric:" + metric});
   }
   return all;
 }
@@ -165,47 +166,57 @@ bool choose_state(const char* label, const CompareFacts& facts, std::optional<st
   return chosen;
 }
 
-void choose_field(const CompareFacts& facts, tools::CompareWish& wanted) {
+/// A field whose text is taken when it is left, by whatever key or click.
+void text_field(const char* name, const char* hint_text, std::string& typed, std::string& taken) {
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputTextWithHint(name, hint_text, &typed);
+  if (!ImGui::IsItemActive()) taken = typed;
+}
+
+void choose_against(const CompareFacts& facts, CompareEntry& entry, tools::CompareWish& wanted) {
+  ImGui::TextDisabled("against");
+  ImGui::SetNextItemWidth(-1);
+  const bool deck = !wanted.against_generation && !tools::is_state(wanted.against);
+  const std::string words = wanted.against_generation     ? words_of(facts, wanted.against_generation)
+                            : deck                        ? "another deck"
+                            : wanted.against == "surface" ? "the surface as last shaped"
+                                                          : "the deck as opened";
+  if (ImGui::BeginCombo("##against", printable(words).c_str())) {
+    const auto fixed = [&](const char* label, bool chosen, const std::string& against) {
+      if (!ImGui::Selectable(label, chosen)) return;
+      wanted.against = against;
+      wanted.against_generation.reset();
+    };
+    const bool state = !wanted.against_generation;
+    fixed("the deck as opened", state && wanted.against == "opened", "opened");
+    fixed("the surface as last shaped", state && wanted.against == "surface", "surface");
+    fixed("another deck", deck, entry.deck);
+    for (const CompareFacts::State& each : facts.states) {
+      ImGui::PushID(static_cast<int>(each.number));
+      if (ImGui::Selectable(printable(each.words).c_str(), wanted.against_generation == each.number))
+        wanted.against_generation = each.number;
+      ImGui::PopID();
+    }
+    ImGui::EndCombo();
+  }
+  if (deck) text_field("##deck", "the deck's path", entry.deck, wanted.against);
+}
+
+void choose_field(const CompareFacts& facts, CompareEntry& entry, tools::CompareWish& wanted) {
   section("Colours");
   const std::vector<Choice> all = choices();
   const auto now = std::find_if(all.begin(), all.end(), [&](const Choice& each) { return each.field == wanted.field; });
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::BeginCombo("##field", now != all.end() ? now->words : "")) {
+  if (ImGui::BeginCombo("##field", now != all.end() ? now->words.c_str() : "")) {
     for (const Choice& each : all)
-      if (ImGui::Selectable(each.words, each.field == wanted.field)) wanted.field = each.field;
+      if (ImGui::Selectable(each.words.c_str(), each.field == wanted.field)) wanted.field = each.field;
     ImGui::EndCombo();
   }
-  if (wanted.field == "displacement" || wanted.field == "distance-to-original") {
-    ImGui::TextDisabled("against");
-    ImGui::SetNextItemWidth(-1);
-    const std::string words = wanted.against_generation     ? words_of(facts, wanted.against_generation)
-                              : wanted.against == "surface" ? "the surface as last shaped"
-                                                            : "the deck as opened";
-    if (ImGui::BeginCombo("##against", printable(words).c_str())) {
-      const auto fixed = [&](const char* label, const char* against) {
-        if (ImGui::Selectable(label, !wanted.against_generation && wanted.against == against)) {
-          wanted.against = against;
-          wanted.against_generation.reset();
-        }
-      };
-      fixed("the deck as opened", "opened");
-      fixed("the surface as last shaped", "surface");
-      for (const CompareFacts::State& state : facts.states) {
-        ImGui::PushID(static_cast<int>(state.number));
-        if (ImGui::Selectable(printable(state.words).c_str(), wanted.against_generation == state.number))
-          wanted.against_generation = state.number;
-        ImGui::PopID();
-      }
-      ImGui::EndCombo();
-    }
+  if (tools::needs_against(wanted)) choose_against(facts, entry, wanted);
+  if (wanted.field == "distance") {
+    text_field("##from", "from: part:1", entry.from, wanted.from);
+    text_field("##to", "to: part:2", entry.to, wanted.to);
   }
-  if (wanted.field == "distance")
-    for (const auto& [label, hint, text] :
-         {std::tuple("##from", "from: part:1", &wanted.from), std::tuple("##to", "to: part:2", &wanted.to)}) {
-      ImGui::SetNextItemWidth(-1);
-      std::string typed = *text;
-      if (ImGui::InputTextWithHint(label, hint, &typed, ImGuiInputTextFlags_EnterReturnsTrue)) *text = typed;
-    }
   ImGui::Checkbox("in bands", &wanted.bands);
   ImGui::SameLine();
   bool one_hue = wanted.map == render::ColourMap::blues;
@@ -214,19 +225,17 @@ void choose_field(const CompareFacts& facts, tools::CompareWish& wanted) {
 
 }  // namespace
 
-void compare_panel(const PanelData& data, display::PixelSize picture, Actions& actions) {
+void compare_panel(const PanelData& data, display::PixelSize picture, CompareEntry& entry, Actions& actions) {
   const CompareFacts& facts = *data.compare;
   tools::CompareWish wanted = facts.wish;
-  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
-  ImGui::SetNextWindowSize(ImVec2(side_width(picture), 0));
-  ImGui::Begin("Comparing", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+  begin_left("Comparing", picture);
   ImGui::PushFont(title_font());
   ImGui::TextUnformatted("Comparing");
   ImGui::PopFont();
   ImGui::PushFont(small_font());
   ImGui::TextDisabled("Shift+C closes; colours and views stay");
   ImGui::PopFont();
-  choose_field(facts, wanted);
+  choose_field(facts, entry, wanted);
   if (!facts.problem.empty()) ImGui::TextWrapped("%s", printable(facts.problem).c_str());
   section("Views");
   ImGui::Checkbox("two views, side by side", &wanted.two_views);
@@ -247,6 +256,17 @@ void compare_panel(const PanelData& data, display::PixelSize picture, Actions& a
   }
   ImGui::End();
   if (wanted != facts.wish) actions.emplace_back(SetCompare{wanted});
+}
+
+void view_captions(const CompareFacts& facts, display::PixelSize picture, float top) {
+  for (std::size_t i = 0; i < facts.captions.size(); ++i) {
+    const CompareFacts::Caption& caption = facts.captions[i];
+    ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(caption.centre * picture.width)), top), 0, ImVec2(0.5f, 0));
+    ImGui::Begin(("View" + std::to_string(i)).c_str(), nullptr,
+                 kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs);
+    ImGui::TextUnformatted(printable(caption.words).c_str());
+    ImGui::End();
+  }
 }
 
 }  // namespace prismesh::kiosk::panels

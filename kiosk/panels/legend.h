@@ -26,13 +26,13 @@ struct LegendFacts {
   std::optional<std::size_t> pane;  ///< whose limits may be changed here; empty: only shown
 };
 
-/// New limits for the field of a pane.
+/// New limits for the colours of both views.
 struct SetLimits {
-  std::size_t pane = 0;
   double clear = 0, full = 1;
 };
 
-/// The value that is farthest toward the map's end, and where: "most 3.1 at node:12", or "least .." where small values are coloured.
+/// The value that is farthest toward the map's end, and where: "most 3.1 at node:12", "least .." where small values are coloured, or
+/// "0 everywhere".
 std::string worst_words(const LegendFacts& facts);
 /// What the colours don't show, a sentence each.
 std::vector<std::string> legend_notes(const LegendFacts& facts);
@@ -53,10 +53,21 @@ struct CompareFacts {
   };
   tools::CompareWish wish;
   std::vector<State> states;  ///< oldest first
+  /// Which state is seen where.
+  struct Caption {
+    std::string words;
+    double centre = 0.5;  ///< as a share of the picture's width
+  };
+  std::vector<Caption> captions;  ///< none where there is the current state alone
   std::uint64_t current = 0;
   bool panel_open = false;
   std::vector<LegendFacts> legends;
   std::string problem;  ///< why there are no colours; empty: there are, or none are wanted
+};
+
+/// What is being typed on the panel, from one layout to the next.
+struct CompareEntry {
+  std::string from, to, deck;
 };
 
 struct SetCompare {

@@ -34,13 +34,12 @@ void quality_section(const PanelData& data) {
   quality_row("ok", Signal::ok, before.ok, ok);
   quality_row("warn", Signal::warn, before.warn, warn);
   quality_row("fail", Signal::fail, before.fail, failed);
-  if (data.glyphs_left_out > 0) {
-    ImGui::PushFont(small_font());
-    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    ImGui::TextWrapped("%s more marks than can be drawn", grouped(data.glyphs_left_out).c_str());
-    ImGui::PopStyleColor();
-    ImGui::PopFont();
-  }
+  ImGui::PushFont(small_font());
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+  if (!data.signs.empty()) ImGui::TextWrapped("%s", data.signs.c_str());
+  if (data.glyphs_left_out > 0) ImGui::TextWrapped("%s more marks than can be drawn", grouped(data.glyphs_left_out).c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
 }
 
 /// A padlock, closed or (faint) open; true when clicked.

@@ -104,7 +104,7 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
   const bool covered = data.help || data.menu || data.dialog == Dialog::open || data.dialog == Dialog::save_as;
   if (data.document && data.connected && !covered) {
     if (data.compare && data.compare->panel_open)
-      compare_panel(data, picture, actions);
+      compare_panel(data, picture, compare_entry_, actions);
     else if (data.quality)
       quality_panel(data, picture, actions);
     else if (data.shaping_open)
@@ -118,6 +118,7 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
         if (drawn.wanted) actions.emplace_back(*drawn.wanted);
         bottom = std::min(bottom, drawn.top - kGrid);
       }
+    if (data.compare) view_captions(*data.compare, picture, data.guidance.empty() ? kMargin : kMargin + 3 * ImGui::GetFontSize());
   }
   state_panel(data, picture);
   if (data.connected && data.dialog != Dialog::none)

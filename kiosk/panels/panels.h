@@ -133,6 +133,7 @@ struct PanelData {
   std::string profile;
   std::optional<EyesFacts> eyes;
   std::optional<DepthFacts> depth;
+  std::string signs;  ///< which signs of quality are left out on purpose; empty: none
   std::uint64_t glyphs_left_out = 0;
   std::optional<Notice> notice;
   std::size_t more_notices = 0;
@@ -206,6 +207,7 @@ class Panels {
   Dialog shown_dialog_ = Dialog::none;
   std::string typed_;
   EntryState entry_;
+  CompareEntry compare_entry_;
   bool caret_to_end_ = false;
   std::vector<std::string> offered_;
   std::string offered_for_;

@@ -151,6 +151,10 @@ void errors_section(const QualityFacts& facts, Actions& actions) {
   const bool shown = facts.error && *facts.error < figures.errors.size();
   ImGui::TextDisabled(
       "%s", shown ? fmt::format("{} of {}", *facts.error + 1, grouped(figures.error_count)).c_str() : grouped(figures.error_count).c_str());
+  if (figures.errors.size() < figures.error_count) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("listed: %s", grouped(figures.errors.size()).c_str());
+  }
   const std::size_t first = shown ? *facts.error : 0;
   const std::size_t end = std::min(first + 3, figures.errors.size());
   for (std::size_t i = first; i < end; ++i) {
@@ -207,9 +211,7 @@ void commands_section(Actions& actions) {
 
 void quality_panel(const PanelData& data, display::PixelSize picture, Actions& actions) {
   const QualityFacts& facts = *data.quality;
-  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
-  ImGui::SetNextWindowSize(ImVec2(side_width(picture), 0));
-  ImGui::Begin("Quality", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+  begin_left("Quality", picture);
   ImGui::PushFont(title_font());
   ImGui::TextUnformatted("Quality");
   ImGui::PopFont();

@@ -64,9 +64,7 @@ void check(const char* label, bool value, Command toggle, Actions& actions) {
 void shaping_panel(const PanelData& data, display::PixelSize picture, Actions& actions) {
   const ShapingOptions& now = data.shaping;
   const std::string& unit = data.document->length_unit;
-  ImGui::SetNextWindowPos(ImVec2(kMargin, kMargin));
-  ImGui::SetNextWindowSize(ImVec2(side_width(picture), 0));
-  ImGui::Begin("Shaping", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+  begin_left("Shaping", picture);
   ImGui::PushFont(title_font());
   ImGui::TextUnformatted("Shaping");
   ImGui::PopFont();

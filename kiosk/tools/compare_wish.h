@@ -11,7 +11,7 @@ namespace prismesh::kiosk::tools {
 
 struct CompareWish {
   std::string field;                                ///< as mesh::document::field_wish takes it; empty: other colours
-  std::string against = "opened";                   ///< or "surface"
+  std::string against = "opened";                   ///< or "surface", or another deck's path; empty: not said yet
   std::optional<std::uint64_t> against_generation;  ///< goes before it
   std::string from, to;                             ///< expressions, of "distance"
   std::optional<std::uint64_t> shown;               ///< a generation; empty: the current one, always
@@ -21,5 +21,10 @@ struct CompareWish {
   bool bands = false;
   bool operator==(const CompareWish&) const = default;
 };
+
+/// Whether the field compares with something.
+inline bool needs_against(const CompareWish& wish) { return wish.field == "displacement" || wish.field == "distance-to-original"; }
+/// Not another deck.
+inline bool is_state(const std::string& against) { return against == "opened" || against == "surface"; }
 
 }  // namespace prismesh::kiosk::tools

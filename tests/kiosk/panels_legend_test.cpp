@@ -25,6 +25,9 @@ LegendFacts facts_of(double clear, double full) {
 TEST(Legend, NamesTheValueThatIsFarthestTowardTheMapsEnd) {
   EXPECT_EQ(worst_words(facts_of(1, 5)), "most 12.35 at shell:12");
   EXPECT_EQ(worst_words(facts_of(0.5, 0)), "least -0.00002 at shell:7") << "small values are the coloured ones";
+  LegendFacts even = facts_of(1, 5);
+  even.min = even.max = 0;
+  EXPECT_EQ(worst_words(even), "0 everywhere");
 }
 
 TEST(Legend, SaysWhatTheColoursDoNotShow) {

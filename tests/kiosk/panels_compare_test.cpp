@@ -1,0 +1,115 @@
+// The panel on which is chosen what is compared, and what all panels at the left share.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kiosk/panels/panels.h"
+#include "tests/kiosk/gui_test.h"
+
+namespace prismesh::kiosk::panels {
+namespace {
+
+class LeftPanels : public GuiTest {
+ protected:
+  void SetUp() override {
+    GuiTest::SetUp();
+    if (HasFatalFailure() || IsSkipped()) return;
+    data_.connected = true;
+    data_.document.emplace();
+  }
+  /// The wish that was asked for becomes what is shown, as the kiosk has it.
+  void lay_out() {
+    gui_->layout(picture_, 0.016, [&] {
+      for (const PanelAction& action : panels_.build(data_, picture_))
+        if (const auto* set = std::get_if<SetCompare>(&action)) data_.compare->wish = set->wish;
+    });
+  }
+  void click(double x, double y) {
+    gui_->feed(display::PointerMoved{x, y, {}});
+    lay_out();
+    for (const bool down : {true, false}) {
+      gui_->feed(display::ButtonChanged{display::MouseButton::left, down, x, y, {}});
+      lay_out();
+    }
+  }
+  void press(display::Key key) {
+    for (const bool down : {true, false}) {
+      gui_->feed(display::KeyChanged{key, down, false, {}});
+      lay_out();
+    }
+  }
+  void type(const std::string& text) {
+    gui_->feed(display::TextTyped{text});
+    lay_out();
+  }
+  void leave_field() {
+    click(picture_.width / 2.0, picture_.height / 2.0);
+    for (int round = 0; round < 30; ++round) lay_out();  // the next click is another
+  }
+  /// Where the text fields of the panel are, from above.
+  std::vector<double> fields() {
+    std::vector<double> found;
+    bool inside = false;
+    for (double y = 60; y < picture_.height - 20; y += 4) {
+      if (!gui_->on_panel(60, y)) break;
+      const tools::CompareWish before = data_.compare->wish;
+      click(60, y);
+      if (gui_->wants_keys() && !inside) found.push_back(y + 6);
+      inside = gui_->wants_keys();
+      press(display::Key::escape);
+      leave_field();
+      data_.compare->wish = before;
+    }
+    return found;
+  }
+
+  display::PixelSize picture_{900, 700};
+  PanelData data_;
+  Panels panels_;
+};
+
+TEST_F(LeftPanels, BothExpressionsOfADistanceAreTakenHoweverTheirFieldsAreLeft) {
+  data_.compare.emplace();
+  data_.compare->panel_open = true;
+  data_.compare->wish.field = "distance";
+  for (int round = 0; round < 3; ++round) lay_out();
+  const std::vector<double> at = fields();
+  ASSERT_EQ(at.size(), 2U);
+  click(60, at[0]);
+  type("part:1");
+  click(60, at[1]);
+  type("part:2");
+  leave_field();
+  EXPECT_EQ(data_.compare->wish.from, "part:1");
+  EXPECT_EQ(data_.compare->wish.to, "part:2");
+  click(60, at[1]);
+  type(",part:3");
+  press(display::Key::enter);
+  EXPECT_THAT(data_.compare->wish.to, testing::HasSubstr("part:3"));
+}
+
+TEST_F(LeftPanels, AnotherDeckIsNamedByItsPath) {
+  data_.compare.emplace();
+  data_.compare->panel_open = true;
+  data_.compare->wish.field = "displacement";
+  data_.compare->wish.against = "";
+  for (int round = 0; round < 3; ++round) lay_out();
+  const std::vector<double> at = fields();
+  ASSERT_EQ(at.size(), 1U);
+  click(60, at[0]);
+  type("/decks/before.k");
+  press(display::Key::enter);
+  EXPECT_EQ(data_.compare->wish.against, "/decks/before.k");
+}
+
+TEST_F(LeftPanels, NoneRunsOffASmallPictureInTheLargeTypeOfStereo) {
+  picture_ = {1280, 720};
+  ASSERT_TRUE(gui_->set_type(kStereoType));
+  data_.profile = "prism-mask";
+  data_.history_cap = 1U << 30;
+  for (int round = 0; round < 3; ++round) lay_out();
+  EXPECT_TRUE(gui_->on_panel(60, picture_.height - 60.0)) << "the panel has more to say than finds room";
+  EXPECT_FALSE(gui_->on_panel(60, picture_.height - 4.0));
+}
+
+}  // namespace
+}  // namespace prismesh::kiosk::panels
