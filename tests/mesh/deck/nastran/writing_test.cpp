@@ -158,8 +158,10 @@ TEST(NastranWriter, a_pressure_on_a_range_gets_cards_of_its_own_for_more) {
             "PLOAD4        10   10144     1.5                            THRU   10145\n"
             "PLOAD4        10   22051     1.5\n"
             "PLOAD4        10   22052     1.5");
-  EXPECT_EQ(joined("PLOAD4,10,4,1.5,2.,,,THRU,9\n+,3,0.,0.,1.", "PLOAD4", {20}),
-            "PLOAD4,10,4,1.5,2.,,,THRU,9\n+,3,0.,0.,1.\nPLOAD4,10,20,1.5,2.,,,,\n+,3,0.,0.,1.");
+  EXPECT_EQ(joined("PLOAD4,10,4,1.5,1.5,,,THRU,9\n+,3,0.,0.,1.", "PLOAD4", {20}),
+            "PLOAD4,10,4,1.5,1.5,,,THRU,9\n+,3,0.,0.,1.\nPLOAD4,10,20,1.5,1.5,,,,\n+,3,0.,0.,1.");
+  EXPECT_NE(joined("PLOAD4,10,4,1.5,2.,,,THRU,9\n+,3,0.,0.,1.", "PLOAD4", {20}).find("different pressures"), std::string::npos)
+      << "each piece would have all of what goes from corner to corner";
 }
 
 TEST(NastranWriter, lists_grow_only_where_their_entry_has_room) {
@@ -228,6 +230,8 @@ TEST(NastranWriter, single_cards_are_copied) {
   };
   EXPECT_EQ(copied("SPC,7,1,123,0.,2,456,.5", "SPC", Referred::node, 2), "\nSPC,7,20,456,.5");
   EXPECT_EQ(copied("PLOAD4         7       1     1.5", "PLOAD4", Referred::shell, 1), "\nPLOAD4         7      20     1.5");
+  EXPECT_EQ(copied("PLOAD4,7,1,1.5,,1.50", "PLOAD4", Referred::shell, 1), "\nPLOAD4,7,20,1.5,,1.50");
+  EXPECT_NE(copied("PLOAD4,7,1,1.5,,2.5", "PLOAD4", Referred::shell, 1).find("different pressures"), std::string::npos);
 }
 
 TEST(NastranSave, a_moved_node_changes_its_card_alone_whatever_its_system) {

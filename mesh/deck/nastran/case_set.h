@@ -1,0 +1,21 @@
+// SET commands of case control, whose ids stand one behind the other, unlike those of bulk data. Private to the writer.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "mesh/deck/card_writer.h"
+
+namespace prismesh::mesh::deck::nastran {
+
+/// The text of a command, which begins with "SET", without some of the ids that stand in it one by one. Errors: the reason.
+Result<std::string> without_in_case_set(std::string text, std::span<const std::int64_t> leaving);
+
+/// More ids for the command at `set`: at its end, on lines of their own. Errors: the reason.
+Result<std::vector<Replacement>> join_case_set(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids);
+
+}  // namespace prismesh::mesh::deck::nastran
