@@ -76,12 +76,24 @@ class CardWriter {
   /// Whether a triangle may stand in for a quad on this card (false: its keyword or type says how many corners it has).
   virtual bool holds_triangles_and_quads(std::string_view text, std::size_t offset, std::uint16_t style) const = 0;
 
-  /// Whether the card gives its node what a new node between such nodes must have as well: constraints, an output system. Empty: it
-  /// doesn't; else the same text for cards that give the same.
+  /// A block of its own for some cards, to be put in at `offset`. They follow its header in the given order.
+  struct NewBlock {
+    std::size_t offset = 0;
+    std::string header;  ///< keyword line, without its end
+  };
+
+  /// Whether the card gives its node what a new node between such nodes must have as well: constraints, an output system, a set that its
+  /// keyword names. Empty: it doesn't; else the same text for cards that give the same.
   virtual std::string node_constraints(std::string_view, std::size_t, std::uint16_t) const { return {}; }
   /// As new_node, with what node_constraints tells of the card.
   virtual Result<WrittenCard> new_constrained_node(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id,
                                                    const Vec3& at) const;
+
+  /// Whether nothing may lie between nodes whose cards give different such things (false: it has none of them there, as of sets).
+  virtual bool constraints_must_agree() const { return true; }
+  /// Where the block gives its nodes these things, and not each card: one without, for new nodes (as new_node writes them) that must not
+  /// have them. nullopt: beside the card at `offset` they don't.
+  virtual std::optional<NewBlock> block_without_constraints(std::string_view, std::size_t, std::uint16_t) const { return std::nullopt; }
 
   /// As shell, for where holds_triangles_and_quads says no: the card in the manner of the one at `manner_offset` (another keyword's, with
   /// the wanted number of corners and of the same part), with what the one at `offset` has of its own (thickness, angle, ...).
@@ -91,12 +103,7 @@ class CardWriter {
   /// Whether a card that names shells can name one with so many corners (false: it names only those of the other kind).
   virtual bool can_name(const Referrer&, bool) const { return true; }
 
-  /// Where the part has no card of the wanted kind: a block of its own for those shells, to be put in at `offset`. The cards follow its
-  /// header in the given order.
-  struct NewBlock {
-    std::size_t offset = 0;
-    std::string header;  ///< keyword line, without its end
-  };
+  /// Where the part has no card of the wanted kind beside which those shells could stand.
   /// Beside the block that the card at `offset` stands in. Errors: the reason.
   virtual Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t style, bool triangles) const;
   /// As shell, as a card of such a block.

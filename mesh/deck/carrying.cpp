@@ -40,7 +40,14 @@ struct ListChange {
 class Carrying {
  public:
   Carrying(const Deck& deck, const Model& original, const Model& model, const Changes& changes, const CardWriter& writer)
-      : deck_(deck), references_(*deck.references), original_(original), model_(model), changes_(changes), writer_(writer), unread_(deck) {}
+      : deck_(deck),
+        references_(*deck.references),
+        original_(original),
+        model_(model),
+        changes_(changes),
+        writer_(writer),
+        deletion_(deck),
+        division_(deck) {}
 
   Result<Carried> run() {
     find_families();
@@ -63,6 +70,10 @@ class Carrying {
   std::string_view text_of(const Referrer& card) const { return deck_.files[card.file].bytes.text(); }
   tl::unexpected<Error> refuse(const Referrer& card, std::uint64_t offset, const std::string& message) const {
     return fail(deck_.files[card.file].path.string(), line_number(text_of(card), offset), message + "; nothing was written");
+  }
+  static Result<void> and_nothing_written(Result<void> checked) {
+    if (!checked) checked.error().message += "; nothing was written";
+    return checked;
   }
   std::string words(const Referrer& card) const { return card_name(deck_.format, card); }
   std::string keyword_of(const Referrer& card) const {
@@ -134,6 +145,7 @@ class Carrying {
     const std::int64_t id = model_.node_ids[node.value];
     std::vector<std::int64_t> parents;
     for (const NodeIndex ancestor : deck_ancestors(model_, node)) parents.push_back(model_.node_ids[ancestor.value]);
+    if (Result<void> may = and_nothing_written(division_.may_be_between(parents)); !may) return may;
     if (Result<void> joined = join_sets(Referred::node, id, parents); !joined) return joined;
     // Cards that name one node alone count for what lies between where all are named by such a card.
     std::map<std::string, std::vector<Reference>> by_keyword;
@@ -181,6 +193,7 @@ class Carrying {
 
   Result<void> split_shell(ShellIndex ancestor, const std::vector<ShellIndex>& children) {
     const std::int64_t parent = original_.shell_ids[ancestor.value];
+    if (Result<void> may = and_nothing_written(division_.may_be_divided(parent)); !may) return may;
     std::vector<std::int64_t> ids;
     for (const ShellIndex child : children) ids.push_back(model_.shell_ids[child.value]);
     for (const std::int64_t id : ids)
@@ -188,12 +201,7 @@ class Carrying {
     for (const Reference& reference : references_.naming(Referred::shell, parent)) {
       if (reference.role != ReferenceRole::single) continue;
       const Referrer& card = referrer(reference);
-      const Inheritance inheritance = writer_.inheritance(card, Referred::shell);
-      if (inheritance == Inheritance::stays) continue;
-      if (inheritance == Inheritance::forbids)
-        return refuse(
-            card, reference.card,
-            "shell " + std::to_string(parent) + " can't be divided: " + words(card) + " names it, which can't be passed on to its pieces");
+      if (writer_.inheritance(card, Referred::shell) == Inheritance::stays) continue;
       for (const std::int64_t id : ids) copies_[{reference.referrer, reference.card}][id] = {reference, Referred::shell};
     }
     return {};
@@ -268,9 +276,7 @@ class Carrying {
         return refuse(card, reference.card, what + " can't be removed: a segment of " + words(card) + " names it");
       }
     }
-    Result<void> unnamed = unread_.unnamed_in_unread(referred, id);
-    if (!unnamed) unnamed.error().message += "; nothing was written";
-    return unnamed;
+    return and_nothing_written(deletion_.unnamed_in_unread(referred, id));
   }
 
   // --- writing ---
@@ -317,7 +323,8 @@ class Carrying {
   const Model& model_;
   const Changes& changes_;
   const CardWriter& writer_;
-  DeletionCheck unread_;
+  DeletionCheck deletion_;
+  DivisionCheck division_;
   std::map<ShellIndex, std::vector<ShellIndex>> families_;
   std::map<std::pair<std::uint32_t, bool>, ListChange> lists_;  ///< by set, and whether nodes change in it (else elements)
   std::map<CardKey, std::map<std::int64_t, std::pair<Reference, Referred>>> copies_;

@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "mesh/deck/card_writer.h"
 #include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck {
@@ -59,6 +60,12 @@ std::string card_name(Format format, const Referrer& card) {
   return out;
 }
 
+std::string unread_name(const Deck& deck, const UnreadText& unread) {
+  Referrer card;
+  card.keyword = unread.keyword;
+  return card_name(deck.format, card) + " isn't read in this version, and may name it";
+}
+
 std::vector<std::string> what_names(const Deck& deck, Referred referred, std::int64_t id, std::size_t most) {
   std::vector<Reference> naming = deck.references->naming(referred, id);
   const auto referrer = [&](const Reference& reference) -> const Referrer& { return deck.references->referrers()[reference.referrer]; };
@@ -77,6 +84,48 @@ std::vector<std::string> what_names(const Deck& deck, Referred referred, std::in
   }
   if (more > 0) out.push_back("and " + std::to_string(more) + " more");
   return out;
+}
+
+void UnreadNumbers::gather() {
+  if (numbers_) return;
+  numbers_.emplace();
+  std::vector<std::int64_t> found;
+  const auto unread = deck_.references->unread();
+  for (std::uint32_t u = 0; u < unread.size(); ++u) {
+    found.assign(unread[u].parameter_values.begin(), unread[u].parameter_values.end());
+    if (!unread[u].encrypted)
+      gather_whole_numbers(deck_.files[unread[u].file].bytes.text().substr(unread[u].begin, unread[u].end - unread[u].begin), found);
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    for (const std::int64_t number : found) numbers_->emplace_back(number, u);
+  }
+  std::sort(numbers_->begin(), numbers_->end());
+}
+
+std::vector<std::uint32_t> UnreadNumbers::texts_with(Referred referred, std::int64_t id) const {
+  // A transformed include has its ids less its offset; which one this text has doesn't matter where any of them would hit.
+  std::set<std::int64_t> written{id};
+  for (const IdOffsets& offsets : deck_.id_offsets)
+    written.insert(id - (referred == Referred::node ? offsets.node : referred == Referred::part ? offsets.part : offsets.element));
+  std::vector<std::uint32_t> texts;
+  for (const std::int64_t number : written)
+    for (auto at = std::lower_bound(numbers_->begin(), numbers_->end(), std::pair(number, std::uint32_t{0}));
+         at != numbers_->end() && at->first == number; ++at)
+      texts.push_back(at->second);
+  std::sort(texts.begin(), texts.end());
+  return texts;
+}
+
+const UnreadText* UnreadNumbers::holding_all(Referred referred, std::span<const std::int64_t> ids) {
+  if (deck_.references->unread().empty()) return nullptr;
+  gather();
+  std::vector<std::uint32_t> all = texts_with(referred, ids.front());
+  for (const std::int64_t id : ids.subspan(1)) {
+    if (all.empty()) break;
+    const std::vector<std::uint32_t> others = texts_with(referred, id);
+    std::erase_if(all, [&](std::uint32_t text) { return !std::binary_search(others.begin(), others.end(), text); });
+  }
+  return all.empty() ? nullptr : &deck_.references->unread()[all.front()];
 }
 
 std::optional<Error> DeletionCheck::named_by_card(Referred referred, std::int64_t id, const std::string& what) const {
@@ -99,38 +148,10 @@ std::optional<Error> DeletionCheck::named_unseen(const std::string& what) const 
   return std::nullopt;
 }
 
-void DeletionCheck::gather_numbers() {
-  if (numbers_) return;
-  numbers_.emplace();
-  std::vector<std::int64_t> found;
-  const auto unread = deck_.references->unread();
-  for (std::uint32_t u = 0; u < unread.size(); ++u) {
-    found.assign(unread[u].parameter_values.begin(), unread[u].parameter_values.end());
-    if (!unread[u].encrypted)
-      gather_whole_numbers(deck_.files[unread[u].file].bytes.text().substr(unread[u].begin, unread[u].end - unread[u].begin), found);
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    for (const std::int64_t number : found) numbers_->emplace_back(number, u);
-  }
-  std::sort(numbers_->begin(), numbers_->end());
-}
-
 std::optional<Error> DeletionCheck::named_in_unread(Referred referred, std::int64_t id, const std::string& what) {
-  gather_numbers();
-  // A transformed include has its ids less its offset; which one this text has doesn't matter where any of them would hit.
-  std::set<std::int64_t> written{id};
-  for (const IdOffsets& offsets : deck_.id_offsets)
-    written.insert(id - (referred == Referred::node ? offsets.node : referred == Referred::part ? offsets.part : offsets.element));
-  for (const std::int64_t number : written) {
-    const auto found = std::lower_bound(numbers_->begin(), numbers_->end(), std::pair(number, std::uint32_t{0}));
-    if (found == numbers_->end() || found->first != number) continue;
-    const UnreadText& unread = deck_.references->unread()[found->second];
-    Referrer card;
-    card.keyword = unread.keyword;
-    return refusal(deck_, unread.file, unread.begin,
-                   what + " can't be removed: " + card_name(deck_.format, card) + " isn't read in this version, and may name it");
-  }
-  return std::nullopt;
+  const UnreadText* unread = unread_.holding_all(referred, std::span(&id, 1));
+  if (unread == nullptr) return std::nullopt;
+  return refusal(deck_, unread->file, unread->begin, what + " can't be removed: " + unread_name(deck_, *unread));
 }
 
 Result<void> DeletionCheck::may_be_deleted(Referred referred, std::int64_t id) {
@@ -145,6 +166,35 @@ Result<void> DeletionCheck::unnamed_in_unread(Referred referred, std::int64_t id
   if (!error) error = named_in_unread(referred, id, what);
   if (error) return fail(std::move(*error));
   return {};
+}
+
+DivisionCheck::DivisionCheck(const Deck& deck) : deck_(deck), writer_(card_writer(deck.format)), unread_(deck) {}
+DivisionCheck::~DivisionCheck() = default;
+
+Result<void> DivisionCheck::may_be_divided(std::int64_t shell) {
+  const std::string what = "shell " + std::to_string(shell) + " can't be divided: ";
+  for (const Reference& reference : deck_.references->naming(Referred::shell, shell)) {
+    if (reference.role != ReferenceRole::single) continue;
+    const Referrer& card = deck_.references->referrers()[reference.referrer];
+    if (writer_->inheritance(card, Referred::shell) == Inheritance::forbids)
+      return fail(refusal(deck_, card.file, reference.card,
+                          what + card_name(deck_.format, card) + " names it, which can't be passed on to its pieces"));
+  }
+  const UnreadText* unread = unread_.holding_all(Referred::shell, std::span(&shell, 1));
+  if (unread == nullptr) return {};
+  return fail(refusal(deck_, unread->file, unread->begin, what + unread_name(deck_, *unread)));
+}
+
+Result<void> DivisionCheck::may_be_between(std::span<const std::int64_t> nodes) {
+  const UnreadText* unread = unread_.holding_all(Referred::node, nodes);
+  if (unread == nullptr) return {};
+  std::string named;
+  for (const std::int64_t node : nodes) named += (named.empty() ? "" : ", ") + std::to_string(node);
+  Referrer card;
+  card.keyword = unread->keyword;
+  return fail(refusal(deck_, unread->file, unread->begin,
+                      "no node can come between the nodes " + named + ": " + card_name(deck_.format, card) +
+                          " isn't read in this version, and may say of them what would hold of it too"));
 }
 
 Result<void> may_be_deleted(const Deck& deck, Referred referred, std::int64_t id) {

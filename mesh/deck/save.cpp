@@ -203,6 +203,12 @@ Result<void> can_save(const Deck& deck, const Model& original, const Model& mode
 }
 
 Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const fs::path& target, const Progress& progress) {
+  Rounding rounding;
+  return save(deck, original, model, target, progress, rounding);
+}
+
+Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const fs::path& target, const Progress& progress,
+                        Rounding& rounding) {
   const std::lock_guard lock(deck.on_disk->mutex);
   const bool packs = std::any_of(deck.files.begin(), deck.files.end(), [](const SourceFile& file) { return file.bytes.is_packed(); });
   const double of_cards = packs ? kShareOfCardsWithPacking : kShareOfCards, before_writing = of_cards + (packs ? kShareOfPacking : 0);
@@ -219,6 +225,7 @@ Result<SaveReport> save(const Deck& deck, const Model& original, const Model& mo
   const Result<void> replaced = replace_files(*pending, part_of(progress, before_writing, 1 - before_writing));
   if (in_place) remember_written(deck, *pending, *plans, *text, replaced.has_value());
   if (!replaced) return fail(replaced.error());
+  rounding = text->rounding;
   return report_of(deck, *text, *plans);
 }
 

@@ -1,10 +1,10 @@
 #include "mesh/deck/text_changes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
+#include "mesh/deck/card_move.h"
 #include "mesh/deck/carrying.h"
 #include "mesh/deck/descent.h"
 #include "mesh/deck/naming.h"
@@ -16,42 +16,20 @@
 namespace prismesh::mesh::deck {
 namespace {
 
-/// Where a node's card should put it, and where it puts it now, both as the card gives coordinates.
-struct CardMove {
-  Vec3 from, to;
-};
-
-/// Coordinates of a card in a frame of its own that differ by no more than this share of the node's distance from the frame's origin
-/// are the same: the way there and back costs the last digits.
-constexpr double kSameInFrame = 1e-13;
-
 constexpr std::size_t kCardsBetween = 4096;  ///< two looks at the progress
 
 constexpr const char* kFlattened = "stands in a coordinate system that flattens it, so its place can't be written";
 
-std::optional<CardMove> in_card(const Deck& deck, const CardWriter& writer, const CardRun& run, std::size_t offset, const Vec3& from,
-                                const Vec3& to) {
-  const Frame& frame = deck.frames[run.frame];
-  if (frame.is_basic()) return CardMove{from, to};
-  const std::optional<Vec3> before = writer.node_coordinates(deck.files[run.file].bytes.text(), offset, run.style);
-  std::optional<Vec3> after;
-  if (before) after = to_card(frame, to, *before);
-  if (!after || !after->allFinite()) return std::nullopt;
-  const double same = kSameInFrame * std::max(before->cwiseAbs().maxCoeff(), after->cwiseAbs().maxCoeff());
-  for (int axis = 0; axis < 3; ++axis)
-    if (std::abs((*after)[axis] - (*before)[axis]) <= same) (*after)[axis] = (*before)[axis];
-  return CardMove{*before, *after};
-}
-
 class Differ {
  public:
-  Differ(const Deck& deck, const Model& original, const Model& model, const Progress& progress)
+  Differ(const Deck& deck, const Model& original, const Model& model, std::vector<NodeIndex> moved, const Progress& progress)
       : deck_(deck),
         original_(original),
         model_(model),
         writer_(card_writer(deck.format)),
-        moved_(moved_nodes(original, model)),
+        moved_(std::move(moved)),
         changes_(changes_between(original, model)),
+        unread_(deck),
         progress_(progress),
         by_file_(deck.files.size()) {}
 
@@ -61,6 +39,7 @@ class Differ {
     if (Result<void> done = moved(); !done) return fail(done.error());
     if (Result<void> done = nodes(); !done) return fail(done.error());
     if (Result<void> done = shells(); !done) return fail(done.error());
+    put_in_blocks();
     if (!changes_.empty()) {
       Result<Carried> carried = carry_along(deck_, original_, model_, changes_, *writer_);
       if (!carried) return fail(carried.error());
@@ -156,6 +135,13 @@ class Differ {
     out_.rounding.largest_error = std::max(out_.rounding.largest_error, card.largest_error);
   }
 
+  void note_rounded_node(const WrittenCard& card, const CardRun& run, std::size_t offset, NodeIndex node, const std::string& what) {
+    if (card.rounded == 0) return;
+    note_rounding(card, run, offset, what);
+    if (const std::optional<Vec3> at = writer_->node_coordinates(card.text, 0, run.style))
+      out_.rounding.nodes.emplace_back(node, to_basic(deck_.frames[run.frame], *at));
+  }
+
   /// "is given by the parameter &name" for the first name in a card.
   std::string by_parameter(std::string_view card) const {
     const std::size_t begin = card.find('&');
@@ -184,9 +170,10 @@ class Differ {
       WrittenCard card = writer_->move_node(text, offset, run.style, move->from, move->to);
       if (card.by_parameter) return refuse_node(by_parameter(old) + "; it can't be moved");
       leave_equal_coordinates(card, run, offset, *move);
-      note_rounding(card, run, offset, node_name(node));
+      note_rounded_node(card, run, offset, node, node_name(node));
+      if (card.text == old) continue;
       ++out_.nodes_moved;
-      if (card.text != old) replace(run, offset, end, std::move(card.text));
+      replace(run, offset, end, std::move(card.text));
     }
     return {};
   }
@@ -247,9 +234,13 @@ class Differ {
                                             : Result<WrittenCard>(writer_->new_node(text, offset, run.style, id, at));
     if (!card) return refuse_node(card.error().message);
     if (card->by_parameter) return refuse_node("would have its place given by a parameter");
-    note_rounding(*card, run, offset, "new " + node_name(node));
-    insert_behind(run, writer_->node_end(text, offset, run.style), std::move(card->text));
+    note_rounded_node(*card, run, offset, node, "new " + node_name(node));
     ++out_.nodes_added;
+    const auto apart = *constrained ? std::nullopt : writer_->block_without_constraints(text, offset, run.style);
+    if (apart)
+      add_to_block(run, offset, *apart, card->text);
+    else
+      insert_behind(run, writer_->node_end(text, offset, run.style), std::move(card->text));
     return {};
   }
 
@@ -267,6 +258,7 @@ class Differ {
       if (own.empty()) return false;
       differ |= own != wanted;
     }
+    if (differ && !writer_->constraints_must_agree()) return false;
     if (differ)
       return refuse(deck_.run_of(home), deck_.node_line[home.value],
                     "the new " + node_name(node) + " lies between nodes whose cards constrain them in different ways");
@@ -291,7 +283,6 @@ class Differ {
       remove_lines(run, offset, writer_->shell_end(text_of(run), offset, run.style));
       ++out_.shells_removed;
     }
-    put_in_blocks();
     return {};
   }
 
@@ -321,19 +312,20 @@ class Differ {
     ShellIndex beside = ancestor;
     Result<WrittenCard> card = WrittenCard();
     if (other_kind) {
-      if (const std::string namer = names_other_kind(ancestor, triangle); !namer.empty())
-        return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") + ", but " + namer +
-                            " names it, which can't name one");
+      if (const std::string why = names_other_kind(ancestor, triangle); !why.empty())
+        return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") + ", but " + why);
       beside = neighbour_of_kind(ancestor, triangle);
-      if (!beside.valid()) {
+      if (beside.valid()) {
+        const CardRun& manner = deck_.run_of(beside);
+        card = writer_->shell_in_manner(text, offset, run.style, text_of(manner), deck_.shell_line[beside.value], manner.style, wanted);
+      }
+      if (!beside.valid() || !card) {
         if (const Result<void> written = write_in_new_block(run, offset, wanted, triangle); !written)
           return refuse_shell(std::string("becomes a ") + (triangle ? "triangle" : "quad") + " and " + written.error().message);
         ++(added ? out_.shells_added : out_.shells_changed);
         if (!added) remove_lines(run, offset, end);
         return {};
       }
-      const CardRun& manner = deck_.run_of(beside);
-      card = writer_->shell_in_manner(text, offset, run.style, text_of(manner), deck_.shell_line[beside.value], manner.style, wanted);
     } else {
       card = writer_->shell(text, offset, run.style, wanted);
     }
@@ -352,13 +344,16 @@ class Differ {
     return {};
   }
 
-  /// The first card that names the shell and couldn't name it with another number of corners; empty if there is none.
-  std::string names_other_kind(ShellIndex shell, bool triangle) const {
-    for (const Reference& reference : deck_.references->naming(Referred::shell, original_.shell_ids[shell.value])) {
+  /// Which card names the shell and couldn't name it with another number of corners; empty if there is none.
+  std::string names_other_kind(ShellIndex shell, bool triangle) {
+    const std::int64_t id = original_.shell_ids[shell.value];
+    for (const Reference& reference : deck_.references->naming(Referred::shell, id)) {
       const Referrer& card = deck_.references->referrers()[reference.referrer];
-      if (!reference.takes_away && !writer_->can_name(card, triangle)) return card_name(deck_.format, card);
+      if (!reference.takes_away && !writer_->can_name(card, triangle))
+        return card_name(deck_.format, card) + " names it, which can't name one";
     }
-    return "";
+    const UnreadText* unread = unread_.holding_all(Referred::shell, std::span(&id, 1));
+    return unread != nullptr ? unread_name(deck_, *unread) : "";
   }
 
   /// The first of its part that has so many corners: in a block of its own, which the others join.
@@ -369,14 +364,18 @@ class Differ {
     const Result<WrittenCard> card = writer_->shell_in_block(text, offset, run.style, wanted);
     if (!card) return fail(card.error());
     if (card->by_parameter) return fail("", "has a field that a parameter gives");
-    std::string& cards = new_blocks_[{run.file, block->offset, block->header}];
-    const std::string eol(line_end(text, end_of_card_line(text, offset)));
-    if (cards.empty()) cards = block->header + eol;
-    cards += card->text + eol;
+    add_to_block(run, offset, *block, card->text);
     return {};
   }
 
-  static std::size_t end_of_card_line(std::string_view text, std::size_t offset) { return std::min(text.find('\n', offset), text.size()); }
+  /// `offset`: of a card whose line ends as those of the block are to end.
+  void add_to_block(const CardRun& run, std::size_t offset, const CardWriter::NewBlock& block, const std::string& card) {
+    const std::string_view text = text_of(run);
+    const std::string eol(line_end(text, std::min(text.find('\n', offset), text.size())));
+    std::string& cards = new_blocks_[{run.file, block.offset, block.header}];
+    if (cards.empty()) cards = block.header + eol;
+    cards += card + eol;
+  }
 
   void put_in_blocks() {
     for (auto& [place, cards] : new_blocks_) {
@@ -459,6 +458,7 @@ class Differ {
   const std::unique_ptr<const CardWriter> writer_;
   const std::vector<NodeIndex> moved_;
   const Changes changes_;
+  UnreadNumbers unread_;
   const Progress& progress_;
   std::size_t done_ = 0;  ///< cards made
   std::vector<std::vector<Replacement>> by_file_;
@@ -474,7 +474,13 @@ std::string place_of(const Deck& deck, std::uint32_t file, std::size_t offset) {
 }
 
 Result<TextChanges> text_changes(const Deck& deck, const Model& original, const Model& model, const Progress& progress) {
-  return Differ(deck, original, model, progress).run();
+  return Differ(deck, original, model, moved_nodes(original, model), progress).run();
+}
+
+Result<void> can_restructure(const Deck& deck, const Model& original, const Model& model, std::vector<NodeIndex> moved) {
+  const Result<TextChanges> changes = Differ(deck, original, model, std::move(moved), {}).run();
+  if (!changes) return fail(changes.error());
+  return {};
 }
 
 }  // namespace prismesh::mesh::deck

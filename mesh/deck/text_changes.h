@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -17,6 +19,8 @@ struct Rounding {
   std::size_t count = 0;
   double largest_error = 0;
   std::string first;  ///< "deck.k:12 (node 7)"
+  /// Nodes whose coordinates are among them, with the place that a reader of the text finds them at.
+  std::vector<std::pair<NodeIndex, Vec3>> nodes;
 };
 
 struct TextChanges {
@@ -35,6 +39,14 @@ struct TextChanges {
 
 /// Errors: what can't be saved safely, with the reason and, where there is one, file and line; cancelled. Costs what differs.
 Result<TextChanges> text_changes(const Deck& deck, const Model& original, const Model& model, const Progress& progress = {});
+
+/// Whether what came, went or has other corners can be saved, and the nodes of `moved` (ascending; others that have moved were asked about
+/// when they did, and would cost a card each). Errors: as text_changes.
+Result<void> can_restructure(const Deck& deck, const Model& original, const Model& model, std::vector<NodeIndex> moved);
+
+/// As save (mesh/deck/deck.h), and tells what the fields made of the numbers.
+Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
+                        const Progress& progress, Rounding& rounding);
 
 /// Where something stands, for messages: "deck.k:12".
 std::string place_of(const Deck& deck, std::uint32_t file, std::size_t offset);

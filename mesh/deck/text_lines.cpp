@@ -1,6 +1,7 @@
 #include "mesh/deck/text_lines.h"
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 namespace prismesh::mesh::deck {
@@ -38,6 +39,23 @@ std::string_view line_end(std::string_view text, std::size_t at) {
   std::size_t newline = text.find('\n', at);
   if (newline == std::string_view::npos) newline = text.rfind('\n');
   return newline != std::string_view::npos && newline > 0 && text[newline - 1] == '\r' ? "\r\n" : "\n";
+}
+
+BlockFinder::Found BlockFinder::at(std::string_view text, std::size_t line) {
+  const auto after = known_.upper_bound({text.data(), text.size(), line});
+  if (after != known_.begin()) {
+    const auto& [place, block] = *std::prev(after);
+    if (std::get<0>(place) == text.data() && std::get<1>(place) == text.size() && line < block.end) return block;
+  }
+  Found block;
+  for (block.keyword = line; block.keyword > 0 && !is_keyword_(text, block.keyword);) {
+    const std::size_t newline = block.keyword < 2 ? std::string_view::npos : text.rfind('\n', block.keyword - 2);
+    block.keyword = newline == std::string_view::npos ? 0 : newline + 1;
+  }
+  block.has_keyword = block.keyword < text.size() && is_keyword_(text, block.keyword);
+  for (block.end = line; block.end < text.size() && (block.end == line || !is_keyword_(text, block.end));)
+    block.end = std::min(text.find('\n', block.end), text.size() - 1) + 1;
+  return known_[{text.data(), text.size(), block.keyword}] = block;
 }
 
 }  // namespace prismesh::mesh::deck

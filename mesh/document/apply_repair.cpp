@@ -2,10 +2,12 @@
 #include <array>
 
 #include "base/counted.h"
+#include "mesh/deck/naming.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/restructure.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
+#include "mesh/model/growth.h"
 #include "mesh/repair/repair.h"
 
 namespace prismesh::mesh::document {
@@ -122,12 +124,23 @@ Result<Hand> find_hand(const Model& model, const Restructure& edit) {
   return hand;
 }
 
+/// What the rules know too, with the card that stands in the way.
+Result<void> refuse_indivisible(const Document& document, const Model& model, const ShellSet& shells) {
+  if (!document.deck->references) return {};
+  deck::DivisionCheck division(*document.deck);
+  for (const ShellIndex shell : shells)
+    if (Result<void> may = division.may_be_divided(model.shell_ids[deck_ancestor(model, shell).value]); !may) return may;
+  return {};
+}
+
 }  // namespace
 
 Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report) {
   const Generation& current = document.current();
   const Result<Hand> hand = find_hand(current.model, edit);
   if (!hand) return fail(hand.error());
+  if (edit.operation == repair::Operation::split)
+    if (const Result<void> may = refuse_indivisible(document, current.model, hand->shells); !may) return may;
   const repair::Options options = options_of(30, {});
   NodeSet nodes = hand->nodes;
   std::sort(nodes.begin(), nodes.end());

@@ -4,10 +4,12 @@
 
 #include "base/clock.h"
 #include "base/counted.h"
+#include "mesh/deck/text_changes.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/history.h"
 #include "mesh/document/surroundings.h"
 #include "mesh/model/growth.h"
+#include "mesh/model/node_set.h"
 
 namespace prismesh::mesh::document {
 
@@ -168,8 +170,36 @@ Result<EditReport> apply(Document& document, const Edit& edit, const Progress& p
   return report;
 }
 
+namespace {
+
+/// What rounded places make of the judgement of the shells about them; empty: nothing.
+std::string rounding_note(const Document& document, const deck::Rounding& rounding) {
+  if (rounding.nodes.empty()) return "";
+  const Generation& current = document.current();
+  Model as_read = current.model;
+  NodeSet nodes;
+  for (const auto& [node, at] : rounding.nodes) {
+    as_read.positions.set(node.value, at);
+    nodes.push_back(node);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  ChunkedArray<quality::ShellState> states = current.quality;
+  quality::Counts counts = current.counts;
+  quality::rejudge(as_read, document.settings.criteria, document.settings.target_size, shells_touching(as_read, nodes), states, counts);
+  if (counts == current.counts) return "";
+  const auto said = [](const quality::Counts& c) { return counted(c.warn, "element") + " warn and " + std::to_string(c.fail) + " fail"; };
+  return "with the rounded numbers, as the deck is read again, " + said(counts) + "; before, " + said(current.counts);
+}
+
+}  // namespace
+
 Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress) {
-  return deck::save(*document.deck, document.opened->model, document.current().model, target, progress);
+  deck::Rounding rounding;
+  Result<deck::SaveReport> report =
+      deck::save(*document.deck, document.opened->model, document.current().model, target, progress, rounding);
+  if (!report) return report;
+  if (std::string note = rounding_note(document, rounding); !note.empty()) report->notes.push_back(std::move(note));
+  return report;
 }
 
 }  // namespace prismesh::mesh::document

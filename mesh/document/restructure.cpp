@@ -4,6 +4,7 @@
 #include <array>
 
 #include "mesh/deck/new_ids.h"
+#include "mesh/deck/text_changes.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/selecting.h"
 #include "mesh/document/surroundings.h"
@@ -126,6 +127,14 @@ void weigh_again(const Generation& before, const Changes& changes, const ShellSe
   next.weight += quality::weigh_shells(next.model, touched);
 }
 
+/// Of the nodes that a change moves those whose cards it changes.
+NodeSet moved_of_deck(const Model& opened, const Model& model, const repair::Restructuring& change) {
+  NodeSet moved;
+  for (const auto& [node, position] : change.moved)
+    if (node.value < opened.node_count() && !model.is_removed(node) && position != opened.position(node)) moved.push_back(node);
+  return moved;
+}
+
 }  // namespace
 
 Result<void> carry_out(const Document& document, const repair::Restructuring& change, Model& model) {
@@ -144,7 +153,7 @@ Result<void> carry_out(const Document& document, const repair::Restructuring& ch
   for (const auto& [node, position] : change.moved) model.positions.set(node.value, position);
   for (const ShellIndex shell : change.removed_shells) remove_shell(model, shell);
   for (const NodeIndex node : change.removed_nodes) remove_node(model, node);
-  return deck::can_save(*document.deck, document.opened->model, model);
+  return deck::can_restructure(*document.deck, document.opened->model, model, moved_of_deck(document.opened->model, model, change));
 }
 
 void settle_growth(const Settings& settings, const Generation& before, const NodeSet& moved, Generation& next) {

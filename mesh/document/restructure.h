@@ -12,7 +12,8 @@ namespace prismesh::mesh::document {
 repair::Rules rules_for(const Document& document, const Generation& generation);
 
 /// Carries it out on `next`, a copy of the current generation: model, adjacency, marks (a new node is selected if all it comes from are),
-/// judgement, weight, and the report's figures. Errors: no ids are left, or the deck can't be written so (deck::can_save): where and why.
+/// judgement, weight, and the report's figures. Costs what the structure has changed since the deck was opened. Errors: no ids are left,
+/// or the deck can't be written so (deck::can_restructure): where and why.
 Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report);
 
 /// The second half of it, for who has changed the model of `next` otherwise: brings adjacency, judgements and weight up to date, and gives

@@ -3,10 +3,12 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "mesh/deck/descent.h"
 #include "mesh/deck/naming.h"
 #include "mesh/document/restructure.h"
 #include "mesh/document/surroundings.h"
 #include "mesh/model/adjacency.h"
+#include "mesh/model/growth.h"
 
 namespace prismesh::mesh::document {
 
@@ -19,7 +21,7 @@ constexpr std::uint8_t kAllShellRules = repair::kKeepsNodes | repair::kIndivisib
 class Rulebook {
  public:
   Rulebook(const Document& document, const Generation& generation)
-      : deck_(*document.deck), generation_(generation), deletion_(*document.deck) {
+      : deck_(*document.deck), generation_(generation), deletion_(*document.deck), division_(*document.deck) {
     for (const Hanging::Rest& rest : generation.around->hanging.rests)
       if (!rest.tied)
         welded_shells_.push_back(rest.shell);
@@ -48,8 +50,9 @@ class Rulebook {
     if (is_new) known->second = find_shell(shell);
     return known->second;
   }
-  bool may_divide(NodeIndex a, NodeIndex b) const {
+  bool may_divide(NodeIndex a, NodeIndex b) {
     if (of_held_file(a) && of_held_file(b)) return false;
+    if (!may_be_between(a, b)) return false;
     const auto of_a = uses_of(a), of_b = uses_of(b);
     return std::none_of(of_a.begin(), of_a.end(), [&](const Attached::Use& use) {
       return std::any_of(of_b.begin(), of_b.end(), [&](const Attached::Use& other) {
@@ -89,6 +92,17 @@ class Rulebook {
   bool may_be_deleted(Referred referred, std::int64_t id) {
     return !deck_.references || deletion_.may_be_deleted(referred, id).has_value();
   }
+  bool may_be_between(NodeIndex a, NodeIndex b) {
+    if (!deck_.references || deck_.references->unread().empty()) return true;
+    std::vector<std::int64_t> ids;
+    for (const NodeIndex end : {a, b})
+      for (const NodeIndex of_deck : deck::deck_ancestors(model(), end)) ids.push_back(model().node_ids[of_deck.value]);
+    const std::scoped_lock lock(mutex_);
+    return division_.may_be_between(ids).has_value();
+  }
+  bool may_be_divided(ShellIndex shell) {
+    return !deck_.references || division_.may_be_divided(model().shell_ids[deck_ancestor(model(), shell).value]).has_value();
+  }
   bool is_middled(ShellIndex shell) const { return contains(middled_shells_, shell); }
 
   std::uint8_t find_node(NodeIndex node) {
@@ -108,12 +122,13 @@ class Rulebook {
     if (is_middled(shell) || contains(welded_shells_, shell)) return kAllShellRules;
     if (!deck_.shell_runs.empty() && deck_.is_held(deck_.run_of(deck_ancestor(model(), shell)).file)) return kAllShellRules;
     const bool lasts = contains(tied_shells_, shell) || !may_be_deleted(Referred::shell, model().shell_ids[shell.value]);
-    return lasts ? std::uint8_t{repair::kLasting} : std::uint8_t{0};
+    return static_cast<std::uint8_t>((lasts ? repair::kLasting : 0) | (may_be_divided(shell) ? 0 : repair::kIndivisible));
   }
 
   const deck::Deck& deck_;
   const Generation& generation_;
   deck::DeletionCheck deletion_;
+  deck::DivisionCheck division_;
   ShellSet welded_shells_;   ///< a weld lies on them and follows their corners
   ShellSet tied_shells_;     ///< a tied node lies on them
   ShellSet middled_shells_;  ///< with mid-side nodes

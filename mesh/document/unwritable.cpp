@@ -104,17 +104,7 @@ repair::Restructuring part_of(const Model& model, const repair::Restructuring& c
 class Search {
  public:
   Search(const Document& document, const Model& model, const repair::Restructuring& change, Frozen& frozen, const Progress& progress)
-      : document_(document),
-        model_(model),
-        change_(change),
-        groups_(model, change),
-        unmoved_(document.opened->model.positions),
-        frozen_(frozen),
-        progress_(progress) {
-    const std::size_t known = unmoved_.size();
-    unmoved_.resize(model.node_count());
-    for (std::size_t n = known; n < model.node_count(); ++n) unmoved_.set(n, model.positions[n]);
-  }
+      : document_(document), model_(model), change_(change), groups_(model, change), frozen_(frozen), progress_(progress) {}
 
   Result<std::size_t> run() {
     const std::vector<std::uint32_t> all = groups_.all();
@@ -130,7 +120,6 @@ class Search {
     if (stopped_) return;
     const repair::Restructuring part = part_of(model_, change_, groups_, groups);
     Model trial = model_;
-    trial.positions = unmoved_;  // a million nodes that only moved would cost a card each, in every trial
     const Result<void> possible = carry_out(document_, part, trial);
     if (possible) return;
     if (groups.size() == 1) return freeze(part, possible.error().text());
@@ -149,7 +138,6 @@ class Search {
   const Model& model_;
   const repair::Restructuring& change_;
   Groups groups_;
-  ChunkedArray<Vec3> unmoved_;  ///< where the deck has its nodes
   Frozen& frozen_;
   const Progress& progress_;
   int trials_ = 0;

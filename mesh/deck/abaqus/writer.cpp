@@ -9,6 +9,7 @@
 #include "mesh/deck/abaqus/references.h"
 #include "mesh/deck/format_number.h"
 #include "mesh/deck/number.h"
+#include "mesh/deck/text_lines.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {
@@ -74,6 +75,52 @@ std::string other_type(std::string_view type, bool triangles) {
     if (!triangles && type == triangle) return std::string(quad);
   }
   return "";
+}
+
+bool is_keyword(std::string_view text, std::size_t line) {
+  const std::string_view rest = text.substr(std::min(text.find_first_not_of(" \t", line), text.size()), 2);
+  return rest.substr(0, 1) == "*" && rest != "**";
+}
+
+/// A block's keyword with its parameters, without the end of its last line.
+std::string header_of(std::string_view text, const BlockFinder::Found& block) {
+  Keywords keywords(text.substr(block.keyword));
+  Keyword keyword;
+  if (!keywords.next(keyword)) return {};
+  const std::string_view header = text.substr(block.keyword, keyword.end);
+  return std::string(header.substr(0, header.find_last_not_of(" \r\n") + 1));
+}
+
+/// A keyword line without one of its parameters.
+std::string without_parameter(std::string_view header, std::string_view name) {
+  std::string out;
+  for (std::size_t begin = 0; begin <= header.size();) {
+    std::size_t end = begin;
+    for (bool quoted = false; end < header.size() && (quoted || header[end] != ','); ++end) quoted ^= header[end] == '"';
+    const std::string_view parameter = header.substr(begin, end - begin);
+    if (label(trim(parameter.substr(0, parameter.find('=')))) != name) out += (begin > 0 ? "," : "") + std::string(parameter);
+    begin = end + 1;
+  }
+  return out;
+}
+
+/// The fields of a line that aren't one of some numbers.
+std::vector<Place> without_ids(std::string_view line, std::vector<Place> places, std::span<const std::int64_t> ids) {
+  std::erase_if(places, [&](const Place& place) {
+    std::int64_t id = 0;
+    return parse_integer(trim(line.substr(place.begin, place.length)), id) && std::find(ids.begin(), ids.end(), id) != ids.end();
+  });
+  return places;
+}
+
+/// A line of some of its fields, begun and ended as it was.
+std::string line_of(std::string_view line, const std::vector<Place>& places) {
+  std::string out(line.substr(0, line.find_first_not_of(" \t")));
+  for (const Place& place : places) {
+    const std::string_view field = line.substr(place.begin, place.length);
+    out += out.find_first_not_of(" \t") == std::string::npos ? std::string(trim(field)) : "," + std::string(field);
+  }
+  return out + (trim(line).back() == ',' ? "," : "");
 }
 
 class Writer : public CardWriter {
@@ -147,21 +194,38 @@ class Writer : public CardWriter {
 
   bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
 
+  /// The set that the keyword puts its nodes into: "*NODE, NSET=rim".
+  std::string node_constraints(std::string_view text, std::size_t offset, std::uint16_t) const override {
+    const BlockFinder::Found block = blocks_.at(text, offset);
+    Keywords keywords(text.substr(block.keyword));
+    Keyword keyword;
+    if (block.has_keyword && keywords.next(keyword) && keyword.name == "NODE")
+      return label(Parameters(text, block.keyword, block.keyword + keyword.end).value("NSET").value_or(""));
+    // The keyword stands in another file, or an include is between: whatever it says is true of all that is here.
+    return "as others at " + std::to_string(reinterpret_cast<std::uintptr_t>(text.data()) + block.keyword);
+  }
+
+  Result<WrittenCard> new_constrained_node(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id,
+                                           const Vec3& at) const override {
+    return new_node(text, offset, style, id, at);
+  }
+
+  bool constraints_must_agree() const override { return false; }
+
+  /// A keyword like the one above the card, but for its NSET.
+  std::optional<NewBlock> block_without_constraints(std::string_view text, std::size_t offset, std::uint16_t) const override {
+    const BlockFinder::Found block = blocks_.at(text, offset);
+    const std::string header = block.has_keyword ? header_of(text, block) : "";
+    const std::string without = without_parameter(header, "NSET");
+    if (header == without) return std::nullopt;
+    return NewBlock{block.end, without};
+  }
+
   /// A keyword like the one above the card, but for its TYPE.
   Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t, bool triangles) const override {
-    const auto is_keyword = [&](std::size_t at) { return text[at] == '*' && text.substr(at, 2) != "**"; };
-    std::size_t begin = offset;
-    while (begin > 0 && !is_keyword(begin)) {
-      const std::size_t newline = begin < 2 ? std::string_view::npos : text.rfind('\n', begin - 2);
-      begin = newline == std::string_view::npos ? 0 : newline + 1;
-    }
-    Keywords keywords(text.substr(begin));
-    Keyword keyword;
-    if (!is_keyword(begin) || !keywords.next(keyword)) return fail("", "has no keyword above it in its file");
-    NewBlock block;
-    block.header = std::string(text.substr(begin, keyword.end));
-    while (!block.header.empty() && (block.header.back() == '\n' || block.header.back() == '\r' || block.header.back() == ' '))
-      block.header.pop_back();
+    const BlockFinder::Found found = blocks_.at(text, offset);
+    if (!found.has_keyword) return fail("", "has no keyword above it in its file");
+    NewBlock block{found.end, header_of(text, found)};
     std::string upper = block.header;
     for (char& c : upper)
       if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
@@ -175,8 +239,6 @@ class Writer : public CardWriter {
     const std::string other = other_type(upper.substr(first, last - first), triangles);
     if (other.empty()) return fail("", "is of a type that has no other with " + std::string(triangles ? "three" : "four") + " corners");
     block.header.replace(first, last - first, other);
-    for (block.offset = offset; block.offset < text.size() && !is_keyword(block.offset);)
-      block.offset = std::min(text.find('\n', block.offset), text.size() - 1) + 1;
     return block;
   }
 
@@ -197,6 +259,31 @@ class Writer : public CardWriter {
       card.text += (f > 0 ? "," : "") + (one_line && !trim(old).empty() ? in_place_of(old, id, starts_with_blanks(old)) : " " + id);
     }
     return card;
+  }
+
+  Result<std::vector<Replacement>> change_list(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
+                                               std::span<const std::int64_t> leaving) const override {
+    Result<std::vector<Replacement>> out = join(text, set, joining);
+    if (!out || leaving.empty()) return out;
+    std::size_t found = 0, kept = 0;
+    DataLines lines(text, tail_of(text, set).first, static_cast<std::size_t>(set.end));
+    std::vector<Replacement> shorter;
+    for (DataLine line; lines.next(line);) {
+      const std::vector<Place> places = places_of_line(line.text, 0);
+      const std::vector<Place> stay = without_ids(line.text, places, leaving);
+      kept += stay.size();
+      found += places.size() - stay.size();
+      if (stay.size() == places.size()) continue;
+      const std::size_t next = std::min(text.find('\n', line.offset), text.size() - 1) + 1;
+      if (stay.empty())
+        shorter.push_back({line.offset, next - line.offset, ""});
+      else
+        shorter.push_back({line.offset, line.text.size(), line_of(line.text, stay)});
+    }
+    if (found != leaving.size()) return fail("", "names what would go twice, or in an include");
+    if (kept + joining.size() == 0) return fail("", "would be left empty");
+    out->insert(out->begin(), shorter.begin(), shorter.end());
+    return out;
   }
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
@@ -229,8 +316,11 @@ class Writer : public CardWriter {
   std::int64_t largest_shell_id(std::uint16_t style) const override { return (style & kStyleShifted) != 0 ? 0 : kLargestId; }
 
  private:
+  mutable BlockFinder blocks_{is_keyword};
+
   /// How a set's lines look, and where the next goes.
   struct Tail {
+    std::size_t first = 0;  ///< behind the keyword
     std::size_t at = 0;
     std::string before;          ///< blanks at the line's beginning
     std::string between = ", ";  ///< two numbers
@@ -243,7 +333,7 @@ class Writer : public CardWriter {
     Keyword keyword;
     std::size_t data = static_cast<std::size_t>(set.end);
     if (keywords.next(keyword)) data = static_cast<std::size_t>(set.offset) + keyword.end;
-    tail.at = data;
+    tail.first = tail.at = data;
     DataLines lines(text, data, static_cast<std::size_t>(set.end));
     DataLine last;
     for (DataLine line; lines.next(line);) last = line;

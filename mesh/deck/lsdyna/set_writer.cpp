@@ -156,6 +156,16 @@ bool starts_with(std::string_view text, std::string_view start) { return text.su
 
 bool is_initial_shell(std::string_view keyword) { return keyword == "INITIAL_STRESS_SHELL" || keyword == "INITIAL_STRAIN_SHELL"; }
 
+/// How many lines of values an initial stress or strain has at least: one for each layer at each place in the plane.
+std::int64_t least_lines(const FieldLine& shell) {
+  std::int64_t lines = 1;
+  for (const std::size_t field : {std::size_t{1}, std::size_t{2}}) {
+    std::int64_t count = 0;
+    if (parse_integer(shell.text(field), count) && count > 0 && count < 1000) lines *= count;
+  }
+  return lines;
+}
+
 std::optional<std::size_t> followed_field(std::string_view keyword, Referred referred) {
   if (is_initial_shell(keyword)) return 0;
   const std::span<const Followed> table = referred == Referred::node ? std::span<const Followed>(kFollowedNodes) : kFollowedShells;
@@ -301,8 +311,11 @@ Inheritance inheritance_of(const Referrer& card, Referred referred) {
   const std::string_view keyword = card.keyword;
   if (followed_field(keyword, referred)) return Inheritance::follows;
   if (starts_with(keyword, "DATABASE_") || starts_with(keyword, "SENSOR_")) return Inheritance::stays;
-  // What holds or drives a node, or loads or stresses a shell, can't be left with a part of where it was.
-  if (referred != Referred::node || starts_with(keyword, "BOUNDARY_") || starts_with(keyword, "INITIAL_")) return Inheritance::forbids;
+  // What holds, drives or heats a node, gives it another place to be stressed from or takes it out of a set, or loads or stresses a
+  // shell, can't be left with a part of where it was.
+  if (referred != Referred::node) return Inheritance::forbids;
+  for (const std::string_view start : {"BOUNDARY_", "INITIAL_", "LOAD_THERMAL_", "AIRBAG_", "SET_"})
+    if (starts_with(keyword, start)) return Inheritance::forbids;
   // Joints, welds, systems of coordinates, forces at a point.
   return Inheritance::stays;
 }
@@ -319,7 +332,10 @@ Result<std::vector<Replacement>> copy_single(std::string_view text, const Referr
     Lines lines(text, single.card, std::min<std::size_t>(card.end, text.size()));
     Line line;
     lines.next(line);
-    while (lines.next(line) && line.text.find('.') != std::string_view::npos) end = line.offset + line.text.size();
+    std::int64_t found = 0;
+    for (; lines.next(line) && line.text.find('.') != std::string_view::npos; ++found) end = line.offset + line.text.size();
+    if (found < least_lines(FieldLine(first, kSetWidths, columns)))
+      return fail("", "has values without a point, which can't be told from the next shell's line");
   }
   FieldLine line(first, kSetWidths, columns);
   if (line.by_parameter(*field)) return fail("", "names it by the parameter " + std::string(line.text(*field)));

@@ -8,6 +8,7 @@
 #include "mesh/deck/radioss/block.h"
 #include "mesh/deck/radioss/mesh_cards.h"
 #include "mesh/deck/radioss/references.h"
+#include "mesh/deck/text_lines.h"
 
 namespace prismesh::mesh::deck::radioss {
 namespace {
@@ -18,13 +19,6 @@ std::size_t end_of_line(std::string_view text, std::size_t offset) {
 }
 
 std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
-
-/// Where the line before the one that begins at `offset` begins.
-std::size_t line_before(std::string_view text, std::size_t offset) {
-  if (offset < 2) return 0;
-  const std::size_t newline = text.rfind('\n', offset - 2);
-  return newline == std::string_view::npos ? 0 : newline + 1;
-}
 
 /// Tabs count as one blank each.
 std::string without_tabs(std::string_view line) {
@@ -239,18 +233,16 @@ class Writer : public CardWriter {
 
   /// "/SHELL/7" and "/SH3N/7" hold the shells of one part in the same file.
   Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t, bool triangles) const override {
-    std::size_t keyword = offset;
-    while (keyword > 0 && text[keyword] != '/') keyword = line_before(text, keyword);
+    const BlockFinder::Found found = blocks_.at(text, offset);
+    if (found.has_keyword && text[found.keyword] == '#') return fail("", "stands in a block that an include interrupts");
     NewBlock block;
-    block.header = std::string(line_at(text, keyword));
+    block.header = std::string(line_at(text, found.keyword));
     const std::size_t slash = block.header.find('/', 1);
-    if (slash == std::string::npos || text[keyword] != '/') return fail("", "has no keyword that could be found");
+    if (slash == std::string::npos || !found.has_keyword) return fail("", "has no keyword that could be found");
     block.header.replace(0, slash, triangles ? "/SH3N" : "/SHELL");
     // Behind the block's last card: comments in between belong to it, or to what follows.
-    for (block.offset = offset; block.offset < text.size() && text[block.offset] != '/';) {
-      if (text.substr(block.offset, 8) == "#include") return fail("", "stands in a block that goes on in an include");
-      block.offset = std::min(text.find('\n', block.offset), text.size() - 1) + 1;
-    }
+    block.offset = found.end;
+    if (text.substr(block.offset, 1) == "#") return fail("", "stands in a block that goes on in an include");
     return block;
   }
 
@@ -314,6 +306,10 @@ class Writer : public CardWriter {
   std::int64_t largest_shell_id(std::uint16_t style) const override { return largest_node_id(style); }
 
  private:
+  /// An include may stand in the middle of a block.
+  static bool ends_block(std::string_view text, std::size_t line) { return text[line] == '/' || text.substr(line, 8) == "#include"; }
+  mutable BlockFinder blocks_{ends_block};
+
   static Result<WrittenCard> with_corners(std::string line, const Style& style, const ShellCard& shell) {
     WrittenCard card;
     const std::size_t width = style.width();

@@ -93,6 +93,25 @@ TEST(OtherKind, radioss_refuses_where_a_group_of_quads_names_the_shell) {
   EXPECT_THAT(possible.error().text(), HasSubstr("shell 2"));
 }
 
+TEST(OtherKind, radioss_refuses_where_text_that_isnt_read_may_name_the_shell) {
+  const DeckFolder folder;
+  const auto opened = open(folder.write("a_0000.rad", radioss("/INISHE/STRS_F\n         2         1.5\n")));
+  ASSERT_TRUE(opened);
+  {
+    Growing edit(*opened);
+    split_both(edit);
+    const auto possible = can_save(edit.deck, edit.original, edit.model);
+    ASSERT_FALSE(possible);
+    EXPECT_THAT(possible.error().text(), HasSubstr("INISHE/STRS_F isn't read"));
+  }
+  Growing edit(*opened);
+  const auto n = edit.model.shell(edit.shell(2)).node;
+  set_shell_nodes(edit.model, edit.shell(2), {{n[0], n[1], n[2], n[2]}});
+  const auto possible = can_save(edit.deck, edit.original, edit.model);
+  ASSERT_FALSE(possible) << "it may be named as a quad";
+  EXPECT_THAT(possible.error().text(), HasSubstr("INISHE/STRS_F isn't read"));
+}
+
 TEST(OtherKind, abaqus_gets_a_keyword_like_that_of_its_quads) {
   const DeckFolder folder;
   for (const char* keyword : {"*ELEMENT, TYPE=S4R, ELSET=PLATE", "*element, elset=PLATE, type=S4"}) {

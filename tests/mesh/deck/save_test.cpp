@@ -164,13 +164,17 @@ TEST(Save, leaves_a_coordinates_digits_where_the_field_holds_no_difference) {
   const std::string first = "*NODE\n       1       2500.0000            2.50            3.00\n";
   const auto opened = folder.open(first);
   ASSERT_OPENED(opened);
+  std::size_t written = 1;
   const auto moved_to = [&](const Vec3& at) {
     const auto saved = save(*opened->deck, opened->model, with_node_at(opened->model, 1, at), folder / "out/deck.k");
     EXPECT_TRUE(saved) << saved.error().text();
+    written = saved ? saved->nodes_written : 0;
     return content(folder / "out/deck.k");
   };
   EXPECT_EQ(moved_to({2500 + 1e-12, 2.5, 3}), first);
+  EXPECT_EQ(written, 0u) << "its card says the same";
   EXPECT_EQ(moved_to({2500 + 1e-12, 2.75, 3}), "*NODE\n       1       2500.0000            2.75            3.00\n");
+  EXPECT_EQ(written, 1u);
 }
 
 TEST(Save, in_place_writes_only_the_files_that_change) {

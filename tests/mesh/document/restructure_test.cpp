@@ -253,6 +253,24 @@ TEST(Restructure, RulesSayWhatIsToBeLeftAlone) {
   EXPECT_EQ(int{rules_for(document, document.current()).node(model.find_node(25))}, int{repair::kNeeded}) << "a constraint names it";
 }
 
+TEST(Restructure, WhatTextThatIsntReadMayNameStaysWhole) {
+  const Folder folder;
+  std::string text = sheet_deck(6, 4);
+  text.insert(text.find("*END"), "*NOBODY_KNOWS_THIS\n        16        17\n*DEFINE_ELEMENT_DEATH_SHELL\n         8       0.5\n");
+  Document document = open_text(folder / "a.k", text);
+  const Model& model = document.current().model;
+  const repair::Rules rules = rules_for(document, document.current());
+  for (const std::int64_t id : {8, 16, 17}) EXPECT_NE(rules.shell(model.find_shell(id)) & repair::kIndivisible, 0) << id;
+  EXPECT_EQ(rules.shell(model.find_shell(9)) & repair::kIndivisible, 0);
+  EXPECT_FALSE(rules.may_divide(model.find_node(16), model.find_node(17)));
+  EXPECT_TRUE(rules.may_divide(model.find_node(17), model.find_node(18))) << "one end isn't enough";
+  const std::string why = refusal(document, R"({"edit":"split","at":["shell:16"]})");
+  EXPECT_THAT(why, HasSubstr("*NOBODY_KNOWS_THIS"));
+  EXPECT_THAT(why, HasSubstr("a.k:"));
+  EXPECT_EQ(document.generations.size(), 1u);
+  must_apply(document, R"({"edit":"split","at":["shell:9"]})");
+}
+
 TEST(Restructure, WhatCannotBeSavedIsRefusedAndNothingChanges) {
   const Folder folder;
   std::string text = sheet_deck(6, 6);

@@ -93,6 +93,10 @@ TEST_F(Carrying, refuses_what_cant_be_passed_on) {
       {"*BOUNDARY_SPC_NODE\n1,0,1,1,1\n2,0,1,1,0\n", "in different ways"},
       {"*INITIAL_FOAM_REFERENCE_GEOMETRY\n1,0.,0.,0.\n2,1.,0.,0.\n", "can't be passed on"},
       {"*SET_NODE_COLUMN\n1\n1,0.5\n2,0.7\n", "different attributes"},
+      {"*AIRBAG_REFERENCE_GEOMETRY\n1,0.,0.,0.\n2,1.,0.,0.\n", "can't be passed on"},
+      {"*LOAD_THERMAL_VARIABLE_NODE\n1,20.,0.,1\n2,20.,0.,1\n", "can't be passed on"},
+      {"*SET_NODE_GENERAL\n1\nPART,7\nDNODE,1,2\n", "can't be passed on"},
+      {"*NOBODY_KNOWS_THIS\n         2         1\n", "isn't read in this version, and may say"},
   };
   for (const auto& [text, why] : cases) {
     Growing& edit = open(text);
@@ -101,6 +105,26 @@ TEST_F(Carrying, refuses_what_cant_be_passed_on) {
     EXPECT_NE(error.find(why), std::string::npos) << error;
     EXPECT_NE(error.find("deck.k:"), std::string::npos) << error;
   }
+}
+
+TEST_F(Carrying, refuses_to_divide_a_shell_of_which_more_is_said_than_can_be_passed_on) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"*DEFINE_ELEMENT_DEATH_SHELL\n11,0.5\n", "*DEFINE_ELEMENT_DEATH_SHELL names it"},
+      {"*INITIAL_STRESS_SHELL\n11,1,2\n0,0,0,0,0,0,0,0\n0,0,0,0,0,0,0,0\n", "without a point"},
+      {"*NOBODY_KNOWS_THIS\n        11       1.5\n", "*NOBODY_KNOWS_THIS isn't read"},
+      {"*PARAMETER\nI ID, 11\n*NOBODY_KNOWS_THIS\n&ID,1.5\n", "*NOBODY_KNOWS_THIS isn't read"},
+  };
+  for (const auto& [text, why] : cases) {
+    SCOPED_TRACE(text);
+    Growing& edit = open(text);
+    edit.split_in_four(edit.shell(11));
+    const std::string error = refused();
+    EXPECT_NE(error.find(why), std::string::npos) << error;
+    EXPECT_NE(error.find("deck.k:"), std::string::npos) << error;
+  }
+  Growing& other = open("*NOBODY_KNOWS_THIS\n        12         1\n");
+  other.split_in_four(other.shell(11));
+  EXPECT_EQ(cards(), "*NOBODY_KNOWS_THIS\n        12         1\n") << "one end of an edge isn't enough, and 12 stays whole";
 }
 
 TEST_F(Carrying, what_goes_leaves_its_sets) {
@@ -127,6 +151,7 @@ TEST_F(Carrying, refuses_to_remove_what_is_named_or_used) {
       {"*CONSTRAINED_SPOTWELD\n3,99\n", "*CONSTRAINED_SPOTWELD names it"},
       {"*SET_SEGMENT\n1\n1,2,6,3\n", "a segment of *SET_SEGMENT 1 names it"},
       {"*ELEMENT_BEAM\n70,8,3,1,0\n", "beam 70 has it"},
+      {"*ELEMENT_PLOTEL\n      70       1       3\n", "other 70 has it"},
       {"*NOBODY_KNOWS_THIS\n       12\n", "isn't read"},
       {"*SET_SHELL_LIST\n1\n12\n", "left empty"},
   };
