@@ -1,0 +1,113 @@
+// Repairs and operations by hand where there is nothing to do or nothing may be done: a sentence, and the document is as it was.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "mesh/model/growth.h"
+#include "tests/mesh/document/document_fixture.h"
+#include "tests/mesh/document/restructuring.h"
+
+namespace prismesh::mesh::document {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr auto kDent = R"({"edit":"translate","by":[1,1,4],"on":"31"})";
+
+void expect_untouched(const Model& before, const Model& after) {
+  EXPECT_TRUE(moved_nodes(before, after).empty());
+  EXPECT_TRUE(changes_between(before, after).empty());
+  EXPECT_EQ(before.node_count(), after.node_count());
+  EXPECT_EQ(before.shell_count(), after.shell_count());
+}
+
+/// The words of a refusal that leaves the document alone.
+std::string refused_alone(Document& document, const std::string& json) {
+  const std::uint64_t number = document.current().number;
+  const std::size_t generations = document.generations.size();
+  const std::string why = refusal(document, json);
+  EXPECT_FALSE(why.empty()) << json << " was done";
+  EXPECT_EQ(document.current().number, number);
+  EXPECT_EQ(document.generations.size(), generations);
+  return why;
+}
+
+TEST(RepairRefusals, AnEmptyScopeIsASentence) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(8, 6));
+  EXPECT_THAT(refused_alone(document, R"({"edit":"repair","scope":"selection"})"), HasSubstr("repair: nothing is selected"));
+  EXPECT_THAT(refused_alone(document, R"({"edit":"repair","scope":"part"})"), HasSubstr("repair: nothing is selected"));
+  const std::pair<std::string, std::string> nothing[] = {
+      {R"({"edit":"repair"})", "nothing to repair: no edit made an element fail or warn"},
+      {R"({"edit":"repair","scope":"failed"})", "nothing to repair: every element in the scope is fine"},
+      {R"({"edit":"repair","scope":"all"})", "nothing to repair: every element in the scope is fine"},
+  };
+  for (const auto& [edit, note] : nothing) {
+    const Model before = document.current().model;
+    const EditReport report = must_apply(document, edit);
+    EXPECT_THAT(report.notes, Contains(note));
+    EXPECT_EQ(report.nodes_moved + report.elements_added + report.elements_removed, 0u);
+    expect_untouched(before, document.current().model);
+  }
+}
+
+TEST(RepairRefusals, WhatIsLockedStaysAsItIsAndIsSaid) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(8, 6));
+  must_apply(document, kDent);
+  ASSERT_GT(document.current().counts.fail, 0u);
+  must_apply(document, R"({"edit":"lock","on":"all"})");
+  const Model before = document.current().model;
+  const EditReport report = must_apply(document, R"({"edit":"repair"})");
+  expect_untouched(before, document.current().model);
+  EXPECT_EQ(report.after, report.before);
+  EXPECT_THAT(report.notes, Contains(HasSubstr("still fail")));
+  EXPECT_THAT(report.notes, Contains(HasSubstr("shell:"))) << "each with its reason";
+  must_apply(document, R"({"edit":"unlock","on":"all"})");
+  EXPECT_LT(must_apply(document, R"({"edit":"repair"})").after.fail, report.after.fail) << "unlocked, it is repaired";
+}
+
+TEST(RepairRefusals, ByHandWhatIsNotThereOrLockedIsRefused) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(8, 6));
+  const std::pair<std::string, std::string> cases[] = {
+      {R"({"edit":"split","at":["shell:99999"]})", "split: there is no shell 99999"},
+      {R"({"edit":"collapse","at":["node:7","node:99999"]})", "collapse: there is no node 99999"},
+      {R"({"edit":"split","at":["beam:7"]})", "neither \"shell:ID\" nor \"node:ID\""},
+      {R"({"edit":"split","at":["shell:-7"]})", "neither"},
+      {R"({"edit":"split","at":["shell:9999999999999999999999"]})", "neither"},
+      {R"({"edit":"merge","at":["shell:1","shell:2"]})", "merge: "},
+      {R"({"edit":"swap","at":["shell:1","shell:48"]})", "swap: "},
+      {R"({"edit":"collapse","at":["node:1","node:63"]})", "collapse: "},
+  };
+  for (const auto& [edit, why] : cases) EXPECT_THAT(refused_alone(document, edit), HasSubstr(why));
+  EXPECT_FALSE(refused_alone(document, R"({"edit":"split","at":["node:7"]})").empty());
+  must_apply(document, R"({"edit":"lock","on":"1"})");
+  for (const char* edit : {R"({"edit":"split","at":["shell:1"]})", R"({"edit":"split","at":["shell:4","shell:5"]})",
+                           R"({"edit":"swap","at":["shell:1","shell:2"]})"})
+    EXPECT_THAT(refused_alone(document, edit), HasSubstr("a shell there")) << edit;
+  refused_alone(document, R"({"edit":"collapse","at":["node:20","node:21"]})");
+  must_apply(document, R"({"edit":"split","at":["shell:8"]})");
+  must_apply(document, R"({"edit":"unlock"})");
+  must_apply(document, R"({"edit":"split","at":["shell:1"]})");
+}
+
+TEST(RepairRefusals, WhatIsGoneIsNotThere) {
+  const Folder folder;
+  Document document = open_text(folder / "a.k", sheet_deck(8, 6));
+  must_apply(document, R"({"edit":"collapse","at":["node:31","node:32"]})");
+  const Model& model = document.current().model;
+  ASSERT_TRUE(model.growth);
+  ASSERT_EQ(model.growth->removed_nodes.size(), 1u);
+  const std::string gone = std::to_string(model.node_ids[model.growth->removed_nodes[0].value]);
+  EXPECT_THAT(refused_alone(document, R"({"edit":"collapse","at":["node:)" + gone + R"(","node:33"]})"),
+              HasSubstr("there is no node " + gone));
+  EXPECT_FALSE(refused_alone(document, R"({"edit":"translate","by":[0,0,1],"on":")" + gone + "\"}").empty());
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::document
