@@ -136,6 +136,28 @@ TEST_F(Keeping, UndoReachesBackBeyondASaveInPlace) {
   EXPECT_TRUE(test::compare_decks(original, test::whole_file(deck)).other_changes.empty());
 }
 
+TEST_F(Keeping, ASaveThatRoundedWritesNothingTheSecondTime) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  for (const int node : {1313, 1314, 1315}) ASSERT_TRUE(first.edit(move_node(node, 1.0 / 3)));
+  const Result<ipc::Saved> saved = first.save(std::nullopt);
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(saved->nodes_written, 3u);
+  ASSERT_EQ(saved->notes.size(), 1u) << "sixteen columns don't hold a third";
+  const std::string text = test::whole_file(deck);
+  const Result<ipc::Saved> again = first.save(std::nullopt);
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(again->nodes_written, 0u);
+  EXPECT_EQ(again->lines_changed, 0u);
+  EXPECT_EQ(test::whole_file(deck), text);
+  ASSERT_TRUE(first.edit(move_node(1001, 0.5)));
+  const Result<ipc::Saved> one = first.save(std::nullopt);
+  ASSERT_TRUE(one) << one.error().text();
+  EXPECT_EQ(one->nodes_written, 1u);
+  EXPECT_EQ(one->lines_changed, 1u);
+}
+
 TEST_F(Keeping, WhatWasUndoneBeyondASaveSurvivesARestart) {
   const fs::path deck = folder_.sheet();
   double start = 0;
