@@ -25,6 +25,8 @@ namespace prismesh::cli {
 
 namespace {
 
+using mesh::document::FieldWish;
+
 constexpr const char* kKiosk = "prismesh-kiosk";
 
 Result<std::filesystem::path> find_kiosk() {
@@ -68,11 +70,41 @@ struct SealedField {
   std::vector<std::string> arguments;
 };
 
-Result<SealedField> seal_field(const mesh::document::Document& document, const mesh::document::FieldWish& wish,
-                               const RenderOptions& options, const Surroundings& surroundings) {
+/// The legend's words for what a field compares with.
+std::string compared_with(const FieldWish& wish, const RenderOptions& options) {
+  if (wish.of == FieldWish::Of::gap) return "of " + wish.from + " from " + wish.to;
+  return options.against ? "against " + options.against->filename().string() : "";
+}
+
+/// The field that the options name; nothing where they name other colours. Errors: options that don't go with it.
+Result<std::optional<FieldWish>> wished_field(const RenderOptions& options) {
+  const std::string colour = options.colour.value_or("parts");
+  Result<FieldWish> wish = mesh::document::field_wish(colour);
+  if (!wish) {
+    if (colour.find(':') != std::string::npos) return fail(wish.error());
+    const char* const given = options.against         ? "--against"
+                              : !options.from.empty() ? "--from"
+                              : !options.to.empty()   ? "--to"
+                              : options.limits        ? "--limits"
+                                                      : nullptr;
+    if (given != nullptr) return fail(given, "is for the colours of a field; " + wish.error().message);
+    return std::optional<FieldWish>();  // the kiosk knows the others
+  }
+  wish->from = options.from;
+  wish->to = options.to;
+  const bool gap = wish->of == FieldWish::Of::gap;
+  if (gap && (wish->from.empty() || wish->to.empty()))
+    return fail("--colour distance", "say with --from which nodes are coloured, and with --to what their distance is measured to");
+  if (!gap && !(wish->from.empty() && wish->to.empty())) return fail("--colour " + colour, "--from and --to are for --colour distance");
+  if (needs_other(*wish) && !options.against) return fail("--colour " + colour, "say with --against which deck to compare with");
+  if (!needs_other(*wish) && options.against) return fail("--colour " + colour, "is compared with nothing: leave --against out");
+  return std::optional(std::move(*wish));
+}
+
+Result<SealedField> seal_field(const mesh::document::Document& document, const FieldWish& wish, const RenderOptions& options,
+                               const Surroundings& surroundings) {
   std::optional<mesh::deck::OpenedDeck> other;
   if (needs_other(wish)) {
-    if (!options.against) return fail("--colour " + *options.colour, "say with --against which deck to compare with");
     MonotonicClock clock;
     ProgressBar bar(surroundings, "reading " + options.against->filename().string(), clock);
     Result<mesh::deck::OpenedDeck> opened = mesh::deck::open(*options.against, bar.progress());
@@ -87,13 +119,13 @@ Result<SealedField> seal_field(const mesh::document::Document& document, const m
   if (!values) return fail(std::move(values.error()));
   const FieldFigures figures = figures_of(*field, current.model);
   // Of a distance between two expressions only what the one names is meant to have values.
-  const std::size_t without = wish.of == mesh::document::FieldWish::Of::gap ? 0 : shells_without_value(current.model, *field);
+  const std::size_t without = wish.of == FieldWish::Of::gap ? 0 : shells_without_value(current.model, *field);
   const std::string limits = options.limits.value_or(shortest(field->limits.clear) + "," + shortest(field->limits.full));
   SealedField sealed{std::move(*values), {}};
   sealed.arguments = {"--field-fd",      std::to_string(sealed.values.get()),
                       "--field-title",   field->title,
                       "--field-unit",    field->unit,
-                      "--field-of",      options.against ? "against " + options.against->filename().string() : "",
+                      "--field-of",      compared_with(wish, options),
                       "--field-range",   shortest(figures.min) + "," + shortest(figures.max),
                       "--field-least",   figures.min_at,
                       "--field-most",    figures.max_at,
@@ -137,6 +169,11 @@ int render(const RenderOptions& options, const Common& common, const Surrounding
     say(surroundings, error);
     return kFailed;
   };
+  const Result<std::optional<FieldWish>> wish = wished_field(options);
+  if (!wish) {
+    say(surroundings, wish.error());
+    return kWrongUsage;
+  }
   const Result<std::filesystem::path> kiosk = find_kiosk();
   if (!kiosk) return refuse(kiosk.error());
   Result<mesh::document::Document> document = open_deck(options.deck, common, surroundings);
@@ -157,23 +194,14 @@ int render(const RenderOptions& options, const Common& common, const Surrounding
   std::vector<std::string> arguments{kKiosk, "--render", options.output.string(), "--snapshot-fds", list};
   arguments.insert(arguments.end(), options.passed_on.begin(), options.passed_on.end());
   std::optional<SealedField> coloured;
-  if (options.colour) {
-    if (auto wish = mesh::document::field_wish(*options.colour)) {
-      wish->from = options.from;
-      wish->to = options.to;
-      if (wish->of == mesh::document::FieldWish::Of::gap && (wish->from.empty() || wish->to.empty()))
-        return refuse(
-            Error{"--colour distance", 0, "say with --from which nodes are coloured, and with --to what their distance is measured to"});
-      Result<SealedField> field = seal_field(*document, *wish, options, surroundings);
-      if (!field) return refuse(field.error());
-      coloured = std::move(*field);
-      arguments.insert(arguments.end(), coloured->arguments.begin(), coloured->arguments.end());
-      inherited.push_back(coloured->values.get());
-    } else if (options.colour->find(':') != std::string::npos) {
-      return refuse(wish.error());
-    } else {
-      arguments.insert(arguments.end(), {"--colour", *options.colour});
-    }
+  if (*wish) {
+    Result<SealedField> field = seal_field(*document, **wish, options, surroundings);
+    if (!field) return refuse(field.error());
+    coloured = std::move(*field);
+    arguments.insert(arguments.end(), coloured->arguments.begin(), coloured->arguments.end());
+    inherited.push_back(coloured->values.get());
+  } else if (options.colour) {
+    arguments.insert(arguments.end(), {"--colour", *options.colour});
   }
   surroundings.err.flush();
   const Result<pid_t> child = start(*kiosk, arguments, inherited);

@@ -72,12 +72,18 @@ TEST_F(Render, AFieldThatCannotBeShownSaysWhatIsMissing) {
       {{"--colour", "displacement"}, "--colour displacement: say with --against which deck to compare with"},
       {{"--colour", "distance", "--from", "1"}, "--colour distance: say with --from which nodes are coloured, and with --to"},
       {{"--colour", "metric:warpige"}, "the nearest is \"metric:warpage\""},
-      {{"--colour", "displacement", "--against", "none.k"}, "none.k: can't be opened"}};
+      {{"--colour", "metric:warpage", "--against", deck_}, "--colour metric:warpage: is compared with nothing"},
+      {{"--colour", "displacement", "--against", deck_, "--to", "1"}, "--from and --to are for --colour distance"},
+      {{"--limits", "1,5"}, "--limits: is for the colours of a field"},
+      {{"--colour", "quality", "--against", deck_}, "--against: is for the colours of a field"}};
   for (const auto& [options, words] : wrong) {
-    EXPECT_EQ(draw(options).status, kFailed) << options[1];
+    EXPECT_EQ(draw(options).status, kWrongUsage) << options[1];
     EXPECT_THAT(said_, HasSubstr(words));
     EXPECT_FALSE(exists("a.png"));
   }
+  EXPECT_EQ(draw({"--colour", "displacement", "--against", "none.k"}).status, kFailed);
+  EXPECT_THAT(said_, HasSubstr("none.k: can't be opened"));
+  EXPECT_FALSE(exists("a.png"));
 }
 
 TEST_F(Render, NothingIsWrittenOnFailure) {
