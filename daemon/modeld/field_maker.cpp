@@ -81,6 +81,10 @@ Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::G
   answer.unit = field->unit;
   answer.of = words_of(*of);
   answer.against = other.words;
+  if (wish->of == mesh::document::FieldWish::Of::gap) {
+    answer.of = wish->from + " of " + answer.of;
+    answer.against = wish->to;
+  }
   answer.generation = of->number;
   answer.on_nodes = field->on_nodes;
   answer.measured = figures.measured;

@@ -244,6 +244,8 @@ TEST_F(Fields, DistanceOfTwoExpressionsIsFromNodesToShells) {
     EXPECT_NEAR(got.values[n], least, kNear * least) << n;
   }
   EXPECT_EQ(got.made.measured, 14u);
+  EXPECT_EQ(got.made.of.find("node:1-14 of "), 0u) << got.made.of;
+  EXPECT_EQ(got.made.against, "shell:155-181");
   EXPECT_EQ(got.made.shells_without, 0u) << "the others aren't meant to have a value";
 }
 
