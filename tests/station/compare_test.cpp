@@ -52,6 +52,37 @@ TEST_F(CompareTest, the_opened_deck_stands_beside_the_edited_one) {
   EXPECT_FALSE(station_->kiosk().wait_for("compare nothing views 1").empty());
 }
 
+TEST_F(CompareTest, the_view_beside_is_only_shown) {
+  station_->start_kiosk();
+  lift();
+  station_->key("ctrl+c");
+  ASSERT_FALSE(station_->kiosk().wait_for("view beside generation ").empty());
+  // So near that the edited sheet would reach into the left half, were it not cut.
+  for (int i = 0; i < 12; ++i) station_->click(600, 320, 4);
+  station_->settled_aim();
+  station_->kiosk().skip_lines();
+  station_->move(420, 320);
+  station_->key("ctrl+d");
+  ASSERT_FALSE(station_->kiosk().wait_for("operation split").empty());
+  station_->key("j");
+  ASSERT_FALSE(station_->kiosk().wait_for("quality generation").empty()) << "the server answers one after the other";
+  for (const char* said : {"operation previewed", "operation refused"}) EXPECT_TRUE(station_->kiosk().last(said).empty()) << said;
+  station_->move(600, 320);
+  station_->key("ctrl+d");
+  EXPECT_FALSE(station_->kiosk().wait_for("operation previewed").empty()) << "in the right one there is a shell";
+}
+
+TEST_F(CompareTest, one_panel_stands_at_the_left) {
+  station_->start_kiosk();
+  station_->kiosk().skip_lines();
+  const std::pair<const char*, const char*> keys[] = {{"j", "quality"},         {"t", "shaping"}, {"j", "quality"},
+                                                      {"shift+c", "comparing"}, {"j", "quality"}, {"j", "document"}};
+  for (const auto& [key, panel] : keys) {
+    station_->key(key);
+    EXPECT_FALSE(station_->kiosk().wait_for(std::string("panel ") + panel).empty()) << key;
+  }
+}
+
 TEST_F(CompareTest, a_click_or_the_wheel_on_a_panel_is_the_panels_alone) {
   station_->start_kiosk();
   lift();
