@@ -49,8 +49,8 @@ bool keeps_to_surface(const Site& site);
 /// The place on the surface for a point near it; nothing if there is none close by.
 std::optional<Vec3> on_surface(const Site& site, const Vec3& point, const Vec3& toward, double radius);
 
-/// Moves nodes that the change touched, and that may be moved, to where their shells are best.
-void settle(const Site& site, int sweeps);
+/// Moves nodes that the change touched, and that may be moved, to where their shells are best; `along_lines`: those on feature lines too.
+void settle(const Site& site, int sweeps, bool along_lines);
 
 /// Twice a shell's area as a vector.
 Vec3 area_normal(const Patch& patch, const Corners& corners);

@@ -201,21 +201,31 @@ std::vector<Candidate> strips_for(const Site& site, LocalShell shell, int edge) 
   if (corner_count(corners) != 4) return found;
   const double width = width_of(site.patch, corners, edge), size = site.judge.target_size;
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  std::vector<StripCourse> courses;
+  // Where a strip ends by itself its limits make no difference.
+  const auto is_another = [&](const Strip& strip) {
+    StripCourse course = course_of(site.patch, strip);
+    if (course.quads.empty() || std::find(courses.begin(), courses.end(), course) != courses.end()) return false;
+    courses.push_back(std::move(course));
+    return true;
+  };
   for (const double most : {kInfinite, 0.75 * size, kShort * size}) {
-    if (width > kShort * size) break;
     const Strip strip{shell, edge, 0, most};
+    if (width > kShort * size || !is_another(strip)) continue;
     found.push_back({Operation::collapse, [&site, strip] { return collapse_strip(site, strip); }});
   }
   if (width < kLong * size) return found;
   std::set<int> pieces = {2};
   for (int count = static_cast<int>(std::lround(width / size)); count > 2; count = count > 3 ? 3 : 2) pieces.insert(count);
-  for (const double least : {0.0, size, kLong * size})
+  for (const double least : {0.0, size, kLong * size}) {
+    const Strip strip{shell, edge, least, kInfinite};
+    if (!is_another(strip)) continue;
     for (const int count : pieces)
       for (const bool absorbs : {true, false}) {
-        if (count > 2 && !absorbs) continue;
-        const Strip strip{shell, edge, least, kInfinite};
+        if (!absorbs && (count > 2 || !courses.back().ends_in_triangle)) continue;
         found.push_back({Operation::split, [&site, strip, count, absorbs] { return divide_strip(site, strip, count, absorbs); }});
       }
+  }
   return found;
 }
 

@@ -25,12 +25,14 @@ constexpr int kSweepsAtAGlance = 1;
 // Candidates that after a glance gain less aren't looked at closer.
 constexpr double kLeastPromise = -2;
 
-/// How hard is tried: how often nodes settle, and how many candidates are looked at closely, before and after one could be accepted.
+/// How hard is tried: how often nodes settle, how many candidates are looked at closely, before and after one could be accepted, and
+/// whether nodes on feature lines settle along those.
 struct Effort {
   int sweeps;
   std::size_t looks_longer, looks_closer;
+  bool along_lines;
 };
-constexpr Effort kQuick{4, 12, 4}, kThorough{10, 40, 12};
+constexpr Effort kQuick{4, 12, 4, false}, kThorough{10, 40, 12, true};
 
 std::size_t triangles_in(const Model& model) {
   std::size_t triangles = 0;
@@ -81,15 +83,18 @@ class Repairer {
     for (round_ = 0; round_ < site_.options.most_rounds && !stopped_; ++round_) {
       repaired_.rounds = round_ + 1;
       bool better = false;
-      for (int pass = 0; pass < kStripPasses && work_on_strips(); ++pass) {
-        better = true;
-        relax_neighbourhood();
+      // Nodes that slid along a line hinder the next strip, which would divide it evenly: they may only when nothing else helps.
+      along_lines_ = false;
+      better = divide_strips() || better;
+      if (effort_.along_lines) {
+        along_lines_ = true;
+        better = divide_strips() || better;
       }
       // The worst first; warnings when nothing fails that could be cured.
       better = sweep(quality::Grade::fail, kStripShare) || better;
       better = sweep(quality::Grade::warn, kFailShare) || better;
       tidy();
-      if (!better && effort_.sweeps == kThorough.sweeps) break;
+      if (!better && effort_.along_lines) break;
       // What is left when nothing is better any more is worth more effort.
       effort_ = better ? kQuick : kThorough;
       if (!better) tried_.clear();
@@ -149,6 +154,13 @@ class Repairer {
     return better;
   }
 
+  /// Strips and relaxing by turns, as long as that helps.
+  bool divide_strips() {
+    int pass = 0;
+    for (; pass < kStripPasses && work_on_strips(); ++pass) relax_neighbourhood();
+    return pass > 0;
+  }
+
   /// Whole strips of quads where shells are long or short across: that leaves no triangles, or few.
   bool work_on_strips() {
     bool better = false;
@@ -164,7 +176,7 @@ class Repairer {
         if (improve(found, shell, false))
           better = true;
         else
-          for (const StripQuad& quad : quads_of(patch_, {shell, edge})) refused.emplace(quad.shell, quad.edge);
+          for (const StripQuad& quad : course_of(patch_, {shell, edge}).quads) refused.emplace(quad.shell, quad.edge);
       }
     return better;
   }
@@ -196,7 +208,7 @@ class Repairer {
     if (const Refusal refusal = candidate.apply()) {
       if (reason.rank < 0) reason = {0, *refusal, 0};
     } else {
-      settle(site_, kSweepsAtAGlance);
+      settle(site_, kSweepsAtAGlance, along_lines_);
       judge_shells(site_, patch_.changed_shells());
       gain = burden_before(patch_).weight - burden_now(patch_).weight;
     }
@@ -206,7 +218,7 @@ class Repairer {
 
   Outcome try_out(const Candidate& candidate, bool only_tidy) {
     if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
-    settle(site_, effort_.sweeps);
+    settle(site_, effort_.sweeps, along_lines_);
     judge_shells(site_, patch_.changed_shells());
     const Burden before = burden_before(patch_), now = burden_now(patch_);
     const double gain = before.weight - now.weight;
@@ -325,14 +337,21 @@ class Repairer {
       keep_change();
   }
 
+  /// What can be told of a shell for which nothing helped.
+  std::string_view reason_of(LocalShell shell) const {
+    const PatchShell& s = patch_.shell(shell);
+    const auto is_held = [&](LocalNode n) { return !patch_.node(n).lines.empty() || patch_.node(n).freedom != relax::Freedom::surface; };
+    if (std::all_of(s.corners.begin(), s.corners.end(), is_held)) return "it lies between edges of the part that have to stay";
+    const auto why = why_.find(shell);
+    return why == why_.end() ? "no operation makes it better" : why->second;
+  }
+
   void finish() {
     std::vector<ShellIndex> index_of;
     repaired_.change = patch_.result(&index_of);
     repaired_.relaxed = repaired_.change.moved.size();
-    for (const LocalShell shell : bad_shells(quality::Grade::fail)) {
-      const auto why = why_.find(shell);
-      repaired_.left.push_back({index_of[shell.value], std::string(why == why_.end() ? "no operation makes it better" : why->second)});
-    }
+    for (const LocalShell shell : bad_shells(quality::Grade::fail))
+      repaired_.left.push_back({index_of[shell.value], std::string(reason_of(shell))});
     std::sort(repaired_.left.begin(), repaired_.left.end(), [](const Left& a, const Left& b) { return a.shell < b.shell; });
   }
 
@@ -345,6 +364,7 @@ class Repairer {
   std::uint32_t changes_ = 0;
   std::map<LocalShell, std::string_view> why_;
   Effort effort_ = kQuick;
+  bool along_lines_ = false;  ///< nodes on feature lines settle as well now
   const Progress* progress_ = nullptr;
   int round_ = 0;
   std::optional<Error> stopped_;  ///< why nothing more is to be done

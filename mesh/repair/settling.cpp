@@ -21,8 +21,10 @@ double pressure(float composite) {
 
 bool may_settle(const Patch& patch, LocalNode node) {
   const PatchNode& n = patch.node(node);
-  return n.is_alive && n.is_whole && n.freedom == relax::Freedom::surface && n.lines.empty() && (n.rules & kStays) == 0 &&
-         !n.is_off_surface && !n.shells.empty();
+  if (!n.is_alive || !n.is_whole || (n.rules & kStays) != 0 || n.is_off_surface || n.shells.empty()) return false;
+  if (n.freedom == relax::Freedom::surface) return n.lines.empty();
+  // Inside of one line; where lines meet or end they stay.
+  return n.freedom == relax::Freedom::line && n.lines.size() == 2 && !n.lines[0].is_rim && !n.lines[1].is_rim;
 }
 
 /// The sum of the pressures of a node's shells for each of several places of the node.
@@ -82,11 +84,57 @@ Surroundings around(const Patch& patch, LocalNode node) {
 /// How far a node of the model may be from where it was.
 bool within_limit(const Site& site, LocalNode node, const Vec3& place) {
   const PatchNode& n = site.patch.node(node);
-  if (!n.model.valid() || !site.options.relax.most_on_surface) return true;
-  return (place - site.patch.model().position(n.model)).norm() <= *site.options.relax.most_on_surface;
+  const std::optional<double>& most = n.lines.empty() ? site.options.relax.most_on_surface : site.options.relax.most_on_line;
+  return !n.model.valid() || !most || (place - site.patch.model().position(n.model)).norm() <= *most;
 }
 
-void settle_node(const Site& site, LocalNode node, double step) {
+/// Whether a line's two edges at a node, were it elsewhere, follow the line as closely as they have to, or as they did.
+bool follows_line(const Site& site, LocalNode node, const Vec3& place) {
+  const Patch& patch = site.patch;
+  const double allowed = site.options.most_off_surface * site.judge.target_size;
+  const auto off = [&](const Vec3& at, const Vec3& end) {
+    const Vec3 middle = 0.5 * (at + end);
+    const auto on_line = site.surface.project_on_line(middle, 0.5 * (at - end).norm());
+    return on_line ? (*on_line - middle).norm() : (at - end).norm();
+  };
+  double now = 0, before = 0;
+  for (const LineEnd& line : patch.node(node).lines) {
+    now = std::max(now, off(place, patch.position(line.node)));
+    before = std::max(before, off(patch.position(node), patch.position(line.node)));
+  }
+  return now <= std::max(allowed, before * (1 + 1e-9));
+}
+
+/// The place of least pressure among several, the first of which is the node's own; nothing: its own.
+std::optional<Vec3> best_of(const Site& site, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
+  weigh_places(site, node, places, sums);
+  const auto best = static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
+  return best == 0 ? std::nullopt : std::optional<Vec3>(places[best]);
+}
+
+bool is_better(const Site& site, LocalNode node, const Vec3& place, double sum_now) {
+  double sum = 0;
+  weigh_places(site, node, std::span(&place, 1), std::span(&sum, 1));
+  return sum < sum_now;
+}
+
+/// A node on a line goes along that.
+void settle_on_line(const Site& site, LocalNode node, double step) {
+  const Patch& patch = site.patch;
+  const PatchNode& n = patch.node(node);
+  const Vec3 at = n.position, one = patch.position(n.lines[0].node), other = patch.position(n.lines[1].node);
+  const std::array<Vec3, 5> places = {at, at + step * (one - at), at + step * (other - at), at + 2 * step * (one - at),
+                                      at + 2 * step * (other - at)};
+  std::array<double, 5> sums{};
+  const auto best = best_of(site, node, places, sums);
+  if (!best) return;
+  const double radius = 0.5 * std::min((one - at).norm(), (other - at).norm());
+  const auto place = site.surface.project_on_line(*best, radius);
+  if (!place || !place->allFinite() || !within_limit(site, node, *place)) return;
+  if (is_better(site, node, *place, sums[0]) && follows_line(site, node, *place)) site.patch.move(node, *place);
+}
+
+void settle_in_sheet(const Site& site, LocalNode node, double step) {
   const Surroundings here = around(site.patch, node);
   if (!(here.size > 0) || here.normal.squaredNorm() < 0.5) return;
   const Vec3 at = site.patch.position(node);
@@ -100,24 +148,25 @@ void settle_node(const Site& site, LocalNode node, double step) {
   const Vec3 inward = here.centre - at;
   places[9] = at + inward - here.normal * inward.dot(here.normal);
   std::array<double, 10> sums{};
-  weigh_places(site, node, places, sums);
-  const auto best = static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
-  if (best == 0) return;
-  const auto place = on_surface(site, places[best], here.normal, here.size);
-  if (!place || !within_limit(site, node, *place)) return;
-  double settled = 0;
-  weigh_places(site, node, std::span(&*place, 1), std::span(&settled, 1));
-  if (settled < sums[0]) site.patch.move(node, *place);
+  const auto best = best_of(site, node, places, sums);
+  if (!best) return;
+  const auto place = on_surface(site, *best, here.normal, here.size);
+  if (place && within_limit(site, node, *place) && is_better(site, node, *place, sums[0])) site.patch.move(node, *place);
 }
 
 }  // namespace
 
-void settle(const Site& site, int sweeps) {
+void settle(const Site& site, int sweeps, bool along_lines) {
   std::vector<LocalNode> nodes = site.patch.changed_nodes();
-  std::erase_if(nodes, [&](LocalNode n) { return !may_settle(site.patch, n); });
+  std::erase_if(nodes, [&](LocalNode n) { return !may_settle(site.patch, n) || (!along_lines && !site.patch.node(n).lines.empty()); });
   double step = 0.2;
   for (int sweep = 0; sweep < sweeps; ++sweep, step *= 0.6)
-    for (const LocalNode node : nodes) settle_node(site, node, step);
+    for (const LocalNode node : nodes) {
+      if (site.patch.node(node).lines.empty())
+        settle_in_sheet(site, node, step);
+      else
+        settle_on_line(site, node, step);
+    }
 }
 
 }  // namespace prismesh::mesh::repair

@@ -149,13 +149,16 @@ Refusal end_strip(const Site& site, LocalShell shell, unsigned edges, EdgeCuts& 
 
 }  // namespace
 
-std::vector<StripQuad> quads_of(const Patch& patch, const Strip& strip) {
+StripCourse course_of(const Patch& patch, const Strip& strip) {
   const Plan plan(patch, strip);
-  std::vector<StripQuad> quads;
-  if (!plan.is_possible()) return quads;
-  for (const auto& [shell, edges] : plan.edges())
-    if (corner_count(patch.shell(shell).corners) == 4 && Plan::divides(edges)) quads.push_back({shell, edges == kAcross ? 0 : 1});
-  return quads;
+  StripCourse course;
+  if (!plan.is_possible()) return course;
+  for (const auto& [shell, edges] : plan.edges()) {
+    const bool is_triangle = corner_count(patch.shell(shell).corners) == 3;
+    if (!is_triangle && Plan::divides(edges)) course.quads.push_back({shell, edges == kAcross ? 0 : 1});
+    course.ends_in_triangle = course.ends_in_triangle || (is_triangle && std::popcount(edges) == 1);
+  }
+  return course;
 }
 
 Refusal divide_strip(const Site& site, const Strip& strip, int pieces, bool absorbs) {

@@ -25,11 +25,17 @@ Refusal divide_strip(const Site& site, const Strip& strip, int pieces = 2, bool 
 /// Takes a strip out: the two ends of each of its edges become one node. Where it ends a quad becomes a triangle.
 Refusal collapse_strip(const Site& site, const Strip& strip);
 
-/// The quads of a strip, each with the edge by which it is entered (0 or 1, the one opposite is the same); empty: there is none.
+/// What a strip goes over: the quads that it divides, each with the edge by which it is entered (0 or 1, the one opposite is the same).
 struct StripQuad {
   LocalShell shell;
   int edge = 0;
+  bool operator==(const StripQuad&) const = default;
 };
-std::vector<StripQuad> quads_of(const Patch& patch, const Strip& strip);
+struct StripCourse {
+  std::vector<StripQuad> quads;  ///< ascending by shell; empty: there is no such strip
+  bool ends_in_triangle = false;
+  bool operator==(const StripCourse&) const = default;
+};
+StripCourse course_of(const Patch& patch, const Strip& strip);
 
 }  // namespace prismesh::mesh::repair

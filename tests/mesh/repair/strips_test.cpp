@@ -2,41 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/quality/criteria.h"
-#include "tests/mesh/repair/sheets.h"
+#include "tests/mesh/repair/patch_bench.h"
 #include "tests/mesh/repair/validator.h"
 
 namespace prismesh::mesh::repair {
 namespace {
-
-/// A patch of a whole model, to divide strips in.
-struct Bench {
-  explicit Bench(Model made, Rules forbidden = {})
-      : model(std::move(made)),
-        surface(model, all_shells(model), options.relax.feature_angle),
-        rules(std::move(forbidden)),
-        patch(model, all_shells(model), 1, rules, options.relax.feature_angle),
-        site{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {}
-
-  Refusal divide(const Strip& strip, int pieces = 2, bool absorbs = true) {
-    patch.begin();
-    return divide_strip(site, strip, pieces, absorbs);
-  }
-  Refusal collapse(const Strip& strip) {
-    patch.begin();
-    return collapse_strip(site, strip);
-  }
-  Model after() const { return carried_out(model, patch.result()); }
-  LocalShell shell(std::size_t s) const { return patch.find(shell_at(s)); }
-
-  Model model;
-  Options options;
-  relax::Judge judge{quality::default_criteria(), 1};
-  relax::ReferenceSurface surface;
-  Rules rules;
-  Patch patch;
-  Site site;
-};
 
 std::size_t edges_with(const Model& model, std::size_t shells) {
   std::size_t count = 0;
@@ -49,7 +19,7 @@ TEST(Strips, go_from_one_end_of_the_sheet_to_the_other_without_a_triangle) {
   const Grid grid = flat(5, 4);
   Bench bench(model_of(grid.positions(), grid.shells()));
   const Strip strip{bench.shell(grid.shell(2, 1)), 0};
-  EXPECT_EQ(quads_of(bench.patch, strip).size(), 4U);
+  EXPECT_EQ(course_of(bench.patch, strip).quads.size(), 4U);
   ASSERT_FALSE(bench.divide(strip));
   const Model after = bench.after();
   EXPECT_EQ(what_is_wrong(after), "");
@@ -128,7 +98,7 @@ TEST(Strips, end_before_short_edges_in_a_triangle_that_has_the_shorter_diagonal)
   const Grid grid{3, 6, [](double x, double y) { return Vec3(x == 2 || x == 3 ? 1 + (x - 1) * (3 - 0.375 * y) : x, y, 0); }, {}};
   Bench bench(model_of(grid.positions(), grid.shells()));
   const Strip strip{bench.shell(grid.shell(1, 0)), 0, 2.0};
-  const std::vector<StripQuad> quads = quads_of(bench.patch, strip);
+  const std::vector<StripQuad> quads = course_of(bench.patch, strip).quads;
   EXPECT_EQ(quads.size(), 2U) << "the edges are 3, 2.625, 2.25 and then 1.875 long";
   ASSERT_FALSE(bench.divide(strip));
   const Model after = bench.after();
@@ -178,7 +148,7 @@ TEST(Strips, stop_before_what_may_not_be_divided) {
   rules.shell = [&](ShellIndex shell) { return shell == shell_at(2 + 3 * 5) ? std::uint8_t{kIndivisible} : std::uint8_t{0}; };
   Bench bench(model_of(grid.positions(), grid.shells()), rules);
   const Strip strip{bench.shell(2 + 0 * 5), 0};
-  EXPECT_EQ(quads_of(bench.patch, strip).size(), 2U);
+  EXPECT_EQ(course_of(bench.patch, strip).quads.size(), 2U);
   ASSERT_FALSE(bench.divide(strip));
   const Model after = bench.after();
   EXPECT_EQ(what_is_wrong(after), "");
@@ -194,7 +164,7 @@ TEST(Strips, that_cross_themselves_are_refused) {
   const Refusal refusal = bench.divide(strip);
   ASSERT_TRUE(refusal);
   EXPECT_EQ(*refusal, "the strip of quads there crosses itself");
-  EXPECT_TRUE(quads_of(bench.patch, strip).empty());
+  EXPECT_TRUE(course_of(bench.patch, strip).quads.empty());
 }
 
 TEST(Strips, go_and_leave_the_sheet_whole) {

@@ -1,0 +1,40 @@
+// All of a small model as a patch, with all that operations on it need.
+#pragma once
+
+#include "mesh/quality/criteria.h"
+#include "mesh/repair/appraisal.h"
+#include "mesh/repair/strips.h"
+#include "tests/mesh/repair/sheets.h"
+
+namespace prismesh::mesh::repair {
+
+/// A patch of a whole model, to try operations in.
+struct Bench {
+  explicit Bench(Model made, Rules forbidden = {})
+      : model(std::move(made)),
+        surface(model, all_shells(model), options.relax.feature_angle),
+        rules(std::move(forbidden)),
+        patch(model, all_shells(model), 1, rules, options.relax.feature_angle),
+        site{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {}
+
+  Refusal divide(const Strip& strip, int pieces = 2, bool absorbs = true) {
+    patch.begin();
+    return divide_strip(site, strip, pieces, absorbs);
+  }
+  Refusal collapse(const Strip& strip) {
+    patch.begin();
+    return collapse_strip(site, strip);
+  }
+  Model after() const { return carried_out(model, patch.result()); }
+  LocalShell shell(std::size_t s) const { return patch.find(shell_at(s)); }
+
+  Model model;
+  Options options;
+  relax::Judge judge{quality::default_criteria(), 1};
+  relax::ReferenceSurface surface;
+  Rules rules;
+  Patch patch;
+  Site site;
+};
+
+}  // namespace prismesh::mesh::repair
