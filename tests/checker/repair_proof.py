@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Strong edits on real decks, then a repair, judged by means of its own: decks are read by the checker's readers, never by the program's.
 
-    repair_proof.py --prismesh PROGRAM [--models FOLDER] [--extreme] [DECK ..]      a table as in docs/repairing.md; status 1 if anything is wrong
+    repair_proof.py --prismesh PROGRAM [--models FOLDER] [--extreme] [--target-size SIZE] [DECK ..]      a table as in docs/repairing.md; status 1 if anything is wrong
 
 For each deck: half of its largest part (by shells) is lifted, and stretched (edits_of). The deck is written shaped, and written shaped and repaired. Then
 - the text: every line that no edit had to touch is the same, sets and ids are right (edit_proof.py);
@@ -146,6 +146,14 @@ def target_part(mesh):
     return max(count, key=lambda part: (count[part], str(part)))
 
 
+def target_size_of(mesh):
+    """The median edge of the part that is shaped: the deck's own may be that of quite other parts."""
+    part = target_part(mesh)
+    lengths = sorted(math.sqrt(distance2(mesh.at[c[i]], mesh.at[c[i - 1]]))
+                     for id, c in mesh.shells.items() if mesh.parts[id] == part for i in range(len(c)))
+    return float(f"{lengths[len(lengths) // 2]:.4g}")
+
+
 def distance2(a, b):
     d = minus(a, b)
     return dot(d, d)
@@ -215,9 +223,10 @@ def junction_lengths(mesh, edges):
     return lengths
 
 
-def run(prismesh, deck, edits, out):
+def run(prismesh, deck, target_size, edits, out):
     arguments = [a for e in edits for a in ("--edit", json.dumps(e))]
-    done = subprocess.run([prismesh, "edit", deck, *arguments, "-o", out, "--json"], capture_output=True, text=True)
+    done = subprocess.run([prismesh, "edit", deck, "--target-size", str(target_size), *arguments, "-o", out, "--json"],
+                          capture_output=True, text=True)
     told = [json.loads(line) for line in done.stdout.splitlines()]
     if done.returncode:
         raise RuntimeError(done.stderr.strip()[-400:])
@@ -230,9 +239,10 @@ def counts(prismesh, deck, target_size):
     return {"warn": told["warn"], "fail": told["fail"]}
 
 
-def without_folds(prismesh, main, edit, folder):
+def without_folds(prismesh, main, target_size, edit, folder):
     """The edit, less strong if elements turn over: no repair of a mesh unfolds a sheet."""
-    while "distance" in edit and run(prismesh, main, [edit], os.path.join(folder, "try_" + os.path.basename(main)))[-1]["inverted"] > 0:
+    out = os.path.join(folder, "try_" + os.path.basename(main))
+    while "distance" in edit and run(prismesh, main, target_size, [edit], out)[-1]["inverted"] > 0:
         edit = edit | {"distance": 0.8 * edit["distance"]}
     return edit
 
@@ -240,8 +250,8 @@ def without_folds(prismesh, main, edit, folder):
 def prove(prismesh, main, name, kind, edit, original, before, target_size, folder):
     wrong = []
     shaped_path, repaired_path = (os.path.join(folder, f"{k}_" + os.path.basename(main)) for k in ("shaped", "repaired"))
-    shaping = run(prismesh, main, [edit], shaped_path)[-1]
-    told = run(prismesh, main, [edit, {"edit": "repair"}], repaired_path)[-1]
+    shaping = run(prismesh, main, target_size, [edit], shaped_path)[-1]
+    told = run(prismesh, main, target_size, [edit, {"edit": "repair"}], repaired_path)[-1]
     shaped, repaired_deck = Mesh(check_deck.read(shaped_path)), check_deck.read(repaired_path)
     repaired = Mesh(repaired_deck)
     proof = edit_proof.compare(original, repaired_deck, {"moved_freely": True, "nodes_added": "any", "elements_added": "any",
@@ -272,6 +282,7 @@ def main():
     parser.add_argument("--prismesh", required=True)
     parser.add_argument("--models", default=os.environ.get("PRISMESH_MODELS", ""))
     parser.add_argument("--extreme", action="store_true", help="stronger than anything sensible")
+    parser.add_argument("--target-size", type=float, help="in place of the median edge of the part that is shaped")
     parser.add_argument("decks", nargs="*", default=DECKS)
     options = parser.parse_args()
     if not os.path.isdir(options.models):
@@ -284,12 +295,12 @@ def main():
         path = main_file(os.path.join(options.models, name))
         deck = check_deck.read(path)
         before = Mesh(deck)
-        size = json.loads(subprocess.run([options.prismesh, "info", path, "--json"], capture_output=True, text=True).stdout)["target_size"]
+        size = options.target_size or target_size_of(before)
         for kind, edit in edits_of(before, options.extreme).items():
             with tempfile.TemporaryDirectory(prefix="prismesh-repair-") as folder:
                 try:
                     if not options.extreme:
-                        edit = without_folds(options.prismesh, path, edit, folder)
+                        edit = without_folds(options.prismesh, path, size, edit, folder)
                     wrong = prove(options.prismesh, path, name, kind, edit, deck, before, size, folder)
                 except (RuntimeError, subprocess.SubprocessError) as error:
                     wrong = [str(error)]
