@@ -69,7 +69,10 @@ Result<Field> metric_field(const Model& model, Metric metric, const Settings& se
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
     std::vector<quality::Values> values(shells.size());
     quality::measure_shells(model, shells, values);
-    for (std::size_t i = 0; i < shells.size(); ++i) out[shells[i].value - begin] = values[i][static_cast<std::size_t>(metric)];
+    for (std::size_t i = 0; i < shells.size(); ++i)
+      // What is no shell has no value: that it fails is told as its defect.
+      if (!quality::judge(values[i], settings.criteria, settings.target_size).has_defect())
+        out[shells[i].value - begin] = values[i][static_cast<std::size_t>(metric)];
   });
   field.limits = limits_of(metric, settings, field.figures);
   return unless_empty(std::move(field), "there is no shell that it applies to");

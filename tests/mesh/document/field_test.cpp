@@ -180,6 +180,18 @@ TEST(FieldTest, what_is_no_number_counts_for_nothing) {
   EXPECT_TRUE(std::isfinite(warpage->figures.mean));
 }
 
+TEST(FieldTest, what_is_no_shell_has_no_metric) {
+  Model model = flat_sheet(4, 4, 0);
+  model.positions.set(6, model.position(NodeIndex(std::size_t{7})));  // two shells have an edge without length
+  for (const quality::Metric metric : {quality::Metric::aspect, quality::Metric::min_length, quality::Metric::jacobian}) {
+    const auto field = metric_field(model, metric, Settings{});
+    ASSERT_TRUE(field);
+    EXPECT_EQ(field->figures.measured, 14u);
+    EXPECT_EQ(shells_without_value(model, *field), 2u);
+  }
+  EXPECT_LT(metric_field(model, quality::Metric::aspect, Settings{})->figures.max, 5);
+}
+
 TEST(FieldTest, nothing_to_measure_is_a_sentence) {
   const Model sheet = flat_sheet(2, 2, 0);
   const Model empty = test::make_model({}, {});
