@@ -382,7 +382,7 @@ class Differ {
       const auto& [file, offset, header] = place;
       const std::string_view text = deck_.files[file].bytes.text();
       const bool unended = offset == text.size() && offset > 0 && text[offset - 1] != '\n';
-      by_file_[file].push_back({offset, 0, unended ? "\n" + cards : std::move(cards)});
+      by_file_[file].push_back({offset, 0, unended ? std::string(line_end(text, offset)) + cards : std::move(cards)});
     }
   }
 

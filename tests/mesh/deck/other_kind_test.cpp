@@ -125,6 +125,22 @@ TEST(OtherKind, abaqus_gets_a_keyword_like_that_of_its_quads) {
   }
 }
 
+TEST(OtherKind, a_block_behind_an_unended_last_line_ends_its_lines_as_the_deck_does) {
+  const DeckFolder folder;
+  const std::string unix_text =
+      "*HEADING\ntwo quads\n*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 2., 0., 0.\n4, 0., 1., 0.\n5, 1., 1., 0.\n6, 2., 1., 0.\n"
+      "*ELEMENT, TYPE=S4R, ELSET=PLATE\n1, 1, 2, 5, 4\n2, 2, 3, 6, 5";
+  std::string text;
+  for (const char c : unix_text) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  const auto opened = open(folder.write("a.inp", text));
+  ASSERT_TRUE(opened) << opened.error().text();
+  Growing edit(*opened);
+  split_both(edit);
+  const std::string out = saved(folder, edit, "b.inp");
+  EXPECT_THAT(out, HasSubstr("*ELEMENT, TYPE=S3R, ELSET=PLATE\r\n1, 1, 2, 5\r\n"));
+  for (std::size_t at = out.find('\n'); at != std::string::npos; at = out.find('\n', at + 1)) EXPECT_EQ(out[at - 1], '\r') << "at " << at;
+}
+
 TEST(OtherKind, abaqus_refuses_a_type_that_has_no_triangle) {
   const DeckFolder folder;
   const auto opened = open(folder.write("a.inp", abaqus("*ELEMENT, TYPE=S4R5, ELSET=PLATE")));
