@@ -35,20 +35,6 @@ constexpr double kTail = 0.002;  ///< the share of the shells at either end that
 
 bool has(std::uint16_t bits, int bit) { return (bits >> bit & 1) != 0; }
 
-std::string unit_of(int metric, const std::string& length_unit) {
-  switch (static_cast<Metric>(metric)) {
-    case Metric::min_length:
-    case Metric::max_length: return length_unit;
-    case Metric::warpage:
-    case Metric::skew:
-    case Metric::min_angle_quad:
-    case Metric::max_angle_quad:
-    case Metric::min_angle_tri:
-    case Metric::max_angle_tri: return "deg";
-    default: return {};
-  }
-}
-
 Result<int> metric_named(const std::string& wanted) {
   std::vector<std::string_view> known;
   for (int m = 0; m < kMetricCount; ++m) {
@@ -275,7 +261,7 @@ class Gathering {
     const double least = nth(0), most = nth(sorted.size() - 1);
     double low = nth(tail), high = nth(sorted.size() - 1 - tail);
     // What warns and fails shall be seen as far as there is any of it, but a value of a million shall not push all others into one bar.
-    const Threshold limit = limits_of(metric_, metric_ == int(Metric::min_angle_tri) || metric_ == int(Metric::max_angle_tri));
+    const Threshold limit = limits_of(metric_, mesh::quality::is_of_triangles(static_cast<Metric>(metric_)));
     const double reach = 0.25;
     if (std::isfinite(limit.fail_high)) high = std::min(std::max(high, limit.fail_high * (1 + reach)), most);
     if (std::isfinite(limit.fail_low)) low = std::max(std::min(low, limit.fail_low * (1 - reach)), least);
@@ -307,7 +293,9 @@ class Gathering {
                                     sheet);
   }
 
-  std::string unit(int metric) const { return unit_of(metric, std::string(name(document_.settings.length_unit))); }
+  std::string unit(int metric) const {
+    return std::string(mesh::quality::unit_of(static_cast<Metric>(metric), name(document_.settings.length_unit)));
+  }
 
   std::array<double, 3> centre(std::size_t shell) const {
     const mesh::ShellNodes& nodes = generation_.model.shell_nodes[shell];

@@ -5,6 +5,7 @@
 #include "mesh/document/field.h"
 #include "mesh/document/field_values.h"
 #include "mesh/quality/composite.h"
+#include "mesh/quality/limits.h"
 #include "mesh/quality/time_step.h"
 
 namespace prismesh::mesh::document {
@@ -16,19 +17,6 @@ using quality::Metric;
 constexpr double kClearComposite = 0.5, kFailingComposite = 0;
 constexpr double kClearTimeSteps = 2;  ///< of the smallest
 
-bool is_length(Metric metric) { return metric == Metric::min_length || metric == Metric::max_length; }
-
-std::string unit_of(Metric metric, LengthUnit unit) {
-  switch (metric) {
-    case Metric::min_length:
-    case Metric::max_length: return std::string(name(unit));
-    case Metric::aspect:
-    case Metric::jacobian:
-    case Metric::taper: return {};
-    default: return "deg";
-  }
-}
-
 std::string title_of(Metric metric) {
   std::string title(quality::name(metric));
   std::replace(title.begin(), title.end(), '_', ' ');
@@ -36,15 +24,10 @@ std::string title_of(Metric metric) {
 }
 
 /// From warning to failing where the criteria say both on one side; else from the harmless end of the values to the other.
-FieldLimits limits_of(Metric metric, const Settings& settings, const FieldFigures& figures) {
-  const auto at = static_cast<std::size_t>(metric);
-  const bool of_triangles = metric == Metric::min_angle_tri || metric == Metric::max_angle_tri;
-  const quality::Threshold& threshold = of_triangles ? settings.criteria.triangle[at] : settings.criteria.quad[at];
-  const double scale = is_length(metric) ? settings.target_size : 1;
-  if (std::isfinite(threshold.warn_high) && std::isfinite(threshold.fail_high))
-    return apart(scale * threshold.warn_high, scale * threshold.fail_high);
-  if (std::isfinite(threshold.warn_low) && std::isfinite(threshold.fail_low))
-    return apart(scale * threshold.warn_low, scale * threshold.fail_low);
+FieldLimits colours_of(Metric metric, const Settings& settings, const FieldFigures& figures) {
+  const quality::Threshold limits = quality::limits_of(settings.criteria, metric, quality::is_of_triangles(metric), settings.target_size);
+  if (std::isfinite(limits.warn_high) && std::isfinite(limits.fail_high)) return apart(limits.warn_high, limits.fail_high);
+  if (std::isfinite(limits.warn_low) && std::isfinite(limits.fail_low)) return apart(limits.warn_low, limits.fail_low);
   return apart(figures.min, figures.max);
 }
 
@@ -64,7 +47,7 @@ Result<Field> unless_empty(Field field, const char* why) {
 }  // namespace
 
 Result<Field> metric_field(const Model& model, Metric metric, const Settings& settings) {
-  Field field{title_of(metric), unit_of(metric, settings.length_unit), false, {}, {}, {}};
+  Field field{title_of(metric), std::string(quality::unit_of(metric, name(settings.length_unit))), false, {}, {}, {}};
   fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
     std::vector<quality::Values> values(shells.size());
@@ -74,7 +57,7 @@ Result<Field> metric_field(const Model& model, Metric metric, const Settings& se
       if (!quality::judge(values[i], settings.criteria, settings.target_size).has_defect())
         out[shells[i].value - begin] = values[i][static_cast<std::size_t>(metric)];
   });
-  field.limits = limits_of(metric, settings, field.figures);
+  field.limits = colours_of(metric, settings, field.figures);
   return unless_empty(std::move(field), "there is no shell that it applies to");
 }
 

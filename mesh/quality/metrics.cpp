@@ -35,6 +35,19 @@ std::string_view name(Metric metric) {
   return "max_length";
 }
 
+std::string_view unit_of(Metric metric, std::string_view length_unit) {
+  switch (metric) {
+    case Metric::min_length:
+    case Metric::max_length: return length_unit;
+    case Metric::aspect:
+    case Metric::jacobian:
+    case Metric::taper: return {};
+    default: return "deg";
+  }
+}
+
+bool is_of_triangles(Metric metric) { return metric == Metric::min_angle_tri || metric == Metric::max_angle_tri; }
+
 Values measure(std::span<const Vec3> corners) {
   Values out{};
   measure_in_batches(

@@ -25,7 +25,9 @@ enum class Metric : std::uint8_t {
   max_length,
 };
 inline constexpr int kMetricCount = 11;
-std::string_view name(Metric metric);  ///< as in the command line's JSON
+std::string_view name(Metric metric);                                   ///< as in the command line's JSON
+std::string_view unit_of(Metric metric, std::string_view length_unit);  ///< "deg", the length unit, or none for a ratio
+bool is_of_triangles(Metric metric);                                    ///< quads have no such value
 
 /// One shell's values, indexed by Metric; NaN where the metric doesn't apply to the shape.
 using Values = std::array<float, kMetricCount>;

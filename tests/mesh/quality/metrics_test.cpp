@@ -234,5 +234,16 @@ TEST(Metrics, vector_code_gives_the_bits_of_plain_code) {
   }
 }
 
+TEST(Metrics, have_the_units_of_what_they_measure) {
+  EXPECT_EQ(unit_of(Metric::max_length, "in"), "in");
+  EXPECT_EQ(unit_of(Metric::taper, "in"), "");
+  EXPECT_EQ(unit_of(Metric::min_angle_tri, "in"), "deg");
+  for (int m = 0; m < kMetricCount; ++m) {
+    const auto metric = static_cast<Metric>(m);
+    EXPECT_EQ(is_of_triangles(metric), name(metric).ends_with("_tri")) << name(metric);
+    EXPECT_EQ(unit_of(metric, "mm") == "mm", name(metric).ends_with("_length")) << name(metric);
+  }
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::quality
