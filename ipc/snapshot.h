@@ -48,6 +48,7 @@ struct SnapshotInfo {
   double target_size = 1;
   double most_triangles_at_node = 0;  ///< more are a cluster (mesh::quality::Criteria::warn_triangles_at_node)
   mesh::quality::Counts counts;
+  std::uint64_t nodes = 0;  ///< that are there; the arrays hold removed ones too
   std::uint64_t selected_nodes = 0;
   std::uint64_t selected_shells = 0;
   bool can_undo = false;

@@ -268,6 +268,7 @@ struct SnapshotPublisher::State {
     info.target_size = document.settings.target_size;
     info.most_triangles_at_node = document.settings.criteria.warn_triangles_at_node;
     info.counts = generation.counts;
+    info.nodes = mesh::live_nodes(generation.model);
     info.selected_nodes = generation.selected_nodes;
     info.selected_shells = generation.selected_shells;
     info.can_undo = document.can_undo();

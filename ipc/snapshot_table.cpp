@@ -21,6 +21,7 @@ void put_info(ByteWriter& out, const SnapshotInfo& info) {
   out.put(info.target_size);
   out.put(info.most_triangles_at_node);
   for (const std::size_t number : {info.counts.ok, info.counts.warn, info.counts.fail}) out.put(std::uint64_t{number});
+  out.put(info.nodes);
   out.put(info.selected_nodes);
   out.put(info.selected_shells);
   for (const bool flag : {info.can_undo, info.can_redo, info.changed}) out.put(static_cast<std::uint8_t>(flag));
@@ -44,6 +45,7 @@ SnapshotInfo get_info(ByteReader& in) {
   info.counts.ok = in.get<std::uint64_t>();
   info.counts.warn = in.get<std::uint64_t>();
   info.counts.fail = in.get<std::uint64_t>();
+  info.nodes = in.get<std::uint64_t>();
   info.selected_nodes = in.get<std::uint64_t>();
   info.selected_shells = in.get<std::uint64_t>();
   info.can_undo = in.get<std::uint8_t>() != 0;

@@ -132,7 +132,7 @@ panels::DocumentFacts Editor::document_facts() const {
   const ipc::SnapshotInfo& info = shown_->info();
   panels::DocumentFacts facts;
   facts.path = info.document;
-  facts.nodes = shown_->node_count();
+  facts.nodes = info.nodes;
   facts.shells = info.counts.ok + info.counts.warn + info.counts.fail;  // the arrays hold removed ones too
   facts.generation = info.generation;
   facts.length_unit = info.length_unit;

@@ -8,6 +8,7 @@
 
 #include "ipc/snapshot_publisher.h"
 #include "ipc/snapshot_table.h"
+#include "mesh/model/growth.h"
 #include "tests/ipc/small_document.h"
 
 namespace prismesh::ipc {
@@ -51,12 +52,28 @@ TEST(Snapshot, HoldsWhatThePictureNeeds) {
   EXPECT_EQ(view->node_count(), 101u * 91);
   EXPECT_EQ(view->shell_count(), 9000u);
   EXPECT_EQ(view->position(9000), document.current().model.positions[9000]);
+  EXPECT_EQ(view->info().nodes, 101u * 91);
   EXPECT_EQ(view->node_id(9000), 9001);
   EXPECT_EQ(view->shell(8999), document.current().model.shell_nodes[8999]);
   EXPECT_EQ(view->shell_part(8999).value, 0u);
   EXPECT_EQ(view->info().parts.at(0).name, "panel");
   EXPECT_EQ(view->info().parts.at(0).shells, 9000u);
   EXPECT_TRUE(view->info().changed);
+}
+
+TEST(Snapshot, CountsTheNodesThatAreThere) {
+  mesh::document::Document document = grid_document(4, 4);
+  auto next = std::make_shared<mesh::document::Generation>(document.current());
+  mesh::remove_node(next->model, mesh::NodeIndex(7));
+  next->number = document.next_number++;
+  document.generations.push_back(std::move(next));
+  document.cursor = 1;
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto view = reader.map(publisher.publish(document, true).value());
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->info().nodes, 24u);
+  EXPECT_EQ(view->node_count(), 25u) << "indices stay";
 }
 
 TEST(Snapshot, CopiesOnlyTheChunksThatChanged) {
