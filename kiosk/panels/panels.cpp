@@ -32,8 +32,11 @@ void notice_panel(const PanelData& data, display::PixelSize picture, float botto
   ImGui::SameLine();
   const std::string read = data.more_notices > 0 ? fmt::format("next ({})", data.more_notices) : "close";
   const float button = ImGui::CalcTextSize(read.c_str()).x + 4 * kGrid;
-  ImGui::PushTextWrapPos(ImGui::GetWindowContentRegionMax().x - button);
-  ImGui::TextUnformatted(printable_lines(data.notice->text).c_str());
+  const float end = ImGui::GetWindowContentRegionMax().x - button;
+  ImGui::PushTextWrapPos(end);  // for a path that is wider than the panel; left alone the toolkit would break numbers at their point
+  ImGui::TextUnformatted(break_at_spaces(printable_lines(data.notice->text), end - ImGui::GetCursorPosX(), [](std::string_view piece) {
+                           return ImGui::CalcTextSize(piece.data(), piece.data() + piece.size()).x;
+                         }).c_str());
   ImGui::PopTextWrapPos();
   ImGui::SameLine();
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - button + 2 * kGrid);

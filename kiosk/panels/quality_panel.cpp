@@ -97,11 +97,14 @@ void draw_bar(const ipc::QualityBar& bar, ImVec2 low, float width, float height,
   if (hovered) list.AddRect(ImVec2(low.x - 1, low.y - full - 1), ImVec2(low.x + width, low.y + 1), kInk);
 }
 
+std::string range_words(const ipc::QualityBar& bar, const std::string& unit) {
+  if (bar.open_below) return "below " + value_words(bar.to, unit);
+  if (bar.open_above) return "from " + value_words(bar.from, unit);
+  return value_words(bar.from, unit) + " to " + value_words(bar.to, unit);
+}
+
 std::string bar_words(const ipc::QualityBar& bar, const std::string& unit) {
-  const std::string range = bar.open_below   ? "below " + value_words(bar.to, unit)
-                            : bar.open_above ? "from " + value_words(bar.from, unit)
-                                             : value_words(bar.from, unit) + " to " + value_words(bar.to, unit);
-  return fmt::format("{}: {} shells, {} warn, {} fail\na click selects them, with Shift adds them", range,
+  return fmt::format("{}: {} shells, {} warn, {} fail\na click selects them, with Shift adds them", range_words(bar, unit),
                      grouped(bar.ok + bar.warn + bar.fail), grouped(bar.warn), grouped(bar.fail));
 }
 
@@ -129,8 +132,9 @@ void histogram(const ipc::Quality& figures, Actions& actions) {
   }
   ImGui::SetCursorScreenPos(ImVec2(at.x, at.y + kHistogramHeight));
   ImGui::PushFont(small_font());
-  ImGui::TextDisabled("%s", value_words(figures.bars.front().from, unit).c_str());
-  const std::string high = value_words(figures.bars.back().to, unit);
+  const ipc::QualityBar &first = figures.bars.front(), &last = figures.bars.back();
+  ImGui::TextDisabled("%s", first.open_below ? range_words(first, unit).c_str() : value_words(first.from, unit).c_str());
+  const std::string high = last.open_above ? range_words(last, unit) : value_words(last.to, unit);
   ImGui::SameLine();
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(high.c_str()).x);
   ImGui::TextDisabled("%s", high.c_str());

@@ -102,6 +102,24 @@ std::string elide_middle(const std::string& text, double available, const std::f
   return kept(low);
 }
 
+std::string break_at_spaces(std::string_view text, double available, const std::function<double(std::string_view)>& width) {
+  std::string out(text);
+  std::size_t line = 0, space = std::string::npos;
+  for (std::size_t i = 0; i <= out.size(); ++i) {
+    if (i < out.size() && out[i] != ' ' && out[i] != '\n') continue;
+    if (space != std::string::npos && width(std::string_view(out).substr(line, i - line)) > available) {
+      out[space] = '\n';
+      line = space + 1;
+    }
+    space = i;
+    if (i < out.size() && out[i] == '\n') {
+      line = i + 1;
+      space = std::string::npos;
+    }
+  }
+  return out;
+}
+
 std::vector<std::string> completions(const std::string& typed, std::size_t limit) {
   const std::size_t slash = typed.rfind('/');
   const std::string folder = slash == std::string::npos ? "" : typed.substr(0, slash + 1);

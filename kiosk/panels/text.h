@@ -25,6 +25,10 @@ std::string printable_lines(std::string_view bytes);
 /// grows with the text.
 std::string elide_middle(const std::string& text, double available, const std::function<double(std::string_view)>& width);
 
+/// The text with line feeds in place of spaces wherever a line would be wider than `available`. Words stay whole, numbers and names among
+/// them, however wide they are.
+std::string break_at_spaces(std::string_view text, double available, const std::function<double(std::string_view)>& width);
+
 /// What a path being typed may become: the entries of its folder that begin with its last piece, folders with a closing
 /// '/', ascending; hidden entries only when the piece begins with '.'. At most `limit`.
 std::vector<std::string> completions(const std::string& typed, std::size_t limit);

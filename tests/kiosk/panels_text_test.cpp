@@ -49,6 +49,15 @@ TEST(PanelTextTest, eliding_never_cuts_a_character_and_survives_no_room) {
   EXPECT_EQ(elide_middle("abc", -5, bytes), "\u2026");
 }
 
+TEST(PanelTextTest, lines_break_between_words_never_within_a_number) {
+  EXPECT_EQ(break_at_spaces("moved by -0.03 mm", 40, bytes), "moved by -0.03 mm");
+  EXPECT_EQ(break_at_spaces("moved by -0.03 mm", 12, bytes), "moved by\n-0.03 mm");
+  EXPECT_EQ(break_at_spaces("one two\nthree four", 7, bytes), "one two\nthree\nfour") << "a line feed begins a line";
+  EXPECT_EQ(break_at_spaces("a_word_wider_than_the_panel x", 5, bytes), "a_word_wider_than_the_panel\nx");
+  EXPECT_EQ(break_at_spaces("", 5, bytes), "");
+  EXPECT_EQ(break_at_spaces("x", -1, bytes), "x");
+}
+
 class CompletionTest : public ::testing::Test {
  protected:
   void SetUp() override {
