@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#if defined(__SANITIZE_THREAD__)
+#ifdef PRISMESH_THREAD_SANITIZER
 #include <atomic>
 #include <thread>
 #include <vector>
@@ -13,7 +13,7 @@
 namespace prismesh {
 namespace {
 
-#if defined(__SANITIZE_THREAD__)
+#ifdef PRISMESH_THREAD_SANITIZER
 /// Debian's TBB isn't built for ThreadSanitizer, which then reports TBB itself. Plain threads let it see the bodies' own races.
 void for_each_range(std::size_t ranges, const std::function<void(std::size_t)>& body) {
   std::atomic<std::size_t> next{0};

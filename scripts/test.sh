@@ -65,27 +65,27 @@ fuzz_one() {
   name=$(basename "$target")
   [ -d "tests/fuzz/seeds/$name" ] && seeds=("tests/fuzz/seeds/$name")
   [ -f "tests/fuzz/${name%_fuzz}.dict" ] && seeds+=("-dict=tests/fuzz/${name%_fuzz}.dict")
-  mkdir -p "build/fuzz/corpus/$name"
+  mkdir -p "build/corpus/$name"
   "$target" -max_total_time="$2" -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=1024 -artifact_prefix="out/fuzz/$name-" -print_final_stats=0 -verbosity=0 \
-    "build/fuzz/corpus/$name" "${seeds[@]}" </dev/null >"out/fuzz/$name.log" 2>&1 || status=$?
+    "build/corpus/$name" "${seeds[@]}" </dev/null >"out/fuzz/$name.log" 2>&1 || status=$?
   echo "$status" >"out/fuzz/$name.status"
 }
 
-# run_fuzzers SECONDS: every target from its seeds, as many at a time as there are processors; what it finds stays in build/fuzz/corpus,
+# run_fuzzers SECONDS: every target from its seeds, as many at a time as there are processors; what it finds stays in build/corpus,
 # what breaks it in out/fuzz.
 run_fuzzers() {
-  step "build: fuzz" configure_and_build fuzz -- fuzz_targets || return 0
+  step "build: fuzz" configure_and_build asan -- fuzz_targets || return 0
   local target name status
   mkdir -p out/fuzz
   rm -f out/fuzz/*.status
   say "Fuzzing each target for $1 s"
-  for target in build/fuzz/bin/*_fuzz; do
+  for target in build/asan/bin/*_fuzz; do
     [ -x "$target" ] || continue
     while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do wait -n || true; done
     fuzz_one "$target" "$1" &
   done
   wait
-  for target in build/fuzz/bin/*_fuzz; do
+  for target in build/asan/bin/*_fuzz; do
     [ -x "$target" ] || continue
     name=$(basename "$target")
     status=$(cat "out/fuzz/$name.status" 2>/dev/null || echo 1)

@@ -4,7 +4,8 @@
 
 // The kernels are compiled once more for AVX2 and chosen when the program is loaded. Both give the same bits: the operations
 // are the same IEEE ones, none is contracted or reordered. Sanitizers can't follow that choice at load time.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(PRISMESH_ADDRESS_SANITIZER) && \
+    !defined(PRISMESH_THREAD_SANITIZER)
 #define PRISMESH_CLONES __attribute__((target_clones("avx2", "default")))
 #else
 #define PRISMESH_CLONES

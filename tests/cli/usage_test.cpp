@@ -63,7 +63,7 @@ TEST_F(Cli, common_options_stand_before_or_after_the_command) {
   }
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(PRISMESH_ADDRESS_SANITIZER) && !defined(PRISMESH_THREAD_SANITIZER)
 TEST_F(Cli, too_little_memory_is_a_sentence) {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
   const auto in_little_memory = [&] {

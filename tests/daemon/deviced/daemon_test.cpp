@@ -306,7 +306,7 @@ TEST_F(Deviced, ALostMaskWaitsForThePictureOfWhoeverShowsStereo) {
 }
 
 TEST_F(Deviced, AClientThatNeverStopsAskingFillsNoMemory) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(PRISMESH_ADDRESS_SANITIZER) || defined(PRISMESH_THREAD_SANITIZER)
   GTEST_SKIP() << "a sanitizer keeps what was freed";
 #endif
   start();

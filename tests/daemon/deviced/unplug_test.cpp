@@ -18,7 +18,7 @@ using ipc::EyesPhase;
 
 int unplugs() {
   if (const char* wanted = std::getenv("PRISMESH_UNPLUGS"); wanted != nullptr && std::atoi(wanted) > 0) return std::atoi(wanted);
-#ifdef __SANITIZE_THREAD__
+#ifdef PRISMESH_THREAD_SANITIZER
   return 200;
 #else
   return 10'000;

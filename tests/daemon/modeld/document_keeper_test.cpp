@@ -335,7 +335,7 @@ TEST_F(Keeping, AnEditThatCantBeJournalledIsNotDone) {
   EXPECT_EQ(height(first, 1313), before + 0.25);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(PRISMESH_ADDRESS_SANITIZER) && !defined(PRISMESH_THREAD_SANITIZER)
 /// In a process of its own, since what other tests have given back to the heap is memory as well.
 TEST_F(Keeping, ADeckTooLargeForTheMemoryLeavesWhatIsOpen) {
   const auto in_little_memory = [this] {

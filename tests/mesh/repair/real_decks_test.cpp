@@ -124,7 +124,7 @@ class RealDecks : public testing::TestWithParam<Damage> {};
 TEST_P(RealDecks, are_repaired_where_a_bump_damaged_them) {
   const auto models = test::real_decks();
   if (!models) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks";
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PRISMESH_ADDRESS_SANITIZER
   if (GetParam().height > 0.6) GTEST_SKIP() << "the steeper bumps take the same ways oftener: minutes where every access is checked";
 #endif
   auto opened = deck::open(*models / GetParam().deck);
