@@ -25,6 +25,8 @@ std::string words_of_state(const ipc::ListedGeneration& state) {
 
 void Comparing::set(const tools::CompareWish& wish) {
   wish_ = wish;
+  for (View* view : {&main_, &other_})
+    if (!view->field_problem.empty()) view->asked.reset();  // whoever chooses again wants it tried again
   look_.map = wish.map;
   look_.bands = wish.bands ? kBands : 0;
   trace_.line(fmt::format("compare {} views {} shown {} beside {}", wish.field.empty() ? "nothing" : wish.field, wish.two_views ? 2 : 1,
@@ -170,7 +172,8 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
   const auto* made = std::get_if<ipc::FieldMade>(&answer);
   if (made == nullptr) {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer))
-      view.field_problem = Error{failed->file, failed->line, failed->message}.text();
+      view.field_problem =
+          was_stopped(*failed) ? "stopped; choose it again to see it" : Error{failed->file, failed->line, failed->message}.text();
     view.made.reset();
     if (Result<void> cleared = renderer_.set_field(pane, {}, true); !cleared) failed_ = cleared.error();
     return;

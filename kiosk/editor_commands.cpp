@@ -151,7 +151,7 @@ void Editor::open_dialog(panels::Dialog dialog) {
 
 /// What lies on top goes first.
 void Editor::cancel() {
-  if (link_.long_edit()) return link_.cancel_edit();
+  if (link_.can_stop()) return link_.stop();
   if (pull_ || rubber_band_ || !lasso_way_.empty()) return cancel_gesture();
   if (dialog_ != panels::Dialog::none)
     dialog_ = panels::Dialog::none;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/progress.h"
 #include "base/readable_number.h"
 
 namespace prismesh::kiosk {
@@ -31,14 +32,24 @@ std::string text_of(const ipc::Failed& failed) { return Error{failed.file, faile
 
 }  // namespace
 
+bool was_stopped(const ipc::Failed& failed) { return failed.message == cancelled().message; }
+
 bool is_selecting(std::string_view edit) {
   constexpr std::array<std::string_view, 6> kSelecting{"select", "select_region", "select_lasso", "grow", "shrink", "invert"};
   return std::find(kSelecting.begin(), kSelecting.end(), edit) != kSelecting.end();
 }
 
 /// What the server is at, for people.
-static std::string busy_words(const std::string& what) {
-  return is_mending(what) ? fmt::format("{}ing ..   Esc stops it", what == "relax" ? "Relax" : "Repair") : what;
+static std::string busy_words(const std::string& what, bool can_stop) {
+  std::string words = what == "open" ? "opening" : what == "relax" ? "relaxing" : what == "repair" ? "repairing" : what;
+  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  return words + (can_stop ? " ..   Esc stops it" : " ..");
+}
+
+/// Whether the server tells how far it is with it, and can be asked to stop.
+static bool is_long(const ipc::Request& request) {
+  return std::holds_alternative<ipc::Open>(request) || std::holds_alternative<ipc::Save>(request) ||
+         std::holds_alternative<ipc::ApplyEdit>(request) || std::holds_alternative<ipc::GetField>(request);
 }
 
 bool is_mending(std::string_view edit) {
@@ -85,7 +96,7 @@ void ModelLink::lost(const Error& error) {
   waiting_.clear();
   busy_.clear();
   stale_ = fetching_ = fetched_ = counting_ = false;
-  edits_ = 0;
+  edits_ = long_ = 0;
   if (drag_) drop_drag("lost");
   next_attempt_ns_ = clock_.now_ns();
   ++changes_;
@@ -96,7 +107,9 @@ void ModelLink::ask(const ipc::Request& request, Then then) {
   if (!client_) return say(Notice::Kind::error, "The model server is not running: nothing was done. It will be tried again.");
   const Result<std::uint64_t> sent = client_->send(request);
   if (!sent) return lost(sent.error());
-  waiting_.emplace(*sent, std::move(then));
+  const bool counts = is_long(request);
+  long_ += counts ? 1 : 0;
+  waiting_.emplace(*sent, Waiting{std::move(then), counts});
 }
 
 void ModelLink::question(const ipc::Request& request, Then then) {
@@ -115,7 +128,9 @@ void ModelLink::read() {
     auto node = waiting_.extract(reply->request);
     if (node.empty()) continue;
     ++changes_;
-    if (node.mapped()) node.mapped()(reply->answer);
+    const Waiting& waited = node.mapped();
+    if (waited.is_long && --long_ == 0) busy_.clear();
+    if (waited.then) waited.then(reply->answer);
   }
 }
 
@@ -142,7 +157,8 @@ void ModelLink::heard(const ipc::Event& event) {
                    ask_state();
                  },
                  [&](const ipc::ProgressMade& progress) {
-                   busy_ = progress.fraction < 1 ? busy_words(progress.what) : std::string();
+                   const bool over = progress.fraction >= 1, named = progress.what == "open" && busy_.starts_with("Opening ");
+                   if (over || !named) busy_ = over ? std::string() : busy_words(progress.what, long_ > 0);
                    busy_fraction_ = progress.fraction;
                  },
                  [&](const ipc::CameraMoved& moved) { camera_ = moved.camera; },
@@ -229,7 +245,7 @@ void ModelLink::show(std::shared_ptr<const ipc::SnapshotView> view) {
 void ModelLink::open(const std::filesystem::path& deck) {
   std::error_code ignored;
   const std::filesystem::path whole = std::filesystem::absolute(deck, ignored);
-  busy_ = "Opening " + whole.filename().string();
+  busy_ = busy_words("Opening " + whole.filename().string(), true);
   busy_fraction_ = 0;
   ipc::Open request;
   request.path = whole.string();
@@ -237,8 +253,11 @@ void ModelLink::open(const std::filesystem::path& deck) {
     busy_.clear();
     if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
       const bool unsaved = snapshot_ ? snapshot_->info().changed : state_ && state_->open && state_->changed;
-      say(Notice::Kind::error, fmt::format("{} was not opened. {}{}", whole.filename().string(), text_of(*failed),
-                                           unsaved ? "\nCtrl+S saves what is open; then Ctrl+O opens the other." : ""));
+      if (was_stopped(*failed))
+        say_failed(*failed, whole.filename().string() + " was not opened");
+      else
+        say(Notice::Kind::error, fmt::format("{} was not opened. {}{}", whole.filename().string(), text_of(*failed),
+                                             unsaved ? "\nCtrl+S saves what is open; then Ctrl+O opens the other." : ""));
       if (snapshot_) return;
       // What the server has open instead is shown: nobody could save it unseen.
       deck_.reset();
@@ -257,6 +276,7 @@ void ModelLink::open(const std::filesystem::path& deck) {
       ask_state();
     }
   });
+  if (!client_) busy_.clear();
 }
 
 void ModelLink::save(const std::optional<std::filesystem::path>& path) {
@@ -264,7 +284,7 @@ void ModelLink::save(const std::optional<std::filesystem::path>& path) {
   std::error_code ignored;
   if (path) request.path = std::filesystem::absolute(*path, ignored).string();
   ask(request, [this](const ipc::Answer& answer) {
-    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say(Notice::Kind::error, text_of(*failed));
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say_failed(*failed, "nothing was saved");
     const auto* saved = std::get_if<ipc::Saved>(&answer);
     if (saved == nullptr) return;
     trace_.line(fmt::format("saved {} {}", saved->lines_changed, saved->path));
@@ -282,7 +302,7 @@ void ModelLink::edit(mesh::document::Edit edit) {
   ask(ipc::ApplyEdit{std::move(edit)}, [this, selecting](const ipc::Answer& answer) {
     --edits_;
     busy_.clear();
-    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say(Notice::Kind::error, text_of(*failed));
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say_failed(*failed, "the model is as it was");
     const auto* edited = std::get_if<ipc::Edited>(&answer);
     if (edited == nullptr) return;
     if (!fetched_ || !snapshot_ || snapshot_->info().generation != edited->generation) stale_ = true;
@@ -295,8 +315,8 @@ void ModelLink::share_camera(const ipc::Camera& camera) {
   if (const Result<std::uint64_t> sent = client_->send(ipc::ShareCamera{camera}); !sent) lost(sent.error());
 }
 
-void ModelLink::cancel_edit() {
-  if (client_ && edits_ > 0) ask(ipc::Cancel{}, [](const ipc::Answer&) {});  // that it was over already is no news
+void ModelLink::stop() {
+  if (client_ && long_ > 0) ask(ipc::Cancel{}, [](const ipc::Answer&) {});  // that it was over already is no news
 }
 
 void ModelLink::begin_drag(mesh::document::Edit edit) {
@@ -412,6 +432,11 @@ void ModelLink::drop_drag(const char* how) {
   drag_.reset();
   ++changes_;
   trace_.line(std::string("drag ") + how);
+}
+
+void ModelLink::say_failed(const ipc::Failed& failed, const std::string& if_stopped) {
+  if (was_stopped(failed)) return say(Notice::Kind::information, "Stopped: " + if_stopped + ".");
+  say(Notice::Kind::error, text_of(failed));
 }
 
 void ModelLink::say_report(const mesh::document::EditReport& report) {

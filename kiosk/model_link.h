@@ -24,6 +24,8 @@ namespace prismesh::kiosk {
 bool is_selecting(std::string_view edit);
 /// Whether it mends the mesh: its report is worth a notice whatever it says.
 bool is_mending(std::string_view edit);
+/// Whether it failed because somebody asked it to stop.
+bool was_stopped(const ipc::Failed& failed);
 
 /// A drag as the model server works on it.
 class RemoteDrag {
@@ -82,11 +84,11 @@ class ModelLink {
   void open(const std::filesystem::path& deck);
   void save(const std::optional<std::filesystem::path>& path);
   void edit(mesh::document::Edit edit);
-  /// An edit of this client's is under way that takes long enough to say how far it is.
   bool editing() const { return edits_ > 0; }
-  bool long_edit() const { return edits_ > 0 && !busy_.empty(); }
+  /// Something that this client asked for (opening, saving, an edit, a field) takes long enough to say how far it is.
+  bool can_stop() const { return long_ > 0 && !busy_.empty(); }
   /// Asks it to stop: then nothing has happened.
-  void cancel_edit();
+  void stop();
 
   using Then = std::function<void(const ipc::Answer&)>;
   /// Asks what changes nothing, and hands the answer on when it is here; never, if the server goes away before.
@@ -145,6 +147,7 @@ class ModelLink {
   void ask_count();
   void send_step();
   void drop_drag(const char* how);
+  void say_failed(const ipc::Failed& failed, const std::string& if_stopped);
   void say_report(const mesh::document::EditReport& report);
   void say(panels::Notice::Kind kind, std::string text);
 
@@ -153,7 +156,11 @@ class ModelLink {
   Clock& clock_;
   Trace trace_;
   std::optional<ipc::Client> client_;
-  std::map<std::uint64_t, Then> waiting_;
+  struct Waiting {
+    Then then;
+    bool is_long = false;
+  };
+  std::map<std::uint64_t, Waiting> waiting_;
   std::int64_t next_attempt_ns_ = 0;
   std::int64_t back_off_ns_ = 0;
   std::optional<ipc::State> state_;
@@ -173,6 +180,7 @@ class ModelLink {
   std::uint64_t changes_ = 0;
   std::uint64_t connections_ = 0;
   std::size_t edits_ = 0;  ///< that aren't answered yet
+  std::size_t long_ = 0;   ///< requests that can be stopped and aren't answered yet, edits among them
   std::optional<ipc::Camera> camera_;
 };
 

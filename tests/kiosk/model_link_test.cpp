@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/progress.h"
 #include "ipc/messages_json.h"
 #include "ipc/server.h"
 #include "ipc/snapshot_publisher.h"
@@ -36,7 +37,8 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// Has one document open and keeps requests for a snapshot waiting until `give`.
+/// Has one document open and keeps requests for a snapshot waiting until `give`. What takes long, it is halfway through until it is asked
+/// to stop.
 class SlowServer final : public ipc::ServerHandler {
  public:
   explicit SlowServer(const std::filesystem::path& socket)
@@ -73,6 +75,12 @@ class SlowServer final : public ipc::ServerHandler {
       asked_ = request->number;
       ++times_asked_;
       changed_.notify_all();
+    } else if (std::holds_alternative<ipc::Cancel>(request->request)) {
+      answer(client, request->number, ipc::Done{}, {});
+      if (long_ != 0) answer(client, std::exchange(long_, 0), ipc::Failed{"", 0, cancelled().message}, {});
+    } else {
+      long_ = request->number;
+      server_.send(client, ipc::encode_event(ipc::ProgressMade{"open", 0.5}), {});
     }
   }
   /// Waits until a snapshot has been asked for.
@@ -113,6 +121,7 @@ class SlowServer final : public ipc::ServerHandler {
   std::condition_variable changed_;
   ipc::ClientId client_ = 0;
   std::uint64_t asked_ = 0;
+  std::uint64_t long_ = 0;  ///< the server's thread's alone
   int times_asked_ = 0;
   ipc::Server server_;
   std::thread thread_;
@@ -145,6 +154,44 @@ TEST(ModelLinkTest, a_server_that_lets_a_snapshot_wait_does_not_hold_up_the_pict
   ASSERT_TRUE(turn_until(link, [&] { return link.snapshot() != nullptr; }));
   EXPECT_TRUE(link.up_to_date());
   EXPECT_EQ(link.snapshot()->shell_count(), 12u);
+}
+
+TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
+  const Folder folder;
+  SlowServer server(folder.socket());
+  MonotonicClock clock;
+  ModelLink link(folder.socket(), std::nullopt, clock, Trace(nullptr));
+  ASSERT_TRUE(turn_until(link, [&] { return link.connected(); }));
+  EXPECT_FALSE(link.can_stop());
+  std::string field_answer;
+  const std::vector<std::pair<const char*, std::function<void()>>> works = {
+      {"opening", [&] { link.open("other.k"); }},
+      {"saving", [&] { link.save(std::nullopt); }},
+      {"an edit", [&] { link.edit(mesh::document::Undo{}); }},
+      {"a field",
+       [&] {
+         link.question(ipc::GetField{}, [&](const ipc::Answer& answer) {
+           if (const auto* failed = std::get_if<ipc::Failed>(&answer)) field_answer = failed->message;
+         });
+       }},
+  };
+  for (const auto& [name, begin] : works) {
+    SCOPED_TRACE(name);
+    begin();
+    ASSERT_TRUE(turn_until(link, [&] { return link.busy_fraction() == 0.5 && link.can_stop(); }));
+    EXPECT_NE(link.busy().find("Esc stops it"), std::string::npos) << link.busy();
+    link.stop();
+    ASSERT_TRUE(turn_until(link, [&] { return link.busy().empty(); })) << link.busy();
+    EXPECT_FALSE(link.can_stop());
+  }
+  EXPECT_EQ(field_answer, cancelled().message);
+  std::vector<std::string> said;
+  for (const panels::Notice& notice : link.take_notices()) {
+    EXPECT_EQ(notice.kind, panels::Notice::Kind::information) << notice.text;
+    said.push_back(notice.text);
+  }
+  EXPECT_EQ(said, (std::vector<std::string>{"Stopped: other.k was not opened.", "Stopped: nothing was saved.",
+                                            "Stopped: the model is as it was."}));
 }
 
 }  // namespace
