@@ -62,8 +62,7 @@ class Repairer {
   Repairer(const Model& model, const relax::ReferenceSurface& surface, const ShellSet& scope, const Rules& rules, const relax::Judge& judge,
            const Options& options)
       : patch_(model, scope, kRings, rules, options.relax.feature_angle),
-        site_{patch_, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)},
-        model_(model) {
+        site_{patch_, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {
     in_scope_.assign(patch_.shell_count(), 0);
     for (const ShellIndex shell : scope)
       if (const LocalShell local = patch_.find(shell); local.valid()) in_scope_[local.value] = 1;
@@ -357,7 +356,6 @@ class Repairer {
 
   Patch patch_;
   Site site_;
-  const Model& model_;
   std::vector<std::uint8_t> in_scope_;  ///< of the patch's first shells; what came later is
   std::vector<std::uint32_t> touched_;  ///< the last change of each shell
   std::map<LocalShell, std::uint32_t> tried_;

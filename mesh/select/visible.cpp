@@ -51,8 +51,7 @@ class Squares {
 /// For each square the shell that is nearest at its middle, if one is.
 class ItemBuffer {
  public:
-  ItemBuffer(const Scene& scene, std::size_t side)
-      : scene_(scene), squares_(scene, side), items_(new std::atomic<std::uint64_t>[squares_.count()]) {
+  ItemBuffer(const Scene& scene, std::size_t side) : squares_(scene, side), items_(new std::atomic<std::uint64_t>[squares_.count()]) {
     parallel_for(squares_.count(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) items_[i].store(kEmpty, std::memory_order_relaxed);
     });
@@ -121,7 +120,6 @@ class ItemBuffer {
     }
   }
 
-  const Scene& scene_;
   Squares squares_;
   std::unique_ptr<std::atomic<std::uint64_t>[]> items_;
 };

@@ -64,6 +64,9 @@ TEST(Snapshot, HoldsWhatThePictureNeeds) {
 TEST(Snapshot, CountsTheNodesThatAreThere) {
   mesh::document::Document document = grid_document(4, 4);
   auto next = std::make_shared<mesh::document::Generation>(document.current());
+  std::vector<std::int64_t> ids;
+  for (std::size_t n = 0; n < next->model.node_count(); ++n) ids.push_back(next->model.node_ids[n]);
+  next->model.node_index = std::make_shared<const mesh::IdIndex>(ids);
   mesh::remove_node(next->model, mesh::NodeIndex(7));
   next->number = document.next_number++;
   document.generations.push_back(std::move(next));

@@ -17,7 +17,6 @@ namespace {
 constexpr std::size_t kSystem = 1;
 constexpr std::size_t kCoordinates = 2;
 constexpr std::size_t kOutputSystem = 5;
-constexpr std::size_t kConstraints = 6;
 constexpr std::size_t kSuperelement = 7;
 
 /// Below this an edge counts as not turned (degrees).

@@ -35,7 +35,8 @@ Drawn draw(TruePlace&& true_place, std::uint64_t seed, const Vector3d& radius_mm
     const double t = i / 60.0;
     HeadSample sample;
     sample.measured_ns = 1'000'000'000 + static_cast<std::int64_t>(t * 1e9);
-    sample.between_eyes_mm = true_place(t) + Vector3d(normal(random), normal(random), normal(random));
+    sample.between_eyes_mm = true_place(t);
+    for (int axis = 2; axis >= 0; --axis) sample.between_eyes_mm[axis] += normal(random);  // arguments would be drawn in any order
     filter.take(sample);
     const Vector3d place = zone.follow(predict(filter.state(), sample.measured_ns + 60'000'000));
     if (t > 2) {

@@ -14,7 +14,6 @@ namespace {
 
 using testing::IsEmpty;
 using Bytes = std::vector<std::uint8_t>;
-constexpr std::int64_t kMs = 1'000'000;
 
 class Bench {
  public:
