@@ -1,9 +1,13 @@
 // Time as an argument, so that loops can be driven by tests.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace prismesh {
+
+/// Settings are in milliseconds, time is in nanoseconds.
+inline std::int64_t nanoseconds(double milliseconds) { return std::llround(milliseconds * 1e6); }
 
 class Clock {
  public:

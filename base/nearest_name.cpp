@@ -4,13 +4,13 @@
 #include <array>
 #include <limits>
 
+#include "base/letter_case.h"
+
 namespace prismesh {
 
 namespace {
 
 constexpr std::size_t kLongest = 64;
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 }  // namespace
 

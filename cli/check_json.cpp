@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/json_output.h"
+#include "cli/json_values.h"
 #include "cli/report_text.h"
 
 namespace prismesh::cli {
@@ -15,11 +16,6 @@ namespace document = mesh::document;
 namespace quality = mesh::quality;
 
 constexpr std::size_t kNamed = 100;  ///< of each list; the count is of all
-
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 std::string shell_name(const mesh::Model& model, mesh::ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 std::string node_name(const mesh::Model& model, mesh::NodeIndex node) { return "node:" + std::to_string(model.node_ids[node.value]); }

@@ -17,7 +17,7 @@ namespace prismesh::cli {
 
 namespace {
 
-constexpr std::chrono::seconds kPatience{15};
+constexpr std::chrono::seconds kDevicedPatience{15};
 constexpr std::chrono::seconds kWatchPeriod{1};
 
 Result<DeviceFigures> look(ipc::DeviceClient& client) {
@@ -108,7 +108,7 @@ void watch(ipc::ReconnectingDeviceClient& connection, const DevicesOptions& opti
   };
   // The first look was printed already.
   for (pause(); !surroundings.stop() && surroundings.out.good(); pause()) {
-    if (const Result<ipc::DeviceClient*> client = connection.wait(kPatience); !client)
+    if (const Result<ipc::DeviceClient*> client = connection.wait(kDevicedPatience); !client)
       say(surroundings, client.error());
     else if (const Result<void> printed = act_and_print(**client, options, false, common, surroundings); !printed)
       connection.lost(printed.error());

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/json_values.h"
 #include "cli/report_text.h"
 
 namespace prismesh::cli {
@@ -14,11 +15,6 @@ using Json = nlohmann::ordered_json;
 namespace deck = mesh::deck;
 namespace document = mesh::document;
 namespace quality = mesh::quality;
-
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json point(const mesh::Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); }
 

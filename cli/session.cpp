@@ -17,7 +17,7 @@ namespace prismesh::cli {
 namespace {
 
 namespace document = mesh::document;
-using Action = SessionOptions::Action;
+using SessionAction = SessionOptions::Action;
 
 /// How long a daemon may take to come back. systemd restarts it in well under a second; reading a large deck again takes longer,
 /// but then it answers already.
@@ -187,8 +187,8 @@ int edit_all(Session& session, const std::vector<WantedEdit>& wanted, const Comm
 
 int session(const SessionOptions& options, const Common& common, const Surroundings& surroundings) {
   std::vector<WantedEdit> wanted;
-  if (options.action == Action::undo) wanted.push_back({document::Undo{}, "undo", 0});
-  if (options.action == Action::redo) wanted.push_back({document::Redo{}, "redo", 0});
+  if (options.action == SessionAction::undo) wanted.push_back({document::Undo{}, "undo", 0});
+  if (options.action == SessionAction::redo) wanted.push_back({document::Redo{}, "redo", 0});
   if (const auto refusal = read_edits(options.edits, "EDIT", options.script, wanted)) {
     say(surroundings, refusal->error);
     return refusal->status;
@@ -196,22 +196,22 @@ int session(const SessionOptions& options, const Common& common, const Surroundi
   Session session(options, surroundings);
   Result<ipc::Answer> answer = ipc::Done{};
   switch (options.action) {
-    case Action::edit:
-    case Action::undo:
-    case Action::redo: return edit_all(session, wanted, common, surroundings);
-    case Action::open: answer = session.ask_again(open_request(options, common), "reading " + options.deck.filename().string()); break;
-    case Action::state: {
+    case SessionAction::edit:
+    case SessionAction::undo:
+    case SessionAction::redo: return edit_all(session, wanted, common, surroundings);
+    case SessionAction::open: answer = session.ask_again(open_request(options, common), "reading " + options.deck.filename().string()); break;
+    case SessionAction::state: {
       Result<ipc::State> state = session.state();
       answer = state ? Result<ipc::Answer>(std::move(*state)) : fail(state.error());
       break;
     }
-    case Action::save: {
+    case SessionAction::save: {
       ipc::Save save;
       if (options.output) save.path = whole_path(*options.output);
       answer = session.ask_again(save, "saving");
       break;
     }
-    case Action::close: answer = session.ask(ipc::Close{options.discard}, "closing"); break;
+    case SessionAction::close: answer = session.ask(ipc::Close{options.discard}, "closing"); break;
   }
   if (!answer) {
     say(surroundings, answer.error());

@@ -10,11 +10,11 @@ namespace prismesh::ipc {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3157'4956'4552'5250;  // "PRREVIW1"
+constexpr std::uint64_t kPreviewMagic = 0x3157'4956'4552'5250;  // "PRREVIW1"
 constexpr std::size_t kMostItems = std::size_t{1} << 31;
 
 struct Header {
-  std::uint64_t magic = kMagic;
+  std::uint64_t magic = kPreviewMagic;
   std::uint64_t drag = 0;
   std::uint64_t base_generation = 0;
   std::uint64_t nodes = 0;
@@ -51,7 +51,7 @@ Result<PreviewWriter> PreviewWriter::create(std::uint64_t drag, std::uint64_t ba
   writer.descriptor_ = std::move(*memory);
   writer.mapping_ = std::move(*mapping);
   std::byte* data = writer.mapping_.writable_bytes().data();
-  new (data) Header{kMagic, drag, base_generation, nodes.size(), shells.size(), {}};
+  new (data) Header{kPreviewMagic, drag, base_generation, nodes.size(), shells.size(), {}};
   if (!nodes.empty()) std::memcpy(data + writer.layout_.nodes_at(), nodes.data(), nodes.size_bytes());
   if (!shells.empty()) std::memcpy(data + writer.layout_.shells_at(), shells.data(), shells.size_bytes());
   writer.frame_.resize(writer.layout_.frame_words());
@@ -85,7 +85,7 @@ Result<PreviewReader> PreviewReader::map(const Descriptor& descriptor) {
   if (bytes.size() < sizeof(Header)) return fail("preview", "it is too short");
   Header header;
   std::memcpy(static_cast<void*>(&header), bytes.data(), sizeof header);
-  if (header.magic != kMagic) return fail("preview", "it doesn't begin as one");
+  if (header.magic != kPreviewMagic) return fail("preview", "it doesn't begin as one");
   if (header.nodes > kMostItems || header.shells > kMostItems) return fail("preview", "its counts are absurd");
   reader.layout_ = {static_cast<std::size_t>(header.nodes), static_cast<std::size_t>(header.shells)};
   if (reader.layout_.total() > bytes.size()) return fail("preview", "it is too short for what it holds");

@@ -64,8 +64,8 @@ class Watched {
   stream_descriptor stream_;
 };
 
-struct Connection {
-  Connection(asio::io_context& loop, Descriptor socket, std::size_t line_bytes)
+struct ServedClient {
+  ServedClient(asio::io_context& loop, Descriptor socket, std::size_t line_bytes)
       : lines(std::move(socket), {line_bytes, 0}), watched(loop, lines.descriptor()) {}
 
   LineSocket lines;
@@ -100,7 +100,7 @@ struct Server::State {
   asio::steady_timer retry;
   asio::steady_timer stalls;
   std::vector<std::unique_ptr<asio::steady_timer>> timers;
-  std::map<ClientId, std::shared_ptr<Connection>> connections;
+  std::map<ClientId, std::shared_ptr<ServedClient>> connections;
   ClientId next_client = 1;
 
   void start() {
@@ -133,19 +133,19 @@ struct Server::State {
       if (!socket) return errno != EMFILE && errno != ENFILE && errno != ENOMEM && errno != ENOBUFS;
       if (!may_connect(socket.get()) || connections.size() >= limits.clients) continue;
       const ClientId client = next_client++;
-      connections.emplace(client, std::make_shared<Connection>(loop, std::move(socket), limits.line_bytes));
+      connections.emplace(client, std::make_shared<ServedClient>(loop, std::move(socket), limits.line_bytes));
       handler.connected(client);
       read_next(client);
     }
   }
 
-  std::shared_ptr<Connection> find(ClientId client) const {
+  std::shared_ptr<ServedClient> find(ClientId client) const {
     const auto found = connections.find(client);
     return found == connections.end() ? nullptr : found->second;
   }
 
   void read_next(ClientId client) {
-    const std::shared_ptr<Connection> connection = find(client);
+    const std::shared_ptr<ServedClient> connection = find(client);
     if (!connection) return;
     connection->watched->async_wait(stream_descriptor::wait_read, [this, client, connection](const error_code& problem) {
       if (problem || connection->closed) return;
@@ -158,7 +158,7 @@ struct Server::State {
   }
 
   void deliver(ClientId client) {
-    const std::shared_ptr<Connection> connection = find(client);
+    const std::shared_ptr<ServedClient> connection = find(client);
     while (connection && !connection->closed) {
       const std::optional<std::string_view> line = connection->lines.next_line();
       if (!line) return;
@@ -168,7 +168,7 @@ struct Server::State {
   }
 
   void write_next(ClientId client) {
-    const std::shared_ptr<Connection> connection = find(client);
+    const std::shared_ptr<ServedClient> connection = find(client);
     if (!connection || connection->writing) return;
     const std::size_t before = connection->lines.queued_bytes();
     const Result<bool> flushed = connection->lines.flush();
@@ -183,7 +183,7 @@ struct Server::State {
   }
 
   void close(ClientId client, const std::string& why) {
-    const std::shared_ptr<Connection> connection = find(client);
+    const std::shared_ptr<ServedClient> connection = find(client);
     if (!connection) return;
     connection->closed = true;
     connections.erase(client);
@@ -248,7 +248,7 @@ void Server::every(std::chrono::nanoseconds period, std::function<void()> work) 
 }
 
 void Server::send(ClientId client, std::string line, std::vector<Descriptor> descriptors) {
-  const std::shared_ptr<Connection> connection = state_->find(client);
+  const std::shared_ptr<ServedClient> connection = state_->find(client);
   if (!connection) return;
   if (connection->lines.queued_bytes() == 0) connection->last_progress = Time::now();
   connection->lines.queue(std::move(line), std::move(descriptors));

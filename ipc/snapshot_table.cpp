@@ -8,7 +8,7 @@ namespace prismesh::ipc {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x3354'534d'5350'5250;  // "PRPSMST3"
+constexpr std::uint64_t kSnapshotMagic = 0x3354'534d'5350'5250;  // "PRPSMST3"
 // Indices into the arrays are 32 bits wide, and the last value means none.
 constexpr std::uint64_t kMostElements = 2 * std::uint64_t{0xffff'fffe};
 
@@ -116,7 +116,7 @@ std::size_t element_size(SnapshotArray array) {
 
 std::vector<std::byte> encode_table(const SnapshotTable& table) {
   ByteWriter out;
-  out.put(kMagic);
+  out.put(kSnapshotMagic);
   for (int i = 0; i < kSnapshotArrayCount; ++i) {
     const TableArray& array = table.arrays[static_cast<std::size_t>(i)];
     out.put(array.count);
@@ -130,7 +130,7 @@ std::vector<std::byte> encode_table(const SnapshotTable& table) {
 
 Result<SnapshotTable> decode_table(std::span<const std::byte> bytes) {
   ByteReader in(bytes);
-  if (in.get<std::uint64_t>() != kMagic) return damaged("it doesn't begin as one");
+  if (in.get<std::uint64_t>() != kSnapshotMagic) return damaged("it doesn't begin as one");
   SnapshotTable table;
   for (int i = 0; i < kSnapshotArrayCount; ++i) {
     Result<TableArray> array = get_array(in, static_cast<SnapshotArray>(i));

@@ -13,7 +13,7 @@ using tools::Command;
 using tools::Pixel;
 using tools::Under;
 
-constexpr double kAngleStep = 5;  ///< degrees
+constexpr double kFeatureAngleStep = 5;  ///< degrees
 constexpr std::array<const char*, 4> kLeftPanelNames{"document", "quality", "comparing", "shaping"};
 
 }  // namespace
@@ -76,8 +76,8 @@ bool Editor::select_command(Command command, const std::optional<Pixel>& pointer
       if (pointer) select_region(*pointer, mesh::document::SelectMode::set);
       return true;
     case Command::region_by: region_by_ = static_cast<RegionBy>((static_cast<int>(region_by_) + 1) % 4); return true;
-    case Command::wider_angle: change_angle(kAngleStep); return true;
-    case Command::narrower_angle: change_angle(-kAngleStep); return true;
+    case Command::wider_angle: change_angle(kFeatureAngleStep); return true;
+    case Command::narrower_angle: change_angle(-kFeatureAngleStep); return true;
     case Command::region_across_welds: region_across_welds_ = !region_across_welds_; return true;
     case Command::hide: set_parts(VisibilityAction::hide, pointer); return true;
     case Command::only: set_parts(VisibilityAction::only, pointer); return true;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/clock.h"
 #include "kiosk/display/link_check.h"
 
 namespace prismesh::kiosk {
@@ -70,7 +71,7 @@ void Station::place(std::optional<display::Monitor> monitor, const display::Wind
   place_ = place;
   stereo::DisplayTiming timing;
   if (monitor_ && monitor_->refresh_hz > 1) timing.period_ns = std::llround(1e9 / monitor_->refresh_hz);
-  timing.panel_latency_ns = std::llround(panel_latency_ms_ * 1e6);
+  timing.panel_latency_ns = nanoseconds(panel_latency_ms_);
   eyes.set_timing(timing);
   followed_.reset();
   follow_profile();

@@ -67,7 +67,7 @@ build_release() {
 # sources: every C++ file that is ours, one a line.
 sources() {
   local folder folders=()
-  for folder in base mesh drivers ipc daemon kiosk cli tests; do
+  for folder in base mesh drivers ipc daemon kiosk cli tests scripts; do
     [ ! -d "$folder" ] || folders+=("$folder")  # find fails where one of its folders lacks
   done
   find "${folders[@]}" -name '*.h' -o -name '*.cpp' | sort

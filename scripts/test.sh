@@ -43,6 +43,62 @@ run_ctest() {
   return 0
 }
 
+# --- processor time ---
+
+stages=()  # names
+declare -A stage_seconds
+
+# spent_seconds: sets `spent` to the processor time of all that this shell has run and waited for. `times` must not run in a subshell, which
+# has run nothing.
+spent_seconds() {
+  mkdir -p out/test
+  times >out/test/times
+  spent=$(awk 'NR == 2 { for (i = 1; i <= 2; ++i) { split($i, part, "[ms]"); sum += 60 * part[1] + part[2] } printf "%.1f", sum }' out/test/times)
+}
+
+# stage NAME command..: runs it and notes its processor time.
+stage() {
+  local name=$1 before status=0
+  shift
+  spent_seconds
+  before=$spent
+  "$@" || status=$?
+  spent_seconds
+  [ -n "${stage_seconds[$name]:-}" ] || stages+=("$name")
+  stage_seconds[$name]=$(awk -v a="${stage_seconds[$name]:-0}" -v b="$before" -v c="$spent" 'BEGIN { printf "%.1f", a + c - b }')
+  return "$status"
+}
+
+# measure_yardstick: sets `yardstick` to the processor time of compiling a fixed text. Machines, and how busy they are, differ by a factor of
+# two: stages are compared as multiples of it.
+measure_yardstick() {
+  local before
+  spent_seconds
+  before=$spent
+  c++ -std=c++20 -O1 -c -o /dev/null scripts/yardstick.cpp
+  c++ -std=c++20 -O1 -c -o /dev/null scripts/yardstick.cpp
+  spent_seconds
+  yardstick=$(awk -v a="$before" -v b="$spent" 'BEGIN { printf "%.2f", (b - a) / 2 }')
+}
+
+# cpu_report YARDSTICK: processor minutes by stage, beside what tests/cpu_seconds.txt has noted for a cold run, and a warning for what has
+# grown by more than a tenth.
+cpu_report() {
+  local name
+  printf '\nProcessor minutes by stage (noted: of a cold run, scaled to this machine; see docs/building.md)\n'
+  for name in "${stages[@]}"; do printf '%s\t%s\n' "$name" "${stage_seconds[$name]}"; done |
+    awk -F '\t' -v now="$1" '
+      FNR == NR { if ($0 !~ /^#/ && NF > 1) noted[$1] = $2; next }
+      {
+        expected = noted["yardstick"] > 0 ? noted[$1] * now / noted["yardstick"] : 0
+        grown = expected > 0 && $2 > 1.1 * expected && $2 - expected > 6
+        printf "  %-24s %6.1f   noted %6.1f%s\n", $1, $2 / 60, expected / 60, grown ? "   WARNING: grown by more than a tenth" : ""
+        sum += $2; all += expected
+      }
+      END { printf "  %-24s %6.1f   noted %6.1f   (yardstick %.2f s, noted %.2f)\n", "all", sum / 60, all / 60, now, noted["yardstick"] }
+    ' tests/cpu_seconds.txt -
+}
+
 # step NAME command..: a build or check that counts as one test when it fails, and tells whether the rest makes sense.
 step() {
   local name=$1
@@ -74,7 +130,6 @@ fuzz_one() {
 # run_fuzzers SECONDS: every target from its seeds, as many at a time as there are processors; what it finds stays in build/corpus,
 # what breaks it in out/fuzz.
 run_fuzzers() {
-  step "build: fuzz" configure_and_build asan -- fuzz_targets || return 0
   local target name status
   mkdir -p out/fuzz
   rm -f out/fuzz/*.status
@@ -105,14 +160,44 @@ closing_line() {
 
 run_all_tests() {
   mkdir -p out/test
-  step "build: release" build_release ON && run_ctest release build
+  measure_yardstick
+  local first=$yardstick
+  if stage "release: build" step "build: release" build_release ON; then stage "release: tests" run_ctest release build; fi
   say "Building with AddressSanitizer and UndefinedBehaviorSanitizer"
-  step "build: asan" configure_and_build asan &&
-    UBSAN_OPTIONS=print_stacktrace=1 run_ctest asan build/asan -L 'unit|threads'
+  if stage "asan: build" step "build: asan" configure_and_build asan; then
+    UBSAN_OPTIONS=print_stacktrace=1 stage "asan: tests" run_ctest asan build/asan
+    stage "fuzz" run_fuzzers 5
+  fi
   say "Building with ThreadSanitizer"
-  step "build: tsan" configure_and_build tsan -- drivers_port_test ipc_test modeld_test deviced_test &&
-    run_ctest tsan build/tsan -L threads
-  run_fuzzers 10
-  check_format
+  if stage "tsan: build" step "build: tsan" configure_and_build tsan; then stage "tsan: tests" run_ctest tsan build/tsan; fi
+  stage "format" check_format
+  measure_yardstick
+  cpu_report "$(awk -v a="$first" -v b="$yardstick" 'BEGIN { print (a + b) / 2 }')"
+  closing_line
+}
+
+# run_soak MINUTES: what takes too long for every change. Half of the time each fuzz target goes on, the other half sanitized tests run in
+# random order and with new random numbers: edits by chance, daemons killed in the middle.
+run_soak() {
+  local seconds=$(($1 * 60)) targets name end seed=$RANDOM status
+  mkdir -p out/test out/soak
+  step "build: asan" configure_and_build asan || { closing_line; return; }
+  export UBSAN_OPTIONS=print_stacktrace=1 PRISMESH_UNPLUGS=10000 PRISMESH_KILL_CYCLES=450
+  end=$((SECONDS + seconds / 2))
+  say "All sanitized tests in random order"
+  run_ctest asan build/asan --schedule-random
+  say "New random numbers until half of the time is over"
+  while [ "$SECONDS" -lt "$end" ]; do
+    for name in "mesh_document_test *RandomEdits*:Shaping*" "modeld_test Killing*:*CutOff*"; do
+      status=0
+      PRISMESH_SEED=$seed "build/asan/bin/${name% *}" --gtest_filter="${name#* }" --gtest_shuffle --gtest_brief=1 \
+        </dev/null >"out/soak/${name% *}.log" 2>&1 || status=$?
+      [ "$status" -eq 0 ] || { cat "out/soak/${name% *}.log"; cp "out/soak/${name% *}.log" "out/soak/${name% *}-$seed.log"; }
+      count_one "${name% *} with PRISMESH_SEED=$seed" "$status"
+    done
+    seed=$((seed + 1))
+  done
+  targets=$(find build/asan/bin -name '*_fuzz' | wc -l)
+  run_fuzzers $((seconds * $(nproc) / 2 / targets + 1))
   closing_line
 }

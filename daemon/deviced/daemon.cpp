@@ -10,8 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <spdlog/spdlog.h>
-
+#include "base/log.h"
 #include "daemon/deviced/loop_thread.h"
 #include "daemon/deviced/station.h"
 #include "ipc/device_client.h"
@@ -39,8 +38,8 @@ ipc::ServerLimits limits() {
 
 /// On the watchdog's thread, while the loop hangs: nothing can be wound down.
 [[noreturn]] void end_stuck() {
-  spdlog::critical("the device loop hangs, so this daemon ends to be started again; the prism servo stops by its own watchdog");
-  spdlog::default_logger()->flush();
+  logging::critical("the device loop hangs, so this daemon ends to be started again; the prism servo stops by its own watchdog");
+  logging::flush();
   std::_Exit(kStuckStatus);
 }
 
@@ -48,9 +47,9 @@ void log(const ipc::DeviceInfo& device) {
   const std::string what =
       device.role + " (" + device.kind + (device.simulated ? ", simulated" : "") + ", " + device.where + "): " + device.state;
   if (device.trouble.empty())
-    spdlog::info("{}", what);
+    logging::info("{}", what);
   else
-    spdlog::warn("{}: {}", what, device.trouble);
+    logging::warn("{}: {}", what, device.trouble);
 }
 
 }  // namespace
@@ -88,7 +87,7 @@ struct Daemon::State final : ipc::ServerHandler {
     Result<std::unique_ptr<Station>> started = Station::start(plan, page, memory_locked, end_stuck);
     if (!started) return fail(std::move(started.error()));
     station = std::move(*started);
-    if (!station->refused().empty()) spdlog::warn("{}", station->refused());
+    if (!station->refused().empty()) logging::warn("{}", station->refused());
     if (!picture_mono) tell_loop(SetPictureMono{false});
     if (holder) tell_loop(SetHold{hold.position_mm});
     return {};
@@ -155,7 +154,7 @@ struct Daemon::State final : ipc::ServerHandler {
     Result<ipc::Descriptor> shared = page.descriptor().duplicate();
     if (!shared) return server->cut(client, shared.error().text());
     greeted[client] = hello.program;
-    spdlog::info("client {} is {}", client, hello.program);
+    logging::info("client {} is {}", client, hello.program);
     std::vector<ipc::Descriptor> descriptors;
     descriptors.push_back(std::move(*shared));
     server->send(client, ipc::encode_device_answer(number, ipc::DeviceWelcome{ipc::kDeviceProtocolVersion, PRISMESH_VERSION}, 1),
@@ -164,7 +163,7 @@ struct Daemon::State final : ipc::ServerHandler {
 
   void disconnected(ipc::ClientId client, const std::string& why) override {
     if (greeted.erase(client) == 0) return;
-    spdlog::info("client {} left: {}", client, why);
+    logging::info("client {} left: {}", client, why);
     if (holder == client) end_hold();
     // What it drew is no longer seen.
     if (showing_stereo.erase(client) > 0) picture_shown();
@@ -212,7 +211,7 @@ struct Daemon::State final : ipc::ServerHandler {
 
   ipc::DeviceAnswer done(ipc::ClientId client, const ipc::Rearm&) {
     if (const auto failed = no_servo()) return *failed;
-    spdlog::info("{} (client {}) rearms the prism servo", greeted[client], client);
+    logging::info("{} (client {}) rearms the prism servo", greeted[client], client);
     tell_loop(AskRearm{});
     return ipc::Done{};
   }
@@ -222,7 +221,7 @@ struct Daemon::State final : ipc::ServerHandler {
     if (!fresh) return failed(fresh.error());
     const bool go_on = station && fresh->same_devices(plan);
     plan = std::move(*fresh);
-    spdlog::info("settings and the profile \"{}\" were read again{}", plan.profile.name, go_on ? "" : "; the devices are started anew");
+    logging::info("settings and the profile \"{}\" were read again{}", plan.profile.name, go_on ? "" : "; the devices are started anew");
     if (go_on) {
       tell_loop(SetDisplay{plan.profile.optics, plan.eye_separation_mm()});
       return ipc::Done{};
@@ -231,7 +230,7 @@ struct Daemon::State final : ipc::ServerHandler {
     const Result<void> started = start_station();
     if (started) return ipc::Done{};
     no_station = started.error().text();
-    spdlog::error("{}", no_station);
+    logging::error("{}", no_station);
     return failed(started.error());
   }
 
@@ -241,7 +240,7 @@ struct Daemon::State final : ipc::ServerHandler {
 
   void answer(ipc::ClientId client, std::uint64_t number, const ipc::DeviceAnswer& answer) {
     if (const auto* refused = std::get_if<ipc::Failed>(&answer))
-      spdlog::info("client {}: refused: {}", client, Error{refused->file, refused->line, refused->message}.text());
+      logging::info("client {}: refused: {}", client, Error{refused->file, refused->line, refused->message}.text());
     server->send(client, ipc::encode_device_answer(number, answer));
   }
 
@@ -265,7 +264,7 @@ Result<Daemon> Daemon::start(const DaemonOptions& options) {
   if (const std::string refused = lock_memory(); refused.empty())
     state->memory_locked = true;
   else
-    spdlog::warn("{}", refused);
+    logging::warn("{}", refused);
   if (Result<void> started = state->start_station(); !started) return fail(std::move(started.error()));
   state->server->every(kLook, [state = state.get()] { state->look(); });
   return Daemon(std::move(state));

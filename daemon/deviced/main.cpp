@@ -2,10 +2,9 @@
 #include <csignal>
 #include <cstdio>
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
 #include <sys/prctl.h>
 
+#include "base/log.h"
 #include "base/program_options.h"
 #include "daemon/deviced/daemon.h"
 #include "ipc/client.h"
@@ -26,8 +25,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   // Writing a core takes seconds in which the ports would stay open with nobody behind them.
   ::prctl(PR_SET_DUMPABLE, 0);
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("deviced"));
-  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e deviced %l: %v");
+  prismesh::logging::start("deviced");
 
   const prismesh::deviced::DaemonOptions options{prismesh::ipc::runtime_directory(given.path("--runtime-dir")), given.path("--config")};
   prismesh::Result<prismesh::deviced::Daemon> daemon = prismesh::deviced::Daemon::start(options);
@@ -35,8 +33,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", daemon.error().text().c_str());
     return 1;
   }
-  spdlog::info("listening in {}", options.runtime_directory.string());
+  prismesh::logging::info("listening in {}", options.runtime_directory.string());
   daemon->run();
-  spdlog::info("ended");
+  prismesh::logging::info("ended");
   return 0;
 }

@@ -39,7 +39,7 @@ LoopSettings loop_settings(const StationPlan& plan) {
   settings.limits.travel_mm = plan.settings.prism_servo.travel_mm;
   settings.limits.speed_mm_s = plan.settings.prism_servo.speed_mm_s;
   // What a slow tracker says, a webcam's say, is old when it comes.
-  const std::int64_t latency_ns = std::llround(plan.settings.eye_tracker.latency_ms * 1e6);
+  const std::int64_t latency_ns = nanoseconds(plan.settings.eye_tracker.latency_ms);
   settings.limits.eyes_lost_ns = std::max(settings.limits.eyes_lost_ns, latency_ns + kMissedNs);
   settings.eye_separation_mm = plan.eye_separation_mm();
   return settings;

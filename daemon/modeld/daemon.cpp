@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/log.h"
 #include "daemon/modeld/bench.h"
 #include "daemon/modeld/desk.h"
 #include "daemon/modeld/worker.h"
@@ -71,7 +71,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
     Result<ipc::Descriptor> state_page = page.descriptor().duplicate();
     if (!state_page) return server->cut(client, state_page.error().text());
     if (greeted.insert(client).second) desk.arrived(client);
-    spdlog::info("client {} is {}", client, hello.program);
+    logging::info("client {} is {}", client, hello.program);
     std::vector<ipc::Descriptor> descriptors;
     descriptors.push_back(std::move(*state_page));
     answer(client, number, ipc::Welcome{ipc::kProtocolVersion, PRISMESH_VERSION, client}, std::move(descriptors));
@@ -80,7 +80,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
 
   void disconnected(ipc::ClientId client, const std::string& why) override {
     if (greeted.erase(client) == 0) return;
-    spdlog::info("client {} left: {}", client, why);
+    logging::info("client {} left: {}", client, why);
     desk.left(client);
     beat();
   }
@@ -89,7 +89,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
 
   void answer(ipc::ClientId client, std::uint64_t number, const ipc::Answer& answer, std::vector<ipc::Descriptor> descriptors) override {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer))
-      spdlog::info("client {}: refused: {}", client, Error{failed->file, failed->line, failed->message}.text());
+      logging::info("client {}: refused: {}", client, Error{failed->file, failed->line, failed->message}.text());
     const std::size_t count = descriptors.size();
     server->send(client, ipc::encode_answer(number, answer, count), std::move(descriptors));
   }
@@ -121,9 +121,9 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
     beat();
     desk.start([](const ipc::Answer& answer) {
       if (const auto* failed = std::get_if<ipc::Failed>(&answer))
-        spdlog::error("what was open last time could not be opened: {}", Error{failed->file, failed->line, failed->message}.text());
+        logging::error("what was open last time could not be opened: {}", Error{failed->file, failed->line, failed->message}.text());
       if (const auto* state = std::get_if<ipc::State>(&answer))
-        spdlog::info("opened {} again with {} edits from the journal", state->path, state->recovered_edits);
+        logging::info("opened {} again with {} edits from the journal", state->path, state->recovered_edits);
     });
   }
 };

@@ -74,9 +74,6 @@ bool differs(const Generation& a, const Generation& b) {
   return &a != &b && (a.model.growth != b.model.growth || !mesh::moved_nodes(a.model, b.model).empty());
 }
 
-/// Whether nodes or shells came, went or have other corners since the deck was read.
-bool has_grown(const Document& document) { return !mesh::changes_between(document.opened->model, document.current().model).empty(); }
-
 ipc::Saved report_of(const fs::path& target, const mesh::deck::SaveReport& report) {
   return {target.string(), report.nodes_written, report.lines_changed, report.notes};
 }

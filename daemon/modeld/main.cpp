@@ -4,9 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-
+#include "base/log.h"
 #include "base/program_options.h"
 #include "daemon/modeld/daemon.h"
 #include "daemon/modeld/state_folder.h"
@@ -30,8 +28,7 @@ int main(int argc, char** argv) {
   // Whoever read the log may go away, and a journal may grow beyond what a file may hold: both are errors of writing, no end.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  spdlog::set_default_logger(spdlog::stderr_logger_mt("modeld"));
-  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e modeld %l: %v");
+  prismesh::logging::start("modeld");
 
   const std::optional<std::filesystem::path> config = given.path("--config");
   prismesh::Result<prismesh::drivers::settings::Settings> settings = prismesh::drivers::settings::read_settings(config);
@@ -41,7 +38,7 @@ int main(int argc, char** argv) {
   }
   // A device's mistyped key shall not keep anybody from their deck.
   if (!settings) {
-    spdlog::warn("the settings are left aside: {}", settings.error().text());
+    prismesh::logging::warn("the settings are left aside: {}", settings.error().text());
     settings = prismesh::drivers::settings::Settings{};
   }
   prismesh::modeld::DaemonOptions options;
@@ -53,8 +50,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", daemon.error().text().c_str());
     return 1;
   }
-  spdlog::info("listening in {}, journals in {}", options.runtime_directory.string(), options.state_directory.string());
+  prismesh::logging::info("listening in {}, journals in {}", options.runtime_directory.string(), options.state_directory.string());
   daemon->run();
-  spdlog::info("ended");
+  prismesh::logging::info("ended");
   return 0;
 }

@@ -50,11 +50,6 @@ void read_texts(ipc::ByteReader& in, SaveIntent& intent) {
   }
 }
 
-/// Whether nodes or shells came, went or have other corners.
-bool has_grown(const mesh::document::Document& document) {
-  return !mesh::changes_between(document.opened->model, document.current().model).empty();
-}
-
 Result<void> write_whole(const std::filesystem::path& path, const ipc::ByteWriter& out) {
   const std::string_view content(reinterpret_cast<const char*>(out.bytes().data()), out.bytes().size());
   const PendingFile file{path, {content}};
@@ -152,6 +147,10 @@ Result<SaveIntent> read_intent(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+bool has_grown(const mesh::document::Document& document) {
+  return !mesh::changes_between(document.opened->model, document.current().model).empty();
+}
 
 Result<void> write_save_intent(const std::filesystem::path& path, const mesh::document::Document& document, const Progress& progress) {
   if (has_grown(document)) return write_text_intent(path, document, progress);

@@ -11,6 +11,9 @@
 
 namespace prismesh::modeld {
 
+/// Whether nodes or shells came, went or have other corners since the deck was read.
+bool has_grown(const mesh::document::Document& document);
+
 /// Writes the intent of saving the document's current generation to its own deck. Errors: those of saving, cancelled.
 Result<void> write_save_intent(const std::filesystem::path& path, const mesh::document::Document& document, const Progress& progress = {});
 

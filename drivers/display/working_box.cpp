@@ -104,14 +104,14 @@ double worst_phase_error(const MaskOptics& optics, const Eigen::Vector3d& head_m
 
 std::optional<DepthSpan> working_depths(const MaskOptics& optics, double head_x_mm, double separation_mm, const PanelArea& panel,
                                         Composing composing, double limit) {
-  constexpr double kStepMm = 1, kNearestMm = 200, kFarthestMm = 2000;
+  constexpr double kStepMm = 1, kNearestMm = 200, kFarthestHeadMm = 2000;
   const auto good = [&](double distance) {
     return worst_phase_error(optics, {head_x_mm, 0, distance}, separation_mm, panel, composing) <= limit;
   };
   DepthSpan span{optics.design_distance_mm, optics.design_distance_mm};
   if (!good(span.nearest_mm)) return std::nullopt;
   while (span.nearest_mm - kStepMm >= kNearestMm && good(span.nearest_mm - kStepMm)) span.nearest_mm -= kStepMm;
-  while (span.farthest_mm + kStepMm <= kFarthestMm && good(span.farthest_mm + kStepMm)) span.farthest_mm += kStepMm;
+  while (span.farthest_mm + kStepMm <= kFarthestHeadMm && good(span.farthest_mm + kStepMm)) span.farthest_mm += kStepMm;
   return span;
 }
 

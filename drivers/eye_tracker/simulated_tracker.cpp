@@ -1,10 +1,10 @@
 #include "drivers/eye_tracker/simulated_tracker.h"
 
 #include <chrono>
-#include <cmath>
 #include <functional>
 #include <utility>
 
+#include "base/clock.h"
 #include "drivers/eye_tracker/dynasight/simulator.h"
 #include "drivers/eye_tracker/head_motion.h"
 #include "drivers/eye_tracker/opentrack/simulator.h"
@@ -19,8 +19,6 @@ constexpr auto kStep = std::chrono::milliseconds(1);
 HeadSource source_of(const HeadMotion& motion) {
   return [motion](double seconds) { return SimulatedHead{.between_eyes_mm = motion.between_eyes_mm(seconds)}; };
 }
-
-std::int64_t nanoseconds(double milliseconds) { return std::llround(milliseconds * 1e6); }
 
 std::unique_ptr<TrackerSimulator> play_dynasight(port::BytePort& line, const HeadMotion& motion,
                                                  const settings::EyeTrackerSettings& settings, std::uint64_t seed) {

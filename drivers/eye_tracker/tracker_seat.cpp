@@ -1,13 +1,8 @@
 #include "drivers/eye_tracker/tracker_seat.h"
 
-#include <cmath>
+#include "base/clock.h"
 
 namespace prismesh::drivers::eye_tracker {
-namespace {
-
-std::int64_t nanoseconds(double milliseconds) { return std::llround(milliseconds * 1e6); }
-
-}  // namespace
 
 dynasight::DynasightTracker::Options dynasight_options(const settings::EyeTrackerSettings& settings) {
   return {.dialect = settings.dialect,

@@ -10,7 +10,7 @@
 namespace prismesh::kiosk::panels {
 namespace {
 
-using Actions = std::vector<WizardAction>;
+using WizardActions = std::vector<WizardAction>;
 
 /// A button that a fingertip finds.
 bool wide_button(const std::string& label, float width) { return ImGui::Button(label.c_str(), ImVec2(width, 1.7f * ImGui::GetFontSize())); }
@@ -24,7 +24,7 @@ void title_row(const WizardFacts& facts) {
   ImGui::TextDisabled("%s", count.c_str());
 }
 
-void value_row(const WizardFacts& facts, Actions& actions) {
+void value_row(const WizardFacts& facts, WizardActions& actions) {
   if (facts.value.empty()) return;
   const float width = 2.6f * ImGui::GetFontSize();
   const struct {
@@ -61,7 +61,7 @@ void coloured(unsigned colour, Signal signal, const std::string& text) {
   ImGui::PopStyleColor();
 }
 
-void button_row(const WizardFacts& facts, Actions& actions) {
+void button_row(const WizardFacts& facts, WizardActions& actions) {
   const float width = on_grid(9 * ImGui::GetFontSize());
   if (wide_button("Leave", width)) actions.push_back(WizardAction::leave);
   ImGui::SameLine();
@@ -76,8 +76,8 @@ void button_row(const WizardFacts& facts, Actions& actions) {
 
 }  // namespace
 
-Actions wizard_panel(const WizardFacts& facts, display::PixelSize picture) {
-  Actions actions;
+WizardActions wizard_panel(const WizardFacts& facts, display::PixelSize picture) {
+  WizardActions actions;
   const auto w = static_cast<float>(picture.width), h = static_cast<float>(picture.height);
   const float width = on_grid(std::min(0.9f * w, 40 * ImGui::GetFontSize()));
   ImGui::SetNextWindowPos(ImVec2(on_grid(0.5f * (w - width)), h - kMargin), ImGuiCond_Always, ImVec2(0, 1));

@@ -15,7 +15,7 @@ using stereo::Weave;
 namespace {
 
 /// What an eye's image shows, in places of the picture.
-struct Frame {
+struct ImageFrame {
   int width = 1, height = 1;
   stereo::ImageMap from_picture;
 };
@@ -61,10 +61,10 @@ bool columns_swapped(const Picture& picture, const stereo::PictureEyes& eyes) {
 }
 
 /// Windows' numbers as they lie on the picture if they are evenly spaced, and an image that has a texel for each.
-Frame frame_of_windows(const LinearNumbers& numbers, int first, int texels, bool by_rows, int width, int height) {
+ImageFrame frame_of_windows(const LinearNumbers& numbers, int first, int texels, bool by_rows, int width, int height) {
   // Texel i has its middle where the number is first + i.
   const double scale = 2.0 / texels;
-  Frame frame{by_rows ? width : texels, by_rows ? texels : height, stereo::whole_picture(width, height)};
+  ImageFrame frame{by_rows ? width : texels, by_rows ? texels : height, stereo::whole_picture(width, height)};
   frame.from_picture.row(by_rows ? 1 : 0) << scale * numbers.by_x, scale * numbers.by_y, scale * (numbers.at_origin - first + 0.5) - 1;
   return frame;
 }
@@ -88,7 +88,7 @@ LinearNumbers evenly_spaced(const PlacedMask& mask, const Vec3& eye_mm, const Pa
   return {by_u * pitch, -by_v * pitch, by_u * area.u_mm(0, pitch) + by_v * area.v_mm(0, pitch) - row.first_mm / row.spacing_mm};
 }
 
-std::array<Frame, 2> behind_mask(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
+std::array<ImageFrame, 2> behind_mask(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
   const PlacedMask mask = place_mask(picture, eyes, area);
   const stereo::EyePair pair = eyes.eyes();
   composed.join = Join::interlaced;
@@ -97,7 +97,7 @@ std::array<Frame, 2> behind_mask(const Picture& picture, const stereo::PictureEy
                                                                             : 0;
   composed.phases = phase_map(mask.optics, pair, mask.mask_mm, area);
   const int texels = texels_for(mask, composed.phases, area);
-  std::array<Frame, 2> frames;
+  std::array<ImageFrame, 2> frames;
   for (const Eye eye : {Eye::left, Eye::right}) {
     const auto i = static_cast<std::size_t>(eye);
     frames[i] = frame_of_windows(evenly_spaced(mask, pair.of(eye), area), composed.phases.first[i], texels, false, area.width, area.height);
@@ -118,11 +118,11 @@ std::array<LinearNumbers, 2> alternating(bool by_rows, bool swapped, const Panel
   return numbers;
 }
 
-std::array<Frame, 2> alternate(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
+std::array<ImageFrame, 2> alternate(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
   composed.by_rows = picture.profile.weave == Weave::rows;
   const auto numbers = alternating(composed.by_rows, columns_swapped(picture, eyes), area);
   composed.phases = phase_map(numbers, area.width, area.height);
-  std::array<Frame, 2> frames;
+  std::array<ImageFrame, 2> frames;
   if (picture.profile.weave == Weave::stencil) {
     composed.join = Join::stencil;
     frames.fill({area.width, area.height, stereo::whole_picture(area.width, area.height)});
@@ -142,21 +142,21 @@ std::array<Frame, 2> alternate(const Picture& picture, const stereo::PictureEyes
   return frames;
 }
 
-Frame half_width(int width, int height) {
-  Frame frame{(width + 1) / 2, height, stereo::whole_picture(width, height)};
+ImageFrame half_width(int width, int height) {
+  ImageFrame frame{(width + 1) / 2, height, stereo::whole_picture(width, height)};
   frame.from_picture(0, 0) = 1.0 / frame.width;
   return frame;
 }
 
-Frame half_height(int width, int height) {
-  Frame frame{width, (height + 1) / 2, stereo::whole_picture(width, height)};
+ImageFrame half_height(int width, int height) {
+  ImageFrame frame{width, (height + 1) / 2, stereo::whole_picture(width, height)};
   frame.from_picture(1, 1) = -1.0 / frame.height;
   return frame;
 }
 
 /// How the two eyes' images are framed and joined.
-std::array<Frame, 2> frames_for(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
-  const Frame whole{area.width, area.height, stereo::whole_picture(area.width, area.height)};
+std::array<ImageFrame, 2> frames_for(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
+  const ImageFrame whole{area.width, area.height, stereo::whole_picture(area.width, area.height)};
   switch (picture.profile.weave) {
     case Weave::mask: return behind_mask(picture, eyes, area, composed);
     case Weave::columns:
@@ -192,7 +192,7 @@ Composition compose(const Picture& picture, int width, int height) {
   composed.swapped = picture.profile.swap_eyes;
   composed.gamma = picture.profile.gamma;
   if (sharing) composed.leak = picture.profile.crosstalk;
-  const auto image = [&](std::optional<Eye> eye, const Frame& frame) {
+  const auto image = [&](std::optional<Eye> eye, const ImageFrame& frame) {
     composed.images.push_back({eye, eyes.picture_eye(eye) - centre, frame.width, frame.height, frame.from_picture});
   };
   const bool flat = picture.profile.stereo() && eyes.depth_share == 0;
@@ -201,7 +201,7 @@ Composition compose(const Picture& picture, int width, int height) {
     image(std::nullopt, {width, height, stereo::whole_picture(width, height)});
     return composed;
   }
-  const std::array<Frame, 2> frames = frames_for(picture, eyes, area, composed);
+  const std::array<ImageFrame, 2> frames = frames_for(picture, eyes, area, composed);
   if (flat || picture.profile.weave == Weave::centre)
     image(std::nullopt, frames[0]);
   else if (picture.profile.weave == Weave::one_eye)

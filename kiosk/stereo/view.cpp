@@ -9,7 +9,7 @@ namespace prismesh::kiosk::stereo {
 namespace {
 
 constexpr double kFlattest = 0.005;    ///< depth is never scaled to less: one thing has to hide another
-constexpr double kNearestEyeMm = 100;  ///< no eye is taken to be nearer when depth is measured by it
+constexpr double kNearestDepthEyeMm = 100;  ///< no eye is taken to be nearer when depth is measured by it
 
 /// Where the bounds' centre stands before the screen, and how far they reach from there: mm, before compression.
 struct Depths {
@@ -53,7 +53,7 @@ Sphere sphere_around(const Box& box) {
 }
 
 ComfortBox comfort_box(double eye_distance_mm, double degrees, double separation_mm) {
-  const double distance = std::max(eye_distance_mm, kNearestEyeMm);
+  const double distance = std::max(eye_distance_mm, kNearestDepthEyeMm);
   const double parallax = distance * std::tan(degrees * std::numbers::pi / 180);
   const double most = 0.5 * distance;
   const double behind = parallax < separation_mm ? parallax * distance / (separation_mm - parallax) : most;
@@ -133,7 +133,7 @@ View toward_screen_plane(const View& view, const Vec3& deck_point, const Vec3& e
   View moved = view;
   moved.before_mm -= share * before.z() / depth_scale(view);
   const Vec3 after = to_screen(moved, deck_point);
-  const double eye = std::max(eye_mm.z(), kNearestEyeMm);
+  const double eye = std::max(eye_mm.z(), kNearestDepthEyeMm);
   const double farther = (eye - after.z()) / std::max(eye - before.z(), 1.0);
   const Eigen::Vector2d wanted = eye_mm.head<2>() + farther * (before.head<2>() - eye_mm.head<2>());
   moved.pan_mm += wanted - after.head<2>();

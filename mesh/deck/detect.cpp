@@ -10,8 +10,6 @@ constexpr std::size_t kLookedAt = std::size_t{256} << 10;
 constexpr std::size_t kLongestLine = 200;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-
 std::string upper_line(std::string_view line) {
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
   std::string out(line.substr(0, kLongestLine));
@@ -61,17 +59,17 @@ struct Votes {
 constexpr int kCertain = 1000;
 
 bool is_word(std::string_view line, std::string_view word) {
-  return starts_with(line, word) &&
+  return line.starts_with(word) &&
          (line.size() == word.size() || std::string_view(" *,\t0123456789").find(line[word.size()]) != std::string_view::npos);
 }
 
 void vote_on_asterisk(std::string_view line, Votes& votes) {
-  if (starts_with(line, "**")) {
+  if (line.starts_with("**")) {
     ++votes.abaqus;
     return;
   }
   const std::string_view name = line.substr(1, line.find_first_of(" ,=\t") - 1);
-  if (starts_with(name, "KEYWORD")) votes.ls_dyna += kCertain;
+  if (name.starts_with("KEYWORD")) votes.ls_dyna += kCertain;
   for (const std::string_view own : {"HEADING", "STEP", "PREPRINT", "INSTANCE", "ASSEMBLY", "ELSET", "NSET", "SHELL", "MATERIAL", "SOLID"})
     if (name == own) votes.abaqus += 20;
   // Abaqus keywords take parameters with an equals sign and have blanks, those of LS-DYNA have underscores.
@@ -79,17 +77,17 @@ void vote_on_asterisk(std::string_view line, Votes& votes) {
   for (const std::string_view own :
        {"ELEMENT_",  "SECTION_", "MAT_",  "PART",     "CONTROL_", "PARAMETER", "INCLUDE",      "SET_", "DEFINE_",   "DATABASE_",
         "BOUNDARY_", "CONTACT_", "LOAD_", "INITIAL_", "NODE",     "TITLE",     "CONSTRAINED_", "EOS_", "HOURGLASS", "END"})
-    if (starts_with(name, own)) votes.ls_dyna += name.find('_') != std::string_view::npos ? 20 : 2;
+    if (name.starts_with(own)) votes.ls_dyna += name.find('_') != std::string_view::npos ? 20 : 2;
 }
 
 void vote_on_slash(std::string_view line, Votes& votes) {
   for (const std::string_view own : {"/BEGIN", "/NODE", "/SHELL/", "/SH3N/", "/PART/", "/PROP/", "/MAT/", "/TITLE", "/BRICK/", "/GRNOD/"})
-    if (starts_with(line, own)) votes.radioss += 20;
+    if (line.starts_with(own)) votes.radioss += 20;
 }
 
 void vote_on_word(std::string_view line, Votes& votes) {
-  if (starts_with(line, "BEGIN BULK") || is_word(line, "CEND")) votes.nastran += kCertain;
-  if (starts_with(line, "NASTRAN ") || starts_with(line, "SOL ")) votes.nastran += 20;
+  if (line.starts_with("BEGIN BULK") || is_word(line, "CEND")) votes.nastran += kCertain;
+  if (line.starts_with("NASTRAN ") || line.starts_with("SOL ")) votes.nastran += 20;
   for (const std::string_view card :
        {"GRID", "CQUAD4", "CTRIA3", "CQUAD1", "CHEXA", "CBAR", "CBEAM", "PSHELL", "PCOMP", "MAT1", "RBE2", "SPC1", "ENDDATA", "INCLUDE"})
     if (is_word(line, card)) votes.nastran += 10;
@@ -102,7 +100,7 @@ Votes count_votes(std::string_view text) {
     const std::string line = upper_line(text.substr(0, std::min(end, kLongestLine)));
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.empty()) continue;
-    if (starts_with(line, "#RADIOSS")) votes.radioss += kCertain;
+    if (line.starts_with("#RADIOSS")) votes.radioss += kCertain;
     if (line[0] == '*')
       vote_on_asterisk(line, votes);
     else if (line[0] == '/')
@@ -120,7 +118,7 @@ bool has_carriage_returns_alone(std::string_view text) {
 }
 
 std::string describe(std::string_view text) {
-  if (starts_with(text, "solid ")) return "an STL file";
+  if (text.starts_with("solid ")) return "an STL file";
   const auto binary = std::count_if(text.begin(), text.end(), [](char c) {
     return static_cast<unsigned char>(c) < 32 && c != '\n' && c != '\r' && c != '\t' && c != '\f';
   });
@@ -135,8 +133,8 @@ std::string describe(std::string_view text) {
 Detected detect_format(std::string_view text) {
   if (text.empty()) return {{}, "an empty file"};
   for (const Signature& signature : kSignatures)
-    if (starts_with(text, signature.bytes)) return {{}, std::string(signature.meaning)};
-  if (starts_with(text, kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    if (text.starts_with(signature.bytes)) return {{}, std::string(signature.meaning)};
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   text = text.substr(0, kLookedAt);
   if (has_carriage_returns_alone(text))
     return {{}, "text whose lines end with carriage returns alone; save it with LF or CRLF line ends first"};

@@ -15,7 +15,7 @@ namespace prismesh::mesh::document {
 namespace {
 
 constexpr int kMostAttempts = 5;        ///< until all that is wanted can be written
-constexpr std::size_t kMostNamed = 10;  ///< elements that a note names
+constexpr std::size_t kMaxNamedInRepair = 10;  ///< elements that a note names
 
 repair::Options options_of(double angle, const MoveLimits& limits) {
   repair::Options options;
@@ -42,7 +42,7 @@ void say_operations(const repair::Repaired& repaired, EditReport& report) {
 void say_left(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
   if (repaired.left.empty()) return;
   report.notes.push_back(counted(repaired.left.size(), "element") + " still " + (repaired.left.size() == 1 ? "fails" : "fail"));
-  for (std::size_t i = 0; i < std::min(repaired.left.size(), kMostNamed); ++i) {
+  for (std::size_t i = 0; i < std::min(repaired.left.size(), kMaxNamedInRepair); ++i) {
     const repair::Left& left = repaired.left[i];
     const auto known = frozen.shells.find(left.shell);
     report.notes.push_back(shell_name(model, left.shell) + ": " +

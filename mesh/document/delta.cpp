@@ -15,7 +15,7 @@ constexpr std::uint8_t kVersionWithoutGrowth = 1;  ///< of journals that were wr
 
 // --- writing ---
 
-class Writer {
+class DeltaWriter {
  public:
   void byte(std::uint8_t value) { bytes_.push_back(static_cast<std::byte>(value)); }
   /// Seven bits a byte, lowest first; the top bit says that more follow.
@@ -33,7 +33,7 @@ class Writer {
   std::vector<std::byte> bytes_;
 };
 
-void write_moved(const Generation& before, const Generation& after, Writer& out) {
+void write_moved(const Generation& before, const Generation& after, DeltaWriter& out) {
   const std::vector<NodeIndex> moved = moved_nodes(before.model, after.model);
   out.number(moved.size());
   std::size_t next = 0;
@@ -45,13 +45,13 @@ void write_moved(const Generation& before, const Generation& after, Writer& out)
   }
 }
 
-void write_corners(const ShellNodes& nodes, Writer& out) {
+void write_corners(const ShellNodes& nodes, DeltaWriter& out) {
   for (const NodeIndex node : nodes.node) out.number(node.value);
 }
 
 /// Ascending indices as gaps.
 template <class IndexType, class Body>
-void write_indices(const std::vector<IndexType>& indices, Writer& out, const Body& body) {
+void write_indices(const std::vector<IndexType>& indices, DeltaWriter& out, const Body& body) {
   out.number(indices.size());
   std::size_t next = 0;
   for (const IndexType index : indices) {
@@ -62,7 +62,7 @@ void write_indices(const std::vector<IndexType>& indices, Writer& out, const Bod
 }
 
 /// New entries one by one. What an edit adds is still there after it.
-void write_added(const Model& before, const Model& model, Writer& out) {
+void write_added(const Model& before, const Model& model, DeltaWriter& out) {
   out.number(model.node_count() - before.node_count());
   for (std::size_t n = before.node_count(); n < model.node_count(); ++n) {
     out.number(static_cast<std::uint64_t>(model.node_ids[n]));
@@ -82,7 +82,7 @@ void write_added(const Model& before, const Model& model, Writer& out) {
   }
 }
 
-void write_growth(const Model& before, const Model& after, Writer& out) {
+void write_growth(const Model& before, const Model& after, DeltaWriter& out) {
   write_added(before, after, out);
   Changes changes = changes_between(before, after);
   write_indices(changes.reshaped_shells, out, [&](ShellIndex shell) { write_corners(after.shell(shell), out); });
@@ -117,7 +117,7 @@ std::vector<Run> changed_runs(const ChunkedArray<std::uint8_t>& before, const Ch
   return runs;
 }
 
-void write_runs(const std::vector<Run>& runs, Writer& out) {
+void write_runs(const std::vector<Run>& runs, DeltaWriter& out) {
   out.number(runs.size());
   std::size_t next = 0;
   for (const Run& run : runs) {
@@ -130,7 +130,7 @@ void write_runs(const std::vector<Run>& runs, Writer& out) {
 
 std::uint8_t packed(const PartState& state) { return static_cast<std::uint8_t>((state.hidden ? 1 : 0) | (state.locked ? 2 : 0)); }
 
-void write_parts(const Generation& before, const Generation& after, Writer& out) {
+void write_parts(const Generation& before, const Generation& after, DeltaWriter& out) {
   std::vector<std::size_t> changed;
   if (before.parts != after.parts)
     for (std::size_t p = 0; p < after.parts->size(); ++p)
@@ -145,9 +145,9 @@ void write_parts(const Generation& before, const Generation& after, Writer& out)
 // --- reading ---
 
 /// Reads numbers; after the end or a bad one everything is 0 and ok() is false.
-class Reader {
+class DeltaReader {
  public:
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  explicit DeltaReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
   bool ok() const { return ok_; }
   bool at_end() const { return ok_ && next_ == bytes_.size(); }
   std::size_t left() const { return bytes_.size() - next_; }
@@ -186,7 +186,7 @@ class Reader {
 };
 
 /// A node that is there; `end`: one past the last that may be named.
-NodeIndex read_node(Reader& in, const Model& model, std::size_t end) {
+NodeIndex read_node(DeltaReader& in, const Model& model, std::size_t end) {
   const std::uint64_t value = in.number();
   if (!in.ok() || value >= end || model.is_removed(NodeIndex(static_cast<std::size_t>(value)))) {
     in.refuse();
@@ -195,14 +195,14 @@ NodeIndex read_node(Reader& in, const Model& model, std::size_t end) {
   return NodeIndex(static_cast<std::size_t>(value));
 }
 
-ShellNodes read_corners(Reader& in, const Model& model) {
+ShellNodes read_corners(DeltaReader& in, const Model& model) {
   ShellNodes nodes;
   for (NodeIndex& node : nodes.node) node = read_node(in, model, model.node_count());
   return nodes;
 }
 
 /// An id that nothing in the index has.
-std::int64_t read_id(Reader& in, const IdIndex& taken) {
+std::int64_t read_id(DeltaReader& in, const IdIndex& taken) {
   const std::uint64_t value = in.number();
   const auto id = static_cast<std::int64_t>(value);
   if (!in.ok() || value == 0 || value > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) ||
@@ -213,7 +213,7 @@ std::int64_t read_id(Reader& in, const IdIndex& taken) {
   return id;
 }
 
-void read_added_nodes(Reader& in, Model& model) {
+void read_added_nodes(DeltaReader& in, Model& model) {
   const std::uint64_t count = in.count(35);
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::int64_t id = read_id(in, *model.node_index);
@@ -234,7 +234,7 @@ void read_added_nodes(Reader& in, Model& model) {
 
 /// Calls `body` with each of ascending indices below `end`.
 template <class IndexType, class Body>
-void read_indices(Reader& in, std::size_t bytes_each, std::size_t end, const Body& body) {
+void read_indices(DeltaReader& in, std::size_t bytes_each, std::size_t end, const Body& body) {
   const std::uint64_t count = in.count(bytes_each);
   std::uint64_t next = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -246,7 +246,7 @@ void read_indices(Reader& in, std::size_t bytes_each, std::size_t end, const Bod
   }
 }
 
-void read_growth(Reader& in, Model& model) {
+void read_growth(DeltaReader& in, Model& model) {
   const std::size_t nodes_before = model.node_count(), shells_before = model.shell_count();
   read_added_nodes(in, model);
   const std::uint64_t count = in.ok() ? in.count(6) : 0;
@@ -272,7 +272,7 @@ void read_growth(Reader& in, Model& model) {
   });
 }
 
-NodeSet read_moved(Reader& in, Model& model) {
+NodeSet read_moved(DeltaReader& in, Model& model) {
   NodeSet moved;
   const std::uint64_t count = in.count(25);
   moved.reserve(count);
@@ -297,7 +297,7 @@ NodeSet read_moved(Reader& in, Model& model) {
 }
 
 /// Returns by how many the selected entries grew.
-std::int64_t read_runs(Reader& in, std::uint8_t known_bits, ChunkedArray<std::uint8_t>& marks) {
+std::int64_t read_runs(DeltaReader& in, std::uint8_t known_bits, ChunkedArray<std::uint8_t>& marks) {
   std::int64_t selected = 0;
   const std::uint64_t count = in.count(3);
   std::uint64_t next = 0;
@@ -319,7 +319,7 @@ std::int64_t read_runs(Reader& in, std::uint8_t known_bits, ChunkedArray<std::ui
   return selected;
 }
 
-void read_parts(Reader& in, Generation& generation) {
+void read_parts(DeltaReader& in, Generation& generation) {
   const std::uint64_t count = in.count(2);
   if (count == 0) return;
   auto parts = std::make_shared<std::vector<PartState>>(*generation.parts);
@@ -337,7 +337,7 @@ std::size_t grown(std::size_t size, std::int64_t by) { return static_cast<std::s
 }  // namespace
 
 std::vector<std::byte> encode_delta(const Generation& before, const Generation& after) {
-  Writer out;
+  DeltaWriter out;
   out.byte(kVersion);
   write_growth(before.model, after.model, out);
   write_moved(before, after, out);
@@ -349,7 +349,7 @@ std::vector<std::byte> encode_delta(const Generation& before, const Generation& 
 }
 
 Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& generation) {
-  Reader in(delta);
+  DeltaReader in(delta);
   const std::uint8_t version = in.byte();
   if (version != kVersion && version != kVersionWithoutGrowth) return fail("", "its delta is of another version");
   if (version == kVersion) read_growth(in, generation.model);

@@ -10,7 +10,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr std::size_t kShellsAtATime = 1024;  ///< of a parallel range: some 100 microseconds
+constexpr std::size_t kDragGrain = 1024;  ///< of a parallel range: some 100 microseconds
 
 /// Where each corner's coordinates come from: >= 0 the moving node of that number, < 0 the fixed point of the number's complement.
 class Corners {
@@ -96,14 +96,14 @@ void Drag::step(const Displacement& displacement) {
   if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& position) { return position.allFinite(); })) return;
   displacement_ = displacement;
   positions_ = std::move(positions);
-  std::vector<quality::Counts> counts((corners_.size() + kShellsAtATime - 1) / kShellsAtATime);
-  parallel_for(corners_.size(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
+  std::vector<quality::Counts> counts((corners_.size() + kDragGrain - 1) / kDragGrain);
+  parallel_for(corners_.size(), kDragGrain, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     quality::judge_points(positions_, fixed_, std::span(corners_).subspan(begin, count), std::span(sheets_).subspan(begin, count),
                           settings_.criteria, settings_.target_size, std::span(states_).subspan(begin, count));
     quality::Counts sum;
     for (std::size_t s = begin; s < end; ++s) add(sum, states_[s], 1);
-    counts[begin / kShellsAtATime] = sum;
+    counts[begin / kDragGrain] = sum;
   });
   counts_ = total(counts_elsewhere_, counts);
 }

@@ -234,9 +234,9 @@ Problem read(const Json& json, std::optional<T>& value, const More&... more) {
 
 // --- reading an object ---
 
-class Reader {
+class FieldReader {
  public:
-  Reader(const Json& object, std::string what) : object_(object), what_(std::move(what)) {}
+  FieldReader(const Json& object, std::string what) : object_(object), what_(std::move(what)) {}
 
   template <class T, class... More>
   void required(std::string_view field, T& value, const More&... more) {
@@ -250,7 +250,7 @@ class Reader {
     const Json* json = find(field);
     if (json == nullptr) return;
     if (!json->is_object()) return complain(field, must_be("an object like {\"profile\": \"smooth\"}", *json));
-    Reader inner(*json, what_ + ": " + in_quotes(field));
+    FieldReader inner(*json, what_ + ": " + in_quotes(field));
     fields(inner, value, static_cast<const shape::Falloff*>(nullptr));
     if (value.along && !(value.along->squaredNorm() > 0)) inner.complain("along", "must be a direction, not [0, 0, 0]");
     if (!error_) error_ = inner.finish();
@@ -260,7 +260,7 @@ class Reader {
     if (json == nullptr) return;
     if (!json->is_object()) return complain(field, must_be("an object like {\"point\": [0, 0, 0], \"normal\": [0, 1, 0]}", *json));
     value.emplace();
-    Reader inner(*json, what_ + ": " + in_quotes(field));
+    FieldReader inner(*json, what_ + ": " + in_quotes(field));
     fields(inner, *value, static_cast<const Symmetry*>(nullptr));
     if (!error_) error_ = inner.finish();
   }
@@ -268,7 +268,7 @@ class Reader {
     const Json* json = find(field);
     if (json == nullptr) return;
     if (!json->is_object()) return complain(field, must_be("an object like {\"free\": 2, \"line\": 0.5}", *json));
-    Reader inner(*json, what_ + ": " + in_quotes(field));
+    FieldReader inner(*json, what_ + ": " + in_quotes(field));
     fields(inner, value, static_cast<const MoveLimits*>(nullptr));
     if (!error_) error_ = inner.finish();
   }
@@ -382,9 +382,9 @@ requires std::is_enum_v<E> Json written(E value) {
 }
 
 /// Writes every field that has a value, defaults too: a journal must mean the same when defaults change.
-class Writer {
+class FieldWriter {
  public:
-  explicit Writer(Json& object) : object_(object) {}
+  explicit FieldWriter(Json& object) : object_(object) {}
 
   template <class T, class... More>
   void required(std::string_view field, const T& value, const More&...) {
@@ -400,7 +400,7 @@ class Writer {
   }
   void nested(std::string_view field, const shape::Falloff& value) {
     Json inner = Json::object();
-    Writer writer(inner);
+    FieldWriter writer(inner);
     fields(writer, value, static_cast<const shape::Falloff*>(nullptr));
     object_[std::string(field)] = std::move(inner);
   }
@@ -408,14 +408,14 @@ class Writer {
   void nested(std::string_view field, const std::optional<Symmetry>& value) {
     if (!value) return;
     Json inner = Json::object();
-    Writer writer(inner);
+    FieldWriter writer(inner);
     fields(writer, *value, static_cast<const Symmetry*>(nullptr));
     object_[std::string(field)] = std::move(inner);
   }
   void nested(std::string_view field, const MoveLimits& value) {
     if (!value.free && !value.line) return;
     Json inner = Json::object();
-    Writer writer(inner);
+    FieldWriter writer(inner);
     fields(writer, value, static_cast<const MoveLimits*>(nullptr));
     object_[std::string(field)] = std::move(inner);
   }
@@ -428,7 +428,7 @@ class Writer {
 Json object_of(const Edit& edit) {
   Json object = Json::object();
   object["edit"] = std::string(name(edit));
-  Writer writer(object);
+  FieldWriter writer(object);
   std::visit([&](const auto& each) { fields(writer, each, &each); }, edit);
   return object;
 }
@@ -455,7 +455,7 @@ Result<Edit> blank_edit(const Json& json) {
 Result<Edit> edit_from_json(const Json& json) {
   Result<Edit> edit = blank_edit(json);
   if (!edit) return edit;
-  Reader reader(json, std::string(name(*edit)));
+  FieldReader reader(json, std::string(name(*edit)));
   reader.also_known("edit");
   std::visit([&](auto& each) { fields(reader, each, &each); }, *edit);
   if (const std::optional<Error> error = reader.finish()) return fail(*error);

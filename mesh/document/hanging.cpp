@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "base/parallel_for.h"
 #include "mesh/document/motion.h"
 #include "mesh/document/surroundings.h"
@@ -25,19 +26,12 @@ namespace {
 constexpr std::size_t kMostOfAWeld = 16;
 constexpr double kReachOfSize = 0.25;  ///< how far from a shell a node still lies on it, as a share of the shell's size
 constexpr double kReachOfTied = 0.5;   ///< the same for tied nodes, which are offset by half of both thicknesses
-constexpr std::size_t kShellsAtATime = 16384;
+constexpr std::size_t kSearchGrain = 16384;
 constexpr double kMostCells = 64;  ///< a shell over more cells than this is looked at more closely at once
 
 bool has(std::string_view text, std::string_view word) { return text.find(word) != std::string_view::npos; }
 
 /// Decks write their keywords in either case.
-std::string upper(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return out;
-}
-
 /// Cards that are wrong when only some of their nodes move.
 bool joins_nodes(std::string_view keyword) {
   if (!keyword.empty() && (keyword.front() == '/' || keyword.front() == '*')) keyword.remove_prefix(1);
@@ -228,9 +222,9 @@ ShellSet shells_near(const Model& model, const std::vector<Hanging::Rest>& point
     if (!model.is_removed(ShellIndex(s))) sum += size_of(model, ShellIndex(s)), ++asked;
   const double width = asked > 0 && sum > 0 && std::isfinite(sum) ? 2 * sum / static_cast<double>(asked) : 1.0;
   const CellTable table(model, points, width);
-  std::vector<ShellSet> found((model.shell_count() + kShellsAtATime - 1) / kShellsAtATime);
-  parallel_for(model.shell_count(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
-    ShellSet& near = found[begin / kShellsAtATime];
+  std::vector<ShellSet> found((model.shell_count() + kSearchGrain - 1) / kSearchGrain);
+  parallel_for(model.shell_count(), kSearchGrain, [&](std::size_t begin, std::size_t end) {
+    ShellSet& near = found[begin / kSearchGrain];
     for (std::size_t s = begin; s < end; ++s) {
       const ShellIndex shell(s);
       if (model.is_removed(shell)) continue;

@@ -22,9 +22,9 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr std::size_t kMostNamed = 5;   ///< cards and nodes that a note names
+constexpr std::size_t kMaxNamedInReport = 5;   ///< cards and nodes that a note names
 constexpr std::size_t kMostLost = 100;  ///< connections that a report lists
-constexpr int kRings = 4;               ///< how far along its sheet a node may have come and still be found there
+constexpr int kRingsSearched = 4;               ///< how far along its sheet a node may have come and still be found there
 
 bool contains(const NodeSet& nodes, NodeIndex node) { return std::binary_search(nodes.begin(), nodes.end(), node); }
 
@@ -46,7 +46,7 @@ void note_split_joins(const Generation& before, const NodeSet& moved, EditReport
   for (const auto& [join, count] : moved_of) {
     const NodeSet& nodes = hanging.joins[join].nodes;
     if (count == nodes.size()) continue;
-    if (named++ >= kMostNamed) {
+    if (named++ >= kMaxNamedInReport) {
       ++more;
       continue;
     }
@@ -55,9 +55,9 @@ void note_split_joins(const Generation& before, const NodeSet& moved, EditReport
     std::size_t left = 0;
     for (const NodeIndex node : nodes) {
       if (contains(moved, node)) continue;
-      if (left++ < kMostNamed) note += (left > 1 ? ", node:" : "node:") + std::to_string(before.model.node_ids[node.value]);
+      if (left++ < kMaxNamedInReport) note += (left > 1 ? ", node:" : "node:") + std::to_string(before.model.node_ids[node.value]);
     }
-    if (left > kMostNamed) note += " and " + std::to_string(left - kMostNamed) + " more";
+    if (left > kMaxNamedInReport) note += " and " + std::to_string(left - kMaxNamedInReport) + " more";
     report.notes.push_back(std::move(note));
   }
   if (more > 0) report.notes.push_back("so it is with " + counted(more, "more card") + " that join nodes");
@@ -66,7 +66,7 @@ void note_split_joins(const Generation& before, const NodeSet& moved, EditReport
 /// The shells around one, ring by ring over shared nodes.
 ShellSet around(const Model& model, ShellIndex shell) {
   ShellSet shells{shell};
-  for (int ring = 0; ring < kRings; ++ring) shells = shells_touching(model, nodes_of(model, shells));
+  for (int ring = 0; ring < kRingsSearched; ++ring) shells = shells_touching(model, nodes_of(model, shells));
   return shells;
 }
 

@@ -21,7 +21,7 @@ struct Journal::State {
 
 namespace {
 
-std::string dumped(const nlohmann::json& json) { return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+std::string intent_text(const Edit& edit) { return edit_to_json(edit).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
 
 bool is_fresh(const Document& document) { return document.generations.size() == 1 && document.generations.front() == document.opened; }
 
@@ -154,7 +154,7 @@ Result<void> Journal::append(const Document& document, const Edit& edit, const P
   const bool push = prepared.step == Prepared::Step::push;
   const std::string delta = push ? base64_encode(encode_delta(document.current(), *prepared.next)) : "";
   const std::string text =
-      record_text(state_->records + 1, dumped(edit_to_json(edit)), prepared.step, prepared.drop_oldest, delta, state_->check);
+      record_text(state_->records + 1, intent_text(edit), prepared.step, prepared.drop_oldest, delta, state_->check);
   if (const Result<void> appended = state_->file.append(text); !appended) return appended;
   ++state_->records;
   state_->check = check_in(text);

@@ -10,7 +10,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr int kRings = 4;  ///< about the scope: its neighbours may change with it
+constexpr int kRingsAboutScope = 4;  ///< about the scope: its neighbours may change with it
 
 ShellSet failing(const Generation& generation) {
   ShellSet shells;
@@ -76,7 +76,7 @@ relax::ReferenceSurface surface_about(const Generation& generation, const ShellS
     if (const ShellIndex there = ancestor_in(surface, generation.model, shell); !surface.is_removed(there)) about.push_back(there);
   std::sort(about.begin(), about.end());
   about.erase(std::unique(about.begin(), about.end()), about.end());
-  for (int ring = 0; ring < kRings && about.size() < live_shells(surface); ++ring)
+  for (int ring = 0; ring < kRingsAboutScope && about.size() < live_shells(surface); ++ring)
     about = shells_touching(surface, nodes_of(surface, about));
   return relax::ReferenceSurface(surface, about, feature_angle);
 }

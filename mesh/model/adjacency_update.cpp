@@ -14,7 +14,7 @@ namespace prismesh::mesh {
 
 namespace {
 
-constexpr std::size_t kNodeGrain = 65536;
+constexpr std::size_t kUpdateGrain = 65536;
 /// With more than one of so many nodes touched, building anew costs no more.
 constexpr std::size_t kFewNodes = 8;
 
@@ -181,7 +181,7 @@ Adjacency update_adjacency(const Model& before, const Model& after) {
   size_for(out.edge_high, old.edge_high.size(), rows.edge_shift.back());
   size_for(out.edge_shell_first, old.edge_high.size() + 1, rows.edge_shift.back());
   size_for(out.edge_shells, old.edge_shells.size(), rows.use_shift.back());
-  parallel_for(after.node_count(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(after.node_count(), kUpdateGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t d = static_cast<std::size_t>(std::lower_bound(rows.nodes.begin(), rows.nodes.end(), NodeIndex(begin)) - rows.nodes.begin());
     for (std::size_t node = begin; node < end; ++d) {
       const std::size_t stop = d < rows.nodes.size() ? std::min<std::size_t>(rows.nodes[d].value, end) : end;

@@ -9,7 +9,7 @@ namespace prismesh::mesh::quality {
 
 namespace {
 
-constexpr std::size_t kShellsAtATime = 1024;
+constexpr std::size_t kDeviationGrain = 1024;
 
 float deviation(const Model& model, ShellIndex shell, const OnReference& reference) {
   float largest = std::numeric_limits<float>::quiet_NaN();
@@ -31,7 +31,7 @@ float deviation(const Model& model, ShellIndex shell, const OnReference& referen
 
 std::vector<float> chordal_deviations(const Model& model, const ShellSet* shells, const OnReference& reference) {
   std::vector<float> deviations(shells != nullptr ? shells->size() : model.shell_count());
-  parallel_for(deviations.size(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
+  parallel_for(deviations.size(), kDeviationGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) deviations[i] = deviation(model, shells != nullptr ? (*shells)[i] : ShellIndex(i), reference);
   });
   return deviations;

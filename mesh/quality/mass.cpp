@@ -13,7 +13,7 @@ namespace prismesh::mesh::quality {
 
 namespace {
 
-constexpr std::size_t kShellsAtATime = 16384;
+constexpr std::size_t kMassGrain = 16384;
 
 }  // namespace
 
@@ -53,9 +53,9 @@ Weight weigh_shell(const Model& model, ShellIndex shell) {
 }
 
 Weight weigh_model(const Model& model) {
-  std::vector<Weight> parts((model.shell_count() + kShellsAtATime - 1) / kShellsAtATime);
-  parallel_for(model.shell_count(), kShellsAtATime, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) parts[begin / kShellsAtATime] += weigh_shell(model, ShellIndex(s));
+  std::vector<Weight> parts((model.shell_count() + kMassGrain - 1) / kMassGrain);
+  parallel_for(model.shell_count(), kMassGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) parts[begin / kMassGrain] += weigh_shell(model, ShellIndex(s));
   });
   Weight sum;
   for (const Weight& part : parts) sum += part;

@@ -17,7 +17,7 @@ namespace prismesh::mesh::quality {
 
 namespace {
 
-constexpr std::size_t kGrain = kChunkSize;  // so that a range of shells is a chunk of states
+constexpr std::size_t kReportGrain = kChunkSize;  // so that a range of shells is a chunk of states
 
 /// Metrics whose small values are the bad ones.
 bool low_is_worse(int metric) {
@@ -236,8 +236,8 @@ double rounded_to_two_digits(double value) {
 ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteria, double target_size) {
   ChunkedArray<ShellState> states(model.shell_count(), ShellState::removed());
   const Limits limits = limits_for(criteria, target_size);
-  parallel_for(model.shell_count(), kGrain, [&](std::size_t begin, std::size_t end) {
-    const std::span<ShellState> out = states.own_chunk(begin / kGrain);
+  parallel_for(model.shell_count(), kReportGrain, [&](std::size_t begin, std::size_t end) {
+    const std::span<ShellState> out = states.own_chunk(begin / kReportGrain);
     judge_shells(
         model, limits, end - begin, [&](std::size_t i) { return begin + i; }, out);
   });
@@ -252,7 +252,7 @@ void rejudge(const Model& model, const Criteria& criteria, double target_size, c
 
   const Limits limits = limits_for(criteria, target_size);
   std::vector<ShellState> fresh(dirty.size(), ShellState::removed());
-  parallel_for(dirty.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(dirty.size(), kReportGrain, [&](std::size_t begin, std::size_t end) {
     judge_shells(
         model, limits, end - begin, [&](std::size_t i) { return dirty[begin + i].value; }, std::span(fresh).subspan(begin, end - begin));
   });
@@ -276,9 +276,9 @@ Report report(const Model& model, const Criteria& criteria, double target_size, 
   const Limits limits = limits_for(criteria, target_size);
   const std::size_t elements = shells != nullptr ? shells->size() : model.shell_count();
   const std::vector<PartFactors> parts = factors_of(model, control.shell_option);
-  std::vector<Partial> partials((elements + kGrain - 1) / kGrain);
-  parallel_for(elements, kGrain, [&](std::size_t begin, std::size_t end) {
-    partials[begin / kGrain] = figures_of_range({model, limits, control, parts}, begin, end, shells);
+  std::vector<Partial> partials((elements + kReportGrain - 1) / kReportGrain);
+  parallel_for(elements, kReportGrain, [&](std::size_t begin, std::size_t end) {
+    partials[begin / kReportGrain] = figures_of_range({model, limits, control, parts}, begin, end, shells);
   });
   Partial all;
   for (const Partial& partial : partials) all.add(partial);

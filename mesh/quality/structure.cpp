@@ -14,7 +14,7 @@ namespace prismesh::mesh::quality {
 
 namespace {
 
-constexpr std::size_t kGrain = 16384;
+constexpr std::size_t kStructureGrain = 16384;
 constexpr std::size_t kSmallLoop = 4;  ///< edges: what one missing shell leaves
 
 /// Whether each shell is looked at.
@@ -38,10 +38,10 @@ class Scope {
 /// Those of [0, count) for which `is`, in order; `is` is asked on all cores.
 template <class IndexType, class Is>
 std::vector<IndexType> all_of(std::size_t count, const Is& is) {
-  std::vector<std::vector<IndexType>> found((count + kGrain - 1) / kGrain);
-  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::vector<IndexType>> found((count + kStructureGrain - 1) / kStructureGrain);
+  parallel_for(count, kStructureGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      if (is(IndexType(i))) found[begin / kGrain].push_back(IndexType(i));
+      if (is(IndexType(i))) found[begin / kStructureGrain].push_back(IndexType(i));
   });
   std::vector<IndexType> list;
   for (const std::vector<IndexType>& part : found) list.insert(list.end(), part.begin(), part.end());

@@ -8,7 +8,7 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr std::size_t kNodesAtOnce = 2048;
+constexpr std::size_t kFreedomGrain = 2048;
 
 constexpr double kNoAngle = -2;  ///< as a cosine: nothing is sharper
 
@@ -31,7 +31,7 @@ Freedom freedom_by_borders(const Model& model, NodeIndex node, double feature_co
 std::vector<Freedom> node_freedoms(const Model& model, const NodeSet& nodes, double feature_angle) {
   const double feature_cos = deterministic_cos_degrees(feature_angle);
   std::vector<Freedom> freedoms(nodes.size());
-  parallel_for(nodes.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(nodes.size(), kFreedomGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) freedoms[i] = freedom_of(model, nodes[i], feature_cos);
   });
   return freedoms;

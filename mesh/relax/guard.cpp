@@ -12,8 +12,8 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr std::size_t kShellsAtOnce = 1024;
-constexpr std::size_t kNodesAtOnce = 256;
+constexpr std::size_t kGuardShellGrain = 1024;
+constexpr std::size_t kGuardNodeGrain = 256;
 constexpr int kHalvings = 3;  ///< then a node goes back to where it was when its shells were last looked at, and then to its start
 
 bool is_triangle(const std::array<std::int32_t, 4>& corners) { return corners[3] == corners[2]; }
@@ -79,7 +79,7 @@ Guard::Guard(const Model& model, const Net& net, const Judge& judge)
   least_.resize(count);
   std::vector<std::uint32_t> all(count);
   std::iota(all.begin(), all.end(), 0u);
-  parallel_for(count, kShellsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, kGuardShellGrain, [&](std::size_t begin, std::size_t end) {
     measure(std::span(all).subspan(begin, end - begin), in(net_.start), [&](std::size_t i, const Verdict& verdict) {
       state_[begin + i] = verdict.state;
       least_[begin + i] = verdict.composite;
@@ -115,7 +115,7 @@ bool Guard::allows(std::uint32_t node, const Vec3& place, const std::vector<Vec3
 
 std::vector<std::uint8_t> Guard::find_bad(std::span<const std::uint32_t> shells, const std::vector<Vec3>& places) const {
   std::vector<std::uint8_t> bad(shells.size());
-  parallel_for(shells.size(), kShellsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(shells.size(), kGuardShellGrain, [&](std::size_t begin, std::size_t end) {
     measure(shells.subspan(begin, end - begin), in(places),
             [&](std::size_t i, const Verdict& verdict) { bad[begin + i] = is_bad(shells[begin + i], verdict, in(places)) ? 1 : 0; });
   });
@@ -160,7 +160,7 @@ std::optional<Guard::Held> Guard::hold_back(const std::vector<Vec3>& good, std::
     };
     const auto take_some_back = [&](std::size_t begin, std::size_t end) { std::for_each(&back[begin], &back[0] + end, take_back); };
     if (!parallel_in_stretches(
-            back.size(), kNodesAtOnce, [&](double) { return goes_on(); }, take_some_back))
+            back.size(), kGuardNodeGrain, [&](double) { return goes_on(); }, take_some_back))
       return std::nullopt;
     shells.clear();
     for (const std::uint32_t n : back) {

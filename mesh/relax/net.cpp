@@ -17,8 +17,8 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr std::size_t kFootingsAtOnce = 128;
-constexpr std::size_t kNodesAtOnce = 1024;
+constexpr std::size_t kNetFootingGrain = 128;
+constexpr std::size_t kNetNodeGrain = 1024;
 constexpr double kShareOfFootings = 0.8;  ///< of the progress
 constexpr int kSmoothings = 10;           ///< of the sizes: how many elements away what is longer lends its length
 constexpr double kSqrt2 = 1.4142135623730951;
@@ -88,7 +88,7 @@ bool add_springs(const Model& model, const Numbers& numbers, const std::function
 
 /// One more averaging of each movable node's size with its neighbours'.
 void smooth_once(Net& net, std::vector<double>& next) {
-  parallel_for(net.movable, kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(net.movable, kNetNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double sum = net.size[i];
       for (const Spring& spring : net.springs_of(i)) sum += net.size[spring.to];
@@ -113,7 +113,7 @@ double length_share(const Net& net) {
 /// reference's at the node's place, not the mesh's own: relaxing again finds nearly the same, and a mesh that is finer in places stays so.
 bool set_lengths(const Model& model, const std::function<bool()>& goes_on, Net& net) {
   net.size.resize(net.nodes.size());
-  parallel_for(net.nodes.size(), kNodesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(net.nodes.size(), kNetNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) net.size[i] = i < net.movable ? net.footing[i].size : mean_edge(model, net.nodes[i]);
   });
   std::vector<double> next = net.size;
@@ -159,7 +159,7 @@ Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const 
   };
   const auto tell = [&](double fraction) { return !progress || progress(fraction); };
   if (!parallel_in_stretches(
-          movable.size(), kFootingsAtOnce, [&](double done) { return tell(kShareOfFootings * done); }, find_some))
+          movable.size(), kNetFootingGrain, [&](double done) { return tell(kShareOfFootings * done); }, find_some))
     return fail(cancelled());
   const auto goes_on = [&] { return tell(kShareOfFootings); };
   if (!goes_on()) return fail(cancelled());

@@ -12,7 +12,7 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr std::size_t kNodesAtOnce = 512;
+constexpr std::size_t kSettlingGrain = 512;
 constexpr double kAtRest = 2e-3;       ///< of the size: a node that moves less in a round is at rest
 constexpr double kMostStep = 0.25;     ///< of the size, in a round
 constexpr double kMostDrift = 0.2;     ///< of the size: then a node is put back on the surface
@@ -170,7 +170,7 @@ bool Settling::land_all(const Watcher& watcher) {
       if (drift_[i] > 0) land(i);
   };
   return parallel_in_stretches(
-      net_.movable, kNodesAtOnce, [&](double) { return watcher.goes_on(); }, land_some);
+      net_.movable, kSettlingGrain, [&](double) { return watcher.goes_on(); }, land_some);
 }
 
 /// Whether there are shells that aren't as they may be. Their nodes have been taken back then, and go on with care.
@@ -223,7 +223,7 @@ std::optional<std::size_t> Settling::round(Spreading* spreading, const Watcher& 
       stepped.fetch_add(here, std::memory_order_relaxed);
     };
     if (!parallel_in_stretches(
-            colour.size(), kNodesAtOnce, [&](double) { return watcher.goes_on(); }, visit_some))
+            colour.size(), kSettlingGrain, [&](double) { return watcher.goes_on(); }, visit_some))
       return std::nullopt;
   }
   return stepped.load();

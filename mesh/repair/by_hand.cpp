@@ -11,7 +11,7 @@ namespace prismesh::mesh::repair {
 
 namespace {
 
-constexpr int kRings = 2;
+constexpr int kRingsByHand = 2;
 
 std::string shell_text(const Model& model, ShellIndex shell) { return "shell " + std::to_string(model.shell_ids[shell.value]); }
 std::string node_text(const Model& model, NodeIndex node) { return "node " + std::to_string(model.node_ids[node.value]); }
@@ -207,7 +207,7 @@ Result<Restructuring> by_hand(const Model& model, const relax::ReferenceSurface&
   std::sort(scope.begin(), scope.end());
   scope.erase(std::unique(scope.begin(), scope.end()), scope.end());
   if (scope.empty()) return fail("", "there is no shell");
-  Patch patch(model, scope, kRings, rules, options.relax.feature_angle);
+  Patch patch(model, scope, kRingsByHand, rules, options.relax.feature_angle);
   const Site site{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)};
   patch.begin();
   const Result<void> done = carry_out({site, model, shells, nodes}, operation);

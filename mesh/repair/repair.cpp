@@ -16,7 +16,7 @@ namespace prismesh::mesh::repair {
 
 namespace {
 
-constexpr int kRings = 4;
+constexpr int kRingsOfPatch = 4;
 constexpr int kStripPasses = 4;
 // How far a round is when shells are next, and what going through them takes of it.
 constexpr double kStripShare = 0.2, kSweepShare = 0.4, kFailShare = kStripShare + kSweepShare;
@@ -61,7 +61,7 @@ class Repairer {
  public:
   Repairer(const Model& model, const relax::ReferenceSurface& surface, const ShellSet& scope, const Rules& rules, const relax::Judge& judge,
            const Options& options)
-      : patch_(model, scope, kRings, rules, options.relax.feature_angle),
+      : patch_(model, scope, kRingsOfPatch, rules, options.relax.feature_angle),
         site_{patch_, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {
     in_scope_.assign(patch_.shell_count(), 0);
     for (const ShellIndex shell : scope)

@@ -5,18 +5,12 @@
 #include <tuple>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "base/nearest_name.h"
 
 namespace prismesh::mesh::select {
 
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
 
 bool begins(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
 

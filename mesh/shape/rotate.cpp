@@ -14,7 +14,7 @@ namespace prismesh::mesh::shape {
 
 namespace {
 
-constexpr std::size_t kNodesAtATime = 1024;
+constexpr std::size_t kRotateGrain = 1024;
 constexpr double kMostDegrees = 1e9;  // what the deterministic sine is good for
 
 /// By how many degrees a node at this distance from the axis may turn at most, so that it doesn't go farther than `most`.
@@ -40,7 +40,7 @@ std::size_t rotate(std::span<const Vec3> start, std::span<const double> weight, 
     return 0;
   }
   std::atomic<std::size_t> stopped = 0;
-  parallel_for(start.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+  parallel_for(start.size(), kRotateGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t stopped_here = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 from_point = start[i] - axis.point;

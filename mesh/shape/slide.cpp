@@ -16,7 +16,7 @@ namespace prismesh::mesh::shape {
 
 namespace {
 
-constexpr std::size_t kNodesAtATime = 128;
+constexpr std::size_t kSlideGrain = 128;
 constexpr double kOnTheSpot = 1e-9;      // shares of a face, and sines of angles: nearer counts as the same
 constexpr double kAlongside = 1e-6;      // sine of the angle of a line that counts as lying in a plane
 constexpr std::size_t kMostAround = 24;  // shells at a node that its normal is taken of
@@ -325,7 +325,7 @@ class Walk {
 
 Slideway::Slideway(const Model& surface, const NodeSet& nodes, std::vector<Vec3> normals)
     : surface_(surface), nodes_(nodes), normals_(std::move(normals)), on_free_edge_(nodes.size(), 0) {
-  parallel_for(nodes_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+  parallel_for(nodes_.size(), kSlideGrain, [&](std::size_t begin, std::size_t end) {
     std::array<NodeIndex, 2> unused{};
     for (std::size_t i = begin; i < end; ++i) on_free_edge_[i] = free_edges_at(surface_, nodes_[i], unused) > 0 ? 1 : 0;
   });
@@ -338,7 +338,7 @@ void Slideway::keep_in_plane(const Vec3& normal, std::vector<std::uint8_t> nodes
 
 std::size_t Slideway::positions(std::span<const Vec3> by, std::optional<double> max_move, std::span<Vec3> out) const {
   std::atomic<std::size_t> stopped = 0;
-  parallel_for(nodes_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+  parallel_for(nodes_.size(), kSlideGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t stopped_here = 0;
     for (std::size_t i = begin; i < end; ++i) {
       Walk walk(surface_, nodes_[i], max_move.value_or(std::numeric_limits<double>::infinity()),

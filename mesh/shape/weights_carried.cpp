@@ -14,7 +14,7 @@ namespace prismesh::mesh::shape {
 
 namespace {
 
-constexpr std::size_t kNodesAtATime = 256;
+constexpr std::size_t kCarryGrain = 256;
 
 class Carrying {
  public:
@@ -79,7 +79,7 @@ class Carrying {
 
   /// Marks the waiting nodes that are near what was reached last.
   void mark_near(double farthest) {
-    parallel_for(waiting_.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+    parallel_for(waiting_.size(), kCarryGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         auto& found = last_[waiting_[i]];
         found = trees_.back().closest(patch_.positions[waiting_[i]], farthest);
@@ -128,7 +128,7 @@ class Carrying {
       if (near[piece_[node]] != 0 && patch_.positions[node].allFinite()) carried.push_back(node);
     std::erase_if(waiting_, [&](std::uint32_t node) { return near[piece_[node]] != 0; });
     std::vector<double> weights(carried.size());
-    parallel_for(carried.size(), kNodesAtATime, [&](std::size_t begin, std::size_t end) {
+    parallel_for(carried.size(), kCarryGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) weights[i] = carried_weight(carried[i]);
     });
     for (std::size_t i = 0; i < carried.size(); ++i) {

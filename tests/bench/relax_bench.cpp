@@ -8,10 +8,14 @@
 #include "mesh/model/adjacency.h"
 #include "mesh/relax/relax.h"
 #include "tests/bench/million_quads.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh::bench {
 
 namespace {
+
+using test::all_nodes;
+using test::all_shells;
 
 double height(double x, double y) { return 40 * std::sin(x / 90) + 25 * std::cos(y / 120); }
 
@@ -47,18 +51,6 @@ Model panel(std::size_t columns, std::size_t rows, double jitter_mm) {
   m.parts = std::make_shared<const std::vector<Part>>(1);
   m.adjacency = std::make_shared<const Adjacency>(build_adjacency(m));
   return m;
-}
-
-NodeSet all_nodes(const Model& model) {
-  NodeSet nodes(model.node_count());
-  for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = NodeIndex(n);
-  return nodes;
-}
-
-ShellSet all_shells(const Model& model) {
-  ShellSet shells(model.shell_count());
-  for (std::size_t s = 0; s < shells.size(); ++s) shells[s] = ShellIndex(s);
-  return shells;
 }
 
 void say(const relax::Relaxed& relaxed, benchmark::State& state) {

@@ -16,13 +16,16 @@
 #include "mesh/spatial/closest_point.h"
 #include "mesh/spatial/geodesic.h"
 #include "tests/bench/million_quads.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh {
 namespace {
 
-constexpr std::size_t kStride = 1001;
+using test::all_shells;
 
-const Model& whole() {
+constexpr std::size_t kSheetStride = 1001;
+
+const Model& whole_sheet() {
   static const Model model = [] {
     Model m = bench::million_quads();
     m.node_holds.resize(m.node_count());
@@ -42,33 +45,33 @@ const Model& whole() {
 NodeSet ten_thousand() {
   NodeSet nodes;
   for (std::size_t j = 450; j < 550; ++j)
-    for (std::size_t i = 450; i < 550; ++i) nodes.push_back(NodeIndex(j * kStride + i));
+    for (std::size_t i = 450; i < 550; ++i) nodes.push_back(NodeIndex(j * kSheetStride + i));
   return nodes;
 }
 
 void weights_of_10000_nodes(benchmark::State& state) {
-  const Model& model = whole();
+  const Model& model = whole_sheet();
   const NodeSet selection = ten_thousand();
-  for (auto _ : state) benchmark::DoNotOptimize(shape::compute_weights(model, selection, NodeIndex(500 * kStride + 500), {}));
+  for (auto _ : state) benchmark::DoNotOptimize(shape::compute_weights(model, selection, NodeIndex(500 * kSheetStride + 500), {}));
 }
 BENCHMARK(weights_of_10000_nodes)->Unit(benchmark::kMillisecond);
 
 void weights_without_a_grab(benchmark::State& state) {
-  const Model& model = whole();
+  const Model& model = whole_sheet();
   const NodeSet selection = ten_thousand();
   for (auto _ : state) benchmark::DoNotOptimize(shape::compute_weights(model, selection, std::nullopt, {}));
 }
 BENCHMARK(weights_without_a_grab)->Unit(benchmark::kMillisecond);
 
 void cut_10000_nodes(benchmark::State& state) {
-  const Model& model = whole();
+  const Model& model = whole_sheet();
   const NodeSet selection = ten_thousand();
   for (auto _ : state) benchmark::DoNotOptimize(spatial::cut_patch_between(model, selection));
 }
 BENCHMARK(cut_10000_nodes)->Unit(benchmark::kMillisecond);
 
 void geodesic_of_10000_nodes(benchmark::State& state) {
-  const spatial::Patch patch = spatial::cut_patch_between(whole(), ten_thousand());
+  const spatial::Patch patch = spatial::cut_patch_between(whole_sheet(), ten_thousand());
   const std::vector<std::uint32_t> source{5050};
   for (auto _ : state) benchmark::DoNotOptimize(spatial::geodesic_distance(patch, source));
 }
@@ -76,75 +79,69 @@ BENCHMARK(geodesic_of_10000_nodes)->Unit(benchmark::kMillisecond);
 
 /// All nodes within 250 mm of the middle, some 7,800.
 NodeSet within_250_mm() {
-  const Model& model = whole();
-  const Vec3 middle = model.positions[500 * kStride + 500];
+  const Model& model = whole_sheet();
+  const Vec3 middle = model.positions[500 * kSheetStride + 500];
   NodeSet nodes;
   for (std::size_t j = 440; j < 560; ++j)
     for (std::size_t i = 440; i < 560; ++i)
-      if ((model.positions[j * kStride + i] - middle).norm() <= 250) nodes.push_back(NodeIndex(j * kStride + i));
+      if ((model.positions[j * kSheetStride + i] - middle).norm() <= 250) nodes.push_back(NodeIndex(j * kSheetStride + i));
   return nodes;
 }
 
 void cut_250_mm(benchmark::State& state) {
   const NodeSet nodes = within_250_mm();
-  for (auto _ : state) benchmark::DoNotOptimize(spatial::cut_patch_between(whole(), nodes));
+  for (auto _ : state) benchmark::DoNotOptimize(spatial::cut_patch_between(whole_sheet(), nodes));
   state.counters["nodes"] = static_cast<double>(nodes.size());
 }
 BENCHMARK(cut_250_mm)->Unit(benchmark::kMillisecond);
 
 void geodesic_of_250_mm(benchmark::State& state) {
   const NodeSet nodes = within_250_mm();
-  const spatial::Patch patch = spatial::cut_patch_between(whole(), nodes);
-  const auto middle = std::lower_bound(nodes.begin(), nodes.end(), NodeIndex(500 * kStride + 500));
+  const spatial::Patch patch = spatial::cut_patch_between(whole_sheet(), nodes);
+  const auto middle = std::lower_bound(nodes.begin(), nodes.end(), NodeIndex(500 * kSheetStride + 500));
   const std::vector<std::uint32_t> source{static_cast<std::uint32_t>(middle - nodes.begin())};
   for (auto _ : state) benchmark::DoNotOptimize(spatial::geodesic_distance(patch, source));
 }
 BENCHMARK(geodesic_of_250_mm)->Unit(benchmark::kMillisecond);
 
-ShellSet every_shell(const Model& model) {
-  ShellSet shells(model.shell_count());
-  for (std::size_t i = 0; i < shells.size(); ++i) shells[i] = ShellIndex(i);
-  return shells;
-}
-
 void tree_over_a_million_shells(benchmark::State& state) {
-  const Model& model = whole();
-  for (auto _ : state) benchmark::DoNotOptimize(spatial::ShellTree(model, every_shell(model)));
+  const Model& model = whole_sheet();
+  for (auto _ : state) benchmark::DoNotOptimize(spatial::ShellTree(model, all_shells(model)));
 }
 BENCHMARK(tree_over_a_million_shells)->Unit(benchmark::kMillisecond);
 
 void closest_of_10000_points_on_a_million_shells(benchmark::State& state) {
-  const Model& model = whole();
-  const spatial::ShellTree tree(model, every_shell(model));
+  const Model& model = whole_sheet();
+  const spatial::ShellTree tree(model, all_shells(model));
   for (auto _ : state)
     for (const NodeIndex node : ten_thousand()) benchmark::DoNotOptimize(tree.closest(model.position(node) + Vec3(0.4, 0.3, 2.0)));
 }
 BENCHMARK(closest_of_10000_points_on_a_million_shells)->Unit(benchmark::kMillisecond);
 
 void oriented_normals_of_10000_nodes(benchmark::State& state) {
-  const Model& model = whole();
+  const Model& model = whole_sheet();
   const NodeSet selection = ten_thousand();
   for (auto _ : state) benchmark::DoNotOptimize(shape::oriented_normals(model, selection, selection[5050]));
 }
 BENCHMARK(oriented_normals_of_10000_nodes)->Unit(benchmark::kMillisecond);
 
 void nearest_node_of_a_million(benchmark::State& state) {
-  const Model& model = whole();
+  const Model& model = whole_sheet();
   for (auto _ : state) benchmark::DoNotOptimize(select::nearest_node(model, Vec3(2500, 2500, 0)));
 }
 BENCHMARK(nearest_node_of_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 void expression_over_a_million(benchmark::State& state) {
-  const Model& model = whole();
+  const Model& model = whole_sheet();
   for (auto _ : state)
     benchmark::DoNotOptimize(select::evaluate(model, "1-9223372036854775807:10,!1-5000000:20,17-900000", select::Kind::node));
 }
 BENCHMARK(expression_over_a_million)->Unit(benchmark::kMillisecond);
 
 void region_of_a_million(benchmark::State& state) {
-  const Model& model = whole();
+  const Model& model = whole_sheet();
   for (auto _ : state)
-    benchmark::DoNotOptimize(select::region(model, select::shells_at(model, NodeIndex(500 * kStride + 500), {}),
+    benchmark::DoNotOptimize(select::region(model, select::shells_at(model, NodeIndex(500 * kSheetStride + 500), {}),
                                             {select::RegionBound::features, 60, {}, nullptr}));
 }
 BENCHMARK(region_of_a_million)->Unit(benchmark::kMillisecond);

@@ -8,11 +8,12 @@
 
 #include "mesh/deck/deck.h"
 #include "tests/cli/cli_fixture.h"
+#include "tests/support/places.h"
 
 namespace prismesh::cli {
 namespace {
 
-const std::filesystem::path kExamples = std::filesystem::path(PRISMESH_SOURCE_FOLDER) / "docs" / "examples";
+const std::filesystem::path kExamples = test::source_folder() / "docs" / "examples";
 
 struct Sum {
   std::size_t moved = 0;

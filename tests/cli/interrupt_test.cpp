@@ -13,7 +13,7 @@
 namespace prismesh::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 /// Only how long a loaded machine may take before a test gives up.
 constexpr std::chrono::seconds kPatience{90};

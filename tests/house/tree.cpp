@@ -4,9 +4,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/places.h"
+
 namespace prismesh::house {
 
-std::filesystem::path project_root() { return PRISMESH_SOURCE_FOLDER; }
+std::filesystem::path project_root() { return test::source_folder(); }
 
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -7,7 +7,7 @@
 namespace prismesh::ipc {
 namespace {
 
-std::string refusal(std::string_view line) {
+std::string device_refusal(std::string_view line) {
   const auto request = decode_device_request(line);
   return request ? "accepted" : request.error().message;
 }
@@ -66,15 +66,15 @@ TEST(DeviceMessages, AnswersAndEventsSurviveARoundTrip) {
 }
 
 TEST(DeviceMessages, ErrorsNameTheFieldAndTheNearestKnownOne) {
-  EXPECT_EQ(refusal(R"({"request": "hold_mark"})"), "unknown kind \"hold_mark\"; the nearest is \"hold_mask\"");
-  EXPECT_EQ(refusal(R"({"request": "hold_mask", "position": 1})"),
+  EXPECT_EQ(device_refusal(R"({"request": "hold_mark"})"), "unknown kind \"hold_mark\"; the nearest is \"hold_mask\"");
+  EXPECT_EQ(device_refusal(R"({"request": "hold_mask", "position": 1})"),
             "\"hold_mask\": has no field \"position\"; the nearest is \"position_mm\"");
-  EXPECT_EQ(refusal(R"({"request": "hold_mask", "position_mm": "left"})"), "\"hold_mask\": field \"position_mm\" must be a number");
-  EXPECT_EQ(refusal(R"({"request": "hold_mask", "position_mm": 1e999})"), "it isn't JSON");
-  EXPECT_EQ(refusal(R"({"request": "picture_shown", "mono": 1})"), "\"picture_shown\": field \"mono\" must be true or false");
-  EXPECT_EQ(refusal(R"({"request": "rearm", "now": true})"), "\"rearm\": has no field \"now\": it has none");
-  EXPECT_EQ(refusal(R"({"number": 1})"), "field \"request\" is missing");
-  EXPECT_EQ(refusal(R"({"request": "open", "path": "car.k"})").substr(0, 19), "unknown kind \"open\"")
+  EXPECT_EQ(device_refusal(R"({"request": "hold_mask", "position_mm": "left"})"), "\"hold_mask\": field \"position_mm\" must be a number");
+  EXPECT_EQ(device_refusal(R"({"request": "hold_mask", "position_mm": 1e999})"), "it isn't JSON");
+  EXPECT_EQ(device_refusal(R"({"request": "picture_shown", "mono": 1})"), "\"picture_shown\": field \"mono\" must be true or false");
+  EXPECT_EQ(device_refusal(R"({"request": "rearm", "now": true})"), "\"rearm\": has no field \"now\": it has none");
+  EXPECT_EQ(device_refusal(R"({"number": 1})"), "field \"request\" is missing");
+  EXPECT_EQ(device_refusal(R"({"request": "open", "path": "car.k"})").substr(0, 19), "unknown kind \"open\"")
       << "modeld's messages are none of deviced's";
 }
 

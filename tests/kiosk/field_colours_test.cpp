@@ -9,7 +9,7 @@
 namespace prismesh::kiosk::render {
 namespace {
 
-constexpr int kWidth = 480, kHeight = 320;
+constexpr int kColoursWidth = 480, kColoursHeight = 320;
 
 /// What people without red or without green receptors see of a colour, roughly: their missing cone follows the others (Viénot et al.,
 /// 1999).
@@ -80,7 +80,7 @@ class FieldColoursTest : public RenderTest {
                           : renderer_->set_other(std::make_shared<test::TestSource>(source)));
     across_.clear();
     for (std::size_t n = 0; n < source.positions.size(); ++n) across_.push_back(static_cast<float>(source.positions[n].x() / 12));
-    Picture picture = fitted("mono", "top", kWidth, kHeight);
+    Picture picture = fitted("mono", "top", kColoursWidth, kColoursHeight);
     picture.element_edges = picture.outlines = picture.quality_glyphs = false;
     return picture;
   }
@@ -91,18 +91,18 @@ class FieldColoursTest : public RenderTest {
   /// Hue and chroma alone: light changes how bright a colour is, not which.
   static Eigen::Vector2f tint(const Colour& colour) { return {colour.x() / colour.sum(), colour.y() / colour.sum()}; }
   Colour at_place(const Image& image, const Picture& picture, double x, double y) {
-    return colour_at(image, *stereo::pixel_of(aim_of(picture, kWidth, kHeight), mesh::Vec3(x, y, 0)));
+    return colour_at(image, *stereo::pixel_of(aim_of(picture, kColoursWidth, kColoursHeight), mesh::Vec3(x, y, 0)));
   }
   std::vector<float> across_;
 };
 
 TEST_F(FieldColoursTest, ValuesOfNodesBecomeTheMapsColours) {
   Picture picture = plate();
-  const Image plain = draw(picture, kWidth, kHeight);
+  const Image plain = draw(picture, kColoursWidth, kColoursHeight);
   ASSERT_TRUE(renderer_->set_field(Pane::model, across_, true));
   picture.colour = ColourMode::field;
   picture.field[0] = {true, 2, 8, ColourMap::crimson, 0};
-  const Image coloured = draw(picture, kWidth, kHeight);
+  const Image coloured = draw(picture, kColoursWidth, kColoursHeight);
   EXPECT_EQ(at_place(coloured, picture, 12, 41), at_place(plain, picture, 12, 41)) << "1 is below the limit: the part's own colour";
   for (const double value : {3.0, 5.0, 7.0, 9.0}) {
     const Colour wanted = *picture.field[0].colour_of(value);
@@ -113,14 +113,14 @@ TEST_F(FieldColoursTest, ValuesOfNodesBecomeTheMapsColours) {
 
 TEST_F(FieldColoursTest, ValuesOfShellsStayWithinTheirShellAndWhatHasNoneKeepsItsColour) {
   Picture picture = plate();
-  const Image plain = draw(picture, kWidth, kHeight);
+  const Image plain = draw(picture, kColoursWidth, kColoursHeight);
   std::vector<float> values(40 * 30, 0.0F);
   values[15 * 40 + 20] = 4;
   values[15 * 40 + 22] = std::numeric_limits<float>::quiet_NaN();
   ASSERT_TRUE(renderer_->set_field(Pane::model, values, false));
   picture.colour = ColourMode::field;
   picture.field[0] = {true, 1, 5, ColourMap::blues, 0};
-  const Image coloured = draw(picture, kWidth, kHeight);
+  const Image coloured = draw(picture, kColoursWidth, kColoursHeight);
   const double side = 3, y = 15.5 * 80 / 30;
   EXPECT_NE(at_place(coloured, picture, 20.5 * side, y), at_place(plain, picture, 20.5 * side, y));
   for (const double column : {18.5, 21.5, 22.5})
@@ -129,12 +129,12 @@ TEST_F(FieldColoursTest, ValuesOfShellsStayWithinTheirShellAndWhatHasNoneKeepsIt
 
 TEST_F(FieldColoursTest, ValuesOfAnotherModelAreNotShown) {
   Picture picture = plate();
-  const Image plain = draw(picture, kWidth, kHeight);
+  const Image plain = draw(picture, kColoursWidth, kColoursHeight);
   across_.push_back(9);
   ASSERT_TRUE(renderer_->set_field(Pane::model, across_, true));
   picture.colour = ColourMode::field;
   picture.field[0] = {true, 0, 1, ColourMap::crimson, 0};
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, plain.rgb);
+  EXPECT_EQ(draw(picture, kColoursWidth, kColoursHeight).rgb, plain.rgb);
 }
 
 TEST_F(FieldColoursTest, NewValuesUploadOnlyTheRowsThatDiffer) {
@@ -154,9 +154,9 @@ TEST_F(FieldColoursTest, TwoViewsShareThePictureAndKeepToTheirHalves) {
   picture.field[1] = {true, 0, 10, ColourMap::crimson, 0};
   picture.view = stereo::zoom(picture.view, 0.4, {0, 0});
   ASSERT_TRUE(renderer_->set_field(Pane::other, across_, true));
-  const Image alone = draw(picture, kWidth, kHeight);
+  const Image alone = draw(picture, kColoursWidth, kColoursHeight);
   picture.two_views = TwoViews{true, 0.25};
-  const Image both = draw(picture, kWidth, kHeight);
+  const Image both = draw(picture, kColoursWidth, kColoursHeight);
   // The model stands a quarter to the right as it stood in the middle; in the left half is the other one in its colours.
   const auto differ = [](const Colour& a, const Colour& b) { return (a - b).norm() > 0.02F; };
   int same = 0, coloured = 0;
@@ -164,19 +164,19 @@ TEST_F(FieldColoursTest, TwoViewsShareThePictureAndKeepToTheirHalves) {
     for (int x = 180; x < 300; x += 8) {
       const bool is_model = differ(colour_at(alone, {x, y}), colour_at(alone, {2, y}));
       if (!is_model) continue;
-      same += differ(colour_at(both, {x + kWidth / 4, y}), colour_at(alone, {x, y})) ? 0 : 1;
-      coloured += differ(colour_at(both, {x - kWidth / 4, y}), colour_at(alone, {x, y})) ? 1 : 0;
+      same += differ(colour_at(both, {x + kColoursWidth / 4, y}), colour_at(alone, {x, y})) ? 0 : 1;
+      coloured += differ(colour_at(both, {x - kColoursWidth / 4, y}), colour_at(alone, {x, y})) ? 1 : 0;
     }
   EXPECT_GT(same, 40);
   EXPECT_GT(coloured, 40);
   // However near the models come, none is seen in the other's half.
   picture.view = stereo::zoom(picture.view, 40, {0, 0});
-  const Image near = draw(picture, kWidth, kHeight);
+  const Image near = draw(picture, kColoursWidth, kColoursHeight);
   const Image ground = [&] {
     EXPECT_TRUE(renderer_->set_model(nullptr) && renderer_->set_other(nullptr));
-    return draw(picture, kWidth, kHeight);
+    return draw(picture, kColoursWidth, kColoursHeight);
   }();
-  for (int y = 0; y < kHeight; y += 16) EXPECT_FALSE(differ(colour_at(near, {kWidth / 2, y}), colour_at(ground, {kWidth / 2, y}))) << y;
+  for (int y = 0; y < kColoursHeight; y += 16) EXPECT_FALSE(differ(colour_at(near, {kColoursWidth / 2, y}), colour_at(ground, {kColoursWidth / 2, y}))) << y;
 }
 
 /// The woven picture is made of the two eyes' images: each of them must hold both halves, and differ by the parallax of the model alone.
@@ -188,11 +188,11 @@ TEST_F(FieldColoursTest, BothEyesSeeBothViews) {
   picture.two_views = TwoViews{true, 0.25};
   for (const char* profile : {"mono-left", "mono-right"}) {
     picture.profile = *stereo::find_profile(profile);
-    const Image image = draw(picture, kWidth, kHeight);
+    const Image image = draw(picture, kColoursWidth, kColoursHeight);
     for (const bool right : {false, true}) {
       int bright = 0;
-      for (int y = 0; y < kHeight; y += 4)
-        for (int x = right ? kWidth / 2 + 8 : 0; x < (right ? kWidth : kWidth / 2 - 8); x += 4)
+      for (int y = 0; y < kColoursHeight; y += 4)
+        for (int x = right ? kColoursWidth / 2 + 8 : 0; x < (right ? kColoursWidth : kColoursWidth / 2 - 8); x += 4)
           bright += brightness(image, x, y) > 150 ? 1 : 0;
       EXPECT_GT(bright, 60) << profile << (right ? " right" : " left");
     }

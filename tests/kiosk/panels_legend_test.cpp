@@ -40,7 +40,7 @@ TEST(Legend, SaysWhatTheColoursDoNotShow) {
   EXPECT_THAT(legend_notes(facts), ElementsAre(HasSubstr("before this pull"), HasSubstr("3 new nodes"), "1 shell without a value"));
 }
 
-constexpr display::PixelSize kPicture{1000, 640};
+constexpr display::PixelSize kLegendPicture{1000, 640};
 
 class LegendByHand : public GuiTest {
  protected:
@@ -53,7 +53,7 @@ class LegendByHand : public GuiTest {
   /// Limits that are wanted become those of the legend, as the kiosk has it.
   bool lay_out() {
     std::optional<SetLimits> wanted;
-    gui_->layout(kPicture, 0.016, [&] { wanted = legend(facts_, kPicture).wanted; });
+    gui_->layout(kLegendPicture, 0.016, [&] { wanted = legend(facts_, kLegendPicture).wanted; });
     if (wanted) facts_.look.clear = wanted->clear, facts_.look.full = wanted->full;
     return wanted.has_value();
   }
@@ -68,7 +68,7 @@ class LegendByHand : public GuiTest {
   /// Drags by so many pixels, from wherever in a column of the legend that has an effect.
   void drag_in_column(double x, double by) {
     const render::FieldLook before = facts_.look;
-    for (double y = kPicture.height - 150; y < kPicture.height && facts_.look == before; y += 8) {
+    for (double y = kLegendPicture.height - 150; y < kLegendPicture.height && facts_.look == before; y += 8) {
       move(x, y);
       button(true, x, y);
       for (int step = 1; step <= 5; ++step) move(x + by * step / 5, y);
@@ -82,8 +82,8 @@ class LegendByHand : public GuiTest {
       lay_out();
     }
   }
-  double left() const { return kPicture.width / 2.0 - 130; }
-  double right() const { return kPicture.width / 2.0 + 130; }
+  double left() const { return kLegendPicture.width / 2.0 - 130; }
+  double right() const { return kLegendPicture.width / 2.0 + 130; }
 
   LegendFacts facts_ = facts_of(1, 5);
   double row_ = 0;

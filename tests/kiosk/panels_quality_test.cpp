@@ -12,7 +12,7 @@ namespace {
 
 using mesh::document::SelectMode;
 
-constexpr display::PixelSize kPicture{900, 700};
+constexpr display::PixelSize kPanelPicture{900, 700};
 
 class QualityPanel : public GuiTest {
  protected:
@@ -35,7 +35,7 @@ class QualityPanel : public GuiTest {
   }
   std::vector<PanelAction> lay_out() {
     std::vector<PanelAction> actions;
-    gui_->layout(kPicture, 0.016, [&] { actions = panels_.build(data_, kPicture); });
+    gui_->layout(kPanelPicture, 0.016, [&] { actions = panels_.build(data_, kPanelPicture); });
     return actions;
   }
   std::vector<PanelAction> click(double x, double y, bool shift = false) {
@@ -51,7 +51,7 @@ class QualityPanel : public GuiTest {
   template <class Action>
   std::vector<Action> clicked_down(double x, bool shift = false) {
     std::vector<Action> found;
-    for (double y = 20; y < kPicture.height; y += 5)
+    for (double y = 20; y < kPanelPicture.height; y += 5)
       for (const PanelAction& action : click(x, y, shift))
         if (const auto* wanted = std::get_if<Action>(&action)) found.push_back(*wanted);
     return found;
@@ -94,9 +94,9 @@ TEST_F(QualityPanel, PanelsKeepThePointerFromThePictureAndWordsOnItDoNot) {
   lay_out();
   lay_out();
   EXPECT_TRUE(gui_->on_panel(60, 60)) << "the panel at the left";
-  EXPECT_TRUE(gui_->on_panel(kPicture.width - 60, 60)) << "and at the right";
-  EXPECT_FALSE(gui_->on_panel(kPicture.width / 2.0, 20)) << "a line that says what to do next is in nobody's way";
-  EXPECT_FALSE(gui_->on_panel(kPicture.width / 2.0, kPicture.height / 2.0));
+  EXPECT_TRUE(gui_->on_panel(kPanelPicture.width - 60, 60)) << "and at the right";
+  EXPECT_FALSE(gui_->on_panel(kPanelPicture.width / 2.0, 20)) << "a line that says what to do next is in nobody's way";
+  EXPECT_FALSE(gui_->on_panel(kPanelPicture.width / 2.0, kPanelPicture.height / 2.0));
 }
 
 }  // namespace

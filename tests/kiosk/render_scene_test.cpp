@@ -18,12 +18,12 @@ using mesh::Vec3;
 using test::TestSource;
 using test::two_plates;
 
-constexpr int kWidth = 320, kHeight = 200;
+constexpr int kSceneWidth = 320, kSceneHeight = 200;
 
 class Scene : public RenderTest {
  protected:
   Eigen::Vector2d pixel_of(const Picture& picture, const Vec3& point) const {
-    return *stereo::pixel_of(aim_of(picture, kWidth, kHeight), point);
+    return *stereo::pixel_of(aim_of(picture, kSceneWidth, kSceneHeight), point);
   }
   static Vec3 centre(const TestSource& source, std::size_t shell) {
     Vec3 sum = Vec3::Zero();
@@ -38,25 +38,25 @@ class Scene : public RenderTest {
 TEST_F(Scene, HiddenPartsAreGone) {
   TestSource source = two_plates();
   show(source);
-  const Picture picture = fitted("mono", "top", kWidth, kHeight);
+  const Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
   const Eigen::Vector2d pixel = pixel_of(picture, centre(source, 44));
-  const auto aim = aim_of(picture, kWidth, kHeight);
+  const auto aim = aim_of(picture, kSceneWidth, kSceneHeight);
   EXPECT_EQ(renderer_->shell_at(aim, pixel), mesh::ShellIndex(44));
-  const Image both = draw(picture, kWidth, kHeight);
+  const Image both = draw(picture, kSceneWidth, kSceneHeight);
   source.hidden[0] = true;
   show(source);
   const auto behind = renderer_->shell_at(aim, pixel);
   ASSERT_TRUE(behind);
   EXPECT_GE(behind->value, 100U) << "the plate behind shows";
-  const Image one = draw(picture, kWidth, kHeight);
+  const Image one = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_NE(both.rgb, one.rgb);
   source.hidden[1] = true;
   show(source);
   EXPECT_FALSE(renderer_->shell_at(aim, pixel));
   EXPECT_TRUE(renderer_->bounds().empty());
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, [&] {
+  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, [&] {
     EXPECT_TRUE(renderer_->set_model(nullptr));
-    return draw(picture, kWidth, kHeight).rgb;
+    return draw(picture, kSceneWidth, kSceneHeight).rgb;
   }()) << "nothing of them is left";
 }
 
@@ -64,8 +64,8 @@ TEST_F(Scene, PickingFindsWhatIsSeen) {
   const TestSource source = two_plates();
   show(source);
   for (const char* profile : {"mono", "prism-mask"}) {
-    const Picture picture = fitted(profile, "top", kWidth, kHeight);
-    const auto aim = aim_of(picture, kWidth, kHeight);
+    const Picture picture = fitted(profile, "top", kSceneWidth, kSceneHeight);
+    const auto aim = aim_of(picture, kSceneWidth, kSceneHeight);
     for (const std::size_t shell : {0U, 37U, 99U})
       EXPECT_EQ(renderer_->shell_at(aim, pixel_of(picture, centre(source, shell))), mesh::ShellIndex(shell)) << profile;
     const Eigen::Vector2d at_node = pixel_of(picture, source.positions[60]);
@@ -82,8 +82,8 @@ TEST_F(Scene, APickOnSheetsThatNearlyCoincideTakesTheSheetThatIsSeen) {
   const std::uint32_t beneath =
       test::add_grid(source, 20, 20, 1, [](double u, double v) { return Vec3(u * 100 - 53, v * 60 - 30, -0.01); });
   show(source);
-  const Picture picture = fitted("mono", "top", kWidth, kHeight);
-  const auto aim = aim_of(picture, kWidth, kHeight);
+  const Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
+  const auto aim = aim_of(picture, kSceneWidth, kSceneHeight);
   constexpr double kRadius = 16;
   std::size_t tried = 0;
   for (std::uint32_t node = beneath; node < source.positions.size(); ++node) {
@@ -104,15 +104,15 @@ TEST_F(Scene, TheEndOfALineBeforeAPlateIsPickedWhereItIs) {
   const std::uint32_t from = source.add_node({2, 1, 30}), to = source.add_node({7, 4, 30});
   source.add_line(from, to, 2);
   show(source);
-  const Picture picture = fitted("mono", "top", kWidth, kHeight);
-  EXPECT_EQ(renderer_->node_near(aim_of(picture, kWidth, kHeight), pixel_of(picture, source.positions[to]), 16), mesh::NodeIndex(to));
+  const Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
+  EXPECT_EQ(renderer_->node_near(aim_of(picture, kSceneWidth, kSceneHeight), pixel_of(picture, source.positions[to]), 16), mesh::NodeIndex(to));
 }
 
 TEST_F(Scene, ARectangleTakesWhatIsSeenOrGoesThrough) {
   const TestSource source = two_plates();
   show(source);
-  const Picture picture = fitted("mono", "top", kWidth, kHeight);
-  const auto aim = aim_of(picture, kWidth, kHeight);
+  const Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
+  const auto aim = aim_of(picture, kSceneWidth, kSceneHeight);
   const Eigen::Vector2d a = pixel_of(picture, source.positions[12]), b = pixel_of(picture, source.positions[108]);
   const PixelRect rect{a.x() - 1, a.y() + 1, b.x() + 1, b.y() - 1};  // the front plate's inner nodes
   const mesh::NodeSet seen = renderer_->nodes_in(aim, rect, false);
@@ -134,8 +134,8 @@ TEST_F(Scene, NodesOfTinyElementsAreStillSeen) {
   test::add_grid(source, 400, 250, 0,
                  [](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, 8 * std::sin(u * 6) * std::cos(v * 4)); });
   show(source);
-  const auto aim = aim_of(fitted("mono", "top", kWidth, kHeight), kWidth, kHeight);
-  const mesh::NodeSet seen = renderer_->nodes_in(aim, {0, 0, kWidth, kHeight}, false);
+  const auto aim = aim_of(fitted("mono", "top", kSceneWidth, kSceneHeight), kSceneWidth, kSceneHeight);
+  const mesh::NodeSet seen = renderer_->nodes_in(aim, {0, 0, kSceneWidth, kSceneHeight}, false);
   EXPECT_GT(seen.size(), source.positions.size() * 99 / 100) << "elements smaller than a pixel hide nothing";
 }
 
@@ -144,11 +144,11 @@ TEST_F(Scene, BeamsArePicked) {
   const std::uint32_t left = source.add_node({-10, 0, 0}), right = source.add_node({10, 0, 0});
   source.add_line(left, right, 0);
   show(source);
-  const Picture picture = fitted("mono", "top", kWidth, kHeight);
-  EXPECT_EQ(renderer_->node_near(aim_of(picture, kWidth, kHeight), pixel_of(picture, {10, 0, 0}), 5), mesh::NodeIndex(1));
+  const Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
+  EXPECT_EQ(renderer_->node_near(aim_of(picture, kSceneWidth, kSceneHeight), pixel_of(picture, {10, 0, 0}), 5), mesh::NodeIndex(1));
   source.hidden[0] = true;
   show(source);
-  EXPECT_FALSE(renderer_->node_near(aim_of(picture, kWidth, kHeight), pixel_of(picture, {10, 0, 0}), 5));
+  EXPECT_FALSE(renderer_->node_near(aim_of(picture, kSceneWidth, kSceneHeight), pixel_of(picture, {10, 0, 0}), 5));
 }
 
 TEST_F(Scene, SelectedNodesAreWhiteAndShowThrough) {
@@ -156,22 +156,22 @@ TEST_F(Scene, SelectedNodesAreWhiteAndShowThrough) {
   source.node_marks[60] = mesh::document::kSelected;        // front
   source.node_marks[121 + 37] = mesh::document::kSelected;  // behind the front plate
   show(source);
-  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
   picture.element_edges = false;
-  const Image image = draw(picture, kWidth, kHeight);
+  const Image image = draw(picture, kSceneWidth, kSceneHeight);
   const std::uint8_t* front = at(image, pixel_of(picture, source.positions[60]));
   EXPECT_GT(std::min({front[0], front[1], front[2]}), 205);
   EXPECT_NEAR(front[0], front[2], 1);
   const std::uint8_t* hidden = at(image, pixel_of(picture, source.positions[121 + 37]));
   picture.selected_nodes = false;
-  const Image without = draw(picture, kWidth, kHeight);
+  const Image without = draw(picture, kSceneWidth, kSceneHeight);
   const std::uint8_t* plain = at(without, pixel_of(picture, source.positions[121 + 37]));
   EXPECT_GT(hidden[2], plain[2] + 20) << "shows through";
   EXPECT_LT(hidden[2], front[2]) << "but dimmed";
   source.hidden[1] = true;
   show(source);
   picture.selected_nodes = true;
-  const Image hidden_part = draw(picture, kWidth, kHeight);
+  const Image hidden_part = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_EQ(at(hidden_part, pixel_of(picture, source.positions[121 + 37]))[2], plain[2]) << "nodes of hidden parts don't show";
 }
 
@@ -180,10 +180,10 @@ TEST_F(Scene, QualityHasItsColoursAndSigns) {
   source.shell_quality[44].fail = source.shell_quality[44].warn = 1;  // warpage: its sign's diagonals cross in the middle
   source.shell_quality[46].warn = 2;
   show(source);
-  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
   picture.colour = ColourMode::quality;
   picture.quality_glyphs = false;
-  Image image = draw(picture, kWidth, kHeight);
+  Image image = draw(picture, kSceneWidth, kSceneHeight);
   const std::uint8_t* fail = at(image, pixel_of(picture, centre(source, 44)));
   const std::uint8_t* warn = at(image, pixel_of(picture, centre(source, 46)));
   const std::uint8_t* ok = at(image, pixel_of(picture, centre(source, 48)));
@@ -192,7 +192,7 @@ TEST_F(Scene, QualityHasItsColoursAndSigns) {
   EXPECT_NEAR(ok[0], ok[2], 12) << "grey";
   picture.colour = ColourMode::parts;
   picture.quality_glyphs = true;
-  image = draw(picture, kWidth, kHeight);
+  image = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_EQ(report_.glyphs, 2U);
   const std::uint8_t* sign = at(image, pixel_of(picture, centre(source, 44)));
   EXPECT_GT(sign[0], 2 * sign[1]) << "a red sign";
@@ -203,13 +203,13 @@ TEST_F(Scene, APreviewIsAWhiteWireframeWithLiveSigns) {
   source.shell_quality[0].warn = 1;
   source.shell_quality[44].warn = 1;
   show(source);
-  Picture picture = fitted("mono", "front", kWidth, kHeight);
-  const Image before = draw(picture, kWidth, kHeight);
+  Picture picture = fitted("mono", "front", kSceneWidth, kSceneHeight);
+  const Image before = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_EQ(report_.glyphs, 2U);
   const std::vector<mesh::NodeIndex> nodes{mesh::NodeIndex(60)};
   const std::vector<mesh::ShellIndex> shells{mesh::ShellIndex(44), mesh::ShellIndex(45), mesh::ShellIndex(54), mesh::ShellIndex(55)};
   renderer_->begin_preview(nodes, shells);
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, before.rgb) << "no frame yet";
+  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, before.rgb) << "no frame yet";
   ipc::PreviewFrame frame;
   const Vec3 lifted = source.positions[60] + Vec3(0, 0, 10);
   frame.positions = {lifted};
@@ -217,15 +217,15 @@ TEST_F(Scene, APreviewIsAWhiteWireframeWithLiveSigns) {
   frame.states[1].fail = frame.states[1].warn = 2;
   frame.states[2].fail = frame.states[2].warn = 2;
   ASSERT_TRUE(renderer_->update_preview(frame));
-  const Image during = draw(picture, kWidth, kHeight);
+  const Image during = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_EQ(report_.glyphs, 3U) << "two live ones, and the untouched shell's";
   const std::uint8_t* tip = at(during, pixel_of(picture, lifted) + Eigen::Vector2d(0, 2));
   EXPECT_GT(std::min({tip[0], tip[1], tip[2]}), 180);
   frame.positions.clear();
   ASSERT_TRUE(renderer_->update_preview(frame)) << "a frame of another size is passed over";
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, during.rgb);
+  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, during.rgb);
   renderer_->end_preview();
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, before.rgb);
+  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, before.rgb);
 }
 
 TEST_F(Scene, APullThatMakesAShellWrongInEveryWayHasRoomForAllItsSigns) {
@@ -239,26 +239,26 @@ TEST_F(Scene, APullThatMakesAShellWrongInEveryWayHasRoomForAllItsSigns) {
   frame.states.resize(4);
   for (auto& state : frame.states) state.warn = state.fail = static_cast<std::uint16_t>((1U << mesh::quality::kMetricCount) - 1);
   ASSERT_TRUE(renderer_->update_preview(frame));
-  draw(fitted("mono", "front", kWidth, kHeight), kWidth, kHeight);
+  draw(fitted("mono", "front", kSceneWidth, kSceneHeight), kSceneWidth, kSceneHeight);
   EXPECT_EQ(report_.glyphs, 4 * kMostShapesOfShell);
   EXPECT_EQ(report_.glyphs_left_out, 0U);
 }
 
 TEST_F(Scene, TheActiveHandleIsGreen) {
   show(two_plates());
-  Picture picture = fitted("mono", "front", kWidth, kHeight);
+  Picture picture = fitted("mono", "front", kSceneWidth, kSceneHeight);
   const Vec3 foot(0, -30, 20);
   const Vec3 down = -Vec3::UnitZ();
   picture.handle = Handle{foot, down, Handle::Use::arrow};
   const Eigen::Vector2d middle =
-      pixel_of(picture, stereo::handle_tip(aim_of(picture, kWidth, kHeight), foot, down)) - Eigen::Vector2d(0, 12);
-  const Image image = draw(picture, kWidth, kHeight);
+      pixel_of(picture, stereo::handle_tip(aim_of(picture, kSceneWidth, kSceneHeight), foot, down)) - Eigen::Vector2d(0, 12);
+  const Image image = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_GT(at(image, middle)[1], at(image, middle)[0] * 3 / 2);
   picture.handle->use = Handle::Use::idle;
-  const Image idle = draw(picture, kWidth, kHeight);
+  const Image idle = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_NEAR(at(idle, middle)[1], at(idle, middle)[0], 3);
   picture.handle->direction = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  draw(picture, kWidth, kHeight);
+  draw(picture, kSceneWidth, kSceneHeight);
 }
 
 TEST_F(Scene, TheModelIsDrawnAnewOnlyForAnotherScene) {
@@ -266,9 +266,9 @@ TEST_F(Scene, TheModelIsDrawnAnewOnlyForAnotherScene) {
   TestSource source = two_plates();
   show(source);
   for (const char* profile : {"mono", "prism-mask"}) {
-    Picture picture = fitted(profile, "iso", kWidth, kHeight);
+    Picture picture = fitted(profile, "iso", kSceneWidth, kSceneHeight);
     const auto drawn = [&] { return renderer_->figures().scenes_drawn; };
-    const Image plain = draw(picture, kWidth, kHeight);
+    const Image plain = draw(picture, kSceneWidth, kSceneHeight);
     const std::size_t before = drawn();
     picture.rubber_band = PixelRect{40, 30, 200, 150};
     // As careless as an overlay may be.
@@ -279,24 +279,24 @@ TEST_F(Scene, TheModelIsDrawnAnewOnlyForAnotherScene) {
       glClearColor(0.2F, 0.4F, 0.6F, 1);
       glClear(GL_COLOR_BUFFER_BIT);
     };
-    const Image covered = draw(picture, kWidth, kHeight);
+    const Image covered = draw(picture, kSceneWidth, kSceneHeight);
     EXPECT_NE(covered.rgb, plain.rgb);
-    EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, covered.rgb) << profile << ": nothing piles up";
+    EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, covered.rgb) << profile << ": nothing piles up";
     picture.rubber_band.reset();
     picture.overlay = nullptr;
     picture.moving = true;
-    EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, plain.rgb) << profile << ": nothing of what was flat stays";
+    EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, plain.rgb) << profile << ": nothing of what was flat stays";
     EXPECT_EQ(drawn(), before) << profile;
     picture.moving = false;
 
     picture.view = stereo::orbit(picture.view, 0.1, 0);
-    EXPECT_NE(draw(picture, kWidth, kHeight).rgb, plain.rgb) << profile;
+    EXPECT_NE(draw(picture, kSceneWidth, kSceneHeight).rgb, plain.rgb) << profile;
     picture.handle = Handle{};
-    draw(picture, kWidth, kHeight);
+    draw(picture, kSceneWidth, kSceneHeight);
     picture.colour = ColourMode::quality;
-    draw(picture, kWidth, kHeight);
+    draw(picture, kSceneWidth, kSceneHeight);
     show(source);
-    draw(picture, kWidth, kHeight);
+    draw(picture, kSceneWidth, kSceneHeight);
     EXPECT_EQ(drawn(), before + 4) << profile;
   }
 }
@@ -304,16 +304,16 @@ TEST_F(Scene, TheModelIsDrawnAnewOnlyForAnotherScene) {
 TEST_F(Scene, AMovingPictureIsCoarseAndTheOneAtRestAsIfItHadNeverMoved) {
   make_renderer({.samples = 4});
   show(two_plates());
-  Picture picture = fitted("mono", "iso", kWidth, kHeight);
-  const Image rest = draw(picture, kWidth, kHeight);
+  Picture picture = fitted("mono", "iso", kSceneWidth, kSceneHeight);
+  const Image rest = draw(picture, kSceneWidth, kSceneHeight);
   const stereo::View view = picture.view;
   picture.view = stereo::orbit(view, 0.3, 0.1);
-  draw(picture, kWidth, kHeight);
+  draw(picture, kSceneWidth, kSceneHeight);
   picture.view = view;
   picture.moving = true;
-  EXPECT_NE(draw(picture, kWidth, kHeight).rgb, rest.rgb) << "edges are not smooth while it moves";
+  EXPECT_NE(draw(picture, kSceneWidth, kSceneHeight).rgb, rest.rgb) << "edges are not smooth while it moves";
   picture.moving = false;
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, rest.rgb);
+  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, rest.rgb);
 }
 
 TEST_F(Scene, OnlyWhatChangedIsUploaded) {
@@ -335,17 +335,17 @@ TEST_F(Scene, OnlyWhatChangedIsUploaded) {
 TEST_F(Scene, ThePictureFollowsAChangeAsIfStartedAfresh) {
   auto source = std::make_shared<TestSource>(test::make_crash_box());
   show(source);
-  const Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
-  draw(picture, kWidth, kHeight);
+  const Picture picture = fitted("prism-mask", "iso", kSceneWidth, kSceneHeight);
+  draw(picture, kSceneWidth, kSceneHeight);
   for (std::size_t n = 100; n < 140; ++n) source->positions[n].z() += 9, source->node_marks[n] = 1;
   source->touch(SnapshotArray::positions, 0);
   source->touch(SnapshotArray::node_marks, 0);
   show(source);
-  const Image followed = draw(picture, kWidth, kHeight);
+  const Image followed = draw(picture, kSceneWidth, kSceneHeight);
   make_renderer({.samples = 1});
   show(source);
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, followed.rgb);
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, followed.rgb) << "and repeats bit for bit";
+  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, followed.rgb);
+  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, followed.rgb) << "and repeats bit for bit";
 }
 
 TEST_F(Scene, FarFromTheOriginNothingTrembles) {
@@ -353,9 +353,9 @@ TEST_F(Scene, FarFromTheOriginNothingTrembles) {
   for (Vec3& at : far_source.positions) at += Vec3(4e6, -7e6, 1e6);
   far_source.key = 2;
   show(near_source);
-  const Image near_image = draw(fitted("mono", "iso", kWidth, kHeight), kWidth, kHeight);
+  const Image near_image = draw(fitted("mono", "iso", kSceneWidth, kSceneHeight), kSceneWidth, kSceneHeight);
   show(far_source);
-  const Image far_image = draw(fitted("mono", "iso", kWidth, kHeight), kWidth, kHeight);
+  const Image far_image = draw(fitted("mono", "iso", kSceneWidth, kSceneHeight), kSceneWidth, kSceneHeight);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < near_image.rgb.size(); ++i) differ += std::abs(near_image.rgb[i] - far_image.rgb[i]) > 24;
   EXPECT_LT(differ, near_image.rgb.size() / 200);
@@ -377,18 +377,18 @@ TEST_F(Scene, AHostileSnapshotBreaksNothing) {
   source.node_marks.resize(source.positions.size() + 5000, 255);
   source.shell_parts.resize(source.shell_nodes.size() - 10);
   show(source);
-  Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
+  Picture picture = fitted("prism-mask", "iso", kSceneWidth, kSceneHeight);
   EXPECT_TRUE(std::isfinite(picture.view.mm_per_unit));
-  draw(picture, kWidth, kHeight);
-  const auto aim = aim_of(picture, kWidth, kHeight);
+  draw(picture, kSceneWidth, kSceneHeight);
+  const auto aim = aim_of(picture, kSceneWidth, kSceneHeight);
   renderer_->shell_at(aim, {100, 100});
   renderer_->node_near(aim, {100, 100}, 50);
-  renderer_->nodes_in(aim, {0, 0, kWidth, kHeight}, false);
+  renderer_->nodes_in(aim, {0, 0, kSceneWidth, kSceneHeight}, false);
   renderer_->begin_preview(std::array{mesh::NodeIndex(9999999)}, std::array{mesh::ShellIndex(9999999), mesh::ShellIndex(3)});
   source.positions.resize(10);  // the next snapshot has fewer nodes than its shells name
   source.touch(SnapshotArray::positions, 0);
   show(source);
-  draw(picture, kWidth, kHeight);
+  draw(picture, kSceneWidth, kSceneHeight);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 using test::TestSource;
 
-constexpr int kWidth = 640, kHeight = 400;
+constexpr int kShadowsWidth = 640, kShadowsHeight = 400;
 
 stereo::Box box_of(const Vec3& low, const Vec3& high) {
   stereo::Box box;
@@ -59,8 +59,8 @@ TEST(ShadowPlanes, ThePointerFindsThePlaceThatItSees) {
   stereo::Aim aim;
   aim.view = view_from("iso", box);
   aim.screen_mm = {448, 280};
-  aim.width = kWidth;
-  aim.height = kHeight;
+  aim.width = kShadowsWidth;
+  aim.height = kShadowsHeight;
   for (const ShadowPlane& plane : shadow_planes(box, aim.view))
     for (const double u : {0.1, 0.5, 0.9}) {
       Vec3 point = plane.low + u * (plane.high - plane.low);
@@ -82,14 +82,14 @@ class Shadows : public RenderTest {
     test::add_grid(source_, 10, 10, 0, [](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, 0); });
     test::add_grid(source_, 1, 1, 1, [](double u, double v) { return Vec3(u * 10 - 5, 28, v * 40); });
     show(source_);
-    picture_ = fitted("mono", "iso", kWidth, kHeight);
+    picture_ = fitted("mono", "iso", kShadowsWidth, kShadowsHeight);
     picture_.shadows = true;
   }
   /// How dark the back plane is beside a place on it, where no model is.
   int light_at_back(const Image& image, double x, double z) const {
     for (const ShadowPlane& plane : shadow_planes(renderer_->bounds(), picture_.view))
       if (plane.axis == 1) {
-        const Eigen::Vector2d pixel = *stereo::pixel_of(aim_of(picture_, kWidth, kHeight), Vec3(x, plane.low.y(), z));
+        const Eigen::Vector2d pixel = *stereo::pixel_of(aim_of(picture_, kShadowsWidth, kShadowsHeight), Vec3(x, plane.low.y(), z));
         return brightness(image, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
       }
     return -1;
@@ -99,9 +99,9 @@ class Shadows : public RenderTest {
 };
 
 TEST_F(Shadows, FallOnThePlaneBehindWhereThingsAreDragged) {
-  const Image none = draw(picture_, kWidth, kHeight);
+  const Image none = draw(picture_, kShadowsWidth, kShadowsHeight);
   picture_.shadows = false;
-  EXPECT_EQ(draw(picture_, kWidth, kHeight).rgb, none.rgb) << "nothing is selected or dragged";
+  EXPECT_EQ(draw(picture_, kShadowsWidth, kShadowsHeight).rgb, none.rgb) << "nothing is selected or dragged";
   picture_.shadows = true;
   std::vector<mesh::NodeIndex> nodes;
   std::vector<mesh::ShellIndex> shells{mesh::ShellIndex(44), mesh::ShellIndex(45)};
@@ -117,29 +117,29 @@ TEST_F(Shadows, FallOnThePlaneBehindWhereThingsAreDragged) {
   frame.states.resize(shells.size());
   renderer_->begin_preview(nodes, shells);
   ASSERT_TRUE(renderer_->update_preview(frame));
-  const Image dragged = draw(picture_, kWidth, kHeight);
+  const Image dragged = draw(picture_, kShadowsWidth, kShadowsHeight);
   const double x0 = frame.positions.front().x();
   EXPECT_LT(light_at_back(dragged, x0 + 15, 30), light_at_back(none, x0 + 15, 30) - 20);
   for (Vec3& at : frame.positions) at.x() -= 40;
   ASSERT_TRUE(renderer_->update_preview(frame));
-  const Image moved = draw(picture_, kWidth, kHeight);
+  const Image moved = draw(picture_, kShadowsWidth, kShadowsHeight);
   EXPECT_NEAR(light_at_back(moved, x0 + 15, 30), light_at_back(none, x0 + 15, 30), 16) << "it moves with the surface";
   EXPECT_LT(light_at_back(moved, x0 - 25, 30), light_at_back(none, x0 - 25, 30) - 20);
 }
 
 TEST_F(Shadows, FallOfTheSelectionWhileNothingIsDragged) {
-  const Image none = draw(picture_, kWidth, kHeight);
+  const Image none = draw(picture_, kShadowsWidth, kShadowsHeight);
   for (std::size_t n = 121; n < 125; ++n) source_.node_marks[n] = mesh::document::kSelected;
   source_.key = 2;
   show(source_);
-  const Image image = draw(picture_, kWidth, kHeight);
+  const Image image = draw(picture_, kShadowsWidth, kShadowsHeight);
   EXPECT_LT(light_at_back(image, 0, 36), light_at_back(none, 0, 36) - 20);
   source_.hidden[1] = true;
   show(source_);
   picture_.shadows = false;
-  const Image plain = draw(picture_, kWidth, kHeight);
+  const Image plain = draw(picture_, kShadowsWidth, kShadowsHeight);
   picture_.shadows = true;
-  EXPECT_EQ(draw(picture_, kWidth, kHeight).rgb, plain.rgb) << "what is hidden throws none";
+  EXPECT_EQ(draw(picture_, kShadowsWidth, kShadowsHeight).rgb, plain.rgb) << "what is hidden throws none";
 }
 
 }  // namespace

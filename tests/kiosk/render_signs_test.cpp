@@ -19,7 +19,7 @@ using mesh::Vec3;
 using test::TestSource;
 using test::two_plates;
 
-constexpr int kWidth = 640, kHeight = 400;
+constexpr int kSignsWidth = 640, kSignsHeight = 400;
 
 constexpr std::size_t kFront = 60, kBehind = 121 + 37;
 
@@ -47,32 +47,32 @@ Blob difference(const Image& a, const Image& b) { return difference(a, b, 0, a.w
 class Signs : public RenderTest {
  protected:
   Eigen::Vector2d pixel_of(const Picture& picture, const Vec3& point) const {
-    return *stereo::pixel_of(aim_of(picture, kWidth, kHeight), point);
+    return *stereo::pixel_of(aim_of(picture, kSignsWidth, kSignsHeight), point);
   }
   static const std::uint8_t* at(const Image& image, const Eigen::Vector2d& pixel) {
     return image.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
   }
   static bool green(const std::uint8_t* pixel) { return pixel[1] > pixel[0] * 4 / 3 && pixel[1] > pixel[2] * 5 / 4; }
   /// What selecting these nodes alone changes in a picture.
-  Blob marks(TestSource source, const Picture& picture, std::initializer_list<std::size_t> nodes, int x0 = 0, int x1 = kWidth) {
+  Blob marks(TestSource source, const Picture& picture, std::initializer_list<std::size_t> nodes, int x0 = 0, int x1 = kSignsWidth) {
     show(source);
-    const Image without = draw(picture, kWidth, kHeight);
+    const Image without = draw(picture, kSignsWidth, kSignsHeight);
     for (const std::size_t node : nodes) source.node_marks[node] = mesh::document::kSelected;
     source.key = 2;
     show(source);
-    return difference(draw(picture, kWidth, kHeight), without, x0, x1);
+    return difference(draw(picture, kSignsWidth, kSignsHeight), without, x0, x1);
   }
   /// What a handle changes in a picture.
   Blob handle(Picture picture, const Handle& shown) {
-    const Image without = draw(picture, kWidth, kHeight);
+    const Image without = draw(picture, kSignsWidth, kSignsHeight);
     picture.handle = shown;
-    return difference(draw(picture, kWidth, kHeight), without);
+    return difference(draw(picture, kSignsWidth, kSignsHeight), without);
   }
 };
 
 TEST_F(Signs, ASelectedNodeKeepsItsSizeWhateverTheZoom) {
   show(two_plates());
-  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
   picture.element_edges = false;
   const Blob small = marks(two_plates(), picture, {kFront});
   picture.view = stereo::zoom(picture.view, 2.2, {0, 0});
@@ -85,7 +85,7 @@ TEST_F(Signs, ASelectedNodeKeepsItsSizeWhateverTheZoom) {
 
 TEST_F(Signs, BothEyesSeeASelectedNodeWhereTheyWouldSeeThePlaceItself) {
   show(two_plates());
-  Picture picture = fitted("side-by-side", "top", kWidth, kHeight);
+  Picture picture = fitted("side-by-side", "top", kSignsWidth, kSignsHeight);
   picture.element_edges = false;
   picture.view.depth_strength = 1.5;
   const stereo::PictureEyes eyes{picture.between_eyes_mm, picture.toward_right, picture.eye_separation_mm, 1};
@@ -94,12 +94,12 @@ TEST_F(Signs, BothEyesSeeASelectedNodeWhereTheyWouldSeeThePlaceItself) {
     std::array<double, 2> x{};
     for (const stereo::Eye eye : {stereo::Eye::left, stereo::Eye::right}) {
       const bool right = eye == stereo::Eye::right;
-      const Blob blob = marks(two_plates(), picture, {node}, right ? kWidth / 2 : 0, right ? kWidth : kWidth / 2);
+      const Blob blob = marks(two_plates(), picture, {node}, right ? kSignsWidth / 2 : 0, right ? kSignsWidth : kSignsWidth / 2);
       ASSERT_GT(blob.pixels, 5U);
-      stereo::Aim aim = aim_of(picture, kWidth, kHeight);
+      stereo::Aim aim = aim_of(picture, kSignsWidth, kSignsHeight);
       aim.eye_mm = eyes.picture_eye(eye);
       const Eigen::Vector2d expected = *stereo::pixel_of(aim, two_plates().positions[node]);
-      x[right ? 1 : 0] = 2 * (blob.centre.x() - (right ? kWidth / 2 : 0));
+      x[right ? 1 : 0] = 2 * (blob.centre.x() - (right ? kSignsWidth / 2 : 0));
       EXPECT_NEAR(x[right ? 1 : 0], expected.x(), 1.0) << node << (right ? " right" : " left");
       EXPECT_NEAR(blob.centre.y(), expected.y(), 0.7);
     }
@@ -130,11 +130,11 @@ TEST_F(Signs, CrowdedNodesAreAllThere) {
   TestSource source;
   test::add_grid(source, 400, 250, 0, [](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, 0); });
   show(source);
-  const Picture picture = fitted("mono", "top", kWidth, kHeight);
+  const Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
   for (std::size_t n = 0; n < source.node_marks.size(); ++n) source.node_marks[n] = n % 401 < 200 ? mesh::document::kSelected : 0;
   source.key = 2;
   show(source);
-  const Image image = draw(picture, kWidth, kHeight);
+  const Image image = draw(picture, kSignsWidth, kSignsHeight);
   for (const double y : {-25.0, 0.0, 25.0}) {
     double selected = 0, plain = 0;
     for (int x = -40; x < -10; ++x) {
@@ -147,38 +147,38 @@ TEST_F(Signs, CrowdedNodesAreAllThere) {
 
 TEST_F(Signs, NodesOfHiddenPartsAreNotMarkedAndComeBack) {
   show(two_plates());
-  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
   TestSource source = two_plates();
   source.node_marks[kBehind] = mesh::document::kSelected;
   source.key = 2;
   show(source);
-  const Image marked = draw(picture, kWidth, kHeight);
+  const Image marked = draw(picture, kSignsWidth, kSignsHeight);
   source.hidden[1] = true;
   show(source);
-  const Image hidden = draw(picture, kWidth, kHeight);
+  const Image hidden = draw(picture, kSignsWidth, kSignsHeight);
   EXPECT_GT(difference(marked, hidden).pixels, 20U);
   source.shell_parts[0] = mesh::PartIndex(1);  // and a shell of the front plate goes as well: its corner is one shell's alone
   source.touch(SnapshotArray::shell_parts, 0);
   source.node_marks[0] = mesh::document::kSelected;
   source.touch(SnapshotArray::node_marks, 0);
   show(source);
-  const Image corner_gone = draw(picture, kWidth, kHeight);
+  const Image corner_gone = draw(picture, kSignsWidth, kSignsHeight);
   source.node_marks[0] = 0;
   source.touch(SnapshotArray::node_marks, 0);
   show(source);
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, corner_gone.rgb);
+  EXPECT_EQ(draw(picture, kSignsWidth, kSignsHeight).rgb, corner_gone.rgb);
   source.shell_parts[0] = mesh::PartIndex(0);
   source.touch(SnapshotArray::shell_parts, 0);
   source.hidden[1] = false;
   show(source);
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, marked.rgb);
+  EXPECT_EQ(draw(picture, kSignsWidth, kSignsHeight).rgb, marked.rgb);
 }
 
 TEST_F(Signs, ThePartInUseIsGreenAndTheOthersGo) {
   show(two_plates());
-  Picture picture = fitted("mono", "iso", kWidth, kHeight);
+  Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
   const Vec3 foot(0, 0, 20);
-  const stereo::Aim aim = aim_of(picture, kWidth, kHeight);
+  const stereo::Aim aim = aim_of(picture, kSignsWidth, kSignsHeight);
   const double deck_pixel = aim.mm_per_pixel() / aim.view.mm_per_unit;
   const auto on_disk = [&](double x, double y) {
     return pixel_of(picture, foot + Vec3(x, y, 0) * (0.72 * kHandleDiskPixels * deck_pixel));
@@ -188,10 +188,10 @@ TEST_F(Signs, ThePartInUseIsGreenAndTheOthersGo) {
   const Eigen::Vector2d ring = pixel_of(picture, foot) + Eigen::Vector2d(kHandleRingPixels, 0);
   using Use = Handle::Use;
   const std::array<std::pair<Use, Eigen::Vector2d>, 3> parts{{{Use::arrow, arrow}, {Use::disk, disk}, {Use::ring, ring}}};
-  const Image without = draw(picture, kWidth, kHeight);
+  const Image without = draw(picture, kSignsWidth, kSignsHeight);
   for (const Use use : {Use::idle, Use::arrow, Use::disk, Use::ring}) {
     picture.handle = Handle{foot, Vec3::UnitZ(), use};
-    const Image image = draw(picture, kWidth, kHeight);
+    const Image image = draw(picture, kSignsWidth, kSignsHeight);
     for (const auto& [part, pixel] : parts) {
       const bool there = use == Use::idle || use == part;
       if (use == Use::disk && part == Use::ring) continue;  // lies over it
@@ -201,28 +201,28 @@ TEST_F(Signs, ThePartInUseIsGreenAndTheOthersGo) {
     }
   }
   picture.handle = Handle{foot, Vec3::UnitZ(), Use::disk};
-  const Image image = draw(picture, kWidth, kHeight);
+  const Image image = draw(picture, kSignsWidth, kSignsHeight);
   for (const auto& [x, y] : {std::pair{-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) EXPECT_TRUE(green(at(image, on_disk(x, y)))) << x << y;
 }
 
 TEST_F(Signs, TheHandleKeepsItsSizeAndShowsThroughTheModel) {
   show(two_plates());
-  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
   const Handle shown{{0, 0, 20}, Vec3::UnitZ(), Handle::Use::disk};
   const double small = static_cast<double>(handle(picture, shown).pixels);
   Handle behind = shown;
   behind.at.z() = -10;
   const Blob dimmed = handle(picture, behind);
   EXPECT_GT(static_cast<double>(dimmed.pixels), 0.3 * small) << "can be grabbed though it is hidden";
-  const Image without = draw(picture, kWidth, kHeight);
+  const Image without = draw(picture, kSignsWidth, kSignsHeight);
   picture.handle = behind;
-  const Image image = draw(picture, kWidth, kHeight);
+  const Image image = draw(picture, kSignsWidth, kSignsHeight);
   picture.handle = shown;
-  const Image before = draw(picture, kWidth, kHeight);
+  const Image before = draw(picture, kSignsWidth, kSignsHeight);
   const auto strength = [&](const Image& with) {
     int most = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) most = std::max(most, std::abs(brightness(with, x, y) - brightness(without, x, y)));
+    for (int y = 0; y < kSignsHeight; ++y)
+      for (int x = 0; x < kSignsWidth; ++x) most = std::max(most, std::abs(brightness(with, x, y) - brightness(without, x, y)));
     return most;
   };
   EXPECT_LT(strength(image), 0.6 * strength(before)) << "but dimmed";
@@ -233,11 +233,11 @@ TEST_F(Signs, TheHandleKeepsItsSizeAndShowsThroughTheModel) {
 
 TEST_F(Signs, AnArcRunsFromWhereTheGrabWasToWhereItIs) {
   show(two_plates());
-  Picture picture = fitted("mono", "top", kWidth, kHeight);
+  Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
   Handle turned{{0, 25, 20}, Vec3::UnitZ(), Handle::Use::arc};
   turned.turn = Handle::Turn{{0, 0, 0}, Vec3::UnitZ(), 90};
   picture.handle = turned;
-  const Image image = draw(picture, kWidth, kHeight);
+  const Image image = draw(picture, kSignsWidth, kSignsHeight);
   const auto place = [&](double degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     return pixel_of(picture, Vec3(25 * std::cos(angle), 25 * std::sin(angle), 20));
@@ -246,17 +246,17 @@ TEST_F(Signs, AnArcRunsFromWhereTheGrabWasToWhereItIs) {
   for (const double degrees : {-20.0, 130.0, 200.0}) EXPECT_FALSE(green(at(image, place(degrees)))) << degrees;
   EXPECT_TRUE(green(at(image, place(90)))) << "the ball";
   picture.handle->turn->degrees = -90;
-  const Image other = draw(picture, kWidth, kHeight);
+  const Image other = draw(picture, kSignsWidth, kSignsHeight);
   EXPECT_TRUE(green(at(other, place(130)))) << "turned the other way";
   EXPECT_FALSE(green(at(other, place(40))));
   picture.handle->use = Handle::Use::idle;
-  const Image idle = draw(picture, kWidth, kHeight);
+  const Image idle = draw(picture, kSignsWidth, kSignsHeight);
   for (const double degrees : {90.0, 130.0}) EXPECT_FALSE(green(at(idle, place(degrees))));
 }
 
 TEST_F(Signs, TheAxisGoesThroughTheModelAndStandsOutOfIt) {
   show(two_plates());
-  Picture picture = fitted("mono", "front", kWidth, kHeight);
+  Picture picture = fitted("mono", "front", kSignsWidth, kSignsHeight);
   Handle turned{{30, 0, 20}, Vec3::UnitZ(), Handle::Use::idle};
   turned.turn = Handle::Turn{{10, 0, 3}, Vec3::UnitZ(), 0};
   const Blob blob = handle(picture, turned);
@@ -314,11 +314,11 @@ TEST(HandleMesh, WhatIsNowhereIsNotDrawn) {
 
 TEST_F(Signs, ALassoIsALineInThePlaneOfTheScreenClosedByDashes) {
   show(two_plates());
-  Picture picture = fitted("mono", "iso", kWidth, kHeight);
-  const Image without = draw(picture, kWidth, kHeight);
+  Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
+  const Image without = draw(picture, kSignsWidth, kSignsHeight);
   const std::size_t scenes = renderer_->figures().scenes_drawn;
   picture.lasso = {{40.5, 40.5}, {300.5, 60.5}, {340.5, 300.5}, {60.5, 340.5}};
-  const Image image = draw(picture, kWidth, kHeight);
+  const Image image = draw(picture, kSignsWidth, kSignsHeight);
   EXPECT_EQ(renderer_->figures().scenes_drawn, scenes) << "doesn't cost the model";
   const auto white = [](const Image& drawn, std::size_t from, const Picture& of, int x0, double squeeze) {
     const Eigen::Vector2d a = of.lasso[from], b = of.lasso[(from + 1) % of.lasso.size()];
@@ -345,12 +345,12 @@ TEST_F(Signs, ALassoIsALineInThePlaneOfTheScreenClosedByDashes) {
   EXPECT_GT(bare(3), 0.1);
   EXPECT_LT(bare(3), 0.6);
   EXPECT_LT(difference(image, without).pixels, 2U * 4 * 340 * 3) << "a line, and nothing else";
-  Picture stereo = fitted("side-by-side", "iso", kWidth, kHeight);
+  Picture stereo = fitted("side-by-side", "iso", kSignsWidth, kSignsHeight);
   stereo.lasso = picture.lasso;
-  const Image both = draw(stereo, kWidth, kHeight);
-  for (const int x0 : {0, kWidth / 2}) EXPECT_GT(white(both, 0, stereo, x0, 0.5), 0.9) << "at the same place for both eyes";
+  const Image both = draw(stereo, kSignsWidth, kSignsHeight);
+  for (const int x0 : {0, kSignsWidth / 2}) EXPECT_GT(white(both, 0, stereo, x0, 0.5), 0.9) << "at the same place for both eyes";
   picture.lasso = {{std::numeric_limits<double>::quiet_NaN(), 3}, {1e300, 4}, {100, 100}};
-  EXPECT_EQ(draw(picture, kWidth, kHeight).rgb, without.rgb) << "one corner is no line";
+  EXPECT_EQ(draw(picture, kSignsWidth, kSignsHeight).rgb, without.rgb) << "one corner is no line";
 }
 
 /// Bytes that each frame of a drag uploads, of the same 100 nodes on a sheet of n x n quads full of bad shells.

@@ -22,7 +22,7 @@ using drivers::eye_tracker::MotionKind;
 using drivers::prism_servo::MaskPhase;
 using Eigen::Vector3d;
 
-constexpr std::int64_t kMs = 1'000'000, kPromiseNs = 250 * kMs, kStart = 10'000 * kMs;
+constexpr std::int64_t kMillisecondNs = 1'000'000, kPromiseNs = 250 * kMillisecondNs, kStart = 10'000 * kMillisecondNs;
 
 /// A picture that was on the display, when it really was.
 struct Shown {
@@ -68,15 +68,15 @@ class World {
 
  private:
   void step() {
-    clock_.advance_ns(kMs);
-    const std::int64_t ms = (now() - kStart) / kMs;
+    clock_.advance_ns(kMillisecondNs);
+    const std::int64_t ms = (now() - kStart) / kMillisecondNs;
     if (tracker_sees && ms % 17 == 0) measure();
     if (daemon_runs && ms % 5 == 0) publish();
     if (drawn_ns_ != 0 && now() >= drawn_ns_) light_up();
     if (drawn_ns_ == 0 && now() >= timing_.next_begin_ns()) look();
   }
   void measure() {
-    const std::int64_t measured = now() - latency_ms * kMs;
+    const std::int64_t measured = now() - latency_ms * kMillisecondNs;
     if (measured <= kStart) return;
     filter_.take({measured, head_at(measured) + Vector3d(noise_(random_), noise_(random_), noise_(random_)), Vector3d::UnitX(), false});
   }
@@ -97,13 +97,13 @@ class World {
     const SeenFrom next = eyes.look(page_is_there ? reading : DeviceReading{}, now(), timing_.lit(now()));
     if (!pictures.empty() && next == seen) return;  // the picture may stay
     seen = next;
-    drawn_ns_ = now() + draw_ms * kMs;
+    drawn_ns_ = now() + draw_ms * kMillisecondNs;
   }
   /// Drawn: seen from the next refresh on (refreshes lie 17 ms apart, their phase unknown to the kiosk), 8 + 10 ms later in the middle.
   void light_up() {
     timing_.drawn(now());
     drawn_ns_ = 0;
-    const std::int64_t refresh = (now() / (17 * kMs) + 1) * 17 * kMs, lit = refresh + 18 * kMs;
+    const std::int64_t refresh = (now() / (17 * kMillisecondNs) + 1) * 17 * kMillisecondNs, lit = refresh + 18 * kMillisecondNs;
     if (!pictures.empty()) pictures.back().until_ns = lit;
     pictures.push_back({lit, std::numeric_limits<std::int64_t>::max(), seen});
   }
@@ -111,7 +111,7 @@ class World {
   ManualClock clock_;
   HeadMotion motion_;
   HeadFilter filter_;
-  PictureTiming timing_{{17 * kMs, 10 * kMs}};
+  PictureTiming timing_{{17 * kMillisecondNs, 10 * kMillisecondNs}};
   std::int64_t drawn_ns_ = 0;
   std::mt19937 random_{3};
   std::normal_distribution<double> noise_{0, 1};
@@ -139,7 +139,7 @@ TEST(TrackedEyes, DepthComesSmoothlyOnceTheHeadIsSeenAndTheMaskFollows) {
   allow_stereo(world);
   const std::int64_t allowed = world.now();
   world.run_until_stereo();
-  EXPECT_LT(world.now() - allowed, 400 * kMs);
+  EXPECT_LT(world.now() - allowed, 400 * kMillisecondNs);
   for (std::size_t i = 1; i < world.pictures.size(); ++i)
     EXPECT_LT(std::abs(world.pictures[i].seen.depth_share - world.pictures[i - 1].seen.depth_share), 0.15);
 }
@@ -153,7 +153,7 @@ TEST(TrackedEyes, TheHeadIsPredictedToTheLight) {
   for (const Shown& shown : world.pictures) {
     if (shown.seen.depth_share < 1) continue;
     predicted.push_back((shown.seen.between_eyes_mm - world.head_at(shown.lit_ns)).norm());
-    last_known.push_back((world.head_at(shown.lit_ns - 80 * kMs) - world.head_at(shown.lit_ns)).norm());
+    last_known.push_back((world.head_at(shown.lit_ns - 80 * kMillisecondNs) - world.head_at(shown.lit_ns)).norm());
   }
   ASSERT_GT(predicted.size(), 100u);
   const auto p95 = [](std::vector<double>& errors) {
@@ -193,14 +193,14 @@ TEST(TrackedEyes, EyesThatAreLostTurnThePictureMonoInTimeAndSmoothly) {
   world.tracker_sees = true;
   const std::int64_t back = world.now();
   world.run_until_stereo();
-  EXPECT_LT(world.now() - back, 1000 * kMs);
+  EXPECT_LT(world.now() - back, 1000 * kMillisecondNs);
 }
 
 TEST(TrackedEyes, ATrackerThatTakesLongGivesDepthToo) {
   World world(prism_mask());
   allow_stereo(world);
   world.latency_ms = 150;
-  world.reading.eyes->lost_after_ns = 230 * kMs;
+  world.reading.eyes->lost_after_ns = 230 * kMillisecondNs;
   world.run_until_stereo();
   const std::size_t before = world.pictures.size();
   world.run_ms(1000);
@@ -209,7 +209,7 @@ TEST(TrackedEyes, ATrackerThatTakesLongGivesDepthToo) {
   world.run_ms(1000);
   world.close_pictures();
   EXPECT_EQ(world.seen.depth_share, 0);
-  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 130 * kMs) << "the promise counts from when the head was heard of";
+  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 130 * kMillisecondNs) << "the promise counts from when the head was heard of";
 }
 
 TEST(TrackedEyes, AShortGapIsBridged) {
@@ -230,7 +230,7 @@ TEST(TrackedEyes, EveryWayToLoseTheDaemonEndsInMono) {
       [](World& w) { w.daemon_runs = w.page_is_there = false; },                                // the link is known to be lost
       [](World& w) { w.daemon_runs = false, w.reading.eyes->phase = ipc::EyesPhase::absent; },  // unplugged
       [](World& w) { w.daemon_runs = false, w.reading.eyes->between_eyes_mm[0] = std::nan(""); },        // a fault
-      [](World& w) { w.daemon_runs = false, w.reading.eyes->measured_ns = w.now() + 3'600'000 * kMs; },  // another clock
+      [](World& w) { w.daemon_runs = false, w.reading.eyes->measured_ns = w.now() + 3'600'000 * kMillisecondNs; },  // another clock
   };
   for (std::size_t way = 0; way < ways.size(); ++way) {
     World world(prism_mask());
@@ -265,9 +265,9 @@ TEST(TrackedEyes, TenThousandLossesAtAnyMomentNeverLeaveDepthBehind) {
       what = true;
     }
   }
-  RecordProperty("worst_ms", std::to_string(static_cast<double>(worst) / kMs));
+  RecordProperty("worst_ms", std::to_string(static_cast<double>(worst) / kMillisecondNs));
   EXPECT_LE(worst, kPromiseNs);
-  EXPECT_GT(worst, 100 * kMs) << "losses were seen at all";
+  EXPECT_GT(worst, 100 * kMillisecondNs) << "losses were seen at all";
 }
 
 TEST(TrackedEyes, NothingInDepthLightsUpWhileTheMaskFliesBack) {
@@ -279,8 +279,8 @@ TEST(TrackedEyes, NothingInDepthLightsUpWhileTheMaskFliesBack) {
     world.run_until_stereo();
     world.run_ms(static_cast<std::int64_t>(random() % 50));
     ipc::PrismState& mask = *world.reading.prism;
-    mask.mono_from_ns = world.now() + 80 * kMs;
-    mask.mono_until_ns = mask.mono_from_ns + 120 * kMs;
+    mask.mono_from_ns = world.now() + 80 * kMillisecondNs;
+    mask.mono_until_ns = mask.mono_from_ns + 120 * kMillisecondNs;
     world.run_ms(80);
     mask.stereo_allowed = false;
     world.run_ms(120);
@@ -290,7 +290,7 @@ TEST(TrackedEyes, NothingInDepthLightsUpWhileTheMaskFliesBack) {
     for (const Shown& shown : world.pictures)
       if (shown.until_ns > mask.mono_from_ns && shown.lit_ns < mask.mono_until_ns && shown.seen.depth_share > 0) {
         // The kiosk doesn't know the refreshes' phase: it may be off by half a period at either end.
-        EXPECT_LE(std::min(shown.until_ns - mask.mono_from_ns, mask.mono_until_ns - shown.lit_ns), 9 * kMs) << round;
+        EXPECT_LE(std::min(shown.until_ns - mask.mono_from_ns, mask.mono_until_ns - shown.lit_ns), 9 * kMillisecondNs) << round;
       }
     EXPECT_EQ(world.seen.depth_share, 1) << "back in depth";
   }
@@ -305,7 +305,7 @@ TEST(TrackedEyes, AMaskThatStopsFollowingFadesThePicture) {
   world.run_ms(300);
   world.close_pictures();
   EXPECT_EQ(world.seen.depth_share, 0);
-  EXPECT_LE(depth_ended_ns(world) - stopped, 200 * kMs);
+  EXPECT_LE(depth_ended_ns(world) - stopped, 200 * kMillisecondNs);
 }
 
 TEST(TrackedEyes, ThePlaceNeverJumpsAndGoesBackToRestWhenNobodyIsThere) {
@@ -346,7 +346,7 @@ TEST(TrackedEyes, TheMaskIsPredictedToTheLight) {
   allow_stereo(world);
   ipc::PrismState& mask = *world.reading.prism;
   mask.position_mm = 0.1;
-  mask.lag_ns = 20 * kMs;
+  mask.lag_ns = 20 * kMillisecondNs;
   mask.goal_mm = 0.14;
   mask.goal_velocity_mm_s = 2;
   world.run_ms(100);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "kiosk/tools/mouse_layout.h"
+#include "tests/support/places.h"
 
 namespace prismesh::kiosk::tools {
 namespace {
@@ -64,7 +65,7 @@ TEST(KeysTest, unknown_keys_and_keys_with_alt_do_nothing) {
 }
 
 TEST(KeysTest, the_documentation_lists_every_key_and_gesture_as_the_program_has_them) {
-  std::ifstream file(std::string(PRISMESH_SOURCE_FOLDER) + "/docs/kiosk.md");
+  std::ifstream file(test::source_folder() / "docs/kiosk.md");
   ASSERT_TRUE(file.good());
   std::stringstream text;
   text << file.rdbuf();

@@ -8,7 +8,7 @@
 namespace prismesh::optics {
 namespace {
 
-constexpr double kPhaseLimit = 0.25;  ///< pixels
+constexpr double kOwnPhaseLimit = 0.25;  ///< pixels
 
 class OwnPicture : public OpticsTest {
  protected:
@@ -34,7 +34,7 @@ class OwnPicture : public OpticsTest {
       const Sight found = sight(display, picture, true_mask_mm, left);
       EXPECT_LT(found.to_own, 1) << where << ": levels from its own picture";
       EXPECT_GT(found.to_other, likeness * found.to_own) << where << ": and not like the other eye's";
-      EXPECT_LT(std::abs(found.other_share), kPhaseLimit) << where << ": of the other eye's detail";
+      EXPECT_LT(std::abs(found.other_share), kOwnPhaseLimit) << where << ": of the other eye's detail";
     }
   }
 };
@@ -52,7 +52,7 @@ TEST_F(OwnPicture, AnywhereInTheWorkingVolume) {
         expect_own_pictures(display, picture, mask, where(picture.between_eyes_mm));
         const viewer::PhaseSummary phase =
             viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture), mask, some_rows(display.panel));
-        EXPECT_LE(phase.worst_pixels, kPhaseLimit) << where(picture.between_eyes_mm);
+        EXPECT_LE(phase.worst_pixels, kOwnPhaseLimit) << where(picture.between_eyes_mm);
       }
 }
 
@@ -70,7 +70,7 @@ TEST_F(OwnPicture, WhereverTheMaskIsKnownToStand) {
       expect_own_pictures(display, picture, *picture.mask_mm, where(head) + ", mask off by " + std::to_string(periods) + " periods", 2.5);
       const viewer::PhaseSummary phase =
           viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture), *picture.mask_mm, some_rows(display.panel));
-      EXPECT_LE(phase.worst_pixels, kPhaseLimit) << periods;
+      EXPECT_LE(phase.worst_pixels, kOwnPhaseLimit) << periods;
     }
 }
 
@@ -83,7 +83,7 @@ TEST_F(OwnPicture, OnAnyPanel) {
       const viewer::PhaseSummary phase = viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture),
                                                                display.ideal_mask_mm(point(head)), some_rows(display.panel));
       EXPECT_GT(phase.windows, 3U * static_cast<unsigned>(columns - 10));
-      EXPECT_LE(phase.worst_pixels, kPhaseLimit) << columns << " columns, head " << where(head);
+      EXPECT_LE(phase.worst_pixels, kOwnPhaseLimit) << columns << " columns, head " << where(head);
       EXPECT_LT(phase.mean_wrong_share, 0.12) << columns << " columns, head " << where(head);
     }
 }
@@ -95,7 +95,7 @@ TEST_F(OwnPicture, WithTheHeadTilted) {
   picture.eye_separation_mm = 58;
   const viewer::PhaseSummary phase = viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture),
                                                            display.ideal_mask_mm({-40, 30, 610}), some_rows(display.panel));
-  EXPECT_LE(phase.worst_pixels, kPhaseLimit);
+  EXPECT_LE(phase.worst_pixels, kOwnPhaseLimit);
 }
 
 TEST_F(OwnPicture, OnALeaningLenticularThatStandsStill) {
@@ -109,7 +109,7 @@ TEST_F(OwnPicture, OnALeaningLenticularThatStandsStill) {
     expect_own_pictures(display, picture, 0, "lenticular, " + where(head));
     const viewer::PhaseSummary phase =
         viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture), 0, some_rows(display.panel));
-    EXPECT_LE(phase.worst_pixels, kPhaseLimit) << where(head);
+    EXPECT_LE(phase.worst_pixels, kOwnPhaseLimit) << where(head);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <stb_image.h>
 
 #include "tests/kiosk/render_test.h"
+#include "tests/support/places.h"
 
 namespace prismesh::kiosk::render {
 namespace {
@@ -74,7 +75,7 @@ class GoldenPicture : public RenderTest {
   }
 
   void compare(const std::string& name, const Image& image) {
-    const std::filesystem::path path = std::filesystem::path(PRISMESH_SOURCE_FOLDER) / "tests/pictures/golden" / (name + ".png");
+    const std::filesystem::path path = test::source_folder() / "tests/pictures/golden" / (name + ".png");
     if (std::getenv("PRISMESH_UPDATE_PICTURES") != nullptr) {
       const auto written = write_png(path, image);
       ASSERT_TRUE(written) << written.error().text();

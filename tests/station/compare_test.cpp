@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/station/station_test_case.h"
+#include "tests/support/places.h"
 
 namespace prismesh::test {
 namespace {
@@ -107,7 +108,7 @@ TEST_F(CompareTest, a_click_or_the_wheel_on_a_panel_is_the_panels_alone) {
 
 TEST_F(CompareTest, kiosks_that_follow_move_together) {
   station_->start_kiosk({"--follow"});
-  const std::filesystem::path programs = PRISMESH_PROGRAMS;
+  const std::filesystem::path programs = test::programs_folder();
   Process other({(programs / "prismesh-kiosk").string(), "--runtime-dir", (station_->folder() / "run").string(), "--follow", "--trace",
                  "--headless-frames", "1000", "--pace", "0.5", "--shots", (station_->folder() / "shots").string(), "--size", "320x240"},
                 {});

@@ -16,6 +16,7 @@
 #include "ipc/client.h"
 #include "ipc/device_client.h"
 #include "tests/station/station.h"
+#include "tests/support/places.h"
 
 namespace prismesh::test {
 namespace {
@@ -235,7 +236,7 @@ TEST_F(EyesTest, settings_choose_the_display) {
 TEST_F(EyesTest, wrong_settings_are_told_with_file_and_line) {
   const std::filesystem::path file = station_->folder() / "wrong.toml";
   std::ofstream(file) << "[display]\nprofil = 'mono'\n";
-  Process kiosk({std::string(PRISMESH_PROGRAMS) + "/prismesh-kiosk", "--config", file.string()}, {{"DISPLAY", station_->display().name()}});
+  Process kiosk({(test::programs_folder() / "prismesh-kiosk").string(), "--config", file.string()}, {{"DISPLAY", station_->display().name()}});
   EXPECT_EQ(kiosk.wait_for_exit(), 1);
   EXPECT_NE(kiosk.standard_error().find("wrong.toml:2: "), std::string::npos) << kiosk.standard_error();
 }

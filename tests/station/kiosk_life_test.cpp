@@ -7,11 +7,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/station/station.h"
+#include "tests/support/places.h"
 
 namespace prismesh::test {
 namespace {
 
-const std::string kKiosk = std::string(PRISMESH_PROGRAMS) + "/prismesh-kiosk";
+const std::string kKiosk = (test::programs_folder() / "prismesh-kiosk").string();
 
 TEST(KioskLifeTest, without_a_display_it_says_so_and_ends_with_1) {
   Process kiosk({kKiosk}, {{"DISPLAY", ""}});

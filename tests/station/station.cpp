@@ -14,10 +14,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/places.h"
+
 namespace prismesh::test {
 namespace {
 
-const std::filesystem::path kPrograms = PRISMESH_PROGRAMS;
+const std::filesystem::path kPrograms = test::programs_folder();
 constexpr int kScreenWidth = 1320, kScreenHeight = 880;
 
 std::string text_of(double value) { return std::to_string(static_cast<long>(std::lround(value))); }

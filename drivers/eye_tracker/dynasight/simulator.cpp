@@ -10,14 +10,14 @@ namespace prismesh::drivers::eye_tracker::dynasight {
 namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
-constexpr std::int64_t kBitsAByte = 10;
+constexpr std::int64_t kBitsPerByteSent = 10;
 
 }  // namespace
 
 DynasightSimulator::DynasightSimulator(port::BytePort& line, HeadSource head, const Options& options)
     : line_(&line), head_(std::move(head)), options_(options), random_(options.seed) {}
 
-std::int64_t DynasightSimulator::byte_ns() const { return kBitsAByte * kSecondNs / options_.baud; }
+std::int64_t DynasightSimulator::byte_ns() const { return kBitsPerByteSent * kSecondNs / options_.baud; }
 
 bool DynasightSimulator::happens(double chance) { return chance > 0 && std::uniform_real_distribution<double>(0, 1)(random_) < chance; }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/clock.h"
+
 namespace prismesh::drivers::prism_servo::dynamixel {
 namespace {
 
@@ -61,7 +63,7 @@ Result<ServoSettings> servo_settings(const settings::PrismServoSettings& from) {
   settings.zero_ticks = from.zero_ticks;
   settings.travel_mm = from.travel_mm;
   settings.speed_mm_s = from.speed_mm_s;
-  settings.lag_ns = std::llround(from.lag_ms * 1e6);
+  settings.lag_ns = nanoseconds(from.lag_ms);
   const double reach = ticks_of(settings, from.travel_mm);
   if (!(from.zero_ticks - reach >= 0 && from.zero_ticks + reach <= kTicksPerTurn - 1))
     return bad(

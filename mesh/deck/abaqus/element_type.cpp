@@ -5,8 +5,6 @@
 namespace prismesh::mesh::deck::abaqus {
 namespace {
 
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-
 /// The number at the beginning; 0: none, or too large for any element.
 std::uint8_t leading_number(std::string_view text) {
   int value = 0;
@@ -23,12 +21,12 @@ struct ShellFamily {
 constexpr ShellFamily kShellFamilies[] = {{"S", true}, {"STRI", true}, {"DS", true}, {"M3D", false}, {"SFM3D", false}, {"R3D", false}};
 
 bool shell(std::string_view type, ElementType& out) {
-  if (starts_with(type, "STRI65")) {
+  if (type.starts_with("STRI65")) {
     out = {ElementClass::shell, 6, 3, true};
     return true;
   }
   for (const ShellFamily& family : kShellFamilies) {
-    if (!starts_with(type, family.start)) continue;
+    if (!type.starts_with(family.start)) continue;
     const std::uint8_t nodes = leading_number(type.substr(family.start.size()));
     if (nodes != 3 && nodes != 4 && nodes != 6 && nodes != 8 && nodes != 9) continue;
     out = {ElementClass::shell, nodes, static_cast<std::uint8_t>(nodes == 3 || nodes == 6 ? 3 : 4), family.is_shell_section};
@@ -61,7 +59,7 @@ constexpr Family kFamilies[] = {
 /// B31, B32H, PIPE21, ELBOW32: the second digit says how they interpolate; quadratic ones have a node in the middle.
 bool beam(std::string_view type, ElementType& out) {
   for (const std::string_view start : {"B", "PIPE", "ELBOW"}) {
-    if (!starts_with(type, start) || type.size() < start.size() + 2) continue;
+    if (!type.starts_with(start) || type.size() < start.size() + 2) continue;
     const char space = type[start.size()];
     const char order = type[start.size() + 1];
     if ((space != '2' && space != '3') || order < '1' || order > '4') continue;
@@ -79,7 +77,7 @@ ElementType element_type(std::string_view type) {
   // CalculiX: a fluid or gas network; a node that lacks at an end is 0.
   if (type == "D") return {ElementClass::other, 3, 0, true};
   for (const Family& family : kFamilies) {
-    if (!starts_with(type, family.start)) continue;
+    if (!type.starts_with(family.start)) continue;
     const std::uint8_t nodes =
         family.nodes >= 0 ? static_cast<std::uint8_t>(family.nodes) : leading_number(type.substr(family.start.size()));
     if (family.nodes < 0 && nodes == 0) continue;

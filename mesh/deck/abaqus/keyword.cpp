@@ -4,12 +4,12 @@
 #include <cstring>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {
 
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 std::size_t next_line(std::string_view text, std::size_t at) {

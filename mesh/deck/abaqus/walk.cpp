@@ -232,7 +232,7 @@ namespace {
 /// A place to cut after about `wanted`: where a line's end is a card's end for certain. `end` if there is none soon.
 std::size_t card_boundary(std::string_view text, std::size_t wanted, std::size_t end, bool elements) {
   constexpr int kMostLines = 1000;
-  constexpr std::ptrdiff_t kFullLine = 15;  // commas of a line that is full, so that it may go on without a comma at its end
+  constexpr std::ptrdiff_t kCommasOfFullLine = 15;  // commas of a line that is full, so that it may go on without a comma at its end
   std::size_t begin = text.find('\n', wanted);
   if (begin == std::string_view::npos || ++begin >= end) return end;
   if (!elements) return begin;
@@ -241,7 +241,7 @@ std::size_t card_boundary(std::string_view text, std::size_t wanted, std::size_t
     if (next == std::string_view::npos || next + 1 >= end) return end;
     const std::string_view shown = trim(text.substr(begin, next - begin));
     const bool comment = shown.substr(0, 2) == "**" || shown.empty();
-    if (!comment && shown.back() != ',' && std::count(shown.begin(), shown.end(), ',') < kFullLine) return next + 1;
+    if (!comment && shown.back() != ',' && std::count(shown.begin(), shown.end(), ',') < kCommasOfFullLine) return next + 1;
     begin = next + 1;
   }
   return end;

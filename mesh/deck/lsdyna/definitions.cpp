@@ -9,7 +9,6 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
 bool has_option(std::string_view keyword, std::string_view option) { return keyword.find(option) != std::string_view::npos; }
 
 /// Data lines of a block; an encrypted block inside ends it.
@@ -19,13 +18,13 @@ class Cards {
 
   bool next(std::string_view& title) {
     Line line;
-    if (!lines_.next(line) || starts_with(line.text, kEncryptedBegin)) return false;
+    if (!lines_.next(line) || line.text.starts_with(kEncryptedBegin)) return false;
     title = trim(line.text);
     return true;
   }
   bool next(Card& card) {
     Line line;
-    if (!lines_.next(line) || starts_with(line.text, kEncryptedBegin)) return false;
+    if (!lines_.next(line) || line.text.starts_with(kEncryptedBegin)) return false;
     card.cut(line.text, columns_);
     return true;
   }
@@ -48,7 +47,7 @@ std::optional<std::int64_t> id_or_none(std::optional<std::int64_t> id, std::int6
 /// Cuts one of `options` off the front of the keyword's rest.
 bool cut_option(std::string_view& rest, std::initializer_list<std::string_view> options) {
   for (const std::string_view option : options)
-    if (starts_with(rest, option) && (rest.size() == option.size() || rest[option.size()] == '_')) {
+    if (rest.starts_with(option) && (rest.size() == option.size() || rest[option.size()] == '_')) {
       rest.remove_prefix(option.size());
       return true;
     }
@@ -57,7 +56,7 @@ bool cut_option(std::string_view& rest, std::initializer_list<std::string_view> 
 
 /// *PART with any of its options; *PART_MOVE, _ANNEAL, _SENSOR and their like are about parts that others define.
 bool defines_parts(std::string_view keyword) {
-  if (!starts_with(keyword, "PART")) return false;
+  if (!keyword.starts_with("PART")) return false;
   keyword.remove_prefix(4);
   while (cut_option(keyword, {"_INERTIA", "_REPOSITION", "_CONTACT", "_PRINT", "_ATTACHMENT_NODES", "_AVERAGED", "_FIELD"})) continue;
   return keyword.empty();
@@ -84,13 +83,13 @@ int cards_of_eight(double values) { return static_cast<int>((std::clamp(values, 
 bool Definitions::read(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& context) {
   const std::string_view name = block.name;
   context_ = &context;
-  if (starts_with(name, "PART_COMPOSITE")) {
+  if (name.starts_with("PART_COMPOSITE")) {
     read_composite_part(text, block, parameters);
   } else if (defines_parts(name)) {
     read_parts(text, block, parameters);
-  } else if (starts_with(name, "SECTION_SHELL")) {
+  } else if (name.starts_with("SECTION_SHELL")) {
     read_shell_sections(text, block, parameters);
-  } else if (starts_with(name, "MAT_") && !starts_with(name, "MAT_ADD") && !starts_with(name, "MAT_NONLOCAL")) {
+  } else if (name.starts_with("MAT_") && !name.starts_with("MAT_ADD") && !name.starts_with("MAT_NONLOCAL")) {
     read_material(text, block, parameters);
   } else if (name == "CONTROL_TIMESTEP") {
     read_time_step(text, block, parameters);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/letter_case.h"
 #include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
@@ -11,17 +12,9 @@ namespace {
 constexpr std::size_t kLongestKeyword = 256;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
-std::size_t end_of_line(std::string_view text, std::size_t at) {
+std::size_t line_feed_at(std::string_view text, std::size_t at) {
   const void* found = std::memchr(text.data() + at, '\n', text.size() - at);
   return found ? static_cast<std::size_t>(static_cast<const char*>(found) - text.data()) : text.size();
-}
-
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-
-std::string upper(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](char c) { return upper(c); });
-  return out;
 }
 
 /// The value of NAME=VALUE in the rest of a *KEYWORD line; blanks around the sign are allowed. 0 if it isn't there.
@@ -71,6 +64,14 @@ Block read_keyword(std::string_view line, Columns& columns) {
 
 }  // namespace
 
+bool has_word(std::string_view keyword, std::string_view word) {
+  for (std::size_t at = keyword.find(word); at != std::string_view::npos; at = keyword.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || keyword[at - 1] == '_') && (end == keyword.size() || keyword[end] == '_')) return true;
+  }
+  return false;
+}
+
 std::size_t Blocks::find_keyword(std::size_t at) const {
   // Asterisks are rare: looking for them is much faster than looking at every line.
   while (at < text_.size()) {
@@ -89,7 +90,7 @@ bool Blocks::next(Block& block) {
   if (!started_) at_ = find_keyword(0);
   started_ = true;
   if (ended_ || at_ >= text_.size()) return false;
-  const std::size_t end = end_of_line(text_, at_);
+  const std::size_t end = line_feed_at(text_, at_);
   block = read_keyword(text_.substr(at_, end - at_), columns_);
   block.keyword = at_;
   block.begin = std::min(end + 1, text_.size());
@@ -103,7 +104,7 @@ bool Blocks::next(Block& block) {
 bool Lines::next(Line& line) {
   while (at_ < text_.size()) {
     const std::size_t begin = at_;
-    const std::size_t end = end_of_line(text_, begin);
+    const std::size_t end = line_feed_at(text_, begin);
     at_ = end + 1;
     if (text_[begin] == '$') continue;
     line.text = text_.substr(begin, end - begin);

@@ -61,6 +61,9 @@ class Lines {
   std::size_t at_;
 };
 
+/// Whether a whole word of `keyword`, between underscores, is `word`.
+bool has_word(std::string_view keyword, std::string_view word);
+
 /// What stands before an encrypted block, at the start of a line.
 inline constexpr std::string_view kEncryptedBegin = "-----BEGIN PGP";
 inline constexpr std::string_view kEncryptedEnd = "-----END PGP";

@@ -133,8 +133,6 @@ constexpr KnownMaterial kMaterials[] = {
     {"SEATBELT", -1, kNoDensity},
 };
 
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-
 /// "024" -> 24; -1 where it isn't a number.
 int number_of(std::string_view text) {
   if (text.empty() || text.size() > 3) return -1;
@@ -154,13 +152,13 @@ MaterialFields material_fields(std::string_view keyword) {
   if (keyword.size() > kTitle.size() && keyword.substr(keyword.size() - kTitle.size()) == kTitle) keyword.remove_suffix(kTitle.size());
   // Springs and dampers have a stiffness where the others have a density.
   for (const std::string_view other : {"SPRING", "DAMPER", "S0", "S1", "B0", "THERMAL", "T0", "T1"})
-    if (starts_with(keyword, other)) return kNoDensity;
+    if (keyword.starts_with(other)) return kNoDensity;
   const int number = number_of(keyword.substr(0, keyword.find('_')));
   const KnownMaterial* best = nullptr;
   const KnownMaterial* numbered = nullptr;
   for (const KnownMaterial& known : kMaterials) {
     // An option may follow the name ("FABRIC_MAP", "PIECEWISE_LINEAR_PLASTICITY_LOG_INTERPOLATION"): the longest name wins.
-    const bool named = starts_with(keyword, known.name) && (keyword.size() == known.name.size() || keyword[known.name.size()] == '_');
+    const bool named = keyword.starts_with(known.name) && (keyword.size() == known.name.size() || keyword[known.name.size()] == '_');
     if (named && (!best || best->name.size() < known.name.size())) best = &known;
     if (number >= 0 && number == known.number) numbered = &known;
   }

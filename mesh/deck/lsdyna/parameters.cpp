@@ -6,6 +6,7 @@
 #include <iterator>
 #include <set>
 
+#include "base/letter_case.h"
 #include "mesh/deck/lsdyna/card.h"
 #include "mesh/deck/number.h"
 
@@ -14,13 +15,6 @@ namespace {
 
 constexpr int kDeepestExpression = 64;
 constexpr std::size_t kLongestExpression = 1 << 20;
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
 
 /// "R  tEnd" is the real parameter "tend", "rtbumper" is "tbumper".
 struct TypedName {

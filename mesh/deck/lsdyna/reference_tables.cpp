@@ -9,7 +9,7 @@ namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
 constexpr RuleKind kCards = RuleKind::cards;
-constexpr FieldWidths kEights = FieldWidths::eights;
+constexpr FieldWidths kEightWide = FieldWidths::eights;
 constexpr std::string_view kMotion = "n . . . . . .;?1.2=9,10,11,12,-9,-10,-11,-12 . . p n n";
 constexpr std::string_view kMotionOptions = "ID^ TITLE^ LOCAL";
 constexpr std::string_view kJoint = "n6";
@@ -31,20 +31,20 @@ constexpr ReferenceRule kRules[] = {
     {"ELEMENT_TSHELL", RuleKind::nothing, "", "BETA COMPOSITE"},
     {"ELEMENT_DISCRETE", RuleKind::nothing, "", "LCO"},
     {"ELEMENT_MASS"},
-    {"ELEMENT_MASS_NODE_SET", kCards, ". N", "", false, false, kEights},
-    {"ELEMENT_MASS_PART", kCards, "p", "", false, false, kEights},
-    {"ELEMENT_MASS_PART_SET", kCards, "P", "", false, false, kEights},
+    {"ELEMENT_MASS_NODE_SET", kCards, ". N", "", false, false, kEightWide},
+    {"ELEMENT_MASS_PART", kCards, "p", "", false, false, kEightWide},
+    {"ELEMENT_MASS_PART_SET", kCards, "P", "", false, false, kEightWide},
     {"ELEMENT_SPH", RuleKind::nothing, "", "VOLUME"},
     {"ELEMENT_PLOTEL"},
     {"ELEMENT_BEAM", kCards, ".4 n", "THICKNESS+ SCALAR+ SCALR+ SECTION+ PID+p,p OFFSET+ ORIENTATION+ WARPAGE+n,n ELBOW+n", false, false,
-     kEights},
-    {"ELEMENT_SEATBELT", kCards, ".6 n n", "", false, false, kEights},
+     kEightWide},
+    {"ELEMENT_SEATBELT", kCards, ".6 n n", "", false, false, kEightWide},
     {"ELEMENT_SEATBELT_ACCELEROMETER", kCards, ". n3"},
     {"ELEMENT_SEATBELT_RETRACTOR", kCards, ". n-N o;"},
     {"ELEMENT_SEATBELT_SENSOR", kCards, ";@1.2:1n2z3z4n5z @1.2:1z2z3z4n5z"},
     {"ELEMENT_SEATBELT_SLIPRING", kCards, ". o o . n-N . . n", "", true, true},
     {"ELEMENT_SEATBELT_PRETENSIONER", kCards, ";@1.2:1z2d3d4z5z6z7z8z9d"},
-    {"ELEMENT_INERTIA", kCards, ". n;", "OFFSET+", false, false, kEights},
+    {"ELEMENT_INERTIA", kCards, ". n;", "OFFSET+", false, false, kEightWide},
     {"ELEMENT_TRIM", kCards, "P"},
 
     {"PART", kCards, "^!", "CONTACT+ PRINT+ REPOSITION+ ATTACHMENT_NODES+N FIELD+ TITLE"},
@@ -293,7 +293,7 @@ constexpr ReferenceRule kRules[] = {
     {"INITIAL_TEMPERATURE_SET", kCards, "N"},
     {"INITIAL_DETONATION", kCards, "p-P", "GEOMETRY", false, true},
     {"INITIAL_MOMENTUM", kCards, "h"},
-    {"INITIAL_FOAM_REFERENCE_GEOMETRY", kCards, "n", "", false, false, kEights},
+    {"INITIAL_FOAM_REFERENCE_GEOMETRY", kCards, "n", "", false, false, kEightWide},
 
     {"RIGIDWALL_PLANAR", kCards, "N N;", kWallOptions},
     {"RIGIDWALL_GEOMETRIC_FLAT", kCards, "N N;;", "MOTION+ DISPLAY+! INTERIOR ID^ TITLE^", true},
@@ -350,8 +350,8 @@ constexpr ReferenceRule kRules[] = {
     {"AIRBAG_HYBRID", kCards, "@2:0G_P . p", "ID^ JETTING CM CHEMKIN", true, true},
     {"AIRBAG_PARTICLE", kCards, "@2:0p1P . @4:0p1P", "ID^", true, true},
     {"AIRBAG_INTERACTION", kCards, ".4 p"},
-    {"AIRBAG_REFERENCE_GEOMETRY", kCards, "n", "", false, false, kEights},
-    {"AIRBAG_SHELL_REFERENCE_GEOMETRY", kCards, "s p n4", "", false, false, kEights},
+    {"AIRBAG_REFERENCE_GEOMETRY", kCards, "n", "", false, false, kEightWide},
+    {"AIRBAG_SHELL_REFERENCE_GEOMETRY", kCards, "s p n4", "", false, false, kEightWide},
 
     {"SENSOR_DEFINE_NODE", kCards, "# n n"},
     {"SENSOR_DEFINE_NODE_SET", kCards, "# N N"},

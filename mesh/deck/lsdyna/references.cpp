@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "base/parallel_for.h"
 #include "mesh/deck/lsdyna/card.h"
 #include "mesh/deck/lsdyna/reference_tables.h"
@@ -38,22 +39,6 @@ std::span<const int> widths_of(FieldWidths widths) {
     case FieldWidths::tens: break;
   }
   return kTens;
-}
-
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-bool ends_with(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-
-/// Whether a whole word of the keyword is `word`.
-bool has_word(std::string_view keyword, std::string_view word) {
-  for (std::size_t at = keyword.find(word); at != std::string_view::npos; at = keyword.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    if ((at == 0 || keyword[at - 1] == '_') && (end == keyword.size() || keyword[end] == '_')) return true;
-  }
-  return false;
 }
 
 std::int64_t offset_of(Referred referred, const IdOffsets& offsets) {
@@ -93,7 +78,7 @@ class BlockReader {
       : text_(text), job_(job), parameters_(parameters), offsets_(offsets), out_(out), lines_(text, job.begin, job.end) {
     name_ = trim(text.substr(job.keyword + 1, std::min(text.find('\n', job.keyword), text.size()) - job.keyword - 1))
                 .substr(0, job.name_length);
-    std::transform(name_.begin(), name_.end(), name_.begin(), upper);
+    name_ = upper(name_);
   }
 
   void run() {
@@ -111,7 +96,7 @@ class BlockReader {
     encrypted_ = find_encrypted(text_, job_.begin, job_.end);
     if (encrypted_) lines_ = Lines(text_, job_.begin, encrypted_->begin);
     // Those among nodes and elements are told by the walk.
-    const bool told = starts_with(name_, "ELEMENT_");
+    const bool told = name_.starts_with("ELEMENT_");
     for (std::optional<Encrypted> part = encrypted_; part && !told; part = find_encrypted(text_, part->end, job_.end))
       add_unread(part->begin, part->end, true);
   }
@@ -349,7 +334,7 @@ class BlockReader {
     const std::optional<std::int64_t> value = card.integer(field, parameters_);
     if (value) return *value >= 0 && *value <= 9 ? static_cast<char>('0' + *value) : '?';
     std::string word(text);
-    std::transform(word.begin(), word.end(), word.begin(), upper);
+    word = upper(word);
     return word.find("SET") != std::string::npos ? 'T' : word.front();
   }
 
@@ -431,7 +416,7 @@ class BlockReader {
   /// "NODE, 1, 2, 3", "DPART, 4", "ALL"; those with a D take away what they name.
   bool read_general(char letter, Referred member, Referred set, const Line& line) {
     std::string word(card_.text(0));
-    std::transform(word.begin(), word.end(), word.begin(), upper);
+    word = upper(word);
     takes_away_ = !word.empty() && word.front() == 'D';
     const bool understood = read_general(letter, member, set, word, line);
     takes_away_ = false;
@@ -448,7 +433,7 @@ class BlockReader {
     if (takes_away) word.erase(0, 1);
     const ReferenceRole role = takes_away ? ReferenceRole::single : ReferenceRole::list;
     if (word == "PART" || word == "PART_IO") return add_all(Referred::part, ReferenceRole::single, 1, line), true;
-    if (word == "BOX" || starts_with(word, "BOX_") || word == "VOL" || starts_with(word, "VOL_")) return true;
+    if (word == "BOX" || word.starts_with("BOX_") || word == "VOL" || word.starts_with("VOL_")) return true;
     if (letter == 'g' && word == "SEG") {
       for (std::size_t f = 1; f < 5; ++f) add(Referred::node, takes_away ? role : ReferenceRole::segment, number(card_, f), line.offset);
       return true;
@@ -476,7 +461,7 @@ class BlockReader {
     int headers = 0;
     compile(surfaces, {}, cards_, headers);
     Line line;
-    const bool has_id = ends_with(name_, "_ID") || has_word(name_, "ID");
+    const bool has_id = name_.ends_with("_ID") || has_word(name_, "ID");
     if (has_id || has_word(name_, "TITLE")) {
       if (!next(line)) return true;
       header_ = line;
@@ -512,7 +497,7 @@ class BlockReader {
     while (next(line)) {
       cut(line);
       std::string word(card_.text(0));
-      std::transform(word.begin(), word.end(), word.begin(), upper);
+      word = upper(word);
       const std::size_t nodes = word == "POS6N" ? 6 : word == "TRANSL2ND" ? 2 : word == "ROTATE3NA" ? 2 : 0;
       for (std::size_t f = 1; f <= nodes; ++f) add(Referred::node, ReferenceRole::single, number(card_, f), line.offset);
     }
@@ -551,7 +536,7 @@ void ReferenceReader::read(std::uint32_t file, const Block& block, const Paramet
   std::string_view options;
   Job job;
   job.rule = find_reference_rule(block.name, options);
-  const bool is_mesh = block.name == "NODE" || starts_with(block.name, "ELEMENT_");
+  const bool is_mesh = block.name == "NODE" || block.name.starts_with("ELEMENT_");
   if (job.rule && job.rule->kind == RuleKind::nothing && is_mesh) {
     std::vector<CardRule> cards;
     int headers = 0;

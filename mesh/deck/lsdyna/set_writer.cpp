@@ -12,15 +12,6 @@ namespace {
 
 constexpr std::array<int, 8> kSetWidths = {10, 10, 10, 10, 10, 10, 10, 10};
 
-bool has_word(std::string_view keyword, std::string_view word) {
-  for (std::size_t at = keyword.find(word); at != std::string_view::npos; at = keyword.find(word, at + 1)) {
-    const bool begins = at == 0 || keyword[at - 1] == '_';
-    const std::size_t end = at + word.size();
-    if (begins && (end == keyword.size() || keyword[end] == '_')) return true;
-  }
-  return false;
-}
-
 std::string_view eol_of(std::string_view text, std::size_t line) {
   const std::size_t newline = text.find('\n', line);
   const std::size_t known = newline != std::string_view::npos ? newline : text.rfind('\n');
@@ -152,8 +143,6 @@ constexpr Followed kFollowedNodes[] = {
 };
 constexpr Followed kFollowedShells[] = {{"LOAD_SHELL_ELEMENT", 0}};
 
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-
 bool is_initial_shell(std::string_view keyword) { return keyword == "INITIAL_STRESS_SHELL" || keyword == "INITIAL_STRAIN_SHELL"; }
 
 /// How many lines of values an initial stress or strain has at least: one for each layer at each place in the plane.
@@ -176,7 +165,7 @@ std::optional<std::size_t> followed_field(std::string_view keyword, Referred ref
 
 /// In which fields a segment's corners stand; nullopt: `keyword` has no segments that can be replaced.
 std::optional<std::size_t> first_corner(const Referrer& set, const FieldLine& line) {
-  if (!starts_with(set.keyword, "SET_SEGMENT")) return std::nullopt;
+  if (!set.keyword.starts_with("SET_SEGMENT")) return std::nullopt;
   if (!has_word(set.keyword, "GENERAL")) return 0;
   std::string word(line.text(0));
   std::transform(word.begin(), word.end(), word.begin(),
@@ -191,7 +180,7 @@ std::string_view line_at(std::string_view text, std::size_t offset) { return tex
 
 Result<std::vector<Replacement>> change_set(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
                                             std::span<const std::int64_t> leaving) {
-  if (!starts_with(set.keyword, "SET_")) return fail("", "lists what it is about in a way that this version can't change");
+  if (!set.keyword.starts_with("SET_")) return fail("", "lists what it is about in a way that this version can't change");
   const bool generate = has_word(set.keyword, "GENERATE"), increment = has_word(set.keyword, "INCREMENT");
   const bool general = has_word(set.keyword, "GENERAL"), column = has_word(set.keyword, "COLUMN");
   if (has_word(set.keyword, "ADD") || has_word(set.keyword, "INTERSECT")) return fail("", "is made of other sets");
@@ -227,7 +216,7 @@ Result<std::vector<Replacement>> change_set(std::string_view text, const Referre
   std::string more;
   std::string line_text = last_text;
   if (general) {
-    const std::string_view word = starts_with(set.keyword, "SET_NODE") ? "NODE" : starts_with(set.keyword, "SET_PART") ? "PART" : "ELEM";
+    const std::string_view word = set.keyword.starts_with("SET_NODE") ? "NODE" : set.keyword.starts_with("SET_PART") ? "PART" : "ELEM";
     more = new_lines(texts_of(joining), 8, word, false, fields, columns, eol);
   } else if (column) {
     for (std::size_t f = 1; f < 5; ++f)
@@ -310,12 +299,12 @@ Result<std::vector<Replacement>> replace_segment(std::string_view text, const Re
 Inheritance inheritance_of(const Referrer& card, Referred referred) {
   const std::string_view keyword = card.keyword;
   if (followed_field(keyword, referred)) return Inheritance::follows;
-  if (starts_with(keyword, "DATABASE_") || starts_with(keyword, "SENSOR_")) return Inheritance::stays;
+  if (keyword.starts_with("DATABASE_") || keyword.starts_with("SENSOR_")) return Inheritance::stays;
   // What holds, drives or heats a node, gives it another place to be stressed from or takes it out of a set, or loads or stresses a
   // shell, can't be left with a part of where it was.
   if (referred != Referred::node) return Inheritance::forbids;
   for (const std::string_view start : {"BOUNDARY_", "INITIAL_", "LOAD_THERMAL_", "AIRBAG_", "SET_"})
-    if (starts_with(keyword, start)) return Inheritance::forbids;
+    if (keyword.starts_with(start)) return Inheritance::forbids;
   // Joints, welds, systems of coordinates, forces at a point.
   return Inheritance::stays;
 }

@@ -12,7 +12,7 @@ namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
 constexpr std::array<int, 10> kShellWidths = {8, 8, 8, 8, 8, 8, 8, 8, 8, 8};
-constexpr std::array<int, 5> kThicknessWidths = {16, 16, 16, 16, 16};
+constexpr std::array<int, 5> kWrittenThicknessWidths = {16, 16, 16, 16, 16};
 constexpr std::array<int, 8> kLayerWidths = {10, 10, 10, 10, 10, 10, 10, 10};
 
 /// The lines of one shell's cards.
@@ -108,7 +108,7 @@ void turn_back(FieldLine& line, std::size_t field, double turn, WrittenCard& car
 
 Result<std::string> thickness_card(const Line& before, const CardForm& form, Columns columns, bool was_triangle, const ShellCard& shell,
                                    WrittenCard& card) {
-  FieldLine line(before.text, kThicknessWidths, columns);
+  FieldLine line(before.text, kWrittenThicknessWidths, columns);
   const FieldLine old = line;
   const std::size_t corners = was_triangle ? 3 : 4;
   std::array<double, 4> thickness{};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "mesh/deck/lsdyna/card.h"
 #include "mesh/deck/number.h"
 
@@ -16,7 +17,7 @@ using Kind = TransformStep::Kind;
 
 constexpr std::size_t kMostSteps = 1000;  ///< thousands of includes may name one transformation
 /// Farther than this no model reaches, and products of such numbers still are numbers.
-constexpr double kFarthest = 1e60;
+constexpr double kMaxTransformed = 1e60;
 
 Kind kind_of(std::string_view word) {
   constexpr std::pair<std::string_view, Kind> kKinds[] = {
@@ -37,13 +38,6 @@ std::int64_t id_of(double value) { return std::abs(value) < 1e15 ? static_cast<s
 /// How many of a step's first fields are ids of nodes.
 std::size_t node_fields(Kind kind) {
   return kind == Kind::translate_along_nodes ? 2 : kind == Kind::rotate_about_nodes ? 3 : kind == Kind::by_nodes ? 6 : 0;
-}
-
-std::string upper(std::string_view text) {
-  std::string out(text.substr(0, 20));
-  for (char& c : out)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return out;
 }
 
 bool read_numbers(const Card& card, std::size_t first_field, std::size_t count, const Parameters& parameters, double* out) {
@@ -102,7 +96,7 @@ class Composer {
         map = one(step);
       else
         problem_ = "has a " + step.word + " whose numbers can't be read";
-      if (map && !(((*map) * so_far_).matrix().cwiseAbs().maxCoeff() < kFarthest)) {
+      if (map && !(((*map) * so_far_).matrix().cwiseAbs().maxCoeff() < kMaxTransformed)) {
         map.reset();
         problem_ = "moves things out of the range of numbers";
       }
@@ -252,7 +246,7 @@ void Transformations::read(std::string_view text, std::uint32_t file, const Bloc
     }
     card.cut(line.text, block.columns);
     TransformStep step;
-    step.word = upper(card.text(0));
+    step.word = upper(card.text(0).substr(0, 20));
     if (trim(line.text).empty()) continue;
     step.kind = kind_of(step.word);
     if (step.kind == Kind::matrix) {
@@ -263,7 +257,7 @@ void Transformations::read(std::string_view text, std::uint32_t file, const Bloc
     } else {
       step.readable = read_numbers(card, 1, 7, parameters, step.a.data());
     }
-    for (double& value : step.a) step.readable &= std::abs(value) < kFarthest;
+    for (double& value : step.a) step.readable &= std::abs(value) < kMaxTransformed;
     for (std::size_t f = 0; f < node_fields(step.kind); ++f) {
       step.readable &= std::abs(step.a[f]) < 1e15;
       if (step.a[f] > 0) step.a[f] += static_cast<double>(offsets.node);

@@ -15,8 +15,6 @@ constexpr std::size_t kMostWalks = 4000;  ///< also of contexts, which are looke
 constexpr std::size_t kFreeRepeats = std::size_t{64} << 20;
 constexpr std::size_t kMostRepeats = 16;  ///< times the size of all files
 
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-
 }  // namespace
 
 Walk::Walk(fs::path path, FileBytes main, bool cut_out_encrypted)
@@ -49,7 +47,7 @@ void Walk::walk_file(const Visit& visit, Columns columns) {
   Block block;
   bool has_keyword = false;
   while (blocks.next(block)) {
-    has_keyword |= starts_with(block.name, "KEYWORD");
+    has_keyword |= block.name.starts_with("KEYWORD");
     const std::size_t undefined = parameters_.undefined();
     read_block(visit, block, blocks.columns());
     if (parameters_.undefined() > undefined)
@@ -70,9 +68,9 @@ void Walk::read_block(const Visit& visit, const Block& block, Columns columns) {
   references.read(visit.file, block, parameters_, contexts[visit.context].offsets);
   if (const std::optional<CardForm> form = card_form(name)) {
     add_mesh(visit, block, *form);
-  } else if (starts_with(name, "INCLUDE")) {
+  } else if (name.starts_with("INCLUDE")) {
     include(visit, block, columns);
-  } else if (starts_with(name, "PARAMETER")) {
+  } else if (name.starts_with("PARAMETER")) {
     std::vector<ParameterProblem> problems;
     parameters_.read(text, block, problems);
     for (ParameterProblem& problem : problems) warnings.note(problem.kind, visit.file, problem.offset, std::move(problem.message));
@@ -113,7 +111,7 @@ void Walk::add_mesh(const Visit& visit, const Block& block, const CardForm& form
   Segment segment{form, block.columns, static_cast<std::uint32_t>(parameter_tables.size() - 1), block.begin, block.end, visit.context, {}};
   // "ELEMENT_SHELL_THICKNESS" is told as "SHELL_THICKNESS".
   constexpr std::string_view kElement = "ELEMENT_";
-  if (starts_with(block.name, kElement)) segment.word = *words_.insert(block.name.substr(kElement.size())).first;
+  if (block.name.starts_with(kElement)) segment.word = *words_.insert(block.name.substr(kElement.size())).first;
   const std::string_view text = files.files[file].bytes.text().substr(0, block.end);
   while (cut_out_encrypted_ && segment.begin < segment.end) {
     std::size_t begin = text.find(kEncryptedBegin, segment.begin);
@@ -197,7 +195,7 @@ void Walk::keep_unread(const Visit& from, const Block& block) {
   const std::string_view kind = std::string_view(block.name).substr(std::string_view("INCLUDE").size());
   warnings.note_each("unread-include", from.file, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
   // Of the others only these begin with a file's name.
-  if (kind != "_NASTRAN" && kind != "_BINARY" && kind != "_TRIM" && kind != "_AUTO_OFFSET" && !starts_with(kind, "_STAMPED")) return;
+  if (kind != "_NASTRAN" && kind != "_BINARY" && kind != "_TRIM" && kind != "_AUTO_OFFSET" && !kind.starts_with("_STAMPED")) return;
   for (const IncludeName& name : include_names(files.files[from.file].bytes.text(), block, true)) {
     std::string reason;
     const std::uint32_t file = files.include(from.file, name.name, search_.folders(files.folder_of(from.file)), reason);

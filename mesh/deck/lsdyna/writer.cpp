@@ -14,7 +14,7 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-constexpr std::array<int, 6> kNodeWidths = {8, 16, 16, 16, 8, 8};
+constexpr std::array<int, 6> kWrittenNodeWidths = {8, 16, 16, 16, 8, 8};
 
 std::string number_for(double value, std::size_t width, WrittenCard& card) {
   std::string text = format_coordinate(value, width);
@@ -30,7 +30,7 @@ std::string number_for(double value, std::size_t width, WrittenCard& card) {
 
 WrittenCard rewrite_node_card(std::string_view line, Columns columns, const Vec3& from, const Vec3& to) {
   WrittenCard card;
-  FieldLine fields(line, kNodeWidths, columns);
+  FieldLine fields(line, kWrittenNodeWidths, columns);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<Eigen::Index>(axis);
     if (from[a] == to[a]) continue;
@@ -54,7 +54,7 @@ class Writer : public CardWriter {
 
   std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t style) const override {
     Card card;
-    card.cut(text.substr(offset, end_of_line(text, offset) - offset), kNodeWidths, columns_of(style));
+    card.cut(text.substr(offset, end_of_line(text, offset) - offset), kWrittenNodeWidths, columns_of(style));
     const Parameters none;
     Vec3 out;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -75,7 +75,7 @@ class Writer : public CardWriter {
 
   /// TC and RC, where they hold something.
   std::string node_constraints(std::string_view text, std::size_t offset, std::uint16_t style) const override {
-    const FieldLine line(line_of(text, offset), kNodeWidths, columns_of(style));
+    const FieldLine line(line_of(text, offset), kWrittenNodeWidths, columns_of(style));
     if (line.is_blank_or_zero(4) && line.is_blank_or_zero(5)) return {};
     return std::string(line.text(4)) + "," + std::string(line.text(5));
   }
@@ -127,7 +127,7 @@ class Writer : public CardWriter {
   static WrittenCard new_card(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id, const Vec3& at,
                               bool constrained) {
     WrittenCard card;
-    FieldLine line(line_of(text, offset), kNodeWidths, columns_of(style));
+    FieldLine line(line_of(text, offset), kWrittenNodeWidths, columns_of(style));
     line.set(0, std::to_string(id));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t width = line.width(axis + 1);

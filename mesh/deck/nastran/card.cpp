@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/letter_case.h"
 #include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::nastran {
@@ -32,13 +33,7 @@ std::string_view without_comment(std::string_view line) { return line.substr(0, 
 
 }  // namespace
 
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-
-std::string upper(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = upper(c);
-  return out;
-}
+bool has_point(std::string_view text) { return text.find('.') != std::string_view::npos; }
 
 bool begins_with(std::string_view text, std::string_view start) {
   return text.size() >= start.size() && std::equal(start.begin(), start.end(), text.begin(), [](char s, char t) { return s == upper(t); });

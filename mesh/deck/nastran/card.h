@@ -94,8 +94,8 @@ class Card {
   bool overlong_ = false;
 };
 
-char upper(char c);
-std::string upper(std::string_view text);
+/// Whether a field is written as a real number.
+bool has_point(std::string_view text);
 /// Whether `text` begins with `start` (upper case), in any case.
 bool begins_with(std::string_view text, std::string_view start);
 

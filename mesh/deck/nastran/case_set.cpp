@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/letter_case.h"
 #include "mesh/deck/nastran/card.h"
 #include "mesh/deck/nastran/card_edit.h"
 #include "mesh/deck/number.h"

@@ -15,7 +15,7 @@ struct PropertyForm {
   std::uint8_t thickness = 0;
 };
 
-constexpr PropertyForm kForms[] = {
+constexpr PropertyForm kPropertyForms[] = {
     {"PSHELL", 0, 1, 2},  {"PCOMP", 0, 0, 0},  {"PCOMPG", 0, 0, 0},  {"PCOMPP", 0, 0, 0}, {"PSHEAR", 0, 1, 2},  {"PSOLID", 0, 1, 0},
     {"PLSOLID", 0, 1, 0}, {"PCOMPS", 0, 0, 0}, {"PLPLANE", 0, 1, 0}, {"PPLANE", 0, 1, 2}, {"PBAR", 0, 1, 0},    {"PBARL", 0, 1, 0},
     {"PBEAM", 0, 1, 0},   {"PBEAML", 0, 1, 0}, {"PBCOMP", 0, 1, 0},  {"PBEND", 0, 1, 0},  {"PBMSECT", 0, 1, 0}, {"PBRSECT", 0, 1, 0},
@@ -26,8 +26,8 @@ constexpr PropertyForm kForms[] = {
 };
 
 const PropertyForm* form_of(std::string_view name) {
-  const auto at = std::find_if(std::begin(kForms), std::end(kForms), [&](const PropertyForm& form) { return form.name == name; });
-  return at == std::end(kForms) ? nullptr : &*at;
+  const auto at = std::find_if(std::begin(kPropertyForms), std::end(kPropertyForms), [&](const PropertyForm& form) { return form.name == name; });
+  return at == std::end(kPropertyForms) ? nullptr : &*at;
 }
 
 std::optional<double> given(const Card& card, std::size_t field) { return card.blank(field) ? std::nullopt : card.real(field); }

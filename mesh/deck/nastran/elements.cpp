@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "base/letter_case.h"
+
 namespace prismesh::mesh::deck::nastran {
 namespace {
 
 using Class = ElementClass;
 using F = NodeFields;
 
-constexpr ElementForm kForms[] = {
+constexpr ElementForm kElementForms[] = {
     {"CQUAD4", Class::shell, F::shell, 1, 2, 4, 4},
     {"CQUADR", Class::shell, F::shell, 1, 2, 4, 4},
     {"CQUAD8", Class::shell, F::shell, 1, 2, 8, 4},
@@ -98,8 +100,6 @@ void take(const Card& card, std::size_t begin, std::size_t end, std::size_t step
     if (const std::int64_t id = card.integer_or_zero(f); id > 0) nodes.push_back(id);
 }
 
-bool has_point(std::string_view text) { return text.find('.') != std::string_view::npos; }
-
 /// RBE1: EID GN1 CN1 GN2 CN2 GN3 CN3, continued as blank or UM, then pairs of node and freedoms.
 void take_rbe1(const Card& card, std::vector<std::int64_t>& nodes) {
   for (std::size_t f = 1; f < card.size(); f += 2) {
@@ -149,7 +149,7 @@ void take_connector(const Card& card, std::size_t projected, std::size_t ends, s
 const ElementForm* element_form(std::string_view name) {
   static const auto forms = [] {
     std::unordered_map<std::string_view, const ElementForm*> out;
-    for (const ElementForm& form : kForms) out[form.name] = &form;
+    for (const ElementForm& form : kElementForms) out[form.name] = &form;
     return out;
   }();
   const auto at = forms.find(name);

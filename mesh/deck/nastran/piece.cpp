@@ -29,7 +29,7 @@ constexpr std::uint64_t kLargeGrid = word_of("GRID*   ");
 constexpr std::uint64_t kQuad = word_of("CQUAD4  ");
 constexpr std::uint64_t kTria = word_of("CTRIA3  ");
 
-inline bool is_letter(char c) { return static_cast<unsigned char>((c | 0x20) - 'a') < 26; }
+inline bool starts_card(char c) { return static_cast<unsigned char>((c | 0x20) - 'a') < 26; }
 
 constexpr std::size_t kSmall = width_of(Layout::small);
 constexpr std::size_t kLarge = width_of(Layout::large);
@@ -63,7 +63,7 @@ class PieceReader {
   // ---- the fast way: small field grid points and shells without continuation, large field grid points of two lines ----
 
   /// Whether the line after begins a card of its own: continuations, comments they may hide behind, and replications are for the slow way.
-  bool followed_by_card(std::size_t next) const { return next >= text_.size() || is_letter(text_[next]); }
+  bool followed_by_card(std::size_t next) const { return next >= text_.size() || starts_card(text_[next]); }
 
   bool read_fast(const Line& line) {
     const std::string_view text = line.text;

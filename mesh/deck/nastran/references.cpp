@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "base/letter_case.h"
 #include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::nastran {
@@ -129,8 +130,6 @@ bool is_silent(std::string_view name) {
     if (name.substr(0, beginning.size()) == beginning) return true;
   return std::find(std::begin(kSilent), std::end(kSilent), name) != std::end(kSilent);
 }
-
-bool has_point(std::string_view text) { return text.find('.') != std::string_view::npos; }
 
 std::int64_t number(std::string_view word) {
   std::int64_t value = 0;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/letter_case.h"
 #include "base/parallel_for.h"
 #include "mesh/deck/number.h"
 #include "mesh/deck/opening.h"

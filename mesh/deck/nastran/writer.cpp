@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/letter_case.h"
 #include "mesh/deck/format_number.h"
 #include "mesh/deck/nastran/card_edit.h"
 #include "mesh/deck/nastran/case_set.h"

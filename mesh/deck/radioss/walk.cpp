@@ -17,8 +17,6 @@ constexpr std::size_t kLongestInclude = 4096;
 constexpr std::size_t kMostContexts = 100000;
 constexpr std::int64_t kLargestOffset = 9'999'999'999;  ///< what ten columns hold
 
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
-
 /// The next line at or after the start of a line `at` that begins with a slash or a hash; the text's size if there is none.
 std::size_t next_mark(std::string_view text, std::size_t at) {
   while (at < text.size()) {
@@ -76,7 +74,7 @@ void Walk::walk_file(std::uint32_t file, int depth) {
       include(file, at, depth);
       ended_ = false;
       stretch_ = {file, after, after};
-    } else if (starts_with(text.substr(at), "#enddata")) {
+    } else if (text.substr(at).starts_with("#enddata")) {
       close_stretch(at);
       stretch_ = {file, at, at};
       ended_ = true;

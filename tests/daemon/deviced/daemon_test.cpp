@@ -13,6 +13,7 @@
 #include "ipc/line_socket.h"
 #include "ipc/reconnecting_client.h"
 #include "tests/station/process.h"
+#include "tests/support/places.h"
 
 namespace prismesh::deviced {
 namespace {
@@ -52,7 +53,7 @@ class Deviced : public ::testing::Test {
         std::vector<std::string>{program("prismesh-deviced"), "--runtime-dir", (folder_ / "run").string(), "--config", config().string()},
         surroundings());
   }
-  static std::string program(const std::string& name) { return std::string(PRISMESH_PROGRAMS) + "/" + name; }
+  static std::string program(const std::string& name) { return (test::programs_folder() / name).string(); }
 
   struct Ran {
     int status = 0;

@@ -8,6 +8,7 @@
 #include "ipc/messages_json.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/lives.h"
+#include "tests/support/places.h"
 
 namespace prismesh::modeld {
 namespace {
@@ -259,7 +260,7 @@ TEST_P(CutOff, AnInterruptedCommandLeavesTheDocumentAsItWas) {
     const std::string record = journal_in(station->folder.state());
     while (watcher.next_event()) {
     }
-    test::Process command({std::string(PRISMESH_PROGRAMS) + "/prismesh", "session", "--runtime-dir",
+    test::Process command({(test::programs_folder() / "prismesh").string(), "session", "--runtime-dir",
                            (station->folder.path() / "run").string(), "edit", GetParam().edit},
                           {});
     bool begun = false;

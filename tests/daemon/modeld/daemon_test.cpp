@@ -20,7 +20,7 @@ using namespace mesh::document;
 using ipc::Client;
 using test::Folder;
 
-constexpr auto kPatience = 60s;
+constexpr auto kServingPatience = 60s;
 
 class Serving : public ::testing::Test {
  protected:
@@ -42,7 +42,7 @@ class Serving : public ::testing::Test {
   ipc::State open(Client& client, const fs::path& deck) {
     ipc::Open request;
     request.path = deck.string();
-    return std::get<ipc::State>(client.call(request, kPatience).value());
+    return std::get<ipc::State>(client.call(request, kServingPatience).value());
   }
 
   Folder folder_;
@@ -65,7 +65,7 @@ Translate patch() {
 /// The next event of a kind; fails the test when none comes.
 template <class E>
 std::optional<E> next(Client& client) {
-  const auto until = std::chrono::steady_clock::now() + kPatience;
+  const auto until = std::chrono::steady_clock::now() + kServingPatience;
   while (std::chrono::steady_clock::now() < until) {
     while (const auto event = client.next_event())
       if (const auto* wanted = std::get_if<E>(&*event)) return *wanted;
@@ -91,7 +91,7 @@ TEST_F(Serving, TwoClientsWatchOneDocument) {
   const auto before = watcher.snapshot();
   ASSERT_TRUE(before) << before.error().text();
 
-  const auto edited = editor.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kPatience);
+  const auto edited = editor.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kServingPatience);
   ASSERT_TRUE(edited) << edited.error().text();
   EXPECT_EQ(std::get<ipc::Edited>(*edited).report.nodes_moved, 1u);
   std::optional<ipc::GenerationPublished> published = next<ipc::GenerationPublished>(watcher);
@@ -107,7 +107,7 @@ TEST_F(Serving, TwoClientsWatchOneDocument) {
 TEST_F(Serving, ADragIsPreviewedAndCommitted) {
   Client owner = client();
   open(owner, folder_.sheet());
-  const auto answer = owner.call(ipc::BeginDrag{patch()}, kPatience);
+  const auto answer = owner.call(ipc::BeginDrag{patch()}, kServingPatience);
   ASSERT_TRUE(answer) << answer.error().text();
   const auto& begun = std::get<ipc::DragBegun>(*answer);
   const ipc::PreviewReader preview = owner.take_preview(begun).value();
@@ -116,7 +116,7 @@ TEST_F(Serving, ADragIsPreviewedAndCommitted) {
 
   // Hundreds of steps without a pause: only the newest count, and the last one arrives.
   for (std::uint64_t i = 1; i <= 500; ++i) ASSERT_TRUE(owner.send(ipc::DragStep{begun.drag, i, {0, 0, 0.001 * static_cast<double>(i)}, 0}));
-  const auto committed = owner.call(ipc::CommitDrag{begun.drag}, kPatience);
+  const auto committed = owner.call(ipc::CommitDrag{begun.drag}, kServingPatience);
   ASSERT_TRUE(committed) << committed.error().text();
   ipc::PreviewFrame frame;
   ASSERT_TRUE(preview.latest(frame));
@@ -129,16 +129,16 @@ TEST_F(Serving, ADragIsPreviewedAndCommitted) {
 TEST_F(Serving, AnExpressionIsCountedAndSelectsNothing) {
   Client client = this->client();
   const ipc::State before = open(client, folder_.sheet());
-  const auto ask = [&](const std::string& expr, mesh::select::Kind kind) { return client.call(ipc::Count{expr, kind}, kPatience).value(); };
+  const auto ask = [&](const std::string& expr, mesh::select::Kind kind) { return client.call(ipc::Count{expr, kind}, kServingPatience).value(); };
   EXPECT_EQ(std::get<ipc::Counted>(ask("1001-1025", mesh::select::Kind::node)).nodes, 25u);
   const auto parts = std::get<ipc::Counted>(ask("all", mesh::select::Kind::part));
   EXPECT_EQ(parts.parts, before.parts);
   EXPECT_EQ(parts.shells, before.shells);
-  const auto refused = client.call(ipc::Count{"1001,9", mesh::select::Kind::node}, kPatience);
+  const auto refused = client.call(ipc::Count{"1001,9", mesh::select::Kind::node}, kServingPatience);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().file, "expression");
   EXPECT_EQ(refused.error().line, 6) << "the column";
-  const auto after = std::get<ipc::State>(client.call(ipc::GetState{}, kPatience).value());
+  const auto after = std::get<ipc::State>(client.call(ipc::GetState{}, kServingPatience).value());
   EXPECT_EQ(after.generation, before.generation);
   EXPECT_EQ(after.selected_nodes, 0u);
 }
@@ -147,33 +147,33 @@ TEST_F(Serving, OnlyTheOwnerStepsAndEndsADrag) {
   Client owner = client("owner");
   Client other = client("other");
   open(owner, folder_.sheet());
-  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kPatience).value());
+  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kServingPatience).value());
   const ipc::PreviewReader preview = owner.take_preview(begun).value();
-  const auto second = other.call(ipc::BeginDrag{patch()}, kPatience);
+  const auto second = other.call(ipc::BeginDrag{patch()}, kServingPatience);
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().message, "another view is dragging; try again when it has let go");
-  EXPECT_FALSE(other.call(ipc::CommitDrag{begun.drag}, kPatience));
-  EXPECT_FALSE(other.call(ipc::CancelDrag{begun.drag}, kPatience));
+  EXPECT_FALSE(other.call(ipc::CommitDrag{begun.drag}, kServingPatience));
+  EXPECT_FALSE(other.call(ipc::CancelDrag{begun.drag}, kServingPatience));
   ASSERT_TRUE(other.send(ipc::DragStep{begun.drag, 9, {0, 0, 1}, 0}));
-  ASSERT_TRUE(other.call(ipc::GetState{}, kPatience));
-  ASSERT_TRUE(owner.call(ipc::CancelDrag{begun.drag}, kPatience));
+  ASSERT_TRUE(other.call(ipc::GetState{}, kServingPatience));
+  ASSERT_TRUE(owner.call(ipc::CancelDrag{begun.drag}, kServingPatience));
   ipc::PreviewFrame frame;
   EXPECT_FALSE(preview.latest(frame)) << "a stranger's step was taken";
   EXPECT_FALSE(next<ipc::DragEnded>(other)->committed);
-  EXPECT_FALSE(std::get<ipc::State>(owner.call(ipc::GetState{}, kPatience).value()).changed);
+  EXPECT_FALSE(std::get<ipc::State>(owner.call(ipc::GetState{}, kServingPatience).value()).changed);
 }
 
 TEST_F(Serving, EditsWaitUntilTheDragEnds) {
   Client owner = client("owner");
   Client other = client("other");
   open(owner, folder_.sheet());
-  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kPatience).value());
+  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kServingPatience).value());
   const std::uint64_t edit = other.send(ipc::ApplyEdit{move_node(1313, 0.25)}).value();
-  ASSERT_TRUE(other.call(ipc::GetState{}, kPatience)) << "states are told during a drag";
+  ASSERT_TRUE(other.call(ipc::GetState{}, kServingPatience)) << "states are told during a drag";
   ASSERT_TRUE(other.snapshot()) << "and snapshots given";
   EXPECT_FALSE(other.next_reply()) << "the edit didn't wait";
   ASSERT_TRUE(owner.send(ipc::DragStep{begun.drag, 1, {0, 0, 1}, 0}));
-  ASSERT_TRUE(owner.call(ipc::CommitDrag{begun.drag}, kPatience));
+  ASSERT_TRUE(owner.call(ipc::CommitDrag{begun.drag}, kServingPatience));
   std::optional<Client::Reply> reply;
   while (!(reply = other.next_reply())) ASSERT_TRUE(other.poll(100ms));
   EXPECT_EQ(reply->request, edit);
@@ -185,22 +185,22 @@ TEST_F(Serving, TheOwnersDeathCancelsItsDrag) {
   open(watcher, folder_.sheet());
   {
     Client owner = client("owner");
-    const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kPatience).value());
+    const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kServingPatience).value());
     ASSERT_TRUE(owner.send(ipc::DragStep{begun.drag, 1, {0, 0, 1}, 0}));
   }
   const auto ended = next<ipc::DragEnded>(watcher);
   ASSERT_TRUE(ended);
   EXPECT_FALSE(ended->committed);
   EXPECT_EQ(ended->why, "its client has gone");
-  EXPECT_FALSE(std::get<ipc::State>(watcher.call(ipc::GetState{}, kPatience).value()).changed);
-  EXPECT_TRUE(watcher.call(ipc::BeginDrag{patch()}, kPatience)) << "others may drag again";
+  EXPECT_FALSE(std::get<ipc::State>(watcher.call(ipc::GetState{}, kServingPatience).value()).changed);
+  EXPECT_TRUE(watcher.call(ipc::BeginDrag{patch()}, kServingPatience)) << "others may drag again";
 }
 
 TEST_F(Serving, ADragThatMovesNothingLeavesNothing) {
   Client owner = client();
   const std::uint64_t generation = open(owner, folder_.sheet()).generation;
-  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kPatience).value());
-  const auto committed = owner.call(ipc::CommitDrag{begun.drag}, kPatience);
+  const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kServingPatience).value());
+  const auto committed = owner.call(ipc::CommitDrag{begun.drag}, kServingPatience);
   ASSERT_TRUE(committed);
   EXPECT_EQ(std::get<ipc::Edited>(*committed).generation, generation);
   EXPECT_FALSE(next<ipc::DragEnded>(owner)->committed);
@@ -208,20 +208,20 @@ TEST_F(Serving, ADragThatMovesNothingLeavesNothing) {
 
 TEST_F(Serving, RefusalsAreSentences) {
   Client one = client();
-  EXPECT_EQ(one.call(ipc::ApplyEdit{move_node(1, 0.25)}, kPatience).error().message, "no document is open");
+  EXPECT_EQ(one.call(ipc::ApplyEdit{move_node(1, 0.25)}, kServingPatience).error().message, "no document is open");
   EXPECT_EQ(one.snapshot().error().message, "no document is open");
-  EXPECT_EQ(one.call(ipc::BeginDrag{patch()}, kPatience).error().message, "no document is open");
-  EXPECT_EQ(one.call(ipc::CommitDrag{7}, kPatience).error().message, "you hold no drag 7");
+  EXPECT_EQ(one.call(ipc::BeginDrag{patch()}, kServingPatience).error().message, "no document is open");
+  EXPECT_EQ(one.call(ipc::CommitDrag{7}, kServingPatience).error().message, "you hold no drag 7");
   ipc::Open nothing;
   nothing.path = (folder_.path() / "nothing.k").string();
-  EXPECT_EQ(one.call(nothing, kPatience).error().file, nothing.path);
+  EXPECT_EQ(one.call(nothing, kServingPatience).error().file, nothing.path);
   open(one, folder_.sheet());
-  const auto refused = one.call(ipc::ApplyEdit{move_node(99, 0.25)}, kPatience);
+  const auto refused = one.call(ipc::ApplyEdit{move_node(99, 0.25)}, kServingPatience);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().file, "expression");
-  ASSERT_TRUE(one.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kPatience));
-  EXPECT_FALSE(one.call(ipc::Close{false}, kPatience)) << "unsaved edits";
-  EXPECT_TRUE(one.call(ipc::Close{true}, kPatience));
+  ASSERT_TRUE(one.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kServingPatience));
+  EXPECT_FALSE(one.call(ipc::Close{false}, kServingPatience)) << "unsaved edits";
+  EXPECT_TRUE(one.call(ipc::Close{true}, kServingPatience));
   EXPECT_TRUE(next<ipc::DocumentClosed>(one));
 }
 
@@ -262,15 +262,15 @@ TEST_F(Serving, ARestartIsSeenAndTheDocumentIsBack) {
   const fs::path deck = folder_.sheet();
   Client one = client();
   open(one, deck);
-  ASSERT_TRUE(one.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kPatience));
+  ASSERT_TRUE(one.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kServingPatience));
   const double moved = height(**one.snapshot(), 1313);
   stop();
-  EXPECT_FALSE(one.call(ipc::GetState{}, kPatience));
+  EXPECT_FALSE(one.call(ipc::GetState{}, kServingPatience));
   start();
   Client again = client();
   ipc::State state;
   for (int i = 0; i < 6000 && !state.open; ++i) {
-    state = std::get<ipc::State>(again.call(ipc::GetState{}, kPatience).value());
+    state = std::get<ipc::State>(again.call(ipc::GetState{}, kServingPatience).value());
     std::this_thread::sleep_for(10ms);
   }
   EXPECT_EQ(state.path, deck.string());
@@ -293,13 +293,13 @@ TEST_F(Serving, SnapshotsOfAClientThatDiesAreReturned) {
   for (int i = 0; i < 20; ++i) {
     Client viewer = client("viewer");
     for (int k = 0; k < 20; ++k) {
-      ASSERT_TRUE(editor.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kPatience));
+      ASSERT_TRUE(editor.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kServingPatience));
       const auto view = viewer.snapshot();
       ASSERT_TRUE(view) << view.error().text();
     }
   }
   // The segments' number tells whether memory was used again: 400 generations would need dozens.
-  const auto last = editor.call(ipc::GetSnapshot{}, kPatience);
+  const auto last = editor.call(ipc::GetSnapshot{}, kServingPatience);
   EXPECT_LE(std::get<ipc::Snapshot>(*last).segments.size(), 12u);
 }
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using namespace mesh::document;
 using test::Folder;
 
-Edit move_node(std::int64_t id, double by) {
+Edit move_edit(std::int64_t id, double by) {
   Translate translate;
   translate.by = {0, 0, by};
   translate.shaping.on = std::to_string(id);
@@ -51,7 +51,7 @@ TEST_F(Keeping, TheHistoryKeepsToItsBytesAndSaysWhatGoes) {
   DocumentKeeper all = keeper();
   ASSERT_TRUE(all.open(request(deck), {}));
   EXPECT_EQ(all.state().history_bytes, 0u) << "one state alone is no history";
-  ASSERT_TRUE(all.edit(move_node(1313, 0.25)));
+  ASSERT_TRUE(all.edit(move_edit(1313, 0.25)));
   const std::uint64_t step = all.state().history_bytes;
   ASSERT_GT(step, 0u);
   EXPECT_EQ(all.state().history_cap, OpenOptions{}.history_bytes);
@@ -62,7 +62,7 @@ TEST_F(Keeping, TheHistoryKeepsToItsBytesAndSaysWhatGoes) {
   ASSERT_TRUE(few.open(request(deck), {}));
   bool said = false;
   for (int i = 0; i < 12; ++i) {
-    const Result<EditReport> report = few.edit(move_node(1313, 0.25));
+    const Result<EditReport> report = few.edit(move_edit(1313, 0.25));
     ASSERT_TRUE(report) << report.error().text();
     for (const std::string& note : report->notes) said = said || note.find("can't be undone any more") != std::string::npos;
     EXPECT_LE(few.state().history_bytes, cap) << "after edit " << i;
@@ -99,9 +99,9 @@ TEST_F(Keeping, ARestartBringsEveryEditBack) {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
     expected = height(first, 1313) + 0.5;
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
-    ASSERT_TRUE(first.edit(move_node(1001, 3)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1001, 3)));
     ASSERT_TRUE(first.edit(Undo{}));
   }  // as if killed: nothing was closed
   DocumentKeeper second = keeper();
@@ -122,7 +122,7 @@ TEST_F(Keeping, UndoReachesBackBeyondASaveInPlace) {
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
   const double start = height(first, 1313);
-  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
   const Result<ipc::Saved> saved = first.save(std::nullopt);
   ASSERT_TRUE(saved) << saved.error().text();
   EXPECT_EQ(saved->lines_changed, 1u);
@@ -140,7 +140,7 @@ TEST_F(Keeping, ASaveThatRoundedWritesNothingTheSecondTime) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
-  for (const int node : {1313, 1314, 1315}) ASSERT_TRUE(first.edit(move_node(node, 1.0 / 3)));
+  for (const int node : {1313, 1314, 1315}) ASSERT_TRUE(first.edit(move_edit(node, 1.0 / 3)));
   const Result<ipc::Saved> saved = first.save(std::nullopt);
   ASSERT_TRUE(saved) << saved.error().text();
   EXPECT_EQ(saved->nodes_written, 3u);
@@ -151,7 +151,7 @@ TEST_F(Keeping, ASaveThatRoundedWritesNothingTheSecondTime) {
   EXPECT_EQ(again->nodes_written, 0u);
   EXPECT_EQ(again->lines_changed, 0u);
   EXPECT_EQ(test::whole_file(deck), text);
-  ASSERT_TRUE(first.edit(move_node(1001, 0.5)));
+  ASSERT_TRUE(first.edit(move_edit(1001, 0.5)));
   const Result<ipc::Saved> one = first.save(std::nullopt);
   ASSERT_TRUE(one) << one.error().text();
   EXPECT_EQ(one->nodes_written, 1u);
@@ -165,10 +165,10 @@ TEST_F(Keeping, WhatWasUndoneBeyondASaveSurvivesARestart) {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
     start = height(first, 1313);
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
     ASSERT_TRUE(first.save(std::nullopt));
     ASSERT_TRUE(first.edit(Undo{}));
-    ASSERT_TRUE(first.edit(move_node(1314, 1)));
+    ASSERT_TRUE(first.edit(move_edit(1314, 1)));
     ASSERT_TRUE(first.edit(Undo{}));
   }
   DocumentKeeper second = keeper();
@@ -182,7 +182,7 @@ TEST_F(Keeping, SelectionAndLockedPartsSurviveASaveAndARestart) {
   {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
     Select select;
     select.expr = "1001-1010";
     ASSERT_TRUE(first.edit(select));
@@ -207,7 +207,7 @@ TEST_F(Keeping, ACrashBetweenSaveAndNewJournalLosesNothingAndAppliesNothingTwice
   {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
     expected = height(first, 1313);
     // What save_in_place does up to the point where the deck is replaced.
     const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
@@ -230,7 +230,7 @@ TEST_F(Keeping, ACrashBeforeTheSaveBringsTheEditsBackFromTheJournal) {
   {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
     expected = height(first, 1313);
     const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
     ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
@@ -247,8 +247,8 @@ TEST_F(Keeping, ASaveCutOffBetweenTwoFilesIsFinished) {
   {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_node(2, 0.25)));
-    ASSERT_TRUE(first.edit(move_node(5, 0.5)));
+    ASSERT_TRUE(first.edit(move_edit(2, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(5, 0.5)));
     const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
     ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
     ASSERT_TRUE(first.save((folder_.path() / "whole/main.k").string()));
@@ -269,7 +269,7 @@ TEST_F(Keeping, ADeckThatSomethingElseChangedKeepsItsOldJournalAndSaysSo) {
   {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
   }
   std::ofstream(deck, std::ios::app) << "$ changed by hand\n";
   DocumentKeeper second = keeper();
@@ -284,7 +284,7 @@ TEST_F(Keeping, SavingInPlaceIsRefusedWhenTheDeckChangedOnDisk) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
-  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
   std::ofstream(deck, std::ios::app) << "$ changed by hand\n";
   const std::string by_hand = test::whole_file(deck);
   const Result<ipc::Saved> saved = first.save(std::nullopt);
@@ -293,14 +293,14 @@ TEST_F(Keeping, SavingInPlaceIsRefusedWhenTheDeckChangedOnDisk) {
   EXPECT_EQ(test::whole_file(deck), by_hand);
   EXPECT_TRUE(first.changed());
   EXPECT_TRUE(first.save((folder_.path() / "elsewhere.k").string())) << "elsewhere it can be saved";
-  EXPECT_TRUE(first.edit(move_node(1313, 0.25))) << "and edited";
+  EXPECT_TRUE(first.edit(move_edit(1313, 0.25))) << "and edited";
 }
 
 TEST_F(Keeping, UnsavedEditsAreNotGivenUpByAccident) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
-  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
   EXPECT_FALSE(first.close(false));
   EXPECT_FALSE(first.open(request(folder_.sheet("other.k")), {}));
   EXPECT_TRUE(first.open(request(deck), {})) << "it is open already";
@@ -316,7 +316,7 @@ TEST_F(Keeping, AnEditThatCantBeJournalledIsNotDone) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
-  ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
   const double before = height(first, 1313);
 
   // The disk is full, as far as this process can tell.
@@ -325,13 +325,13 @@ TEST_F(Keeping, AnEditThatCantBeJournalledIsNotDone) {
   ::getrlimit(RLIMIT_FSIZE, &limit);
   const rlimit tight{600, limit.rlim_max};
   ::setrlimit(RLIMIT_FSIZE, &tight);
-  const Result<EditReport> edited = first.edit(move_node(1313, 0.25));
+  const Result<EditReport> edited = first.edit(move_edit(1313, 0.25));
   ::setrlimit(RLIMIT_FSIZE, &limit);
   ASSERT_FALSE(edited);
   EXPECT_NE(edited.error().file.find(".journal"), std::string::npos) << edited.error().text();
   EXPECT_EQ(height(first, 1313), before);
 
-  EXPECT_TRUE(first.edit(move_node(1313, 0.25))) << "there is room again";
+  EXPECT_TRUE(first.edit(move_edit(1313, 0.25))) << "there is room again";
   EXPECT_EQ(height(first, 1313), before + 0.25);
 }
 
@@ -360,7 +360,7 @@ TEST_F(Keeping, ADeckTooLargeForTheMemoryLeavesWhatIsOpen) {
     ::setrlimit(RLIMIT_AS, &limit);
     if (opened) return 2;
     std::fprintf(stderr, "%s\n", opened.error().text().c_str());
-    if (!first.edit(move_node(1313, 0.25)) || !first.changed()) return 3;
+    if (!first.edit(move_edit(1313, 0.25)) || !first.changed()) return 3;
     return 0;
   };
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
@@ -392,8 +392,8 @@ TEST_F(Keeping, ADamagedJournalIsNotPassedOver) {
   {
     DocumentKeeper first = keeper();
     ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
-    ASSERT_TRUE(first.edit(move_node(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
     journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
   }
   std::string text = test::whole_file(journal);

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Vec = Eigen::Vector3d;
 
-constexpr auto kPatience = 60s;
+constexpr auto kFieldPatience = 60s;
 constexpr int kSide = 14;
 constexpr double kNear = 2e-6;  ///< decks hold six decimals, values are floats
 
@@ -97,13 +97,13 @@ class Fields : public ::testing::Test {
     ipc::Open request;
     request.path = wavy_.path.string();
     request.length_unit = unit;
-    const auto opened = client_->call(request, kPatience);
+    const auto opened = client_->call(request, kFieldPatience);
     ASSERT_TRUE(opened) << opened.error().text();
   }
   std::uint64_t edit(const std::string& json) {
     const auto parsed = mesh::document::parse_edit(json);
     EXPECT_TRUE(parsed) << json;
-    const auto edited = client_->call(ipc::ApplyEdit{*parsed}, kPatience);
+    const auto edited = client_->call(ipc::ApplyEdit{*parsed}, kFieldPatience);
     EXPECT_TRUE(edited) << json << ": " << edited.error().text();
     return edited ? std::get<ipc::Edited>(*edited).generation : 0;
   }
@@ -112,7 +112,7 @@ class Fields : public ::testing::Test {
     std::vector<float> values;
   };
   Got get(const ipc::GetField& request) {
-    const auto answer = client_->call(request, kPatience);
+    const auto answer = client_->call(request, kFieldPatience);
     EXPECT_TRUE(answer) << answer.error().text();
     if (!answer) return {};
     const auto& made = std::get<ipc::FieldMade>(*answer);
@@ -124,7 +124,7 @@ class Fields : public ::testing::Test {
     return {made, {values.begin(), values.end()}};
   }
   std::string refusal(const ipc::GetField& request) {
-    const auto answer = client_->call(request, kPatience);
+    const auto answer = client_->call(request, kFieldPatience);
     EXPECT_FALSE(answer);
     return answer ? "" : answer.error().text();
   }

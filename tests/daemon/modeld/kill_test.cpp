@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/daemon/modeld/lives.h"
+#include "tests/support/seed.h"
 
 namespace prismesh::modeld {
 namespace {
@@ -15,7 +16,7 @@ using namespace std::chrono_literals;
 using namespace mesh::document;
 using test::Folder;
 
-constexpr auto kPatience = 90s;
+constexpr auto kKillPatience = 90s;
 constexpr std::int64_t kNodes = test::kSheetSide * test::kSheetSide;
 
 using Heights = std::vector<double>;
@@ -79,7 +80,7 @@ class Killing : public ::testing::Test {
 
   /// False: the daemon has gone before it acknowledged the step.
   bool take(ipc::Client& client, const Step& step) {
-    const auto answer = client.call(step.requests.front(), kPatience);
+    const auto answer = client.call(step.requests.front(), kKillPatience);
     if (!answer) {
       if (answer.error().message.find("is gone") == std::string::npos) ADD_FAILURE() << answer.error().text();
       return false;
@@ -89,12 +90,12 @@ class Killing : public ::testing::Test {
     const auto& translate = std::get<Translate>(std::get<ipc::BeginDrag>(step.requests.front()).edit);
     for (std::uint64_t i = 1; i <= 4; ++i)
       if (!client.send(ipc::DragStep{begun.drag, i, {0, 0, translate.by.z() * static_cast<double>(i) / 4}, 0})) return false;
-    return client.call(ipc::CommitDrag{begun.drag}, kPatience).has_value();
+    return client.call(ipc::CommitDrag{begun.drag}, kKillPatience).has_value();
   }
 
   Folder folder_;
   test::Lives lives_{folder_, folder_.sheet()};
-  std::mt19937 random_{20040601};
+  std::mt19937 random_{test::seed(20040601)};
 };
 
 int cycles() {
@@ -149,7 +150,7 @@ TEST_F(Killing, NoAcknowledgedEditIsLost) {
   EXPECT_GT(acknowledged, static_cast<std::size_t>(cycles())) << "too few edits to mean anything";
 
   // The deck then differs in the moved nodes' lines alone.
-  const auto saved = lives_.client().call(ipc::Save{}, kPatience);
+  const auto saved = lives_.client().call(ipc::Save{}, kKillPatience);
   ASSERT_TRUE(saved) << saved.error().text();
   const std::string edited = test::whole_file(lives_.deck());
   const auto before = test::nodes_of_deck(original);

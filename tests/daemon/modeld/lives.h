@@ -16,6 +16,7 @@
 #include "ipc/reconnecting_client.h"
 #include "tests/daemon/modeld/folder.h"
 #include "tests/station/process.h"
+#include "tests/support/places.h"
 
 namespace prismesh::test {
 
@@ -27,7 +28,7 @@ class Lives {
       : run_(folder.path() / "run"), state_(folder.state()), deck_(std::move(deck)), client_(ipc::model_socket_path(run_), "test") {}
 
   void start() {
-    daemon_ = std::make_unique<Process>(std::vector<std::string>{std::string(PRISMESH_PROGRAMS) + "/prismesh-modeld", "--runtime-dir",
+    daemon_ = std::make_unique<Process>(std::vector<std::string>{(test::programs_folder() / "prismesh-modeld").string(), "--runtime-dir",
                                                                  run_.string(), "--state-dir", state_.string()},
                                         std::map<std::string, std::string>{});
   }

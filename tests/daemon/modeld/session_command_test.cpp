@@ -7,6 +7,7 @@
 
 #include "tests/daemon/modeld/folder.h"
 #include "tests/station/process.h"
+#include "tests/support/places.h"
 
 namespace prismesh::modeld {
 namespace {
@@ -27,7 +28,7 @@ class SessionCommand : public ::testing::Test {
         std::vector<std::string>{program("prismesh-modeld"), "--runtime-dir", run_folder(), "--state-dir", folder_.state().string()},
         std::map<std::string, std::string>{});
   }
-  static std::string program(const std::string& name) { return std::string(PRISMESH_PROGRAMS) + "/" + name; }
+  static std::string program(const std::string& name) { return (test::programs_folder() / name).string(); }
   std::string run_folder() const { return (folder_.path() / "run").string(); }
 
   Ran session(const std::vector<std::string>& arguments) {
@@ -49,7 +50,7 @@ class SessionCommand : public ::testing::Test {
   std::unique_ptr<Process> daemon_;
 };
 
-const char* const kMove = R"({"edit": "translate", "by": [0, 0, 0.25], "on": "1313"})";
+const char* const kMoveCorner = R"({"edit": "translate", "by": [0, 0, 0.25], "on": "1313"})";
 
 TEST_F(SessionCommand, WithoutADaemonItSaysSoAtOnce) {
   const Ran ran = session({"state"});
@@ -62,9 +63,9 @@ TEST_F(SessionCommand, EditsAndSavesTheOpenDocument) {
   const std::string original = test::whole_file(deck);
   start();
   wait_until_there();
-  EXPECT_EQ(session({"edit", kMove}).status, 1) << "nothing is open";
+  EXPECT_EQ(session({"edit", kMoveCorner}).status, 1) << "nothing is open";
   ASSERT_EQ(session({"open", deck.string()}).status, 0);
-  const Ran edited = session({"--json", "edit", kMove, kMove});
+  const Ran edited = session({"--json", "edit", kMoveCorner, kMoveCorner});
   EXPECT_EQ(edited.status, 0) << edited.err;
   EXPECT_EQ(std::count(edited.out.begin(), edited.out.end(), '\n'), 2);
   EXPECT_NE(edited.out.find("\"nodes_moved\":1"), std::string::npos) << edited.out;
@@ -103,7 +104,7 @@ TEST_F(SessionCommand, AFileThatMayNotGrowIsAnErrorAndNoEnd) {
   wait_until_there();
   ASSERT_EQ(session({"open", deck.string()}).status, 0);
   std::vector<std::string> many{"edit"};
-  many.resize(100, kMove);
+  many.resize(100, kMoveCorner);
   const Ran refused = session(many);
   EXPECT_EQ(refused.status, 1);
   EXPECT_NE(refused.err.find("the edit wasn't made"), std::string::npos) << refused.err;
@@ -121,11 +122,11 @@ TEST_F(SessionCommand, GoesOnWhenTheDaemonIsRestarted) {
   start();
   wait_until_there();
   ASSERT_EQ(session({"open", deck.string()}).status, 0);
-  ASSERT_EQ(session({"edit", kMove}).status, 0);
+  ASSERT_EQ(session({"edit", kMoveCorner}).status, 0);
   daemon_->kill(SIGKILL);
   daemon_->wait_for_exit();
   // The daemon is started by the test's own thread: it is to end with the thread that started it (see Process).
-  std::future<Ran> editing = std::async(std::launch::async, [this] { return session({"edit", kMove}); });
+  std::future<Ran> editing = std::async(std::launch::async, [this] { return session({"edit", kMoveCorner}); });
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   start();
   const Ran edited = editing.get();

@@ -8,17 +8,17 @@
 namespace prismesh::drivers::display {
 namespace {
 
-constexpr PanelArea kPanel{0, 0, 1280, 1024, 1280, 1024};
+constexpr PanelArea kSmallPanel{0, 0, 1280, 1024, 1280, 1024};
 
-double error_at(const Eigen::Vector3d& head, Composing composing, const PanelArea& panel = kPanel, const MaskOptics& optics = {}) {
+double error_at(const Eigen::Vector3d& head, Composing composing, const PanelArea& panel = kSmallPanel, const MaskOptics& optics = {}) {
   return worst_phase_error(optics, head, kMeanEyeSeparationMm, panel, composing);
 }
 
 TEST(WorkingBox, AtTheDesignPlaceOnlyRefractionIsLeft) {
   MaskOptics air;
   air.refractive_index = 1;
-  EXPECT_LT(error_at({0, 0, 650}, Composing::fixed_columns, kPanel, air), 1e-3);
-  EXPECT_LT(error_at({140, 0, 650}, Composing::fixed_columns, kPanel, air), 1e-3) << "without refraction the law is exact sideways";
+  EXPECT_LT(error_at({0, 0, 650}, Composing::fixed_columns, kSmallPanel, air), 1e-3);
+  EXPECT_LT(error_at({140, 0, 650}, Composing::fixed_columns, kSmallPanel, air), 1e-3) << "without refraction the law is exact sideways";
   EXPECT_NEAR(error_at({0, 0, 650}, Composing::fixed_columns), 0.13, 0.02);
 }
 
@@ -32,20 +32,20 @@ TEST(WorkingBox, ATinyPanelShowsTheEyesSeparationAlone) {
 }
 
 TEST(WorkingBox, AShiftAloneServesANarrowBox) {
-  const auto depths = working_depths({}, 0, kMeanEyeSeparationMm, kPanel, Composing::fixed_columns, 0.25);
+  const auto depths = working_depths({}, 0, kMeanEyeSeparationMm, kSmallPanel, Composing::fixed_columns, 0.25);
   ASSERT_TRUE(depths);
   // One eye straight before the panel has 582 to 699 mm (see the optics' tests); two, beside the middle, a little less.
   EXPECT_NEAR(depths->nearest_mm, 584, 2);
   EXPECT_NEAR(depths->farthest_mm, 676, 2);
-  EXPECT_FALSE(working_depths({}, 100, kMeanEyeSeparationMm, kPanel, Composing::fixed_columns, 0.25));
+  EXPECT_FALSE(working_depths({}, 100, kMeanEyeSeparationMm, kSmallPanel, Composing::fixed_columns, 0.25));
 }
 
 TEST(WorkingBox, SubpixelsServeALargerOne) {
-  const auto depths = working_depths({}, 0, kMeanEyeSeparationMm, kPanel, Composing::subpixels, 0.25);
+  const auto depths = working_depths({}, 0, kMeanEyeSeparationMm, kSmallPanel, Composing::subpixels, 0.25);
   ASSERT_TRUE(depths);
   EXPECT_LT(depths->nearest_mm, 556);
   EXPECT_GT(depths->farthest_mm, 760);
-  EXPECT_TRUE(working_depths({}, 150, kMeanEyeSeparationMm, kPanel, Composing::subpixels, 0.25));
+  EXPECT_TRUE(working_depths({}, 150, kMeanEyeSeparationMm, kSmallPanel, Composing::subpixels, 0.25));
   for (const Eigen::Vector3d& head : {Eigen::Vector3d(300, 0, 650), Eigen::Vector3d(-200, 150, 450), Eigen::Vector3d(100, 0, 1500)})
     EXPECT_LT(error_at(head, Composing::subpixels), 0.5) << "no eye looks at the other's light; head at " << head.transpose();
 }

@@ -15,7 +15,7 @@ namespace prismesh::drivers::eye_tracker {
 namespace {
 
 using Random = std::mt19937_64;
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kMillisecondNs = 1'000'000;
 
 void expect_sound(const EyeTracker::Polled& polled) {
   if (!polled.fresh) return;
@@ -54,7 +54,7 @@ TEST(HostileBytes, no_sample_is_out_of_range_and_clean_records_are_heard_again) 
     const auto port = *line.open_host();
     dynasight::DynasightTracker tracker(*port, {});
     const auto poll = [&] {
-      clock.advance_ns(5 * kMs);
+      clock.advance_ns(5 * kMillisecondNs);
       const auto polled = tracker.poll(clock.now_ns());
       expect_sound(polled);
       return polled.fresh;
@@ -119,7 +119,7 @@ TEST(HostileBytes, polling_sitting_and_leaving_allocate_nothing) {
     EXPECT_EQ(seat.tracker(), &tracker);
     for (int i = 0; i < 400; ++i) {
       for (int k = 0; k < 20; ++k) {
-        station.clock().advance_ns(kMs / 4);
+        station.clock().advance_ns(kMillisecondNs / 4);
         station.device().run_until(station.clock().now_ns());
       }
       const std::uint64_t before = port::allocations_of_this_thread();

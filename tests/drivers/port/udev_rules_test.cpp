@@ -1,4 +1,5 @@
 #include "tests/drivers/port/udev_rules.h"
+#include "tests/support/places.h"
 
 #include <filesystem>
 #include <fstream>
@@ -15,7 +16,7 @@ using testing::IsEmpty;
 using testing::Pair;
 
 UdevRules station_rules() {
-  std::ifstream in(std::filesystem::path(PRISMESH_SOURCE_FOLDER) / "systemd" / "udev" / "60-prismesh.rules");
+  std::ifstream in(test::source_folder() / "systemd" / "udev" / "60-prismesh.rules");
   return read_udev_rules(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 

@@ -1,4 +1,5 @@
 #include "drivers/settings/settings.h"
+#include "tests/support/places.h"
 
 #include <unistd.h>
 
@@ -245,7 +246,7 @@ std::string content(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-const fs::path kExample = fs::path(PRISMESH_SOURCE_FOLDER) / "systemd" / "prismesh.toml";
+const fs::path kExample = test::source_folder() / "systemd" / "prismesh.toml";
 
 TEST(SettingsExample, is_valid_and_changes_nothing) {
   const Result<Settings> settings = read_settings({}, kExample);
@@ -275,7 +276,7 @@ TEST(SettingsExample, its_comments_hold_every_key_with_its_default) {
 }
 
 TEST(SettingsExample, the_manual_names_every_key) {
-  const std::string manual = content(fs::path(PRISMESH_SOURCE_FOLDER) / "docs" / "settings.md");
+  const std::string manual = content(test::source_folder() / "docs" / "settings.md");
   std::istringstream lines(kEveryKey);
   for (std::string line; std::getline(lines, line);) {
     const std::size_t end = line.find(" = ");

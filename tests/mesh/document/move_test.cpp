@@ -166,7 +166,7 @@ Document make_wavy(int size) {
   }));
 }
 
-const std::vector<std::string> kSession{
+const std::vector<std::string> kShapingSession{
     R"({"edit":"select_region","at":3000,"angle":60})",
     R"({"edit":"lift","distance":3.7,"normals":"each","falloff":{"profile":"gaussian","flat":0.2}})",
     R"({"edit":"select","expr":"1000-5000"})",
@@ -181,11 +181,11 @@ TEST(Move, TheSameBytesWhateverTheNumberOfThreads) {
   Document together = make_wavy(90);
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    for (const std::string& edit : kSession) must_apply(alone, edit);
+    for (const std::string& edit : kShapingSession) must_apply(alone, edit);
   }
   {
     const tbb::global_control many(tbb::global_control::max_allowed_parallelism, 8);
-    for (const std::string& edit : kSession) must_apply(together, edit);
+    for (const std::string& edit : kShapingSession) must_apply(together, edit);
   }
   expect_same(alone, together);
 }

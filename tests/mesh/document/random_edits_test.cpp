@@ -13,6 +13,7 @@
 #include "mesh/model/adjacency.h"
 #include "mesh/model/growth.h"
 #include "tests/mesh/document/document_fixture.h"
+#include "tests/support/seed.h"
 
 namespace prismesh::mesh::document {
 namespace {
@@ -190,7 +191,7 @@ TEST_P(RandomEdits, AreUndoneToTheByteAndReadAgainAsTheyWereMeant) {
     const std::filesystem::path source = folder / form.file, target = folder / ("out_" + std::string(form.file));
     put_content(source, text);
     Document document = open_sheet(source);
-    std::mt19937 random(seed);
+    std::mt19937 random(test::seed(seed));
     for (int batch = 0; batch < kBatches; ++batch) {
       for (int step = 0; step < kStepsEach; ++step)
         if (const Result<EditReport> done = try_apply(document, edit_of(any_edit(document, random))))

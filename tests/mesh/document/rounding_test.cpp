@@ -16,21 +16,21 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr int kColumns = 4, kRows = 3;
+constexpr int kFarColumns = 4, kFarRows = 3;
 
 /// Quads of 5 mm a kilometre from the origin, where eight columns hold hundredths of a millimetre.
 std::string far_sheet() {
   std::string nodes, shells;
   std::array<char, 96> line{};
-  const auto id = [](int i, int j) { return 1 + i + j * (kColumns + 1); };
-  for (int j = 0; j <= kRows; ++j)
-    for (int i = 0; i <= kColumns; ++i) {
+  const auto id = [](int i, int j) { return 1 + i + j * (kFarColumns + 1); };
+  for (int j = 0; j <= kFarRows; ++j)
+    for (int i = 0; i <= kFarColumns; ++i) {
       std::snprintf(line.data(), line.size(), "GRID    %8d        %8.2f%8.2f     0.0\n", id(i, j), -1050.0 + 5 * i, -1050.0 + 5 * j);
       nodes += line.data();
     }
-  for (int j = 0; j < kRows; ++j)
-    for (int i = 0; i < kColumns; ++i) {
-      std::snprintf(line.data(), line.size(), "CQUAD4  %8d       7%8d%8d%8d%8d\n", 1 + i + j * kColumns, id(i, j), id(i + 1, j),
+  for (int j = 0; j < kFarRows; ++j)
+    for (int i = 0; i < kFarColumns; ++i) {
+      std::snprintf(line.data(), line.size(), "CQUAD4  %8d       7%8d%8d%8d%8d\n", 1 + i + j * kFarColumns, id(i, j), id(i + 1, j),
                     id(i + 1, j + 1), id(i, j + 1));
       shells += line.data();
     }

@@ -10,6 +10,7 @@
 #include "mesh/document/journal.h"
 #include "mesh/spatial/closest_point.h"
 #include "tests/mesh/document/document_fixture.h"
+#include "tests/support/seed.h"
 
 namespace prismesh::mesh::document {
 namespace {
@@ -210,7 +211,7 @@ TEST(Shaping, ADragPassesOverWhatNoCoordinateHolds) {
 
 /// Edits drawn at random, some of which can't be done.
 std::vector<std::string> random_session(unsigned seed, int count) {
-  std::mt19937 random(seed);
+  std::mt19937 random(test::seed(seed));
   const auto pick = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };
   std::vector<std::string> edits;
   for (int i = 0; i < count; ++i) {

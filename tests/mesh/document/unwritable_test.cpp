@@ -18,23 +18,23 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-constexpr int kColumns = 14, kRows = 8, kOddColumns = 7;
+constexpr int kSheetColumns = 14, kSheetRows = 8, kOddColumns = 7;
 
-int node_at(int i, int j) { return 1 + i + j * (kColumns + 1); }
+int sheet_node(int i, int j) { return 1 + i + j * (kSheetColumns + 1); }
 
 /// A sheet of quads of 5 mm. Those of the left half have thicknesses at some corners only, so what they are divided into can't be written.
 std::string half_odd_sheet() {
   std::string nodes, odd, plain;
   char line[128];
-  for (int j = 0; j <= kRows; ++j)
-    for (int i = 0; i <= kColumns; ++i) {
-      std::snprintf(line, sizeof line, "%8d%16.6f%16.6f%16.6f\n", node_at(i, j), 5.0 * i, 5.0 * j, 0.0);
+  for (int j = 0; j <= kSheetRows; ++j)
+    for (int i = 0; i <= kSheetColumns; ++i) {
+      std::snprintf(line, sizeof line, "%8d%16.6f%16.6f%16.6f\n", sheet_node(i, j), 5.0 * i, 5.0 * j, 0.0);
       nodes += line;
     }
-  for (int j = 0; j < kRows; ++j)
-    for (int i = 0; i < kColumns; ++i) {
-      std::snprintf(line, sizeof line, "%8d%8d%8d%8d%8d%8d\n", 1 + i + j * kColumns, 1, node_at(i, j), node_at(i + 1, j),
-                    node_at(i + 1, j + 1), node_at(i, j + 1));
+  for (int j = 0; j < kSheetRows; ++j)
+    for (int i = 0; i < kSheetColumns; ++i) {
+      std::snprintf(line, sizeof line, "%8d%8d%8d%8d%8d%8d\n", 1 + i + j * kSheetColumns, 1, sheet_node(i, j), sheet_node(i + 1, j),
+                    sheet_node(i + 1, j + 1), sheet_node(i, j + 1));
       (i < kOddColumns ? odd : plain) += line;
       if (i < kOddColumns) odd += "             1.5             0.0             0.0             1.2\n";
     }
@@ -57,8 +57,8 @@ std::string dent(int node) { return R"({"edit":"translate","by":[1,1,4],"on":")"
 TEST(Unwritable, RepairsElsewhereAndNamesWhatItLeft) {
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");
-  must_apply(document, dent(node_at(3, 4)));
-  must_apply(document, dent(node_at(11, 4)));
+  must_apply(document, dent(sheet_node(3, 4)));
+  must_apply(document, dent(sheet_node(11, 4)));
   const Model before = document.current().model;
   const EditReport report = must_apply(document, R"({"edit":"repair"})");
   EXPECT_LT(report.after.fail, report.before.fail);
@@ -67,13 +67,13 @@ TEST(Unwritable, RepairsElsewhereAndNamesWhatItLeft) {
   EXPECT_THAT(report.notes, Contains(HasSubstr("left as they are, since the deck can't be written otherwise")));
   const Model& model = document.current().model;
   for (std::size_t s = 0; s < before.shell_count(); ++s) {
-    if (static_cast<int>(s) % kColumns >= kOddColumns) continue;
+    if (static_cast<int>(s) % kSheetColumns >= kOddColumns) continue;
     EXPECT_FALSE(model.is_removed(ShellIndex(s)));
   }
   ASSERT_TRUE(model.growth);
   for (std::size_t s = model.growth->deck_shells; s < model.shell_count(); ++s) {
     const ShellIndex parent = model.growth->shell_parents[s - model.growth->deck_shells];
-    EXPECT_GE((model.shell_ids[parent.value] - 1) % kColumns, kOddColumns) << "a piece of what can't be divided";
+    EXPECT_GE((model.shell_ids[parent.value] - 1) % kSheetColumns, kOddColumns) << "a piece of what can't be divided";
   }
   const Result<deck::SaveReport> saved = save(document, folder / "b.k");
   ASSERT_TRUE(saved) << saved.error().text();
@@ -83,7 +83,7 @@ TEST(Unwritable, RepairsElsewhereAndNamesWhatItLeft) {
 TEST(Unwritable, WhatCannotBeWrittenAnywhereIsLeftAndNothingIsDone) {
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");
-  must_apply(document, dent(node_at(3, 4)));
+  must_apply(document, dent(sheet_node(3, 4)));
   const EditReport report = must_apply(document, R"({"edit":"repair"})");
   EXPECT_EQ(report.elements_added, 0u);
   EXPECT_EQ(report.elements_removed, 0u);
@@ -101,9 +101,9 @@ TEST(Unwritable, TheSearchFindsEachPlaceHasAProgressAndStopsWhenTold) {
   // Quads two apart share no node: each is a place of its own, and those of the left half can't be written.
   Change change{model, {}};
   std::set<ShellIndex> wanted;
-  for (int j = 0; j < kRows; j += 2)
-    for (int i = 0; i < kColumns; i += 2) {
-      const ShellIndex shell = model.find_shell(1 + i + j * kColumns);
+  for (int j = 0; j < kSheetRows; j += 2)
+    for (int i = 0; i < kSheetColumns; i += 2) {
+      const ShellIndex shell = model.find_shell(1 + i + j * kSheetColumns);
       change.split(shell);
       if (i < kOddColumns) wanted.insert(shell);
     }
@@ -135,8 +135,8 @@ TEST(Unwritable, TheSearchFindsEachPlaceHasAProgressAndStopsWhenTold) {
 TEST(Unwritable, ARepairStopsWhereverItIsToldAndItsProgressNeverGoesBack) {
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");
-  must_apply(document, dent(node_at(3, 4)));
-  must_apply(document, dent(node_at(11, 4)));
+  must_apply(document, dent(sheet_node(3, 4)));
+  must_apply(document, dent(sheet_node(11, 4)));
   const Edit repair = parse_edit(R"({"edit":"repair"})").value();
   std::vector<double> told;
   const auto listen = [&](double fraction) {
@@ -145,7 +145,7 @@ TEST(Unwritable, ARepairStopsWhereverItIsToldAndItsProgressNeverGoesBack) {
   };
   ASSERT_TRUE(prepare(document, repair, listen));
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-  for (std::size_t stop = 0; stop < told.size(); stop += 1 + told.size() / 20) {
+  for (std::size_t stop = 0; stop < told.size(); stop += 1 + told.size() / 8) {
     std::size_t calls = 0;
     const Result<Prepared> stopped = prepare(document, repair, [&](double) { return calls++ < stop; });
     ASSERT_FALSE(stopped) << "told to stop at " << stop;

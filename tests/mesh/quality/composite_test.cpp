@@ -11,7 +11,7 @@
 namespace prismesh::mesh::quality {
 namespace {
 
-Criteria parsed(const std::string& text) { return parse_criteria(text, "mine.toml").value(); }
+Criteria criteria_of(const std::string& text) { return parse_criteria(text, "mine.toml").value(); }
 
 float rated(const std::vector<Vec3>& corners, const Criteria& criteria = default_criteria(), double target_size = 1,
             const Sheet& sheet = {}) {
@@ -24,15 +24,15 @@ TEST(Composite, is_1_where_nothing_could_be_better) {
   EXPECT_EQ(rated(rectangle(1, 1)), 1);
   EXPECT_NEAR(rated({{0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0}}), 1, 1e-6);
   EXPECT_EQ(rated(rectangle(1, 1), Criteria{}), 1);                                  // nothing is judged
-  EXPECT_EQ(rated(rectangle(9, 1), parsed("[metrics.aspect]\nwarn_above = 3")), 1);  // no fail limit
+  EXPECT_EQ(rated(rectangle(9, 1), criteria_of("[metrics.aspect]\nwarn_above = 3")), 1);  // no fail limit
 }
 
 TEST(Composite, runs_evenly_from_the_ideal_to_the_fail_limit) {
-  const Criteria aspect = parsed("[metrics.aspect]\nwarn_above = 4\nfail_above = 5");
+  const Criteria aspect = criteria_of("[metrics.aspect]\nwarn_above = 4\nfail_above = 5");
   EXPECT_NEAR(rated(rectangle(3, 1), aspect), 0.5, 1e-6);
   EXPECT_NEAR(rated(rectangle(5, 1), aspect), 0, 1e-6);
   EXPECT_GE(rated(rectangle(5, 1), aspect), 0);
-  const Criteria lengths = parsed("[metrics.min_length]\nfail_below = 0.2\n[metrics.max_length]\nfail_above = 2");
+  const Criteria lengths = criteria_of("[metrics.min_length]\nfail_below = 0.2\n[metrics.max_length]\nfail_above = 2");
   EXPECT_NEAR(rated(rectangle(0.6, 1), lengths), 0.5, 1e-6);
   EXPECT_NEAR(rated(rectangle(1.5, 1), lengths), 0.5, 1e-6);
   EXPECT_NEAR(rated(rectangle(15, 10), lengths, 10), 0.5, 1e-6);
@@ -41,7 +41,7 @@ TEST(Composite, runs_evenly_from_the_ideal_to_the_fail_limit) {
 }
 
 TEST(Composite, goes_towards_minus_1_where_it_fails_and_still_tells_bad_from_worse) {
-  const Criteria aspect = parsed("[metrics.aspect]\nfail_above = 5");
+  const Criteria aspect = criteria_of("[metrics.aspect]\nfail_above = 5");
   EXPECT_NEAR(rated(rectangle(9, 1), aspect), -0.5, 1e-6);
   float before = 0;
   for (const double width : {5.001, 6.0, 20.0, 500.0, 1e5}) {
@@ -61,23 +61,23 @@ TEST(Composite, defects_have_minus_1_and_nothing_else_has) {
 }
 
 TEST(Composite, thickness_and_wanted_time_step_set_the_least_length) {
-  const Criteria thick = parsed("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 2");
+  const Criteria thick = criteria_of("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 2");
   EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, Sheet(0.1)), 0.5, 1e-6);
   EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, Sheet(0.2)), 0.2 / 0.6, 1e-6);
   EXPECT_LT(rated(rectangle(0.6, 1), thick, 1, Sheet(0.4)), 0);
   // 0.5 of a time step (the deck takes 0.9 of what the length gives) at 1.08 a time unit: 0.6
-  const Criteria step = parsed("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 0.5");
+  const Criteria step = criteria_of("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 0.5");
   EXPECT_NEAR(rated(rectangle(0.8, 1), step, 1, Sheet(0, 1.08)), 0.5, 1e-6);
   EXPECT_NEAR(rated(rectangle(0.6, 1), step, 1), 0.5, 1e-6);
   // where nothing is known nothing is judged
-  EXPECT_EQ(rated(rectangle(0.6, 1), parsed("[metrics.min_length]\nfail_below_thicknesses = 2"), 1), 1);
+  EXPECT_EQ(rated(rectangle(0.6, 1), criteria_of("[metrics.min_length]\nfail_below_thicknesses = 2"), 1), 1);
 }
 
 TEST(Composite, is_a_number_whatever_the_limits) {
   for (const char* limit : {"fail_above = 1e30", "fail_above = -1e30", "fail_above = 0", "fail_below = 1e30", "fail_below = -1e30",
                             "fail_above = 1e-30", "fail_below = 1\nfail_above = 1"})
     for (const char* metric : {"aspect", "warpage", "min_length", "min_angle_quad"}) {
-      const Criteria criteria = parsed("[metrics." + std::string(metric) + "]\n" + limit);
+      const Criteria criteria = criteria_of("[metrics." + std::string(metric) + "]\n" + limit);
       for (const double size : {1.0, 1e20, 1e-20}) {
         const Values values = measure(rectangle(3, 1));
         const float figure = composite(values, criteria, size);
@@ -133,7 +133,7 @@ TEST(Composite, comes_with_the_metrics_it_is_made_of) {
 TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
   Model model = test::mixed_grid(30, 0.6, true, 21);
   remove_shell(model, ShellIndex(std::size_t{17}));
-  const Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 1\n[metrics.skew]\nfail_above = 40");
+  const Criteria criteria = criteria_of("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 1\n[metrics.skew]\nfail_above = 40");
   for (std::size_t s = 0; s < model.shell_count(); ++s) model.shell_thickness.set(s, 0.1f + 0.01f * static_cast<float>(s % 50));
   std::vector<ShellIndex> shells;
   std::vector<std::array<std::int32_t, 4>> corners;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/quality/limits.h"
+#include "tests/support/places.h"
 
 namespace prismesh::mesh::quality {
 namespace {
@@ -202,7 +203,7 @@ TEST(Criteria, mistakes_are_named_with_their_line) {
 
 TEST(Criteria, published_sets_load) {
   EXPECT_FALSE(load_criteria("/nonexistent/criteria.toml"));
-  const std::filesystem::path folder = std::filesystem::path(PRISMESH_SOURCE_FOLDER) / "mesh/quality/criteria";
+  const std::filesystem::path folder = test::source_folder() / "mesh/quality/criteria";
   std::size_t sets = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".toml") continue;

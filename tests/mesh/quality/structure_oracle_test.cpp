@@ -16,14 +16,14 @@ namespace {
 
 using Ends = std::pair<std::uint32_t, std::uint32_t>;  // low, high
 
-struct Found {
+struct FoundByPairs {
   std::set<std::uint32_t> duplicates;
   std::set<Ends> opposed, multiple, unjoined;
   std::map<std::uint32_t, std::size_t> triangles;
 };
 
-Found by_all_pairs(const Model& model, double tolerance) {
-  Found found;
+FoundByPairs by_all_pairs(const Model& model, double tolerance) {
+  FoundByPairs found;
   std::map<Ends, std::vector<std::pair<std::uint32_t, bool>>> uses;  // shell, whether it runs from low to high
   std::vector<std::set<std::uint32_t>> corners(model.shell_count());
   for (std::uint32_t s = 0; s < model.shell_count(); ++s) {
@@ -121,7 +121,7 @@ TEST(StructureOracle, finds_what_a_look_at_all_pairs_finds) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     const Model model = patchwork(seed);
     const Structure found = check_structure(model);
-    const Found expected = by_all_pairs(model, StructureOptions().tolerance);
+    const FoundByPairs expected = by_all_pairs(model, StructureOptions().tolerance);
     std::set<std::uint32_t> copies;
     for (const ShellIndex shell : found.duplicates) copies.insert(shell.value);
     EXPECT_EQ(copies, expected.duplicates) << seed;

@@ -10,7 +10,7 @@ namespace {
 
 ShellIndex shell(std::size_t i) { return ShellIndex(i); }
 
-Model grid(int columns, int rows, const std::function<bool(int, int)>& keep = {}) {
+Model curved_grid(int columns, int rows, const std::function<bool(int, int)>& keep = {}) {
   return test::make_grid(
       columns, rows, [](int i, int j) { return Vec3(i, j, 0.01 * i * i); }, keep);
 }
@@ -23,7 +23,7 @@ std::vector<Vec3> strip(int quads) {
 }
 
 TEST(Structure, of_a_sound_sheet_is_clean) {
-  const Structure found = check_structure(grid(8, 6));
+  const Structure found = check_structure(curved_grid(8, 6));
   EXPECT_TRUE(found.duplicates.empty());
   EXPECT_TRUE(found.opposed.empty());
   EXPECT_TRUE(found.multiple.empty());
@@ -83,12 +83,12 @@ TEST(Structure, a_node_that_hangs_on_an_edge_is_not_joined) {
 }
 
 TEST(Structure, a_missing_shell_leaves_free_edges_inside) {
-  const Model model = grid(6, 6, [](int i, int j) { return i != 2 || j != 3; });
+  const Model model = curved_grid(6, 6, [](int i, int j) { return i != 2 || j != 3; });
   const Structure found = check_structure(model);
   EXPECT_EQ(found.free_inside.size(), 4u);
   EXPECT_TRUE(found.unjoined.empty());
   // a hole of several shells is a hole, and so is the border of a piece of one or two shells
-  EXPECT_TRUE(check_structure(grid(6, 6, [](int i, int j) { return i < 2 || i > 3 || j != 3; })).free_inside.empty());
+  EXPECT_TRUE(check_structure(curved_grid(6, 6, [](int i, int j) { return i < 2 || i > 3 || j != 3; })).free_inside.empty());
   EXPECT_TRUE(check_structure(test::make_shells(strip(1), {{0, 2, 3, 1}})).free_inside.empty());
   EXPECT_TRUE(check_structure(test::make_shells(strip(1), {{0, 2, 3, 3}, {0, 3, 1, 1}})).free_inside.empty());
 }
@@ -142,7 +142,7 @@ TEST(Structure, triangles_about_a_node) {
 }
 
 TEST(Structure, removed_and_degenerate_shells_do_no_harm) {
-  Model model = grid(4, 4);
+  Model model = curved_grid(4, 4);
   set_shell_nodes(
       model, shell(5),
       {{model.shell(shell(5)).node[0], model.shell(shell(5)).node[0], model.shell(shell(5)).node[2], model.shell(shell(5)).node[2]}});

@@ -42,7 +42,7 @@ struct Comparison {
   std::function<double(const std::vector<Vec3>& corners)> ours;
 };
 
-double metric(const std::vector<Vec3>& corners, Metric which) { return measure(corners)[static_cast<std::size_t>(which)]; }
+double our_metric(const std::vector<Vec3>& corners, Metric which) { return measure(corners)[static_cast<std::size_t>(which)]; }
 
 /// Shapes from nearly ideal to strongly bent, without corners turned in: Verdict has other ideas of those.
 std::vector<std::vector<Vec3>> shapes(std::size_t corners) {
@@ -58,7 +58,7 @@ std::vector<std::vector<Vec3>> shapes(std::size_t corners) {
       p += Vec3(away(random), away(random), away(random));
       p.x() *= by;
     }
-    if (corners == 3 || metric(shape, Metric::max_angle_quad) < 175) all.push_back(shape);
+    if (corners == 3 || our_metric(shape, Metric::max_angle_quad) < 175) all.push_back(shape);
   }
   return all;
 }
@@ -81,12 +81,12 @@ void compare(std::size_t corners, const std::vector<Comparison>& comparisons) {
 }
 
 TEST(VerdictOracle, agrees_about_quads) {
-  compare(4, {{"quad_edge_ratio", [](const auto& p) { return metric(p, Metric::aspect); }},
-              {"quad_minimum_angle", [](const auto& p) { return metric(p, Metric::min_angle_quad); }},
-              {"quad_maximum_angle", [](const auto& p) { return metric(p, Metric::max_angle_quad); }},
+  compare(4, {{"quad_edge_ratio", [](const auto& p) { return our_metric(p, Metric::aspect); }},
+              {"quad_minimum_angle", [](const auto& p) { return our_metric(p, Metric::min_angle_quad); }},
+              {"quad_maximum_angle", [](const auto& p) { return our_metric(p, Metric::max_angle_quad); }},
               // the same angles, otherwise expressed
-              {"quad_warpage", [](const auto& p) { return std::pow(std::cos(metric(p, Metric::warpage) * kDegree), 3); }},
-              {"quad_skew", [](const auto& p) { return std::sin(metric(p, Metric::skew) * kDegree); }},
+              {"quad_warpage", [](const auto& p) { return std::pow(std::cos(our_metric(p, Metric::warpage) * kDegree), 3); }},
+              {"quad_skew", [](const auto& p) { return std::sin(our_metric(p, Metric::skew) * kDegree); }},
               {"quad_aspect_ratio", [](const auto& p) { return measure_verdict(p).verdict_aspect; }},
               {"quad_skew", [](const auto& p) { return measure_verdict(p).verdict_skew; }},
               {"quad_warpage", [](const auto& p) { return measure_verdict(p).verdict_warpage; }},
@@ -108,10 +108,10 @@ TEST(VerdictOracle, has_the_same_figures_in_one_call) {
 }
 
 TEST(VerdictOracle, agrees_about_triangles) {
-  compare(3, {{"tri_edge_ratio", [](const auto& p) { return metric(p, Metric::aspect); }},
-              {"tri_minimum_angle", [](const auto& p) { return metric(p, Metric::min_angle_tri); }},
-              {"tri_maximum_angle", [](const auto& p) { return metric(p, Metric::max_angle_tri); }},
-              {"tri_area", [](const auto& p) { return 0.5 * metric(p, Metric::min_length) * metric(p, Metric::max_length); }},
+  compare(3, {{"tri_edge_ratio", [](const auto& p) { return our_metric(p, Metric::aspect); }},
+              {"tri_minimum_angle", [](const auto& p) { return our_metric(p, Metric::min_angle_tri); }},
+              {"tri_maximum_angle", [](const auto& p) { return our_metric(p, Metric::max_angle_tri); }},
+              {"tri_area", [](const auto& p) { return 0.5 * our_metric(p, Metric::min_length) * our_metric(p, Metric::max_length); }},
               {"tri_aspect_ratio", [](const auto& p) { return measure_verdict(p).verdict_aspect; }}});
 }
 

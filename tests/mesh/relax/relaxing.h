@@ -13,20 +13,9 @@
 #include "mesh/relax/freedom.h"
 #include "mesh/relax/relax.h"
 #include "tests/mesh/relax/known_surfaces.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::test {
-
-inline mesh::ShellSet all_shells(const mesh::Model& model) {
-  mesh::ShellSet shells(model.shell_count());
-  for (std::size_t s = 0; s < shells.size(); ++s) shells[s] = mesh::ShellIndex(s);
-  return shells;
-}
-
-inline mesh::NodeSet all_nodes(const mesh::Model& model) {
-  mesh::NodeSet nodes(model.node_count());
-  for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = mesh::NodeIndex(n);
-  return nodes;
-}
 
 inline mesh::relax::Judge judge_of(double size = kSize) { return {mesh::quality::default_criteria(), size}; }
 

@@ -51,9 +51,9 @@ Vec3 normal_of(const Model& model, std::size_t shell) {
   return sum;
 }
 
-struct Union {
+struct DisjointSets {
   std::vector<std::size_t> parent;
-  explicit Union(std::size_t size) : parent(size) { std::iota(parent.begin(), parent.end(), std::size_t{0}); }
+  explicit DisjointSets(std::size_t size) : parent(size) { std::iota(parent.begin(), parent.end(), std::size_t{0}); }
   std::size_t root(std::size_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
@@ -67,7 +67,7 @@ Shape shape_of(const Model& model) {
   Shape shape;
   const Edges edges = edges_of(model);
   std::set<std::uint32_t> nodes, free_nodes;
-  Union of_nodes(model.node_count()), of_shells(model.shell_count());
+  DisjointSets of_nodes(model.node_count()), of_shells(model.shell_count());
   long shells = 0;
   for (std::size_t s = 0; s < model.shell_count(); ++s) {
     if (model.is_removed(ShellIndex(s))) continue;

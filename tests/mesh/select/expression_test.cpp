@@ -15,7 +15,7 @@ namespace {
 using Ids = std::vector<std::int64_t>;
 
 /// Two parts of two shells each, a beam and a solid. Node ids 10, 20, .. 90 in a 3x3 grid, then 1000..1007 and two far ones.
-Model sample() {
+Model two_part_model() {
   std::vector<test::NodeSpec> nodes;
   for (int i = 0; i < 9; ++i) nodes.push_back({10 * (i + 1), Vec3(i % 3, i / 3, 0)});
   for (int i = 0; i < 8; ++i) nodes.push_back({1000 + i, Vec3(5 + i % 2, i / 2 % 2, i / 4)});
@@ -55,7 +55,7 @@ std::string error_of(const Model& model, std::string_view expression, Kind kind 
 }
 
 TEST(Expression, names_single_ids_ranges_and_steps) {
-  const Model model = sample();
+  const Model model = two_part_model();
   EXPECT_EQ(nodes_named(model, "20"), (Ids{20}));
   EXPECT_EQ(nodes_named(model, "20,10"), (Ids{10, 20}));
   EXPECT_EQ(nodes_named(model, "20-50"), (Ids{20, 30, 40, 50}));
@@ -67,7 +67,7 @@ TEST(Expression, names_single_ids_ranges_and_steps) {
 }
 
 TEST(Expression, works_from_left_to_right) {
-  const Model model = sample();
+  const Model model = two_part_model();
   EXPECT_EQ(nodes_named(model, "10-50,!30"), (Ids{10, 20, 40, 50}));
   EXPECT_EQ(nodes_named(model, "!30,10-50"), (Ids{10, 20, 30, 40, 50}));
   EXPECT_EQ(nodes_named(model, "10-90,!20-80,50"), (Ids{10, 50, 90}));
@@ -76,14 +76,14 @@ TEST(Expression, works_from_left_to_right) {
 }
 
 TEST(Expression, ignores_spaces_and_case) {
-  const Model model = sample();
+  const Model model = two_part_model();
   EXPECT_EQ(nodes_named(model, "  10 - 30 ,\t! 20 "), (Ids{10, 30}));
   EXPECT_EQ(nodes_named(model, "10 - 90 : 40"), (Ids{10, 50, 90}));
   EXPECT_EQ(nodes_named(model, "Shell : 100 ,! NODE:10"), (Ids{20, 40, 50}));
 }
 
 TEST(Expression, names_all) {
-  const Model model = sample();
+  const Model model = two_part_model();
   EXPECT_EQ(nodes_named(model, "all").size(), 19u);
   EXPECT_EQ(nodes_named(model, "all,!1-8000000000").size(), 1u);
   EXPECT_EQ(nodes_named(model, "shell:all").size(), 9u);
@@ -93,7 +93,7 @@ TEST(Expression, names_all) {
 }
 
 TEST(Expression, takes_the_class_of_each_item) {
-  const Model model = sample();
+  const Model model = two_part_model();
   EXPECT_EQ(nodes_named(model, "shell:100"), (Ids{10, 20, 40, 50}));
   EXPECT_EQ(nodes_named(model, "element:206"), (Ids{50, 60, 90}));
   EXPECT_EQ(nodes_named(model, "beam:9"), (Ids{90, 1000}));
@@ -110,7 +110,7 @@ TEST(Expression, takes_the_class_of_each_item) {
 }
 
 TEST(Expression, gives_the_nodes_of_elements_and_the_parts) {
-  const Model model = sample();
+  const Model model = two_part_model();
   const auto shells = evaluate(model, "100,206", Kind::element);
   ASSERT_TRUE(shells);
   EXPECT_EQ(node_ids(model, *shells), (Ids{10, 20, 40, 50, 60, 90}));
@@ -123,7 +123,7 @@ TEST(Expression, gives_the_nodes_of_elements_and_the_parts) {
 }
 
 TEST(Expression, reaches_the_largest_ids_at_no_cost) {
-  const Model model = sample();
+  const Model model = two_part_model();
   EXPECT_EQ(nodes_named(model, "5000000000"), (Ids{5000000000}));
   EXPECT_EQ(nodes_named(model, "9223372036854775807"), (Ids{9223372036854775807}));
   EXPECT_EQ(nodes_named(model, "0-9223372036854775807").size(), 19u);
@@ -132,7 +132,7 @@ TEST(Expression, reaches_the_largest_ids_at_no_cost) {
 }
 
 TEST(Expression, says_what_names_nothing_and_what_is_near) {
-  const Model model = sample();
+  const Model model = two_part_model();
   EXPECT_EQ(error_of(model, "10,24"), "expression:4: there is no node 24; the nearest is node:20");
   EXPECT_EQ(error_of(model, "10,25"), "expression:4: there is no node 25; the nearest is node:20");
   EXPECT_EQ(error_of(model, "10,26"), "expression:4: there is no node 26; the nearest is node:30");
@@ -149,7 +149,7 @@ TEST(Expression, says_what_names_nothing_and_what_is_near) {
 }
 
 TEST(Expression, points_at_what_it_cannot_read) {
-  const Model model = sample();
+  const Model model = two_part_model();
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "expression:1: the expression is empty: write ids such as 1-100,205 or all"},
       {"   ", "expression:1: the expression is empty: write ids such as 1-100,205 or all"},
@@ -186,7 +186,7 @@ TEST(Expression, is_written_in_ascending_ranges) {
 }
 
 TEST(Expression, comes_back_from_what_it_writes) {
-  const Model model = sample();
+  const Model model = two_part_model();
   for (const char* expression : {"10-50,!30", "all", "part:7", "1000-1007:3,90"}) {
     const Ids ids = nodes_named(model, expression);
     EXPECT_EQ(nodes_named(model, to_expression(ids)), ids) << expression;

@@ -15,17 +15,14 @@
 #include "base/deterministic_math.h"
 #include "mesh/deck/deck.h"
 #include "tests/support/make_model.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh::select {
 namespace {
 
-using View = std::array<double, 16>;
+using test::all_nodes;
 
-NodeSet every_node(const Model& model) {
-  NodeSet nodes;
-  for (std::size_t i = 0; i < model.node_count(); ++i) nodes.emplace_back(i);
-  return nodes;
-}
+using View = std::array<double, 16>;
 
 View as_array(const Eigen::Matrix4d& matrix) {
   View view;
@@ -125,7 +122,7 @@ NodeSet visible_by_brute_force(const Model& model, const View& view, const std::
 
 /// Compares, and returns how many are visible.
 std::size_t expect_as_by_brute_force(const Model& model, const View& view, const std::vector<std::uint8_t>& out_of_sight = {}) {
-  const Result<NodeSet> visible = visible_nodes(model, view, every_node(model), out_of_sight);
+  const Result<NodeSet> visible = visible_nodes(model, view, all_nodes(model), out_of_sight);
   EXPECT_TRUE(visible.has_value());
   if (!visible) return 0;
   const NodeSet expected = visible_by_brute_force(model, view, out_of_sight);
@@ -217,7 +214,7 @@ TEST(Visible, on_a_ball_ends_where_the_tangents_from_the_eye_touch_it) {
   const Model model = two_balls();
   const Vec3 eye(40, 17, 23);
   const std::vector<std::uint8_t> inner_hidden{0, 1};
-  const NodeSet visible = visible_nodes(model, perspective(eye, Vec3::Zero(), 1, 200), every_node(model), inner_hidden).value();
+  const NodeSet visible = visible_nodes(model, perspective(eye, Vec3::Zero(), 1, 200), all_nodes(model), inner_hidden).value();
   std::size_t clear = 0;
   for (std::size_t i = 0; i < 24 * 16; ++i) {
     const Vec3& p = model.positions[i];
@@ -261,7 +258,7 @@ TEST(Visible, agrees_with_rays_at_a_t_junction) {
 
 TEST(Visible, of_two_parallel_sheets_the_far_one_shows_beside_the_near_one_only) {
   const Model model = two_sheets(0.5);
-  const NodeSet above = visible_nodes(model, orthographic(Vec3(3, 3, 50), Vec3(3, 3, 0), 10, 100), every_node(model), {}).value();
+  const NodeSet above = visible_nodes(model, orthographic(Vec3(3, 3, 50), Vec3(3, 3, 0), 10, 100), all_nodes(model), {}).value();
   // of the lower sheet the two borders that the shift leaves open: the nodes with i = 0 or j = 0
   EXPECT_EQ(above.size(), 49u + 13u);
   for (const Vec3& eye : eyes(8, 30)) expect_as_by_brute_force(model, perspective(Vec3(3, 3, 0) + eye, Vec3(3.2, 3.1, 0), 1, 100));
@@ -270,10 +267,10 @@ TEST(Visible, of_two_parallel_sheets_the_far_one_shows_beside_the_near_one_only)
 TEST(Visible, coincident_sheets_do_not_hide_each_other) {
   for (const double gap : {0.0, 1e-12, -1e-9, 0.0005}) {
     const Model model = two_sheets(gap);
-    EXPECT_EQ(visible_nodes(model, orthographic(Vec3(3, 3, 50), Vec3(3, 3, 0), 10, 100), every_node(model), {}).value().size(), 98u) << gap;
+    EXPECT_EQ(visible_nodes(model, orthographic(Vec3(3, 3, 50), Vec3(3, 3, 0), 10, 100), all_nodes(model), {}).value().size(), 98u) << gap;
   }
   // beyond a thousandth of an edge they are two sheets
-  EXPECT_EQ(visible_nodes(two_sheets(0.002), orthographic(Vec3(3, 3, 50), Vec3(3, 3, 0), 10, 100), every_node(two_sheets(0.002)), {})
+  EXPECT_EQ(visible_nodes(two_sheets(0.002), orthographic(Vec3(3, 3, 50), Vec3(3, 3, 0), 10, 100), all_nodes(two_sheets(0.002)), {})
                 .value()
                 .size(),
             62u);
@@ -284,7 +281,7 @@ TEST(Visible, tolerance_scales_with_the_elements) {
     Model model = two_sheets(0.002);
     for (std::size_t i = 0; i < model.node_count(); ++i) model.positions.set(i, scale * model.positions[i]);
     const View view = orthographic(scale * Vec3(3, 3, 50), scale * Vec3(3, 3, 0), 10 * scale, 100 * scale);
-    EXPECT_EQ(visible_nodes(model, view, every_node(model), {}).value().size(), 62u) << scale;
+    EXPECT_EQ(visible_nodes(model, view, all_nodes(model), {}).value().size(), 62u) << scale;
   }
 }
 
@@ -295,16 +292,16 @@ TEST(Visible, through_a_ray_along_a_shared_side_nothing_shows) {
     for (int i = 0; i <= 2; ++i) points.emplace_back(i, j, 2);
   for (const Vec3& far : {Vec3(1, 0.5, 0), Vec3(1, 1, 0), Vec3(0.5, 0.5, 0), Vec3(1.5, 1, 0)}) points.push_back(far);
   const Model model = test::make_shells(points, {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}});
-  const NodeSet visible = visible_nodes(model, orthographic(Vec3(1, 1, 9), Vec3(1, 1, 0), 4, 20), every_node(model), {}).value();
+  const NodeSet visible = visible_nodes(model, orthographic(Vec3(1, 1, 9), Vec3(1, 1, 0), 4, 20), all_nodes(model), {}).value();
   EXPECT_EQ(visible.size(), 9u);
 }
 
 TEST(Visible, leaves_out_what_is_beyond_the_planes_and_needs_depth) {
   const Model model = test::make_model({{1, {0, 0, 0}}, {2, {0.1, 0, -5}}, {3, {0.2, 0, 5}}}, {});
-  EXPECT_EQ(visible_nodes(model, orthographic(Vec3(0, 0, 2), Vec3(0, 0, 0), 4, 4), every_node(model), {}).value(), (NodeSet{NodeIndex(0)}));
+  EXPECT_EQ(visible_nodes(model, orthographic(Vec3(0, 0, 2), Vec3(0, 0, 0), 4, 4), all_nodes(model), {}).value(), (NodeSet{NodeIndex(0)}));
   EXPECT_TRUE(visible_nodes(model, orthographic(Vec3(0, 0, 2), Vec3(0, 0, 0), 4, 4), {}, {}).value().empty());
   const View flat{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
-  const Result<NodeSet> refused = visible_nodes(model, flat, every_node(model), {});
+  const Result<NodeSet> refused = visible_nodes(model, flat, all_nodes(model), {});
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().text().find("the view keeps no depth"), std::string::npos);
 }
@@ -314,11 +311,11 @@ TEST(Visible, mid_side_nodes_are_not_hidden_by_their_own_shells) {
   std::vector<Vec3> points{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 0.1, -0.2}, {1.9, 1, -0.2}, {1, 1.9, -0.2}, {0.1, 1, -0.2}};
   Model model = test::make_shells(points, {{0, 1, 2, 3}});
   const View view = orthographic(Vec3(1, 1, 9), Vec3(1, 1, 0), 4, 20);
-  EXPECT_EQ(visible_nodes(model, view, every_node(model), {}).value().size(), 4u);
+  EXPECT_EQ(visible_nodes(model, view, all_nodes(model), {}).value().size(), 4u);
   auto midside = std::make_shared<std::vector<MidsideNodes>>();
   midside->push_back({ShellIndex(0), {NodeIndex(4), NodeIndex(5), NodeIndex(6), NodeIndex(7)}});
   model.midside = midside;
-  EXPECT_EQ(visible_nodes(model, view, every_node(model), {}).value().size(), 8u);
+  EXPECT_EQ(visible_nodes(model, view, all_nodes(model), {}).value().size(), 8u);
 }
 
 TEST(Visible, agrees_with_rays_on_real_decks) {

@@ -13,15 +13,12 @@
 #include "mesh/shape/move.h"
 #include "tests/support/make_model.h"
 #include "tests/support/real_deck.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh::shape {
 namespace {
 
-NodeSet all_nodes(const Model& model) {
-  NodeSet nodes(model.node_count());
-  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = NodeIndex(i);
-  return nodes;
-}
+using test::all_nodes;
 
 /// A flat grid with some shells' nodes in the opposite order.
 Model disordered_grid(bool first_up) {

@@ -9,21 +9,13 @@
 #include "mesh/shape/normals.h"
 #include "mesh/spatial/closest_point.h"
 #include "tests/support/make_model.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh::shape {
 namespace {
 
-NodeSet all_nodes(const Model& model) {
-  NodeSet nodes;
-  for (std::size_t i = 0; i < model.node_count(); ++i) nodes.emplace_back(i);
-  return nodes;
-}
-
-ShellSet all_shells(const Model& model) {
-  ShellSet shells;
-  for (std::size_t i = 0; i < model.shell_count(); ++i) shells.emplace_back(i);
-  return shells;
-}
+using test::all_nodes;
+using test::all_shells;
 
 /// All nodes slid as `by` leads at `grab`.
 std::vector<Vec3> slid(const Model& model, NodeIndex grab, const Vec3& by, std::optional<double> max_move = std::nullopt) {

@@ -36,13 +36,13 @@ double profile_by_definition(Profile profile, double flat, double d) {
   }
 }
 
-constexpr std::array kAll{Profile::constant, Profile::linear, Profile::smooth,         Profile::sharp,
+constexpr std::array kEveryNode{Profile::constant, Profile::linear, Profile::smooth,         Profile::sharp,
                           Profile::root,     Profile::sphere, Profile::inverse_square, Profile::gaussian};
 
 /// Compares all weights, under every profile and some flat centres, with the profile of a share d known for each place.
 void expect_shares(const Model& model, const NodeSet& selection, NodeIndex grab, WeightOptions options, double tolerance,
                    const std::function<double(const Vec3&)>& share) {
-  for (const Profile profile : kAll)
+  for (const Profile profile : kEveryNode)
     for (const double flat : {0.0, 0.25, 0.6}) {
       SCOPED_TRACE(std::string(name(profile)) + ", flat " + std::to_string(flat));
       options.falloff.profile = profile;
@@ -130,7 +130,7 @@ Model box_rail(const std::function<bool(int around, int along)>& keep) {
 
 NodeIndex rail_node(int around, int along) { return NodeIndex(static_cast<std::size_t>(around + kAround * along)); }
 
-WeightOptions linear() {
+WeightOptions linear_options() {
   WeightOptions options;
   options.falloff.profile = Profile::linear;
   return options;
@@ -140,7 +140,7 @@ TEST(WeightsOfSections, keep_rows_of_a_closed_rail_evenly_spaced) {
   const Model model = box_rail([](int, int) { return true; });
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.x() >= 9; });
   for (const int grabbed : {0, 2, 12}) {  // on a ridge and off it
-    const Weighed w(model, selection, rail_node(grabbed, kLength), linear());
+    const Weighed w(model, selection, rail_node(grabbed, kLength), linear_options());
     for (const NodeIndex node : selection) EXPECT_NEAR(w(node), (model.position(node).x() - 9) / 15, 1e-9);
   }
 }
@@ -149,7 +149,7 @@ TEST(WeightsOfSections, move_the_end_of_an_unequally_selected_rail_as_one) {
   const Model model = box_rail([](int, int) { return true; });
   // the far side is selected from 6 on, the near one from 12, and in steps between
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.x() >= 12 - p.y(); });
-  const Weighed w(model, selection, rail_node(3, kLength), linear());
+  const Weighed w(model, selection, rail_node(3, kLength), linear_options());
   for (int k = 0; k < kAround; ++k) {
     EXPECT_EQ(w(rail_node(k, kLength)), 1);
     for (int i = 6; i < kLength; ++i) EXPECT_LE(w(rail_node(k, i)), w(rail_node(k, i + 1)) + 1e-12) << k << ", " << i;
@@ -161,7 +161,7 @@ TEST(WeightsOfSections, move_the_end_of_an_unequally_selected_rail_as_one) {
 TEST(WeightsOfSections, hold_the_end_when_its_row_is_deselected) {
   const Model model = box_rail([](int, int) { return true; });
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.x() >= 9 && p.x() < kLength; });
-  const Weighed w(model, selection, std::nullopt, linear());
+  const Weighed w(model, selection, std::nullopt, linear_options());
   for (int k = 0; k < kAround; ++k) {
     EXPECT_EQ(w(rail_node(k, kLength - 1)), 0);
     EXPECT_EQ(w(rail_node(k, kLength)), 0);
@@ -175,7 +175,7 @@ TEST(WeightsOfSections, take_the_end_around_a_slot_as_one_edge) {
   // a slot of two elements from the end inwards on one side
   const Model model = box_rail([](int k, int i) { return i < kLength - 5 || k < 2 || k > 3; });
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.x() >= 9; });
-  const Weighed w(model, selection, rail_node(14, kLength), linear());
+  const Weighed w(model, selection, rail_node(14, kLength), linear_options());
   for (int k = 0; k < kAround; ++k) {
     if (k == 3) continue;  // in the slot
     EXPECT_EQ(w(rail_node(k, kLength)), 1) << k;
@@ -188,7 +188,7 @@ TEST(WeightsOfSections, take_the_end_around_a_slot_as_one_edge) {
 TEST(WeightsOfSections, leave_a_hole_before_the_end_free) {
   const Model model = box_rail([](int k, int i) { return i < kLength - 4 || i >= kLength - 2 || k < 2 || k > 3; });
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.x() >= 9; });
-  const Weighed w(model, selection, rail_node(14, kLength), linear());
+  const Weighed w(model, selection, rail_node(14, kLength), linear_options());
   for (int k = 0; k < kAround; ++k) EXPECT_EQ(w(rail_node(k, kLength)), 1) << k;
   for (const int k : {2, 4, 9, 15, 21})
     for (int i = 9; i <= kLength; ++i) EXPECT_NEAR(w(rail_node(k, i)), (i - 9) / 15.0, 1e-9) << k << ", " << i;
@@ -200,14 +200,14 @@ TEST(WeightsOfSections, choose_among_several_free_edges) {
   // both ends are free and selected, the middle isn't: each end moves alone
   const Model model = box_rail([](int, int) { return true; });
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.x() <= 8 || p.x() >= 14; });
-  const Weighed w(model, selection, rail_node(5, kLength), linear());
+  const Weighed w(model, selection, rail_node(5, kLength), linear_options());
   for (const NodeIndex node : selection) {
     const double x = model.position(node).x();
     EXPECT_NEAR(w(node), x <= 8 ? 0 : (x - 14) / 10, 1e-9);
   }
   EXPECT_EQ(w.weights.unreached, 9u * kAround);
   // the edge nearest to a grab off the edges
-  WeightOptions options = linear();
+  WeightOptions options = linear_options();
   options.origin = Origin::free_edge;
   const Weighed nearest(model, selection, rail_node(5, 6), options);
   for (int k = 0; k < kAround; ++k) EXPECT_EQ(nearest(rail_node(k, 0)), 1);
@@ -218,7 +218,7 @@ TEST(WeightsOfSections, split_a_grab_where_free_edge_and_border_meet) {
   // an open strip: the grab lies on the rim and on the free side at once
   const Model model = make_grid(10, 10, [](int i, int j) { return Vec3(i, j, 0); });
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.y() >= 4; });
-  const Weighed w(model, selection, grid_node(10, 0, 4), linear());
+  const Weighed w(model, selection, grid_node(10, 0, 4), linear_options());
   EXPECT_EQ(w(grid_node(10, 0, 4)), 1);
   for (int i = 1; i <= 10; ++i) EXPECT_EQ(w(grid_node(10, i, 4)), 0) << i;
   for (const double weight : w.weights.weight) EXPECT_TRUE(weight >= 0 && weight <= 1);

@@ -7,17 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/make_model.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh::spatial {
 namespace {
 
+using test::all_shells;
 using test::make_model;
-
-ShellSet all_shells(const Model& model) {
-  ShellSet shells;
-  for (std::size_t s = 0; s < model.shell_count(); ++s) shells.emplace_back(s);
-  return shells;
-}
 
 /// A bumpy sheet of n x n quads, every third of which is two triangles.
 Model bumpy_sheet(int n) {

@@ -16,7 +16,7 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 using std::numbers::pi;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfiniteDistance = std::numeric_limits<double>::infinity();
 
 /// (columns + 1) x (rows + 1) points, each square of them two triangles, cut at random along either diagonal.
 TriangleSurface grid(int columns, int rows, const std::function<Vec3(int, int)>& place, const std::function<bool(int, int)>& keep = {}) {
@@ -186,7 +186,7 @@ TEST(ExactGeodesic, crosses_the_edges_of_a_cube) {
   expect_distances(cube, corner, [&](const Vec3& p) {
     if (p.minCoeff() == 0) return p.norm();
     // on a far side: the nearer of the two sides between
-    double shortest = kInfinity;
+    double shortest = kInfiniteDistance;
     for (int axis = 0; axis < 3; ++axis) {
       if (p[axis] != kSide) continue;
       const double u = p[(axis + 1) % 3], v = p[(axis + 2) % 3];
@@ -218,7 +218,7 @@ std::vector<double> along_added_points(const TriangleSurface& surface, std::uint
   std::vector<std::vector<std::uint32_t>> triangles_at(place.size());
   for (std::uint32_t t = 0; t < of_triangle.size(); ++t)
     for (const std::uint32_t p : of_triangle[t]) triangles_at[p].push_back(t);
-  std::vector<double> distance(place.size(), kInfinity);
+  std::vector<double> distance(place.size(), kInfiniteDistance);
   std::priority_queue<std::pair<double, std::uint32_t>, std::vector<std::pair<double, std::uint32_t>>, std::greater<>> queue;
   queue.push({distance[source] = 0, source});
   while (!queue.empty()) {
@@ -270,7 +270,7 @@ TEST(ExactGeodesic, takes_the_nearest_source_and_ends_at_the_radius) {
   for (std::size_t p = 0; p < exact.size(); ++p) {
     const double truth = std::min(plane.point[p].norm(), (plane.point[p] - Vec3(20, 20, 0)).norm());
     if (truth > 12)
-      EXPECT_EQ(exact[p], kInfinity);
+      EXPECT_EQ(exact[p], kInfiniteDistance);
     else
       EXPECT_NEAR(exact[p], truth, 1e-9);
   }

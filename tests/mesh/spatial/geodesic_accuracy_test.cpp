@@ -14,15 +14,12 @@
 #include "tests/mesh/spatial/exact_geodesic.h"
 #include "tests/mesh/spatial/trial_sheets.h"
 #include "tests/support/real_deck.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh::spatial {
 namespace {
 
-ShellSet all_shells(const Model& model) {
-  ShellSet shells(model.shell_count());
-  for (std::size_t i = 0; i < shells.size(); ++i) shells[i] = ShellIndex(i);
-  return shells;
-}
+using test::all_shells;
 
 test::TriangleSurface triangles_of(const Patch& patch, bool other_diagonal) {
   test::TriangleSurface surface{patch.positions, {}};
@@ -39,7 +36,7 @@ test::TriangleSurface triangles_of(const Patch& patch, bool other_diagonal) {
   return surface;
 }
 
-struct Errors {
+struct AccuracyErrors {
   double mean = 0;
   double max = 0;
   double apart = 0;  ///< most that the two ways to cut the quads differ
@@ -47,11 +44,11 @@ struct Errors {
 };
 
 /// As shares of the radius, over the nodes within it.
-Errors compare(const Patch& patch, const std::vector<std::uint32_t>& sources, double radius) {
+AccuracyErrors compare(const Patch& patch, const std::vector<std::uint32_t>& sources, double radius) {
   const std::vector<double> one = test::exact_geodesic(triangles_of(patch, false), sources, 1.1 * radius);
   const std::vector<double> other = test::exact_geodesic(triangles_of(patch, true), sources, 1.1 * radius);
   const std::vector<double> marched = geodesic_distance(patch, sources);
-  Errors errors;
+  AccuracyErrors errors;
   for (std::size_t i = 0; i < marched.size(); ++i) {
     const auto [low, high] = std::minmax(one[i], other[i]);
     if (!(high <= radius)) continue;
@@ -65,13 +62,13 @@ Errors compare(const Patch& patch, const std::vector<std::uint32_t>& sources, do
   return errors;
 }
 
-void say(const std::string& name, const Patch& patch, const Errors& errors) {
+void say(const std::string& name, const Patch& patch, const AccuracyErrors& errors) {
   std::cout << std::fixed << std::setprecision(4) << "  " << name << ": " << patch.shells.size() << " shells, " << errors.count
             << " nodes, mean " << 100 * errors.mean << " %, most " << 100 * errors.max << " %, diagonals " << 100 * errors.apart << " %\n";
 }
 
 void expect_within_aim(const std::string& name, const Patch& patch, const std::vector<std::uint32_t>& sources, double radius) {
-  const Errors errors = compare(patch, sources, radius);
+  const AccuracyErrors errors = compare(patch, sources, radius);
   say(name, patch, errors);
   EXPECT_GT(errors.count, 50u) << name;
   EXPECT_LE(errors.mean, 0.003) << name;
@@ -115,7 +112,7 @@ TEST(GeodesicAccuracy, of_slender_triangles_along_a_serrated_boundary) {
   for (const double aspect : {5.0, 0.2}) {
     const Model model = test::slender_panel(aspect, 0.4);
     const Patch patch = cut_patch(model, all_shells(model));
-    const Errors errors = compare(patch, {nearest(patch, test::on_panel(0, 0))}, 45);
+    const AccuracyErrors errors = compare(patch, {nearest(patch, test::on_panel(0, 0))}, 45);
     say("serrated", patch, errors);
     EXPECT_LE(errors.mean, 0.003);
     EXPECT_LE(errors.max, 0.015);

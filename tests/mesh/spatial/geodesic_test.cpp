@@ -16,10 +16,12 @@
 
 #include "tests/mesh/spatial/trial_sheets.h"
 #include "tests/support/make_model.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh::spatial {
 namespace {
 
+using test::all_shells;
 using test::grid_node;
 using test::make_grid;
 using test::make_model;
@@ -29,12 +31,6 @@ constexpr double kPiValue = 3.14159265358979323846;
 
 /// Where node (i, j) of a grid of unit squares stands in the plane, moved by up to `jitter` both ways.
 std::array<double, 2> jittered(int i, int j, double jitter) { return {i + jitter * noise(i, j, 1), j + jitter * noise(i, j, 2)}; }
-
-ShellSet all_shells(const Model& model) {
-  ShellSet shells(model.shell_count());
-  for (std::size_t i = 0; i < shells.size(); ++i) shells[i] = ShellIndex(i);
-  return shells;
-}
 
 struct Errors {
   double mean = 0;

@@ -8,17 +8,13 @@
 #include <Eigen/Geometry>
 
 #include "tests/support/make_model.h"
+#include "tests/support/whole_model.h"
 
 namespace prismesh::mesh::spatial {
 namespace {
 
+using test::all_shells;
 using test::make_model;
-
-ShellSet all_shells(const Model& model) {
-  ShellSet shells;
-  for (std::size_t s = 0; s < model.shell_count(); ++s) shells.emplace_back(s);
-  return shells;
-}
 
 /// A tube about z of so many quads, radius and height.
 Model tube(int around, int up, double radius, double height) {

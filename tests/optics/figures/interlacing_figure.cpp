@@ -12,7 +12,7 @@ namespace {
 using viewer::LightImage;
 using viewer::Owner;
 
-constexpr int kWidth = 1280, kHeight = 950;
+constexpr int kInterlacingWidth = 1280, kInterlacingHeight = 950;
 
 /// Where a magnified part lies in its picture.
 struct Part {
@@ -55,7 +55,7 @@ struct Column {
 }  // namespace
 
 Result<LightImage> interlacing_figure(Stage& stage) {
-  Result<Canvas> canvas = Canvas::create(kWidth, kHeight, kFigureFont);
+  Result<Canvas> canvas = Canvas::create(kInterlacingWidth, kInterlacingHeight, kFigureFont);
   if (!canvas) return fail(canvas.error());
   canvas->ground(manner::kAbove, manner::kBelow);
   const viewer::Panel panel{.columns = 640, .rows = 400};

@@ -11,12 +11,12 @@ namespace {
 
 using viewer::LightImage;
 
-constexpr int kWidth = 1280, kHeight = 920;
+constexpr int kLinesWidth = 1280, kLinesHeight = 920;
 
 }  // namespace
 
 Result<LightImage> lines_figure(Stage& stage) {
-  Result<Canvas> canvas = Canvas::create(kWidth, kHeight, kFigureFont);
+  Result<Canvas> canvas = Canvas::create(kLinesWidth, kLinesHeight, kFigureFont);
   if (!canvas) return fail(canvas.error());
   canvas->ground(manner::kAbove, manner::kBelow);
   const viewer::MaskDisplay display = station_display(512, 256);

@@ -14,7 +14,7 @@ using viewer::Eyes;
 using viewer::MaskDisplay;
 using viewer::Point;
 
-constexpr int kWidth = 1280, kHeight = 970;
+constexpr int kOpticsWidth = 1280, kOpticsHeight = 970;
 constexpr double kScale = 1.1, kDepthScale = 0.58;  ///< picture pixels per mm, along the panel and away from it
 
 /// Pixels and gap a hundred times too large beside the distances, so that both can be seen.
@@ -150,7 +150,7 @@ class Drawing {
 }  // namespace
 
 Result<viewer::LightImage> optics_figure() {
-  Result<Canvas> canvas = Canvas::create(kWidth, kHeight, kFigureFont);
+  Result<Canvas> canvas = Canvas::create(kOpticsWidth, kOpticsHeight, kFigureFont);
   if (!canvas) return fail(canvas.error());
   canvas->ground(manner::kAbove, manner::kBelow);
   const MaskDisplay display = enlarged();
@@ -162,8 +162,8 @@ Result<viewer::LightImage> optics_figure() {
       {"3  Nearer, with fixed columns", "the windows spread: toward the sides they miss (×) the eye's own columns", near, 0},
       {"4  Nearer, with a phase map", "each third of a pixel goes to the eye that looks at it", near, 0, true}};
   for (int i = 0; i < 4; ++i) Drawing(*canvas, {640.0 * (i % 2), 530.0 * (i / 2)}, scenes[i]).draw();
-  canvas->line({640, 30}, {640, kHeight - 30}, 1, manner::kFrame);
-  canvas->line({30, 530}, {kWidth - 30, 530}, 1, manner::kFrame);
+  canvas->line({640, 30}, {640, kOpticsHeight - 30}, 1, manner::kFrame);
+  canvas->line({30, 530}, {kOpticsWidth - 30, 530}, 1, manner::kFrame);
   return canvas->picture();
 }
 

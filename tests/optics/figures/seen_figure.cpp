@@ -5,11 +5,11 @@ namespace prismesh::optics {
 
 namespace {
 using viewer::LightImage;
-constexpr int kWidth = 1280, kHeight = 800;
+constexpr int kSeenWidth = 1280, kSeenHeight = 800;
 }  // namespace
 
 Result<LightImage> seen_figure(Stage& stage) {
-  Result<Canvas> canvas = Canvas::create(kWidth, kHeight, kFigureFont);
+  Result<Canvas> canvas = Canvas::create(kSeenWidth, kSeenHeight, kFigureFont);
   if (!canvas) return fail(canvas.error());
   canvas->ground(manner::kAbove, manner::kBelow);
   const viewer::MaskDisplay display = station_display(640, 400);

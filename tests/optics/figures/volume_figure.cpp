@@ -11,7 +11,7 @@ namespace {
 
 using viewer::LightImage;
 
-constexpr int kWidth = 1280, kHeight = 800;
+constexpr int kVolumeWidth = 1280, kVolumeHeight = 800;
 constexpr int kSide = 240, kNear = 420, kFar = 920, kStep = 20;  ///< mm
 constexpr double kLimit = 0.25;                                  ///< pixels
 
@@ -71,7 +71,7 @@ void draw_scale(Canvas& canvas, Spot2 at) {
 }  // namespace
 
 Result<LightImage> volume_figure(Stage& stage) {
-  Result<Canvas> canvas = Canvas::create(kWidth, kHeight, kFigureFont);
+  Result<Canvas> canvas = Canvas::create(kVolumeWidth, kVolumeHeight, kFigureFont);
   if (!canvas) return fail(canvas.error());
   canvas->ground(manner::kAbove, manner::kBelow);
   const viewer::MaskDisplay display = station_display(1280, 3);

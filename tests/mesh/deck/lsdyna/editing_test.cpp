@@ -14,7 +14,7 @@ const std::string kNodes =
     "       4             0.0             1.0             0.0\n"
     "       5             1.0             1.0             0.0\n"
     "       6             2.0             1.0             0.0\n";
-const std::string kShells =
+const std::string kThreeShells =
     "*ELEMENT_SHELL\n"
     "      11       7       1       2       5       4\n"
     "      12       7       2       3       6       5\n";
@@ -60,7 +60,7 @@ class Editing : public ::testing::Test {
 };
 
 TEST_F(Editing, new_cards_stand_behind_those_they_come_from) {
-  Growing& edit = open(kNodes + kShells + kEnd);
+  Growing& edit = open(kNodes + kThreeShells + kEnd);
   edit.split_conforming(edit.shell(11));
   const std::string text = saved();
   EXPECT_EQ(text,

@@ -13,7 +13,7 @@ namespace prismesh::mesh::deck {
 namespace {
 
 /// Eight nodes, two shells of part 1.
-constexpr const char* kMesh =
+constexpr const char* kTwoShellMesh =
     "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,2,0,0\n6,2,1,0\n7,3,0,0\n8,3,1,0\n"
     "*PART\nsheet\n1,1,1\n*ELEMENT_SHELL\n1,1,1,2,3,4\n2,1,2,5,6,3\n";
 
@@ -146,7 +146,7 @@ TEST(TextNobodyUnderstands, is_kept_apart) {
 
 TEST(TextNobodyUnderstands, stands_in_the_way_of_what_it_may_name) {
   const DeckFolder folder;
-  const auto opened = folder.open(std::string("*KEYWORD\n") + kMesh + "*PARAMETER\nIn,4\n*FOO\n1,&n,x 7.5\n00000005" +
+  const auto opened = folder.open(std::string("*KEYWORD\n") + kTwoShellMesh + "*PARAMETER\nIn,4\n*FOO\n1,&n,x 7.5\n00000005" +
                                   "00000006\n*SET_NODE_LIST\n7\n8,2\n*END\n");
   ASSERT_OPENED(opened);
   DeletionCheck check(*opened->deck);
@@ -162,7 +162,7 @@ TEST(TextNobodyUnderstands, stands_in_the_way_of_what_it_may_name) {
 
 TEST(EncryptedText, stands_in_the_way_of_all_removal) {
   const DeckFolder folder;
-  const auto opened = folder.open(std::string("*KEYWORD\n") + kMesh +
+  const auto opened = folder.open(std::string("*KEYWORD\n") + kTwoShellMesh +
                                   "*SET_NODE_LIST\n7\n-----BEGIN PGP MESSAGE-----\nxyz\n-----END PGP MESSAGE-----\n1,2\n*END\n");
   ASSERT_OPENED(opened);
   ASSERT_EQ(opened->deck->references->unread().size(), 1u);
@@ -174,7 +174,7 @@ TEST(EncryptedText, stands_in_the_way_of_all_removal) {
 
 TEST(CardsThatNameOneAlone, stand_in_the_way_and_lists_do_not) {
   const DeckFolder folder;
-  const auto opened = folder.open(std::string("*KEYWORD\n") + kMesh + "*BOUNDARY_SPC_NODE\n3\n*SET_SEGMENT\n5\n1,2,3,4\n*END\n");
+  const auto opened = folder.open(std::string("*KEYWORD\n") + kTwoShellMesh + "*BOUNDARY_SPC_NODE\n3\n*SET_SEGMENT\n5\n1,2,3,4\n*END\n");
   ASSERT_OPENED(opened);
   const Result<void> spc = may_be_deleted(*opened->deck, Referred::node, 3);
   ASSERT_FALSE(spc);
@@ -204,7 +204,7 @@ TEST(HostileCards, cost_no_more_than_their_text) {
   cards += "*SET_NODE_COLUMN\n3\n";
   for (int i = 0; i < 1000000; ++i) cards += i % 2 ? "1\n" : "3\n";
   const DeckFolder folder;
-  const auto opened = folder.open("*KEYWORD\n" + std::string(kMesh) + cards + "*END\n");
+  const auto opened = folder.open("*KEYWORD\n" + std::string(kTwoShellMesh) + cards + "*END\n");
   ASSERT_OPENED(opened);
   EXPECT_TRUE(opened->deck->references->named(Referred::node, 8));
   EXPECT_EQ(opened->deck->references->naming(Referred::node, 1).size(), 500005u);

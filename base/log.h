@@ -1,0 +1,36 @@
+// A daemon's log: lines on standard error, with time and level. spdlog's headers, which are heavy, stay in log.cpp.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include <fmt/core.h>
+
+namespace prismesh::logging {
+
+enum class Level : std::uint8_t { info, warning, error, critical };
+
+/// `program` stands in every line. What is logged before this goes to standard output.
+void start(std::string_view program);
+void write(Level level, std::string_view text);
+/// What was written has left the process afterwards.
+void flush();
+
+template <class... Args>
+void info(fmt::format_string<Args...> text, Args&&... args) {
+  write(Level::info, fmt::vformat(text, fmt::make_format_args(args...)));
+}
+template <class... Args>
+void warn(fmt::format_string<Args...> text, Args&&... args) {
+  write(Level::warning, fmt::vformat(text, fmt::make_format_args(args...)));
+}
+template <class... Args>
+void error(fmt::format_string<Args...> text, Args&&... args) {
+  write(Level::error, fmt::vformat(text, fmt::make_format_args(args...)));
+}
+template <class... Args>
+void critical(fmt::format_string<Args...> text, Args&&... args) {
+  write(Level::critical, fmt::vformat(text, fmt::make_format_args(args...)));
+}
+
+}  // namespace prismesh::logging
