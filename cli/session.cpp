@@ -199,7 +199,9 @@ int session(const SessionOptions& options, const Common& common, const Surroundi
     case SessionAction::edit:
     case SessionAction::undo:
     case SessionAction::redo: return edit_all(session, wanted, common, surroundings);
-    case SessionAction::open: answer = session.ask_again(open_request(options, common), "reading " + options.deck.filename().string()); break;
+    case SessionAction::open:
+      answer = session.ask_again(open_request(options, common), "reading " + options.deck.filename().string());
+      break;
     case SessionAction::state: {
       Result<ipc::State> state = session.state();
       answer = state ? Result<ipc::Answer>(std::move(*state)) : fail(state.error());

@@ -88,7 +88,8 @@ LinearNumbers evenly_spaced(const PlacedMask& mask, const Vec3& eye_mm, const Pa
   return {by_u * pitch, -by_v * pitch, by_u * area.u_mm(0, pitch) + by_v * area.v_mm(0, pitch) - row.first_mm / row.spacing_mm};
 }
 
-std::array<ImageFrame, 2> behind_mask(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
+std::array<ImageFrame, 2> behind_mask(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area,
+                                      Composition& composed) {
   const PlacedMask mask = place_mask(picture, eyes, area);
   const stereo::EyePair pair = eyes.eyes();
   composed.join = Join::interlaced;
@@ -155,7 +156,8 @@ ImageFrame half_height(int width, int height) {
 }
 
 /// How the two eyes' images are framed and joined.
-std::array<ImageFrame, 2> frames_for(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area, Composition& composed) {
+std::array<ImageFrame, 2> frames_for(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area,
+                                     Composition& composed) {
   const ImageFrame whole{area.width, area.height, stereo::whole_picture(area.width, area.height)};
   switch (picture.profile.weave) {
     case Weave::mask: return behind_mask(picture, eyes, area, composed);

@@ -8,7 +8,7 @@ namespace prismesh::kiosk::stereo {
 
 namespace {
 
-constexpr double kFlattest = 0.005;    ///< depth is never scaled to less: one thing has to hide another
+constexpr double kFlattest = 0.005;         ///< depth is never scaled to less: one thing has to hide another
 constexpr double kNearestDepthEyeMm = 100;  ///< no eye is taken to be nearer when depth is measured by it
 
 /// Where the bounds' centre stands before the screen, and how far they reach from there: mm, before compression.

@@ -14,7 +14,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr int kMostAttempts = 5;        ///< until all that is wanted can be written
+constexpr int kMostAttempts = 5;               ///< until all that is wanted can be written
 constexpr std::size_t kMaxNamedInRepair = 10;  ///< elements that a note names
 
 repair::Options options_of(double angle, const MoveLimits& limits) {

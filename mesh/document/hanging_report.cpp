@@ -22,9 +22,9 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr std::size_t kMaxNamedInReport = 5;   ///< cards and nodes that a note names
-constexpr std::size_t kMostLost = 100;  ///< connections that a report lists
-constexpr int kRingsSearched = 4;               ///< how far along its sheet a node may have come and still be found there
+constexpr std::size_t kMaxNamedInReport = 5;  ///< cards and nodes that a note names
+constexpr std::size_t kMostLost = 100;        ///< connections that a report lists
+constexpr int kRingsSearched = 4;             ///< how far along its sheet a node may have come and still be found there
 
 bool contains(const NodeSet& nodes, NodeIndex node) { return std::binary_search(nodes.begin(), nodes.end(), node); }
 

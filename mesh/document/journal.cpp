@@ -153,8 +153,7 @@ Result<Journal> Journal::recover(const std::filesystem::path& path, Document& do
 Result<void> Journal::append(const Document& document, const Edit& edit, const Prepared& prepared) {
   const bool push = prepared.step == Prepared::Step::push;
   const std::string delta = push ? base64_encode(encode_delta(document.current(), *prepared.next)) : "";
-  const std::string text =
-      record_text(state_->records + 1, intent_text(edit), prepared.step, prepared.drop_oldest, delta, state_->check);
+  const std::string text = record_text(state_->records + 1, intent_text(edit), prepared.step, prepared.drop_oldest, delta, state_->check);
   if (const Result<void> appended = state_->file.append(text); !appended) return appended;
   ++state_->records;
   state_->check = check_in(text);

@@ -176,7 +176,8 @@ TEST_F(FieldColoursTest, TwoViewsShareThePictureAndKeepToTheirHalves) {
     EXPECT_TRUE(renderer_->set_model(nullptr) && renderer_->set_other(nullptr));
     return draw(picture, kColoursWidth, kColoursHeight);
   }();
-  for (int y = 0; y < kColoursHeight; y += 16) EXPECT_FALSE(differ(colour_at(near, {kColoursWidth / 2, y}), colour_at(ground, {kColoursWidth / 2, y}))) << y;
+  for (int y = 0; y < kColoursHeight; y += 16)
+    EXPECT_FALSE(differ(colour_at(near, {kColoursWidth / 2, y}), colour_at(ground, {kColoursWidth / 2, y}))) << y;
 }
 
 /// The woven picture is made of the two eyes' images: each of them must hold both halves, and differ by the parallax of the model alone.

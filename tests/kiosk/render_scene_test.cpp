@@ -105,7 +105,8 @@ TEST_F(Scene, TheEndOfALineBeforeAPlateIsPickedWhereItIs) {
   source.add_line(from, to, 2);
   show(source);
   const Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
-  EXPECT_EQ(renderer_->node_near(aim_of(picture, kSceneWidth, kSceneHeight), pixel_of(picture, source.positions[to]), 16), mesh::NodeIndex(to));
+  EXPECT_EQ(renderer_->node_near(aim_of(picture, kSceneWidth, kSceneHeight), pixel_of(picture, source.positions[to]), 16),
+            mesh::NodeIndex(to));
 }
 
 TEST_F(Scene, ARectangleTakesWhatIsSeenOrGoesThrough) {

@@ -209,7 +209,8 @@ TEST(TrackedEyes, ATrackerThatTakesLongGivesDepthToo) {
   world.run_ms(1000);
   world.close_pictures();
   EXPECT_EQ(world.seen.depth_share, 0);
-  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 130 * kMillisecondNs) << "the promise counts from when the head was heard of";
+  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 130 * kMillisecondNs)
+      << "the promise counts from when the head was heard of";
 }
 
 TEST(TrackedEyes, AShortGapIsBridged) {
@@ -229,7 +230,7 @@ TEST(TrackedEyes, EveryWayToLoseTheDaemonEndsInMono) {
       [](World& w) { w.daemon_runs = false; },                                                  // killed: the page stays, and stands still
       [](World& w) { w.daemon_runs = w.page_is_there = false; },                                // the link is known to be lost
       [](World& w) { w.daemon_runs = false, w.reading.eyes->phase = ipc::EyesPhase::absent; },  // unplugged
-      [](World& w) { w.daemon_runs = false, w.reading.eyes->between_eyes_mm[0] = std::nan(""); },        // a fault
+      [](World& w) { w.daemon_runs = false, w.reading.eyes->between_eyes_mm[0] = std::nan(""); },                   // a fault
       [](World& w) { w.daemon_runs = false, w.reading.eyes->measured_ns = w.now() + 3'600'000 * kMillisecondNs; },  // another clock
   };
   for (std::size_t way = 0; way < ways.size(); ++way) {

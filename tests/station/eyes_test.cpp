@@ -236,7 +236,8 @@ TEST_F(EyesTest, settings_choose_the_display) {
 TEST_F(EyesTest, wrong_settings_are_told_with_file_and_line) {
   const std::filesystem::path file = station_->folder() / "wrong.toml";
   std::ofstream(file) << "[display]\nprofil = 'mono'\n";
-  Process kiosk({(test::programs_folder() / "prismesh-kiosk").string(), "--config", file.string()}, {{"DISPLAY", station_->display().name()}});
+  Process kiosk({(test::programs_folder() / "prismesh-kiosk").string(), "--config", file.string()},
+                {{"DISPLAY", station_->display().name()}});
   EXPECT_EQ(kiosk.wait_for_exit(), 1);
   EXPECT_NE(kiosk.standard_error().find("wrong.toml:2: "), std::string::npos) << kiosk.standard_error();
 }

@@ -26,7 +26,8 @@ constexpr PropertyForm kPropertyForms[] = {
 };
 
 const PropertyForm* form_of(std::string_view name) {
-  const auto at = std::find_if(std::begin(kPropertyForms), std::end(kPropertyForms), [&](const PropertyForm& form) { return form.name == name; });
+  const auto at =
+      std::find_if(std::begin(kPropertyForms), std::end(kPropertyForms), [&](const PropertyForm& form) { return form.name == name; });
   return at == std::end(kPropertyForms) ? nullptr : &*at;
 }
 

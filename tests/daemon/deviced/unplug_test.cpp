@@ -1,6 +1,6 @@
-// Each device is unplugged a thousand times in virtual time (ten thousand in `./station soak`), at any byte of either direction. Each time the page says at once that
-// nothing is to be relied on, the other device goes on, and within two seconds of the cable's return all is as before.
-// PRISMESH_UNPLUGS sets how often.
+// Each device is unplugged a thousand times in virtual time (ten thousand in `./station soak`), at any byte of either direction. Each time
+// the page says at once that nothing is to be relied on, the other device goes on, and within two seconds of the cable's return all is as
+// before. PRISMESH_UNPLUGS sets how often.
 #include <algorithm>
 #include <cstdlib>
 #include <random>

@@ -129,7 +129,9 @@ TEST_F(Serving, ADragIsPreviewedAndCommitted) {
 TEST_F(Serving, AnExpressionIsCountedAndSelectsNothing) {
   Client client = this->client();
   const ipc::State before = open(client, folder_.sheet());
-  const auto ask = [&](const std::string& expr, mesh::select::Kind kind) { return client.call(ipc::Count{expr, kind}, kServingPatience).value(); };
+  const auto ask = [&](const std::string& expr, mesh::select::Kind kind) {
+    return client.call(ipc::Count{expr, kind}, kServingPatience).value();
+  };
   EXPECT_EQ(std::get<ipc::Counted>(ask("1001-1025", mesh::select::Kind::node)).nodes, 25u);
   const auto parts = std::get<ipc::Counted>(ask("all", mesh::select::Kind::part));
   EXPECT_EQ(parts.parts, before.parts);

@@ -23,7 +23,7 @@ std::vector<Vec3> rectangle(double width, double height) { return {{0, 0, 0}, {w
 TEST(Composite, is_1_where_nothing_could_be_better) {
   EXPECT_EQ(rated(rectangle(1, 1)), 1);
   EXPECT_NEAR(rated({{0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0}}), 1, 1e-6);
-  EXPECT_EQ(rated(rectangle(1, 1), Criteria{}), 1);                                  // nothing is judged
+  EXPECT_EQ(rated(rectangle(1, 1), Criteria{}), 1);                                       // nothing is judged
   EXPECT_EQ(rated(rectangle(9, 1), criteria_of("[metrics.aspect]\nwarn_above = 3")), 1);  // no fail limit
 }
 
@@ -133,7 +133,8 @@ TEST(Composite, comes_with_the_metrics_it_is_made_of) {
 TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
   Model model = test::mixed_grid(30, 0.6, true, 21);
   remove_shell(model, ShellIndex(std::size_t{17}));
-  const Criteria criteria = criteria_of("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 1\n[metrics.skew]\nfail_above = 40");
+  const Criteria criteria =
+      criteria_of("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 1\n[metrics.skew]\nfail_above = 40");
   for (std::size_t s = 0; s < model.shell_count(); ++s) model.shell_thickness.set(s, 0.1f + 0.01f * static_cast<float>(s % 50));
   std::vector<ShellIndex> shells;
   std::vector<std::array<std::int32_t, 4>> corners;

@@ -37,7 +37,7 @@ double profile_by_definition(Profile profile, double flat, double d) {
 }
 
 constexpr std::array kEveryNode{Profile::constant, Profile::linear, Profile::smooth,         Profile::sharp,
-                          Profile::root,     Profile::sphere, Profile::inverse_square, Profile::gaussian};
+                                Profile::root,     Profile::sphere, Profile::inverse_square, Profile::gaussian};
 
 /// Compares all weights, under every profile and some flat centres, with the profile of a share d known for each place.
 void expect_shares(const Model& model, const NodeSet& selection, NodeIndex grab, WeightOptions options, double tolerance,
