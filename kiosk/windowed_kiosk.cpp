@@ -33,12 +33,20 @@ Result<void> WindowedKiosk::run() {
   while (!closing_) {
     const Result<std::vector<display::WindowEvent>> events = window_.take_events();
     if (!events) return fail(events.error());
-    for (const display::WindowEvent& event : *events)
+    for (const display::WindowEvent& event : *events) {
       if (Result<void> taken = take(event); !taken) return taken;
+      const auto* button = std::get_if<display::ButtonChanged>(&event);
+      presses_ += (button != nullptr && button->down) || std::holds_alternative<display::WheelTurned>(event) ? 1 : 0;
+      releases_ += button != nullptr && !button->down ? 1 : 0;
+    }
+    rest_traced_ = rest_traced_ && events->empty();
     if (Result<void> turned = station_.turn(); !turned) return turned;
     const Result<bool> drawn = beat();
     if (!drawn) return fail(drawn.error());
-    if (!*drawn && events->empty()) wait();
+    rest_traced_ = rest_traced_ && !*drawn;
+    if (*drawn || !events->empty()) continue;
+    if (!stale() && !std::exchange(rest_traced_, true)) trace_rest();
+    wait();
   }
   return {};
 }
@@ -175,6 +183,12 @@ void WindowedKiosk::trace_picture() {
   ++pictures_;
   const std::optional<std::uint64_t> generation = station_.editor.shown_generation();
   station_.trace.line(fmt::format("picture {} generation {}", pictures_, generation ? std::to_string(*generation) : "none"));
+}
+
+void WindowedKiosk::trace_rest() {
+  const std::optional<tools::Pixel> at = gestures_.position();
+  const std::string where = at ? fmt::format("{} {}", at->x(), at->y()) : "none";
+  station_.trace.line(fmt::format("rests presses {} releases {} pointer {}", presses_, releases_, where));
 }
 
 std::int64_t WindowedKiosk::patience_ns() const {

@@ -33,6 +33,7 @@ class WindowedKiosk {
   Result<bool> beat();
   Result<void> show();
   void trace_picture();
+  void trace_rest();
   void wait();
   std::int64_t patience_ns() const;
   std::optional<tools::Pixel> pointer_on_picture() const;
@@ -52,6 +53,8 @@ class WindowedKiosk {
   std::int64_t wheel_rest_ns_ = 0;
   std::uint64_t shown_changes_ = 0;
   std::uint64_t pictures_ = 0;
+  std::uint64_t presses_ = 0, releases_ = 0;  ///< of buttons; a step of the wheel is a press
+  bool rest_traced_ = false;                  ///< nothing has come and nothing was drawn since
 };
 
 }  // namespace prismesh::kiosk

@@ -52,16 +52,10 @@ configure_and_build() {
   cmake --build --preset "$preset" ${1:+--target "$@"}
 }
 
-# build_release [ON]: the programs; with ON also tests and benchmarks, which need the test packages.
+# build_release [TESTS [BENCHMARKS]]: the programs; with ON also tests or benchmarks, which need the test packages.
 build_release() {
-  local all=${1:-OFF}
   say "Building"
-  if [ "$all" = ON ]; then
-    configure_and_build release -DPRISMESH_TESTS=ON -DPRISMESH_BENCH=ON
-  else
-    # Only the programs: the test packages may not be here.
-    configure_and_build release -DPRISMESH_TESTS=OFF -DPRISMESH_BENCH=OFF
-  fi
+  configure_and_build release "-DPRISMESH_TESTS=${1:-OFF}" "-DPRISMESH_BENCH=${2:-OFF}"
 }
 
 # sources: every C++ file that is ours, one a line.

@@ -9,7 +9,6 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -21,6 +20,8 @@ namespace {
 
 const std::filesystem::path kPrograms = test::programs_folder();
 constexpr int kScreenWidth = 1320, kScreenHeight = 880;
+
+constexpr int kFirstWheelButton = 4;
 
 std::string text_of(double value) { return std::to_string(static_cast<long>(std::lround(value))); }
 
@@ -115,6 +116,8 @@ void Station::run_kiosk(const std::vector<std::string>& arguments) {
                                    std::to_string(width_) + "x" + std::to_string(height_)};
   command.insert(command.end(), arguments.begin(), arguments.end());
   rectangles_ = false;
+  presses_ = releases_ = 0;
+  pointer_.clear();
   kiosk_ = std::make_unique<Process>(command, std::map<std::string, std::string>{{"DISPLAY", display_->name()},
                                                                                  {"XDG_CONFIG_HOME", (folder_ / "config").string()},
                                                                                  {"XDG_STATE_HOME", (folder_ / "home").string()}});
@@ -157,15 +160,28 @@ void Station::xdotool(const std::vector<std::string>& arguments) {
   EXPECT_EQ(process.wait_for_exit(), 0) << process.standard_error();
 }
 
-void Station::move(double x, double y) { xdotool({"mousemove", "--window", window_, text_of(x), text_of(y)}); }
-void Station::press(int button) { xdotool({"mousedown", std::to_string(button)}); }
-void Station::release(int button) { xdotool({"mouseup", std::to_string(button)}); }
+void Station::move(double x, double y) {
+  pointer_ = text_of(x) + " " + text_of(y);
+  xdotool({"mousemove", "--window", window_, text_of(x), text_of(y)});
+}
+void Station::press(int button) {
+  ++presses_;
+  xdotool({"mousedown", std::to_string(button)});
+}
+void Station::release(int button) {
+  ++releases_;
+  xdotool({"mouseup", std::to_string(button)});
+}
 void Station::click(double x, double y, int button) {
   move(x, y);
+  ++presses_;
+  if (button < kFirstWheelButton) ++releases_;
   xdotool({"click", std::to_string(button)});
 }
 void Station::double_click(double x, double y) {
   move(x, y);
+  presses_ += 2;
+  releases_ += 2;
   xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
 }
 void Station::drag(double from_x, double from_y, double to_x, double to_y, int button) {
@@ -194,11 +210,11 @@ Station::Aim Station::aim_from(const std::string& said) {
 }
 
 Station::Aim Station::settled_aim() {
-  for (std::string before, now = kiosk_->last("aim ");; before = now) {
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    now = kiosk_->last("aim ");
-    if (now == before) return aim_from(now);
-  }
+  const std::string rest = "rests presses " + std::to_string(presses_) + " releases " + std::to_string(releases_) + " pointer ";
+  const auto rests = [&](const std::string& line) { return pointer_.empty() ? line.starts_with(rest) : line == rest + pointer_; };
+  // What is said last is waited for, whether it has been passed over or not.
+  if (!rests(kiosk_->last(""))) EXPECT_FALSE(kiosk_->wait_until(rests).empty()) << "the kiosk did not come to rest: " << rest << pointer_;
+  return aim();
 }
 
 Station::Aim Station::aim() { return aim_from(kiosk_->last("aim ")); }

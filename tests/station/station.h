@@ -81,7 +81,7 @@ class Station {
   };
   static Aim aim_from(const std::string& line);
   Aim aim();
-  /// The same once the view has come to rest: nothing new was said of it for a second.
+  /// The same once the kiosk has done all that pointer and buttons were made to do, and its view has come to rest.
   Aim settled_aim();
   /// Where a deck point is on the picture.
   std::array<double, 2> pixel_of(const Point& point) { return aim().pixel_of(point); }
@@ -118,7 +118,9 @@ class Station {
   std::unique_ptr<Process> device_daemon_;
   std::unique_ptr<Process> kiosk_;
   int width_ = 1280, height_ = 800;
-  bool rectangles_ = false;  ///< what the kiosk draws; a new one draws lassos
+  bool rectangles_ = false;         ///< what the kiosk draws; a new one draws lassos
+  int presses_ = 0, releases_ = 0;  ///< of buttons, since the kiosk was started
+  std::string pointer_;             ///< where it was moved to last, as the kiosk says it
   std::string window_;
 };
 
