@@ -68,8 +68,9 @@ sources() {
 }
 
 run_tidy() {
-  # In a folder of its own: clang can't read the headers that the compiler has compiled.
-  cmake --preset release -B build/tidy -Wno-dev --log-level=WARNING -DPRISMESH_TESTS=ON -DPRISMESH_BENCH=ON -DPRISMESH_PRECOMPILED=OFF >/dev/null
+  # In a folder of its own: clang can't read the headers that GCC has compiled, and each source stands by itself there.
+  cmake --preset release -B build/tidy -Wno-dev --log-level=WARNING -DPRISMESH_BENCH=ON -DPRISMESH_PRECOMPILED=OFF -DPRISMESH_UNITY=OFF \
+    -DPRISMESH_RUNS= >/dev/null
   local files
   [ $# -gt 0 ] || mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/fuzz/')
   [ $# -gt 0 ] && files=("$@")
