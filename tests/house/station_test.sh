@@ -53,6 +53,26 @@ expect "a good run" "$(closing 0 "$(printf "$suite" 0)")" "9 passed, 0 failed, 3
 expect "a run with failures" "$(closing 8 "$(printf "$suite" 2)")" "7 passed, 2 failed, 3 skipped / 0 / 1"
 expect "a run that found nothing" "$(closing 8 "")" "0 passed, 1 failed, 0 skipped / 0 / 1"
 
+warned=$(
+  cd "$folder" || exit
+  mkdir -p out/test tests
+  printf '# name, seconds\nyardstick\t2\nsame\t100\ndearer\t100\n' >tests/cpu_seconds.txt
+  source "$root/scripts/steps.sh"
+  source "$root/scripts/test.sh"
+  stages=(same dearer new) stage_seconds=([same]=215 [dearer]=225 [new]=1000)
+  cpu_report 4 | awk '/WARNING/ { printf "%s;", $1 }'
+)
+expect "what is dearer by more than a tenth on a machine half as fast" "$warned" "dearer;"
+timed=$(
+  cd "$folder" || exit
+  source "$root/scripts/steps.sh"
+  source "$root/scripts/test.sh"
+  stage work awk 'BEGIN { for (i = 0; i < 3e7; ++i) x += i }'
+  stage refusal false || printf 'status %s, ' $?
+  awk -v seconds="${stage_seconds[work]}" 'BEGIN { print(seconds > 0.05 && seconds < 30 ? "counted" : "not counted: " seconds) }'
+)
+expect "a stage" "$timed" "status 1, counted"
+
 expect "the section run" "$(cd "$root" && source scripts/steps.sh && packages run | grep -c '^libtbb12$')" 1
 (cd "$root" && source scripts/steps.sh && packages no-such-section) >/dev/null 2>&1
 expect "an unknown section's status" $? 1
