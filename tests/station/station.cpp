@@ -117,6 +117,7 @@ void Station::run_kiosk(const std::vector<std::string>& arguments) {
   command.insert(command.end(), arguments.begin(), arguments.end());
   rectangles_ = false;
   presses_ = releases_ = 0;
+  window_.clear();
   pointer_.clear();
   kiosk_ = std::make_unique<Process>(command, std::map<std::string, std::string>{{"DISPLAY", display_->name()},
                                                                                  {"XDG_CONFIG_HOME", (folder_ / "config").string()},
@@ -124,8 +125,12 @@ void Station::run_kiosk(const std::vector<std::string>& arguments) {
 }
 
 void Station::find_window() {
-  Process search({"xdotool", "search", "--onlyvisible", "--sync", "--name", "^Prismesh$"}, {{"DISPLAY", display_->name()}});
-  window_ = search.wait_for("");
+  // A search ends with nothing when a window goes that it was just looking at, such as the kiosk's before this one.
+  for (int tries = 0; tries < 100 && window_.empty(); ++tries) {
+    Process search({"xdotool", "search", "--onlyvisible", "--sync", "--name", "^Prismesh$"}, {{"DISPLAY", display_->name()}});
+    window_ = search.wait_for("");
+    if (search.running()) break;
+  }
   ASSERT_FALSE(window_.empty());
   xdotool({"windowfocus", "--sync", window_});
 }

@@ -145,7 +145,7 @@ TEST(Unwritable, ARepairStopsWhereverItIsToldAndItsProgressNeverGoesBack) {
   };
   ASSERT_TRUE(prepare(document, repair, listen));
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-  for (std::size_t stop = 0; stop < told.size(); stop += 1 + told.size() / 8) {
+  for (std::size_t stop = 0; stop < told.size(); stop += 1 + told.size() / 4) {
     std::size_t calls = 0;
     const Result<Prepared> stopped = prepare(document, repair, [&](double) { return calls++ < stop; });
     ASSERT_FALSE(stopped) << "told to stop at " << stop;
