@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <climits>
 #include <cstring>
-#include <set>
+#include <map>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -124,22 +124,17 @@ Result<fs::path> follow_links(const fs::path& path) {
   return fail(path.string(), "can't follow the symbolic link: too many links in a row");
 }
 
-/// A file written beside its target, waiting to be renamed; removed when it goes out of scope before that.
-struct Staged {
-  fs::path shown;   ///< as the caller named it
-  fs::path target;  ///< what it points to
-  fs::path temporary;
+/// One file while it is staged: removed when it goes out of scope before it is finished.
+struct Staging {
+  StagedFiles::File file;
 
-  Staged() = default;
-  Staged(Staged&& other) noexcept
-      : shown(std::move(other.shown)), target(std::move(other.target)), temporary(std::exchange(other.temporary, {})) {}
-  Staged& operator=(Staged&&) = delete;
-  ~Staged() {
-    if (!temporary.empty()) ::unlink(temporary.c_str());
+  Staging() = default;
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+  ~Staging() {
+    if (!file.temporary.empty()) ::unlink(file.temporary.c_str());
   }
 };
-
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 /// How much of all files is written.
 class Written {
@@ -210,7 +205,7 @@ tl::unexpected<Error> write_failure(const fs::path& path, int error) {
 }
 
 /// The permissions the new file gets: those of the target it replaces.
-Result<void> take_permissions(int fd, const Staged& staged) {
+Result<void> take_permissions(int fd, const StagedFiles::File& staged) {
   struct stat old {};
   if (::stat(staged.target.c_str(), &old) != 0) {
     if (errno == ENOENT) return {};
@@ -227,15 +222,15 @@ Result<void> take_permissions(int fd, const Staged& staged) {
   return {};
 }
 
-Result<Staged> stage(const PendingFile& file, Written& written) {
-  Staged staged;
+Result<StagedFiles::File> stage(const PendingFile& file, Written& written) {
+  Staging staging;
+  StagedFiles::File& staged = staging.file;
   staged.shown = file.path;
   Result<fs::path> target = follow_links(file.path);
   if (!target) return fail(target.error());
   staged.target = *target;
-  std::error_code made;
-  fs::create_directories(folder_of(staged.target), made);
-  if (made) return fail(file.path.string(), "its folder can't be made: " + made.message());
+  if (const Result<void> made = make_folders(folder_of(staged.target)); !made)
+    return fail(file.path.string(), "its folder can't be made: " + made.error().text());
 
   std::string name = (folder_of(staged.target) / ("." + staged.target.filename().string() + ".XXXXXX")).string();
   Descriptor fd(::mkostemp(name.data(), O_CLOEXEC));
@@ -256,46 +251,93 @@ Result<Staged> stage(const PendingFile& file, Written& written) {
   if (error == kStopped) return fail(cancelled());
   if (error != 0) return write_failure(file.path, error);
   if (::fsync(fd.get()) != 0) return write_failure(file.path, errno);
+  struct stat status {};
+  if (::fstat(fd.get(), &status) != 0) return write_failure(file.path, errno);
+  staged.identity = identity_of(status);
   if (const int closed = fd.close(); closed != 0) return write_failure(file.path, closed);
-  return staged;
-}
-
-Result<void> flush_folder(const fs::path& folder) {
-  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd.get() < 0) return fail(folder.string(), "can't be flushed to disk: " + reason(errno));
-  // Some file systems have no way to flush a folder, and say EINVAL.
-  if (::fsync(fd.get()) != 0 && errno != EINVAL) return fail(folder.string(), "can't be flushed to disk: " + reason(errno));
-  return {};
+  return std::exchange(staging.file, {});
 }
 
 }  // namespace
 
-Result<void> replace_files(std::span<const PendingFile> files, const Progress& progress) {
-  Written written(files, progress);
-  std::vector<Staged> staged;
-  staged.reserve(files.size());
-  for (const PendingFile& file : files) {
-    Result<Staged> one = stage(file, written);
-    if (!one) return fail(one.error());
-    staged.push_back(std::move(*one));
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
+Result<void> flush_folder(const fs::path& folder, const fs::path& file_in_it) {
+  const auto failed = [&](int error) { return fail(folder.string(), "can't be flushed to disk: " + reason(error)); };
+  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.get() < 0 && errno == EACCES && !file_in_it.empty()) {
+    const Descriptor file(::open(file_in_it.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (file.get() < 0 || ::syncfs(file.get()) != 0) return failed(errno);
+    return {};
   }
+  if (fd.get() < 0) return failed(errno);
+  // Some file systems have no way to flush a folder, and say EINVAL.
+  if (::fsync(fd.get()) != 0 && errno != EINVAL) return failed(errno);
+  return {};
+}
+
+Result<void> make_folders(const fs::path& folder) {
+  std::error_code problem;
+  if (folder.empty() || fs::is_directory(folder, problem)) return {};
+  const fs::path above = folder_of(folder.has_filename() ? folder : folder.parent_path());
+  if (const Result<void> made = make_folders(above); !made) return made;
+  if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) return fail(folder.string(), reason(errno));
+  if (!fs::is_directory(folder, problem)) return fail(folder.string(), reason(ENOTDIR));
+  return flush_folder(above, folder);
+}
+
+StagedFiles::StagedFiles(StagedFiles&& other) noexcept
+    : files_(std::exchange(other.files_, {})), in_place_(std::exchange(other.in_place_, 0)) {}
+
+StagedFiles& StagedFiles::operator=(StagedFiles&& other) noexcept {
+  std::swap(files_, other.files_);
+  std::swap(in_place_, other.in_place_);
+  return *this;
+}
+
+StagedFiles::~StagedFiles() {
+  for (std::size_t i = in_place_; i < files_.size(); ++i) ::unlink(files_[i].temporary.c_str());
+}
+
+Result<StagedFiles> StagedFiles::write(std::span<const PendingFile> files, const Progress& progress) {
+  Written written(files, progress);
+  StagedFiles staged;
+  staged.files_.reserve(files.size());
+  std::map<fs::path, fs::path> folders;
+  for (const PendingFile& file : files) {
+    Result<File> one = stage(file, written);
+    if (!one) return fail(std::move(one.error()));
+    folders[folder_of(one->target)] = one->temporary;
+    staged.files_.push_back(std::move(*one));
+  }
+  // A folder that can't be flushed is found before anything is replaced.
+  for (const auto& [folder, file] : folders)
+    if (Result<void> flushed = flush_folder(folder, file); !flushed) return fail(std::move(flushed.error()));
   // Flushing may have taken long.
   if (!written.goes_on()) return fail(cancelled());
-  std::set<fs::path> folders;
-  for (std::size_t i = 0; i < staged.size(); ++i) {
-    if (::rename(staged[i].temporary.c_str(), staged[i].target.c_str()) != 0) {
-      const int error = errno;
-      if (i == 0) return write_failure(staged[i].shown, error);
-      return fail(staged[i].shown.string(), "can't be replaced: " + reason(error) + "; " + std::to_string(i) + " of " +
-                                                std::to_string(staged.size()) + " files were already replaced, the last of them " +
-                                                staged[i - 1].shown.string());
-    }
-    staged[i].temporary.clear();
-    folders.insert(folder_of(staged[i].target));
+  return staged;
+}
+
+Result<void> StagedFiles::put_in_place() {
+  for (; in_place_ < files_.size(); ++in_place_) {
+    const File& file = files_[in_place_];
+    if (::rename(file.temporary.c_str(), file.target.c_str()) == 0) continue;
+    if (in_place_ == 0) return write_failure(file.shown, errno);
+    return fail(file.shown.string(), "can't be replaced: " + reason(errno) + "; " + std::to_string(in_place_) + " of " +
+                                         std::to_string(files_.size()) + " files were already replaced, the last of them " +
+                                         files_[in_place_ - 1].shown.string());
   }
-  for (const fs::path& folder : folders)
-    if (Result<void> flushed = flush_folder(folder); !flushed) return flushed;
+  std::map<fs::path, fs::path> folders;
+  for (const File& file : files_) folders[folder_of(file.target)] = file.target;
+  for (const auto& [folder, file] : folders)
+    if (Result<void> flushed = flush_folder(folder, file); !flushed) return flushed;
   return {};
+}
+
+Result<void> replace_files(std::span<const PendingFile> files, const Progress& progress) {
+  Result<StagedFiles> staged = StagedFiles::write(files, progress);
+  if (!staged) return fail(std::move(staged.error()));
+  return staged->put_in_place();
 }
 
 }  // namespace prismesh

@@ -59,11 +59,51 @@ struct PendingFile {
   std::vector<std::string_view> pieces;  ///< the content, in order; the memory must outlive the call
 };
 
-/// Writes every file beside its target, flushes them to disk, then renames them into place in the given order (so put
-/// the file that names the others last) and flushes the folders. An existing target keeps its permissions; folders that
-/// lack are made. On an error before the first rename nothing has changed and no temporary file remains. The progress is told each 8 MB
-/// or less, and for the last time right before the first rename: from then on nothing stops it. Errors: a file can't be written or
-/// replaced, cancelled.
+/// Files that are written and flushed to disk beside their targets, with the folders that name them, and wait to be put in place. What
+/// isn't put in place goes with this.
+class StagedFiles {
+ public:
+  struct File {
+    std::filesystem::path shown;      ///< the target as it was asked for
+    std::filesystem::path target;     ///< what it points to, where it is a link
+    std::filesystem::path temporary;  ///< beside the target
+    FileIdentity identity;            ///< of what was written; putting it in place doesn't change it
+  };
+
+  /// An existing target's permissions are taken over; folders that lack are made. The progress is told each 8 MB or less, and for the
+  /// last time when all is written. Errors: a file can't be written, cancelled; then no temporary file remains.
+  static Result<StagedFiles> write(std::span<const PendingFile> files, const Progress& progress = {});
+
+  StagedFiles() = default;
+  StagedFiles(StagedFiles&& other) noexcept;
+  StagedFiles& operator=(StagedFiles&& other) noexcept;
+  ~StagedFiles();
+
+  const std::vector<File>& files() const { return files_; }
+  std::size_t in_place() const { return in_place_; }  ///< of the files, from the first on
+  /// Renames those that aren't in place yet, in their order (so put the file that names the others last), and flushes the folders. After
+  /// an error it may be called again and goes on. Errors: a file can't be replaced, a folder can't be flushed; how many are in place.
+  Result<void> put_in_place();
+  /// What isn't in place yet stays on disk beside its target.
+  void leave() { files_.resize(in_place_); }
+
+ private:
+  std::vector<File> files_;
+  std::size_t in_place_ = 0;
+};
+
+/// Writes files beside their targets and puts them in place. On an error before the first rename nothing has changed and no temporary file
+/// remains. Told to stop, it stops before the first rename or not at all. Errors: those of StagedFiles.
 Result<void> replace_files(std::span<const PendingFile> files, const Progress& progress = {});
+
+/// What a folder names is on disk afterwards. Where a folder may be written but not read, all of its file system is flushed, through
+/// `file_in_it`. Errors: it can't be flushed.
+Result<void> flush_folder(const std::filesystem::path& folder, const std::filesystem::path& file_in_it = {});
+
+/// Makes a folder, with those on the way to it, so that they are there after a power cut too. Errors: one can't be made.
+Result<void> make_folders(const std::filesystem::path& folder);
+
+/// The folder that a file is in; "." for a bare name.
+std::filesystem::path folder_of(const std::filesystem::path& file);
 
 }  // namespace prismesh

@@ -53,6 +53,9 @@ int replay(const ReplayOptions& options, const Common& common, const Surrounding
   say_warnings(surroundings, *document);
   say_guesses(surroundings, *document);
   const std::string journal = options.journal.string();
+  if (intents->damage)
+    say(surroundings,
+        Error{intents->damage->file, intents->damage->line, "warning: " + intents->damage->message + "; the edits before it are replayed"});
   if (intents->torn_tail) say(surroundings, Error{journal, 0, "warning: the last record is incomplete and left out"});
   const bool other_deck = !intents->deck_hash.empty() && intents->deck_hash != document->deck->content.hex();
   if (other_deck) say(surroundings, Error{journal, 0, "note: made on another deck, " + intents->deck_path});

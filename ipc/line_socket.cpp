@@ -5,7 +5,9 @@
 #include <cstring>
 
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 namespace prismesh::ipc {
 
@@ -139,18 +141,48 @@ Result<bool> LineSocket::flush() {
   return true;
 }
 
+namespace {
+
+/// Whoever may put a socket into the folder could answer in the daemon's place.
+Result<void> check_folder(const std::filesystem::path& folder) {
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0) return {};  // then connecting says what is wrong
+  if (status.st_uid != ::geteuid() && status.st_uid != 0)
+    return fail(folder.string(),
+                "belongs to another user (" + std::to_string(status.st_uid) + "), so whoever answers there is not to be trusted");
+  if ((status.st_mode & 0022) != 0)
+    return fail(folder.string(), "others may write to it, so whoever answers there is not to be trusted; make it private (chmod 700)");
+  return {};
+}
+
+Result<void> check_server(int socket, const std::filesystem::path& path) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0)
+    return fail(path.string(), std::string("can't tell who listens there: ") + std::strerror(errno));
+  if (peer.uid == ::geteuid() || peer.uid == 0) return {};
+  return fail(path.string(), "another user (" + std::to_string(peer.uid) + ", process " + std::to_string(peer.pid) +
+                                 ") listens there, not a daemon of yours");
+}
+
+}  // namespace
+
 Result<Descriptor> connect_to(const std::filesystem::path& path, std::string_view remedy) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.native().size() >= sizeof address.sun_path)
     return fail(path.string(), "the path is too long for a socket (" + std::to_string(sizeof address.sun_path - 1) + " bytes at most)");
   std::memcpy(address.sun_path, path.c_str(), path.native().size());
+  if (Result<void> trusted = check_folder(path.parent_path()); !trusted) return fail(std::move(trusted.error()));
   Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (!socket) return fail(path.string(), std::string("no socket: ") + std::strerror(errno));
   int status = 0;
   do status = ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
   while (status != 0 && errno == EINTR);
-  if (status == 0) return socket;
+  if (status == 0) {
+    if (Result<void> trusted = check_server(socket.get(), path); !trusted) return fail(std::move(trusted.error()));
+    return socket;
+  }
   if (errno == ENOENT || errno == ECONNREFUSED) return fail(path.string(), "nobody listens there: " + std::string(remedy));
   return fail(path.string(), std::string("can't connect: ") + std::strerror(errno));
 }

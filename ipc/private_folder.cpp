@@ -8,20 +8,28 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "ipc/server.h"
 
 namespace prismesh::ipc {
 
-Result<void> make_private_folder(const std::filesystem::path& folder) {
-  std::error_code problem;
-  if (folder.has_parent_path()) std::filesystem::create_directories(folder.parent_path(), problem);
-  if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST)
+Result<void> make_private_folder(const std::filesystem::path& path) {
+  // A slash at the end would follow a link.
+  const std::filesystem::path folder = path.has_filename() ? path : path.parent_path();
+  if (const Result<void> made = make_folders(folder_of(folder)); !made)
+    return fail(folder.string(), "can't be made: " + made.error().text());
+  if (::mkdir(folder.c_str(), 0700) == 0) {
+    if (Result<void> flushed = flush_folder(folder_of(folder), folder); !flushed) return flushed;
+  } else if (errno != EEXIST) {
     return fail(folder.string(), std::string("can't be made: ") + std::strerror(errno));
+  }
   struct stat status {};
   if (::lstat(folder.c_str(), &status) != 0) return fail(folder.string(), std::strerror(errno));
   if (!S_ISDIR(status.st_mode)) return fail(folder.string(), "is no folder");
   if (status.st_uid != ::geteuid()) return fail(folder.string(), "belongs to another user; name a folder of your own");
   if ((status.st_mode & 0022) != 0) return fail(folder.string(), "others may write to it; make it private (chmod 700) or name another");
+  if ((status.st_mode & 0077) != 0 && ::chmod(folder.c_str(), 0700) != 0)
+    return fail(folder.string(), std::string("others may look into it, and it can't be made private: ") + std::strerror(errno));
   return {};
 }
 
@@ -37,9 +45,9 @@ Result<Descriptor> lock_folder(const std::filesystem::path& folder, const std::s
     while (!who.empty() && who.back() == '\n') who.pop_back();
     return fail(folder.string(), whose + " already runs here (process " + who + "); stop it, or give this one another folder");
   }
+  // Only for people who look for who holds the lock: on a full disk they go without.
   const std::string own = std::to_string(::getpid()) + "\n";
-  if (::ftruncate(lock.get(), 0) != 0 || ::pwrite(lock.get(), own.data(), own.size(), 0) != static_cast<ssize_t>(own.size()))
-    return fail(path.string(), std::string("can't be written: ") + std::strerror(errno));
+  if (::ftruncate(lock.get(), 0) == 0) (void)!::pwrite(lock.get(), own.data(), own.size(), 0);
   return lock;
 }
 

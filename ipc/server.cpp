@@ -1,5 +1,6 @@
 #include "ipc/server.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -26,6 +27,8 @@ namespace asio = boost::asio;
 using asio::posix::stream_descriptor;
 using boost::system::error_code;
 using Time = std::chrono::steady_clock;
+
+constexpr std::size_t kMostRefused = 8;  ///< clients beyond the limit that are told so at a time
 
 Result<Descriptor> bind_socket(const std::filesystem::path& path) {
   sockaddr_un address{};
@@ -72,6 +75,9 @@ struct ServedClient {
   Watched watched;
   bool closed = false;
   bool writing = false;
+  bool welcomed = false;
+  bool surplus = false;  ///< one too many: it is only told so
+  Time::time_point since = Time::now();
   Time::time_point last_progress = Time::now();  ///< when it last took something of what is queued
 };
 
@@ -131,12 +137,22 @@ struct Server::State {
     for (;;) {
       Descriptor socket(::accept4(listening.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
       if (!socket) return errno != EMFILE && errno != ENFILE && errno != ENOMEM && errno != ENOBUFS;
-      if (!may_connect(socket.get()) || connections.size() >= limits.clients) continue;
+      if (!may_connect(socket.get())) continue;
+      if (connections.size() >= limits.clients) close_oldest_silent();
+      if (connections.size() >= limits.clients + kMostRefused) continue;
       const ClientId client = next_client++;
-      connections.emplace(client, std::make_shared<ServedClient>(loop, std::move(socket), limits.line_bytes));
+      const auto served = std::make_shared<ServedClient>(loop, std::move(socket), limits.line_bytes);
+      served->surplus = connections.size() >= limits.clients;
+      connections.emplace(client, served);
       handler.connected(client);
       read_next(client);
     }
+  }
+
+  /// Makes room: clients are numbered in the order they came.
+  void close_oldest_silent() {
+    const auto silent = std::find_if(connections.begin(), connections.end(), [](const auto& each) { return !each.second->welcomed; });
+    if (silent != connections.end()) close(silent->first, "it hadn't greeted, and its place was needed");
   }
 
   std::shared_ptr<ServedClient> find(ClientId client) const {
@@ -196,13 +212,17 @@ struct Server::State {
   }
 
   void watch_stalls() {
-    stalls.expires_after(limits.stall / 4);
+    stalls.expires_after(std::min(limits.stall, limits.greeting) / 4);
     stalls.async_wait([this](const error_code& stopped) {
       if (stopped) return;
       std::vector<ClientId> stalled;
       for (const auto& [client, connection] : connections)
         if (connection->lines.queued_bytes() > 0 && Time::now() - connection->last_progress > limits.stall) stalled.push_back(client);
       for (const ClientId client : stalled) close(client, "it took nothing for " + std::to_string(limits.stall.count()) + " ms");
+      std::vector<ClientId> silent;
+      for (const auto& [client, connection] : connections)
+        if (!connection->welcomed && Time::now() - connection->since > limits.greeting) silent.push_back(client);
+      for (const ClientId client : silent) close(client, "it didn't greet for " + std::to_string(limits.greeting.count()) + " ms");
       watch_stalls();
     });
   }
@@ -254,6 +274,17 @@ void Server::send(ClientId client, std::string line, std::vector<Descriptor> des
   connection->lines.queue(std::move(line), std::move(descriptors));
   if (connection->lines.queued_bytes() > state_->limits.queue_bytes) return cut(client, "it reads too slowly");
   state_->write_next(client);
+}
+
+void Server::welcome(ClientId client) {
+  if (const std::shared_ptr<ServedClient> connection = state_->find(client)) connection->welcomed = true;
+}
+
+std::optional<std::string> Server::refusal(ClientId client) const {
+  const std::shared_ptr<ServedClient> connection = state_->find(client);
+  if (!connection || !connection->surplus) return std::nullopt;
+  return std::to_string(state_->limits.clients) + (state_->limits.clients == 1 ? " program is" : " programs are") +
+         " connected already, as many as this daemon serves; close one of them";
 }
 
 void Server::cut(ClientId client, const std::string& why) { state_->close(client, why); }

@@ -21,7 +21,8 @@ struct ServerLimits {
   std::size_t line_bytes = std::size_t{8} << 20;    ///< a longer line cuts its sender off
   std::size_t queue_bytes = std::size_t{32} << 20;  ///< more waiting for a client cuts it off
   std::size_t clients = 32;
-  std::chrono::milliseconds stall{10'000};  ///< a client that takes nothing for so long is cut off
+  std::chrono::milliseconds stall{10'000};     ///< a client that takes nothing for so long is cut off
+  std::chrono::milliseconds greeting{10'000};  ///< so is one that hasn't greeted for so long
 };
 
 using ClientId = std::uint64_t;
@@ -53,6 +54,10 @@ class Server {
   void every(std::chrono::nanoseconds period, std::function<void()> work);
 
   void send(ClientId client, std::string line, std::vector<Descriptor> descriptors = {});
+  /// The daemon has welcomed the client.
+  void welcome(ClientId client);
+  /// Why the client can't be welcomed, in a sentence: as many as there may be are connected. Nothing if it can.
+  std::optional<std::string> refusal(ClientId client) const;
   /// Closes the connection after what is queued was sent as far as possible; `disconnected` is called.
   void cut(ClientId client, const std::string& why);
 

@@ -147,13 +147,16 @@ struct Daemon::State final : ipc::ServerHandler {
   }
 
   void greet(ipc::ClientId client, std::uint64_t number, const ipc::DeviceHello& hello) {
-    if (const auto refusal = ipc::protocol_refusal(ipc::kDeviceProtocolVersion, hello.protocol, hello.program)) {
+    std::optional<std::string> refusal = server->refusal(client);
+    if (!refusal) refusal = ipc::protocol_refusal(ipc::kDeviceProtocolVersion, hello.protocol, hello.program);
+    if (refusal) {
       answer(client, number, ipc::Failed{"", 0, *refusal});
-      return server->cut(client, "it speaks another protocol");
+      return server->cut(client, "it was refused");
     }
     Result<ipc::Descriptor> shared = page.descriptor().duplicate();
     if (!shared) return server->cut(client, shared.error().text());
     greeted[client] = hello.program;
+    server->welcome(client);
     logging::info("client {} is {}", client, hello.program);
     std::vector<ipc::Descriptor> descriptors;
     descriptors.push_back(std::move(*shared));

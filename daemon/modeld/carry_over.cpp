@@ -45,6 +45,8 @@ std::vector<Edit> steps_to(const Generation& generation) {
 
 }  // namespace
 
+std::size_t steps_to_carry(const Generation& current) { return steps_to(current).size(); }
+
 Result<void> carry_over(const Generation& current, Document& recorded, Journal& journal) {
   for (const Edit& step : steps_to(current)) {
     // The first step's delta takes everything along; the others say in words what it held.

@@ -9,6 +9,9 @@
 
 namespace prismesh::modeld {
 
+/// How many steps the functions below journal.
+std::size_t steps_to_carry(const mesh::document::Generation& current);
+
 /// Journals the steps that lead from `recorded` (freshly opened from the saved deck) to the same selection and part states as
 /// `current`, and takes `recorded` there. Positions that the deck's columns couldn't hold to the last digit come along.
 Result<void> carry_over(const mesh::document::Generation& current, mesh::document::Document& recorded, mesh::document::Journal& journal);

@@ -64,13 +64,16 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   }
 
   void greet(ipc::ClientId client, std::uint64_t number, const ipc::Hello& hello) {
-    if (const auto refusal = ipc::protocol_refusal(ipc::kProtocolVersion, hello.protocol, hello.program)) {
+    std::optional<std::string> refusal = server->refusal(client);
+    if (!refusal) refusal = ipc::protocol_refusal(ipc::kProtocolVersion, hello.protocol, hello.program);
+    if (refusal) {
       answer(client, number, ipc::Failed{"", 0, *refusal}, {});
-      return server->cut(client, "it speaks another protocol");
+      return server->cut(client, "it was refused");
     }
     Result<ipc::Descriptor> state_page = page.descriptor().duplicate();
     if (!state_page) return server->cut(client, state_page.error().text());
     if (greeted.insert(client).second) desk.arrived(client);
+    server->welcome(client);
     logging::info("client {} is {}", client, hello.program);
     std::vector<ipc::Descriptor> descriptors;
     descriptors.push_back(std::move(*state_page));

@@ -1,10 +1,13 @@
 #include "daemon/modeld/desk.h"
 
 #include <algorithm>
+#include <exception>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "base/clock.h"
+#include "base/log.h"
 
 namespace prismesh::modeld {
 
@@ -14,6 +17,21 @@ constexpr std::size_t kMostWaiting = 256;
 constexpr std::size_t kMostWaitingBytes = std::size_t{32} << 20;
 constexpr std::size_t kMostLeases = 256;
 constexpr std::int64_t kProgressPeriod_ns = 100'000'000;
+
+/// What the work gives; an exception, which work leaves everything as it was for, is an answer like another.
+Outcome done_or_failed(const std::function<Outcome()>& work) {
+  Outcome failed;
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    failed.answer = ipc::Failed{"", 0, "there isn't enough memory to do this; everything is as it was"};
+  } catch (const std::exception& problem) {
+    failed.answer =
+        ipc::Failed{"", 0, std::string("this failed by a fault of the program (") + problem.what() + "); everything is as it was"};
+  }
+  logging::error("{}", std::get<ipc::Failed>(failed.answer).message);
+  return failed;
+}
 
 }  // namespace
 
@@ -251,7 +269,7 @@ void Desk::run(std::function<Outcome()> work, std::function<void(Outcome&)> then
   running_ = true;
   worker_.run([this, work = std::move(work), then = std::move(then)] {
     // Shared, since what is posted must be copyable and descriptors aren't.
-    auto outcome = std::make_shared<Outcome>(work());
+    auto outcome = std::make_shared<Outcome>(done_or_failed(work));
     outlet_.post([this, outcome, then] {
       running_ = false;
       stepping_ = false;

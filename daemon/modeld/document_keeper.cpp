@@ -1,6 +1,7 @@
 #include "daemon/modeld/document_keeper.h"
 
 #include <algorithm>
+#include <limits>
 #include <new>
 #include <system_error>
 
@@ -22,9 +23,8 @@ using mesh::deck::Warning;
 /// A deck that ended so many lives of the daemon isn't opened by itself again.
 constexpr std::uint64_t kMostAttempts = 3;
 
-/// Of a save in place: what is going to be written is put on record first, and read again last.
-constexpr double kShareOfIntent = 0.2;
-constexpr double kShareOfWriting = 0.4;
+/// Of a save in place: the rest is reading again what was written.
+constexpr double kShareOfWriting = 0.6;
 
 Result<OpenOptions> options_of(const ipc::Open& request) {
   OpenOptions options;
@@ -52,14 +52,6 @@ Progress part_of(const Progress& whole, double begin, double share) {
   return [&whole, begin, share](double fraction) { return !whole || whole(begin + fraction * share); };
 }
 
-/// Of work that must come to its end: tells how far it is, and doesn't stop.
-Progress telling(const Progress& progress) {
-  return [&progress](double fraction) {
-    if (progress) progress(fraction);
-    return true;
-  };
-}
-
 bool is_there(const fs::path& path) {
   std::error_code problem;
   return fs::exists(path, problem);
@@ -68,6 +60,21 @@ bool is_there(const fs::path& path) {
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code problem;
   return fs::equivalent(a, b, problem) && !problem;
+}
+
+/// Whether nodes or shells came, went or have other corners since the deck was read.
+bool has_grown(const Document& document) { return !mesh::changes_between(document.opened->model, document.current().model).empty(); }
+
+std::string names_of(const SaveIntent& intent) {
+  std::string names;
+  for (const SaveIntent::File& file : intent.files) names += (names.empty() ? "" : ", ") + file.target.string();
+  return names;
+}
+
+/// All if it can't be read: then nothing is known to be in it that could be lost by keeping it.
+std::uint64_t records_in(const fs::path& journal) {
+  const Result<JournalIntents> intents = read_intents(journal);
+  return intents ? intents->edits.size() : std::numeric_limits<std::uint64_t>::max();
 }
 
 bool differs(const Generation& a, const Generation& b) {
@@ -97,25 +104,35 @@ std::size_t over_cap(const Document& recorded, const Generation& next) {
 
 }  // namespace
 
-Result<OpenedDeck> DocumentKeeper::read_deck(const fs::path& path, const Progress& progress, std::vector<Warning>& warnings) {
-  Result<OpenedDeck> opened = mesh::deck::open(path, progress);
-  if (!opened) return opened;
-  for (const fs::path& intent : folder_.save_intents(path)) {
-    const fs::path journal = fs::path(intent).replace_extension();  // "....journal.saving"
-    const Result<SaveOutcome> outcome = settle_save(intent, path, *opened);
-    if (!outcome) return fail(outcome.error());
-    if (*outcome == SaveOutcome::finished) {
-      warnings.push_back(
-          {path.string(), 0, "save-finished", "a save was cut off between the deck's files; the rest has been written now", 1});
-      opened = mesh::deck::open(path, progress);
-      if (!opened) return opened;
+/// Saves of this deck that were cut off, before it is read: are they finished, did they not begin, can't they be told any more?
+Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warning>& warnings) {
+  const auto warn = [&](const char* kind, std::string message) { warnings.push_back({path.string(), 0, kind, std::move(message), 1}); };
+  for (const fs::path& file : folder_.save_intents(path)) {
+    const Result<SaveIntent> intent = read_save_intent(file);
+    if (!intent) {
+      const Result<fs::path> aside = folder_.retire(file, ".damaged");
+      if (!aside) return fail(aside.error());
+      warn("save-unknown", "a save was cut off, and its record is damaged (" + aside->string() +
+                               "): if the deck has several files, some may be from before the save and some from after it");
+      continue;
     }
-    if ((*outcome == SaveOutcome::complete || *outcome == SaveOutcome::finished) && is_there(journal))
-      if (const Result<fs::path> retired = folder_.retire(journal, ".saved"); !retired) return fail(retired.error());
-    std::error_code problem;
-    fs::remove(intent, problem);
+    const Result<SaveOutcome> outcome = settle_save(*intent);
+    if (!outcome) return fail(outcome.error());
+    const fs::path journal = fs::path(file).replace_extension();  // "....journal.saving"
+    if (*outcome == SaveOutcome::finished)
+      warn("save-finished", "a save was cut off between the deck's files; the rest has been put in place now");
+    if (*outcome == SaveOutcome::mixed)
+      warn("save-mixed",
+           "a save was cut off between the deck's files, and can't be finished since something else has changed or removed some of them: " +
+               names_of(*intent));
+    const bool saved = *outcome == SaveOutcome::complete || *outcome == SaveOutcome::finished;
+    // Which of the two journals is obsolete; one that holds more than at that time holds edits of later, and stays.
+    const fs::path obsolete = saved ? journal : folder_.journal(path, intent->deck_after);
+    if (is_there(obsolete) && records_in(obsolete) <= (saved ? intent->records : intent->records_of_next))
+      if (const Result<fs::path> retired = folder_.retire(obsolete, saved ? ".saved" : ".unused"); !retired) return fail(retired.error());
+    folder_.remove(file);
   }
-  return opened;
+  return {};
 }
 
 Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& request, const Progress& progress) {
@@ -125,7 +142,8 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
   const fs::path path = request.path;
   if (!path.is_absolute()) return fail(request.path, "the path must be absolute: the daemon has its own working folder");
   std::vector<Warning> warnings;
-  Result<OpenedDeck> opened = read_deck(path, progress, warnings);
+  if (Result<void> settled = settle_saves(path, warnings); !settled) return fail(std::move(settled.error()));
+  Result<OpenedDeck> opened = mesh::deck::open(path, progress);
   if (!opened) return fail(std::move(opened.error()));
   Result<Document> document = mesh::document::open(path, std::move(*opened), *options);
   if (!document) return fail(std::move(document.error()));
@@ -141,6 +159,14 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
   if (journal->cut_torn_tail())
     warnings.push_back({journal_path.string(), 0, "torn-journal",
                         "the last edit was being written when the daemon ended; it had not been acknowledged and is left out", 1});
+  if (journal->damage()) {
+    std::string message = journal->damage()->message;
+    if (!journal->takes_edits())
+      message +=
+          ". What is shown is the deck with the edits before it. No edits are taken until you save the deck, which goes on with what is "
+          "shown, or close it and give its edits up; the damaged journal is kept";
+    warnings.push_back({journal_path.string(), journal->damage()->line, "damaged-journal", std::move(message), 1});
+  }
   for (const fs::path& other : folder_.other_journals(path, content))
     warnings.push_back(
         {path.string(), 0, "deck-changed",
@@ -235,7 +261,11 @@ std::size_t DocumentKeeper::same_drop(const Prepared& prepared) const {
 Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progress) {
   if (!open_) return fail("", "no document is open");
   OpenDocument& open = *open_;
-  if (open.stuck) return fail(*open.stuck);
+  if (open.unfinished)
+    return fail(
+        open.document.path.string(),
+        "its last save isn't finished, and edits made now could be lost: save again to finish it, save under another name, or close "
+        "the document");
   Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, edit, progress); }, "");
   if (!prepared) return fail(std::move(prepared.error()));
   EditReport report = prepared->report;
@@ -270,85 +300,151 @@ Result<ipc::Saved> DocumentKeeper::save_elsewhere(const fs::path& target, const 
 
 Result<ipc::Saved> DocumentKeeper::save_in_place(const Progress& progress) {
   OpenDocument& open = *open_;
-  if (open.stuck) return fail(*open.stuck);
-  const fs::path intent = StateFolder::save_intent(open.journal.path());
-  if (Result<void> written = write_save_intent(intent, open.document, part_of(progress, 0, kShareOfIntent)); !written)
-    return fail(std::move(written.error()));
-  const Result<mesh::deck::SaveReport> report =
-      mesh::document::save(open.document, open.document.path, part_of(progress, kShareOfIntent, kShareOfWriting));
-  std::error_code problem;
-  if (!report) {
-    // Some files may have been replaced before the error; then the next opening finishes the save.
-    const auto is_as_it_was = [&] {
-      const Result<OpenedDeck> now = mesh::deck::open(open.document.path);
-      return now && now->deck->content == open.document.deck->content;
-    };
-    if (report.error().message == cancelled().message || is_as_it_was()) fs::remove(intent, problem);
-    return fail(report.error());
+  if (open.unfinished) {
+    ReadySave again = std::move(*open.unfinished);
+    open.unfinished.reset();
+    return finish_save(std::move(again));
   }
-  open.saved = open.document.generations[open.document.cursor];
-  ipc::Saved saved = report_of(open.document.path, *report);
-  if (report->files_written.empty()) {
-    fs::remove(intent, problem);
-    return saved;
+  Result<mesh::deck::StagedSave> staged =
+      mesh::document::stage_save(open.document, open.document.path, part_of(progress, 0, kShareOfWriting));
+  if (!staged) return fail(std::move(staged.error()));
+  if (staged->files().empty()) {
+    if (!open.journal.takes_edits())
+      if (Result<void> anew = begin_journal_anew(); !anew) return fail(std::move(anew.error()));
+    open.saved = open.document.generations[open.document.cursor];
+    return report_of(open.document.path, staged->report());
   }
-  if (const Result<void> rebased = rebase(saved, telling(progress)); !rebased) {
-    open.stuck = Error{rebased.error().file, rebased.error().line,
-                       "after saving, no new journal could be started: " + rebased.error().message +
-                           "; the deck is saved: close it and open it again to go on editing"};
-    saved.notes.push_back(open.stuck->text());
-  }
-  return saved;
+  Result<ReadySave> ready = make_ready(std::move(*staged), part_of(progress, kShareOfWriting, 1 - kShareOfWriting));
+  if (!ready) return fail(std::move(ready.error()));
+  return finish_save(std::move(*ready));
 }
 
-/// After a save in place: the deck on disk is another one, so its text is read again and a new journal begins. The history stays, unless
-/// nodes or shells came or went: then what was read has other indices, and the history begins anew.
-Result<void> DocumentKeeper::rebase(ipc::Saved& saved, const Progress& progress) {
+/// A damaged journal makes room for one that holds what is shown. The deck needs no change for it.
+Result<void> DocumentKeeper::begin_journal_anew() {
   OpenDocument& open = *open_;
-  Result<OpenedDeck> opened =
-      mesh::deck::open(open.document.path, part_of(progress, kShareOfIntent + kShareOfWriting, 1 - kShareOfIntent - kShareOfWriting));
+  const fs::path path = open.journal.path();
+  if (const Result<fs::path> retired = folder_.retire(path, ".damaged"); !retired) return fail(retired.error());
+  Document next = open.document;
+  next.generations = {next.opened};
+  next.cursor = 0;
+  Result<Journal> journal = Journal::create(path, next);
+  if (!journal) return fail(std::move(journal.error()));
+  if (Result<void> carried = carry_over(open.document.current(), next, *journal); !carried) return carried;
+  open.journal = std::move(*journal);
+  open.twins = {{next.generations[next.cursor], open.document.generations[open.document.cursor]}};
+  open.recorded = std::move(next);
+  return {};
+}
+
+/// After a save in place the deck on disk is another one, so its text is read again and a new journal begins, with the selection and the
+/// parts' states; all of it before the first file is replaced, so that whenever the daemon dies, deck and journal belong together. The
+/// history stays, unless nodes or shells came or went: then what was read has other indices, and the history begins anew.
+Result<DocumentKeeper::ReadySave> DocumentKeeper::make_ready(mesh::deck::StagedSave staged, const Progress& progress) {
+  OpenDocument& open = *open_;
+  const std::string path = open.document.path.string();
+  Result<OpenedDeck> opened = staged.open(progress);
   if (!opened) return fail(std::move(opened.error()));
   const bool grown = has_grown(open.document);
   const mesh::Model& model = grown ? open.document.current().model : open.document.opened->model;
   if (mesh::live_nodes(opened->model) != mesh::live_nodes(model) || mesh::live_shells(opened->model) != mesh::live_shells(model))
-    return fail(open.document.path.string(), "something else changed the deck while it was saved");
+    return fail(path, "the saved deck would not be read as what is shown here; nothing was changed");
   OpenOptions options;
   options.length_unit = open.document.settings.length_unit;
   options.target_size = open.document.settings.target_size;
   if (open.request.criteria) options.criteria = *open.request.criteria;
   options.history_bytes = open.document.history_bytes;
-  Result<Document> fresh = mesh::document::open(open.document.path, std::move(*opened), options);
-  if (!fresh) return fail(std::move(fresh.error()));
-  fresh->next_number = open.document.next_number;
+  Result<Document> next = mesh::document::open(open.document.path, std::move(*opened), options);
+  if (!next) return fail(std::move(next.error()));
+  next->next_number = open.document.next_number;
   if (grown) {
-    auto first = std::make_shared<Generation>(*fresh->opened);
-    first->number = fresh->next_number++;
-    fresh->opened = first;
-    fresh->generations = {fresh->opened};
+    auto first = std::make_shared<Generation>(*next->opened);
+    first->number = next->next_number++;
+    next->opened = first;
+    next->generations = {next->opened};
   }
-  Result<Journal> journal = start_journal(folder_, folder_.journal(fresh->path, fresh->deck->content), *fresh);
-  if (!journal) return fail(std::move(journal.error()));
-  Result<void> carried =
-      grown ? carry_over_by_ids(open.document.current(), *fresh, *journal) : carry_over(open.document.current(), *fresh, *journal);
-  if (!carried) return carried;
 
-  const fs::path old = open.journal.path();
-  open.journal = std::move(*journal);
-  open.twins.clear();
-  if (grown) {
-    open.document = *fresh;
-    open.saved = open.document.generations[open.document.cursor];
-    saved.notes.emplace_back("the history begins anew with the saved deck, since nodes or elements came, went or were given other corners");
-  } else {
-    open.twins.push_back({fresh->generations[fresh->cursor], open.document.generations[open.document.cursor]});
-    open.document.deck = fresh->deck;
-    open.document.opened = fresh->opened;
-    open.document.next_number = std::max(open.document.next_number, fresh->next_number);
+  const Generation& current = open.document.current();
+  SaveIntent intent = intent_of(staged);
+  intent.deck_before = open.document.deck->content;
+  intent.deck_after = next->deck->content;
+  intent.records = open.journal.records();
+  intent.records_of_next = steps_to_carry(current);
+  const fs::path intent_file = StateFolder::save_intent(open.journal.path());
+  for (const fs::path& other : folder_.save_intents(open.document.path)) folder_.remove(other);
+  if (Result<void> written = write_save_intent(intent_file, intent); !written) return fail(std::move(written.error()));
+  const fs::path journal_file = folder_.journal(next->path, next->deck->content);
+  const auto give_up = [&](Error error) {
+    folder_.remove(journal_file);
+    folder_.remove(intent_file);
+    error.message += "; the deck is as it was";
+    return fail(std::move(error));
+  };
+  Result<Journal> journal = start_journal(folder_, journal_file, *next);
+  if (!journal) return give_up(std::move(journal.error()));
+  Result<void> carried = grown ? carry_over_by_ids(current, *next, *journal) : carry_over(current, *next, *journal);
+  if (!carried) return give_up(std::move(carried.error()));
+  ReadySave ready(std::move(staged), intent_file, std::move(*next), std::move(*journal));
+  ready.saved = report_of(open.document.path, ready.staged.report());
+  ready.grown = grown;
+  return ready;
+}
+
+/// Replaces the deck's files and goes on with the new journal.
+Result<ipc::Saved> DocumentKeeper::finish_save(ReadySave save) {
+  OpenDocument& open = *open_;
+  if (Result<void> placed = save.staged.put_in_place(); !placed) {
+    Error error = std::move(placed.error());
+    const bool begun = save.staged.has_begun();
+    const Result<void> taken_back = begun ? save.staged.take_back() : Result<void>();
+    if (taken_back) {
+      forget(save);
+      if (begun) error.message += "; the files that had been replaced were given back what they held before";
+      return fail(std::move(error));
+    }
+    error.message += "; giving the others back what they held failed as well (" + taken_back.error().text() +
+                     "). Save again to finish the save, or save under another name; no edits are taken until then";
+    open.unfinished = std::move(save);
+    return fail(std::move(error));
   }
-  open.recorded = std::move(*fresh);
-  std::error_code problem;
-  if (const Result<fs::path> retired = folder_.retire(old, ".saved"); !retired) return fail(retired.error());
-  fs::remove(StateFolder::save_intent(old), problem);
+  const fs::path old = open.journal.path();
+  const bool whole = open.journal.takes_edits();
+  open.journal = std::move(save.journal);
+  open.twins.clear();
+  if (save.grown) {
+    open.document = save.next;
+    save.saved.notes.emplace_back(
+        "the history begins anew with the saved deck, since nodes or elements came, went or were given other corners");
+  } else {
+    open.twins.push_back({save.next.generations[save.next.cursor], open.document.generations[open.document.cursor]});
+    open.document.deck = save.next.deck;
+    open.document.opened = save.next.opened;
+    open.document.next_number = std::max(open.document.next_number, save.next.next_number);
+  }
+  open.saved = open.document.generations[open.document.cursor];
+  open.recorded = std::move(save.next);
+  // Where this fails the intent stays, and the next opening does it.
+  if (const Result<fs::path> retired = folder_.retire(old, whole ? ".saved" : ".damaged"); retired) folder_.remove(save.intent);
+  return std::move(save.saved);
+}
+
+/// A save that replaced nothing, or has taken back what it replaced: all is as before it.
+void DocumentKeeper::forget(ReadySave& save) {
+  folder_.remove(save.journal.path());
+  folder_.remove(save.intent);
+  save.staged = {};
+}
+
+/// Before the document is given up: its deck is left whole. Errors: neither way can be gone.
+Result<void> DocumentKeeper::end_unfinished_save() {
+  if (!open_->unfinished) return {};
+  ReadySave save = std::move(*open_->unfinished);
+  open_->unfinished.reset();
+  if (save.staged.take_back()) {
+    forget(save);
+    return {};
+  }
+  const Result<ipc::Saved> finished = finish_save(std::move(save));
+  if (!finished) return fail(finished.error());
   return {};
 }
 
@@ -363,6 +459,7 @@ Result<void> DocumentKeeper::close(bool discard) {
 
 /// The journal of a document that is given up isn't in the way of the next opening.
 Result<void> DocumentKeeper::let_go() {
+  if (Result<void> ended = end_unfinished_save(); !ended) return ended;
   const fs::path path = open_->journal.path();
   const bool empty = open_->journal.records() == 0;
   const bool lost = changed();

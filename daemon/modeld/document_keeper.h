@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "daemon/modeld/state_folder.h"
 #include "ipc/messages.h"
+#include "mesh/deck/staged_save.h"
 #include "mesh/document/document.h"
 #include "mesh/document/journal.h"
 
@@ -27,7 +28,9 @@ class DocumentKeeper {
   Result<bool> reopen(const Progress& progress);
   /// Prepares, journals, commits.
   Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit, const Progress& progress = {});
-  /// Told to stop before the first file is put in place, it leaves all files as they were; from then on it goes on.
+  /// Told to stop before the first file is put in place, it leaves all files as they were; from then on it goes on. Where a save in place
+  /// fails between the files, those that were replaced get back what they held. If even that fails no edits are taken until the save is
+  /// called again and finishes it.
   Result<ipc::Saved> save(const std::optional<std::string>& path, const Progress& progress = {});
   Result<void> close(bool discard);
 
@@ -44,6 +47,26 @@ class DocumentKeeper {
     std::shared_ptr<const mesh::document::Generation> recorded;
     std::shared_ptr<const mesh::document::Generation> of;
   };
+  /// A save in place that is ready to replace the deck's files: all that recovery from the saved deck needs is on disk.
+  struct ReadySave {
+    mesh::deck::StagedSave staged;
+    std::filesystem::path intent;
+    mesh::document::Document next;  ///< what will be recorded from then on: the saved deck, with the selection and the parts' states
+    mesh::document::Journal journal;
+    ipc::Saved saved;
+    bool grown = false;
+
+    ReadySave(mesh::deck::StagedSave staged_save, std::filesystem::path intent_file, mesh::document::Document next_document,
+              mesh::document::Journal next_journal)
+        : staged(std::move(staged_save)),
+          intent(std::move(intent_file)),
+          next(std::move(next_document)),
+          journal(std::move(next_journal)) {}
+    ReadySave(ReadySave&&) = default;
+    ReadySave& operator=(ReadySave&&) = default;
+    /// The end of the daemon takes nothing from disk that the next one finishes the save with.
+    ~ReadySave() { staged.leave(); }
+  };
   struct OpenDocument {
     ipc::Open request;
     mesh::document::Document document;
@@ -56,15 +79,18 @@ class DocumentKeeper {
     std::vector<mesh::deck::Warning> warnings;  ///< beside the deck's
     std::vector<ipc::DeckFile> files;
     std::vector<Twin> twins;
-    std::optional<Error> stuck;  ///< why no edit can be journalled any more
+    std::optional<ReadySave> unfinished;  ///< a save that failed when some files were replaced already
   };
 
   Result<OpenDocument> load(const ipc::Open& request, const Progress& progress);
-  Result<mesh::deck::OpenedDeck> read_deck(const std::filesystem::path& path, const Progress& progress,
-                                           std::vector<mesh::deck::Warning>& warnings);
+  Result<void> settle_saves(const std::filesystem::path& path, std::vector<mesh::deck::Warning>& warnings);
   Result<ipc::Saved> save_elsewhere(const std::filesystem::path& target, const Progress& progress);
   Result<ipc::Saved> save_in_place(const Progress& progress);
-  Result<void> rebase(ipc::Saved& saved, const Progress& progress);
+  Result<ReadySave> make_ready(mesh::deck::StagedSave staged, const Progress& progress);
+  Result<ipc::Saved> finish_save(ReadySave save);
+  void forget(ReadySave& save);
+  Result<void> end_unfinished_save();
+  Result<void> begin_journal_anew();
   mesh::document::Prepared as_push(const mesh::document::Prepared& prepared, const mesh::document::Edit& edit);
   const mesh::document::Generation* own_step(mesh::document::Prepared::Step step) const;
   const mesh::document::Generation* original_of(const mesh::document::Generation* recorded) const;

@@ -1,204 +1,126 @@
 #include "daemon/modeld/save_intent.h"
 
 #include <algorithm>
-#include <deque>
-#include <map>
+#include <optional>
 #include <set>
+#include <string>
 
-#include "base/compression.h"
+#include <unistd.h>
+
 #include "base/file.h"
 #include "ipc/byte_stream.h"
-#include "mesh/deck/text_changes.h"
-#include "mesh/model/growth.h"
 
 namespace prismesh::modeld {
 
 namespace {
 
-using mesh::NodeIndex;
-using mesh::Vec3;
+namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMagic = 0x3145'5641'5352'5250;        // "PRRSAVE1": nodes that move
-constexpr std::uint64_t kMagicOfText = 0x3245'5641'5352'5250;  // "PRRSAVE2": changes of the files' texts
+constexpr std::uint64_t kMagic = 0x3345'5641'5352'5250;  // "PRRSAVE3"
 
-struct MovedNode {
-  std::uint64_t node = 0;
-  std::int64_t id = 0;
-  std::array<double, 3> position{};
-};
-
-struct SaveIntent {
-  Hash128 deck;                          ///< content of the whole deck before
-  std::map<std::string, Hash128> files;  ///< by relative name: content before, of those that will be replaced
-  std::vector<MovedNode> nodes;
-  /// By relative name, where nodes or shells come or go: a deck of which only some files were replaced has other indices than before, so
-  /// what the rest is to say is kept as text.
-  std::map<std::string, std::vector<mesh::deck::Replacement>> texts;
-};
-
-Hash128 content_of(const mesh::deck::SourceFile& file) { return hash128(file.bytes.bytes()); }
-
-void read_texts(ipc::ByteReader& in, SaveIntent& intent) {
-  const auto files = in.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < files && in.ok(); ++i) {
-    std::vector<mesh::deck::Replacement>& replacements = intent.texts[in.text()];
-    const auto count = in.get<std::uint64_t>();
-    for (std::uint64_t r = 0; r < count && in.ok(); ++r) {
-      const auto offset = in.get<std::uint64_t>(), length = in.get<std::uint64_t>();
-      replacements.push_back({static_cast<std::size_t>(offset), static_cast<std::size_t>(length), in.text()});
-    }
-  }
+std::optional<Hash128> content_of(const fs::path& file) {
+  const Result<FileBytes> bytes = read_file(file);
+  return bytes ? std::optional(hash128(bytes->bytes())) : std::nullopt;
 }
 
-Result<void> write_whole(const std::filesystem::path& path, const ipc::ByteWriter& out) {
+enum class FileState : std::uint8_t {
+  replaced,
+  waiting,  ///< what it is to become lies beside it
+  lost,     ///< it isn't what it was, or what it is to become isn't there
+};
+
+FileState state_of(const SaveIntent::File& file) {
+  const std::optional<Hash128> now = content_of(file.target);
+  if (now == file.after) return FileState::replaced;
+  return now == file.before && content_of(file.temporary) == file.after ? FileState::waiting : FileState::lost;
+}
+
+Result<void> put_rest_in_place(const SaveIntent& intent, const std::vector<FileState>& states) {
+  for (std::size_t i = 0; i < intent.files.size(); ++i) {
+    const SaveIntent::File& file = intent.files[i];
+    if (states[i] != FileState::waiting) continue;
+    std::error_code problem;
+    fs::rename(file.temporary, file.target, problem);
+    if (problem) return fail(file.target.string(), "a save that was cut off can't be finished: " + problem.message());
+  }
+  for (const SaveIntent::File& file : intent.files)
+    if (Result<void> flushed = flush_folder(folder_of(file.target), file.target); !flushed) return flushed;
+  return {};
+}
+
+}  // namespace
+
+SaveIntent intent_of(const mesh::deck::StagedSave& save) {
+  SaveIntent intent;
+  for (std::size_t i = 0; i < save.files().size(); ++i) {
+    const StagedFiles::File& place = save.places()[i];
+    intent.files.push_back({place.target, place.temporary, save.files()[i].before, save.files()[i].after});
+  }
+  return intent;
+}
+
+Result<void> write_save_intent(const fs::path& path, const SaveIntent& intent) {
+  ipc::ByteWriter out;
+  out.put(kMagic);
+  out.put(intent.deck_before);
+  out.put(intent.deck_after);
+  out.put(intent.records);
+  out.put(intent.records_of_next);
+  out.put(std::uint64_t{intent.files.size()});
+  for (const SaveIntent::File& file : intent.files) {
+    out.put(file.target.string());
+    out.put(file.temporary.string());
+    out.put(file.before);
+    out.put(file.after);
+  }
+  out.put(hash128(out.bytes()));
   const std::string_view content(reinterpret_cast<const char*>(out.bytes().data()), out.bytes().size());
   const PendingFile file{path, {content}};
   return replace_files(std::span(&file, 1));
 }
 
-Result<void> write_text_intent(const std::filesystem::path& path, const mesh::document::Document& document, const Progress& progress) {
-  const mesh::deck::Deck& deck = *document.deck;
-  const Result<mesh::deck::TextChanges> changes =
-      mesh::deck::text_changes(deck, document.opened->model, document.current().model, progress);
-  if (!changes) return fail(changes.error());
-  std::vector<std::size_t> files;
-  for (std::size_t f = 0; f < changes->by_file.size(); ++f)
-    if (!changes->by_file[f].empty()) files.push_back(f);
-  ipc::ByteWriter out;
-  out.put(kMagicOfText);
-  out.put(deck.content);
-  out.put(std::uint64_t{files.size()});
-  for (const std::size_t file : files) {
-    out.put(deck.files[file].relative.string());
-    out.put(content_of(deck.files[file]));
-  }
-  out.put(std::uint64_t{files.size()});
-  for (const std::size_t file : files) {
-    out.put(deck.files[file].relative.string());
-    out.put(std::uint64_t{changes->by_file[file].size()});
-    for (const mesh::deck::Replacement& replacement : changes->by_file[file]) {
-      out.put(std::uint64_t{replacement.offset});
-      out.put(std::uint64_t{replacement.length});
-      out.put(replacement.text);
-    }
-  }
-  return write_whole(path, out);
-}
-
-/// Writes the files that still are as they were before, includes first.
-Result<SaveOutcome> finish_texts(const SaveIntent& intent, const mesh::deck::Deck& deck, const std::set<std::uint32_t>& unreplaced) {
-  std::deque<std::string> packed;
-  std::vector<PendingFile> pending;
-  const auto add = [&](std::uint32_t f) -> Result<void> {
-    const mesh::deck::SourceFile& file = deck.files[f];
-    const auto known = intent.texts.find(file.relative.string());
-    if (known == intent.texts.end()) return {};
-    const std::string_view text = file.bytes.text();
-    std::vector<std::string_view> pieces;
-    std::size_t at = 0;
-    for (const mesh::deck::Replacement& replacement : known->second) {
-      if (replacement.offset < at || replacement.offset > text.size() || replacement.length > text.size() - replacement.offset)
-        return fail(file.path.string(), "the record of a save that was under way doesn't fit this file");
-      pieces.push_back(text.substr(at, replacement.offset - at));
-      pieces.emplace_back(replacement.text);
-      at = replacement.offset + replacement.length;
-    }
-    pieces.push_back(text.substr(at));
-    if (file.bytes.is_packed()) {
-      Result<std::string> anew = pack(pieces, file.bytes.bytes());
-      if (!anew) return fail(anew.error());
-      packed.push_back(std::move(*anew));
-      pieces = {packed.back()};
-    }
-    pending.push_back({file.path, std::move(pieces)});
-    return {};
-  };
-  for (const std::uint32_t f : unreplaced)
-    if (f != 0)
-      if (const Result<void> added = add(f); !added) return fail(added.error());
-  if (unreplaced.contains(0))
-    if (const Result<void> added = add(0); !added) return fail(added.error());
-  if (const Result<void> written = replace_files(pending); !written) return fail(written.error());
-  return SaveOutcome::finished;
-}
-
-Result<SaveIntent> read_intent(const std::filesystem::path& path) {
+Result<SaveIntent> read_save_intent(const fs::path& path) {
   const Result<FileBytes> bytes = read_file(path);
   if (!bytes) return fail(bytes.error());
-  ipc::ByteReader in(bytes->bytes());
+  const auto damaged = [&] { return fail(path.string(), "the record of a save that was under way is damaged"); };
+  const std::span<const std::byte> all = bytes->bytes();
+  if (all.size() < sizeof(Hash128)) return damaged();
+  const std::span<const std::byte> said = all.first(all.size() - sizeof(Hash128));
+  if (ipc::ByteReader(all.last(sizeof(Hash128))).get<Hash128>() != hash128(said)) return damaged();
+  ipc::ByteReader in(said);
+  if (in.get<std::uint64_t>() != kMagic) return damaged();
   SaveIntent intent;
-  const auto magic = in.get<std::uint64_t>();
-  intent.deck = in.get<Hash128>();
+  intent.deck_before = in.get<Hash128>();
+  intent.deck_after = in.get<Hash128>();
+  intent.records = in.get<std::uint64_t>();
+  intent.records_of_next = in.get<std::uint64_t>();
   const auto files = in.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < files && in.ok(); ++i) {
-    const std::string name = in.text();
-    intent.files[name] = in.get<Hash128>();
+    SaveIntent::File& file = intent.files.emplace_back();
+    file.target = in.text();
+    file.temporary = in.text();
+    file.before = in.get<Hash128>();
+    file.after = in.get<Hash128>();
   }
-  if (magic == kMagicOfText) {
-    read_texts(in, intent);
-    if (!in.ok() || !in.at_end()) return fail(path.string(), "the record of a save that was under way is damaged");
-    return intent;
-  }
-  const auto nodes = in.get<std::uint64_t>();
-  if (in.holds(nodes, sizeof(MovedNode))) intent.nodes.reserve(static_cast<std::size_t>(nodes));
-  for (std::uint64_t i = 0; i < nodes && in.ok(); ++i) intent.nodes.push_back(in.get<MovedNode>());
-  if (magic != kMagic || !in.ok() || !in.at_end()) return fail(path.string(), "the record of a save that was under way is damaged");
+  if (!in.ok() || !in.at_end()) return damaged();
   return intent;
 }
 
-}  // namespace
-
-bool has_grown(const mesh::document::Document& document) {
-  return !mesh::changes_between(document.opened->model, document.current().model).empty();
-}
-
-Result<void> write_save_intent(const std::filesystem::path& path, const mesh::document::Document& document, const Progress& progress) {
-  if (has_grown(document)) return write_text_intent(path, document, progress);
-  const mesh::deck::Deck& deck = *document.deck;
-  const mesh::Model& model = document.current().model;
-  const std::vector<NodeIndex> moved = mesh::moved_nodes(document.opened->model, model);
-  std::set<std::uint32_t> files;
-  for (const NodeIndex node : moved) files.insert(deck.run_of(node).file);
-
-  ipc::ByteWriter out;
-  out.put(kMagic);
-  out.put(deck.content);
-  out.put(std::uint64_t{files.size()});
-  for (const std::uint32_t file : files) {
-    out.put(deck.files[file].relative.string());
-    out.put(content_of(deck.files[file]));
+Result<SaveOutcome> settle_save(const SaveIntent& intent) {
+  std::vector<FileState> states;
+  for (const SaveIntent::File& file : intent.files) states.push_back(state_of(file));
+  const auto count = [&](FileState state) { return std::count(states.begin(), states.end(), state); };
+  SaveOutcome outcome = SaveOutcome::complete;
+  if (count(FileState::replaced) == 0) {
+    outcome = SaveOutcome::not_begun;
+  } else if (count(FileState::lost) > 0) {
+    outcome = SaveOutcome::mixed;
+  } else if (count(FileState::waiting) > 0) {
+    if (Result<void> placed = put_rest_in_place(intent, states); !placed) return fail(std::move(placed.error()));
+    outcome = SaveOutcome::finished;
   }
-  out.put(std::uint64_t{moved.size()});
-  for (const NodeIndex node : moved) {
-    const Vec3& position = model.position(node);
-    out.put(MovedNode{node.value, model.node_ids[node.value], {position.x(), position.y(), position.z()}});
-  }
-  return write_whole(path, out);
-}
-
-Result<SaveOutcome> settle_save(const std::filesystem::path& path, const std::filesystem::path& deck_path,
-                                const mesh::deck::OpenedDeck& opened) {
-  const Result<SaveIntent> intent = read_intent(path);
-  if (!intent) return fail(intent.error());
-  if (intent->deck == opened.deck->content) return SaveOutcome::not_begun;
-
-  std::set<std::uint32_t> unreplaced;
-  for (std::uint32_t f = 0; f < opened.deck->files.size(); ++f) {
-    const auto before = intent->files.find(opened.deck->files[f].relative.string());
-    if (before != intent->files.end() && before->second == content_of(opened.deck->files[f])) unreplaced.insert(f);
-  }
-  if (unreplaced.empty()) return SaveOutcome::complete;
-  if (!intent->texts.empty()) return finish_texts(*intent, *opened.deck, unreplaced);
-  mesh::Model model = opened.model;
-  for (const MovedNode& moved : intent->nodes) {
-    if (moved.node >= model.node_count() || model.node_ids[static_cast<std::size_t>(moved.node)] != moved.id) return SaveOutcome::unknown;
-    const NodeIndex node(static_cast<std::size_t>(moved.node));
-    if (unreplaced.contains(opened.deck->run_of(node).file))
-      model.positions.set(node.value, Vec3(moved.position[0], moved.position[1], moved.position[2]));
-  }
-  const Result<mesh::deck::SaveReport> saved = mesh::deck::save(*opened.deck, opened.model, model, deck_path);
-  if (!saved) return fail(saved.error());
-  return SaveOutcome::finished;
+  for (const SaveIntent::File& file : intent.files) ::unlink(file.temporary.c_str());
+  return outcome;
 }
 
 }  // namespace prismesh::modeld

@@ -2,31 +2,43 @@
 // step: if the daemon dies in between, the next one finishes the save from this.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/progress.h"
-#include "mesh/document/document.h"
+#include "mesh/deck/staged_save.h"
 
 namespace prismesh::modeld {
 
-/// Whether nodes or shells came, went or have other corners since the deck was read.
-bool has_grown(const mesh::document::Document& document);
-
-/// Writes the intent of saving the document's current generation to its own deck. Errors: those of saving, cancelled.
-Result<void> write_save_intent(const std::filesystem::path& path, const mesh::document::Document& document, const Progress& progress = {});
-
-enum class SaveOutcome : std::uint8_t {
-  not_begun,  ///< the deck is as it was
-  complete,   ///< every file was replaced
-  finished,   ///< some were not: they are now
-  unknown,    ///< the deck isn't the one that was being saved any more
+struct SaveIntent {
+  struct File {
+    std::filesystem::path target, temporary;
+    Hash128 before, after;  ///< what the target holds, and what the temporary file beside it holds
+  };
+  Hash128 deck_before, deck_after;    ///< content of the whole deck
+  std::uint64_t records = 0;          ///< of the journal that the save makes obsolete
+  std::uint64_t records_of_next = 0;  ///< of the journal that begins with the saved deck, as it is made
+  std::vector<File> files;            ///< in the order they are put in place
 };
 
-/// Looks at the deck (as just read) and finishes the save where it was cut off. After `finished` the deck must be read again.
-/// Errors: the intent can't be read, the rest can't be written.
-Result<SaveOutcome> settle_save(const std::filesystem::path& path, const std::filesystem::path& deck_path,
-                                const mesh::deck::OpenedDeck& opened);
+SaveIntent intent_of(const mesh::deck::StagedSave& save);
+
+/// On disk when it returns. Errors: it can't be written.
+Result<void> write_save_intent(const std::filesystem::path& path, const SaveIntent& intent);
+/// Errors: it can't be read, it isn't as it was written.
+Result<SaveIntent> read_save_intent(const std::filesystem::path& path);
+
+enum class SaveOutcome : std::uint8_t {
+  not_begun,  ///< no file was replaced
+  complete,   ///< every file was replaced
+  finished,   ///< some were not: they are now
+  mixed,      ///< some were, and the others can't be any more: something else has changed or removed them
+};
+
+/// Looks at the deck's files and finishes a save that was cut off between them. Only bytes that are what the intent says are put in
+/// place. Temporary files that nothing needs any more are removed. Errors: the rest can't be put in place.
+Result<SaveOutcome> settle_save(const SaveIntent& intent);
 
 }  // namespace prismesh::modeld

@@ -42,10 +42,8 @@ std::vector<fs::path> files_with(const fs::path& folder, const std::string& begi
   return found;
 }
 
-void flush_folder(const fs::path& folder) {
-  const ipc::Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (descriptor) ::fsync(descriptor.get());
-}
+/// What stands under a line, so that a changed byte is found.
+std::string check_line(std::string_view line) { return "check " + hash128(std::as_bytes(std::span(line))).hex() + "\n"; }
 
 void prune_retired(const fs::path& folder) {
   std::vector<std::pair<fs::file_time_type, fs::path>> retired;
@@ -94,7 +92,7 @@ Result<fs::path> StateFolder::retire(const fs::path& journal, const char* ending
     fs::rename(journal, target, problem);
     if (problem) return fail(journal.string(), "can't be renamed: " + problem.message());
     fs::last_write_time(target, fs::file_time_type::clock::now(), problem);
-    flush_folder(folder_);
+    if (Result<void> flushed = flush_folder(folder_); !flushed) return fail(std::move(flushed.error()));
     prune_retired(folder_);
     return target;
   }
@@ -103,7 +101,8 @@ Result<fs::path> StateFolder::retire(const fs::path& journal, const char* ending
 Result<void> StateFolder::write_session(const Session& session) const {
   const Result<std::string> line = ipc::encode_request(session.attempts, session.open);
   if (!line) return fail(line.error());
-  const PendingFile file{folder_ / kSession, {*line, "\n"}};
+  const std::string check = check_line(*line);
+  const PendingFile file{folder_ / kSession, {*line, "\n", check}};
   return replace_files(std::span(&file, 1));
 }
 
@@ -113,17 +112,23 @@ Result<std::optional<StateFolder::Session>> StateFolder::read_session() const {
   if (!fs::exists(path, problem)) return std::optional<Session>();
   const Result<FileBytes> bytes = read_file(path);
   if (!bytes) return fail(bytes.error());
-  const auto request = ipc::decode_request(bytes->text());
+  const std::string_view text = bytes->text();
+  const std::string_view line = text.substr(0, text.find('\n'));
+  if (line.size() == text.size() || text.substr(line.size() + 1) != check_line(line))
+    return fail(path.string(), 1,
+                "what was open when the daemon ended can't be told: this file isn't as it was written. Open the deck by hand");
+  const auto request = ipc::decode_request(line);
   if (!request) return fail(path.string(), 1, request.error().message);
   const auto* open = std::get_if<ipc::Open>(&request->request);
   if (open == nullptr) return fail(path.string(), 1, "it doesn't say what was open");
   return std::optional(Session{*open, request->number});
 }
 
-void StateFolder::forget_session() const {
+void StateFolder::forget_session() const { remove(folder_ / kSession); }
+
+void StateFolder::remove(const fs::path& file) const {
   std::error_code problem;
-  fs::remove(folder_ / kSession, problem);
-  flush_folder(folder_);
+  if (fs::remove(file, problem)) (void)flush_folder(folder_);  // what comes back after a power cut is found to be obsolete
 }
 
 }  // namespace prismesh::modeld

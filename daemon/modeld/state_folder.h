@@ -27,6 +27,8 @@ class StateFolder {
   /// Save intents of a deck, whatever its state.
   std::vector<std::filesystem::path> save_intents(const std::filesystem::path& deck) const;
 
+  /// Removes a file of this folder, if it is there, so that it stays removed.
+  void remove(const std::filesystem::path& file) const;
   /// Takes a journal out of use without deleting it: it gets `ending` and a number. Only the newest are kept.
   Result<std::filesystem::path> retire(const std::filesystem::path& journal, const char* ending) const;
 

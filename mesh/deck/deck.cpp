@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "base/compression.h"
 #include "mesh/deck/abaqus/reader.h"
 #include "mesh/deck/abaqus/writer.h"
 #include "mesh/deck/card_writer.h"
 #include "mesh/deck/detect.h"
+#include "mesh/deck/file_set.h"
 #include "mesh/deck/lsdyna/reader.h"
 #include "mesh/deck/lsdyna/writer.h"
 #include "mesh/deck/nastran/reader.h"
@@ -57,19 +57,17 @@ constexpr double kUnpacked = 0.1;
 
 }  // namespace
 
-Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress) {
+Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress, const StandIns& stand_ins) {
   if (progress && !progress(0)) return fail(cancelled());
-  Result<FileBytes> bytes = read_file(path);
-  if (!bytes) return fail(bytes.error());
   const Progress unpacking = [&](double fraction) { return !progress || progress(kUnpacked * fraction); };
-  bytes = unpack(std::move(*bytes), path, unpacking);
-  if (!bytes) return fail(bytes.error());
-  const Detected detected = detect_format(bytes->text());
+  Result<FileSet> files = FileSet::begin(path, stand_ins, unpacking);
+  if (!files) return fail(std::move(files.error()));
+  const Detected detected = detect_format(files->files[0].bytes.text());
   if (!detected.format) return fail(path.string(), "is no deck: it looks like " + detected.looks_like);
-  if (*detected.format == Format::ls_dyna) return lsdyna::read(path, std::move(*bytes), progress);
-  if (*detected.format == Format::radioss) return radioss::read(path, std::move(*bytes), progress);
-  if (*detected.format == Format::abaqus) return abaqus::read(path, std::move(*bytes), progress);
-  return nastran::read(path, std::move(*bytes), progress);
+  if (*detected.format == Format::ls_dyna) return lsdyna::read(std::move(*files), progress);
+  if (*detected.format == Format::radioss) return radioss::read(std::move(*files), progress);
+  if (*detected.format == Format::abaqus) return abaqus::read(std::move(*files), progress);
+  return nastran::read(std::move(*files), progress);
 }
 
 std::unique_ptr<const CardWriter> card_writer(Format format) {

@@ -124,9 +124,12 @@ struct OpenedDeck {
   Model model;  ///< complete, with adjacency
 };
 
+/// Files that are read in the place of others: by canonical name.
+using StandIns = std::map<std::string, std::filesystem::path>;
+
 /// Opens a deck with its includes. Errors: not readable, not a deck (says what it looks like instead), a format that
 /// this build doesn't read (named), a malformed card whose loss would matter (file and line).
-Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress = {});
+Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress = {}, const StandIns& stand_ins = {});
 
 struct SaveReport {
   std::size_t nodes_written = 0;  ///< moved ones

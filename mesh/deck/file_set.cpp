@@ -17,11 +17,15 @@ fs::path normal(const fs::path& path) {
   return (error ? path : absolute).lexically_normal();
 }
 
+}  // namespace
+
 std::string canonical_name(const fs::path& path) {
   std::error_code error;
   const fs::path canonical = fs::canonical(path, error);
   return (error ? normal(path) : canonical).string();
 }
+
+namespace {
 
 /// Decks from Windows have backslashes between folders.
 std::string with_slashes(std::string name) {
@@ -42,6 +46,13 @@ std::optional<fs::path> find(const std::string& name, std::span<const fs::path> 
   return std::nullopt;
 }
 
+/// The file that is read for this one.
+const fs::path& stand_in(const StandIns& stand_ins, const fs::path& file) {
+  if (stand_ins.empty()) return file;
+  const auto at = stand_ins.find(canonical_name(file));
+  return at == stand_ins.end() ? file : at->second;
+}
+
 /// What stands in the way where no file of the name is found.
 std::string why_not_found(const std::string& name, std::span<const fs::path> folders) {
   if (name.empty()) return "has no name";
@@ -55,7 +66,20 @@ std::string why_not_found(const std::string& name, std::span<const fs::path> fol
 
 }  // namespace
 
-FileSet::FileSet(fs::path main, FileBytes bytes) : main_folder_(normal(main).parent_path()) {
+Result<FileSet> FileSet::begin(fs::path main, const StandIns& stand_ins, const Progress& progress) {
+  Result<FileBytes> bytes = read_file(stand_in(stand_ins, main));
+  if (!bytes) return fail(std::move(bytes.error()));
+  bytes = unpack(std::move(*bytes), main, progress);
+  if (!bytes) return fail(std::move(bytes.error()));
+  return FileSet(std::move(main), std::move(*bytes), stand_ins);
+}
+
+FileSet FileSet::again(FileSet files) {
+  return {std::move(files.files[0].path), std::move(files.files[0].bytes), std::move(files.stand_ins_)};
+}
+
+FileSet::FileSet(fs::path main, FileBytes bytes, StandIns stand_ins)
+    : stand_ins_(std::move(stand_ins)), main_folder_(normal(main).parent_path()) {
   by_canonical_[canonical_name(main)] = 0;
   fs::path name = main.filename();
   files.push_back({std::move(main), std::move(name), std::move(bytes)});
@@ -85,7 +109,7 @@ std::uint32_t FileSet::open(const fs::path& found, const std::string& name, std:
     reason = "is one of too many";
     return kNoFile;
   }
-  Result<FileBytes> bytes = read_file(found);
+  Result<FileBytes> bytes = read_file(stand_in(stand_ins_, found));
   if (bytes) bytes = unpack(std::move(*bytes), found);
   if (!bytes) {
     reason = bytes.error().message;

@@ -6,7 +6,9 @@
 
 #include "base/compression.h"
 #include "mesh/deck/deck.h"
+#include "mesh/deck/file_set.h"
 #include "mesh/deck/on_disk.h"
+#include "mesh/deck/staged_save.h"
 #include "mesh/deck/text_changes.h"
 
 namespace prismesh::mesh::deck {
@@ -98,8 +100,6 @@ bool stays_behind(const SourceFile& include) {
   return include.relative.is_absolute() || include.relative.begin() == include.relative.end() || *include.relative.begin() == "..";
 }
 
-fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
-
 Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const TextChanges& text, const fs::path& target) {
   const bool other_folder = !same_file(folder_of(target), folder_of(deck.files[0].path));
   std::vector<Plan> plans;
@@ -120,22 +120,6 @@ Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const TextChanges& te
     }
   }
   return plans;
-}
-
-/// After saving in place: what is on disk now, also where only some of the files could be replaced.
-void remember_written(const Deck& deck, std::span<const PendingFile> pending, std::span<const Plan> plans, const TextChanges& text,
-                      bool all) {
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    const SourceFile& source = deck.files[plans[i].file];
-    const Hash128 written = hash128(pending[i].pieces);
-    Result<FileIdentity> identity = identify_file(source.path);
-    if (!all) {
-      const Result<FileBytes> bytes = read_file(source.path);
-      if (!bytes || hash128(bytes->bytes()) != written) continue;
-      identity = bytes->identity();
-    }
-    if (identity) deck.on_disk->files[plans[i].file] = {*identity, written, text.by_file[plans[i].file].empty()};
-  }
 }
 
 std::string rounding_note(const Rounding& rounding) {
@@ -209,24 +193,83 @@ Result<SaveReport> save(const Deck& deck, const Model& original, const Model& mo
 
 Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const fs::path& target, const Progress& progress,
                         Rounding& rounding) {
+  Result<StagedSave> staged = StagedSave::write(deck, original, model, target, progress);
+  if (!staged) return fail(std::move(staged.error()));
+  if (Result<void> placed = staged->put_in_place(); !placed) return fail(std::move(placed.error()));
+  rounding = staged->rounding();
+  return staged->report();
+}
+
+Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, const Model& model, const fs::path& target,
+                                     const Progress& progress) {
   const std::lock_guard lock(deck.on_disk->mutex);
   const bool packs = std::any_of(deck.files.begin(), deck.files.end(), [](const SourceFile& file) { return file.bytes.is_packed(); });
   const double of_cards = packs ? kShareOfCardsWithPacking : kShareOfCards, before_writing = of_cards + (packs ? kShareOfPacking : 0);
   const Result<TextChanges> text = text_changes(deck, original, model, part_of(progress, 0, of_cards));
   if (!text) return fail(text.error());
-  const bool in_place = same_file(target, deck.files[0].path);
-  const Result<std::vector<Plan>> plans = in_place ? plan_in_place(deck, *text) : plan_elsewhere(deck, *text, target);
+  StagedSave save;
+  save.deck_ = &deck;
+  save.in_place_ = same_file(target, deck.files[0].path);
+  const Result<std::vector<Plan>> plans = save.in_place_ ? plan_in_place(deck, *text) : plan_elsewhere(deck, *text, target);
   if (!plans) return fail(plans.error());
 
   std::deque<std::string> packed;
   const Result<std::vector<PendingFile>> pending =
       pending_files(deck, *plans, *text, packed, part_of(progress, of_cards, before_writing - of_cards));
   if (!pending) return fail(pending.error());
-  const Result<void> replaced = replace_files(*pending, part_of(progress, before_writing, 1 - before_writing));
-  if (in_place) remember_written(deck, *pending, *plans, *text, replaced.has_value());
-  if (!replaced) return fail(replaced.error());
-  rounding = text->rounding;
-  return report_of(deck, *text, *plans);
+  Result<StagedFiles> staged = StagedFiles::write(*pending, part_of(progress, before_writing, 1 - before_writing));
+  if (!staged) return fail(std::move(staged.error()));
+  save.staged_ = std::move(*staged);
+  for (std::size_t i = 0; i < plans->size(); ++i) {
+    const std::size_t file = (*plans)[i].file;
+    const Hash128 before = save.in_place_ ? deck.on_disk->files[file].content : Hash128{};
+    save.files_.push_back({file, before, hash128((*pending)[i].pieces), text->by_file[file].empty()});
+  }
+  save.rounding_ = text->rounding;
+  save.report_ = report_of(deck, *text, *plans);
+  return save;
+}
+
+Result<OpenedDeck> StagedSave::open(const Progress& progress) const {
+  StandIns stand_ins;
+  for (std::size_t i = staged_.in_place(); i < files_.size(); ++i)
+    stand_ins[canonical_name(deck_->files[files_[i].index].path)] = staged_.files()[i].temporary;
+  return deck::open(deck_->files[0].path, progress, stand_ins);
+}
+
+Result<void> StagedSave::put_in_place() {
+  const std::lock_guard lock(deck_->on_disk->mutex);
+  Result<void> placed = staged_.put_in_place();
+  if (in_place_) remember_written();
+  return placed;
+}
+
+/// What is on disk now, also where only some of the files could be replaced.
+void StagedSave::remember_written() {
+  for (std::size_t i = 0; i < staged_.in_place(); ++i)
+    deck_->on_disk->files[files_[i].index] = {staged_.files()[i].identity, files_[i].after, files_[i].as_read};
+}
+
+Result<void> StagedSave::take_back() {
+  const std::lock_guard lock(deck_->on_disk->mutex);
+  std::vector<PendingFile> before;
+  for (std::size_t i = staged_.in_place(); i-- > 0;) {
+    const SourceFile& source = deck_->files[files_[i].index];
+    const std::span<const std::byte> bytes = source.bytes.bytes();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (hash128(bytes) != files_[i].before)
+      return fail(source.path.string(), "can't be given back what it held: the deck was saved over before");
+    const Result<FileIdentity> now = identify_file(source.path);
+    if (!now || *now != staged_.files()[i].identity) return fail(source.path.string(), "has been changed by something else meanwhile");
+    before.push_back({source.path, {text}});
+  }
+  if (Result<void> replaced = replace_files(before); !replaced) return replaced;
+  for (std::size_t i = 0; i < staged_.in_place(); ++i) {
+    const Result<FileIdentity> identity = identify_file(deck_->files[files_[i].index].path);
+    if (identity) deck_->on_disk->files[files_[i].index] = {*identity, files_[i].before, true};
+  }
+  staged_ = {};
+  return {};
 }
 
 }  // namespace prismesh::mesh::deck

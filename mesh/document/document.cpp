@@ -194,12 +194,18 @@ std::string rounding_note(const Document& document, const deck::Rounding& roundi
 }  // namespace
 
 Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress) {
-  deck::Rounding rounding;
-  Result<deck::SaveReport> report =
-      deck::save(*document.deck, document.opened->model, document.current().model, target, progress, rounding);
-  if (!report) return report;
-  if (std::string note = rounding_note(document, rounding); !note.empty()) report->notes.push_back(std::move(note));
-  return report;
+  Result<deck::StagedSave> staged = stage_save(document, target, progress);
+  if (!staged) return fail(std::move(staged.error()));
+  if (Result<void> placed = staged->put_in_place(); !placed) return fail(std::move(placed.error()));
+  return staged->report();
+}
+
+Result<deck::StagedSave> stage_save(const Document& document, const std::filesystem::path& target, const Progress& progress) {
+  Result<deck::StagedSave> staged =
+      deck::StagedSave::write(*document.deck, document.opened->model, document.current().model, target, progress);
+  if (staged)
+    if (std::string note = rounding_note(document, staged->rounding()); !note.empty()) staged->add_note(std::move(note));
+  return staged;
 }
 
 }  // namespace prismesh::mesh::document

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "mesh/deck/deck.h"
+#include "mesh/deck/staged_save.h"
 #include "mesh/document/edit.h"
 #include "mesh/quality/mass.h"
 #include "mesh/quality/report.h"
@@ -130,5 +131,7 @@ Result<EditReport> apply(Document& document, const Edit& edit, const Progress& p
 
 /// Saves the current generation (deck::save).
 Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress = {});
+/// The same up to the point where files are replaced; its report is complete. The document's deck must outlive it.
+Result<deck::StagedSave> stage_save(const Document& document, const std::filesystem::path& target, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::document

@@ -17,6 +17,8 @@ struct Journal::State {
   std::uint64_t records = 0;
   std::string check;  ///< what the next record chains to
   bool cut_torn_tail = false;
+  std::optional<Error> damage;
+  bool takes_edits = true;
 };
 
 namespace {
@@ -120,13 +122,15 @@ Journal::~Journal() = default;
 const std::filesystem::path& Journal::path() const { return state_->file.path(); }
 std::uint64_t Journal::records() const { return state_->records; }
 bool Journal::cut_torn_tail() const { return state_->cut_torn_tail; }
+const std::optional<Error>& Journal::damage() const { return state_->damage; }
+bool Journal::takes_edits() const { return state_->takes_edits; }
 
 Result<Journal> Journal::create(const std::filesystem::path& path, const Document& document) {
   if (!is_fresh(document)) return fail(path.string(), "a journal is started before the first edit; this document has been edited");
   const std::string text = header_text(header_of(document));
   Result<JournalFile> file = JournalFile::create(path, text);
   if (!file) return fail(file.error());
-  return Journal(std::make_unique<State>(State{std::move(*file), 0, check_in(text), false}));
+  return Journal(std::make_unique<State>(State{std::move(*file), 0, check_in(text), false, std::nullopt, true}));
 }
 
 Result<Journal> Journal::recover(const std::filesystem::path& path, Document& document) {
@@ -144,13 +148,29 @@ Result<Journal> Journal::recover(const std::filesystem::path& path, Document& do
   const auto on_record = [&](const JournalRecord& record) { return take_record(record, rebuilt_document, name); };
   const Result<JournalEnd> end = read_journal(text, name, on_header, on_record);
   if (!end) return fail(end.error());
-  if (end->torn_tail)
-    if (const Result<void> cut = file->truncate(end->bytes); !cut) return fail(cut.error());
+  std::optional<Error> damage = end->damage;
+  const bool cut = end->torn_tail || (damage && end->only_last);
+  if (damage && cut) {
+    const Result<std::filesystem::path> kept = file->keep_copy(text);
+    if (!kept) return fail(kept.error());
+    damage->message = "the last edit, " + std::to_string(end->records + 1) +
+                      ", can't be read any more and is left out; it was being written when the power failed, or has been damaged since. "
+                      "The journal as it was found is kept as " +
+                      kept->string();
+  }
+  if (cut)
+    if (const Result<void> done = file->truncate(end->bytes); !done) return fail(done.error());
   document = std::move(rebuilt_document);
-  return Journal(std::make_unique<State>(State{std::move(*file), end->records, end->check, end->torn_tail}));
+  return Journal(
+      std::make_unique<State>(State{std::move(*file), end->records, end->check, end->torn_tail, std::move(damage), cut || !end->damage}));
 }
 
 Result<void> Journal::append(const Document& document, const Edit& edit, const Prepared& prepared) {
+  if (!state_->takes_edits)
+    return fail(
+        state_->damage->file, state_->damage->line,
+        "the journal is damaged here, so edits can't be kept: save the deck to go on with what is shown, or close it and give up its "
+        "edits (prismesh session close --discard)");
   const bool push = prepared.step == Prepared::Step::push;
   const std::string delta = push ? base64_encode(encode_delta(document.current(), *prepared.next)) : "";
   const std::string text = record_text(state_->records + 1, intent_text(edit), prepared.step, prepared.drop_oldest, delta, state_->check);

@@ -6,8 +6,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <span>
 #include <system_error>
 #include <utility>
+
+#include "base/file.h"
 
 namespace prismesh::mesh::document {
 
@@ -41,15 +44,6 @@ int read_all(int fd, std::string& text, std::size_t size) {
     done += static_cast<std::size_t>(got);
   }
   return 0;
-}
-
-int flush_folder(const fs::path& file) {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return errno;
-  const int error = ::fsync(fd) == 0 ? 0 : errno;
-  ::close(fd);
-  return error;
 }
 
 /// A new file beside `path`, written and flushed; its descriptor, or -1 and an errno.
@@ -101,8 +95,9 @@ Result<JournalFile> JournalFile::create(const fs::path& path, std::string_view t
     error = ::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0 ? 0 : errno;
   ::unlink(made.c_str());
   if (error == EEXIST) return fail(path.string(), "there is a journal (or another file) already; recover it or choose another name");
-  if (error == 0) error = flush_folder(path);
   if (error != 0) return fail(path.string(), "the journal can't be made: " + reason_of(error));
+  if (const Result<void> flushed = flush_folder(folder_of(path), path); !flushed)
+    return fail(path.string(), "the journal can't be made: " + flushed.error().text());
   return file;
 }
 
@@ -125,13 +120,16 @@ Result<void> JournalFile::check_untouched() const {
   struct stat status {};
   if (::fstat(fd_, &status) != 0) return fail(path_.string(), "the journal can't be reached: " + reason_of(errno));
   if (status.st_nlink == 0) return fail(path_.string(), "the journal has been deleted; edits can't be kept any more, save the deck");
+  struct stat named {};
+  if (::stat(path_.c_str(), &named) != 0 || named.st_ino != status.st_ino || named.st_dev != status.st_dev)
+    return fail(path_.string(), "the journal has been moved away or replaced; edits can't be kept any more, save the deck");
   if (static_cast<std::size_t>(status.st_size) != size_)
     return fail(path_.string(), "the journal has been changed by another program; edits can't be kept any more, save the deck");
   return {};
 }
 
 Result<void> JournalFile::append(std::string_view text) {
-  if (!broken_.empty())
+  if (!broken_.empty() && rewrite() != 0)
     return fail(path_.string(),
                 "the journal takes no more edits since an earlier failure (" + broken_ + "); save the deck and open it again");
   if (const Result<void> untouched = check_untouched(); !untouched) return untouched;
@@ -159,25 +157,48 @@ Result<void> JournalFile::take_back(std::string reason) {
 /// prove nothing. What was acknowledged goes into a new file that takes its place.
 Result<void> JournalFile::start_afresh(std::string reason) {
   broken_ = reason;
+  if (rewrite() == 0 || erase_tail()) return fail(path_.string(), reason + "; the edit wasn't made");
+  return fail(path_.string(), reason + "; nothing can be written any more, so the edit isn't made now, but may come back after a restart");
+}
+
+/// 0 or an errno.
+int JournalFile::rewrite() {
   std::string kept;
   int error = read_all(fd_, kept, size_);
-  if (error == 0) {
-    fs::path made;
-    const int fresh = write_beside(path_, kept, made, error);
-    if (fresh >= 0) {
-      if (::rename(made.c_str(), path_.c_str()) == 0) {
-        ::close(std::exchange(fd_, fresh));
-        error = flush_folder(path_);
-        if (error == 0) broken_.clear();
-      } else {
-        ::close(fresh);
-        ::unlink(made.c_str());
-      }
-    }
+  if (error != 0) return error;
+  fs::path made;
+  const int fresh = write_beside(path_, kept, made, error);
+  if (fresh < 0) return error;
+  if (::rename(made.c_str(), path_.c_str()) != 0) {
+    error = errno;
+    ::close(fresh);
+    ::unlink(made.c_str());
+    return error;
   }
-  // Best effort: should the file be read again after all, the refused record must not be in it.
-  if (!broken_.empty()) static_cast<void>(::ftruncate(fd_, static_cast<off_t>(size_)) == 0);
-  return fail(path_.string(), reason + "; the edit wasn't made");
+  ::close(std::exchange(fd_, fresh));
+  if (!flush_folder(folder_of(path_), path_)) return EIO;
+  broken_.clear();
+  return 0;
+}
+
+/// Should the file be read again after all, the refused record must not be in it: it goes, or its bytes do.
+bool JournalFile::erase_tail() {
+  struct stat status {};
+  if (::ftruncate(fd_, static_cast<off_t>(size_)) == 0) return true;
+  if (::fstat(fd_, &status) != 0) return false;
+  const auto size = static_cast<std::size_t>(status.st_size);
+  return size <= size_ || write_all(fd_, std::string(size - size_, '\0'), size_) == 0;
+}
+
+Result<fs::path> JournalFile::keep_copy(std::string_view text) const {
+  for (int i = 1;; ++i) {
+    const fs::path copy = path_.string() + ".damaged." + std::to_string(i);
+    std::error_code problem;
+    if (fs::exists(copy, problem)) continue;
+    const PendingFile file{copy, {text}};
+    if (const Result<void> written = replace_files(std::span(&file, 1)); !written) return fail(written.error());
+    return copy;
+  }
 }
 
 }  // namespace prismesh::mesh::document

@@ -27,12 +27,16 @@ class JournalFile {
   Result<void> append(std::string_view text);
   /// Cuts the file off and flushes.
   Result<void> truncate(std::size_t size);
+  /// Puts a text beside the file, under a new name, on disk; that name.
+  Result<std::filesystem::path> keep_copy(std::string_view text) const;
 
  private:
   JournalFile(std::filesystem::path path, int fd, std::size_t size);
   Result<void> check_untouched() const;
   Result<void> take_back(std::string reason);
   Result<void> start_afresh(std::string reason);
+  int rewrite();
+  bool erase_tail();
 
   std::filesystem::path path_;
   int fd_ = -1;

@@ -18,7 +18,7 @@ constexpr std::string_view kBeforeCheck = ",\"check\":\"";
 constexpr std::string_view kAfterCheck = "\"}";
 constexpr std::size_t kCheckDigits = 16;
 constexpr std::size_t kSealSize = kBeforeCheck.size() + kCheckDigits + kAfterCheck.size();
-constexpr std::size_t kUnwritten = 16;  ///< that many NULs at the end are a block that never reached the disk, not rot
+constexpr std::string_view kRecordBegins = "{\"n\":";
 
 std::string hex(std::uint64_t word) {
   char text[kCheckDigits + 1];
@@ -68,6 +68,10 @@ class Walker {
   std::string_view rest() const { return text_.substr(end_.bytes); }
   const JournalEnd& end() const { return end_; }
   void set_torn() { end_.torn_tail = true; }
+  void set_damaged(Error damage, bool only_last) {
+    end_.damage = std::move(damage);
+    end_.only_last = only_last;
+  }
 
   tl::unexpected<Error> damaged(long lines_on, const std::string& what) const {
     return fail(file_, end_.lines + 1 + lines_on,
@@ -171,16 +175,14 @@ std::optional<std::string_view> intent_in(std::string_view open_line) {
   return open_line.substr(begin + kBefore.size(), end - begin - kBefore.size());
 }
 
-/// Whether a record that should end at `end` is the last, and its last block never reached the disk: NULs from there on.
-bool is_unwritten(std::string_view text, std::size_t end) {
-  const std::size_t last = text.find_last_not_of('\0');
-  return end >= kUnwritten && last != std::string_view::npos && last < end - kUnwritten;
-}
+/// Whether another record follows the one that the text begins with. A delta is base64, and quotes within an intent are escaped, so that
+/// nothing else looks so.
+bool another_record_in(std::string_view text) { return text.find(kRecordBegins, 1) != std::string_view::npos; }
 
 enum class Found : std::uint8_t { record, torn };
 
-/// One record. A record is torn if the text ends before it does, by its own sealed word for its length; or if the end was never
-/// written. Everything else that is wrong is damage.
+/// One record. A record is torn if the text ends before it does, by its own sealed word for its length. Everything else that is wrong is
+/// damage.
 Result<Found> read_record(Walker& walker, const std::function<Result<void>(const JournalRecord&)>& on_record) {
   const std::string_view text = walker.rest();
   const std::size_t newline = text.find('\n');
@@ -192,7 +194,6 @@ Result<Found> read_record(Walker& walker, const std::function<Result<void>(const
   const std::optional<std::string_view> intent = intent_in(*open_line);
   if (!fields || !intent || fields->number != walker.end().records + 1) return walker.damaged(0, "this line is no record of an edit");
   if (text.size() - newline - 1 < fields->delta_size || text.size() - newline - 1 - fields->delta_size < 1) return Found::torn;
-  if (is_unwritten(text, newline + 1 + fields->delta_size + 1)) return Found::torn;
   const std::string_view delta = text.substr(newline + 1, fields->delta_size);
   if (text[newline + 1 + fields->delta_size] != '\n' || check_of_delta(delta) != fields->delta_check)
     return walker.damaged(1, "the changes of edit " + std::to_string(fields->number) + " aren't as they were written");
@@ -250,10 +251,20 @@ Result<JournalEnd> read_journal(std::string_view text, const std::string& file,
   Walker walker(text, file);
   if (const Result<void> header = read_header(walker, on_header); !header) return fail(header.error());
   while (!walker.rest().empty()) {
-    const Result<Found> found = read_record(walker, on_record);
-    if (!found) return fail(found.error());
-    if (*found == Found::record) continue;
-    walker.set_torn();
+    Error refused;  // by the callback
+    const auto taking = [&](const JournalRecord& record) {
+      Result<void> taken = on_record(record);
+      if (!taken) refused = taken.error();
+      return taken;
+    };
+    const Result<Found> found = read_record(walker, taking);
+    if (!found && !refused.message.empty()) return fail(std::move(refused));
+    if (found && *found == Found::record) continue;
+    // Records are written one at a time and flushed, so a power cut leaves the last one only in pieces.
+    if (found)
+      walker.set_torn();
+    else
+      walker.set_damaged(found.error(), !another_record_in(walker.rest()));
     break;
   }
   return walker.end();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -37,7 +38,9 @@ struct JournalEnd {
   long lines = 0;
   std::uint64_t records = 0;
   std::string check;
-  bool torn_tail = false;  ///< an incomplete record follows
+  bool torn_tail = false;       ///< an incomplete record follows: a crash in the middle of an edit that was never acknowledged
+  std::optional<Error> damage;  ///< what follows isn't as it was written; with its line
+  bool only_last = false;       ///< of damage: no other record follows the one that is damaged
 };
 
 std::string header_text(const JournalHeader& header);
@@ -51,8 +54,7 @@ std::string check_in(std::string_view text);
 /// Whether a text is a journal at all, rather than a script of edits.
 bool looks_like_journal(std::string_view text);
 
-/// Walks the whole text. `file` is for errors. Errors: damage anywhere but in an incomplete last record, with its line; what
-/// the callbacks return.
+/// Walks over the text up to its end or the first damage. `file` is for errors. Errors: a damaged header; what the callbacks return.
 Result<JournalEnd> read_journal(std::string_view text, const std::string& file,
                                 const std::function<Result<void>(const JournalHeader&)>& on_header,
                                 const std::function<Result<void>(const JournalRecord&)>& on_record);

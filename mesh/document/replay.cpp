@@ -54,6 +54,7 @@ Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syn
   const Result<JournalEnd> end = read_journal(bytes->text(), file, on_header, on_record);
   if (!end) return fail(end.error());
   intents.torn_tail = end->torn_tail;
+  intents.damage = end->damage;
   return intents;
 }
 

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -9,8 +10,11 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "ipc/line_socket.h"
@@ -38,13 +42,15 @@ class Folder {
   fs::path path_;
 };
 
-/// Answers "big N" with N bytes, everything else with itself, and remembers who left and why.
+/// Answers "big N" with N bytes, "hello" with a welcome or a refusal, everything else with itself, and remembers who left and why.
 class Echo final : public ServerHandler {
  public:
   void connected(ClientId) override {}
   void line(ClientId client, std::string_view line) override {
     if (line.starts_with("big "))
       server->send(client, std::string(std::stoul(std::string(line.substr(4))), 'x'));
+    else if (line == "hello")
+      greet(client);
     else if (line == "memory")
       server->send(client, "memory", one_descriptor());
     else
@@ -63,6 +69,12 @@ class Echo final : public ServerHandler {
   Server* server = nullptr;
 
  private:
+  void greet(ClientId client) {
+    const std::optional<std::string> refusal = server->refusal(client);
+    if (!refusal) server->welcome(client);
+    server->send(client, refusal.value_or("welcome"));
+    if (refusal) server->cut(client, "refused");
+  }
   static std::vector<Descriptor> one_descriptor() {
     std::vector<Descriptor> descriptors;
     descriptors.push_back(make_sealed_memory("test", std::as_bytes(std::span("hello"))).value());
@@ -211,6 +223,127 @@ TEST(Server, TheFolderMustBePrivate) {
   struct stat status {};
   ASSERT_EQ(::stat((folder.path() / "mine/run").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0700u);
+}
+
+TEST(Server, AFolderThatOthersMayLookIntoIsMadePrivate) {
+  const Folder folder;
+  const fs::path run = folder.path() / "run";
+  fs::create_directory(run);
+  ASSERT_EQ(::chmod(run.c_str(), 0755), 0);
+  ASSERT_TRUE(make_private_folder(run));
+  struct stat status {};
+  ASSERT_EQ(::stat(run.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0700u);
+}
+
+TEST(Server, ALinkIsNoPrivateFolderWhateverItsSlashes) {
+  const Folder folder;
+  fs::create_directory(folder.path() / "real");
+  ::chmod((folder.path() / "real").c_str(), 0700);
+  fs::create_directory_symlink(folder.path() / "real", folder.path() / "link");
+  for (const char* name : {"link", "link/", "link//"}) {
+    const Result<void> made = make_private_folder(folder.path() / name);
+    ASSERT_FALSE(made) << name;
+    EXPECT_EQ(made.error().message, "is no folder");
+  }
+}
+
+TEST(Server, TheHoldersNumberIsNotNeededForTheLock) {
+  const Folder folder;
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit none{0, before.rlim_max};  // as on a full disk
+  const auto old = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
+  const Result<Descriptor> lock = lock_folder(folder.path(), "lock", "a daemon");
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, old);
+  EXPECT_TRUE(lock) << lock.error().text();
+}
+
+TEST(Server, ClientsThatNeverGreetShutNobodyOut) {
+  const Folder folder;
+  ServerLimits limits;
+  limits.clients = 3;
+  Running running(folder.path() / "s", limits);
+  LineSocket welcomed(connect_to(folder.path() / "s").value(), {});
+  say(welcomed, "hello");
+  EXPECT_EQ(next_line(welcomed), "welcome");
+  LineSocket first(connect_to(folder.path() / "s").value(), {}), second(connect_to(folder.path() / "s").value(), {});
+  LineSocket third(connect_to(folder.path() / "s").value(), {});
+  say(third, "hello");
+  EXPECT_EQ(next_line(third), "welcome");
+  EXPECT_EQ(next_line(first).substr(0, 6), "closed") << "the oldest that hasn't greeted goes";
+  say(second, "hello");
+  EXPECT_EQ(next_line(second), "welcome");
+}
+
+TEST(Server, WhoComesWhenAllPlacesAreTakenIsToldSo) {
+  const Folder folder;
+  ServerLimits limits;
+  limits.clients = 1;
+  Running running(folder.path() / "s", limits);
+  LineSocket welcomed(connect_to(folder.path() / "s").value(), {});
+  say(welcomed, "hello");
+  EXPECT_EQ(next_line(welcomed), "welcome");
+  LineSocket late(connect_to(folder.path() / "s").value(), {});
+  say(late, "hello");
+  EXPECT_EQ(next_line(late), "1 program is connected already, as many as this daemon serves; close one of them");
+  EXPECT_EQ(next_line(late).substr(0, 6), "closed");
+  say(welcomed, "still here");
+  EXPECT_EQ(next_line(welcomed), "still here");
+}
+
+TEST(Server, WhoDoesNotGreetInTimeIsCutOff) {
+  const Folder folder;
+  ServerLimits limits;
+  limits.greeting = std::chrono::milliseconds(200);
+  Running running(folder.path() / "s", limits);
+  LineSocket silent(connect_to(folder.path() / "s").value(), {});
+  EXPECT_EQ(next_line(silent).substr(0, 6), "closed");
+  EXPECT_EQ(running.echo().wait_for_leaving(), "it didn't greet for 200 ms");
+}
+
+TEST(Client, AnotherUsersDaemonIsNotTrusted) {
+  if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: playing another user needs root";
+  constexpr uid_t kNobody = 65534;
+  const Folder folder;
+  ::chmod(folder.path().c_str(), 0755);
+  const fs::path theirs = folder.path() / "theirs", ours = folder.path() / "ours";
+  fs::create_directory(theirs);
+  ASSERT_EQ(::chown(theirs.c_str(), kNobody, kNobody), 0);
+  ASSERT_EQ(::chmod(theirs.c_str(), 0755), 0);
+  fs::create_directory(ours);
+  ::chmod(ours.c_str(), 0700);
+  // A socket that another user listens at, in a folder of that user and in one of ours.
+  for (const fs::path& socket : {theirs / "s", ours / "s"}) {
+    int ready[2];
+    ASSERT_EQ(::pipe(ready), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const int listening = ::socket(AF_UNIX, SOCK_STREAM, 0);
+      sockaddr_un address{};
+      address.sun_family = AF_UNIX;
+      std::strcpy(address.sun_path, socket.c_str());
+      if (::bind(listening, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 || ::seteuid(kNobody) != 0 ||
+          ::listen(listening, 1) != 0 || ::write(ready[1], "r", 1) != 1)
+        ::_exit(1);
+      ::pause();
+    }
+    char said = 0;
+    ::close(ready[1]);
+    ASSERT_EQ(::read(ready[0], &said, 1), 1);
+    const Result<Descriptor> connected = connect_to(socket);
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    ::close(ready[0]);
+    ASSERT_FALSE(connected) << socket;
+    EXPECT_NE(connected.error().message.find("user (65534"), std::string::npos) << connected.error().text();
+  }
+  ::chmod(ours.c_str(), 0777);
+  const Result<Descriptor> open_to_all = connect_to(ours / "s");
+  ASSERT_FALSE(open_to_all);
+  EXPECT_NE(open_to_all.error().message.find("others may write to it"), std::string::npos);
 }
 
 TEST(Server, ASocketPathThatIsTooLongIsSaid) {

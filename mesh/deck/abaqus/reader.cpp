@@ -136,9 +136,9 @@ void note_unread_mesh(const Walk& walk, Warnings& warnings) {
 
 }  // namespace
 
-Result<OpenedDeck> read(const std::filesystem::path& path, FileBytes main, const Progress& progress) {
+Result<OpenedDeck> read(FileSet files, const Progress& progress) {
   Watch watch(progress);
-  Walk walk(path, std::move(main));
+  Walk walk(std::move(files));
   if (Result<void> walked = walk.run(); !walked) return fail(walked.error());
   watch.tell(kWalked);
   Found found;

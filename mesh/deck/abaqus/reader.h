@@ -1,13 +1,13 @@
 // Reads an Abaqus input deck (also CalculiX's) with its includes.
 #pragma once
 
-#include <filesystem>
-
+#include "base/progress.h"
 #include "mesh/deck/deck.h"
+#include "mesh/deck/file_set.h"
 
 namespace prismesh::mesh::deck::abaqus {
 
-/// `main`: the bytes of the file at `path`.
-Result<OpenedDeck> read(const std::filesystem::path& path, FileBytes main, const Progress& progress);
+/// `files` holds the main file. Errors: those of deck::open.
+Result<OpenedDeck> read(FileSet files, const Progress& progress);
 
 }  // namespace prismesh::mesh::deck::abaqus

@@ -44,7 +44,7 @@ std::optional<Eigen::Affine3d> system_of(const std::vector<double>& p) {
 
 }  // namespace
 
-Walk::Walk(fs::path path, FileBytes main) : files(std::move(path), std::move(main)), scopes(1) {}
+Walk::Walk(FileSet found) : files(std::move(found)), scopes(1) {}
 
 Result<void> Walk::run() {
   walk_file(0, 0);

@@ -84,7 +84,7 @@ struct Group {
 
 class Walk {
  public:
-  Walk(std::filesystem::path path, FileBytes main);
+  explicit Walk(FileSet found);
   /// Errors: instances that would need more memory than is sensible.
   Result<void> run();
 

@@ -40,12 +40,13 @@ std::optional<Result<OpenedDeck>> read_once(Walk& walk, Watch& watch) {
 
 }  // namespace
 
-Result<OpenedDeck> read(const std::filesystem::path& path, FileBytes main, const Progress& progress) {
+Result<OpenedDeck> read(FileSet files, const Progress& progress) {
   Watch watch(progress);
-  Walk walk(path, std::move(main), false);
+  const std::filesystem::path path = files.files[0].path;
+  Walk walk(std::move(files), false);
   std::optional<Result<OpenedDeck>> opened = read_once(walk, watch);
   if (opened) return std::move(*opened);
-  Walk careful(path, std::move(walk.files.files[0].bytes), true);
+  Walk careful(FileSet::again(std::move(walk.files)), true);
   opened = read_once(careful, watch);
   if (opened) return std::move(*opened);
   return fail(path.string(), "has an encrypted block that begins but doesn't end");

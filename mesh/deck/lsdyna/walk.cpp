@@ -17,8 +17,8 @@ constexpr std::size_t kMostRepeats = 16;  ///< times the size of all files
 
 }  // namespace
 
-Walk::Walk(fs::path path, FileBytes main, bool cut_out_encrypted)
-    : files(path, std::move(main)), cut_out_encrypted_(cut_out_encrypted), search_(path.parent_path()) {}
+Walk::Walk(FileSet found, bool cut_out_encrypted)
+    : files(std::move(found)), cut_out_encrypted_(cut_out_encrypted), search_(files.folder_of(0)) {}
 
 void Walk::run() {
   states_.resize(1);

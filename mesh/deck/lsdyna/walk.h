@@ -24,7 +24,7 @@ namespace prismesh::mesh::deck::lsdyna {
 class Walk {
  public:
   /// `cut_out_encrypted`: look for encrypted blocks among the mesh (that takes a pass over it, and hardly any deck has them).
-  Walk(std::filesystem::path path, FileBytes main, bool cut_out_encrypted);
+  Walk(FileSet found, bool cut_out_encrypted);
   void run();
 
   FileSet files;

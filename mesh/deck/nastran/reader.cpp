@@ -56,9 +56,9 @@ void settle_notices(Found& found, std::span<PieceFacts> facts) {
 
 }  // namespace
 
-Result<OpenedDeck> read(const std::filesystem::path& path, FileBytes main, const Progress& progress) {
+Result<OpenedDeck> read(FileSet files, const Progress& progress) {
   Watch watch(progress);
-  Walk walk(path, std::move(main));
+  Walk walk(std::move(files));
   walk.run();
   watch.tell(kWalked);
   Found found;

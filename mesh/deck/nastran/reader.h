@@ -1,13 +1,13 @@
 // Reads Nastran bulk data: walks over its files, reads all cards in parallel, and puts the model together.
 #pragma once
 
-#include <filesystem>
-
+#include "base/progress.h"
 #include "mesh/deck/deck.h"
+#include "mesh/deck/file_set.h"
 
 namespace prismesh::mesh::deck::nastran {
 
-/// `main` is the main file, already read. See deck::open for errors.
-Result<OpenedDeck> read(const std::filesystem::path& path, FileBytes main, const Progress& progress);
+/// `files` holds the main file. Errors: those of deck::open.
+Result<OpenedDeck> read(FileSet files, const Progress& progress);
 
 }  // namespace prismesh::mesh::deck::nastran

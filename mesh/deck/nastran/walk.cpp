@@ -111,7 +111,7 @@ std::vector<Mark> find_marks(std::string_view text) {
   return marks;
 }
 
-Walk::Walk(fs::path path, FileBytes main) : files(std::move(path), std::move(main)) {}
+Walk::Walk(FileSet found) : files(std::move(found)) {}
 
 void Walk::run() {
   states_.resize(1);

@@ -27,7 +27,7 @@ std::vector<Mark> find_marks(std::string_view text);
 
 class Walk {
  public:
-  Walk(std::filesystem::path path, FileBytes main);
+  explicit Walk(FileSet found);
   void run();
 
   FileSet files;

@@ -12,9 +12,9 @@ constexpr double kWalked = 0.2;  ///< how far the walk brings the progress: abou
 
 }  // namespace
 
-Result<OpenedDeck> read(const std::filesystem::path& path, FileBytes main, const Progress& progress) {
+Result<OpenedDeck> read(FileSet files, const Progress& progress) {
   Watch watch(progress);
-  Walk walk(path, std::move(main));
+  Walk walk(std::move(files));
   walk.run();
   watch.tell(kWalked);
   Collected collected(walk);

@@ -1,15 +1,13 @@
 // Radioss starter decks in block format: see docs/formats/radioss.md.
 #pragma once
 
-#include <filesystem>
-
-#include "base/file.h"
 #include "base/progress.h"
 #include "mesh/deck/deck.h"
+#include "mesh/deck/file_set.h"
 
 namespace prismesh::mesh::deck::radioss {
 
-/// Reads the deck whose main file holds `main`. Errors as deck::open.
-Result<OpenedDeck> read(const std::filesystem::path& path, FileBytes main, const Progress& progress);
+/// `files` holds the main file. Errors: those of deck::open.
+Result<OpenedDeck> read(FileSet files, const Progress& progress);
 
 }  // namespace prismesh::mesh::deck::radioss

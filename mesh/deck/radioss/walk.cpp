@@ -39,7 +39,7 @@ bool is_include(std::string_view line) {
 
 }  // namespace
 
-Walk::Walk(fs::path path, FileBytes main) : files(path, std::move(main)), main_folder_(path.parent_path()) {}
+Walk::Walk(FileSet found) : files(std::move(found)), main_folder_(files.folder_of(0)) {}
 
 void Walk::run() {
   states_.resize(1);

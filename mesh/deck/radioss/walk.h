@@ -17,7 +17,7 @@ namespace prismesh::mesh::deck::radioss {
 
 class Walk {
  public:
-  Walk(std::filesystem::path path, FileBytes main);
+  explicit Walk(FileSet found);
   void run();
 
   FileSet files;

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "daemon/modeld/document_keeper.h"
-#include "daemon/modeld/save_intent.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -201,69 +200,6 @@ TEST_F(Keeping, SelectionAndLockedPartsSurviveASaveAndARestart) {
   EXPECT_FALSE(second.changed());
 }
 
-TEST_F(Keeping, ACrashBetweenSaveAndNewJournalLosesNothingAndAppliesNothingTwice) {
-  const fs::path deck = folder_.sheet();
-  double expected = 0;
-  {
-    DocumentKeeper first = keeper();
-    ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
-    expected = height(first, 1313);
-    // What save_in_place does up to the point where the deck is replaced.
-    const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
-    ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
-    ASSERT_TRUE(mesh::document::save(first.document(), deck));
-  }
-  DocumentKeeper second = keeper();
-  ASSERT_TRUE(second.reopen({}));
-  EXPECT_NEAR(height(second, 1313), expected, 1e-9);
-  EXPECT_FALSE(second.changed());
-  EXPECT_EQ(second.state().recovered_edits, 0u);
-  EXPECT_EQ(state_files(".journal.saved.").size(), 1u);
-  EXPECT_TRUE(state_files(".saving").empty());
-  for (const auto& warning : second.state().warnings) EXPECT_NE(warning.kind, "deck-changed");
-}
-
-TEST_F(Keeping, ACrashBeforeTheSaveBringsTheEditsBackFromTheJournal) {
-  const fs::path deck = folder_.sheet();
-  double expected = 0;
-  {
-    DocumentKeeper first = keeper();
-    ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
-    expected = height(first, 1313);
-    const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
-    ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
-  }
-  DocumentKeeper second = keeper();
-  ASSERT_TRUE(second.reopen({}));
-  EXPECT_EQ(height(second, 1313), expected);
-  EXPECT_EQ(second.state().recovered_edits, 1u);
-  EXPECT_TRUE(state_files(".saving").empty());
-}
-
-TEST_F(Keeping, ASaveCutOffBetweenTwoFilesIsFinished) {
-  const fs::path deck = folder_.two_files();
-  {
-    DocumentKeeper first = keeper();
-    ASSERT_TRUE(first.open(request(deck), {}));
-    ASSERT_TRUE(first.edit(move_edit(2, 0.25)));
-    ASSERT_TRUE(first.edit(move_edit(5, 0.5)));
-    const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
-    ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
-    ASSERT_TRUE(first.save((folder_.path() / "whole/main.k").string()));
-    fs::copy_file(folder_.path() / "whole/rest.k", folder_.path() / "rest.k", fs::copy_options::overwrite_existing);
-  }
-  DocumentKeeper second = keeper();
-  const Result<bool> again = second.reopen({});
-  ASSERT_TRUE(again) << again.error().text();
-  EXPECT_EQ(height(second, 2), 0.25);
-  EXPECT_EQ(height(second, 5), 0.5);
-  EXPECT_EQ(test::whole_file(deck), test::whole_file(folder_.path() / "whole/main.k"));
-  EXPECT_EQ(test::whole_file(folder_.path() / "rest.k"), test::whole_file(folder_.path() / "whole/rest.k"));
-  EXPECT_EQ(second.state().warnings.back().kind, "save-finished");
-}
-
 TEST_F(Keeping, ADeckThatSomethingElseChangedKeepsItsOldJournalAndSaysSo) {
   const fs::path deck = folder_.sheet();
   {
@@ -386,7 +322,61 @@ TEST_F(Keeping, ADeckThatEndsTheDaemonEveryTimeIsLeft) {
   EXPECT_EQ((*state.read_session())->attempts, 0u);
 }
 
-TEST_F(Keeping, ADamagedJournalIsNotPassedOver) {
+TEST_F(Keeping, OfADamagedJournalWhatIsBeforeTheDamageIsShownUntilTheUserDecides) {
+  const fs::path deck = folder_.sheet();
+  fs::path journal;
+  std::string text;
+  double good = 0;
+  {
+    DocumentKeeper first = keeper();
+    ASSERT_TRUE(first.open(request(deck), {}));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+    good = height(first, 1313);
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+    ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+    journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
+    text = test::whole_file(journal);
+  }
+  const std::size_t second_edit = text.find("translate", text.find("\"n\":2"));
+  text[second_edit] = 'T';
+  const auto damaged = [&] {
+    std::ofstream(journal, std::ios::binary) << text;
+    DocumentKeeper again = keeper();
+    const Result<bool> opened = again.open(request(deck), {});
+    EXPECT_TRUE(opened) << opened.error().text();
+    EXPECT_EQ(height(again, 1313), good);
+    EXPECT_EQ(again.state().recovered_edits, 1u);
+    const auto warnings = again.state().warnings;
+    EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const auto& w) { return w.kind == "damaged-journal" && w.line == 4; }));
+    const auto refused = again.edit(move_edit(1313, 0.25));
+    EXPECT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("save the deck to go on"), std::string::npos) << refused.error().message;
+    EXPECT_EQ(test::whole_file(journal), text) << "nobody has decided yet";
+    return again;
+  };
+  const std::string untouched = test::whole_file(deck);
+  {
+    DocumentKeeper given_up = damaged();
+    ASSERT_TRUE(given_up.close(true));
+    EXPECT_EQ(state_files(".discarded.").size(), 1u);
+    ASSERT_TRUE(given_up.open(request(deck), {}));
+    ASSERT_TRUE(given_up.edit(move_edit(1313, 0.5)));
+    ASSERT_TRUE(given_up.close(true));
+  }
+  EXPECT_EQ(test::whole_file(deck), untouched);
+  DocumentKeeper opened_again = damaged();
+  ASSERT_TRUE(opened_again.save(std::nullopt));
+  EXPECT_EQ(state_files(".damaged.").size(), 1u) << "it is kept";
+  EXPECT_NE(test::whole_file(deck), untouched);
+  ASSERT_TRUE(opened_again.edit(move_edit(1313, 0.5)));
+  const double last = height(opened_again, 1313);
+  opened_again = keeper();
+  DocumentKeeper after = keeper();
+  ASSERT_TRUE(after.reopen({}));
+  EXPECT_EQ(height(after, 1313), last);
+}
+
+TEST_F(Keeping, ADamagedJournalWithoutAGoodEditMakesRoomWhenTheDeckIsSaved) {
   const fs::path deck = folder_.sheet();
   fs::path journal;
   {
@@ -399,11 +389,44 @@ TEST_F(Keeping, ADamagedJournalIsNotPassedOver) {
   std::string text = test::whole_file(journal);
   text[text.find("translate")] = 'T';
   std::ofstream(journal, std::ios::binary) << text;
+  {
+    DocumentKeeper second = keeper();
+    ASSERT_TRUE(second.reopen({}));
+    EXPECT_FALSE(second.edit(move_edit(1313, 0.25)));
+    ASSERT_TRUE(second.save(std::nullopt));
+    ASSERT_TRUE(second.edit(move_edit(1313, 0.5)));
+  }
+  DocumentKeeper third = keeper();
+  ASSERT_TRUE(third.reopen({}));
+  EXPECT_EQ(third.state().recovered_edits, 1u);
+  EXPECT_TRUE(third.changed());
+}
+
+TEST_F(Keeping, AFolderThatMayBeWrittenButNotReadIsSavedInto) {
+  if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: becoming another user needs root";
+  const fs::path folder = folder_.path() / "deck", deck = folder / "sheet.k";
+  fs::create_directory(folder);
+  fs::copy_file(folder_.sheet("whole.k"), deck);
+  constexpr uid_t kNobody = 65534;
+  for (const fs::path& path : {folder_.path(), folder_.state(), folder, deck}) ASSERT_EQ(::chown(path.c_str(), kNobody, kNobody), 0);
+  ASSERT_EQ(::chmod(folder.c_str(), 0300), 0);
+  ASSERT_EQ(::seteuid(kNobody), 0);
+  double last = 0;
+  {
+    DocumentKeeper first = keeper();
+    EXPECT_TRUE(first.open(request(deck), {}));
+    EXPECT_TRUE(first.edit(move_edit(1313, 0.25)));
+    const Result<ipc::Saved> saved = first.save(std::nullopt);
+    EXPECT_TRUE(saved) << saved.error().text();
+    EXPECT_TRUE(first.edit(move_edit(1313, 0.25)));
+    EXPECT_TRUE(first.edit(move_edit(1313, 0.25)));
+    last = height(first, 1313);
+  }
   DocumentKeeper second = keeper();
-  const Result<bool> again = second.reopen({});
-  ASSERT_FALSE(again);
-  EXPECT_EQ(again.error().file, journal.string());
-  EXPECT_NE(again.error().message.find("move that file away"), std::string::npos);
+  EXPECT_TRUE(second.reopen({}));
+  ASSERT_EQ(::seteuid(0), 0);
+  EXPECT_EQ(second.state().recovered_edits, 2u);
+  EXPECT_EQ(height(second, 1313), last);
 }
 
 TEST_F(Keeping, NothingOpenIsSaid) {

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "daemon/modeld/document_keeper.h"
-#include "daemon/modeld/save_intent.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/model/growth.h"
 #include "tests/daemon/modeld/folder.h"
@@ -101,32 +100,6 @@ TEST_F(Growing, ASaveInPlaceBeginsAnewWithWhatIsSelected) {
   open(second, deck);
   expect_same(before, second.document().current());
   EXPECT_EQ(second.state().shells, 3u);
-}
-
-TEST_F(Growing, ASaveThatWasCutOffBetweenTheFilesIsFinished) {
-  const fs::path deck = folder_.two_files();
-  const std::string main_before = content_of(deck);
-  std::string main_after, rest_after;
-  {
-    DocumentKeeper first = keeper();
-    open(first, deck);
-    edit(first, kSplit);
-    edit(first, kMove);
-    const fs::path journal = StateFolder(folder_.state()).journal(deck, first.document().deck->content);
-    ASSERT_TRUE(write_save_intent(StateFolder::save_intent(journal), first.document()));
-    ASSERT_TRUE(mesh::document::save(first.document(), deck));
-    main_after = content_of(deck);
-    rest_after = content_of(folder_.path() / "rest.k");
-    ASSERT_NE(main_after, main_before);
-  }
-  std::ofstream(deck, std::ios::binary | std::ios::trunc) << main_before;  // the main file, which is written last, wasn't
-  DocumentKeeper second = keeper();
-  open(second, deck);
-  EXPECT_EQ(content_of(deck), main_after);
-  EXPECT_EQ(content_of(folder_.path() / "rest.k"), rest_after);
-  EXPECT_EQ(second.state().shells, 3u);
-  const auto& warnings = second.state().warnings;
-  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const auto& w) { return w.kind == "save-finished"; }));
 }
 
 TEST_F(Growing, StepsBackBeyondASaveAndForthAgainAreBroughtBack) {

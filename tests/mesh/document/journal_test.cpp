@@ -26,6 +26,7 @@ struct FaultyDisk {
   std::atomic<bool> short_write{false};   ///< the failing call first writes half
   std::atomic<int> sync_error{0};         ///< of fdatasync
   std::atomic<int> folder_sync_error{0};  ///< of fsync: new files and folders
+  std::atomic<int> truncate_error{0};
 };
 FaultyDisk disk;
 
@@ -44,6 +45,12 @@ extern "C" ssize_t pwrite(int fd, const void* data, size_t size, off_t offset) {
   return ::syscall(SYS_pwrite64, fd, data, size, offset);
 }
 extern "C" ssize_t pwrite64(int fd, const void* data, size_t size, off64_t offset) { return pwrite(fd, data, size, offset); }
+extern "C" int ftruncate(int fd, off_t size) noexcept {
+  if (disk.truncate_error == 0) return static_cast<int>(::syscall(SYS_ftruncate, fd, size));
+  errno = disk.truncate_error;
+  return -1;
+}
+extern "C" int ftruncate64(int fd, off64_t size) noexcept { return ftruncate(fd, size); }
 extern "C" int fdatasync(int) {
   if (disk.sync_error == 0) return 0;  // really flushing would only cost time: no test here cuts the power
   errno = disk.sync_error;
@@ -166,22 +173,57 @@ TEST(Journal, ACutHeaderIsDamage) {
   }
 }
 
-TEST(Journal, EveryFlippedByteIsFound) {
+/// The copies of damaged journals that lie beside one.
+std::vector<std::string> copies_of(const std::filesystem::path& journal) {
+  std::vector<std::string> copies;
+  for (const auto& entry : std::filesystem::directory_iterator(journal.parent_path()))
+    if (entry.path().string().starts_with(journal.string() + ".damaged.")) copies.push_back(content_of(entry.path()));
+  return copies;
+}
+
+TEST(Journal, EveryFlippedByteIsFoundAndWhatIsBeforeItIsBroughtBack) {
   const Session session({kSession[0], kSession[1], kSession[4]});
   const std::string whole = content_of(session.path);
-  const std::filesystem::path bad = session.folder / "bad.journal";
-  const Document untouched = small();
+  const std::size_t last = session.bytes[2];
   for (std::size_t at = 0; at < whole.size(); ++at)
     for (const int flip : {0x01, 0x0a, 0x20, 0xff}) {
+      SCOPED_TRACE("byte " + std::to_string(at) + " ^ " + std::to_string(flip));
+      const Folder folder;
+      const std::filesystem::path bad = folder / "bad.journal";
       std::string text = whole;
       text[at] = static_cast<char>(text[at] ^ flip);
       put_content(bad, text);
-      ASSERT_FALSE(read_intents(bad)) << "byte " << at << " ^ " << flip;
+      const Result<JournalIntents> intents = read_intents(bad);
+      const std::size_t good =
+          static_cast<std::size_t>(std::upper_bound(session.bytes.begin(), session.bytes.end(), at) - session.bytes.begin());
+      if (good == 0) {
+        ASSERT_FALSE(intents) << "the header";
+      } else {
+        ASSERT_TRUE(intents) << intents.error().text();
+        ASSERT_TRUE(intents->damage || intents->torn_tail);
+        ASSERT_EQ(intents->edits.size(), good - 1);
+      }
       if (flip != 0x01 && whole[at] != '\n') continue;
-      Document document = untouched;
-      ASSERT_FALSE(Journal::recover(bad, document)) << "byte " << at << " ^ " << flip;
-      ASSERT_EQ(document.generations.size(), 1u);
-      ASSERT_EQ(content_of(bad), text) << "a damaged journal was changed";
+      Document document = small();
+      Result<Journal> journal = Journal::recover(bad, document);
+      ASSERT_EQ(journal.has_value(), good > 0);
+      if (!journal) {
+        ASSERT_EQ(document.generations.size(), 1u);
+        ASSERT_EQ(content_of(bad), text) << "a damaged journal was changed";
+        continue;
+      }
+      ASSERT_EQ(journal->records(), good - 1);
+      expect_same(document, session.after[good - 1]);
+      ASSERT_EQ(journal->takes_edits(), at >= last);
+      if (at >= last) {
+        ASSERT_EQ(content_of(bad), whole.substr(0, last));
+        ASSERT_EQ(copies_of(bad), std::vector{text}) << "what was found is kept";
+        ASSERT_TRUE(work(document, *journal, kSession[3]));
+      } else {
+        ASSERT_FALSE(work(document, *journal, kSession[3])) << "it would be lost behind the damage";
+        ASSERT_EQ(content_of(bad), text) << "a damaged journal was changed";
+      }
+      if (HasFailure()) return;
     }
 }
 
@@ -192,11 +234,16 @@ TEST(Journal, DamageNamesItsLine) {
   text[third + 5] = '!';
   put_content(session.path, text);
   Document document = small();
-  const Result<Journal> journal = Journal::recover(session.path, document);
-  ASSERT_FALSE(journal);
-  EXPECT_EQ(journal.error().file, session.path.string());
-  EXPECT_EQ(journal.error().line, 6);
-  EXPECT_THAT(journal.error().message, HasSubstr("nothing after line 5 can be trusted"));
+  Result<Journal> journal = Journal::recover(session.path, document);
+  ASSERT_TRUE(journal) << journal.error().text();
+  ASSERT_TRUE(journal->damage());
+  EXPECT_EQ(journal->damage()->file, session.path.string());
+  EXPECT_EQ(journal->damage()->line, 6);
+  EXPECT_THAT(journal->damage()->message, HasSubstr("nothing after line 5 can be trusted"));
+  const Result<EditReport> refused = work(document, *journal, kSession[0]);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().line, 6);
+  EXPECT_THAT(refused.error().message, HasSubstr("save the deck"));
 }
 
 TEST(Journal, LostDoubledOrSwappedRecordsAreFound) {
@@ -204,11 +251,18 @@ TEST(Journal, LostDoubledOrSwappedRecordsAreFound) {
   const std::string whole = content_of(session.path);
   const auto record = [&](std::size_t k) { return whole.substr(session.bytes[k], session.bytes[k + 1] - session.bytes[k]); };
   const std::string head = whole.substr(0, session.bytes[1]);
-  for (const std::string& text : {head + record(2), head + record(0), head + record(2) + record(1), record(0) + whole}) {
+  for (const std::string& text : {head + record(2), head + record(0), head + record(2) + record(1)}) {
     put_content(session.path, text);
     Document document = small();
-    EXPECT_FALSE(Journal::recover(session.path, document));
+    const Result<Journal> journal = Journal::recover(session.path, document);
+    ASSERT_TRUE(journal) << journal.error().text();
+    EXPECT_TRUE(journal->damage());
+    EXPECT_EQ(journal->records(), 1u);
+    expect_same(document, session.after[1]);
   }
+  put_content(session.path, record(0) + whole);
+  Document document = small();
+  EXPECT_FALSE(Journal::recover(session.path, document));
 }
 
 TEST(Journal, ARecordOfAnotherHistoryIsFound) {
@@ -216,24 +270,35 @@ TEST(Journal, ARecordOfAnotherHistoryIsFound) {
   const Session other({R"({"edit":"select","expr":"2-20"})", kSession[1]});
   const std::string spliced = content_of(session.path).substr(0, session.bytes[1]) + content_of(other.path).substr(other.bytes[1]);
   put_content(session.path, spliced);
+  const Result<JournalIntents> intents = read_intents(session.path);
+  ASSERT_TRUE(intents);
+  ASSERT_TRUE(intents->damage);
+  EXPECT_EQ(intents->damage->line, 4);
   Document document = small();
   const Result<Journal> journal = Journal::recover(session.path, document);
-  ASSERT_FALSE(journal);
-  EXPECT_EQ(journal.error().line, 4);
+  ASSERT_TRUE(journal);
+  EXPECT_EQ(journal->records(), 1u);
 }
 
-TEST(Journal, BlocksThatNeverReachedTheDiskAreATornTail) {
+TEST(Journal, BlocksThatNeverReachedTheDiskLeaveWhatIsBeforeThem) {
   const Session session;
   const std::string whole = content_of(session.path);
   const std::size_t last = session.bytes[session.bytes.size() - 2];
-  // in the middle of the intent, or of the delta: its last block is missing
-  for (const std::size_t written : {last + 40, whole.size() - 20}) {
-    put_content(session.path, whole.substr(0, written) + std::string(whole.size() - written, '\0'));
+  const auto expect_all_but_last = [&](const std::string& text) {
+    put_content(session.path, text);
     Document document = small();
-    const Result<Journal> journal = Journal::recover(session.path, document);
+    Result<Journal> journal = Journal::recover(session.path, document);
     ASSERT_TRUE(journal) << journal.error().text();
     EXPECT_EQ(journal->records(), kSession.size() - 1);
     expect_same(document, session.after[kSession.size() - 1]);
+    EXPECT_TRUE(work(document, *journal, kSession.back()));
+  };
+  // Its last block is missing, or an earlier one.
+  for (std::size_t missing = 1; missing < whole.size() - last; ++missing) {
+    SCOPED_TRACE(missing);
+    expect_all_but_last(whole.substr(0, whole.size() - missing) + std::string(missing, '\0'));
+    expect_all_but_last(whole.substr(0, last) + std::string(missing, '\0') + whole.substr(last + missing));
+    if (HasFailure()) return;
   }
 }
 
@@ -352,24 +417,42 @@ TEST_F(FaultTest, AFailedFlushMovesWhatWasAcknowledgedToANewFile) {
   EXPECT_NE(before.st_ino, after.st_ino);
 }
 
-TEST_F(FaultTest, WhenNothingCanBeFlushedNoMoreEditsAreTaken) {
+TEST_F(FaultTest, WhenNothingCanBeFlushedNoEditsAreTakenUntilTheJournalIsWrittenAnew) {
+  for (const int truncate_error : {0, EIO}) {
+    Session session;
+    Document document = small();
+    {
+      Result<Journal> journal = Journal::recover(session.path, document);
+      ASSERT_TRUE(journal);
+      disk.sync_error = EIO;
+      disk.folder_sync_error = EIO;
+      disk.truncate_error = truncate_error;
+      const Result<EditReport> refused = work(document, *journal, R"({"edit":"invert"})");
+      ASSERT_FALSE(refused);
+      EXPECT_THAT(refused.error().message, HasSubstr("the edit wasn't made")) << "its bytes were overwritten if not cut off";
+      const Result<EditReport> later = work(document, *journal, R"({"edit":"invert"})");
+      ASSERT_FALSE(later);
+      EXPECT_THAT(later.error().message, HasSubstr("takes no more edits since an earlier failure"));
+    }
+    Document again = small();
+    Result<Journal> journal = Journal::recover(session.path, again);
+    disk.sync_error = disk.folder_sync_error = disk.truncate_error = 0;
+    if (!journal) journal = Journal::recover(session.path, again);  // what is left of the record couldn't be cut off
+    ASSERT_TRUE(journal) << journal.error().text();
+    expect_same(again, session.after.back());
+  }
   Session session;
   Document document = small();
   {
     Result<Journal> journal = Journal::recover(session.path, document);
-    ASSERT_TRUE(journal);
-    disk.sync_error = EIO;
-    disk.folder_sync_error = EIO;
+    disk.sync_error = disk.folder_sync_error = EIO;
     EXPECT_FALSE(work(document, *journal, R"({"edit":"invert"})"));
-    disk.sync_error = 0;
-    disk.folder_sync_error = 0;
-    const Result<EditReport> later = work(document, *journal, R"({"edit":"invert"})");
-    ASSERT_FALSE(later);
-    EXPECT_THAT(later.error().message, HasSubstr("takes no more edits since an earlier failure"));
+    disk.sync_error = disk.folder_sync_error = 0;
+    EXPECT_TRUE(work(document, *journal, R"({"edit":"invert"})")) << "it is written anew first";
   }
   Document again = small();
   ASSERT_TRUE(Journal::recover(session.path, again));
-  expect_same(again, session.after.back());
+  expect_same(again, document);
 }
 
 TEST_F(FaultTest, AJournalThatWasDeletedOrChangedTakesNoEdit) {
@@ -381,6 +464,13 @@ TEST_F(FaultTest, AJournalThatWasDeletedOrChangedTakesNoEdit) {
   put_content(session.path, whole + "{}\n");
   EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("changed by another program"));
   put_content(session.path, whole);
+  const std::filesystem::path away = session.folder / "away";
+  std::filesystem::rename(session.path, away);
+  EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("moved away or replaced"));
+  put_content(session.path, whole);
+  EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("moved away or replaced"));
+  EXPECT_EQ(content_of(away), whole);
+  std::filesystem::rename(away, session.path);
   std::filesystem::remove(session.path);
   EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("has been deleted"));
 }

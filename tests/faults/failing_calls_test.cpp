@@ -1,0 +1,93 @@
+// Every file call of whole sessions fails in turn: once, from then on, or half done. Whatever was acknowledged comes back after the end of
+// the daemon, nothing that was refused does, and the deck is of one state.
+#include <gtest/gtest.h>
+
+#include "tests/faults/power_cut.h"
+#include "tests/faults/session.h"
+
+namespace prismesh::modeld::faults {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Failure;
+
+using Files = std::map<std::string, std::string>;
+
+class FailingCalls : public ::testing::TestWithParam<Session> {
+ protected:
+  /// What a save in place would make of the deck's files: those of a save elsewhere.
+  Files deck_to_be(DocumentKeeper& keeper) {
+    fs::remove_all(root_.copy());
+    const fs::path target = root_.copy() / fs::relative(place_.deck, root_.disk());
+    const Result<ipc::Saved> saved = keeper.save(target.string());
+    EXPECT_TRUE(saved) << saved.error().text();
+    Files files;
+    for (const auto& [path, content] : test::disk_state_of(root_.copy()).files)
+      files[(root_.disk() / fs::relative(path, root_.copy())).string()] = content;
+    return files;
+  }
+
+  /// Runs the session with a failure; the number of calls.
+  std::uint64_t run(const Failure& failure) {
+    std::vector<std::string> documents;
+    test::restore(before_);
+    test::record_file_calls(root_.disk(), root_.log(), failure);
+    std::string acknowledged, uncertain;
+    std::vector<Files> decks{deck_files(place_)};  // what may be on disk in the end
+    {
+      DocumentKeeper keeper = place_.keeper();
+      if (open_deck(keeper, place_)) {
+        documents.push_back(acknowledged = fingerprint(keeper));
+        for (const std::string& step : GetParam().steps) {
+          const std::string before = fingerprint(keeper);
+          if (step == "save") decks.push_back(deck_to_be(keeper));
+          const Result<void> done = run_step(keeper, step);
+          const std::string after = fingerprint(keeper);
+          EXPECT_TRUE(done || after == before) << step << " was refused, and changed the document all the same";
+          documents.push_back(after);
+          if (done) acknowledged = after;
+          // It said so; all steps before went well, since from here on everything fails.
+          if (!done && done.error().message.find("may come back") != std::string::npos && uncertain.empty())
+            uncertain = went_well_.at(documents.size() - 1);
+          if (step == "save" && done) decks = {deck_files(place_)};
+        }
+      }
+    }
+    const std::uint64_t calls = test::counted_file_calls();
+    test::stop_recording_file_calls();
+    DocumentKeeper again = place_.keeper();
+    const Result<void> opened = open_deck(again, place_);
+    EXPECT_TRUE(opened) << opened.error().text();
+    if (!opened) return calls;
+    const std::string found = fingerprint(again);
+    EXPECT_TRUE(acknowledged.empty() || found == acknowledged || found == uncertain) << "not what was acknowledged";
+    if (went_well_.empty()) went_well_ = documents;
+    const Files deck = deck_files(place_);
+    EXPECT_NE(std::find(decks.begin(), decks.end(), deck), decks.end()) << "the deck is of no state that was saved";
+    const Result<void> edited = run_step(again, R"({"edit":"select","expr":"5"})");
+    EXPECT_TRUE(edited) << edited.error().text();
+    return calls;
+  }
+
+  std::vector<std::string> went_well_;  ///< the document after each step of the first run, without a failure
+  Root root_;
+  Place place_{root_.disk(), GetParam().write_deck(root_.disk())};
+  test::DiskState before_ = test::disk_state_of(root_.disk());
+};
+
+TEST_P(FailingCalls, LoseNothingAcknowledged) {
+  const std::uint64_t calls = run({});
+  ASSERT_FALSE(HasFailure());
+  ASSERT_GT(calls, 50u);
+  for (std::uint64_t at = 1; at <= calls; ++at)
+    for (const Failure& failure : {Failure{at, EIO, false, false}, Failure{at, ENOSPC, true, false}, Failure{at, ENOSPC, true, true}}) {
+      SCOPED_TRACE("call " + std::to_string(at) + (failure.for_ever ? " and all after it" : "") + (failure.cut_short ? ", half done" : ""));
+      run(failure);
+      if (HasFailure()) return;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sessions, FailingCalls, ::testing::ValuesIn(sessions()), [](const auto& tested) { return tested.param.name; });
+
+}  // namespace
+}  // namespace prismesh::modeld::faults

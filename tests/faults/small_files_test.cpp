@@ -1,0 +1,145 @@
+// The small files that steer recovery: whatever byte of them changes, nothing wrong is written or opened; and new folders outlive a power
+// cut.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "base/file.h"
+#include "ipc/server.h"
+#include "tests/faults/power_cut.h"
+#include "tests/faults/session.h"
+
+namespace prismesh::modeld::faults {
+namespace {
+
+namespace fs = std::filesystem;
+using test::DiskState;
+using test::FileCall;
+using test::Survives;
+
+const Session& session_of(const std::string& name) {
+  return *std::find_if(sessions().begin(), sessions().end(), [&](const Session& session) { return session.name == name; });
+}
+
+TEST(SmallFiles, AChangedByteOfASavesRecordWritesNothingWrong) {
+  const Root root;
+  const Place place{root.disk(), session_of("three_files").write_deck(root.disk())};
+  const DiskState before = test::disk_state_of(root.disk());
+  test::record_file_calls(root.disk(), root.log());
+  {
+    DocumentKeeper keeper = place.keeper();
+    ASSERT_TRUE(open_deck(keeper, place));
+    ASSERT_TRUE(run_step(keeper, R"({"edit":"translate","by":[0,0,0.5],"on":"all"})"));
+    ASSERT_TRUE(run_step(keeper, "save"));
+  }
+  test::stop_recording_file_calls();
+  const std::vector<FileCall> calls = test::read_file_calls(root.log());
+  const auto first = std::find_if(calls.begin(), calls.end(), [&](const FileCall& call) {
+    return call.kind == FileCall::Kind::rename && call.other.find("/state/") == std::string::npos;
+  });
+  ASSERT_NE(first, calls.end());
+  std::mt19937_64 random(1);
+  const DiskState cut = test::after_power_cut(before, calls, static_cast<std::size_t>(first - calls.begin()) + 1, Survives::all, random);
+  const auto intent = std::find_if(cut.files.begin(), cut.files.end(), [](const auto& file) { return file.first.ends_with(".saving"); });
+  ASSERT_NE(intent, cut.files.end());
+  for (std::size_t at = 0; at < intent->second.size(); ++at) {
+    SCOPED_TRACE(at);
+    DiskState damaged = cut;
+    damaged.files[intent->first][at] = static_cast<char>(damaged.files[intent->first][at] ^ (1 << (at % 8)));
+    test::restore(damaged);
+    const auto deck = deck_files(place);
+    DocumentKeeper keeper = place.keeper();
+    const Result<void> opened = open_deck(keeper, place);
+    ASSERT_TRUE(opened) << opened.error().text();
+    EXPECT_EQ(deck_files(place), deck) << "something was written to the deck";
+    const auto warnings = keeper.state().warnings;
+    EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const auto& w) { return w.kind == "save-unknown"; }));
+    if (::testing::Test::HasFailure()) return;
+  }
+  // As it was written, it finishes the save.
+  test::restore(cut);
+  DocumentKeeper keeper = place.keeper();
+  ASSERT_TRUE(open_deck(keeper, place));
+  EXPECT_EQ(keeper.state().warnings.back().kind, "save-finished");
+}
+
+TEST(SmallFiles, AnIncludeThatWasRestoredByHandIsNotOverwritten) {
+  const Root root;
+  const Place place{root.disk(), session_of("three_files").write_deck(root.disk())};
+  const DiskState before = test::disk_state_of(root.disk());
+  test::record_file_calls(root.disk(), root.log());
+  {
+    DocumentKeeper keeper = place.keeper();
+    ASSERT_TRUE(open_deck(keeper, place));
+    ASSERT_TRUE(run_step(keeper, R"({"edit":"translate","by":[0,0,0.5],"on":"all"})"));
+    ASSERT_TRUE(run_step(keeper, "save"));
+  }
+  test::stop_recording_file_calls();
+  const std::vector<FileCall> calls = test::read_file_calls(root.log());
+  const auto last = std::find_if(calls.rbegin(), calls.rend(), [&](const FileCall& call) {
+    return call.kind == FileCall::Kind::rename && call.other.find("/state/") == std::string::npos;
+  });
+  std::mt19937_64 random(1);
+  DiskState cut = test::after_power_cut(before, calls, static_cast<std::size_t>(calls.rend() - last), Survives::all, random);
+  const std::string include = (root.disk() / "parts/above.k").string();
+  ASSERT_NE(cut.files.at(include), before.files.at(include));
+  for (const std::string& by_hand : {before.files.at(include), before.files.at(include) + "$ by hand\n"}) {
+    cut.files[include] = by_hand;
+    test::restore(cut);
+    DocumentKeeper keeper = place.keeper();
+    ASSERT_TRUE(open_deck(keeper, place));
+    EXPECT_EQ(deck_files(place).at(include), by_hand);
+    const auto warnings = keeper.state().warnings;
+    EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const auto& w) { return w.kind == "save-mixed"; }));
+  }
+}
+
+TEST(SmallFiles, AChangedByteOfTheSessionOpensNothingWrong) {
+  const Root root;
+  const Place place{root.disk(), session_of("one_file").write_deck(root.disk())};
+  {
+    DocumentKeeper keeper = place.keeper();
+    ipc::Open request;
+    request.path = place.deck.string();
+    request.target_size = 12.5;
+    request.length_unit = "mm";
+    ASSERT_TRUE(keeper.open(request, {}));
+  }
+  const DiskState before = test::disk_state_of(root.disk());
+  const std::string file = (place.state() / "session.json").string();
+  for (std::size_t at = 0; at < before.files.at(file).size(); ++at) {
+    SCOPED_TRACE(at);
+    DiskState damaged = before;
+    damaged.files[file][at] = static_cast<char>(damaged.files[file][at] ^ (1 << (at % 8)));
+    test::restore(damaged);
+    DocumentKeeper keeper = place.keeper();
+    const Result<bool> opened = keeper.reopen({});
+    ASSERT_FALSE(opened);
+    EXPECT_FALSE(keeper.is_open());
+  }
+  test::restore(before);
+  DocumentKeeper keeper = place.keeper();
+  ASSERT_TRUE(keeper.reopen({}));
+  EXPECT_EQ(keeper.state().target_size, 12.5);
+}
+
+TEST(SmallFiles, NewFoldersOutliveAPowerCut) {
+  const Root root;
+  const DiskState before = test::disk_state_of(root.disk());
+  test::record_file_calls(root.disk(), root.log());
+  const fs::path deck = root.disk() / "new/folders/deck.k";
+  const PendingFile file{deck, {"*KEYWORD\n*END\n"}};
+  ASSERT_TRUE(replace_files(std::span(&file, 1)));
+  const fs::path state = root.disk() / "var/lib/prismesh";
+  ASSERT_TRUE(ipc::make_private_folder(state));
+  test::stop_recording_file_calls();
+  const std::vector<FileCall> calls = test::read_file_calls(root.log());
+  std::mt19937_64 random(1);
+  const DiskState left = test::after_power_cut(before, calls, calls.size(), Survives::flushed, random);
+  ASSERT_TRUE(left.files.contains(deck.string()));
+  EXPECT_EQ(left.files.at(deck.string()), "*KEYWORD\n*END\n");
+  EXPECT_TRUE(std::binary_search(left.folders.begin(), left.folders.end(), state.string()));
+}
+
+}  // namespace
+}  // namespace prismesh::modeld::faults
