@@ -280,7 +280,7 @@ Result<void> make_folders(const fs::path& folder) {
   std::error_code problem;
   if (folder.empty() || fs::is_directory(folder, problem)) return {};
   const fs::path above = folder_of(folder.has_filename() ? folder : folder.parent_path());
-  if (const Result<void> made = make_folders(above); !made) return made;
+  if (Result<void> made = make_folders(above); !made) return made;
   if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) return fail(folder.string(), reason(errno));
   if (!fs::is_directory(folder, problem)) return fail(folder.string(), reason(ENOTDIR));
   return flush_folder(above, folder);

@@ -20,22 +20,11 @@
 
 namespace prismesh::modeld {
 
-namespace {
-
-/// Versions of chunks and numbers of segments begin anew in each life, above those of earlier ones: microseconds since 1970, which
-/// JSON readers hold exactly. A life would have to use up a million a second to catch up.
-std::uint64_t first_number() {
-  return static_cast<std::uint64_t>(
-      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count());
-}
-
-}  // namespace
-
 struct Daemon::State final : ipc::ServerHandler, Outlet {
   State(const DaemonOptions& options, ipc::Descriptor state_lock, ipc::StatePage state_page)
       : lock(std::move(state_lock)),
         page(std::move(state_page)),
-        publisher(first_number()),
+        publisher(StateFolder(options.state_directory).first_number()),
         bench(StateFolder(options.state_directory), publisher, options.history_bytes),
         desk(*this, worker, bench, publisher) {}
 

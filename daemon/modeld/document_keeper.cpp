@@ -276,6 +276,9 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
     return fail("", "this step can't be undone any more: it changed the structure, and the journal no longer has the state before it");
   Prepared recorded = follows ? *prepared : as_push(*prepared, edit);
   if (push) recorded.drop_oldest = same_drop(*prepared);
+  // What is on record can't fail for want of memory any more.
+  open.recorded.generations.reserve(open.recorded.generations.size() + 1);
+  open.document.generations.reserve(open.document.generations.size() + 1);
   if (Result<void> appended = open.journal.append(open.recorded, edit, recorded); !appended) return fail(std::move(appended.error()));
   commit(open.recorded, std::move(recorded));
   commit(open.document, std::move(*prepared));

@@ -1,5 +1,6 @@
 #include "daemon/modeld/field_maker.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -29,6 +30,13 @@ std::string entity(const mesh::Model& model, const mesh::document::Field& field,
 
 }  // namespace
 
+bool FieldMaker::OtherDeck::is_current() const {
+  return whole && std::all_of(files.begin(), files.end(), [](const auto& file) {
+           const Result<FileIdentity> now = identify_file(file.first);
+           return now && *now == file.second;
+         });
+}
+
 Result<FieldMaker::State> FieldMaker::other_state(const Document& document, const Generation& of, const ipc::GetField& request,
                                                   const Progress& progress) {
   if (request.against_generation) {
@@ -41,14 +49,13 @@ Result<FieldMaker::State> FieldMaker::other_state(const Document& document, cons
   const std::filesystem::path path(request.against);
   if (!path.is_absolute())
     return fail("field", "\"against\" is \"opened\", \"surface\" or a deck's absolute path, not \"" + request.against + "\"");
-  std::error_code problem;
-  const auto written = std::filesystem::last_write_time(path, problem);
-  if (!other_ || other_->path != path || other_->written != written || problem) {
+  if (!other_ || other_->path != path || !other_->is_current()) {
     other_.reset();
     Result<mesh::deck::OpenedDeck> opened = mesh::deck::open(path, progress);
     if (!opened && opened.error().file.empty()) opened.error().file = path.string();
     if (!opened) return fail(std::move(opened.error()));
-    other_ = OtherDeck{path, written, std::move(opened->model)};
+    other_ = OtherDeck{path, {}, opened->deck->missing_files.empty(), std::move(opened->model)};
+    for (const mesh::deck::SourceFile& file : opened->deck->files) other_->files.emplace_back(file.path, file.bytes.identity());
   }
   return State{&other_->model, path.filename().string()};
 }

@@ -4,7 +4,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "base/file.h"
 #include "base/progress.h"
 #include "ipc/field_page.h"
 #include "ipc/messages.h"
@@ -30,11 +33,13 @@ class FieldMaker {
   Result<State> other_state(const mesh::document::Document& document, const mesh::document::Generation& of, const ipc::GetField& request,
                             const Progress& progress);
 
-  /// The deck that was compared with last.
+  /// The deck that was compared with last, and the files it was read from.
   struct OtherDeck {
     std::filesystem::path path;
-    std::filesystem::file_time_type written;
+    std::vector<std::pair<std::filesystem::path, FileIdentity>> files;
+    bool whole = true;  ///< no include was missing, which may be there the next time
     mesh::Model model;
+    bool is_current() const;
   };
   std::optional<OtherDeck> other_;
   std::uint64_t next_ = 1;

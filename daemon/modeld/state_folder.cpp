@@ -1,6 +1,8 @@
 #include "daemon/modeld/state_folder.h"
 
 #include <algorithm>
+#include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <system_error>
 
@@ -20,6 +22,8 @@ namespace fs = std::filesystem;
 constexpr const char* kJournal = ".journal";
 constexpr const char* kIntent = ".saving";
 constexpr const char* kSession = "session.json";
+constexpr const char* kNumbers = "numbers";
+constexpr std::uint64_t kNumbersOfALife = std::uint64_t{1} << 34;  ///< of chunks: a thousand a second for half a year
 constexpr std::size_t kRetiredKept = 50;
 
 /// One deck has one name here, whatever links lead to it.
@@ -82,6 +86,22 @@ fs::path StateFolder::save_intent(const fs::path& journal) { return journal.stri
 
 std::vector<fs::path> StateFolder::save_intents(const fs::path& deck) const {
   return files_with(folder_, deck_name(deck) + "-", std::string(kJournal) + kIntent);
+}
+
+std::uint64_t StateFolder::first_number() const {
+  const auto clock = static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch()).count());
+  std::uint64_t noted = 0;
+  if (const Result<FileBytes> bytes = read_file(folder_ / kNumbers)) {
+    const std::string_view text = bytes->text(), line = text.substr(0, text.find('\n'));
+    if (line.size() < text.size() && text.substr(line.size() + 1) == check_line(line))
+      std::from_chars(line.data(), line.data() + line.size(), noted);
+  }
+  const std::uint64_t first = std::max(clock, noted);
+  const std::string line = std::to_string(first + kNumbersOfALife), check = check_line(line);
+  const PendingFile file{folder_ / kNumbers, {line, "\n", check}};
+  (void)replace_files(std::span(&file, 1));  // without it, the clock has to do
+  return first;
 }
 
 Result<fs::path> StateFolder::retire(const fs::path& journal, const char* ending) const {

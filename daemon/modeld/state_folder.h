@@ -29,6 +29,9 @@ class StateFolder {
 
   /// Removes a file of this folder, if it is there, so that it stays removed.
   void remove(const std::filesystem::path& file) const;
+  /// A number above all that earlier lives have begun with and those they may have counted up to from there. By the clock, and by what is
+  /// noted here in case it was set back.
+  std::uint64_t first_number() const;
   /// Takes a journal out of use without deleting it: it gets `ending` and a number. Only the newest are kept.
   Result<std::filesystem::path> retire(const std::filesystem::path& journal, const char* ending) const;
 

@@ -132,7 +132,7 @@ Result<void> JournalFile::append(std::string_view text) {
   if (!broken_.empty() && rewrite() != 0)
     return fail(path_.string(),
                 "the journal takes no more edits since an earlier failure (" + broken_ + "); save the deck and open it again");
-  if (const Result<void> untouched = check_untouched(); !untouched) return untouched;
+  if (Result<void> untouched = check_untouched(); !untouched) return untouched;
   if (const int error = write_all(fd_, text, size_); error != 0)
     return take_back("the edit can't be written to the journal: " + reason_of(error));
   if (::fdatasync(fd_) != 0) return start_afresh("the journal can't be flushed to disk: " + reason_of(errno));
@@ -148,14 +148,14 @@ Result<void> JournalFile::truncate(std::size_t size) {
 }
 
 /// After a failed write: what was written of the record goes again.
-Result<void> JournalFile::take_back(std::string reason) {
-  if (::ftruncate(fd_, static_cast<off_t>(size_)) != 0) return start_afresh(std::move(reason));
+Result<void> JournalFile::take_back(const std::string& reason) {
+  if (::ftruncate(fd_, static_cast<off_t>(size_)) != 0) return start_afresh(reason);
   return fail(path_.string(), reason + "; the edit wasn't made");
 }
 
 /// After a failed flush: the kernel has marked the pages clean, so this file's state on disk is unknown and flushing again would
 /// prove nothing. What was acknowledged goes into a new file that takes its place.
-Result<void> JournalFile::start_afresh(std::string reason) {
+Result<void> JournalFile::start_afresh(const std::string& reason) {
   broken_ = reason;
   if (rewrite() == 0 || erase_tail()) return fail(path_.string(), reason + "; the edit wasn't made");
   return fail(path_.string(), reason + "; nothing can be written any more, so the edit isn't made now, but may come back after a restart");

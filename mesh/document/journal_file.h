@@ -33,8 +33,8 @@ class JournalFile {
  private:
   JournalFile(std::filesystem::path path, int fd, std::size_t size);
   Result<void> check_untouched() const;
-  Result<void> take_back(std::string reason);
-  Result<void> start_afresh(std::string reason);
+  Result<void> take_back(const std::string& reason);
+  Result<void> start_afresh(const std::string& reason);
   int rewrite();
   bool erase_tail();
 

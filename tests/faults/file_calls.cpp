@@ -117,7 +117,7 @@ int counted() {
 
 /// Runs a call that concerns `path`: counted, failed or done, and noted if it was done.
 template <class Call>
-int recorded(bool concerns, const Call& call, FileCall what) {
+int recorded(bool concerns, const Call& call, const FileCall& what) {
   if (!concerns) return call();
   const std::lock_guard lock(recorder.mutex);
   if (const int error = counted(); error != 0) {

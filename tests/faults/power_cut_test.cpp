@@ -12,7 +12,6 @@
 namespace prismesh::modeld::faults {
 namespace {
 
-namespace fs = std::filesystem;
 using test::DiskState;
 using test::FileCall;
 using test::Survives;

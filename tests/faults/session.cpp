@@ -169,7 +169,7 @@ const std::vector<Session>& sessions() {
       R"({"edit":"show","on":"1"})",
       R"({"edit":"translate","by":[0,0,1],"on":"10-70"})",
   };
-  static const std::vector<Session> all{
+  static const std::vector<Session> kAll{
       {"one_file", one_file, moves},
       {"three_files", three_files, moves},
       {"packed", packed, moves},
@@ -178,7 +178,7 @@ const std::vector<Session>& sessions() {
        {R"({"edit":"repair","scope":"all"})", R"({"edit":"select","expr":"20-30"})", "save", R"({"edit":"split","at":["shell:1"]})",
         R"({"edit":"undo"})", R"({"edit":"translate","by":[0,0,0.5],"on":"1"})", "save"}},
   };
-  return all;
+  return kAll;
 }
 
 }  // namespace prismesh::modeld::faults

@@ -218,7 +218,9 @@ Station::Aim Station::settled_aim() {
   const std::string rest = "rests presses " + std::to_string(presses_) + " releases " + std::to_string(releases_) + " pointer ";
   const auto rests = [&](const std::string& line) { return pointer_.empty() ? line.starts_with(rest) : line == rest + pointer_; };
   // What is said last is waited for, whether it has been passed over or not.
-  if (!rests(kiosk_->last(""))) EXPECT_FALSE(kiosk_->wait_until(rests).empty()) << "the kiosk did not come to rest: " << rest << pointer_;
+  if (!rests(kiosk_->last(""))) {
+    EXPECT_FALSE(kiosk_->wait_until(rests).empty()) << "the kiosk did not come to rest: " << rest << pointer_;
+  }
   return aim();
 }
 

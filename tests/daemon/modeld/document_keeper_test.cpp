@@ -429,6 +429,18 @@ TEST_F(Keeping, AFolderThatMayBeWrittenButNotReadIsSavedInto) {
   EXPECT_EQ(height(second, 1313), last);
 }
 
+TEST_F(Keeping, NumbersNeverBeginAgainThoughTheClockIsSetBack) {
+  const StateFolder state(folder_.state());
+  std::uint64_t last = state.first_number();
+  for (int life = 0; life < 5; ++life) {  // within a second: for what was noted the clock has been set back by hours
+    const std::uint64_t first = state.first_number();
+    EXPECT_GE(first, last + 1'000'000'000);
+    last = first;
+  }
+  std::ofstream(folder_.state() / "numbers") << "99999999999999999\ncheck 0\n";
+  EXPECT_LT(state.first_number(), 99'999'999'999'999'999u) << "it isn't as it was written";
+}
+
 TEST_F(Keeping, NothingOpenIsSaid) {
   DocumentKeeper first = keeper();
   EXPECT_EQ(first.edit(Undo{}).error().message, "no document is open");

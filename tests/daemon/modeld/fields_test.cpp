@@ -205,6 +205,14 @@ TEST_F(Fields, DistanceFromAnotherDecksSurfaceIsTheLeastOverAllItsTriangles) {
   fs::last_write_time(other.path, fs::last_write_time(other.path) + 2s);
   for (std::size_t n = 0; n < now.size(); ++n) expected[n] = distance_to(moved, now[n]);
   expect_field(get(request), expected);
+  // So it is when only an include of it has.
+  const Grid included = write_grid(folder_.path() / "included.k", 5001, kSide, flatter);
+  std::ofstream(other.path) << "*KEYWORD\n*INCLUDE\nincluded.k\n*END\n";
+  for (std::size_t n = 0; n < now.size(); ++n) expected[n] = distance_to(included, now[n]);
+  expect_field(get(request), expected);
+  const Grid again = write_grid(included.path, 5001, kSide, [](int column, int row) { return Vec(flatter(column, row) + Vec(0, 0, 3)); });
+  for (std::size_t n = 0; n < now.size(); ++n) expected[n] = distance_to(again, now[n]);
+  expect_field(get(request), expected);
   // The same ids at other places: displacement goes by id.
   const Grid same_ids = write_grid(folder_.path() / "same_ids.k", 1, kSide, flatter);
   request.field = "displacement";
