@@ -6,7 +6,7 @@
 namespace prismesh::mesh::document {
 
 /// `next` starts as a copy of `document.current()`. Notes and figures go to `report`; counts before and after don't.
-Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report);
+Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const SelectRegion& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const SelectLasso& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const Grow& edit, Generation& next, EditReport& report);

@@ -64,8 +64,8 @@ Result<void> need_selection(const Generation& generation, std::string_view edit)
 
 }  // namespace
 
-Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report) {
-  Result<select::Chosen> chosen = select::evaluate(next.model, edit.expr, edit.kind, next.around->names);
+Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report, const Progress& progress) {
+  Result<select::Chosen> chosen = select::evaluate(next.model, edit.expr, edit.kind, next.around->names, progress);
   if (!chosen) return fail(chosen.error());
   Picked added{std::move(chosen->nodes), {}, edit.kind};
   if (edit.kind != Kind::node) added.shells = std::move(chosen->shells);

@@ -17,6 +17,8 @@ namespace {
 /// Sets may be made of sets; decks may be hostile.
 constexpr int kDeepestSets = 32;
 constexpr int kMostSets = 10'000;  ///< looked into by one expression
+constexpr std::size_t kStepsBetweenTellings = 64;
+constexpr std::uint64_t kFewIds = 10'000;  ///< a model of fewer counts as one of so many
 
 ItemClass class_of(Kind kind) {
   switch (kind) {
@@ -79,11 +81,15 @@ void combine(Marks& into, const Marks& other, Step::Action action) {
 /// Does an expression's steps on marks.
 class Evaluator {
  public:
-  Evaluator(const Model& model, Kind kind, const Names& names) : model_(model), names_(names), marking_(model, kind) {}
+  Evaluator(const Model& model, Kind kind, const Names& names, const Progress& progress)
+      : model_(model), names_(names), progress_(progress), marking_(model, kind) {}
 
   Result<Chosen> run(const Parsed& parsed) {
-    for (const Step& step : parsed.steps)
-      if (const Result<void> done = take(step, parsed); !done) return fail(done.error());
+    for (std::size_t i = 0; i < parsed.steps.size(); ++i) {
+      if (i % kStepsBetweenTellings == 0 && progress_ && !progress_(static_cast<double>(i) / static_cast<double>(parsed.steps.size())))
+        return fail(cancelled());
+      if (const Result<void> done = take(parsed.steps[i], parsed); !done) return fail(done.error());
+    }
     Chosen chosen = marking_.chosen(stack_.back());
     chosen.of_surfaces = of_surfaces_;
     return chosen;
@@ -129,6 +135,7 @@ class Evaluator {
     const IdIndex& ids = marking_.ids_of(item_class);
     if (ids.size() == 0) return error(item, "there is no " + std::string(name(item_class)) + " in the model");
     const auto [least, greatest] = std::pair(ids.at(0).first, ids.at(ids.size() - 1).first);
+    if (Result<void> counted = count_named(item, ids); !counted) return counted;
     bool found = false;
     if (item.by == Item::By::all) {
       found = marking_.mark_ids(marks, item_class, least, greatest, 1, value);
@@ -140,6 +147,15 @@ class Evaluator {
     }
     if (!found) return names_nothing(item, item_class, ids);
     return {};
+  }
+
+  /// What an item costs is what it names: a range over everything is cheap to write a million times.
+  Result<void> count_named(const Item& item, const IdIndex& ids) {
+    const bool some = item.by == Item::By::ids || item.by == Item::By::comparison;
+    named_ += some ? ids.lower_bound(std::max(item.first, item.last)) - ids.lower_bound(item.first) + 1 : ids.size();
+    if (named_ <= kMostTimesNamed * std::max<std::uint64_t>(ids.size(), kFewIds)) return {};
+    return error(item,
+                 "the items up to here name everything more than " + std::to_string(kMostTimesNamed) + " times over; name each thing once");
   }
 
   static tl::unexpected<Error> names_nothing(const Item& item, ItemClass item_class, const IdIndex& ids) {
@@ -340,6 +356,8 @@ class Evaluator {
 
   const Model& model_;
   const Names& names_;
+  const Progress& progress_;
+  std::uint64_t named_ = 0;  ///< ids, each as often as it was
   Marking marking_;
   std::vector<Marks> stack_;
   std::optional<std::vector<NamedSet>> sets_;
@@ -349,10 +367,10 @@ class Evaluator {
 
 }  // namespace
 
-Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind, const Names& names) {
+Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind, const Names& names, const Progress& progress) {
   const Result<Parsed> parsed = parse(expression);
   if (!parsed) return fail(parsed.error());
-  return Evaluator(model, kind, names).run(*parsed);
+  return Evaluator(model, kind, names, progress).run(*parsed);
 }
 
 std::string to_expression(std::vector<std::int64_t> ids) {

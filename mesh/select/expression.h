@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
 #include "mesh/select/names.h"
@@ -26,8 +27,12 @@ struct Chosen {
 
 /// Evaluates an expression, its items from left to right, starting with nothing. Cost: the model's size once and for each operator, then
 /// what each item names, never the width of a range; the reverse index once if a set is named.
-/// Errors: file "expression", line the column (from 1). An item that names nothing is one, with the nearest id, set or file that exists.
-Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind, const Names& names = {});
+/// Errors: file "expression", line the column (from 1). An item that names nothing is one, with the nearest id, set or file that exists; so
+/// is what names everything again and again (kMostTimesNamed); cancelled, which the progress is asked about in every few items.
+Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind, const Names& names = {}, const Progress& progress = {});
+
+/// So many times may an expression name all of a model, or as many as that in all.
+inline constexpr std::uint64_t kMostTimesNamed = 1000;
 
 /// The shortest expression of these ids in ascending ranges: "1-100,205". For tools that send what they picked.
 std::string to_expression(std::vector<std::int64_t> ids);

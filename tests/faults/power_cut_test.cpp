@@ -2,16 +2,22 @@
 // state, and what comes back can be edited.
 #include "tests/faults/power_cut.h"
 
+#include <csignal>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "ipc/reconnecting_client.h"
+#include "mesh/document/edit_json.h"
 #include "tests/faults/session.h"
+#include "tests/station/process.h"
+#include "tests/support/places.h"
 #include "tests/support/seed.h"
 
 namespace prismesh::modeld::faults {
 namespace {
 
+namespace fs = std::filesystem;
 using test::DiskState;
 using test::FileCall;
 using test::Survives;
@@ -55,12 +61,18 @@ std::size_t states_wanted() {
 
 class PowerCut : public ::testing::TestWithParam<Session> {};
 
-TEST_P(PowerCut, LeavesEveryAcknowledgedEdit) {
-  const Root root;
-  const Place place{root.disk(), GetParam().write_deck(root.disk())};
-  const Recorded recorded = record(GetParam(), root, place);
-  ASSERT_FALSE(HasFailure());
-  ASSERT_GT(recorded.calls.size(), 50u);
+/// For people: what led to a state that is wrong, and what is there.
+void print_end(const Recorded& recorded, std::size_t count, const Place& place) {
+  for (std::size_t i = count < 12 ? 0 : count - 12; i < count; ++i) {
+    const FileCall& call = recorded.calls[i];
+    std::fprintf(stderr, "%zu: %d %s %s %zu+%zu\n", i, static_cast<int>(call.kind), call.path.c_str(), call.other.c_str(),
+                 static_cast<std::size_t>(call.offset), call.data.size());
+  }
+  for (const auto& [path, content] : test::disk_state_of(place.root).files) std::fprintf(stderr, "%s: %zu\n", path.c_str(), content.size());
+}
+
+/// Whatever the disk holds after a cut anywhere in the calls, the deck opens, and the document is as it was acknowledged.
+void expect_recovery(const Recorded& recorded, const Place& place) {
   std::mt19937_64 random(test::seed(1));
   std::set<std::string> seen;
   std::size_t states = 0;
@@ -95,19 +107,75 @@ TEST_P(PowerCut, LeavesEveryAcknowledgedEdit) {
         if (round > 0 && (survives == Survives::all || survives == Survives::flushed)) continue;
         SCOPED_TRACE("after " + std::to_string(count) + " calls, " + std::to_string(static_cast<int>(survives)));
         recovers(count, survives);
-        if (HasFailure()) {
-          for (std::size_t i = count < 12 ? 0 : count - 12; i < count; ++i)
-            std::fprintf(stderr, "%zu: %d %s %s %zu+%zu\n", i, static_cast<int>(recorded.calls[i].kind), recorded.calls[i].path.c_str(),
-                         recorded.calls[i].other.c_str(), static_cast<std::size_t>(recorded.calls[i].offset),
-                         recorded.calls[i].data.size());
-          for (const auto& [path, content] : test::disk_state_of(root.disk()).files)
-            std::fprintf(stderr, "%s: %zu\n", path.c_str(), content.size());
+        if (::testing::Test::HasFailure()) {
+          print_end(recorded, count, place);
           return;
         }
       }
-  RecordProperty("states", std::to_string(states));
   EXPECT_GE(states, 400u);
   std::printf("%zu states of the disk, %zu calls\n", states, recorded.calls.size());
+}
+
+TEST_P(PowerCut, LeavesEveryAcknowledgedEdit) {
+  const Root root;
+  const Place place{root.disk(), GetParam().write_deck(root.disk())};
+  const Recorded recorded = record(GetParam(), root, place);
+  ASSERT_FALSE(HasFailure());
+  ASSERT_GT(recorded.calls.size(), 50u);
+  expect_recovery(recorded, place);
+}
+
+/// The same of a daemon that is a program of its own, with a client that notes when it was answered.
+TEST(PowerCutOfADaemon, LeavesEveryAcknowledgedEdit) {
+  const fs::path preload = test::programs_folder() / "libfile_calls_preload.so";
+  ASSERT_TRUE(fs::exists(preload));
+  const Session& session = sessions()[1];
+  const Root root;
+  const Place place{root.disk(), session.write_deck(root.disk())};
+  Recorded recorded;
+  recorded.before = test::disk_state_of(root.disk());
+  std::vector<std::size_t> answered;  // how many calls there were then
+  {
+    const fs::path run = root.log().parent_path() / "run";
+    test::Process daemon(
+        {(test::programs_folder() / "prismesh-modeld").string(), "--runtime-dir", run.string(), "--state-dir", place.state().string()},
+        {{"LD_PRELOAD", preload.string()},
+         {"PRISMESH_FILE_CALLS_BELOW", root.disk().string()},
+         {"PRISMESH_FILE_CALLS_LOG", root.log().string()}});
+    ipc::ReconnectingClient connection(ipc::model_socket_path(run), "test");
+    const Result<ipc::Client*> client = connection.wait(test::kPatience);
+    ASSERT_TRUE(client) << client.error().text() << daemon.standard_error();
+    const auto ask = [&](const ipc::Request& request) {
+      const auto answer = (*client)->call(request, test::kPatience);
+      ASSERT_TRUE(answer) << answer.error().text();
+      answered.push_back(test::read_file_calls(root.log()).size());
+      recorded.decks.push_back(deck_files(place));
+    };
+    ipc::Open open;
+    open.path = place.deck.string();
+    ask(open);
+    for (const std::string& step : session.steps)
+      step == "save" ? ask(ipc::Save{}) : ask(ipc::ApplyEdit{mesh::document::parse_edit(step).value()});
+    daemon.kill(SIGKILL);
+    EXPECT_EQ(daemon.wait_for_exit(), 128 + SIGKILL);
+  }
+  const std::vector<FileCall> calls = test::read_file_calls(root.log());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i <= calls.size(); ++i) {
+    for (; next < answered.size() && answered[next] == i; ++next) recorded.calls.push_back({FileCall::Kind::mark, 0, next, "", "", ""});
+    if (i < calls.size()) recorded.calls.push_back(calls[i]);
+  }
+  ASSERT_EQ(next, session.steps.size() + 1);
+  // What the document was after each step: the same edits are the same document, whoever makes them.
+  test::restore(recorded.before);
+  DocumentKeeper keeper = place.keeper();
+  ASSERT_TRUE(open_deck(keeper, place));
+  recorded.documents.push_back(fingerprint(keeper));
+  for (const std::string& step : session.steps) {
+    ASSERT_TRUE(run_step(keeper, step));
+    recorded.documents.push_back(fingerprint(keeper));
+  }
+  expect_recovery(recorded, place);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sessions, PowerCut, ::testing::ValuesIn(sessions()), [](const auto& tested) { return tested.param.name; });

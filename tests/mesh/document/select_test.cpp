@@ -24,6 +24,32 @@ TEST(Select, ModesCombineNodes) {
   EXPECT_THAT(selected_ids(document), ElementsAre(9));
 }
 
+TEST(Select, WhatNamesEverythingAgainAndAgainIsRefusedWhereItIsTooMuch) {
+  Document document = make_sheet(4, 4);
+  std::string ranges = "1-25";
+  for (int i = 0; i < 500'000; ++i) ranges += ",1-25";
+  Select edit;
+  edit.expr = ranges;
+  const Result<Prepared> refused = prepare(document, edit);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().file, "expression");
+  EXPECT_GT(refused.error().line, 1);
+  EXPECT_THAT(refused.error().message, HasSubstr("more than 1000 times over"));
+}
+
+TEST(Select, ALongExpressionStopsWhenTold) {
+  Document document = make_sheet(4, 4);
+  Select edit;
+  edit.expr = "1";
+  for (int i = 0; i < 100'000; ++i) edit.expr += ",2,!3";
+  ASSERT_TRUE(prepare(document, edit));
+  int asked = 0;
+  const Result<Prepared> stopped = prepare(document, edit, [&](double) { return ++asked < 100; });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().message, "cancelled");
+  EXPECT_EQ(asked, 100);
+}
+
 TEST(Select, ElementsStayElementsUntilNodesCome) {
   Document document = make_sheet(4, 4);
   must_apply(document, R"({"edit":"select","expr":"1","kind":"element"})");
