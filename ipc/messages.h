@@ -27,9 +27,12 @@ struct Open {
   std::optional<std::string> length_unit;
   std::optional<double> target_size;
   std::optional<std::string> criteria;
+  bool discard = false;  ///< unsaved edits of the document that is open are given up, once the other deck is read; false: refused
 };
 struct Save {
   std::optional<std::string> path;  ///< absent: the deck's own
+  bool becomes = false;             ///< the document goes on as the deck at `path`; false: that is a copy
+  bool asks = false;                ///< where a file would be replaced or a folder made nothing is written, and the answer is SaveWould
 };
 struct Close {
   bool discard = false;  ///< false: refused while there are unsaved edits
@@ -152,6 +155,11 @@ struct Saved {
   std::uint64_t nodes_written = 0, lines_changed = 0;
   std::vector<std::string> notes;
 };
+/// Nothing was saved: what the save would do to what is there. Ask without `asks` to do it.
+struct SaveWould {
+  std::vector<std::string> replace;  ///< files that are there and aren't the deck's own
+  std::vector<std::string> make;     ///< folders that aren't there
+};
 struct Edited {
   mesh::document::EditReport report;
   std::uint64_t generation = 0;
@@ -240,8 +248,8 @@ struct Snapshot {  ///< descriptors: the table, then the segments listed in new_
   std::vector<std::uint64_t> segments;      ///< all that the table uses, in the table's order
   std::vector<std::uint64_t> new_segments;  ///< those that ride with this message, in this order
 };
-using Answer =
-    std::variant<Failed, Done, Welcome, State, Saved, Edited, Counted, Quality, ShellsFound, EditPreviewed, DragBegun, Snapshot, FieldMade>;
+using Answer = std::variant<Failed, Done, Welcome, State, Saved, SaveWould, Edited, Counted, Quality, ShellsFound, EditPreviewed, DragBegun,
+                            Snapshot, FieldMade>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {

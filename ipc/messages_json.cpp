@@ -34,8 +34,8 @@ struct Message<mesh::select::Kind> {
 
 PRISMESH_MESSAGE(Hello, "hello", f("protocol", m.protocol), f("program", m.program));
 PRISMESH_MESSAGE(Open, "open", f("path", m.path), f("length_unit", m.length_unit), f("target_size", m.target_size),
-                 f("criteria", m.criteria));
-PRISMESH_MESSAGE(Save, "save", f("path", m.path));
+                 f("criteria", m.criteria), f("discard", m.discard));
+PRISMESH_MESSAGE(Save, "save", f("path", m.path), f("becomes", m.becomes), f("asks", m.asks));
 PRISMESH_MESSAGE(Close, "close", f("discard", m.discard));
 PRISMESH_MESSAGE(ApplyEdit, "apply_edit", f("edit", m.edit));
 PRISMESH_MESSAGE(BeginDrag, "begin_drag", f("edit", m.edit));
@@ -68,6 +68,7 @@ PRISMESH_PART(ListedGeneration, f("number", m.number), f("made_by", m.made_by));
 PRISMESH_PART(DeckFile, f("name", m.name), f("shells", m.shells), f("parts", m.parts));
 PRISMESH_MESSAGE(Saved, "saved", f("path", m.path), f("nodes_written", m.nodes_written), f("lines_changed", m.lines_changed),
                  f("notes", m.notes));
+PRISMESH_MESSAGE(SaveWould, "save_would", f("replace", m.replace), f("make", m.make));
 PRISMESH_MESSAGE(Edited, "edited", f("report", m.report), f("generation", m.generation));
 PRISMESH_MESSAGE(FieldMade, "field", f("field", m.field), f("title", m.title), f("unit", m.unit), f("of", m.of), f("against", m.against),
                  f("generation", m.generation), f("on_nodes", m.on_nodes), f("measured", m.measured), f("min", m.min), f("mean", m.mean),

@@ -21,7 +21,7 @@ using mesh::deck::OpenedDeck;
 using mesh::deck::Warning;
 
 /// A deck that ended so many lives of the daemon isn't opened by itself again.
-constexpr std::uint64_t kMostAttempts = 3;
+constexpr std::uint64_t kMaxReopenings = 3;
 
 /// Of a save in place: the rest is reading again what was written.
 constexpr double kShareOfWriting = 0.6;
@@ -206,7 +206,7 @@ Result<bool> DocumentKeeper::reopen(const Progress& progress) {
   if (!session) return fail(std::move(session.error()));
   if (!*session) return false;
   StateFolder::Session& last = **session;
-  if (last.attempts >= kMostAttempts)
+  if (last.attempts >= kMaxReopenings)
     return fail(last.open.path, "opening it ended the daemon " + std::to_string(last.attempts) + " times; open it by hand to try again");
   ++last.attempts;
   (void)folder_.write_session(last);  // without room for it, only the count of attempts is lost

@@ -86,7 +86,7 @@ class Evaluator {
 
   Result<Chosen> run(const Parsed& parsed) {
     for (std::size_t i = 0; i < parsed.steps.size(); ++i) {
-      if (i % kStepsBetweenTellings == 0 && progress_ && !progress_(static_cast<double>(i) / static_cast<double>(parsed.steps.size())))
+      if (i > 0 && i % kStepsBetweenTellings == 0 && progress_ && !progress_(static_cast<double>(i) / static_cast<double>(parsed.steps.size())))
         return fail(cancelled());
       if (const Result<void> done = take(parsed.steps[i], parsed); !done) return fail(done.error());
     }
@@ -153,9 +153,9 @@ class Evaluator {
   Result<void> count_named(const Item& item, const IdIndex& ids) {
     const bool some = item.by == Item::By::ids || item.by == Item::By::comparison;
     named_ += some ? ids.lower_bound(std::max(item.first, item.last)) - ids.lower_bound(item.first) + 1 : ids.size();
-    if (named_ <= kMostTimesNamed * std::max<std::uint64_t>(ids.size(), kFewIds)) return {};
+    if (named_ <= kMaxTimesNamed * std::max<std::uint64_t>(ids.size(), kFewIds)) return {};
     return error(item,
-                 "the items up to here name everything more than " + std::to_string(kMostTimesNamed) + " times over; name each thing once");
+                 "the items up to here name everything more than " + std::to_string(kMaxTimesNamed) + " times over; name each thing once");
   }
 
   static tl::unexpected<Error> names_nothing(const Item& item, ItemClass item_class, const IdIndex& ids) {

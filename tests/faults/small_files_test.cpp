@@ -21,22 +21,30 @@ const Session& session_of(const std::string& name) {
   return *std::find_if(sessions().begin(), sessions().end(), [&](const Session& session) { return session.name == name; });
 }
 
+/// The file calls of opening the deck, moving all of it and saving it in place.
+std::vector<FileCall> calls_of_a_save(const Root& root, const Place& place) {
+  test::record_file_calls(root.disk(), root.log());
+  {
+    DocumentKeeper keeper = place.keeper();
+    EXPECT_TRUE(open_deck(keeper, place));
+    EXPECT_TRUE(run_step(keeper, R"({"edit":"translate","by":[0,0,0.5],"on":"all"})"));
+    EXPECT_TRUE(run_step(keeper, "save"));
+  }
+  test::stop_recording_file_calls();
+  return test::read_file_calls(root.log());
+}
+
+bool puts_a_deck_file_in_place(const FileCall& call) {
+  return call.kind == FileCall::Kind::rename && call.other.find("/state/") == std::string::npos;
+}
+
 TEST(SmallFiles, AChangedByteOfASavesRecordWritesNothingWrong) {
   const Root root;
   const Place place{root.disk(), session_of("three_files").write_deck(root.disk())};
   const DiskState before = test::disk_state_of(root.disk());
-  test::record_file_calls(root.disk(), root.log());
-  {
-    DocumentKeeper keeper = place.keeper();
-    ASSERT_TRUE(open_deck(keeper, place));
-    ASSERT_TRUE(run_step(keeper, R"({"edit":"translate","by":[0,0,0.5],"on":"all"})"));
-    ASSERT_TRUE(run_step(keeper, "save"));
-  }
-  test::stop_recording_file_calls();
-  const std::vector<FileCall> calls = test::read_file_calls(root.log());
-  const auto first = std::find_if(calls.begin(), calls.end(), [&](const FileCall& call) {
-    return call.kind == FileCall::Kind::rename && call.other.find("/state/") == std::string::npos;
-  });
+  const std::vector<FileCall> calls = calls_of_a_save(root, place);
+  ASSERT_FALSE(HasFailure());
+  const auto first = std::find_if(calls.begin(), calls.end(), puts_a_deck_file_in_place);
   ASSERT_NE(first, calls.end());
   std::mt19937_64 random(1);
   const DiskState cut = test::after_power_cut(before, calls, static_cast<std::size_t>(first - calls.begin()) + 1, Survives::all, random);
@@ -67,18 +75,9 @@ TEST(SmallFiles, AnIncludeThatWasRestoredByHandIsNotOverwritten) {
   const Root root;
   const Place place{root.disk(), session_of("three_files").write_deck(root.disk())};
   const DiskState before = test::disk_state_of(root.disk());
-  test::record_file_calls(root.disk(), root.log());
-  {
-    DocumentKeeper keeper = place.keeper();
-    ASSERT_TRUE(open_deck(keeper, place));
-    ASSERT_TRUE(run_step(keeper, R"({"edit":"translate","by":[0,0,0.5],"on":"all"})"));
-    ASSERT_TRUE(run_step(keeper, "save"));
-  }
-  test::stop_recording_file_calls();
-  const std::vector<FileCall> calls = test::read_file_calls(root.log());
-  const auto last = std::find_if(calls.rbegin(), calls.rend(), [&](const FileCall& call) {
-    return call.kind == FileCall::Kind::rename && call.other.find("/state/") == std::string::npos;
-  });
+  const std::vector<FileCall> calls = calls_of_a_save(root, place);
+  ASSERT_FALSE(HasFailure());
+  const auto last = std::find_if(calls.rbegin(), calls.rend(), puts_a_deck_file_in_place);
   std::mt19937_64 random(1);
   DiskState cut = test::after_power_cut(before, calls, static_cast<std::size_t>(calls.rend() - last), Survives::all, random);
   const std::string include = (root.disk() / "parts/above.k").string();
