@@ -103,10 +103,17 @@ Outcome Bench::field(const ipc::GetField& request, const Progress& progress) {
 }
 
 Outcome Bench::save(const ipc::Save& request, const Progress& progress) {
-  Result<ipc::Saved> saved = keeper_.save(request.path, progress);
+  if (request.asks && request.path) {
+    Result<std::optional<ipc::SaveWould>> would = keeper_.would(*request.path);
+    if (!would) return {failed(would.error()), {}, {}, {}};
+    if (*would) return {std::move(**would), {}, {}, {}};
+  }
+  Result<ipc::Saved> saved =
+      request.becomes && request.path ? keeper_.save_as(*request.path, progress) : keeper_.save(request.path, progress);
   if (!saved) return {failed(saved.error()), {}, {}, {}};
   Outcome outcome;
   outcome.answer = std::move(*saved);
+  if (request.becomes) outcome.events.emplace_back(ipc::DocumentOpened{keeper_.document().path.string()});
   show("save", outcome);
   return outcome;
 }

@@ -1,13 +1,11 @@
 #include "daemon/modeld/document_keeper.h"
 
 #include <algorithm>
-#include <limits>
 #include <new>
 #include <system_error>
 
-#include "daemon/modeld/carry_over.h"
 #include "daemon/modeld/deck_files.h"
-#include "daemon/modeld/save_intent.h"
+#include "daemon/modeld/paths.h"
 #include "mesh/deck/deck.h"
 #include "mesh/model/growth.h"
 
@@ -22,9 +20,6 @@ using mesh::deck::Warning;
 
 /// A deck that ended so many lives of the daemon isn't opened by itself again.
 constexpr std::uint64_t kMaxReopenings = 3;
-
-/// Of a save in place: the rest is reading again what was written.
-constexpr double kShareOfWriting = 0.6;
 
 Result<OpenOptions> options_of(const ipc::Open& request) {
   OpenOptions options;
@@ -47,50 +42,8 @@ auto if_memory_allows(const Work& work, const std::string& file) -> decltype(wor
   }
 }
 
-/// A progress of its own for the part of the work from `begin` to `begin + share`.
-Progress part_of(const Progress& whole, double begin, double share) {
-  return [&whole, begin, share](double fraction) { return !whole || whole(begin + fraction * share); };
-}
-
-bool is_there(const fs::path& path) {
-  std::error_code problem;
-  return fs::exists(path, problem);
-}
-
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code problem;
-  return fs::equivalent(a, b, problem) && !problem;
-}
-
-/// Whether nodes or shells came, went or have other corners since the deck was read.
-bool has_grown(const Document& document) { return !mesh::changes_between(document.opened->model, document.current().model).empty(); }
-
-std::string names_of(const SaveIntent& intent) {
-  std::string names;
-  for (const SaveIntent::File& file : intent.files) names += (names.empty() ? "" : ", ") + file.target.string();
-  return names;
-}
-
-/// All if it can't be read: then nothing is known to be in it that could be lost by keeping it.
-std::uint64_t records_in(const fs::path& journal) {
-  const Result<JournalIntents> intents = read_intents(journal);
-  return intents ? intents->edits.size() : std::numeric_limits<std::uint64_t>::max();
-}
-
 bool differs(const Generation& a, const Generation& b) {
   return &a != &b && (a.model.growth != b.model.growth || !mesh::moved_nodes(a.model, b.model).empty());
-}
-
-ipc::Saved report_of(const fs::path& target, const mesh::deck::SaveReport& report) {
-  return {target.string(), report.nodes_written, report.lines_changed, report.notes};
-}
-
-Result<Journal> start_journal(const StateFolder& folder, const fs::path& path, Document& document) {
-  if (!is_there(path)) return Journal::create(path, document);
-  // Edits of another time on a deck that looked just like this one were saved or given up since, or their journal would be in
-  // use. It isn't deleted.
-  if (const Result<fs::path> retired = folder.retire(path, ".old"); !retired) return fail(retired.error());
-  return Journal::create(path, document);
 }
 
 /// How many of the oldest generations of `recorded` go when another comes, so that it keeps the document's cap too.
@@ -104,43 +57,13 @@ std::size_t over_cap(const Document& recorded, const Generation& next) {
 
 }  // namespace
 
-/// Saves of this deck that were cut off, before it is read: are they finished, did they not begin, can't they be told any more?
-Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warning>& warnings) {
-  const auto warn = [&](const char* kind, std::string message) { warnings.push_back({path.string(), 0, kind, std::move(message), 1}); };
-  for (const fs::path& file : folder_.save_intents(path)) {
-    const Result<SaveIntent> intent = read_save_intent(file);
-    if (!intent) {
-      const Result<fs::path> aside = folder_.retire(file, ".damaged");
-      if (!aside) return fail(aside.error());
-      warn("save-unknown", "a save was cut off, and its record is damaged (" + aside->string() +
-                               "): if the deck has several files, some may be from before the save and some from after it");
-      continue;
-    }
-    const Result<SaveOutcome> outcome = settle_save(*intent);
-    if (!outcome) return fail(outcome.error());
-    const fs::path journal = fs::path(file).replace_extension();  // "....journal.saving"
-    if (*outcome == SaveOutcome::finished)
-      warn("save-finished", "a save was cut off between the deck's files; the rest has been put in place now");
-    if (*outcome == SaveOutcome::mixed)
-      warn("save-mixed",
-           "a save was cut off between the deck's files, and can't be finished since something else has changed or removed some of them: " +
-               names_of(*intent));
-    const bool saved = *outcome == SaveOutcome::complete || *outcome == SaveOutcome::finished;
-    // Which of the two journals is obsolete; one that holds more than at that time holds edits of later, and stays.
-    const fs::path obsolete = saved ? journal : folder_.journal(path, intent->deck_after);
-    if (is_there(obsolete) && records_in(obsolete) <= (saved ? intent->records : intent->records_of_next))
-      if (const Result<fs::path> retired = folder_.retire(obsolete, saved ? ".saved" : ".unused"); !retired) return fail(retired.error());
-    folder_.remove(file);
-  }
-  return {};
-}
-
 Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& request, const Progress& progress) {
   Result<OpenOptions> options = options_of(request);
   if (!options) return fail(std::move(options.error()));
   options->history_bytes = history_bytes_;
-  const fs::path path = request.path;
-  if (!path.is_absolute()) return fail(request.path, "the path must be absolute: the daemon has its own working folder");
+  const Result<fs::path> whole = absolute(request.path);
+  if (!whole) return fail(whole.error());
+  const fs::path& path = *whole;
   std::vector<Warning> warnings;
   if (Result<void> settled = settle_saves(path, warnings); !settled) return fail(std::move(settled.error()));
   Result<OpenedDeck> opened = mesh::deck::open(path, progress);
@@ -185,7 +108,7 @@ Result<DocumentKeeper::OpenDocument> DocumentKeeper::load(const ipc::Open& reque
 Result<bool> DocumentKeeper::open(const ipc::Open& request, const Progress& progress) {
   if (open_) {
     if (same_file(open_->document.path, request.path)) return false;
-    if (changed())
+    if (changed() && !request.discard)
       return fail(open_->document.path.string(),
                   "has unsaved edits: save it, or give them up (prismesh session close --discard), before another deck is opened");
   }
@@ -283,172 +206,6 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   commit(open.recorded, std::move(recorded));
   commit(open.document, std::move(*prepared));
   return report;
-}
-
-Result<ipc::Saved> DocumentKeeper::save(const std::optional<std::string>& path, const Progress& progress) {
-  if (!open_) return fail("", "no document is open");
-  const fs::path own = open_->document.path;
-  if (!path || same_file(own, *path)) return save_in_place(progress);
-  const fs::path target = *path;
-  if (!target.is_absolute()) return fail(*path, "the path must be absolute: the daemon has its own working folder");
-  return save_elsewhere(target, progress);
-}
-
-Result<ipc::Saved> DocumentKeeper::save_elsewhere(const fs::path& target, const Progress& progress) {
-  const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, target, progress);
-  if (!report) return fail(report.error());
-  open_->saved = open_->document.generations[open_->document.cursor];
-  return report_of(target, *report);
-}
-
-Result<ipc::Saved> DocumentKeeper::save_in_place(const Progress& progress) {
-  OpenDocument& open = *open_;
-  if (open.unfinished) {
-    ReadySave again = std::move(*open.unfinished);
-    open.unfinished.reset();
-    return finish_save(std::move(again));
-  }
-  Result<mesh::deck::StagedSave> staged =
-      mesh::document::stage_save(open.document, open.document.path, part_of(progress, 0, kShareOfWriting));
-  if (!staged) return fail(std::move(staged.error()));
-  if (staged->files().empty()) {
-    if (!open.journal.takes_edits())
-      if (Result<void> anew = begin_journal_anew(); !anew) return fail(std::move(anew.error()));
-    open.saved = open.document.generations[open.document.cursor];
-    return report_of(open.document.path, staged->report());
-  }
-  Result<ReadySave> ready = make_ready(std::move(*staged), part_of(progress, kShareOfWriting, 1 - kShareOfWriting));
-  if (!ready) return fail(std::move(ready.error()));
-  return finish_save(std::move(*ready));
-}
-
-/// A damaged journal makes room for one that holds what is shown. The deck needs no change for it.
-Result<void> DocumentKeeper::begin_journal_anew() {
-  OpenDocument& open = *open_;
-  const fs::path path = open.journal.path();
-  if (const Result<fs::path> retired = folder_.retire(path, ".damaged"); !retired) return fail(retired.error());
-  Document next = open.document;
-  next.generations = {next.opened};
-  next.cursor = 0;
-  Result<Journal> journal = Journal::create(path, next);
-  if (!journal) return fail(std::move(journal.error()));
-  if (Result<void> carried = carry_over(open.document.current(), next, *journal); !carried) return carried;
-  open.journal = std::move(*journal);
-  open.twins = {{next.generations[next.cursor], open.document.generations[open.document.cursor]}};
-  open.recorded = std::move(next);
-  return {};
-}
-
-/// After a save in place the deck on disk is another one, so its text is read again and a new journal begins, with the selection and the
-/// parts' states; all of it before the first file is replaced, so that whenever the daemon dies, deck and journal belong together. The
-/// history stays, unless nodes or shells came or went: then what was read has other indices, and the history begins anew.
-Result<DocumentKeeper::ReadySave> DocumentKeeper::make_ready(mesh::deck::StagedSave staged, const Progress& progress) {
-  OpenDocument& open = *open_;
-  const std::string path = open.document.path.string();
-  Result<OpenedDeck> opened = staged.open(progress);
-  if (!opened) return fail(std::move(opened.error()));
-  const bool grown = has_grown(open.document);
-  const mesh::Model& model = grown ? open.document.current().model : open.document.opened->model;
-  if (mesh::live_nodes(opened->model) != mesh::live_nodes(model) || mesh::live_shells(opened->model) != mesh::live_shells(model))
-    return fail(path, "the saved deck would not be read as what is shown here; nothing was changed");
-  OpenOptions options;
-  options.length_unit = open.document.settings.length_unit;
-  options.target_size = open.document.settings.target_size;
-  if (open.request.criteria) options.criteria = *open.request.criteria;
-  options.history_bytes = open.document.history_bytes;
-  Result<Document> next = mesh::document::open(open.document.path, std::move(*opened), options);
-  if (!next) return fail(std::move(next.error()));
-  next->next_number = open.document.next_number;
-  if (grown) {
-    auto first = std::make_shared<Generation>(*next->opened);
-    first->number = next->next_number++;
-    next->opened = first;
-    next->generations = {next->opened};
-  }
-
-  const Generation& current = open.document.current();
-  SaveIntent intent = intent_of(staged);
-  intent.deck_before = open.document.deck->content;
-  intent.deck_after = next->deck->content;
-  intent.records = open.journal.records();
-  intent.records_of_next = steps_to_carry(current);
-  const fs::path intent_file = StateFolder::save_intent(open.journal.path());
-  for (const fs::path& other : folder_.save_intents(open.document.path)) folder_.remove(other);
-  if (Result<void> written = write_save_intent(intent_file, intent); !written) return fail(std::move(written.error()));
-  const fs::path journal_file = folder_.journal(next->path, next->deck->content);
-  const auto give_up = [&](Error error) {
-    folder_.remove(journal_file);
-    folder_.remove(intent_file);
-    error.message += "; the deck is as it was";
-    return fail(std::move(error));
-  };
-  Result<Journal> journal = start_journal(folder_, journal_file, *next);
-  if (!journal) return give_up(std::move(journal.error()));
-  Result<void> carried = grown ? carry_over_by_ids(current, *next, *journal) : carry_over(current, *next, *journal);
-  if (!carried) return give_up(std::move(carried.error()));
-  ReadySave ready(std::move(staged), intent_file, std::move(*next), std::move(*journal));
-  ready.saved = report_of(open.document.path, ready.staged.report());
-  ready.grown = grown;
-  return ready;
-}
-
-/// Replaces the deck's files and goes on with the new journal.
-Result<ipc::Saved> DocumentKeeper::finish_save(ReadySave save) {
-  OpenDocument& open = *open_;
-  if (Result<void> placed = save.staged.put_in_place(); !placed) {
-    Error error = std::move(placed.error());
-    const bool begun = save.staged.has_begun();
-    const Result<void> taken_back = begun ? save.staged.take_back() : Result<void>();
-    if (taken_back) {
-      forget(save);
-      if (begun) error.message += "; the files that had been replaced were given back what they held before";
-      return fail(std::move(error));
-    }
-    error.message += "; giving the others back what they held failed as well (" + taken_back.error().text() +
-                     "). Save again to finish the save, or save under another name; no edits are taken until then";
-    open.unfinished = std::move(save);
-    return fail(std::move(error));
-  }
-  const fs::path old = open.journal.path();
-  const bool whole = open.journal.takes_edits();
-  open.journal = std::move(save.journal);
-  open.twins.clear();
-  if (save.grown) {
-    open.document = save.next;
-    save.saved.notes.emplace_back(
-        "the history begins anew with the saved deck, since nodes or elements came, went or were given other corners");
-  } else {
-    open.twins.push_back({save.next.generations[save.next.cursor], open.document.generations[open.document.cursor]});
-    open.document.deck = save.next.deck;
-    open.document.opened = save.next.opened;
-    open.document.next_number = std::max(open.document.next_number, save.next.next_number);
-  }
-  open.saved = open.document.generations[open.document.cursor];
-  open.recorded = std::move(save.next);
-  // Where this fails the intent stays, and the next opening does it.
-  if (const Result<fs::path> retired = folder_.retire(old, whole ? ".saved" : ".damaged"); retired) folder_.remove(save.intent);
-  return std::move(save.saved);
-}
-
-/// A save that replaced nothing, or has taken back what it replaced: all is as before it.
-void DocumentKeeper::forget(ReadySave& save) {
-  folder_.remove(save.journal.path());
-  folder_.remove(save.intent);
-  save.staged = {};
-}
-
-/// Before the document is given up: its deck is left whole. Errors: neither way can be gone.
-Result<void> DocumentKeeper::end_unfinished_save() {
-  if (!open_->unfinished) return {};
-  ReadySave save = std::move(*open_->unfinished);
-  open_->unfinished.reset();
-  if (save.staged.take_back()) {
-    forget(save);
-    return {};
-  }
-  const Result<ipc::Saved> finished = finish_save(std::move(save));
-  if (!finished) return fail(finished.error());
-  return {};
 }
 
 Result<void> DocumentKeeper::close(bool discard) {

@@ -32,6 +32,11 @@ class DocumentKeeper {
   /// fails between the files, those that were replaced get back what they held. If even that fails no edits are taken until the save is
   /// called again and finishes it.
   Result<ipc::Saved> save(const std::optional<std::string>& path, const Progress& progress = {});
+  /// Saves the deck elsewhere and goes on as the document of that deck, with its history; the deck it was stays as it is on disk. Errors:
+  /// as save, and where the written deck can't be gone on with: then it is a copy, and the document is the one it was.
+  Result<ipc::Saved> save_as(const std::string& path, const Progress& progress = {});
+  /// What a save elsewhere would do to what is there; nothing, if it would only write new files into folders that are there.
+  Result<std::optional<ipc::SaveWould>> would(const std::string& path) const;
   Result<void> close(bool discard);
 
   bool is_open() const { return open_.has_value(); }
@@ -54,7 +59,6 @@ class DocumentKeeper {
     mesh::document::Document next;  ///< what will be recorded from then on: the saved deck, with the selection and the parts' states
     mesh::document::Journal journal;
     ipc::Saved saved;
-    bool grown = false;
 
     ReadySave(mesh::deck::StagedSave staged_save, std::filesystem::path intent_file, mesh::document::Document next_document,
               mesh::document::Journal next_journal)
@@ -87,6 +91,10 @@ class DocumentKeeper {
   Result<ipc::Saved> save_elsewhere(const std::filesystem::path& target, const Progress& progress);
   Result<ipc::Saved> save_in_place(const Progress& progress);
   Result<ReadySave> make_ready(mesh::deck::StagedSave staged, const Progress& progress);
+  Result<mesh::document::Document> read_again(const std::filesystem::path& path, mesh::deck::OpenedDeck opened) const;
+  Result<mesh::document::Journal> begin_journal(mesh::document::Document& next) const;
+  Result<void> become(const std::filesystem::path& target, const Progress& progress, ipc::Saved& saved);
+  void go_on_with(mesh::document::Document next, mesh::document::Journal journal, ipc::Saved& saved);
   Result<ipc::Saved> finish_save(ReadySave save);
   void forget(ReadySave& save);
   Result<void> end_unfinished_save();

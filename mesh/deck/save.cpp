@@ -122,6 +122,10 @@ Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const TextChanges& te
   return plans;
 }
 
+Result<std::vector<Plan>> plan(const Deck& deck, const TextChanges& text, const fs::path& target) {
+  return same_file(target, deck.files[0].path) ? plan_in_place(deck, text) : plan_elsewhere(deck, text, target);
+}
+
 std::string rounding_note(const Rounding& rounding) {
   char error[32];
   std::snprintf(error, sizeof error, "%.1e", rounding.largest_error);
@@ -210,7 +214,7 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   StagedSave save;
   save.deck_ = &deck;
   save.in_place_ = same_file(target, deck.files[0].path);
-  const Result<std::vector<Plan>> plans = save.in_place_ ? plan_in_place(deck, *text) : plan_elsewhere(deck, *text, target);
+  const Result<std::vector<Plan>> plans = plan(deck, *text, target);
   if (!plans) return fail(plans.error());
 
   std::deque<std::string> packed;
@@ -228,6 +232,17 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   save.rounding_ = text->rounding;
   save.report_ = report_of(deck, *text, *plans);
   return save;
+}
+
+Result<std::vector<fs::path>> StagedSave::targets(const Deck& deck, const Model& original, const Model& model, const fs::path& target) {
+  const std::lock_guard lock(deck.on_disk->mutex);
+  const Result<TextChanges> text = text_changes(deck, original, model);
+  if (!text) return fail(text.error());
+  const Result<std::vector<Plan>> plans = plan(deck, *text, target);
+  if (!plans) return fail(plans.error());
+  std::vector<fs::path> places;
+  for (const Plan& each : *plans) places.push_back(each.target);
+  return places;
 }
 
 Result<OpenedDeck> StagedSave::open(const Progress& progress) const {

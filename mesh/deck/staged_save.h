@@ -26,6 +26,10 @@ class StagedSave {
   static Result<StagedSave> write(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
                                   const Progress& progress = {});
 
+  /// Where the files of such a save would be put. Errors: the same, but those of writing.
+  static Result<std::vector<std::filesystem::path>> targets(const Deck& deck, const Model& original, const Model& model,
+                                                            const std::filesystem::path& target);
+
   const SaveReport& report() const { return report_; }
   void add_note(std::string note) { report_.notes.push_back(std::move(note)); }
   const Rounding& rounding() const { return rounding_; }

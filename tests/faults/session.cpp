@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -84,7 +86,9 @@ void put(std::string& text, const void* data, std::size_t size) { text.append(st
 }  // namespace
 
 Root::Root() {
-  std::string name = (fs::path(fs::is_directory("/dev/shm") ? "/dev/shm" : "/tmp") / "prismesh-faults-XXXXXX").string();
+  // Thousands of disks are written: to memory, where the machine lends some.
+  const fs::path memory = "/dev/shm";
+  std::string name = ((::access(memory.c_str(), W_OK) == 0 ? memory : fs::temp_directory_path()) / "prismesh-faults-XXXXXX").string();
   path_ = ::mkdtemp(name.data());
   fs::create_directories(disk() / "state");
   fs::permissions(disk() / "state", fs::perms::owner_all);
@@ -124,8 +128,8 @@ std::string fingerprint(const DocumentKeeper& keeper) {
   return all;
 }
 
-std::map<std::string, std::string> deck_files(const Place& place) {
-  std::map<std::string, std::string> files;
+Files deck_files(const Place& place) {
+  Files files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(place.root)) {
     const std::string name = entry.path().filename().string();
     if (!entry.is_regular_file() || name.starts_with('.') || entry.path().string().starts_with(place.state().string())) continue;
@@ -135,9 +139,21 @@ std::map<std::string, std::string> deck_files(const Place& place) {
   return files;
 }
 
+bool holds(const Files& found, const Files& recorded, const Place& place) {
+  const std::string elsewhere = (place.root / kSavedAs).string();
+  const auto is_elsewhere = [&](const auto& file) { return file.first.starts_with(elsewhere); };
+  Files same = found;
+  if (std::none_of(recorded.begin(), recorded.end(), is_elsewhere)) std::erase_if(same, is_elsewhere);
+  return same == recorded;
+}
+
 Result<void> run_step(DocumentKeeper& keeper, const std::string& step) {
   if (step == "save") {
     const Result<ipc::Saved> saved = keeper.save(std::nullopt);
+    return saved ? Result<void>() : fail(saved.error());
+  }
+  if (step == "save as") {
+    const Result<ipc::Saved> saved = keeper.save_as((keeper.document().path.parent_path() / kSavedAs / "other.k").string());
     return saved ? Result<void>() : fail(saved.error());
   }
   const Result<mesh::document::Edit> edit = mesh::document::parse_edit(step);
@@ -151,6 +167,12 @@ Result<void> open_deck(DocumentKeeper& keeper, const Place& place) {
   request.path = place.deck.string();
   const Result<bool> opened = keeper.open(request, {});
   return opened ? Result<void>() : fail(opened.error());
+}
+
+Result<void> reopen_deck(DocumentKeeper& keeper, const Place& place) {
+  const Result<bool> reopened = keeper.reopen({});
+  if (!reopened) return fail(reopened.error());
+  return *reopened ? Result<void>() : open_deck(keeper, place);
 }
 
 const std::vector<Session>& sessions() {
@@ -177,6 +199,11 @@ const std::vector<Session>& sessions() {
        dented,
        {R"({"edit":"repair","scope":"all"})", R"({"edit":"select","expr":"20-30"})", "save", R"({"edit":"split","at":["shell:1"]})",
         R"({"edit":"undo"})", R"({"edit":"translate","by":[0,0,0.5],"on":"1"})", "save"}},
+      {"saved_as",
+       three_files,
+       {R"({"edit":"translate","by":[0,0,0.25],"on":"1-60"})", R"({"edit":"select","expr":"1-30"})", R"({"edit":"lock","on":"1"})",
+        "save as", R"({"edit":"unlock","on":"1"})", R"({"edit":"undo"})", R"({"edit":"undo"})",
+        R"({"edit":"translate","by":[0,0.125,0.5],"on":"30-81"})", "save", R"({"edit":"translate","by":[0,0,1],"on":"10-70"})"}},
   };
   return kAll;
 }

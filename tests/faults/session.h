@@ -38,12 +38,19 @@ struct Place {
 
 /// What a document is, in a form that can be compared: positions to a ten-thousandth, structure, selection, the parts' states.
 std::string fingerprint(const DocumentKeeper& keeper);
+using Files = std::map<std::string, std::string>;
 /// The deck's files as they are on disk, by path.
-std::map<std::string, std::string> deck_files(const Place& place);
+Files deck_files(const Place& place);
+/// Whether the decks on disk are those that were recorded. What a save elsewhere had begun to write may be there too.
+bool holds(const Files& found, const Files& recorded, const Place& place);
 
-/// "save", "undo" or an edit as JSON. Errors: refused.
+/// The folder beside a deck that "save as" goes into.
+inline constexpr const char* kSavedAs = "as";
+/// "save", "save as" or an edit as JSON. Errors: refused.
 Result<void> run_step(DocumentKeeper& keeper, const std::string& step);
 Result<void> open_deck(DocumentKeeper& keeper, const Place& place);
+/// What was open in the last life; the place's deck, if nothing was.
+Result<void> reopen_deck(DocumentKeeper& keeper, const Place& place);
 
 struct Session {
   std::string name;
@@ -51,7 +58,7 @@ struct Session {
   std::vector<std::string> steps;
 };
 inline void PrintTo(const Session& session, std::ostream* out) { *out << session.name; }
-/// Edits of all kinds; decks of one file, of several in folders of their own, packed; a repair.
+/// Edits of all kinds; decks of one file, of several in folders of their own, packed; a repair; a save under another name.
 const std::vector<Session>& sessions();
 
 }  // namespace prismesh::modeld::faults

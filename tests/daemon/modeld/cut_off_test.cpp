@@ -22,31 +22,31 @@ using test::Lives;
 mesh::document::Edit edit_of(const std::string& json) { return mesh::document::parse_edit(json).value(); }
 
 /// All that clients can ask of a document but how it came to be open.
-struct Face {
+struct Shown {
   std::string state;
   std::vector<mesh::Vec3> positions;
   std::vector<std::int64_t> node_ids, shell_ids;
   std::vector<mesh::ShellNodes> shells;
   std::vector<mesh::quality::ShellState> quality;
-  bool operator==(const Face&) const = default;
+  bool operator==(const Shown&) const = default;
 };
 
-Face face_of(ipc::Client& client) {
-  Face face;
+Shown shown_by(ipc::Client& client) {
+  Shown shown;
   ipc::State state = std::get<ipc::State>(client.call(ipc::GetState{}, kPatience).value());
   state.recovered_edits = 0;
-  face.state = ipc::answer_fields(state);
+  shown.state = ipc::answer_fields(state);
   const auto view = client.snapshot().value();
   for (std::size_t n = 0; n < view->node_count(); ++n) {
-    face.positions.push_back(view->position(n));
-    face.node_ids.push_back(view->node_id(n));
+    shown.positions.push_back(view->position(n));
+    shown.node_ids.push_back(view->node_id(n));
   }
   for (std::size_t s = 0; s < view->shell_count(); ++s) {
-    face.shell_ids.push_back(view->shell_id(s));
-    face.shells.push_back(view->shell(s));
-    face.quality.push_back(view->shell_quality(s));
+    shown.shell_ids.push_back(view->shell_id(s));
+    shown.shells.push_back(view->shell(s));
+    shown.quality.push_back(view->shell_quality(s));
   }
-  return face;
+  return shown;
 }
 
 /// What is on record of the document's edits, byte for byte.
@@ -164,7 +164,7 @@ TEST_P(CutOff, AKillLeavesTheDocumentAsItWas) {
   Lives& lives = station->lives;
   int hits = 0;
   for (int attempt = 0; attempt < kMostTries && hits < 3 && !HasFailure(); ++attempt) {
-    const Face before = face_of(lives.client());
+    const Shown before = shown_by(lives.client());
     const std::string record = journal_in(station->folder.state());
     const bool in_the_middle = reach_the_middle(lives.client(), 1 + hits) != 0;
     lives.shoot();
@@ -175,11 +175,11 @@ TEST_P(CutOff, AKillLeavesTheDocumentAsItWas) {
     EXPECT_TRUE(in_the_middle || was_done) << "an acknowledged edit was lost";
     if (was_done) {  // too late, so it is there whole
       apply(lives.client(), R"({"edit":"undo"})");
-      EXPECT_TRUE(face_of(lives.client()).positions == before.positions);
+      EXPECT_TRUE(shown_by(lives.client()).positions == before.positions);
       continue;
     }
     ++hits;
-    const Face after = face_of(lives.client());
+    const Shown after = shown_by(lives.client());
     EXPECT_EQ(after.state, before.state);
     EXPECT_TRUE(after == before) << "a half of the edit is in the document";
   }
@@ -195,7 +195,7 @@ TEST_P(CutOff, ACancelLeavesTheDocumentAsItWas) {
   ipc::Client view = ipc::Client::connect(ipc::model_socket_path(station->folder.path() / "run"), "view").value();
   bool hit = false;
   for (int attempt = 0; attempt < kMostTries && !hit && !HasFailure(); ++attempt) {
-    const Face before = face_of(client);
+    const Shown before = shown_by(client);
     const std::string record = journal_in(station->folder.state());
     if (const std::uint64_t number = reach_the_middle(client, 1); number != 0) {
       client.send(ipc::Cancel{}).value();
@@ -205,7 +205,7 @@ TEST_P(CutOff, ACancelLeavesTheDocumentAsItWas) {
         hit = true;
         EXPECT_EQ(failed->message, "cancelled");
         EXPECT_EQ(journal_in(station->folder.state()), record);
-        const Face after = face_of(client);
+        const Shown after = shown_by(client);
         EXPECT_EQ(after.state, before.state);
         EXPECT_TRUE(after == before) << "a half of the edit is in the document";
       }
@@ -235,7 +235,7 @@ TEST_P(CutOff, TheClientsDeathLeavesTheDocumentAsItWas) {
   const std::unique_ptr<Station> station = edited();
   ipc::Client& watcher = station->lives.client();
   EXPECT_TRUE(tried_until_it_hits([&] {
-    const Face before = face_of(watcher);
+    const Shown before = shown_by(watcher);
     const std::string record = journal_in(station->folder.state());
     {
       ipc::Client dying = ipc::Client::connect(ipc::model_socket_path(station->folder.path() / "run"), "dying").value();
@@ -244,7 +244,7 @@ TEST_P(CutOff, TheClientsDeathLeavesTheDocumentAsItWas) {
     station->lives.wait_until_open();  // it isn't busy any more
     const bool hit = journal_in(station->folder.state()) == record;
     if (hit)
-      EXPECT_TRUE(face_of(watcher) == before);
+      EXPECT_TRUE(shown_by(watcher) == before);
     else
       apply(watcher, R"({"edit":"undo"})");
     return hit;
@@ -256,7 +256,7 @@ TEST_P(CutOff, AnInterruptedCommandLeavesTheDocumentAsItWas) {
   const std::unique_ptr<Station> station = edited();
   ipc::Client& watcher = station->lives.client();
   EXPECT_TRUE(tried_until_it_hits([&] {
-    const Face before = face_of(watcher);
+    const Shown before = shown_by(watcher);
     const std::string record = journal_in(station->folder.state());
     while (watcher.next_event()) {
     }
@@ -278,7 +278,7 @@ TEST_P(CutOff, AnInterruptedCommandLeavesTheDocumentAsItWas) {
       return false;
     }
     EXPECT_NE(command.standard_error().find("cancelled"), std::string::npos) << command.standard_error();
-    EXPECT_TRUE(face_of(watcher) == before);
+    EXPECT_TRUE(shown_by(watcher) == before);
     return true;
   })) << "no interrupt came in the middle";
 }

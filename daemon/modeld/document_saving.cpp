@@ -1,0 +1,352 @@
+// How the open document gets onto disk: in place, elsewhere, or as another deck that it goes on as.
+#include <algorithm>
+#include <limits>
+
+#include "daemon/modeld/carry_over.h"
+#include "daemon/modeld/deck_files.h"
+#include "daemon/modeld/document_keeper.h"
+#include "daemon/modeld/paths.h"
+#include "daemon/modeld/save_intent.h"
+#include "mesh/deck/deck.h"
+#include "mesh/model/growth.h"
+
+namespace prismesh::modeld {
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace mesh::document;
+using mesh::deck::OpenedDeck;
+using mesh::deck::Warning;
+
+/// Of a save in place: the rest is reading again what was written.
+constexpr double kShareOfWriting = 0.6;
+
+/// A progress of its own for the part of the work from `begin` to `begin + share`.
+Progress part_of(const Progress& whole, double begin, double share) {
+  return [&whole, begin, share](double fraction) { return !whole || whole(begin + fraction * share); };
+}
+
+/// Whether nodes or shells came, went or have other corners since the deck was read.
+bool has_grown(const Document& document) { return !mesh::changes_between(document.opened->model, document.current().model).empty(); }
+
+std::string names_of(const SaveIntent& intent) {
+  std::string names;
+  for (const SaveIntent::File& file : intent.files) names += (names.empty() ? "" : ", ") + file.target.string();
+  return names;
+}
+
+/// All if it can't be read: then nothing is known to be in it that could be lost by keeping it.
+std::uint64_t records_in(const fs::path& journal) {
+  const Result<JournalIntents> intents = read_intents(journal);
+  return intents ? intents->edits.size() : std::numeric_limits<std::uint64_t>::max();
+}
+
+ipc::Saved report_of(const fs::path& target, const mesh::deck::SaveReport& report) {
+  return {target.string(), report.nodes_written, report.lines_changed, report.notes};
+}
+
+Result<Journal> start_journal(const StateFolder& folder, const fs::path& path, Document& document) {
+  if (!is_there(path)) return Journal::create(path, document);
+  // Edits of another time on a deck that looked just like this one were saved or given up since, or their journal would be in
+  // use. It isn't deleted.
+  if (const Result<fs::path> retired = folder.retire(path, ".old"); !retired) return fail(retired.error());
+  return Journal::create(path, document);
+}
+
+/// The document's files have the names of another deck of the same content.
+void rename_files(Document& document, const Document& other) {
+  document.path = other.path;
+  for (std::shared_ptr<const Generation>& generation : document.generations) {
+    auto renamed = std::make_shared<Generation>(*generation);
+    renamed->around = other.opened->around;  // by which expressions name files
+    generation = std::move(renamed);
+  }
+}
+
+}  // namespace
+
+/// Saves of this deck that were cut off, before it is read: are they finished, did they not begin, can't they be told any more?
+Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warning>& warnings) {
+  const auto warn = [&](const char* kind, std::string message) { warnings.push_back({path.string(), 0, kind, std::move(message), 1}); };
+  for (const fs::path& file : folder_.save_intents(path)) {
+    const Result<SaveIntent> intent = read_save_intent(file);
+    if (!intent) {
+      const Result<fs::path> aside = folder_.retire(file, ".damaged");
+      if (!aside) return fail(aside.error());
+      warn("save-unknown", "a save was cut off, and its record is damaged (" + aside->string() +
+                               "): if the deck has several files, some may be from before the save and some from after it");
+      continue;
+    }
+    const Result<SaveOutcome> outcome = settle_save(*intent);
+    if (!outcome) return fail(outcome.error());
+    const fs::path journal = fs::path(file).replace_extension();  // "....journal.saving"
+    if (*outcome == SaveOutcome::finished)
+      warn("save-finished", "a save was cut off between the deck's files; the rest has been put in place now");
+    if (*outcome == SaveOutcome::mixed)
+      warn("save-mixed",
+           "a save was cut off between the deck's files, and can't be finished since something else has changed or removed some of them: " +
+               names_of(*intent));
+    const bool saved = *outcome == SaveOutcome::complete || *outcome == SaveOutcome::finished;
+    // Which of the two journals is obsolete; one that holds more than at that time holds edits of later, and stays.
+    const fs::path obsolete = saved ? journal : folder_.journal(path, intent->deck_after);
+    if (is_there(obsolete) && records_in(obsolete) <= (saved ? intent->records : intent->records_of_next))
+      if (const Result<fs::path> retired = folder_.retire(obsolete, saved ? ".saved" : ".unused"); !retired) return fail(retired.error());
+    folder_.remove(file);
+  }
+  return {};
+}
+
+Result<ipc::Saved> DocumentKeeper::save(const std::optional<std::string>& path, const Progress& progress) {
+  if (!open_) return fail("", "no document is open");
+  if (!path || same_file(open_->document.path, *path)) return save_in_place(progress);
+  const Result<fs::path> target = absolute(*path);
+  if (!target) return fail(target.error());
+  const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, *target, progress);
+  if (!report) return fail(report.error());
+  open_->saved = open_->document.generations[open_->document.cursor];
+  return report_of(*target, *report);
+}
+
+Result<ipc::Saved> DocumentKeeper::save_as(const std::string& path, const Progress& progress) {
+  if (!open_) return fail("", "no document is open");
+  OpenDocument& open = *open_;
+  if (same_file(open.document.path, path)) return save_in_place(progress);
+  const Result<fs::path> target = absolute(path);
+  if (!target) return fail(target.error());
+  // Where neither way can be gone, the next opening of the deck goes one.
+  (void)end_unfinished_save();
+  std::vector<Warning> of_earlier_saves;
+  if (Result<void> settled = settle_saves(*target, of_earlier_saves); !settled) return fail(std::move(settled.error()));
+  const Result<mesh::deck::SaveReport> report = mesh::document::save(open.document, *target, part_of(progress, 0, kShareOfWriting));
+  if (!report) return fail(report.error());
+  ipc::Saved saved = report_of(*target, *report);
+  if (Result<void> became = become(*target, part_of(progress, kShareOfWriting, 1 - kShareOfWriting), saved); !became) {
+    Error error = std::move(became.error());
+    error.message += ". " + path + " is written, as a copy; the document is still " + open.document.path.string();
+    return fail(std::move(error));
+  }
+  return saved;
+}
+
+/// The document goes on as the deck that was just written to `target`. Whenever the daemon dies, either deck has all edits.
+Result<void> DocumentKeeper::become(const fs::path& target, const Progress& progress, ipc::Saved& saved) {
+  OpenDocument& open = *open_;
+  Result<OpenedDeck> opened = mesh::deck::open(target, progress);
+  if (!opened) return fail(std::move(opened.error()));
+  Result<Document> next = read_again(target, std::move(*opened));
+  if (!next) return fail(std::move(next.error()));
+  const fs::path journal_file = folder_.journal(target, next->deck->content);
+  Result<Journal> journal = begin_journal(*next);
+  ipc::Open request = open.request;
+  request.path = target.string();
+  const Result<void> noted = journal ? folder_.write_session({request, 0}) : fail(journal.error());
+  if (!noted) {
+    folder_.remove(journal_file);
+    (void)folder_.write_session({open.request, 0});
+    return fail(noted.error());
+  }
+  const fs::path old = open.journal.path();
+  const bool whole = open.journal.takes_edits();
+  go_on_with(std::move(*next), std::move(*journal), saved);
+  open.request = std::move(request);
+  open.files = files_with_shells(open.document);
+  open.warnings.clear();
+  open.recovered = 0;
+  // A journal that stays is opened with its deck again, and its edits come back there: too many rather than too few.
+  if (open.unfinished)
+    open.unfinished.reset();
+  else
+    (void)folder_.retire(old, whole ? ".saved" : ".damaged");
+  return {};
+}
+
+Result<std::optional<ipc::SaveWould>> DocumentKeeper::would(const std::string& path) const {
+  if (!open_) return fail("", "no document is open");
+  const Document& document = open_->document;
+  if (same_file(document.path, path)) return std::nullopt;
+  const Result<fs::path> target = absolute(path);
+  if (!target) return fail(target.error());
+  const Result<std::vector<fs::path>> places =
+      mesh::deck::StagedSave::targets(*document.deck, document.opened->model, document.current().model, *target);
+  if (!places) return fail(places.error());
+  ipc::SaveWould would;
+  for (const fs::path& place : *places) {
+    if (is_there(place)) would.replace.push_back(place.string());
+    const std::string folder = place.parent_path().string();
+    if (!is_there(folder) && std::find(would.make.begin(), would.make.end(), folder) == would.make.end()) would.make.push_back(folder);
+  }
+  if (would.replace.empty() && would.make.empty()) return std::nullopt;
+  return would;
+}
+
+Result<ipc::Saved> DocumentKeeper::save_in_place(const Progress& progress) {
+  OpenDocument& open = *open_;
+  if (open.unfinished) {
+    ReadySave again = std::move(*open.unfinished);
+    open.unfinished.reset();
+    return finish_save(std::move(again));
+  }
+  Result<mesh::deck::StagedSave> staged =
+      mesh::document::stage_save(open.document, open.document.path, part_of(progress, 0, kShareOfWriting));
+  if (!staged) return fail(std::move(staged.error()));
+  if (staged->files().empty()) {
+    if (!open.journal.takes_edits())
+      if (Result<void> anew = begin_journal_anew(); !anew) return fail(std::move(anew.error()));
+    open.saved = open.document.generations[open.document.cursor];
+    return report_of(open.document.path, staged->report());
+  }
+  Result<ReadySave> ready = make_ready(std::move(*staged), part_of(progress, kShareOfWriting, 1 - kShareOfWriting));
+  if (!ready) return fail(std::move(ready.error()));
+  return finish_save(std::move(*ready));
+}
+
+/// A damaged journal makes room for one that holds what is shown. The deck needs no change for it.
+Result<void> DocumentKeeper::begin_journal_anew() {
+  OpenDocument& open = *open_;
+  const fs::path path = open.journal.path();
+  if (const Result<fs::path> retired = folder_.retire(path, ".damaged"); !retired) return fail(retired.error());
+  Document next = open.document;
+  next.generations = {next.opened};
+  next.cursor = 0;
+  Result<Journal> journal = Journal::create(path, next);
+  if (!journal) return fail(std::move(journal.error()));
+  if (Result<void> carried = carry_over(open.document.current(), next, *journal); !carried) return carried;
+  open.journal = std::move(*journal);
+  open.twins = {{next.generations[next.cursor], open.document.generations[open.document.cursor]}};
+  open.recorded = std::move(next);
+  return {};
+}
+
+/// What is open, read from a deck that it was saved as. Errors: it would not be read as what is shown.
+Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck opened) const {
+  const Document& now = open_->document;
+  const bool grown = has_grown(now);
+  const mesh::Model& model = grown ? now.current().model : now.opened->model;
+  if (mesh::live_nodes(opened.model) != mesh::live_nodes(model) || mesh::live_shells(opened.model) != mesh::live_shells(model))
+    return fail(path.string(), "the saved deck would not be read as what is shown here; nothing was changed");
+  OpenOptions options;
+  options.length_unit = now.settings.length_unit;
+  options.target_size = now.settings.target_size;
+  if (open_->request.criteria) options.criteria = *open_->request.criteria;
+  options.history_bytes = now.history_bytes;
+  Result<Document> next = mesh::document::open(path, std::move(opened), options);
+  if (!next) return next;
+  next->next_number = now.next_number;
+  if (grown) {
+    auto first = std::make_shared<Generation>(*next->opened);
+    first->number = next->next_number++;
+    next->opened = first;
+    next->generations = {next->opened};
+  }
+  return next;
+}
+
+/// The journal of a deck as it was read again: it begins with the selection and the parts' states.
+Result<Journal> DocumentKeeper::begin_journal(Document& next) const {
+  Result<Journal> journal = start_journal(folder_, folder_.journal(next.path, next.deck->content), next);
+  if (!journal) return journal;
+  const Document& now = open_->document;
+  Result<void> carried = has_grown(now) ? carry_over_by_ids(now.current(), next, *journal) : carry_over(now.current(), next, *journal);
+  if (!carried) return fail(std::move(carried.error()));
+  return journal;
+}
+
+/// The saved deck is what edits are compared with and journalled on from now on.
+void DocumentKeeper::go_on_with(Document next, Journal journal, ipc::Saved& saved) {
+  OpenDocument& open = *open_;
+  open.journal = std::move(journal);
+  open.twins.clear();
+  if (has_grown(open.document)) {
+    open.document = next;
+    saved.notes.emplace_back("the history begins anew with the saved deck, since nodes or elements came, went or were given other corners");
+  } else {
+    if (next.path != open.document.path) rename_files(open.document, next);
+    open.twins.push_back({next.generations[next.cursor], open.document.generations[open.document.cursor]});
+    open.document.deck = next.deck;
+    open.document.opened = next.opened;
+    open.document.next_number = std::max(open.document.next_number, next.next_number);
+  }
+  open.saved = open.document.generations[open.document.cursor];
+  open.recorded = std::move(next);
+}
+
+/// After a save in place the deck on disk is another one, so its text is read again and a new journal begins, with the selection and the
+/// parts' states; all of it before the first file is replaced, so that whenever the daemon dies, deck and journal belong together. The
+/// history stays, unless nodes or shells came or went: then what was read has other indices, and the history begins anew.
+Result<DocumentKeeper::ReadySave> DocumentKeeper::make_ready(mesh::deck::StagedSave staged, const Progress& progress) {
+  OpenDocument& open = *open_;
+  Result<OpenedDeck> opened = staged.open(progress);
+  if (!opened) return fail(std::move(opened.error()));
+  Result<Document> next = read_again(open.document.path, std::move(*opened));
+  if (!next) return fail(std::move(next.error()));
+
+  SaveIntent intent = intent_of(staged);
+  intent.deck_before = open.document.deck->content;
+  intent.deck_after = next->deck->content;
+  intent.records = open.journal.records();
+  intent.records_of_next = steps_to_carry(open.document.current());
+  const fs::path intent_file = StateFolder::save_intent(open.journal.path());
+  for (const fs::path& other : folder_.save_intents(open.document.path)) folder_.remove(other);
+  if (Result<void> written = write_save_intent(intent_file, intent); !written) return fail(std::move(written.error()));
+  const fs::path journal_file = folder_.journal(next->path, next->deck->content);
+  const auto give_up = [&](Error error) {
+    folder_.remove(journal_file);
+    folder_.remove(intent_file);
+    error.message += "; the deck is as it was";
+    return fail(std::move(error));
+  };
+  Result<Journal> journal = begin_journal(*next);
+  if (!journal) return give_up(std::move(journal.error()));
+  ReadySave ready(std::move(staged), intent_file, std::move(*next), std::move(*journal));
+  ready.saved = report_of(open.document.path, ready.staged.report());
+  return ready;
+}
+
+/// Replaces the deck's files and goes on with the new journal.
+Result<ipc::Saved> DocumentKeeper::finish_save(ReadySave save) {
+  OpenDocument& open = *open_;
+  if (Result<void> placed = save.staged.put_in_place(); !placed) {
+    Error error = std::move(placed.error());
+    const bool begun = save.staged.has_begun();
+    const Result<void> taken_back = begun ? save.staged.take_back() : Result<void>();
+    if (taken_back) {
+      forget(save);
+      if (begun) error.message += "; the files that had been replaced were given back what they held before";
+      return fail(std::move(error));
+    }
+    error.message += "; giving the others back what they held failed as well (" + taken_back.error().text() +
+                     "). Save again to finish the save, or save under another name; no edits are taken until then";
+    open.unfinished = std::move(save);
+    return fail(std::move(error));
+  }
+  const fs::path old = open.journal.path();
+  const bool whole = open.journal.takes_edits();
+  go_on_with(std::move(save.next), std::move(save.journal), save.saved);
+  // Where this fails the intent stays, and the next opening does it.
+  if (const Result<fs::path> retired = folder_.retire(old, whole ? ".saved" : ".damaged"); retired) folder_.remove(save.intent);
+  return std::move(save.saved);
+}
+
+/// A save that replaced nothing, or has taken back what it replaced: all is as before it.
+void DocumentKeeper::forget(ReadySave& save) {
+  folder_.remove(save.journal.path());
+  folder_.remove(save.intent);
+  save.staged = {};
+}
+
+/// Before the document is given up: its deck is left whole. Errors: neither way can be gone.
+Result<void> DocumentKeeper::end_unfinished_save() {
+  if (!open_->unfinished) return {};
+  ReadySave save = std::move(*open_->unfinished);
+  open_->unfinished.reset();
+  if (save.staged.take_back()) {
+    forget(save);
+    return {};
+  }
+  const Result<ipc::Saved> finished = finish_save(std::move(save));
+  if (!finished) return fail(finished.error());
+  return {};
+}
+
+}  // namespace prismesh::modeld

@@ -1,0 +1,184 @@
+// Saving as another deck: what the document is then, what the deck it was keeps, and what is said before anything is replaced.
+#include <memory>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/modeld/bench.h"
+#include "mesh/document/edit_json.h"
+#include "tests/daemon/modeld/folder.h"
+
+namespace prismesh::modeld {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Folder;
+using ::testing::ElementsAre;
+
+class SaveAs : public ::testing::Test {
+ protected:
+  DocumentKeeper keeper() const { return DocumentKeeper(StateFolder(folder_.state())); }
+  static void open(DocumentKeeper& keeper, const fs::path& deck) {
+    ipc::Open request;
+    request.path = deck.string();
+    const Result<bool> opened = keeper.open(request, {});
+    ASSERT_TRUE(opened) << opened.error().text();
+  }
+  static void edit(DocumentKeeper& keeper, const char* json) {
+    const auto report = keeper.edit(mesh::document::parse_edit(json).value());
+    ASSERT_TRUE(report) << report.error().text();
+  }
+  static double height(const DocumentKeeper& keeper, std::int64_t id) {
+    const mesh::Model& model = keeper.document().current().model;
+    return model.position(model.find_node(id)).z();
+  }
+  Folder folder_;
+};
+
+constexpr const char* kLift = R"({"edit":"translate","by":[0,0,0.25],"on":"1313","falloff":{"profile":"constant"}})";
+
+TEST_F(SaveAs, GoesOnUnderTheNewNameWithItsHistory) {
+  const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
+  const std::string original = test::whole_file(deck);
+  double start = 0;
+  std::size_t warnings = 0;
+  {
+    DocumentKeeper first = keeper();
+    open(first, deck);
+    warnings = first.state().warnings.size();
+    start = height(first, 1313);
+    edit(first, kLift);
+    const Result<ipc::Saved> saved = first.save_as(other.string());
+    ASSERT_TRUE(saved) << saved.error().text();
+    EXPECT_EQ(saved->path, other.string());
+    EXPECT_EQ(first.state().path, other.string());
+    EXPECT_FALSE(first.state().changed);
+    EXPECT_THAT(first.state().files, ElementsAre(::testing::Field(&ipc::DeckFile::name, "other.k")));
+    edit(first, R"({"edit":"undo"})");
+    EXPECT_EQ(height(first, 1313), start);
+    EXPECT_TRUE(first.state().changed);
+    edit(first, R"({"edit":"redo"})");
+    edit(first, kLift);
+    ASSERT_TRUE(first.save(std::nullopt));
+    EXPECT_EQ(test::whole_file(deck), original) << "what was to be kept";
+    EXPECT_EQ(test::compare_decks(original, test::whole_file(other)).nodes.size(), 1u);
+    edit(first, kLift);
+    edit(first, R"({"edit":"select","expr":"file:other.k","kind":"part"})");
+  }  // as if killed
+  DocumentKeeper second = keeper();
+  const Result<bool> again = second.reopen({});
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(second.state().path, other.string());
+  EXPECT_NEAR(height(second, 1313), start + 0.75, 1e-9);
+  ASSERT_TRUE(second.close(true));
+  // The deck that it was: as on disk, without edits that were saved under the other name.
+  open(second, deck);
+  EXPECT_EQ(height(second, 1313), start);
+  EXPECT_EQ(second.state().recovered_edits, 0u);
+  EXPECT_EQ(second.state().warnings.size(), warnings);
+}
+
+TEST_F(SaveAs, TakesIncludesAndStructureAlong) {
+  const fs::path deck = folder_.two_files(), other = folder_.path() / "new/main.k";
+  auto killed = std::make_unique<DocumentKeeper>(keeper());
+  DocumentKeeper& first = *killed;
+  open(first, deck);
+  edit(first, R"({"edit":"translate","by":[0,0,0.25],"on":"5","falloff":{"profile":"constant"}})");
+  edit(first, R"({"edit":"split","at":["shell:1"]})");
+  const std::string main = test::whole_file(deck), rest = test::whole_file(folder_.path() / "rest.k");
+  const Result<ipc::Saved> saved = first.save_as(other.string());
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(test::whole_file(deck), main);
+  EXPECT_EQ(test::whole_file(folder_.path() / "rest.k"), rest);
+  EXPECT_EQ(first.state().shells, 3u);
+  EXPECT_THAT(saved->notes, ::testing::Contains(::testing::HasSubstr("the history begins anew")));
+  edit(first, R"({"edit":"translate","by":[0,0,0.25],"on":"5","falloff":{"profile":"constant"}})");
+  killed.reset();
+  DocumentKeeper second = keeper();
+  const Result<bool> again = second.reopen({});
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(second.state().path, other.string());
+  EXPECT_EQ(second.state().shells, 3u);
+  EXPECT_EQ(height(second, 5), 0.5);
+}
+
+TEST_F(SaveAs, SaysWhatItWouldReplaceAndMakeAndTouchesNothing) {
+  const fs::path deck = folder_.two_files();
+  ipc::SnapshotPublisher publisher(1);
+  Bench bench(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
+  ipc::Open request;
+  request.path = deck.string();
+  ASSERT_TRUE(std::holds_alternative<ipc::State>(bench.open(request, {}).answer));
+  const auto ask = [&](const fs::path& target, bool asks) { return bench.save({target.string(), true, asks}).answer; };
+
+  const fs::path made = folder_.path() / "new";
+  ipc::Answer answer = ask(made / "main.k", true);
+  ASSERT_TRUE(std::holds_alternative<ipc::SaveWould>(answer));
+  EXPECT_THAT(std::get<ipc::SaveWould>(answer).make, ElementsAre(made.string()));
+  EXPECT_THAT(std::get<ipc::SaveWould>(answer).replace, ElementsAre());
+  EXPECT_FALSE(fs::exists(made));
+
+  fs::create_directory(made);
+  std::ofstream(made / "rest.k") << "mine\n";
+  answer = ask(made / "main.k", true);
+  ASSERT_TRUE(std::holds_alternative<ipc::SaveWould>(answer));
+  EXPECT_THAT(std::get<ipc::SaveWould>(answer).replace, ElementsAre((made / "rest.k").string())) << "includes are written too";
+  EXPECT_EQ(test::whole_file(made / "rest.k"), "mine\n");
+
+  EXPECT_TRUE(std::holds_alternative<ipc::Saved>(ask(made / "main.k", false)));
+  EXPECT_NE(test::whole_file(made / "rest.k"), "mine\n");
+  EXPECT_TRUE(std::holds_alternative<ipc::Saved>(ask(made / "main.k", true))) << "its own files aren't asked about";
+  answer = ask("elsewhere.k", true);
+  ASSERT_TRUE(std::holds_alternative<ipc::Failed>(answer));
+  EXPECT_THAT(std::get<ipc::Failed>(answer).message, ::testing::HasSubstr("absolute"));
+}
+
+TEST_F(SaveAs, WhereItCantGoOnTheDocumentIsTheOneItWas) {
+  const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
+  auto killed = std::make_unique<DocumentKeeper>(keeper());
+  DocumentKeeper& first = *killed;
+  open(first, deck);
+  edit(first, kLift);
+  const double lifted = height(first, 1313);
+  const fs::path away = folder_.path() / "away";
+  fs::rename(folder_.state(), away);
+  std::ofstream(folder_.state()) << "no folder";  // so no new journal can be made
+  const Result<ipc::Saved> saved = first.save_as(other.string());
+  fs::remove(folder_.state());
+  fs::rename(away, folder_.state());
+  ASSERT_FALSE(saved);
+  EXPECT_THAT(saved.error().message, ::testing::HasSubstr("the document is still " + deck.string()));
+  EXPECT_EQ(first.state().path, deck.string());
+  EXPECT_TRUE(first.state().changed);
+  edit(first, kLift);
+  killed.reset();
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.reopen({}));
+  EXPECT_EQ(second.state().path, deck.string());
+  EXPECT_NEAR(height(second, 1313), lifted + 0.25, 1e-9);
+}
+
+TEST_F(SaveAs, AnotherDeckIsOpenedWithoutTheEditsOnlyOnceItIsRead) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, kLift);
+  const double lifted = height(first, 1313);
+  ipc::Open request;
+  request.path = (folder_.path() / "missing.k").string();
+  request.discard = true;
+  EXPECT_FALSE(first.open(request, {}));
+  EXPECT_EQ(height(first, 1313), lifted) << "nothing was given up for a deck that can't be opened";
+  request.path = folder_.two_files().string();
+  request.discard = false;
+  EXPECT_FALSE(first.open(request, {}));
+  request.discard = true;
+  ASSERT_TRUE(first.open(request, {}));
+  EXPECT_EQ(first.state().path, request.path);
+  DocumentKeeper second = keeper();
+  open(second, deck);
+  EXPECT_EQ(second.state().recovered_edits, 0u);
+}
+
+}  // namespace
+}  // namespace prismesh::modeld
