@@ -1,6 +1,8 @@
 #include "daemon/modeld/daemon.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,6 +14,7 @@
 #include "base/log.h"
 #include "daemon/modeld/bench.h"
 #include "daemon/modeld/desk.h"
+#include "daemon/modeld/watchdog.h"
 #include "daemon/modeld/worker.h"
 #include "ipc/client.h"
 #include "ipc/messages_json.h"
@@ -19,6 +22,23 @@
 #include "ipc/state_page.h"
 
 namespace prismesh::modeld {
+
+namespace {
+
+/// The loop says every half second that it turns.
+constexpr std::chrono::milliseconds kWatchBeat{500};
+static_assert(kWatchBeat.count() * 1'000'000 >= ipc::kHeartbeatPeriodNs);
+constexpr std::chrono::seconds kMaxUnserved{20};
+
+/// By a signal, so that the stacks of all threads can be looked at later. What is acknowledged is on disk.
+void end_hung_process(const std::string& what) {
+  ::alarm(5);  // should even the log hang
+  logging::critical("{}: the daemon hangs and ends itself, to be started anew; what was acknowledged is on disk", what);
+  logging::flush();
+  std::abort();
+}
+
+}  // namespace
 
 struct Daemon::State final : ipc::ServerHandler, Outlet {
   State(const DaemonOptions& options, ipc::Descriptor state_lock, ipc::StatePage state_page)
@@ -35,7 +55,9 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   ipc::SnapshotPublisher publisher;
   Bench bench;
   Desk desk;
-  Worker worker;  // last: it ends before what it works on
+  Pulse loop_pulse;
+  std::optional<Watchdog> watchdog;  // while the worker ends, too
+  Worker worker;                     // last: it ends before what it works on
 
   // --- from the socket ---
 
@@ -101,11 +123,21 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   void post(std::function<void()> work) override { server->post(std::move(work)); }
 
   void beat() {
+    loop_pulse.sign();
     MonotonicClock clock;
     ipc::Health health = desk.health();
     health.heartbeat_ns = clock.now_ns();
     health.pid = ::getpid();
     page.set_health(health);
+  }
+
+  void watch(std::chrono::seconds limit) {
+    if (limit.count() == 0) return;
+    const auto beats = [](std::chrono::seconds silence) { return static_cast<int>(silence / kWatchBeat); };
+    std::vector<Silence> watched;
+    watched.emplace_back("clients aren't served", loop_pulse, beats(std::min(limit, kMaxUnserved)));
+    watched.emplace_back("the work under way makes no progress", worker.pulse(), beats(limit));
+    watchdog.emplace(std::move(watched), kWatchBeat, end_hung_process);
   }
 
   void begin() {
@@ -130,6 +162,7 @@ Result<Daemon> Daemon::start(const DaemonOptions& options) {
   Result<ipc::Server> server = ipc::Server::listen(ipc::model_socket_path(options.runtime_directory), *state);
   if (!server) return fail(std::move(server.error()));
   state->server = std::move(*server);
+  state->watch(options.hang_limit);
   state->begin();
   return Daemon(std::move(state));
 }
@@ -138,7 +171,11 @@ Daemon::Daemon(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Daemon::Daemon(Daemon&&) noexcept = default;
 Daemon::~Daemon() = default;
 
-void Daemon::run() { state_->server->run(); }
+void Daemon::run() {
+  state_->loop_pulse.begin();
+  state_->server->run();
+  state_->loop_pulse.end();
+}
 void Daemon::stop() { state_->server->stop(); }
 
 }  // namespace prismesh::modeld

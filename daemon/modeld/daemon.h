@@ -1,6 +1,7 @@
 // modeld put together: the socket, the desk, the worker, the state page.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@ struct DaemonOptions {
   std::filesystem::path runtime_directory;
   std::filesystem::path state_directory;
   std::size_t history_bytes = std::size_t{2} << 30;  ///< what the states kept for undo and redo may take
+  std::chrono::seconds hang_limit{60};               ///< without a sign of life for so long the process ends itself; 0: it never does
 };
 
 class Daemon {

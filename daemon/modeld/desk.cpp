@@ -297,6 +297,7 @@ void Desk::tell(Outcome& outcome) {
 
 Progress Desk::watch(std::string what) {
   return [this, what = std::move(what), last_ns = std::int64_t{0}](double fraction) mutable {
+    worker_.show_progress();
     MonotonicClock clock;
     if (const std::int64_t now_ns = clock.now_ns(); now_ns - last_ns > kProgressPeriod_ns) {
       last_ns = now_ns;

@@ -1,4 +1,5 @@
 // prismesh-modeld: the document's daemon. Options and logging; the rest is in daemon.h.
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   options.runtime_directory = prismesh::ipc::runtime_directory(given.path("--runtime-dir"));
   options.state_directory = prismesh::modeld::state_directory(given.path("--state-dir"));
   options.history_bytes = static_cast<std::size_t>(settings->document.history_mb) << 20;
+  options.hang_limit = std::chrono::seconds(settings->document.hang_s);
   prismesh::Result<prismesh::modeld::Daemon> daemon = prismesh::modeld::Daemon::start(options);
   if (!daemon) {
     std::fprintf(stderr, "%s\n", daemon.error().text().c_str());

@@ -33,7 +33,9 @@ void Worker::serve() {
       job = std::move(jobs_.front());
       jobs_.pop_front();
     }
+    pulse_.begin();
     job();
+    pulse_.end();
   }
 }
 

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <thread>
 
+#include "daemon/modeld/watchdog.h"
+
 namespace prismesh::modeld {
 
 class Worker {
@@ -21,6 +23,9 @@ class Worker {
   void run(std::function<void()> job);
   /// Whether long jobs should stop now.
   bool stopping() const { return stopping_; }
+  /// Signs are expected while a job is under way; jobs give them by `show_progress`.
+  const Pulse& pulse() const { return pulse_; }
+  void show_progress() { pulse_.sign(); }
 
  private:
   void serve();
@@ -29,6 +34,7 @@ class Worker {
   std::condition_variable wake_;
   std::deque<std::function<void()>> jobs_;
   std::atomic<bool> stopping_ = false;
+  Pulse pulse_;
   std::thread thread_;
 };
 

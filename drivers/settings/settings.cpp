@@ -198,7 +198,9 @@ class Reader {
                 {name_or_file("profile", settings_.display.profile, folder_, "a profile's name or file in quotes, like \"prism-mask\""),
                  number("latency_ms", settings_.display.latency_ms, 0, 200, " ms")}},
         Section{"hand", {name_or_file("mouse", settings_.hand.mouse, folder_, "a layout's name or file in quotes, like \"right-orbit\"")}},
-        Section{"document", {whole("history_mb", settings_.document.history_mb, 16, 1'048'576, " MB")}},
+        Section{"document",
+                {whole("history_mb", settings_.document.history_mb, 16, 1'048'576, " MB"),
+                 whole("hang_s", settings_.document.hang_s, 0, 86'400, " s")}},
         tracker_section(settings_.eye_tracker, places_, file_), servo_section(settings_.prism_servo, places_, file_)};
     std::vector<std::string_view> names;
     for (const Section& section : sections) names.push_back(section.name);

@@ -63,6 +63,7 @@ struct HandSettings {
 /// What the model server keeps.
 struct DocumentSettings {
   std::int64_t history_mb = 2048;  ///< of states kept for undo and redo
+  std::int64_t hang_s = 60;        ///< without a sign of life for so long the server ends itself, to be started anew; 0: never
 };
 
 struct Settings {

@@ -20,6 +20,13 @@
 
 namespace prismesh::test {
 
+void hang_where_told(const char* call) {
+  const char* const where = std::getenv("PRISMESH_HANG_IN");
+  const char* const mark = std::getenv("PRISMESH_HANG_MARK");
+  if (where == nullptr || mark == nullptr || std::strcmp(where, call) != 0 || ::syscall(SYS_unlink, mark) != 0) return;
+  for (;;) ::pause();
+}
+
 namespace {
 
 using Kind = FileCall::Kind;
@@ -187,6 +194,7 @@ ssize_t written(int fd, const iovec* pieces, int count, off_t offset) {
 }
 
 int synced(int fd, long number) {
+  hang_where_told("sync");
   const OpenFile file = open_on(fd);
   return recorded(!file.path.empty(),
                   [&] { return recorder.on ? 0 : static_cast<int>(::syscall(number, fd)); },  // nobody cuts the power here

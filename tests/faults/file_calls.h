@@ -46,6 +46,9 @@ std::uint64_t counted_file_calls();
 /// Ends it.
 void stop_recording_file_calls();
 
+/// Where PRISMESH_HANG_IN names this call, and the file PRISMESH_HANG_MARK is there, removes that file and never returns.
+void hang_where_told(const char* call);
+
 /// What a log holds. Errors end the test program: a log is the test's own.
 std::vector<FileCall> read_file_calls(const std::filesystem::path& log);
 

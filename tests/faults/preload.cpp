@@ -1,4 +1,9 @@
-// Loaded into a whole program (LD_PRELOAD), this records its file calls: below PRISMESH_FILE_CALLS_BELOW, into PRISMESH_FILE_CALLS_LOG.
+// Loaded into a whole program (LD_PRELOAD), this records its file calls: below PRISMESH_FILE_CALLS_BELOW, into PRISMESH_FILE_CALLS_LOG. It
+// can also let one call hang.
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <cstdlib>
 
 #include "tests/faults/file_calls.h"
@@ -15,3 +20,8 @@ struct Begin {
 const Begin begin;
 
 }  // namespace
+
+extern "C" int accept4(int socket, sockaddr* address, socklen_t* size, int flags) {
+  prismesh::test::hang_where_told("accept");
+  return static_cast<int>(::syscall(SYS_accept4, socket, address, size, flags));
+}

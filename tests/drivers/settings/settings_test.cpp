@@ -39,7 +39,7 @@ std::string all_of(const Settings& settings) {
        << t.offset_mm.x() << ' ' << t.offset_mm.y() << ' ' << t.offset_mm.z() << '|' << t.eye_separation_mm << '|' << t.motion << '|'
        << int(s.driver) << '|' << s.simulated << '|' << s.port << '|' << s.baud << '|' << s.id << '|' << s.travel_mm_per_turn << '|'
        << s.reversed << '|' << s.zero_ticks << '|' << s.travel_mm << '|' << s.speed_mm_s << '|' << s.lag_ms << '|' << settings.hand.mouse
-       << '|' << settings.document.history_mb;
+       << '|' << settings.document.history_mb << '|' << settings.document.hang_s;
   return text.str();
 }
 
@@ -51,6 +51,7 @@ latency_ms = 6.5
 mouse = "middle-orbit"
 [document]
 history_mb = 64
+hang_s = 30
 [eye_tracker]
 driver = "dynasight"
 simulated = true
@@ -83,7 +84,7 @@ TEST(Settings, an_empty_file_leaves_every_default) { EXPECT_EQ(all_of(parsed("")
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
             "anaglyph|6.5|1|1|/dev/serial/by-id/usb-tracker|9600|0|1|4243|12.5|0.5|1 210.5 -15|61|lean|"
-            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64");
+            "1|1|/dev/serial/by-id/usb-servo|57600|7|4|1|1000|1.5|6|20|middle-orbit|64|30");
 }
 
 TEST(Settings, names_choose_drivers_and_dialects) {
@@ -124,6 +125,7 @@ TEST(Settings, wrong_text_is_told_with_its_line_and_the_way_out) {
       {"[display]\nprofile = ''\n", "station.toml:2: display.profile must be a profile's name or file in quotes"},
       {"[hand]\nmouse = 3\n", "station.toml:2: hand.mouse must be a layout's name or file in quotes"},
       {"[document]\nhistory_mb = 1\n", "station.toml:2: document.history_mb is 1; it must be from 16 to 1048576 MB"},
+      {"[document]\nhang_s = -1\n", "station.toml:2: document.hang_s is -1; it must be from 0 to 86400 s"},
       {"[display]\nprofile = \n", "station.toml:2: "},
       {"[display]\n[display]\n", "station.toml:2: "},
       {"[display]\nprofile = \"\xff\"\n", "station.toml:2: "},
