@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstring>
 #include <map>
+#include <new>
 #include <utility>
 
 #include <sys/socket.h>
@@ -165,10 +166,14 @@ struct Server::State {
     if (!connection) return;
     connection->watched->async_wait(stream_descriptor::wait_read, [this, client, connection](const error_code& problem) {
       if (problem || connection->closed) return;
-      const Result<bool> received = connection->lines.receive();
-      deliver(client);
-      if (connection->closed) return;
-      if (!received) return close(client, received.error().message);
+      try {
+        const Result<bool> received = connection->lines.receive();
+        deliver(client);
+        if (connection->closed) return;
+        if (!received) return close(client, received.error().message);
+      } catch (const std::bad_alloc&) {
+        return close(client, "there wasn't enough memory for what it sent");
+      }
       read_next(client);
     });
   }
@@ -231,7 +236,11 @@ struct Server::State {
     timer.expires_after(std::chrono::duration_cast<asio::steady_timer::duration>(period));
     timer.async_wait([this, &timer, period, work = std::move(work)](const error_code& stopped) mutable {
       if (stopped) return;
-      work();
+      try {
+        work();
+      } catch (const std::bad_alloc&) {
+        // Next time, perhaps.
+      }
       repeat(timer, period, std::move(work));
     });
   }
@@ -258,7 +267,16 @@ Server::~Server() {
   ::unlink(state_->path.c_str());
 }
 
-void Server::run() { state_->loop.run(); }
+void Server::run() {
+  for (;;) {
+    try {
+      state_->loop.run();
+      return;
+    } catch (const std::bad_alloc&) {
+      // One piece of work is left out; the others go on.
+    }
+  }
+}
 void Server::stop() { state_->loop.stop(); }
 void Server::post(std::function<void()> work) { asio::post(state_->loop, std::move(work)); }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <new>
 #include <optional>
 #include <set>
 #include <string>
@@ -29,6 +30,13 @@ namespace {
 constexpr std::chrono::milliseconds kWatchBeat{500};
 static_assert(kWatchBeat.count() * 1'000'000 >= ipc::kHeartbeatPeriodNs);
 constexpr std::chrono::seconds kMaxUnserved{20};
+
+constexpr const char* kNoMemoryToAnswer = "there isn't enough memory for the answer";
+
+bool says_what_was_done(const ipc::Answer& answer) {
+  return std::holds_alternative<ipc::Edited>(answer) || std::holds_alternative<ipc::Saved>(answer) ||
+         std::holds_alternative<ipc::State>(answer) || std::holds_alternative<ipc::DragBegun>(answer);
+}
 
 /// By a signal, so that the stacks of all threads can be looked at later. What is acknowledged is on disk.
 void end_hung_process(const std::string& what) {
@@ -105,18 +113,28 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer))
       logging::info("client {}: refused: {}", client, Error{failed->file, failed->line, failed->message}.text());
     const std::size_t count = descriptors.size();
-    server->send(client, ipc::encode_answer(number, answer, count), std::move(descriptors));
+    try {
+      server->send(client, ipc::encode_answer(number, answer, count), std::move(descriptors));
+    } catch (const std::bad_alloc&) {
+      // What was done must not be called failed; the client asks again how things are.
+      if (says_what_was_done(answer)) return server->cut(client, kNoMemoryToAnswer);
+      server->send(client, ipc::encode_answer(number, ipc::Failed{"", 0, kNoMemoryToAnswer}, 0));
+    }
   }
 
   void tell(ipc::ClientId client, const ipc::Event& event) override {
-    if (greeted.contains(client)) server->send(client, ipc::encode_event(event));
+    if (!greeted.contains(client)) return;
+    try {
+      server->send(client, ipc::encode_event(event));
+    } catch (const std::bad_alloc&) {
+      server->cut(client, kNoMemoryToAnswer);
+    }
   }
 
   void tell_all(const ipc::Event& event) override {
-    const std::string line = ipc::encode_event(event);
     // A copy: sending to a client that is cut off for it changes the set.
     const std::set<ipc::ClientId> all = greeted;
-    for (const ipc::ClientId client : all) server->send(client, line);
+    for (const ipc::ClientId client : all) tell(client, event);
     beat();
   }
 

@@ -1,9 +1,11 @@
 #include "daemon/modeld/desk.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <memory>
 #include <new>
+#include <thread>
 #include <utility>
 
 #include "base/clock.h"
@@ -18,19 +20,32 @@ constexpr std::size_t kMostWaitingBytes = std::size_t{32} << 20;
 constexpr std::size_t kMostLeases = 256;
 constexpr std::int64_t kProgressPeriod_ns = 100'000'000;
 
+constexpr const char* kNoMemory = "there isn't enough memory to do this; everything is as it was";
+
 /// What the work gives; an exception, which work leaves everything as it was for, is an answer like another.
 Outcome done_or_failed(const std::function<Outcome()>& work) {
   Outcome failed;
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    failed.answer = ipc::Failed{"", 0, "there isn't enough memory to do this; everything is as it was"};
+    failed.answer = ipc::Failed{"", 0, kNoMemory};
   } catch (const std::exception& problem) {
     failed.answer =
         ipc::Failed{"", 0, std::string("this failed by a fault of the program (") + problem.what() + "); everything is as it was"};
   }
   logging::error("{}", std::get<ipc::Failed>(failed.answer).message);
   return failed;
+}
+
+/// Without it nothing else would ever be done: where memory lacks it is tried until there is some.
+void post_in_any_case(Outlet& outlet, const std::function<void()>& work) {
+  for (;;) {
+    try {
+      return outlet.post(work);
+    } catch (const std::bad_alloc&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
 }
 
 }  // namespace
@@ -181,7 +196,13 @@ void Desk::pump() {
   Client& from = clients_[next.client];
   --from.waiting;
   from.waiting_bytes -= next.bytes;
-  begin(std::move(next));
+  const ipc::ClientId client = next.client;
+  const std::uint64_t number = next.number;
+  try {
+    begin(std::move(next));
+  } catch (const std::bad_alloc&) {
+    refuse(client, number, kNoMemory);
+  }
 }
 
 /// While a drag is under way nothing else is: its newest step first, then its end.
@@ -266,20 +287,22 @@ void Desk::begin_drag(Waiting next, const mesh::document::Edit& edit) {
 }
 
 void Desk::run(std::function<Outcome()> work, std::function<void(Outcome&)> then) {
-  running_ = true;
-  worker_.run([this, work = std::move(work), then = std::move(then)] {
-    // Shared, since what is posted must be copyable and descriptors aren't.
-    auto outcome = std::make_shared<Outcome>(done_or_failed(work));
-    outlet_.post([this, outcome, then] {
-      running_ = false;
-      stepping_ = false;
-      progress_ = 0;
-      then(*outcome);
-      // However it ended: who was told how far it is learns that it is over.
-      if (!told_.empty()) outlet_.tell_all(ipc::ProgressMade{std::exchange(told_, {}), 1});
-      pump();
-    });
+  // Shared, since what is posted must be copyable and descriptors aren't.
+  auto outcome = std::make_shared<Outcome>();
+  auto over = [this, outcome, then = std::move(then)] {
+    running_ = false;
+    stepping_ = false;
+    progress_ = 0;
+    then(*outcome);
+    // However it ended: who was told how far it is learns that it is over.
+    if (!told_.empty()) outlet_.tell_all(ipc::ProgressMade{std::exchange(told_, {}), 1});
+    pump();
+  };
+  worker_.run([this, work = std::move(work), outcome, over = std::move(over)] {
+    *outcome = done_or_failed(work);
+    post_in_any_case(outlet_, over);
   });
+  running_ = true;
 }
 
 void Desk::finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome) {

@@ -65,5 +65,67 @@ TEST(Memory, WhereThereIsNoneTheClientIsToldAndTheDocumentIsWhole) {
   running.join();
 }
 
+/// The thread that serves clients: their lines, answers and events.
+TEST(Memory, WhereTheLoopHasNoneClientsAreToldOrCutOffAndTheDaemonGoesOn) {
+  const test::Folder folder;
+  DaemonOptions options;
+  options.runtime_directory = folder.path() / "run";
+  options.state_directory = folder.state();
+  Result<Daemon> daemon = Daemon::start(options);
+  ASSERT_TRUE(daemon) << daemon.error().text();
+  std::thread running([&] {
+    test::mark_this_thread();
+    daemon->run();
+  });
+  {
+    const auto connect = [&] { return ipc::Client::connect(ipc::model_socket_path(options.runtime_directory), "test"); };
+    Result<ipc::Client> client = connect();
+    ASSERT_TRUE(client) << client.error().text();
+    ipc::Open open;
+    open.path = folder.uneven_sheet(60).string();
+    ASSERT_TRUE(client->call(open, 60s));
+    const auto parsed = [](const std::string& json) { return mesh::document::parse_edit(json).value(); };
+    const auto lift = parsed(R"({"edit":"lift","distance":1,"on":"all"})");
+    ASSERT_TRUE(client->call(ipc::ApplyEdit{lift}, 60s));
+    const auto journalled = [&] { return std::get<ipc::State>(client->call(ipc::GetState{}, 60s).value()).journalled_edits; };
+    std::uint64_t edits = journalled();
+    const ipc::Request requests[] = {ipc::GetQuality{"warpage", false},
+                                     ipc::Count{"1" + std::string(5'000, ' '), mesh::select::Kind::node},
+                                     ipc::GetState{},
+                                     ipc::ApplyEdit{lift},
+                                     ipc::GetSnapshot{},
+                                     ipc::Save{}};
+    std::size_t refused = 0, cut_off = 0;
+    for (const ipc::Request& request : requests) {
+      for (const std::size_t from : {4'000, 1'000, 300}) {
+        SCOPED_TRACE(std::to_string(request.index()) + " from " + std::to_string(from));
+        test::refuse_allocations_from(from, test::Where::in_marked_threads);
+        const auto answer = client->call(request, 60s);
+        test::allow_all_allocations();
+        if (!answer && answer.error().message.find("memory") != std::string::npos) {
+          ++refused;
+        } else if (!answer) {
+          ++cut_off;
+          client = connect();
+          ASSERT_TRUE(client) << client.error().text();
+        }
+        const std::uint64_t now = journalled();
+        if (std::holds_alternative<ipc::ApplyEdit>(request)) {
+          EXPECT_TRUE(now == edits + 1 || (!answer && now == edits));
+        } else if (!std::holds_alternative<ipc::Save>(request)) {
+          EXPECT_EQ(now, edits);
+        }
+        edits = now;
+        ASSERT_TRUE(client->call(ipc::ApplyEdit{lift}, 60s)) << "the daemon goes on";
+        ++edits;
+      }
+    }
+    EXPECT_GE(refused, 1u);
+    EXPECT_GE(cut_off, 1u);
+  }
+  daemon->stop();
+  running.join();
+}
+
 }  // namespace
 }  // namespace prismesh::modeld
