@@ -93,7 +93,7 @@ struct Camera {
 struct ShareCamera {  ///< no answer; the other clients hear CameraMoved
   Camera camera;
 };
-/// Asks the edit under way, if it is this client's, to stop: it is answered as failed and leaves everything as it was.
+/// Asks what is under way, if it is this client's and can be stopped, to stop: it is answered as failed and leaves everything as it was.
 struct Cancel {};
 struct GetState {};
 struct GetSnapshot {

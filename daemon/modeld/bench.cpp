@@ -64,10 +64,11 @@ Outcome Bench::edit(const mesh::document::Edit& edit, const Progress& progress) 
   return outcome;
 }
 
-Outcome Bench::count(const ipc::Count& request) const {
+Outcome Bench::count(const ipc::Count& request, const Progress& progress) const {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
   const mesh::document::Generation& current = keeper_.document().current();
-  const Result<mesh::select::Chosen> chosen = mesh::select::evaluate(current.model, request.expr, request.kind, current.around->names);
+  const Result<mesh::select::Chosen> chosen =
+      mesh::select::evaluate(current.model, request.expr, request.kind, current.around->names, progress);
   if (!chosen) return {failed(chosen.error()), {}, {}, {}};
   return {ipc::Counted{chosen->nodes.size(), chosen->shells.size(), chosen->parts.size()}, {}, {}, {}};
 }

@@ -38,7 +38,7 @@ class Bench {
   Outcome reopen(const Progress& progress);
   /// `progress` is asked by long edits only; told to stop, they leave everything as it was.
   Outcome edit(const mesh::document::Edit& edit, const Progress& progress = {});
-  Outcome count(const ipc::Count& request) const;
+  Outcome count(const ipc::Count& request, const Progress& progress = {}) const;
   Outcome quality(const ipc::GetQuality& request) const;
   Outcome find(const ipc::FindShells& request) const;
   Outcome preview(const ipc::PreviewEdit& request) const;

@@ -240,7 +240,8 @@ void Desk::begin(Waiting next) {
     run_long(next, std::string(mesh::document::name(edit->edit)), OnDeath::stops,
              [this, edit = std::move(edit->edit)](const Progress& progress) { return bench_.edit(edit, progress); });
   else if (auto* count = std::get_if<ipc::Count>(&next.request))
-    run([this, request = std::move(*count)] { return bench_.count(request); }, answer);
+    run_long(next, "Counting", OnDeath::stops,
+             [this, request = std::move(*count)](const Progress& progress) { return bench_.count(request, progress); });
   else if (auto* quality = std::get_if<ipc::GetQuality>(&next.request))
     run([this, request = std::move(*quality)] { return bench_.quality(request); }, answer);
   else if (auto* find = std::get_if<ipc::FindShells>(&next.request))

@@ -145,6 +145,25 @@ TEST_F(Serving, AnExpressionIsCountedAndSelectsNothing) {
   EXPECT_EQ(after.selected_nodes, 0u);
 }
 
+TEST_F(Serving, CountingALongExpressionStopsWhenTold) {
+  Client asker = client();
+  open(asker, folder_.sheet());
+  std::string expression = "1001";
+  while (expression.size() < std::size_t{7} << 20) expression += ",1002,!1003";
+  const std::uint64_t number = asker.send(ipc::Count{expression, mesh::select::Kind::node}).value();
+  EXPECT_TRUE(asker.call(ipc::Cancel{}, kServingPatience)) << "it is under way";
+  for (const auto until = std::chrono::steady_clock::now() + kServingPatience; std::chrono::steady_clock::now() < until;) {
+    const auto reply = asker.next_reply();
+    if (!reply && asker.poll(100ms)) continue;
+    ASSERT_TRUE(reply && reply->request == number);
+    const auto* failed = std::get_if<ipc::Failed>(&reply->answer);
+    ASSERT_NE(failed, nullptr);
+    EXPECT_EQ(failed->message, "cancelled");
+    return;
+  }
+  FAIL() << "no answer came";
+}
+
 TEST_F(Serving, OnlyTheOwnerStepsAndEndsADrag) {
   Client owner = client("owner");
   Client other = client("other");
