@@ -85,6 +85,7 @@ TEST_P(FailingCalls, LoseNothingAcknowledged) {
       run(failure);
       if (HasFailure()) return;
     }
+  std::printf("%llu sessions with a failing call\n", static_cast<unsigned long long>(3 * calls));
 }
 
 INSTANTIATE_TEST_SUITE_P(Sessions, FailingCalls, ::testing::ValuesIn(sessions()), [](const auto& tested) { return tested.param.name; });

@@ -141,9 +141,8 @@ Files deck_files(const Place& place) {
 
 bool holds(const Files& found, const Files& recorded, const Place& place) {
   const std::string elsewhere = (place.root / kSavedAs).string();
-  const auto is_elsewhere = [&](const auto& file) { return file.first.starts_with(elsewhere); };
   Files same = found;
-  if (std::none_of(recorded.begin(), recorded.end(), is_elsewhere)) std::erase_if(same, is_elsewhere);
+  std::erase_if(same, [&](const auto& file) { return file.first.starts_with(elsewhere) && !recorded.contains(file.first); });
   return same == recorded;
 }
 
@@ -206,6 +205,37 @@ const std::vector<Session>& sessions() {
         R"({"edit":"translate","by":[0,0.125,0.5],"on":"30-81"})", "save", R"({"edit":"translate","by":[0,0,1],"on":"10-70"})"}},
   };
   return kAll;
+}
+
+Session session_by_chance(std::mt19937_64& random) {
+  const auto up_to = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+  const auto range = [&] {
+    const int first = 1 + up_to(80);
+    return std::to_string(first) + "-" + std::to_string(first + up_to(30));
+  };
+  const auto eighths = [&] { return std::to_string((up_to(64) - 32) / 8.0); };
+  Session session = sessions()[static_cast<std::size_t>(up_to(static_cast<int>(sessions().size())))];
+  session.name = "by_chance";
+  session.by_chance = true;
+  session.steps.clear();
+  while (session.steps.size() < 24) {
+    std::string step;
+    switch (up_to(14)) {
+      case 0: step = R"({"edit":"select","expr":")" + range() + "\"}"; break;
+      case 1: step = R"({"edit":"lock","on":"1"})"; break;
+      case 2: step = R"({"edit":"unlock","on":"1"})"; break;
+      case 3: step = up_to(2) == 0 ? R"({"edit":"hide","on":"1"})" : R"({"edit":"show","on":"1"})"; break;
+      case 4: step = R"({"edit":"split","at":["shell:)" + std::to_string(1 + up_to(64)) + "\"]}"; break;
+      case 5:
+      case 6: step = R"({"edit":"undo"})"; break;
+      case 7: step = R"({"edit":"redo"})"; break;
+      case 8:
+      case 9: step = up_to(6) == 0 ? "save as" : "save"; break;
+      default: step = R"({"edit":"translate","by":[)" + eighths() + "," + eighths() + "," + eighths() + R"(],"on":")" + range() + "\"}";
+    }
+    session.steps.push_back(std::move(step));
+  }
+  return session;
 }
 
 }  // namespace prismesh::modeld::faults

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <ostream>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -56,9 +57,12 @@ struct Session {
   std::string name;
   std::function<std::filesystem::path(const std::filesystem::path&)> write_deck;  ///< into a folder; the main file
   std::vector<std::string> steps;
+  bool by_chance = false;  ///< steps that are refused are left out
 };
 inline void PrintTo(const Session& session, std::ostream* out) { *out << session.name; }
 /// Edits of all kinds; decks of one file, of several in folders of their own, packed; a repair; a save under another name.
 const std::vector<Session>& sessions();
+/// Another one of the same kinds of steps on one of these decks.
+Session session_by_chance(std::mt19937_64& random);
 
 }  // namespace prismesh::modeld::faults
