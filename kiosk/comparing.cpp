@@ -24,6 +24,7 @@ std::string words_of_state(const ipc::ListedGeneration& state) {
 }  // namespace
 
 void Comparing::set(const tools::CompareWish& wish) {
+  if (wish.shown != wish_.shown) end_glance();
   wish_ = wish;
   for (View* view : {&main_, &other_})
     if (!view->field_problem.empty()) view->asked.reset();  // whoever chooses again wants it tried again
@@ -31,6 +32,11 @@ void Comparing::set(const tools::CompareWish& wish) {
   look_.bands = wish.bands ? kBands : 0;
   trace_.line(fmt::format("compare {} views {} shown {} beside {}", wish.field.empty() ? "nothing" : wish.field, wish.two_views ? 2 : 1,
                           wish.shown ? std::to_string(*wish.shown) : "current", wish.beside ? std::to_string(*wish.beside) : "current"));
+}
+
+void Comparing::show_current() {
+  end_glance();
+  wish_.shown.reset();
 }
 
 void Comparing::set_limits(const panels::SetLimits& limits) {
@@ -47,9 +53,9 @@ Result<void> Comparing::follow() {
     for (View* view : {&main_, &other_}) view->asked_view.reset(), view->asked.reset();
     states_of_.reset();
   }
-  if (const std::string document = link_.snapshot() ? link_.snapshot()->info().document : ""; document != document_) {
+  if (const std::uint64_t document = link_.snapshot() ? link_.document_number() : 0; document != document_) {
     document_ = document;
-    wish_.shown.reset();
+    show_current();
     wish_.beside.reset();
     wish_.against_generation.reset();
     wish_.two_views = false;
@@ -61,7 +67,7 @@ Result<void> Comparing::follow() {
   }
   if (!link_.snapshot()) return {};
   follow_states();
-  follow_view(Pane::model, wish_.shown);
+  follow_view(Pane::model, shown());
   follow_view(Pane::other, wish_.two_views ? wish_.beside : std::nullopt);
   const auto beside = !wish_.two_views ? nullptr : other_.view ? other_.view : link_.snapshot();
   const bool other_hidden = follow_hidden();
@@ -69,7 +75,7 @@ Result<void> Comparing::follow() {
     beside_ = beside;
     if (Result<void> set = renderer_.set_other(beside ? render::snapshot_source(beside, hidden_) : nullptr); !set) return set;
   }
-  follow_field(Pane::model, wish_.shown);
+  follow_field(Pane::model, shown());
   if (wish_.two_views)
     follow_field(Pane::other, wish_.beside);
   else
@@ -216,8 +222,8 @@ std::string Comparing::words_of(const std::optional<std::uint64_t>& generation) 
 
 /// Which state is seen where, wherever that isn't the current one alone.
 std::vector<panels::CompareFacts::Caption> Comparing::captions(double shift) const {
-  if (two_views()) return {{words_of(wish_.beside), 0.5 - shift}, {words_of(wish_.shown), 0.5 + shift}};
-  if (shows_older()) return {{words_of(wish_.shown) + "   only shown: Shift+C chooses another state", 0.5}};
+  if (two_views()) return {{words_of(wish_.beside), 0.5 - shift}, {words_of(shown()), 0.5 + shift}};
+  if (shows_older() && !glance_) return {{words_of(wish_.shown) + "   only shown: Shift+C chooses another state", 0.5}};
   return {};
 }
 

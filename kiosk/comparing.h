@@ -19,6 +19,15 @@ class Comparing {
 
   const tools::CompareWish& wish() const { return wish_; }
   void set(const tools::CompareWish& wish);
+  /// Shows that state in place of the one that is wished for, until `end_glance` or until another one is wished for.
+  void glance(std::uint64_t generation) { glance_ = generation; }
+  void end_glance() { glance_.reset(); }
+  /// The state that is to be shown; empty: the current one, always.
+  const std::optional<std::uint64_t>& shown() const { return glance_ ? glance_ : wish_.shown; }
+  /// Why it can't be; empty: it can, or it isn't known yet.
+  const std::string& shown_problem() const { return main_.view_problem; }
+  /// The current state is to be shown from now on.
+  void show_current();
   void set_limits(const panels::SetLimits& limits);
   void open_panel(bool open) { panel_open_ = open; }
   bool panel_open() const { return panel_open_; }
@@ -68,6 +77,7 @@ class Comparing {
   render::Renderer& renderer_;
   Trace trace_;
   tools::CompareWish wish_;
+  std::optional<std::uint64_t> glance_;
   bool panel_open_ = false;
   View main_, other_;
   render::FieldLook look_;  ///< of both views, so that they can be compared
@@ -77,7 +87,7 @@ class Comparing {
   std::vector<ipc::ListedGeneration> states_;
   std::optional<std::uint64_t> states_of_;  ///< the current generation when they were asked for
   std::uint64_t connection_ = 0;
-  std::string document_;
+  std::uint64_t document_ = 0;   ///< ModelLink::document_number; 0: none
   std::optional<Error> failed_;  ///< of the renderer, in an answer
 };
 

@@ -25,7 +25,9 @@ Editor::Editor(const EditorOptions& options, ModelLink& link, render::Renderer& 
       expressions_(options.expressions),
       mouse_words_(options.mouse.in_words()),
       quality_(link),
+      notices_(trace),
       comparing_(link, renderer, trace),
+      before_after_(link, comparing_, notices_, trace),
       follows_others_(options.follows_others) {
   view_.rotation = *stereo::named_rotation("iso");
 }
@@ -72,12 +74,13 @@ Result<void> Editor::follow() {
   if (link_.changes() == link_changes_) return {};
   link_changes_ = link_.changes();
   ++changes_;
-  follow_notices();
+  for (Notice& notice : link_.take_notices()) notices_.take(std::move(notice));
   take_shared_view();
   if (Result<void> followed = follow_states(); !followed) return followed;
   if (link_.snapshot() != shown_) {
     const auto& next = link_.snapshot();
-    const bool other_document = next && (!shown_ || shown_->info().document != next->info().document);
+    const bool other_document = next && (!shown_ || document_number_ != link_.document_number());
+    document_number_ = link_.document_number();
     shown_ = next;
     // What stays within comfortable depth is what is shown now.
     if (const stereo::Box box = renderer_.bounds(); !box.empty()) view_.bounds = stereo::sphere_around(box);
@@ -85,12 +88,10 @@ Result<void> Editor::follow() {
     if (other_document) {
       axis_.reset();
       axis_pick_.cancel();
-      comparison_.reset();
       leave_error();
       leave_operation();
       fit();
     }
-    follow_comparison();
   }
   follow_quality();
   return follow_drag();
@@ -115,32 +116,13 @@ void Editor::bring_selection() {
   if (selection_centre_ && profile_.stereo()) depth_.bring(*selection_centre_, clock_.now_ns());
 }
 
-void Editor::follow_notices() {
-  for (Notice& notice : link_.take_notices()) {
-    // Information gives way to anything newer; errors and warnings stay until they are read.
-    while (!notices_.empty() && notices_.back().kind == Notice::Kind::information) notices_.pop_back();
-    notices_.push_back(std::move(notice));
-  }
-}
-
-/// Whether the state that is shown still is one of the two that are compared.
-void Editor::follow_comparison() {
-  if (!comparison_ || !shown_) return;
-  const std::uint64_t now = shown_->info().generation;
-  if (!comparison_->before && now == comparison_->after) return;  // the undo is on its way
-  if (!comparison_->before && now != comparison_->after) comparison_->before = now;
-  if (now != comparison_->after && now != comparison_->before) return comparison_.reset();
-  trace_.line((now == comparison_->after ? "comparing after " : "comparing before ") + comparison_->edit);
-}
-
 // --- gestures that move the view ---
 
 void Editor::gesture(const tools::Gesture& gesture) {
   ++changes_;
-  if (const auto* click = std::get_if<tools::NodeClicked>(&gesture); click != nullptr && !pickable(click->at)) return;
-  if (const auto* outline = std::get_if<tools::OutlineDone>(&gesture);
-      outline != nullptr && !outline->way.empty() && !pickable(outline->way.front()))
-    return cancel_gesture();
+  const std::optional<tools::Pixel> picks = tools::picks_at(gesture);
+  if (picks && beside(*picks)) return cancel_gesture();
+  if (tools::asks_for_edit(gesture) && leave_older_state()) return;
   std::visit([this](const auto& what) { handle(what); }, gesture);
 }
 

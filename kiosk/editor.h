@@ -3,16 +3,17 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/clock.h"
+#include "kiosk/before_after.h"
 #include "kiosk/comparing.h"
 #include "kiosk/display/window.h"
 #include "kiosk/model_link.h"
+#include "kiosk/notices.h"
 #include "kiosk/panels/panels.h"
 #include "kiosk/quality_link.h"
 #include "kiosk/render/renderer.h"
@@ -161,21 +162,25 @@ class Editor {
   void fit();
   void next_profile();
   void cancel();
-  void compare();
   void open_dialog(panels::Dialog dialog);
 
   // --- following ---
   void take_model();
   void bring_selection();
-  void follow_notices();
-  void follow_comparison();
+  /// Follow at the next turn, though the server has said nothing.
+  void follow_soon() { link_changes_ = ~std::uint64_t{0}; }
 
   // --- editor_compare.cpp ---
   bool compare_command(tools::Command command);
   bool compare_action(const panels::PanelAction& action);
   Result<void> follow_states();
+  void compare();
+  void send(mesh::document::Edit edit);
+  bool leave_older_state();
+  std::string save_remark() const;
   double pane_shift() const;
-  bool pickable(const tools::Pixel& pixel) const;
+  bool beside(const tools::Pixel& pixel) const;
+  bool pickable(const tools::Pixel& pixel) const { return !comparing_.shows_older() && !beside(pixel); }
   tools::Pixel in_picked_view(const tools::Pixel& pixel) const;
   void resize_view(double by);
   void share_view();
@@ -219,14 +224,6 @@ class Editor {
     std::string problem;
   };
   Typing typing_;
-  /// Looking back and forth between the states before and after an edit.
-  struct Comparison {
-    std::string edit;
-    std::uint64_t after = 0;
-    std::optional<std::uint64_t> before;  ///< not known until it is here
-    bool showing_before = true;
-  };
-  std::optional<Comparison> comparison_;
   QualityLink quality_;
   /// What is looked at of the shells' quality.
   struct Review {
@@ -252,13 +249,16 @@ class Editor {
   panels::Dialog dialog_ = panels::Dialog::none;
   bool help_ = false;
 
+  Notices notices_;
   Comparing comparing_;
+  BeforeAfter before_after_;
   std::vector<std::uint8_t> drawn_hidden_;          ///< parts that the renderer was told to hide
   std::shared_ptr<const ipc::SnapshotView> drawn_;  ///< the renderer's model: the current state, or an older one
   bool follows_others_ = false;
   std::optional<ipc::Camera> shared_;  ///< said or heard last
 
   std::shared_ptr<const ipc::SnapshotView> shown_;
+  std::uint64_t document_number_ = 0;  ///< ModelLink::document_number of what is shown
   std::uint64_t link_changes_ = 0;
   std::optional<mesh::NodeIndex> last_clicked_;
   std::optional<tools::Anchor> anchor_;
@@ -275,7 +275,6 @@ class Editor {
   std::vector<tools::Pixel> lasso_way_;
   bool pivot_found_ = false;
   tools::Pixel orbit_from_ = tools::Pixel::Zero();
-  std::deque<panels::Notice> notices_;
   render::DrawReport report_;
   std::uint64_t changes_ = 0;
   std::string traced_aim_;

@@ -20,14 +20,15 @@ constexpr std::array<const char*, 4> kLeftPanelNames{"document", "quality", "com
 
 bool Editor::command(Command command, const std::optional<Pixel>& pointer) {
   ++changes_;
+  if (tools::asks_for_edit(command) && leave_older_state()) return true;
   switch (command) {
     case Command::open: open_dialog(panels::Dialog::open); return true;
-    case Command::save: link_.save(std::nullopt); return true;
+    case Command::save: link_.save(std::nullopt, save_remark()); return true;
     case Command::save_as:
       if (shown_) open_dialog(panels::Dialog::save_as);
       return true;
-    case Command::undo: link_.edit(mesh::document::Undo{}); return true;
-    case Command::redo: link_.edit(mesh::document::Redo{}); return true;
+    case Command::undo: send(mesh::document::Undo{}); return true;
+    case Command::redo: send(mesh::document::Redo{}); return true;
     case Command::compare: compare(); return true;
     case Command::cancel: cancel(); return true;
     case Command::menu:
@@ -61,7 +62,7 @@ void Editor::show_left(LeftPanel panel) {
   if (!review_.open) leave_error();
   trace_.line(std::string("panel ") + kLeftPanelNames[static_cast<std::size_t>(panel)]);
   follow_quality();
-  link_changes_ = ~std::uint64_t{0};  // follow, though the server has said nothing
+  follow_soon();
 }
 
 bool Editor::select_command(Command command, const std::optional<Pixel>& pointer) {
@@ -69,9 +70,9 @@ bool Editor::select_command(Command command, const std::optional<Pixel>& pointer
     case Command::expression: open_expression(); return true;
     case Command::outline_kind: lasso_ = !lasso_; return true;
     case Command::toggle_through: through_ = !through_; return true;
-    case Command::grow: link_.edit(mesh::document::Grow{}); return true;
-    case Command::shrink: link_.edit(mesh::document::Shrink{}); return true;
-    case Command::invert: link_.edit(mesh::document::Invert{}); return true;
+    case Command::grow: send(mesh::document::Grow{}); return true;
+    case Command::shrink: send(mesh::document::Shrink{}); return true;
+    case Command::invert: send(mesh::document::Invert{}); return true;
     case Command::region:
       if (pointer) select_region(*pointer, mesh::document::SelectMode::set);
       return true;
@@ -162,26 +163,13 @@ void Editor::cancel() {
   else if (by_hand_.operation)
     leave_operation();
   else if (!notices_.empty())
-    notices_.pop_front();
+    notices_.read();
+  else if (before_after_.end())
+    follow_soon();
   else if (axis_)
     set_axis(std::nullopt, "none");
   else
     clear_selection();
-}
-
-/// Goes back and forth between the state before the last edit and the one after it: an undo and a redo, so both are what they were.
-void Editor::compare() {
-  if (!shown_ || pull_) return;
-  if (!comparison_) {
-    if (!shown_->info().can_undo) return;
-    comparison_ = Comparison{link_.made_by(), shown_->info().generation, std::nullopt, true};
-    return link_.edit(mesh::document::Undo{});
-  }
-  comparison_->showing_before = !comparison_->showing_before;
-  if (comparison_->showing_before)
-    link_.edit(mesh::document::Undo{});
-  else
-    link_.edit(mesh::document::Redo{});
 }
 
 void Editor::look(std::string_view view_name) {
@@ -215,13 +203,13 @@ void Editor::panel_action(const panels::PanelAction& action) {
     mesh::document::SetParts edit;
     edit.action = ask->action;
     edit.on = ask->on;
-    link_.edit(std::move(edit));
+    send(std::move(edit));
   } else if (const auto* open = std::get_if<panels::AskOpen>(&action)) {
     link_.open(open->path);
   } else if (const auto* save = std::get_if<panels::AskSaveAs>(&action)) {
-    link_.save(std::filesystem::path(save->path));
+    link_.save(std::filesystem::path(save->path), save_remark());
   } else if (std::holds_alternative<panels::NoticeRead>(action)) {
-    if (!notices_.empty()) notices_.pop_front();
+    if (!notices_.empty()) notices_.read();
   } else if (std::holds_alternative<panels::DialogClosed>(action)) {
     dialog_ = panels::Dialog::none;
   } else if (const auto* typed = std::get_if<panels::ExpressionTyped>(&action)) {

@@ -25,7 +25,7 @@ bool Editor::compare_command(tools::Command command) {
   } else {
     return false;
   }
-  link_changes_ = ~std::uint64_t{0};  // follow, though the server has said nothing
+  follow_soon();
   return true;
 }
 
@@ -40,13 +40,46 @@ bool Editor::compare_action(const panels::PanelAction& action) {
   const bool two = comparing_.two_views();
   comparing_.set(wanted->wish);
   if (two && !comparing_.two_views()) resize_view(1 / kTwoViewsSize);
-  link_changes_ = ~std::uint64_t{0};
+  follow_soon();
   return true;
+}
+
+/// The state before the last edit, or the newest one again.
+void Editor::compare() {
+  if (!shown_ || pull_) return;
+  leave_operation();  // its preview is of the newest state
+  before_after_.toggle();
+  follow_soon();
+}
+
+/// All edits go this way: none is made in a state that isn't the newest.
+void Editor::send(mesh::document::Edit edit) {
+  if (leave_older_state()) return;
+  comparing_.show_current();  // also once there is another one
+  link_.edit(std::move(edit));
+}
+
+/// Shows the newest state in place of an older one, and says that nothing was edited. False: the newest one is shown already.
+bool Editor::leave_older_state() {
+  if (!comparing_.shows_older()) return false;
+  const std::string which = before_after_.shows_before() ? "the state before " + before_after_.edit() : "an older state";
+  before_after_.end();
+  comparing_.show_current();
+  cancel_gesture();
+  follow_soon();
+  notices_.say(panels::Notice::Kind::information,
+               "You were looking at " + which + ". This is the newest state; nothing was edited. Ask again to edit it.");
+  return true;
+}
+
+std::string Editor::save_remark() const {
+  return comparing_.shows_older() ? "It is the newest state that was saved, not the older one that is shown." : "";
 }
 
 /// Gives the renderer the state that is wanted.
 Result<void> Editor::follow_states() {
   const bool two = comparing_.two_views();
+  before_after_.follow();
   if (Result<void> followed = comparing_.follow(); !followed) return followed;
   if (const auto wanted = comparing_.model(); wanted != drawn_ || (wanted && comparing_.hidden() != drawn_hidden_)) {
     if (Result<void> set = renderer_.set_model(wanted ? render::snapshot_source(wanted, comparing_.hidden()) : nullptr); !set) return set;
@@ -54,6 +87,7 @@ Result<void> Editor::follow_states() {
     drawn_hidden_ = comparing_.hidden();
     if (shown_ && link_.snapshot() == shown_) take_model();
   }
+  before_after_.tell();
   if (two != comparing_.two_views() && shown_) resize_view(two ? 1 / kTwoViewsSize : kTwoViewsSize);
   return {};
 }
@@ -68,10 +102,8 @@ void Editor::resize_view(double by) {
 /// How far each of two views stands from the middle: in the middle of what panels leave of its half.
 double Editor::pane_shift() const { return 0.25 * std::max(0.2, 1 - covered_width_ / std::max(size_.width, 1)); }
 
-/// What is there belongs to the current state.
-bool Editor::pickable(const tools::Pixel& pixel) const {
-  return !comparing_.shows_older() && (!comparing_.two_views() || pixel.x() > 0.5 * size_.width);
-}
+/// In the left one of two views: what is there is only shown.
+bool Editor::beside(const tools::Pixel& pixel) const { return comparing_.two_views() && pixel.x() <= 0.5 * size_.width; }
 
 /// What is there in the left one of two views is in the right one too, unless it came or went in between.
 tools::Pixel Editor::in_picked_view(const tools::Pixel& pixel) const {

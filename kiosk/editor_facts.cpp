@@ -108,7 +108,7 @@ panels::PanelData Editor::panel_data() const {
   }
   if (!notices_.empty()) {
     data.notice = notices_.front();
-    data.more_notices = notices_.size() - 1;
+    data.more_notices = notices_.count() - 1;
   }
   if (!shown_) return data;
   data.document = document_facts();
@@ -121,11 +121,7 @@ std::string Editor::guidance() const {
   if (axis_pick_.active())
     return axis_pick_.first() ? "Axis: click the second node, Esc gives up" : "Axis: click the first node, Esc gives up";
   if (by_hand_.operation) return operation_words();
-  if (comparison_ && shown_) {
-    const std::string edit = comparison_->edit.empty() ? "the last edit" : comparison_->edit;
-    return shown_->info().generation == comparison_->after ? "B: after " + edit + "   C shows A" : "A: before " + edit + "   C shows B";
-  }
-  return {};
+  return before_after_.words();
 }
 
 panels::DocumentFacts Editor::document_facts() const {

@@ -59,13 +59,13 @@ void Editor::relax(Scope scope) {
   Relax edit;
   edit.scope = scope;
   edit.angle = region_angle_;
-  link_.edit(edit);
+  send(edit);
 }
 
 void Editor::relax_from(const std::optional<Pixel>& pointer) {
   const auto node = pointer && shown_ ? node_at(*pointer) : std::nullopt;
   if (!node || node->value >= shown_->node_count()) {
-    notices_.push_back({panels::Notice::Kind::information, "Point at the node from which the mesh shall be relaxed."});
+    notices_.say(panels::Notice::Kind::information, "Point at the node from which the mesh shall be relaxed.");
     return;
   }
   Relax edit;
@@ -73,14 +73,14 @@ void Editor::relax_from(const std::optional<Pixel>& pointer) {
   edit.at = shown_->node_id(node->value);
   edit.scope = Scope::all;
   edit.angle = region_angle_;
-  link_.edit(edit);
+  send(edit);
 }
 
 void Editor::repair(Scope scope) {
   Repair edit;
   edit.scope = scope;
   edit.angle = region_angle_;
-  link_.edit(edit);
+  send(edit);
 }
 
 // --- figures and errors ---
@@ -166,6 +166,7 @@ bool Editor::quality_action(const panels::PanelAction& action) {
     leave_error();
     follow_quality();
   } else if (const auto* bar = std::get_if<panels::BarClicked>(&action)) {
+    if (leave_older_state()) return true;
     last_region_.reset();
     last_clicked_.reset();
     quality_.select(bar->bar, quality_wish(), bar->mode);
@@ -206,7 +207,7 @@ void Editor::operation_clicked(const Pixel& at) {
 
 void Editor::do_operation() {
   if (!by_hand_.edit || !quality_.previewed() || !quality_.previewed()->would) return;
-  link_.edit(*by_hand_.edit);
+  send(*by_hand_.edit);
   // What was seen before stays to be seen until it is so.
   const std::uint64_t generation = by_hand_.generation;
   if (std::exchange(by_hand_.shown, 0) != 0) preview_kept_ = generation;
@@ -250,8 +251,7 @@ void Editor::follow_operation() {
   }
   for (const std::int64_t id : previewed->would->replaced)
     if (const auto shell = shell_with_id(id)) change.replaced.push_back(*shell);
-  if (const Result<void> done = renderer_.show_change(change); !done)
-    notices_.push_back({panels::Notice::Kind::error, done.error().text()});
+  if (const Result<void> done = renderer_.show_change(change); !done) notices_.say(panels::Notice::Kind::error, done.error().text());
   const mesh::document::EditReport& report = previewed->would->report;
   trace_.line(
       fmt::format("operation previewed shells {} warn {} fail {}", previewed->would->shell_count, report.after.warn, report.after.fail));

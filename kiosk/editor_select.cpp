@@ -50,7 +50,7 @@ void Editor::select_nodes(const mesh::NodeSet& nodes, SelectMode mode) {
   mesh::document::Select edit;
   edit.expr = mesh::select::to_expression(std::move(ids));
   edit.mode = mode;
-  link_.edit(std::move(edit));
+  send(std::move(edit));
 }
 
 void Editor::clear_selection() {
@@ -60,7 +60,7 @@ void Editor::clear_selection() {
   mesh::document::Select edit;
   edit.expr = "all";
   edit.mode = SelectMode::subtract;
-  link_.edit(std::move(edit));
+  send(std::move(edit));
 }
 
 void Editor::handle(const tools::NodeClicked& click) {
@@ -94,7 +94,7 @@ void Editor::select_region(const Pixel& at, SelectMode mode) {
   edit.across_welds = region_across_welds_;
   edit.mode = mode;
   last_region_ = edit;
-  link_.edit(edit);
+  send(edit);
 }
 
 /// The region that was picked last follows the angle.
@@ -104,12 +104,12 @@ void Editor::change_angle(double degrees) {
   trace_.line(fmt::format("angle {}", region_angle_));
   if (!last_region_ || last_region_->mode != SelectMode::set || last_region_->by != mesh::document::RegionBy::features) return;
   last_region_->angle = region_angle_;
-  link_.edit(*last_region_);
+  send(*last_region_);
 }
 
 void Editor::handle(const tools::TakeBackClicked&) {
   last_region_.reset();
-  if (shown_ && shown_->info().can_undo && is_selecting(link_.made_by())) link_.edit(mesh::document::Undo{});
+  if (shown_ && shown_->info().can_undo && is_selecting(link_.made_by())) send(mesh::document::Undo{});
 }
 
 void Editor::handle(const tools::OutlineDrawn& outline) {
@@ -135,7 +135,7 @@ void Editor::handle(const tools::OutlineDone& outline) {
   std::copy_n(clip.data(), 16, edit.view.begin());  // both are column-major
   edit.visible = !through_;
   edit.mode = outline.mode;
-  link_.edit(std::move(edit));
+  send(std::move(edit));
 }
 
 // --- expressions ---
@@ -157,7 +157,7 @@ void Editor::enter_expression(const panels::ExpressionEntered& entered) {
   edit.expr = entered.text;
   edit.kind = entered.kind;
   edit.mode = entered.mode;
-  link_.edit(std::move(edit));
+  send(std::move(edit));
 }
 
 // --- parts and files ---
@@ -174,7 +174,7 @@ void Editor::set_parts(VisibilityAction action, const std::optional<Pixel>& poin
   mesh::document::SetParts edit;
   edit.action = action;
   if (const auto part = part_at(pointer)) edit.on = std::to_string(shown_->info().parts[part->value].id);
-  link_.edit(std::move(edit));
+  send(std::move(edit));
 }
 
 /// The file of the part under the pointer; of several files that hold the part the first.
@@ -191,7 +191,7 @@ void Editor::set_file(Command command, const std::optional<Pixel>& pointer) {
                   : locked                        ? VisibilityAction::unlock
                                                   : VisibilityAction::lock;
     edit.on = tools::file_expression(file.name);
-    return link_.edit(std::move(edit));
+    return send(std::move(edit));
   }
 }
 
@@ -204,7 +204,7 @@ void Editor::show_all() {
   mesh::document::SetParts edit;
   edit.action = VisibilityAction::show;
   edit.on = mesh::select::to_expression(std::move(hidden));
-  link_.edit(std::move(edit));
+  send(std::move(edit));
 }
 
 }  // namespace prismesh::kiosk

@@ -56,8 +56,9 @@ std::optional<render::Handle> Editor::shown_handle() const {
 void Editor::handle(const tools::HandleTaken& taken) { begin_pull(taken.handle, taken.at); }
 
 void Editor::begin_pull(Under handle, const Pixel& at) {
-  if (!anchor_ || link_.drag() != nullptr) return;
+  if (!anchor_ || link_.drag() != nullptr || leave_older_state()) return;
   leave_operation();
+  comparing_.show_current();
   const stereo::Aim now = aim();
   const bool turning = handle == Under::turn_handle;
   if (turning && !axis_) return;
@@ -174,7 +175,7 @@ void Editor::axis_from_edge(const std::optional<Pixel>& pointer) {
   const auto shell = pointer && shown_ && pickable(*pointer) ? renderer_.shell_at(aim(), *pointer) : std::nullopt;
   const auto edge = shell ? tools::edge_at(*renderer_.model(), aim(), *shell, *pointer, region_angle_) : std::nullopt;
   if (edge) return set_axis(edge->axis, edge->what);
-  notices_.push_back({Notice::Kind::information, "Point at a shell: the axis is the edge nearest to the pointer."});
+  notices_.say(Notice::Kind::information, "Point at a shell: the axis is the edge nearest to the pointer.");
 }
 
 void Editor::axis_from_deck(tools::DeckAxis axis) {

@@ -8,6 +8,7 @@
 
 #include "base/progress.h"
 #include "base/readable_number.h"
+#include "kiosk/notices.h"
 
 namespace prismesh::kiosk {
 namespace {
@@ -154,6 +155,7 @@ void ModelLink::heard(const ipc::Event& event) {
                  [&](const ipc::DocumentClosed&) {
                    deck_.reset();
                    snapshot_.reset();
+                   document_path_.clear();
                    ask_state();
                  },
                  [&](const ipc::ProgressMade& progress) {
@@ -177,6 +179,10 @@ void ModelLink::ask_state() {
   });
 }
 
+void ModelLink::is_document(const std::string& path) {
+  if (std::exchange(document_path_, path) != path) ++document_number_;
+}
+
 void ModelLink::took_state(const ipc::State& state) {
   const bool first = !state_ || state_->path != state.path;
   state_ = state;
@@ -193,6 +199,7 @@ void ModelLink::took_state(const ipc::State& state) {
     return;
   }
   deck_ = state.path;
+  is_document(state.path);
   if (first && !state.warnings.empty()) {
     const auto& warning = state.warnings.front();
     std::string text = Error{warning.file, warning.line, warning.message}.text();
@@ -236,6 +243,7 @@ void ModelLink::show(std::shared_ptr<const ipc::SnapshotView> view) {
   if (fetched_ && snapshot_ && snapshot_->info().generation == info.generation && snapshot_->info().document == info.document &&
       snapshot_->info().changed == info.changed)
     return;
+  is_document(info.document);
   trace_.line(fmt::format("generation {} selected {} warn {} fail {} changed {}", info.generation, info.selected_nodes, info.counts.warn,
                           info.counts.fail, info.changed ? 1 : 0));
   snapshot_ = std::move(view);
@@ -279,16 +287,17 @@ void ModelLink::open(const std::filesystem::path& deck) {
   if (!client_) busy_.clear();
 }
 
-void ModelLink::save(const std::optional<std::filesystem::path>& path) {
+void ModelLink::save(const std::optional<std::filesystem::path>& path, const std::string& remark) {
   ipc::Save request;
   std::error_code ignored;
   if (path) request.path = std::filesystem::absolute(*path, ignored).string();
-  ask(request, [this](const ipc::Answer& answer) {
+  ask(request, [this, remark](const ipc::Answer& answer) {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say_failed(*failed, "nothing was saved");
     const auto* saved = std::get_if<ipc::Saved>(&answer);
     if (saved == nullptr) return;
     trace_.line(fmt::format("saved {} {}", saved->lines_changed, saved->path));
     std::string text = fmt::format("Saved {}: {} lines changed.", saved->path, saved->lines_changed);
+    if (!remark.empty()) text += " " + remark;
     for (const std::string& note : saved->notes) text += "\n" + note;
     say(saved->notes.empty() ? Notice::Kind::information : Notice::Kind::warning, std::move(text));
     stale_ = true;
@@ -457,12 +466,8 @@ void ModelLink::say_report(const mesh::document::EditReport& report) {
 
 void ModelLink::say(Notice::Kind kind, std::string text) {
   ++changes_;
-  trace_.line(fmt::format("notice {} {}",
-                          kind == Notice::Kind::error     ? "error"
-                          : kind == Notice::Kind::warning ? "warning"
-                                                          : "information",
-                          text));
   notices_.push_back({kind, std::move(text)});
+  trace_.line(trace_of(notices_.back()));
 }
 
 }  // namespace prismesh::kiosk

@@ -74,6 +74,8 @@ class ModelLink {
   const std::optional<ipc::State>& state() const { return state_; }
   /// The current generation; null while no document is open. Stays while the server is away.
   const std::shared_ptr<const ipc::SnapshotView>& snapshot() const { return snapshot_; }
+  /// Counts up with each other document that is opened.
+  std::uint64_t document_number() const { return document_number_; }
   /// No newer generation is known of or on its way.
   bool up_to_date() const { return !stale_ && !fetching_; }
   /// The edit that made the current generation, as far as this client heard of it.
@@ -82,7 +84,8 @@ class ModelLink {
   double busy_fraction() const { return busy_fraction_; }
 
   void open(const std::filesystem::path& deck);
-  void save(const std::optional<std::filesystem::path>& path);
+  /// `remark`: said together with what was saved.
+  void save(const std::optional<std::filesystem::path>& path, const std::string& remark = {});
   void edit(mesh::document::Edit edit);
   bool editing() const { return edits_ > 0; }
   /// Something that this client asked for (opening, saving, an edit, a field) takes long enough to say how far it is.
@@ -138,6 +141,7 @@ class ModelLink {
   void heard(const ipc::Event& event);
   void ask_state();
   void took_state(const ipc::State& state);
+  void is_document(const std::string& path);
   void fetch_snapshot();
   void took_snapshot(const ipc::Answer& answer);
   void show(std::shared_ptr<const ipc::SnapshotView> view);
@@ -165,6 +169,8 @@ class ModelLink {
   std::int64_t back_off_ns_ = 0;
   std::optional<ipc::State> state_;
   std::shared_ptr<const ipc::SnapshotView> snapshot_;
+  std::string document_path_;
+  std::uint64_t document_number_ = 0;
   std::string made_by_;
   bool stale_ = false;     ///< a newer generation exists
   bool fetching_ = false;  ///< one snapshot has been asked for and isn't here

@@ -110,6 +110,41 @@ constexpr std::array kKeys = {
 
 std::span<const KeyBinding> key_bindings() { return kKeys; }
 
+bool asks_for_edit(Command command) {
+  switch (command) {
+    case Command::undo:
+    case Command::redo:
+    case Command::expression:
+    case Command::grow:
+    case Command::shrink:
+    case Command::invert:
+    case Command::region:
+    case Command::type_number:
+    case Command::relax_selection:
+    case Command::relax_part:
+    case Command::relax_from:
+    case Command::relax_failed:
+    case Command::repair_damaged:
+    case Command::repair_selection:
+    case Command::repair_all:
+    case Command::split:
+    case Command::collapse:
+    case Command::merge:
+    case Command::swap:
+    case Command::do_previewed:
+    case Command::hide:
+    case Command::only:
+    case Command::show_all:
+    case Command::reverse:
+    case Command::lock:
+    case Command::unlock:
+    case Command::hide_file:
+    case Command::only_file:
+    case Command::lock_file: return true;
+    default: return false;
+  }
+}
+
 bool repeats(Command command) {
   switch (command) {
     case Command::undo:

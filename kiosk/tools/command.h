@@ -122,6 +122,9 @@ std::span<const KeyBinding> key_bindings();
 /// that of the plain key.
 std::optional<Command> command_for(display::Key key, const display::Modifiers& modifiers);
 
+/// Whether it edits the model, the selection or what is known of parts, or begins to.
+bool asks_for_edit(Command command);
+
 /// Whether a key held down asks for it again and again.
 bool repeats(Command command);
 

@@ -14,6 +14,19 @@ bool moves_view(DragDoes does) { return does == DragDoes::orbit || does == DragD
 
 }  // namespace
 
+bool asks_for_edit(const Gesture& gesture) {
+  return std::holds_alternative<NodeClicked>(gesture) || std::holds_alternative<RegionClicked>(gesture) ||
+         std::holds_alternative<TakeBackClicked>(gesture) || std::holds_alternative<OutlineDone>(gesture) ||
+         std::holds_alternative<HandleTaken>(gesture);
+}
+
+std::optional<Pixel> picks_at(const Gesture& gesture) {
+  if (const auto* click = std::get_if<NodeClicked>(&gesture)) return click->at;
+  if (const auto* click = std::get_if<RegionClicked>(&gesture)) return click->at;
+  const auto* outline = std::get_if<OutlineDone>(&gesture);
+  return outline != nullptr && !outline->way.empty() ? std::optional(outline->way.front()) : std::nullopt;
+}
+
 SelectMode Gestures::mode() const {
   if (layout_.takes_modifiers(button_, modifiers_)) return SelectMode::set;
   if (modifiers_.ctrl) return modifiers_.shift ? SelectMode::intersect : SelectMode::subtract;

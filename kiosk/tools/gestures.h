@@ -71,6 +71,11 @@ struct HandleReleased {
 using Gesture = std::variant<NodeClicked, RegionClicked, TakeBackClicked, OutlineDrawn, OutlineDone, Orbited, Panned, Zoomed, AngleTurned,
                              HandleTaken, HandleMoved, HandleReleased>;
 
+/// Whether it selects, takes a step back or takes a handle.
+bool asks_for_edit(const Gesture& gesture);
+/// Where something is picked by it: what it clicks on, or where its outline begins.
+std::optional<Pixel> picks_at(const Gesture& gesture);
+
 /// How far a pressed pointer may wander and still be a click, in pixels; and how quickly a second click must follow.
 inline constexpr double kClickRadius = 4;
 inline constexpr std::int64_t kDoubleClickMs = 400;

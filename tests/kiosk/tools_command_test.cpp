@@ -47,6 +47,23 @@ TEST(KeysTest, every_command_has_a_key_and_a_menu_entry_with_words) {
   EXPECT_EQ(seen.size(), kCommandCount) << "a command lacks its row";
 }
 
+TEST(KeysTest, what_edits_is_told_from_what_only_looks) {
+  for (const KeyBinding& binding : key_bindings()) {
+    const bool part_or_mesh = binding.menu == Menu::parts || binding.menu == Menu::mesh;
+    const bool looks = binding.command == Command::quality_panel || binding.command == Command::next_error ||
+                       binding.command == Command::previous_error || binding.command == Command::damaged_only;
+    if (part_or_mesh) {
+      EXPECT_EQ(asks_for_edit(binding.command), !looks) << binding.label;
+    } else if (binding.menu == Menu::file || binding.menu == Menu::view || binding.menu == Menu::display || binding.menu == Menu::help) {
+      EXPECT_FALSE(asks_for_edit(binding.command)) << binding.label;
+    }
+  }
+  for (const Command command : {Command::undo, Command::redo, Command::expression, Command::grow, Command::region, Command::type_number})
+    EXPECT_TRUE(asks_for_edit(command));
+  for (const Command command : {Command::compare, Command::cancel, Command::outline_kind, Command::falloff})
+    EXPECT_FALSE(asks_for_edit(command));
+}
+
 TEST(KeysTest, a_label_says_which_key_it_is) {
   for (const KeyBinding& binding : key_bindings()) {
     EXPECT_EQ(binding.label.find("Ctrl+") != std::string_view::npos, binding.ctrl) << binding.label;
