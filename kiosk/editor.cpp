@@ -74,6 +74,7 @@ Result<void> Editor::follow() {
   if (link_.changes() == link_changes_) return {};
   link_changes_ = link_.changes();
   ++changes_;
+  notices_.follow(link_.document_number());
   for (Notice& notice : link_.take_notices()) notices_.take(std::move(notice));
   take_shared_view();
   if (Result<void> followed = follow_states(); !followed) return followed;

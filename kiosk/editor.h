@@ -163,6 +163,10 @@ class Editor {
   void next_profile();
   void cancel();
   void open_dialog(panels::Dialog dialog);
+  /// What is read in place of the side panels.
+  enum class Cover : std::uint8_t { none, menu, help, warnings };
+  void cover(Cover cover);
+  void toggle_cover(Cover cover) { this->cover(cover_ == cover ? Cover::none : cover); }
 
   // --- following ---
   void take_model();
@@ -213,7 +217,7 @@ class Editor {
   tools::HistoryFile expressions_;
   std::vector<tools::MouseBinding> mouse_words_;
   tools::ShapingOptions shaping_;
-  bool shaping_open_ = false, menu_ = false, shadows_ = false;
+  bool shaping_open_ = false, shadows_ = false;
   tools::Under tool_ = tools::Under::lift_handle;  ///< what numbers are typed for
   tools::AxisPick axis_pick_;
   std::optional<tools::Axis> axis_;
@@ -247,7 +251,7 @@ class Editor {
   ByHand by_hand_;
   std::optional<std::uint64_t> preview_kept_;  ///< the generation whose preview stays until what it shows is done
   panels::Dialog dialog_ = panels::Dialog::none;
-  bool help_ = false;
+  Cover cover_ = Cover::none;
 
   Notices notices_;
   Comparing comparing_;
@@ -280,6 +284,7 @@ class Editor {
   std::string traced_aim_;
   std::string traced_handle_;
   std::string traced_quality_;
+  std::string traced_notice_ = "reads none";
 };
 
 }  // namespace prismesh::kiosk

@@ -1,6 +1,9 @@
 // What keys, menu and panels ask of the editor.
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "kiosk/editor.h"
 
@@ -31,13 +34,10 @@ bool Editor::command(Command command, const std::optional<Pixel>& pointer) {
     case Command::redo: send(mesh::document::Redo{}); return true;
     case Command::compare: compare(); return true;
     case Command::cancel: cancel(); return true;
-    case Command::menu:
-      menu_ = !menu_;
-      help_ = false;
-      return true;
-    case Command::help:
-      help_ = !help_;
-      menu_ = false;
+    case Command::menu: toggle_cover(Cover::menu); return true;
+    case Command::help: toggle_cover(Cover::help); return true;
+    case Command::deck_warnings:
+      if (shown_) toggle_cover(Cover::warnings);
       return true;
     case Command::fullscreen:
     case Command::rearm: return false;
@@ -147,7 +147,17 @@ bool Editor::view_command(Command command) {
 
 void Editor::open_dialog(panels::Dialog dialog) {
   dialog_ = dialog;
-  menu_ = help_ = false;
+  cover(Cover::none);
+}
+
+void Editor::cover(Cover cover) {
+  if (cover == cover_) return;
+  const bool listed = std::exchange(cover_, cover) == Cover::warnings;
+  if (listed) trace_.line("warnings closed");
+  if (cover != Cover::warnings) return;
+  notices_.read_warnings();
+  const std::size_t errors = tools::error_count(link_.warnings());
+  trace_.line(fmt::format("warnings shown errors {} warnings {}", errors, link_.warnings().size() - errors));
 }
 
 /// What lies on top goes first.
@@ -156,8 +166,8 @@ void Editor::cancel() {
   if (pull_ || rubber_band_ || !lasso_way_.empty()) return cancel_gesture();
   if (dialog_ != panels::Dialog::none)
     dialog_ = panels::Dialog::none;
-  else if (help_ || menu_)
-    help_ = menu_ = false;
+  else if (cover_ != Cover::none)
+    cover(Cover::none);
   else if (axis_pick_.active())
     axis_pick_.cancel();
   else if (by_hand_.operation)
@@ -225,7 +235,7 @@ void Editor::panel_action(const panels::PanelAction& action) {
     region_across_welds_ = region->across_welds;
     if (region->angle != region_angle_) change_angle(region->angle - region_angle_);
   } else if (const auto* asked = std::get_if<Command>(&action)) {
-    menu_ = false;
+    if (cover_ == Cover::menu) cover(Cover::none);
     command(*asked, std::nullopt);
   }
 }

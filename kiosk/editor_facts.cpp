@@ -81,8 +81,9 @@ panels::PanelData Editor::panel_data() const {
   data.glyphs_left_out = report_.glyphs_left_out;
   data.busy = link_.busy();
   data.busy_fraction = link_.busy_fraction();
-  data.help = help_;
-  data.menu = menu_;
+  data.help = cover_ == Cover::help;
+  data.menu = cover_ == Cover::menu;
+  if (cover_ == Cover::warnings && shown_) data.warnings = &link_.warnings();
   data.mouse = &mouse_words_;
   data.dialog = dialog_;
   if (dialog_ == panels::Dialog::expression) {
@@ -187,6 +188,9 @@ void Editor::trace_picture() {
     if (foot && tip) text = fmt::format("handle {:.1f} {:.1f} {:.1f} {:.1f}", foot->x(), foot->y(), tip->x(), tip->y());
   }
   if (text != traced_handle_) trace_.line(traced_handle_ = text);
+  text = notices_.empty() ? "notice none" : trace_of(notices_.front());
+  text.replace(0, std::string_view("notice").size(), "reads");
+  if (text != traced_notice_) trace_.line(traced_notice_ = text);
 }
 
 }  // namespace prismesh::kiosk

@@ -200,14 +200,20 @@ void ModelLink::took_state(const ipc::State& state) {
   }
   deck_ = state.path;
   is_document(state.path);
-  if (first && !state.warnings.empty()) {
-    const auto& warning = state.warnings.front();
-    std::string text = Error{warning.file, warning.line, warning.message}.text();
-    if (state.warnings.size() > 1) text += fmt::format(" (and {} more warnings: prismesh info lists them)", state.warnings.size() - 1);
-    say(Notice::Kind::warning, std::move(text));
-  }
+  if (first) say_warnings();
   if (!fetched_ || !snapshot_ || snapshot_->info().generation != state.generation || snapshot_->info().document != state.path)
     stale_ = true;
+}
+
+/// The worst of them; the list has all.
+void ModelLink::say_warnings() {
+  warnings_ = tools::told_warnings(state_->warnings);
+  if (warnings_.empty()) return;
+  const tools::ToldWarning& worst = warnings_.front();
+  std::string text = worst.place + ": " + worst.text;
+  if (warnings_.size() > 1) text += fmt::format("\n{} about this deck: Ctrl+I lists them.", tools::counts_of(warnings_));
+  say(worst.is_error ? Notice::Kind::error : Notice::Kind::warning, std::move(text));
+  notices_.back().lists_warnings = warnings_.size() > 1;
 }
 
 void ModelLink::fetch_snapshot() {
@@ -466,7 +472,7 @@ void ModelLink::say_report(const mesh::document::EditReport& report) {
 
 void ModelLink::say(Notice::Kind kind, std::string text) {
   ++changes_;
-  notices_.push_back({kind, std::move(text)});
+  notices_.push_back({kind, std::move(text), document_number_});
   trace_.line(trace_of(notices_.back()));
 }
 

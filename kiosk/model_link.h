@@ -16,6 +16,7 @@
 #include "base/clock.h"
 #include "ipc/client.h"
 #include "kiosk/panels/panels.h"
+#include "kiosk/tools/deck_warnings.h"
 #include "kiosk/trace.h"
 
 namespace prismesh::kiosk {
@@ -72,6 +73,8 @@ class ModelLink {
   bool connected() const { return client_.has_value(); }
   const std::filesystem::path& socket() const { return socket_; }
   const std::optional<ipc::State>& state() const { return state_; }
+  /// Of the deck that is open, the worst first.
+  const std::vector<tools::ToldWarning>& warnings() const { return warnings_; }
   /// The current generation; null while no document is open. Stays while the server is away.
   const std::shared_ptr<const ipc::SnapshotView>& snapshot() const { return snapshot_; }
   /// Counts up with each other document that is opened.
@@ -142,6 +145,7 @@ class ModelLink {
   void ask_state();
   void took_state(const ipc::State& state);
   void is_document(const std::string& path);
+  void say_warnings();
   void fetch_snapshot();
   void took_snapshot(const ipc::Answer& answer);
   void show(std::shared_ptr<const ipc::SnapshotView> view);
@@ -169,6 +173,7 @@ class ModelLink {
   std::int64_t back_off_ns_ = 0;
   std::optional<ipc::State> state_;
   std::shared_ptr<const ipc::SnapshotView> snapshot_;
+  std::vector<tools::ToldWarning> warnings_;
   std::string document_path_;
   std::uint64_t document_number_ = 0;
   std::string made_by_;

@@ -1,5 +1,6 @@
 #include "kiosk/notices.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace prismesh::kiosk {
@@ -7,14 +8,25 @@ namespace prismesh::kiosk {
 using panels::Notice;
 
 void Notices::say(Notice::Kind kind, std::string text) {
-  Notice notice{kind, std::move(text)};
+  Notice notice{kind, std::move(text), document_};
   trace_.line(trace_of(notice));
   take(std::move(notice));
 }
 
 void Notices::take(Notice notice) {
+  if (notice.document != 0 && notice.document < document_) return;
   while (!waiting_.empty() && waiting_.back().kind == Notice::Kind::information) waiting_.pop_back();
-  waiting_.push_back(std::move(notice));
+  const auto place = std::find_if(waiting_.begin(), waiting_.end(), [&](const Notice& each) { return each.kind < notice.kind; });
+  waiting_.insert(place, std::move(notice));
+}
+
+void Notices::follow(std::uint64_t document_number) {
+  document_ = document_number;
+  std::erase_if(waiting_, [&](const Notice& each) { return each.document != 0 && each.document < document_; });
+}
+
+void Notices::read_warnings() {
+  std::erase_if(waiting_, [](const Notice& each) { return each.lists_warnings; });
 }
 
 std::string trace_of(const Notice& notice) {

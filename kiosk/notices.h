@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <string>
 #include <vector>
@@ -15,19 +16,25 @@ class Notices {
  public:
   explicit Notices(Trace trace) : trace_(trace) {}
 
-  /// Says it in the trace too.
+  /// Of the document that is open. Says it in the trace too.
   void say(panels::Notice::Kind kind, std::string text);
-  /// Information gives way to anything newer; errors and warnings stay until they are read.
+  /// Errors stand before warnings, these before information, which gives way to anything newer. What speaks of a document that isn't
+  /// open any more is left out.
   void take(panels::Notice notice);
+  /// Another document is open: what was said of those before goes.
+  void follow(std::uint64_t document_number);
 
   bool empty() const { return waiting_.empty(); }
   /// The one to be read next.
   const panels::Notice& front() const { return waiting_.front(); }
   std::size_t count() const { return waiting_.size(); }
   void read() { waiting_.pop_front(); }
+  /// The deck's warnings are read in their list.
+  void read_warnings();
 
  private:
   Trace trace_;
+  std::uint64_t document_ = 0;
   std::deque<panels::Notice> waiting_;
 };
 

@@ -31,16 +31,24 @@ void notice_panel(const PanelData& data, display::PixelSize picture, float botto
               ImGui::GetFontSize() * 0.75f);
   ImGui::SameLine();
   const std::string read = data.more_notices > 0 ? fmt::format("next ({})", data.more_notices) : "close";
-  const float button = ImGui::CalcTextSize(read.c_str()).x + 4 * kGrid;
-  const float end = ImGui::GetWindowContentRegionMax().x - button;
+  const char* const list = "list all";
+  const auto width_of = [](const char* label) { return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x; };
+  const float buttons = data.notice->lists_warnings ? std::max(width_of(read.c_str()), width_of(list)) : width_of(read.c_str());
+  const float buttons_at = ImGui::GetWindowContentRegionMax().x - buttons, end = buttons_at - 2 * kGrid;
   ImGui::PushTextWrapPos(end);  // for a path that is wider than the panel; left alone the toolkit would break numbers at their point
   ImGui::TextUnformatted(break_at_spaces(printable_lines(data.notice->text), end - ImGui::GetCursorPosX(), [](std::string_view piece) {
                            return ImGui::CalcTextSize(piece.data(), piece.data() + piece.size()).x;
                          }).c_str());
   ImGui::PopTextWrapPos();
   ImGui::SameLine();
-  ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - button + 2 * kGrid);
+  ImGui::SetCursorPosX(buttons_at);
+  ImGui::BeginGroup();
   if (ImGui::SmallButton(read.c_str())) actions.emplace_back(NoticeRead{});
+  if (data.notice->lists_warnings) {
+    if (ImGui::SmallButton(list)) actions.emplace_back(Command::deck_warnings);
+    hint(Command::deck_warnings);
+  }
+  ImGui::EndGroup();
   ImGui::End();
 }
 
@@ -104,7 +112,7 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
   Actions actions;
   float bottom = static_cast<float>(picture.height) - kMargin;
   covered_width_ = 2.0 * static_cast<double>(side_width(picture) + kMargin);
-  const bool covered = data.help || data.menu || data.dialog == Dialog::open || data.dialog == Dialog::save_as;
+  const bool covered = data.help || data.warnings != nullptr || data.menu || data.dialog == Dialog::open || data.dialog == Dialog::save_as;
   if (data.document && data.connected && !covered) {
     if (data.compare && data.compare->panel_open)
       compare_panel(data, picture, compare_entry_, actions);
@@ -130,6 +138,7 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
     shown_dialog_ = Dialog::none;
   if (data.help) help_panel(data, picture);
   if (data.menu) menu_panel(data, picture, actions);
+  if (data.warnings != nullptr) warnings_panel(data, picture);
   guidance_panel(data, picture);
   notice_panel(data, picture, bottom, actions);
   return actions;

@@ -12,6 +12,7 @@
 #include "kiosk/panels/legend.h"
 #include "kiosk/panels/quality_facts.h"
 #include "kiosk/tools/command.h"
+#include "kiosk/tools/deck_warnings.h"
 #include "kiosk/tools/shaping_options.h"
 #include "mesh/document/edit.h"
 #include "mesh/quality/report.h"
@@ -55,6 +56,8 @@ struct Notice {
   enum class Kind : std::uint8_t { information, warning, error };
   Kind kind = Kind::information;
   std::string text;
+  std::uint64_t document = 0;   ///< ModelLink::document_number of the one it speaks of; 0: of none
+  bool lists_warnings = false;  ///< there are more of its kind in the list of the deck's warnings
 };
 
 /// What is being dragged, while it is.
@@ -140,6 +143,7 @@ struct PanelData {
   std::string busy;  ///< what the model server is at; empty: nothing
   double busy_fraction = 0;
   bool help = false, menu = false;
+  const std::vector<tools::ToldWarning>* warnings = nullptr;  ///< while their list is open
   const std::vector<tools::MouseBinding>* mouse = nullptr;
   std::optional<ExpressionFacts> expression;
   std::optional<NumberFacts> number;

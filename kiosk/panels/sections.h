@@ -17,6 +17,7 @@ void model_panel(const PanelData& data, display::PixelSize picture, Actions& act
 void compare_panel(const PanelData& data, display::PixelSize picture, CompareEntry& entry, Actions& actions);
 /// Which state is seen where, a line each at the top of the picture.
 void view_captions(const CompareFacts& facts, display::PixelSize picture, float top);
+void warnings_panel(const PanelData& data, display::PixelSize picture);
 void help_panel(const PanelData& data, display::PixelSize picture);
 void menu_panel(const PanelData& data, display::PixelSize picture, Actions& actions);
 /// `opened`: it wasn't there the last time.

@@ -12,6 +12,7 @@ constexpr std::array kKeys = {
     KeyBinding{letter('O'), true, false, Command::open, Menu::file, "Ctrl+O", "open a deck"},
     KeyBinding{letter('S'), true, false, Command::save, Menu::file, "Ctrl+S", "save"},
     KeyBinding{letter('S'), true, true, Command::save_as, Menu::file, "Ctrl+Shift+S", "save under another name"},
+    KeyBinding{letter('I'), true, false, Command::deck_warnings, Menu::file, "Ctrl+I", "list all warnings of the deck"},
     KeyBinding{letter('Z'), true, false, Command::undo, Menu::edit, "Ctrl+Z", "undo the last edit, selections included"},
     KeyBinding{letter('Y'), true, false, Command::redo, Menu::edit, "Ctrl+Y", "redo"},
     KeyBinding{letter('C'), false, false, Command::compare, Menu::edit, "C", "compare: show the state before the last edit, or after it"},
