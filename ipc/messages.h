@@ -33,6 +33,7 @@ struct Save {
   std::optional<std::string> path;  ///< absent: the deck's own
   bool becomes = false;             ///< the document goes on as the deck at `path`; false: that is a copy
   bool asks = false;                ///< where a file would be replaced or a folder made nothing is written, and the answer is SaveWould
+  bool stays_unsaved = false;       ///< of a copy: edits that the document's own deck doesn't have still count as unsaved
 };
 struct Close {
   bool discard = false;  ///< false: refused while there are unsaved edits

@@ -35,7 +35,7 @@ struct Message<mesh::select::Kind> {
 PRISMESH_MESSAGE(Hello, "hello", f("protocol", m.protocol), f("program", m.program));
 PRISMESH_MESSAGE(Open, "open", f("path", m.path), f("length_unit", m.length_unit), f("target_size", m.target_size),
                  f("criteria", m.criteria), f("discard", m.discard));
-PRISMESH_MESSAGE(Save, "save", f("path", m.path), f("becomes", m.becomes), f("asks", m.asks));
+PRISMESH_MESSAGE(Save, "save", f("path", m.path), f("becomes", m.becomes), f("asks", m.asks), f("stays_unsaved", m.stays_unsaved));
 PRISMESH_MESSAGE(Close, "close", f("discard", m.discard));
 PRISMESH_MESSAGE(ApplyEdit, "apply_edit", f("edit", m.edit));
 PRISMESH_MESSAGE(BeginDrag, "begin_drag", f("edit", m.edit));

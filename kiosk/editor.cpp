@@ -25,6 +25,7 @@ Editor::Editor(const EditorOptions& options, ModelLink& link, render::Renderer& 
       expressions_(options.expressions),
       mouse_words_(options.mouse.in_words()),
       quality_(link),
+      files_(link, trace),
       notices_(trace),
       comparing_(link, renderer, trace),
       before_after_(link, comparing_, notices_, trace),
@@ -75,6 +76,8 @@ Result<void> Editor::follow() {
   link_changes_ = link_.changes();
   ++changes_;
   notices_.follow(link_.document_number());
+  files_.follow();
+  if (files_.question()) cover(Cover::none);
   for (Notice& notice : link_.take_notices()) notices_.take(std::move(notice));
   take_shared_view();
   if (Result<void> followed = follow_states(); !followed) return followed;

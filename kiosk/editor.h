@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "kiosk/before_after.h"
 #include "kiosk/comparing.h"
+#include "kiosk/deck_files.h"
 #include "kiosk/display/window.h"
 #include "kiosk/model_link.h"
 #include "kiosk/notices.h"
@@ -59,7 +60,9 @@ class Editor {
   bool command(tools::Command command, const std::optional<tools::Pixel>& pointer);
   void panel_action(const panels::PanelAction& action);
 
-  bool dialog_open() const { return dialog_ != panels::Dialog::none; }
+  bool dialog_open() const { return dialog_ != panels::Dialog::none || files_.question(); }
+  /// Replies to the question that is asked, if the key does that.
+  bool reply_by_key(display::Key key);
   /// Typing a number now would say how far: something is pulled, or the pointer is over a part of the handle.
   bool takes_numbers(const std::optional<tools::Pixel>& pointer) const;
   /// `text`: what has been typed of it.
@@ -253,6 +256,7 @@ class Editor {
   panels::Dialog dialog_ = panels::Dialog::none;
   Cover cover_ = Cover::none;
 
+  DeckFiles files_;
   Notices notices_;
   Comparing comparing_;
   BeforeAfter before_after_;

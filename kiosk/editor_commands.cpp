@@ -26,9 +26,12 @@ bool Editor::command(Command command, const std::optional<Pixel>& pointer) {
   if (tools::asks_for_edit(command) && leave_older_state()) return true;
   switch (command) {
     case Command::open: open_dialog(panels::Dialog::open); return true;
-    case Command::save: link_.save(std::nullopt, save_remark()); return true;
+    case Command::save: files_.save(save_remark()); return true;
     case Command::save_as:
       if (shown_) open_dialog(panels::Dialog::save_as);
+      return true;
+    case Command::save_copy:
+      if (shown_) open_dialog(panels::Dialog::save_copy);
       return true;
     case Command::undo: send(mesh::document::Undo{}); return true;
     case Command::redo: send(mesh::document::Redo{}); return true;
@@ -160,11 +163,21 @@ void Editor::cover(Cover cover) {
   trace_.line(fmt::format("warnings shown errors {} warnings {}", errors, link_.warnings().size() - errors));
 }
 
+bool Editor::reply_by_key(display::Key key) {
+  const std::optional<tools::Reply> reply = files_.reply_of(key);
+  if (!reply || *reply == tools::Reply::cancel) return false;
+  files_.reply(*reply);
+  ++changes_;
+  return true;
+}
+
 /// What lies on top goes first.
 void Editor::cancel() {
   if (link_.can_stop()) return link_.stop();
   if (pull_ || rubber_band_ || !lasso_way_.empty()) return cancel_gesture();
-  if (dialog_ != panels::Dialog::none)
+  if (files_.question())
+    files_.reply(tools::Reply::cancel);
+  else if (dialog_ != panels::Dialog::none)
     dialog_ = panels::Dialog::none;
   else if (cover_ != Cover::none)
     cover(Cover::none);
@@ -215,9 +228,11 @@ void Editor::panel_action(const panels::PanelAction& action) {
     edit.on = ask->on;
     send(std::move(edit));
   } else if (const auto* open = std::get_if<panels::AskOpen>(&action)) {
-    link_.open(open->path);
-  } else if (const auto* save = std::get_if<panels::AskSaveAs>(&action)) {
-    link_.save(std::filesystem::path(save->path), save_remark());
+    files_.open(open->path);
+  } else if (const auto* save = std::get_if<panels::AskSave>(&action)) {
+    files_.save_elsewhere(save->path, save->copy ? DeckFiles::Elsewhere::copy : DeckFiles::Elsewhere::becomes, save_remark());
+  } else if (const auto* reply = std::get_if<tools::Reply>(&action)) {
+    files_.reply(*reply);
   } else if (std::holds_alternative<panels::NoticeRead>(action)) {
     if (!notices_.empty()) notices_.read();
   } else if (std::holds_alternative<panels::DialogClosed>(action)) {

@@ -86,6 +86,7 @@ panels::PanelData Editor::panel_data() const {
   if (cover_ == Cover::warnings && shown_) data.warnings = &link_.warnings();
   data.mouse = &mouse_words_;
   data.dialog = dialog_;
+  if (files_.question()) data.question = &*files_.question();
   if (dialog_ == panels::Dialog::expression) {
     panels::ExpressionFacts& facts = data.expression.emplace();
     facts.entered = &expressions_.entries();

@@ -98,6 +98,7 @@ void ModelLink::lost(const Error& error) {
   busy_.clear();
   stale_ = fetching_ = fetched_ = counting_ = false;
   edits_ = long_ = 0;
+  becoming_.clear();
   if (drag_) drop_drag("lost");
   next_attempt_ns_ = clock_.now_ns();
   ++changes_;
@@ -180,7 +181,8 @@ void ModelLink::ask_state() {
 }
 
 void ModelLink::is_document(const std::string& path) {
-  if (std::exchange(document_path_, path) != path) ++document_number_;
+  // Under another name of its own it isn't another document.
+  if (std::exchange(document_path_, path) != path && path != becoming_) ++document_number_;
 }
 
 void ModelLink::took_state(const ipc::State& state) {
@@ -256,22 +258,29 @@ void ModelLink::show(std::shared_ptr<const ipc::SnapshotView> view) {
   fetched_ = true;
 }
 
-void ModelLink::open(const std::filesystem::path& deck) {
+/// The daemon names the deck that is open when its unsaved edits are in the way.
+bool ModelLink::is_refused_for_edits(const ipc::Failed& failed) const {
+  if (snapshot_) return failed.file == snapshot_->info().document && (snapshot_->info().changed || !up_to_date());
+  return state_ && state_->open && state_->changed && failed.file == state_->path;
+}
+
+void ModelLink::open(const std::filesystem::path& deck, bool discard) {
   std::error_code ignored;
   const std::filesystem::path whole = std::filesystem::absolute(deck, ignored);
   busy_ = busy_words("Opening " + whole.filename().string(), true);
   busy_fraction_ = 0;
   ipc::Open request;
   request.path = whole.string();
+  request.discard = discard;
   ask(request, [this, whole](const ipc::Answer& answer) {
     busy_.clear();
     if (const auto* failed = std::get_if<ipc::Failed>(&answer)) {
-      const bool unsaved = snapshot_ ? snapshot_->info().changed : state_ && state_->open && state_->changed;
       if (was_stopped(*failed))
         say_failed(*failed, whole.filename().string() + " was not opened");
+      else if (is_refused_for_edits(*failed))
+        refused_ = whole;
       else
-        say(Notice::Kind::error, fmt::format("{} was not opened. {}{}", whole.filename().string(), text_of(*failed),
-                                             unsaved ? "\nCtrl+S saves what is open; then Ctrl+O opens the other." : ""));
+        say(Notice::Kind::error, fmt::format("{} was not opened. {}", whole.filename().string(), text_of(*failed)));
       if (snapshot_) return;
       // What the server has open instead is shown: nobody could save it unseen.
       deck_.reset();
@@ -293,22 +302,29 @@ void ModelLink::open(const std::filesystem::path& deck) {
   if (!client_) busy_.clear();
 }
 
-void ModelLink::save(const std::optional<std::filesystem::path>& path, const std::string& remark) {
-  ipc::Save request;
-  std::error_code ignored;
-  if (path) request.path = std::filesystem::absolute(*path, ignored).string();
-  ask(request, [this, remark](const ipc::Answer& answer) {
-    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return say_failed(*failed, "nothing was saved");
-    const auto* saved = std::get_if<ipc::Saved>(&answer);
-    if (saved == nullptr) return;
-    trace_.line(fmt::format("saved {} {}", saved->lines_changed, saved->path));
-    std::string text = fmt::format("Saved {}: {} lines changed.", saved->path, saved->lines_changed);
-    if (!remark.empty()) text += " " + remark;
-    for (const std::string& note : saved->notes) text += "\n" + note;
-    say(saved->notes.empty() ? Notice::Kind::information : Notice::Kind::warning, std::move(text));
-    stale_ = true;
-    ask_state();
+void ModelLink::save(const ipc::Save& request, const std::string& remark, Then then) {
+  becoming_ = request.becomes && request.path ? *request.path : std::string();
+  ask(request, [this, becomes = request.becomes, remark, then = std::move(then)](const ipc::Answer& answer) {
+    busy_.clear();
+    becoming_.clear();
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) say_failed(*failed, "nothing was saved");
+    if (const auto* saved = std::get_if<ipc::Saved>(&answer)) took_saved(*saved, becomes, remark);
+    then(answer);
   });
+}
+
+void ModelLink::took_saved(const ipc::Saved& saved, bool becomes, const std::string& remark) {
+  trace_.line(fmt::format("saved {} {}", saved.lines_changed, saved.path));
+  if (becomes) {
+    document_path_ = saved.path;
+    deck_ = saved.path;
+  }
+  std::string text = fmt::format("Saved {}: {} lines changed.", saved.path, saved.lines_changed);
+  if (!remark.empty()) text += " " + remark;
+  for (const std::string& note : saved.notes) text += "\n" + note;
+  say(saved.notes.empty() ? Notice::Kind::information : Notice::Kind::warning, std::move(text));
+  stale_ = true;
+  ask_state();
 }
 
 void ModelLink::edit(mesh::document::Edit edit) {

@@ -70,6 +70,8 @@ class ModelLink {
   /// Counts up with everything that could change what is shown.
   std::uint64_t changes() const { return changes_; }
 
+  using Then = std::function<void(const ipc::Answer&)>;
+
   bool connected() const { return client_.has_value(); }
   const std::filesystem::path& socket() const { return socket_; }
   const std::optional<ipc::State>& state() const { return state_; }
@@ -86,9 +88,12 @@ class ModelLink {
   const std::string& busy() const { return busy_; }
   double busy_fraction() const { return busy_fraction_; }
 
-  void open(const std::filesystem::path& deck);
-  /// `remark`: said together with what was saved.
-  void save(const std::optional<std::filesystem::path>& path, const std::string& remark = {});
+  /// `discard`: unsaved edits of the deck that is open are given up.
+  void open(const std::filesystem::path& deck, bool discard = false);
+  /// A deck that wasn't opened, as the one that is open has unsaved edits; once.
+  std::optional<std::filesystem::path> take_refused() { return std::exchange(refused_, std::nullopt); }
+  /// `remark`: said together with what was saved. `then` has the answer after everything else has heard it.
+  void save(const ipc::Save& request, const std::string& remark, Then then);
   void edit(mesh::document::Edit edit);
   bool editing() const { return edits_ > 0; }
   /// Something that this client asked for (opening, saving, an edit, a field) takes long enough to say how far it is.
@@ -96,7 +101,6 @@ class ModelLink {
   /// Asks it to stop: then nothing has happened.
   void stop();
 
-  using Then = std::function<void(const ipc::Answer&)>;
   /// Asks what changes nothing, and hands the answer on when it is here; never, if the server goes away before.
   void question(const ipc::Request& request, Then then);
   // What came with an answer to a question.
@@ -146,6 +150,7 @@ class ModelLink {
   void took_state(const ipc::State& state);
   void is_document(const std::string& path);
   void say_warnings();
+  void took_saved(const ipc::Saved& saved, bool becomes, const std::string& remark);
   void fetch_snapshot();
   void took_snapshot(const ipc::Answer& answer);
   void show(std::shared_ptr<const ipc::SnapshotView> view);
@@ -155,12 +160,14 @@ class ModelLink {
   void ask_count();
   void send_step();
   void drop_drag(const char* how);
+  bool is_refused_for_edits(const ipc::Failed& failed) const;
   void say_failed(const ipc::Failed& failed, const std::string& if_stopped);
   void say_report(const mesh::document::EditReport& report);
   void say(panels::Notice::Kind kind, std::string text);
 
   std::filesystem::path socket_;
-  std::optional<std::filesystem::path> deck_;  ///< what should be open
+  std::optional<std::filesystem::path> deck_;     ///< what should be open
+  std::optional<std::filesystem::path> refused_;  ///< what was to be opened, and wasn't for edits that aren't saved
   Clock& clock_;
   Trace trace_;
   std::optional<ipc::Client> client_;
@@ -175,6 +182,7 @@ class ModelLink {
   std::shared_ptr<const ipc::SnapshotView> snapshot_;
   std::vector<tools::ToldWarning> warnings_;
   std::string document_path_;
+  std::string becoming_;  ///< the name under which the document is being saved and will go on; empty: none
   std::uint64_t document_number_ = 0;
   std::string made_by_;
   bool stale_ = false;     ///< a newer generation exists

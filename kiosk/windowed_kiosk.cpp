@@ -111,6 +111,10 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   edge_fed_ = dirty_ = true;
   if (!event.down) return {};
   swallow_text_ = false;
+  if (!event.repeat && !event.modifiers.ctrl && !event.modifiers.alt && station_.editor.reply_by_key(event.key)) {
+    swallow_text_ = true;
+    return {};
+  }
   const bool digit = event.key >= display::Key::digit_0 && event.key <= display::Key::digit_9;
   if (digit && !event.modifiers.ctrl && !event.modifiers.alt && station_.editor.takes_numbers(pointer_on_picture())) return {};
   const std::optional<tools::Command> command = tools::command_for(event.key, event.modifiers);

@@ -109,8 +109,9 @@ Outcome Bench::save(const ipc::Save& request, const Progress& progress) {
     if (!would) return {failed(would.error()), {}, {}, {}};
     if (*would) return {std::move(**would), {}, {}, {}};
   }
-  Result<ipc::Saved> saved =
-      request.becomes && request.path ? keeper_.save_as(*request.path, progress) : keeper_.save(request.path, progress);
+  Result<ipc::Saved> saved = request.path && request.becomes         ? keeper_.save_as(*request.path, progress)
+                             : request.path && request.stays_unsaved ? keeper_.save_copy(*request.path, progress)
+                                                                     : keeper_.save(request.path, progress);
   if (!saved) return {failed(saved.error()), {}, {}, {}};
   Outcome outcome;
   outcome.answer = std::move(*saved);

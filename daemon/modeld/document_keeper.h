@@ -32,6 +32,8 @@ class DocumentKeeper {
   /// fails between the files, those that were replaced get back what they held. If even that fails no edits are taken until the save is
   /// called again and finishes it.
   Result<ipc::Saved> save(const std::optional<std::string>& path, const Progress& progress = {});
+  /// Saves the deck elsewhere; edits that its own deck doesn't have stay unsaved.
+  Result<ipc::Saved> save_copy(const std::string& path, const Progress& progress = {});
   /// Saves the deck elsewhere and goes on as the document of that deck, with its history; the deck it was stays as it is on disk. Errors:
   /// as save, and where the written deck can't be gone on with: then it is a copy, and the document is the one it was.
   Result<ipc::Saved> save_as(const std::string& path, const Progress& progress = {});

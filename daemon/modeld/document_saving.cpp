@@ -99,12 +99,19 @@ Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warn
 
 Result<ipc::Saved> DocumentKeeper::save(const std::optional<std::string>& path, const Progress& progress) {
   if (!open_) return fail("", "no document is open");
-  if (!path || same_file(open_->document.path, *path)) return save_in_place(progress);
-  const Result<fs::path> target = absolute(*path);
+  if (!path) return save_in_place(progress);
+  Result<ipc::Saved> saved = save_copy(*path, progress);
+  if (saved) open_->saved = open_->document.generations[open_->document.cursor];
+  return saved;
+}
+
+Result<ipc::Saved> DocumentKeeper::save_copy(const std::string& path, const Progress& progress) {
+  if (!open_) return fail("", "no document is open");
+  if (same_file(open_->document.path, path)) return save_in_place(progress);
+  const Result<fs::path> target = absolute(path);
   if (!target) return fail(target.error());
   const Result<mesh::deck::SaveReport> report = mesh::document::save(open_->document, *target, progress);
   if (!report) return fail(report.error());
-  open_->saved = open_->document.generations[open_->document.cursor];
   return report_of(*target, *report);
 }
 

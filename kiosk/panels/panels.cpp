@@ -55,7 +55,7 @@ void notice_panel(const PanelData& data, display::PixelSize picture, float botto
 /// What stands in the middle while there is no model to see or the model server is busy.
 void state_panel(const PanelData& data, display::PixelSize picture) {
   if (data.connected && data.document && data.busy.empty()) return;
-  if (data.connected && data.dialog != Dialog::none) return;
+  if (data.connected && (data.dialog != Dialog::none || data.question != nullptr)) return;
   begin_centred("State", picture, ImGui::GetFontSize() * 32);
   if (!data.connected) {
     ImGui::PushFont(title_font());
@@ -89,6 +89,8 @@ void guidance_panel(const PanelData& data, display::PixelSize picture) {
   ImGui::End();
 }
 
+bool is_path(Dialog dialog) { return dialog == Dialog::open || dialog == Dialog::save_as || dialog == Dialog::save_copy; }
+
 /// Tab: the text becomes what all offered entries begin with.
 int complete(ImGuiInputTextCallbackData* data) {
   if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways) {
@@ -112,7 +114,7 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
   Actions actions;
   float bottom = static_cast<float>(picture.height) - kMargin;
   covered_width_ = 2.0 * static_cast<double>(side_width(picture) + kMargin);
-  const bool covered = data.help || data.warnings != nullptr || data.menu || data.dialog == Dialog::open || data.dialog == Dialog::save_as;
+  const bool covered = data.help || data.warnings != nullptr || data.menu || data.question != nullptr || is_path(data.dialog);
   if (data.document && data.connected && !covered) {
     if (data.compare && data.compare->panel_open)
       compare_panel(data, picture, compare_entry_, actions);
@@ -132,7 +134,10 @@ Actions Panels::build(const PanelData& data, display::PixelSize picture) {
     if (data.compare) view_captions(*data.compare, picture, data.guidance.empty() ? kMargin : kMargin + 3 * ImGui::GetFontSize());
   }
   state_panel(data, picture);
-  if (data.connected && data.dialog != Dialog::none)
+  if (data.connected && data.question != nullptr) {
+    question_box(*data.question, picture, actions);
+    shown_dialog_ = Dialog::none;
+  } else if (data.connected && data.dialog != Dialog::none)
     build_dialog(data, picture, actions);
   else
     shown_dialog_ = Dialog::none;
@@ -155,11 +160,13 @@ void Panels::build_dialog(const PanelData& data, display::PixelSize picture, Act
 
 void Panels::build_path(const PanelData& data, Actions& actions, bool opened) {
   ImGui::PushFont(title_font());
-  ImGui::TextUnformatted(data.dialog == Dialog::open ? "Open a deck" : "Save under another name");
+  ImGui::TextUnformatted(data.dialog == Dialog::open        ? "Open a deck"
+                         : data.dialog == Dialog::save_copy ? "Save a copy"
+                                                            : "Save as another deck");
   ImGui::PopFont();
   if (opened) {
     const std::filesystem::path current(data.document ? data.document->path : "");
-    typed_ = data.dialog == Dialog::save_as || !data.document ? current.string() : (current.parent_path() / "").string();
+    typed_ = data.dialog != Dialog::open || !data.document ? current.string() : (current.parent_path() / "").string();
     caret_to_end_ = true;
     ImGui::SetKeyboardFocusHere();
   }
@@ -175,12 +182,19 @@ void Panels::build_path(const PanelData& data, Actions& actions, bool opened) {
   for (const std::string& entry : offered_)
     if (ImGui::Selectable(printable(entry).c_str())) typed_ = entry;
   ImGui::TextDisabled("Tab completes, Enter %s, Esc closes", data.dialog == Dialog::open ? "opens" : "saves");
+  if (data.document && data.dialog != Dialog::open) {
+    const std::string name = std::filesystem::path(data.document->path).filename().string();
+    elided_text(
+        printable(data.dialog == Dialog::save_copy ? "You go on with " + name + "."
+                                                   : "You go on with the new deck. " + name + " stays on disk as it was last saved."),
+        ImGui::GetContentRegionAvail().x);
+  }
   ImGui::PopFont();
   if (entered && !typed_.empty()) {
     if (data.dialog == Dialog::open)
       actions.emplace_back(AskOpen{typed_});
     else
-      actions.emplace_back(AskSaveAs{typed_});
+      actions.emplace_back(AskSave{typed_, data.dialog == Dialog::save_copy});
     actions.emplace_back(DialogClosed{});
   }
 }

@@ -13,6 +13,7 @@
 #include "kiosk/panels/quality_facts.h"
 #include "kiosk/tools/command.h"
 #include "kiosk/tools/deck_warnings.h"
+#include "kiosk/tools/question.h"
 #include "kiosk/tools/shaping_options.h"
 #include "mesh/document/edit.h"
 #include "mesh/quality/report.h"
@@ -115,7 +116,7 @@ struct NumberFacts {
   std::string problem;  ///< a sentence; empty: none
 };
 
-enum class Dialog : std::uint8_t { none, open, save_as, expression, number };
+enum class Dialog : std::uint8_t { none, open, save_as, save_copy, expression, number };
 
 struct PanelData {
   bool connected = false;
@@ -148,6 +149,7 @@ struct PanelData {
   std::optional<ExpressionFacts> expression;
   std::optional<NumberFacts> number;
   Dialog dialog = Dialog::none;
+  const tools::Question* question = nullptr;  ///< stands before everything else
 };
 
 /// `on` is an expression of parts: an id, or file:NAME.
@@ -158,8 +160,9 @@ struct AskParts {
 struct AskOpen {
   std::string path;
 };
-struct AskSaveAs {
+struct AskSave {
   std::string path;
+  bool copy = false;
 };
 struct ExpressionTyped {
   std::string text;
@@ -184,8 +187,8 @@ struct SetRegion {
 struct NoticeRead {};
 struct DialogClosed {};
 using PanelAction =
-    std::variant<tools::Command, AskParts, AskOpen, AskSaveAs, ExpressionTyped, ExpressionEntered, NumberEntered, SetShaping, SetRegion,
-                 ChooseMetric, BarClicked, ErrorClicked, SetCompare, SetLimits, NoticeRead, DialogClosed>;
+    std::variant<tools::Command, tools::Reply, AskParts, AskOpen, AskSave, ExpressionTyped, ExpressionEntered, NumberEntered, SetShaping,
+                 SetRegion, ChooseMetric, BarClicked, ErrorClicked, SetCompare, SetLimits, NoticeRead, DialogClosed>;
 
 /// What a field that is typed into remembers from one layout to the next.
 struct EntryState {

@@ -24,6 +24,8 @@ void menu_panel(const PanelData& data, display::PixelSize picture, Actions& acti
 void expression_box(const PanelData& data, display::PixelSize picture, bool opened, EntryState& entry, Actions& actions);
 void number_box(const PanelData& data, display::PixelSize picture, bool opened, EntryState& entry, Actions& actions);
 
+void question_box(const tools::Question& question, display::PixelSize picture, Actions& actions);
+
 /// What is set, and a button that takes the next: "falloff ..... smooth".
 void setting(const char* label, const std::string& value, tools::Command next, Actions& actions);
 /// What the command of the item before does, while the pointer is over it.

@@ -11,7 +11,8 @@ constexpr Key digit(int value) { return static_cast<Key>('0' + value); }
 constexpr std::array kKeys = {
     KeyBinding{letter('O'), true, false, Command::open, Menu::file, "Ctrl+O", "open a deck"},
     KeyBinding{letter('S'), true, false, Command::save, Menu::file, "Ctrl+S", "save"},
-    KeyBinding{letter('S'), true, true, Command::save_as, Menu::file, "Ctrl+Shift+S", "save under another name"},
+    KeyBinding{letter('S'), true, true, Command::save_as, Menu::file, "Ctrl+Shift+S", "save as another deck, and go on with that one"},
+    KeyBinding{letter('C'), true, true, Command::save_copy, Menu::file, "Ctrl+Shift+C", "save a copy, and go on with this deck"},
     KeyBinding{letter('I'), true, false, Command::deck_warnings, Menu::file, "Ctrl+I", "list all warnings of the deck"},
     KeyBinding{letter('Z'), true, false, Command::undo, Menu::edit, "Ctrl+Z", "undo the last edit, selections included"},
     KeyBinding{letter('Y'), true, false, Command::redo, Menu::edit, "Ctrl+Y", "redo"},

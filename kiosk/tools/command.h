@@ -16,6 +16,7 @@ enum class Command : std::uint8_t {
   open,
   save,
   save_as,
+  save_copy,
   deck_warnings,
   undo,
   redo,

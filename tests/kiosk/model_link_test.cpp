@@ -166,7 +166,7 @@ TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
   std::string field_answer;
   const std::vector<std::pair<const char*, std::function<void()>>> works = {
       {"opening", [&] { link.open("other.k"); }},
-      {"saving", [&] { link.save(std::nullopt); }},
+      {"saving", [&] { link.save(ipc::Save{}, {}, [](const ipc::Answer&) {}); }},
       {"an edit", [&] { link.edit(mesh::document::Undo{}); }},
       {"a field",
        [&] {

@@ -62,7 +62,7 @@ TEST_F(DragTest, a_lift_by_the_pointer_changes_the_selected_nodes_lines_only) {
   const std::vector<std::int64_t> selected = station_->select_middle();
   station_->pull_arrow(60);
   commit();
-  expect_lifted(station_->save_as("lifted.k"), selected);
+  expect_lifted(station_->save_copy("lifted.k"), selected);
   EXPECT_EQ(whole_file(station_->deck()), original_) << "saving elsewhere must leave the deck alone";
 }
 
@@ -98,20 +98,20 @@ TEST_F(DragTest, escape_during_a_pull_leaves_everything_as_it_was) {
   station_->key("Escape");
   ASSERT_FALSE(station_->kiosk().wait_for("drag cancelled").empty());
   station_->release();
-  EXPECT_EQ(station_->save_as("cancelled.k"), original_);
+  EXPECT_EQ(station_->save_copy("cancelled.k"), original_);
 }
 
 TEST_F(DragTest, undo_takes_the_lift_back_and_redo_brings_it_again) {
   const std::vector<std::int64_t> selected = station_->select_middle();
   station_->pull_arrow(60);
   commit();
-  const std::string lifted = station_->save_as("lifted.k");
+  const std::string lifted = station_->save_copy("lifted.k");
   station_->key("ctrl+z");
   ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
-  EXPECT_EQ(station_->save_as("undone.k"), original_);
+  EXPECT_EQ(station_->save_copy("undone.k"), original_);
   station_->key("ctrl+y");
   ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
-  EXPECT_EQ(station_->save_as("redone.k"), lifted);
+  EXPECT_EQ(station_->save_copy("redone.k"), lifted);
 }
 
 TEST_F(DragTest, a_killed_model_server_loses_no_edit_and_the_kiosk_goes_on) {
@@ -126,7 +126,7 @@ TEST_F(DragTest, a_killed_model_server_loses_no_edit_and_the_kiosk_goes_on) {
   ASSERT_FALSE(station_->kiosk()
                    .wait_until([](const std::string& line) { return line.starts_with("generation ") && line.ends_with("changed 1"); })
                    .empty());
-  expect_lifted(station_->save_as("recovered.k"), selected);
+  expect_lifted(station_->save_copy("recovered.k"), selected);
 }
 
 TEST_F(DragTest, a_model_server_killed_in_the_middle_of_a_pull_undoes_the_pull_only) {
@@ -137,7 +137,7 @@ TEST_F(DragTest, a_model_server_killed_in_the_middle_of_a_pull_undoes_the_pull_o
   station_->start_model_server();
   ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
   station_->release();
-  EXPECT_EQ(station_->save_as("unpulled.k"), original_);
+  EXPECT_EQ(station_->save_copy("unpulled.k"), original_);
 }
 
 TEST_F(DragTest, two_stations_side_by_side_do_not_touch_each_other) {
@@ -147,11 +147,11 @@ TEST_F(DragTest, two_stations_side_by_side_do_not_touch_each_other) {
   const std::vector<std::int64_t> there = other.select_middle();
   station_->pull_arrow(60);
   commit();
-  EXPECT_EQ(other.save_as("other.k"), original_) << "the second station's document changed with the first's";
+  EXPECT_EQ(other.save_copy("other.k"), original_) << "the second station's document changed with the first's";
   other.pull_arrow(30);
   other.release();
   ASSERT_FALSE(other.kiosk().wait_for("drag committed").empty());
-  const std::string first = station_->save_as("first.k"), second = other.save_as("second.k");
+  const std::string first = station_->save_copy("first.k"), second = other.save_copy("second.k");
   expect_lifted(first, here);
   expect_lifted(second, there);
   EXPECT_NE(first, second);

@@ -124,7 +124,7 @@ TEST_F(HandTest, turning_shifting_and_zooming_change_the_view_and_nothing_else) 
       wait_for_aim([&](const Station::Aim& aim) { return std::abs(distance(aim.pixel_of(pivot), aim.pixel_of(corner)) - apart) < 1; }));
 
   EXPECT_EQ(station_->kiosk().last("generation "), generation);
-  EXPECT_EQ(station_->save_as("looked_at.k"), original_);
+  EXPECT_EQ(station_->save_copy("looked_at.k"), original_);
 }
 
 TEST_F(HandTest, a_rectangle_takes_what_is_seen_or_all_through_the_model) {
@@ -169,7 +169,7 @@ TEST_F(HandTest, the_ring_moves_the_selection_in_the_plane_of_the_screen) {
   const auto aim = station_->aim();
   pull_ring(60, 25);
   let_go();
-  const std::string saved = station_->save_as("moved.k");
+  const std::string saved = station_->save_copy("moved.k");
   const DeckDifference difference = compare_decks(original_, saved);
   EXPECT_TRUE(difference.same_line_count && difference.other_changes.empty());
   const std::map<std::int64_t, Point> after = nodes_of_deck(saved);
@@ -196,9 +196,9 @@ TEST_F(HandTest, undo_takes_a_move_by_the_ring_back) {
   station_->select_middle();
   pull_ring(-50, 40);
   let_go();
-  EXPECT_NE(station_->save_as("moved.k"), original_);
+  EXPECT_NE(station_->save_copy("moved.k"), original_);
   station_->key("ctrl+z");
-  EXPECT_EQ(station_->save_as("undone.k"), original_);
+  EXPECT_EQ(station_->save_copy("undone.k"), original_);
 }
 
 /// How much pixels differ from those `step` columns further, on average over the picture's middle.

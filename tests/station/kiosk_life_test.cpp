@@ -97,35 +97,6 @@ TEST_F(WindowTest, a_deck_that_is_none_is_refused_in_a_sentence_and_the_kiosk_st
   EXPECT_TRUE(kiosk.running());
 }
 
-TEST_F(WindowTest, a_deck_refused_for_unsaved_edits_shows_what_is_open_says_why_and_lets_it_be_saved) {
-  station_->start_kiosk();
-  station_->kiosk().skip_lines();
-  station_->select_middle();
-  station_->pull_arrow(40);
-  station_->release();
-  ASSERT_FALSE(station_->kiosk().wait_for("drag committed").empty());
-  const std::filesystem::path other = station_->folder() / "other.k";
-  write_sheet(other);
-  station_->open_in_another_kiosk(other);
-  const std::string notice = station_->kiosk().wait_for("notice error");
-  for (const char* said : {"other.k was not opened", "sheet.k", "unsaved edits", "close --discard"})
-    EXPECT_NE(notice.find(said), std::string::npos) << notice;
-  // Not "No deck is open": the deck with the edits is there, and the keys that were named work.
-  const std::string shown = station_->kiosk().wait_for("generation ");
-  EXPECT_TRUE(shown.ends_with("changed 1")) << shown;
-  ASSERT_FALSE(station_->kiosk()
-                   .wait_until([&](const std::string& line) { return line.starts_with("picture ") && !line.ends_with("none"); })
-                   .empty());
-  station_->show_people("unsaved_edits");
-  station_->key("ctrl+s");
-  ASSERT_FALSE(station_->kiosk().wait_for("saved ").empty());
-  station_->key("ctrl+o");
-  station_->key("ctrl+a");
-  station_->type(other.string());
-  station_->key("Return");
-  EXPECT_FALSE(station_->kiosk().wait_for("document " + other.string()).empty());
-}
-
 TEST_F(WindowTest, an_idle_picture_costs_no_processor_time) {
   station_->start_kiosk();
   const auto ticks = [&] {

@@ -66,7 +66,7 @@ TEST_F(QualityTest, errors_are_gone_to_worst_first_and_named) {
   station_->key("j");
   ASSERT_FALSE(station_->kiosk().wait_for("quality generation").empty());
   station_->show_people("quality panel");
-  const std::string saved = station_->save_as("dented.k");
+  const std::string saved = station_->save_copy("dented.k");
   const auto dented = nodes_of_deck(saved);
   std::set<std::int64_t> seen;
   for (int i = 1; i <= 3; ++i) {
@@ -106,7 +106,7 @@ TEST_F(QualityTest, an_operation_by_hand_is_shown_before_it_is_done) {
   station_->show_people("split");
   station_->key("Escape");
   EXPECT_FALSE(station_->kiosk().wait_for("operation none").empty());
-  EXPECT_EQ(station_->save_as("untouched.k"), original_) << "a preview changes nothing";
+  EXPECT_EQ(station_->save_copy("untouched.k"), original_) << "a preview changes nothing";
   station_->kiosk().skip_lines();
   station_->move(at[0], at[1]);
   station_->key("ctrl+d");
@@ -114,7 +114,7 @@ TEST_F(QualityTest, an_operation_by_hand_is_shown_before_it_is_done) {
   station_->kiosk().skip_lines();
   station_->key("Return");
   ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
-  const auto split = shells_of_deck(station_->save_as("split.k"));
+  const auto split = shells_of_deck(station_->save_copy("split.k"));
   ASSERT_EQ(split.size(), shells_.size() + 1);
   std::set<std::int64_t> corners;
   for (const auto& [id, nodes] : split) {

@@ -246,10 +246,10 @@ std::optional<Station::Handle> Station::handle() {
   return line ? std::optional(handle) : std::nullopt;
 }
 
-std::string Station::save_as(const std::string& name) {
+std::string Station::save_copy(const std::string& name) {
   const std::filesystem::path target = folder_ / name;
   kiosk_->skip_lines();
-  key("ctrl+shift+s");
+  key("ctrl+shift+c");
   key("ctrl+a");
   type(target.string());
   key("Return");

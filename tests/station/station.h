@@ -91,8 +91,8 @@ class Station {
     double foot_x = 0, foot_y = 0, tip_x = 0, tip_y = 0;
   };
   std::optional<Handle> handle();
-  /// Saves under another name by keyboard, waits for it, and gives back what was written.
-  std::string save_as(const std::string& name);
+  /// Saves a copy by keyboard, waits for it, and gives back what was written.
+  std::string save_copy(const std::string& name);
   /// Selects the nodes of the sheet's middle with a rectangle; their ids.
   std::vector<std::int64_t> select_middle();
   /// Takes the arrow at its tip and moves the pointer along it; the button stays down and a preview is seen.

@@ -110,7 +110,7 @@ TEST_F(ToolsTest, a_typed_number_is_the_edit_to_the_last_digit) {
   EXPECT_EQ(station_->kiosk().wait_for("typed "), "typed Lift 2.5");
   committed();
   double most = 0;
-  for (const auto& [id, by] : moved(station_->save_as("typed.k"))) most = std::max(most, length(by));
+  for (const auto& [id, by] : moved(station_->save_copy("typed.k"))) most = std::max(most, length(by));
   EXPECT_NEAR(most, 2.5, 2e-4);
 }
 
@@ -129,7 +129,7 @@ TEST_F(ToolsTest, the_disk_slides_on_the_sheet_and_goes_on_after_the_view_was_tu
   station_->move(pulled[0] + 75, pulled[1] - 20);
   station_->release();
   committed();
-  const auto by = moved(station_->save_as("slid.k"));
+  const auto by = moved(station_->save_copy("slid.k"));
   ASSERT_GT(by.size(), 20u);
   double most = 0;
   for (const auto& [id, d] : by) most = std::max(most, length(d));
@@ -167,7 +167,7 @@ TEST_F(ToolsTest, a_turn_about_a_picked_axis_keeps_each_nodes_distance_from_it) 
   station_->show_people("turn");
   station_->release();
   committed();
-  const auto by = moved(station_->save_as("turned.k"));
+  const auto by = moved(station_->save_copy("turned.k"));
   ASSERT_GT(by.size(), 20u);
   const auto distance = [&](const Point& at) {
     const Point d = minus(at, from);

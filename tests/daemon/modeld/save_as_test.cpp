@@ -133,6 +133,25 @@ TEST_F(SaveAs, SaysWhatItWouldReplaceAndMakeAndTouchesNothing) {
   EXPECT_THAT(std::get<ipc::Failed>(answer).message, ::testing::HasSubstr("absolute"));
 }
 
+TEST_F(SaveAs, ACopyLeavesTheDocumentAsItWas) {
+  const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
+  ipc::SnapshotPublisher publisher(1);
+  Bench bench(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
+  ipc::Open request;
+  request.path = deck.string();
+  ASSERT_TRUE(std::holds_alternative<ipc::State>(bench.open(request, {}).answer));
+  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(bench.edit(mesh::document::parse_edit(kLift).value()).answer));
+  ipc::Save copy{other.string(), false, false, true};
+  const Outcome copied = bench.save(copy);
+  ASSERT_TRUE(std::holds_alternative<ipc::Saved>(copied.answer));
+  EXPECT_NE(test::whole_file(other), test::whole_file(deck));
+  ASSERT_TRUE(copied.face);
+  EXPECT_EQ(copied.face->state.path, deck.string());
+  EXPECT_TRUE(copied.face->state.changed) << "the deck itself doesn't have the edit";
+  copy.stays_unsaved = false;
+  EXPECT_FALSE(bench.save(copy).face->state.changed);
+}
+
 TEST_F(SaveAs, WhereItCantGoOnTheDocumentIsTheOneItWas) {
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
   auto killed = std::make_unique<DocumentKeeper>(keeper());

@@ -1,0 +1,47 @@
+// A question in the middle: what would happen to which files, and a button for each reply.
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "kiosk/panels/sections.h"
+#include "kiosk/panels/text.h"
+
+namespace prismesh::kiosk::panels {
+namespace {
+
+constexpr std::size_t kMaxPaths = 6;  ///< of a list; the others are counted
+
+void path_list(const tools::Question::List& list) {
+  ImGui::TextUnformatted(list.heading.c_str());
+  const std::size_t shown = list.paths.size() > kMaxPaths ? kMaxPaths - 1 : list.paths.size();
+  ImGui::Indent(2 * kGrid);
+  for (std::size_t i = 0; i < shown; ++i) elided_text(printable(list.paths[i]), ImGui::GetContentRegionAvail().x);
+  if (shown < list.paths.size()) ImGui::TextDisabled("%s", fmt::format("and {} more", list.paths.size() - shown).c_str());
+  ImGui::Unindent(2 * kGrid);
+  ImGui::Dummy(ImVec2(0, kGrid / 2));
+}
+
+}  // namespace
+
+void question_box(const tools::Question& question, display::PixelSize picture, Actions& actions) {
+  begin_centred("Question", picture, ImGui::GetFontSize() * 40);
+  ImGui::PushFont(title_font());
+  ImGui::TextWrapped("%s", printable(question.title).c_str());
+  ImGui::PopFont();
+  ImGui::Dummy(ImVec2(0, kGrid / 2));
+  if (!question.text.empty()) {
+    ImGui::TextWrapped("%s", printable(question.text).c_str());
+    ImGui::Dummy(ImVec2(0, kGrid / 2));
+  }
+  for (const tools::Question::List& list : question.lists) path_list(list);
+  for (std::size_t i = 0; i < question.choices.size(); ++i) {
+    const tools::Question::Choice& choice = question.choices[i];
+    if (i > 0) ImGui::SameLine(0, kGrid);
+    if (ImGui::Button(fmt::format("{}  ({})", choice.label, choice.key_name).c_str())) actions.emplace_back(choice.reply);
+  }
+  ImGui::End();
+}
+
+}  // namespace prismesh::kiosk::panels
