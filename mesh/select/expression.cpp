@@ -86,7 +86,8 @@ class Evaluator {
 
   Result<Chosen> run(const Parsed& parsed) {
     for (std::size_t i = 0; i < parsed.steps.size(); ++i) {
-      if (i > 0 && i % kStepsBetweenTellings == 0 && progress_ && !progress_(static_cast<double>(i) / static_cast<double>(parsed.steps.size())))
+      if (i > 0 && i % kStepsBetweenTellings == 0 && progress_ &&
+          !progress_(static_cast<double>(i) / static_cast<double>(parsed.steps.size())))
         return fail(cancelled());
       if (const Result<void> done = take(parsed.steps[i], parsed); !done) return fail(done.error());
     }
