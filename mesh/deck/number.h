@@ -40,9 +40,8 @@ inline bool plain_integer(const char* at, const char* end, std::int64_t& value) 
   if (end - at == 8 && parse_eight_digits(at, value)) return true;
   while (at < end && *at == ' ') ++at;
   std::int64_t sum = 0;
-  const char* first = at;
-  while (at < end && static_cast<unsigned char>(*at - '0') < 10) sum = sum * 10 + (*at++ - '0');
-  if (at - first > 18) return false;
+  const char* const limit = end - at > 18 ? at + 18 : end;
+  while (at < limit && static_cast<unsigned char>(*at - '0') < 10) sum = sum * 10 + (*at++ - '0');
   while (at < end && *at == ' ') ++at;
   value = sum;
   return at == end;

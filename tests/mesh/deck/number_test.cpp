@@ -76,6 +76,19 @@ TEST(ParseInteger, takes_whole_numbers_in_any_form) {
   }
 }
 
+TEST(PlainInteger, takes_blanks_around_up_to_eighteen_digits) {
+  for (std::size_t digits = 0; digits <= 40; ++digits) {
+    for (const auto& [before, after] : {std::pair{"", ""}, {"  ", ""}, {"", "  "}, {"   ", " "}}) {
+      const std::string text = before + std::string(digits, '9') + after;
+      std::int64_t value = -1;
+      ASSERT_EQ(plain_integer(text.data(), text.data() + text.size(), value), digits <= 18) << '"' << text << '"';
+      if (digits <= 18) {
+        ASSERT_EQ(value, digits == 0 ? 0 : std::stoll(text)) << '"' << text << '"';
+      }
+    }
+  }
+}
+
 TEST(FormatCoordinate, takes_the_shortest_text_that_reads_back) {
   const std::pair<double, const char*> cases[] = {
       {0, "0.0"},       {-0.0, "0.0"},     {1, "1.0"},           {-12.5, "-12.5"}, {0.1, "0.1"},
