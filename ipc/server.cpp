@@ -29,7 +29,6 @@ using asio::posix::stream_descriptor;
 using boost::system::error_code;
 using Time = std::chrono::steady_clock;
 
-constexpr std::size_t kMaxSurplus = 8;  ///< clients beyond the limit that are told so at a time
 
 Result<Descriptor> bind_socket(const std::filesystem::path& path) {
   sockaddr_un address{};
@@ -140,7 +139,6 @@ struct Server::State {
       if (!socket) return errno != EMFILE && errno != ENFILE && errno != ENOMEM && errno != ENOBUFS;
       if (!may_connect(socket.get())) continue;
       if (connections.size() >= limits.clients) close_oldest_silent();
-      if (connections.size() >= limits.clients + kMaxSurplus) continue;
       const ClientId client = next_client++;
       const auto served = std::make_shared<ServedClient>(loop, std::move(socket), limits.line_bytes);
       served->surplus = connections.size() >= limits.clients;

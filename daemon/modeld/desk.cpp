@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMostWaiting = 256;
 constexpr std::size_t kMostWaitingBytes = std::size_t{32} << 20;
 constexpr std::size_t kMostLeases = 256;
-constexpr std::int64_t kProgressPeriod_ns = 100'000'000;
+constexpr std::int64_t kProgressPeriodNs = 100'000'000;
 
 constexpr const char* kNoMemory = "there isn't enough memory to do this; everything is as it was";
 
@@ -323,7 +323,7 @@ Progress Desk::watch(std::string what) {
   return [this, what = std::move(what), last_ns = std::int64_t{0}](double fraction) mutable {
     worker_.show_progress();
     MonotonicClock clock;
-    if (const std::int64_t now_ns = clock.now_ns(); now_ns - last_ns > kProgressPeriod_ns) {
+    if (const std::int64_t now_ns = clock.now_ns(); now_ns - last_ns > kProgressPeriodNs) {
       last_ns = now_ns;
       outlet_.post([this, what, fraction] {
         progress_ = fraction;

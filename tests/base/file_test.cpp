@@ -226,6 +226,17 @@ TEST_F(FileTest, a_full_disk_says_so) {
   EXPECT_TRUE(empty);
 }
 
+TEST_F(FileTest, a_file_marked_read_only_is_left_alone_by_root_too) {
+  const fs::path target = write("readonly", "old");
+  fs::permissions(target, fs::perms(0444));
+  const PendingFile over_file{target, {"new"}};
+  const Result<void> failed = replace_files({&over_file, 1});
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().message, "is read-only; nothing was changed");
+  EXPECT_EQ(content(target), "old");
+  EXPECT_EQ(entries(), 1u);
+}
+
 TEST_F(FileTest, read_only_targets_and_folders_are_refused) {
   if (::geteuid() == 0) {
     // Root may write anything; the refusals are for everybody else.

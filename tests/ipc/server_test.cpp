@@ -191,6 +191,31 @@ TEST(Server, DescriptorsThatNobodyAskedForCutTheSenderOff) {
   EXPECT_EQ(running.echo().wait_for_leaving(), "descriptors came that nobody asked for");
 }
 
+TEST(LineSocketTest, TakesNoMoreDescriptorsThanItsLimit) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  LineSocket sender(Descriptor{ends[0]}, {});
+  LineLimits limits;
+  limits.descriptors = 3;
+  LineSocket receiver(Descriptor{ends[1]}, limits);
+  const auto send = [&](std::size_t count) {
+    std::vector<Descriptor> descriptors;
+    for (std::size_t i = 0; i < count; ++i) descriptors.push_back(make_shared_memory("test", 1).value());
+    sender.queue("some", std::move(descriptors));
+    ASSERT_TRUE(sender.flush());
+  };
+  send(3);
+  ASSERT_TRUE(receiver.receive());
+  ASSERT_TRUE(receiver.next_line());
+  ASSERT_TRUE(receiver.take_descriptors(2));
+  send(2);
+  ASSERT_TRUE(receiver.receive()) << "those that were taken make room";
+  send(1);
+  const Result<bool> received = receiver.receive();
+  ASSERT_FALSE(received);
+  EXPECT_EQ(received.error().message, "too many descriptors came");
+}
+
 TEST(Server, ALiveOneIsNamedAndAStaleSocketReplaced) {
   const Folder folder;
   Echo echo;
@@ -213,10 +238,13 @@ TEST(Server, ALiveOneIsNamedAndAStaleSocketReplaced) {
 TEST(Server, TheFolderMustBePrivate) {
   const Folder folder;
   Echo echo;
-  ASSERT_EQ(::chmod(folder.path().c_str(), 0777), 0);
-  const Result<Server> server = Server::listen(folder.path() / "s", echo);
-  ASSERT_FALSE(server);
-  EXPECT_NE(server.error().message.find("others may write to it"), std::string::npos);
+  for (const mode_t mode : {0777U, 0770U, 0720U, 0702U}) {
+    ASSERT_EQ(::chmod(folder.path().c_str(), mode), 0);
+    const Result<Server> server = Server::listen(folder.path() / "s", echo);
+    ASSERT_FALSE(server) << std::oct << mode;
+    EXPECT_NE(server.error().message.find("others may write to it"), std::string::npos);
+  }
+  ASSERT_EQ(::chmod(folder.path().c_str(), 0700), 0);
   fs::create_directory(folder.path() / "mine");
   ::chmod((folder.path() / "mine").c_str(), 0700);
   const Running running(folder.path() / "mine/run/s");
@@ -302,6 +330,31 @@ TEST(Server, WhoDoesNotGreetInTimeIsCutOff) {
   LineSocket silent(connect_to(folder.path() / "s").value(), {});
   EXPECT_EQ(next_line(silent).substr(0, 6), "closed");
   EXPECT_EQ(running.echo().wait_for_leaving(), "it didn't greet for 200 ms");
+}
+
+TEST(Server, AnotherUsersProgramIsNotServed) {
+  if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: playing another user needs root";
+  constexpr uid_t kNobody = 65534;
+  const Folder folder;
+  Running running(folder.path() / "s");
+  // As where somebody has opened the folder by hand afterwards.
+  ASSERT_EQ(::chmod(folder.path().c_str(), 0755), 0);
+  ASSERT_EQ(::chmod((folder.path() / "s").c_str(), 0666), 0);
+  // The peer is who it was when it connected, so this process needs no other one for it.
+  ASSERT_EQ(::seteuid(kNobody), 0);
+  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strcpy(address.sun_path, (folder.path() / "s").c_str());
+  const int connected = ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  ASSERT_EQ(::seteuid(0), 0);
+  ASSERT_EQ(connected, 0) << "the file's mode alone lets it in";
+  LineSocket theirs(std::move(socket), {});
+  say(theirs, "hello");
+  EXPECT_EQ(next_line(theirs).substr(0, 6), "closed");
+  LineSocket ours(connect_to(folder.path() / "s").value(), {});
+  say(ours, "hello");
+  EXPECT_EQ(next_line(ours), "welcome");
 }
 
 TEST(Client, AnotherUsersDaemonIsNotTrusted) {

@@ -79,6 +79,59 @@ TEST(Snapshot, CountsTheNodesThatAreThere) {
   EXPECT_EQ(view->node_count(), 25u) << "indices stay";
 }
 
+TEST(Snapshot, SaysWhetherThereAreUnsavedEditsThoughTheStateIsTheSame) {
+  const mesh::document::Document document = grid_document(4, 4);
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  EXPECT_TRUE(reader.map(publisher.publish(document, true).value())->info().changed);
+  EXPECT_FALSE(reader.map(publisher.publish(document, false).value())->info().changed) << "it was saved";
+}
+
+TEST(Snapshot, CountsTheShellsOfEachPartAnewWhenPartsOrShellsChange) {
+  mesh::document::Document document = grid_document(4, 4);
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto shells = [&] {
+    std::vector<std::uint64_t> counts;
+    for (const SnapshotPart& part : reader.map(publisher.publish(document, true).value())->info().parts) counts.push_back(part.shells);
+    return counts;
+  };
+  const auto push = [&](auto change) {
+    auto next = std::make_shared<mesh::document::Generation>(document.current());
+    change(*next);
+    next->number = document.next_number++;
+    document.generations.push_back(std::move(next));
+    document.cursor = document.generations.size() - 1;
+  };
+  EXPECT_EQ(shells(), (std::vector<std::uint64_t>{16}));
+  push([](mesh::document::Generation& next) {
+    std::vector<mesh::Part> parts = *next.model.parts;
+    parts.push_back(parts.front());
+    next.model.parts = std::make_shared<const std::vector<mesh::Part>>(parts);
+    next.parts = std::make_shared<const std::vector<mesh::document::PartState>>(2);
+  });
+  EXPECT_EQ(shells(), (std::vector<std::uint64_t>{16, 0}));
+  push([](mesh::document::Generation& next) { next.model.shell_parts.set(3, mesh::PartIndex(1)); });
+  EXPECT_EQ(shells(), (std::vector<std::uint64_t>{15, 1}));
+  push([](mesh::document::Generation& next) {
+    std::vector<std::int64_t> ids;
+    for (std::size_t shell = 0; shell < next.model.shell_count(); ++shell) ids.push_back(next.model.shell_ids[shell]);
+    next.model.shell_index = std::make_shared<const mesh::IdIndex>(ids);
+    mesh::remove_shell(next.model, mesh::ShellIndex(3));
+  });
+  EXPECT_EQ(shells(), (std::vector<std::uint64_t>{15, 0}));
+}
+
+TEST(Snapshot, MemoryThatCouldShrinkUnderItsReaderIsRefused) {
+  for (const int seals : {0, F_SEAL_GROW, F_SEAL_SHRINK}) {
+    const Descriptor memory(::memfd_create("test", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    ASSERT_EQ(::ftruncate(memory.get(), 4096), 0);
+    ASSERT_EQ(::fcntl(memory.get(), F_ADD_SEALS, seals), 0);
+    const Result<Mapping> mapping = Mapping::map(memory, false);
+    EXPECT_EQ(mapping.has_value(), seals == F_SEAL_SHRINK) << seals;
+  }
+}
+
 TEST(Snapshot, CopiesOnlyTheChunksThatChanged) {
   mesh::document::Document document = grid_document(300, 300);
   SnapshotPublisher publisher;
