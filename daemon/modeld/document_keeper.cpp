@@ -7,6 +7,8 @@
 #include "daemon/modeld/deck_files.h"
 #include "daemon/modeld/paths.h"
 #include "mesh/deck/deck.h"
+#include "mesh/document/history.h"
+
 #include "mesh/model/growth.h"
 
 namespace prismesh::modeld {
@@ -44,15 +46,6 @@ auto if_memory_allows(const Work& work, const std::string& file) -> decltype(wor
 
 bool differs(const Generation& a, const Generation& b) {
   return &a != &b && (a.model.growth != b.model.growth || !mesh::moved_nodes(a.model, b.model).empty());
-}
-
-/// How many of the oldest generations of `recorded` go when another comes, so that it keeps the document's cap too.
-std::size_t over_cap(const Document& recorded, const Generation& next) {
-  std::size_t total = next.own_bytes;
-  for (std::size_t i = 0; i <= recorded.cursor; ++i) total += recorded.generations[i]->own_bytes;
-  std::size_t drop = 0;
-  for (; total > recorded.history_bytes && drop <= recorded.cursor; ++drop) total -= recorded.generations[drop]->own_bytes;
-  return drop;
 }
 
 }  // namespace
@@ -163,7 +156,8 @@ Prepared DocumentKeeper::as_push(const Prepared& prepared, const Edit& edit) {
   next->number = open_->recorded.next_number;
   next->made_by = name(edit);
   Prepared push;
-  push.drop_oldest = over_cap(open_->recorded, *next);
+  // Counted as the document counts, so that it keeps a state before each that the document keeps one before.
+  push.drop_oldest = generations_over_cap(open_->recorded, *next);
   push.next = std::move(next);
   std::erase_if(open_->twins, [](const Twin& twin) { return twin.recorded.use_count() == 1; });
   open_->twins.push_back({push.next, prepared.next});

@@ -137,6 +137,54 @@ TEST_F(Growing, StepsBackBeyondASaveInOneLife) {
   expect_same(before, first.document().current());
 }
 
+TEST_F(Growing, WhatIsCarriedOverASaveTakesNoStepBackAway) {
+  const fs::path deck = folder_.two_files();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, kSplit);
+  const std::size_t for_the_split_alone = first.document().current().own_bytes;
+  ASSERT_TRUE(first.close(true));
+  first = DocumentKeeper(StateFolder(folder_.state()), for_the_split_alone);
+  open(first, deck);
+  edit(first, kMove);
+  edit(first, R"({"edit":"select","expr":"4,5,6"})");
+  edit(first, kSplit);
+  edit(first, R"({"edit":"undo"})");
+  ASSERT_TRUE(first.save(std::nullopt));
+  edit(first, R"({"edit":"redo"})");
+  EXPECT_EQ(mesh::live_shells(first.document().current().model), 3u);
+  ASSERT_TRUE(first.state().can_undo);
+  edit(first, R"({"edit":"undo"})");
+  const Generation shown = first.document().current();
+  EXPECT_EQ(mesh::live_shells(shown.model), 2u);
+  first = keeper();
+  open(first, deck);
+  expect_same(shown, first.document().current());
+}
+
+TEST_F(Growing, AStepBackThatTheJournalCantHoldIsRefusedAndWhatIsShownIsOnRecord) {
+  const fs::path deck = folder_.two_files();
+  DocumentKeeper first = keeper();
+  open(first, deck);
+  edit(first, kMove);
+  edit(first, kSplit);
+  edit(first, R"({"edit":"undo"})");
+  // Started again with no room for a history: the document still has its steps, the journal that begins with the save keeps none.
+  first = DocumentKeeper(StateFolder(folder_.state()), 1);
+  open(first, deck);
+  ASSERT_TRUE(first.save(std::nullopt));
+  edit(first, R"({"edit":"redo"})");
+  const Generation shown = first.document().current();
+  EXPECT_EQ(mesh::live_shells(shown.model), 3u);
+  const Result<EditReport> undone = first.edit(parse_edit(R"({"edit":"undo"})").value());
+  ASSERT_FALSE(undone);
+  EXPECT_NE(undone.error().message.find("the journal no longer has the state before it"), std::string::npos) << undone.error().message;
+  expect_same(shown, first.document().current());
+  first = keeper();
+  open(first, deck);
+  expect_same(shown, first.document().current());
+}
+
 TEST_F(Growing, AnEditThatIsToldToStopLeavesEverythingAsItWas) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
