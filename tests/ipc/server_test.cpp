@@ -264,6 +264,18 @@ TEST(Server, AFolderThatOthersMayLookIntoIsMadePrivate) {
   EXPECT_EQ(status.st_mode & 0777, 0700u);
 }
 
+TEST(Server, AnotherUsersFolderIsNotPrivate) {
+  if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: a folder of another user needs root";
+  const Folder folder;
+  const fs::path theirs = folder.path() / "theirs";
+  fs::create_directory(theirs);
+  ASSERT_EQ(::chmod(theirs.c_str(), 0700), 0);
+  ASSERT_EQ(::chown(theirs.c_str(), 65534, 65534), 0);
+  const Result<void> made = make_private_folder(theirs);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message.find("another user"), std::string::npos) << made.error().message;
+}
+
 TEST(Server, ALinkIsNoPrivateFolderWhateverItsSlashes) {
   const Folder folder;
   fs::create_directory(folder.path() / "real");

@@ -130,6 +130,9 @@ TEST(Snapshot, MemoryThatCouldShrinkUnderItsReaderIsRefused) {
     const Result<Mapping> mapping = Mapping::map(memory, false);
     EXPECT_EQ(mapping.has_value(), seals == F_SEAL_SHRINK) << seals;
   }
+  const Descriptor file(::open("/tmp", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
+  ASSERT_EQ(::ftruncate(file.get(), 4096), 0);
+  EXPECT_FALSE(Mapping::map(file, false)) << "a file can't be sealed at all";
 }
 
 TEST(Snapshot, CopiesOnlyTheChunksThatChanged) {

@@ -1,12 +1,17 @@
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
+#include <tuple>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "daemon/modeld/document_keeper.h"
+#include "mesh/document/edit_json.h"
+#include "mesh/model/growth.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -198,6 +203,67 @@ TEST_F(Keeping, SelectionAndLockedPartsSurviveASaveAndARestart) {
   EXPECT_EQ(second.state().selected_nodes, 10u);
   EXPECT_TRUE(second.document().current().parts->at(0).locked);
   EXPECT_FALSE(second.changed());
+}
+
+/// What is carried over a save besides the nodes: one of it each time, so that it can't come along with another.
+class CarriedAlone : public ::testing::TestWithParam<const char*> {
+ protected:
+  Folder folder_;
+};
+
+TEST_P(CarriedAlone, SurvivesASaveAndARestart) {
+  for (const bool grown : {false, true}) {
+    const fs::path deck = folder_.sheet(grown ? "grown.k" : "moved.k");
+    ipc::Open request;
+    request.path = deck.string();
+    const auto facts = [](const DocumentKeeper& keeper) {
+      const Generation& now = keeper.document().current();
+      return std::tuple(now.parts->at(0).locked, now.parts->at(0).hidden, now.selected_nodes, now.selected_shells,
+                        mesh::live_shells(now.model));
+    };
+    auto killed = std::make_unique<DocumentKeeper>(StateFolder(folder_.state()));
+    ASSERT_TRUE(killed->open(request, {}));
+    ASSERT_TRUE(killed->edit(move_edit(1313, 0.25)));
+    const auto split = mesh::document::parse_edit(R"({"edit":"split","at":["shell:64"]})").value();
+    const auto changed = grown ? killed->edit(split) : killed->edit(move_edit(1313, 0.5));
+    ASSERT_TRUE(changed) << changed.error().text();
+    const auto edited = killed->edit(mesh::document::parse_edit(GetParam()).value());
+    ASSERT_TRUE(edited) << edited.error().text();
+    const auto before = facts(*killed);
+    ASSERT_TRUE(killed->save(std::nullopt));
+    killed.reset();
+    DocumentKeeper second(StateFolder(folder_.state()));
+    ASSERT_TRUE(second.reopen({}));
+    EXPECT_EQ(facts(second), before) << (grown ? "grown" : "moved");
+    EXPECT_FALSE(second.changed());
+  }
+}
+
+const char* name_of_carried(const ::testing::TestParamInfo<const char*>& info) {
+  constexpr std::array kNames{"Locks", "HiddenParts", "Nodes", "Shells"};
+  return kNames.at(info.index);
+}
+
+INSTANTIATE_TEST_SUITE_P(Keeping, CarriedAlone,
+                         ::testing::Values(R"({"edit":"lock","on":"7"})", R"({"edit":"hide","on":"7"})",
+                                           R"({"edit":"select","expr":"1001-1010"})",
+                                           R"({"edit":"select","expr":"1-10","kind":"element"})"),
+                         name_of_carried);
+
+TEST_F(Keeping, ASaveTakesTheRecordOfAnEarlierOneAway) {
+  const fs::path deck = folder_.sheet();
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+  ASSERT_TRUE(first.save(std::nullopt));
+  // As where the journal of before couldn't be renamed after a save: the next opening has to see to it.
+  const std::vector<std::string> retired = state_files(".saved");
+  ASSERT_EQ(retired.size(), 1u);
+  const std::string left = retired.front().substr(0, retired.front().find(".saved")) + ".saving";
+  std::ofstream(folder_.state() / left) << "an earlier save";
+  ASSERT_TRUE(first.edit(move_edit(1314, 0.25)));
+  ASSERT_TRUE(first.save(std::nullopt));
+  EXPECT_TRUE(state_files(".saving").empty()) << "it would be taken for what happened to the deck as it is now";
 }
 
 TEST_F(Keeping, ADeckThatSomethingElseChangedKeepsItsOldJournalAndSaysSo) {

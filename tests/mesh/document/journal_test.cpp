@@ -324,6 +324,14 @@ TEST(Journal, TakesOverGuessedSettingsOnly) {
   told.settings.target_size = 1000;
   ASSERT_TRUE(Journal::recover(session.path, told));
   EXPECT_EQ(told.settings.target_size, 1000);
+  ASSERT_EQ(small().settings.length_unit, LengthUnit::mm);
+  for (const bool is_guess : {true, false}) {
+    Document in_metres = small();
+    in_metres.settings.length_unit = LengthUnit::m;
+    in_metres.settings.length_unit_guessed = is_guess;
+    ASSERT_TRUE(Journal::recover(session.path, in_metres));
+    EXPECT_EQ(in_metres.settings.length_unit, is_guess ? LengthUnit::mm : LengthUnit::m);
+  }
 }
 
 TEST(Journal, RefusesWhatExistsAndWhatIsInUse) {
