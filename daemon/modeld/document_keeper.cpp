@@ -8,7 +8,6 @@
 #include "daemon/modeld/paths.h"
 #include "mesh/deck/deck.h"
 #include "mesh/document/history.h"
-
 #include "mesh/model/growth.h"
 
 namespace prismesh::modeld {
