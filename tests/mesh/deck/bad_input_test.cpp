@@ -1,11 +1,18 @@
 // What isn't a deck, or is a broken one: one clear sentence with file and line, and no harm done.
-#include <chrono>
+#include <ctime>
 #include <thread>
 
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {
 namespace {
+
+/// Processor time of this process: a loaded machine doesn't lengthen it.
+double cpu_s() {
+  timespec used{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+  return static_cast<double>(used.tv_sec) + static_cast<double>(used.tv_nsec) * 1e-9;
+}
 
 void expect_error(const Result<OpenedDeck>& opened, long line, std::string_view words) {
   ASSERT_FALSE(opened);
@@ -99,10 +106,10 @@ TEST(BadInput, hostile_text_is_read_in_bounded_time_and_memory) {
       "1e300,1e300,9e17\n*END\n",
   };
   for (const std::string& text : cases) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start_s = cpu_s();
     const auto opened = folder.open(text);
     EXPECT_TRUE(opened || !opened.error().message.empty());
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << text.substr(0, 40);
+    EXPECT_LT(cpu_s() - start_s, 10) << text.substr(0, 40);
   }
   std::string blocks = "*KEYWORD\n", parameters = "*KEYWORD\n", includes = "*KEYWORD\n*INCLUDE_PATH\n";
   for (int i = 0; i < 100000; ++i) {
@@ -111,13 +118,13 @@ TEST(BadInput, hostile_text_is_read_in_bounded_time_and_memory) {
   }
   for (int i = 0; i < 200; ++i) includes += "p" + std::to_string(i) + "\n";
   for (int i = 0; i < 3000; ++i) includes += "*INCLUDE\ngone" + std::to_string(i % 1000) + "\n*INCLUDE\ndeck.k\n";
-  const auto start = std::chrono::steady_clock::now();
+  const double start_s = cpu_s();
   EXPECT_TRUE(folder.open(blocks + "*END\n"));
   const auto many = folder.open(parameters + "*END\n");
   ASSERT_OPENED(many);
   EXPECT_EQ(many->model.node_count(), 100000u);
   EXPECT_TRUE(folder.open(includes + "*END\n"));
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_LT(cpu_s() - start_s, 20);
 }
 
 struct Hostile {
@@ -178,9 +185,9 @@ TEST(BadInput, of_every_format_is_named_by_file_and_line_in_bounded_time) {
   std::filesystem::create_directory(folder / "sub");
   for (const auto& [name, text, said] : cases) {
     SCOPED_TRACE(text.substr(0, 60) + " ... " + text.substr(text.size() - std::min<std::size_t>(text.size(), 60)));
-    const auto start = std::chrono::steady_clock::now();
+    const double start_s = cpu_s();
     const auto opened = deck::open(folder.write(name, text));
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+    EXPECT_LT(cpu_s() - start_s, 10);
     EXPECT_NE(all_said(opened).find(said), std::string::npos) << all_said(opened);
     if (!opened) {
       EXPECT_FALSE(said.empty()) << opened.error().text();
