@@ -114,7 +114,7 @@ namespace {
 /// Where a write to `path` must go: what a chain of symbolic links points to, so that the link stays a link.
 Result<fs::path> follow_links(const fs::path& path) {
   fs::path target = path;
-  for (int depth = 0; depth < kLinkDepth; ++depth) {
+  for (int links = 0; links <= kLinkDepth; ++links) {
     std::error_code error;
     if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
     const fs::path next = fs::read_symlink(target, error);
