@@ -52,6 +52,8 @@ TEST(FieldPage, RefusesWhatLiesAboutItself) {
 TEST(FieldPage, RefusesMemoryThatCanStillBeWritten) {
   const auto open = make_shared_memory("test", sizeof(FieldHeader));
   ASSERT_TRUE(open);
+  const FieldHeader empty;
+  ASSERT_EQ(::pwrite(open->get(), &empty, sizeof empty, 0), static_cast<ssize_t>(sizeof empty));
   EXPECT_FALSE(FieldValues::map(*open));
 }
 

@@ -99,6 +99,24 @@ TEST(Messages, UnknownFieldsOfANewerDaemonArePassedOver) {
 TEST(Messages, ALineOfBracketsIsRefusedBeforeItIsParsed) {
   EXPECT_EQ(refusal(std::string(1'000'000, '[')), "it is nested too deeply");
   EXPECT_EQ(refusal(R"({"request": "open", "path": "[[[[[[[[[[[[[[[[[[[["})"), "accepted");
+  EXPECT_EQ(refusal(R"({"request": "open", "path": "\"[[[[[[[[[[[[[[[[[[[["})"), "accepted") << "the quote is of the text";
+  EXPECT_EQ(refusal(R"({"request": "open", "path": "\\", "x": )" + std::string(20, '[')), "it is nested too deeply")
+      << "the text has ended";
+  std::string objects;
+  for (int i = 0; i < 20; ++i) objects += R"({"a":)";
+  EXPECT_EQ(refusal(objects), "it is nested too deeply");
+  std::string side_by_side = R"({"request": "open", "path": "a", "criteria": [)";
+  for (int i = 0; i < 20; ++i) side_by_side += "[],{},";
+  EXPECT_NE(refusal(side_by_side + "1]}"), "it is nested too deeply") << "none stands in another";
+}
+
+TEST(Messages, WhatMayBeMissingMayBeNull) {
+  const auto save = decode_request(R"({"request": "save", "path": null, "number": 4})");
+  ASSERT_TRUE(save) << save.error().message;
+  EXPECT_FALSE(std::get<Save>(save->request).path);
+  EXPECT_NE(refusal(R"({"request": "open", "path": null})"), "accepted");
+  EXPECT_EQ(refusal("[]"), "it isn't a JSON object");
+  EXPECT_EQ(refusal("\"open\""), "it isn't a JSON object");
 }
 
 TEST(Messages, TextThatIsNotUtf8IsRefusedOneWayAndReplacedTheOther) {

@@ -137,6 +137,30 @@ TEST(Preview, CarriesFramesWhole) {
   EXPECT_FALSE(Mapping::map(writer.descriptor(), true)) << "a reader could write";
 }
 
+TEST(Preview, CarriesEveryNumberOfAFrame) {
+  for (const std::size_t judged : {0u, 1u, 2u, 3u}) {  // states are half words
+    const std::vector<mesh::NodeIndex> nodes{mesh::NodeIndex(7), mesh::NodeIndex(3)};
+    std::vector<mesh::ShellIndex> shells;
+    std::vector<mesh::quality::ShellState> states;
+    for (std::size_t i = 0; i < judged; ++i) {
+      shells.emplace_back(40 + i);
+      states.push_back({static_cast<std::uint16_t>(10 + i), static_cast<std::uint16_t>(20 + i)});
+    }
+    PreviewWriter writer = PreviewWriter::create(5, 17, nodes, shells).value();
+    writer.publish(1, std::vector<mesh::Vec3>{{1, 2, 3}, {4, 5, 6}}, states, {7, 8, 9});
+    const PreviewReader reader = PreviewReader::map(writer.descriptor()).value();
+    PreviewFrame frame;
+    ASSERT_TRUE(reader.latest(frame));
+    EXPECT_TRUE(std::equal(nodes.begin(), nodes.end(), reader.nodes().begin(), reader.nodes().end()));
+    EXPECT_TRUE(std::equal(shells.begin(), shells.end(), reader.shells().begin(), reader.shells().end()));
+    EXPECT_EQ(frame.sequence, 1u);
+    EXPECT_EQ(frame.positions.at(0), mesh::Vec3(1, 2, 3));
+    EXPECT_EQ(frame.positions.at(1), mesh::Vec3(4, 5, 6));
+    EXPECT_EQ(frame.states, states);
+    EXPECT_EQ(frame.counts, (mesh::quality::Counts{7, 8, 9}));
+  }
+}
+
 TEST(Preview, AHeaderThatPromisesTooMuchIsRefused) {
   PreviewWriter writer = PreviewWriter::create(1, 1, std::vector<mesh::NodeIndex>(10), {}).value();
   const Mapping sound = Mapping::map(writer.descriptor(), false).value();

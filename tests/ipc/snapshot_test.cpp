@@ -61,6 +61,26 @@ TEST(Snapshot, HoldsWhatThePictureNeeds) {
   EXPECT_TRUE(view->info().changed);
 }
 
+TEST(Snapshot, SaysWhatIsSelectedHiddenAndLocked) {
+  mesh::document::Document document = grid_document(4, 4);
+  auto next = std::make_shared<mesh::document::Generation>(document.current());
+  next->selected_nodes = 3;
+  next->selected_shells = 2;
+  next->parts =
+      std::make_shared<const std::vector<mesh::document::PartState>>(1, mesh::document::PartState{.hidden = false, .locked = true});
+  document.generations.push_back(next);
+  document.cursor = 1;
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto locked = reader.map(publisher.publish(document, false).value());
+  EXPECT_EQ(locked->info().selected_nodes, 3u);
+  EXPECT_EQ(locked->info().selected_shells, 2u);
+  EXPECT_TRUE(locked->info().parts.at(0).locked);
+  EXPECT_FALSE(locked->info().parts.at(0).hidden);
+  EXPECT_TRUE(locked->info().can_undo);
+  EXPECT_FALSE(locked->info().can_redo);
+}
+
 TEST(Snapshot, CountsTheNodesThatAreThere) {
   mesh::document::Document document = grid_document(4, 4);
   auto next = std::make_shared<mesh::document::Generation>(document.current());
@@ -290,14 +310,42 @@ SnapshotTable sound_table() {
   table.arrays[0].count = table.arrays[1].count = table.arrays[2].count = 5;
   for (std::size_t i = 0; i < 3; ++i) table.arrays[i].pieces.push_back({0, 64 * i * 2, i});
   table.info.parts.push_back({3, "a", true, false, 4});
+  table.info.parts.push_back({5, "b", false, true, 1});
   return table;
 }
 
 TEST(SnapshotTable, SurvivesARoundTrip) {
   const Result<SnapshotTable> table = decode_table(encode_table(sound_table()));
   ASSERT_TRUE(table) << table.error().text();
-  EXPECT_EQ(table->info.parts.at(0).name, "a");
+  ASSERT_EQ(table->info.parts.size(), 2u);
+  const SnapshotPart &a = table->info.parts[0], &b = table->info.parts[1];
+  EXPECT_EQ(std::tuple(a.id, a.name, a.hidden, a.locked, a.shells), std::tuple(3, "a", true, false, 4u));
+  EXPECT_EQ(std::tuple(b.id, b.name, b.hidden, b.locked, b.shells), std::tuple(5, "b", false, true, 1u));
   EXPECT_EQ(table->arrays[1].pieces.at(0).offset, 128u);
+}
+
+TEST(SnapshotTable, WhatGoesByNodeShellOrLineHasOneCount) {
+  using enum SnapshotArray;
+  const std::vector<SnapshotArray> families[] = {{positions, node_ids, node_marks},
+                                                 {shell_nodes, shell_ids, shell_parts, shell_marks, shell_quality, shell_damage}};
+  const auto with = [](std::initializer_list<std::pair<SnapshotArray, std::size_t>> counts, SnapshotTable table) {
+    for (const auto& [array, count] : counts) {
+      table.arrays[static_cast<std::size_t>(array)].count = count;
+      table.arrays[static_cast<std::size_t>(array)].pieces.assign(count > 0, {0, 0, 1});
+    }
+    return decode_table(encode_table(table));
+  };
+  for (const std::vector<SnapshotArray>& family : families) {
+    SnapshotTable sound;
+    for (const SnapshotArray array : family) {
+      sound.arrays[static_cast<std::size_t>(array)].count = 5;
+      sound.arrays[static_cast<std::size_t>(array)].pieces.push_back({0, 0, 1});
+    }
+    EXPECT_TRUE(with({}, sound));
+    for (const SnapshotArray array : family) EXPECT_FALSE(with({{array, 4}}, sound)) << static_cast<int>(array);
+  }
+  EXPECT_TRUE(with({{line_nodes, 6}, {line_parts, 3}}, {}));
+  EXPECT_FALSE(with({{line_nodes, 6}, {line_parts, 6}}, {}));
 }
 
 TEST(SnapshotTable, ABrokenOneIsRefusedOrHarmless) {
