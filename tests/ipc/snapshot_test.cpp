@@ -113,7 +113,8 @@ TEST(Snapshot, CountsTheShellsOfEachPartAnewWhenPartsOrShellsChange) {
   Reader reader(publisher);
   const auto shells = [&] {
     std::vector<std::uint64_t> counts;
-    for (const SnapshotPart& part : reader.map(publisher.publish(document, true).value())->info().parts) counts.push_back(part.shells);
+    const auto view = reader.map(publisher.publish(document, true).value());
+    for (const SnapshotPart& part : view->info().parts) counts.push_back(part.shells);
     return counts;
   };
   const auto push = [&](auto change) {
