@@ -122,9 +122,11 @@ bool PreviewReader::latest(PreviewFrame& frame) const {
     frame.counts = {words[1], words[2], words[3]};
     frame.positions.resize(layout_.nodes);
     frame.states.resize(layout_.shells);
-    std::memcpy(static_cast<void*>(frame.positions.data()), &words[kFrameHeadWords], layout_.nodes * sizeof(mesh::Vec3));
-    std::memcpy(static_cast<void*>(frame.states.data()), &words[kFrameHeadWords + layout_.nodes * 3],
-                layout_.shells * sizeof(mesh::quality::ShellState));
+    const auto take = [&](auto& values, std::size_t first_word) {
+      if (!values.empty()) std::memcpy(static_cast<void*>(values.data()), &words[first_word], values.size() * sizeof(values[0]));
+    };
+    take(frame.positions, kFrameHeadWords);
+    take(frame.states, kFrameHeadWords + layout_.nodes * 3);
     return true;
   }
   return false;
