@@ -67,6 +67,15 @@ TEST_F(Packed, knows_packings_by_their_bytes) {
   const std::string text = "*KEYWORD", brief = "\x1f\x8b";
   EXPECT_EQ(packing_of(std::as_bytes(std::span(text))), Packing::none);
   EXPECT_EQ(packing_of(std::as_bytes(std::span(brief))), Packing::none);
+  // A frame to be skipped may come first: 0x184D2A50 to 0x184D2A5F (RFC 8878). Each byte of each number counts.
+  const std::string skipped("\x5f\x2a\x4d\x18", 4);
+  EXPECT_EQ(packing_of(std::as_bytes(std::span(skipped))), Packing::zstd);
+  for (const std::string& number : {kGzip.substr(0, 3), kZstd.substr(0, 4), skipped})
+    for (std::size_t i = 0; i < number.size(); ++i) {
+      std::string other = number + "    ";
+      other[i] = static_cast<char>(other[i] ^ 0x80);
+      EXPECT_EQ(packing_of(std::as_bytes(std::span(other))), Packing::none) << i;
+    }
 }
 
 TEST_F(Packed, reads_gzip_whole_with_all_its_members) {
@@ -122,6 +131,44 @@ TEST_F(Packed, packs_as_it_was_packed) {
     EXPECT_EQ(packed, packed_as(text, like)) << "not the same bytes again";
   }
   EXPECT_NE(packed_as("x", kGzip).find(std::string("hi\0", 3)), std::string::npos);
+}
+
+TEST_F(Packed, keeps_a_zstd_frames_checksum_and_says_its_size) {
+  // The descriptor behind the magic number (RFC 8878): bit 2 is the checksum, bits 6 and 7 how long the content's size is, bit 5 that
+  // there is one in a byte at least.
+  const auto has_checksum = [](const std::string& frame) { return (frame.at(4) & 4) != 0; };
+  const auto size_follows = [](const std::string& frame) { return (frame.at(4) & 0xe0) != 0; };
+  std::string without = kZstd.substr(0, kZstd.size() - 4);
+  without[4] = static_cast<char>(without[4] & ~4);
+  ASSERT_EQ(read(write("without", without))->text(), "hello\n");
+  for (const std::string& like : {kZstd, without}) {
+    const std::string packed = packed_as("hello, hello", like);
+    EXPECT_EQ(has_checksum(packed), has_checksum(like));
+    EXPECT_TRUE(size_follows(packed));
+  }
+  const std::string skipped("\x50\x2a\x4d\x18\x01\x00\x00\x00!", 9);
+  EXPECT_TRUE(has_checksum(packed_as("hello", skipped + without))) << "where nobody knows it does no harm";
+}
+
+TEST_F(Packed, leaves_out_what_a_gzip_header_says_of_itself) {
+  // Flags (RFC 1952): 2 is the header's own checksum, 4 an extra field, 8 the name, 16 the comment.
+  const std::string body = kGzip.substr(13);
+  const std::string like = std::string(
+                               "\x1f\x8b\x08\x1c\x01\x02\x03\x04\x02\x03\x02\x00"
+                               "ab",
+                               14) +
+                           std::string("hi\0note\0", 8) + body;
+  ASSERT_EQ(read(write("like", like))->text(), "hello\n");
+  const std::string packed = packed_as("hello", like);
+  EXPECT_EQ(packed.substr(0, 18), std::string("\x1f\x8b\x08\x18\x01\x02\x03\x04\x02\x03hi\0note\0", 18));
+  EXPECT_EQ(read(write("packed", packed))->text(), "hello");
+  // A name or a comment that is longer than any is cut, and what follows is read all the same.
+  const std::string longest =
+      std::string("\x1f\x8b\x08\x18\0\0\0\0\0\x03", 10) + std::string(9000, 'n') + '\0' + std::string(9000, 'c') + '\0' + body;
+  ASSERT_EQ(read(write("longest", longest))->text(), "hello\n");
+  const std::string cut = packed_as("hello", longest);
+  EXPECT_EQ(read(write("cut", cut))->text(), "hello");
+  EXPECT_EQ(cut.find('c', 10), cut.find('\0', 10) + 1);
 }
 
 TEST_F(Packed, says_what_is_wrong_with_a_file) {
