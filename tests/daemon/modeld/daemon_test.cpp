@@ -233,6 +233,13 @@ TEST_F(Serving, RefusalsAreSentences) {
   EXPECT_EQ(one.snapshot().error().message, "no document is open");
   EXPECT_EQ(one.call(ipc::BeginDrag{patch()}, kServingPatience).error().message, "no document is open");
   EXPECT_EQ(one.call(ipc::CommitDrag{7}, kServingPatience).error().message, "you hold no drag 7");
+  for (const ipc::Request& request :
+       {ipc::Request(ipc::Save{}), ipc::Request(ipc::Count{"1", {}}), ipc::Request(ipc::GetQuality{}), ipc::Request(ipc::FindShells{}),
+        ipc::Request(ipc::PreviewEdit{move_node(1, 0.25)}), ipc::Request(ipc::GetField{})}) {
+    const auto refused = one.call(request, kServingPatience);
+    ASSERT_FALSE(refused) << request.index();
+    EXPECT_EQ(refused.error().message, "no document is open") << request.index();
+  }
   ipc::Open nothing;
   nothing.path = (folder_.path() / "nothing.k").string();
   EXPECT_EQ(one.call(nothing, kServingPatience).error().file, nothing.path);
@@ -244,6 +251,26 @@ TEST_F(Serving, RefusalsAreSentences) {
   EXPECT_FALSE(one.call(ipc::Close{false}, kServingPatience)) << "unsaved edits";
   EXPECT_TRUE(one.call(ipc::Close{true}, kServingPatience));
   EXPECT_TRUE(next<ipc::DocumentClosed>(one));
+}
+
+TEST_F(Serving, EveryoneIsToldWhichDeckASaveGoesOnAs) {
+  Client editor = client("editor"), watcher = client("watcher");
+  const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k", copy = folder_.path() / "copy.k";
+  open(editor, deck);
+  ASSERT_EQ(next<ipc::DocumentOpened>(watcher)->path, deck.string());
+  ipc::Save save;
+  save.path = copy.string();
+  ASSERT_TRUE(editor.call(save, kServingPatience));
+  save.path = other.string();
+  save.becomes = true;
+  ASSERT_TRUE(editor.call(save, kServingPatience));
+  EXPECT_EQ(next<ipc::DocumentOpened>(watcher)->path, other.string()) << "and not of the copy";
+  // Nowhere to go on as: it is saved where it is.
+  ASSERT_TRUE(editor.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kServingPatience));
+  save.path.reset();
+  const auto saved = editor.call(save, kServingPatience);
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(std::get<ipc::State>(editor.call(ipc::GetState{}, kServingPatience).value()).path, other.string());
 }
 
 TEST_F(Serving, AClientMustGreetInTheSameProtocol) {
