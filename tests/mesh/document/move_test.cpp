@@ -102,6 +102,11 @@ TEST(Move, GrabByCoordinatesIsTheNearestNodeActedOn) {
   must_apply(by_id, R"({"edit":"translate","by":[0,0,1],"on":"1-49","grab":25,"free_ends":false})");
   must_apply(by_place, R"({"edit":"translate","by":[0,0,1],"on":"1-49","grab":[15.1,14.8,3],"free_ends":false})");
   expect_same(by_id.current(), by_place.current());
+  // each coordinate counts
+  Document aside = make_sheet(6, 6), aside_by_place = make_sheet(6, 6);
+  must_apply(aside, R"({"edit":"translate","by":[0,0,1],"on":"1-49","grab":13,"free_ends":false})");
+  must_apply(aside_by_place, R"({"edit":"translate","by":[0,0,1],"on":"1-49","grab":[25.1,4.9,0.4],"free_ends":false})");
+  expect_same(aside.current(), aside_by_place.current());
   // an id that is not there falls back on the place
   Document by_both = make_sheet(6, 6);
   must_apply(by_both, R"({"edit":"translate","by":[0,0,1],"on":"1-49","grab":4711,"grab_at":[15,15,0],"free_ends":false})");

@@ -8,6 +8,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 std::vector<std::int64_t> hidden_parts(const Document& document) {
   std::vector<std::int64_t> ids;
@@ -34,6 +35,20 @@ TEST(Parts, HideShowOnly) {
   must_apply(document, R"({"edit":"show"})");  // nothing selected: all
   EXPECT_TRUE(hidden_parts(document).empty());
   EXPECT_EQ(marked(document, kHidden), 0u);
+}
+
+TEST(Parts, HidingDeselectsOfElementsTheHiddenOnesAndTheirNodesOnly) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"select","expr":"4-5","kind":"element"})");  // side by side, of parts 1 and 2
+  ASSERT_EQ(document.current().selected_nodes, 6u);
+  const EditReport report = must_apply(document, R"({"edit":"hide","on":"2"})");
+  EXPECT_EQ(document.current().selected_shells, 1u);
+  EXPECT_EQ(document.current().selected_nodes, 4u);
+  EXPECT_EQ(document.current().selection_kind, select::Kind::element);
+  EXPECT_THAT(report.notes, ElementsAre("2 hidden nodes deselected"));
+  EXPECT_THAT(must_apply(document, R"({"edit":"hide","on":"4"})").notes, IsEmpty()) << "nothing of it was selected";
+  EXPECT_THAT(must_apply(document, R"({"edit":"lock","on":"1"})").notes, IsEmpty()) << "it can still be seen";
+  EXPECT_EQ(document.current().selected_shells, 1u);
 }
 
 TEST(Parts, WithoutOnItIsTheSelectionsParts) {

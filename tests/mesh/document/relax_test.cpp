@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "tests/mesh/document/document_fixture.h"
 #include "tests/support/real_deck.h"
@@ -62,6 +63,31 @@ TEST(Relax, OfFailingElementsLooksOneRingFurther) {
   EXPECT_GT(report.nodes_moved, 0u);
   EXPECT_LT(report.nodes_moved, before.node_count() / 2);
   EXPECT_LT(report.after.fail, report.before.fail);
+}
+
+TEST(Relax, OfDamagedElementsLooksOneRingFurtherToo) {
+  Document document = slid_sheet();
+  const Model before = document.current().model;
+  const EditReport damaged = must_apply(document, R"({"edit":"relax","scope":"damaged"})");
+  EXPECT_GT(damaged.nodes_moved, 0u);
+  EXPECT_LT(damaged.nodes_moved, before.node_count() / 2);
+  // All that moved stands beside a shell that failed or warned, or beside a neighbour of one.
+  std::set<NodeIndex> near;
+  const Generation& slid = *document.generations[document.cursor - 1];
+  std::set<ShellIndex> touching;
+  for (std::size_t s = 0; s < before.shell_count(); ++s)
+    if (slid.quality[s].warn != 0)
+      for (const NodeIndex corner : before.shell(ShellIndex(s)).node)
+        for (const ShellIndex neighbour : before.adjacency->shells_of(corner)) touching.insert(neighbour);
+  for (const ShellIndex shell : touching)
+    for (const NodeIndex corner : before.shell(shell).node) near.insert(corner);
+  bool beyond_the_damaged = false;
+  for (const NodeIndex node : moved_nodes(before, document.current().model)) {
+    EXPECT_TRUE(near.contains(node)) << before.node_ids[node.value];
+    const auto shells = before.adjacency->shells_of(node);
+    beyond_the_damaged |= std::all_of(shells.begin(), shells.end(), [&](ShellIndex s) { return slid.quality[s.value].warn == 0; });
+  }
+  EXPECT_TRUE(beyond_the_damaged);
 }
 
 TEST(Relax, LeavesWhatElseHangsOnNodesInPlace) {

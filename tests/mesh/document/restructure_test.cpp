@@ -179,6 +179,23 @@ TEST(Restructure, NewNodesBelongToPartsInSightHiddenOrLocked) {
   expect_sound(document);
 }
 
+TEST(Restructure, ANewNodeBetweenPartsIsHiddenWithBothAndLockedWithEither) {
+  // The edge from node 4 to node 11 lies between the parts.
+  for (const auto& [edit, marks] :
+       {std::pair(R"({"edit":"hide","on":"1"})", 0), {R"({"edit":"hide","on":"2"})", 0}, {R"({"edit":"hide","on":"1-2"})", int{kHidden}}}) {
+    const Folder folder;
+    Document document = open_text(folder / "a.k", sheet_deck(6, 4));
+    must_apply(document, edit);
+    Change change{document.current().model, {}};
+    const Model& model = document.current().model;
+    change.cut_across(model.find_shell(3), model.find_shell(4), model.find_node(4), model.find_node(11));
+    must_change(document, change.finish());
+    const Generation& now = document.current();
+    EXPECT_EQ(now.node_marks[now.model.node_count() - 1] & (kHidden | kLocked), marks) << edit;
+    expect_sound(document);
+  }
+}
+
 /// What a user does with a model after its structure changed.
 TEST(Restructure, EveryOtherEditWorksOnWhatHasGrown) {
   const Folder folder;
@@ -251,6 +268,36 @@ TEST(Restructure, RulesSayWhatIsToBeLeftAlone) {
   EXPECT_NE(rules.shell(model.find_shell(6)) & repair::kKeepsNodes, 0) << "of the locked part";
   must_apply(document, R"({"edit":"unlock","on":"2"})");
   EXPECT_EQ(int{rules_for(document, document.current()).node(model.find_node(25))}, int{repair::kNeeded}) << "a constraint names it";
+}
+
+TEST(Restructure, RulesKeepWeldedShellsAndShellsWithMidSideNodesWhole) {
+  const Folder folder;
+  std::string text = sheet_deck(6, 4);
+  // A second sheet above the first, a weld between them, and one shell of the first with mid-side nodes.
+  text.insert(
+      text.find("*END"),
+      "*NODE\n     901             7.5             7.5             0.1\n     902             7.5             7.5             1.1\n"
+      "     911             5.0             5.0             1.0\n     912            10.0             5.0             1.0\n"
+      "     913            10.0            10.0             1.0\n     914             5.0            10.0             1.0\n"
+      "     921            22.5            15.0             0.1\n     922            25.0            17.5             0.1\n"
+      "     923            22.5            20.0             0.1\n     924            20.0            17.5             0.1\n"
+      "*ELEMENT_SHELL\n     901       1     911     912     913     914\n"
+      "*ELEMENT_SHELL\n     902       2      26      27      34      33     921     922     923     924\n"
+      "*ELEMENT_BEAM\n     900       9     901     902       0\n*PART\nweld\n         9         9         9\n"
+      "*SECTION_BEAM\n         9         9\n       6.0       6.0       0.0       0.0\n*MAT_SPOTWELD\n         9  7.85E-09    210000\n");
+  Document document = open_text(folder / "a.k", text);
+  const Model& model = document.current().model;
+  const repair::Rules rules = rules_for(document, document.current());
+  const auto shell = [&](std::int64_t id) { return int{rules.shell(model.find_shell(id))}; };
+  const auto node = [&](std::int64_t id) { return int{rules.node(model.find_node(id))}; };
+  constexpr int kEveryShellRule = repair::kKeepsNodes | repair::kLasting | repair::kIndivisible | repair::kNoTriangle;
+  EXPECT_EQ(shell(8), kEveryShellRule) << "the weld ends on it";
+  EXPECT_EQ(shell(901), kEveryShellRule) << "its other end";
+  EXPECT_EQ(shell(902), kEveryShellRule) << "its middles would lie beside its edges";
+  EXPECT_EQ(shell(3), 0);
+  EXPECT_EQ(node(26), repair::kStays | repair::kNeeded) << "a corner of the shell with middles";
+  EXPECT_EQ(node(921), repair::kStays | repair::kNeeded) << "a middle";
+  EXPECT_EQ(node(13), 0) << "an inner node elsewhere";
 }
 
 TEST(Restructure, WhatTextThatIsntReadMayNameStaysWhole) {

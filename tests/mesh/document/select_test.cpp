@@ -50,6 +50,26 @@ TEST(Select, ALongExpressionStopsWhenTold) {
   EXPECT_EQ(asked, 100);
 }
 
+TEST(Select, MarksTheShellsThatAreSelectedAndNoOthers) {
+  Document document = make_document(make_assembly());
+  const auto marked = [&] {
+    std::vector<std::int64_t> ids;
+    for (std::size_t s = 0; s < document.current().model.shell_count(); ++s)
+      if ((document.current().shell_marks[s] & kSelected) != 0) ids.push_back(document.current().model.shell_ids[s]);
+    return ids;
+  };
+  must_apply(document, R"({"edit":"select","expr":"3-5","kind":"element"})");
+  EXPECT_THAT(marked(), ElementsAre(3, 4, 5));
+  must_apply(document, R"({"edit":"select","expr":"5-7","kind":"element"})");
+  EXPECT_THAT(marked(), ElementsAre(5, 6, 7));
+  must_apply(document, R"({"edit":"select","expr":"6","kind":"element","mode":"subtract"})");
+  EXPECT_THAT(marked(), ElementsAre(5, 7));
+  must_apply(document, R"({"edit":"undo"})");
+  EXPECT_THAT(marked(), ElementsAre(5, 6, 7));
+  must_apply(document, R"({"edit":"hide","on":"part:2"})");
+  EXPECT_THAT(marked(), ElementsAre());
+}
+
 TEST(Select, ElementsStayElementsUntilNodesCome) {
   Document document = make_sheet(4, 4);
   must_apply(document, R"({"edit":"select","expr":"1","kind":"element"})");

@@ -181,6 +181,8 @@ TEST(Shaping, ADragShowsBitForBitWhatItsEditWillDo) {
           ASSERT_EQ(std::memcmp(&drag->positions()[i], &generation.model.position(drag->nodes()[i]), sizeof(Vec3)), 0);
         for (std::size_t i = 0; i < drag->shells().size(); ++i) ASSERT_EQ(drag->states()[i], generation.quality[drag->shells()[i].value]);
         EXPECT_EQ(drag->counts(), generation.counts);
+        const Vec3& grabbed = document.current().model.position(drag->grab());
+        EXPECT_EQ(shaping_of(drag->edit())->grab_at, (std::array<double, 3>{grabbed.x(), grabbed.y(), grabbed.z()}));
         EXPECT_GT(report->nodes_moved, 300u);
         if (option == kOptions[1]) {
           EXPECT_THAT(report->notes, Contains(HasSubstr("held back by max_move")));
