@@ -432,10 +432,12 @@ TEST(Elements, that_are_left_out_hold_the_nodes_they_have) {
 }
 
 TEST(Elements, with_too_few_nodes_are_left_out_and_counted) {
-  const auto opened = open("*ELEMENT_SHELL\n      10       1       1       2\n      11       1\n*ELEMENT_BEAM\n      12       1       4\n");
+  const auto opened = open(
+      "*ELEMENT_SHELL\n      10       1       1       2\n      11       1\n      13       1       0       2       3       4\n"
+      "      14       1       1       0       3       4\n*ELEMENT_BEAM\n      12       1       4\n");
   ASSERT_OPENED(opened);
   EXPECT_EQ(opened->model.shell_count(), 0u);
-  EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 3u);
+  EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 5u);
 }
 
 TEST(Nodes, of_equal_ids_the_first_counts) {

@@ -253,6 +253,9 @@ TEST(Expressions, that_are_none_have_no_value) {
   EXPECT_EQ(value("-3**2"), 9);
   EXPECT_EQ(value("2**-1"), 0.5);
   EXPECT_EQ(value("7/2*2.0"), 6);
+  for (const char* whole : {"(5-2)/2", "(1+2)/2", "int(3.9)/2", "abs(-3)/2"}) EXPECT_EQ(value(whole), 1) << whole;
+  for (const char* real : {"(5-2.0)/2", "(5.0-2)/2", "(1+2.0)/2", "(1.0+2)/2", "float(3)/2", "real(3)/2", "aint(3.9)/2", "abs(-3.0)/2"})
+    EXPECT_EQ(value(real), 1.5) << real;
   EXPECT_EQ(value("max(1,5,3) - mod(7,4) + sign(2,-1) + nint(2.6)/2"), 1);
 }
 

@@ -340,6 +340,19 @@ TEST(NastranElements, those_without_their_nodes_are_left_out_and_said) {
   EXPECT_EQ(unread, (std::vector<std::string>{"GENEL", "CHBDYE", "MYCARD"}));
 }
 
+TEST(NastranDefinitions, of_three_elastic_constants_the_third_follows_where_it_is_missing) {
+  const DeckFolder folder;
+  const auto opened = folder.open(
+      "GRID,1\nPSHELL,1,1,1.\nPSHELL,2,2,1.\nPSHELL,3,3,1.\nPSHELL,4,4,1.\nMAT1,1,260.,100.\nMAT1,2,,100.,.25\nMAT1,3,260.,100.,.2\n"
+      "MAT1,4,260.,0.\n");
+  ASSERT_OPENED(opened);
+  EXPECT_NEAR(part(opened->model, 1).poissons_ratio.value(), 0.3, 1e-12);
+  EXPECT_NEAR(part(opened->model, 2).youngs_modulus.value(), 250, 1e-12);
+  EXPECT_EQ(part(opened->model, 3).poissons_ratio, 0.2) << "what the card says counts";
+  EXPECT_EQ(part(opened->model, 3).youngs_modulus, 260);
+  EXPECT_FALSE(part(opened->model, 4).poissons_ratio);
+}
+
 TEST(NastranDefinitions, properties_and_materials) {
   const DeckFolder folder;
   const auto opened = folder.open(

@@ -162,6 +162,32 @@ TEST_F(Radioss, adds_a_submodels_offsets_and_shows_it_in_place) {
   EXPECT_EQ(saved(*opened, 102, Vec3(10, 520, 30)), wanted);
 }
 
+TEST_F(Radioss, moves_the_submodel_that_is_named_with_those_inside_it_and_no_other) {
+  const std::string blank(10, ' ');
+  const auto inside = [](int number, const std::string& what) {
+    return "//SUBMODEL/" + std::to_string(number) + "\ns\n" + card({0, 100 * number}) + what + "//ENDSUB\n";
+  };
+  const std::string text = std::string(kHead) + kSquare + inside(1, kSquare) + inside(2, kSquare + inside(3, kSquare)) +
+                           "/TRANSFORM/TRA/1\nt\n" + blank + reals({"10", "20", "30"}) + std::string(20, ' ') + right("2", 10) + "\n/END\n";
+  const auto opened = open(text);
+  ASSERT_OPENED(opened);
+  EXPECT_TRUE(all_is_understood(*opened->deck));
+  EXPECT_EQ(position_of(opened->model, 2), Vec3(1, 0, 0));
+  EXPECT_EQ(position_of(opened->model, 102), Vec3(1, 0, 0));
+  EXPECT_EQ(position_of(opened->model, 202), Vec3(11, 20, 30));
+  EXPECT_EQ(position_of(opened->model, 502), Vec3(11, 20, 30)) << "its offset comes on top of that of the one around it";
+}
+
+TEST_F(Radioss, takes_a_shell_without_a_fourth_node_for_a_triangle) {
+  const auto opened =
+      open(std::string(kHead) + kSquare + "/SHELL/1\n" + card({1, 1, 2, 3, 0}) + card({2, 1, 3, 4}) + card({3, 1, 2, 0, 4}) + "/END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(corners_of(opened->model, 1), (std::array<std::int64_t, 4>{1, 2, 3, 3}));
+  EXPECT_EQ(corners_of(opened->model, 2), (std::array<std::int64_t, 4>{1, 3, 4, 4}));
+  EXPECT_EQ(opened->model.shell_count(), 2u);
+  EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 1u);
+}
+
 TEST_F(Radioss, holds_what_is_included_into_two_submodels) {
   folder_.write("square.inc", kSquare + "/SHELL/1\n" + card({1, 1, 2, 3, 4}));
   const auto opened = open(std::string(kHead) + "//SUBMODEL/1\na\n" + card({100}) + "#include square.inc\n//ENDSUB\n//SUBMODEL/2\nb\n" +
