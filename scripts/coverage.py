@@ -12,8 +12,7 @@ def main():
     export, modules = sys.argv[1], sys.argv[2:]
     with open(export, encoding="utf-8") as file:
         files = json.load(file)["data"][0]["files"]
-    root = os.getcwd() + os.sep
-    ours = {os.path.relpath(os.path.normpath(entry["filename"]), root): entry for entry in files}
+    ours = {of_the_project(entry["filename"]): entry for entry in files}
     print(f"{'module':24} {'lines':>15} {'branches':>15}")
     for module in modules:
         inside = [entry for path, entry in ours.items() if belongs(path, module)]
@@ -22,6 +21,12 @@ def main():
         for path, entry in sorted(ours.items()):
             if belongs(path, module):
                 list_unreached(path, entry)
+
+
+def of_the_project(path):
+    """A file's path from the project's root. What is compiled in batches is named as if it stood in the build folder."""
+    path = os.path.relpath(os.path.normpath(path))
+    return path.removeprefix("build/coverage/")
 
 
 def belongs(path, module):
