@@ -71,19 +71,24 @@ std::optional<double> Settling::limit_of(std::size_t node) const {
   return footing[node].freedom == Freedom::line ? options_.most_on_line : options_.most_on_surface;
 }
 
+/// Where its limit counts from.
+const Vec3& Settling::home_of(std::size_t node) const {
+  return options_.limits_from != nullptr ? (*options_.limits_from)[net_.nodes[node].value] : net_.start[node];
+}
+
 /// Back on the surface, and within the limit.
 void Settling::land(std::size_t node) {
   at[node] = put_back(surface_, at[node], footing[node]);
   drift_[node] = 0;
   const std::optional<double> limit = limit_of(node);
   for (int i = 0; limit && i < 4; ++i) {
-    const Vec3 move = at[node] - net_.start[node];
+    const Vec3 move = at[node] - home_of(node);
     const double length = move.norm();
     if (!(length > *limit)) return;
     limited[node] = 1;
-    at[node] = put_back(surface_, net_.start[node] + move * (*limit / length * (1 - 1e-3 * i)), footing[node]);
+    at[node] = put_back(surface_, home_of(node) + move * (*limit / length * (1 - 1e-3 * i)), footing[node]);
   }
-  if (limit && (at[node] - net_.start[node]).norm() > *limit) at[node] = net_.start[node];
+  if (limit && (at[node] - home_of(node)).norm() > *limit) at[node] = net_.start[node];
 }
 
 /// To where the node's springs balance.
@@ -149,9 +154,9 @@ void Settling::go(std::size_t node, const Vec3& move) {
   const Vec3 was = at[node];
   at[node] += move;
   if (const std::optional<double> limit = limit_of(node)) {
-    const Vec3 away = at[node] - net_.start[node];
+    const Vec3 away = at[node] - home_of(node);
     if (const double distance = away.norm(); distance > *limit) {
-      at[node] = net_.start[node] + away * (*limit / distance);
+      at[node] = home_of(node) + away * (*limit / distance);
       limited[node] = 1;
     }
   }

@@ -53,6 +53,7 @@ class Settling {
   bool land_all(const Watcher& watcher);
   Found check(bool at_rest, const Watcher& watcher);
   std::optional<double> limit_of(std::size_t node) const;
+  const Vec3& home_of(std::size_t node) const;
 
   const Net& net_;
   const ReferenceSurface& surface_;

@@ -49,6 +49,9 @@ bool keeps_to_surface(const Site& site);
 /// The place on the surface for a point near it; nothing if there is none close by.
 std::optional<Vec3> on_surface(const Site& site, const Vec3& point, const Vec3& toward, double radius);
 
+/// Whether a node may be at a place: one of the model no farther from where it was than the options allow.
+bool within_limit(const Site& site, LocalNode node, const Vec3& place);
+
 /// Moves nodes that the change touched, and that may be moved, to where their shells are best; `along_lines`: those on feature lines too.
 void settle(const Site& site, int sweeps, bool along_lines);
 

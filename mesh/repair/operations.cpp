@@ -276,7 +276,8 @@ Refusal unite(const Site& site, const std::vector<Union>& unions) {
         const Vec3 own = area_normal(patch, patch.shell(shell).corners);
         normal += normal.dot(own) < 0 ? Vec3(-own) : own;
       }
-      if (const auto place = on_surface(site, middle, normal, site.judge.target_size)) patch.move(unions[i].stays, *place);
+      const auto place = on_surface(site, middle, normal, site.judge.target_size);
+      if (place && within_limit(site, unions[i].stays, *place)) patch.move(unions[i].stays, *place);
     }
     patch.remove_node(unions[i].gone);
   }
@@ -307,7 +308,9 @@ Refusal lift_node(const Site& site, LocalNode node, double distance) {
   if (!(length > 0)) return "the node can't be moved";
   const auto place = site.surface.project(n.position, site.judge.target_size, Vec3(normal / length));
   if (!place) return "the node isn't near the surface";
-  site.patch.move(node, place->point + distance * (normal / length), true);
+  const Vec3 lifted = place->point + distance * (normal / length);
+  if (!within_limit(site, node, lifted)) return "a node would go farther than it may";
+  site.patch.move(node, lifted, true);
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -321,6 +322,12 @@ class Repairer {
     const Model small = patch_.as_model(shells);
     relax::Options options = site_.options.relax;
     options.checks_on_the_way = false;
+    std::vector<Vec3> at_first;
+    for (std::size_t n = 0; n < patch_.node_count(); ++n) {
+      const NodeIndex node = patch_.node(LocalNode(n)).model;
+      at_first.push_back(node.valid() ? patch_.model().position(node) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    }
+    options.limits_from = &at_first;
     const Result<relax::Relaxed> relaxed =
         relax::relax(small, site_.surface, movable(), site_.judge, options, [&](double) { return goes_on(0); });
     if (!relaxed) {

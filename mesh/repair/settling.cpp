@@ -81,13 +81,6 @@ Surroundings around(const Patch& patch, LocalNode node) {
   return found;
 }
 
-/// How far a node of the model may be from where it was.
-bool within_limit(const Site& site, LocalNode node, const Vec3& place) {
-  const PatchNode& n = site.patch.node(node);
-  const std::optional<double>& most = n.lines.empty() ? site.options.relax.most_on_surface : site.options.relax.most_on_line;
-  return !n.model.valid() || !most || (place - site.patch.model().position(n.model)).norm() <= *most;
-}
-
 /// Whether a line's two edges at a node, were it elsewhere, follow the line as closely as they have to, or as they did.
 bool follows_line(const Site& site, LocalNode node, const Vec3& place) {
   const Patch& patch = site.patch;
@@ -155,6 +148,12 @@ void settle_in_sheet(const Site& site, LocalNode node, double step) {
 }
 
 }  // namespace
+
+bool within_limit(const Site& site, LocalNode node, const Vec3& place) {
+  const PatchNode& n = site.patch.node(node);
+  const std::optional<double>& most = n.lines.empty() ? site.options.relax.most_on_surface : site.options.relax.most_on_line;
+  return !n.model.valid() || !most || (place - site.patch.model().position(n.model)).norm() <= *most;
+}
 
 void settle(const Site& site, int sweeps, bool along_lines) {
   std::vector<LocalNode> nodes = site.patch.changed_nodes();

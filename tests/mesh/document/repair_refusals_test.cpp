@@ -71,6 +71,42 @@ TEST(RepairRefusals, WhatIsLockedStaysAsItIsAndIsSaid) {
   EXPECT_LT(must_apply(document, R"({"edit":"repair"})").after.fail, report.after.fail) << "unlocked, it is repaired";
 }
 
+TEST(RepairLimits, NoNodeGoesFartherThanMaxMove) {
+  // A sheet whose columns are crushed on the left, borders and all: to cure it nodes of both kinds have to go far.
+  const Folder folder;
+  std::string text = "*NODE\n";
+  for (int n = 0; n < 13 * 9; ++n) {
+    const int i = n % 13, j = n / 13;
+    text += std::to_string(n + 1) + "," + std::to_string(i < 4 ? 1.2 * i : 5.0 * (i - 3) + 3.6) + "," + std::to_string(5 * j) + ".,0.\n";
+  }
+  text += "*ELEMENT_SHELL\n";
+  for (int n = 1; n < 13 * 8; ++n)
+    if (n % 13 != 0)
+      for (const int number : {n, 1, n, n + 1, n + 14, n + 13}) text += std::to_string(number) + (number == n + 13 ? "\n" : ",");
+  const Document opened = open_text(folder / "a.k", text);
+  const Model& crushed = opened.current().model;
+  const auto farthest_after = [&](const std::string& repair) {
+    Document document = opened;
+    must_apply(document, repair);
+    const Model& model = document.current().model;
+    std::pair<double, double> farthest{0, 0};  // inside, on the border
+    for (std::size_t n = 0; n < crushed.node_count(); ++n) {
+      if (model.is_removed(NodeIndex(n))) continue;
+      const bool inside = n % 13 > 0 && n % 13 < 12 && n / 13 > 0 && n / 13 < 8;
+      double& far = inside ? farthest.first : farthest.second;
+      far = std::max(far, (model.positions[n] - crushed.positions[n]).norm());
+    }
+    return farthest;
+  };
+  const auto [inside, border] = farthest_after(R"({"edit":"repair","scope":"all"})");
+  EXPECT_GT(inside, 0.5);
+  EXPECT_GT(border, 0.5);
+  const auto [free, line] = farthest_after(R"({"edit":"repair","scope":"all","max_move":{"free":0.3,"line":0.1}})");
+  EXPECT_GT(free, 0.1);
+  EXPECT_LE(free, 0.3 + 1e-9);
+  EXPECT_LE(line, 0.1 + 1e-9);
+}
+
 TEST(RepairRefusals, ByHandWhatIsNotThereOrLockedIsRefused) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(8, 6));

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "mesh/relax/guard.h"
 #include "tests/mesh/relax/relaxing.h"
 
 namespace prismesh::test {
@@ -191,6 +192,30 @@ TEST(relax, makes_nothing_fail_that_passed) {
   EXPECT_GT(held_back, 0u);  // or it had nothing to hold
 }
 
+TEST(relax_guard, lets_no_shell_be_turned_over_whatever_its_shape_is_then) {
+  // an equilateral triangle: with its tip mirrored in its base it has the same shape, upside down
+  const Model model = make_shells({{0, 2.6, 0}, {-1.5, 0, 0}, {1.5, 0, 0}}, {{0, 1, 2, 2}});
+  relax::Net net;
+  net.movable = 1;
+  for (std::size_t n = 0; n < 3; ++n) {
+    net.nodes.emplace_back(n);
+    net.start.push_back(model.position(NodeIndex(n)));
+  }
+  net.shells = {ShellIndex(0)};
+  net.corners = {{0, 1, 2, 2}};
+  const relax::Guard guard(model, net, judge_of(3));
+  const Vec3 mirrored(0, -2.6, 0);
+  EXPECT_TRUE(guard.allows(0, net.start[0], net.start));
+  EXPECT_FALSE(guard.allows(0, mirrored, net.start));
+  std::vector<Vec3> places = net.start;
+  places[0] = mirrored;
+  const auto held = guard.hold_back(
+      net.start, places, [&](std::uint32_t node, const Vec3& point) { places[node] = point; }, [] { return true; });
+  ASSERT_TRUE(held.has_value());
+  EXPECT_EQ(held->nodes, std::vector<std::uint32_t>{0});
+  EXPECT_GT(places[0].y(), 0);
+}
+
 TEST(relax, gives_the_same_bits_with_any_number_of_threads) {
   const Model before = mixed_panel(0.35, 0.3);
   std::vector<relax::Relaxed> results;
@@ -219,6 +244,27 @@ TEST(relax, moves_no_node_beyond_its_limit) {
     const double distance = (relaxed.positions[i] - before.position(relaxed.nodes[i])).norm();
     EXPECT_LE(distance, column == 0 || column == 20 || row == 0 || row == 16 ? 0.2 : 0.5);
   }
+}
+
+TEST(relax, counts_limits_from_where_it_is_told_to) {
+  const Model before = sheet_on(torus(), 12, 10, 0.4);
+  const relax::ReferenceSurface surface(before, all_shells(before), 30);
+  std::vector<Vec3> home(before.node_count());
+  for (std::size_t n = 0; n < home.size(); ++n) home[n] = before.position(NodeIndex(n));
+  constexpr std::size_t kFree = 6 + 13 * 5;
+  home[kFree] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  relax::Options options;
+  options.most_on_surface = 0.3;
+  options.most_on_line = 0.1;
+  options.limits_from = &home;
+  Model now = before;
+  for (int time = 0; time < 3; ++time) now = moved(now, relax::relax(now, surface, all_nodes(now), judge_of(), options).value());
+  double farthest = 0;
+  for (std::size_t n = 0; n < home.size(); ++n)
+    if (n != kFree) farthest = std::max(farthest, (now.position(NodeIndex(n)) - home[n]).norm());
+  EXPECT_LE(farthest, 0.3 + 1e-9);
+  EXPECT_GT(farthest, 0.29);
+  EXPECT_GT((now.position(NodeIndex(kFree)) - before.position(NodeIndex(kFree))).norm(), 0.35) << "without a place it has no limit";
 }
 
 TEST(relax, moves_only_what_may_move) {

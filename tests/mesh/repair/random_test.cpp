@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/quality/report.h"
+#include "mesh/relax/freedom.h"
 #include "tests/mesh/repair/sheets.h"
 #include "tests/mesh/repair/validator.h"
 
@@ -47,15 +48,29 @@ Shaken shaken(unsigned seed) {
   return {model_of(positions, shells), still};
 }
 
+NodeSet every_node(const Model& model) {
+  NodeSet nodes;
+  for (std::size_t n = 0; n < model.node_count(); ++n) nodes.emplace_back(n);
+  return nodes;
+}
+
+bool fails(const Model& model, ShellIndex shell) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < model.shell(shell).corners(); ++i)
+    corners.push_back(model.position(model.shell(shell).node[static_cast<std::size_t>(i)]));
+  return quality::judge(quality::measure(corners), quality::default_criteria(), 1.0).fail != 0;
+}
+
 std::size_t failing(const Model& model) {
-  std::size_t count = 0;
-  for (const ShellIndex shell : all_shells(model)) {
-    std::vector<Vec3> corners;
-    for (int i = 0; i < model.shell(shell).corners(); ++i)
-      corners.push_back(model.position(model.shell(shell).node[static_cast<std::size_t>(i)]));
-    count += quality::judge(quality::measure(corners), quality::default_criteria(), 1.0).fail != 0 ? 1 : 0;
-  }
-  return count;
+  const ShellSet shells = all_shells(model);
+  return static_cast<std::size_t>(std::count_if(shells.begin(), shells.end(), [&](ShellIndex shell) { return fails(model, shell); }));
+}
+
+void expect_none_fails_that_did_not(const Model& before, const Model& after) {
+  for (std::size_t s = 0; s < before.shell_count(); ++s)
+    if (!after.is_removed(ShellIndex(s)) && !fails(before, ShellIndex(s))) {
+      EXPECT_FALSE(fails(after, ShellIndex(s))) << s;
+    }
 }
 
 class Random : public testing::TestWithParam<unsigned> {};
@@ -76,6 +91,7 @@ TEST_P(Random, shaking_is_repaired_and_the_sheet_stays_whole) {
   EXPECT_NEAR(a.free_length, b.free_length, (GetParam() % 3 == 1 ? 1e-3 : 1e-9) * a.free_length);
   EXPECT_LE(failing(next), failing(sheet.model) / 10);
   EXPECT_EQ(failing(next), repaired->left.size());
+  expect_none_fails_that_did_not(sheet.model, next);
 }
 
 /// What a seed forbids of each node and shell.
@@ -124,9 +140,33 @@ TEST_P(Random, nothing_forbidden_is_touched) {
   const Model next = carried_out(sheet.model, change);
   EXPECT_EQ(what_is_wrong(next), "");
   EXPECT_EQ(shape_of(sheet.model).euler, shape_of(next).euler);
+  expect_none_fails_that_did_not(sheet.model, next);
 }
 
 INSTANTIATE_TEST_SUITE_P(Repair, Random, testing::Range(0U, 6U));
+
+TEST(Limits, no_node_goes_farther_than_it_may_however_often_it_moves) {
+  for (const unsigned seed : {0U, 3U, 5U}) {
+    const Shaken sheet = shaken(seed);
+    const Model good = model_of(sheet.grid.positions(), sheet.grid.shells());
+    const relax::ReferenceSurface surface(good, all_shells(good), 30);
+    const relax::Judge judge{quality::default_criteria(), 1.0};
+    Options options;
+    options.relax.most_on_surface = 0.1;
+    options.relax.most_on_line = 0.02;
+    const auto repaired = repair(sheet.model, surface, all_shells(sheet.model), {}, judge, options);
+    ASSERT_TRUE(repaired.has_value());
+    EXPECT_FALSE(repaired->change.moved.empty());
+    const std::vector<relax::Freedom> freedoms = relax::node_freedoms(good, every_node(good), 30);
+    double on_surface = 0, on_line = 0;
+    for (const auto& [node, position] : repaired->change.moved) {
+      double& farthest = freedoms[node.value] == relax::Freedom::surface ? on_surface : on_line;
+      farthest = std::max(farthest, (position - sheet.model.position(node)).norm());
+    }
+    EXPECT_LE(on_surface, 0.1 + 1e-12) << seed;
+    EXPECT_LE(on_line, 0.02 + 1e-12) << seed;
+  }
+}
 
 TEST(Bad, input_is_left_alone_and_said) {
   const Grid grid = flat(8, 8);
