@@ -73,7 +73,7 @@ bool is_sound(const Patch& patch, LocalShell shell) {
     const Corners& theirs = patch.shell(other).corners;
     for (int i = 0; i < count; ++i)
       common += std::find(theirs.begin(), theirs.end(), corners[static_cast<std::size_t>(i)]) != theirs.end() ? 1 : 0;
-    if (common == count || common >= 3) return false;
+    if (common >= 3) return false;
   }
   return true;
 }
