@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/deterministic_math.h"
 #include "mesh/select/region.h"
 #include "tests/support/make_model.h"
 
@@ -92,6 +93,19 @@ TEST(FreeEdgeLoop, goes_straight_on_where_it_forks) {
     const NodeIndex web = model.find_node(103);
     EXPECT_EQ(loop_ids(model, web), inner ? (Ids{12, 14, 102, 103, 104}) : (Ids{11, 15, 101, 102, 103, 104, 105})) << inner;
   }
+}
+
+TEST(FreeEdgeLoop, goes_on_over_a_junction_into_a_bend_of_less_than_45_degrees_only) {
+  const auto loop_bent_by = [](double degrees) {
+    const double c = deterministic_cos_degrees(degrees), s = deterministic_sin_degrees(degrees);
+    // a shell, one beyond that is bent up, and a web that hangs down at their junction
+    const Model model =
+        test::make_shells({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1 + c, 0, s}, {1 + c, 1, s}, {1, 0, -1}, {1, 1, -1}},
+                          {{0, 1, 2, 3}, {1, 4, 5, 2}, {1, 6, 7, 2}});
+    return loop_ids(model, NodeIndex(0));
+  };
+  EXPECT_EQ(loop_bent_by(40), (Ids{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(loop_bent_by(50), (Ids{1, 2, 3, 4}));
 }
 
 TEST(FreeEdgeLoop, ends_where_the_next_shell_is_hidden_and_takes_mid_side_nodes) {

@@ -86,8 +86,8 @@ TEST(Region, does_not_ask_normals) {
 }
 
 /// Two strips of 6 shells side by side, the second turned up by `degrees`; between them a row of shells of width `gap`, turned up by
-/// `noise` degrees alone. Every second shell's node order is turned over.
-Model strips_with_slivers(double degrees, double gap, double noise) {
+/// `noise` degrees alone. Every second shell's node order is turned over; with `turned_beyond`, the other ones' of the second strip.
+Model strips_with_slivers(double degrees, double gap, double noise, bool turned_beyond = false) {
   std::vector<Vec3> points;
   std::vector<std::array<int, 4>> shells;
   const auto turned = [](double angle) { return Vec3(deterministic_cos_degrees(angle), 0, deterministic_sin_degrees(angle)); };
@@ -98,7 +98,7 @@ Model strips_with_slivers(double degrees, double gap, double noise) {
   for (int j = 0; j < 6; ++j)
     for (int i = 0; i < 3; ++i) {
       const int corner = i + 4 * j;
-      if ((i + j) % 2 == 0)
+      if (((i + j) % 2 == 0) != (turned_beyond && i == 2))
         shells.push_back({corner, corner + 1, corner + 5, corner + 4});
       else
         shells.push_back({corner, corner + 4, corner + 5, corner + 1});
@@ -118,6 +118,12 @@ TEST(Region, looks_through_slivers) {
   EXPECT_EQ(region_at(strips_with_slivers(10, 0.1, 70), NodeIndex(4), 30).size(), 6u);
 }
 
+TEST(Region, looks_through_slivers_whichever_way_the_shells_beyond_are_turned) {
+  EXPECT_EQ(region_at(strips_with_slivers(10, 1e-3, 0, true), NodeIndex(4), 30).size(), 18u);
+  EXPECT_EQ(region_at(strips_with_slivers(80, 1e-3, 0, true), NodeIndex(4), 30).size(), 12u);
+  EXPECT_EQ(region_at(strips_with_slivers(170, 1e-3, 0, true), NodeIndex(4), 30).size(), 12u);
+}
+
 TEST(Region, begins_at_the_side_of_the_crease_that_is_closest) {
   const Model model = roof([](int, int) { return false; });
   const auto at = [&](const Vec3& point) { return region(model, shells_near(model, point, {}), {RegionBound::features, 30, {}, nullptr}); };
@@ -127,6 +133,22 @@ TEST(Region, begins_at_the_side_of_the_crease_that_is_closest) {
   EXPECT_EQ(at(Vec3(4, 2.5, 9)).size(), 48u) << "on the crease: both sides";
   EXPECT_EQ(shells_near(model, Vec3(4, 3, 0), {}).size(), 4u) << "at a node: all around it";
   EXPECT_EQ(shells_near(model, Vec3(2.3, 3, 0.5), {}).size(), 2u) << "above the line between two rows";
+}
+
+TEST(Region, begins_on_all_shells_that_are_as_close_within_a_thousandth_of_their_size) {
+  const Model model = flat_grid(4, 4);
+  const double thousand = 1000, height = 0.2;
+  // over the second column, so far from its border that the first is farther by this share of a shell's side
+  const auto columns_at = [&](double farther, double scale) {
+    Model scaled = model;
+    for (std::size_t n = 0; n < scaled.node_count(); ++n) scaled.positions.set(n, Vec3(scale * model.positions[n]));
+    const double across = std::sqrt((height + farther) * (height + farther) - height * height);
+    return shells_near(scaled, Vec3(scale * Vec3(1 + across, 1.5, height)), {}).size();
+  };
+  for (const double scale : {1.0, thousand}) {
+    EXPECT_EQ(columns_at(0.5e-3, scale), 2u) << scale;
+    EXPECT_EQ(columns_at(2e-3, scale), 1u) << scale;
+  }
 }
 
 TEST(Region, ends_with_the_part_or_the_piece) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/model/growth.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::shape {
@@ -37,6 +38,17 @@ TEST(Mirror, AllowsAQuarterOfASide) {
   // a sheet a thousand times as coarse allows a thousand times as much
   const Model coarse = test::make_grid(10, 4, [](int i, int j) { return Vec3(5e3 * (i - 5) + (i < 5 ? 900 : 0), 5e3 * j, 0); });
   EXPECT_EQ(find_images(coarse, {node}, kAcrossX)[0], near);
+}
+
+TEST(Mirror, ARemovedNodeIsNobodysImage) {
+  Model model = sheet();
+  const NodeIndex node = test::grid_node(10, 8, 2), opposite = test::grid_node(10, 2, 2);
+  ASSERT_EQ(find_images(model, {node}, kAcrossX)[0], opposite);
+  const auto shells_there = model.adjacency->shells_of(opposite);
+  for (const ShellIndex shell : ShellSet(shells_there.begin(), shells_there.end())) remove_shell(model, shell);
+  remove_node(model, opposite);
+  model.adjacency = std::make_shared<const Adjacency>(build_adjacency(model));
+  EXPECT_FALSE(find_images(model, {node}, kAcrossX)[0].valid());
 }
 
 TEST(Mirror, OneImageForOneNodeAndTheClosestFirst) {

@@ -87,6 +87,16 @@ TEST(Distance, nodes_to_nodes_and_nodes_to_shells) {
   EXPECT_FALSE(shortest_distance(model, {}, {nodes({0}), {}}));
 }
 
+TEST(Distance, a_quad_counts_on_both_sides_of_its_diagonal) {
+  const Model model = test::make_shells({{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}, {9, 4, 3}, {4, 9, 4}}, {{0, 1, 2, 3}});
+  const auto first_half = shortest_distance(model, {nodes({4}), {}}, {{}, shells(0, 1)});
+  const auto second_half = shortest_distance(model, {nodes({5}), {}}, {{}, shells(0, 1)});
+  ASSERT_TRUE(first_half && second_half);
+  EXPECT_DOUBLE_EQ(first_half->distance, 3);
+  EXPECT_DOUBLE_EQ(second_half->distance, 4);
+  EXPECT_NEAR((second_half->b.point - Vec3(4, 9, 0)).norm(), 0, 1e-12);
+}
+
 TEST(Distance, two_wavy_sheets_as_by_trying_every_pair) {
   std::vector<Vec3> points;
   std::vector<std::array<int, 4>> quads;
