@@ -121,6 +121,17 @@ TEST(FieldTest, added_nodes_are_measured_from_between_their_origins_and_count_in
   EXPECT_EQ(since->figures.measured, before.node_count() + 2);
 }
 
+TEST(FieldTest, a_node_that_was_removed_before_has_no_displacement) {
+  const Model now = flat_sheet(4, 4, 0);
+  Model before = now;
+  const NodeIndex gone(std::size_t{12});
+  remove_node(before, gone);
+  const auto field = displacement_field(before, now, mm);
+  ASSERT_TRUE(field);
+  EXPECT_TRUE(std::isnan(field->values[gone.value]));
+  EXPECT_EQ(field->figures.measured, now.node_count() - 1);
+}
+
 TEST(FieldTest, added_and_removed_nodes) {
   const Model before = flat_sheet(4, 4, 0);
   Model now = before;

@@ -220,6 +220,18 @@ TEST(Drag, ShowsBitForBitWhatTheEditWillDo) {
   }
 }
 
+TEST(Drag, JudgesATriangleWhoseThirdCornerStaysAsATriangle) {
+  // nearly equilateral: fine as a triangle, but its angle of 180 degrees would fail in a quad
+  const Model model = test::make_shells({{0, 0, 0}, {5, 0, 0}, {2.5, 4.5, 0}}, {{0, 1, 2, 2}});
+  Document document = make_document(model);
+  Result<Drag> drag = Drag::begin(document.generations[0], document.settings, edit_of(R"({"edit":"translate","by":[0,0,0],"on":"1-2"})"));
+  ASSERT_TRUE(drag) << drag.error().text();
+  drag->step({Vec3(0, -0.1, 0), 0, 0});
+  ASSERT_EQ(drag->states().size(), 1u);
+  EXPECT_EQ(drag->states()[0].grade(), quality::Grade::ok);
+  EXPECT_EQ(drag->counts().ok, 1u);
+}
+
 TEST(Drag, NothingIsKept) {
   Document document = make_sheet(6, 6);
   const std::shared_ptr<const Generation> before = document.generations[0];
