@@ -1,7 +1,10 @@
 // Saving: what changes in the text, what doesn't, and which files are written.
 #include <sys/stat.h>
 
+#include <thread>
+
 #include "mesh/deck/lsdyna/writer.h"
+#include "mesh/deck/on_disk.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {
@@ -363,6 +366,27 @@ TEST(Save, told_to_stop_it_leaves_the_deck_as_it_was) {
   EXPECT_EQ(content(folder / "a.k"), "*NODE\n2,2.5,0.,0.\n");
   std::string wanted = text;
   EXPECT_TRUE(content(folder / "deck.k") == wanted.replace(wanted.find("1,1.,"), 5, "1,1.5,"));
+}
+
+TEST(Save, while_a_deck_is_saved_nobody_else_saves_it) {
+  const DeckFolder folder;
+  const auto opened = folder.open("*NODE\n1,1.,0.,0.\n");
+  ASSERT_OPENED(opened);
+  int asked = 0, free = 0;
+  const auto saved = save(*opened->deck, opened->model, with_node_at(opened->model, 1, {4, 0, 0}), folder / "deck.k", [&](double) {
+    ++asked;
+    std::thread([&] {
+      if (!opened->deck->on_disk->mutex.try_lock()) return;
+      ++free;
+      opened->deck->on_disk->mutex.unlock();
+    }).join();
+    return true;
+  });
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_GT(asked, 0);
+  EXPECT_EQ(free, 0);
+  EXPECT_TRUE(opened->deck->on_disk->mutex.try_lock()) << "afterwards the next one may";
+  opened->deck->on_disk->mutex.unlock();
 }
 
 TEST(Save, a_symbolic_link_stays_one) {

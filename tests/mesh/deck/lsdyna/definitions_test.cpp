@@ -337,6 +337,11 @@ TEST(LengthUnit, follows_the_density_and_else_the_edges) {
   EXPECT_EQ(guess("", "5."), LengthUnit::mm);
   EXPECT_EQ(guess("", "0.005"), LengthUnit::m);
   EXPECT_EQ(guess("1.e-30", "0.005"), LengthUnit::m);
+  EXPECT_EQ(guess("", "0.09"), LengthUnit::m) << "coarse shells of a body in metres";
+  EXPECT_EQ(guess("", "0.11"), LengthUnit::mm) << "fine ones in millimetres";
+  const auto without_shells = folder.open("*NODE\n1,0.,0.,0.\n2,0.001,0.,0.\n");
+  ASSERT_OPENED(without_shells);
+  EXPECT_EQ(guess_length_unit(without_shells->model), LengthUnit::mm);
 }
 
 }  // namespace

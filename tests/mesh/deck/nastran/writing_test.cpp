@@ -250,6 +250,59 @@ TEST(NastranSave, a_moved_node_changes_its_card_alone_whatever_its_system) {
   EXPECT_EQ(content(folder / "out.k"), wanted);
 }
 
+/// A deck of one node in a cylindrical system at (1, 2, 3) whose z axis is the x axis and whose r axis is turned besides.
+std::string turned_system(const std::string& grid) { return "BEGIN BULK\nCORD2C,7,,1.,2.,3.,2.,2.,3.\n,1.,2.6,3.8\n" + grid + "ENDDATA\n"; }
+
+/// The text of the deck after a node was moved, its own cylindrical coordinates by `by`.
+std::string moved_in_its_system(const DeckFolder& folder, const std::string& grid, double radius, double degrees, const Vec3& by) {
+  const auto opened = folder.open(turned_system(grid));
+  if (!opened) return opened.error().text();
+  const auto place = [&](double r, double angle) {
+    const double radians = angle * 3.14159265358979323846 / 180;
+    return Vec3(r * std::cos(radians) * Vec3(0, 0.6, 0.8) + r * std::sin(radians) * Vec3(0, -0.8, 0.6));
+  };
+  const Vec3 at = position_of(opened->model, 1);
+  const Vec3 to = at + place(radius + by[0], degrees + by[1]) - place(radius, degrees) + Vec3(by[2], 0, 0);
+  const auto moved = save(*opened->deck, opened->model, with_node_at(opened->model, 1, to), folder / "out.k");
+  if (!moved) return moved.error().text();
+  return content(folder / "out.k");
+}
+
+TEST(NastranSave, an_angle_of_more_than_half_a_turn_keeps_its_turns) {
+  const DeckFolder folder;
+  EXPECT_EQ(moved_in_its_system(folder, "GRID,1,7,10.,390.,5.\n", 10, 390, Vec3(2.5, 0, 0)), turned_system("GRID,1,7,12.5,390.,5.\n"));
+  EXPECT_EQ(moved_in_its_system(folder, "GRID,1,7,10.,-200.,5.\n", 10, -200, Vec3(2.5, 0, 0)), turned_system("GRID,1,7,12.5,-200.,5.\n"));
+  const std::string text = moved_in_its_system(folder, "GRID*,1,7,10.,725.\n*,5.\n", 10, 725, Vec3(0, 20, 0));
+  const std::size_t begin = text.find("GRID*,1,7,10.,");
+  ASSERT_NE(begin, std::string::npos) << text;
+  EXPECT_NEAR(std::stod(text.substr(begin + 14)), 745, 1e-9) << text;
+}
+
+TEST(NastranSave, in_a_turned_system_only_the_coordinates_that_change_are_written_however_little) {
+  const DeckFolder folder;
+  for (const auto& [radius, degrees] : {std::pair("10.1", "33.3"), std::pair("1234.567", "-71.9"), std::pair("0.377", "179.9")}) {
+    const std::string place = std::string("GRID,1,7,") + radius + "," + degrees + ",";
+    EXPECT_EQ(moved_in_its_system(folder, place + "5.\n", std::stod(radius), std::stod(degrees), Vec3(0, 0, 1e-4)),
+              turned_system(place + "5.0001\n"));
+  }
+}
+
+TEST(NastranSave, new_ids_fit_the_eight_columns_or_sixteen_of_their_cards) {
+  const DeckFolder folder;
+  const auto new_ids = [&](const std::string& star) {
+    const auto opened =
+        folder.open("GRID" + star + ",11,,0.,0.\nGRID" + star + ",12,,1.,0.\nGRID" + star + ",99999999,,1.,1.\nCTRIA3" + star +
+                    ",99999999,1,11,12," + (star.empty() ? "" : "\n*,") + "99999999\nPSHELL,1,1,.1\nMAT1,1,1.,,.3\n");
+    EXPECT_TRUE(opened) << opened.error().text();
+    Growing edit(*opened);
+    EXPECT_EQ(edit.model.shell_count(), 1u);
+    return std::pair(edit.ids.node(edge_origin(edit.node(11), edit.node(12))).value_or(-1),
+                     edit.ids.shell(edit.shell(99999999)).value_or(-1));
+  };
+  EXPECT_EQ(new_ids(""), (std::pair<std::int64_t, std::int64_t>(1, 1)));
+  EXPECT_EQ(new_ids("*"), (std::pair<std::int64_t, std::int64_t>(100000000, 100000000)));
+}
+
 constexpr const char* kOneQuad =
     "GRID,11,,0.,0.\nGRID,12,,1.,0.\nGRID,13,,1.,1.\nGRID,14,,0.,1.\nCQUAD4,1,1,11,12,13,14\nPSHELL,1,1,.1\nMAT1,1,1.,,.3\n";
 

@@ -188,6 +188,32 @@ TEST_F(Radioss, takes_a_shell_without_a_fourth_node_for_a_triangle) {
   EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 1u);
 }
 
+TEST_F(Radioss, takes_a_transformations_lengths_in_its_own_unit) {
+  const std::string blank(10, ' ');
+  const std::string model =
+      std::string(kHead) + "/UNIT/3\nmetres\n" + reals({"kg", "m", "s"}) + "\n//SUBMODEL/1\ns\n\n" + kSquare + "//ENDSUB\n";
+  const auto place_after = [&](const std::string& transform) {
+    const auto opened = open(model + transform + "/END\n");
+    EXPECT_TRUE(opened) << opened.error().text();
+    EXPECT_TRUE(!opened || all_is_understood(*opened->deck)) << transform;
+    return opened ? position_of(opened->model, 2) : Vec3(0, 0, 0);
+  };
+  const std::string of_submodel = std::string(20, ' ') + "         1\n";
+  const auto expect_at = [](const Vec3& at, const Vec3& wanted) { EXPECT_LT((at - wanted).norm(), 1e-9) << at.transpose(); };
+  expect_at(place_after("/TRANSFORM/TRA/1/3\nt\n" + blank + reals({"0.01", "0.02", "0.03"}) + of_submodel), Vec3(11, 20, 30));
+  expect_at(place_after("/TRANSFORM/TRA/1\nt\n" + blank + reals({"0.01", "0.02", "0.03"}) + of_submodel), Vec3(1.01, 0.02, 0.03));
+  // half a turn about the line through x = 2 mm, along z
+  expect_at(place_after("/TRANSFORM/ROT/1/3\nt\n" + blank + reals({"0.002", "0", "0"}) + of_submodel + blank +
+                        reals({"0.002", "0", "1", "180"}) + "\n"),
+            Vec3(3, 0, 0));
+  // factors have no unit
+  expect_at(place_after("/TRANSFORM/SCA/1/3\nt\n" + blank + reals({"2", "2", "2"}) + of_submodel), Vec3(2, 0, 0));
+  // a matrix has none but in its last column
+  expect_at(place_after("/TRANSFORM/MATRIX/1/3\nt\n" + blank + reals({"1", "0", "0", "0.005"}) + "         1\n" + blank +
+                        reals({"0", "1", "0", "0"}) + "\n" + blank + reals({"0", "0", "1", "0"}) + "\n"),
+            Vec3(6, 0, 0));
+}
+
 TEST_F(Radioss, holds_what_is_included_into_two_submodels) {
   folder_.write("square.inc", kSquare + "/SHELL/1\n" + card({1, 1, 2, 3, 4}));
   const auto opened = open(std::string(kHead) + "//SUBMODEL/1\na\n" + card({100}) + "#include square.inc\n//ENDSUB\n//SUBMODEL/2\nb\n" +
