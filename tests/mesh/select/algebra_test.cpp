@@ -205,6 +205,49 @@ TEST_F(Algebra, follows_sets_made_of_sets) {
   EXPECT_EQ(error_of("10,set:34"), "expression:4: node_set:34 is made of itself, or of sets within sets deeper than 32");
 }
 
+TEST(SetsOfSets, take_away_what_inner_sets_hold) {
+  Sets sets;
+  for (const std::int64_t id : {1, 2})
+    sets.name(sets.card("SET_NODE_LIST", id, "", Referred::node_set), Referred::node, Role::range, 10 * id, 30, 10);
+  const std::uint32_t added = sets.card("SET_NODE_ADD", 3, "", Referred::node_set);
+  sets.name(added, Referred::node_set, Role::list, 1).name(added, Referred::node_set, Role::single, 2, 2, 1, true);
+  const Names names{&sets.finish(), {}, {}, {}};
+  const Model model = sample();
+  const auto chosen = evaluate(model, "set:3", Kind::node, names);
+  ASSERT_TRUE(chosen.has_value()) << chosen.error().text();
+  ASSERT_EQ(chosen->nodes.size(), 1u);
+  EXPECT_EQ(model.node_ids[chosen->nodes[0].value], 10);
+}
+
+/// Each set up to `last` is made of the next one, named `times` times; the last holds node 10.
+std::string error_of_chain(std::int64_t last, int times) {
+  Sets sets;
+  for (std::int64_t id = 1; id < last; ++id) {
+    const std::uint32_t card = sets.card("SET_NODE_ADD", id, "", Referred::node_set);
+    for (int time = 0; time < times; ++time) sets.name(card, Referred::node_set, Role::single, id + 1);
+  }
+  sets.name(sets.card("SET_NODE_LIST", last, "", Referred::node_set), Referred::node, Role::list, 10);
+  const Names names{&sets.finish(), {}, {}, {}};
+  const auto chosen = evaluate(sample(), "set:1", Kind::node, names);
+  return chosen ? "" : chosen.error().text();
+}
+
+TEST(SetsOfSets, go_32_deep_and_no_deeper) {
+  EXPECT_EQ(error_of_chain(33, 1), "");
+  EXPECT_EQ(error_of_chain(34, 1), "expression:1: node_set:34 is made of itself, or of sets within sets deeper than 32");
+}
+
+TEST(SetsOfSets, that_multiply_are_refused) {
+  EXPECT_EQ(error_of_chain(10, 2), "");
+  EXPECT_NE(error_of_chain(20, 2).find("is made of too many sets"), std::string::npos);
+}
+
+TEST_F(Algebra, takes_any_number_of_parentheses_beside_each_other) {
+  std::string expression = "(10)";
+  for (int i = 0; i < 2 * kDeepestParentheses; ++i) expression += ",(20)";
+  EXPECT_EQ(of(expression), (Ids{10, 20}));
+}
+
 TEST_F(Algebra, names_the_sets_of_the_other_formats) {
   EXPECT_EQ(of("set:70"), (Ids{10}));
   EXPECT_EQ(of("set:70", Kind::element), (Ids{100}));

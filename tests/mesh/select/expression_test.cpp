@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/model/growth.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::select {
@@ -90,6 +91,32 @@ TEST(Expression, names_all) {
   EXPECT_EQ(nodes_named(model, "all,!all"), Ids());
   EXPECT_EQ(shells_named(model, "all"), (Ids{100, 101, 205, 206}));
   EXPECT_EQ(shells_named(model, "all", Kind::part), (Ids{100, 101, 205, 206}));
+}
+
+TEST(Expression, names_nothing_that_was_removed) {
+  Model model = two_part_model();
+  remove_shell(model, model.find_shell(206));
+  remove_node(model, model.find_node(90));
+  const auto count = [&](std::string_view expression, Kind kind) {
+    const auto chosen = evaluate(model, expression, kind);
+    EXPECT_TRUE(chosen.has_value()) << chosen.error().text();
+    return chosen ? std::pair(chosen->nodes.size(), chosen->shells.size()) : std::pair<std::size_t, std::size_t>();
+  };
+  const Ids shells{100, 101, 205};
+  EXPECT_EQ(shells_named(model, "all"), shells);
+  EXPECT_EQ(shells_named(model, "~shell:100"), (Ids{101, 205}));
+  EXPECT_EQ(shells_named(model, "part:7"), Ids{205});
+  EXPECT_EQ(shells_named(model, "part:7", Kind::part), Ids{205});
+  EXPECT_EQ(count("~node:10", Kind::node).first, model.node_count() - 2);
+}
+
+TEST(Expression, takes_the_mid_side_nodes_of_shells) {
+  Model model = two_part_model();
+  auto midside = std::make_shared<std::vector<MidsideNodes>>();
+  midside->push_back({model.find_shell(101), {model.find_node(1000), NodeIndex(), model.find_node(1001), NodeIndex()}});
+  model.midside = midside;
+  EXPECT_EQ(nodes_named(model, "shell:101"), (Ids{20, 30, 50, 60, 1000, 1001}));
+  EXPECT_EQ(nodes_named(model, "shell:100"), (Ids{10, 20, 40, 50}));
 }
 
 TEST(Expression, takes_the_class_of_each_item) {

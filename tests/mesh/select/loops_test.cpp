@@ -120,5 +120,56 @@ TEST(FreeEdgeLoop, ends_where_the_next_shell_is_hidden_and_takes_mid_side_nodes)
   EXPECT_EQ(loop_ids(model, NodeIndex(0), second_hidden), (Ids{1, 2, 11, 12, 50, 52, 53}));
 }
 
+TEST(FreeEdgeLoop, does_not_go_over_a_junction_onto_a_hidden_shell) {
+  // two shells in a plane, of parts 1 and 2, and a web of part 3 at their edge
+  std::vector<test::NodeSpec> nodes{{1, {0, 0, 0}}, {2, {1, 0, 0}}, {3, {1, 1, 0}},  {4, {0, 1, 0}},
+                                    {5, {2, 0, 0}}, {6, {2, 1, 0}}, {7, {1, 0, -1}}, {8, {1, 1, -1}}};
+  const Model model = test::make_model(nodes, {{1, 1, {1, 2, 3, 4}}, {2, 2, {2, 5, 6, 3}}, {3, 3, {2, 7, 8, 3}}});
+  const std::vector<std::uint8_t> second_hidden{0, 1, 0};
+  EXPECT_EQ(loop_ids(model, NodeIndex(0)), (Ids{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(loop_ids(model, NodeIndex(0), second_hidden), (Ids{1, 2, 3, 4}));
+}
+
+TEST(FreeEdgeLoop, is_not_looked_for_beyond_hidden_shells_nor_on_them) {
+  // part 1 in the middle, a ring of part 2, another of part 3 at the border
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  for (int j = 0; j <= 5; ++j)
+    for (int i = 0; i <= 5; ++i) nodes.push_back({1 + i + 6 * j, Vec3(i, j, 0)});
+  for (int j = 0; j < 5; ++j)
+    for (int i = 0; i < 5; ++i) {
+      const int ring = std::max(std::abs(i - 2), std::abs(j - 2));
+      shells.push_back({1 + i + 5 * j, 1 + ring, {1 + i + 6 * j, 2 + i + 6 * j, 8 + i + 6 * j, 7 + i + 6 * j}});
+    }
+  const Model model = test::make_model(nodes, shells);
+  const auto from_the_middle = [&](const std::vector<std::uint8_t>& hidden) {
+    return free_edge_loop(model, {ShellIndex(12)}, Vec3(2.5, 2.5, 0), hidden).size();
+  };
+  EXPECT_EQ(from_the_middle({}), 20u);
+  EXPECT_EQ(from_the_middle({0, 1, 0}), 0u);
+  EXPECT_EQ(from_the_middle({0, 0, 1}), 0u);
+}
+
+TEST(FreeEdgeLoop, is_that_of_the_shells_in_sight_also_where_a_hidden_free_edge_is_nearer) {
+  const Model model = test::make_model({{1, {0, 0, 0}}, {2, {1, 0, 0}}, {3, {2, 0, 0}}, {11, {0, 1, 0}}, {12, {1, 1, 0}}, {13, {2, 1, 0}}},
+                                       {{1, 1, {1, 2, 12, 11}}, {2, 2, {2, 3, 13, 12}}});
+  const std::vector<std::uint8_t> second_hidden{0, 1};
+  Ids ids;
+  for (const NodeIndex node : free_edge_loop(model, {ShellIndex(0)}, Vec3(1.4, -0.1, 0), second_hidden))
+    ids.push_back(model.node_ids[node.value]);
+  EXPECT_EQ(ids, (Ids{1, 2, 11, 12}));
+}
+
+TEST(FreeEdgeLoop, of_several_at_a_node_is_the_one_nearest_to_the_place) {
+  // two shells that share node 3 only
+  const Model model =
+      test::make_shells({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}}, {{0, 1, 2, 3}, {2, 4, 5, 6}});
+  for (const auto& [place, first] : {std::pair(Vec3(0.9, 0.8, 0), std::size_t{0}), std::pair(Vec3(1.1, 1.2, 0), std::size_t{2})}) {
+    const NodeSet loop = free_edge_loop(model, {ShellIndex(0), ShellIndex(1)}, place, {});
+    ASSERT_EQ(loop.size(), 4u);
+    EXPECT_EQ(loop.front(), NodeIndex(first));
+  }
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::select

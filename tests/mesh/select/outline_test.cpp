@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/model/growth.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::select {
@@ -122,6 +123,12 @@ TEST(Outline, sees_through_the_view_and_not_behind_the_eye) {
   // a pinhole looking down -z: x/-z, y/-z
   const std::array<double, 16> view{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -1, 0, 0, 0, 0};
   EXPECT_EQ(inside_outline(model, view, {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}), (NodeSet{NodeIndex(0), NodeIndex(3)}));
+}
+
+TEST(Outline, takes_nothing_that_was_removed) {
+  Model model = test::make_model({{1, {0, 0, 0}}, {2, {1, 0, 0}}}, {});
+  remove_node(model, NodeIndex(0));
+  EXPECT_EQ(inside_outline(model, kIdentity, {{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}), NodeSet{NodeIndex(1)});
 }
 
 TEST(Outline, of_less_than_an_area_takes_nothing) {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/deterministic_math.h"
+#include "mesh/model/growth.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::select {
@@ -114,8 +115,10 @@ TEST(Region, looks_through_slivers) {
       EXPECT_EQ(region_at(strips_with_slivers(80, gap, noise), NodeIndex(4), 30).size(), 12u) << gap << " " << noise;
       EXPECT_EQ(region_at(strips_with_slivers(80, gap, noise), NodeIndex(7), 30).size(), 12u) << gap << " " << noise;
     }
-  // wide enough to have a plane of its own
+  // wide enough to have a plane of its own: a two-hundredth of its length
   EXPECT_EQ(region_at(strips_with_slivers(10, 0.1, 70), NodeIndex(4), 30).size(), 6u);
+  EXPECT_EQ(region_at(strips_with_slivers(10, 1.1 / 200, 70), NodeIndex(4), 30).size(), 6u);
+  EXPECT_EQ(region_at(strips_with_slivers(10, 0.9 / 200, 70), NodeIndex(4), 30).size(), 18u);
 }
 
 TEST(Region, looks_through_slivers_whichever_way_the_shells_beyond_are_turned) {
@@ -169,6 +172,71 @@ TEST(Region, ends_with_the_part_or_the_piece) {
   const std::vector<std::uint8_t> second_hidden{0, 1, 0};
   EXPECT_EQ(grown(RegionBound::piece, &none, second_hidden), ShellSet{ShellIndex(0)});
   EXPECT_EQ(grown(RegionBound::part, &none, second_hidden).size(), 2u);
+}
+
+/// Shells in a row, one of each part from 1 on, or of the parts given.
+Model row_of_parts(const std::vector<std::int64_t>& parts) {
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  const auto count = static_cast<std::int64_t>(parts.size());
+  for (std::int64_t i = 0; i <= count; ++i)
+    for (const std::int64_t j : {0, 1}) nodes.push_back({1 + i + 100 * j, Vec3(static_cast<double>(i), static_cast<double>(j), 0)});
+  for (std::int64_t i = 0; i < count; ++i) shells.push_back({1 + i, parts[static_cast<std::size_t>(i)], {1 + i, 2 + i, 102 + i, 101 + i}});
+  return test::make_model(nodes, shells);
+}
+
+TEST(Region, of_parts_goes_on_from_part_to_part_in_whatever_order_they_stand) {
+  const Model model = row_of_parts({1, 2, 3, 4});
+  const WeldedShells none;
+  for (const std::size_t start : {0U, 1U, 3U})
+    EXPECT_EQ(region(model, {ShellIndex(start)}, {RegionBound::part, 30, {}, &none}).size(), 4u) << start;
+}
+
+TEST(Region, takes_no_hidden_shell_wherever_it_begins) {
+  const Model model = row_of_parts({1, 2, 2, 1});
+  const std::vector<std::uint8_t> second_hidden{0, 1};
+  const ShellSet all{ShellIndex(0), ShellIndex(1), ShellIndex(2), ShellIndex(3)};
+  for (const RegionBound bound : {RegionBound::features, RegionBound::part, RegionBound::piece})
+    EXPECT_EQ(region(model, all, {bound, 30, second_hidden, nullptr}), (ShellSet{ShellIndex(0), ShellIndex(3)}));
+  EXPECT_EQ(shells_at(model, model.find_node(2), second_hidden), ShellSet{ShellIndex(0)});
+}
+
+TEST(Region, takes_a_hidden_web_for_not_there) {
+  // a web of part 2 stands where two shells of part 1 meet
+  const Model model = test::make_model(
+      {{1, {0, 0, 0}}, {2, {1, 0, 0}}, {3, {1, 1, 0}}, {4, {0, 1, 0}}, {5, {2, 0, 0}}, {6, {2, 1, 0}}, {7, {1, 0, 1}}, {8, {1, 1, 1}}},
+      {{1, 1, {1, 2, 3, 4}}, {2, 1, {2, 5, 6, 3}}, {3, 2, {2, 7, 8, 3}}});
+  const std::vector<std::uint8_t> web_hidden{0, 1};
+  EXPECT_EQ(region_at(model, NodeIndex(0), 30, web_hidden).size(), 2u);
+  EXPECT_EQ(region_at(model, NodeIndex(0), 30).size(), 1u);
+}
+
+TEST(Region, begins_on_what_is_in_sight_where_something_hidden_is_nearer) {
+  // a hidden sheet of part 2 with finer shells right above one of part 1
+  std::vector<test::NodeSpec> nodes;
+  for (int k = 0; k < 4; ++k) nodes.push_back({1 + k, Vec3(10 * (k == 1 || k == 2), 10 * (k > 1), 0)});
+  for (int k = 0; k < 4; ++k) nodes.push_back({11 + k, Vec3(4 + (k == 1 || k == 2), 4 + (k > 1), 1)});
+  const Model model = test::make_model(nodes, {{1, 1, {1, 2, 3, 4}}, {2, 2, {11, 12, 13, 14}}});
+  const std::vector<std::uint8_t> second_hidden{0, 1};
+  EXPECT_EQ(shells_near(model, Vec3(4.5, 4.5, 1), {}), ShellSet{ShellIndex(1)});
+  EXPECT_EQ(shells_near(model, Vec3(4.5, 4.5, 1), second_hidden), ShellSet{ShellIndex(0)});
+}
+
+/// A grid whose corner shell and corner node are removed.
+Model without_a_corner() {
+  Model model = flat_grid(3, 3);
+  remove_shell(model, ShellIndex(0));
+  remove_node(model, NodeIndex(0));
+  model.adjacency = std::make_shared<const Adjacency>(build_adjacency(model));
+  return model;
+}
+
+TEST(NearestNode, is_none_that_was_removed) { EXPECT_NE(nearest_node(without_a_corner(), Vec3(0, 0, 0)), NodeIndex(0)); }
+
+TEST(Invert, selects_nothing_that_was_removed) {
+  const NodeSet rest = invert(without_a_corner(), {NodeIndex(5)});
+  EXPECT_EQ(rest.size(), 14u);
+  EXPECT_NE(rest.front(), NodeIndex(0));
 }
 
 /// Two parallel sheets of 4 x 4 shells, 1.5 apart; their nodes are 1 + i + 10 j and 1001 + i + 10 j, shells 1.. and 101..
