@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/model/growth.h"
+
 namespace prismesh::mesh {
 namespace {
 
@@ -44,6 +46,28 @@ TEST(Model, tells_which_nodes_moved) {
   b.positions.set(6, Vec3(1, 2, 3));
   EXPECT_EQ(moved_nodes(a, b), (std::vector<NodeIndex>{NodeIndex(5), NodeIndex(2 * kChunkSize + 1)}));
   EXPECT_EQ(moved_nodes(b, a), moved_nodes(a, b));
+}
+
+TEST(Model, no_node_has_moved_that_one_of_the_states_lacks) {
+  Model a;
+  a.positions.resize(5, Vec3(1, 2, 3));
+  a.node_ids.resize(5);
+  for (std::size_t n = 0; n < 5; ++n) a.node_ids.set(n, static_cast<std::int64_t>(n) + 1);
+  a.node_holds.resize(5);
+  a.node_index = std::make_shared<const IdIndex>(std::vector<std::int64_t>{1, 2, 3, 4, 5});
+  Model b = a;
+  for (const std::size_t n : {0U, 1U}) b.positions.set(n, Vec3(0, 0, 0));
+  remove_node(b, NodeIndex(1));
+  add_node(b, 6, Vec3(9, 9, 9), edge_origin(NodeIndex(2), NodeIndex(3)));
+  EXPECT_EQ(moved_nodes(a, b), std::vector<NodeIndex>{NodeIndex(0)});
+  EXPECT_EQ(moved_nodes(b, a), std::vector<NodeIndex>{NodeIndex(0)});
+}
+
+TEST(Model, says_why_each_kind_of_node_is_held) {
+  for (const auto& [hold, word] :
+       {std::pair(kHeldByParameter, "parameter"), std::pair(kHeldByInclude, "include"), std::pair(kHeldByFrame, "coordinate system"),
+        std::pair(kHeldByMaking, "one card makes it"), std::pair(kHeldByMissing, "isn't defined")})
+    EXPECT_NE(why_held(hold).find(word), std::string_view::npos) << word;
 }
 
 TEST(Model, finds_parts_by_their_id) {

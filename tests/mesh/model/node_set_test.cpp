@@ -34,6 +34,7 @@ TEST_P(NodeSets, shells_touching_and_inside) {
   EXPECT_EQ(shells_touching(model, nodes({0, 1, 5, 6})), shells({0, 1, 4, 5}));
   EXPECT_EQ(shells_inside(model, nodes({0, 1, 5, 6})), shells({0}));
   EXPECT_TRUE(shells_inside(model, nodes({0, 1, 5})).empty());
+  EXPECT_TRUE(shells_inside(model, nodes({0, 1, 6})).empty()) << "the last corner counts as well";
   EXPECT_TRUE(shells_touching(model, {}).empty());
   EXPECT_EQ(nodes_of(model, shells({0, 1})), nodes({0, 1, 2, 5, 6, 7}));
 }

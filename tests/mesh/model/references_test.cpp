@@ -58,5 +58,65 @@ TEST(References, take_ids_that_count_up_as_one_and_pass_over_what_is_no_id) {
   EXPECT_EQ(references.naming(Referred::node, 7).size(), 1u);
 }
 
+TEST(References, keep_ids_behind_a_range_or_in_steps_apart) {
+  References references;
+  references.add(Referrer{});
+  references.add(range(Referred::node, 1, 4));
+  references.add({Referred::node, ReferenceRole::list, 5, 5, 1, 0, 0});
+  references.add({Referred::shell, ReferenceRole::list, 1, 5, 2, 0, 0});
+  references.add({Referred::shell, ReferenceRole::list, 6, 6, 1, 0, 0});
+  references.finish();
+  EXPECT_EQ(references.all(Referred::node).size(), 2u);
+  EXPECT_FALSE(references.named(Referred::shell, 2));
+  EXPECT_TRUE(references.named(Referred::shell, 6));
+}
+
+TEST(References, begin_at_the_first_id_above_0_of_their_steps) {
+  References references;
+  references.add(Referrer{});
+  references.add(range(Referred::node, -3, 20, 5));
+  references.finish();
+  EXPECT_EQ(references.all()[0].first, 2);
+}
+
+TEST(References, keep_their_cards_when_appended) {
+  References first, second;
+  Referrer card;
+  card.id = 1;
+  first.add(card);
+  card.id = 2;
+  second.add(card);
+  second.add(range(Referred::node, 5, 5));
+  first.append(std::move(second));
+  first.finish();
+  ASSERT_EQ(first.naming(Referred::node, 5).size(), 1u);
+  EXPECT_EQ(first.referrers()[first.naming(Referred::node, 5)[0].referrer].id, 2);
+}
+
+TEST(References, cards_make_one_set_if_group_keyword_and_id_are_the_same) {
+  Referrer a, b;
+  a.keyword = b.keyword = "SPC1";
+  a.group = b.group = "g";
+  a.id = b.id = 1;
+  EXPECT_TRUE(same_set(a, b));
+  b.id = 2;
+  EXPECT_FALSE(same_set(a, b));
+  b = a;
+  b.group = "";
+  EXPECT_FALSE(same_set(a, b));
+  b = a;
+  b.keyword = "SPC";
+  EXPECT_FALSE(same_set(a, b));
+}
+
+TEST(References, a_set_without_an_id_defines_none) {
+  References references;
+  Referrer set;
+  set.defines = Referred::node_set;
+  references.add(set);
+  references.finish();
+  EXPECT_FALSE(references.defined(Referred::node_set, 0));
+}
+
 }  // namespace
 }  // namespace prismesh::mesh

@@ -73,6 +73,15 @@ TEST(Composite, thickness_and_wanted_time_step_set_the_least_length) {
   EXPECT_EQ(rated(rectangle(0.6, 1), criteria_of("[metrics.min_length]\nfail_below_thicknesses = 2"), 1), 1);
 }
 
+TEST(Composite, falls_over_a_twentieth_of_a_limit_that_is_the_ideal) {
+  const Criteria criteria = parse_criteria("[metrics.max_length]\nfail_above = 1\n", "mine.toml").value();
+  Values values;
+  values.fill(std::numeric_limits<float>::quiet_NaN());
+  values[int(Metric::aspect)] = 1;
+  values[int(Metric::max_length)] = 10.5F;
+  EXPECT_NEAR(composite(values, criteria, 10, {}), -0.5, 1e-5);
+}
+
 TEST(Composite, is_a_number_whatever_the_limits) {
   for (const char* limit : {"fail_above = 1e30", "fail_above = -1e30", "fail_above = 0", "fail_below = 1e30", "fail_below = -1e30",
                             "fail_above = 1e-30", "fail_below = 1\nfail_above = 1"})

@@ -110,6 +110,15 @@ TEST(Criteria, quads_and_triangles_apart_and_lengths_by_thickness) {
   EXPECT_EQ(judge(good_quad(), criteria, 10.0, 0.0).grade(), Grade::ok);  // unknown
 }
 
+TEST(Criteria, a_thin_sheet_keeps_the_least_length_of_the_target_size) {
+  const Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 1.1\n");
+  Values quad = good_quad();
+  quad[int(Metric::min_length)] = 1.9F;
+  EXPECT_EQ(judge(quad, criteria, 10.0, 0.5).grade(), Grade::fail);
+  quad[int(Metric::min_length)] = 2.1F;
+  EXPECT_EQ(judge(quad, criteria, 10.0, 0.5).grade(), Grade::ok);
+}
+
 TEST(Criteria, a_wanted_time_step_sets_the_least_length_by_the_material) {
   Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 5e-7\nwarn_below = 6e-7");
   const double steel = 5.4219e6;  // mm/s
@@ -194,6 +203,9 @@ TEST(Criteria, mistakes_are_named_with_their_line) {
   EXPECT_EQ(refused("[metrics.skew]\nfail_above = nan").line, 2);
   EXPECT_THAT(refused("[metrics.skew]\nwarn_above = 50\nfail_above = 40").text(),
               HasSubstr("mine.toml:2: metrics.skew: warn_above lies beyond"));
+  EXPECT_THAT(refused("[metrics.jacobian]\nfail_below = 0.6\nwarn_below = 0.5").text(),
+              HasSubstr("mine.toml:3: metrics.jacobian: warn_below lies beyond"));
+  EXPECT_EQ(refused("[metrics.skew]\nfail_above = true").text(), "mine.toml:2: metrics.skew: fail_above must be a number");
   EXPECT_THAT(refused("[metrics.taper.triangel]\nfail_above = 1").text(), HasSubstr("\"triangle\""));
   EXPECT_THAT(refused("metrics = 3").text(), HasSubstr("must be a table"));
   const Error syntax = refused("[metrics.skew]\nfail_above = = 4");

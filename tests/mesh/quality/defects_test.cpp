@@ -146,6 +146,18 @@ TEST(Removed, shells_count_for_nothing) {
   EXPECT_EQ(values[4][int(Metric::aspect)], 1);
 }
 
+TEST(Removed, shells_weigh_nothing) {
+  Model model = grid(2, 1);
+  auto parts = std::make_shared<std::vector<Part>>(1);
+  (*parts)[0].density = 2.0;
+  (*parts)[0].thickness = 3.0;
+  model.parts = parts;
+  remove_shell(model, ShellIndex(std::size_t{1}));
+  EXPECT_EQ(weigh_model(model).mass, 6);
+  EXPECT_EQ(weigh_model(model).shells, 1u);
+  EXPECT_EQ(weigh_shell(model, ShellIndex(std::size_t{1})).mass, 0);
+}
+
 TEST(Removed, added_shells_are_judged_though_nobody_named_them) {
   Model model = grid(70, 60);  // the last chunk grows
   ChunkedArray<ShellState> states = judge_model(model, default_criteria(), 1.0);

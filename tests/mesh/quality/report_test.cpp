@@ -186,6 +186,24 @@ TEST(Report, triangles_and_worst_shells) {
   EXPECT_EQ(r.metrics[int(Metric::warpage)].worst, ShellIndex(std::size_t{0}));
 }
 
+TEST(Report, finds_what_is_worst_and_what_weighs_among_many_shells) {
+  Model model = steel_grid(100, 90, 5);  // several ranges
+  const std::size_t last = model.shell_count() - 1;
+  model.positions.set(model.node_count() - 1, Vec3(497, 447, 0));  // the last shell's own corner
+  const Report r = report_of(model);
+  EXPECT_EQ(r.metrics[int(Metric::min_length)].worst, ShellIndex(last));
+  EXPECT_EQ(r.metrics[int(Metric::max_angle_quad)].worst, ShellIndex(last));
+  ASSERT_TRUE(r.time_step);
+  EXPECT_EQ(r.time_step->shell, ShellIndex(last));
+  Part unknown;
+  unknown.id = 7;
+  set_parts(model, {steel(), unknown});
+  for (std::size_t s = 100; s < model.shell_count(); ++s) model.shell_parts.set(s, PartIndex(std::size_t{1}));
+  const Report first_row = report_of(model);
+  ASSERT_TRUE(first_row.mass) << "only the first shells have one";
+  EXPECT_NEAR(*first_row.mass, 100 * 25 * 1.5 * 7.85e-9, 1e-15);
+}
+
 TEST(Report, of_some_shells_only) {
   const Model model = steel_grid(10, 10, 5);
   const ShellSet shells = {ShellIndex(std::size_t{3}), ShellIndex(std::size_t{50})};
@@ -255,6 +273,9 @@ TEST(Report, target_size_is_the_median_edge_in_two_digits) {
   EXPECT_DOUBLE_EQ(guess_target_size(steel_grid(9, 9, 5.234)), 5.2);
   EXPECT_DOUBLE_EQ(guess_target_size(steel_grid(9, 9, 0.00098765)), 0.00099);
   EXPECT_DOUBLE_EQ(guess_target_size(steel_grid(9, 9, 129)), 130);
+  Model broken = steel_grid(9, 9, 5);
+  for (std::size_t n = 30; n < 100; ++n) broken.positions.set(n, Vec3::Constant(std::nan("")));
+  EXPECT_DOUBLE_EQ(guess_target_size(broken), 5) << "of the edges that have a length";
   EXPECT_DOUBLE_EQ(guess_target_size(test::make_shells({}, {})), 1);
   EXPECT_DOUBLE_EQ(guess_target_size(test::make_shells({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2, 2}})), 1);
 }

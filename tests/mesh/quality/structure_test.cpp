@@ -127,6 +127,20 @@ TEST(Structure, a_long_edge_of_one_part_is_not_joined_by_shells_of_another) {
   EXPECT_TRUE(check_structure(model).unjoined.empty());
 }
 
+TEST(Structure, a_hole_between_two_parts_is_inside_none) {
+  Model model = curved_grid(5, 5, [](int i, int j) { return i != 2 || j != 2; });
+  EXPECT_EQ(check_structure(model).free_inside.size(), 4u);
+  model.parts = std::make_shared<std::vector<Part>>(2);
+  for (std::size_t s = 0; s < model.shell_count(); ++s)
+    if (model.position(model.shell(shell(s)).node[0]).x() < 2) model.shell_parts.set(s, PartIndex(std::size_t{1}));
+  EXPECT_TRUE(check_structure(model).free_inside.empty());
+}
+
+TEST(Structure, shells_that_run_along_an_edge_twice_are_not_opposed_there) {
+  const Model model = test::make_shells(strip(2), {{0, 2, 0, 1}, {0, 2, 0, 3}});
+  EXPECT_TRUE(check_structure(model).opposed.empty());
+}
+
 TEST(Structure, triangles_about_a_node) {
   std::vector<Vec3> points = {{0, 0, 0}};
   std::vector<std::array<int, 4>> shells;
@@ -138,6 +152,8 @@ TEST(Structure, triangles_about_a_node) {
   EXPECT_EQ(found.clusters, NodeSet{NodeIndex(std::size_t{0})});
   StructureOptions strict;
   strict.triangles_at_node = 1;
+  const ShellSet three = {shell(0), shell(1), shell(2)};
+  EXPECT_EQ(check_structure(test::make_shells(points, shells), {}, &three).most_triangles, 3u) << "others don't count";
   EXPECT_EQ(check_structure(test::make_shells(points, shells), strict).clusters.size(), 7u);
 }
 
