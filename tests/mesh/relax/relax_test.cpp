@@ -216,6 +216,58 @@ TEST(relax_guard, lets_no_shell_be_turned_over_whatever_its_shape_is_then) {
   EXPECT_GT(places[0].y(), 0);
 }
 
+/// Triangles side by side that share no node, each with its tip as the only node that may move: those are the net's first nodes.
+struct Tents {
+  explicit Tents(const std::vector<Vec3>& tips, double thickness = 0) {
+    std::vector<Vec3> points;
+    std::vector<std::array<int, 4>> shells;
+    const int count = static_cast<int>(tips.size());
+    for (int i = 0; i < count; ++i) points.emplace_back(tips[static_cast<std::size_t>(i)] + Vec3(10 * i, 0, 0));
+    for (int i = 0; i < count; ++i) {
+      points.emplace_back(10 * i - 1.5, 0, 0);
+      points.emplace_back(10 * i + 1.5, 0, 0);
+      shells.push_back({i, count + 2 * i, count + 2 * i + 1, count + 2 * i + 1});
+    }
+    model = make_shells(points, shells);
+    if (thickness > 0)
+      for (int i = 0; i < count; ++i) model.shell_thickness.set(static_cast<std::size_t>(i), static_cast<float>(thickness));
+    net.movable = tips.size();
+    for (std::size_t n = 0; n < points.size(); ++n) net.nodes.emplace_back(n);
+    net.start = points;
+    for (std::size_t s = 0; s < tips.size(); ++s) {
+      net.shells.emplace_back(s);
+      const std::array<int, 4>& c = shells[s];
+      net.corners.push_back({c[0], c[1], c[2], c[3]});
+    }
+  }
+  bool allows(std::uint32_t tip, const Vec3& place, const relax::Judge& judge) const {
+    return relax::Guard(model, net, judge).allows(tip, place + Vec3(10 * tip, 0, 0), net.start);
+  }
+  Model model;
+  relax::Net net;
+};
+
+TEST(relax_guard, lets_none_become_the_new_worst_without_a_mark) {
+  const Tents one({{0, 2.6, 0}});
+  EXPECT_TRUE(one.allows(0, Vec3(0, 2.598, 0), judge_of(3))) << "nearer to equilateral";
+  EXPECT_FALSE(one.allows(0, Vec3(0.2, 2.6, 0), judge_of(3)));
+  const Tents two({{0, 2.6, 0}, {0.5, 2.6, 0}});
+  EXPECT_TRUE(two.allows(0, Vec3(0.2, 2.6, 0), judge_of(3))) << "the other one is worse";
+  EXPECT_FALSE(two.allows(0, Vec3(0.7, 2.6, 0), judge_of(3)));
+}
+
+TEST(relax_guard, lets_what_fails_get_better_only) {
+  const Tents failing({{4, 1.2, 0}, {0, 2.6, 0}});
+  EXPECT_TRUE(failing.allows(0, Vec3(3.9, 1.2, 0), judge_of(3)));
+  EXPECT_FALSE(failing.allows(0, Vec3(4.1, 1.2, 0), judge_of(3)));
+}
+
+TEST(relax_guard, judges_by_the_sheets_thickness) {
+  const quality::Criteria criteria = quality::parse_criteria("[metrics.min_length]\nfail_below_thicknesses = 1\n", "").value();
+  EXPECT_TRUE(Tents({{0, 2.6, 0}}, 1).allows(0, Vec3(0, 2.7, 0), {criteria, 3}));
+  EXPECT_FALSE(Tents({{0, 2.6, 0}}, 2.5).allows(0, Vec3(0, 2.3, 0), {criteria, 3}));
+}
+
 TEST(relax, gives_the_same_bits_with_any_number_of_threads) {
   const Model before = mixed_panel(0.35, 0.3);
   std::vector<relax::Relaxed> results;

@@ -40,6 +40,25 @@ TEST(Mirror, AllowsAQuarterOfASide) {
   EXPECT_EQ(find_images(coarse, {node}, kAcrossX)[0], near);
 }
 
+TEST(Mirror, ANodeWithoutShellsHasTheSheetsTolerance) {
+  const Model grid = sheet();
+  std::vector<test::NodeSpec> nodes;
+  std::vector<test::ShellSpec> shells;
+  for (std::size_t n = 0; n < grid.node_count(); ++n) nodes.push_back({grid.node_ids[n], grid.positions[n]});
+  for (std::size_t s = 0; s < grid.shell_count(); ++s) {
+    shells.push_back({grid.shell_ids[s], 1, {}});
+    for (const NodeIndex node : grid.shell(ShellIndex(s)).node) shells.back().nodes.push_back(grid.node_ids[node.value]);
+  }
+  for (const auto& [id, at] : {std::pair(901, Vec3(12, 3, 50)), std::pair(902, Vec3(-12, 4, 50)), std::pair(903, Vec3(12, 3, 90)),
+                               std::pair(904, Vec3(-12, 4.5, 90))})
+    nodes.push_back({id, at});
+  const Model model = test::make_model(nodes, shells);
+  const NodeSet both{test::grid_node(10, 8, 2), model.find_node(901), model.find_node(903)};
+  const std::vector<NodeIndex> images = find_images(model, both, kAcrossX);
+  EXPECT_EQ(images[1], model.find_node(902)) << "1 away, where a quarter of a side is 1.25";
+  EXPECT_FALSE(images[2].valid()) << "1.5 away";
+}
+
 TEST(Mirror, ARemovedNodeIsNobodysImage) {
   Model model = sheet();
   const NodeIndex node = test::grid_node(10, 8, 2), opposite = test::grid_node(10, 2, 2);

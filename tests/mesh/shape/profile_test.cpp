@@ -14,6 +14,10 @@ constexpr std::array kAll{Profile::constant, Profile::linear, Profile::smooth,  
 
 double at(Profile profile, double d, double flat = 0) { return evaluate({profile, flat, std::nullopt}, d); }
 
+TEST(Profile, counts_what_is_no_number_as_the_border) {
+  for (const Profile profile : kAll) EXPECT_EQ(at(profile, std::nan("")), at(profile, 0));
+}
+
 TEST(Profile, has_its_values) {
   struct Row {
     Profile profile;

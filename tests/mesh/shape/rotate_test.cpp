@@ -30,6 +30,13 @@ TEST(Rotate, QuarterTurnsAreExact) {
   EXPECT_EQ(rotated(start, {0.5, 0.25}, kAboutZ, 360)[1], Vec3(-0.1, -7.25, -2));
 }
 
+TEST(Rotate, ATurnByNothingLeavesEveryBit) {
+  const std::vector<Vec3> start{{0.1, 0.2, 0.3}, {1.0 / 3, -1e-9, 7.7}, {123.456, 0.7, -0.1}};
+  const Axis axis{Vec3(1e3 + 0.1, -7.3, 1.0 / 7), unit_of(Vec3(1, 2, 3)).value()};
+  EXPECT_EQ(rotated(start, {1, 1, 1}, axis, 0), start);
+  EXPECT_EQ(rotated(start, {0, 0, 0}, axis, 33), start);
+}
+
 TEST(Rotate, IsRightHandedAboutAnyAxis) {
   const Axis axis{Vec3(1, 2, 3), unit_of(Vec3(1, 1, 1)).value()};
   // a third of a turn about the diagonal takes x to y to z

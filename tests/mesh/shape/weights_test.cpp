@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "base/deterministic_math.h"
+#include "mesh/shape/free_edge.h"
 #include "mesh/shape/move.h"
 #include "tests/mesh/shape/weighed.h"
 #include "tests/support/make_model.h"
@@ -31,6 +33,29 @@ WeightOptions linear() {
   WeightOptions options;
   options.falloff.profile = Profile::linear;
   return options;
+}
+
+TEST(FreeEdges, have_corners_below_135_and_beyond_250_degrees) {
+  // four triangles about a node, which together surround it by so many degrees
+  const auto is_corner = [](double degrees) {
+    std::vector<Vec3> points{Vec3(0, 0, 0)};
+    for (int i = 0; i <= 4; ++i)
+      points.emplace_back(deterministic_cos_degrees(degrees * i / 4), deterministic_sin_degrees(degrees * i / 4), 0);
+    return is_boundary_corner(test::make_shells(points, {{0, 1, 2, 2}, {0, 2, 3, 3}, {0, 3, 4, 4}, {0, 4, 5, 5}}), NodeIndex(0));
+  };
+  EXPECT_TRUE(is_corner(90));
+  EXPECT_TRUE(is_corner(134));
+  EXPECT_FALSE(is_corner(136));
+  EXPECT_FALSE(is_corner(180));
+  EXPECT_FALSE(is_corner(249)) << "a node of a hole of six";
+  EXPECT_TRUE(is_corner(251));
+  EXPECT_TRUE(is_corner(270));
+}
+
+TEST(Weights, grab_a_node_of_a_shell_where_nothing_is_border) {
+  const Model model = make_model({{1, {9, 9, 9}}, {2, {0, 0, 0}}, {3, {1, 0, 0}}, {4, {1, 1, 0}}}, {{1, 1, {2, 3, 4}}});
+  const Weighed w(model, {NodeIndex(0), NodeIndex(1), NodeIndex(2), NodeIndex(3)}, std::nullopt, linear());
+  EXPECT_EQ(w.weights.grab, NodeIndex(1));
 }
 
 TEST(Weights, are_one_at_the_grab_and_zero_on_the_rim) {
