@@ -45,6 +45,26 @@ TEST(Transformation, each_step_does_what_the_manual_says) {
   expect_near(moved("MATRIX\n0.,1.,0.,0.,-1.,0.,0.,0.\n0.,0.,1.,0.,10.,20.,30.,1.\n"), {8, 21, 33});
 }
 
+TEST(Transformation, of_steps_that_lead_nowhere_holds_the_nodes_and_is_said) {
+  for (const char* steps : {"ROTATE,0.,0.,0.,1.,1.,1.,90.\n", "ROTATE,8,8,90.\n", "ROTATE3NA,8,8,9,90.\n", "TRANSL2ND,8,8,10.\n",
+                            "MIRROR,1.,1.,1.,1.,1.,1.\n", "TRANSL,1e61,0.,0.\n"}) {
+    const DeckFolder folder;
+    folder.write("a.k", "*NODE\n1,1.,2.,3.\n");
+    const auto opened = folder.open("*KEYWORD\n*DEFINE_TRANSFORMATION\n7\n" + std::string(steps) + include("a.k", "7") +
+                                    "*NODE\n8,0.,0.,5.\n9,0.,0.,1.\n*END\n");
+    ASSERT_OPENED(opened);
+    EXPECT_FALSE(opened->deck->warnings.empty()) << steps;
+    EXPECT_NE(opened->model.node_holds[opened->model.find_node(1).value], 0) << steps;
+    EXPECT_TRUE(position_of(opened->model, 1).allFinite()) << steps;
+  }
+}
+
+TEST(Transformation, turns_by_quarters_to_the_last_digit) {
+  EXPECT_EQ(moved("ROTATE,0.,0.,1.,0.,0.,0.,90.\n"), Vec3(-2, 1, 3));
+  EXPECT_EQ(moved("ROTATE,0.,0.,1.,0.,0.,0.,-270.\n"), Vec3(-2, 1, 3));
+  EXPECT_EQ(moved("ROTATE,0.,0.,1.,0.,0.,0.,180.\n"), Vec3(-1, -2, 3));
+}
+
 TEST(Transformation, steps_follow_each_other) {
   expect_near(moved("SCALE,2.,2.,2.\nROTATE,0.,0.,1.,0.,0.,0.,90.\nTRANSL,100.,0.,0.\n"), {96, 2, 6});
   expect_near(moved("TRANSL,100.,0.,0.\nROTATE,0.,0.,1.,0.,0.,0.,90.\nSCALE,2.,2.,2.\n"), {-4, 202, 6});

@@ -535,6 +535,53 @@ TEST(NastranBadInput, takes_no_time_or_memory_out_of_proportion) {
   }
 }
 
+TEST(NastranReading, corner_thicknesses_may_lack_or_be_shares_of_the_propertys) {
+  const DeckFolder folder;
+  const auto thickness = [&](const std::string& fields) {
+    const auto opened =
+        folder.open("GRID,1,,0.,0.\nGRID,2,,1.,0.\nGRID,3,,1.,1.\nGRID,4,,0.,1.\nCQUAD4,1,1,1,2,3,4\n" + fields + "PSHELL,1,1,2.\n");
+    EXPECT_TRUE(opened) << opened.error().text();
+    return opened ? static_cast<double>(opened->model.shell_thickness[0]) : -1.0;
+  };
+  EXPECT_EQ(thickness(""), 0) << "the property's own";
+  EXPECT_EQ(thickness(",,,1.,2.,3.,6.\n"), 3);
+  EXPECT_EQ(thickness(",,,1.,,3.,\n"), 2) << "where it lacks the property's counts";
+  EXPECT_EQ(thickness(",,1,.5,.5,.5,.5\n"), 1) << "shares";
+  EXPECT_EQ(thickness(",,1,.5,,.5,\n"), 1.5);
+}
+
+TEST(NastranReading, comments_and_blank_lines_between_a_card_and_its_continuation_dont_end_it) {
+  const DeckFolder folder;
+  const auto opened = folder.open(
+      "GRID,1,,0.,0.\nGRID,2,,1.,0.\nGRID,3,,1.,1.\nGRID,4,,0.,1.\nGRID,5,,2.,2.\nGRID,6,,3.,3.\n"
+      "CQUAD8,1,1,1,2,3,4,5\n   \n    $ indented\n$ not indented\n,,6\nPSHELL,1,1,2.\n");
+  ASSERT_OPENED(opened);
+  ASSERT_EQ(opened->model.shell_count(), 1u);
+  EXPECT_EQ(corners_of(opened->model, 1), (std::array<std::int64_t, 4>{1, 2, 3, 4}));
+  EXPECT_EQ(opened->deck->warnings.size(), 0u);
+}
+
+TEST(NastranReading, of_the_constants_of_a_material_the_third_follows_from_two) {
+  const DeckFolder folder;
+  const auto material = [&](const std::string& card) {
+    const auto opened = folder.open("GRID,1,,0.,0.\nGRID,2,,1.,0.\nGRID,3,,1.,1.\nCTRIA3,1,7,1,2,3\nPSHELL,7,9,1.\n" + card);
+    EXPECT_TRUE(opened);
+    return opened ? part(opened->model, 7) : Part();
+  };
+  const Part by_e_and_g = material("MAT1,9,200.,80.\n");
+  ASSERT_TRUE(by_e_and_g.poissons_ratio);
+  EXPECT_NEAR(*by_e_and_g.poissons_ratio, 0.25, 1e-12);
+  const Part by_g_and_nu = material("MAT1,9,,80.,.25\n");
+  ASSERT_TRUE(by_g_and_nu.youngs_modulus);
+  EXPECT_NEAR(*by_g_and_nu.youngs_modulus, 200, 1e-9);
+  // in plane stress: G11 = E / (1 - nu2), G12 = nu G11
+  const Part by_plane = material("MAT2,9,100.,25.,,100.\n");
+  ASSERT_TRUE(by_plane.youngs_modulus && by_plane.poissons_ratio);
+  EXPECT_NEAR(*by_plane.poissons_ratio, 0.25, 1e-12);
+  EXPECT_NEAR(*by_plane.youngs_modulus, 93.75, 1e-12);
+  EXPECT_FALSE(material("MAT2,9,100.,25.,,90.\n").youngs_modulus) << "the directions differ";
+}
+
 TEST(NastranReading, corner_thicknesses_of_zero_are_no_surprise) {
   const DeckFolder folder;
   const auto opened = folder.open(

@@ -215,6 +215,8 @@ TEST(NastranWriter, ids_leave_lists) {
   EXPECT_EQ(changed("SET 4 = 1, 2,\n  3,\n  4 THRU 9 BY 2", "SET", {20}, {2, 3, 4, 9}), "SET 4 = 1,\n  4 THRU 9 BY 2,\n  20");
   EXPECT_EQ(changed("SET 4 = 1", "SET", {}, {1}), "would name nothing any more");
   EXPECT_EQ(changed("SET 4 = 1 THRU 9 EXCEPT 5, 20", "SET", {}, {20}), "ends with what it leaves out");
+  EXPECT_NE(changed("SET 4 = 1 THRU 9 EXCEPT 5", "SET", {20}, {}).substr(0, 7), "SET 4 =") << "what is added would be left out";
+  EXPECT_EQ(changed("SET 4 = 1, 2,\n$ why\n  3", "SET", {}, {3}), "has comments between its ids");
 }
 
 TEST(NastranWriter, single_cards_are_copied) {

@@ -273,6 +273,68 @@ TEST_F(Radioss, knows_rotations_matrices_and_positions) {
   EXPECT_LT((position_of(position->model, 4) - Vec3(1, 1, 2)).norm(), 1e-12);
 }
 
+TEST_F(Radioss, fills_in_the_corners_that_bricks_leave_out_and_takes_springs_to_the_ground) {
+  std::string text(kHead);
+  text += "/NODE\n";
+  for (int i = 1; i <= 10; ++i) text += node(i, std::to_string(i).c_str(), "0", "0");
+  text += "/BRICK/2\n" + card({1, 1, 2, 3, 4, 5, 0, 0, 0}) + "/TETRA10/2\n" + card({2}) + card({1, 2, 3, 4, 5, 0, 7, 0, 9, 10}) +
+          "/SPRING/6\n" + card({3, 1, 0}) + card({4, 0, 1}) + "/SHELL/1\n" + card({5, 1, 0, 3, 4}) + card({6, 1, 2, 3, 4}) + "/END\n";
+  const auto opened = open(text);
+  ASSERT_OPENED(opened);
+  const auto nodes_of = [&](ElementClass of, std::size_t element) {
+    const ElementBlock& block = *opened->model.elements[static_cast<std::size_t>(of)];
+    std::vector<std::int64_t> ids;
+    for (std::uint32_t n = block.first_node[element]; n < block.first_node[element + 1]; ++n)
+      ids.push_back(opened->model.node_ids[block.nodes[n].value]);
+    return ids;
+  };
+  EXPECT_EQ(nodes_of(ElementClass::solid, 0), (std::vector<std::int64_t>{1, 2, 3, 4, 5, 5, 5, 5}));
+  EXPECT_EQ(nodes_of(ElementClass::solid, 1), (std::vector<std::int64_t>{1, 2, 3, 4, 5, 7, 9, 10}));
+  EXPECT_EQ(opened->model.elements[static_cast<std::size_t>(ElementClass::discrete)]->id, std::vector<std::int64_t>{3});
+  EXPECT_EQ(nodes_of(ElementClass::discrete, 0), std::vector<std::int64_t>{1});
+  EXPECT_EQ(opened->model.shell_count(), 1u);
+  EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 2u);
+}
+
+TEST_F(Radioss, says_which_units_are_not_defined) {
+  const auto lonely = [&](const std::string& cards) {
+    const auto opened = open(std::string(kHead) + cards + "/END\n");
+    EXPECT_TRUE(opened) << opened.error().text();
+    return opened ? warning(*opened->deck, "undefined-unit").count : 0u;
+  };
+  EXPECT_EQ(lonely(kSquare), 0u);
+  EXPECT_EQ(lonely("/NODE/4\n" + node(1, "0", "0", "0")), 1u);
+  EXPECT_EQ(lonely("//SUBMODEL/1/4\ns\n\n" + kSquare + "//ENDSUB\n"), 1u);
+}
+
+TEST_F(Radioss, holds_what_transformations_without_sense_move) {
+  const std::string blank(10, ' '), of_submodel = std::string(20, ' ') + "         1\n";
+  const auto held_by = [&](const std::string& transform) {
+    const auto opened = open(std::string(kHead) + "//SUBMODEL/1\ns\n\n" + kSquare + "//ENDSUB\n/NODE\n" + node(11, "0", "0", "0") +
+                             node(12, "0", "0", "2") + transform + "/END\n");
+    EXPECT_TRUE(opened) << opened.error().text();
+    return opened && opened->model.node_holds[opened->model.find_node(2).value] == kHeldByFrame &&
+           position_of(opened->model, 2) == Vec3(1, 0, 0) && warning(*opened->deck, "unread-transform").count == 1;
+  };
+  EXPECT_TRUE(held_by("/TRANSFORM/ROT/1\nt\n" + blank + reals({"1", "1", "1"}) + of_submodel + blank + reals({"1", "1", "1", "90"}) + "\n"))
+      << "an axis without a direction";
+  EXPECT_TRUE(held_by("/TRANSFORM/TRA/1\nt\n" + blank + reals({"1", "1", "1"}) + right("11", 10) + right("0", 10) + right("1", 10) + "\n"))
+      << "one of two nodes";
+  EXPECT_TRUE(held_by("/TRANSFORM/TRA/1\nt\n" + blank + reals({"x", "1", "1"}) + of_submodel)) << "no number";
+  std::string points;
+  for (const char* point : {" 0 0 0", " 1 0 0", " 2 0 0", " 1 1 1", " 1 2 1", " 1 1 2"}) points += std::string(point) + "\n";
+  EXPECT_TRUE(held_by("/TRANSFORM/POSITION/1\np\n" + card({0, 0, 0, 0, 0, 0, 0, 1}) + points)) << "three points on a line";
+}
+
+TEST_F(Radioss, turns_about_an_axis_through_two_nodes) {
+  const std::string blank(10, ' ');
+  const auto opened = open(std::string(kHead) + "//SUBMODEL/1\ns\n\n" + kSquare + "//ENDSUB\n/NODE\n" + node(11, "0", "0", "0") +
+                           node(12, "0", "0", "2") + "/TRANSFORM/ROT/1\nt\n" + blank + reals({"9", "9", "9"}) + right("11", 10) +
+                           right("12", 10) + right("1", 10) + "\n" + blank + reals({"8", "9", "9", "90"}) + "\n/END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_LT((position_of(opened->model, 2) - Vec3(0, 1, 0)).norm(), 1e-12);
+}
+
 TEST_F(Radioss, puts_parameters_in) {
   const auto opened = open(std::string(kHead) + "/PARAMETER/GLOBAL/REAL/1\nlength\nlen                        2.5\n" +
                            "/PARAMETER/GLOBAL/REAL_EXPR/2\nwidth\nwid            &len*2\n/NODE\n" + node(1, "&len", "-&len", "0") +
