@@ -48,6 +48,35 @@ TEST(Abaqus, reads_a_flat_deck) {
   EXPECT_TRUE(opened->deck->warnings.empty());
 }
 
+TEST(Abaqus, knows_no_thickness_where_a_section_gives_something_else) {
+  const DeckFolder folder;
+  const auto part = [&](const std::string& section) {
+    const auto opened =
+        folder.open("*NODE\n1,0.,0.\n2,1.,0.\n3,1.,1.\n*ELEMENT,TYPE=S3,ELSET=e\n1,1,2,3\n*MATERIAL,NAME=m\n*ELASTIC\n1.,.3\n" + section);
+    EXPECT_TRUE(opened) << opened.error().text();
+    const Part* found = opened ? part_of(opened->model, 1) : nullptr;
+    return found ? *found : Part();
+  };
+  EXPECT_EQ(part("*SHELL SECTION,ELSET=e,MATERIAL=m\n1.5,5\n").thickness, 1.5);
+  EXPECT_FALSE(part("*SHELL SECTION,ELSET=e,MATERIAL=m,NODAL THICKNESS\n1.5,5\n").thickness);
+  EXPECT_FALSE(part("*SHELL SECTION,ELSET=e,MATERIAL=m,SHELL THICKNESS=d\n1.5,5\n").thickness);
+  EXPECT_EQ(part("*SHELL GENERAL SECTION,ELSET=e,MATERIAL=m\n2.5\n").thickness, 2.5);
+  EXPECT_FALSE(part("*SHELL GENERAL SECTION,ELSET=e\n11.,12.,13.\n").thickness) << "a stiffness";
+  EXPECT_TRUE(part("*SHELL SECTION,ELSET=e,MATERIAL=m\n1.5,5\n").limits_time_step);
+  EXPECT_FALSE(part("*SHELL SECTION,ELSET=e,MATERIAL=m\n1.5,5\n*RIGID BODY,REF NODE=1,ELSET=E\n").limits_time_step);
+}
+
+TEST(Abaqus, takes_for_a_keyword_what_begins_a_line_with_a_star) {
+  const DeckFolder folder;
+  const auto opened = folder.open(
+      "*HEADING\nloads of 3 *node and * element\n*NODE, NSET=all,\n  *NODE\n1,0.,0.\n2,1.,0.\n3,1.,1.\n"
+      "*ELEMENT,TYPE=S3,ELSET=e\n1,1,2,3\n2,1,2,\n*SHELL SECTION,ELSET=e,MATERIAL=m\n1.\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->model.node_count(), 3u);
+  EXPECT_EQ(opened->model.shell_count(), 1u);
+  EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 1u) << "one shell lacks a corner";
+}
+
 TEST(Abaqus, knows_its_element_types) {
   using abaqus::element_type;
   const auto is = [](std::string_view type, ElementClass element_class, int nodes, int corners = 0) {

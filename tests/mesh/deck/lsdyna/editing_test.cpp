@@ -1,4 +1,8 @@
 // What an edit that adds, divides and removes does to the text of a keyword deck: each rule of docs/formats/editing.md.
+#include <cmath>
+#include <functional>
+
+#include "mesh/deck/card_writer.h"
 #include "tests/mesh/deck/growing.h"
 
 namespace prismesh::mesh::deck {
@@ -218,6 +222,43 @@ TEST_F(Editing, carries_layers_offset_and_coordinate_system) {
       << text;
   ASSERT_EQ(report_.notes.size(), 1u);
   EXPECT_NE(report_.notes[0].find("angles of 1 shell"), std::string::npos) << report_.notes[0];
+}
+
+TEST_F(Editing, refuses_what_is_new_and_cant_be_written) {
+  const auto because = [&](const std::function<void(Growing&)>& change) {
+    Growing& edit = open(kNodes + kThreeShells + kEnd);
+    change(edit);
+    return refused().message;
+  };
+  const auto contains = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  EXPECT_TRUE(
+      contains(because([](Growing& edit) { add_node(edit.model, 7, Vec3(0, std::nan(""), 0), edge_origin(edit.node(1), edit.node(2))); }),
+               "a place that is no number"));
+  EXPECT_TRUE(
+      contains(because([](Growing& edit) { add_node(edit.model, 100000000, Vec3(0, 0, 0), edge_origin(edit.node(1), edit.node(2))); }),
+               "doesn't fit the fields"));
+  EXPECT_TRUE(contains(because([](Growing& edit) {
+                         add_shell(edit.model, 100000000, {{edit.node(1), edit.node(2), edit.node(5), edit.node(5)}}, edit.shell(11));
+                       }),
+                       "doesn't fit the fields"));
+}
+
+TEST_F(Editing, takes_no_id_into_a_set_that_is_too_long_for_it_nor_into_a_set_of_sets) {
+  Growing& edit =
+      open(kNodes + kThreeShells + "*SET_NODE_LIST\n         1\n         1         2\n*SET_NODE_ADD\n         2\n         1\n" + kEnd);
+  const auto writer = card_writer(Format::ls_dyna);
+  const std::string_view text = edit.deck.files[0].bytes.text();
+  const auto joined = [&](const char* keyword, std::int64_t id) {
+    for (const Referrer& set : edit.deck.references->referrers())
+      if (set.keyword == keyword) {
+        const auto changed = writer->join(text, set, std::vector<std::int64_t>{id});
+        return changed ? std::string() : changed.error().message;
+      }
+    return std::string("no such set");
+  };
+  EXPECT_EQ(joined("SET_NODE_LIST", 1234567890), "");
+  EXPECT_NE(joined("SET_NODE_LIST", 12345678901), "");
+  EXPECT_EQ(joined("SET_NODE_ADD", 3), "is made of other sets");
 }
 
 TEST_F(Editing, refuses_what_shells_cant_pass_on) {
