@@ -1,5 +1,6 @@
 // *INCLUDE_TRANSFORM: positions by hand, ids, units, and the way back into the file.
 #include <cmath>
+#include <tuple>
 
 #include "tests/mesh/deck/deck_files.h"
 
@@ -166,6 +167,26 @@ TEST(IncludeTransform, moved_nodes_are_saved_in_their_own_system) {
   const auto again = deck::open(folder / "out/deck.k");
   ASSERT_OPENED(again);
   expect_near(position_of(again->model, 1002), position_of(model, 1002) + Vec3(-10, 0, -5));
+}
+
+TEST(IncludeTransform, coordinates_that_a_move_leaves_alone_keep_their_digits) {
+  const DeckFolder folder;
+  // twenty columns hold every digit that turning there and back costs
+  const auto text = [](const char* z) {
+    std::string all = "*NODE+\n";
+    for (const auto& [id, x, y] : {std::tuple("1", "10.1", "33.3"), std::tuple("2", "0.377", "-1234.567"), std::tuple("3", "7.1", "0.1")})
+      for (const std::string field : {id, x, y, z}) all += std::string(20 - field.size(), ' ') + field + (field == z ? "\n" : "");
+    return all;
+  };
+  folder.write("sub.k", text("5.0"));
+  const auto opened = folder.open("*KEYWORD\n*DEFINE_TRANSFORMATION\n7\nROTATE,0.,0.,1.,0.,0.,0.,37.\nTRANSL,0.3,0.7,0.\n" +
+                                  include("sub.k", "7") + "*END\n");
+  ASSERT_OPENED(opened);
+  Model model = opened->model;
+  for (std::size_t n = 0; n < 3; ++n) model.positions.set(n, Vec3(model.positions[n] + Vec3(0, 0, 0.5)));
+  const auto saved = save(*opened->deck, opened->model, model, folder / "out/deck.k");
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(content(folder / "out/sub.k"), text("5.5"));
 }
 
 TEST(IncludeTransform, ids_get_their_offsets_and_elements_find_their_nodes) {
