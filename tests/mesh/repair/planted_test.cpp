@@ -175,6 +175,48 @@ TEST(PlantedTogether, give_the_same_result_every_time) {
   for (std::size_t n = 0; n < once.model.node_count(); ++n) EXPECT_EQ(once.model.positions[n], again.model.positions[n]);
 }
 
+TEST(PlantedOnATube, a_narrow_strip_stays_where_longer_edges_would_leave_the_surface) {
+  // Edges of 1 on a radius of 3 are 0.042 off in their middles; those beside a strip that goes would be 0.05 off. Nodes can't go elsewhere.
+  constexpr double kTube = 3;
+  const auto place = [](double x, double y) {
+    const double along = x <= 4 ? x : x - 0.9;  // the fifth column is a tenth wide
+    return Vec3(kTube * std::sin(along / kTube), y, kTube * std::cos(along / kTube));
+  };
+  const Grid grid{8, 8, place, {}};
+  const Model model = model_of(grid.positions(), grid.shells());
+  const relax::ReferenceSurface surface(model, all_shells(model), 30);
+  const relax::Judge judge{quality::default_criteria(), 1.0};
+  Rules rules;
+  rules.node = [](NodeIndex) { return static_cast<std::uint8_t>(kStays); };
+  const auto left_with = [&](double most_off_surface) {
+    Options options;
+    options.most_off_surface = most_off_surface;
+    const Result<Repaired> repaired = repair(model, surface, bad_shells(model, quality::Grade::fail), rules, judge, options);
+    EXPECT_TRUE(repaired.has_value());
+    return repaired ? repaired->left.size() : 999;
+  };
+  EXPECT_EQ(left_with(0.02), 8U);
+  EXPECT_EQ(left_with(0.1), 0U);
+}
+
+/// A sheet of quads of this length and a width of 1.
+Mended mend_all_of_length(double length) {
+  const Grid grid{6, 6, [=](double x, double y) { return Vec3(length * x, y, 0); }, {}};
+  const Model model = model_of(grid.positions(), grid.shells());
+  const relax::ReferenceSurface surface(model, all_shells(model), 30);
+  Result<Repaired> repaired = repair(model, surface, all_shells(model), {}, {quality::default_criteria(), 1.0}, {});
+  EXPECT_TRUE(repaired.has_value());
+  return {carried_out(model, repaired->change), std::move(*repaired)};
+}
+
+TEST(Margin, what_a_decks_fewer_digits_may_bring_over_a_limit_is_repaired_too) {
+  // longer than 1.5 is a warning
+  const Mended just_within = mend_all_of_length(1.4995), well_within = mend_all_of_length(1.495);
+  EXPECT_EQ(just_within.repaired.bad_before, 0U);
+  EXPECT_FALSE(just_within.repaired.change.empty());
+  EXPECT_TRUE(well_within.repaired.change.empty());
+}
+
 TEST(Untouched, shells_far_from_the_scope_keep_their_nodes_and_places) {
   const Grid grid = flat(40, 12);
   Mesh mesh{grid.positions(), grid.shells()};
