@@ -28,7 +28,10 @@ class HandTurnedLoop final : public Outlet {
   void answer(ipc::ClientId client, std::uint64_t number, const ipc::Answer& answer, std::vector<ipc::Descriptor> descriptors) override {
     answers_[{client, number}] = Told{answer, std::move(descriptors)};
   }
-  void tell(ipc::ClientId, const ipc::Event& event) override { events_.push_back(event); }
+  void tell(ipc::ClientId client, const ipc::Event& event) override {
+    events_.push_back(event);
+    told_.push_back(client);
+  }
   void tell_all(const ipc::Event& event) override { events_.push_back(event); }
   void post(std::function<void()> work) override {
     const std::lock_guard lock(mutex_);
@@ -56,6 +59,8 @@ class HandTurnedLoop final : public Outlet {
       if (const auto* drag = std::get_if<ipc::DragEnded>(&event)) ended.push_back(*drag);
     return ended;
   }
+  /// Who was told something that isn't for all.
+  const std::vector<ipc::ClientId>& told() const { return told_; }
   /// One piece of what is posted.
   void turn() {
     std::function<void()> work;
@@ -73,6 +78,7 @@ class HandTurnedLoop final : public Outlet {
   std::deque<std::function<void()>> posted_;
   std::map<std::pair<ipc::ClientId, std::uint64_t>, Told> answers_;
   std::vector<ipc::Event> events_;
+  std::vector<ipc::ClientId> told_;
 };
 
 constexpr ipc::ClientId kOne = 1, kOther = 2;
@@ -94,9 +100,15 @@ class DeskTest : public ::testing::Test {
     if (const auto* failed = std::get_if<ipc::Failed>(&told.answer)) ADD_FAILURE() << failed->message;
     return std::get<A>(told.answer);
   }
-  std::uint64_t begin(ipc::ClientId client, ipc::Request request) {
-    desk_.request(client, ++number_, std::move(request), 100);
+  std::uint64_t begin(ipc::ClientId client, ipc::Request request, std::size_t bytes = 100) {
+    desk_.request(client, ++number_, std::move(request), bytes);
     return number_;
+  }
+  /// What a request is refused with.
+  std::string refusal(ipc::ClientId client, ipc::Request request, std::size_t bytes = 100) {
+    const std::uint64_t number = begin(client, std::move(request), bytes);
+    const auto* failed = std::get_if<ipc::Failed>(&loop_.until_answered(client, number).answer);
+    return failed != nullptr ? failed->message : "accepted";
   }
   static ipc::BeginDrag drag() {
     Translate translate;
@@ -180,6 +192,83 @@ TEST_F(DeskTest, OnlyItsHolderReturnsASnapshot) {
   EXPECT_GT(publisher_.bytes_held(), 0u) << "one still looks at it";
   begin(kOne, ipc::ReturnSnapshot{lease});
   EXPECT_EQ(publisher_.bytes_held(), 0u);
+}
+
+TEST_F(DeskTest, OneDragAtATimeAndOnlyByItsOwnNumberIsEnded) {
+  // One that still waits for something else to end holds the place as well.
+  Translate translate;
+  translate.shaping.on = "1314";
+  begin(kOne, ipc::ApplyEdit{translate});
+  const std::uint64_t beginning = begin(kOne, drag());
+  EXPECT_EQ(refusal(kOther, drag()), "another view is dragging; try again when it has let go");
+  const std::uint64_t held = std::get<ipc::DragBegun>(loop_.until_answered(kOne, beginning).answer).drag;
+  EXPECT_EQ(refusal(kOne, drag()), "you are dragging already; commit or cancel that drag first");
+  EXPECT_EQ(refusal(kOther, drag()), "another view is dragging; try again when it has let go");
+  const std::string other = std::to_string(held + 1), own = std::to_string(held);
+  EXPECT_EQ(refusal(kOne, ipc::CommitDrag{held + 1}), "you hold no drag " + other);
+  EXPECT_EQ(refusal(kOther, ipc::CancelDrag{held}), "you hold no drag " + own);
+  const std::uint64_t commit = begin(kOne, ipc::CommitDrag{held});
+  EXPECT_EQ(refusal(kOne, ipc::CancelDrag{held}), "you hold no drag " + own) << "it is being committed";
+  loop_.until_answered(kOne, commit);
+  EXPECT_GT(ask<ipc::DragBegun>(kOther, drag()).drag, held) << "now it is the other's turn";
+}
+
+TEST_F(DeskTest, AClientThatOnlyWatchesGoesWithoutEndingAnothersDrag) {
+  const double before = height();
+  const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
+  desk_.left(kOther);
+  begin(kOther, step(held, 7, 9));
+  begin(kOne, step(held, 1, 0.5));
+  ask<ipc::Edited>(kOne, ipc::CommitDrag{held});
+  EXPECT_EQ(height(), before + 0.5);
+}
+
+TEST_F(DeskTest, RequestsWaitUpToANumberAndASize) {
+  const ipc::GetQuality any;
+  const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;  // edits wait until it ends
+  Translate translate;
+  translate.shaping.on = "1314";
+  const auto edit = [&](std::size_t bytes) { return begin(kOther, ipc::ApplyEdit{translate}, bytes); };
+  std::vector<std::uint64_t> taken;
+  for (int i = 0; i < 256; ++i) taken.push_back(edit(10));
+  const std::string full = "too many requests of yours are waiting; wait for some answers first";
+  EXPECT_EQ(refusal(kOther, any), full);
+  EXPECT_EQ(refusal(kOne, ipc::CommitDrag{held + 1}), "you hold no drag " + std::to_string(held + 1)) << "what needn't wait is answered";
+  ask<ipc::Done>(kOne, ipc::CancelDrag{held});
+  loop_.until_answered(kOther, taken.back());
+  const std::uint64_t again = ask<ipc::DragBegun>(kOne, drag()).drag;
+  edit(std::size_t{20} << 20);
+  EXPECT_EQ(refusal(kOther, ipc::ApplyEdit{translate}, std::size_t{13} << 20), full);
+  const std::uint64_t last = edit(std::size_t{12} << 20);
+  ask<ipc::Done>(kOne, ipc::CancelDrag{again});
+  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(loop_.until_answered(kOther, last).answer)) << "what was answered no longer counts";
+}
+
+TEST_F(DeskTest, SnapshotsAreHeldUpToANumberAndOfStatesThatAreThere) {
+  ipc::GetSnapshot gone;
+  gone.generation = 4711;
+  EXPECT_EQ(refusal(kOne, gone), "the history has no state 4711 any more");
+  std::vector<std::uint64_t> leases;
+  for (int i = 0; i < 256; ++i) leases.push_back(ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{}).lease);
+  EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "you hold too many snapshots; return some first");
+  ask<ipc::Snapshot>(kOther, ipc::GetSnapshot{});
+  begin(kOne, ipc::ReturnSnapshot{leases.front()});
+  ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{});
+}
+
+TEST_F(DeskTest, OnlyWhoAskedForSomethingLongStopsIt) {
+  EXPECT_EQ(refusal(kOne, ipc::Cancel{}), "nothing of yours is under way that can be stopped");
+  Translate translate;
+  translate.shaping.on = "1313";
+  const std::uint64_t edit = begin(kOne, ipc::ApplyEdit{translate});
+  EXPECT_EQ(refusal(kOther, ipc::Cancel{}), "nothing of yours is under way that can be stopped");
+  loop_.until_answered(kOne, edit);
+  EXPECT_EQ(refusal(kOne, ipc::Cancel{}), "nothing of yours is under way that can be stopped") << "it is done";
+}
+
+TEST_F(DeskTest, ACameraIsSharedWithTheOthers) {
+  begin(kOne, ipc::ShareCamera{});
+  EXPECT_EQ(loop_.told(), (std::vector<ipc::ClientId>{kOther}));
 }
 
 }  // namespace
