@@ -266,6 +266,29 @@ TEST_F(DeskTest, OnlyWhoAskedForSomethingLongStopsIt) {
   EXPECT_EQ(refusal(kOne, ipc::Cancel{}), "nothing of yours is under way that can be stopped") << "it is done";
 }
 
+TEST_F(DeskTest, WhatWaitsIsDoneInTheOrderInWhichItCame) {
+  Translate up;
+  up.shaping.on = "1313";
+  up.by = {0, 0, 0.5};
+  const std::uint64_t held = ask<ipc::DragBegun>(kOther, drag()).drag;
+  const double before = height();
+  const std::uint64_t first = begin(kOne, ipc::ApplyEdit{up});
+  begin(kOne, ipc::ApplyEdit{Undo{}});
+  const std::uint64_t last = begin(kOne, ipc::ApplyEdit{up});
+  ask<ipc::Done>(kOther, ipc::CancelDrag{held});
+  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(loop_.until_answered(kOne, last).answer));
+  EXPECT_TRUE(std::holds_alternative<ipc::Edited>(loop_.until_answered(kOne, first).answer));
+  EXPECT_EQ(height(), before + 0.5);
+}
+
+TEST_F(DeskTest, ADragBeginsWithWhatIsGrabbedAndWhichWayIsOut) {
+  const ipc::DragBegun begun = ask<ipc::DragBegun>(kOne, drag());
+  EXPECT_EQ(begun.grab, 1313);
+  EXPECT_EQ(begun.nodes, 1u);
+  const test::Point out = test::sheet_normal(begun.grab_position);
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(begun.normal[axis], out[axis], 0.02);
+}
+
 TEST_F(DeskTest, ACameraIsSharedWithTheOthers) {
   begin(kOne, ipc::ShareCamera{});
   EXPECT_EQ(loop_.told(), (std::vector<ipc::ClientId>{kOther}));

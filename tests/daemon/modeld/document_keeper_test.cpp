@@ -250,6 +250,26 @@ INSTANTIATE_TEST_SUITE_P(Keeping, CarriedAlone,
                                            R"({"edit":"select","expr":"1-10","kind":"element"})"),
                          name_of_carried);
 
+TEST_F(Keeping, TheUsersUnitAndCriteriaAreThoseOfTheDocument) {
+  ipc::Open asked = request(folder_.sheet());
+  asked.length_unit = "m";
+  asked.criteria = "strict";
+  DocumentKeeper strict = keeper();
+  ASSERT_TRUE(strict.open(asked, {}));
+  EXPECT_EQ(strict.state().length_unit, "m");
+  EXPECT_EQ(strict.document().settings.criteria.name, "strict");
+  ASSERT_TRUE(strict.close(false));
+  DocumentKeeper usual = keeper();
+  ASSERT_TRUE(usual.open(request(folder_.sheet()), {}));
+  EXPECT_EQ(usual.state().length_unit, "mm");
+  EXPECT_NE(usual.document().settings.criteria.name, "strict");
+  ASSERT_TRUE(usual.close(false));
+  asked.length_unit = "feet";
+  const auto refused = usual.open(asked, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "unknown length unit \"feet\": mm, m or in");
+}
+
 TEST_F(Keeping, ASaveTakesTheRecordOfAnEarlierOneAway) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();

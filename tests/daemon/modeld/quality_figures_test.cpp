@@ -11,7 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "daemon/modeld/edit_preview.h"
+#include "mesh/document/edit_json.h"
 #include "mesh/model/node_set.h"
+#include "mesh/quality/limits.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -129,6 +131,39 @@ TEST_F(Figures, EveryBarSelectsAsManyShellsAsItShows) {
   }
 }
 
+TEST_F(Figures, BarsAreAsWideAsEachOtherReachTheLimitAndTellHowTheirShellsAreJudged) {
+  lift(kMiddle, 3);
+  lift(kMiddle + 60, 1.1);
+  const Metric metric = Metric::warpage;
+  const ipc::Quality quality = figures("warpage");
+  const std::vector<ipc::QualityBar>& bars = quality.bars;
+  ASSERT_GT(bars.size(), 10u);
+  const double width = bars[0].to - bars[0].from;
+  const double least_that_fails =
+      mesh::quality::limits_of(document_.settings.criteria, metric, false, document_.settings.target_size, {}).fail_high;
+  EXPECT_GT(bars.back().to, least_that_fails) << "what fails can be seen";
+  std::uint64_t ok = 0, warn = 0, fail = 0;
+  for (std::size_t b = 0; b < bars.size(); ++b) {
+    EXPECT_NEAR(bars[b].to - bars[b].from, width, width * 1e-9);
+    if (b > 0) {
+      EXPECT_EQ(bars[b].from, bars[b - 1].to);
+    }
+    // All of a bar that ends below the limit pass, all of one that begins above it fail.
+    if (b + 1 < bars.size() && bars[b].to <= least_that_fails) {
+      EXPECT_EQ(bars[b].fail, 0u) << b;
+    }
+    if (bars[b].from > least_that_fails) {
+      EXPECT_EQ(bars[b].ok + bars[b].warn, 0u) << b;
+    }
+    ok += bars[b].ok, warn += bars[b].warn, fail += bars[b].fail;
+  }
+  EXPECT_EQ(warn, count(metric, false));
+  EXPECT_EQ(fail, count(metric, true));
+  EXPECT_GT(warn, 0u);
+  EXPECT_GT(fail, 0u);
+  EXPECT_EQ(ok + warn + fail, document_.current().model.shell_count());
+}
+
 TEST_F(Figures, AShellThatIsNoneCountsAsADefectOnly) {
   lift(kMiddle + 60, 3);
   move_towards(kMiddle, kMiddle + 1, 1);  // two shells lose an edge
@@ -216,11 +251,28 @@ TEST_F(Figures, APreviewSaysWhatAnEditWouldDoAndDoesNothing) {
   for (const ipc::PreviewedShell& shell : preview->shells) {
     const mesh::ShellIndex index = model.find_shell(shell.shell);
     EXPECT_EQ(shell.fail, document_.current().quality[index.value].fail);
+    EXPECT_EQ(shell.warn, document_.current().quality[index.value].warn);
     for (std::size_t k = 0; k < 4; ++k) {
       const auto& at = preview->points.at(shell.corners.at(k));
       EXPECT_EQ(mesh::Vec3(at[0], at[1], at[2]), model.position(model.shell(index).node[k]));
     }
   }
+}
+
+TEST_F(Figures, APreviewOfASplitShowsTheShellsThatItMakes) {
+  const Edit edit = parse_edit(R"({"edit":"split","at":["shell:64"]})").value();
+  const Result<ipc::EditPreviewed> preview = preview_edit(document_, edit);
+  ASSERT_TRUE(preview) << preview.error().text();
+  EXPECT_EQ(preview->shell_count, 2u);
+  EXPECT_EQ(preview->points.size(), 4u);
+  EXPECT_EQ(preview->replaced, (std::vector<std::int64_t>{64}));
+  std::set<std::int64_t> shown;
+  for (const ipc::PreviewedShell& shell : preview->shells) {
+    shown.insert(shell.shell);
+    EXPECT_EQ(shell.corners.at(2), shell.corners.at(3)) << "a triangle";
+  }
+  EXPECT_EQ(shown.size(), 2u);
+  EXPECT_TRUE(shown.contains(64));
 }
 
 TEST_F(Figures, APreviewLeavesShellsOutWhoseCornersStandNowhere) {
