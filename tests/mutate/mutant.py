@@ -1,0 +1,29 @@
+"""What a mutant is: plain data."""
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Part:
+    """One piece of text that a mutant replaces: the bytes [start, end) of its file."""
+
+    start: int
+    end: int
+    broken: bytes
+
+
+@dataclass
+class Mutant:
+    file: str  # from the project's root
+    line: int
+    kind: str
+    parts: tuple  # most have one; exchanged arguments have two
+    wrapper: str = ""  # what the whole becomes: "" as it is, "bool" or "void"
+    at_run_time: bool = False  # in a constexpr function
+    number: int = 0  # of the switch, from 1; 0: not built
+    state: str = ""  # caught, slipped, not reached, equivalent, not compiled
+    by: str = ""  # the test that caught it
+    before: str = field(default="", compare=False)  # the changed text, on one line
+    after: str = field(default="", compare=False)
+
+    def key(self):
+        return (self.file, self.parts)

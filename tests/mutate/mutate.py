@@ -1,0 +1,197 @@
+#!/usr/bin/python3
+"""./station mutate [MODULE.. | --diff [BASE]]: breaks the sources in small ways and tells which breaks no test notices.
+
+MODULE is a folder (mesh/repair), a file or a file without its ending (base/file). --diff takes the lines that differ from BASE (default: main).
+docs/testing.md says how to read the list.
+"""
+import argparse
+import os
+import random
+import re
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+try:
+    import clang.cindex  # noqa: F401
+except ImportError:
+    sys.exit("station: mutate needs the package python3-clang-14: apt-get install python3-clang-14")
+
+import places  # noqa: E402
+import report  # noqa: E402
+from copy_of_tree import Copy, Failed, run  # noqa: E402
+from equivalent import read_equivalent  # noqa: E402
+from running import Runner  # noqa: E402
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+ROOMS = ("base/", "mesh/", "drivers/", "ipc/", "daemon/", "kiosk/", "cli/")
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="station mutate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("modules", nargs="*", metavar="MODULE")
+    parser.add_argument("--diff", nargs="?", const="main", metavar="BASE", help="the lines that differ from BASE")
+    parser.add_argument("--max", type=int, metavar="N", help="at most N mutants, chosen by chance")
+    parser.add_argument("--seed", type=int, default=1, help="of the chance (default 1)")
+    parser.add_argument("--tests", metavar="NAME,..", help="the test programs (default: those of the module's tests, and mesh_document_test for mesh/)")
+    parser.add_argument("--minutes", type=float, help="stop running mutants after so many minutes")
+    parser.add_argument("--slow", type=float, default=10, metavar="SECONDS", help="leave out tests that take longer (default 10)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--out", default="out/mutate.txt", help="where the list goes besides (default out/mutate.txt)")
+    options = parser.parse_args()
+    if bool(options.modules) == bool(options.diff):
+        parser.error("name either modules or --diff")
+    return options
+
+
+class Output:
+    """What is printed also goes to a file, at once."""
+
+    def __init__(self, path):
+        os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
+        self.file = open(path, "w", encoding="utf-8")
+        self.began = time.monotonic()
+
+    def line(self, text):
+        print(text, flush=True)
+        print(text, file=self.file, flush=True)
+
+    def step(self, text):
+        self.line(f"[{time.monotonic() - self.began:5.0f} s] {text}")
+
+
+# --- what is broken ---
+
+
+def changed_lines(base):
+    """The lines of the rooms' sources that differ from `base`: sets by file."""
+    diff = run(["git", "diff", "--unified=0", "--no-color", "--no-ext-diff", base, "--", *ROOMS], cwd=ROOT)
+    if diff.returncode != 0:
+        raise Failed(diff.stderr.strip())
+    lines, file = {}, ""
+    for line in diff.stdout.splitlines():
+        if line.startswith("+++ "):
+            file = line[6:] if line.startswith("+++ b/") else ""
+        elif (hunk := re.match(r"@@ -\S+ \+(\d+)(?:,(\d+))? @@", line)) and re.search(r"\.(cpp|h)$", file):
+            first, count = int(hunk.group(1)), int(hunk.group(2) or 1)
+            lines.setdefault(file, set()).update(range(first, first + count))
+    return {file: changed for file, changed in lines.items() if changed}
+
+
+def files_of(module, files):
+    """The sources of a module: a folder, a file, or a file without its ending."""
+    module = module.rstrip("/")
+    sources = [file for file in files if re.search(r"\.(cpp|h)$", file) and file.startswith(ROOMS)]
+    found = [file for file in sources if file.startswith(module + "/") or file == module or re.sub(r"\.(cpp|h)$", "", file) == module]
+    if not found:
+        raise Failed(f"there are no sources of a module {module}")
+    return found
+
+
+def find_mutants(wanted, copy, jobs):
+    """All mutants of these files, by place."""
+    commands = places.compile_commands(copy.configure_commands())
+    by_name = {os.path.relpath(source, ROOT): source for source in commands}
+    readers = {file for file in wanted if file in by_name}
+    for header in wanted:
+        # A header is read by its own source, or by whoever includes it.
+        own = re.sub(r"\.h$", ".cpp", header)
+        if header.endswith(".h") and own in by_name:
+            readers.add(own)
+        elif header.endswith(".h"):
+            users = run(["git", "grep", "-l", f'#include "{header}"', "--", "*.cpp"], cwd=ROOT).stdout.split()
+            readers.update([user for user in users if user in by_name][:1])
+    found = {}
+    with ProcessPoolExecutor(jobs) as pool:
+        tasks = [pool.submit(places.places_in, by_name[name], commands[by_name[name]], ROOT, set(wanted)) for name in sorted(readers)]
+        for task in tasks:
+            for mutant in task.result():
+                found.setdefault(mutant.key(), mutant)
+    return sorted(found.values(), key=lambda m: (m.file, m.parts[0].start, m.parts[0].end, m.kind))
+
+
+# --- who judges ---
+
+
+def programs_for(files, test_programs):
+    """The programs of the nearest folder of tests, and the document's for the mesh."""
+    chosen = set()
+    for file in files:
+        folder = os.path.dirname(file)
+        while folder:
+            own = [name for name, homes in test_programs.items() if any((home + "/").startswith(f"tests/{folder}/") for home in homes)]
+            if own:
+                chosen.update(own)
+                break
+            folder = os.path.dirname(folder)
+        if file.startswith("mesh/") and "mesh_document_test" in test_programs:
+            chosen.add("mesh_document_test")
+    return sorted(chosen)
+
+
+def judge_all(mutants, tests, runner, options, output):
+    reaching = {}
+    for test in tests:
+        for number in test.reached:
+            reaching.setdefault(number, []).append(test)
+    equivalent = read_equivalent(os.path.join(ROOT, "tests/mutate/equivalent.txt"))
+    end = time.monotonic() + 60 * options.minutes if options.minutes else None
+
+    def one(mutant):
+        if mutant.number not in reaching:
+            mutant.state = "not reached"
+        elif not end or time.monotonic() < end:
+            mutant.by = runner.judge(mutant.number, reaching[mutant.number]) or ""
+            mutant.state = "caught" if mutant.by else "no change of behaviour" if equivalent(mutant) else "slipped"
+        return mutant
+
+    with ThreadPoolExecutor(options.jobs) as pool:
+        for mutant in pool.map(one, [mutant for mutant in mutants if mutant.state != "not compiled"]):
+            if mutant.state == "slipped":
+                output.line(report.entry(mutant))
+
+
+def main():
+    options = arguments()
+    output = Output(os.path.join(ROOT, options.out))
+    copy = Copy(ROOT, options.jobs)
+    lines = changed_lines(options.diff) if options.diff else None
+    files = sorted(lines) if options.diff else sorted({file for module in options.modules for file in files_of(module, copy.files())})
+    if not files:
+        output.line("nothing has changed")
+        return
+    mutants = find_mutants(files, copy, options.jobs)
+    if lines:
+        mutants = [mutant for mutant in mutants if mutant.line in lines[mutant.file]]
+    found = len(mutants)
+    if options.max and found > options.max:
+        chosen = set(random.Random(options.seed).sample(range(found), options.max))
+        mutants = [mutant for i, mutant in enumerate(mutants) if i in chosen]
+    output.step(f"{found} places in {len(files)} files, {len(mutants)} chosen (seed {options.seed})")
+    copy.write({})
+    named = options.tests.split(",") if options.tests else []
+    copy.configure(kiosk=any(file.startswith("kiosk/") for file in files) or any(name in ("kiosk_test", "station_test") for name in named))
+    programs = named or programs_for(files, copy.test_programs())
+    if not programs:
+        raise Failed("there is no test program for this; name some with --tests")
+    copy.build_mutants(mutants, programs, output.step)
+    output.step(f"built: {', '.join(programs)}")
+    runner = Runner(copy.programs, options.jobs)
+    switches = max((mutant.number for mutant in mutants), default=0)
+    tests = [test for program in programs for test in runner.record(program, switches, options.slow, output.step)]
+    output.step(f"{len(tests)} tests recorded, {sum(test.seconds for test in tests):.0f} s")
+    judge_all(mutants, tests, runner, options, output)
+    for line in report.not_reached(mutants):
+        output.line(line)
+    output.step(report.counts(mutants, found - len(mutants)))
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except Failed as problem:
+        sys.exit(f"station: {problem}")
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -1,0 +1,488 @@
+"""Finds the places in a source where something can be broken, by libclang."""
+import json
+import os
+import re
+
+import clang.cindex as cindex
+from clang.cindex import CursorKind as Kind
+from clang.cindex import TypeKind
+
+import kinds
+from mutant import Mutant, Part
+from source_text import SourceText, flat
+
+FUNCTIONS = {Kind.FUNCTION_DECL, Kind.CXX_METHOD, Kind.CONSTRUCTOR, Kind.DESTRUCTOR, Kind.CONVERSION_FUNCTION, Kind.FUNCTION_TEMPLATE}
+SCOPES = {Kind.NAMESPACE, Kind.STRUCT_DECL, Kind.CLASS_DECL, Kind.CLASS_TEMPLATE, Kind.CLASS_TEMPLATE_PARTIAL_SPECIALIZATION,
+          Kind.LINKAGE_SPEC, Kind.UNION_DECL}
+# Constant expressions, types and default arguments: a switch that is read while the program runs has no place there.
+LEFT_ALONE = {Kind.PARM_DECL, Kind.TYPE_REF, Kind.TEMPLATE_REF, Kind.NAMESPACE_REF, Kind.MEMBER_REF, Kind.STATIC_ASSERT, Kind.ENUM_DECL,
+              Kind.CXX_UNARY_EXPR, Kind.TEMPLATE_TYPE_PARAMETER, Kind.TEMPLATE_NON_TYPE_PARAMETER, Kind.TEMPLATE_TEMPLATE_PARAMETER,
+              Kind.TYPEDEF_DECL, Kind.TYPE_ALIAS_DECL, Kind.CXX_TYPEID_EXPR, Kind.USING_DECLARATION, Kind.STRING_LITERAL}
+INTEGERS = {TypeKind.INT, TypeKind.UINT, TypeKind.LONG, TypeKind.ULONG, TypeKind.LONGLONG, TypeKind.ULONGLONG, TypeKind.SHORT, TypeKind.USHORT,
+            TypeKind.CHAR_S, TypeKind.CHAR_U, TypeKind.SCHAR, TypeKind.UCHAR}
+NUMBERS = INTEGERS | {TypeKind.FLOAT, TypeKind.DOUBLE}
+DEPENDENT = {TypeKind.DEPENDENT, TypeKind.UNEXPOSED, TypeKind.INVALID}
+SMALLEST_CONSTANT = 1e-6  # nobody can tell whether a tolerance below is doubled
+
+INTEGER = re.compile(rb"(0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9][0-9']*)([uUlLzZ]*)\Z")
+FLOATING = re.compile(rb"[0-9.][0-9a-fA-FxXpPeE.'+-]*?([fFlL]?)\Z")
+
+
+def compile_commands(folder):
+    """The compiler's arguments that libclang needs, by source."""
+    with open(os.path.join(folder, "compile_commands.json"), encoding="utf-8") as file:
+        entries = json.load(file)
+    commands = {}
+    for entry in entries:
+        words = re.findall(r'(?:[^\s"\\]|\\.|"(?:[^"\\]|\\.)*")+', entry["command"])
+        words = [re.sub(r'\\(.)', r"\1", word) for word in words]
+        arguments = ["-x", "c++"]
+        for at, word in enumerate(words):
+            if word.startswith(("-D", "-I", "-std")):
+                arguments.append(word)
+            elif word == "-isystem":
+                arguments += [word, words[at + 1]]
+        commands[entry["file"]] = arguments
+    return commands
+
+
+def places_in(source, arguments, root, wanted):
+    """The mutants of all files in `wanted` (from the project's root) that this source holds: itself and headers."""
+    unit = cindex.Index.create().parse(source, arguments)
+    errors = [d for d in unit.diagnostics if d.severity >= cindex.Diagnostic.Fatal]
+    if errors:
+        raise RuntimeError(f"clang can't read {source}: {errors[0].spelling}")
+    finders = {}
+    for cursor in unit.cursor.get_children():
+        file = cursor.location.file
+        if file is None:
+            continue
+        name = os.path.relpath(file.name, root) if file.name.startswith(root + "/") else None
+        if name not in wanted:
+            continue
+        if name not in finders:
+            with open(file.name, "rb") as stream:
+                finders[name] = Finder(name, stream.read())
+        finders[name].declaration(cursor)
+    return [mutant for finder in finders.values() for mutant in finder.mutants]
+
+
+def number_kind(cursor):
+    return cursor.type.get_canonical().kind
+
+
+def inside(cursor):
+    """Without the conversions and parentheses about it."""
+    while cursor.kind in (Kind.UNEXPOSED_EXPR, Kind.PAREN_EXPR):
+        children = list(cursor.get_children())
+        if len(children) != 1:
+            break
+        cursor = children[0]
+    return cursor
+
+
+class Finder:
+    """Walks one file's declarations; `mutants` is what it found."""
+
+    def __init__(self, name, data):
+        self.name = name
+        self.text = SourceText(data)
+        self.data = data
+        self.mutants = []
+        self.seen = set()
+        self.conditions = set()  # spans that are always and never true in mutants of their own
+        self.covered = set()  # spans of constants whose change is another mutant
+        self.at_run_time = False
+
+    # --- text ---
+
+    def span(self, cursor):
+        extent = cursor.extent
+        return extent.start.offset, extent.end.offset
+
+    def of(self, cursor):
+        start, end = self.span(cursor)
+        return self.data[start:end]
+
+    def between(self, first, second):
+        """What stands between two cursors, on one line; None where they don't follow each other."""
+        end, start = self.span(first)[1], self.span(second)[0]
+        return flat(self.data[end:start]) if end <= start else None
+
+    # --- declarations ---
+
+    def declaration(self, cursor):
+        kind = cursor.kind
+        if kind in SCOPES:
+            for child in cursor.get_children():
+                self.declaration(child)
+        elif kind in FUNCTIONS:
+            self.function(cursor)
+        elif kind in (Kind.VAR_DECL, Kind.FIELD_DECL):
+            self.variable(cursor)
+        elif kind == Kind.UNEXPOSED_DECL or kind == Kind.FRIEND_DECL:
+            for child in cursor.get_children():
+                self.declaration(child)
+
+    def function(self, cursor):
+        children = list(cursor.get_children())
+        bodies = [child for child in children if child.kind == Kind.COMPOUND_STMT]
+        if not bodies or not self.of(bodies[-1]).startswith(b"{"):
+            return
+        body = bodies[-1]
+        head = self.data[self.span(cursor)[0] : self.span(body)[0]]
+        if re.search(rb"\bconsteval\b", head):
+            return
+        before, self.at_run_time = self.at_run_time, bool(re.search(rb"\bconstexpr\b", head))
+        if cursor.kind == Kind.CONSTRUCTOR or (cursor.kind == Kind.FUNCTION_TEMPLATE and b":" in head):
+            for child in children:  # of the members
+                if child.kind.is_expression() and self.span(child)[0] > cursor.location.offset:
+                    self.expression(child)
+        self.statement(body)
+        self.at_run_time = before
+
+    def variable(self, cursor):
+        start, end = self.span(cursor)
+        if re.search(rb"\b(constexpr|constinit)\b", self.data[start : cursor.location.offset]):
+            return
+        for child in cursor.get_children():
+            at = self.span(child)[0]
+            if cursor.kind == Kind.FIELD_DECL and self.of(child) in (b"0", b"0.0", b"0.0F", b"false", b"-1"):
+                continue  # what is filled later
+            if child.kind.is_expression() and at > cursor.location.offset and self.data[cursor.location.offset : at].rstrip()[-1:] != b"[":
+                self.expression(child)
+
+    # --- statements ---
+
+    def statement(self, cursor):
+        kind = cursor.kind
+        if kind in LEFT_ALONE:
+            return
+        children = list(cursor.get_children())
+        if kind == Kind.COMPOUND_STMT:
+            for child in children:
+                self.maybe_dropped(child)
+        elif kind == Kind.IF_STMT:
+            self.if_statement(cursor, children)
+        elif kind in (Kind.FOR_STMT, Kind.WHILE_STMT, Kind.DO_STMT):
+            self.loop(cursor, children)
+        elif kind == Kind.CXX_FOR_RANGE_STMT:
+            for child in children[:-1]:
+                if child.kind.is_expression():
+                    self.expression(child)
+                elif child.kind == Kind.DECL_STMT:
+                    self.statement(child)
+            self.maybe_dropped(children[-1])
+        elif kind == Kind.CASE_STMT:
+            self.maybe_dropped(children[-1])
+        elif kind in (Kind.DEFAULT_STMT, Kind.LABEL_STMT):
+            for child in children[-1:]:
+                self.maybe_dropped(child)
+        elif kind == Kind.DECL_STMT:
+            for child in children:
+                self.declaration(child)
+        elif kind == Kind.RETURN_STMT:
+            for child in children:
+                self.returned(child)
+                self.expression(child)
+        elif kind.is_expression():
+            self.expression(cursor)
+        else:
+            for child in children:
+                self.statement(child)
+
+    def maybe_dropped(self, cursor):
+        """A statement of a block or branch."""
+        dropped = inside(cursor) if cursor.kind.is_expression() else cursor
+        assigns = dropped.kind == Kind.COMPOUND_ASSIGNMENT_OPERATOR or self.operator(dropped) in (b"=", b"+=", b"-=", b"*=", b"/=", b"|=", b"&=")
+        steps = dropped.kind == Kind.UNARY_OPERATOR and self.of(dropped).strip(b"+-") != self.of(dropped)
+        if cursor.kind.is_expression() and (dropped.kind == Kind.CALL_EXPR or assigns or steps) and not self.unwatched(dropped):
+            self.whole(cursor, "statement dropped", b"", wrapper="void")
+        self.statement(cursor)
+
+    def if_statement(self, cursor, children):
+        if re.match(rb"if\s+(constexpr|consteval)\b", self.of(cursor)):
+            for child in children:
+                if not child.kind.is_expression():
+                    self.maybe_dropped(child)
+            return
+        declares = any(child.kind == Kind.VAR_DECL for child in children)
+        conditions = [i for i, child in enumerate(children[:2]) if child.kind.is_expression() and not declares]
+        first = conditions[0] if conditions else (1 if declares else 0)
+        for i, child in enumerate(children):
+            if i < first:
+                if child.kind == Kind.VAR_DECL:
+                    self.variable(child)
+                else:
+                    self.statement(child)
+            elif i == first:
+                if not declares:
+                    self.condition(child)
+                    self.expression(child)
+            else:
+                self.maybe_dropped(child)
+
+    def condition(self, cursor):
+        if self.of(cursor).strip() in (b"true", b"false"):
+            return
+        self.conditions.add(self.span(cursor))
+        self.whole(cursor, "condition never true", b"false", wrapper="bool")
+        self.whole(cursor, "condition always true", b"true", wrapper="bool")
+
+    def loop(self, cursor, children):
+        if cursor.kind == Kind.FOR_STMT:
+            head = self.data[self.span(cursor)[0] : self.span(children[-1])[0]]
+            for child in children[:-1]:
+                # The step of a loop isn't changed: it would only never end.
+                if child.kind == Kind.DECL_STMT:
+                    self.statement(child)
+                elif self.is_condition(cursor, child, head):
+                    self.expression(child)
+            self.maybe_dropped(children[-1])
+            return
+        for child in children:
+            if child.kind == Kind.VAR_DECL:
+                self.variable(child)
+            elif child.kind.is_expression():
+                if cursor.kind == Kind.WHILE_STMT and child is children[0] and self.of(child) != b"true":
+                    self.whole(child, "condition never true", b"false", wrapper="bool")
+                self.expression(child)
+            else:
+                self.maybe_dropped(child)
+
+    def is_condition(self, loop, child, head):
+        start = self.span(child)[0] - self.span(loop)[0]
+        return head[:start].count(b";") == 1 and child.kind.is_expression()
+
+    def returned(self, cursor):
+        inner = inside(cursor)
+        if inner.type.get_canonical().kind == TypeKind.BOOL and inner.kind in (Kind.CALL_EXPR, Kind.DECL_REF_EXPR, Kind.MEMBER_REF_EXPR):
+            if not self.operator(inner):
+                self.whole(cursor, "result negated", b"!static_cast<bool>(" + (flat(self.of(cursor)) or b"#") + b")", wrapper="bool")
+
+    # --- expressions ---
+
+    def expression(self, cursor):
+        kind = cursor.kind
+        if kind in LEFT_ALONE:
+            return
+        if kind == Kind.LAMBDA_EXPR:
+            for child in cursor.get_children():
+                if child.kind == Kind.COMPOUND_STMT:
+                    self.statement(child)
+            return
+        if kind in (Kind.COMPOUND_STMT, Kind.DECL_STMT):
+            self.statement(cursor)
+            return
+        if kind == Kind.CALL_EXPR and self.unwatched(cursor):
+            return
+        if kind in (Kind.INTEGER_LITERAL, Kind.FLOATING_LITERAL, Kind.CXX_BOOL_LITERAL_EXPR, Kind.CHARACTER_LITERAL):
+            self.constant(cursor)
+            return
+        if kind == Kind.DECL_REF_EXPR:
+            self.named_constant(cursor)
+            return
+        children = list(cursor.get_children())
+        if kind in (Kind.BINARY_OPERATOR, Kind.COMPOUND_ASSIGNMENT_OPERATOR):
+            self.binary(cursor, children)
+        elif kind == Kind.UNARY_OPERATOR:
+            self.unary(cursor, children)
+        elif kind == Kind.CONDITIONAL_OPERATOR and len(children) == 3:
+            self.condition(children[0])
+        elif kind == Kind.CALL_EXPR:
+            self.call(cursor, children)
+        elif kind == Kind.INIT_LIST_EXPR:
+            self.exchanged(children)
+        elif kind == Kind.MEMBER_REF_EXPR:
+            # Behind the object stand template arguments.
+            children = [child for child in children[:1] if child.kind.is_expression()]
+        for child in children:
+            start, end = self.span(child)
+            if end > start:
+                self.expression(child)
+
+    def operator(self, cursor):
+        """The operator of a binary expression, built in or overloaded; empty for everything else."""
+        children = list(cursor.get_children())
+        if cursor.kind in (Kind.BINARY_OPERATOR, Kind.COMPOUND_ASSIGNMENT_OPERATOR) and len(children) == 2:
+            return self.between(*children) or b""
+        if cursor.kind == Kind.CALL_EXPR and cursor.spelling.startswith("operator") and len(children) == 3:
+            found = self.between(children[0], children[2]) or b""
+            return found if found == cursor.spelling[8:].encode() else b""
+        return b""
+
+    def binary(self, cursor, children):
+        operator = self.operator(cursor).decode(errors="replace")
+        if not operator:
+            return
+        left, right = flat(self.of(children[0])), flat(self.of(children[1]))
+        if left is None or right is None:
+            return
+
+        def exchanged(kind, other):
+            self.whole(cursor, kind, left + b" " + other.encode() + b" " + right)
+
+        sorts = {number_kind(child) for child in children}
+        if operator in kinds.COMPARISONS:
+            self.comparison(cursor, operator, left, right)
+            if operator not in ("==", "!=") and sorts <= INTEGERS:
+                # i < 3 and i <= 2 are the same.
+                self.covered.update(self.span(inside(child)) for child in children)
+            elif operator in ("==", "!="):
+                self.covered.update(self.span(inside(child)) for child in children if self.of(child) == b"0")
+        elif operator in ("&&", "||"):
+            self.whole(cursor, "left operand dropped", right, "bool")
+            self.whole(cursor, "right operand dropped", left, "bool")
+        elif operator in kinds.ARITHMETIC and sorts <= NUMBERS | DEPENDENT:
+            if operator not in ("%", "&", "|", "<<", ">>") or sorts <= INTEGERS:
+                exchanged("arithmetic", kinds.ARITHMETIC[operator])
+        elif operator in kinds.COMPOUND and sorts <= NUMBERS | DEPENDENT:
+            exchanged("arithmetic", kinds.COMPOUND[operator])
+
+    def comparison(self, cursor, operator, left, right):
+        if operator in ("<", ">=") and right == b"0" and kinds.DESCRIPTOR.search(left.decode(errors="replace")):
+            return
+        # A condition that is negated is noticed whenever one that is always or never true is.
+        if operator not in ("==", "!=") or self.span(cursor) not in self.conditions:
+            self.whole(cursor, "comparison", left + b" " + kinds.COMPARISONS[operator].encode() + b" " + right, "bool")
+
+    def unary(self, cursor, children):
+        text = self.of(cursor)
+        if len(children) != 1:
+            return
+        operand = flat(self.of(children[0]))
+        if operand is None:
+            return
+        if text.startswith(b"!"):
+            if not text.startswith(b"!=") and self.span(cursor) not in self.conditions:  # != may be made of ==
+                self.whole(cursor, "not dropped", operand, "bool")
+        elif text.startswith(b"-") and not text.startswith(b"--") and number_kind(cursor) in NUMBERS | DEPENDENT:
+            self.whole(cursor, "sign dropped", operand)
+            self.covered.add(self.span(inside(children[0])))
+        elif number_kind(cursor) in INTEGERS:
+            for step, other in kinds.STEPS.items():
+                if text.startswith(step.encode()):
+                    self.whole(cursor, "arithmetic", other.encode() + operand)
+                elif text.endswith(step.encode()):
+                    self.whole(cursor, "arithmetic", operand + other.encode())
+
+    def call(self, cursor, children):
+        operator = self.operator(cursor).decode(errors="replace")
+        if operator in kinds.COMPARISONS:
+            left, right = flat(self.of(children[0])), flat(self.of(children[2]))
+            if left is not None and right is not None:
+                self.comparison(cursor, operator, left, right)
+            return
+        if operator:
+            return
+        name, at = self.called(cursor, children)
+        if name in kinds.NAMES:
+            start, end = self.span(cursor)
+            text = self.data[start:at] + kinds.NAMES[name].encode() + self.data[at + len(name) : end]
+            self.whole(cursor, "other function", flat(text))
+        if name not in kinds.SYMMETRIC:
+            self.exchanged([argument for argument in cursor.get_arguments() if argument is not None])
+
+    def called(self, cursor, children):
+        """The called function's bare name and where it stands."""
+        if not children:
+            return "", 0
+        callee = inside(children[0])
+        at = callee.location.offset
+        found = re.match(rb"[A-Za-z_]\w*", self.data[at : at + 100])
+        if callee.kind not in (Kind.DECL_REF_EXPR, Kind.MEMBER_REF_EXPR) or not found:
+            return "", 0
+        return found.group().decode(), at
+
+    def unwatched(self, cursor):
+        if cursor.kind != Kind.CALL_EXPR:
+            return False
+        name, at = self.called(cursor, list(cursor.get_children()))
+        head = self.data[self.span(cursor)[0] : at]
+        return name in kinds.UNWATCHED or any(prefix.encode() in head for prefix in kinds.UNWATCHED_PREFIXES)
+
+    def exchanged(self, arguments):
+        """Neighbouring arguments of one type."""
+        for first, second in zip(arguments, arguments[1:]):
+            if self.between(first, second) != b",":
+                continue
+            texts = [flat(self.of(first)), flat(self.of(second))]
+            if None in texts or texts[0] == texts[1] or any(t.startswith((b"{", b"[", b"std::move(", b".")) for t in texts):
+                continue
+            if texts[0].endswith(b"begin()") or inside(first).kind == Kind.LAMBDA_EXPR:
+                continue
+            types = [re.sub(r"\bconst\b|&", "", argument.type.get_canonical().spelling).strip() for argument in (first, second)]
+            if types[0] != types[1] or not types[0] or "dependent" in types[0]:
+                continue
+            self.add("arguments exchanged", (Part(*self.span(first), texts[1]), Part(*self.span(second), texts[0])), "")
+
+    # --- constants ---
+
+    def constant(self, cursor):
+        text = self.of(cursor)
+        if self.span(cursor) in self.covered:
+            return
+        if cursor.kind == Kind.CXX_BOOL_LITERAL_EXPR and text in (b"true", b"false"):
+            self.whole(cursor, "constant", b"false" if text == b"true" else b"true")
+        elif cursor.kind == Kind.CHARACTER_LITERAL and re.match(rb"'.*'\Z", text):
+            self.whole(cursor, "constant", b"static_cast<char>(" + text + b" + 1)")
+        elif cursor.kind == Kind.INTEGER_LITERAL and (found := INTEGER.match(text)):
+            digits = found.group(1).replace(b"'", b"")
+            if digits[:1] == b"0" and len(digits) > 1:
+                self.whole(cursor, "constant", b"(" + text + b" + 1)")
+            else:
+                self.whole(cursor, "constant", str(int(digits) + 1).encode() + found.group(2))
+        elif cursor.kind == Kind.FLOATING_LITERAL and FLOATING.match(text):
+            value = float(re.sub(rb"[fFlL']", b"", text)) if b"x" not in text else 1.0
+            if value == 0:
+                self.whole(cursor, "constant", b"1.0" + FLOATING.match(text).group(1))
+            elif abs(value) >= SMALLEST_CONSTANT:
+                self.whole(cursor, "constant", b"(2 * " + text + b")")
+
+    def named_constant(self, cursor):
+        """A constant of the project where it is used: its definition is a constant expression."""
+        text = self.of(cursor)
+        if self.span(cursor) in self.covered or not re.match(rb"(\w+::)*k[A-Z]\w*\Z", text):
+            return
+        sort = number_kind(cursor)
+        if sort == TypeKind.DOUBLE or sort == TypeKind.FLOAT:
+            self.whole(cursor, "constant", b"(2 * " + text + b")")
+        elif sort in INTEGERS:
+            self.whole(cursor, "constant", b"(" + text + b" + 1)")
+
+    # --- what is found ---
+
+    def whole(self, cursor, kind, broken, wrapper=""):
+        if broken is not None:
+            self.add(kind, (Part(*self.span(cursor), broken),), wrapper)
+
+    def add(self, kind, parts, wrapper):
+        for part in parts:
+            original = self.data[part.start : part.end]
+            if part.end <= part.start or flat(original) is None or b"#" in part.broken.replace(b"'#'", b"") and b'"' not in part.broken:
+                return
+        mutant = Mutant(self.name, self.text.line_of(parts[0].start), kind, parts, wrapper, self.at_run_time)
+        if mutant.key() in self.seen:
+            return
+        self.seen.add(mutant.key())
+        mutant.before, mutant.after = shown(self.data, self.text, mutant)
+        if mutant.before != mutant.after:
+            self.mutants.append(mutant)
+
+
+def shown(data, text, mutant):
+    """The lines that a mutant changes, before and after, each on one line."""
+    first = text.line_starts[mutant.line - 1]
+    last_line = text.line_of(mutant.parts[-1].end)
+    end = text.line_starts[last_line] if last_line < len(text.line_starts) else len(data)
+    after, at = b"", first
+    for part in mutant.parts:
+        after += data[at : part.start] + part.broken
+        at = part.end
+    after += data[at:end]
+    before = data[first:end]
+
+    def one_line(piece):
+        return b" ".join(piece.split()).decode("utf-8", "replace")
+
+    return one_line(before), one_line(after)

@@ -1,0 +1,31 @@
+"""The list of what slipped through, and the counts."""
+from collections import Counter
+
+
+def entry(mutant):
+    return f"{mutant.file}:{mutant.line}: {mutant.state}: {mutant.kind}\n    - {mutant.before}\n    + {mutant.after}"
+
+
+def counts(mutants, left_over):
+    states = Counter(mutant.state for mutant in mutants)
+    made = len(mutants) - states["not compiled"]
+    parts = [f"made {made}", f"reached {states['caught'] + states['slipped'] + states['no change of behaviour']}", f"caught {states['caught']}",
+             f"slipped {states['slipped']}", f"not reached {states['not reached']}"]
+    if states["no change of behaviour"]:
+        parts.insert(4, f"no change of behaviour {states['no change of behaviour']}")
+    if states["not compiled"]:
+        parts.append(f"not compiled {states['not compiled']}")
+    if states[""]:
+        parts.append(f"not judged for lack of time {states['']}")
+    if left_over:
+        parts.append(f"not chosen {left_over}")
+    return ", ".join(parts)
+
+
+def not_reached(mutants):
+    """Lines that no test reaches, by file."""
+    lines = {}
+    for mutant in mutants:
+        if mutant.state == "not reached":
+            lines.setdefault(mutant.file, set()).add(mutant.line)
+    return [f"{file}: not reached: {', '.join(str(line) for line in sorted(lines[file]))}" for file in sorted(lines)]
