@@ -17,7 +17,7 @@ class Mutant:
     line: int
     kind: str
     parts: tuple  # most have one; exchanged arguments have two
-    wrapper: str = ""  # what the whole becomes: "" as it is, "bool" or "void"
+    wrapper: str = ""  # what the whole becomes: "" as it is, "bool", "void", or "eval" for vectors
     at_run_time: bool = False  # in a constexpr function
     number: int = 0  # of the switch, from 1; 0: not built
     state: str = ""  # caught, slipped, not reached, equivalent, not compiled

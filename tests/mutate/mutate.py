@@ -26,6 +26,8 @@ from equivalent import read_equivalent  # noqa: E402
 from running import Runner  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+# Test programs that judge a folder beside its own.
+ALSO = {"base/": "faults_test", "mesh/": "mesh_document_test", "daemon/modeld/": "faults_test"}
 ROOMS = ("base/", "mesh/", "drivers/", "ipc/", "daemon/", "kiosk/", "cli/")
 
 
@@ -35,7 +37,7 @@ def arguments():
     parser.add_argument("--diff", nargs="?", const="main", metavar="BASE", help="the lines that differ from BASE")
     parser.add_argument("--max", type=int, metavar="N", help="at most N mutants, chosen by chance")
     parser.add_argument("--seed", type=int, default=1, help="of the chance (default 1)")
-    parser.add_argument("--tests", metavar="NAME,..", help="the test programs (default: those of the module's tests, and mesh_document_test for mesh/)")
+    parser.add_argument("--tests", metavar="NAME,..", help="the test programs (default: those of the module's tests, and a few more)")
     parser.add_argument("--minutes", type=float, help="stop running mutants after so many minutes")
     parser.add_argument("--slow", type=float, default=10, metavar="SECONDS", help="leave out tests that take longer (default 10)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -116,7 +118,7 @@ def find_mutants(wanted, copy, jobs):
 
 
 def programs_for(files, test_programs):
-    """The programs of the nearest folder of tests, and the document's for the mesh."""
+    """The programs of the nearest folder of tests, and those of ALSO."""
     chosen = set()
     for file in files:
         folder = os.path.dirname(file)
@@ -126,8 +128,7 @@ def programs_for(files, test_programs):
                 chosen.update(own)
                 break
             folder = os.path.dirname(folder)
-        if file.startswith("mesh/") and "mesh_document_test" in test_programs:
-            chosen.add("mesh_document_test")
+        chosen.update(program for beginning, program in ALSO.items() if file.startswith(beginning) and program in test_programs)
     return sorted(chosen)
 
 

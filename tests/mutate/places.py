@@ -256,7 +256,9 @@ class Finder:
 
     def returned(self, cursor):
         inner = inside(cursor)
-        if inner.type.get_canonical().kind == TypeKind.BOOL and inner.kind in (Kind.CALL_EXPR, Kind.DECL_REF_EXPR, Kind.MEMBER_REF_EXPR):
+        if number_kind(cursor) in NUMBERS and inner.kind not in (Kind.INTEGER_LITERAL, Kind.FLOATING_LITERAL) and self.of(cursor) != b"-1":
+            self.whole(cursor, "result zero", b"0")
+        if number_kind(inner) == TypeKind.BOOL and inner.kind in (Kind.CALL_EXPR, Kind.DECL_REF_EXPR, Kind.MEMBER_REF_EXPR):
             if not self.operator(inner):
                 self.whole(cursor, "result negated", b"!static_cast<bool>(" + (flat(self.of(cursor)) or b"#") + b")", wrapper="bool")
 
@@ -333,7 +335,7 @@ class Finder:
         elif operator in ("&&", "||"):
             self.whole(cursor, "left operand dropped", right, "bool")
             self.whole(cursor, "right operand dropped", left, "bool")
-        elif operator in kinds.ARITHMETIC and sorts <= NUMBERS | DEPENDENT:
+        elif operator in kinds.ARITHMETIC and sorts <= (NUMBERS if operator in ("*", "/") else NUMBERS | DEPENDENT):
             if operator not in ("%", "&", "|", "<<", ">>") or sorts <= INTEGERS:
                 exchanged("arithmetic", kinds.ARITHMETIC[operator])
         elif operator in kinds.COMPOUND and sorts <= NUMBERS | DEPENDENT:
@@ -366,8 +368,22 @@ class Finder:
                 elif text.endswith(step.encode()):
                     self.whole(cursor, "arithmetic", operand + other.encode())
 
+    def vectors(self, cursor, broken):
+        # The types of two Eigen expressions differ; those of their values don't.
+        if "Eigen::" in cursor.type.get_canonical().spelling:
+            self.whole(cursor, "arithmetic", broken, "eval")
+
     def call(self, cursor, children):
         operator = self.operator(cursor).decode(errors="replace")
+        if operator in ("+", "-", "+=", "-="):
+            left, right = flat(self.of(children[0])), flat(self.of(children[2]))
+            other = kinds.ARITHMETIC.get(operator) or kinds.COMPOUND[operator]
+            if left is not None and right is not None:
+                self.vectors(cursor, left + b" " + other.encode() + b" " + right)
+            return
+        if cursor.spelling == "operator-" and self.of(cursor).startswith(b"-") and len(children) == 2:
+            self.vectors(cursor, flat(self.of(children[0])))
+            return
         if operator in kinds.COMPARISONS:
             left, right = flat(self.of(children[0])), flat(self.of(children[2]))
             if left is not None and right is not None:

@@ -2,7 +2,7 @@
 from dataclasses import dataclass, field
 
 SPACE = "::prismesh::mutant::"
-WRAPPED = {"": b"(%s)", "bool": b"static_cast<bool>(%s)", "void": b"static_cast<void>(%s)"}
+WRAPPED = {"": b"(%s)", "bool": b"static_cast<bool>(%s)", "void": b"static_cast<void>(%s)", "eval": b"(%s).eval()"}
 
 
 @dataclass
@@ -17,7 +17,7 @@ class Group:
 
     def wrapper(self):
         wrappers = {mutant.wrapper for mutant, _ in self.choices}
-        return next((w for w in ("void", "bool") if w in wrappers), "")
+        return next((w for w in ("void", "bool", "eval") if w in wrappers), "")
 
 
 class Schemata:
