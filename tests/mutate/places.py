@@ -23,6 +23,7 @@ INTEGERS = {TypeKind.INT, TypeKind.UINT, TypeKind.LONG, TypeKind.ULONG, TypeKind
 NUMBERS = INTEGERS | {TypeKind.FLOAT, TypeKind.DOUBLE}
 DEPENDENT = {TypeKind.DEPENDENT, TypeKind.UNEXPOSED, TypeKind.INVALID}
 SMALLEST_CONSTANT = 1e-6  # nobody can tell whether a tolerance below is doubled
+LARGE = 50
 
 INTEGER = re.compile(rb"(0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9][0-9']*)([uUlLzZ]*)\Z")
 FLOATING = re.compile(rb"[0-9.][0-9a-fA-FxXpPeE.'+-]*?([fFlL]?)\Z")
@@ -91,6 +92,7 @@ class Finder:
         self.mutants = []
         self.seen = set()
         self.conditions = set()  # spans that are always and never true in mutants of their own
+        self.unordered = set()  # spans of lists whose order doesn't matter
         self.covered = set()  # spans of constants whose change is another mutant
         self.at_run_time = False
 
@@ -149,6 +151,8 @@ class Finder:
             at = self.span(child)[0]
             if cursor.kind == Kind.FIELD_DECL and self.of(child) in (b"0", b"0.0", b"0.0F", b"false", b"-1"):
                 continue  # what is filled later
+            if cursor.kind == Kind.FIELD_DECL and inside(child).kind == Kind.DECL_REF_EXPR:
+                continue  # a format's own number, the same for who writes and who reads
             if child.kind.is_expression() and at > cursor.location.offset and self.data[cursor.location.offset : at].rstrip()[-1:] != b"[":
                 self.expression(child)
 
@@ -169,6 +173,7 @@ class Finder:
         elif kind == Kind.CXX_FOR_RANGE_STMT:
             for child in children[:-1]:
                 if child.kind.is_expression():
+                    self.unordered.add(self.span(child))
                     self.expression(child)
                 elif child.kind == Kind.DECL_STMT:
                     self.statement(child)
@@ -293,7 +298,7 @@ class Finder:
             self.condition(children[0])
         elif kind == Kind.CALL_EXPR:
             self.call(cursor, children)
-        elif kind == Kind.INIT_LIST_EXPR:
+        elif kind == Kind.INIT_LIST_EXPR and self.span(cursor) not in self.unordered:
             self.exchanged(children)
         elif kind == Kind.MEMBER_REF_EXPR:
             # Behind the object stand template arguments.
@@ -399,8 +404,11 @@ class Finder:
             start, end = self.span(cursor)
             text = self.data[start:at] + kinds.NAMES[name].encode() + self.data[at + len(name) : end]
             self.whole(cursor, "other function", flat(text))
-        if name not in kinds.SYMMETRIC:
-            self.exchanged([argument for argument in cursor.get_arguments() if argument is not None])
+        arguments = [argument for argument in cursor.get_arguments() if argument is not None]
+        if name in kinds.SYMMETRIC:
+            self.unordered.update(self.span(argument) for argument in arguments)
+        else:
+            self.exchanged(arguments)
 
     def called(self, cursor, children):
         """The called function's bare name and where it stands."""
@@ -450,7 +458,9 @@ class Finder:
             if digits[:1] == b"0" and len(digits) > 1:
                 self.whole(cursor, "constant", b"(" + text + b" + 1)")
             else:
-                self.whole(cursor, "constant", str(int(digits) + 1).encode() + found.group(2))
+                # A limit of 1000 that is 1001 nobody would miss.
+                other = int(digits) + 1 if int(digits) < LARGE else 2 * int(digits)
+                self.whole(cursor, "constant", str(other).encode() + found.group(2))
         elif cursor.kind == Kind.FLOATING_LITERAL and FLOATING.match(text):
             value = float(re.sub(rb"[fFlL']", b"", text)) if b"x" not in text else 1.0
             if value == 0:
