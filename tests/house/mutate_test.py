@@ -236,6 +236,16 @@ class Reporting(unittest.TestCase):
         self.assertEqual(report.not_reached(mutants), ["small.cpp: not reached: 5"])
         self.assertIn("made 9, reached 8, caught 7, slipped 1, not reached 1", report.counts(mutants, 0))
 
+    def test_what_slipped_is_found_again_in_the_list(self):
+        mutants = mutants_of(SMALL)
+        for mutant in mutants[:2]:
+            mutant.state = "slipped"
+        with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
+            file.write("\n".join(["[ 1 s] words", *map(report.entry, mutants[:2]), "[ 2 s] counts\n"]))
+            file.flush()
+            again = report.read_slipped(file.name)
+        self.assertEqual([m for m in mutants if (m.file, m.before, m.after) in again], mutants[:2])
+
     def test_what_is_known_to_change_nothing_is_told_apart(self):
         with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
             file.write("# a comment\nsmall.cpp: age >= 18 => age > 18: nobody is asked on a birthday\n")

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""./station mutate [MODULE.. | --diff [BASE]]: breaks the sources in small ways and tells which breaks no test notices.
+"""./station mutate [MODULE.. | --diff [BASE] | --again LIST]: breaks the sources in small ways and tells which breaks no test notices.
 
-MODULE is a folder (mesh/repair), a file or a file without its ending (base/file). --diff takes the lines that differ from BASE (default: main).
-docs/testing.md says how to read the list.
+MODULE is a folder (mesh/repair), a file or a file without its ending (base/file). --diff takes the lines that differ from BASE (default: main),
+--again what slipped through in an earlier run. docs/testing.md says how to read the list.
 """
 import argparse
 import os
@@ -35,6 +35,7 @@ def arguments():
     parser = argparse.ArgumentParser(prog="station mutate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("modules", nargs="*", metavar="MODULE")
     parser.add_argument("--diff", nargs="?", const="main", metavar="BASE", help="the lines that differ from BASE")
+    parser.add_argument("--again", metavar="LIST", help="what slipped through in this list")
     parser.add_argument("--max", type=int, metavar="N", help="at most N mutants, chosen by chance")
     parser.add_argument("--seed", type=int, default=1, help="of the chance (default 1)")
     parser.add_argument("--tests", metavar="NAME,..", help="the test programs (default: those of the module's tests, and a few more)")
@@ -43,8 +44,8 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", default="out/mutate.txt", help="where the list goes besides (default out/mutate.txt)")
     options = parser.parse_args()
-    if bool(options.modules) == bool(options.diff):
-        parser.error("name either modules or --diff")
+    if [bool(options.modules), bool(options.diff), bool(options.again)].count(True) != 1:
+        parser.error("name either modules or --diff or --again")
     return options
 
 
@@ -156,16 +157,19 @@ def judge_all(mutants, tests, runner, options, output):
 
 def main():
     options = arguments()
+    again = report.read_slipped(options.again) if options.again else set()  # before the list is written anew
+    lines = changed_lines(options.diff) if options.diff else {}
     output = Output(os.path.join(ROOT, options.out))
     copy = Copy(ROOT, options.jobs)
-    lines = changed_lines(options.diff) if options.diff else None
-    files = sorted(lines) if options.diff else sorted({file for module in options.modules for file in files_of(module, copy.files())})
+    files = sorted({file for file, _, _ in again} | set(lines) | {file for module in options.modules for file in files_of(module, copy.files())})
     if not files:
-        output.line("nothing has changed")
+        output.line("there is nothing to break")
         return
     mutants = find_mutants(files, copy, options.jobs)
-    if lines:
+    if options.diff:
         mutants = [mutant for mutant in mutants if mutant.line in lines[mutant.file]]
+    if options.again:
+        mutants = [mutant for mutant in mutants if (mutant.file, mutant.before, mutant.after) in again]
     found = len(mutants)
     if options.max and found > options.max:
         chosen = set(random.Random(options.seed).sample(range(found), options.max))

@@ -1,9 +1,17 @@
 """The list of what slipped through, and the counts."""
+import re
 from collections import Counter
 
 
 def entry(mutant):
     return f"{mutant.file}:{mutant.line}: {mutant.state}: {mutant.kind}\n    - {mutant.before}\n    + {mutant.after}"
+
+
+def read_slipped(path):
+    """(file, before, after) of what slipped through in a list. Lines may have moved since."""
+    with open(path, encoding="utf-8") as file:
+        found = re.findall(r"^(\S+?):\d+: slipped: .*\n    - (.*)\n    \+ (.*)$", file.read(), re.M)
+    return set(found)
 
 
 def counts(mutants, left_over):
