@@ -193,10 +193,11 @@ class Choosing(unittest.TestCase):
                 "mesh_document_test": ["tests/mesh/document"]}
 
     def test_tests_are_those_of_the_nearest_folder(self):
-        self.assertEqual(mutate.programs_for(["base/file.cpp"], self.PROGRAMS), ["base_test"])
-        self.assertEqual(mutate.programs_for(["mesh/deck/nastran/card.cpp"], self.PROGRAMS), ["mesh_deck_nastran_test", "mesh_document_test"])
+        self.assertEqual(mutate.programs_for(["base/file.cpp"], self.PROGRAMS), (["base_test"], []))
+        self.assertEqual(mutate.programs_for(["mesh/deck/nastran/card.cpp"], self.PROGRAMS), (["mesh_deck_nastran_test"], ["mesh_document_test"]))
         self.assertEqual(mutate.programs_for(["mesh/deck/text/line.cpp"], self.PROGRAMS),
-                         ["mesh_deck_nastran_test", "mesh_deck_test", "mesh_document_test"])
+                         (["mesh_deck_nastran_test", "mesh_deck_test"], ["mesh_document_test"]))
+        self.assertEqual(mutate.programs_for(["mesh/document/edit.cpp"], self.PROGRAMS), (["mesh_document_test"], []))
 
     def test_a_module_is_a_folder_a_file_or_both_files_of_a_topic(self):
         files = ["base/file.h", "base/file.cpp", "base/hash.cpp", "tests/base/file_test.cpp"]

@@ -26,8 +26,9 @@ from equivalent import read_equivalent  # noqa: E402
 from running import Runner  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# Test programs that judge a folder beside its own.
+# Test programs that judge what a folder's own haven't noticed.
 ALSO = {"base/": "faults_test", "mesh/": "mesh_document_test", "daemon/modeld/": "faults_test"}
+KIOSK_TESTS = ("kiosk_test", "pictures_test", "optics_test", "losses_test", "phase_error_test", "station_test", "viewer_test")
 ROOMS = ("base/", "mesh/", "drivers/", "ipc/", "daemon/", "kiosk/", "cli/")
 
 
@@ -50,16 +51,21 @@ def arguments():
 
 
 class Output:
-    """What is printed also goes to a file, at once."""
+    """What is printed is also kept for a file."""
 
-    def __init__(self, path):
-        os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
-        self.file = open(path, "w", encoding="utf-8")
+    def __init__(self):
+        self.lines = []
         self.began = time.monotonic()
 
     def line(self, text):
         print(text, flush=True)
-        print(text, file=self.file, flush=True)
+        self.lines.append(text)
+
+    def save(self, path):
+        path = os.path.join(ROOT, path)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("\n".join(self.lines) + "\n")
 
     def step(self, text):
         self.line(f"[{time.monotonic() - self.began:5.0f} s] {text}")
@@ -119,53 +125,53 @@ def find_mutants(wanted, copy, jobs):
 
 
 def programs_for(files, test_programs):
-    """The programs of the nearest folder of tests, and those of ALSO."""
-    chosen = set()
+    """The programs of the nearest folder of tests, and those that judge afterwards what they didn't notice."""
+    own, also = set(), set()
     for file in files:
         folder = os.path.dirname(file)
         while folder:
-            own = [name for name, homes in test_programs.items() if any((home + "/").startswith(f"tests/{folder}/") for home in homes)]
-            if own:
-                chosen.update(own)
+            near = [name for name, homes in test_programs.items() if any((home + "/").startswith(f"tests/{folder}/") for home in homes)]
+            if near:
+                own.update(near)
                 break
             folder = os.path.dirname(folder)
-        chosen.update(program for beginning, program in ALSO.items() if file.startswith(beginning) and program in test_programs)
-    return sorted(chosen)
+        also.update(program for beginning, program in ALSO.items() if file.startswith(beginning) and program in test_programs)
+    return sorted(own), sorted(also - own)
 
 
-def judge_all(mutants, tests, runner, options, output):
+def judge(mutants, programs, copy, options, output):
+    """Builds the programs with these mutants, runs them, and gives each mutant its state."""
+    copy.build_mutants(mutants, programs, output.step)
+    output.step(f"built: {', '.join(programs)}")
+    mutants = [mutant for mutant in mutants if mutant.state != "not compiled"]
+    runner = Runner(copy.programs, options.jobs)
+    tests = [test for program in programs for test in runner.record(program, len(mutants), options.slow, output.step)]
+    output.step(f"{len(tests)} tests recorded, {sum(test.seconds for test in tests):.0f} s")
     reaching = {}
     for test in tests:
         for number in test.reached:
             reaching.setdefault(number, []).append(test)
-    equivalent = read_equivalent(os.path.join(ROOT, "tests/mutate/equivalent.txt"))
     end = time.monotonic() + 60 * options.minutes if options.minutes else None
 
     def one(mutant):
         if mutant.number not in reaching:
-            mutant.state = "not reached"
+            mutant.state = mutant.state or "not reached"
         elif not end or time.monotonic() < end:
             mutant.by = runner.judge(mutant.number, reaching[mutant.number]) or ""
-            mutant.state = "caught" if mutant.by else "no change of behaviour" if equivalent(mutant) else "slipped"
-        return mutant
+            mutant.state = "caught" if mutant.by else "slipped"
 
     with ThreadPoolExecutor(options.jobs) as pool:
-        for mutant in pool.map(one, [mutant for mutant in mutants if mutant.state != "not compiled"]):
-            if mutant.state == "slipped":
-                output.line(report.entry(mutant))
+        for done, _ in enumerate(pool.map(one, mutants), 1):
+            if done % 100 == 0:
+                output.step(f"{done} of {len(mutants)} judged")
 
 
-def main():
-    options = arguments()
-    again = report.read_slipped(options.again) if options.again else set()  # before the list is written anew
+def choose(options, output, copy):
+    """The mutants that are asked for, and how many there were to choose from."""
+    again = report.read_slipped(options.again) if options.again else set()
     lines = changed_lines(options.diff) if options.diff else {}
-    output = Output(os.path.join(ROOT, options.out))
-    copy = Copy(ROOT, options.jobs)
     files = sorted({file for file, _, _ in again} | set(lines) | {file for module in options.modules for file in files_of(module, copy.files())})
-    if not files:
-        output.line("there is nothing to break")
-        return
-    mutants = find_mutants(files, copy, options.jobs)
+    mutants = find_mutants(files, copy, options.jobs) if files else []
     if options.diff:
         mutants = [mutant for mutant in mutants if mutant.line in lines[mutant.file]]
     if options.again:
@@ -175,22 +181,37 @@ def main():
         chosen = set(random.Random(options.seed).sample(range(found), options.max))
         mutants = [mutant for i, mutant in enumerate(mutants) if i in chosen]
     output.step(f"{found} places in {len(files)} files, {len(mutants)} chosen (seed {options.seed})")
+    return mutants, found
+
+
+def main():
+    options = arguments()
+    output = Output()
+    copy = Copy(ROOT, options.jobs)
+    mutants, found = choose(options, output, copy)
+    if not mutants:
+        return
+    files = {mutant.file for mutant in mutants}
     copy.write({})
     named = options.tests.split(",") if options.tests else []
-    copy.configure(kiosk=any(file.startswith("kiosk/") for file in files) or any(name in ("kiosk_test", "station_test") for name in named))
-    programs = named or programs_for(files, copy.test_programs())
-    if not programs:
+    copy.configure(kiosk=any(file.startswith("kiosk/") for file in files) or any(name in KIOSK_TESTS for name in named))
+    own, also = (named, []) if named else programs_for(files, copy.test_programs())
+    if not own:
         raise Failed("there is no test program for this; name some with --tests")
-    copy.build_mutants(mutants, programs, output.step)
-    output.step(f"built: {', '.join(programs)}")
-    runner = Runner(copy.programs, options.jobs)
-    switches = max((mutant.number for mutant in mutants), default=0)
-    tests = [test for program in programs for test in runner.record(program, switches, options.slow, output.step)]
-    output.step(f"{len(tests)} tests recorded, {sum(test.seconds for test in tests):.0f} s")
-    judge_all(mutants, tests, runner, options, output)
-    for line in report.not_reached(mutants):
+    judge(mutants, own, copy, options, output)
+    # A header that is broken for all who include it would cost a build of nearly everything.
+    rest = [mutant for mutant in mutants if mutant.state in ("slipped", "not reached") and mutant.file.endswith(".cpp")]
+    if also and rest:
+        output.step(f"{len(rest)} left for {', '.join(also)}")
+        judge(rest, also, copy, options, output)
+    is_equivalent = read_equivalent(os.path.join(ROOT, "tests/mutate/equivalent.txt"))
+    for mutant in mutants:
+        if mutant.state == "slipped" and is_equivalent(mutant):
+            mutant.state = "no change of behaviour"
+    for line in report.listed(mutants):
         output.line(line)
     output.step(report.counts(mutants, found - len(mutants)))
+    output.save(options.out)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,10 @@ def entry(mutant):
     return f"{mutant.file}:{mutant.line}: {mutant.state}: {mutant.kind}\n    - {mutant.before}\n    + {mutant.after}"
 
 
+def listed(mutants):
+    return [entry(mutant) for mutant in mutants if mutant.state == "slipped"] + not_reached(mutants)
+
+
 def read_slipped(path):
     """(file, before, after) of what slipped through in a list. Lines may have moved since."""
     with open(path, encoding="utf-8") as file:
