@@ -160,8 +160,10 @@ def judge(mutants, programs, copy, options, output):
             mutant.by = runner.judge(mutant.number, reaching[mutant.number]) or ""
             mutant.state = "caught" if mutant.by else "slipped"
 
+    # By chance, so that what is judged before the time is over stands for all.
+    order = random.Random(options.seed).sample(mutants, len(mutants))
     with ThreadPoolExecutor(options.jobs) as pool:
-        for done, _ in enumerate(pool.map(one, mutants), 1):
+        for done, _ in enumerate(pool.map(one, order), 1):
             if done % 100 == 0:
                 output.step(f"{done} of {len(mutants)} judged")
 

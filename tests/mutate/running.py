@@ -43,6 +43,8 @@ class Runner:
             file.write("--gtest_filter=" + ":".join(tests) + "\n--gtest_fail_fast\n--gtest_brief=1\n")
         own = os.path.join(scratch, "tmp")
         os.mkdir(own)
+        for folder, mode in ((scratch, 0o755), (own, 0o1777)):  # some tests go on as another user
+            os.chmod(folder, mode)
         process = subprocess.Popen(
             [*self.alone, "sh", "-c", limits, "sh", os.path.join(self.folder, program), f"--gtest_flagfile={flags}"],
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", cwd=own,
@@ -83,6 +85,7 @@ class Runner:
             with tempfile.NamedTemporaryFile(prefix="prismesh-reached-") as reached:
                 reached.write(bytes(mutants + 1))
                 reached.flush()
+                os.chmod(reached.name, 0o666)
                 began = time.monotonic()
                 problem = self.start(program, [test.name], {"PRISMESH_MUTANTS_REACHED": reached.name}, slow)
                 test.seconds = time.monotonic() - began
