@@ -156,9 +156,10 @@ def judge(mutants, programs, copy, options, output):
     def one(mutant):
         if mutant.number not in reaching:
             mutant.state = mutant.state or "not reached"
-        elif not end or time.monotonic() < end:
-            mutant.by = runner.judge(mutant.number, reaching[mutant.number]) or ""
-            mutant.state = "caught" if mutant.by else "slipped"
+            return
+        by = runner.judge(mutant.number, reaching[mutant.number], end)
+        if by is not None:
+            mutant.state, mutant.by = ("caught" if by else "slipped"), by
 
     # By chance, so that what is judged before the time is over stands for all.
     order = random.Random(options.seed).sample(mutants, len(mutants))
