@@ -28,6 +28,7 @@ from running import Runner  # noqa: E402
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 # Test programs that judge what a folder's own haven't noticed.
 ALSO = {"base/": "faults_test", "mesh/": "mesh_document_test", "daemon/modeld/": "faults_test"}
+CHEAP_SECONDS = 1  # of a test that is run besides
 KIOSK_TESTS = ("kiosk_test", "pictures_test", "optics_test", "losses_test", "phase_error_test", "station_test", "viewer_test")
 ROOMS = ("base/", "mesh/", "drivers/", "ipc/", "daemon/", "kiosk/", "cli/")
 
@@ -41,7 +42,7 @@ def arguments():
     parser.add_argument("--seed", type=int, default=1, help="of the chance (default 1)")
     parser.add_argument("--tests", metavar="NAME,..", help="the test programs (default: those of the module's tests, and a few more)")
     parser.add_argument("--minutes", type=float, help="stop running mutants after so many minutes")
-    parser.add_argument("--slow", type=float, default=10, metavar="SECONDS", help="leave out tests that take longer (default 10)")
+    parser.add_argument("--slow", type=float, default=5, metavar="SECONDS", help="leave out tests that take longer (default 5)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", default="out/mutate.txt", help="where the list goes besides (default out/mutate.txt)")
     options = parser.parse_args()
@@ -139,13 +140,13 @@ def programs_for(files, test_programs):
     return sorted(own), sorted(also - own)
 
 
-def judge(mutants, programs, copy, options, output):
+def judge(mutants, programs, slow, copy, options, output):
     """Builds the programs with these mutants, runs them, and gives each mutant its state."""
     copy.build_mutants(mutants, programs, output.step)
     output.step(f"built: {', '.join(programs)}")
     mutants = [mutant for mutant in mutants if mutant.state != "not compiled"]
     runner = Runner(copy.programs, options.jobs)
-    tests = [test for program in programs for test in runner.record(program, len(mutants), options.slow, output.step)]
+    tests = [test for program in programs for test in runner.record(program, len(mutants), slow, output.step)]
     output.step(f"{len(tests)} tests recorded, {sum(test.seconds for test in tests):.0f} s")
     reaching = {}
     for test in tests:
@@ -201,12 +202,12 @@ def main():
     own, also = (named, []) if named else programs_for(files, copy.test_programs())
     if not own:
         raise Failed("there is no test program for this; name some with --tests")
-    judge(mutants, own, copy, options, output)
+    judge(mutants, own, options.slow, copy, options, output)
     # A header that is broken for all who include it would cost a build of nearly everything.
     rest = [mutant for mutant in mutants if mutant.state in ("slipped", "not reached") and mutant.file.endswith(".cpp")]
     if also and rest:
         output.step(f"{len(rest)} left for {', '.join(also)}")
-        judge(rest, also, copy, options, output)
+        judge(rest, also, min(options.slow, CHEAP_SECONDS), copy, options, output)
     is_equivalent = read_equivalent(os.path.join(ROOT, "tests/mutate/equivalent.txt"))
     for mutant in mutants:
         if mutant.state == "slipped" and is_equivalent(mutant):

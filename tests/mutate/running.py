@@ -93,13 +93,17 @@ class Runner:
                 test.reached = {number for number, byte in enumerate(reached.read()) if byte}
             return test, problem
 
-        kept = []
+        kept, too_slow = [], []
         with ThreadPoolExecutor(self.jobs) as pool:
             for test, problem in pool.map(one, self.list_tests(program)):
-                if problem:
-                    say(f"left out: {program}: {problem} without any mutant")
-                else:
+                if not problem:
                     kept.append(test)
+                elif test.seconds >= slow:
+                    too_slow.append(test.name)
+                else:
+                    say(f"left out: {program}: {problem} without any mutant")
+        if too_slow:
+            say(f"left out: {program}: longer than {slow:g} s: {', '.join(too_slow)}")
         return kept
 
     def judge(self, number, tests, end=None):
