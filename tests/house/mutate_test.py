@@ -85,6 +85,9 @@ class Places(unittest.TestCase):
             "6: while (at < size && begin[at] != at) ++at;",
             "6: while (at < size && begin[at] == at) --at;"})
 
+    def test_real_numbers_are_compared_the_other_way_round_rather_than_at_the_limit(self):
+        self.assertEqual(changes(b"bool f(double a, double b) {\n  return a < b;\n}\n"), {"2: return a >= b;"})
+
     def test_neighbouring_arguments_of_one_type_are_exchanged(self):
         text = b"int area(int width, int height, double depth);\nint f(int a, int b) { return area(a, b, 2.0); }\n"
         self.assertIn("2: int f(int a, int b) { return area(b, a, 2.0); }", changes(text))

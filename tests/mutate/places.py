@@ -334,7 +334,8 @@ class Finder:
 
         sorts = {number_kind(child) for child in children}
         if operator in kinds.COMPARISONS:
-            self.comparison(cursor, operator, left, right)
+            real = bool(sorts & {TypeKind.FLOAT, TypeKind.DOUBLE})
+            self.comparison(cursor, operator, left, right, real)
             if operator not in ("==", "!=") and sorts <= INTEGERS:
                 # i < 3 and i <= 2 are the same.
                 self.covered.update(self.span(inside(child)) for child in children)
@@ -349,12 +350,16 @@ class Finder:
         elif operator in kinds.COMPOUND and sorts <= NUMBERS | DEPENDENT:
             exchanged("arithmetic", kinds.COMPOUND[operator])
 
-    def comparison(self, cursor, operator, left, right):
+    def comparison(self, cursor, operator, left, right, real=False):
         if operator in ("<", ">=") and right == b"0" and kinds.DESCRIPTOR.search(left.decode(errors="replace")):
             return
+        # Of two lengths that are the same to the last bit hardly anything depends: theirs is negated.
+        negated = real or operator in ("==", "!=")
         # A condition that is negated is noticed whenever one that is always or never true is.
-        if operator not in ("==", "!=") or self.span(cursor) not in self.conditions:
-            self.whole(cursor, "comparison", left + b" " + kinds.COMPARISONS[operator].encode() + b" " + right, "bool")
+        if negated and self.span(cursor) in self.conditions:
+            return
+        other = (kinds.NEGATED if real else kinds.COMPARISONS)[operator]
+        self.whole(cursor, "comparison", left + b" " + other.encode() + b" " + right, "bool")
 
     def unary(self, cursor, children):
         text = self.of(cursor)
