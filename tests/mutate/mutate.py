@@ -27,7 +27,7 @@ from running import Runner  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 # Test programs that judge what a folder's own haven't noticed.
-ALSO = {"base/": "faults_test", "mesh/": "mesh_document_test", "daemon/modeld/": "faults_test"}
+ALSO = {"mesh/": "mesh_document_test"}
 CHEAP_SECONDS = 1  # of a test that is run besides
 KIOSK_TESTS = ("kiosk_test", "pictures_test", "optics_test", "losses_test", "phase_error_test", "station_test", "viewer_test")
 ROOMS = ("base/", "mesh/", "drivers/", "ipc/", "daemon/", "kiosk/", "cli/")
