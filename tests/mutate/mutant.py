@@ -27,3 +27,21 @@ class Mutant:
 
     def key(self):
         return (self.file, self.parts)
+
+
+def shown(data, text, mutant):
+    """The lines that a mutant changes, before and after, each on one line."""
+    first = text.line_starts[mutant.line - 1]
+    last_line = text.line_of(mutant.parts[-1].end)
+    end = text.line_starts[last_line] if last_line < len(text.line_starts) else len(data)
+    after, at = b"", first
+    for part in mutant.parts:
+        after += data[at : part.start] + part.broken
+        at = part.end
+    after += data[at:end]
+    before = data[first:end]
+
+    def one_line(piece):
+        return b" ".join(piece.split()).decode("utf-8", "replace")
+
+    return one_line(before), one_line(after)
