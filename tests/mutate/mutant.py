@@ -20,8 +20,7 @@ class Mutant:
     wrapper: str = ""  # what the whole becomes: "" as it is, "bool", "void", or "eval" for vectors
     at_run_time: bool = False  # in a constexpr function
     number: int = 0  # of the switch, from 1; 0: not built
-    state: str = ""  # caught, slipped, not reached, equivalent, not compiled
-    by: str = ""  # the test that caught it
+    state: str = ""  # not compiled, not reached, caught, slipped, no change of behaviour; empty: not judged
     before: str = field(default="", compare=False)  # the changed text, on one line
     after: str = field(default="", compare=False)
 

@@ -158,9 +158,9 @@ def judge(mutants, programs, slow, copy, options, output):
         if mutant.number not in reaching:
             mutant.state = mutant.state or "not reached"
             return
-        by = runner.judge(mutant.number, reaching[mutant.number], end)
-        if by is not None:
-            mutant.state, mutant.by = ("caught" if by else "slipped"), by
+        problem = runner.judge(mutant.number, reaching[mutant.number], end)
+        if problem is not None:
+            mutant.state = "caught" if problem else "slipped"
 
     # By chance, so that what is judged before the time is over stands for all.
     order = random.Random(options.seed).sample(mutants, len(mutants))

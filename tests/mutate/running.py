@@ -1,5 +1,6 @@
 """Runs tests: first which mutants each reaches, then each mutant against those that reach it."""
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -36,6 +37,7 @@ class Runner:
 
     def start(self, program, tests, environment, limit):
         """None where they pass; else what happened."""
+        first = tests[0] + (" .." if len(tests) > 1 else "")
         scratch = tempfile.mkdtemp(prefix="prismesh-mutant-")
         limits = f"ulimit -c 0; ulimit -d {MEMORY_KB}; ulimit -f {FILE_BLOCKS}; \"$@\"; exit $?"
         flags = os.path.join(scratch, "flags")
@@ -53,12 +55,10 @@ class Runner:
             output, _ = process.communicate(timeout=limit)
             if process.returncode == 0:
                 return None
-            failed = [line.split()[3].rstrip(",") for line in output.splitlines() if line.startswith("[  FAILED  ]") and "(" in line and len(line.split()) > 3]
-            if failed:
-                return failed[0]
-            return f"{tests[0]}{' ..' if len(tests) > 1 else ''} (ended with status {process.returncode})"
+            failed = re.search(r"^\[  FAILED  \] (\S+) \(", output, re.M)
+            return failed.group(1) if failed else f"{first} (ended with status {process.returncode})"
         except subprocess.TimeoutExpired:
-            return f"{tests[0]}{' ..' if len(tests) > 1 else ''} (still running after {limit:.0f} s)"
+            return f"{first} (still running after {limit:.0f} s)"
         finally:
             try:
                 os.killpg(process.pid, 9)
