@@ -17,7 +17,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 try:
     import clang.cindex  # noqa: F401
 except ImportError:
-    sys.exit("station: mutate needs the package python3-clang-14: apt-get install python3-clang-14")
+    sys.exit("mutate needs the package python3-clang-14, which ./station mutate installs")
 
 import places  # noqa: E402
 import report  # noqa: E402
