@@ -46,6 +46,27 @@ std::vector<std::byte> hostile(Random& random, std::size_t count) {
   return bytes;
 }
 
+TEST(PlausibleHead, stands_from_ten_centimetres_to_four_metres_before_the_screen_and_not_far_aside) {
+  const double nan = std::nan("");
+  EXPECT_TRUE(plausible_head({0, 0, 650}));
+  EXPECT_TRUE(plausible_head({0, 0, 100}));
+  EXPECT_FALSE(plausible_head({0, 0, 99.9}));
+  EXPECT_FALSE(plausible_head({0, 0, -650})) << "behind the screen";
+  EXPECT_TRUE(plausible_head({0, 0, 4000}));
+  EXPECT_FALSE(plausible_head({0, 0, 4000.1}));
+  for (const double side : {-1.0, 1.0}) {
+    EXPECT_TRUE(plausible_head({side * 1400, 0, 650}));
+    EXPECT_FALSE(plausible_head({side * 1400.1, 0, 650}));
+    EXPECT_TRUE(plausible_head({0, side * 1400, 650}));
+    EXPECT_FALSE(plausible_head({0, side * 1400.1, 650}));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Vector3d place(0, 0, 650);
+    place[axis] = nan;
+    EXPECT_FALSE(plausible_head(place)) << "axis " << axis;
+  }
+}
+
 TEST(HostileBytes, no_sample_is_out_of_range_and_clean_records_are_heard_again) {
   Random random(1);
   for (int round = 0; round < 300; ++round) {
