@@ -257,6 +257,25 @@ TEST(dynamixel_servo, tolerates_its_own_echo) {
   EXPECT_EQ(rig.driver().counts().bad_packets, 0U);
 }
 
+TEST(dynamixel_servo, another_servos_answers_are_not_taken_for_its_own) {
+  ServoRig rig;
+  std::array<std::byte, kLongestPacket> pong, motion;
+  const std::size_t pong_size = encode_status(2, 0, std::array<std::uint8_t, 3>{0x5E, 0x01, 1}, pong);  // model 350
+  const std::size_t motion_size = encode_status(2, 0, std::array<std::uint8_t, 8>{}, motion);           // at tick 0: -2.5 mm
+  for (int i = 0; i < 400; ++i) {
+    // On the line before the answer to what is asked at this tick.
+    rig.line().inject(port::Direction::to_host, rig.ready() ? std::span(motion).first(motion_size) : std::span(pong).first(pong_size));
+    rig.powered = rig.ready();
+    const PrismServo::Tick tick = rig.tick();
+    ASSERT_EQ(tick.trouble, ServoTrouble::none) << "tick " << i;
+    if (tick.fresh) {
+      EXPECT_NEAR(tick.reading.position_mm, rig.simulated().motor_mm(), 0.05) << "tick " << i;
+    }
+  }
+  EXPECT_TRUE(rig.ready());
+  EXPECT_EQ(rig.driver().model(), 1030);
+}
+
 TEST(dynamixel_servo, impossible_goals_never_reach_the_wire) {
   ServoRig rig;
   WatchedPort port(rig.port());
