@@ -157,6 +157,28 @@ TEST(mask_control, a_head_at_the_border_does_not_make_it_go_to_and_fro) {
   EXPECT_LE(moves, 1);
 }
 
+TEST(mask_control, a_move_back_waits_until_the_last_picture_in_depth_has_gone) {
+  const MaskRigSettings settings = little_travel(0.6);
+  MaskRig rig(settings);
+  rig.head = walk_right(3.0, 100);
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  int moves = 0;
+  bool flew = false;
+  rig.each_tick = [&](const MaskControl::Input& input, const MaskControl::Output& out) {
+    const bool flies = out.state.phase == MaskPhase::flying_back;
+    if (flies && !flew) {
+      // A picture that lit up just before the announced time stays on for a period of the display.
+      const std::int64_t gone_ns = out.state.mono_from_ns + settings.limits.picture_ns;
+      EXPECT_GE(input.now_ns, gone_ns);
+      EXPECT_LT(input.now_ns, gone_ns + kTickNs) << "nor is it kept waiting";
+      ++moves;
+    }
+    flew = flies;
+  };
+  rig.run_for(5'000 * kMs);
+  EXPECT_GE(moves, 3);
+}
+
 /// Watches everything that must hold at any time, whatever happens.
 class Promises {
  public:
