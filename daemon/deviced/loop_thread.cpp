@@ -55,6 +55,10 @@ std::string lock_memory() {
   return std::string("memory isn't locked (") + std::strerror(errno) + "): a tick may wait for the disk while memory is short";
 }
 
+std::int64_t next_due_ns(std::int64_t due_ns, std::int64_t ended_ns) {
+  return due_ns + kTickPeriodNs * std::max<std::int64_t>(1, (ended_ns - due_ns) / kTickPeriodNs);
+}
+
 Result<std::unique_ptr<LoopThread>> LoopThread::start(DeviceLoop& loop, ipc::DevicePage& page, bool memory_locked, bool simulated) {
   std::unique_ptr<LoopThread> made(new LoopThread(loop, page));
   made->health_.pid = ::getpid();
@@ -112,8 +116,7 @@ void LoopThread::run() {
     loop_.tick(began_ns);
     keep_account(due_ns, began_ns, thread_cpu_ns() - cpu_ns);
     ticks_.fetch_add(1, std::memory_order_relaxed);
-    // Ticks that were slept through are left out, not made up for.
-    due_ns += kTickPeriodNs * std::max<std::int64_t>(1, (clock_.now_ns() - due_ns) / kTickPeriodNs);
+    due_ns = next_due_ns(due_ns, clock_.now_ns());
   }
   for (int tick = 0; tick < kWindDownTicks; ++tick) {
     loop_.wind_down(clock_.now_ns());

@@ -20,6 +20,10 @@ namespace prismesh::deviced {
 /// Empty: done; else why not, and what would help.
 std::string lock_memory();
 
+/// When the tick after one that was due at `due_ns` and ended at `ended_ns` is due. Periods that were slept through are left out, not made
+/// up for: after a stall the devices must not be driven by many ticks at once.
+std::int64_t next_due_ns(std::int64_t due_ns, std::int64_t ended_ns);
+
 class LoopThread {
  public:
   /// Starts ticking. `memory_locked` and `simulated` go into the health that it publishes. Errors: the system gives no thread.

@@ -49,6 +49,18 @@ TEST(Ring, CarriesEverythingFromOneThreadToAnother) {
   }
 }
 
+TEST(LoopThread, TicksThatWereSleptThroughAreLeftOut) {
+  constexpr std::int64_t kDue = 1'000'000'000'000, kShort = kTickPeriodNs / 10;
+  EXPECT_EQ(next_due_ns(kDue, kDue), kDue + kTickPeriodNs);
+  EXPECT_EQ(next_due_ns(kDue, kDue + kShort), kDue + kTickPeriodNs);
+  EXPECT_EQ(next_due_ns(kDue, kDue - kShort), kDue + kTickPeriodNs) << "a clock that is read on another processor";
+  EXPECT_EQ(next_due_ns(kDue, kDue + kTickPeriodNs + kShort), kDue + kTickPeriodNs) << "a little late: at once, and then in step again";
+  // A second's stall: one tick at once, and none of the other 249.
+  const std::int64_t ended = kDue + 250 * kTickPeriodNs + kShort;
+  EXPECT_EQ(next_due_ns(kDue, ended), kDue + 250 * kTickPeriodNs);
+  EXPECT_EQ(next_due_ns(next_due_ns(kDue, ended), ended), kDue + 251 * kTickPeriodNs) << "in step with the time before";
+}
+
 TEST(LoopThread, TicksAndKeepsAnAccountThatReadersSee) {
   ipc::DevicePage page = ipc::DevicePage::create().value();
   const ipc::DevicePageReader reader = ipc::DevicePageReader::map(page.descriptor()).value();
