@@ -24,6 +24,8 @@ using Clock = std::chrono::steady_clock;
 /// environment of the program's own.
 [[noreturn]] void become(const std::vector<char*>& arguments, const std::map<std::string, std::string>& environment, int out, int error) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  // A test that was started with nohup would hand on that a closing terminal is ignored.
+  std::signal(SIGHUP, SIG_DFL);
   ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
   ::dup2(out, STDOUT_FILENO);
   ::dup2(error, STDERR_FILENO);

@@ -340,6 +340,16 @@ TEST_F(Deviced, ATerminalThatClosesEndsItAsCleanly) {
   EXPECT_EQ(client.page().prism()->phase, MaskPhase::absent);
 }
 
+TEST_F(Deviced, StartedWithNohupItOutlivesItsTerminal) {
+  daemon_ = std::make_unique<Process>(std::vector<std::string>{"nohup", program("prismesh-deviced"), "--runtime-dir",
+                                                               (folder_ / "run").string(), "--config", config().string()},
+                                      surroundings());
+  ipc::DeviceClient client = connect("test");
+  daemon_->kill(SIGHUP);
+  for (int i = 0; i < 5; ++i) ASSERT_EQ(listed(client).devices.size(), 2u);
+  EXPECT_TRUE(daemon_->running());
+}
+
 TEST_F(Deviced, OnTheWayOutThePageSaysThatNothingIsToBeReliedOn) {
   start();
   const ipc::DeviceClient client = connect("test");
