@@ -42,6 +42,15 @@ TEST(ByHand, AClickInTheMiddleMeansTheShellAndNextToAnEdgeTheTwoAtIt) {
   EXPECT_THAT(board.at(Operation::split, 1, 0, -9.7)->shells, ElementsAre(ShellIndex(1))) << "a free edge has no other shell";
 }
 
+TEST(ByHand, NextToAnEdgeOfThreeShellsASplitMeansTheShellAlone) {
+  Board board;  // a rib stands on the edge between the shells 1 and 4
+  const std::uint32_t a = board.source.add_node({-5, 0, 10}), b = board.source.add_node({5, 0, 10});
+  board.source.add_shell(5, 6, b, a, 0);
+  EXPECT_THAT(board.at(Operation::split, 1, 0.5, -0.5)->shells, ElementsAre(ShellIndex(1)));
+  EXPECT_THAT(board.at(Operation::merge, 1, 0.5, -0.5)->shells, UnorderedElementsAre(ShellIndex(1), ShellIndex(4), ShellIndex(6)))
+      << "which two of them, the operation says";
+}
+
 TEST(ByHand, MergeAndSwapMeanTheNearestEdgesShellsFromWhereverInTheShell) {
   const Board board;
   for (const Operation operation : {Operation::merge, Operation::swap}) {
