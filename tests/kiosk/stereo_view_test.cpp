@@ -148,6 +148,15 @@ TEST(View, TheComfortBoxIsADegreeOfParallax) {
   EXPECT_GT(comfort_box(650, 1.5).before_mm, box.before_mm);
 }
 
+TEST(View, TheComfortBoxReachesHalfTheEyesDistanceAtMost) {
+  // 1 degree at 2 m is 35 mm of parallax: with eyes 63 mm apart that lies 2.48 m behind the screen.
+  EXPECT_DOUBLE_EQ(comfort_box(2000, 1, 63).behind_mm, 1000);
+  EXPECT_LT(comfort_box(2000, 1, 63).before_mm, 1000);
+  // 20 degrees at 650 mm are 237 mm of parallax: 514 mm before the screen.
+  EXPECT_DOUBLE_EQ(comfort_box(650, 20, 63).before_mm, 325);
+  EXPECT_DOUBLE_EQ(comfort_box(650, 20, 63).behind_mm, 325);
+}
+
 TEST(View, DepthStrengthScalesDepthUpToTheComfortBox) {
   View view = some_view();
   view.bounds.radius = 40;  // 10 mm on the screen: true depth
