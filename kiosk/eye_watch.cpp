@@ -76,7 +76,7 @@ bool EyeWatch::look() {
   const stereo::DeviceReading reading = link_.read();
   lit_ = timing_.lit(now);
   seen_ = eyes_.look(reading, now, lit_);
-  if (!refused_.empty()) seen_.depth_share = 0;
+  if (!refused_.empty()) seen_ = eyes_.flatten();
   // The mask must not go anywhere by itself from the moment that depth may be seen.
   if (follows() && seen_.depth_share > 0) {
     link_.tell_picture(false);

@@ -89,6 +89,13 @@ SeenFrom TrackedEyes::look(const DeviceReading& reading, std::int64_t now_ns, co
   return seen_;
 }
 
+SeenFrom TrackedEyes::flatten() {
+  SeenFrom flat = seen_;
+  flat.depth_share = 0;
+  if (options_.follow && options_.mono_without_eyes) seen_.depth_share = 0;
+  return flat;
+}
+
 void TrackedEyes::take(const DeviceReading& reading, std::int64_t now_ns) {
   if (!reading.eyes) return;
   const ipc::EyesState& eyes = *reading.eyes;

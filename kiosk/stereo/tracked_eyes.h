@@ -68,6 +68,8 @@ class TrackedEyes {
   const FollowLimits& limits() const { return limits_; }
   /// To be asked about once a refresh, whether or not a picture is drawn then. Two equal answers: the picture may stay.
   SeenFrom look(const DeviceReading& reading, std::int64_t now_ns, const LitTime& lit);
+  /// The last answer, in mono: that is what is shown, and depth rises from there.
+  SeenFrom flatten();
   /// The newest good measurement; 0: none yet.
   std::int64_t measured_ns() const { return head_.time_ns; }
 
