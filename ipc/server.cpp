@@ -29,7 +29,6 @@ using asio::posix::stream_descriptor;
 using boost::system::error_code;
 using Time = std::chrono::steady_clock;
 
-
 Result<Descriptor> bind_socket(const std::filesystem::path& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
