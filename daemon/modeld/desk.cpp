@@ -273,7 +273,7 @@ void Desk::run_long(const Waiting& next, std::string what, OnDeath on_death, con
       });
 }
 
-void Desk::begin_drag(Waiting next, const mesh::document::Edit& edit) {
+void Desk::begin_drag(const Waiting& next, const mesh::document::Edit& edit) {
   const std::uint64_t drag = next_drag_++;
   run([this, drag, edit] { return bench_.begin_drag(drag, edit); },
       [this, drag, client = next.client, number = next.number](Outcome& outcome) {

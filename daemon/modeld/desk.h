@@ -90,7 +90,7 @@ class Desk {
   /// Whether long work outlives the client that asked for it.
   enum class OnDeath : std::uint8_t { stops, goes_on };
   void run_long(const Waiting& next, std::string what, OnDeath on_death, const std::function<Outcome(const Progress&)>& work);
-  void begin_drag(Waiting next, const mesh::document::Edit& edit);
+  void begin_drag(const Waiting& next, const mesh::document::Edit& edit);
   void finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome);
   void tell(Outcome& outcome);
   Progress watch(std::string what);

@@ -31,10 +31,10 @@ Sections read_packages() {
   return sections;
 }
 
-TEST(Packages, have_the_four_sections) {
+TEST(Packages, have_a_section_for_each_purpose) {
   std::vector<std::string> names;
   for (const auto& [name, packages] : read_packages()) names.push_back(name);
-  EXPECT_THAT(names, testing::UnorderedElementsAre("[run]", "[build]", "[test]", "[image]"));
+  EXPECT_THAT(names, testing::UnorderedElementsAre("[run]", "[build]", "[test]", "[judge]", "[image]"));
 }
 
 TEST(Packages, are_named_as_debian_names_them_and_stand_once) {
