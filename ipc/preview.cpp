@@ -67,7 +67,7 @@ void PreviewWriter::publish(std::uint64_t sequence, std::span<const mesh::Vec3> 
   // A drag gives one position a node and one state a shell; a shorter list would leave the rest of the frame as it was.
   const std::size_t moved = std::min(positions.size(), layout_.nodes);
   const std::size_t judged = std::min(states.size(), layout_.shells);
-  if (moved > 0) std::memcpy(&frame_[kFrameHeadWords], positions.data(), moved * sizeof(mesh::Vec3));
+  if (moved > 0) std::memcpy(&frame_[kFrameHeadWords], static_cast<const void*>(positions.data()), moved * sizeof(mesh::Vec3));
   if (judged > 0) std::memcpy(&frame_[kFrameHeadWords + layout_.nodes * 3], states.data(), judged * sizeof(mesh::quality::ShellState));
   std::byte* data = mapping_.writable_bytes().data();
   TurnCount& turns = std::launder(reinterpret_cast<Header*>(data))->turns;

@@ -43,8 +43,8 @@ struct Disk {
   std::function<void()> on_read, on_make_folder;
 };
 Disk& the_disk() {
-  static auto* const disk = new Disk;
-  return *disk;
+  static auto* const kDisk = new Disk;  // outlives whatever still closes files at the end
+  return *kDisk;
 }
 
 bool is_folder(int fd) {

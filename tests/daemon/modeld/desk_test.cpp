@@ -229,13 +229,13 @@ TEST_F(DeskTest, RequestsWaitUpToANumberAndASize) {
   Translate translate;
   translate.shaping.on = "1314";
   const auto edit = [&](std::size_t bytes) { return begin(kOther, ipc::ApplyEdit{translate}, bytes); };
-  std::vector<std::uint64_t> taken;
-  for (int i = 0; i < 256; ++i) taken.push_back(edit(10));
+  std::uint64_t newest = 0;
+  for (int i = 0; i < 256; ++i) newest = edit(10);
   const std::string full = "too many requests of yours are waiting; wait for some answers first";
   EXPECT_EQ(refusal(kOther, any), full);
   EXPECT_EQ(refusal(kOne, ipc::CommitDrag{held + 1}), "you hold no drag " + std::to_string(held + 1)) << "what needn't wait is answered";
   ask<ipc::Done>(kOne, ipc::CancelDrag{held});
-  loop_.until_answered(kOther, taken.back());
+  loop_.until_answered(kOther, newest);
   const std::uint64_t again = ask<ipc::DragBegun>(kOne, drag()).drag;
   edit(std::size_t{20} << 20);
   EXPECT_EQ(refusal(kOther, ipc::ApplyEdit{translate}, std::size_t{13} << 20), full);
@@ -248,11 +248,11 @@ TEST_F(DeskTest, SnapshotsAreHeldUpToANumberAndOfStatesThatAreThere) {
   ipc::GetSnapshot gone;
   gone.generation = 4711;
   EXPECT_EQ(refusal(kOne, gone), "the history has no state 4711 any more");
-  std::vector<std::uint64_t> leases;
-  for (int i = 0; i < 256; ++i) leases.push_back(ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{}).lease);
+  std::uint64_t lease = 0;
+  for (int i = 0; i < 256; ++i) lease = ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{}).lease;
   EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "you hold too many snapshots; return some first");
   ask<ipc::Snapshot>(kOther, ipc::GetSnapshot{});
-  begin(kOne, ipc::ReturnSnapshot{leases.front()});
+  begin(kOne, ipc::ReturnSnapshot{lease});
   ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{});
 }
 

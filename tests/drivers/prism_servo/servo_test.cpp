@@ -13,7 +13,6 @@
 namespace prismesh::drivers::prism_servo::dynamixel {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Lets bytes through and keeps account of them.
