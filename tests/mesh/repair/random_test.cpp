@@ -1,5 +1,6 @@
 // Random meshes, random rules: nothing forbidden is touched, the mesh stays whole, the worst shell isn't worse.
 #include <algorithm>
+#include <map>
 #include <random>
 #include <set>
 
@@ -167,6 +168,33 @@ TEST(Limits, no_node_goes_farther_than_it_may_however_often_it_moves) {
     EXPECT_LE(on_surface, 0.1 + 1e-12) << seed;
     EXPECT_LE(on_line, 0.02 + 1e-12) << seed;
   }
+}
+
+TEST(Limits, no_more_triangles_than_their_share_or_than_there_were) {
+  const auto triangles_of = [](const Model& model) {
+    std::size_t count = 0;
+    for (std::size_t s = 0; s < model.shell_count(); ++s)
+      if (!model.is_removed(shell_at(s)) && model.shell(shell_at(s)).is_triangle()) ++count;
+    return count;
+  };
+  // Corners that are meant to stand out of the sheet: quads there warp, whatever the places.
+  const Grid grid = flat(12, 12);
+  std::vector<Vec3> positions = grid.positions();
+  for (const auto& [i, j] : {std::pair(3U, 3U), {8U, 3U}, {3U, 8U}, {8U, 8U}, {5U, 6U}})
+    positions[grid.node(i, j)] += Vec3(0.25, 0.1, 0.25);
+  const Model bad = model_of(positions, grid.shells());
+  const relax::ReferenceSurface surface(bad, all_shells(bad), 30);
+  std::map<double, std::size_t> triangles;
+  for (const double percent : {0.0, 2.0, 50.0}) {
+    Options options;
+    options.most_triangles_percent = percent;
+    const auto repaired = repair(bad, surface, all_shells(bad), {}, {quality::default_criteria(), 1.0}, options);
+    ASSERT_TRUE(repaired.has_value());
+    triangles[percent] = triangles_of(carried_out(bad, repaired->change));
+  }
+  EXPECT_EQ(triangles[0], 0u);
+  EXPECT_LE(triangles[2], 2u) << "2 % of 144";
+  EXPECT_GT(triangles[50], 2u) << "with more allowed more are made";
 }
 
 TEST(Bad, input_is_left_alone_and_said) {
