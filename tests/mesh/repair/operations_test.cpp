@@ -1,0 +1,165 @@
+// Operations on a patch one by one, in small sheets whose result is known beforehand.
+#include "mesh/repair/operations.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/mesh/repair/patch_bench.h"
+#include "tests/mesh/repair/validator.h"
+
+namespace prismesh::mesh::repair {
+namespace {
+
+/// A bench on a grid, whose nodes are named by their places in it.
+struct GridBench : Bench {
+  explicit GridBench(const Grid& made, Rules forbidden = {})
+      : Bench(model_of(made.positions(), made.shells()), std::move(forbidden)), grid(made) {
+    patch.begin();
+  }
+  LocalNode node(std::size_t i, std::size_t j) const { return patch.find(at(grid.node(i, j))); }
+  std::string refusal(const Refusal& why) const { return why ? std::string(*why) : "done"; }
+  Grid grid;
+};
+
+/// Forbids what `of` says of a node of the model.
+Rules rules_of_nodes(std::function<std::uint8_t(NodeIndex)> of) {
+  Rules rules;
+  rules.node = std::move(of);
+  return rules;
+}
+
+TEST(Divisions, are_all_with_at_most_so_many_triangles) {
+  const std::map<std::pair<std::size_t, int>, std::size_t> wanted{{{4, 0}, 1}, {{4, 1}, 1}, {{4, 2}, 3},  {{5, 0}, 0}, {{5, 1}, 10},
+                                                                  {{6, 0}, 3}, {{6, 1}, 3}, {{6, 2}, 12}, {{7, 2}, 0}};
+  for (const auto& [what, count] : wanted) {
+    const auto& [corners, most_triangles] = what;
+    Loop loop;
+    for (std::size_t i = 0; i < corners; ++i) loop.emplace_back(10 + i);
+    const std::vector<std::vector<Loop>> found = divisions(loop, most_triangles);
+    EXPECT_EQ(found.size(), count) << corners << " corners, " << most_triangles << " triangles";
+    EXPECT_EQ(std::set<std::vector<Loop>>(found.begin(), found.end()).size(), found.size()) << "one is there twice";
+    for (const std::vector<Loop>& pieces : found) {
+      int triangles = 0;
+      std::map<std::pair<std::size_t, std::size_t>, int> sides;
+      for (const Loop& piece : pieces) {
+        ASSERT_TRUE(piece.size() == 3 || piece.size() == 4);
+        triangles += piece.size() == 3 ? 1 : 0;
+        for (std::size_t k = 0; k < piece.size(); ++k) ++sides[{piece[k].value, piece[(k + 1) % piece.size()].value}];
+      }
+      EXPECT_LE(triangles, most_triangles);
+      // In the loop's sense: its own sides once, those between pieces once each way.
+      for (std::size_t i = 0; i < corners; ++i) EXPECT_EQ(sides[std::pair(loop[i].value, loop[(i + 1) % corners].value)], 1);
+      for (const auto& [side, times] : sides) {
+        EXPECT_EQ(times, 1);
+        const bool outer = (side.first - 10 + 1) % corners == side.second - 10;
+        EXPECT_EQ(sides.contains({side.second, side.first}), !outer);
+      }
+    }
+  }
+}
+
+TEST(UnionOf, takes_the_freer_node_away) {
+  // A roof: its ridge is the line of nodes with i = 2.
+  const Grid roof{4, 4, [](double x, double y) { return Vec3(x, y, 1 - std::abs(x - 2)); }, {}};
+  const GridBench bench(roof);
+  const auto goes = [&](LocalNode a, LocalNode b) {
+    const std::optional<Union> there = union_of(bench.site, a, b), back = union_of(bench.site, b, a);
+    EXPECT_EQ(there.has_value(), back.has_value());
+    if (!there || !back) return LocalNode();
+    EXPECT_EQ(there->gone, back->gone) << "whatever the order";
+    EXPECT_EQ(there->stays, there->gone == a ? b : a);
+    return there->gone;
+  };
+  EXPECT_EQ(goes(bench.node(1, 1), bench.node(1, 2)), bench.node(1, 2)) << "of equals the one that was there before stays";
+  EXPECT_EQ(goes(bench.node(1, 1), bench.node(2, 1)), bench.node(1, 1)) << "one on the ridge stays";
+  EXPECT_EQ(goes(bench.node(0, 1), bench.node(1, 1)), bench.node(1, 1)) << "one on the border stays";
+  EXPECT_EQ(goes(bench.node(0, 0), bench.node(0, 1)), bench.node(0, 1)) << "the corner stays";
+  EXPECT_EQ(goes(bench.node(2, 0), bench.node(2, 1)), bench.node(2, 1)) << "the ridge's end stays";
+  EXPECT_FALSE(goes(bench.node(0, 0), bench.node(4, 0)).valid()) << "both hold the shape";
+}
+
+TEST(UnionOf, keeps_what_is_needed_or_has_to_stay) {
+  const Grid grid = flat(4, 4);
+  const NodeIndex needed = at(grid.node(1, 2)), staying = at(grid.node(2, 3));
+  const GridBench bench(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
+                          return node == needed ? kNeeded : node == staying ? kStays : std::uint8_t{0};
+                        }));
+  EXPECT_EQ(union_of(bench.site, bench.node(1, 1), bench.node(1, 2))->gone, bench.node(1, 1));
+  EXPECT_EQ(union_of(bench.site, bench.node(2, 2), bench.node(2, 3))->gone, bench.node(2, 2));
+  EXPECT_EQ(union_of(bench.site, bench.node(0, 2), bench.node(1, 2))->gone, bench.node(0, 2)) << "even one of the border goes";
+}
+
+TEST(Unite, puts_the_node_in_the_middle_unless_it_has_to_stay) {
+  for (const bool stays : {false, true}) {
+    const Grid grid = flat(4, 4);
+    const NodeIndex kept = at(grid.node(1, 1));
+    GridBench bench(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t { return stays && node == kept ? kStays : std::uint8_t{0}; }));
+    ASSERT_EQ(bench.refusal(unite(bench.site, {{bench.node(2, 1), bench.node(1, 1)}})), "done");
+    EXPECT_NEAR((bench.patch.position(bench.node(1, 1)) - Vec3(stays ? 1 : 1.5, 1, 0)).norm(), 0, 1e-9);
+    const Model after = bench.after();
+    EXPECT_EQ(what_is_wrong(after), "");
+    EXPECT_EQ(live_nodes(after), 24U);
+    EXPECT_EQ(live_shells(after), 16U) << "the two quads at the edge are triangles now";
+    EXPECT_EQ(triangles(after), 2U);
+  }
+}
+
+TEST(Unite, shortens_a_straight_line_and_bends_none) {
+  GridBench bench(flat(4, 4));
+  ASSERT_EQ(bench.refusal(unite(bench.site, {{bench.node(2, 0), bench.node(1, 0)}})), "done");
+  EXPECT_EQ(bench.patch.position(bench.node(1, 0)), Vec3(1, 0, 0)) << "on a line the node stays where it is";
+  EXPECT_EQ(what_is_wrong(bench.after()), "");
+  GridBench arc(Grid{4, 4, [](double x, double y) { return Vec3(x, y * (1 + 0.1 * x * (4 - x)) - 0.2 * x * (4 - x), 0); }, {}});
+  EXPECT_EQ(arc.refusal(unite(arc.site, {{arc.node(2, 0), arc.node(1, 0)}})), "that would bend an edge of the part");
+  GridBench corner(flat(4, 4));
+  EXPECT_EQ(corner.refusal(unite(corner.site, {{corner.node(0, 0), corner.node(1, 0)}})), "both nodes hold the part's shape");
+  GridBench across(flat(4, 1));
+  EXPECT_EQ(across.refusal(unite(across.site, {{across.node(2, 0), across.node(2, 1)}})), "that would bend an edge of the part")
+      << "the sheet would be pinched off";
+  GridBench twice(flat(4, 4));
+  EXPECT_EQ(twice.refusal(unite(twice.site, {{twice.node(2, 1), twice.node(1, 1)}, {twice.node(2, 2), twice.node(2, 1)}})),
+            "the nodes run into each other");
+}
+
+TEST(LiftNode, goes_along_the_normal_whichever_way_its_shells_are_turned) {
+  Grid grid{4, 4, [](double x, double y) { return Vec3(x, 0.6 * y, 0.8 * y); }, {}};
+  std::vector<std::array<std::size_t, 4>> shells = grid.shells();
+  for (const std::size_t turned : {grid.shell(1, 1), grid.shell(2, 2), grid.shell(2, 1)})
+    std::reverse(shells[turned].begin(), shells[turned].end());
+  Bench bench(model_of(grid.positions(), shells));
+  bench.patch.begin();
+  const LocalNode middle = bench.patch.find(at(grid.node(2, 2)));
+  ASSERT_FALSE(lift_node(bench.site, middle, 0.25));
+  const Vec3 moved = bench.patch.position(middle) - grid.place(2, 2);
+  EXPECT_NEAR(moved.norm(), 0.25, 1e-9);
+  EXPECT_NEAR(std::abs(moved.dot(Vec3(0, -0.8, 0.6))), 0.25, 1e-9);
+  EXPECT_TRUE(lift_node(bench.site, bench.patch.find(at(grid.node(0, 2))), 0.25)) << "the border holds the shape";
+}
+
+TEST(LiftNode, is_refused_where_the_node_stays_or_lies_on_an_edge_of_the_part) {
+  const Grid roof{4, 4, [](double x, double y) { return Vec3(x, y, 1 - std::abs(x - 2)); }, {}};
+  const NodeIndex staying = at(roof.node(1, 1));
+  GridBench bench(roof, rules_of_nodes([&](NodeIndex node) -> std::uint8_t { return node == staying ? kStays : std::uint8_t{0}; }));
+  EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(1, 1), 0.1)), "the node can't be moved");
+  EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(2, 1), 0.1)), "the node can't be moved");
+  EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(1, 2), 0.1)), "done");
+}
+
+TEST(Patch, works_on_no_node_whose_shells_it_has_not_all) {
+  const Grid grid = flat(8, 8);
+  const Model model = model_of(grid.positions(), grid.shells());
+  const Rules rules;
+  const Patch patch(model, {shell_at(grid.shell(4, 4))}, 1, rules, 30);
+  EXPECT_EQ(patch.shell_count(), 9u);
+  std::size_t whole = 0;
+  for (std::size_t n = 0; n < patch.node_count(); ++n) whole += patch.node(LocalNode(n)).is_whole ? 1 : 0;
+  EXPECT_EQ(whole, 4u) << "the corners of the shell itself";
+  EXPECT_TRUE(patch.node(patch.find(at(grid.node(4, 4)))).is_whole);
+  EXPECT_FALSE(patch.node(patch.find(at(grid.node(3, 3)))).is_whole);
+}
+
+}  // namespace
+}  // namespace prismesh::mesh::repair
