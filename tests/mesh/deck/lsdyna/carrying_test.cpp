@@ -88,6 +88,14 @@ TEST_F(Carrying, what_all_come_from_is_in_the_new_ones_join) {
   }
 }
 
+TEST_F(Carrying, ranges_hold_the_new_ones_and_no_others) {
+  Growing& edit = open("*SET_NODE_LIST_GENERATE\n1\n1,3,6,6\n");
+  edit.middle(edit.node(1), edit.node(2));
+  edit.middle(edit.node(2), edit.node(5));
+  edit.middle(edit.node(3), edit.node(6));
+  EXPECT_EQ(cards(), "*SET_NODE_LIST_GENERATE\n1\n1,3,6,6,7,7,9,9\n") << "8 comes from 5 too, which isn't in it";
+}
+
 TEST_F(Carrying, refuses_what_cant_be_passed_on) {
   const std::pair<std::string, std::string> cases[] = {
       {"*BOUNDARY_SPC_NODE\n1,0,1,1,1\n2,0,1,1,0\n", "in different ways"},
@@ -134,6 +142,7 @@ TEST_F(Carrying, what_goes_leaves_its_sets) {
       {"nodes in columns", "*SET_NODE_LIST\n         1\n         1         3         6         2\n",
        "*SET_NODE_LIST\n         1\n         1         2\n"},
       {"segments", "*SET_SEGMENT\n1\n1,2,5,4\n2,3,6,5\n", "*SET_SEGMENT\n1\n1,2,5,4\n"},
+      {"general, behind the word", "*SET_NODE_GENERAL\n1\nNODE,3,1,6,2\nPART,7\n", "*SET_NODE_GENERAL\n1\nNODE,1,2\nPART,7\n"},
   };
   for (const SetCase& c : cases) {
     SCOPED_TRACE(c.what);
