@@ -88,6 +88,16 @@ TEST_F(Carrying, what_all_come_from_is_in_the_new_ones_join) {
   }
 }
 
+TEST_F(Carrying, a_segments_triangle_may_leave_its_fourth_corner_blank) {
+  const std::string mesh = "*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n3,0.,1.,0.\n*ELEMENT_SHELL\n11,7,1,2,3,3\n";
+  for (const char* const before : {"*SET_SEGMENT\n1\n1,2,3,3\n", "*SET_SEGMENT\n1\n1,2,3\n", "*SET_SEGMENT\n1\n1,2,3,0\n"}) {
+    Growing& edit = open(before, mesh);
+    const NodeIndex middle = edit.middle(edit.node(1), edit.node(2));
+    edit.split_at_edge(edit.shell(11), 0, middle);
+    EXPECT_EQ(cards(), "*SET_SEGMENT\n1\n1,4,3,3\n4,2,3,3\n") << before;
+  }
+}
+
 TEST_F(Carrying, ranges_hold_the_new_ones_and_no_others) {
   Growing& edit = open("*SET_NODE_LIST_GENERATE\n1\n1,3,6,6\n");
   edit.middle(edit.node(1), edit.node(2));
@@ -105,6 +115,7 @@ TEST_F(Carrying, refuses_what_cant_be_passed_on) {
       {"*LOAD_THERMAL_VARIABLE_NODE\n1,20.,0.,1\n2,20.,0.,1\n", "can't be passed on"},
       {"*SET_NODE_GENERAL\n1\nPART,7\nDNODE,1,2\n", "can't be passed on"},
       {"*NOBODY_KNOWS_THIS\n         2         1\n", "isn't read in this version, and may say"},
+      {"*SET_NODE_LIST\n1\n1,2\n-----BEGIN PGP MESSAGE-----\nabc\n-----END PGP MESSAGE-----\n", "is encrypted in part"},
   };
   for (const auto& [text, why] : cases) {
     Growing& edit = open(text);
@@ -120,6 +131,7 @@ TEST_F(Carrying, refuses_to_divide_a_shell_of_which_more_is_said_than_can_be_pas
       {"*DEFINE_ELEMENT_DEATH_SHELL\n11,0.5\n", "*DEFINE_ELEMENT_DEATH_SHELL names it"},
       {"*INITIAL_STRESS_SHELL\n11,1,2\n0,0,0,0,0,0,0,0\n0,0,0,0,0,0,0,0\n", "without a point"},
       {"*NOBODY_KNOWS_THIS\n        11       1.5\n", "*NOBODY_KNOWS_THIS isn't read"},
+      {"*PARAMETER\nI ID, 11\n*LOAD_SHELL_ELEMENT\n&ID,3,2.5\n", "names it by the parameter &ID"},
       {"*PARAMETER\nI ID, 11\n*NOBODY_KNOWS_THIS\n&ID,1.5\n", "*NOBODY_KNOWS_THIS isn't read"},
   };
   for (const auto& [text, why] : cases) {
