@@ -182,7 +182,7 @@ void MaskControl::plan_return(const Input& input) {
   state_.phase = MaskPhase::flying_back;
   state_.half_periods = next;
   phase_since_ns_ = input.now_ns;
-  arrived_ = false;
+  caught_up_ = arrived_ = false;
   on_wish_since_ns_ = 0;
   fly_back(input);
 }
@@ -190,7 +190,8 @@ void MaskControl::plan_return(const Input& input) {
 void MaskControl::fly_back(const Input& input) {
   if (!seen_) return enter(MaskPhase::frozen);
   wish_to_follow(input);
-  if (!arrived_) {
+  caught_up_ = caught_up_ || arrived_;
+  if (!caught_up_) {
     // Later than planned is said as soon as it is known, and never on shorter notice than the move itself.
     const std::int64_t needed = flight_ns(std::abs(state_.position_mm - wish_mm_) - limits_.settle_mm);
     state_.mono_until_ns = std::max(state_.mono_until_ns, input.now_ns + std::max(needed, limits_.return_notice_ns));

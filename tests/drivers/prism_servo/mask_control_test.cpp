@@ -179,6 +179,28 @@ TEST(mask_control, a_move_back_waits_until_the_last_picture_in_depth_has_gone) {
   EXPECT_GE(moves, 3);
 }
 
+TEST(mask_control, a_move_back_leaves_half_a_step_of_room) {
+  MaskRig rig(little_travel(0.6));
+  const double place_mm = 0.54 + 0.75 * rig.half_period_mm();  // so far beyond the border
+  rig.head = walk_right(3.0, 2500, 0, place_mm / 0.004433);
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  ASSERT_GE(rig.run_until(MaskPhase::flying_back), 0);
+  rig.run_for(500 * kMs);
+  EXPECT_NEAR(rig.ideal_mm() + rig.state().half_periods * rig.half_period_mm(), place_mm, 0.01);
+  EXPECT_EQ(rig.state().half_periods, 2) << "one would only just be enough";
+}
+
+TEST(mask_control, where_travel_ends_the_goal_stands_still) {
+  MaskRigSettings settings = little_travel(0.6);
+  settings.limits.return_notice_ns = 10'000 * kMs;  // no move back comes in time
+  MaskRig rig(settings);
+  rig.head = walk_right(3.0, 100);
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  rig.run_for(4'000 * kMs);
+  EXPECT_EQ(rig.state().goal_mm, 0.6);
+  EXPECT_EQ(rig.state().goal_velocity_mm_s, 0) << "however the head goes on";
+}
+
 /// Watches everything that must hold at any time, whatever happens.
 class Promises {
  public:
@@ -201,6 +223,7 @@ class Promises {
       ++flying_ticks;
     }
     ASSERT_EQ(state.mono_from_ns == 0, state.mono_until_ns == 0);
+    check_announced_end(input.now_ns, state);
     if (state.stereo_allowed && state.phase == MaskPhase::following) {
       const double ideal = display::mask_position_mm(settings_.optics, eye_tracker::predict(input.head, input.now_ns + input.servo_lag_ns));
       const double goal = std::clamp(ideal - state.half_periods * rig_.half_period_mm(), -limits.travel_mm, limits.travel_mm);
@@ -218,9 +241,26 @@ class Promises {
   int flying_ticks = 0;
 
  private:
+  /// Depth is given back when a move back was said to end: what has been said only grows, and in time.
+  void check_announced_end(std::int64_t now_ns, const MaskState& state) {
+    const MaskState before = std::exchange(before_, state);
+    const std::int64_t notice_ns = settings_.limits.return_notice_ns;
+    const bool flew = before.phase == MaskPhase::flying_back, flies = state.phase == MaskPhase::flying_back;
+    if (flies && !flew) {
+      ASSERT_LE(state.mono_until_ns, before.mono_until_ns + notice_ns / 4) << "a longer move than was announced";
+    }
+    if (flew && state.phase == MaskPhase::following) {
+      ASSERT_GE(now_ns, before.mono_until_ns) << "depth comes back sooner than was said";
+    }
+    if (flew && flies && state.mono_until_ns > before.mono_until_ns) {
+      ASSERT_GE(before.mono_until_ns - now_ns, notice_ns - kTickNs) << "that it takes longer is said on too short notice";
+    }
+  }
+
   MaskRig& rig_;
   MaskRigSettings settings_;
   std::deque<std::pair<std::int64_t, MaskState>> history_;
+  MaskState before_;
   double goal_ = 0;
   bool powered_ = false;
 };
@@ -286,21 +326,24 @@ TEST(mask_control, keeps_them_with_a_head_that_goes_up_to_500_mm_s_at_random) {
 }
 
 TEST(mask_control, a_slow_motor_makes_mono_longer_and_says_so_in_time) {
-  MaskRigSettings settings = little_travel(0.6);
-  settings.limits.half_period_returns = false;
-  settings.servo.simulated.speed_mm_s = 3.6;  // of the 5 that were promised
-  settings.servo.simulated.lag_ms = 60;       // of 15
-  MaskRig rig(settings);
-  rig.head = to_and_fro(300, 8);
-  Promises promises(rig, settings);
-  bool stuck = false;
-  rig.each_tick = [&](const auto& in, const MaskControl::Output& out) {
-    promises.check(in, out);
-    stuck = stuck || out.state.phase == MaskPhase::stuck;
-  };
-  rig.run_for(40'000 * kMs);
-  EXPECT_FALSE(stuck);
-  EXPECT_GT(promises.flying_ticks, 100);
+  for (const std::int64_t notice_ms : {60, 200}) {
+    MaskRigSettings settings = little_travel(0.6);
+    settings.limits.half_period_returns = false;
+    settings.limits.return_notice_ns = notice_ms * kMs;
+    settings.servo.simulated.speed_mm_s = 3.6;  // of the 5 that were promised
+    settings.servo.simulated.lag_ms = 60;       // of 15
+    MaskRig rig(settings);
+    rig.head = to_and_fro(300, 8);
+    Promises promises(rig, settings);
+    bool stuck = false;
+    rig.each_tick = [&](const auto& in, const MaskControl::Output& out) {
+      promises.check(in, out);
+      stuck = stuck || out.state.phase == MaskPhase::stuck;
+    };
+    rig.run_for(40'000 * kMs);
+    EXPECT_FALSE(stuck);
+    EXPECT_GT(promises.flying_ticks, 100);
+  }
 }
 
 // --- eyes and motor lost ---
@@ -347,6 +390,16 @@ TEST(mask_control, measurements_that_stop_count_as_lost_eyes) {
   MaskRig rig(settings);
   ASSERT_GE(rig.run_until_stereo(), 0);
   EXPECT_THAT(rig.run_until(MaskPhase::frozen, 400), testing::AllOf(testing::Ge(0), testing::Le(300)));
+}
+
+TEST(mask_control, measurements_of_the_future_count_as_lost_eyes) {
+  for (const std::int64_t ahead_ms : {99, 101, 5'000}) {
+    MaskRigSettings settings;
+    settings.measure_every_ns = kTickNs;
+    settings.tracker_latency_ns = -ahead_ms * kMs;
+    MaskRig rig(settings);
+    EXPECT_EQ(rig.run_until_stereo(2'000) >= 0, ahead_ms < 100) << ahead_ms << " ms";
+  }
 }
 
 TEST(mask_control, places_that_are_no_numbers_count_as_lost_eyes) {
@@ -402,6 +455,33 @@ TEST(mask_control, an_unplugged_motor_is_absent_at_once_and_homes_when_it_is_bac
   EXPECT_LT(ms, 1'000);
 }
 
+/// What was said to the mask's control last, to be said again with a change.
+class LastInput {
+ public:
+  explicit LastInput(MaskRig& rig) : rig_(rig) {
+    rig.each_tick = [this](const MaskControl::Input& given, const auto&) { input = given; };
+  }
+  MaskControl::Output step() {
+    input.now_ns += kTickNs;
+    return rig_.control().step(input);
+  }
+  MaskControl::Input input;
+
+ private:
+  MaskRig& rig_;
+};
+
+TEST(mask_control, a_port_that_has_gone_takes_its_motor_along_whatever_that_said_last) {
+  MaskRig rig;
+  LastInput last(rig);
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  EXPECT_TRUE(last.step().state.stereo_allowed);
+  last.input.servo.status = port::PortStatus::gone;
+  const MaskControl::Output out = last.step();
+  EXPECT_EQ(out.state.phase, MaskPhase::absent);
+  EXPECT_FALSE(out.powered);
+}
+
 TEST(mask_control, a_motor_that_falls_silent_is_absent_after_its_last_reading_is_old) {
   MaskRig rig;
   ASSERT_GE(rig.run_until_stereo(), 0);
@@ -446,6 +526,35 @@ TEST(mask_control, a_jammed_mask_is_found_said_and_let_go) {
   rig.tick();
   EXPECT_EQ(rig.state().phase, MaskPhase::homing);
   EXPECT_GE(rig.run_until_stereo(), 0);
+}
+
+TEST(mask_control, the_first_fault_is_the_one_that_stays) {
+  MaskRig rig;
+  LastInput last(rig);
+  rig.mask().jam(true);
+  ASSERT_GE(rig.run_until(MaskPhase::stuck, 3'000), 0);
+  last.input.servo.phase = ServoPhase::alarm;
+  EXPECT_EQ(last.step().state.phase, MaskPhase::stuck) << "the alarm is of the jam";
+}
+
+TEST(mask_control, a_motor_that_is_rearmed_is_waited_for_three_seconds) {
+  MaskRig rig;
+  LastInput last(rig);
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  last.input.servo.phase = ServoPhase::alarm;
+  ASSERT_EQ(last.step().state.phase, MaskPhase::alarm);
+  last.input.rearm = true;
+  ASSERT_TRUE(last.step().powered) << "what the motor starts anew for";
+  last.input.rearm = false;
+  last.input.servo = {};
+  const std::int64_t rearmed = last.input.now_ns;
+  while (last.input.now_ns < rearmed + 2'990 * kMs) {
+    const MaskControl::Output out = last.step();
+    ASSERT_EQ(out.state.phase, MaskPhase::homing);
+    ASSERT_FALSE(out.powered);
+  }
+  for (int i = 0; i < 4; ++i) last.step();
+  EXPECT_EQ(last.step().state.phase, MaskPhase::absent);
 }
 
 TEST(mask_control, a_mask_jammed_in_a_move_back_is_found) {
@@ -537,6 +646,19 @@ TEST(mask_control, holds_where_calibration_asks_for_it) {
   rig.tick();
   EXPECT_EQ(rig.state().phase, MaskPhase::following);
   EXPECT_GE(rig.run_until_stereo(), 0);
+}
+
+TEST(mask_control, depth_waits_until_the_mask_is_where_calibration_holds_it) {
+  MaskRig rig;
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  rig.hold_mm = -1.5;
+  rig.each_tick = [&](const auto&, const MaskControl::Output& out) {
+    if (!out.state.stereo_allowed) return;
+    EXPECT_NEAR(rig.mask().motor_mm(), -1.5, MaskLimits{}.settle_mm);
+  };
+  rig.tick();
+  EXPECT_EQ(rig.state().phase, MaskPhase::held);
+  EXPECT_THAT(rig.run_until_stereo(), testing::AllOf(testing::Ge(300), testing::Lt(600))) << "1.5 mm at 5 mm/s";
 }
 
 TEST(mask_control, new_optics_are_gone_to_in_mono) {
