@@ -126,7 +126,9 @@ TEST(dynamixel_servo, follows_goals_and_tells_where_it_is) {
     rig.powered = true;
     for (const double goal : {-1.9, 0.0, 1.9}) {
       rig.goal_mm = goal;
-      rig.run_for(1'000 * kMs);
+      rig.run_for(100 * kMs);
+      EXPECT_NEAR(rig.last().reading.velocity_mm_s, std::copysign(5, goal - rig.last().reading.position_mm), 0.1) << "on the way";
+      rig.run_for(900 * kMs);
       EXPECT_NEAR(rig.simulated().motor_mm(), goal, 0.001);
       EXPECT_NEAR(rig.last().reading.position_mm, goal, 0.001);
     }
@@ -322,6 +324,20 @@ TEST(dynamixel_servo, recovers_from_its_bus_watchdog) {
   EXPECT_NEAR(rig.simulated().motor_mm(), -1.9, 0.001);
 }
 
+TEST(dynamixel_servo, asks_for_its_watchdog_at_once_after_a_stall) {
+  for (int ticks = 5; ticks < 45; ++ticks) {  // wherever it is in its round of checks
+    ServoRig rig;
+    ASSERT_GT(rig.run_until_ready(), 0);
+    rig.powered = true;
+    for (int i = 0; i < ticks; ++i) rig.tick();
+    rig.stall(500 * kMs);
+    ASSERT_TRUE(rig.simulated().watchdog_tripped());
+    const std::int64_t ms = rig.run_until([&] { return !rig.ready(); }, 100);
+    EXPECT_GE(ms, 0);
+    EXPECT_LE(ms, 20) << "after " << ticks << " ticks";
+  }
+}
+
 TEST(dynamixel_servo, lets_go_and_holds_again) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
@@ -474,6 +490,46 @@ TEST(dynamixel_servo, another_model_is_left_alone) {
   EXPECT_EQ(rig.last().trouble, ServoTrouble::other_model);
   EXPECT_THAT(trouble_text(rig.last(), {}), HasSubstr("model 350"));
   EXPECT_EQ(rig.simulated().counts().eeprom_writes, 0U);
+}
+
+TEST(dynamixel_servo, what_it_refuses_is_tried_again_once_a_second) {
+  RigSettings settings;
+  settings.simulated.model = 350;
+  ServoRig rig(settings);
+  WatchedPort port(rig.port());
+  rig.put_between(port);
+  ASSERT_GE(rig.run_until([&] { return rig.last().trouble == ServoTrouble::other_model; }), 0);
+  const std::size_t written = port.bytes_written();
+  rig.run_for(980 * kMs);
+  EXPECT_EQ(port.bytes_written(), written);
+  rig.run_for(40 * kMs);
+  EXPECT_GT(port.bytes_written(), written);
+}
+
+TEST(dynamixel_servo, a_register_that_it_refuses_to_tell_is_said) {
+  ServoRig rig;
+  ASSERT_GE(rig.run_until([&] { return rig.last().phase == ServoPhase::setting_up; }), 0);
+  std::array<std::byte, kLongestPacket> refusal;
+  const std::size_t size = encode_status(1, 7, {}, refusal);  // access error
+  for (int i = 0; i < 20 && rig.last().trouble == ServoTrouble::none; ++i) {
+    rig.line().inject(port::Direction::to_host, std::span(refusal).first(size));
+    rig.tick();
+  }
+  EXPECT_EQ(rig.last().trouble, ServoTrouble::refused);
+  EXPECT_EQ(rig.last().phase, ServoPhase::absent);
+}
+
+TEST(dynamixel_servo, its_bus_watchdog_is_off_while_it_is_set_up) {
+  ServoRig rig;
+  rig.simulated().set_value(kBusWatchdog, kWatchdogTripped);
+  WatchedPort port(rig.port());
+  rig.put_between(port);
+  ASSERT_GT(rig.run_until_ready(), 0);
+  std::vector<std::uint32_t> watchdog;
+  for (const WatchedPort::Write& write : port.writes())
+    if (write.address == kBusWatchdog.address) watchdog.push_back(write.value);
+  // A setting up takes longer than the watchdog waits, and one that has tripped is cleared by a zero only.
+  EXPECT_THAT(watchdog, ElementsAre(0U, 5U));
 }
 
 TEST(dynamixel_servo, a_servo_that_may_not_be_that_fast_is_said) {
