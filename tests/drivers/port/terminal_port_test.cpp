@@ -1,8 +1,11 @@
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <iterator>
+#include <string_view>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,6 +51,25 @@ TEST(TerminalPort, reads_nothing_where_nothing_is) {
   EXPECT_EQ(got.status, PortStatus::ok);
 }
 
+/// The driver's end of a pseudo-terminal, beside whoever else has it open.
+class DriversEnd {
+ public:
+  explicit DriversEnd(const std::string& path) : descriptor_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
+  ~DriversEnd() { ::close(descriptor_); }
+  DriversEnd(const DriversEnd&) = delete;
+  DriversEnd& operator=(const DriversEnd&) = delete;
+
+  /// Bytes that the kernel has handed over, and nobody has read.
+  int waiting() const {
+    int bytes = 0;
+    return ::ioctl(descriptor_, FIONREAD, &bytes) == 0 ? bytes : -1;
+  }
+  void say(std::string_view text) const { EXPECT_EQ(::write(descriptor_, text.data(), text.size()), std::ssize(text)); }
+
+ private:
+  int descriptor_;
+};
+
 TEST(TerminalPort, stale_backlog_is_thrown_away_on_opening_and_on_request) {
   const PtyPair pty = pair();
   pty.master->write(bytes_of("said before anyone listened"));
@@ -55,7 +77,8 @@ TEST(TerminalPort, stale_backlog_is_thrown_away_on_opening_and_on_request) {
   pty.master->write(bytes_of("new"));
   EXPECT_EQ(read_soon(*port, 3), "new");
   pty.master->write(bytes_of("old"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const DriversEnd line(pty.slave_path);
+  ASSERT_TRUE(soon([&] { return line.waiting() == 3; }));
   port->discard_input();
   pty.master->write(bytes_of("newer"));
   EXPECT_EQ(read_soon(*port, 5), "newer");
@@ -64,8 +87,10 @@ TEST(TerminalPort, stale_backlog_is_thrown_away_on_opening_and_on_request) {
 TEST(TerminalPort, what_the_simulator_said_before_doesnt_echo_back_to_it) {
   const PtyPair pty = pair();
   pty.master->write(bytes_of("records\r\n"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(read_text(*pty.master), "");
+  const DriversEnd line(pty.slave_path);
+  ASSERT_TRUE(soon([&] { return line.waiting() == 9; }));
+  line.say(".");
+  EXPECT_EQ(read_soon(*pty.master, 1), ".") << "the first that it hears";
 }
 
 TEST(TerminalPort, a_vanished_device_is_gone_for_reads_and_writes) {
