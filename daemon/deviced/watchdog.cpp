@@ -13,15 +13,11 @@ void watch(const std::stop_token& stop, const std::function<std::uint64_t()>& ti
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
-  std::uint64_t last = ticks();
-  int still = 0;
+  StillLooks looks(ticks(), times.looks);
   while (!stop.stop_requested()) {
     wake.wait_for(lock, stop, times.look, [] { return false; });
     if (stop.stop_requested()) return;
-    const std::uint64_t now = ticks();
-    still = now == last ? still + 1 : 0;
-    last = now;
-    if (still == times.looks) return stuck();
+    if (looks.stuck(ticks())) return stuck();
   }
 }
 

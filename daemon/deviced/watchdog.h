@@ -17,6 +17,23 @@ struct WatchdogTimes {
   int looks = 6;
 };
 
+/// Counts looks in a row that saw no tick.
+class StillLooks {
+ public:
+  StillLooks(std::uint64_t ticks, int looks) : last_(ticks), looks_(looks) {}
+  /// Takes a look. True when the ticks have stood still for all of the looks, once for each time that they stand still.
+  bool stuck(std::uint64_t ticks) {
+    still_ = ticks == last_ ? still_ + 1 : 0;
+    last_ = ticks;
+    return still_ == looks_;
+  }
+
+ private:
+  std::uint64_t last_;
+  int looks_;
+  int still_ = 0;
+};
+
 class Watchdog {
  public:
   /// `ticks` counts while all is well; called from a thread of the watchdog's own, as is `stuck`, once.
