@@ -178,6 +178,104 @@ TEST_F(EyeWatchTest, a_picture_in_mono_is_told_once_and_each_time_after_depth) {
   EXPECT_THAT(told(), ElementsAre("shows mono", "shows depth", "shows mono", "shows depth", "shows mono"));
 }
 
+TEST_F(EyeWatchTest, depth_that_comes_back_before_mono_was_seen_stays_told) {
+  refresh_until(1);
+  mask_phase_ = MaskPhase::frozen;
+  for (int i = 0; i < 60 && watch_.seen().depth_share > 0; ++i) refresh();
+  ASSERT_EQ(watch_.seen().depth_share, 0);
+  mask_phase_ = MaskPhase::following;
+  for (int i = 0; i < 5; ++i) refresh();
+  ASSERT_GT(watch_.seen().depth_share, 0);
+  EXPECT_EQ(told().back(), "shows depth");
+}
+
+TEST_F(EyeWatchTest, mono_is_told_when_its_first_picture_is_seen_however_many_follow) {
+  mask_phase_ = MaskPhase::homing;
+  for (int i = 0; i < 3; ++i) {  // each is lit 30 ms later
+    look();
+    watch_.drawn(std::nullopt);
+    pass_ms(16);
+  }
+  EXPECT_THAT(told(), ElementsAre("shows mono"));
+}
+
+TEST_F(EyeWatchTest, a_picture_for_a_file_counts_from_when_a_display_would_have_lit_it) {
+  mask_phase_ = MaskPhase::homing;
+  look();
+  const std::int64_t lit_ns = watch_.lit_ns();
+  ASSERT_GT(lit_ns, clock_.now_ns() + 2 * kEyeWatchMs);
+  watch_.taken();
+  clock_.advance_ns(lit_ns - clock_.now_ns() - kEyeWatchMs);
+  look();
+  EXPECT_THAT(told(), IsEmpty());
+  pass_ms(1);
+  look();
+  EXPECT_THAT(told(), ElementsAre("shows mono"));
+}
+
+TEST_F(EyeWatchTest, a_refresh_that_the_display_tells_fixes_when_pictures_light_up) {
+  for (int i = 0; i < 3; ++i) {
+    look();
+    pass_ms(5);
+    watch_.drawn(clock_.now_ns() - 2 * kEyeWatchMs);
+  }
+  const std::int64_t refreshed = clock_.now_ns() - 2 * kEyeWatchMs;
+  look();
+  // Drawn 5 ms from now, 7 ms after that refresh, it waits for the next; then half a period of scan-out, and the panel.
+  EXPECT_EQ(watch_.lit_ns(), refreshed + (kPeriodMs + kPeriodMs / 2 + kPanelMs) * kEyeWatchMs);
+}
+
+TEST_F(EyeWatchTest, what_the_panel_says_is_drawn_though_the_eyes_see_the_same) {
+  seen_ = false;
+  eyes_phase_ = ipc::EyesPhase::searching;
+  mask_phase_ = MaskPhase::parked;
+  for (int i = 0; i < 5; ++i) refresh();
+  EXPECT_FALSE(look());
+  eyes_phase_ = ipc::EyesPhase::silent;
+  EXPECT_TRUE(look());
+}
+
+TEST_F(EyeWatchTest, the_panel_gives_the_devices_own_words) {
+  ipc::DeviceInfo tracker, servo;
+  tracker.role = "eye tracker";
+  tracker.trouble = "/dev/ttyUSB0: nothing is plugged in there";
+  servo.role = "prism servo";
+  servo.trouble = "no servo with id 1 answers";
+  servo.simulated = true;
+  daemon_->have({tracker, servo});
+  link_->reload();
+  ASSERT_TRUE(turn_until([&] { return link_->devices().size() == 2; }));
+  mask_phase_ = MaskPhase::absent;
+  look();
+  EXPECT_EQ(watch_.facts()->advice, servo.trouble);
+  EXPECT_EQ(watch_.facts()->mask, "motor doesn't answer");
+  EXPECT_TRUE(watch_.facts()->simulated);
+  eyes_phase_ = ipc::EyesPhase::absent;
+  look();
+  EXPECT_EQ(watch_.facts()->advice, tracker.trouble);
+  EXPECT_EQ(watch_.facts()->mask, "motor doesn't answer");
+}
+
+TEST_F(EyeWatchTest, nothing_is_said_of_a_mask_that_does_not_move) {
+  stereo::FollowOptions still;
+  still.movable_mask = false;
+  watch_.set_options(still);
+  mask_phase_ = MaskPhase::absent;
+  refresh_until(1);
+  refresh();
+  EXPECT_EQ(watch_.facts()->mask, "");
+  EXPECT_EQ(watch_.facts()->state, panels::EyesFacts::State::good);
+}
+
+TEST_F(EyeWatchTest, a_mask_that_moves_is_watched_even_for_fixed_eyes) {
+  stereo::FollowOptions fixed;
+  fixed.follow = false;
+  watch_.set_options(fixed);
+  EXPECT_TRUE(watch_.watches());
+  stop_daemon();
+  EXPECT_FALSE(watch_.watches());
+}
+
 TEST_F(EyeWatchTest, without_the_daemon_the_picture_loses_its_depth) {
   refresh_until(1);
   stop_daemon();

@@ -21,7 +21,7 @@
 
 namespace prismesh::kiosk {
 
-/// Welcomes everybody, has no device, and writes down what it is told about mask and picture.
+/// Welcomes everybody, has the devices it is given, and writes down what it is told about mask and picture.
 class ListeningDaemon final : public ipc::ServerHandler {
  public:
   explicit ListeningDaemon(const std::filesystem::path& socket)
@@ -48,6 +48,7 @@ class ListeningDaemon final : public ipc::ServerHandler {
       return;
     }
     const std::lock_guard lock(mutex_);
+    if (std::holds_alternative<ipc::Rearm>(request->request)) told_.emplace_back("rearm");
     if (const auto* hold = std::get_if<ipc::HoldMask>(&request->request)) told_.push_back("hold " + std::to_string(hold->position_mm));
     if (std::holds_alternative<ipc::ReleaseMask>(request->request)) told_.emplace_back("release");
     if (std::holds_alternative<ipc::Reload>(request->request)) told_.emplace_back("reload");
@@ -55,7 +56,27 @@ class ListeningDaemon final : public ipc::ServerHandler {
       told_.emplace_back(shown->mono ? "shows mono" : "shows depth");
       return;  // what has no answer
     }
-    server_.send(client, ipc::encode_device_answer(request->number, ipc::Devices{{}, "mono"}));
+    if (!refusal_.empty() && std::holds_alternative<ipc::HoldMask>(request->request))
+      server_.send(client, ipc::encode_device_answer(request->number, ipc::Failed{"", 0, refusal_}));
+    else
+      server_.send(client, ipc::encode_device_answer(request->number, ipc::Devices{devices_, "mono"}));
+    if (!std::holds_alternative<ipc::Reload>(request->request)) return;
+    for (const ipc::DeviceInfo& device : std::exchange(changed_, {}))
+      server_.send(client, ipc::encode_device_event(ipc::DeviceChanged{device}));
+  }
+  /// What it answers from now on.
+  void have(std::vector<ipc::DeviceInfo> devices) {
+    const std::lock_guard lock(mutex_);
+    devices_ = std::move(devices);
+  }
+  /// Says so when it has been told to reload, after the answer.
+  void change(ipc::DeviceInfo device) {
+    const std::lock_guard lock(mutex_);
+    changed_.push_back(std::move(device));
+  }
+  void refuse_holding(std::string why) {
+    const std::lock_guard lock(mutex_);
+    refusal_ = std::move(why);
   }
   /// What its clients read.
   ipc::DevicePage& page() { return page_; }
@@ -68,6 +89,8 @@ class ListeningDaemon final : public ipc::ServerHandler {
   ipc::DevicePage page_;
   std::mutex mutex_;
   std::vector<std::string> told_;
+  std::vector<ipc::DeviceInfo> devices_, changed_;
+  std::string refusal_;
   ipc::Server server_;
   std::thread thread_;
 };
