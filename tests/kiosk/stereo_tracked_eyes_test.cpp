@@ -404,6 +404,158 @@ TEST(TrackedEyes, DepthNeverComesFasterThanItsRiseWhereverItHasFadedTo) {
   }
 }
 
+/// A viewer in the middle and a mask that follows, looked at each 17 ms for pictures of 20 to 37 ms later.
+class Looks {
+ public:
+  explicit Looks(const FollowOptions& options = prism_mask()) : eyes(options) {
+    reading = eyes_measured_at(kStart);
+    reading.prism.emplace();
+    reading.prism->stereo_allowed = true;
+  }
+  LitTime lit() const { return {now + 20 * kMillisecondNs, now + 37 * kMillisecondNs}; }
+  const SeenFrom& look() {
+    now += 17 * kMillisecondNs;
+    if (measures) reading.eyes->measured_ns = now;
+    reading.eyes->time_ns = reading.prism->time_ns = reading.prism->measured_ns = now;
+    return seen = eyes.look(reading, now, lit());
+  }
+  void look_for_ms(std::int64_t ms) {
+    for (const std::int64_t until = now + ms * kMillisecondNs; now < until;) look();
+  }
+
+  TrackedEyes eyes;
+  DeviceReading reading;
+  SeenFrom seen;
+  std::int64_t now = kStart;
+  bool measures = true;
+};
+
+TEST(TrackedEyes, EyesThatComeBackElsewhereAreGoneOverTo) {
+  Looks looks;
+  looks.look_for_ms(500);
+  EXPECT_EQ(looks.seen.depth_share, 1);
+  looks.measures = false;
+  looks.look_for_ms(120);
+  looks.measures = true;
+  looks.reading.eyes->between_eyes_mm[0] = 100;
+  double before = looks.seen.between_eyes_mm.x();
+  for (int i = 0; i < 40; ++i) {
+    const SeenFrom& seen = looks.look();
+    EXPECT_LT(seen.between_eyes_mm.x() - before, 30) << "no jump";
+    if (seen.between_eyes_mm.x() < 70) {
+      EXPECT_EQ(seen.depth_share, 0) << "30 mm beside the eyes";
+    }
+    before = seen.between_eyes_mm.x();
+  }
+  EXPECT_NEAR(before, 100, 2.1);
+}
+
+TEST(TrackedEyes, NoTrackerIsSoSlowThatDepthStaysForLonger) {
+  World world(prism_mask());
+  allow_stereo(world);
+  world.reading.eyes->lost_after_ns = 60'000 * kMillisecondNs;
+  world.run_until_stereo();
+  world.tracker_sees = false;
+  world.run_ms(2'000);
+  world.close_pictures();
+  EXPECT_EQ(world.seen.depth_share, 0);
+  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 500 * kMillisecondNs);
+}
+
+TEST(TrackedEyes, TheSeparationThatWasMeasuredWithTheViewerCounts) {
+  for (const bool was_measured : {false, true}) {
+    FollowOptions options;
+    if (was_measured) options.eye_separation_mm = 58;
+    Looks looks(options);
+    looks.reading.eyes->eye_separation_mm = 68;
+    looks.look_for_ms(500);
+    EXPECT_NEAR(looks.seen.eye_separation_mm, was_measured ? 58 : 68, 1) << "but for the zone in which it stands still";
+  }
+}
+
+TEST(TrackedEyes, EachTimeThatTheMaskStopsTheDepthFades) {
+  Looks looks;
+  for (int round = 0; round < 3; ++round) {
+    looks.reading.prism->stereo_allowed = true;
+    looks.look_for_ms(500);
+    EXPECT_EQ(looks.seen.depth_share, 1);
+    looks.reading.prism->stereo_allowed = false;
+    int between = 0;
+    for (int i = 0; i < 10; ++i) {
+      const double share = looks.look().depth_share;
+      between += share > 0 && share < 1 ? 1 : 0;
+    }
+    EXPECT_GE(between, 3) << "of the five pictures in 80 ms, round " << round;
+    EXPECT_EQ(looks.seen.depth_share, 0);
+  }
+}
+
+TEST(TrackedEyes, AMoveBackThatWasAnnouncedIsMonoForEveryPictureThatTouchesItAndForNoOther) {
+  for (const bool allowed_meanwhile : {true, false}) {
+    Looks looks;
+    looks.look_for_ms(500);
+    ipc::PrismState& mask = *looks.reading.prism;
+    mask.mono_from_ns = looks.now + 203 * kMillisecondNs;
+    mask.mono_until_ns = mask.mono_from_ns + 120 * kMillisecondNs;
+    for (int i = 0; i < 40; ++i) {
+      const bool moves = looks.now + 17 * kMillisecondNs >= mask.mono_from_ns && looks.now + 17 * kMillisecondNs < mask.mono_until_ns;
+      mask.stereo_allowed = allowed_meanwhile || !moves;
+      const double share = looks.look().depth_share;
+      const LitTime lit = looks.lit();
+      const bool touches = lit.until_ns > mask.mono_from_ns && lit.from_ns < mask.mono_until_ns;
+      if (touches) {
+        EXPECT_EQ(share, 0) << i;
+      } else if (allowed_meanwhile) {
+        EXPECT_GT(share, 0) << i;
+      }
+    }
+    EXPECT_EQ(looks.seen.depth_share, 1);
+  }
+}
+
+TEST(TrackedEyes, AMoveBackThatNobodyAnnouncedInTimeEndsDepthAtOnce) {
+  Looks looks;
+  looks.look_for_ms(500);
+  ipc::PrismState& mask = *looks.reading.prism;
+  mask.stereo_allowed = false;
+  mask.mono_from_ns = looks.now;
+  mask.mono_until_ns = looks.now + 120 * kMillisecondNs;
+  EXPECT_EQ(looks.look().depth_share, 0) << "no fade while the mask flies";
+}
+
+TEST(TrackedEyes, AnotherDisplayBeginsInMonoAtItsRestingPlace) {
+  Looks looks;
+  looks.reading.eyes->between_eyes_mm = {200, 0, 650};
+  looks.look_for_ms(1000);
+  EXPECT_EQ(looks.seen.depth_share, 1);
+  EXPECT_NEAR(looks.seen.between_eyes_mm.x(), 200, 3);
+  FollowOptions other;
+  other.resting_mm = {0, 50, 700};
+  looks.eyes.set_options(other);
+  looks.look();
+  EXPECT_EQ(looks.seen.depth_share, 0);
+  EXPECT_LT((looks.seen.between_eyes_mm - other.resting_mm).norm(), 1) << "and goes over to the eyes from there";
+  looks.look_for_ms(1000);
+  EXPECT_EQ(looks.seen.depth_share, 1);
+}
+
+TEST(TrackedEyes, TheMaskIsWhereItWasMeasuredOrWhereItShouldBe) {
+  TrackedEyes eyes(prism_mask());
+  DeviceReading reading;
+  ipc::PrismState& mask = reading.prism.emplace();
+  const auto mask_mm = [&](double place_mm) {
+    mask.position_mm = mask.goal_mm = place_mm;
+    return eyes.look(reading, kStart, {kStart + 20 * kMillisecondNs, kStart + 37 * kMillisecondNs}).mask_mm;
+  };
+  EXPECT_FALSE(mask_mm(0.3)) << "never measured";
+  mask.time_ns = mask.measured_ns = kStart;
+  EXPECT_FALSE(mask_mm(std::nan("")));
+  EXPECT_EQ(mask_mm(0.3), 0.3);
+  for (const double wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) EXPECT_EQ(mask_mm(wrong), 0.3);
+  EXPECT_EQ(mask_mm(0.304), 0.3) << "stands still";
+  EXPECT_EQ(mask_mm(0.306), 0.306);
+}
+
 TEST(TrackedEyes, ThePlaceNeverJumpsAndGoesBackToRestWhenNobodyIsThere) {
   const HeadMotion motion(MotionKind::still, 2, Vector3d(180, -40, 720));
   World world(prism_mask(), motion);
