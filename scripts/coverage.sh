@@ -4,7 +4,8 @@ coverage_modules=(base/file mesh/deck mesh/document daemon/modeld)
 coverage_tests=(base_test mesh_deck_test mesh_deck_{lsdyna,nastran,radioss,abaqus}_test mesh_document_test modeld_test faults_test cli_test)
 
 # run_coverage [MODULE..]: runs the tests built with counters and prints what they reach of these modules (default: those that hold users'
-# data), and each branch that none reaches. A program that a test kills leaves no counts.
+# data), and each error branch that none takes and that tests/untested_errors.txt gives no reason for. Every branch that goes one way only lies in
+# out/coverage/one_way.txt. A program that a test kills leaves no counts.
 run_coverage() {
   local name objects=()
   [ $# -gt 0 ] || set -- "${coverage_modules[@]}"
@@ -20,5 +21,5 @@ run_coverage() {
   llvm-profdata-14 merge -sparse out/coverage/*.profraw -o out/coverage/all.profdata
   for name in "${coverage_tests[@]}" prismesh prismesh-modeld; do objects+=(-object "build/coverage/bin/$name"); done
   llvm-cov-14 export -format=text -skip-expansions -instr-profile=out/coverage/all.profdata "${objects[@]:1}" >out/coverage/all.json
-  python3 scripts/coverage.py out/coverage/all.json "$@" | tee out/coverage/report.txt
+  python3 scripts/coverage.py out/coverage/all.json tests/untested_errors.txt out/coverage/one_way.txt "$@" | tee out/coverage/report.txt
 }
