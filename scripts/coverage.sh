@@ -5,7 +5,7 @@ coverage_tests=(base_test mesh_deck_test mesh_deck_{lsdyna,nastran,radioss,abaqu
 
 # run_coverage [MODULE..]: runs the tests built with counters and prints what they reach of these modules (default: those that hold users'
 # data), and each error branch that none takes and that tests/untested_errors.txt gives no reason for. Every branch that goes one way only lies in
-# out/coverage/one_way.txt. A program that a test kills leaves no counts.
+# out/coverage/one_way.txt. The counts are kept in a mapped file (%c), so that programs that a test kills leave theirs too.
 run_coverage() {
   local name objects=()
   [ $# -gt 0 ] || set -- "${coverage_modules[@]}"
@@ -15,7 +15,7 @@ run_coverage() {
   mkdir -p out/coverage
   say "Running the tests"
   for name in "${coverage_tests[@]}"; do
-    LLVM_PROFILE_FILE=$PWD/out/coverage/%m.profraw "build/coverage/bin/$name" --gtest_brief=1 </dev/null >"out/coverage/$name.log" 2>&1 ||
+    LLVM_PROFILE_FILE=$PWD/out/coverage/%c%m.profraw "build/coverage/bin/$name" --gtest_brief=1 </dev/null >"out/coverage/$name.log" 2>&1 ||
       echo "$name failed: out/coverage/$name.log"
   done
   llvm-profdata-14 merge -sparse out/coverage/*.profraw -o out/coverage/all.profdata
