@@ -217,6 +217,8 @@ TEST_F(FileTest, a_file_marked_read_only_is_left_alone_by_root_too) {
 }
 
 TEST_F(FileTest, read_only_targets_and_folders_are_refused) {
+  const fs::path others = write("others", "old");
+  fs::permissions(others, ::geteuid() == 0 ? fs::perms(0644) : fs::perms(0444));
   if (::geteuid() == 0) {
     // Root may write anything; the refusals are for everybody else.
     ASSERT_EQ(::chmod(folder_.c_str(), 0777), 0);
@@ -231,12 +233,17 @@ TEST_F(FileTest, read_only_targets_and_folders_are_refused) {
   const PendingFile over_file{target, {"new"}};
   const Result<void> folder_failed = replace_files({&in_folder, 1});
   const Result<void> file_failed = replace_files({&over_file, 1});
+  const PendingFile over_others{others, {"new"}};
+  const Result<void> others_failed = replace_files({&over_others, 1});
   ASSERT_EQ(::seteuid(::getuid()), 0);
   ASSERT_FALSE(folder_failed);
   EXPECT_NE(folder_failed.error().message.find("is read-only"), std::string::npos) << folder_failed.error().text();
   ASSERT_FALSE(file_failed);
   EXPECT_EQ(file_failed.error().message, "is read-only; nothing was changed");
   EXPECT_EQ(content(target), "old");
+  ASSERT_FALSE(others_failed);
+  EXPECT_EQ(others_failed.error().message, "is read-only; nothing was changed");
+  EXPECT_EQ(content(others), "old");
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 // Every file call of whole sessions fails in turn: once, from then on, or half done. Whatever was acknowledged comes back after the end of
 // the daemon, nothing that was refused does, and the deck is of one state.
-#include <gtest/gtest.h>
 #include <algorithm>
 
+#include <gtest/gtest.h>
+
+#include "base/file.h"
 #include "tests/faults/power_cut.h"
 #include "tests/faults/session.h"
 
@@ -89,6 +91,22 @@ TEST_P(FailingCalls, LoseNothingAcknowledged) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sessions, FailingCalls, ::testing::ValuesIn(sessions()), [](const auto& tested) { return tested.param.name; });
+
+TEST(ReplacingAFile, SaysWhyItsFolderTakesNone) {
+  const Root root;
+  for (const auto& [error, message] :
+       {std::pair{EACCES, "is read-only (Permission denied)"}, std::pair{EPERM, "is read-only (Operation not permitted)"},
+        std::pair{EROFS, "is read-only (Read-only file system)"}, std::pair{EIO, "Input/output error; nothing was changed"},
+        std::pair{EDQUOT, "the disk is full (Disk quota exceeded); nothing was changed"}}) {
+    test::record_file_calls(root.disk(), root.log(), Failure{.at = 1, .error = error});
+    const PendingFile file{root.disk() / "deck.k", {"new"}};
+    const Result<void> replaced = replace_files({&file, 1});
+    test::stop_recording_file_calls();
+    ASSERT_FALSE(replaced);
+    EXPECT_NE(replaced.error().text().find(message), std::string::npos) << replaced.error().text();
+    EXPECT_FALSE(fs::exists(file.path));
+  }
+}
 
 }  // namespace
 }  // namespace prismesh::modeld::faults
