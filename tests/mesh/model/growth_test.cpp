@@ -1,9 +1,11 @@
 // Adding and removing nodes and shells: indices stay, ids are found, copies aren't touched, and what differs is told.
 #include "mesh/model/growth.h"
 
+#include <functional>
 #include <map>
 #include <random>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -111,6 +113,33 @@ TEST(Growth, tells_what_differs) {
   EXPECT_EQ(moved_nodes(opened, model), std::vector{NodeIndex(std::size_t{2})});
   remove_node(model, NodeIndex(std::size_t{2}));
   EXPECT_TRUE(moved_nodes(opened, model).empty()) << "what is gone hasn't moved";
+}
+
+TEST(Growth, tells_each_kind_of_difference_by_itself) {
+  const Model opened = sheet(2, 1);
+  const std::map<std::string, std::function<void(Model&)>> edits{
+      {"a node added",
+       [](Model& m) {
+         add_node(m, 77, {0, 0, 1}, edge_origin(NodeIndex(std::size_t{0}), NodeIndex(std::size_t{1})));
+       }},
+      {"a node removed", [](Model& m) { remove_node(m, NodeIndex(std::size_t{0})); }},
+      {"a shell added", [](Model& m) { add_shell(m, 5, m.shell(ShellIndex(std::size_t{0})), ShellIndex(std::size_t{0})); }},
+      {"a shell removed", [](Model& m) { remove_shell(m, ShellIndex(std::size_t{1})); }},
+      {"a shell reshaped", [](Model& m) { set_shell_nodes(m, ShellIndex(std::size_t{0}), m.shell(ShellIndex(std::size_t{1}))); }}};
+  for (const auto& [name, edit] : edits) {
+    Model model = opened;
+    edit(model);
+    EXPECT_FALSE(changes_between(opened, model).empty()) << name;
+  }
+}
+
+TEST(Growth, lists_only_shells_of_the_deck_as_reshaped) {
+  Model model = sheet(2, 1);
+  const ShellIndex added = add_shell(model, 5, model.shell(ShellIndex(std::size_t{0})), ShellIndex(std::size_t{0}));
+  set_shell_nodes(model, added, model.shell(ShellIndex(std::size_t{1})));
+  EXPECT_TRUE(model.growth->reshaped_shells.empty());
+  set_shell_nodes(model, ShellIndex(std::size_t{1}), model.shell(ShellIndex(std::size_t{0})));
+  EXPECT_EQ(model.growth->reshaped_shells, std::vector{ShellIndex(std::size_t{1})});
 }
 
 TEST(Growth, shares_what_it_does_not_change) {

@@ -57,6 +57,7 @@ TEST(IdIndex, is_like_a_map_whatever_the_ids) {
   expect_like_a_map(shuffled);
   expect_like_a_map({42});
   expect_like_a_map({5, 5, 5});
+  expect_like_a_map({1, 1, 4'000'000'000, 4'000'000'000, 4'000'000'000});
 }
 
 TEST(IdIndex, is_empty_without_ids) {

@@ -77,6 +77,37 @@ TEST(References, begin_at_the_first_id_above_0_of_their_steps) {
   references.add(range(Referred::node, -3, 20, 5));
   references.finish();
   EXPECT_EQ(references.all()[0].first, 2);
+
+  References whole_steps;
+  whole_steps.add(Referrer{});
+  whole_steps.add(range(Referred::node, -5, 20, 5));
+  whole_steps.finish();
+  EXPECT_EQ(whole_steps.all()[0].first, 5);
+}
+
+TEST(References, name_an_id_in_the_order_of_their_first_ids) {
+  References references;
+  references.add(Referrer{});
+  for (const std::int64_t first : {9, 1, 5}) references.add(range(Referred::node, first, 20));
+  references.finish();
+  const std::vector<Reference> found = references.naming(Referred::node, 10);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].first, 1);
+  EXPECT_EQ(found[1].first, 5);
+  EXPECT_EQ(found[2].first, 9);
+}
+
+TEST(References, of_two_cards_or_kinds_stay_apart_though_their_ids_count_up) {
+  References references;
+  references.add(Referrer{});
+  references.add(Referrer{});
+  references.add({Referred::node, ReferenceRole::list, 4, 4, 1, 0, 0});
+  references.add({Referred::node, ReferenceRole::list, 5, 5, 1, 1, 0});
+  references.add({Referred::shell, ReferenceRole::list, 6, 6, 1, 1, 0});
+  references.finish();
+  ASSERT_EQ(references.all(Referred::node).size(), 2u);
+  EXPECT_EQ(references.naming(Referred::node, 5).at(0).referrer, 1u);
+  EXPECT_TRUE(references.named(Referred::shell, 6));
 }
 
 TEST(References, keep_their_cards_when_appended) {
