@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/letter_case.h"
 #include "mesh/deck/lsdyna/field_line.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
 #include "mesh/deck/number.h"
@@ -32,17 +33,26 @@ Result<std::vector<Line>> members_of(std::string_view text, const Referrer& set)
   return members;
 }
 
-/// A list of ids, from field `first` of its lines on.
+/// Whether a line of a general set lists single nodes or elements; others name parts, sets or boxes.
+bool lists_single_ones(std::string_view word) { return word == "NODE" || word == "ELEM" || word == "ELEMENT"; }
+
+/// A list of ids. In a general set the first field of each line is a word.
 class IdList {
  public:
   IdList(std::string_view text, const Referrer& set, std::vector<Line> lines)
-      : text_(text), columns_(columns_of(set.style)), lines_(std::move(lines)) {}
+      : text_(text), columns_(columns_of(set.style)), general_(has_word(set.keyword, "GENERAL")), lines_(std::move(lines)) {}
 
   /// Takes ids out of their lines; those behind move up. False: one isn't there as a plain number.
-  bool take_out(std::span<const std::int64_t> leaving, std::size_t first, std::vector<Replacement>& out) {
+  bool take_out(std::span<const std::int64_t> leaving, std::vector<Replacement>& out) {
     std::set<std::int64_t> wanted(leaving.begin(), leaving.end()), found;
+    const std::size_t first = general_ ? 1 : 0;
     for (const Line& line : lines_) {
       FieldLine fields(line.text, kSetWidths, columns_);
+      const std::string word = general_ ? upper(fields.text(0)) : std::string();
+      if (general_ && !lists_single_ones(word)) {
+        if (!word.starts_with('D')) ++remaining_;  // DNODE, DPART, ... only take away
+        continue;
+      }
       std::vector<std::string> kept;
       bool touched = false;
       for (std::size_t f = first; f < 8; ++f) {
@@ -89,6 +99,7 @@ class IdList {
 
   std::string_view text_;
   Columns columns_;
+  bool general_;
   std::vector<Line> lines_;
   std::size_t remaining_ = 0;
 };
@@ -167,10 +178,7 @@ std::optional<std::size_t> followed_field(std::string_view keyword, Referred ref
 std::optional<std::size_t> first_corner(const Referrer& set, const FieldLine& line) {
   if (!set.keyword.starts_with("SET_SEGMENT")) return std::nullopt;
   if (!has_word(set.keyword, "GENERAL")) return 0;
-  std::string word(line.text(0));
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-  if (word != "SEG") return std::nullopt;
+  if (upper(line.text(0)) != "SEG") return std::nullopt;
   return 1;
 }
 
@@ -195,7 +203,7 @@ Result<std::vector<Replacement>> change_set(std::string_view text, const Referre
   std::vector<Replacement> out;
   if (!leaving.empty()) {
     IdList list(text, set, *members);
-    const bool found = column ? false : list.take_out(leaving, general ? 1 : 0, out);
+    const bool found = column ? false : list.take_out(leaving, out);
     if (!found)
       return fail("", column ? "lists its entries with attributes, from which none can be taken out"
                              : "names what would go by a parameter, or otherwise than as a plain number");

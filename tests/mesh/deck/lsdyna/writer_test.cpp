@@ -315,6 +315,25 @@ TEST_F(KeywordSets, change_in_the_manner_of_their_lines) {
   }
 }
 
+/// In a general set a line's word says what its numbers are.
+TEST_F(KeywordSets, keep_what_has_the_same_number_as_one_that_goes) {
+  const ListCase cases[] = {
+      {"a part", "*SET_NODE_GENERAL\n1\nNODE,3,1\nPART,3\n", {}, {3}, "*SET_NODE_GENERAL\n1\nNODE,1\nPART,3\n"},
+      {"a part beside others", "*SET_SHELL_GENERAL\n1\nPART,3,4\nELEM,3,1\n", {}, {3}, "*SET_SHELL_GENERAL\n1\nPART,3,4\nELEM,1\n"},
+      {"a set", "*SET_SHELL_GENERAL\n1\nelement,3,1\nSET,3\n", {}, {3}, "*SET_SHELL_GENERAL\n1\nelement,1\nSET,3\n"},
+      {"a box",
+       "*SET_NODE_GENERAL\n1\n      NODE         3         1\n       BOX         3\n",
+       {},
+       {3},
+       "*SET_NODE_GENERAL\n1\n      NODE         1\n       BOX         3\n"},
+  };
+  for (const ListCase& c : cases) {
+    SCOPED_TRACE(c.what);
+    open(c.before);
+    EXPECT_EQ(after(change(c.joining, c.leaving)), c.after);
+  }
+}
+
 struct RefusedList {
   const char* what;
   std::string set;
@@ -332,6 +351,7 @@ TEST_F(KeywordSets, refuse_what_they_cant_write) {
       {"a parameter beside a number", "*PARAMETER\nIn,3\n*SET_NODE_LIST\n1\n1,&n,6,6\n", {}, {3, 6}, otherwise},
       {"the last one", "*SET_NODE_LIST\n1\n3\n6\n", {}, {3, 6}, "would be left empty"},
       {"the last one of general", "*SET_NODE_GENERAL\n1\nNODE,3,6\n", {}, {3, 6}, "would be left empty"},
+      {"all but what takes away", "*SET_NODE_GENERAL\n1\nNODE,3\nDNODE,5\n", {}, {3}, "would be left empty"},
       {"entries with attributes",
        "*SET_NODE_COLUMN\n1\n1,0.5\n3,0.5\n",
        {},
