@@ -297,7 +297,10 @@ Result<std::vector<Replacement>> replace_segment(std::string_view text, const Re
     FieldLine line = old;
     for (std::size_t c = 0; c < 4; ++c) {
       std::int64_t node = 0;
-      if (!parse_integer(line.text(*first + c), node) || node != with[i][c]) line.set(*first + c, std::to_string(with[i][c]));
+      if (parse_integer(line.text(*first + c), node) && node == with[i][c]) continue;
+      const std::string number = std::to_string(with[i][c]);
+      if (!line.free_format() && number.size() > line.width(*first + c)) return fail("", "has fields too narrow for the new ids");
+      line.set(*first + c, number);
     }
     lines += (i > 0 ? std::string(eol_of(text, card)) : std::string()) + line.str();
   }

@@ -435,6 +435,25 @@ TEST_F(KeywordSets, replace_segments_in_the_manner_of_their_line) {
     }
 }
 
+TEST_F(KeywordSets, refuse_segments_that_dont_fit_or_arent_any) {
+  const std::vector<std::array<std::int64_t, 4>> large = {{1, 2, 5, 12345678901}}, small = {{1, 2, 5, 7}};
+  const auto refused = [&](const std::string& cards, const auto& with) {
+    open(cards);
+    const std::size_t line = text().rfind('\n', text().size() - 2) + 1;
+    const auto changed = kKeywordWriter->replace_segment(text(), first(), line, with);
+    return changed ? "" : changed.error().message;
+  };
+  const std::string narrow = "has fields too narrow for the new ids", none = "can't be replaced";
+  EXPECT_EQ(refused("*SET_SEGMENT\n1\n         1         2         5         4\n", large), narrow);
+  EXPECT_EQ(refused("*SET_SEGMENT %\n1\n         1         2         5         4\n", large), narrow);
+  EXPECT_EQ(refused("*SET_SEGMENT\n1\n         1         2         5         4\n", small), "");
+  EXPECT_EQ(refused("*SET_SEGMENT\n1\n1,2,5,4\n", large), "");
+  EXPECT_EQ(refused("*SET_SEGMENT_GENERAL\n1\nPART,1,2,5,4\n", small), none);
+  EXPECT_EQ(refused("*LOAD_SEGMENT\n1,1.,0.,1,2,5,4\n", small), none);
+  open("*SET_SEGMENT_GENERAL\n1\nDSEG,1,2,5,4\n");
+  EXPECT_EQ(kKeywordWriter->segment(text(), first(), text().find("DSEG")), std::nullopt);
+}
+
 struct CopyCase {
   const char* what;
   Referred referred;
