@@ -68,7 +68,8 @@ std::string number_for(double value, const FieldLine& line, std::size_t field, W
   const std::size_t width = line.free_format() ? std::max(line.width(field), line.text(field).size()) : line.width(field);
   std::string text = format_coordinate(value, width);
   double back = 0;
-  if (!parse_real(text, back) || back != value) {
+  parse_real(text, back);
+  if (back != value) {
     ++card.rounded;
     card.largest_error = std::max(card.largest_error, std::abs(back - value));
   }

@@ -19,7 +19,8 @@ constexpr std::array<int, 6> kWrittenNodeWidths = {8, 16, 16, 16, 8, 8};
 std::string number_for(double value, std::size_t width, WrittenCard& card) {
   std::string text = format_coordinate(value, width);
   double back = 0;
-  if (!parse_real(text, back) || back != value) {
+  parse_real(text, back);
+  if (back != value) {
     ++card.rounded;
     card.largest_error = std::max(card.largest_error, std::abs(back - value));
   }

@@ -440,6 +440,41 @@ TEST(Elements, with_too_few_nodes_are_left_out_and_counted) {
   EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 5u);
 }
 
+TEST(Elements, of_other_classes_with_too_few_nodes_are_left_out_and_told) {
+  const std::pair<const char*, long> cases[] = {
+      {"*ELEMENT_DISCRETE\n1,1,0,0\n", 33},        // both ends are the ground
+      {"*ELEMENT_SOLID\n1,4,1,2,0,3\n", 33},       // a corner that none can stand for
+      {"*ELEMENT_SOLID\n1,4,1,2,3,4\n2,4\n", 34},  // its nodes would be on the next card
+      {"*ELEMENT_SOLID_H20\n1,4\n1,2\n", 33},     {"*ELEMENT_TSHELL\n1,4,1,2,3,4,5,6,7\n", 33},
+  };
+  for (const auto& [cards, line] : cases) {
+    const auto opened = open(cards);
+    ASSERT_OPENED(opened);
+    const Warning incomplete = warning(*opened->deck, "incomplete-element");
+    EXPECT_EQ(incomplete.count, 1u) << cards;
+    EXPECT_EQ(incomplete.line, line) << cards;
+  }
+}
+
+TEST(Elements, whose_fields_cant_be_read_are_named_by_line) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"*ELEMENT_MASS\n1,x\n", "expected an id but found \"x\""},
+      {"*ELEMENT_MASS_NODE_SET\n1,2 3\n", "expected an id but found \"2 3\""},
+      {"*ELEMENT_SPH\nm,1\n", "expected an element id but found \"m\""},
+      {"*ELEMENT_BEAM\n1,1,1,y\n", "expected an id but found \"y\""},
+      {"*ELEMENT_SOLID\nz,1\n", "expected an element id but found \"z\""},
+      {"*ELEMENT_SOLID\n-1,1,1,2,3,4\n", "an element needs an id above 0"},
+      {"*ELEMENT_BEAM\n0,1,1,2\n", "an element needs an id above 0"},
+      {"*ELEMENT_SHELL\n,1,1,2,3\n", "an element needs an id above 0"},
+  };
+  for (const auto& [cards, message] : cases) {
+    const auto opened = open(cards);
+    ASSERT_FALSE(opened) << cards;
+    EXPECT_EQ(opened.error().message, message);
+    EXPECT_EQ(opened.error().line, 33) << cards;
+  }
+}
+
 TEST(Nodes, of_equal_ids_the_first_counts) {
   const DeckFolder folder;
   const auto opened = folder.open(

@@ -130,6 +130,27 @@ TEST(Transformation, that_is_not_there_or_not_understood_is_said_and_holds_the_n
             "transformation 7 of this include moves things out of the range of numbers" + ending);
 }
 
+/// Each transformation by itself is one that numbers can hold.
+TEST(Transformation, of_includes_in_each_other_that_lead_too_far_is_said_and_holds_the_inner_ones) {
+  const DeckFolder folder;
+  folder.write("inner.k", "*NODE\n1,1.,0.,0.\n");
+  folder.write("outer.k", "*NODE\n2,2.,0.,0.\n*DEFINE_TRANSFORMATION\n8\nSCALE,1.e40,1.e40,1.e40\n" + include("inner.k", "8"));
+  const auto opened = folder.open("*KEYWORD\n*DEFINE_TRANSFORMATION\n7\nSCALE,1.e40,1.e40,1.e40\n" + include("outer.k", "7") + "*END\n");
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  const Warning said = warning(*opened->deck, "unresolved-transformation");
+  EXPECT_EQ(said.count, 1u);
+  EXPECT_EQ(said.message,
+            "transformation 8 of this include moves things out of the range of numbers; the include is shown without that, and its nodes "
+            "can't be moved");
+  EXPECT_EQ(std::filesystem::path(said.file).filename(), "outer.k");
+  EXPECT_EQ(said.line, 6);
+  EXPECT_EQ(position_of(model, 1), Vec3(1, 0, 0));
+  EXPECT_EQ(position_of(model, 2), Vec3(2e40, 0, 0));
+  EXPECT_EQ(model.node_holds[model.find_node(1).value], kHeldByInclude);
+  EXPECT_EQ(model.node_holds[model.find_node(2).value], 0);
+}
+
 TEST(Transformation, includes_placed_by_each_others_nodes_end_with_a_warning) {
   const DeckFolder folder;
   folder.write("a.k", "*NODE\n1,1.,0.,0.\n2,2.,0.,0.\n");
@@ -224,6 +245,32 @@ TEST(IncludeTransform, an_offset_that_leaves_no_id_is_an_error) {
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().message, "the include's offset makes the id of this node -1");
   EXPECT_EQ(opened.error().line, 3);
+}
+
+TEST(IncludeTransform, of_a_node_that_stands_too_far_away_is_an_error) {
+  const DeckFolder folder;
+  folder.write("sub.k", "*NODE\n7,1.,2.,3.\n5,4.,5.,-2.e200\n");
+  const auto opened = folder.open(include("sub.k", "0", "6,0,0"));
+  ASSERT_FALSE(opened);
+  EXPECT_EQ(opened.error().message, "a node of a transformed include stands too far away");
+  EXPECT_EQ(std::filesystem::path(opened.error().file).filename(), "sub.k");
+  EXPECT_EQ(opened.error().line, 3);
+}
+
+TEST(IncludeTransform, factors_that_multiply_up_beyond_all_units_are_told) {
+  for (const char* factors : {"1.,1.,1.e20", "1.,1.,1.e-20", "1.e20,1.,1.", "1.,1.e-20,1."}) {
+    const DeckFolder folder;
+    folder.write("inner.k", "*NODE\n1,1.,0.,0.\n");
+    folder.write("outer.k", "*NODE\n2,1.,0.,0.\n" + include("inner.k", "0", "0,0,0", factors));
+    const auto opened = folder.open("*KEYWORD\n" + include("outer.k", "0", "0,0,0", factors) + "*END\n");
+    ASSERT_OPENED(opened);
+    const Warning said = warning(*opened->deck, "bad-include-transform");
+    EXPECT_EQ(said.message, "*INCLUDE_TRANSFORM has a factor of units that can't be used; that is left out") << factors;
+    EXPECT_EQ(said.count, 1u);
+    EXPECT_EQ(std::filesystem::path(said.file).filename(), "outer.k");
+    EXPECT_EQ(said.line, 3);
+    EXPECT_TRUE(position_of(opened->model, 1).allFinite());
+  }
 }
 
 TEST(IncludeTransform, factors_change_lengths_densities_and_moduli) {
