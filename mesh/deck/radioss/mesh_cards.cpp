@@ -234,8 +234,7 @@ class PieceReader {
     // A spring's second end may be the ground.
     if (form.element_class == ElementClass::discrete && ends == 2 && nodes_[1] == 0) ends = 1;
     const auto end = nodes_.begin() + static_cast<std::ptrdiff_t>(ends);
-    if (std::any_of(nodes_.begin(), end, [](std::int64_t n) { return n <= 0; }) || (form.ends > 0 && ends == 0) ||
-        (form.ends > 8 && ends < 4)) {
+    if (std::any_of(nodes_.begin(), end, [](std::int64_t n) { return n <= 0; }) || (form.ends > 0 && ends == 0)) {
       out_.note("incomplete-element", offset, id);
       return;
     }

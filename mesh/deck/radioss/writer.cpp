@@ -42,7 +42,8 @@ void put(std::string& line, std::size_t begin, std::size_t width, std::string_vi
 void put_coordinate(std::size_t width, std::size_t axis, double value, WrittenCard& card) {
   const std::string number = format_coordinate(value, 2 * width);
   double back = 0;
-  if (!parse_real(number, back) || back != value) {
+  parse_real(number, back);
+  if (back != value) {
     ++card.rounded;
     card.largest_error = std::max(card.largest_error, std::abs(back - value));
   }

@@ -1,52 +1,15 @@
 // Radioss starter decks of our own: what is read, where it is shown, what is written back.
 #include "mesh/deck/card_writer.h"
-#include "tests/mesh/deck/deck_files.h"
+#include "tests/mesh/deck/radioss/starter_deck.h"
 
 namespace prismesh::mesh::deck {
 namespace {
-
-constexpr std::string_view kHead =
-    "#RADIOSS STARTER\n/BEGIN\ndeck\n      2022         0\n                  kg                  mm                  ms\n"
-    "                  kg                  mm                  ms\n";
-
-std::string right(const std::string& text, std::size_t width) { return std::string(width - std::min(width, text.size()), ' ') + text; }
-
-/// A card of whole numbers.
-std::string card(std::initializer_list<std::int64_t> ids, std::size_t width = 10) {
-  std::string out;
-  for (const std::int64_t id : ids) out += right(std::to_string(id), width);
-  return out + "\n";
-}
-std::string reals(std::initializer_list<const char*> numbers, std::size_t width = 20) {
-  std::string out;
-  for (const char* number : numbers) out += right(number, width);
-  return out;
-}
-std::string node(std::int64_t id, const char* x, const char* y, const char* z, std::size_t width = 10) {
-  return right(std::to_string(id), width) + reals({x, y, z}, 2 * width) + "\n";
-}
-const std::string kSquare = "/NODE\n" + node(1, "0", "0", "0") + node(2, "1", "0", "0") + node(3, "1", "1", "0") + node(4, "0", "1", "0");
-const std::string kPart = "/PART/1\nplate\n" + card({7, 8, 0});
 
 bool all_is_understood(const Deck& deck) {
   std::size_t odd = 0;
   for (const char* kind : {"unread-card", "unread-transform", "empty-transform", "undefined-unit"}) odd += warning(deck, kind).count;
   return odd == 0;
 }
-
-class Radioss : public ::testing::Test {
- protected:
-  Result<OpenedDeck> open(const std::string& text) const { return deck::open(folder_.write("deck_0000.rad", text)); }
-  /// The main file saved with some node elsewhere.
-  std::string saved(const OpenedDeck& opened, std::int64_t id, const Vec3& to) const {
-    const auto report = save(*opened.deck, opened.model, with_node_at(opened.model, id, to), folder_ / "out/main.rad");
-    EXPECT_TRUE(report) << report.error().text();
-    return content(folder_ / "out/main.rad");
-  }
-  void SetUp() override { std::filesystem::create_directories(folder_ / "out"); }
-
-  DeckFolder folder_;
-};
 
 TEST_F(Radioss, reads_every_kind_of_element) {
   std::string text(kHead);
