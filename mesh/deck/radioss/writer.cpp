@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "mesh/deck/format_number.h"
 #include "mesh/deck/number.h"
@@ -93,24 +94,25 @@ class IdList {
 
   Result<std::vector<Replacement>> change(std::span<const std::int64_t> joining, std::span<const std::int64_t> leaving) {
     if (lines_.empty()) return fail("", "has no title, so its list can't be found");
-    std::vector<std::int64_t> gone(leaving.begin(), leaving.end());
-    std::sort(gone.begin(), gone.end());
+    const std::set<std::int64_t> gone(leaving.begin(), leaving.end());
+    std::set<std::int64_t> found;
     std::vector<Replacement> out;
-    std::size_t found = 0, kept = 0, last = 0;
+    std::size_t kept = 0, last = 0;
     std::vector<std::string> last_fields;
     for (std::size_t l = 1; l < lines_.size(); ++l) {
       std::vector<std::string> fields = fields_of(lines_[l].text);
       const std::size_t before = fields.size();
       std::erase_if(fields, [&](const std::string& one) {
         std::int64_t id = 0;
-        return parse_integer(one, id) && std::binary_search(gone.begin(), gone.end(), id);
+        if (!parse_integer(one, id) || !gone.contains(id)) return false;
+        found.insert(id);
+        return true;
       });
-      found += before - fields.size();
       kept += fields.size();
       if (fields.size() != before) replace_line(l, fields, out);
       if (!fields.empty()) last = l, last_fields = std::move(fields);
     }
-    if (found < gone.size()) return fail("", "names one of them by a parameter or in an include, so it can't be taken out");
+    if (found.size() < gone.size()) return fail("", "names one of them by a parameter or in an include, so it can't be taken out");
     if (kept + joining.size() == 0) return fail("", "would be left without any");
     if (joining.empty()) return out;
     for (const std::int64_t id : joining)

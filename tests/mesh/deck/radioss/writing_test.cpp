@@ -167,6 +167,7 @@ TEST_F(RadiossWriting, what_cant_leave_its_list_is_refused_with_the_place) {
   const Case cases[] = {
       {"/GRNOD/NODE/1\nset\n" + card({3}) + card({6}), "GRNOD/NODE 1 would be left without any; nothing was written", 17},
       {by_parameter + right("&n", 10) + card({1, 6}), hidden, 20},
+      {by_parameter + right("&n", 10) + card({1, 6, 6}), hidden, 20},
       {"/GRNOD/NODE/1\nset\n" + card({1}) + "#include list.inc\n", hidden, 17},
       {"/GRNOD/NODE/1\n#include titled.inc\n", "GRNOD/NODE 1 has no title, so its list can't be found; nothing was written", 17},
       {"/RBODY/1\nbody\n" + card({3}), "node 3 can't be removed: RBODY 1 names it; nothing was written", 19},
