@@ -87,10 +87,15 @@ std::vector<ListLine> list_lines(std::string_view text, const Referrer& set) {
   return out;
 }
 
-/// A set's list of ids, ten a line.
+/// A set's list of ids, ten a line; or of ranges: first and last (/GENE), or first, last and step (/GEN_INCR).
 class IdList {
  public:
-  IdList(std::string_view text, const Referrer& set) : text_(text), width_(width_of(set)), lines_(list_lines(text, set)) {}
+  IdList(std::string_view text, const Referrer& set)
+      : text_(text),
+        width_(width_of(set)),
+        steps_(set.keyword.ends_with("/GEN_INCR")),
+        ranges_(steps_ || set.keyword.ends_with("/GENE")),
+        lines_(list_lines(text, set)) {}
 
   Result<std::vector<Replacement>> change(std::span<const std::int64_t> joining, std::span<const std::int64_t> leaving) {
     if (lines_.empty()) return fail("", "has no title, so its list can't be found");
@@ -104,7 +109,7 @@ class IdList {
       const std::size_t before = fields.size();
       std::erase_if(fields, [&](const std::string& one) {
         std::int64_t id = 0;
-        if (!parse_integer(one, id) || !gone.contains(id)) return false;
+        if (ranges_ || !parse_integer(one, id) || !gone.contains(id)) return false;
         found.insert(id);
         return true;
       });
@@ -117,6 +122,7 @@ class IdList {
     if (joining.empty()) return out;
     for (const std::int64_t id : joining)
       if (id > largest_id(width_)) return fail("", "has fields that are too narrow for the new id");
+    if (ranges_) return with_ranges(last, joining);
     append(last, std::move(last_fields), joining, out);
     return out;
   }
@@ -146,6 +152,19 @@ class IdList {
     out.push_back({lines_[l].offset, (fields.empty() ? next : end) - lines_[l].offset, line_of(fields)});
   }
 
+  /// A line for each range of ids that count up by one, behind the last.
+  std::vector<Replacement> with_ranges(std::size_t last, std::span<const std::int64_t> joining) const {
+    const std::size_t end = lines_[last].offset + lines_[last].text.size();
+    std::string added;
+    for (std::size_t i = 0, next = 0; i < joining.size(); i = next) {
+      for (next = i + 1; next < joining.size() && joining[next] == joining[next - 1] + 1;) ++next;
+      std::vector<std::string> range = {std::to_string(joining[i]), std::to_string(joining[next - 1])};
+      if (steps_) range.emplace_back("1");
+      added += line_end_at(text_, end) + line_of(range);
+    }
+    return {{end, 0, std::move(added)}};
+  }
+
   /// Fills up the last line that stays, then adds lines.
   void append(std::size_t last, std::vector<std::string> fields, std::span<const std::int64_t> joining,
               std::vector<Replacement>& out) const {
@@ -168,6 +187,8 @@ class IdList {
 
   std::string_view text_;
   std::size_t width_;
+  bool steps_;
+  bool ranges_;
   std::vector<ListLine> lines_;
 };
 
