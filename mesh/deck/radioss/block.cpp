@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/letter_case.h"
 #include "mesh/deck/number.h"
 
 namespace prismesh::mesh::deck::radioss {
@@ -32,12 +33,16 @@ Keyword keyword_at(std::string_view text, std::size_t offset) {
     if (!part.empty() && part.find_first_not_of("0123456789") == std::string_view::npos && parse_integer(part, number)) {
       out.numbers.push_back(number);
     } else if (out.numbers.empty() && !part.empty()) {
-      std::string word(part);
-      std::transform(word.begin(), word.end(), word.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
-      out.words.push_back(std::move(word));
+      out.words.push_back(upper(part));
     }
   }
   return out;
+}
+
+bool is_include(std::string_view text) {
+  constexpr std::string_view kWord = "#include";
+  if (text.size() <= kWord.size() || (text[kWord.size()] != ' ' && text[kWord.size()] != '\t')) return false;
+  return std::equal(kWord.begin(), kWord.end(), text.begin(), [](char a, char b) { return a == lower(b); });
 }
 
 bool Lines::next(std::string_view& line, std::size_t& offset) {

@@ -55,6 +55,11 @@ struct Line {
   std::size_t offset = 0;
 };
 
+/// Whether a text begins with "#include" in any letters, with a blank behind it.
+bool is_include(std::string_view text);
+/// What begins with this line isn't read.
+inline constexpr std::string_view kEndOfData = "#enddata";
+
 /// Walks over the data lines of a stretch: comments are skipped, line ends (LF or CRLF) cut off. Blank lines are data.
 class Lines {
  public:

@@ -30,13 +30,6 @@ std::size_t next_mark(std::string_view text, std::size_t at) {
 
 std::size_t next_line(std::string_view text, std::size_t at) { return std::min(text.find('\n', at), text.size() - 1) + 1; }
 
-/// "#include" in any case, with a blank behind it.
-bool is_include(std::string_view line) {
-  constexpr std::string_view kWord = "#include";
-  if (line.size() <= kWord.size() || (line[kWord.size()] != ' ' && line[kWord.size()] != '\t')) return false;
-  return std::equal(kWord.begin(), kWord.end(), line.begin(), [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b + 32 : b); });
-}
-
 }  // namespace
 
 Walk::Walk(FileSet found) : files(std::move(found)), main_folder_(files.folder_of(0)) {}
@@ -69,12 +62,12 @@ void Walk::walk_file(std::uint32_t file, int depth) {
       close_stretch(at);
       keyword(file, at);
       stretch_ = {file, after, after};
-    } else if (is_include(text.substr(at, 16))) {
+    } else if (is_include(text.substr(at))) {
       close_stretch(at);
       include(file, at, depth);
       ended_ = false;
       stretch_ = {file, after, after};
-    } else if (text.substr(at).starts_with("#enddata")) {
+    } else if (text.substr(at).starts_with(kEndOfData)) {
       close_stretch(at);
       stretch_ = {file, at, at};
       ended_ = true;

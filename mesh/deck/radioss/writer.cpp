@@ -266,7 +266,7 @@ class Writer : public CardWriter {
     block.header.replace(0, slash, triangles ? "/SH3N" : "/SHELL");
     // Behind the block's last card: comments in between belong to it, or to what follows.
     block.offset = found.end;
-    if (text.substr(block.offset, 1) == "#") return fail("", "stands in a block that goes on in an include");
+    if (is_include(text.substr(block.offset))) return fail("", "stands in a block that goes on in an include");
     return block;
   }
 
@@ -330,8 +330,10 @@ class Writer : public CardWriter {
   std::int64_t largest_shell_id(std::uint16_t style) const override { return largest_node_id(style); }
 
  private:
-  /// An include may stand in the middle of a block.
-  static bool ends_block(std::string_view text, std::size_t line) { return text[line] == '/' || text.substr(line, 8) == "#include"; }
+  /// An include may stand in the middle of a block. Behind "#enddata" nothing is read.
+  static bool ends_block(std::string_view text, std::size_t line) {
+    return text[line] == '/' || is_include(text.substr(line)) || text.substr(line).starts_with(kEndOfData);
+  }
   mutable BlockFinder blocks_{ends_block};
 
   static Result<WrittenCard> with_corners(std::string line, const Style& style, const ShellCard& shell) {

@@ -226,6 +226,14 @@ TEST_F(RadiossWriting, triangles_and_quads_go_to_the_block_of_their_kind) {
   }
 }
 
+TEST_F(RadiossWriting, a_new_block_stands_where_it_is_read) {
+  folder_.write("shells.inc", two_quads() + "#enddata\nwhat isn't read\n/SHELL/1\n");
+  edit(std::string(kHead) + six_nodes() + "#include shells.inc\n" + kPart + "/END\n");
+  cut(11);
+  EXPECT_EQ(written("shells.inc"), "/SHELL/1\n" + card({12, 2, 3, 6, 5}) + "/SH3N/1\n" + was_quad({11, 1, 2, 5}) + was_quad({13, 1, 5, 4}) +
+                                       "#enddata\nwhat isn't read\n/SHELL/1\n");
+}
+
 TEST_F(RadiossWriting, where_no_block_of_the_other_kind_can_stand_it_is_refused) {
   const std::string interrupted = "stands in a block that an include interrupts", going_on = "stands in a block that goes on in an include";
   const std::string lost = "has no keyword that could be found";
@@ -237,7 +245,10 @@ TEST_F(RadiossWriting, where_no_block_of_the_other_kind_can_stand_it_is_refused)
   const Case cases[] = {
       {"behind an include", "/SHELL/1\n" + card({12, 2, 3, 6, 5}) + "#include more.inc\n" + card({11, 1, 2, 5, 4}), "deck_0000.rad",
        interrupted, 17},
+      {"in any letters", "/SHELL/2\n" + card({12, 2, 3, 6, 5}) + "#INCLUDE keyword.inc\n" + card({11, 1, 2, 5, 4}), "deck_0000.rad",
+       interrupted, 17},
       {"before an include", "/SHELL/1\n" + card({11, 1, 2, 5, 4}) + "#include more.inc\n", "deck_0000.rad", going_on, 15},
+      {"before one in any letters", "/SHELL/1\n" + card({11, 1, 2, 5, 4}) + "#Include more.inc\n", "deck_0000.rad", going_on, 15},
       {"of no part", "/SHELL\n" + card({11, 1, 2, 5, 4}), "deck_0000.rad", lost, 15},
       {"in a file of cards alone", "/SHELL/1\n#include cards.inc\n", "cards.inc", lost, 2},
   };
