@@ -304,17 +304,21 @@ class Writer : public CardWriter {
     const std::size_t width = width_of(set);
     const std::size_t end = end_of_line(text, card);
     const std::string line = without_tabs(text.substr(card, end - card));
+    for (const auto& corners : with)
+      if (*std::max_element(corners.begin(), corners.end()) > largest_id(width))
+        return fail("", "has fields that are too narrow for the new id");
     std::int64_t last_id = 0;
-    for (const ListLine& other : list_lines(text, set)) {
+    const std::vector<ListLine> lines = list_lines(text, set);
+    for (std::size_t l = 1; l < lines.size(); ++l) {
       std::int64_t id = 0;
-      if (parse_integer(field(without_tabs(other.text), width, 0), id)) last_id = std::max(last_id, id);
+      if (parse_integer(field(without_tabs(lines[l].text), width, 0), id)) last_id = std::max(last_id, id);
     }
     std::string out;
     for (std::size_t i = 0; i < with.size(); ++i) {
       std::string segment = line;
-      if (i > 0) put_id(segment, 0, width, ++last_id);
+      if (i > 0 && ++last_id > largest_id(width)) return fail("", "has no room for the number of one more segment");
+      if (i > 0) put_id(segment, 0, width, last_id);
       for (std::size_t c = 0; c < 4; ++c) put_id(segment, (1 + c) * width, width, with[i][c]);
-      if (last_id > largest_id(width)) return fail("", "has no room for the number of one more segment");
       out += (i > 0 ? line_end_at(text, end) : "") + segment;
     }
     const std::size_t removed = with.empty() ? std::min(text.find('\n', end), text.size() - 1) + 1 : end;

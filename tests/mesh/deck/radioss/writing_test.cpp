@@ -413,7 +413,7 @@ TEST_F(RadiossSegments, are_replaced_in_their_columns) {
     std::string after;
   };
   const std::string head(kHead), old = "#RADIOSS STARTER\n/BEGIN\nold\n      44       0\n";
-  const std::string named = "/SURF/SEG/2\nsurface\n";
+  const std::string named = "/SURF/SEG/2\n2022\n";
   const Case cases[] = {
       {"divided",
        head,
@@ -455,7 +455,9 @@ TEST_F(RadiossSegments, that_cant_be_written_say_why) {
   open_with(head + "/SURF/SEG/2\nsurface\n" + card({9999999999, 1, 2, 3, 4}) + "/END\n");
   EXPECT_EQ(refused(one), "");
   EXPECT_EQ(refused(two), "has no room for the number of one more segment");
+  EXPECT_EQ(refused({{1, 2, 3, 10000000000}}), "has fields that are too narrow for the new id");
   open_with(old + "/SURF/SEG/2\nsurface\n" + card({7, 1, 2, 3, 4}, 8) + "/END\n");
+  EXPECT_EQ(refused({{1, 2, 3, 100000000}}), "has fields that are too narrow for the new id");
   EXPECT_EQ(refused({{1, 2, 3, 99999999}}), "");
 }
 
