@@ -122,6 +122,9 @@ class CardWriter {
   virtual Result<std::vector<Replacement>> replace_segment(std::string_view text, const Referrer& set, std::size_t card,
                                                            std::span<const std::array<std::int64_t, 4>> with) const;
 
+  /// Whether all cards of a file give ids less the offsets of its mesh. False: the cards that are changed give those of the model.
+  virtual bool shifts_whole_files() const { return true; }
+
   /// What a card that names one alone means for those that come from it.
   virtual Inheritance inheritance(const Referrer& card, Referred referred) const;
   /// Where inheritance says `follows`: the card at `single.card`, once more for each of `ids`, right behind it. `single` names one id,

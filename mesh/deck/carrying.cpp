@@ -84,13 +84,18 @@ class Carrying {
 
   Result<void> changeable(const Referrer& card, std::uint64_t offset, const std::string& why) const {
     if (deck_.is_held(card.file)) return refuse(card, offset, words(card) + " stands in an include that is used twice, and " + why);
-    if (!offsets_in(deck_, card.file))
+    if (!offsets_of(card))
       return refuse(card, offset, words(card) + " stands in an include whose ids are shifted by more than one amount, and " + why);
     return {};
   }
 
+  /// What the model's ids are more than those that the card gives; nullopt: it can't be told.
+  std::optional<IdOffsets> offsets_of(const Referrer& card) const {
+    return writer_.shifts_whole_files() ? offsets_in(deck_, card.file) : IdOffsets();
+  }
+
   std::int64_t raw(Referred referred, std::int64_t id, const Referrer& card) const {
-    const IdOffsets offsets = offsets_in(deck_, card.file).value_or(IdOffsets());
+    const IdOffsets offsets = offsets_of(card).value_or(IdOffsets());
     return id - (referred == Referred::node ? offsets.node : offsets.element);
   }
 
@@ -237,7 +242,7 @@ class Carrying {
       const std::optional<Corners> raw_corners = writer_.segment(text_of(card), card, reference.card);
       if (!raw_corners) continue;  // whether it matters shows when a node of it goes
       Corners segment = *raw_corners;
-      const std::int64_t offset = offsets_in(deck_, card.file).value_or(IdOffsets()).node;
+      const std::int64_t offset = offsets_of(card).value_or(IdOffsets()).node;
       for (std::int64_t& node : segment) node += offset;
       if (!same_nodes(segment, before)) continue;
       if (Result<void> done = replace_segment(key, card, segment, before, after); !done) return done;

@@ -325,6 +325,9 @@ class Writer : public CardWriter {
     return std::vector<Replacement>{{card, removed - card, std::move(out)}};
   }
 
+  /// A submodel may be a part of a file, and in one that adds to ids no such card is changed.
+  bool shifts_whole_files() const override { return false; }
+
   /// Whatever names one alone goes on meaning that one: main nodes, histories, sections, directions; but who is taken out of a set?
   Inheritance inheritance(const Referrer& card, Referred) const override {
     return card.keyword.substr(0, 2) == "GR" ? Inheritance::forbids : Inheritance::stays;

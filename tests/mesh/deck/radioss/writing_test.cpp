@@ -86,6 +86,17 @@ TEST_F(RadiossWriting, new_cards_stand_behind_those_they_come_from) {
   EXPECT_EQ(written(), old_head + eleven_nodes(8) + five_quads(8) + "/END\n");
 }
 
+TEST_F(RadiossWriting, ids_and_lengths_of_a_submodel_are_its_own) {
+  const std::string before = std::string(kHead) + "/UNIT/3\nmetres\n" + reals({"kg", "m", "s"}) + "\n//SUBMODEL/5/3\nsub\n" +
+                             card({1000, 100, 200, 300, 400, 500});
+  const std::string after = "//ENDSUB\n/GRNOD/NODE/1\nset\n" + card({102, 101}) + "/END\n";
+  const Growing& growing = edit(before + six_nodes() + two_quads() + after);
+  EXPECT_EQ(position_of(growing.model, 102), Vec3(1000, 0, 0));
+  divide_11();
+  EXPECT_EQ(growing.model.find_node(107).valid() && growing.model.find_shell(213).valid(), true);
+  EXPECT_EQ(written(), before + eleven_nodes() + five_quads() + "//ENDSUB\n/GRNOD/NODE/1\nset\n" + card({102, 101, 107}) + "/END\n");
+}
+
 TEST_F(RadiossWriting, of_a_submodel_lists_that_would_change_are_refused) {
   const std::string before = std::string(kHead) + "//SUBMODEL/5\nsub\n" + card({1000, 100, 200, 300, 400, 500}) + six_nodes() + two_quads();
   edit(before + "/GRNOD/NODE/1\nset\n" + card({1, 2}) + "//ENDSUB\n/END\n");
