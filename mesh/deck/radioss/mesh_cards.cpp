@@ -127,11 +127,12 @@ class PieceReader {
     return context_.parameters->integer(text, context_.contexts, segment_->context);
   }
 
-  /// The first `count` fields of a line into fields_ from `first` on; those that lack are 0. False: stop, an error is noted.
-  bool cut_integers(std::string_view line, std::size_t offset, std::size_t first, std::size_t count, bool& usable) {
+  /// The first `count` fields of a line into fields_; missing ones are 0. `element`: the line begins with its id. False: stop, an error is
+  /// noted.
+  bool cut_integers(std::string_view line, std::size_t offset, bool element, std::size_t count, bool& usable) {
     for (std::size_t f = 0; f < count; ++f) {
       const std::string_view text = field(line, width_, f);
-      std::int64_t& value = fields_[first + f];
+      std::int64_t& value = fields_[f];
       value = 0;
       if (text.empty() || plain_integer(text.data(), text.data() + text.size(), value)) continue;
       const std::optional<std::int64_t> slow = integer(text);
@@ -140,7 +141,7 @@ class PieceReader {
         continue;
       }
       usable = false;
-      return refuse(offset, text, first + f == 0 ? "an element id" : "an id", fields_[0]);
+      return refuse(offset, text, element && f == 0 ? "an element id" : "an id", fields_[0]);
     }
     return true;
   }
@@ -153,7 +154,7 @@ class PieceReader {
     while (next(line, offset)) {
       ++cards;
       bool usable = true;
-      if (!cut_integers(line, offset, 0, 1 + form.nodes[0], usable)) return false;
+      if (!cut_integers(line, offset, true, 1 + form.nodes[0], usable)) return false;
       if (usable && fields_[0] <= 0) return fail_at(offset, "an element needs an id above 0");
       const bool read = form.kind == CardKind::shell ? read_shell(line, offset, usable) : read_element(offset, usable);
       if (!read) return false;
@@ -209,7 +210,7 @@ class PieceReader {
       std::string_view line;
       std::size_t line_offset = 0;
       if (!next(line, line_offset)) break;
-      if (!cut_integers(line, line_offset, 0, form.nodes[l], usable)) return false;
+      if (!cut_integers(line, line_offset, false, form.nodes[l], usable)) return false;
       nodes_.insert(nodes_.end(), fields_.begin(), fields_.begin() + form.nodes[l]);
     }
     ++counter(form.element_class);
