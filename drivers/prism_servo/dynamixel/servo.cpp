@@ -348,7 +348,7 @@ void Servo::set_up(std::int64_t now_ns) {
     if (which == kBaudRate) stage_ = Stage::changing_baud;
     return;
   }
-  ask(Asked::value, which, encode_read(settings_.id, which.address, which.size, room()), which.size, now_ns);
+  ask_value(which, now_ns);
 }
 
 /// The new speed has been written and has had time to arrive: follow it, and look whether the servo is there.
@@ -379,19 +379,20 @@ void Servo::run(std::int64_t now_ns, double goal_mm, bool powered) {
 }
 
 void Servo::ask_motion_or_check(std::int64_t now_ns) {
-  if (check_error_next_) {
-    const std::size_t bytes = encode_read(settings_.id, kHardwareErrorStatus.address, kHardwareErrorStatus.size, room());
-    return ask(Asked::value, kHardwareErrorStatus, bytes, kHardwareErrorStatus.size, now_ns);
-  }
-  if (--ticks_to_check_ <= 0 || check_watchdog_next_) {
-    torque_is_next_ = !torque_is_next_ && !check_watchdog_next_;
-    const Register which = torque_is_next_ ? kTorqueCheck : kBusWatchdog;
-    ticks_to_check_ = kTicksBetweenChecks;
-    check_watchdog_next_ = false;
-    return ask(Asked::value, which, encode_read(settings_.id, which.address, which.size, room()), which.size, now_ns);
-  }
-  const std::size_t bytes = encode_read(settings_.id, kPresentVelocity.address, kMotionData, room());
-  ask(Asked::motion, kPresentVelocity, bytes, kMotionData, now_ns);
+  if (check_error_next_) return ask_value(kHardwareErrorStatus, now_ns);
+  if (--ticks_to_check_ > 0 && !check_watchdog_next_) return ask_motion(now_ns);
+  torque_is_next_ = !torque_is_next_ && !check_watchdog_next_;
+  ticks_to_check_ = kTicksBetweenChecks;
+  check_watchdog_next_ = false;
+  ask_value(torque_is_next_ ? kTorqueCheck : kBusWatchdog, now_ns);
+}
+
+void Servo::ask_motion(std::int64_t now_ns) {
+  ask(Asked::motion, kPresentVelocity, encode_read(settings_.id, kPresentVelocity.address, kMotionData, room()), kMotionData, now_ns);
+}
+
+void Servo::ask_value(Register which, std::int64_t now_ns) {
+  ask(Asked::value, which, encode_read(settings_.id, which.address, which.size, room()), which.size, now_ns);
 }
 
 void Servo::give_alarm(std::uint8_t bits) {
@@ -417,10 +418,10 @@ void Servo::watch_alarm(std::int64_t now_ns, bool powered) {
     return;
   }
   if (question_.what != Asked::nothing) return;
-  check_error_next_ = --ticks_to_check_ <= 0;
-  if (check_error_next_) ticks_to_check_ = kTicksBetweenChecks;
-  check_watchdog_next_ = false;
-  ask_motion_or_check(now_ns);
+  if (--ticks_to_check_ > 0) return ask_motion(now_ns);
+  // Another fault may have joined the first.
+  ticks_to_check_ = kTicksBetweenChecks;
+  ask_value(kHardwareErrorStatus, now_ns);
 }
 
 std::string trouble_text(const PrismServo::Tick& tick, const settings::PrismServoSettings& settings) {

@@ -88,6 +88,8 @@ class Servo final : public PrismServo {
   void change_baud(std::int64_t now_ns);
   void run(std::int64_t now_ns, double goal_mm, bool powered);
   void ask_motion_or_check(std::int64_t now_ns);
+  void ask_motion(std::int64_t now_ns);
+  void ask_value(Register which, std::int64_t now_ns);
   void watch_alarm(std::int64_t now_ns, bool powered);
 
   void begin_search();

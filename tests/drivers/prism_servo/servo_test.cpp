@@ -386,6 +386,25 @@ TEST(dynamixel_servo, an_alarm_is_named_and_ends_with_a_new_start) {
   EXPECT_NEAR(rig.simulated().motor_mm(), 1, 0.001);
 }
 
+TEST(dynamixel_servo, a_fault_that_joins_an_alarm_is_named_too) {
+  for (const bool powered : {true, false}) {
+    ServoRig rig;
+    ASSERT_GT(rig.run_until_ready(), 0);
+    rig.powered = powered;
+    rig.run_for(100 * kMs);
+    rig.simulated().raise_hardware_error(1U << 5U);
+    ASSERT_GE(rig.run_until([&] { return rig.last().phase == ServoPhase::alarm; }, 100), 0);
+    EXPECT_EQ(rig.last().alarm_bits, 1U << 5U);
+    for (unsigned joined = 1U << 5U; const unsigned bit : {2U, 0U, 4U}) {
+      rig.run_for(35 * kTickNs);
+      joined |= 1U << bit;
+      rig.simulated().raise_hardware_error(static_cast<std::uint8_t>(1U << bit));
+      EXPECT_GE(rig.run_until([&] { return rig.last().alarm_bits == joined; }, 100), 0) << "bit " << bit << ", powered " << powered;
+    }
+    EXPECT_EQ(rig.last().phase, ServoPhase::alarm);
+  }
+}
+
 TEST(dynamixel_servo, a_jam_ends_in_an_overload_alarm) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
