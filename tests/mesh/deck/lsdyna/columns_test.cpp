@@ -90,6 +90,66 @@ TEST(Columns, i10_by_keyword_and_standard_by_suffix) {
                   "      10       1       1       2       3       4\n*END\n"));
 }
 
+/// Fields of twenty columns that lean right.
+std::string twenty(std::initializer_list<std::string> texts) {
+  std::string line;
+  for (const std::string& text : texts) line += std::string(20 - text.size(), ' ') + text;
+  return line + "\n";
+}
+
+TEST(Columns, of_an_include_are_those_of_the_deck_unless_it_says_otherwise) {
+  const std::string wide = twenty({"2", "10.0", "0.0", "0.5"}), i10 = "         2            10.0             0.0             0.5\n";
+  const std::string standard = "       2 1.000000000E+01             0.0             0.5\n";
+  const std::tuple<const char*, const char*, std::string> cases[] = {
+      {"*KEYWORD LONG=Y\n", "", wide},
+      {"*KEYWORD LONG=K\n", "", wide},
+      {"*KEYWORD_ID LONG=Y\n", "", wide},
+      {"*KEYWORD LONG=Y\n", "*KEYWORD\n", wide},
+      {"*KEYWORD LONG=Y\n", "*KEYWORD LONG=S\n", standard},
+      {"*KEYWORD LONG=Y\n", "*KEYWORD LONG=N\n", standard},
+      {"*KEYWORD LONG=Y\n", "*KEYWORD I10=Y\n", i10},
+      {"*KEYWORD I10=Y\n", "", i10},
+      {"*KEYWORD I10=Y\n", "*KEYWORD I10=N\n", standard},
+      {"*KEYWORD I10=Y\n", "*KEYWORD MEMORY=20M\n", i10},
+      {"*KEYWORD\n", "*KEYWORD LONG=Y\n", wide},
+  };
+  for (const auto& [main, own, card] : cases) {
+    const DeckFolder folder;
+    folder.write("inc.k", std::string(own) + "*NODE\n" + card + "*END\n");
+    const auto opened = folder.open(std::string(main) + "*INCLUDE\ninc.k\n*NODE-\n       3             1.0\n*END\n");
+    ASSERT_OPENED(opened);
+    EXPECT_EQ(position_of(opened->model, 2), Vec3(10, 0, 0.5)) << main << own;
+    EXPECT_EQ(position_of(opened->model, 3), Vec3(1, 0, 0)) << main << own;
+  }
+}
+
+TEST(Columns, of_a_wide_deck_hold_for_every_keyword) {
+  const DeckFolder folder;
+  folder.write("inc.k", "*NODE\n" + twenty({"1", "1.0", "2.0", "3.0"}) + "*SET_NODE_LIST\n" + twenty({"7"}) + twenty({"1", "9"}));
+  const auto opened = folder.open(
+      "*KEYWORD LONG=Y\n*PARAMETER\n" + twenty({"Rthick", "1.5", "Iconst", "30"}) + "*PARAMETER_EXPRESSION\nRtwice_as_much      2*thick\n" +
+      "*PART\npart\n" + twenty({"3", "20", "&const"}) + "*SECTION_SHELL\n" + twenty({"20", "2"}) +
+      twenty({"&twice_as_much", "&twice_as_much", "&twice_as_much", "&twice_as_much"}) + "*MAT_ELASTIC\n" +
+      twenty({"30", "7.85E-9", "210000.0", "0.3"}) + "*CONTROL_TIMESTEP\n" + twenty({"0.0", "0.67", "1"}) + "*DEFINE_TRANSFORMATION\n" +
+      twenty({"5"}) + twenty({"TRANSL", "10.0", "20.0", "30.0"}) + "*INCLUDE_TRANSFORM\ninc.k\n" +
+      twenty({"100", "0", "0", "0", "1000", "0", "0"}) + twenty({"0"}) + twenty({"1.0", "1.0", "2.0"}) + twenty({"5"}) +
+      "*CONTACT_TIED_NODES_TO_SURFACE_ID\n                   8all of it\n" + twenty({"3", "4", "4", "0"}) + "*END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(warning(*opened->deck, "bad-parameter").count + warning(*opened->deck, "bad-include-transform").count, 0u);
+  const Part& part = (*opened->model.parts)[opened->model.find_part(3).value];
+  EXPECT_EQ(part.thickness, 3.0);
+  EXPECT_EQ(part.density, 7.85e-9);
+  EXPECT_EQ(opened->deck->time_step.scale, 0.67);
+  EXPECT_EQ(position_of(opened->model, 101), Vec3(12, 24, 36));
+  const References& references = *opened->deck->references;
+  ASSERT_EQ(references.naming(Referred::node, 109).size(), 1u);
+  EXPECT_EQ(references.referrers()[references.naming(Referred::node, 109)[0].referrer].id, 1007);
+  const auto contact = references.naming(Referred::node_set, 3);
+  ASSERT_EQ(contact.size(), 1u);
+  EXPECT_EQ(references.referrers()[contact[0].referrer].id, 8);
+  EXPECT_EQ(references.referrers()[contact[0].referrer].title, "all of it");
+}
+
 TEST(Columns, i10_holds_ten_digits) {
   const DeckFolder folder;
   const auto opened = folder.open(

@@ -180,6 +180,25 @@ TEST(Parts, used_but_not_defined_ones_are_there_without_a_name) {
   EXPECT_EQ(opened->model.shell_parts[0], opened->model.find_part(42));
 }
 
+TEST(Parts, and_what_they_are_made_of_count_as_defined_first) {
+  const DeckFolder folder;
+  const auto opened = folder.open(
+      "*PART\nfirst\n         3        20        30\n*PART\nagain\n         3        21        31\n"
+      "*SECTION_SHELL\n        20         2\n       1.5\n*SECTION_SHELL\n        20         2\n       9.5\n"
+      "*MAT_ELASTIC\n        30       2.0      10.0       0.3\n*MAT_ELASTIC\n        30       4.0      20.0       0.3\n"
+      "*MAT_ELASTIC\n        31       8.0      20.0       0.3\n"
+      "*PART_COMPOSITE\nlayers\n         4         2\n        30       0.5       0.0\n"
+      "*PART_COMPOSITE\nagain\n         4         2\n        31       9.5       0.0\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(part(*opened, 3).name, "first");
+  EXPECT_EQ(part(*opened, 3).thickness, 1.5);
+  EXPECT_EQ(part(*opened, 3).density, 2.0);
+  EXPECT_EQ(part(*opened, 3).youngs_modulus, 10.0);
+  EXPECT_EQ(part(*opened, 4).name, "layers");
+  EXPECT_EQ(part(*opened, 4).thickness, 0.5);
+  EXPECT_EQ(part(*opened, 4).density, 2.0);
+}
+
 TEST(Sections, corners_that_are_blank_take_the_first_thickness) {
   const DeckFolder folder;
   const auto opened = folder.open(

@@ -267,6 +267,14 @@ TEST(Elements, of_kinds_that_are_not_read_are_told_by_name_and_number_of_lines) 
   }
 }
 
+TEST(OtherElements, masses_may_belong_to_a_part) {
+  const auto opened = open("*ELEMENT_MASS\n       7       5        0.000125       3\n       8       6        0.000125\n*PART\np\n3\n");
+  ASSERT_OPENED(opened);
+  const ElementBlock& masses = block_of(opened->model, ElementClass::mass);
+  EXPECT_EQ(masses.part[0], opened->model.find_part(3));
+  EXPECT_FALSE(masses.part[1].valid());
+}
+
 TEST(OtherElements, inertias_have_two_cards_or_three) {
   const auto opened = open(
       "*ELEMENT_INERTIA\n"
@@ -454,6 +462,33 @@ TEST(Elements, of_other_classes_with_too_few_nodes_are_left_out_and_told) {
     EXPECT_EQ(incomplete.count, 1u) << cards;
     EXPECT_EQ(incomplete.line, line) << cards;
   }
+}
+
+TEST(Elements, have_the_cards_of_their_options_behind_them) {
+  const auto opened = open(
+      "*ELEMENT_DISCRETE_LCO\n1,101,1,2\n30,31\n2,101,3,4\n30,31\n"
+      "*ELEMENT_TSHELL_BETA\n1,4,1,2,3,4,5,6,7,8\n45.0\n2,4,1,2,3,4,5,6,7,8\n45.0\n"
+      "*ELEMENT_TSHELL_COMPOSITE\n3,4,1,2,3,4,5,6,7,8\n7,1,45\n4,4,1,2,3,4,5,6,7,8\n7,1,45\n"
+      "*ELEMENT_SOLID_DOF\n1,4,1,2,3,4,5,6,7,8\n9,10,11\n2,4,1,2,3,4,5,6,7,8\n9,10,11\n"
+      "*ELEMENT_SOLID\n3,4\n1,2,3,&gone,5,6,7,8\n4,4\n1,2,3,4,5,6,7,8\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(block_of(opened->model, ElementClass::discrete).id, (Ids{1, 2}));
+  EXPECT_EQ(nodes_of_element(opened->model, ElementClass::discrete, 1), (Ids{3, 4}));
+  EXPECT_EQ(block_of(opened->model, ElementClass::tshell).id, (Ids{1, 2, 3, 4}));
+  EXPECT_EQ(block_of(opened->model, ElementClass::solid).id, (Ids{1, 2, 4}));
+  EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 0u);
+  EXPECT_EQ(warning(*opened->deck, "undefined-parameter").count, 1u);
+}
+
+TEST(Shells, layers_of_whole_numbers_are_no_elements) {
+  const auto opened = open(
+      "*ELEMENT_SHELL_COMPOSITE\n1,5,1,2,3,4\n7,1,45,,8,2,90\n7,1,45\n2,5,2,3,4,5\n7,3,45\n"
+      "*ELEMENT_SHELL_COMPOSITE_LONG\n3,5,1,2,3,4\n7,1.0,45.,,,9.0\n*ELEMENT_SHELL\n4,5,1,2,3,4\n5,5,2,3,4,5\n");
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  ASSERT_EQ(model.shell_count(), 5u);
+  const float wanted[] = {4, 3, 1, 0, 0};
+  for (std::size_t s = 0; s < 5; ++s) EXPECT_EQ(model.shell_thickness[s], wanted[s]) << s;
 }
 
 TEST(Elements, whose_fields_cant_be_read_are_named_by_line) {

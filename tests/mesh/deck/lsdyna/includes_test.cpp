@@ -36,6 +36,32 @@ TEST(Includes, names_go_on_after_a_plus_and_comments_dont_count) {
   EXPECT_EQ(opened->model.node_count(), 2u);
 }
 
+TEST(Includes, names_may_have_quotes_tabs_and_parameters) {
+  const DeckFolder folder;
+  folder.write("it's.k", node(1));
+  folder.write("longname.k", node(2));
+  folder.write("win/sub/c.k", node(3));
+  folder.write("left7_x.k", node(4));
+  folder.write("at_&half.k", node(5));
+  const auto opened = folder.open(
+      "*PARAMETER\nCside           left\nInumber          7.9\nRhalf           0.5\n*INCLUDE\n'it's.k'\n*INCLUDE\nlong\t+\n name.k\n"
+      "*INCLUDE_PATH\nwin\\sub\n*INCLUDE\nc.k\n*INCLUDE\n&side&number_x.k\n*INCLUDE\nat_&half.k\n");
+  ASSERT_OPENED(opened);
+  for (const Warning& warning : opened->deck->warnings) ADD_FAILURE() << warning.message;
+  EXPECT_EQ(opened->model.node_count(), 5u) << "\"long\" and \"name.k\" are put together without a blank";
+}
+
+TEST(Includes, of_no_nodes_may_be_repeated_and_those_by_other_keywords_count) {
+  const DeckFolder folder;
+  folder.write("values.k", "*PARAMETER_MUTABLE\nRv          1.0\n");
+  folder.write("mesh.k", node(1));
+  const auto opened = folder.open("*INCLUDE\nvalues.k\n*INCLUDE\nvalues.k\n*INCLUDE_NASTRAN\nmesh.k\n*INCLUDE\nmesh.k\n" + node(2));
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(warning(*opened->deck, "repeated-include").count, 0u);
+  EXPECT_EQ(opened->model.node_holds[opened->model.find_node(1).value], kHeldByInclude);
+  EXPECT_EQ(opened->model.node_holds[opened->model.find_node(2).value], 0);
+}
+
 TEST(Includes, are_found_along_the_paths) {
   const DeckFolder folder;
   folder.write("models/door.k", node(1));
@@ -225,6 +251,25 @@ TEST(Parameters, of_text_and_expressions_stand_in_names_and_fields) {
   EXPECT_TRUE(opened->model.find_part(42).valid());
 }
 
+TEST(Parameters, that_may_change_once_may_change_again) {
+  const DeckFolder folder;
+  const auto opened =
+      folder.open("*PARAMETER_MUTABLE\nRv          1.0\n*PARAMETER\nRv          2.0\n*PARAMETER\nRv          3.0\n*NODE\n1,&v\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(position_of(opened->model, 1).x(), 3);
+  EXPECT_EQ(warning(*opened->deck, "duplicate-parameter").count, 0u);
+}
+
+TEST(Parameters, of_whole_numbers_are_cut_and_expressions_hold_their_node) {
+  const DeckFolder folder;
+  const auto opened = folder.open("*PARAMETER\nIn,7.9\n*PARAMETER_EXPRESSION\nI        m 7/2.0\n*NODE\n1,&n,&m\n2,<2*3>\n3,1.\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(position_of(opened->model, 1), Vec3(7, 3, 0));
+  EXPECT_EQ(position_of(opened->model, 2), Vec3(6, 0, 0));
+  EXPECT_EQ(opened->model.node_holds[1], kHeldByParameter);
+  EXPECT_EQ(opened->model.node_holds[2], 0);
+}
+
 TEST(Parameters, that_cannot_be_read_are_told) {
   const DeckFolder folder;
   const auto opened = folder.open(
@@ -253,6 +298,11 @@ TEST(Expressions, that_are_none_have_no_value) {
   EXPECT_EQ(value("-3**2"), 9);
   EXPECT_EQ(value("2**-1"), 0.5);
   EXPECT_EQ(value("7/2*2.0"), 6);
+  EXPECT_EQ(value("2**-1*3/2"), 0.75);
+  EXPECT_EQ(value("dim(2,5)"), 0);
+  EXPECT_EQ(value("dim(5,2)"), 3);
+  EXPECT_EQ(value("atan2(1.0,0.0)"), 1.5707963267948966);
+  EXPECT_EQ(value("floor(-1.5)+ceiling(-1.5)+int(-1.5)"), -4);
   for (const char* whole : {"(5-2)/2", "(1+2)/2", "int(3.9)/2", "abs(-3)/2"}) EXPECT_EQ(value(whole), 1) << whole;
   for (const char* real : {"(5-2.0)/2", "(5.0-2)/2", "(1+2.0)/2", "(1.0+2)/2", "float(3)/2", "real(3)/2", "aint(3.9)/2", "abs(-3.0)/2"})
     EXPECT_EQ(value(real), 1.5) << real;

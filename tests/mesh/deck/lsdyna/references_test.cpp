@@ -69,6 +69,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Example{"*SET_SHELL_LIST_GENERATE_INCREMENT\n7\n1,9,4\n", "shell 1-9/4 range of 7\n"},
                       Example{"*SET_NODE_GENERAL\n7\nNODE,1,2\nDNODE,2\nPART,3\nBOX,9\n",
                               "node 1-2 list of 7\nnode 2 single of 7\npart 3 single of 7\n"},
+                      Example{"*SET_NODE_LIST_GENERATE\n7\n1,2,4,5,7,8,10,12\n",
+                              "node 1-2 range of 7\nnode 4-5 range of 7\nnode 7-8 range of 7\nnode 10-12 range of 7\n"},
+                      Example{"*SET_NODE_INTERSECT\n7\n1,2\n", "node set 1-2 list of 7\n"},
                       Example{"*SET_NODE_ADD\n7\n1,2\n", "node set 1-2 list of 7\n"},
                       Example{"*SET_PART_ADD\n7\n3,-6\n", "part set 3 list of 7\npart set 4-6 range of 7\n"},
                       Example{"*SET_SOLID_GENERAL\n7\nELEM,5\n", "solid 5 list of 7\n"}, Example{"*SET_BEAM\n7\n5\n", "beam 5 list of 7\n"},
@@ -109,6 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Example{"*CONTACT_AUTOMATIC_SURFACE_TO_SURFACE_MPP_ID\n8,all\n0,200\n&,1\n3,4,2,3\n0.1\n\n",
                 "part 4 single of 8\npart set 3 single of 8\n"},
+        Example{"*CONTACT_RIGID_BODY_ONE_WAY_TO_RIGID_BODY\n3,4,2,3\n", "part 4 single\npart set 3 single\n"},
         Example{"*CONTACT_TIED_NODES_TO_SURFACE\n3,4,4,0\n", "node set 3 single\nsegment set 4 single\n"},
         Example{"*CONTACT_AUTOMATIC_SINGLE_SURFACE_TITLE\n1,all\n0,0,5\n", ""},
         Example{"*DATABASE_HISTORY_NODE_ID\n         7the rim\n", "node 7 single\n"},
@@ -132,6 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
         Example{"*PART_INERTIA\nblock\n3,1,1\n0,0,0,1.,1,8\n1.\n0\n0\n*PART_MOVE\n       4             0.0             0.0            30.0 "
                 "      0       1\n",
                 "node 8 single of 3\npart set 4 single\n"},
+        Example{"*DEFINE_TRANSFORMATION_TITLE\nt\n8\nROTATE3NA,1,2,0.,90.\nTRANSL2ND,4,5,6.\nMIRROR,7.,8.\n",
+                "node 1 single\nnode 2 single\nnode 4 single\nnode 5 single\n"},
         Example{"*DEFINE_TRANSFORMATION\n8\nTRANSL,1.,2.,3.\nPOS6N,1,2,3,4,5,6\n",
                 "node 1 single\nnode 2 single\nnode 3 single\nnode 4 single\nnode 5 single\nnode 6 single\n"},
         Example{
@@ -170,6 +176,29 @@ TEST(EncryptedText, stands_in_the_way_of_all_removal) {
   EXPECT_TRUE(opened->deck->references->named(Referred::node, 2));
   EXPECT_FALSE(may_be_deleted(*opened->deck, Referred::node, 8));
   EXPECT_EQ(warning(*opened->deck, "encrypted").count, 1u);
+}
+
+TEST(EncryptedText, among_nodes_and_elements_stands_in_the_way_too) {
+  const std::string armor = "-----BEGIN PGP MESSAGE-----\nxyz\n-----END PGP MESSAGE-----\n";
+  for (const std::string& mesh : {"*NODE\n1,0,0,0\n" + armor + "2,1,0,0\n3,1,1,0\n*ELEMENT_SHELL\n1,1,1,2,3\n",
+                                  "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*ELEMENT_SHELL\n" + armor + "1,1,1,2,3\n"}) {
+    const DeckFolder folder;
+    const auto opened = folder.open("*KEYWORD\n" + mesh + "*PART\np\n1\n*END\n");
+    ASSERT_OPENED(opened);
+    ASSERT_EQ(opened->deck->references->unread().size(), 1u);
+    const UnreadText& unread = opened->deck->references->unread()[0];
+    EXPECT_TRUE(unread.encrypted);
+    EXPECT_EQ(content(folder / "deck.k").substr(unread.begin, unread.end - unread.begin), armor);
+    EXPECT_FALSE(may_be_deleted(*opened->deck, Referred::node, 3));
+  }
+}
+
+TEST(GeneralSets, say_what_they_are_to_be_without) {
+  const DeckFolder folder;
+  const auto opened = folder.open("*KEYWORD\n*SET_NODE_GENERAL\n7\nNODE,1\nDNODE,2\nNODE,3\n*END\n");
+  ASSERT_OPENED(opened);
+  for (const Reference& reference : opened->deck->references->all()) EXPECT_EQ(reference.takes_away, reference.first == 2);
+  EXPECT_EQ(opened->deck->references->all().size(), 3u);
 }
 
 TEST(CardsThatNameOneAlone, stand_in_the_way_and_lists_do_not) {

@@ -38,6 +38,8 @@ TEST(Transformation, each_step_does_what_the_manual_says) {
   expect_near(moved("ROTATE,0.,0.,1.,1.,1.,7.,90.\n"), {0, 1, 3});
   expect_near(moved("ROTATE,1.,1.,1.,0.,0.,0.,120.\n"), {3, 1, 2});
   expect_near(moved("ROTATE,0.,0.,1.,0.,0.,0.,60.\n"), {0.5 - std::sqrt(3.0), 1 + std::sqrt(3.0) / 2, 3});
+  expect_near(moved("ROTATE,1.,0.,0.,0.,1.,7.,90.\n"), {1, 5, 8});
+  expect_near(moved("ROTATE,0.,2.,0.,3.,0.,1.,90.\n"), {5, 2, 3});
   expect_near(moved("MIRROR,0.,5.,0.,0.,9.,0.\n"), {1, 8, 3});
   expect_near(moved("MIRROR,0.,0.,0.,1.,1.,0.,1\n"), {-2, -1, 3});
   expect_near(moved("TRANSL2ND,8,9,10.\n", "*NODE\n8,0.,0.,5.\n9,0.,0.,1.\n"), {1, 2, -7});
@@ -125,6 +127,10 @@ TEST(Transformation, that_is_not_there_or_not_understood_is_said_and_holds_the_n
             "transformation 7 of this include needs POINT 1 for its ROTATE, which it doesn't have" + ending);
   EXPECT_EQ(held(define + "MIRROR,1.,1.,1.,1.,1.,1.\n"),
             "transformation 7 of this include has a MIRROR whose points leave no direction" + ending);
+  std::string steps;
+  for (int i = 0; i < 1001; ++i) steps += "TRANSL,0.,0.,0.\n";
+  EXPECT_EQ(held(define + steps),
+            "transformation 7 of this include has the option thousand and first card, which this version doesn't know" + ending);
   EXPECT_EQ(held(define + "TRANSL,&lost\n"), "transformation 7 of this include has a TRANSL whose numbers can't be read" + ending);
   EXPECT_EQ(held(define + "SCALE,1.e50\nSCALE,1.e50\n"),
             "transformation 7 of this include moves things out of the range of numbers" + ending);
@@ -245,6 +251,13 @@ TEST(IncludeTransform, an_offset_that_leaves_no_id_is_an_error) {
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().message, "the include's offset makes the id of this node -1");
   EXPECT_EQ(opened.error().line, 3);
+  for (const char* const elements : {"*ELEMENT_SHELL\n7,1,1,2,3,3\n5,1,1,2,3,3\n", "*ELEMENT_BEAM\n7,1,1,2\n5,1,1,2\n"}) {
+    folder.write("sub.k", std::string("*NODE\n1,1.,2.,3.\n2,4.,5.,6.\n3,7.,8.,8.\n") + elements);
+    const auto of_elements = folder.open(include("sub.k", "0", "0,-6,0"));
+    ASSERT_FALSE(of_elements) << elements;
+    EXPECT_EQ(of_elements.error().message, "the include's offset makes the id of this element -1");
+    EXPECT_EQ(of_elements.error().line, 7);
+  }
 }
 
 TEST(IncludeTransform, of_a_node_that_stands_too_far_away_is_an_error) {
@@ -295,6 +308,96 @@ TEST(IncludeTransform, factors_change_lengths_densities_and_moduli) {
   EXPECT_DOUBLE_EQ(part.thickness.value_or(0), 1.5);
   EXPECT_DOUBLE_EQ(part.density.value_or(0), 7.85e-9);
   EXPECT_DOUBLE_EQ(part.youngs_modulus.value_or(0), 2.1e5);
+}
+
+TEST(IncludeTransform, factors_of_time_and_offsets_of_layers_count) {
+  const DeckFolder folder;
+  // Milliseconds, kilograms and metres into seconds, tonnes and millimetres.
+  folder.write("ms.k",
+               "*MAT_ELASTIC\n5,7850.,2.1e5,0.3\n*PART_COMPOSITE\nlayers\n9,2\n5,0.002,0.0\n*PART\nsheet\n8,0,5\n"
+               "*CONTROL_TIMESTEP\n0.,0.8,0,0.,-2.\n");
+  const auto opened = folder.open("*INCLUDE_TRANSFORM\nms.k\n0,0,0,100\n0\n0.001,0.001,1000.\n0\n*MAT_ELASTIC\n5,1.,1.,0.1\n");
+  ASSERT_OPENED(opened);
+  const Part& sheet = (*opened->model.parts)[opened->model.find_part(8).value];
+  EXPECT_EQ(sheet.material, 105);
+  EXPECT_DOUBLE_EQ(sheet.density.value_or(0), 7.85e-9);
+  EXPECT_DOUBLE_EQ(sheet.youngs_modulus.value_or(0), 2.1e5);
+  const Part& layers = (*opened->model.parts)[opened->model.find_part(9).value];
+  EXPECT_DOUBLE_EQ(layers.thickness.value_or(0), 2);
+  EXPECT_DOUBLE_EQ(layers.density.value_or(0), 7.85e-9);
+  EXPECT_DOUBLE_EQ(opened->deck->time_step.mass_scaled, -2e-3);
+}
+
+TEST(IncludeTransform, titles_stand_between_the_prefixes_and_suffixes_of_all_includes) {
+  const DeckFolder folder;
+  folder.write("outer.k", "*INCLUDE_TRANSFORM\ninner.k\n0\n0,door,left\n1.\n0\n");
+  folder.write("inner.k", "*PART\nsheet\n9\n");
+  const auto opened = folder.open("*INCLUDE_TRANSFORM\nouter.k\n0\n0,car,red\n1.\n0\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ((*opened->model.parts)[0].name, "car.door.sheet.left.red");
+}
+
+TEST(IncludeTransform, of_transformed_ones_in_files_at_two_places_is_another_each_time) {
+  const DeckFolder folder;
+  folder.write("outer.k", "*NODE\n1,1.,0.,0.\n*ELEMENT_LANCING\n1\n2\n" + include("inner.k", "0", "50,0,0"));
+  folder.write("inner.k", "*NODE\n2,2.,0.,0.\n");
+  const auto opened = folder.open("*DEFINE_TRANSFORMATION\n1\nTRANSL,0.,10.,0.\n*DEFINE_TRANSFORMATION\n2\nTRANSL,0.,20.,0.\n" +
+                                  include("outer.k", "1") + include("outer.k", "2"));
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(warning(*opened->deck, "several-places").count, 2u);
+  EXPECT_EQ(warning(*opened->deck, "repeated-include").count, 0u);
+  EXPECT_NE(warning(*opened->deck, "unread-elements").message.find("(2 lines)"), std::string::npos);
+  EXPECT_EQ(position_of(opened->model, 52), Vec3(2, 10, 0));
+}
+
+TEST(IncludeTransform, nodes_in_one_that_cant_be_placed_are_held_with_those_inside) {
+  const DeckFolder folder;
+  folder.write("outer.k", "*NODE\n1,1.,0.,0.\n" + include("inner.k", "5"));
+  folder.write("inner.k", "*NODE\n2,2.,0.,0.\n");
+  folder.write("flat.k", "*NODE\n3,3.,4.,5.\n");
+  folder.write("other.k", "*NODE\n4,0.,0.,0.\n");
+  const auto opened = folder.open(
+      "*DEFINE_TRANSFORMATION\n5\nTRANSL,0.,10.,0.\n*DEFINE_TRANSFORMATION\n6\nMATRIX\n1.,0.,0.,0.,0.,1.,0.,0.\n0.,0.,0.,0.,0.,0.,0.,1.\n"
+      "*DEFINE_TRANSFORMATION\n7\nTRANSL2ND,1,2\n" +
+      include("outer.k", "99") + include("flat.k", "6") + include("other.k", "7"));
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  EXPECT_EQ(model.node_holds[model.find_node(1).value] & kHeldByInclude, kHeldByInclude);
+  EXPECT_EQ(model.node_holds[model.find_node(2).value] & kHeldByInclude, kHeldByInclude);
+  EXPECT_EQ(position_of(model, 3), Vec3(3, 4, 0));
+  EXPECT_EQ(model.node_holds[model.find_node(3).value], kHeldByInclude) << "a flattened node has no way back";
+  EXPECT_EQ(model.node_holds[model.find_node(4).value], kHeldByInclude) << "node 1 stands in an include that can't be placed";
+  EXPECT_EQ(warning(*opened->deck, "unresolved-transformation").count, 1u);
+  EXPECT_EQ(opened->deck->warnings.size(), 2u);
+}
+
+TEST(IncludeTransform, one_by_nodes_of_the_main_file_knows_them_in_its_own_system) {
+  const DeckFolder folder;
+  folder.write("outer.k", include("middle.k", "2"));
+  folder.write("middle.k", include("inner.k", "3"));
+  folder.write("inner.k", "*NODE\n5,0.,0.,0.\n");
+  const auto opened = folder.open(
+      "*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n*DEFINE_TRANSFORMATION\n1\nROTATE,0.,0.,1.,0.,0.,0.,90.\n"
+      "*DEFINE_TRANSFORMATION\n2\nROTATE,1.,0.,0.,0.,0.,0.,90.\nTRANSL,7.,0.,0.\n"
+      "*DEFINE_TRANSFORMATION\n3\nTRANSL2ND,1,2\n" +
+      include("outer.k", "1"));
+  ASSERT_OPENED(opened);
+  EXPECT_TRUE(opened->deck->warnings.empty());
+  expect_near(position_of(opened->model, 5), {1, 7, 0});
+}
+
+TEST(IncludeTransform, nodes_and_transformations_of_an_include_have_its_offsets) {
+  const DeckFolder folder;
+  folder.write("outer.k", "*NODE\n1,0.,0.,0.\n2,0.,0.,4.\n*DEFINE_TRANSFORMATION\n3\nTRANSL2ND,1,2\n" + include("inner.k", "3"));
+  folder.write("inner.k", "*NODE\n5,0.,0.,0.\n");
+  const auto opened = folder.open(
+      "*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n*DEFINE_TRANSFORMATION\n3\nTRANSL,9.,9.,9.\n"
+      "*INCLUDE_TRANSFORM\nouter.k\n100,0,0,0,0,0,50\n0\n1.\n0\n");
+  ASSERT_OPENED(opened);
+  EXPECT_TRUE(opened->deck->warnings.empty());
+  expect_near(position_of(opened->model, 105), {0, 0, 4});
+  EXPECT_EQ(opened->model.node_holds[opened->model.find_node(101).value], kHeldByFrame);
+  EXPECT_EQ(opened->model.node_holds[opened->model.find_node(1).value], 0);
 }
 
 TEST(IncludeTransform, nested_ones_compose) {

@@ -82,6 +82,15 @@ TEST(KeywordWriter, reads_coordinates_in_each_layout_and_none_that_a_parameter_g
   EXPECT_EQ(at("1,1.,&y,3.", Columns::standard), std::nullopt);
 }
 
+TEST(KeywordWriter, moves_nodes_between_commas_by_as_many_digits_as_were_there) {
+  const std::string card = "1,0.1234567890123456789,2.,&z";
+  const WrittenCard moved = kKeywordWriter->move_node(card, 0, 0, {0.1234567890123456789, 2, 3}, {1.0 / 3, 2, 3});
+  EXPECT_EQ(moved.text, "1,0.3333333333333333,2.,&z");
+  EXPECT_EQ(moved.rounded, 0);
+  EXPECT_FALSE(moved.by_parameter);
+  EXPECT_TRUE(kKeywordWriter->move_node(card, 0, 0, {0, 2, 3}, {0, 2, 4}).by_parameter);
+}
+
 TEST(KeywordWriter, tells_the_largest_id_of_each_layout) {
   for (const auto& [columns, largest] :
        {std::pair(Columns::standard, std::int64_t{99'999'999}), std::pair(Columns::i10, std::int64_t{9'999'999'999}),
@@ -113,6 +122,8 @@ struct ShellCase {
 TEST(KeywordWriter, writes_shells_in_their_layout) {
   const lsdyna::CardForm plain{.kind = lsdyna::CardKind::shell};
   const lsdyna::CardForm thick{.kind = lsdyna::CardKind::shell, .thickness = true};
+  const lsdyna::CardForm layered{.kind = lsdyna::CardKind::shell, .composite = true};
+  const lsdyna::CardForm layered_long{.kind = lsdyna::CardKind::shell, .composite = true, .composite_long = true};
   const ShellCard quad{21, {31, 32, 33, 34}, kSameCorners, 0};
   const ShellCard triangle{21, {31, 32, 33, 33}, kSameCorners, 0};
   const ShellCase cases[] = {
@@ -151,6 +162,37 @@ TEST(KeywordWriter, writes_shells_in_their_layout) {
        "21,7,31,32,33,34\n1.5,2.,3.,2.5,15.0"},
       {"a quad that was a triangle of one thickness", thick, Columns::standard, "11,7,1,2,5\n&t,&t,&t", quad,
        "21,7,31,32,33,34\n&t,&t,&t,&t"},
+      {"ids that stay keep their digits",
+       plain,
+       Columns::standard,
+       "0011,7,01,2,5,4",
+       {11, {1, 32, 5, 4}, kSameCorners, 0},
+       "0011,7,01,32,5,4"},
+      {"a triangle of three thicknesses",
+       thick,
+       Columns::standard,
+       "11,7,1,2,5,5\n1.,2.,3.",
+       {21, {31, 32, 33, 33}, {{{0.5, 0.5, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 1, 0}}}, 0},
+       "21,7,31,32,33,33\n1.5,2.,3."},
+      {"layers that don't turn", layered, Columns::standard, "11,7,1,2,5,4\n         1\t 0.5", quad, "21,7,31,32,33,34\n         1\t 0.5"},
+      {"layers that turn",
+       layered,
+       Columns::standard,
+       "11,7,1,2,5,4\n1,0.5,10.,,1,0.5,20.",
+       {21, {31, 32, 33, 34}, kSameCorners, 30},
+       "21,7,31,32,33,34\n1,0.5,-20.0,,1,0.5,-10.0"},
+      {"long layers that turn",
+       layered_long,
+       Columns::standard,
+       "11,7,1,2,5,4\n1,0.5,10.,,,,20.",
+       {21, {31, 32, 33, 34}, kSameCorners, 30},
+       "21,7,31,32,33,34\n1,0.5,-20.0,,,,20."},
+      {"an angle that is blank",
+       thick,
+       Columns::standard,
+       "11,7,1,2,5,4\n1.,1.,1.,1.,",
+       {21, {31, 32, 33, 34}, kSameCorners, 30},
+       "21,7,31,32,33,34\n1.,1.,1.,1.,"},
       {"a comment between the cards goes", thick, Columns::standard, "11,7,1,2,5,4\r\n$ why\r\n1.,1.,1.,1.", quad,
        "21,7,31,32,33,34\r\n1.,1.,1.,1."},
   };
@@ -502,6 +544,8 @@ TEST_F(KeywordSets, cards_of_single_ones_that_cant_be_repeated_say_why) {
   EXPECT_EQ(refused("*PARAMETER\nIn,1\n*BOUNDARY_SPC_NODE\n&n,0,1\n", Referred::node, 7), "names it by the parameter &n");
   EXPECT_EQ(refused("*DATABASE_HISTORY_NODE\n1\n", Referred::node, 7), "can't be written again for another");
   EXPECT_EQ(refused("*INITIAL_STRESS_SHELL\n1,1,2\n0.,0.,0.\n", Referred::shell, 7),
+            "has values without a point, which can't be told from the next shell's line");
+  EXPECT_EQ(refused("*INITIAL_STRESS_SHELL\n1,4,1\n0.,0.,0.\n", Referred::shell, 7),
             "has values without a point, which can't be told from the next shell's line");
 }
 
