@@ -397,8 +397,11 @@ class BlockReader {
     if (first == 0 && last == 0) return;
     if (last == 0) last = first;
     if (step < 0) step = -step;
-    if (step > 1 && last < first) first = last + (first - last) % step;
-    add(member, ReferenceRole::range, std::min(first, last), std::max(first, last), std::max<std::int64_t>(step, 1), line.offset);
+    if (last < first) {
+      const std::int64_t least = step > 1 ? last + (first - last) % step : last;
+      last = std::exchange(first, least);
+    }
+    add(member, ReferenceRole::range, first, last, std::max<std::int64_t>(step, 1), line.offset);
   }
 
   /// A negative number means all sets from the one before up to it.

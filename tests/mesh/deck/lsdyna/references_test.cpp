@@ -71,6 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
                               "node 1-2 list of 7\nnode 2 single of 7\npart 3 single of 7\n"},
                       Example{"*SET_NODE_LIST_GENERATE\n7\n1,2,4,5,7,8,10,12\n",
                               "node 1-2 range of 7\nnode 4-5 range of 7\nnode 7-8 range of 7\nnode 10-12 range of 7\n"},
+                      Example{"*SET_NODE_LIST_GENERATE_INCREMENT\n7\n10,1,4\n", "node 2-10/4 range of 7\n"},
                       Example{"*SET_NODE_INTERSECT\n7\n1,2\n", "node set 1-2 list of 7\n"},
                       Example{"*SET_NODE_ADD\n7\n1,2\n", "node set 1-2 list of 7\n"},
                       Example{"*SET_PART_ADD\n7\n3,-6\n", "part set 3 list of 7\npart set 4-6 range of 7\n"},
