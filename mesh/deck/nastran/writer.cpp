@@ -50,7 +50,7 @@ std::vector<std::string> fields_of(const Card& card) {
 
 std::int64_t largest_id(std::uint16_t style) { return is_large(static_cast<Layout>(style)) ? 9999999999999999 : 99999999; }
 
-/// Whether what stands at the offset is a replication, or is replicated: it speaks of more than one card then.
+/// Precondition: offset < text.size(). Whether what stands there is a replication, or is replicated: it speaks of more than one card then.
 bool is_replicated(std::string_view text, std::size_t offset) {
   if (text[offset] == '=') return true;
   CardLines lines;
@@ -266,7 +266,7 @@ class Writer : public CardWriter {
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
     if (ids.empty()) return std::vector<Replacement>{};
-    if (set.offset >= text.size() || is_replicated(text, set.offset)) return fail("", "is made by replication");
+    if (is_replicated(text, set.offset)) return fail("", "is made by replication");
     const Card card = card_at(text, set.offset);
     if (is_case_set(card, set)) return join_case_set(text, set, ids);
     if (card.name() == "PLOAD4") return copy_pressure(text, set.offset, card, ids);
@@ -285,7 +285,7 @@ class Writer : public CardWriter {
   Result<std::vector<Replacement>> change_list(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
                                                std::span<const std::int64_t> leaving) const override {
     if (leaving.empty()) return join(text, set, joining);
-    if (set.offset >= text.size() || is_replicated(text, set.offset)) return fail("", "is made by replication");
+    if (is_replicated(text, set.offset)) return fail("", "is made by replication");
     // The card alone with its line end: first ids are taken out of it, then what is left takes the new ones.
     const bool of_case = is_case_set(card_at(text, set.offset), set);
     const std::size_t last = of_case ? std::min<std::size_t>(set.end, text.size()) : end_of_card(text, set.offset);
@@ -325,7 +325,7 @@ class Writer : public CardWriter {
   Result<std::vector<Replacement>> copy_single(std::string_view text, const Referrer& referrer, const Reference& single,
                                                std::span<const std::int64_t> ids) const override {
     const std::size_t offset = single.card;
-    if (offset >= text.size() || is_replicated(text, offset)) return fail("", "is made by replication");
+    if (is_replicated(text, offset)) return fail("", "is made by replication");
     const Card card = card_at(text, offset);
     std::vector<std::string> fields = fields_of(card);
     if (referrer.keyword != "SPC") return copy_pressure(text, offset, card, ids);

@@ -1,4 +1,6 @@
 // What saving changes in Nastran bulk data: the fields that must, in the width and manner of their card.
+#include <functional>
+
 #include "mesh/deck/card_writer.h"
 #include "mesh/deck/nastran/writer.h"
 #include "tests/mesh/deck/growing.h"
@@ -68,6 +70,33 @@ TEST(NastranWriter, moves_within_the_card) {
        {1, 0, 0},
        {1, 0, 2},
        "GRID           1             1.0             2.0 $ one"},
+      {"a field before a comment",
+       "GRID           1             1.0 $ one",
+       {1, 0, 0},
+       {5, 0, 0},
+       "GRID           1             5.0 $ one"},
+      {"an id that fills its field leans to neither side",
+       "GRID    12345678        1.0     2.0",
+       {1, 2, 0},
+       {1, 2, 3.5},
+       "GRID    12345678        1.0     2.0     3.5"},
+      {"the name of a continuation stays",
+       "GRID           1             1.0     2.0     3.0       4     123        +A1",
+       {1, 2, 3},
+       {1, 2, -3.25},
+       "GRID           1             1.0     2.0   -3.25       4     123        +A1"},
+      {"a full field between full fields",
+       "GRID    12345678        1.2345671.2345671.234567",
+       {1.234567, 1.234567, 1.234567},
+       {1.234567, -0.7654321, 1.234567},
+       "GRID    12345678        1.234567-.7654321.234567"},
+      {"large field in columns that lean left, with an id of nine digits",
+       "GRID*   123456789                       1.0             2.0             *G1\n*G1     3.0",
+       {1, 2, 3},
+       {1, 2.5, 3.125},
+       "GRID*   123456789                       1.0             2.5             *G1\n*G1     3.125"},
+      {"blanks between free fields", "GRID, 3 , , 10. 1.5-3 , -2.5", {10, 1.5e-3, -2.5}, {10, 2, -2.5}, "GRID, 3 , ,10.,2.0, -2.5"},
+      {"a free field of nine digits before it", "GRID,123456789,,1.,2.,3.", {1, 2, 3}, {1, 2, 4}, "GRID,123456789,,1.,2.,4.0"},
   };
   for (const Move& move : moves) {
     const std::string text = move.card + "\nGRID,2";
@@ -129,6 +158,31 @@ TEST(NastranWriter, shells_that_cant_be_carried_over) {
   EXPECT_EQ(kWriter->shell("CQUAD8,10,7,1,2,3,4,5,6", 0, 0, wanted).error().message, "has mid-side nodes");
   EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4\n=,*(1),==", 0, 0, wanted).error().message, "is made by replication or replicated");
   EXPECT_FALSE(kWriter->shell("CQUAD4,10,7,1,2,3,4\n,,,1.", 0, 0, {22, {1, 2, 3, 3}, kSame, 0}).has_value());
+  const ShellCard triangle{22, {1, 2, 3, 3}, kSame, 0};
+  EXPECT_EQ(kWriter->shell("CQUADR        10       7       1       2       3       4              .5+A\n+B             1", 0, 0, wanted)
+                .error()
+                .message,
+            "has continuations that aren't in order");
+  EXPECT_EQ(kWriter->shell("CSHEAR,10,7,1,2,3,4", 0, 0, triangle).error().message, "is a CSHEAR, which has another number of corners");
+  EXPECT_EQ(kWriter->shell("CTRIA6,10,7,1,2,3", 0, 0, wanted).error().message, "is a CTRIA6, which has another number of corners");
+  EXPECT_EQ(kWriter->shell("CSHEAR,10,7,1,2,3,4", 0, 0, wanted)->text, "CSHEAR,22,7,1,2,3,4");
+  EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4,,,\n,,,1.,,1.,1.", 0, 0, wanted).error().message,
+            "has a thickness of its own at some of its corners only");
+}
+
+TEST(NastranWriter, writes_ids_of_eight_digits_in_eight_columns_and_longer_ones_in_sixteen_or_between_commas) {
+  const ShellCard wanted{10, {1, 12345678, 3, 4}, kSame, 0};
+  EXPECT_EQ(kWriter->shell("CQUAD4        10       7       1       2       3       4", 0, 0, wanted)->text,
+            "CQUAD4        10       7       112345678       3       4");
+  const ShellCard longer{123456789, {1, 987654321, 3, 4}, kSame, 0};
+  EXPECT_EQ(
+      kWriter
+          ->shell("CQUAD4*               10               7               1               2*\n*                      3               4", 0,
+                  0, longer)
+          ->text,
+      "CQUAD4*        123456789               7               1       987654321\n*                      3               4");
+  EXPECT_EQ(kWriter->new_node("GRID    1               1.0     2.0     3.0", 0, 0, 12345678, {1, 2.5, 0}).text,
+            "GRID    12345678        1.0     2.5     0.0");
 }
 
 std::string joined(const std::string& text, const char* keyword, std::vector<std::int64_t> ids) {
@@ -217,6 +271,65 @@ TEST(NastranWriter, ids_leave_lists) {
   EXPECT_EQ(changed("SET 4 = 1 THRU 9 EXCEPT 5, 20", "SET", {}, {20}), "ends with what it leaves out");
   EXPECT_NE(changed("SET 4 = 1 THRU 9 EXCEPT 5", "SET", {20}, {}).substr(0, 7), "SET 4 =") << "what is added would be left out";
   EXPECT_EQ(changed("SET 4 = 1, 2,\n$ why\n  3", "SET", {}, {3}), "has comments between its ids");
+}
+
+/// Two lines in columns, of which the second has another name than the first asks for.
+std::string out_of_order(const std::string& first) { return first + std::string(72 - first.size(), ' ') + "+A\n+B             9"; }
+
+struct RefusedList {
+  const char* keyword;
+  std::string text;
+  std::vector<std::int64_t> joining, leaving;
+  const char* why;
+};
+
+TEST(NastranWriter, lists_that_cant_change_say_why) {
+  const std::string long_line = "  2, " + std::string(64, ' ') + "3";
+  const RefusedList cases[] = {
+      {"SET", "SET 4 1, 2", {}, {1}, "isn't read"},
+      {"SET", "SET 4 = 1,\n" + long_line, {}, {1}, "would have a line that is too long"},
+      {"SPC1", "SPC1,7,123,5\n=,8,==", {20}, {}, "is made by replication"},
+      {"SPC1", "SPC1,7,123,5,6\n=,8,==", {}, {5}, "is made by replication"},
+      {"SPC1", "=,8,==", {20}, {}, "is made by replication"},
+      {"SET3", "SET3,7,GRID,1,2,EXCEPT,5", {20}, {1}, "ends with what it leaves out"},
+      {"SET3", "SET3,7,GRID,1,THRU,9,EXCEPT,5", {20}, {}, "ends with what it leaves out"},
+      {"PLOAD4", out_of_order("PLOAD4        10       1     1.5"), {20}, {}, "has continuations that aren't in order"},
+      {"PLOAD4", "PLOAD4,10,1,1.5,,,,,,+,9", {20}, {}, "has continuations that aren't in order"},
+      {"PLOAD4", "PLOAD4,10,1,1.5,,,,5", {20}, {}, "says by corners on which face it acts"},
+      {"PLOAD4", "PLOAD4,10,1,1.5,,,,,5", {20}, {}, "says by corners on which face it acts"},
+      {"PLOAD4", "PLOAD4,10,1,1.5,,2.", {20}, {}, "gives the corners different pressures"},
+      {"SET1", out_of_order("SET1           7       1       2"), {20}, {}, "has lines that can't be continued"},
+      {"SET1", "SET1,7,1,2,3,4,5,6,7,+,9,9", {20}, {}, "has lines that can't be continued"},
+      {"SET", "SET,7,GRID,ALL", {20}, {}, "doesn't list its ids"},
+      {"BLSEG", "BLSEG,7,1,2,3", {}, {1}, "has a list that ids can't be taken out of"},
+      {"SET1", out_of_order("SET1           7       1       2"), {}, {1}, "has continuations that aren't in order"},
+      {"SET1", "SET1,7,1,2,3,4,5,6,7,+,9,9", {}, {1}, "has continuations that aren't in order"},
+      {"SPC1", "SPC1,7,123,1,THRU,9", {}, {5}, "has ranges beside the ids that would have to be taken out"},
+  };
+  for (const RefusedList& c : cases) EXPECT_EQ(changed(c.text, c.keyword, c.joining, c.leaving), c.why) << c.text;
+}
+
+TEST(NastranWriter, ids_leave_lists_in_the_manner_of_the_card) {
+  EXPECT_EQ(changed("SPC1    7       123     1       2       3", "SPC1", {}, {1}), "SPC1    7       123     2       3");
+  EXPECT_EQ(changed("SET1,7,1,2,3,4,5,6,7\n$ more\n+,8,9", "SET1", {}, {8}), "SET1,7,1,2,3,4,5,6,7\n$ more\n+,9");
+  EXPECT_EQ(changed("SET1*                  7               1               2               3*\n*                      4", "SET1", {}, {1}),
+            "SET1*                  7               2               3               4*");
+  EXPECT_EQ(changed("SET 4 = 1, 2,\r\n  3", "SET", {}, {2}), "SET 4 = 1,\r\n  3");
+}
+
+TEST(NastranWriter, single_cards_that_cant_be_copied_say_why) {
+  const auto refused = [](const std::string& text, const char* keyword) {
+    Referrer card;
+    card.keyword = keyword;
+    Reference single;
+    single.first = single.last = 1;
+    const std::vector<std::int64_t> ids{20};
+    const auto replacements = kWriter->copy_single(text, card, single, ids);
+    return replacements ? (*replacements)[0].text : replacements.error().message;
+  };
+  EXPECT_EQ(refused("SPC,7,1,123,0.\n=,8,==", "SPC"), "is made by replication");
+  EXPECT_EQ(refused("PLOAD4,7,1,1.5\n=,8,==", "PLOAD4"), "is made by replication");
+  EXPECT_EQ(refused("PLOAD4,7,1,1.5,,,,5", "PLOAD4"), "says by corners on which face it acts");
 }
 
 TEST(NastranWriter, single_cards_are_copied) {
@@ -349,6 +462,104 @@ TEST(NastranSave, refusals_speak_as_the_deck_does) {
   const std::string refused = comes_with_a_split(folder, "BLSEG,7,11,12\n");
   EXPECT_EQ(refused.substr(0, 5), "BLSEG") << refused;
   EXPECT_EQ(refused.find('*'), std::string::npos) << refused;
+}
+
+TEST(NastranSave, a_new_node_stands_in_the_system_of_those_it_comes_from) {
+  const DeckFolder folder;
+  const std::string text =
+      "CORD2C,7,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2S,8,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nGRID,11,7,2.,0.,5.\nGRID,12,7,4.,0.,5.\n"
+      "GRID,13,7,4.,450.,5.\nGRID,14,7,2.,450.,5.\nGRID,15,8,2.,90.,-270.\nGRID,16,8,6.,90.,-270.\nCQUAD4,1,1,11,12,13,14\nPSHELL,1,1,.1\n";
+  const auto opened = folder.open(text);
+  ASSERT_OPENED(opened);
+  Growing edit(*opened);
+  edit.middle(edit.node(11), edit.node(12));
+  edit.middle(edit.node(13), edit.node(14));
+  edit.middle(edit.node(15), edit.node(16));
+  const auto saved = save(edit.deck, edit.original, edit.model, folder / "out.k");
+  ASSERT_TRUE(saved) << saved.error().text();
+  const LineDifference lines = line_difference(text, content(folder / "out.k"));
+  EXPECT_EQ(lines.come, (std::vector<std::string>{"GRID,17,7,3.0,0.0,5.0", "GRID,18,7,3.0,450.0,5.0", "GRID,19,8,4.0,90.0,-270.0"}));
+  EXPECT_TRUE(lines.gone.empty());
+}
+
+TEST(NastranSave, a_node_moves_in_its_spherical_system) {
+  const DeckFolder folder;
+  const std::string text = "CORD2S,8,,1.,2.,3.,1.,2.,4.\n,2.,2.,3.\nGRID,1,8,2.,90.,-270.\n";
+  const auto opened = folder.open(text);
+  ASSERT_OPENED(opened);
+  EXPECT_LT((position_of(opened->model, 1) - Vec3(1, 4, 3)).norm(), 1e-12);
+  ASSERT_TRUE(save(*opened->deck, opened->model, with_node_at(opened->model, 1, {1, 4.5, 3}), folder / "out.k"));
+  EXPECT_EQ(line_difference(text, content(folder / "out.k")).come, std::vector<std::string>{"GRID,1,8,2.5,90.,-270."});
+  ASSERT_TRUE(save(*opened->deck, opened->model, with_node_at(opened->model, 1, {3, 2, 3}), folder / "out.k"));
+  const std::string turned = line_difference(text, content(folder / "out.k")).come.at(0);
+  EXPECT_EQ(turned.substr(0, 16), "GRID,1,8,2.,90.,") << "the two others stay";
+  EXPECT_NEAR(std::stod(turned.substr(16)), -360, 1e-5) << turned;
+}
+
+/// Why an edit of the deck can't be saved.
+std::string refusal_of(const DeckFolder& folder, const std::string& text, const std::function<void(Growing&)>& edit_it) {
+  const auto opened = folder.open(text);
+  if (!opened) return opened.error().text();
+  Growing edit(*opened);
+  edit_it(edit);
+  const auto may = can_save(edit.deck, edit.original, edit.model);
+  if (may) return "may be saved";
+  EXPECT_EQ(may.error().file, (folder / "deck.k").string());
+  return std::to_string(may.error().line) + ": " + may.error().message;
+}
+
+TEST(NastranSave, edits_that_cant_be_saved_name_the_card_that_forbids_them) {
+  const DeckFolder folder;
+  const auto split = [](Growing& edit) {
+    const auto n = edit.model.shell(edit.shell(1)).node;
+    set_shell_nodes(edit.model, edit.shell(1), {{n[0], n[1], n[2], n[2]}});
+    edit.child(edit.shell(1), n[0], n[2], n[3], n[3]);
+  };
+  EXPECT_EQ(refusal_of(folder, std::string("GRID,1,,0.,0.,0.,,12\nGRID,2,,1.,0.,0.,,3\n"),
+                       [](Growing& edit) { edit.middle(edit.node(1), edit.node(2)); }),
+            "2: the new node 3 lies between nodes whose cards constrain them in different ways; nothing was written");
+  EXPECT_EQ(refusal_of(folder, std::string(kOneQuad) + "=,*1,==\n", [](Growing& edit) { remove_shell(edit.model, edit.shell(1)); }),
+            "may be saved")
+      << "a MAT1 is copied";
+  EXPECT_EQ(refusal_of(folder, "GRID,1\nGRID,2,,1.\nGRID,3,,1.,1.\nCTRIA3,1,1,1,2,3\n=,*1,==\n",
+                       [](Growing& edit) { remove_shell(edit.model, edit.shell(2)); }),
+            "5: shell 2 has no card that is its alone; it can't be removed; nothing was written");
+  EXPECT_EQ(refusal_of(folder, "GRID,1\nGRID,2,,1.\nGRID,3,,1.,1.\nCTRIA3,1,1,1,2,3\n=,*1,==\n",
+                       [](Growing& edit) { remove_shell(edit.model, edit.shell(1)); }),
+            "4: shell 1 has no card that is its alone; it can't be removed; nothing was written");
+  EXPECT_EQ(
+      refusal_of(folder, "GRID,11,,0.,0.\nGRID,12,,1.,0.\nGRID,13,,1.,1.\nGRID,123456789,,0.,1.\nCQUAD4,1,1,11,12,13,123456789\n", split),
+      "5: the new shell 2 has a node whose id doesn't fit the fields of its card; nothing was written")
+      << "in free fields it can be read";
+  EXPECT_EQ(refusal_of(folder, kOneQuad,
+                       [](Growing& edit) {
+                         const auto n = edit.model.shell(edit.shell(1)).node;
+                         add_shell(edit.model, 100000000, {{n[0], n[1], n[2], n[2]}}, edit.shell(1));
+                       }),
+            "5: the new shell 100000000 has an id that doesn't fit the fields of the cards beside it; nothing was written");
+  EXPECT_EQ(refusal_of(folder, std::string(kOneQuad) + "GRID,15,,.5,0.\nCQUAD8,2,1,11,12,13,14,15\n",
+                       [](Growing& edit) { remove_node(edit.model, edit.node(15)); }),
+            "8: node 15 can't be removed: shell 2 has it; nothing was written");
+  EXPECT_EQ(refusal_of(folder, kOneQuad, [](Growing& edit) { edit.model.shell_thickness.set(0, 3.f); }),
+            "5: shell 1 has another thickness than its card, which this version can't write; nothing was written");
+}
+
+TEST(NastranSave, told_to_stop_while_cards_are_made_it_writes_nothing) {
+  const DeckFolder folder;
+  const auto opened = folder.open(kOneQuad);
+  ASSERT_OPENED(opened);
+  const auto stopped = [&](const Growing& edit) {
+    const auto saved = save(edit.deck, edit.original, edit.model, folder / "out.k", [](double) { return false; });
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.k"));
+    return saved ? "saved" : saved.error().message;
+  };
+  Growing nodes(*opened);
+  nodes.middle(nodes.node(11), nodes.node(12));
+  EXPECT_EQ(stopped(nodes), cancelled().message);
+  Growing shells(*opened);
+  const auto n = shells.model.shell(shells.shell(1)).node;
+  set_shell_nodes(shells.model, shells.shell(1), {{n[0], n[1], n[2], n[2]}});
+  EXPECT_EQ(stopped(shells), cancelled().message);
 }
 
 TEST(NastranSave, a_node_that_spans_a_system_stays) {
