@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cstring>
-#include <limits>
 
 #include "mesh/model/growth.h"
 
@@ -204,9 +203,8 @@ ShellNodes read_corners(DeltaReader& in, const Model& model) {
 /// An id that nothing in the index has.
 std::int64_t read_id(DeltaReader& in, const IdIndex& taken) {
   const std::uint64_t value = in.number();
-  const auto id = static_cast<std::int64_t>(value);
-  if (!in.ok() || value == 0 || value > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()) ||
-      taken.find(id) != IdIndex::kNotFound) {
+  const auto id = static_cast<std::int64_t>(value);  // of 63 bits at most
+  if (!in.ok() || value == 0 || taken.find(id) != IdIndex::kNotFound) {
     in.refuse();
     return 0;
   }

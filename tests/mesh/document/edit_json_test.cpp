@@ -114,6 +114,36 @@ TEST(EditJson, NamesTheWrongType) {
   EXPECT_THAT(why_not("[1]"), HasSubstr("an edit is an object"));
 }
 
+TEST(EditJson, WhatIsWrongWithinAFieldIsSaid) {
+  const std::pair<std::string, std::string> cases[] = {
+      {R"({"edit":"select_lasso","outline":[[0,0],[1,0],[0,"x"]],"view":[]})",
+       R"(select_lasso: "outline" has a wrong point 3: it must be a list of 2 numbers; number 2 must be a number, not the text "x")"},
+      {R"({"edit":"select_lasso","outline":[[0,0],[1,0],[0]],"view":[]})",
+       R"(select_lasso: "outline" has a wrong point 3: it must be a list of 2 numbers, not a list of 1)"},
+      {R"({"edit":"select_lasso","outline":[[0,0],[1,0]],"view":[]})",
+       R"(select_lasso: "outline" must be a list of 3 to 100000 points [x, y], not a list of 2)"},
+      {R"({"edit":"select_region","at":[0,1]})", R"(select_region: "at" must be a list of 3 numbers, not a list of 2)"},
+      {R"({"edit":"select_region","at":[0,1,null]})",
+       R"(select_region: "at" must be a list of 3 numbers; number 3 must be a number, not null)"},
+      {R"({"edit":"lift","distance":1,"falloff":"smooth"})",
+       R"(lift: "falloff" must be an object like {"profile": "smooth"}, not the text "smooth")"},
+      {R"({"edit":"relax","max_move":2})", R"(relax: "max_move" must be an object like {"free": 2, "line": 0.5}, not the number 2)"},
+      {R"({"edit":"relax","max_move":{"free":0}})", R"(relax: "max_move": "free" must be a number greater than 0, not the number 0)"},
+      {R"({"edit":"lift","distance":1,"normals":"all"})",
+       R"(lift: "normals" must be "grab" (all nodes along the normal at the grab) or "each", not the text "all")"},
+      {R"({"edit":"lift","distance":1,"on":{"edit":"slect"}})",
+       R"(lift: "on" has a wrong recipe: there is no edit "slect"; the nearest is "select" (known: )"},
+      {R"({"edit":"lift","distance":1,"on":{"edit":"select"}})", R"(lift: "on" has a wrong recipe: select needs the field "expr")"},
+      {R"({"edit":"lift","distance":1,"on":[1]})",
+       R"(lift: "on" must be an expression in quotes or a recipe like {"edit": "select_region", ...}, not a list of 1)"},
+      {R"({"edit":"split","at":[]})", R"(split: "at" must be a list of 1 to 1000 entities like ["shell:12", "shell:40"], not a list of 0)"},
+      {R"({"edit":"split","at":["shell:1",2]})",
+       R"(split: "at" must be a list of 1 to 1000 entities like ["shell:12", "shell:40"], not the number 2)"},
+      {R"({"edit":7})", R"("edit" must be the name of an edit, not the number 7)"},
+  };
+  for (const auto& [text, words] : cases) EXPECT_THAT(why_not(text), testing::StartsWith(words)) << text;
+}
+
 TEST(EditJson, WhatIsNotThereYetIsRefusedByName) {
   EXPECT_THAT(why_not(R"({"edit":"weld","mode":"full"})"), HasSubstr("\"weld\" isn't there yet in this version"));
 }

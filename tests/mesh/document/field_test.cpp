@@ -216,6 +216,34 @@ TEST(FieldTest, nothing_to_measure_is_a_sentence) {
   EXPECT_NE(step.error().message.find("no time step"), std::string::npos);
 }
 
+TEST(FieldTest, a_measurement_stops_when_told_and_needs_what_it_compares_with) {
+  const Document document = make_document(make_assembly());
+  const Generation& now = document.current();
+  const auto stop = [](double) { return false; };
+  Model lifted = now.model;
+  lifted.positions.set(0, Vec3(0, 0, 3));
+  const auto off = surface_distance_field(lifted, now.model, mm, stop);
+  ASSERT_FALSE(off);
+  EXPECT_EQ(off.error().message, "cancelled");
+  FieldWish gap;
+  gap.of = FieldWish::Of::gap;
+  gap.from = "part:1";
+  gap.to = "part:2";
+  const auto apart = make_field(gap, now, document, nullptr, stop);
+  ASSERT_FALSE(apart);
+  EXPECT_EQ(apart.error().message, "cancelled");
+  ASSERT_TRUE(make_field(gap, now, document, nullptr));
+  gap.to = "part:99";
+  const auto to_nothing = make_field(gap, now, document, nullptr);
+  ASSERT_FALSE(to_nothing);
+  EXPECT_NE(to_nothing.error().text().find("99"), std::string::npos);
+  for (const char* name : {"displacement", "distance-to-original"}) {
+    const auto alone = make_field(*field_wish(name), now, document, nullptr);
+    ASSERT_FALSE(alone);
+    EXPECT_EQ(alone.error().text(), std::string(name) + ": needs another state to be compared with");
+  }
+}
+
 TEST(FieldTest, metrics_are_those_of_the_shells) {
   Settings settings;
   settings.criteria = quality::default_criteria();

@@ -226,6 +226,26 @@ TEST_F(HangingTest, cards_of_which_only_some_nodes_move_are_flagged) {
   for (const std::string& note : whole.notes) EXPECT_THAT(note, Not(HasSubstr("CONSTRAINED")));
 }
 
+TEST_F(HangingTest, of_many_nodes_and_cards_that_stay_behind_some_are_named_and_the_rest_counted) {
+  constexpr auto kRaise = R"({"edit":"translate","by":[0,0,0.2],"on":"part:1","falloff":{"profile":"constant"}})";
+  DeckText body = two_sheets();
+  body.cards("*SET_NODE_LIST\n         7\n         1       101       102       103       104       105       106       107\n");
+  body.cards("*CONSTRAINED_NODAL_RIGID_BODY\n        50         0         7\n");
+  Document document = open_text(body);
+  EXPECT_THAT(must_apply(document, kRaise).notes,
+              Contains("*CONSTRAINED_NODAL_RIGID_BODY 50: 1 of its 8 nodes moved; left in place: node:101, node:102, "
+                       "node:103, node:104, node:105 and 2 more"));
+
+  DeckText welds = two_sheets();
+  welds.cards("*CONSTRAINED_SPOTWELD\n");
+  for (int i = 0; i < 7; ++i) welds.cards("        1" + std::to_string(i) + "       11" + std::to_string(i) + "\n");
+  document = open_text(welds);
+  const EditReport report = must_apply(document, kRaise);
+  EXPECT_EQ(std::count_if(report.notes.begin(), report.notes.end(), [](const std::string& n) { return n.find("left in place") != n.npos; }),
+            5);
+  EXPECT_THAT(report.notes, Contains("so it is with 2 more cards that join nodes"));
+}
+
 TEST_F(HangingTest, tied_nodes_that_leave_their_master_are_lost) {
   DeckText deck = two_sheets();
   deck.cards("*SET_NODE_LIST\n         8\n       101       102       103\n");

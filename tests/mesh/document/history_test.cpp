@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,6 +67,18 @@ TEST(History, AFailedEditLeavesNoTrace) {
   EXPECT_NE(refusal(document, R"({"edit":"lift","distance":1})"), "");
   EXPECT_TRUE(document.can_redo());
   EXPECT_EQ(document.next_number, 2u);
+}
+
+TEST(History, ATargetSizeThatIsNoneIsRefused) {
+  for (const double size : {0.0, -1.0, 1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    auto deck = std::make_shared<deck::Deck>();
+    OpenOptions options;
+    options.target_size = size;
+    const Result<Document> document =
+        open("model.k", {deck, test::make_grid(2, 2, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); })}, options);
+    ASSERT_FALSE(document) << size;
+    EXPECT_EQ(document.error().text(), "the target size must be greater than 0");
+  }
 }
 
 TEST(History, PreparingChangesNothing) {

@@ -1,118 +1,16 @@
 #include "mesh/document/journal.h"
 
-#include <fcntl.h>
-#include <sys/mount.h>
-#include <sys/stat.h>
-#include <sys/syscall.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <bit>
-#include <cerrno>
-#include <functional>
-#include <system_error>
+#include <algorithm>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/mesh/document/document_fixture.h"
-
-namespace {
-
-/// The test's own disk: calls below go through it, so that each can be made to fail.
-struct FaultyDisk {
-  std::atomic<int> writes_left{-1};  ///< of whole pwrite calls before one fails; -1: none fails
-  std::atomic<int> write_error{0};
-  std::atomic<bool> short_write{false};   ///< the failing call first writes half
-  std::atomic<int> sync_error{0};         ///< of fdatasync
-  std::atomic<int> folder_sync_error{0};  ///< of fsync: new files and folders
-  std::atomic<int> truncate_error{0};
-};
-FaultyDisk disk;
-
-}  // namespace
-
-// These stand before the C library's of the same name.
-extern "C" ssize_t pwrite(int fd, const void* data, size_t size, off_t offset) {
-  if (disk.writes_left >= 0 && disk.writes_left-- == 0) {
-    if (disk.short_write.exchange(false)) {
-      disk.writes_left = 0;
-      return ::syscall(SYS_pwrite64, fd, data, size / 2, offset);
-    }
-    errno = disk.write_error;
-    return -1;
-  }
-  return ::syscall(SYS_pwrite64, fd, data, size, offset);
-}
-extern "C" ssize_t pwrite64(int fd, const void* data, size_t size, off64_t offset) { return pwrite(fd, data, size, offset); }
-extern "C" int ftruncate(int fd, off_t size) noexcept {
-  if (disk.truncate_error == 0) return static_cast<int>(::syscall(SYS_ftruncate, fd, size));
-  errno = disk.truncate_error;
-  return -1;
-}
-extern "C" int ftruncate64(int fd, off64_t size) noexcept { return ftruncate(fd, size); }
-extern "C" int fdatasync(int) {
-  if (disk.sync_error == 0) return 0;  // really flushing would only cost time: no test here cuts the power
-  errno = disk.sync_error;
-  return -1;
-}
-extern "C" int fsync(int) {
-  if (disk.folder_sync_error == 0) return 0;
-  errno = disk.folder_sync_error;
-  return -1;
-}
+#include "tests/mesh/document/journal_session.h"
 
 namespace prismesh::mesh::document {
 namespace {
 
 using testing::HasSubstr;
-
-const std::vector<std::string> kSession{
-    R"({"edit":"select","expr":"1-10"})",
-    R"({"edit":"translate","by":[0.1,0,1.1]})",
-    R"({"edit":"grow","rings":2})",
-    R"({"edit":"lift","distance":0.3})",
-    R"({"edit":"undo"})",
-    R"({"edit":"undo"})",
-    R"({"edit":"redo"})",
-    R"({"edit":"select","expr":"3","kind":"element","mode":"set"})",
-    R"({"edit":"lock","on":"1"})",
-};
-
-Document small() { return make_sheet(5, 4); }
-
-/// Applies and journals one edit, as modeld does.
-Result<EditReport> work(Document& document, Journal& journal, const std::string& json) {
-  const Edit edit = edit_of(json);
-  Result<Prepared> prepared = prepare(document, edit);
-  if (!prepared) return fail(prepared.error());
-  if (const Result<void> kept = journal.append(document, edit, *prepared); !kept) return fail(kept.error());
-  EditReport report = prepared->report;
-  commit(document, std::move(*prepared));
-  return report;
-}
-
-/// A journal of the whole session, and the document after each of its records.
-struct Session {
-  Folder folder;
-  std::filesystem::path path = folder / "session.journal";
-  std::vector<Document> after;     ///< [k]: after k records
-  std::vector<std::size_t> bytes;  ///< [k]: size of the journal then
-
-  explicit Session(const std::vector<std::string>& edits = kSession, Document document = small()) {
-    Result<Journal> journal = Journal::create(path, document);
-    EXPECT_TRUE(journal) << journal.error().text();
-    after.push_back(document);
-    bytes.push_back(std::filesystem::file_size(path));
-    for (const std::string& edit : edits) {
-      const Result<EditReport> report = work(document, *journal, edit);
-      EXPECT_TRUE(report) << edit << ": " << report.error().text();
-      after.push_back(document);
-      bytes.push_back(std::filesystem::file_size(path));
-    }
-    EXPECT_EQ(journal->records(), edits.size());
-  }
-};
 
 TEST(Journal, BringsBackEveryGeneration) {
   const Session session;
@@ -171,14 +69,6 @@ TEST(Journal, ACutHeaderIsDamage) {
     Document document = small();
     ASSERT_FALSE(Journal::recover(session.path, document)) << size;
   }
-}
-
-/// The copies of damaged journals that lie beside one.
-std::vector<std::string> copies_of(const std::filesystem::path& journal) {
-  std::vector<std::string> copies;
-  for (const auto& entry : std::filesystem::directory_iterator(journal.parent_path()))
-    if (entry.path().string().starts_with(journal.string() + ".damaged.")) copies.push_back(content_of(entry.path()));
-  return copies;
 }
 
 TEST(Journal, EveryFlippedByteIsFoundAndWhatIsBeforeItIsBroughtBack) {
@@ -362,153 +252,6 @@ TEST(Journal, RemembersWhichStepsTheHistoryDropped) {
   ASSERT_TRUE(Journal::recover(session.path, again));
   EXPECT_EQ(again.generations.size(), 3u);
   expect_same(again, session.after.back());
-}
-
-class FaultTest : public testing::Test {
- protected:
-  ~FaultTest() override {
-    disk.writes_left = -1;
-    disk.short_write = false;
-    disk.sync_error = 0;
-    disk.folder_sync_error = 0;
-  }
-  /// One edit that must fail, then one that must be kept; the journal must hold exactly what was acknowledged.
-  void fail_once(Session& session, const std::function<void()>& break_disk, const std::function<void()>& mend_disk,
-                 const std::string& words) {
-    Document document = small();
-    Result<Journal> journal = Journal::recover(session.path, document);
-    ASSERT_TRUE(journal);
-    const std::string before = content_of(session.path);
-    break_disk();
-    const Result<EditReport> failed = work(document, *journal, R"({"edit":"invert"})");
-    mend_disk();
-    ASSERT_FALSE(failed);
-    EXPECT_THAT(failed.error().message, HasSubstr(words));
-    EXPECT_EQ(failed.error().file, session.path.string());
-    EXPECT_EQ(content_of(session.path), before);
-    expect_same(document, session.after.back());
-    const Result<EditReport> kept = work(document, *journal, R"({"edit":"select","expr":"7"})");
-    ASSERT_TRUE(kept) << kept.error().text();
-    Document expected = session.after.back();
-    must_apply(expected, R"({"edit":"select","expr":"7"})");
-    journal = Journal::create(session.folder / "other.journal", small());  // lets go of the first
-    std::filesystem::remove(session.folder / "other.journal");
-    Document again = small();
-    ASSERT_TRUE(Journal::recover(session.path, again));
-    expect_same(again, expected);
-  }
-};
-
-TEST_F(FaultTest, AFailedWriteLeavesTheJournalAsItWas) {
-  for (const int error : {ENOSPC, EIO, EDQUOT})
-    for (const bool half : {false, true}) {
-      Session session;
-      fail_once(
-          session,
-          [&] {
-            disk.write_error = error;
-            disk.short_write = half;
-            disk.writes_left = 0;
-          },
-          [] { disk.writes_left = -1; }, std::generic_category().message(error));
-    }
-}
-
-TEST_F(FaultTest, AFailedFlushMovesWhatWasAcknowledgedToANewFile) {
-  Session session;
-  struct stat before {};
-  ASSERT_EQ(::stat(session.path.c_str(), &before), 0);
-  fail_once(
-      session, [] { disk.sync_error = EIO; }, [] { disk.sync_error = 0; }, "can't be flushed to disk");
-  struct stat after {};
-  ASSERT_EQ(::stat(session.path.c_str(), &after), 0);
-  EXPECT_NE(before.st_ino, after.st_ino);
-}
-
-TEST_F(FaultTest, WhenNothingCanBeFlushedNoEditsAreTakenUntilTheJournalIsWrittenAnew) {
-  for (const int truncate_error : {0, EIO}) {
-    Session session;
-    Document document = small();
-    {
-      Result<Journal> journal = Journal::recover(session.path, document);
-      ASSERT_TRUE(journal);
-      disk.sync_error = EIO;
-      disk.folder_sync_error = EIO;
-      disk.truncate_error = truncate_error;
-      const Result<EditReport> refused = work(document, *journal, R"({"edit":"invert"})");
-      ASSERT_FALSE(refused);
-      EXPECT_THAT(refused.error().message, HasSubstr("the edit wasn't made")) << "its bytes were overwritten if not cut off";
-      const Result<EditReport> later = work(document, *journal, R"({"edit":"invert"})");
-      ASSERT_FALSE(later);
-      EXPECT_THAT(later.error().message, HasSubstr("takes no more edits since an earlier failure"));
-    }
-    Document again = small();
-    Result<Journal> journal = Journal::recover(session.path, again);
-    disk.sync_error = disk.folder_sync_error = disk.truncate_error = 0;
-    if (!journal) journal = Journal::recover(session.path, again);  // what is left of the record couldn't be cut off
-    ASSERT_TRUE(journal) << journal.error().text();
-    expect_same(again, session.after.back());
-  }
-  Session session;
-  Document document = small();
-  {
-    Result<Journal> journal = Journal::recover(session.path, document);
-    disk.sync_error = disk.folder_sync_error = EIO;
-    EXPECT_FALSE(work(document, *journal, R"({"edit":"invert"})"));
-    disk.sync_error = disk.folder_sync_error = 0;
-    EXPECT_TRUE(work(document, *journal, R"({"edit":"invert"})")) << "it is written anew first";
-  }
-  Document again = small();
-  ASSERT_TRUE(Journal::recover(session.path, again));
-  expect_same(again, document);
-}
-
-TEST_F(FaultTest, AJournalThatWasDeletedOrChangedTakesNoEdit) {
-  Session session;
-  Document document = small();
-  Result<Journal> journal = Journal::recover(session.path, document);
-  ASSERT_TRUE(journal);
-  const std::string whole = content_of(session.path);
-  put_content(session.path, whole + "{}\n");
-  EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("changed by another program"));
-  put_content(session.path, whole);
-  const std::filesystem::path away = session.folder / "away";
-  std::filesystem::rename(session.path, away);
-  EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("moved away or replaced"));
-  put_content(session.path, whole);
-  EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("moved away or replaced"));
-  EXPECT_EQ(content_of(away), whole);
-  std::filesystem::rename(away, session.path);
-  std::filesystem::remove(session.path);
-  EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("has been deleted"));
-}
-
-TEST(Journal, AFullDiskLosesNothing) {
-  Folder folder;
-  if (::mount("none", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0)
-    GTEST_SKIP() << "SKIPPED ALOUD: a full disk needs a small tmpfs, and mounting one needs root";
-  const std::filesystem::path path = folder / "full.journal";
-  Document document = make_sheet(20, 20);
-  std::size_t kept = 0;
-  {
-    Result<Journal> journal = Journal::create(path, document);
-    ASSERT_TRUE(journal) << journal.error().text();
-    Result<EditReport> report =
-        work(document, *journal, R"({"edit":"translate","by":[0,0,1],"on":"all","falloff":{"profile":"constant"}})");
-    while (report && kept < 1000) {
-      ++kept;
-      report = work(document, *journal, R"({"edit":"translate","by":[0,0,1],"on":"all","falloff":{"profile":"constant"}})");
-    }
-    ASSERT_FALSE(report);
-    EXPECT_THAT(report.error().message, HasSubstr("No space left on device"));
-    EXPECT_TRUE(work(document, *journal, R"({"edit":"undo"})")) << "a small record still fits";
-  }
-  Document again = make_sheet(20, 20);
-  const Result<Journal> journal = Journal::recover(path, again);
-  EXPECT_TRUE(journal) << journal.error().text();
-  EXPECT_GT(kept, 0u);
-  expect_same(again, document);
-  ::umount2(folder.path().c_str(), MNT_DETACH);
 }
 
 TEST(Replay, GoesOnAfterAFailure) {

@@ -136,16 +136,35 @@ TEST(Relax, SaysWhereThereIsNothingToDo) {
 
 TEST(Relax, RefusesNumbersWithoutSense) {
   Document document = make_sheet(6, 6);
-  Relax relax;
-  relax.scope = Scope::all;
-  relax.max_move.free = -1;
-  EXPECT_FALSE(try_apply(document, relax));
-  relax.max_move.free.reset();
-  relax.threshold = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(try_apply(document, relax));
-  relax.threshold.reset();
-  relax.angle = 0;
-  EXPECT_FALSE(try_apply(document, relax));
+  constexpr double kNothing = std::numeric_limits<double>::quiet_NaN(), kMuch = std::numeric_limits<double>::infinity();
+  constexpr const char* kMove = "relax: max_move must be greater than 0, or 0 on lines";
+  constexpr const char* kDisplaced = "relax: the threshold must be greater than 0";
+  constexpr const char* kTurn = "relax: the angle must be above 0 and at most 180 degrees";
+  struct Case {
+    void (*set)(Relax&, double);
+    const char* words;
+    std::vector<double> bad, good;
+  };
+  const Case cases[] = {
+      {[](Relax& r, double v) { r.max_move.free = v; }, kMove, {-1, 0, kNothing, kMuch}, {1}},
+      {[](Relax& r, double v) { r.max_move.line = v; }, kMove, {-1, kNothing, kMuch}, {0, 1}},
+      {[](Relax& r, double v) { r.threshold = v; }, kDisplaced, {-1, 0, kNothing, kMuch}, {1}},
+      {[](Relax& r, double v) { r.angle = v; }, kTurn, {-1, 0, 181, kNothing, kMuch}, {1, 180}},
+  };
+  for (const auto& [set, words, bad, good] : cases) {
+    Relax relax;
+    relax.scope = Scope::all;
+    for (const double value : bad) {
+      set(relax, value);
+      const Result<EditReport> refused = try_apply(document, relax);
+      ASSERT_FALSE(refused) << words << ", " << value;
+      EXPECT_EQ(refused.error().text(), words);
+    }
+    for (const double value : good) {
+      set(relax, value);
+      EXPECT_TRUE(prepare(document, relax)) << words << ", " << value;
+    }
+  }
 }
 
 TEST(Relax, FromANodeWithoutASelectionGoesAsFarAsItMust) {

@@ -122,6 +122,9 @@ TEST(RepairRefusals, ByHandWhatIsNotThereOrLockedIsRefused) {
   };
   for (const auto& [edit, why] : cases) EXPECT_THAT(refused_alone(document, edit), HasSubstr(why));
   EXPECT_FALSE(refused_alone(document, R"({"edit":"split","at":["node:7"]})").empty());
+  const Result<EditReport> of_nothing = try_apply(document, Restructure{repair::Operation::swap, {}});  // JSON has none without
+  ASSERT_FALSE(of_nothing);
+  EXPECT_EQ(of_nothing.error().text(), "swap: \"at\" names no shell and no node");
   must_apply(document, R"({"edit":"lock","on":"1"})");
   for (const char* edit : {R"({"edit":"split","at":["shell:1"]})", R"({"edit":"split","at":["shell:4","shell:5"]})",
                            R"({"edit":"swap","at":["shell:1","shell:2"]})"})

@@ -196,6 +196,67 @@ TEST(Restructure, ANewNodeBetweenPartsIsHiddenWithBothAndLockedWithEither) {
   }
 }
 
+TEST(Restructure, BeamsAndMidSideNodesKeepTheirSayOverTheNodesTheyShare) {
+  const Folder folder;
+  std::string text = sheet_deck(6, 4);
+  // A beam up from node 9, a corner of shells of part 1; shell 902 of part 2, whose mid-side node 924 is a corner of shell 903 of part 1.
+  text.insert(text.find("*END"),
+              "*NODE\n     901             5.0             5.0           500.0\n"
+              "     921            22.5            15.0             0.1\n     922            25.0            17.5             0.1\n"
+              "     923            22.5            20.0             0.1\n     924            20.0            17.5             0.1\n"
+              "     931            20.0            17.5            10.0\n     932            15.0            17.5            10.0\n"
+              "     933            15.0            17.5             0.1\n"
+              "*ELEMENT_SHELL\n     902       2      26      27      34      33     921     922     923     924\n"
+              "     903       1     924     931     932     933\n"
+              "*ELEMENT_BEAM\n     900       9       9     901       0\n*PART\nframe\n         9         9         9\n"
+              "*SECTION_BEAM\n         9         9\n       6.0       6.0       0.0       0.0\n*MAT_ELASTIC\n         9  7.85E-09    210000 "
+              "      0.3\n");
+  struct Case {
+    const char* edit;
+    std::int64_t split, node;
+    int marks;
+  };
+  const Case cases[] = {
+      {R"({"edit":"lock","on":"9"})", 8, 9, kLocked},   {R"({"edit":"hide","on":"1"})", 8, 9, 0},
+      {R"({"edit":"hide","on":"1,9"})", 8, 9, kHidden}, {R"({"edit":"lock","on":"2"})", 903, 924, kLocked},
+      {R"({"edit":"hide","on":"1"})", 903, 924, 0},     {R"({"edit":"hide","on":"1-2"})", 903, 924, kHidden},
+  };
+  for (const auto& [edit, split, node, marks] : cases) {
+    Document document = open_text(folder / "a.k", text);
+    must_apply(document, edit);
+    const auto marks_of = [&](std::int64_t id) {
+      return document.current().node_marks[document.current().model.find_node(id).value] & (kLocked | kHidden);
+    };
+    EXPECT_EQ(marks_of(node), marks) << edit;
+    Change change{document.current().model, {}};
+    change.split(document.current().model.find_shell(split));
+    must_change(document, change.finish());
+    EXPECT_EQ(marks_of(node), marks) << edit << ", after shell " << split << " was split";
+    expect_sound(document);
+  }
+  Document document = open_text(folder / "a.k", text);
+  must_apply(document, R"({"edit":"lock","on":"2"})");
+  EXPECT_THAT(refusal(document, R"({"edit":"translate","by":[0,0,1],"on":"922"})"),
+              HasSubstr("node 922 would move but belongs to the locked part 2"));
+}
+
+TEST(Restructure, WithoutAFreeIdNothingIsAdded) {
+  for (const char* ranges :
+       {"*SET_NODE_LIST_GENERATE\n         3\n        30  99999999\n", "*SET_SHELL_LIST_GENERATE\n         3\n        20  99999999\n"}) {
+    const Folder folder;
+    std::string text = sheet_deck(6, 4);
+    text.insert(text.find("*END"), ranges);
+    const Document document = open_text(folder / "a.k", text);
+    Change change{document.current().model, {}};
+    change.star(shell(0));
+    const Result<Prepared> prepared = prepare_change(document, change.finish());
+    ASSERT_FALSE(prepared);
+    EXPECT_THAT(prepared.error().text(), HasSubstr(std::string("no id is left for a new ") + (ranges[5] == 'N' ? "node" : "shell")));
+    EXPECT_EQ(prepared.error().file, (folder / "a.k").string());
+    expect_sound(document);
+  }
+}
+
 /// What a user does with a model after its structure changed.
 TEST(Restructure, EveryOtherEditWorksOnWhatHasGrown) {
   const Folder folder;

@@ -179,6 +179,50 @@ TEST(Select, GrowShrinkInvert) {
   EXPECT_THAT(selected_ids(document), ElementsAre(7, 8, 12, 13));
 }
 
+TEST(Select, SaysWhenNothingIsSelectedNow) {
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{R"({"edit":"select","expr":"1-5"})"}, R"({"edit":"select","expr":"1-9","mode":"subtract"})"},
+      {{R"({"edit":"select","expr":"1-5"})"}, R"({"edit":"select","expr":"6-9","mode":"intersect"})"},
+      {{R"({"edit":"select","expr":"13"})"}, R"({"edit":"shrink"})"},
+      {{R"({"edit":"select","expr":"6","kind":"element"})"}, R"({"edit":"shrink"})"},
+      {{R"({"edit":"select","expr":"all"})"}, R"({"edit":"invert"})"},
+      {{R"({"edit":"select","expr":"1","kind":"part"})"}, R"({"edit":"invert"})"},
+  };
+  for (const auto& [first, last] : cases) {
+    Document document = make_sheet(4, 4);
+    for (const std::string& edit : first) EXPECT_THAT(must_apply(document, edit).notes, IsEmpty()) << edit;
+    EXPECT_THAT(must_apply(document, last).notes, ElementsAre("nothing is selected now")) << last;
+    EXPECT_EQ(document.current().selected_nodes, 0u);
+    EXPECT_EQ(document.current().selected_shells, 0u);
+  }
+}
+
+TEST(Select, AClosedSheetHasNoFreeEdgeAndAnEmptyDeckNoPlace) {
+  std::vector<test::NodeSpec> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back({1 + i, Vec3(5.0 * (i & 1), 5.0 * (i >> 1 & 1), 5.0 * (i >> 2))});
+  Document box = make_document(test::make_model(corners, {{1, 1, {1, 3, 4, 2}},
+                                                          {2, 1, {5, 6, 8, 7}},
+                                                          {3, 1, {1, 2, 6, 5}},
+                                                          {4, 1, {3, 7, 8, 4}},
+                                                          {5, 1, {1, 5, 7, 3}},
+                                                          {6, 1, {2, 4, 8, 6}}}));
+  EXPECT_EQ(refusal(box, R"({"edit":"select_region","at":8,"by":"free_edge"})"), "the sheet at shell 2 has no free edge in sight");
+  EXPECT_EQ(box.generations.size(), 1u);
+  Document empty = make_document(test::make_model({}, {}));
+  EXPECT_EQ(refusal(empty, R"({"edit":"select_region","at":1})"), "the model has no nodes");
+  EXPECT_EQ(refusal(empty, R"({"edit":"select_region","at":[0,0,0]})"), "no shell is in sight, so there is no region");
+}
+
+TEST(Select, ARecipeThatFindsNothingIsRefusedAsTheSelectionIs) {
+  Document document = make_sheet(4, 4);
+  EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":{"edit":"select_region","at":99}})"),
+              HasSubstr("there is no node 99; the nearest id is 25"));
+  EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":{"edit":"select","expr":"99"}})"), HasSubstr("no node 99"));
+  must_apply(document, R"({"edit":"hide","on":"all"})");
+  EXPECT_EQ(refusal(document, R"({"edit":"lift","distance":1,"on":{"edit":"select_region","at":[0,0,0]}})"),
+            "no shell is in sight, so there is no region");
+}
+
 TEST(Select, HiddenPartsAreLeftAloneUnlessNamed) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"hide","on":"2,4"})");

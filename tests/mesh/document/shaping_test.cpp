@@ -335,6 +335,24 @@ TEST(Shaping, WhatMakesNoSenseIsRefusedInASentence) {
               HasSubstr("the grab's place"));
   EXPECT_THAT(refuse(changed(rotate,
                              [&](Rotate& r) {
+                               r.shaping.grab_at = std::array<double, 3>{much, 0, 0};
+                             })),
+              HasSubstr("the grab's place"));
+  EXPECT_THAT(refuse(changed(rotate, [](Rotate& r) { r.shaping.weights.falloff.flat = 2; })), HasSubstr("flat share"));
+  EXPECT_THAT(refuse(changed(rotate,
+                             [](Rotate& r) {
+                               r.shaping.on = "111-113,121-123,131-133";
+                               r.shaping.weights.origin = shape::Origin::free_edge;
+                             })),
+              HasSubstr("the selection reaches none"));
+  Lift lift;
+  lift.shaping.on = "100-148";
+  for (const double distance : {nothing, much, -much}) {
+    lift.distance = distance;
+    EXPECT_EQ(refuse(lift), "lift: how far it goes must be a finite number");
+  }
+  EXPECT_THAT(refuse(changed(rotate,
+                             [&](Rotate& r) {
                                r.shaping.symmetry = Symmetry{Vec3::Zero(), Vec3::Zero()};
                              })),
               HasSubstr("symmetry: the plane's normal must be a direction"));
