@@ -214,7 +214,6 @@ class PieceReader {
       nodes_.insert(nodes_.end(), fields_.begin(), fields_.begin() + form.nodes[l]);
     }
     ++counter(form.element_class);
-    fields_[0] = id;
     if (usable) add_element(offset, id);
     return true;
   }

@@ -360,10 +360,10 @@ TEST_F(Radioss, knows_parameters_where_they_hold) {
 
 TEST_F(Radioss, reads_a_submodel_by_its_own_version_and_units) {
   const std::string centimetres = "/BEGIN\nsub\n      44         0\n" + reals({"kg", "cm", "s"}, 16) + "\n";
-  const auto opened = open(std::string(kHead) + "//SUBMODEL/1/V44\nold\n" + card({0, 100}, 8) + "/NODE\n" + node(1, "1", "2", "3", 8) +
-                           "//SUBMODEL/3\ninner\n" + card({0, 1000}, 8) + "/NODE\n" + node(2, "4", "5", "6", 8) +
-                           "//ENDSUB\n//ENDSUB\n//SUBMODEL/2\nnew\n" + card({0, 200}) + centimetres + "/NODE\n" +
-                           node(1, "1", "2", "3", 8) + "//ENDSUB\n/NODE\n" + node(1, "1", "2", "3") + "/END\n");
+  const auto opened = open(
+      std::string(kHead) + "//SUBMODEL/1/V44\nold\n" + card({0, 100}, 8) + "/NODE\n" + node(1, "1", "2", "3", 8) + "//SUBMODEL/3\ninner\n" +
+      card({0, 1000}, 8) + "/NODE\n" + node(2, "4.00000000000000", "5.00000000000000", "6", 8) + "//ENDSUB\n//ENDSUB\n//SUBMODEL/2\nnew\n" +
+      card({0, 200}) + centimetres + "/NODE\n" + node(1, "1", "2", "3", 8) + "//ENDSUB\n/NODE\n" + node(1, "1", "2", "3") + "/END\n");
   ASSERT_OPENED(opened);
   EXPECT_EQ(position_of(opened->model, 101), Vec3(1, 2, 3));
   EXPECT_EQ(position_of(opened->model, 1102), Vec3(4, 5, 6));
@@ -386,6 +386,167 @@ TEST_F(Radioss, names_ids_with_the_offsets_of_their_kind) {
     EXPECT_EQ(references.referrers()[naming[0].referrer].id, card_id);
   }
   for (const std::int64_t id : {1, 4, 5, 7, 103}) EXPECT_FALSE(references.named(Referred::node, id)) << id;
+}
+
+// --- several cards together -----------------------------------------------------------------------------------------
+
+TEST_F(Radioss, moves_by_nodes_where_earlier_cards_have_put_them) {
+  const std::string along = "/TRANSFORM/TRA/2\nt\n" + kBlankId + reals({"0", "0", "0"}) + card({1, 12, 1});
+  const auto opened =
+      open(std::string(kHead) + "//SUBMODEL/1\ns\n\n" + kSquare + "//ENDSUB\n/NODE\n" + node(12, "5", "0", "0") + "/TRANSFORM/TRA/1\nt\n" +
+           kBlankId + reals({"0", "10", "0"}) + std::string(20, ' ') + right("1", 10) + "\n" + along + "/END\n");
+  ASSERT_OPENED(opened);
+  // From node 1, by then at (0 10 0), to node 12: 5 along x and back by 10 along y.
+  EXPECT_EQ(position_of(opened->model, 1), Vec3(5, 0, 0));
+  EXPECT_EQ(position_of(opened->model, 3), Vec3(6, 1, 0));
+}
+
+TEST_F(Radioss, scales_about_one_node_whatever_else_the_card_has) {
+  const auto opened = open(std::string(kHead) + "//SUBMODEL/1\ns\n\n" + kSquare + "//ENDSUB\n/NODE\n" + node(12, "1", "0", "0") +
+                           "/TRANSFORM/SCA/1\nt\n" + kBlankId + reals({"2", "3", "4"}) + card({12, 77, 1}) + "/END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(warning(*opened->deck, "unread-transform").count, 0u);
+  EXPECT_EQ(position_of(opened->model, 1), Vec3(-1, 0, 0));
+  EXPECT_EQ(position_of(opened->model, 3), Vec3(1, 3, 0));
+}
+
+TEST_F(Radioss, takes_the_points_of_a_position_in_its_unit_and_its_submodel_from_any_field) {
+  const std::string points = " 0 0 0\n 0.001 0 0\n 0 0.001 0\n 0.007 0 0\n 0.007 0.001 0\n 0.006 0 0\n";
+  for (const auto& ids : {card({0, 0, 0, 0, 0, 0, 0, 1}), card({0, 0, 0, 0, 0, 0, 0, 0, 1}), card({0, 0, 0, 0, 0, 0, 0, 0, 0, 1})}) {
+    const auto opened = open(std::string(kHead) + "/UNIT/3\nSI\n" + reals({"kg", "m", "s"}) + "\n//SUBMODEL/1\ns\n\n" + kSquare +
+                             "//ENDSUB\n/TRANSFORM/POSITION/1/3\np\n" + ids + points + "/END\n");
+    ASSERT_OPENED(opened);
+    EXPECT_EQ(warning(*opened->deck, "unread-transform").count, 0u);
+    EXPECT_LT((position_of(opened->model, 2) - Vec3(7, 1, 0)).norm(), 1e-12) << ids;
+    EXPECT_LT((position_of(opened->model, 4) - Vec3(6, 0, 0)).norm(), 1e-12) << ids;
+  }
+}
+
+TEST_F(Radioss, a_group_that_was_moved_stays_in_its_submodel) {
+  const auto opened =
+      open(std::string(kHead) + "//SUBMODEL/1\ns\n" + card({0, 100}) + kSquare + "/GRNOD/GEN_INCR/5\ng\n" + card({1, 4, 2}) +
+           "/TRANSFORM/TRA/1\nt\n" + right("5", 10) + reals({"0", "10", "0"}) + "\n//ENDSUB\n/TRANSFORM/TRA/2\nt\n" + kBlankId +
+           reals({"100", "0", "0"}) + std::string(20, ' ') + right("1", 10) + "\n/END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(position_of(opened->model, 101), Vec3(100, 10, 0));
+  EXPECT_EQ(position_of(opened->model, 102), Vec3(101, 0, 0));
+  EXPECT_EQ(position_of(opened->model, 103), Vec3(101, 11, 0));
+  EXPECT_EQ(opened->deck->offsets_of(opened->deck->run_of(opened->model.find_node(103))).node, 100);
+}
+
+TEST_F(Radioss, holds_no_more_than_what_a_card_would_move) {
+  const std::string lost = "/TRANSFORM/TRA/1\nt\n", shift = reals({"x", "0", "0"});
+  const std::string model = std::string(kHead) + kSquare + "//SUBMODEL/1\ns\n" + card({0, 100}) + kSquare + "//ENDSUB\n";
+  const auto held = [](const OpenedDeck& opened) {
+    std::vector<std::int64_t> ids;
+    for (std::size_t n = 0; n < opened.model.node_count(); ++n)
+      if (opened.model.node_holds[n] == kHeldByFrame) ids.push_back(opened.model.node_ids[n]);
+    return ids;
+  };
+  const auto of_submodel = open(model + lost + kBlankId + shift + std::string(20, ' ') + right("1", 10) + "\n/END\n");
+  ASSERT_OPENED(of_submodel);
+  EXPECT_EQ(held(*of_submodel), (std::vector<std::int64_t>{101, 102, 103, 104}));
+  const auto of_group = open(model + "/GRNOD/NODE/5\ng\n" + card({2, 103}) + lost + right("5", 10) + shift + "\n/END\n");
+  ASSERT_OPENED(of_group);
+  EXPECT_EQ(held(*of_group), (std::vector<std::int64_t>{2, 103}));
+}
+
+TEST_F(Radioss, of_parts_defined_twice_the_first_counts) {
+  const auto opened = open(std::string(kHead) + kPart + "/PART/1\nagain\n" + card({9, 9, 0}) + "/END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ((*opened->model.parts)[0].name, "plate");
+  EXPECT_EQ((*opened->model.parts)[0].section, 7);
+}
+
+TEST_F(Radioss, knows_the_unit_that_the_deck_is_in) {
+  for (const auto& [unit, wanted] : {std::pair("m", std::optional(LengthUnit::m)), std::pair("mm", std::optional(LengthUnit::mm)),
+                                     std::pair("cm", std::optional<LengthUnit>())}) {
+    const std::string units = reals({"kg", unit, "s"}) + "\n";
+    const auto opened = open("#RADIOSS STARTER\n/BEGIN\ndeck\n      2022         0\n" + units + units + kSquare + "/END\n");
+    ASSERT_OPENED(opened);
+    EXPECT_EQ(opened->deck->length_unit, wanted) << unit;
+  }
+}
+
+TEST_F(Radioss, takes_the_first_begin_of_the_main_file) {
+  const std::string centimetres = "/BEGIN\nother\n        44         0\n" + reals({"kg", "cm", "s"}, 16) + "\n";
+  folder_.write("begins.inc", centimetres);
+  const auto opened = open("#RADIOSS STARTER\n#include begins.inc\n" + std::string(kHead) + centimetres + "/UNIT/3\nSI\n" +
+                           reals({"kg", "m", "s"}) + "\n/NODE/3\n" + node(1, "1.234567890123", "0.5", "0") + "/END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_NEAR(position_of(opened->model, 1).x(), 1234.567890123, 1e-9);
+  EXPECT_EQ(position_of(opened->model, 1).y(), 500);
+  EXPECT_EQ(opened->deck->length_unit, LengthUnit::mm);
+}
+
+TEST_F(Radioss, looks_for_units_and_parameters_in_the_submodels_around) {
+  const auto unit = [](const char* length) { return "/UNIT/3\nunit\n" + reals({"kg", length, "s"}) + "\n"; };
+  const auto local = [](const char* value) { return "/PARAMETER/LOCAL/REAL/1\nparameter\nv         " + right(value, 20) + "\n"; };
+  const auto opened =
+      open(std::string(kHead) + unit("m") + "//SUBMODEL/1\nouter\n" + card({0, 100}) + unit("cm") + local("2") + "//SUBMODEL/2\ninner\n" +
+           card({0, 200}) + "/NODE/3\n" + node(1, "&v", "0", "0") + "//ENDSUB\n//ENDSUB\n" + "//SUBMODEL/3\nother\n" + card({0, 1000}) +
+           local("7") + "/NODE/3\n" + node(1, "&v", "0", "0") + "//ENDSUB\n/END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(position_of(opened->model, 301), Vec3(20, 0, 0));
+  EXPECT_EQ(position_of(opened->model, 1001), Vec3(7000, 0, 0));
+}
+
+TEST_F(Radioss, tells_submodels_that_dont_begin_or_end_and_uses_no_absurd_offsets) {
+  const auto ended = open(std::string(kHead) + "//ENDSUB\n" + kSquare + "/END\n");
+  ASSERT_OPENED(ended);
+  EXPECT_EQ(warning(*ended->deck, "open-submodel").message, "//ENDSUB stands here without a //SUBMODEL");
+  EXPECT_EQ(warning(*ended->deck, "open-submodel").line, 7);
+  const auto begun =
+      open(std::string(kHead) + "//SUBMODEL/1\ns\n" + right("0", 10) + right("1E15", 10) + "\n/NODE\n" + node(1, "1", "2", "3") + "/END\n");
+  ASSERT_OPENED(begun);
+  EXPECT_EQ(warning(*begun->deck, "open-submodel").message, "the submodel isn't closed by //ENDSUB");
+  EXPECT_EQ(warning(*begun->deck, "open-submodel").line, 7);
+  EXPECT_EQ(position_of(begun->model, 1), Vec3(1, 2, 3));
+}
+
+TEST_F(Radioss, reads_the_starters_part_of_a_deck_for_both_programs) {
+  const auto opened = open("#RADIOSS STARTER\n/RUN/deck/1\n10.\n/PRINT/-1\n/WHATEVER/1\nw\n" + card({1}) + "/END/ENGINE\n" +
+                           std::string(kHead) + kSquare + "$ a comment too\n" + node(5, "5", "0", "0") + "/END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_TRUE(opened->deck->references->unread().empty());
+  EXPECT_EQ(opened->model.node_count(), 5u);
+}
+
+TEST_F(Radioss, adds_offsets_to_elements_of_every_kind) {
+  const auto opened =
+      open(std::string(kHead) + "//SUBMODEL/1\ns\n" + card({1000, 100, 200, 300}) + kSquare + "/BEAM/4\n" + card({1, 1, 2, 3}) +
+           "/SPHCEL/8\n" + card({4, 1}) + "/TH/SPHCEL/1\nhistory\nDEF\n" + card({4}) + "/ADMAS/5/10\nmass\n" + right("0.5", 20) +
+           card({2}) + "/GRNOD/NODE/1/left\nset\n" + card({31, 32, 33, 34, 35, 36, 37, 38, 39, 40}) + card({-41}) + "//ENDSUB\n/END\n");
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  const ElementBlock& beams = *model.elements[static_cast<std::size_t>(ElementClass::beam)];
+  EXPECT_EQ(beams.id[0], 201);
+  EXPECT_EQ(beams.nodes[1], model.find_node(102));
+  EXPECT_EQ(beams.part[0], model.find_part(304));
+  const ElementBlock& particles = *model.elements[static_cast<std::size_t>(ElementClass::sph)];
+  EXPECT_EQ(particles.id[0], 104);
+  EXPECT_EQ(particles.nodes[0], model.find_node(104));
+  const References& references = *opened->deck->references;
+  const auto named_by = [&](Referred referred, std::int64_t id) {
+    const auto naming = references.naming(referred, id);
+    const Referrer* card = naming.size() == 1 ? &references.referrers()[naming[0].referrer] : nullptr;
+    return card ? card->keyword + " " + std::to_string(card->id) + (naming[0].takes_away ? " without it" : "") : std::string("nobody");
+  };
+  EXPECT_EQ(named_by(Referred::sph, 104), "TH/SPHCEL 1001");
+  EXPECT_EQ(named_by(Referred::node, 103), "BEAM 0");
+  EXPECT_EQ(named_by(Referred::node, 102), "ADMAS 1010");
+  EXPECT_EQ(named_by(Referred::node, 140), "GRNOD/NODE 1001");
+  EXPECT_EQ(named_by(Referred::node, 141), "GRNOD/NODE 1001 without it");
+}
+
+TEST_F(Radioss, keeps_all_text_of_a_block_that_nobody_understands) {
+  folder_.write("more.inc", card({77}));
+  const auto opened = open(std::string(kHead) + kSquare + "/WHATEVER/1\nw\n" + card({1}) + "#include more.inc\n" + card({2}) + "/END\n");
+  ASSERT_OPENED(opened);
+  std::string kept;
+  for (const UnreadText& unread : opened->deck->references->unread())
+    kept += std::string(opened->deck->files[unread.file].bytes.text().substr(unread.begin, unread.end - unread.begin));
+  EXPECT_EQ(kept, "/WHATEVER/1\nw\n" + card({1}) + card({77}) + card({2}));
 }
 
 }  // namespace

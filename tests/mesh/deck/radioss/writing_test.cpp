@@ -356,6 +356,9 @@ TEST(RadiossWriter, tells_the_largest_id_of_each_layout) {
 
 TEST(RadiossWriter, writes_ids_of_ten_and_eight_digits) {
   const ShellCard ten{9876543210, {1234567890, 1234567891, 1234567892, 1234567893}, kOwnCorners, 0};
+  const auto same = kStarterWriter->shell("0000000011         1         2         5         4", 0, 0, {11, {1, 2, 5, 7}, kOwnCorners, 0});
+  ASSERT_TRUE(same);
+  EXPECT_EQ(same->text, "0000000011         1         2         5         7") << "an id that stays keeps its digits";
   const auto quad = kStarterWriter->shell(card({11, 1, 2, 5, 4}), 0, 0, ten);
   ASSERT_TRUE(quad);
   EXPECT_EQ(quad->text, "98765432101234567890123456789112345678921234567893");
@@ -470,6 +473,20 @@ TEST_F(RadiossSegments, that_cant_be_written_say_why) {
   open_with(old + "/SURF/SEG/2\nsurface\n" + card({7, 1, 2, 3, 4}, 8) + "/END\n");
   EXPECT_EQ(refused({{1, 2, 3, 100000000}}), "has fields that are too narrow for the new id");
   EXPECT_EQ(refused({{1, 2, 3, 99999999}}), "");
+}
+
+TEST_F(RadiossSegments, and_lists_take_what_comes_and_goes_at_once) {
+  const std::string groups = std::string(kHead) + "/GRNOD/NODE/1\nset\n" + card({1}) + card({3});
+  open_with(groups + "/END\n");
+  const auto changed = kStarterWriter->change_list(text(), surface(), std::array<std::int64_t, 1>{7}, std::array<std::int64_t, 1>{3});
+  ASSERT_TRUE(changed);
+  std::string out(text());
+  for (auto r = changed->rbegin(); r != changed->rend(); ++r) out.replace(r->offset, r->length, r->text);
+  EXPECT_EQ(out, std::string(kHead) + "/GRNOD/NODE/1\nset\n" + card({1, 7}) + "/END\n");
+  open_with(std::string(kHead) + "/GRNOD/GENE/1\nset\n" + card({1, 6}) + "/END\n");
+  const auto ranges = kStarterWriter->join(text(), surface(), std::array<std::int64_t, 4>{7, 8, 10, 12});
+  ASSERT_TRUE(ranges);
+  EXPECT_EQ((*ranges)[0].text + "\n", "\n" + card({7, 8}) + card({10, 10}) + card({12, 12}));
 }
 
 TEST_F(RadiossSegments, and_lists_of_old_versions_take_eight_digits) {
