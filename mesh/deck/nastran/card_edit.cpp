@@ -1,6 +1,7 @@
 #include "mesh/deck/nastran/card_edit.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "mesh/deck/number.h"
 
@@ -105,14 +106,15 @@ std::size_t CardEdit::width(std::size_t field) const {
 CardEdit::Row& CardEdit::make_row_of(std::size_t field) {
   for (;;) {
     if (const Row* row = row_of(field)) return rows_[static_cast<std::size_t>(row - rows_.data())];
-    Row& last = rows_.back();
+    // Behind the last line before the field: of a large-field entry the second line may be left out, and later ones there all the same.
+    const auto last = std::find_if(rows_.rbegin(), rows_.rend(), [&](const Row& row) { return !row.comment && row.first_field <= field; });
     Row row;
-    row.layout = last.layout;
-    row.first_field = last.first_field + fields_on(last.layout);
+    row.layout = last->layout;
+    row.first_field = last->first_field + fields_on(last->layout);
     const std::string sign = is_large(row.layout) ? "*" : "+";
     row.text = is_free(row.layout) ? sign : sign + std::string(kNameColumns - 1, ' ');
-    last.end = line_end_;
-    rows_.push_back(std::move(row));
+    row.end = std::exchange(last->end, line_end_);
+    rows_.insert(last.base(), std::move(row));
   }
 }
 

@@ -1,4 +1,5 @@
 // What the reader of bulk data warns of: the sentence and the line it names.
+#include "mesh/deck/nastran/card.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {
@@ -87,6 +88,64 @@ TEST(NastranWarnings, includes_nest_only_so_deep) {
   EXPECT_EQ(deep.message, "the include file f65.bdf is nested more than 64 deep; it isn't read");
 }
 
+TEST(NastranWarnings, an_include_is_looked_for_beside_its_file_and_then_beside_the_main_one) {
+  const DeckFolder folder;
+  folder.write("sub/a.bdf", "GRID,2\nINCLUDE 'b.bdf'\nINCLUDE 'c.bdf'\n");
+  folder.write("sub/b.bdf", "GRID,3,,3.\n");
+  folder.write("b.bdf", "GRID,3,,9.\n");
+  folder.write("c.bdf", "GRID,4,,4.\n");
+  const auto opened = folder.open("GRID,1\nINCLUDE 'sub/a.bdf'\n");
+  ASSERT_OPENED(opened);
+  ASSERT_EQ(opened->model.node_count(), 4u);
+  EXPECT_EQ(position_of(opened->model, 3), Vec3(3, 0, 0));
+  EXPECT_TRUE(opened->deck->warnings.empty());
+}
+
+TEST(NastranWarnings, begin_bulk_of_a_superelement_is_another_section) {
+  const DeckFolder folder;
+  const auto opened = folder.open("CEND\nBEGIN BULK $ all\nGRID,1\nBEGIN BULK SUPER=1\nGRID,2\nENDDATA\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->model.node_count(), 1u);
+  EXPECT_EQ(warning(*opened->deck, "unread-section").line, 4);
+}
+
+TEST(NastranScalarPoints, are_left_out_of_ranges_and_lists) {
+  const DeckFolder folder;
+  const auto named = [&](const std::string& cards, std::initializer_list<std::int64_t> ids) {
+    const auto opened = folder.open(kFourGrids + "GRID,7\n" + cards);
+    EXPECT_TRUE(opened) << opened.error().text();
+    std::string out;
+    if (!opened) return out;
+    for (const std::int64_t id : ids) out += opened->deck->references->named(Referred::node, id) ? "y" : "n";
+    return out;
+  };
+  EXPECT_EQ(named("SPOINT,101,THRU,102\nSPOINT,103,THRU,105\nSPC1,1,0,101,THRU,105\n", {101, 103, 105}), "nnn") << "ranges that touch";
+  EXPECT_EQ(named("SPOINT,101,THRU,109\nSPOINT,103,104\nSPC1,1,0,101,THRU,109\n", {101, 103, 108}), "nnn") << "one within another";
+  EXPECT_EQ(named("SPOINT,6\nSPC1,1,0,5,6,7\n", {4, 5, 6, 7, 8}), "nynyn");
+  EXPECT_EQ(named("SPOINT,6\nSPC1,1,0,4,5,6\n", {3, 4, 5, 6, 7}), "nyynn");
+}
+
+/// What the shells behind one that is left out have of their own goes with them.
+TEST(NastranElementIds, shells_behind_one_that_is_left_out_keep_what_is_theirs) {
+  const DeckFolder folder;
+  const auto opened =
+      folder.open(kFourGrids +
+                  "CROD,1,1,1,2\nCQUAD4,1,1,1,2,3,4\nCQUAD4,5,1,1,2,3,4\n,,,2.,2.,2.,2.\nCQUAD4*,6,1,1,2\n*,3,4\nCQUAD8,7,1,1,2,3,4,5\n"
+                  "CQUAD4,8,1,1,2,3,4\n,,,3.,3.,3.,3.\n");
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  ASSERT_EQ(model.shell_count(), 4u);
+  EXPECT_EQ(model.shell_thickness[model.find_shell(5).value], 2.f);
+  EXPECT_EQ(model.shell_thickness[model.find_shell(7).value], 0.f);
+  EXPECT_EQ(model.shell_thickness[model.find_shell(8).value], 3.f);
+  ASSERT_EQ(model.midside->size(), 1u);
+  EXPECT_EQ((*model.midside)[0].shell, model.find_shell(7));
+  const auto style = [&](std::int64_t id) { return static_cast<nastran::Layout>(opened->deck->run_of(model.find_shell(id)).style); };
+  EXPECT_EQ(style(5), nastran::Layout::free_small);
+  EXPECT_EQ(style(6), nastran::Layout::free_large);
+  EXPECT_EQ(style(7), nastran::Layout::free_small);
+}
+
 TEST(NastranWarnings, told_to_stop_the_reader_stops) {
   const DeckFolder folder;
   const auto path = folder.write("deck.bdf", "BEGIN BULK\n" + kFourGrids + "ENDDATA\n");
@@ -138,6 +197,7 @@ TEST(NastranReplications, make_what_the_manual_says) {
       {"GRID,1,,0.,1.,2.\n=,%(2),==\n=(3)\n", "1: 0 1 2\nunread-replication 3\n"},
       {"GRID,1,,0.,1.,2.\n=,=7,==\n", "1: 0 1 2\nunread-replication 3\n"},
       {"GRID,1,,0.,1.,2.\n=,*1,==\n=(0)\n", "1: 0 1 2\n2: 0 1 2\nunread-replication 4\n"},
+      {"GRID,1,,0.,1.,2.\n=,*1,==\n=(-1)\n", "1: 0 1 2\n2: 0 1 2\nunread-replication 4\n"},
       {"GRID,1,,0.,1.,2.\n=,*1,==\n=(x)\n", "1: 0 1 2\n2: 0 1 2\nunread-replication 4\n"},
       // A count repeats a copy: of the card alone it makes nothing.
       {"GRID,1,,0.,1.,2.\n=(2)\n", "1: 0 1 2\nunread-replication 3\n"},

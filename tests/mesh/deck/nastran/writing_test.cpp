@@ -80,6 +80,16 @@ TEST(NastranWriter, moves_within_the_card) {
        {1, 2, 0},
        {1, 2, 3.5},
        "GRID    12345678        1.0     2.0     3.5"},
+      {"a full id before numbers that lean right",
+       "GRID    12345678             1.0     2.0",
+       {1, 2, 0},
+       {1, 2, 3.5},
+       "GRID    12345678             1.0     2.0     3.5"},
+      {"a large field card whose next line holds later fields",
+       "GRID*                  1                             1.0             2.0\n+              9",
+       {1, 2, 0},
+       {1, 2, 5},
+       "GRID*                  1                             1.0             2.0\n*                    5.0\n+              9"},
       {"the name of a continuation stays",
        "GRID           1             1.0     2.0     3.0       4     123        +A1",
        {1, 2, 3},
@@ -170,6 +180,19 @@ TEST(NastranWriter, shells_that_cant_be_carried_over) {
             "has a thickness of its own at some of its corners only");
 }
 
+TEST(NastranWriter, new_cards_have_all_that_the_old_one_says) {
+  EXPECT_EQ(kWriter->new_constrained_node("GRID,1,7,1.,2.,3.,4,123,9", 0, 0, 22, {1, 2.5, 0})->text, "GRID,22,7,1.0,2.5,0.0,4,123,9");
+  EXPECT_NE(kWriter->node_constraints("GRID,1,7,1.,2.,3.,,,9", 0, 0), "") << "a superelement";
+  EXPECT_NE(kWriter->node_constraints("GRID,1,7,1.,2.,3.,4", 0, 0), kWriter->node_constraints("GRID,1,7,1.,2.,3.,,4", 0, 0));
+  const auto anew = [](const char* card, double turn) { return kWriter->shell(card, 0, 0, {22, {1, 2, 3, 4}, kSame, turn})->text; };
+  EXPECT_EQ(anew("CQUAD4,10,,1,2,3,4", 0), "CQUAD4,22,10,1,2,3,4") << "a blank property is the element's id";
+  EXPECT_EQ(anew("CQUAD4,10,7,1,2,3,4\n,,1,.5,.5,.5,.5", 0), "CQUAD4,22,7,1,2,3,4,,\n+,,1,0.5,0.5,0.5,0.5") << "shares stay shares";
+  EXPECT_EQ(anew("CQUAD4,10,7,1,2,3,4,170.", -30), "CQUAD4,22,7,1,2,3,4,-160.0");
+  EXPECT_EQ(anew("CQUAD4,10,7,1,2,3,4,-170.", 30), "CQUAD4,22,7,1,2,3,4,160.0");
+  EXPECT_EQ(anew("CQUAD4,10,7,1,2,3,4,-150.", 30), "CQUAD4,22,7,1,2,3,4,180.0");
+  EXPECT_EQ(anew("CQUAD4,10,7,1,2,3,4", 30), "CQUAD4,22,7,1,2,3,4,-30.0") << "no angle is one of 0";
+}
+
 TEST(NastranWriter, writes_ids_of_eight_digits_in_eight_columns_and_longer_ones_in_sixteen_or_between_commas) {
   const ShellCard wanted{10, {1, 12345678, 3, 4}, kSame, 0};
   EXPECT_EQ(kWriter->shell("CQUAD4        10       7       1       2       3       4", 0, 0, wanted)->text,
@@ -204,6 +227,12 @@ TEST(NastranWriter, ids_join_lists) {
   EXPECT_EQ(joined("SET 4 = 1, 2 THRU 9", "SET", {20, 21}), "SET 4 = 1, 2 THRU 9,\n  20,21");
   EXPECT_EQ(joined("PLOAD2,7,1.5,1,2,3,4,5,6", "PLOAD2", {1, 2, 3, 4, 5, 6, 7}),
             "PLOAD2,7,1.5,1,2,3,4,5,6\nPLOAD2,7,1.5,1,2,3,4,5,6\nPLOAD2,7,1.5,7");
+}
+
+TEST(NastranWriter, large_cards_have_their_lines_in_pairs) {
+  const std::string card = "SPC1*                  7             123               1\n*";
+  EXPECT_EQ(joined(card, "SPC1", {20}), card + "\nSPC1*                  7             123              20\n*");
+  EXPECT_EQ(joined("SPC1*,7,123,1\n*,", "SPC1", {20}), "SPC1*,7,123,1\n*,\nSPC1*,7,123,20\n*,");
 }
 
 TEST(NastranWriter, a_pressure_on_a_range_gets_cards_of_its_own_for_more) {
