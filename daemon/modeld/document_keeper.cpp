@@ -219,8 +219,8 @@ Result<void> DocumentKeeper::let_go() {
   std::error_code problem;
   if (empty)
     fs::remove(path, problem);
-  else if (const Result<fs::path> retired = folder_.retire(path, lost ? ".discarded" : ".closed"); !retired)
-    return fail(retired.error());
+  else if (is_there(path))  // somebody may have deleted it
+    if (const Result<fs::path> retired = folder_.retire(path, lost ? ".discarded" : ".closed"); !retired) return fail(retired.error());
   open_.reset();
   return {};
 }

@@ -212,7 +212,8 @@ Result<ipc::Saved> DocumentKeeper::save_in_place(const Progress& progress) {
 Result<void> DocumentKeeper::begin_journal_anew() {
   OpenDocument& open = *open_;
   const fs::path path = open.journal.path();
-  if (const Result<fs::path> retired = folder_.retire(path, ".damaged"); !retired) return fail(retired.error());
+  if (is_there(path))  // somebody may have deleted it
+    if (const Result<fs::path> retired = folder_.retire(path, ".damaged"); !retired) return fail(retired.error());
   Document next = open.document;
   next.generations = {next.opened};
   next.cursor = 0;
