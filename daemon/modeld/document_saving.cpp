@@ -236,7 +236,7 @@ Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck ope
   OpenOptions options;
   options.length_unit = now.settings.length_unit;
   options.target_size = now.settings.target_size;
-  if (open_->request.criteria) options.criteria = *open_->request.criteria;
+  options.judged_by = now.settings.criteria;  // their file may be gone
   options.history_bytes = now.history_bytes;
   Result<Document> next = mesh::document::open(path, std::move(opened), options);
   if (!next) return next;

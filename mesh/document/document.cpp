@@ -24,7 +24,9 @@ Result<Settings> find_settings(const deck::Deck& deck, const Model& model, const
   settings.target_size = options.target_size ? *options.target_size : quality::guess_target_size(model);
   if (!(settings.target_size > 0 && settings.target_size < 1e300)) return fail("", "the target size must be greater than 0");
   settings.criteria = quality::default_criteria();
-  if (options.criteria) {
+  if (options.judged_by) {
+    settings.criteria = *options.judged_by;
+  } else if (options.criteria) {
     Result<quality::Criteria> criteria = quality::load_criteria(*options.criteria);
     if (!criteria) return fail(criteria.error());
     settings.criteria = std::move(*criteria);

@@ -31,6 +31,7 @@ struct OpenOptions {
   std::optional<LengthUnit> length_unit;
   std::optional<double> target_size;
   std::optional<std::filesystem::path> criteria;
+  std::optional<quality::Criteria> judged_by;        ///< goes before `criteria`; the deck still has its say on the time step
   std::size_t history_bytes = std::size_t{2} << 30;  ///< cap on what old generations hold for themselves
   Progress progress;
 };

@@ -258,6 +258,25 @@ TEST_F(Refusals, ASaveIsRefusedWhereItsRecordOrTheNextJournalCannotBeMade) {
   EXPECT_NE(test::whole_file(deck), before);
 }
 
+TEST_F(Refusals, TheCriteriaOfAnOpenDocumentOutliveTheirFile) {
+  const fs::path criteria = folder_.path() / "own.toml", deck = folder_.sheet(), other = folder_.path() / "other.k";
+  std::ofstream(criteria) << "[metrics.warpage]\nwarn_above = 0.001\nfail_above = 0.002\n";
+  ipc::Open asked = open_request(deck);
+  asked.criteria = criteria.string();
+  ASSERT_TRUE(keeper_.open(asked, {}));
+  ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
+  const mesh::quality::Counts counts = keeper_.state().counts;
+  ASSERT_GT(counts.fail, 0u);
+  fs::remove(criteria);
+  const Result<ipc::Saved> saved = keeper_.save(std::nullopt);
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(keeper_.state().counts, counts);
+  ASSERT_TRUE(keeper_.edit(json_edit(R"({"edit":"split","at":["shell:64"]})")));
+  const Result<ipc::Saved> as = keeper_.save_as(other.string());
+  ASSERT_TRUE(as) << as.error().text();
+  EXPECT_GT(keeper_.state().counts.fail, 0u) << "judged by the criteria that it was opened with";
+}
+
 TEST_F(Refusals, SavingAsAnotherDeckToldToStopWhenItIsWrittenLeavesACopy) {
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
