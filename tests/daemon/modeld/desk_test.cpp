@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "ipc/snapshot.h"
+#include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -116,17 +117,21 @@ class DeskTest : public ::testing::Test {
     return {translate};
   }
   static ipc::DragStep step(std::uint64_t drag, std::uint64_t sequence, double up) { return {drag, sequence, {0, 0, up}, 0, 0}; }
-  /// Where views see the node that is dragged.
-  double height() {
-    HandTurnedLoop::Told& told = loop_.until_answered(kOne, begin(kOne, ipc::GetSnapshot{}));
+  /// What views see.
+  std::shared_ptr<const ipc::SnapshotView> view(const ipc::GetSnapshot& request = {}) {
+    HandTurnedLoop::Told& told = loop_.until_answered(kOne, begin(kOne, request));
     const auto& snapshot = std::get<ipc::Snapshot>(told.answer);
     std::vector<std::shared_ptr<const ipc::Mapping>> segments;
     for (std::size_t i = 0; i < snapshot.segments.size(); ++i)
       segments.push_back(std::make_shared<const ipc::Mapping>(ipc::Mapping::map(told.descriptors[i + 1], false).value()));
-    const auto view = ipc::SnapshotView::map(told.descriptors[0], segments).value();
     desk_.request(kOne, 0, ipc::ReturnSnapshot{snapshot.lease}, 0);
-    for (std::size_t n = 0; n < view->node_count(); ++n)
-      if (view->node_id(n) == 1313) return view->position(n).z();
+    return ipc::SnapshotView::map(told.descriptors[0], segments).value();
+  }
+  /// Where views see the node that is dragged.
+  double height(const ipc::GetSnapshot& request = {}) {
+    const std::shared_ptr<const ipc::SnapshotView> seen = view(request);
+    for (std::size_t n = 0; n < seen->node_count(); ++n)
+      if (seen->node_id(n) == 1313) return seen->position(n).z();
     ADD_FAILURE() << "the node isn't there";
     return 0;
   }
@@ -287,6 +292,95 @@ TEST_F(DeskTest, ADragBeginsWithWhatIsGrabbedAndWhichWayIsOut) {
   EXPECT_EQ(begun.nodes, 1u);
   const test::Point out = test::sheet_normal(begun.grab_position);
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(begun.normal[axis], out[axis], 0.02);
+}
+
+TEST_F(DeskTest, ViewsSeeTheStateThatIsTold) {
+  struct Step {
+    const char* edit;  ///< null: a save in place
+    bool changed, hidden, locked, can_undo, can_redo;
+    std::uint64_t selected;
+  };
+  const Step steps[] = {
+      {R"({"edit":"translate","by":[0,0,3],"on":"1313","falloff":{"profile":"constant"}})", true, false, false, true, false, 0},
+      {R"({"edit":"select","expr":"1001-1010"})", true, false, false, true, false, 10},
+      {nullptr, false, false, false, true, false, 10},
+      {R"({"edit":"lock","on":"7"})", false, false, true, true, false, 10},
+      {R"({"edit":"hide","on":"7"})", false, true, true, true, false, 0},
+      {R"({"edit":"undo"})", false, false, true, true, true, 10},
+      {R"({"edit":"undo"})", false, false, false, true, true, 10},
+      {R"({"edit":"undo"})", false, false, false, true, true, 0},
+      {R"({"edit":"undo"})", true, false, false, false, true, 0},
+  };
+  for (const Step& step : steps) {
+    SCOPED_TRACE(step.edit == nullptr ? "save" : step.edit);
+    if (step.edit == nullptr)
+      ask<ipc::Saved>(kOther, ipc::Save{});
+    else
+      ask<ipc::Edited>(kOther, ipc::ApplyEdit{parse_edit(step.edit).value()});
+    const auto state = ask<ipc::State>(kOne, ipc::GetState{});
+    const std::shared_ptr<const ipc::SnapshotView> seen = view();
+    const ipc::SnapshotInfo& info = seen->info();
+    EXPECT_EQ(info.generation, state.generation);
+    EXPECT_EQ(info.document, (folder_.path() / "sheet.k").string());
+    EXPECT_EQ(info.counts, state.counts);
+    EXPECT_EQ(info.nodes, 625u);
+    for (const bool changed : {info.changed, state.changed}) EXPECT_EQ(changed, step.changed);
+    for (const bool can_undo : {info.can_undo, state.can_undo}) EXPECT_EQ(can_undo, step.can_undo);
+    for (const bool can_redo : {info.can_redo, state.can_redo}) EXPECT_EQ(can_redo, step.can_redo);
+    for (const std::uint64_t selected : {info.selected_nodes, state.selected_nodes}) EXPECT_EQ(selected, step.selected);
+    ASSERT_EQ(info.parts.size(), 1u);
+    EXPECT_EQ(info.parts[0].hidden, step.hidden);
+    EXPECT_EQ(info.parts[0].locked, step.locked);
+    std::uint64_t marked = 0;
+    for (std::size_t n = 0; n < seen->node_count(); ++n) marked += seen->selected(n) ? 1 : 0;
+    EXPECT_EQ(marked, step.selected);
+  }
+  EXPECT_EQ(refusal(kOther, ipc::ApplyEdit{Undo{}}), "there is nothing to undo");
+}
+
+TEST_F(DeskTest, AnEarlierStateIsShownAsItWasAndWhatTheClientHasIsntSentAgain) {
+  const double before = height();
+  const std::uint64_t first = ask<ipc::State>(kOne, ipc::GetState{}).generation;
+  Translate up;
+  up.shaping.on = "1313";
+  up.by = {0, 0, 0.5};
+  ask<ipc::Edited>(kOne, ipc::ApplyEdit{up});
+  ipc::GetSnapshot earlier;
+  earlier.generation = first;
+  EXPECT_EQ(height(earlier), before);
+  EXPECT_EQ(view(earlier)->info().generation, first);
+  EXPECT_EQ(height(), before + 0.5);
+  const auto whole = ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{});
+  EXPECT_EQ(whole.new_segments, whole.segments);
+  ipc::GetSnapshot known;
+  known.have_segments = whole.segments;
+  HandTurnedLoop::Told& again = loop_.until_answered(kOne, begin(kOne, known));
+  EXPECT_EQ(std::get<ipc::Snapshot>(again.answer).segments, whole.segments);
+  EXPECT_TRUE(std::get<ipc::Snapshot>(again.answer).new_segments.empty());
+  EXPECT_EQ(again.descriptors.size(), 1u) << "the table alone";
+}
+
+TEST_F(DeskTest, WhatAClientHeldIsReturnedWhenItGoes) {
+  ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{});
+  ask<ipc::Done>(kOther, ipc::Close{});
+  EXPECT_GT(publisher_.bytes_held(), 0u);
+  desk_.left(kOne);
+  EXPECT_EQ(publisher_.bytes_held(), 0u);
+  EXPECT_EQ(desk_.health().clients, 1u);
+}
+
+TEST_F(DeskTest, WhatCannotBeAskedYetOrAtAllIsSaid) {
+  ask<ipc::Done>(kOne, ipc::Close{});
+  EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "no document is open");
+  EXPECT_FALSE(ask<ipc::State>(kOne, ipc::GetState{}).busy);
+  ipc::Open open;
+  open.path = folder_.sheet().string();
+  const std::uint64_t opening = begin(kOther, open);
+  EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "the document is still being opened");
+  EXPECT_TRUE(ask<ipc::State>(kOne, ipc::GetState{}).busy);
+  loop_.until_answered(kOther, opening);
+  EXPECT_FALSE(ask<ipc::State>(kOne, ipc::GetState{}).busy);
+  EXPECT_EQ(refusal(kOne, ipc::Hello{}), "this can't be asked now") << "a second greeting";
 }
 
 TEST_F(DeskTest, ACameraIsSharedWithTheOthers) {

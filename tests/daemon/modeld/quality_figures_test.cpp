@@ -189,6 +189,14 @@ TEST_F(Figures, AShellThatIsNoneCountsAsADefectOnly) {
   const auto found = find_shells(document_, {"aspect", std::nullopt, std::nullopt, false});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->shells, shells - 2);
+  const ipc::Quality of_all = figures();
+  ASSERT_GE(of_all.errors.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(of_all.errors[i].metric, "repeated_node") << "the worst of all comes first";
+    EXPECT_TRUE(of_all.errors[i].fail);
+    EXPECT_FALSE(of_all.errors[i].value) << "a defect has none";
+    EXPECT_TRUE(ids_at(kMiddle).contains(of_all.errors[i].shell));
+  }
 }
 
 /// Criteria may look at thickness and material: then each shell has a limit of its own.
@@ -230,6 +238,28 @@ TEST_F(Figures, AnUnknownMetricIsRefusedWithTheNearest) {
   const auto refused = quality_figures(document_, {"warpege", false});
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("\"warpage\""), std::string::npos);
+  const auto not_found = find_shells(document_, {"warpege", std::nullopt, std::nullopt, false});
+  ASSERT_FALSE(not_found);
+  EXPECT_EQ(not_found.error().text(), refused.error().text());
+}
+
+TEST_F(Figures, TheWorstComesFirstAlsoWhereWhatWarnsFailsAtOnce) {
+  for (const char* text : {"[metrics.warpage]\nwarn_above = 2\nfail_above = 2\n", "[metrics.warpage]\nwarn_above = 2\nfail_above = 9\n"}) {
+    const std::filesystem::path file = folder_.path() / "own.toml";
+    std::ofstream(file, std::ios::trunc) << text;
+    OpenOptions options;
+    options.criteria = file;
+    Result<Document> opened = mesh::document::open(folder_.sheet(), options);
+    ASSERT_TRUE(opened) << text << opened.error().text();
+    document_ = std::move(*opened);
+    lift(kMiddle - 120, 3);  // the smaller first in the deck
+    lift(kMiddle, 6);
+    const ipc::Quality quality = figures("warpage");
+    ASSERT_GE(quality.errors.size(), 8u) << text;
+    EXPECT_TRUE(quality.errors.front().fail) << text;
+    EXPECT_TRUE(ids_at(kMiddle).contains(quality.errors.front().shell)) << text;
+    for (std::size_t i = 1; i < quality.errors.size(); ++i) EXPECT_GE(*quality.errors[i - 1].value, *quality.errors[i].value) << text << i;
+  }
 }
 
 TEST_F(Figures, APreviewSaysWhatAnEditWouldDoAndDoesNothing) {
