@@ -4,7 +4,7 @@
 
 namespace prismesh::mesh::document {
 
-ShellSet damaged_shells(const Generation& opened, const Generation& now, bool failures_only) {
+ShellSet damaged_shells(const Generation& opened, const Generation& now) {
   ShellSet damaged;
   const std::size_t of_deck = opened.quality.size();
   for (std::size_t c = 0; c < now.quality.chunk_count(); ++c) {
@@ -19,7 +19,7 @@ ShellSet damaged_shells(const Generation& opened, const Generation& now, bool fa
       const quality::ShellState was = opened.quality[deck_ancestor(now.model, shell).value];
       const bool fails_now = (states[i].fail & ~was.fail) != 0;
       const bool warns_now = (states[i].warn & ~was.warn) != 0;
-      if (fails_now || (warns_now && !failures_only)) damaged.push_back(shell);
+      if (fails_now || warns_now) damaged.push_back(shell);
     }
   }
   return damaged;

@@ -6,7 +6,7 @@
 namespace prismesh::mesh::document {
 
 /// Shells of `now` that fail or warn by a metric by which they (new ones: the shell of the deck that they descend from) were better in
-/// `opened`; with `failures_only`, that fail and didn't. Costs the chunks that differ.
-ShellSet damaged_shells(const Generation& opened, const Generation& now, bool failures_only = false);
+/// `opened`. Costs the chunks that differ.
+ShellSet damaged_shells(const Generation& opened, const Generation& now);
 
 }  // namespace prismesh::mesh::document

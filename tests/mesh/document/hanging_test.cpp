@@ -158,6 +158,50 @@ TEST_F(HangingTest, symmetric_edits_carry_welds_on_both_sides) {
   EXPECT_EQ(at(document, 902), Vec3(12, 13, 9));
 }
 
+TEST_F(HangingTest, what_is_carried_in_between_leaves_each_node_with_its_own_image) {
+  DeckText deck;
+  deck.part(9);
+  for (int i = 0; i < 3; ++i) deck.node(901 + i, 12 + i, 13, 0.1 * i);  // before the sheet's nodes, as above
+  deck.sheet(1, 1, 0);
+  deck.beam(9, 9, 901, 902);
+  deck.beam(10, 9, 902, 903);
+  Document document = open_text(deck);
+  must_apply(document, R"({"edit":"translate","by":[1,0.5,2],"on":"part:1 & id<=25","grab":12,"falloff":{"profile":"linear"},)"
+                       R"("symmetry":{"point":[20,0,0],"normal":[1,0,0]}})");
+  EXPECT_GT(at(document, 12).z(), 1.9);
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 4; ++i) {
+      const Vec3 one = at(document, 1 + i + 5 * j), other = at(document, 1 + (4 - i) + 5 * j);
+      EXPECT_NEAR((one - Vec3(40 - other.x(), other.y(), other.z())).norm(), 0, 1e-9) << i << ", " << j;
+    }
+}
+
+TEST_F(HangingTest, a_weld_that_is_acted_on_itself_is_reached_with_its_sheet) {
+  Document document = open_text(two_sheets());
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"1-25,901","grab":13})");
+  EXPECT_GT(at(document, 901).z(), 0.2);
+  for (const std::string& note : report.notes) EXPECT_THAT(note, Not(HasSubstr("can't be reached")));
+}
+
+TEST_F(HangingTest, relaxing_leaves_joined_nodes_in_place_and_weighs_anew) {
+  DeckText deck = two_sheets();
+  deck.cards("*CONSTRAINED_SPOTWELD\n        13       113\n");
+  Document document = open_text(deck);
+  must_apply(document, R"({"edit":"translate","by":[4,3,6],"on":"13","falloff":{"profile":"constant"}})");
+  must_apply(document, R"({"edit":"translate","by":[-3,4,2],"on":"17","falloff":{"profile":"constant"}})");
+  const Vec3 joined = at(document, 13), free = at(document, 17);
+  const double before = document.current().weight.mass;
+  const EditReport report = must_apply(document, R"({"edit":"relax","scope":"all"})");
+  EXPECT_EQ(at(document, 13), joined);
+  EXPECT_NE(at(document, 17), free);
+  EXPECT_THAT(report.notes, Contains("2 nodes that cards join stay"));
+  const double mass = quality::weigh_model(document.current().model).mass;
+  EXPECT_NEAR(document.current().weight.mass, mass, 1e-12 * mass);
+  EXPECT_GT(std::abs(mass - before), 1e-6 * mass) << "or this would show nothing";
+  EXPECT_EQ(*report.mass_before, before);
+  EXPECT_EQ(*report.mass_after, document.current().weight.mass);
+}
+
 TEST_F(HangingTest, undo_and_saving_bring_welds_along) {
   Document document = open_text(two_sheets());
   must_apply(document, R"({"edit":"translate","by":[0,0,4],"on":"part:1","falloff":{"profile":"constant"}})");

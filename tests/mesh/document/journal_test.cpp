@@ -204,9 +204,11 @@ TEST(Journal, IsPinnedToItsDeck) {
 
 TEST(Journal, TakesOverGuessedSettingsOnly) {
   const Session session;
-  Document guessed = small();
+  OpenOptions too_large;
+  too_large.target_size = 77;
+  Document guessed = open("model.k", {small().deck, small().opened->model}, too_large).value();
   guessed.settings.target_size_guessed = true;
-  guessed.settings.target_size = 77;
+  ASSERT_NE(guessed.current().counts, small().current().counts);
   ASSERT_TRUE(Journal::recover(session.path, guessed));
   EXPECT_EQ(guessed.settings.target_size, 5.0);
   EXPECT_EQ(guessed.current().counts, session.after.back().current().counts);
@@ -222,6 +224,14 @@ TEST(Journal, TakesOverGuessedSettingsOnly) {
     ASSERT_TRUE(Journal::recover(session.path, in_metres));
     EXPECT_EQ(in_metres.settings.length_unit, is_guess ? LengthUnit::mm : LengthUnit::m);
   }
+}
+
+TEST(Journal, WhatWasShapedIsRelaxedTowardsAfterARecoveryToo) {
+  const Session session({R"({"edit":"translate","by":[1,1,4],"on":"15"})", R"({"edit":"select","expr":"all"})"});
+  Document recovered = small(), live = session.after.back();
+  ASSERT_TRUE(Journal::recover(session.path, recovered));
+  for (Document* document : {&recovered, &live}) EXPECT_GT(must_apply(*document, R"({"edit":"relax","scope":"all"})").nodes_moved, 0u);
+  EXPECT_TRUE(same_bytes(recovered.current().model.positions, live.current().model.positions));
 }
 
 TEST(Journal, RefusesWhatExistsAndWhatIsInUse) {
@@ -322,6 +332,22 @@ TEST(Replay, LeavesAnotherSelectionThanWasMeantAlone) {
   EXPECT_EQ(applied, (std::vector<std::size_t>{0, 4, 9, 13, 14, 15}));
   for (const std::size_t i : {2, 3, 5, 6}) EXPECT_EQ(steps[i].message, "the selection it acts on couldn't be made");
   EXPECT_EQ(steps[13].report.nodes_moved, 3u);
+}
+
+TEST(Replay, RelaxesAndRepairsNoOtherSelectionThanWasMeant) {
+  JournalIntents intents;
+  for (const char* edit : {R"({"edit":"select","expr":"6"})", R"({"edit":"select","expr":"99"})", R"({"edit":"relax"})",
+                           R"({"edit":"repair","scope":"selection"})", R"({"edit":"relax","scope":"part"})",
+                           R"({"edit":"relax","scope":"all"})", R"({"edit":"repair"})"})
+    intents.edits.push_back(edit_of(edit));
+  Document variant = small();
+  const std::vector<ReplayStep> steps = replay(variant, intents);
+  ASSERT_EQ(steps.size(), 7u);
+  EXPECT_TRUE(steps[0].applied);
+  EXPECT_FALSE(steps[1].applied);
+  for (const std::size_t i : {2, 3, 4}) EXPECT_EQ(steps[i].message, "the selection it acts on couldn't be made");
+  EXPECT_TRUE(steps[5].applied) << "it asks for no selection";
+  EXPECT_TRUE(steps[6].applied);
 }
 
 TEST(Replay, ReadsScripts) {

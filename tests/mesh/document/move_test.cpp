@@ -55,6 +55,16 @@ TEST(Move, SaysWhatMovesAlong) {
   EXPECT_THAT(report.notes, Contains("1 solid moved along at shared nodes"));
 }
 
+TEST(Move, NamesSpringsAndOthersAsElements) {
+  const std::vector<test::NodeSpec> nodes{
+      {1, Vec3(0, 0, 0)}, {2, Vec3(5, 0, 0)}, {3, Vec3(5, 5, 0)}, {4, Vec3(0, 5, 0)}, {5, Vec3(0, 0, 9)}};
+  Document document = make_document(
+      test::make_model(nodes, {{1, 1, {1, 2, 3, 4}}}, {{ElementClass::discrete, 1, 2, {1, 5}}, {ElementClass::other, 2, 2, {1, 5}}}));
+  const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"1","falloff":{"profile":"constant"}})");
+  EXPECT_THAT(report.notes, Contains("1 discrete element moved along at shared nodes"));
+  EXPECT_THAT(report.notes, Contains("1 other element moved along at shared nodes"));
+}
+
 TEST(Move, SaysWhatItCantReach) {
   Document document = make_sheet(10, 2);
   // two islands of the sheet; the grab is on the first

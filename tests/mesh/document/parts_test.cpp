@@ -73,6 +73,29 @@ TEST(Parts, WhatIsHiddenIsNoLongerSelected) {
   EXPECT_THAT(selected_ids(document), ElementsAre(103, 104, 105, 106));
 }
 
+TEST(Parts, ARowOfNodesThinnerThanAShellStandsForThePartsItTouches) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"select","expr":"100-103"})");
+  must_apply(document, R"({"edit":"hide"})");
+  EXPECT_THAT(hidden_parts(document), ElementsAre(1));
+}
+
+TEST(Parts, WhatIsSelectedThoughItIsHiddenStaysSoWhileOthersAreShown) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"hide","on":"2,4"})");
+  must_apply(document, R"({"edit":"select","expr":"106-107"})");
+  EXPECT_THAT(must_apply(document, R"({"edit":"show","on":"4"})").notes, IsEmpty());
+  EXPECT_THAT(selected_ids(document), ElementsAre(106, 107));
+}
+
+TEST(Parts, InvertingElementsLeavesHiddenOnesOut) {
+  Document document = make_document(make_assembly());
+  must_apply(document, R"({"edit":"select","expr":"1","kind":"element"})");
+  must_apply(document, R"({"edit":"hide","on":"2"})");
+  must_apply(document, R"({"edit":"invert"})");
+  EXPECT_EQ(document.current().selected_shells, 15u);
+}
+
 TEST(Parts, LockedNodesRefuseToMove) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"lock","on":"2"})");

@@ -239,6 +239,14 @@ TEST(Relax, LetsMidSideNodesFollowTheEndsOfTheirEdge) {
   EXPECT_EQ(place_of(document, 1000), middle);
 }
 
+TEST(Relax, AMidSideNodeThatIsMovedWithItsEdgeIsReached) {
+  Document document = make_document(sheet_with_middle());
+  const EditReport report =
+      must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"all","grab":31,"falloff":{"profile":"linear"}})");
+  EXPECT_THAT(report.notes, Not(Contains(HasSubstr("can't be reached"))));
+  EXPECT_GT(place_of(document, 1000).z(), 0);
+}
+
 TEST(Relax, LeavesTheEndsOfAnEdgeWhoseMiddleCannotFollow) {
   Model model = sheet_with_middle();
   model.node_holds.set(model.find_node(1000).value, kHeldByParameter);

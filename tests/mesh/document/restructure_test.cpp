@@ -361,6 +361,17 @@ TEST(Restructure, RulesKeepWeldedShellsAndShellsWithMidSideNodesWhole) {
   EXPECT_EQ(node(13), 0) << "an inner node elsewhere";
 }
 
+TEST(Restructure, WhatCardsJoinStaysInPlace) {
+  const Folder folder;
+  std::string text = sheet_deck(6, 4);
+  text.insert(text.find("*END"), "*CONSTRAINED_SPOTWELD\n        10        13\n");
+  const Document document = open_text(folder / "a.k", text);
+  const repair::Rules rules = rules_for(document, document.current());
+  for (const std::int64_t id : {10, 13})
+    EXPECT_EQ(int{rules.node(document.current().model.find_node(id))}, repair::kStays | repair::kNeeded) << id;
+  EXPECT_EQ(int{rules.node(document.current().model.find_node(11))}, 0);
+}
+
 TEST(Restructure, WhatTextThatIsntReadMayNameStaysWhole) {
   const Folder folder;
   std::string text = sheet_deck(6, 4);
