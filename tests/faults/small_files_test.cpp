@@ -93,6 +93,92 @@ TEST(SmallFiles, AnIncludeThatWasRestoredByHandIsNotOverwritten) {
   }
 }
 
+TEST(SmallFiles, ACutOffSaveIsFinishedByTheNextOpeningThatCan) {
+  const Root root;
+  const Place place{root.disk(), session_of("three_files").write_deck(root.disk())};
+  const DiskState before = test::disk_state_of(root.disk());
+  const std::vector<FileCall> calls = calls_of_a_save(root, place);
+  ASSERT_FALSE(HasFailure());
+  const auto saved = deck_files(place);
+  const auto first = std::find_if(calls.begin(), calls.end(), puts_a_deck_file_in_place);
+  std::mt19937_64 random(1);
+  DiskState cut = test::after_power_cut(before, calls, static_cast<std::size_t>(first - calls.begin()) + 1, Survives::all, random);
+  const auto intent = std::find_if(cut.files.begin(), cut.files.end(), [](const auto& file) { return file.first.ends_with(".saving"); });
+  ASSERT_NE(intent, cut.files.end());
+  const std::string record = intent->second;
+  for (const bool damaged : {false, true}) {
+    if (damaged) intent->second[record.size() / 2] ^= 1;
+    std::uint64_t opening = 1, refused = 0;
+    for (std::uint64_t at = 0; at <= opening; ++at) {  // 0: none fails
+      SCOPED_TRACE((damaged ? "damaged, call " : "call ") + std::to_string(at));
+      test::restore(cut);
+      test::record_file_calls(root.disk(), root.log(), {at, EIO, false, false});
+      {
+        DocumentKeeper keeper = place.keeper();
+        const Result<void> opened = open_deck(keeper, place);
+        if (at == 0) opening = test::counted_file_calls();
+        if (!opened) {
+          ++refused;
+          EXPECT_FALSE(keeper.is_open());
+          EXPECT_FALSE(opened.error().message.empty());
+        }
+      }
+      test::stop_recording_file_calls();
+      DocumentKeeper keeper = place.keeper();
+      const Result<void> opened = open_deck(keeper, place);
+      ASSERT_TRUE(opened) << opened.error().text();
+      EXPECT_EQ(deck_files(place) == saved, !damaged);
+      EXPECT_EQ(keeper.state().path, place.deck.string());
+      if (!damaged) {
+        EXPECT_FALSE(keeper.changed()) << "what was to be saved is saved";
+      }
+      if (HasFailure()) return;
+    }
+    EXPECT_GT(opening, 4u);
+    EXPECT_GT(refused, damaged ? 0u : 2u);
+  }
+}
+
+TEST(SmallFiles, EditsThatAreGivenUpAreKeptWhateverFailsMeanwhile) {
+  const Root root;
+  const Place place{root.disk(), session_of("one_file").write_deck(root.disk())};
+  {
+    DocumentKeeper keeper = place.keeper();
+    ASSERT_TRUE(open_deck(keeper, place));
+    ASSERT_TRUE(run_step(keeper, R"({"edit":"translate","by":[0,0,0.5],"on":"all"})"));
+  }
+  const DiskState before = test::disk_state_of(root.disk());
+  const auto journal =
+      std::find_if(before.files.begin(), before.files.end(), [](const auto& file) { return file.first.ends_with(".journal"); });
+  ASSERT_NE(journal, before.files.end());
+  std::uint64_t closing = 1, refused = 0;
+  for (std::uint64_t at = 0; at <= closing; ++at) {
+    SCOPED_TRACE("call " + std::to_string(at));
+    test::restore(before);
+    DocumentKeeper keeper = place.keeper();
+    ASSERT_TRUE(reopen_deck(keeper, place));
+    const std::string shown = fingerprint(keeper);
+    test::record_file_calls(root.disk(), root.log(), {at, EIO, false, false});
+    const Result<void> closed = keeper.close(true);
+    if (at == 0) closing = test::counted_file_calls();
+    test::stop_recording_file_calls();
+    if (!closed) {
+      ++refused;
+      ASSERT_TRUE(keeper.is_open());
+      EXPECT_EQ(fingerprint(keeper), shown);
+      const Result<void> again = keeper.close(true);
+      EXPECT_TRUE(again) << again.error().text();
+    }
+    EXPECT_FALSE(keeper.is_open());
+    const DiskState after = test::disk_state_of(root.disk());
+    EXPECT_TRUE(std::any_of(after.files.begin(), after.files.end(), [&](const auto& file) {
+      return file.first.find(".journal.discarded.") != std::string::npos && file.second == journal->second;
+    }));
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(refused, 0u);
+}
+
 TEST(SmallFiles, AChangedByteOfTheSessionOpensNothingWrong) {
   const Root root;
   const Place place{root.disk(), session_of("one_file").write_deck(root.disk())};
