@@ -1,5 +1,6 @@
 #include "drivers/prism_servo/mask_control.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -409,6 +410,57 @@ TEST(mask_control, places_that_are_no_numbers_count_as_lost_eyes) {
   EXPECT_THAT(rig.run_until(MaskPhase::frozen, 100), testing::AllOf(testing::Ge(0), testing::Le(30)));
 }
 
+TEST(mask_control, power_comes_on_where_the_motor_stands) {
+  for (const double place : {-1.9, -0.4, 1.5}) {
+    MaskRigSettings settings;
+    settings.servo.simulated.start_mm = place;
+    MaskRig rig(settings);
+    while (!rig.output().powered) rig.tick();
+    EXPECT_NEAR(rig.output().goal_mm, place, 5 * 0.005 + 0.002) << "and one tick's way to the middle";
+    EXPECT_GE(rig.run_until_stereo(), 0) << place;
+  }
+}
+
+TEST(mask_control, an_announced_move_back_ends_with_the_eyes) {
+  MaskRig rig(little_travel(0.5));
+  rig.head = walk_right(4.0, 100);
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  while (rig.state().mono_from_ns == 0) rig.tick();
+  rig.eyes = false;
+  rig.tick();
+  ASSERT_EQ(rig.state().phase, MaskPhase::frozen);
+  EXPECT_EQ(rig.state().mono_from_ns, 0);
+  EXPECT_EQ(rig.state().mono_until_ns, 0);
+}
+
+TEST(mask_control, the_goals_velocity_is_how_fast_it_goes) {
+  MaskRigSettings settings;
+  settings.servo.simulated.start_mm = -1.2;
+  MaskRig rig(settings);
+  rig.head = [](double) { return Eigen::Vector3d(30, 0, 650); };
+  MaskControl::Output before;
+  std::array<int, 2> moves{};
+  rig.each_tick = [&](const auto&, const MaskControl::Output& out) {
+    const double velocity = (out.goal_mm - before.goal_mm) / 0.005;
+    if (before.powered && out.powered && out.state.phase == before.state.phase && std::abs(velocity) > 4.999) {
+      const bool following = out.state.phase == MaskPhase::following;
+      // A goal that catches up with a resting head will rest.
+      EXPECT_NEAR(out.state.goal_velocity_mm_s, following ? 0 : velocity, 1e-6) << static_cast<int>(out.state.phase);
+      ++moves[following ? 1 : 0];
+    }
+    before = out;
+  };
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  rig.eyes = false;
+  ASSERT_GE(rig.run_until(MaskPhase::parked), 0);
+  rig.eyes = true;
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  rig.hold_mm = -1;
+  rig.run_for(800 * kMs);
+  EXPECT_GT(moves[0], 80) << "homing, parking and holding";
+  EXPECT_GE(moves[1], 6);
+}
+
 TEST(mask_control, eyes_that_come_back_soon_are_followed_on) {
   MaskRig rig;
   rig.head = to_and_fro(100, 6);
@@ -659,6 +711,21 @@ TEST(mask_control, depth_waits_until_the_mask_is_where_calibration_holds_it) {
   rig.tick();
   EXPECT_EQ(rig.state().phase, MaskPhase::held);
   EXPECT_THAT(rig.run_until_stereo(), testing::AllOf(testing::Ge(300), testing::Lt(600))) << "1.5 mm at 5 mm/s";
+}
+
+TEST(mask_control, where_calibration_lets_go_without_eyes_it_freezes) {
+  MaskRig rig;
+  ASSERT_GE(rig.run_until_stereo(), 0);
+  rig.hold_mm = 0.7;
+  rig.run_for(500 * kMs);
+  rig.eyes = false;
+  rig.run_for(500 * kMs);
+  EXPECT_EQ(rig.state().phase, MaskPhase::held);
+  rig.hold_mm.reset();
+  rig.tick();
+  EXPECT_EQ(rig.state().phase, MaskPhase::frozen);
+  rig.run_for(100 * kMs);
+  EXPECT_NEAR(rig.mask().motor_mm(), 0.7, 0.01);
 }
 
 TEST(mask_control, new_optics_are_gone_to_in_mono) {
