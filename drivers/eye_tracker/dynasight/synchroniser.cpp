@@ -43,9 +43,11 @@ void Synchroniser::follow(Cut& cut, const std::optional<Record>& record) {
     cut = {};
     return;
   }
-  const bool agrees = in_range(*record) && (cut.agreeing == 0 || continues(cut.last, *record));
   cut.markers = std::min(cut.markers + 1, kAgreeingRecordsRivalled);
-  cut.agreeing = agrees ? std::min(cut.agreeing + 1, kAgreeingRecordsRivalled) : in_range(*record) ? 1 : 0;
+  if (!in_range(*record))
+    cut.agreeing = 0;
+  else
+    cut.agreeing = continues(cut.last, *record) ? std::min(cut.agreeing + 1, kAgreeingRecordsRivalled) : 1;
   cut.last = *record;
 }
 

@@ -193,6 +193,34 @@ TEST(DynasightTalk, of_several_records_in_one_read_the_newest_counts_and_its_tim
   EXPECT_EQ(polled.sample.measured_ns, 220 * kMs - 16'666'667);
 }
 
+TEST(DynasightTalk, a_record_in_one_read_with_the_next_ones_begin_is_still_newer_than_the_last) {
+  ScriptedPort port;
+  DynasightTracker tracker(port, {.latency_ns = 20 * kMs});
+  tracker.poll(0);
+  tracker.poll(50 * kMs);
+  for (int i = 0; i < 6; ++i)
+    for (const std::byte byte : at(i)) port.arrived.push_back(byte);
+  ASSERT_EQ(tracker.poll(200 * kMs).sample.measured_ns, 180 * kMs);
+  for (const std::byte byte : at(7)) port.arrived.push_back(byte);
+  const RecordBytes begun = at(8);
+  port.arrived.insert(port.arrived.end(), begun.begin(), begun.end() - 1);  // seven bytes: 3.6 ms
+  const EyeTracker::Polled polled = tracker.poll(201 * kMs);
+  ASSERT_TRUE(polled.fresh);
+  EXPECT_NEAR(polled.sample.between_eyes_mm.x(), 7, 0.05);
+  EXPECT_EQ(polled.sample.measured_ns, 180 * kMs + 1);
+}
+
+TEST(DynasightTalk, what_waited_since_before_the_talk_is_no_news) {
+  ScriptedPort port;
+  DynasightTracker tracker(port, {});
+  for (int i = 0; i < 1'000; ++i)
+    for (const std::byte byte : at(9)) port.arrived.push_back(byte);
+  tracker.poll(0);
+  tracker.poll(50 * kMs);
+  EXPECT_TRUE(port.arrived.empty());
+  for (int i = 1; i < 8; ++i) EXPECT_FALSE(tracker.poll((50 + 5 * i) * kMs).fresh) << "a place of who knows when";
+}
+
 TEST(DynasightTalk, the_offset_moves_the_place_and_what_lands_outside_is_refused) {
   ScriptedPort port;
   DynasightTracker tracker(port, {.offset_mm = {10, -200, -580}});
