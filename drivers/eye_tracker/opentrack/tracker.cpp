@@ -16,7 +16,7 @@ OpentrackTracker::OpentrackTracker(port::DatagramPort& port, const Options& opti
 
 EyeTracker::Polled OpentrackTracker::poll(std::int64_t now_ns) {
   Polled polled;
-  std::array<std::byte, 2 * kDatagramBytes> buffer;  // longer than a pose, so that a longer datagram is seen to be one
+  std::array<std::byte, 2 * kDatagramBytes> buffer;  // longer than a pose, so that what is left of a longer datagram is none either
   const std::uint64_t before = counts_.records;
   for (int i = 0; i < kDatagramsAPoll; ++i) {
     const port::Datagram datagram = port_->receive(buffer);
@@ -37,7 +37,7 @@ EyeTracker::Polled OpentrackTracker::poll(std::int64_t now_ns) {
 }
 
 void OpentrackTracker::take(std::span<const std::byte> datagram, std::size_t full_length, Polled& polled) {
-  const std::optional<Pose> pose = datagram.size() == full_length ? decode(datagram) : std::nullopt;
+  const std::optional<Pose> pose = decode(datagram);
   if (!pose) {
     counts_.bytes_skipped += full_length;
     return;
