@@ -98,6 +98,42 @@ TEST(Edid, tells_a_monitor_that_takes_halved_colours) {
   EXPECT_TRUE(edid->takes_ycbcr_444);
 }
 
+TEST(Edid, the_first_timing_is_the_preferred_one) {
+  EdidBytes bytes;
+  bytes.preferred_timing();
+  bytes.set(72, {0x02, 0x3A, 0x80, 0x18, 0x71, 0x38, 0x2D, 0x40, 0x58, 0x2C, 0x45, 0x00, 0xDD, 0x0C, 0x11, 0x00, 0x00, 0x1E});  // 1080 rows
+  EXPECT_EQ(decode_edid(bytes.done())->native_width, 1920);
+  EXPECT_EQ(decode_edid(bytes.done())->native_height, 1200);
+  EdidBytes name_first;
+  name_first.text(54, 0xFC, "CG2420");
+  EXPECT_EQ(decode_edid(name_first.done())->native_width, 0);
+  EXPECT_EQ(decode_edid(name_first.done())->width_mm, 520);
+}
+
+TEST(Edid, a_name_ends_with_its_descriptor_and_holds_what_can_be_printed) {
+  EdidBytes bytes;
+  bytes.text(54, 0xFC, "THIRTEEN LONG");
+  bytes.set(72, {0x41, 0x42, 0x43});  // a timing follows at once
+  bytes.text(90, 0xFF,
+             " a\x7F\x1B\x80"
+             "b~ ");
+  const Result<Edid> edid = decode_edid(bytes.done());
+  ASSERT_TRUE(edid) << edid.error().text();
+  EXPECT_EQ(edid->identity.model, "THIRTEEN LONG");
+  EXPECT_EQ(edid->identity.serial, "ab~");
+}
+
+TEST(Edid, an_analogue_monitor_takes_no_colour_format) {
+  EdidBytes bytes;
+  bytes.set(20, {0x25});
+  bytes.set(24, {0x18});
+  const Result<Edid> edid = decode_edid(bytes.done());
+  ASSERT_TRUE(edid);
+  EXPECT_FALSE(edid->digital);
+  EXPECT_FALSE(edid->takes_ycbcr_422);
+  EXPECT_FALSE(edid->takes_ycbcr_444);
+}
+
 TEST(Edid, leaves_a_damaged_extension_out) {
   EdidBytes bytes;
   bytes.cta(0x30);
