@@ -85,10 +85,10 @@ Result<std::string> with_profile(std::string_view text, const std::string& file,
     changed += (changed.empty() ? "" : line_end) + "[display]" + line_end + "profile = " + value + line_end;
   }
   // Only a text that says what was meant goes to the disk: a section may also be written in other ways.
-  const Result<Settings> read = parse_settings(changed, file);
+  const Result<Settings> read = parse_part(changed, file);
   if (!read) return fail(read.error());
-  const std::filesystem::path wanted = profile.has_parent_path() ? std::filesystem::path(file).parent_path() / profile : profile;
-  if (std::filesystem::path(read->display.profile) != wanted && read->display.profile != profile.string())
+  const std::string beside = (std::filesystem::path(file).parent_path() / profile).lexically_normal().string();
+  if (read->display.profile != beside && read->display.profile != profile.string())
     return fail(file, "set profile = " + value + " under [display] yourself: the file is written in a way that can't be changed safely");
   return changed;
 }
@@ -100,7 +100,7 @@ Result<void> choose_profile(const std::filesystem::path& file, const std::filesy
     Result<FileBytes> read = read_file(file);
     if (!read) return fail(read.error());
     bytes = std::move(*read);
-    if (Result<Settings> valid = parse_settings(bytes.text(), file); !valid) return fail(valid.error());
+    if (Result<Settings> valid = parse_part(bytes.text(), file); !valid) return fail(valid.error());
   }
   const Result<std::string> changed = with_profile(bytes.text(), file.string(), profile);
   if (!changed) return fail(changed.error());

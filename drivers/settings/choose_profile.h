@@ -9,7 +9,8 @@
 
 namespace prismesh::drivers::settings {
 
-/// The text of a settings file with `profile` under [display]: replaced where it stands, else added to the section, else the section is
+/// The text of a settings file with `profile` (a built-in one's name, or a file; one that isn't absolute is beside the settings) under
+/// [display]: replaced where it stands, else added to the section, else the section is
 /// added at the end. Comments, order and line ends stay. Errors: the text can't be changed safely, so that somebody has to (says how).
 Result<std::string> with_profile(std::string_view text, const std::string& file, const std::filesystem::path& profile);
 

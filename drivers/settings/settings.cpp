@@ -281,6 +281,13 @@ Result<Settings> parse_settings(std::string_view text, const fs::path& file) {
   return checked(std::move(settings), places);
 }
 
+Result<Settings> parse_part(std::string_view text, const fs::path& file) {
+  Settings settings;
+  Places places;
+  if (auto applied = apply(text, file, settings, places); !applied) return fail(applied.error());
+  return settings;
+}
+
 std::vector<fs::path> usual_files() {
   std::vector<fs::path> files{"/etc/prismesh/prismesh.toml"};
   const auto folder = [](const char* name) -> fs::path {

@@ -87,5 +87,7 @@ Result<Settings> read_settings(const std::vector<std::filesystem::path>& usual, 
 
 /// One file's text on its own, on top of the defaults; `file` stands in errors, and profile files are sought beside it.
 Result<Settings> parse_settings(std::string_view text, const std::filesystem::path& file);
+/// As parse_settings, of one file among several: a port that is missing in it may stand in another one.
+Result<Settings> parse_part(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace prismesh::drivers::settings

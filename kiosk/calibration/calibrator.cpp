@@ -38,7 +38,8 @@ Result<SaveTo> usual_place(const std::optional<std::filesystem::path>& settings)
   const std::vector<std::filesystem::path> usual = drivers::settings::usual_files();
   if (usual.size() < 2) {  // the system's only
     if (!settings) return fail("", "there is no place to save a calibration: set HOME or XDG_CONFIG_HOME, or give --config FILE");
-    return SaveTo{settings->parent_path() / "displays", *settings};
+    // Absolute: what settings name otherwise lies beside them, not in the working folder.
+    return SaveTo{std::filesystem::absolute(settings->parent_path() / "displays"), *settings};
   }
   return SaveTo{usual.back().parent_path() / "displays", settings.value_or(usual.back())};
 }

@@ -37,6 +37,24 @@ TEST(ChooseProfile, adds_the_key_or_the_section) {
             "[eye_tracker]\ndriver = \"none\"\n\n[display]\nprofile = \"/home/lab/wall.toml\"\n");
 }
 
+TEST(ChooseProfile, takes_every_way_to_name_a_profile) {
+  for (const char* profile : {"anaglyph", "wall.toml", "lab/wall.toml", "../wall.toml", "/home/lab/../wall.toml"})
+    EXPECT_EQ(changed("", profile), std::string("[display]\nprofile = \"") + profile + "\"\n");
+}
+
+TEST(ChooseProfile, changes_a_file_whose_device_has_its_port_in_another) {
+  const std::string driver = "[eye_tracker]\ndriver = \"dynasight\"\n";
+  EXPECT_EQ(changed(driver), driver + "\n[display]\nprofile = \"/home/lab/wall.toml\"\n");
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "choose_profile_part";
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path system = folder / "system.toml", user = folder / "user.toml";
+  std::ofstream(system) << "[eye_tracker]\nport = \"/dev/a\"\n";
+  std::ofstream(user) << driver;
+  EXPECT_TRUE(choose_profile(user, "/home/lab/wall.toml"));
+  EXPECT_EQ(read_settings({system, user}, std::nullopt)->display.profile, "/home/lab/wall.toml");
+  std::filesystem::remove_all(folder);
+}
+
 TEST(ChooseProfile, writes_names_that_need_quoting) {
   const std::string odd = "/home/lab/a \"b\"\\c\td.toml";
   const Result<Settings> read = parse_settings(changed("", odd), "/etc/prismesh/prismesh.toml");

@@ -138,6 +138,34 @@ TEST(Settings, limits_themselves_are_allowed) {
   parsed("[prism_servo]\nid = 0\nbaud = 4500000\ntravel_mm_per_turn = 100");
 }
 
+TEST(Settings, numbers_are_taken_up_to_their_limits_and_no_further) {
+  struct Limits {
+    const char *section, *key, *below, *low, *high, *above;
+  };
+  for (const Limits& one :
+       std::vector<Limits>{{"display", "latency_ms", "-0.1", "0", "200", "200.1"},
+                           {"document", "history_mb", "15", "16", "1048576", "1048577"},
+                           {"document", "hang_s", "-1", "0", "86400", "86401"},
+                           {"eye_tracker", "baud", "299", "300", "4000000", "4000001"},
+                           {"eye_tracker", "udp_port", "0", "1", "65535", "65536"},
+                           {"eye_tracker", "latency_ms", "-0.1", "0", "500", "500.1"},
+                           {"eye_tracker", "noise_mm", "-0.1", "0", "50", "50.1"},
+                           {"eye_tracker", "offset_mm", "[-2000.1, 0, 0]", "[0, -2000, 0]", "[0, 0, 2000]", "[0, 0, 2000.1]"},
+                           {"eye_tracker", "eye_separation_mm", "49.9", "50", "75", "75.1"},
+                           {"prism_servo", "baud", "9599", "9600", "4500000", "4500001"},
+                           {"prism_servo", "id", "-1", "0", "252", "253"},
+                           {"prism_servo", "travel_mm_per_turn", "0.09", "0.1", "100", "100.1"},
+                           {"prism_servo", "zero_ticks", "-1048576", "-1048575", "1048575", "1048576"},
+                           {"prism_servo", "travel_mm", "0.009", "0.01", "100", "100.1"},
+                           {"prism_servo", "speed_mm_s", "0.009", "0.01", "1000", "1000.1"},
+                           {"prism_servo", "lag_ms", "-0.1", "0", "200", "200.1"}}) {
+    const std::string key = std::string("[") + one.section + "]\n" + one.key + " = ";
+    for (const char* taken : {one.low, one.high}) EXPECT_EQ(error_of(key + taken), "accepted") << key << taken;
+    for (const char* refused : {one.below, one.above})
+      EXPECT_THAT(error_of(key + refused), HasSubstr("it must be from ")) << key << refused;
+  }
+}
+
 TEST(Settings, a_real_device_needs_its_own_port) {
   EXPECT_THAT(error_of("[eye_tracker]\nsimulated = false\ndriver = 'dynasight'\n"),
               HasSubstr("station.toml:3: eye_tracker has a driver but no port; say port = "));
@@ -147,6 +175,10 @@ TEST(Settings, a_real_device_needs_its_own_port) {
   const std::string both = "[eye_tracker]\ndriver = 'dynasight'\nport = '/dev/a'\n[prism_servo]\ndriver = 'dynamixel'\nport = '/dev/a'\n";
   EXPECT_THAT(error_of(both), HasSubstr("station.toml:6: prism_servo.port is eye_tracker's as well (/dev/a)"));
   EXPECT_EQ(error_of(both + "simulated = true\n"), "accepted");
+  const std::string port = "port = '/dev/a'\n", tracker = "[eye_tracker]\n" + port, servo = "[prism_servo]\n" + port;
+  EXPECT_EQ(error_of(tracker + servo + "driver = 'dynamixel'\n"), "accepted") << "no tracker's";
+  EXPECT_EQ(error_of(tracker + "driver = 'dynasight'\n" + servo), "accepted") << "no servo's";
+  EXPECT_EQ(error_of(tracker + "driver = 'opentrack'\n" + servo + "driver = 'dynamixel'\n"), "accepted") << "datagrams need no line";
 }
 
 class SettingsFiles : public ::testing::Test {
