@@ -63,7 +63,6 @@ void TrackedEyes::set_options(const FollowOptions& options) {
   options_ = options;
   if (options.eye_separation_mm) eye_separation_mm_ = *options.eye_separation_mm;
   looked_ns_.reset();
-  disallowed_ns_.reset();
   source_ = Source::resting;
   place_.begin(options.resting_mm);
   half_separation_.begin(0.5 * eye_separation_mm_ * Vector3d::UnitX());
@@ -136,7 +135,7 @@ double TrackedEyes::share_for_eyes(std::int64_t now_ns, const LitTime& lit) cons
   const std::int64_t lost_after = std::clamp(room, limits_.lost_soonest_ns, limits_.lost_after_ns);
   if (now_ns - heard_ns() <= lost_after) return 1;
   const std::int64_t fade_from = heard_ns() + lost_after + ahead;
-  return fade_from < deadline ? part(deadline - lit.until_ns, deadline - fade_from) : 0;
+  return part(deadline - lit.until_ns, deadline - fade_from);
 }
 
 double TrackedEyes::share_for_mask(const DeviceReading& reading, std::int64_t now_ns, const LitTime& lit) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -416,7 +417,8 @@ class Looks {
   const SeenFrom& look() {
     now += 17 * kMillisecondNs;
     if (measures) reading.eyes->measured_ns = now;
-    reading.eyes->time_ns = reading.prism->time_ns = reading.prism->measured_ns = now;
+    reading.eyes->time_ns = now;
+    if (reading.prism) reading.prism->time_ns = reading.prism->measured_ns = now;
     return seen = eyes.look(reading, now, lit());
   }
   void look_for_ms(std::int64_t ms) {
@@ -536,6 +538,72 @@ TEST(TrackedEyes, AnotherDisplayBeginsInMonoAtItsRestingPlace) {
   EXPECT_EQ(looks.seen.depth_share, 0);
   EXPECT_LT((looks.seen.between_eyes_mm - other.resting_mm).norm(), 1) << "and goes over to the eyes from there";
   looks.look_for_ms(1000);
+  EXPECT_EQ(looks.seen.depth_share, 1);
+}
+
+TEST(TrackedEyes, APageThatSaysNothingOfTheMaskGivesNoDepth) {
+  Looks looks;
+  const std::optional<ipc::PrismState> mask = std::exchange(looks.reading.prism, std::nullopt);
+  looks.look_for_ms(1000);
+  EXPECT_EQ(looks.seen.depth_share, 0);
+  EXPECT_FALSE(looks.seen.mask_mm) << "where it should be for these eyes";
+  looks.reading.prism = mask;
+  looks.look_for_ms(500);
+  EXPECT_EQ(looks.seen.depth_share, 1);
+  looks.reading.prism.reset();
+  int between = 0;
+  for (double before = 1; looks.look().depth_share > 0; before = looks.seen.depth_share) {
+    ASSERT_LE(looks.seen.depth_share, before);
+    ++between;
+  }
+  EXPECT_GE(between, 3) << "a fade ...";
+  EXPECT_LE(between, 6) << "... of 80 ms";
+}
+
+/// Also where pictures take so long that no time is left to fade.
+TEST(TrackedEyes, DepthNeverRisesWhileNothingIsMeasured) {
+  for (std::int64_t ahead_ms = 20; ahead_ms <= 400; ahead_ms += 20) {
+    TrackedEyes eyes(prism_mask());
+    DeviceReading reading = eyes_measured_at(kStart);
+    reading.prism.emplace().stereo_allowed = true;
+    std::int64_t now = kStart;
+    const auto share = [&](std::int64_t measured_ns) {
+      now += 17 * kMillisecondNs;
+      reading.eyes->time_ns = reading.prism->time_ns = reading.prism->measured_ns = now;
+      reading.eyes->measured_ns = measured_ns;
+      const std::int64_t until = now + ahead_ms * kMillisecondNs;
+      return eyes.look(reading, now, {until - 17 * kMillisecondNs, until}).depth_share;
+    };
+    for (int i = 0; i < 60; ++i) share(now + 17 * kMillisecondNs);
+    const std::int64_t measured = now, deadline = measured + eyes.limits().mono_after_ns;
+    for (double before = 1; now < measured + 500 * kMillisecondNs;) {
+      const double next = share(measured);
+      EXPECT_LE(next, before) << ahead_ms << " ms ahead, " << (now - measured) / kMillisecondNs << " ms after";
+      EXPECT_GE(next, 0);
+      // Until it is known that they are lost, the picture may stay.
+      const bool known = now - measured > eyes.limits().lost_after_ns;
+      if (known && now + ahead_ms * kMillisecondNs >= deadline) EXPECT_EQ(next, 0) << ahead_ms << " ms ahead";
+      before = next;
+    }
+  }
+}
+
+TEST(TrackedEyes, AnotherDisplayBeginsInMonoThoughTheMaskHadStoppedLongAgo) {
+  Looks looks;
+  looks.look_for_ms(500);
+  looks.reading.prism->stereo_allowed = false;
+  looks.look();
+  for (const bool movable : {true, false, true}) {
+    FollowOptions other;
+    other.movable_mask = movable;
+    looks.eyes.set_options(other);
+    looks.look();
+    EXPECT_EQ(looks.seen.depth_share, 0) << movable;
+    looks.look_for_ms(500);
+    EXPECT_EQ(looks.seen.depth_share, movable ? 0 : 1);
+  }
+  looks.reading.prism->stereo_allowed = true;
+  looks.look_for_ms(500);
   EXPECT_EQ(looks.seen.depth_share, 1);
 }
 
