@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/clock.h"
 
@@ -205,11 +206,10 @@ void Servo::take_setup_value(std::uint32_t value, std::int64_t now_ns) {
   }
   if (!done) {
     if (++tries_ > kWriteTries) return refuse(ServoTrouble::refused, which.address, now_ns);
-    doing_ = Doing::writing;
+    write_next_ = true;
     return;
   }
   tries_ = 0;
-  doing_ = Doing::asking;
   if (++step_ < kSetup.size()) return;
   stage_ = Stage::running;
   tick_.phase = ServoPhase::ready;
@@ -284,7 +284,6 @@ void Servo::write_and_wait(Register which, std::uint32_t value, std::int64_t now
 void Servo::begin_search() {
   stage_ = Stage::searching;
   tick_.phase = ServoPhase::absent;
-  question_.what = Asked::nothing;
   candidate_ = 0;
   pings_left_ = 0;
 }
@@ -319,11 +318,10 @@ void Servo::search(std::int64_t now_ns) {
 void Servo::begin_setup() {
   stage_ = Stage::setting_up;
   tick_.phase = ServoPhase::setting_up;
-  question_.what = Asked::nothing;
   step_ = 0;
   tries_ = 0;
   // The first register is the one that lets the servo answer: it's written before it is read.
-  doing_ = Doing::writing;
+  write_next_ = true;
 }
 
 std::uint32_t Servo::wanted(Register which) const {
@@ -342,9 +340,8 @@ std::uint32_t Servo::wanted(Register which) const {
 void Servo::set_up(std::int64_t now_ns) {
   if (question_.what != Asked::nothing) return;
   const Register which = kSetup[step_];
-  if (doing_ == Doing::writing) {
+  if (std::exchange(write_next_, false)) {
     write_and_wait(which, wanted(which), now_ns);
-    doing_ = Doing::verifying;
     if (which == kBaudRate) stage_ = Stage::changing_baud;
     return;
   }
@@ -454,7 +451,6 @@ void Servo::refuse(ServoTrouble why, std::uint16_t number, std::int64_t now_ns) 
   tick_.phase = ServoPhase::absent;
   tick_.trouble = why;
   tick_.trouble_number = number;
-  question_.what = Asked::nothing;
   line_free_ns_ = now_ns + kTryAgainNs;
 }
 

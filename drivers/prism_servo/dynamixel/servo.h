@@ -59,8 +59,6 @@ class Servo final : public PrismServo {
  private:
   enum class Stage : std::uint8_t { searching, setting_up, changing_baud, running, alarm, rebooting, refused };
   enum class Asked : std::uint8_t { nothing, ping, value, motion };
-  /// What is done about a register of the set-up.
-  enum class Doing : std::uint8_t { asking, writing, verifying };
   struct Question {
     Asked what = Asked::nothing;
     Register which;
@@ -127,7 +125,7 @@ class Servo final : public PrismServo {
   std::uint16_t model_ = 0;
 
   std::size_t step_ = 0;
-  Doing doing_ = Doing::asking;
+  bool write_next_ = false;  ///< else the register is asked for
   int tries_ = 0;
 
   int silent_questions_ = 0;
