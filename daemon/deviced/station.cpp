@@ -31,20 +31,6 @@ using drivers::settings::TrackerDriver;
 /// Records that stay away for so long, five at 60 Hz, are missed.
 constexpr std::int64_t kMissedNs = 80'000'000;
 
-LoopSettings loop_settings(const StationPlan& plan) {
-  LoopSettings settings;
-  settings.tracker = plan.settings.eye_tracker;
-  settings.servo = plan.servo;
-  settings.optics = plan.profile.optics;
-  settings.limits.travel_mm = plan.settings.prism_servo.travel_mm;
-  settings.limits.speed_mm_s = plan.settings.prism_servo.speed_mm_s;
-  // What a slow tracker says, a webcam's say, is old when it comes.
-  const std::int64_t latency_ns = nanoseconds(plan.settings.eye_tracker.latency_ms);
-  settings.limits.eyes_lost_ns = std::max(settings.limits.eyes_lost_ns, latency_ns + kMissedNs);
-  settings.eye_separation_mm = plan.eye_separation_mm();
-  return settings;
-}
-
 PortKeeper::Maker line(const std::string& path, int baud) {
   return [path, baud] { return drivers::port::open_port(path, baud); };
 }
@@ -73,6 +59,20 @@ Result<StationPlan> read_plan(const std::optional<std::filesystem::path>& config
   if (!servo) return fail(std::move(servo.error()));
   plan.servo = *servo;
   return plan;
+}
+
+LoopSettings loop_settings(const StationPlan& plan) {
+  LoopSettings settings;
+  settings.tracker = plan.settings.eye_tracker;
+  settings.servo = plan.servo;
+  settings.optics = plan.profile.optics;
+  settings.limits.travel_mm = plan.settings.prism_servo.travel_mm;
+  settings.limits.speed_mm_s = plan.settings.prism_servo.speed_mm_s;
+  // What a slow tracker says, a webcam's say, is old when it comes.
+  const std::int64_t latency_ns = nanoseconds(plan.settings.eye_tracker.latency_ms);
+  settings.limits.eyes_lost_ns = std::max(settings.limits.eyes_lost_ns, latency_ns + kMissedNs);
+  settings.eye_separation_mm = plan.eye_separation_mm();
+  return settings;
 }
 
 /// In the order in which the parts are made; they end in the opposite one: watchdog, loop, keepers, simulators.

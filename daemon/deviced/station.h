@@ -33,6 +33,9 @@ struct StationPlan {
 /// Reads prismesh.toml and the profile it names. Errors: theirs, and settings that no servo can have.
 Result<StationPlan> read_plan(const std::optional<std::filesystem::path>& config);
 
+/// What the plan means for the loop.
+LoopSettings loop_settings(const StationPlan& plan);
+
 class Station {
  public:
   /// `stuck` is called from a thread of the station's own, once, when the loop has stopped ticking. `page` outlives the station.

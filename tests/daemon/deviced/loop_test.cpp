@@ -208,6 +208,21 @@ TEST(DeviceLoop, AJammedMaskIsSaidAndLetGoUntilItIsRearmed) {
   EXPECT_GE(back, 0) << rig.state();
 }
 
+TEST(DeviceLoop, AFaultThatJoinsTheMotorsAlarmIsTold) {
+  LoopRig rig;
+  rig.start();
+  rig.servo.raise_hardware_error(0x20);
+  ASSERT_GE(rig.run_until([&] { return rig.mask().phase == MaskPhase::alarm; }, 200), 0);
+  rig.run_for_ms(100);
+  rig.events();
+  rig.servo.raise_hardware_error(0x04);
+  rig.run_for_ms(400);
+  std::vector<int> told;
+  for (const LoopEvent& event : rig.events())
+    if (const auto* changed = std::get_if<ServoChanged>(&event)) told.push_back(changed->tick.alarm_bits);
+  EXPECT_THAT(told, ElementsAre(0x24));
+}
+
 TEST(DeviceLoop, ANewDisplayIsTakenWithoutAPause) {
   LoopRig rig;
   rig.start();
