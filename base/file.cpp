@@ -119,7 +119,7 @@ Result<fs::path> follow_links(const fs::path& path) {
     if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
     const fs::path next = fs::read_symlink(target, error);
     if (error) return fail(path.string(), "can't follow the symbolic link: " + error.message());
-    target = next.is_absolute() ? next : target.parent_path() / next;
+    target = target.parent_path() / next;  // which is `next` where that is absolute
   }
   return fail(path.string(), "can't follow the symbolic link: too many links in a row");
 }
