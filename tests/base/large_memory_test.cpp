@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <fstream>
+#include <memory>
+#include <new>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -20,6 +25,43 @@ TEST(LargeBlock, is_zero_and_stays_where_it_is_when_moved) {
     const LargeBlock moved = std::move(block);
     EXPECT_EQ(moved.data(), data);
     EXPECT_EQ(moved.data()[size - 1], 'x');
+  }
+}
+
+TEST(LargeBlock, begins_at_a_large_page_and_is_given_back_whole) {
+  // In pages of the kernel's; other threads' heaps and the like come and go.
+  const auto mapped_pages = [] {
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages;
+  };
+  const std::size_t size = 3 * kLargePage + 17;
+  for (int i = 0; i < 8; ++i) LargeBlock warm(size);
+  const std::size_t before = mapped_pages();
+  std::vector<LargeBlock> blocks;
+  for (int i = 0; i < 100; ++i) {
+    blocks.emplace_back(size);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(blocks.back().data()) % kLargePage, 0U);
+  }
+  EXPECT_LE(mapped_pages() - before, 100 * 4 * kLargePage / 4096 + 4096) << "no more than whole large pages";
+  blocks.clear();
+  EXPECT_LE(mapped_pages(), before + 4096);
+}
+
+TEST(LargeBlock, that_no_machine_has_is_refused) {
+  for (const std::size_t size : {SIZE_MAX, SIZE_MAX - kLargePage, SIZE_MAX / 2 + 2, SIZE_MAX / 4})
+    EXPECT_THROW(LargeBlock block(size), std::bad_alloc);
+}
+
+TEST(LargePool, aligns_what_is_made) {
+  struct Odd {
+    std::array<char, 65> bytes;
+  };
+  LargePool pool;
+  std::vector<std::shared_ptr<Odd>> all;
+  for (int i = 0; i < 10; ++i) {
+    all.push_back(pool.make<Odd>());
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(all.back().get()) % 64, 0U) << i;
   }
 }
 

@@ -38,6 +38,7 @@ TEST(ReadableNumber, OfAPlaceWhatIsNothingBesideTheLargestIsNothing) {
   EXPECT_EQ(readable({999999.6, 0.4, -0.6}, 6), "1000000 0 -1");
   EXPECT_EQ(readable({1e15, 1, 0}, 4), "1e+15 1 0");
   EXPECT_EQ(readable({std::nan(""), 1.5, 0}, 4), "nan 1.5 0");
+  EXPECT_EQ(readable({std::nan(""), 1250.5, -1.25e-06}, 6), "nan 1250.5 -0.00000125") << "each by itself where one is no number";
 }
 
 }  // namespace
