@@ -101,9 +101,10 @@ TEST(Edid, tells_a_monitor_that_takes_halved_colours) {
 TEST(Edid, the_first_timing_is_the_preferred_one) {
   EdidBytes bytes;
   bytes.preferred_timing();
-  bytes.set(72, {0x02, 0x3A, 0x80, 0x18, 0x71, 0x38, 0x2D, 0x40, 0x58, 0x2C, 0x45, 0x00, 0xDD, 0x0C, 0x11, 0x00, 0x00, 0x1E});  // 1080 rows
+  bytes.set(72, {0x02, 0x3A, 0x80, 0xFC, 0x71, 0x38, 0x2D, 0x40, 0x58, 0x2C, 0x45, 0x00, 0xDD, 0x0C, 0x11, 0x00, 0x00, 0x1E});  // 1080 rows
   EXPECT_EQ(decode_edid(bytes.done())->native_width, 1920);
   EXPECT_EQ(decode_edid(bytes.done())->native_height, 1200);
+  EXPECT_EQ(decode_edid(bytes.done())->identity.model, "1234") << "a timing holds no name, whatever its fourth byte";
   EdidBytes name_first;
   name_first.text(54, 0xFC, "CG2420");
   EXPECT_EQ(decode_edid(name_first.done())->native_width, 0);
