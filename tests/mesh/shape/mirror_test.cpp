@@ -159,5 +159,41 @@ TEST(Mirror, ImagesMoveAsMirrorImagesToTheBit) {
   for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(both[i ^ 1], kAcrossX.mirrored(both[i]));
 }
 
+TEST(Mirror, FindsImagesInAPlaneAnywhere) {
+  const Plane plane{Vec3(3, 1, 7), Vec3(1, 2, 2) / 3};
+  std::vector<Vec3> points;
+  std::vector<std::array<int, 4>> shells;
+  for (int side = 0; side < 2; ++side)
+    for (int k = 0; k < 9; ++k) {
+      const Vec3 place(5 + 4 * (k % 3), 20 + 3 * (k / 3), 0.5 * k);
+      points.push_back(side == 0 ? place : plane.mirrored_place(place));
+    }
+  for (const int first : {0, 9})
+    for (const int a : {0, 1, 3, 4}) shells.push_back({first + a, first + a + 1, first + a + 4, first + a + 3});
+  const Model model = test::make_shells(points, shells);
+  for (std::size_t k = 0; k < 18; ++k) EXPECT_EQ(find_images(model, {NodeIndex(k)}, plane)[0], NodeIndex((k + 9) % 18)) << k;
+}
+
+TEST(Mirror, AllowsAQuarterOfTheShortestSide) {
+  for (const auto& [off, found] : {std::pair(0.24, true), std::pair(0.26, false)}) {
+    // shells ten times as long as wide
+    const Model model = test::make_grid(4, 2, [off = off](int i, int j) { return Vec3(10.0 * (i - 2) + (i == 0 ? off : 0), j, 0); });
+    EXPECT_EQ(find_images(model, {test::grid_node(4, 4, 1)}, kAcrossX)[0].valid(), found) << off;
+  }
+}
+
+TEST(Mirror, SharesCountFromThePlaneWhereverItIs) {
+  const Plane plane{Vec3(100, 5, 0), Vec3::UnitX()};
+  std::vector<Vec3> start, moves;
+  std::vector<std::uint32_t> images;
+  for (int i = -6; i <= 6; ++i) {
+    start.emplace_back(100 + i, 0, 0);
+    moves.emplace_back(4, 1, 0);
+    images.push_back(static_cast<std::uint32_t>(6 - i));
+  }
+  const std::vector<Vec3> both = mirrored_moves(plane, start, std::vector<double>(13, 1.0), Vec3(96, 0, 0), images, moves);
+  for (int i = -6; i <= 6; ++i) EXPECT_EQ(both[static_cast<std::size_t>(i + 6)], Vec3(-std::clamp(i, -4, 4), 1, 0)) << i;
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::shape

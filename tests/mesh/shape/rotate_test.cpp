@@ -102,5 +102,18 @@ TEST(Rotate, DirectionsOfAnyLength) {
   EXPECT_FALSE(unit_of(Vec3(0, std::numeric_limits<double>::quiet_NaN(), 1)));
 }
 
+TEST(Rotate, TheLimitCountsFromTheAxisWhereverItIs) {
+  const Axis axis{Vec3(100, 0, -4), Vec3::UnitZ()};
+  const std::vector<Vec3> start{{110, 0, 5}, {110, 0, 5}};
+  std::vector<Vec3> out(2);
+  EXPECT_EQ(rotate(start, std::vector<double>{1, 0.1}, axis, 170, 3.0, out), 1u) << "a tenth of the turn goes 2.96";
+  EXPECT_NEAR((out[0] - start[0]).norm(), 3, 1e-12);
+  EXPECT_NEAR((out[0] - Vec3(100, 0, 5)).norm(), 10, 1e-12);
+  EXPECT_GT(out[0].y(), 0);
+  EXPECT_NEAR((out[1] - start[1]).norm(), 2 * 10 * std::sin(8.5 * M_PI / 180), 1e-12);
+  EXPECT_EQ(rotate(start, std::vector<double>{1, 1}, axis, 180, 20.0, out), 0u) << "no node can be farther than the circle is wide";
+  EXPECT_LT((out[0] - Vec3(90, 0, 5)).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::shape

@@ -237,5 +237,70 @@ TEST(Slide, NothingIsAskedOfNodesWithoutAShellOrOfCollapsedShells) {
   EXPECT_LT(farthest_off(model, {out[0], out[1], out[2], out[3], out[5], out[6]}), 1e-12);
 }
 
+/// Two flat faces of 12 x 10 shells that meet in a line askew to the rows, x = 30 + y / 2: z = 0 before it, falling by 1 : 1 in x beyond.
+/// From the fifth column on the rows lie 1.3 higher, so that no row leads to a node of the line.
+Model slanted_roof() {
+  return test::make_grid(12, 10, [](int i, int j) {
+    const double y = 5.0 * j + (i >= 4 ? 1.3 : 0);
+    return Vec3(5.0 * i + 0.5 * y, y, -5.0 * std::max(i - 6, 0));
+  });
+}
+
+TEST(Slide, InAPlaneItStaysThereWhereStraightOnWouldLeaveIt) {
+  const Model model = slanted_roof();
+  const NodeSet nodes{test::grid_node(12, 2, 5), test::grid_node(12, 3, 5)};  // at (22.5, 25) and (27.5, 25)
+  const std::vector<Vec3> by(2, Vec3(30, 0, 0));
+  Slideway slideway(model, nodes, std::vector<Vec3>(2, Vec3::UnitZ()));
+  slideway.keep_in_plane(Vec3::UnitY(), {1, 0});
+  std::vector<Vec3> out(2);
+  EXPECT_EQ(slideway.positions(by, std::nullopt, out), 0u);
+  const Vec3 crossing(42.5, 25, 0);
+  EXPECT_LT((out[0] - (crossing + 10 * Vec3(1, 0, -1).normalized())).norm(), 1e-9);
+  // the other keeps its angle to the line in which the faces meet
+  const Vec3 along = Vec3(0.5, 1, 0).normalized();
+  const Vec3 down = Vec3(Vec3(-1, 0.5, -1).cross(along)).normalized();
+  EXPECT_LT((out[1] - (crossing + 15 * (along.x() * along + std::sqrt(1 - along.x() * along.x()) * down))).norm(), 1e-9);
+}
+
+TEST(Slide, AnEdgeOutOfThePlaneHoldsItsNodes) {
+  const Model model = test::make_grid(10, 10, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
+  const NodeSet nodes{test::grid_node(10, 4, 0), test::grid_node(10, 6, 0)};
+  for (const auto& [normal, moves] : {std::pair(Vec3(Vec3::UnitX()), false), std::pair(Vec3(Vec3::UnitY()), true)}) {
+    Slideway slideway(model, nodes, std::vector<Vec3>(2, Vec3::UnitZ()));
+    slideway.keep_in_plane(normal, {1, 0});
+    std::vector<Vec3> out(2);
+    slideway.positions(std::vector<Vec3>(2, Vec3(7, 0, 0)), std::nullopt, out);
+    EXPECT_EQ(out[0], Vec3(moves ? 27 : 20, 0, 0));
+    EXPECT_EQ(out[1], Vec3(37, 0, 0)) << "it keeps to no plane";
+  }
+}
+
+TEST(Slide, TheBorderLeadsOnOverManyNodesBothWays) {
+  const Model model = test::make_grid(10, 10, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
+  for (const double by : {12.0, -12.0}) {
+    const std::vector<Vec3> out = slid(model, test::grid_node(10, 5, 5), Vec3(by, by, 0));
+    for (const int far : {0, 10})
+      for (int i = 3; i <= 7; ++i) {
+        EXPECT_LT((out[test::grid_node(10, i, far).value] - Vec3(5.0 * i + by, 5.0 * far, 0)).norm(), 1e-12) << i;
+        EXPECT_LT((out[test::grid_node(10, far, i).value] - Vec3(5.0 * far, 5.0 * i + by, 0)).norm(), 1e-12) << i;
+      }
+  }
+}
+
+TEST(Slide, TellsHowManyTheLimitStopped) {
+  const Model model = test::make_grid(10, 10, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
+  const NodeSet nodes = all_nodes(model);
+  const Slideway slideway(model, nodes, std::vector<Vec3>(nodes.size(), Vec3::UnitZ()));
+  const std::vector<Vec3> by(nodes.size(), Vec3(7, 0, 0));
+  std::vector<Vec3> out(nodes.size());
+  EXPECT_EQ(slideway.positions(by, 3.0, out), 81u + 2 * 9) << "all inside, and those of the two edges along the way";
+  for (int i = 1; i <= 9; ++i)
+    for (const int j : {0, 4, 10}) {
+      const NodeIndex node = test::grid_node(10, i, j);
+      EXPECT_LT((out[node.value] - (model.position(node) + Vec3(3, 0, 0))).norm(), 1e-12) << i << ' ' << j;
+    }
+  EXPECT_EQ(slideway.positions(by, 7.001, out), 0u);
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::shape

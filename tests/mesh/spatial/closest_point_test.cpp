@@ -173,5 +173,40 @@ TEST(ShellTreeTest, agrees_with_dense_samples_of_every_shell) {
   }
 }
 
+/// The diagonal from the first corner to the third is a valley at z = 0; the other one would be a ridge at z = 2.
+Model bent_quad() { return make_model({{1, {0, 0, 0}}, {2, {2, 0, 2}}, {3, {2, 2, 0}}, {4, {0, 2, 2}}}, {{1, 1, {1, 2, 3, 4}}}); }
+
+TEST(ShellTreeTest, takes_a_bent_quad_along_the_diagonal_from_its_first_corner) {
+  const Model model = bent_quad();
+  const ShellTree tree(model, all_shells(model));
+  const auto below = tree.closest(Vec3(1.5, 1.5, -1));
+  ASSERT_TRUE(below);
+  EXPECT_DOUBLE_EQ(below->distance, 1);
+  const std::array<double, 4> shares{0.25, 0, 0.75, 0};
+  for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(below->share[c], shares[c], 1e-15) << c;
+  // on each half: the second one's shares are of the first, third and fourth corner
+  const auto first = tree.closest(Vec3(1.25, 0.5, 0.75)), second = tree.closest(Vec3(0.5, 1.25, 0.75));
+  EXPECT_NEAR(first->distance, 0, 1e-15);
+  EXPECT_NEAR(second->distance, 0, 1e-15);
+  EXPECT_NEAR(first->share[1], 0.375, 1e-15);
+  EXPECT_NEAR(second->share[3], 0.375, 1e-15);
+  EXPECT_EQ(first->share[3], 0);
+  EXPECT_EQ(second->share[1], 0);
+  EXPECT_NEAR(second->share[2], 0.25, 1e-15);
+}
+
+TEST(ShellTreeTest, of_equally_close_shells_takes_the_first) {
+  // numbered in stripes across, so that the tree's order isn't theirs
+  const Model model = test::make_grid(8, 8, [](int i, int j) { return Vec3(i, j, 0); });
+  const ShellTree tree(model, all_shells(model));
+  for (std::size_t n = 0; n < model.node_count(); ++n) {
+    const ShellIndex first = model.adjacency->shells_of(NodeIndex(n)).front();
+    const auto found = tree.closest(model.position(NodeIndex(n)) + Vec3(0, 0, 2));
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->shell, first) << n;
+    EXPECT_EQ(tree.within(model.position(NodeIndex(n)) + Vec3(0, 0, 2), 2).size(), model.adjacency->shells_of(NodeIndex(n)).size()) << n;
+  }
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::spatial

@@ -44,6 +44,11 @@ TEST(Distance, pairs_of_triangles) {
       const Nearest nearest = swap ? nearest_of_triangles(pair.b, pair.a) : nearest_of_triangles(pair.a, pair.b);
       EXPECT_NEAR(std::sqrt(nearest.distance2), pair.distance, 1e-12) << pair.what;
       EXPECT_NEAR((nearest.on_a - nearest.on_b).norm(), pair.distance, 1e-12) << pair.what;
+      const auto off = [](const Vec3& point, const Triangle& triangle) {
+        return std::sqrt(nearest_of_triangles({point, point, point}, triangle).distance2);
+      };
+      EXPECT_NEAR(off(nearest.on_a, swap ? pair.b : pair.a), 0, 1e-7) << pair.what;
+      EXPECT_NEAR(off(nearest.on_b, swap ? pair.a : pair.b), 0, 1e-7) << pair.what;
     }
   }
 }
@@ -131,6 +136,16 @@ TEST(Distance, two_wavy_sheets_as_by_trying_every_pair) {
   EXPECT_DOUBLE_EQ(closest->distance, std::sqrt(least));
   EXPECT_LT(closest->a.shell.value, half);
   EXPECT_GE(closest->b.shell.value, half);
+}
+
+TEST(Distance, a_bent_quad_counts_along_the_diagonal_from_its_first_corner) {
+  // a valley at z = 0 along that diagonal; the other one would be a ridge at z = 2
+  const Model model = test::make_shells({{0, 0, 0}, {2, 0, 2}, {2, 2, 0}, {0, 2, 2}, {1.5, 1.5, -1}}, {{0, 1, 2, 3}});
+  const auto below = shortest_distance(model, {nodes({4}), {}}, {{}, shells(0, 1)});
+  ASSERT_TRUE(below);
+  EXPECT_DOUBLE_EQ(below->distance, 1);
+  EXPECT_LT((below->b.point - Vec3(1.5, 1.5, 0)).norm(), 1e-15);
+  EXPECT_EQ(below->a.point, Vec3(1.5, 1.5, -1));
 }
 
 }  // namespace
