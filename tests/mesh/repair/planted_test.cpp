@@ -1,4 +1,6 @@
 // Defects planted in good meshes: all are found, all are repaired, and the shape stays what it was.
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "mesh/quality/metrics.h"
@@ -234,6 +236,57 @@ TEST(Untouched, shells_far_from_the_scope_keep_their_nodes_and_places) {
   for (const auto& [shell, nodes] : repaired->change.reshaped) EXPECT_LT(bad.position(bad.shell(shell).node[0]).x(), 20);
   for (const ShellIndex shell : repaired->change.removed_shells) EXPECT_LT(bad.position(bad.shell(shell).node[0]).x(), 20);
   for (const auto& [node, position] : repaired->change.moved) EXPECT_LT(bad.position(node).x(), 20);
+}
+
+TEST(Scope, what_fails_beside_it_is_left_as_it_is) {
+  // two defects that one patch holds; the second one's strip and rows aren't those of the first
+  const Grid grid = flat(16, 16);
+  Mesh mesh{grid.positions(), grid.shells()};
+  const Model good = mesh.model();
+  plant_wrong_edge(mesh, grid, 4, 4);
+  plant_wrong_edge(mesh, grid, 7, 7);
+  const Model bad = mesh.model();
+  ShellSet scope, beside;
+  for (const ShellIndex shell : bad_shells(bad, quality::Grade::warn))
+    (shell == shell_at(grid.shell(4, 4)) || shell == shell_at(grid.shell(5, 4)) ? scope : beside).push_back(shell);
+  ASSERT_EQ(scope.size(), 2u);
+  ASSERT_EQ(beside.size(), 2u);
+  const relax::ReferenceSurface surface(good, all_shells(good), 30);
+  const auto repaired = repair(bad, surface, scope, {}, {quality::default_criteria(), 1.0}, {});
+  ASSERT_TRUE(repaired.has_value());
+  EXPECT_EQ(repaired->bad_before, 2u);
+  EXPECT_TRUE(repaired->left.empty()) << "what isn't in scope isn't told";
+  const Model after = carried_out(bad, repaired->change);
+  for (const ShellIndex shell : scope) EXPECT_EQ(grade_of(after, shell), quality::Grade::ok);
+  for (const ShellIndex shell : beside) EXPECT_EQ(after.shell(shell), bad.shell(shell));
+}
+
+/// Why what fails can't be repaired.
+std::set<std::string> reasons(const Model& model, const Rules& rules, double most_triangles_percent = 5) {
+  const relax::ReferenceSurface surface(model, all_shells(model), 30);
+  Options options;
+  options.most_triangles_percent = most_triangles_percent;
+  const auto repaired = repair(model, surface, all_shells(model), rules, {quality::default_criteria(), 1.0}, options);
+  EXPECT_TRUE(repaired.has_value());
+  std::set<std::string> why;
+  for (const Left& left : repaired->left) why.insert(left.why);
+  return why;
+}
+
+TEST(Reasons, are_told_for_what_is_left) {
+  const Grid narrow{8, 1, [](double x, double y) { return Vec3(x, 0.1 * y, 0); }, {}};
+  EXPECT_EQ(reasons(model_of(narrow.positions(), narrow.shells()), {}),
+            std::set<std::string>{"it lies between edges of the part that have to stay"});
+  Rules rules;
+  rules.node = [](NodeIndex) { return static_cast<std::uint8_t>(kStays | kNeeded); };
+  rules.shell = [](ShellIndex) { return static_cast<std::uint8_t>(kKeepsNodes | kIndivisible | kLasting); };
+  const Grid grid = flat();
+  Mesh mesh{grid.positions(), grid.shells()};
+  plant_wrong_edge(mesh, grid, 5, 5);
+  EXPECT_EQ(reasons(mesh.model(), rules), std::set<std::string>{"no operation makes it better"});
+  Mesh warped{grid.positions(), grid.shells()};
+  warped.positions[grid.node(5, 5)] += Vec3(0, 0, 0.6);
+  EXPECT_EQ(reasons(warped.model(), {}, 0), std::set<std::string>{"there would be too many triangles"});
 }
 
 TEST(Cancelled, a_repair_says_so) {

@@ -62,9 +62,22 @@ bool fails(const Model& model, ShellIndex shell) {
   return quality::judge(quality::measure(corners), quality::default_criteria(), 1.0).fail != 0;
 }
 
-std::size_t failing(const Model& model) {
-  const ShellSet shells = all_shells(model);
-  return static_cast<std::size_t>(std::count_if(shells.begin(), shells.end(), [&](ShellIndex shell) { return fails(model, shell); }));
+ShellSet failing_shells(const Model& model) {
+  ShellSet shells = all_shells(model);
+  std::erase_if(shells, [&](ShellIndex shell) { return !fails(model, shell); });
+  return shells;
+}
+
+std::size_t failing(const Model& model) { return failing_shells(model).size(); }
+
+/// What is told to be left are the shells of the result that fail, ascending, each with a reason.
+void expect_left_is_what_fails(const Repaired& repaired, const Model& after) {
+  ShellSet told;
+  for (const Left& left : repaired.left) {
+    told.push_back(left.shell);
+    EXPECT_FALSE(left.why.empty()) << left.shell.value;
+  }
+  EXPECT_EQ(told, failing_shells(after));
 }
 
 void expect_none_fails_that_did_not(const Model& before, const Model& after) {
@@ -91,7 +104,9 @@ TEST_P(Random, shaking_is_repaired_and_the_sheet_stays_whole) {
   // On the tube's ends a new node lies on the arc, not on its chord.
   EXPECT_NEAR(a.free_length, b.free_length, (GetParam() % 3 == 1 ? 1e-3 : 1e-9) * a.free_length);
   EXPECT_LE(failing(next), failing(sheet.model) / 10);
-  EXPECT_EQ(failing(next), repaired->left.size());
+  EXPECT_EQ(repaired->bad_before > 0, !repaired->change.empty());
+  EXPECT_EQ(repaired->relaxed, repaired->change.moved.size());
+  expect_left_is_what_fails(*repaired, next);
   expect_none_fails_that_did_not(sheet.model, next);
 }
 
@@ -141,6 +156,7 @@ TEST_P(Random, nothing_forbidden_is_touched) {
   const Model next = carried_out(sheet.model, change);
   EXPECT_EQ(what_is_wrong(next), "");
   EXPECT_EQ(shape_of(sheet.model).euler, shape_of(next).euler);
+  expect_left_is_what_fails(*repaired, next);
   expect_none_fails_that_did_not(sheet.model, next);
 }
 

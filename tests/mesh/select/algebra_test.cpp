@@ -86,6 +86,8 @@ class Algebra : public ::testing::Test {
     list("SET_NODE_LIST", 60, "", Referred::node_set, Referred::node, {12345});
     const std::uint32_t grids = sets_.card("SET", 70, "", std::nullopt);  // Nastran's case control: used for both
     sets_.name(grids, Referred::node, Role::list, 10).name(grids, Referred::any_element, Role::list, 100);
+    sets_.name(sets_.card("SET1", 71, "", std::nullopt), Referred::part, Role::list, 7);
+    sets_.name(sets_.card("SET3", 72, "", std::nullopt), Referred::any_element, Role::list, 101);
     const std::uint32_t nset = sets_.card("NSET", 0, "NTop", std::nullopt);
     sets_.name(nset, Referred::node, Role::list, 70, 80, 10);
     const std::uint32_t elset = sets_.card("ELSET", 0, "rail-mesh", std::nullopt);
@@ -256,6 +258,10 @@ TEST_F(Algebra, names_the_sets_of_the_other_formats) {
   EXPECT_EQ(of("element_set:\"RAIL-MESH\" & ~part:3"), (Ids{70, 80, 90}));
   EXPECT_EQ(of("set:80"), (Ids{60}));
   EXPECT_EQ(of("set:gruppe"), (Ids{60}));
+  // Nastran's are of what their numbers name
+  EXPECT_EQ(of("part_set:71", Kind::element), (Ids{205, 206}));
+  EXPECT_EQ(of("element_set:72", Kind::element), (Ids{101}));
+  EXPECT_EQ(error_of("node_set:71"), "expression:1: there is no node set 71; the nearest is node_set:70");
 }
 
 TEST_F(Algebra, says_which_set_is_near) {
@@ -285,6 +291,16 @@ TEST_F(Algebra, names_what_stands_in_a_file) {
   EXPECT_EQ(error_of("file:umper.k"), "expression:1: there is no file \"umper.k\" in the deck; did you mean \"bumper.k\"?");
 }
 
+TEST_F(Algebra, ends_a_name_before_whatever_comes_next) {
+  for (const char* expression : {"set:ntop|10", "set:ntop,10", "set:ntop\t,10", "(set:ntop),10", "set:ntop&70-80,10"})
+    EXPECT_EQ(of(expression), (Ids{10, 70, 80})) << expression;
+}
+
+TEST_F(Algebra, says_when_a_range_of_sets_holds_nothing) {
+  EXPECT_EQ(error_of("set:60-65"), "expression:1: these sets hold nothing that can be selected here");
+  EXPECT_EQ(of("set:60-70"), (Ids{10})) << "one that does is enough";
+}
+
 TEST_F(Algebra, names_parts_by_their_names) {
   EXPECT_EQ(of("part:\"Part 7\"", Kind::element), (Ids{205, 206}));
   EXPECT_EQ(error_of("part:'part 5'"), "expression:1: there is no part \"part 5\"; did you mean \"part 3\"?");
@@ -296,7 +312,8 @@ TEST_F(Algebra, tells_surfaces_from_nodes) {
   };
   for (const char* expression : {"part:3", "shell:100 & part:3", "set:skin", "part_set:17", "file:bumper.k"})
     EXPECT_TRUE(of_surfaces(expression)) << expression;
-  for (const char* expression : {"10", "part:3,10", "set:17", "beam:9", "all", "part:3 & id>10"})
+  for (const char* expression :
+       {"10", "part:3,10", "set:17", "beam:9", "all", "part:3 & id>10", "10,part:3", "set:17,part_set:17", "beam:9,shell:100"})
     EXPECT_FALSE(of_surfaces(expression)) << expression;
 }
 

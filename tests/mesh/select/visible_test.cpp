@@ -306,6 +306,17 @@ TEST(Visible, leaves_out_what_is_beyond_the_planes_and_needs_depth) {
   EXPECT_NE(refused.error().text().find("the view keeps no depth"), std::string::npos);
 }
 
+TEST(Visible, a_sheet_hides_in_a_large_model_too) {
+  // a quad over four nodes, and thousands of others far to its left
+  std::vector<Vec3> points{{-3, -3, 1}, {3, -3, 1}, {3, 3, 1}, {-3, 3, 1}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  points.resize(2 * kChunkSize, Vec3(-9, 0, 0));
+  const Model model = test::make_shells(points, {{0, 1, 2, 3}});
+  const NodeSet below{NodeIndex(4), NodeIndex(5), NodeIndex(6), NodeIndex(7)};
+  EXPECT_TRUE(visible_nodes(model, orthographic(Vec3(0, 0, 2), Vec3(0, 0, 0), 10, 4), below, {}).value().empty());
+  const std::vector<std::uint8_t> hidden{1};
+  EXPECT_EQ(visible_nodes(model, orthographic(Vec3(0, 0, 2), Vec3(0, 0, 0), 10, 4), below, hidden).value(), below);
+}
+
 TEST(Visible, mid_side_nodes_are_not_hidden_by_their_own_shells) {
   // one quad seen from above, its mid-side nodes sagging below it
   std::vector<Vec3> points{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 0.1, -0.2}, {1.9, 1, -0.2}, {1, 1.9, -0.2}, {0.1, 1, -0.2}};
