@@ -204,6 +204,30 @@ TEST(Report, finds_what_is_worst_and_what_weighs_among_many_shells) {
   EXPECT_NEAR(*first_row.mass, 100 * 25 * 1.5 * 7.85e-9, 1e-15);
 }
 
+TEST(Report, counts_averages_and_bounds_each_metric_over_many_shells) {
+  // several ranges; a column of shells 4.6 times and one 6 times as long as wide
+  const auto along = [](int i) { return 5.0 * i + (i > 10 ? 18 : 0) + (i > 20 ? 25 : 0); };
+  const Model model = test::make_grid(100, 90, [&](int i, int j) { return Vec3(along(i), 5.0 * j, 0); });
+  const Report r = report_of(model);
+  const MetricSummary& aspect = r.metrics[int(Metric::aspect)];
+  EXPECT_EQ(aspect.measured, 9000u);
+  EXPECT_EQ(aspect.warn, 90u) << "what fails isn't counted among the warnings";
+  EXPECT_EQ(aspect.fail, 90u);
+  EXPECT_NEAR(aspect.min, 1, 1e-6);
+  EXPECT_NEAR(aspect.max, 6, 1e-6);
+  EXPECT_NEAR(aspect.mean, (98 + 4.6 + 6) / 100, 1e-6);
+  EXPECT_EQ(aspect.worst, ShellIndex(std::size_t{20})) << "of equals the first";
+  EXPECT_EQ(r.metrics[int(Metric::max_length)].fail, 180u);
+  EXPECT_EQ(r.metrics[int(Metric::max_length)].warn, 0u);
+  EXPECT_EQ(r.counts, (Counts{8820, 0, 180}));
+  const ShellSet good{ShellIndex(std::size_t{0})}, bad{ShellIndex(std::size_t{20})}, longer{ShellIndex(std::size_t{10})};
+  EXPECT_EQ(r.least_composite, report_of(model, {}, &bad).least_composite);
+  EXPECT_NEAR(r.mean_composite,
+              0.98 * report_of(model, {}, &good).mean_composite + 0.01 * report_of(model, {}, &bad).mean_composite +
+                  0.01 * report_of(model, {}, &longer).mean_composite,
+              1e-6);
+}
+
 TEST(Report, of_some_shells_only) {
   const Model model = steel_grid(10, 10, 5);
   const ShellSet shells = {ShellIndex(std::size_t{3}), ShellIndex(std::size_t{50})};

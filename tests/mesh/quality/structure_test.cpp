@@ -157,6 +157,38 @@ TEST(Structure, triangles_about_a_node) {
   EXPECT_EQ(check_structure(test::make_shells(points, shells), strict).clusters.size(), 7u);
 }
 
+TEST(Structure, as_many_triangles_as_are_allowed_are_no_cluster) {
+  const Model model = test::make_shells({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
+                                        {{0, 1, 2, 2}, {0, 2, 3, 3}, {0, 3, 4, 4}, {0, 4, 1, 1}});
+  StructureOptions options;
+  options.triangles_at_node = 4;
+  EXPECT_TRUE(check_structure(model, options).clusters.empty());
+  options.triangles_at_node = 3;
+  EXPECT_EQ(check_structure(model, options).clusters, NodeSet{NodeIndex(0)});
+}
+
+TEST(Structure, of_some_shells_is_what_lies_at_them) {
+  const auto in = [](const Model& model, std::size_t only) {
+    const ShellSet scope{shell(only)};
+    return check_structure(model, {}, &scope);
+  };
+  const Model turned = test::make_shells(strip(3), {{0, 2, 3, 1}, {2, 3, 5, 4}, {4, 6, 7, 5}});
+  EXPECT_EQ(in(turned, 0).opposed.size(), 1u);
+  EXPECT_EQ(in(turned, 1).opposed.size(), 2u);
+  std::vector<Vec3> points = strip(3);
+  points.insert(points.end(), {Vec3(1, 0, 1), Vec3(1, 1, 1)});
+  const Model branched = test::make_shells(points, {{0, 2, 3, 1}, {2, 4, 5, 3}, {4, 6, 7, 5}, {2, 8, 9, 3}});
+  EXPECT_EQ(in(branched, 2).multiple.size(), 0u);
+  EXPECT_EQ(in(branched, 3).multiple.size(), 1u);
+  points = strip(1);
+  points.insert(points.end(), {Vec3(1.001, 0, 0), Vec3(1, 1.001, 0), Vec3(2, 0, 0), Vec3(2, 1, 0)});
+  const Model apart = test::make_shells(points, {{0, 2, 3, 1}, {4, 6, 7, 5}});
+  EXPECT_EQ(in(apart, 1).unjoined, std::vector<EdgeIndex>{apart.adjacency->find_edge(NodeIndex(4), NodeIndex(5))});
+  const Model holed = curved_grid(6, 6, [](int i, int j) { return i != 2 || j != 3; });
+  EXPECT_EQ(in(holed, 1 + 6 * 3).free_inside.size(), 1u) << "to the left of the hole";
+  EXPECT_EQ(in(holed, 0).free_inside.size(), 0u);
+}
+
 TEST(Structure, removed_and_degenerate_shells_do_no_harm) {
   Model model = curved_grid(4, 4);
   set_shell_nodes(
