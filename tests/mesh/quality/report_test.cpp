@@ -193,6 +193,9 @@ TEST(Report, finds_what_is_worst_and_what_weighs_among_many_shells) {
   const Report r = report_of(model);
   EXPECT_EQ(r.metrics[int(Metric::min_length)].worst, ShellIndex(last));
   EXPECT_EQ(r.metrics[int(Metric::max_angle_quad)].worst, ShellIndex(last));
+  EXPECT_GT(r.metrics[int(Metric::max_angle_quad)].max, 100) << "of all ranges, not of the first";
+  EXPECT_LT(r.metrics[int(Metric::min_length)].min, 4.5);
+  EXPECT_LT(r.least_composite, report_of(steel_grid(2, 2, 5)).least_composite);
   ASSERT_TRUE(r.time_step);
   EXPECT_EQ(r.time_step->shell, ShellIndex(last));
   Part unknown;
