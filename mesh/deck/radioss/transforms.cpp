@@ -329,19 +329,24 @@ bool Transformer::collect(std::int64_t group, int depth, Members& members) {
   BlockLines lines(around_.files, block);
   Line line;
   if (!lines.next(line)) return true;
-  while (lines.next(line))
-    for (std::size_t f = 0; f < 10; ++f) {
+  const std::size_t per = kind == "GENE" ? 2 : kind == "GEN_INCR" ? 3 : 1;
+  while (lines.next(line)) {
+    std::array<std::int64_t, 10> on_line{};
+    for (std::size_t f = 0; f < on_line.size(); ++f) {
       const auto number = around_.parameters.integer(field(line.text, context.field_width(), f), around_.contexts, block.context);
       if (!number) return false;
-      if (*number != 0) numbers.push_back(*number > 0 ? *number + added : *number - added);
+      on_line[f] = *number;
     }
-  const std::size_t per = kind == "GENE" ? 2 : kind == "GEN_INCR" ? 3 : 1;
-  if (per > 1) {
-    if (per == 3)
-      for (std::size_t i = 2; i < numbers.size(); i += 3) numbers[i] -= added;
-    for (std::size_t i = 0; i + per <= numbers.size(); i += per)
-      members.ranges.push_back({numbers[i], numbers[i + 1], per == 3 ? std::max<std::int64_t>(numbers[i + 2], 1) : 1});
-  } else if (kind == "PART") {
+    for (std::size_t f = 0; f + per <= on_line.size(); f += per) {
+      const std::int64_t id = on_line[f];
+      if (id == 0) continue;
+      if (per == 1)
+        numbers.push_back(id > 0 ? id + added : id - added);
+      else
+        members.ranges.push_back({id + added, on_line[f + 1] + added, per == 3 ? std::max<std::int64_t>(on_line[f + 2], 1) : 1});
+    }
+  }
+  if (kind == "PART") {
     collect_parts(numbers, members);
   } else if (kind == "GRNOD") {
     for (const std::int64_t inner : numbers)

@@ -135,6 +135,8 @@ TEST_F(Radioss, moves_the_members_of_each_kind_of_group) {
       {"/GRNOD/NODE/5\ng\n" + card({1, 2, -2, 0, 4}), {1, 4}},
       {"/GRNOD/GENE/5\ng\n" + card({2, 4, 7, 8}), {2, 3, 4, 7, 8}},
       {"/GRNOD/GEN_INCR/5\ng\n" + card({1, 7, 3}) + card({2, 2, 1}), {1, 2, 4, 7}},
+      {"/GRNOD/GEN_INCR/5\ng\n" + card({1, 2, 0, 7, 9, 2}), {1, 2, 7, 9}},
+      {"/GRNOD/GENE/5\ng\n" + card({0, 0, 2, 3}) + card({5, 6}), {2, 3, 5, 6}},
       {"/GRNOD/PART/5\ng\n" + card({3, 4}), {1, 2, 3, 5, 6}},
       {"/GRNOD/GRNOD/5\ng\n" + card({6, 7}) + inner, {1, 3, 4}},
       {"/GRNOD/NODE/5\ng\n" + card({1}) + "/GRNOD/NODE/5\nlater\n" + card({2}), {1}},
