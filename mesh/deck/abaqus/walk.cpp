@@ -306,12 +306,14 @@ void Walk::read_instance_place() {
   const std::vector<double> p = numbers_of_block(10);
   Eigen::Affine3d place = Eigen::Affine3d::Identity();
   if (p.size() >= 3) place.translation() = Eigen::Vector3d(p[0], p[1], p[2]);
+  bool turns_about_nothing = false;
   if (p.size() >= 10) {
     const Eigen::Vector3d a(p[3], p[4], p[5]);
     const Eigen::Vector3d axis = Eigen::Vector3d(p[6], p[7], p[8]) - a;
+    turns_about_nothing = p[9] != 0 && !(axis.squaredNorm() > 0);
     place = Eigen::Translation3d(a) * Eigen::AngleAxisd(p[9] * M_PI / 180, axis.normalized()) * Eigen::Translation3d(-a) * place;
   }
-  if (place.matrix().allFinite())
+  if (!turns_about_nothing && place.matrix().allFinite())
     instance.to_basic = place;
   else
     warnings.note("unread-instance", block_.file, block_.begin,

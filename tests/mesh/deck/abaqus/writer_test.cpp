@@ -69,5 +69,46 @@ TEST(AbaqusWriter, adds_to_sets) {
   EXPECT_NE(joined("*NSET,NSET=a\n1\n", abaqus::kStyleOtherIds, {7}).find("numbers"), std::string::npos);
 }
 
+TEST(AbaqusWriter, refuses_what_a_card_or_its_keyword_cant_hold) {
+  ShellCard card;
+  card.id = 7;
+  card.nodes = {1, 2, 3, 4};
+  const std::string cut_off = "*ELEMENT, TYPE=S4\n5,1,2\n*NODE\n";
+  EXPECT_EQ(kWriter->shell(cut_off, 18, 4, card).error().message, "has a card that can't be read");
+  EXPECT_EQ(kWriter->shell_in_block(cut_off, 18, 4, card).error().message, "has a card that can't be read");
+  EXPECT_EQ(kWriter->shell_in_block("5,1,2,3,4,5,6,7,8", 0, 4 | abaqus::kStyleMidside, card).error().message,
+            "has mid-side nodes, which a changed or new one would lack");
+  EXPECT_EQ(kWriter->shell_in_block("5,1,2,3,4", 0, 4 | abaqus::kStyleShifted, card).error().message,
+            "belongs to an instance whose numbers are shown changed, or to a part with several");
+  const auto block = [](const std::string& text, bool triangles) {
+    const auto found = card_writer(Format::abaqus)->block_of_kind(text, text.find('\n') + 1, 4, triangles);
+    return found ? found->header : found.error().message;
+  };
+  EXPECT_EQ(block("\n1,1,2,3,4\n", true), "has no keyword above it in its file");
+  EXPECT_EQ(block("*NODE\n1,1,2,3,4\n", true), "has no keyword above it in its file");
+  EXPECT_EQ(block("*ELEMENT, TYPE=S4, INPUT=a.inp\n1,1,2,3,4\n", true), "has no keyword above it in its file");
+  EXPECT_EQ(block("*ELEMENT, ELSET=E\n1,1,2,3,4\n", true), "has a keyword that names no type");
+  EXPECT_EQ(block("*ELEMENT, ELSET=E, TYPE\n1,1,2,3,4\n", true), "has a keyword that names no type");
+  EXPECT_EQ(block("*ELEMENT, TYPE=S4R5\n1,1,2,3,4\n", true), "is of a type that has no other with three corners");
+  EXPECT_EQ(block("*ELEMENT, TYPE=S4R5\n1,1,2,3,4\n", false), "is of a type that has no other with four corners");
+  const std::pair<const char*, const char*> pairs[] = {{"S4R", "S3R"},    {"S4", "S3"},     {"S4RS", "S3RS"},  {"M3D4R", "M3D3"},
+                                                       {"M3D4", "M3D3"},  {"R3D4", "R3D3"}, {"CPS4R", "CPS3"}, {"CPS4", "CPS3"},
+                                                       {"CPE4R", "CPE3"}, {"CPE4", "CPE3"}, {"DS4", "DS3"}};
+  for (const auto& [quad, triangle] : pairs)
+    EXPECT_EQ(block(std::string("*ELEMENT, TYPE=") + quad + ", ELSET=E\n1,1,2,3,4\n", true),
+              std::string("*ELEMENT, TYPE=") + triangle + ", ELSET=E");
+  EXPECT_EQ(block("*ELEMENT, TYPE=S3\n1,1,2,3\n", false), "*ELEMENT, TYPE=S4");
+  EXPECT_EQ(joined("*BOUNDARY\n1,1\n", abaqus::kStyleNamesAndIds, {7}), "isn't a set that lists what it has");
+}
+
+TEST(AbaqusWriter, writes_shells_for_a_block_of_the_other_kind) {
+  ShellCard card;
+  card.id = 100;
+  card.nodes = {1, 2, 30, 30};
+  EXPECT_EQ(kWriter->shell_in_block("  10,   1,   2,\n   3,   4\n", 0, 4, card)->text, " 100,   1,   2, 30");
+  card.nodes = {1, 2, 30, 4};
+  EXPECT_EQ(kWriter->shell_in_block("10,5,6,7", 0, 3, card)->text, "100,1,2,30, 4");
+}
+
 }  // namespace
 }  // namespace prismesh::mesh::deck
