@@ -176,21 +176,28 @@ class Carrying {
     }
     const std::string between = "the new node " + std::to_string(id) + " lies between nodes that " + keyword_of(card);
     if (inheritance == Inheritance::forbids) return refuse(card, example.card, between + " names one by one, which can't be passed on");
-    const std::set<std::string> wanted = copies_for(id, first);
-    for (const std::vector<Reference>& singles : others)
-      if (copies_for(id, singles) != wanted) return refuse(card, example.card, between + " holds in different ways");
+    const Result<std::set<std::string>> wanted = copies_for(id, first);
+    if (!wanted) return fail(wanted.error());
+    for (const std::vector<Reference>& singles : others) {
+      const Result<std::set<std::string>> own = copies_for(id, singles);
+      if (!own) return fail(own.error());
+      if (*own != *wanted) return refuse(card, example.card, between + " holds in different ways");
+    }
     for (const Reference& reference : first) copies_[{reference.referrer, reference.card}][id] = {reference, Referred::node};
     return {};
   }
 
-  /// What the cards would say of a new id.
-  std::set<std::string> copies_for(std::int64_t id, const std::vector<Reference>& singles) const {
+  /// What the cards would say of a new id. Errors: one of them can't be written for another.
+  Result<std::set<std::string>> copies_for(std::int64_t id, const std::vector<Reference>& singles) const {
     std::set<std::string> texts;
     for (const Reference& single : singles) {
       const Referrer& card = referrer(single);
       const std::int64_t own = raw(Referred::node, id, card);
       const auto copies = writer_.copy_single(text_of(card), card, single, std::span(&own, 1));
-      if (!copies) return {"?" + std::to_string(single.card)};
+      if (!copies)
+        return refuse(
+            card, single.card,
+            "the new node " + std::to_string(id) + " can't have a card like this one: " + words(card) + " " + copies.error().message);
       for (const Replacement& copy : *copies) texts.insert(std::string(trim(copy.text)));
     }
     return texts;
