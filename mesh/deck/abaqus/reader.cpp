@@ -91,7 +91,7 @@ Result<void> shift_instances(Walk& walk, Found& found) {
       while (round < extents[i].last && round < kLargest / 10) round *= 10;
       const std::int64_t shift = (used / round + 1) * round;
       if (shift > kLargest - extents[i].last)
-        return fail(walk.files.files[0].path.string(), "has instances whose numbers are too large to be told apart");
+        return fail(found.files[0].path.string(), "has instances whose numbers are too large to be told apart");
       walk.instances[i].shift = shift;
       found.warnings.note("renumbered-instance", walk.scopes[walk.instances[i].scope].file, walk.scopes[walk.instances[i].scope].begin,
                           "nodes and elements of the instance " + walk.instances[i].name + " are shown with " + std::to_string(shift) +
