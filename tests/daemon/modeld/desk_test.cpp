@@ -12,6 +12,7 @@
 
 #include "ipc/snapshot.h"
 #include "mesh/document/edit_json.h"
+#include "tests/daemon/modeld/few_descriptors.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -289,6 +290,7 @@ TEST_F(DeskTest, WhatWaitsIsDoneInTheOrderInWhichItCame) {
 TEST_F(DeskTest, ADragBeginsWithWhatIsGrabbedAndWhichWayIsOut) {
   const ipc::DragBegun begun = ask<ipc::DragBegun>(kOne, drag());
   EXPECT_EQ(begun.grab, 1313);
+  EXPECT_EQ(begun.base_generation, ask<ipc::State>(kOther, ipc::GetState{}).generation);
   EXPECT_EQ(begun.nodes, 1u);
   const test::Point out = test::sheet_normal(begun.grab_position);
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(begun.normal[axis], out[axis], 0.02);
@@ -358,6 +360,38 @@ TEST_F(DeskTest, AnEarlierStateIsShownAsItWasAndWhatTheClientHasIsntSentAgain) {
   EXPECT_EQ(std::get<ipc::Snapshot>(again.answer).segments, whole.segments);
   EXPECT_TRUE(std::get<ipc::Snapshot>(again.answer).new_segments.empty());
   EXPECT_EQ(again.descriptors.size(), 1u) << "the table alone";
+}
+
+TEST_F(DeskTest, ASnapshotForWhichThereAreNoDescriptorsIsRefusedAndHoldsNothing) {
+  int free = 0;
+  std::string why;
+  for (; free < 20; ++free) {
+    {
+      const test::FewDescriptors few(free);
+      why = refusal(kOne, ipc::GetSnapshot{});
+    }
+    if (why == "accepted") break;
+    EXPECT_NE(why.find("Too many open files"), std::string::npos) << why;
+  }
+  EXPECT_GT(free, 1) << "the table and each segment take one";
+  EXPECT_LT(free, 20);
+  ask<ipc::Done>(kOther, ipc::Close{});
+  EXPECT_GT(publisher_.bytes_held(), 0u) << "the one that was given";
+  desk_.left(kOne);
+  EXPECT_EQ(publisher_.bytes_held(), 0u) << "those that were refused hold nothing";
+}
+
+TEST_F(DeskTest, WhatAClientWaitedForIsNotDoneOnceItHasGone) {
+  const double before = height();
+  const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
+  Translate up;
+  up.shaping.on = "1313";
+  up.by = {0, 0, 0.5};
+  begin(kOther, ipc::ApplyEdit{up});
+  desk_.left(kOther);
+  ask<ipc::Done>(kOne, ipc::CancelDrag{held});
+  EXPECT_EQ(height(), before);
+  EXPECT_EQ(refusal(kOne, ipc::ApplyEdit{Undo{}}), "there is nothing to undo");
 }
 
 TEST_F(DeskTest, WhatAClientHeldIsReturnedWhenItGoes) {

@@ -243,6 +243,23 @@ TEST_F(Figures, AnUnknownMetricIsRefusedWithTheNearest) {
   EXPECT_EQ(not_found.error().text(), refused.error().text());
 }
 
+TEST_F(Figures, WhatOnlyWarnsIsWorseThanNothingAndThenInTheDecksOrder) {
+  const std::filesystem::path file = folder_.path() / "own.toml";
+  std::ofstream(file) << "[metrics.warpage]\nwarn_above = 2\n";
+  OpenOptions options;
+  options.criteria = file;
+  Result<Document> opened = mesh::document::open(folder_.sheet(), options);
+  ASSERT_TRUE(opened) << opened.error().text();
+  document_ = std::move(*opened);
+  lift(kMiddle, 6);
+  lift(kMiddle - 120, 3);
+  const ipc::Quality quality = figures("warpage");
+  ASSERT_GE(quality.errors.size(), 8u);
+  for (const ipc::QualityError& error : quality.errors) EXPECT_FALSE(error.fail) << error.shell;
+  EXPECT_TRUE(std::is_sorted(quality.errors.begin(), quality.errors.end(),
+                             [](const auto& one, const auto& other) { return one.shell < other.shell; }));
+}
+
 TEST_F(Figures, TheWorstComesFirstAlsoWhereWhatWarnsFailsAtOnce) {
   for (const char* text : {"[metrics.warpage]\nwarn_above = 2\nfail_above = 2\n", "[metrics.warpage]\nwarn_above = 2\nfail_above = 9\n"}) {
     const std::filesystem::path file = folder_.path() / "own.toml";

@@ -1,8 +1,4 @@
 // What the keeper and the bench can't do: a sentence, and everything is as it was.
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <fstream>
 #include <functional>
@@ -20,6 +16,7 @@
 #include "daemon/modeld/save_intent.h"
 #include "ipc/messages_json.h"
 #include "mesh/document/edit_json.h"
+#include "tests/daemon/modeld/few_descriptors.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -27,25 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-
-/// While it lives this process can open so many files more, and none beyond.
-class FewDescriptors {
- public:
-  explicit FewDescriptors(int free) {
-    ::getrlimit(RLIMIT_NOFILE, &before_);
-    std::vector<int> opened;
-    for (int i = 0; i <= free; ++i) opened.push_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
-    for (const int each : opened) ::close(each);
-    const rlimit few{static_cast<rlim_t>(opened.back()), before_.rlim_max};
-    ::setrlimit(RLIMIT_NOFILE, &few);
-  }
-  ~FewDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
-  FewDescriptors(const FewDescriptors&) = delete;
-  FewDescriptors& operator=(const FewDescriptors&) = delete;
-
- private:
-  rlimit before_{};
-};
 
 constexpr auto kRaise = R"({"edit":"translate","by":[0,0,0.25],"on":"1313","falloff":{"profile":"constant"}})";
 mesh::document::Edit json_edit(const std::string& json) { return mesh::document::parse_edit(json).value(); }
@@ -290,6 +268,47 @@ TEST_F(Refusals, SavingAsAnotherDeckToldToStopWhenItIsWrittenLeavesACopy) {
   EXPECT_EQ(keeper_.state().path, other.string());
 }
 
+TEST_F(Refusals, WhatASaveElsewhereCouldNotWriteIsSaidBeforeItIsTried) {
+  fs::create_directory(folder_.path() / "deck");
+  const fs::path outside = folder_.path() / "outside.k", deck = folder_.path() / "deck/main.k";
+  fs::copy_file(folder_.sheet(), outside);
+  std::ofstream(deck) << "*KEYWORD\n*INCLUDE\n../outside.k\n*END\n";
+  ASSERT_TRUE(keeper_.open(open_request(deck), {}));
+  const auto would = keeper_.would((folder_.path() / "new/main.k").string());
+  ASSERT_FALSE(would);
+  EXPECT_THAT(would.error().message, HasSubstr("is an include outside the main file's folder"));
+  EXPECT_THAT(would.error().file, HasSubstr("outside.k"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "new"));
+}
+
+TEST_F(Refusals, WhatWasClosedIsNotOpenedByTheNextLife) {
+  open_sheet();
+  ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
+  ASSERT_TRUE(keeper_.close(true));
+  keeper_ = DocumentKeeper(StateFolder(folder_.state()));
+  const Result<bool> opened = keeper_.reopen({});
+  ASSERT_TRUE(opened) << opened.error().text();
+  EXPECT_FALSE(*opened);
+}
+
+TEST_F(Refusals, WhatWasSaidOfTheOldDeckIsNotSaidOfTheOneThatASaveAsGoesOnAs) {
+  const fs::path deck = folder_.sheet();
+  open_sheet();
+  ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
+  ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
+  const fs::path file = journal();
+  keeper_ = DocumentKeeper(StateFolder(folder_.state()));
+  const std::string text = test::whole_file(file);
+  std::ofstream(file, std::ios::binary) << text.substr(0, text.size() - 1);
+  open_sheet();
+  const std::size_t warnings = keeper_.state().warnings.size();
+  EXPECT_EQ(keeper_.state().warnings.back().kind, "torn-journal");
+  EXPECT_EQ(keeper_.state().recovered_edits, 1u);
+  ASSERT_TRUE(keeper_.save_as((folder_.path() / "other.k").string()));
+  EXPECT_EQ(keeper_.state().warnings.size(), warnings - 1);
+  EXPECT_EQ(keeper_.state().recovered_edits, 0u);
+}
+
 TEST_F(Refusals, AJournalOfAnEarlierTimeIsKeptBesideTheOneOfASaveAs) {
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
   const auto save_as_other = [&] {
@@ -338,12 +357,14 @@ TEST_F(BenchRefusals, QuestionsThatHaveNoAnswerAreSentences) {
   field.against_generation.reset();
   field.against = folder_.sheet("other.k").string();
   EXPECT_EQ(words(bench_.field(field, [](double) { return false; }).answer), field.against + ": cancelled") << "where it was";
-  EXPECT_EQ(words(bench_.field(field, go_on).answer), "done");
+  const ipc::Answer one = bench_.field(field, go_on).answer, other = bench_.field(field, go_on).answer;
+  ASSERT_EQ(words(one), "done");
+  EXPECT_NE(std::get<ipc::FieldMade>(one).field, std::get<ipc::FieldMade>(other).field);
 }
 
 TEST_F(BenchRefusals, AnEditCountsThoughViewsCannotBeGivenIt) {
   const Outcome told = [&] {
-    const FewDescriptors none(0);
+    const test::FewDescriptors none(0);
     return bench_.edit(json_edit(kRaise));
   }();
   const auto* edited = std::get_if<ipc::Edited>(&told.answer);
@@ -366,7 +387,7 @@ TEST_F(BenchRefusals, WhatNeedsSharedMemoryIsRefusedWithoutItAndDoneOnceThereIsS
     int free = 0;
     for (; free < 20; ++free) {
       const Outcome outcome = [&] {
-        const FewDescriptors few(free);
+        const test::FewDescriptors few(free);
         return work();
       }();
       if (words(outcome.answer) == "done") break;
@@ -404,7 +425,7 @@ TEST(DaemonStart, IsASentenceWhereItCannotBeAndLeavesNothingInTheWay) {
   EXPECT_THAT(why_not({folder.path() / "run", folder.path() / "file" / "state"}), HasSubstr((folder.path() / "file").string()));
   EXPECT_THAT(why_not({folder.path() / "file" / "run", folder.state()}), HasSubstr((folder.path() / "file").string()));
   for (const int free : {0, 1}) {  // for the lock, and for the page of its health
-    const FewDescriptors few(free);
+    const test::FewDescriptors few(free);
     EXPECT_THAT(why_not({folder.path() / "run", folder.state()}), HasSubstr("Too many open files"));
   }
   EXPECT_EQ(why_not({folder.path() / "run", folder.state()}), "started");
