@@ -70,11 +70,12 @@ TEST(DevicePage, NoPeerCanShrinkGrowWriteOrUnsealIt) {
 }
 
 /// Memory that holds a good page, with these seals.
-Descriptor imitation(int seals, std::size_t size = sizeof(DevicePageLayout), std::uint64_t version = DevicePageLayout::kVersion) {
+Descriptor imitation(int seals, std::size_t size = sizeof(DevicePageLayout), std::uint64_t version = DevicePageLayout::kVersion,
+                     std::uint64_t magic = DevicePageLayout::kMagic) {
   Descriptor memory(::memfd_create("imitation", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   std::vector<std::byte> bytes(size);
   if (size >= 2 * sizeof(std::uint64_t)) {
-    const std::array<std::uint64_t, 2> head{DevicePageLayout::kMagic, version};
+    const std::array<std::uint64_t, 2> head{magic, version};
     std::memcpy(bytes.data(), head.data(), sizeof head);
   }
   EXPECT_EQ(::write(memory.get(), bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
@@ -92,6 +93,10 @@ TEST(DevicePage, AReaderRefusesAPageThatCouldBeCutOffOrForged) {
   }
   EXPECT_FALSE(DevicePageReader::map(imitation(kAll, sizeof(DevicePageLayout) - 1)));
   EXPECT_FALSE(DevicePageReader::map(imitation(kAll, sizeof(DevicePageLayout), DevicePageLayout::kVersion + 1)));
+  EXPECT_FALSE(DevicePageReader::map(imitation(kAll, sizeof(DevicePageLayout), DevicePageLayout::kVersion, DevicePageLayout::kMagic + 1)));
+  EXPECT_TRUE(DevicePageReader::map(imitation(F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE))) << "nobody can write it at all";
+  EXPECT_FALSE(DevicePageReader::map(imitation(F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL)))
+      << "that it gets no more seals is no protection";
   Descriptor pipe_ends[2];
   int ends[2] = {-1, -1};
   ASSERT_EQ(::pipe(ends), 0);

@@ -47,6 +47,12 @@ TEST(FieldPage, RefusesWhatLiesAboutItself) {
   other.magic = 1;
   EXPECT_FALSE(map_of(other, 16));
   EXPECT_FALSE(FieldValues::map(make_sealed_memory("test", std::vector<std::byte>(8)).value())) << "no header";
+  // Cut off behind a count that is right once the length has wrapped round.
+  FieldHeader cut = honest;
+  cut.count = (std::size_t{24} - sizeof(FieldHeader)) / sizeof(float);
+  std::vector<std::byte> bytes(24);
+  std::memcpy(bytes.data(), &cut, bytes.size());
+  EXPECT_FALSE(FieldValues::map(make_sealed_memory("test", bytes).value()));
 }
 
 TEST(FieldPage, RefusesMemoryThatCanStillBeWritten) {

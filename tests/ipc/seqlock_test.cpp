@@ -161,6 +161,37 @@ TEST(Preview, CarriesEveryNumberOfAFrame) {
   }
 }
 
+TEST(Preview, ListsOfAnotherLengthStayInTheirPlaces) {
+  const std::vector<mesh::NodeIndex> nodes(3);
+  const std::vector<mesh::ShellIndex> shells(3);
+  PreviewWriter writer = PreviewWriter::create(5, 17, nodes, shells).value();
+  const PreviewReader reader = PreviewReader::map(writer.descriptor()).value();
+  const auto places = [](std::size_t count, double x) { return std::vector<mesh::Vec3>(count, mesh::Vec3(x, 0, 0)); };
+  const auto states = [](std::size_t count, std::uint16_t warn) { return std::vector<mesh::quality::ShellState>(count, {warn, 0}); };
+  PreviewFrame frame;
+  writer.publish(1, places(3, 1), states(3, 1), {});
+  // Of longer arrays, so that what lies behind a list would be seen.
+  const std::vector<mesh::Vec3> twos = places(3, 2);
+  const std::vector<mesh::quality::ShellState> worse = states(3, 2);
+  writer.publish(2, std::span(twos).first(1), std::span(worse).first(1), {});
+  ASSERT_TRUE(reader.latest(frame));
+  EXPECT_EQ(frame.positions, (std::vector<mesh::Vec3>{{2, 0, 0}, {1, 0, 0}, {1, 0, 0}}));
+  EXPECT_EQ(frame.states[0].warn, 2);
+  EXPECT_EQ(frame.states[1].warn, 1);
+  EXPECT_EQ(frame.states[2].warn, 1);
+  writer.publish(3, places(4, 3), {}, {});
+  ASSERT_TRUE(reader.latest(frame));
+  EXPECT_EQ(frame.positions, places(3, 3));
+  EXPECT_EQ(frame.states[0].warn, 2);
+  EXPECT_EQ(frame.states[1].warn, 1);
+  writer.publish(4, places(4, 3), states(4, 3), {});
+  ASSERT_TRUE(reader.latest(frame));
+  EXPECT_EQ(frame.positions, places(3, 3));
+  EXPECT_EQ(frame.states.size(), 3u);
+  EXPECT_EQ(frame.states[2].warn, 3);
+  EXPECT_FALSE(reader.latest(frame)) << "seen already";
+}
+
 TEST(Preview, AHeaderThatPromisesTooMuchIsRefused) {
   PreviewWriter writer = PreviewWriter::create(1, 1, std::vector<mesh::NodeIndex>(10), {}).value();
   const Mapping sound = Mapping::map(writer.descriptor(), false).value();
