@@ -111,6 +111,8 @@ TEST(Rotate, TheLimitCountsFromTheAxisWhereverItIs) {
   EXPECT_NEAR((out[0] - Vec3(100, 0, 5)).norm(), 10, 1e-12);
   EXPECT_GT(out[0].y(), 0);
   EXPECT_NEAR((out[1] - start[1]).norm(), 2 * 10 * std::sin(8.5 * M_PI / 180), 1e-12);
+  EXPECT_EQ(rotate(start, std::vector<double>{1, 0.1}, axis, 180, 15.0, out), 1u);
+  EXPECT_NEAR((out[0] - start[0]).norm(), 15, 1e-12) << "farther than the axis, less far than the circle is wide";
   EXPECT_EQ(rotate(start, std::vector<double>{1, 1}, axis, 180, 20.0, out), 0u) << "no node can be farther than the circle is wide";
   EXPECT_LT((out[0] - Vec3(90, 0, 5)).norm(), 1e-12);
 }
