@@ -261,6 +261,24 @@ TEST(Scope, what_fails_beside_it_is_left_as_it_is) {
   for (const ShellIndex shell : beside) EXPECT_EQ(after.shell(shell), bad.shell(shell));
 }
 
+TEST(Scope, what_is_left_is_told_by_the_models_numbers) {
+  // in a corner of the sheet, so that the patch holds a part of it only; and nothing may be changed
+  const Grid grid = flat(16, 16);
+  Mesh mesh{grid.positions(), grid.shells()};
+  const Model good = mesh.model();
+  plant_wrong_edge(mesh, grid, 12, 13);
+  Rules rules;
+  rules.node = [](NodeIndex) { return static_cast<std::uint8_t>(kStays | kNeeded); };
+  rules.shell = [](ShellIndex) { return static_cast<std::uint8_t>(kKeepsNodes | kIndivisible | kLasting); };
+  const Model bad = mesh.model();
+  const ShellSet failing = bad_shells(bad, quality::Grade::fail);
+  ASSERT_FALSE(failing.empty());
+  ShellSet told;
+  const Mended mended = mend(bad, good, rules);
+  for (const Left& left : mended.repaired.left) told.push_back(left.shell);
+  EXPECT_EQ(told, failing);
+}
+
 /// Why what fails can't be repaired.
 std::set<std::string> reasons(const Model& model, const Rules& rules, double most_triangles_percent = 5) {
   const relax::ReferenceSurface surface(model, all_shells(model), 30);
