@@ -85,7 +85,9 @@ class Carrying {
   Result<void> changeable(const Referrer& card, std::uint64_t offset, const std::string& why) const {
     if (deck_.is_held(card.file)) return refuse(card, offset, words(card) + " stands in an include that is used twice, and " + why);
     if (!offsets_of(card))
-      return refuse(card, offset, words(card) + " stands in an include whose ids are shifted by more than one amount, and " + why);
+      return refuse(
+          card, offset,
+          words(card) + " stands in an include without a mesh, so that it isn't known by how much its ids are shifted, and " + why);
     return {};
   }
 

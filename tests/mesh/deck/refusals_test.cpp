@@ -52,6 +52,16 @@ TEST(Refusals, a_constraint_that_names_its_node_by_a_parameter_is_said_to) {
             "deck.k:12: the new node 7 lies between nodes that *BOUNDARY_SPC_NODE holds in different ways");
 }
 
+TEST(Refusals, of_cards_in_an_include_that_is_used_twice) {
+  const std::string twice = kTwoQuads + kTwice, mesh = "*NODE\n9,9.,9.,9.\n";
+  EXPECT_EQ(why_not(twice, split_first, mesh + "*SET_SEGMENT\n1\n1,2,5,4\n"),
+            "a.k:5: *SET_SEGMENT 1 stands in an include that is used twice, and a segment of it would have to change");
+  EXPECT_EQ(why_not(twice, middle_of_first_edge, mesh + "*SET_NODE_LIST\n1\n1,2\n"),
+            "a.k:3: *SET_NODE_LIST 1 stands in an include that is used twice, and it would have to change");
+  EXPECT_EQ(why_not(twice, middle_of_first_edge, mesh + "*BOUNDARY_SPC_NODE\n1,0,1,1,1\n2,0,1,1,1\n"),
+            "a.k:4: *BOUNDARY_SPC_NODE stands in an include that is used twice, and it would have to name new ones");
+}
+
 TEST(Refusals, of_a_mesh_in_an_include_that_is_used_twice) {
   const std::string spare = "*NODE\n9,9.,9.,9.\n*ELEMENT_SHELL\n13,7,1,2,5,5\n";
   const auto refused = [&](const EditIt& edit_it) { return why_not(kTwice, edit_it, kTwoQuads + spare); };
@@ -104,6 +114,15 @@ TEST(Refusals, of_ids_that_a_shifted_include_cant_name) {
                 },
                 include),
             "a.k:7: the new shell 500 has an id that doesn't fit the fields of the cards beside it");
+}
+
+TEST(Refusals, of_a_set_in_an_include_whose_shift_isnt_known) {
+  const std::string text = kTwoQuads + "*INCLUDE_TRANSFORM\na.k\n1000,1000,0\n*INCLUDE\nb.k\n*END\n", far = "*NODE\n1,9.,9.,9.\n";
+  EXPECT_EQ(
+      why_not(text, middle_of_first_edge, far, "*SET_NODE_LIST\n1\n1,2\n"),
+      "b.k:1: *SET_NODE_LIST 1 stands in an include without a mesh, so that it isn't known by how much its ids are shifted, and it would "
+      "have to change");
+  EXPECT_EQ(why_not(text, middle_of_first_edge, far, "*NODE\n8,8.,8.,8.\n*SET_NODE_LIST\n1\n1,2\n"), "") << "its nodes tell";
 }
 
 TEST(Refusals, of_models_that_cards_cant_say) {
