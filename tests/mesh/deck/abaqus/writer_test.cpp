@@ -105,7 +105,7 @@ TEST(AbaqusWriter, writes_shells_for_a_block_of_the_other_kind) {
   ShellCard card;
   card.id = 100;
   card.nodes = {1, 2, 30, 30};
-  EXPECT_EQ(kWriter->shell_in_block("  10,   1,   2,\n   3,   4\n", 0, 4, card)->text, " 100,   1,   2, 30");
+  EXPECT_EQ(kWriter->shell_in_block("  10,   1,   2,\n   3,   4\n", 0, 4, card)->text, " 100,   1,   2,  30");
   card.nodes = {1, 2, 30, 4};
   EXPECT_EQ(kWriter->shell_in_block("10,5,6,7", 0, 3, card)->text, "100,1,2,30, 4");
 }
