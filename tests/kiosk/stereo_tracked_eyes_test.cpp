@@ -582,7 +582,9 @@ TEST(TrackedEyes, DepthNeverRisesWhileNothingIsMeasured) {
       EXPECT_GE(next, 0);
       // Until it is known that they are lost, the picture may stay.
       const bool known = now - measured > eyes.limits().lost_after_ns;
-      if (known && now + ahead_ms * kMillisecondNs >= deadline) EXPECT_EQ(next, 0) << ahead_ms << " ms ahead";
+      if (known && now + ahead_ms * kMillisecondNs >= deadline) {
+        EXPECT_EQ(next, 0) << ahead_ms << " ms ahead";
+      }
       before = next;
     }
   }

@@ -386,7 +386,7 @@ TEST_F(BenchRefusals, WhatNeedsSharedMemoryIsRefusedWithoutItAndDoneOnceThereIsS
   for (const auto& [what, work] : works) {
     int free = 0;
     for (; free < 20; ++free) {
-      const Outcome outcome = [&] {
+      const Outcome outcome = [&, &work = work] {
         const test::FewDescriptors few(free);
         return work();
       }();

@@ -85,7 +85,7 @@ TEST(UnionOf, keeps_what_is_needed_or_has_to_stay) {
   const Grid grid = flat(4, 4);
   const NodeIndex needed = at(grid.node(1, 2)), staying = at(grid.node(2, 3));
   const GridBench bench(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
-                          return node == needed ? kNeeded : node == staying ? kStays : std::uint8_t{0};
+                          return node == needed ? std::uint8_t{kNeeded} : node == staying ? std::uint8_t{kStays} : std::uint8_t{0};
                         }));
   EXPECT_EQ(union_of(bench.site, bench.node(1, 1), bench.node(1, 2))->gone, bench.node(1, 1));
   EXPECT_EQ(union_of(bench.site, bench.node(2, 2), bench.node(2, 3))->gone, bench.node(2, 2));
@@ -96,7 +96,9 @@ TEST(Unite, puts_the_node_in_the_middle_unless_it_has_to_stay) {
   for (const bool stays : {false, true}) {
     const Grid grid = flat(4, 4);
     const NodeIndex kept = at(grid.node(1, 1));
-    GridBench bench(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t { return stays && node == kept ? kStays : std::uint8_t{0}; }));
+    GridBench bench(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
+                      return stays && node == kept ? std::uint8_t{kStays} : std::uint8_t{0};
+                    }));
     ASSERT_EQ(bench.refusal(unite(bench.site, {{bench.node(2, 1), bench.node(1, 1)}})), "done");
     EXPECT_NEAR((bench.patch.position(bench.node(1, 1)) - Vec3(stays ? 1 : 1.5, 1, 0)).norm(), 0, 1e-9);
     const Model after = bench.after();
@@ -142,7 +144,8 @@ TEST(LiftNode, goes_along_the_normal_whichever_way_its_shells_are_turned) {
 TEST(LiftNode, is_refused_where_the_node_stays_or_lies_on_an_edge_of_the_part) {
   const Grid roof{4, 4, [](double x, double y) { return Vec3(x, y, 1 - std::abs(x - 2)); }, {}};
   const NodeIndex staying = at(roof.node(1, 1));
-  GridBench bench(roof, rules_of_nodes([&](NodeIndex node) -> std::uint8_t { return node == staying ? kStays : std::uint8_t{0}; }));
+  GridBench bench(roof,
+                  rules_of_nodes([&](NodeIndex node) -> std::uint8_t { return node == staying ? std::uint8_t{kStays} : std::uint8_t{0}; }));
   EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(1, 1), 0.1)), "the node can't be moved");
   EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(2, 1), 0.1)), "the node can't be moved");
   EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(1, 2), 0.1)), "done");
