@@ -320,6 +320,13 @@ TEST(Abaqus, says_where_a_line_is_no_card) {
   fails("*ELEMENT,TYPE=S3\n0,1,2,3\n", 4, "above 0");
 }
 
+/// The keywords that name an entity, each with a blank behind it.
+std::string words_that_name(const References& references, Referred referred, std::int64_t id) {
+  std::string out;
+  for (const Reference& r : references.naming(referred, id)) out += references.referrers()[r.referrer].keyword + " ";
+  return out;
+}
+
 TEST(Abaqus, lists_who_names_what) {
   const DeckFolder folder;
   const auto opened = folder.open(
@@ -330,11 +337,7 @@ TEST(Abaqus, lists_who_names_what) {
       "CONDITIONS,TYPE=TEMPERATURE\n2,20.\n");
   ASSERT_OPENED(opened);
   const References& references = *opened->deck->references;
-  const auto words = [&](Referred referred, std::int64_t id) {
-    std::string out;
-    for (const Reference& r : references.naming(referred, id)) out += references.referrers()[r.referrer].keyword + " ";
-    return out;
-  };
+  const auto words = [&](Referred referred, std::int64_t id) { return words_that_name(references, referred, id); };
   EXPECT_EQ(words(Referred::node, 1), "NSET EQUATION SURFACE ");
   EXPECT_EQ(words(Referred::node, 2), "NSET NSET CLOAD EQUATION INITIAL CONDITIONS ");
   EXPECT_EQ(words(Referred::node, 3), "NSET MPC ");
@@ -346,6 +349,47 @@ TEST(Abaqus, lists_who_names_what) {
     if (references.referrers()[r.referrer].keyword == "NSET") {
       EXPECT_EQ(r.role, ReferenceRole::range);
     }
+}
+
+const char kThreeShells[] = "*HEADING\nx\n*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n*ELEMENT,TYPE=S3\n1,1,2,3\n2,1,2,3\n3,1,2,3\n";
+
+TEST(Abaqus, sets_have_members_in_files_of_their_own) {
+  const DeckFolder folder;
+  folder.write("nodes.inp", "1,\n3,\n");
+  folder.write("range.inp", "2,4,2\n");
+  folder.write("shells.inp", "2,3\n");
+  const auto opened =
+      folder.open(std::string(kThreeShells) +
+                  "*NSET,NSET=n,INPUT=nodes.inp\n2\n*NSET,NSET=r,GENERATE,INPUT=range.inp\n*ELSET,ELSET=e,INPUT=shells.inp\n"
+                  "*SHELL SECTION,ELSET=e\n1.,\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(opened->deck->files.size(), 4u);
+  EXPECT_TRUE(opened->deck->missing_files.empty());
+  const References& references = *opened->deck->references;
+  EXPECT_EQ(words_that_name(references, Referred::node, 1), "NSET ");
+  EXPECT_EQ(words_that_name(references, Referred::node, 2), "NSET NSET ");
+  EXPECT_EQ(words_that_name(references, Referred::node, 3), "NSET ");
+  EXPECT_EQ(words_that_name(references, Referred::node, 4), "NSET ");
+  EXPECT_EQ(words_that_name(references, Referred::shell, 1), "");
+  EXPECT_EQ(words_that_name(references, Referred::shell, 3), "ELSET ");
+  EXPECT_EQ(part_of(opened->model, 1)->name, "");
+  EXPECT_EQ(part_of(opened->model, 2)->name, "e");
+  EXPECT_EQ(part_of(opened->model, 3)->name, "e");
+}
+
+TEST(Abaqus, a_range_without_an_end_is_one_number) {
+  const DeckFolder folder;
+  const auto opened = folder.open(std::string(kThreeShells) +
+                                  "*NSET,NSET=n,GENERATE\n1\n*NSET,NSET=n,GENERATE\n3,,\n*ELSET,ELSET=e,GENERATE\n2\n"
+                                  "*SHELL SECTION,ELSET=e\n1.,\n");
+  ASSERT_OPENED(opened);
+  const References& references = *opened->deck->references;
+  for (const int id : {1, 2, 3, 4})
+    EXPECT_EQ(words_that_name(references, Referred::node, id), id == 1 || id == 3 ? "NSET " : "") << "node " << id;
+  for (const int id : {1, 2, 3}) {
+    EXPECT_EQ(words_that_name(references, Referred::shell, id), id == 2 ? "ELSET " : "") << "shell " << id;
+    EXPECT_EQ(part_of(opened->model, id)->name, id == 2 ? "e" : "") << "shell " << id;
+  }
 }
 
 }  // namespace
