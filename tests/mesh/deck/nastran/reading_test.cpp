@@ -183,6 +183,21 @@ TEST(NastranIncludes, stand_where_they_are_named) {
   EXPECT_GT(warning(*opened->deck, "circular-include").count, 0u);
 }
 
+TEST(NastranIncludes, names_over_lines_are_no_cards) {
+  for (const char* second_line : {"nodes.bdf", "GRID,9", "INCLUDE nodes.bdf"}) {
+    SCOPED_TRACE(second_line);
+    const DeckFolder folder;
+    folder.write("sub/" + std::string(second_line), "GRID,2,,2.\n");
+    const auto opened = folder.open("GRID,1,,1.\nINCLUDE 'sub/\n" + std::string(second_line) + "'\nGRID,4,,4.\n");
+    ASSERT_OPENED(opened);
+    Ids ids;
+    for (std::size_t n = 0; n < opened->model.node_count(); ++n) ids.push_back(opened->model.node_ids[n]);
+    EXPECT_EQ(ids, (Ids{1, 2, 4}));
+    EXPECT_TRUE(opened->deck->references->unread().empty()) << opened->deck->references->unread()[0].keyword;
+    EXPECT_TRUE(opened->deck->warnings.empty()) << opened->deck->warnings[0].message;
+  }
+}
+
 TEST(NastranIncludes, twice_is_once_and_held) {
   const DeckFolder folder;
   folder.write("a.bdf", "GRID,2,,2.\n");
