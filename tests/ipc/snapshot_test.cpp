@@ -206,6 +206,32 @@ TEST(Snapshot, SaysOfEachShellByWhatEditsMadeItWorseAndCopiesOnlyThat) {
   EXPECT_EQ(undone->shell_damage(60000), ShellState{});
 }
 
+TEST(Snapshot, AChunkOfWhichMoreIsUsedIsCopiedAgain) {
+  mesh::document::Document document = grid_document(4, 4);
+  const auto whole = document.generations.front();
+  const auto fewer = std::make_shared<mesh::document::Generation>(*whole);
+  // They share their chunks, of which this one uses less.
+  fewer->model.shell_nodes.resize(10);
+  fewer->model.shell_ids.resize(10);
+  fewer->model.shell_parts.resize(10);
+  fewer->shell_marks.resize(10);
+  fewer->quality.resize(10);
+  ASSERT_EQ(fewer->model.shell_ids.chunk_owner(0), whole->model.shell_ids.chunk_owner(0));
+  document.generations = {fewer, whole};
+  document.opened = fewer;
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto first = reader.map(publisher.publish(document, false).value());
+  ASSERT_EQ(first->shell_count(), 10u);
+  document.cursor = 1;
+  const auto second = reader.map(publisher.publish(document, false).value());
+  ASSERT_EQ(second->shell_count(), 16u);
+  for (std::size_t s = 0; s < 16; ++s) {
+    EXPECT_EQ(second->shell_id(s), static_cast<std::int64_t>(s + 1));
+    EXPECT_EQ(second->shell(s), whole->model.shell_nodes[s]);
+  }
+}
+
 TEST(Snapshot, PublishingTheSameAgainCopiesNothing) {
   mesh::document::Document document = grid_document(100, 100);
   SnapshotPublisher publisher;
