@@ -12,6 +12,7 @@
 #include "drivers/port/udp_port.h"
 #include "ipc/line_socket.h"
 #include "ipc/reconnecting_client.h"
+#include "ipc/server.h"
 #include "tests/station/process.h"
 #include "tests/support/places.h"
 
@@ -410,6 +411,17 @@ TEST_F(Deviced, TheCommandLineShowsThem) {
   EXPECT_NE(watching.wait_for("{"), "") << "again after a second";
   watching.kill(SIGINT);
   EXPECT_EQ(watching.wait_for_exit(), 0);
+}
+
+TEST_F(Deviced, ProgramsThatNeverGreetDoNotTakeThePlaceOfAClient) {
+  start();
+  ipc::DeviceClient first = connect("first");
+  std::vector<ipc::Descriptor> silent;
+  for (std::size_t i = 0; i < ipc::ServerLimits{}.clients; ++i) silent.push_back(ipc::connect_to(socket()).value());
+  ipc::DeviceClient last = connect("last");  // behind all of them
+  EXPECT_TRUE(last.call(ipc::GetDevices{}, kPatience));
+  const auto answer = first.call(ipc::GetDevices{}, kPatience);
+  EXPECT_TRUE(answer) << answer.error().text();
 }
 
 }  // namespace
