@@ -286,6 +286,43 @@ TEST_F(Keeping, ASaveTakesTheRecordOfAnEarlierOneAway) {
   EXPECT_TRUE(state_files(".saving").empty()) << "it would be taken for what happened to the deck as it is now";
 }
 
+TEST_F(Keeping, ASaveThatWasTakenBackLeavesNothingBehindAndCanBeMadeAgain) {
+  const fs::path deck = folder_.two_files(), include = folder_.path() / "rest.k";
+  const std::string deck_before = test::whole_file(deck), include_before = test::whole_file(include);
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  ASSERT_TRUE(first.edit(move_edit(1, 0.25)));
+  ASSERT_TRUE(first.edit(move_edit(4, 0.25)));
+  const auto save_without_main_file = [&] {
+    return first.save(std::nullopt, [&](double fraction) {
+      if (fraction < 0.999) return true;
+      // All has been written and read again; the include is the first to be put in place.
+      for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path()))
+        if (entry.path().filename().string().starts_with(".main.k.")) return fs::remove(entry.path());
+      return true;
+    });
+  };
+  const Result<ipc::Saved> refused = save_without_main_file();
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("the files that had been replaced were given back what they held before"), std::string::npos)
+      << refused.error().text();
+  EXPECT_EQ(test::whole_file(deck), deck_before);
+  EXPECT_EQ(test::whole_file(include), include_before);
+  EXPECT_TRUE(state_files(".saving").empty()) << "nothing is under way any more";
+  EXPECT_EQ(state_files(".journal").size(), 1u);
+  EXPECT_TRUE(first.changed());
+
+  first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  EXPECT_EQ(first.state().recovered_edits, 2u);
+  EXPECT_TRUE(first.state().warnings.empty()) << first.state().warnings[0].message;
+  EXPECT_FALSE(save_without_main_file());
+  ASSERT_TRUE(first.edit(move_edit(1, 0.25)));
+  const Result<ipc::Saved> saved = first.save(std::nullopt);
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(saved->nodes_written, 2u);
+}
+
 TEST_F(Keeping, ADeckThatSomethingElseChangedKeepsItsOldJournalAndSaysSo) {
   const fs::path deck = folder_.sheet();
   {
