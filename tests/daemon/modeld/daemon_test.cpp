@@ -1,6 +1,7 @@
 // The daemon as its clients see it, in this process: so that ThreadSanitizer sees both sides.
 #include "daemon/modeld/daemon.h"
 
+#include <algorithm>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include "ipc/client.h"
 #include "ipc/line_socket.h"
 #include "ipc/messages_json.h"
+#include "ipc/server.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -291,6 +293,52 @@ TEST_F(Serving, AClientMustGreetInTheSameProtocol) {
   EXPECT_NE(first_answer(R"({"request": "get_state", "number": 4})").find("must be a hello"), std::string::npos);
   EXPECT_NE(first_answer(R"({"request": "hello", "protocl": 1, "number": 5})").find("the nearest is \\\"protocol\\\""), std::string::npos);
   EXPECT_NE(first_answer("rubbish").find("it isn't JSON"), std::string::npos);
+}
+
+TEST_F(Serving, ProgramsThatNeverGreetDoNotTakeThePlaceOfAClient) {
+  const fs::path path = ipc::model_socket_path(folder_.path() / "run");
+  Client first = client("first");
+  std::vector<ipc::Descriptor> silent;
+  for (std::size_t i = 0; i < ipc::ServerLimits{}.clients; ++i) silent.push_back(ipc::connect_to(path).value());
+  Client last = client("last");  // behind all of them
+  EXPECT_TRUE(last.call(ipc::GetState{}, kServingPatience));
+  const auto state = first.call(ipc::GetState{}, kServingPatience);
+  EXPECT_TRUE(state) << state.error().text();
+}
+
+TEST_F(Serving, TwoSnapshotsAreUnderWayTogether) {
+  Client client = this->client();
+  open(client, folder_.sheet());
+  std::vector<std::shared_ptr<const ipc::SnapshotView>> held{client.snapshot().value()};
+  const double flat = height(*held.front(), 1313);
+  const auto take = [&](std::uint64_t request) {
+    while (const auto reply = client.next_reply())
+      if (reply->request == request) return client.take_snapshot(std::get<ipc::Snapshot>(reply->answer));
+    return Result<std::shared_ptr<const ipc::SnapshotView>>(fail("", "no answer"));
+  };
+  // Each state's own memory is held, so that sooner or later a state lies in other segments than the one it was made from.
+  bool left_a_segment = false;
+  for (int i = 1; i <= 8; ++i) {
+    SCOPED_TRACE(i);
+    ipc::GetSnapshot ask;
+    ask.have_segments = client.segments();
+    const std::vector<std::uint64_t>& before = ask.have_segments;
+    ASSERT_TRUE(client.call(ipc::ApplyEdit{move_node(1313, i)}, kServingPatience));
+    const std::uint64_t edited = client.send(ask).value();
+    ASSERT_TRUE(client.call(ipc::ApplyEdit{Undo{}}, kServingPatience));
+    const std::uint64_t undone = client.send(ask).value();
+    ASSERT_TRUE(client.call(ipc::GetState{}, kServingPatience));
+    const auto one = take(edited);
+    ASSERT_TRUE(one) << one.error().text();
+    const std::vector<std::uint64_t> between = client.segments();
+    left_a_segment |= !std::includes(between.begin(), between.end(), before.begin(), before.end());
+    const auto other = take(undone);
+    ASSERT_TRUE(other) << other.error().text();
+    EXPECT_EQ(height(**one, 1313), flat + i);
+    EXPECT_EQ(height(**other, 1313), flat);
+    held.push_back(*one);
+  }
+  EXPECT_TRUE(left_a_segment) << "this looks at nothing";
 }
 
 TEST_F(Serving, HealthIsThereWithoutAsking) {
