@@ -88,6 +88,16 @@ class Places(unittest.TestCase):
     def test_real_numbers_are_compared_the_other_way_round_rather_than_at_the_limit(self):
         self.assertEqual(changes(b"bool f(double a, double b) {\n  return a < b;\n}\n"), {"2: return a >= b;"})
 
+    def test_comparisons_that_give_no_truth_value_are_left_alone(self):
+        text = b"struct Both { bool all() const; };\nstruct Place {};\nBoth operator<=(Place, Place);\n" \
+               b"bool operator==(Place, Place);\nbool operator!=(Place, Place);\n" \
+               b"bool f(Place a, Place b) { const bool so = (a <= b).all(); return so; }\n" \
+               b"bool g(Place a, Place b) { return a == b; }\n"
+        found = changes(text)
+        self.assertIn("7: bool g(Place a, Place b) { return a != b; }", found)
+        self.assertFalse([after for after in found if "a < b" in after])
+        self.compiles(text)
+
     def test_neighbouring_arguments_of_one_type_are_exchanged(self):
         text = b"int area(int width, int height, double depth);\nint f(int a, int b) { return area(a, b, 2.0); }\n"
         self.assertIn("2: int f(int a, int b) { return area(b, a, 2.0); }", changes(text))

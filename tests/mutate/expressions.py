@@ -197,6 +197,9 @@ class Expressions:
             self.vectors(cursor, flat(self.of(children[0])))
             return
         if operator in kinds.COMPARISONS:
+            # Those of Eigen's arrays give an array.
+            if number_kind(cursor) not in {TypeKind.BOOL} | DEPENDENT:
+                return
             left, right = flat(self.of(children[0])), flat(self.of(children[2]))
             if left is not None and right is not None:
                 self.comparison(cursor, operator, left, right)
