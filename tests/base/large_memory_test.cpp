@@ -43,7 +43,7 @@ TEST(LargeBlock, begins_at_a_large_page_and_is_given_back_whole) {
     blocks.emplace_back(size);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(blocks.back().data()) % kLargePage, 0U);
   }
-  EXPECT_LE(mapped_pages() - before, 100 * 4 * kLargePage / 4096 + 4096) << "no more than whole large pages";
+  EXPECT_LE(mapped_pages() - before, std::size_t{400} * kLargePage / 4096 + 4096) << "no more than whole large pages";
   blocks.clear();
   EXPECT_LE(mapped_pages(), before + 4096);
 }

@@ -76,7 +76,7 @@ TEST_F(Cli, replay_says_what_is_wrong_with_a_journal_and_does_the_rest) {
   const std::string whole = read(journal);
   const auto replayed = [&](const std::string& text, const std::string& on) {
     write("j.jsonl", text);
-    const Outcome outcome = prismesh({"replay", journal, on, "-o", path("again.k")});
+    Outcome outcome = prismesh({"replay", journal, on, "-o", path("again.k")});
     EXPECT_EQ(outcome.status, kDone) << outcome.err;
     return outcome;
   };

@@ -460,9 +460,9 @@ class BlockReader {
     for (const std::string_view other : {"2D", "ENTITY", "GEBOD", "RIGID_SURFACE", "COUPLING", "AUTO_MOVE", "DRAWBEAD", "ADD_WEAR",
                                          "EXCLUDE_INTERACTION", "GUIDED_CABLE", "WEAR"})
       if (has_word(name_, other)) return false;
-    static const ReferenceRule surfaces{"", RuleKind::cards, "@3:0G1S2P3p4N5z6P7z @4:0G1S2P3p4N5z6P7z"};
+    static const ReferenceRule kSurfaces{"", RuleKind::cards, "@3:0G1S2P3p4N5z6P7z @4:0G1S2P3p4N5z6P7z"};
     int headers = 0;
-    compile(surfaces, {}, cards_, headers);
+    compile(kSurfaces, {}, cards_, headers);
     Line line;
     const bool has_id = name_.ends_with("_ID") || has_word(name_, "ID");
     if (has_id || has_word(name_, "TITLE")) {

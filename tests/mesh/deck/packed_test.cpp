@@ -65,6 +65,27 @@ TEST(PackedDeck, is_opened_by_its_bytes_and_saved_as_it_was) {
   }
 }
 
+TEST(PackedDeck, told_to_stop_while_it_is_packed_stays_as_it_was) {
+  std::string comments;
+  for (int i = 0; comments.size() < std::size_t{3} << 20; ++i) comments += "** " + std::to_string(i) + "\n";
+  for (const std::string& like : {kGzip, kZstd}) {
+    const DeckFolder folder;
+    const std::string before = packed(kMain + comments, like);
+    folder.write("rest.inp", "*NODE\n3,1.,1.,0.\n");
+    const auto opened = deck::open(folder.write("deck.inp", before));
+    ASSERT_OPENED(opened);
+    const Model model = with_node_at(opened->model, 2, {1, 2.5, 0});
+    for (std::size_t stop = 0;; ++stop) {
+      std::size_t asked = 0;
+      const auto saved = save(*opened->deck, opened->model, model, folder / "deck.inp", [&](double) { return asked++ < stop; });
+      if (saved) break;
+      EXPECT_EQ(saved.error().message, cancelled().message);
+      EXPECT_TRUE(content(folder / "deck.inp") == before);
+    }
+    EXPECT_TRUE(content(folder / "deck.inp") != before);
+  }
+}
+
 TEST(PackedDeck, is_saved_in_place_only_over_what_was_read) {
   for (const std::string& like : {kGzip, kZstd}) {
     const DeckFolder folder;
