@@ -279,6 +279,42 @@ TEST(DeviceLoop, CommandsThatFindNoPlaceAreRefusedNotLost) {
   EXPECT_TRUE(loop.tell(EndHold{}));
 }
 
+TEST(DeviceLoop, ChangesThatFindNoPlaceAreToldLater) {
+  LoopRig rig;
+  rig.start();
+  rig.events();
+  // Nobody listens while the mask is held and let go again and again.
+  for (int i = 0; i < 400; ++i) {
+    if (i % 2 == 0)
+      ASSERT_TRUE(rig.loop.tell(SetHold{0.1}));
+    else
+      ASSERT_TRUE(rig.loop.tell(EndHold{}));
+    rig.tick();
+  }
+  rig.tracker_line.unplug();
+  rig.servo.raise_hardware_error(0x20);
+  ASSERT_GE(rig.run_until([&] { return rig.mask().phase == MaskPhase::alarm && rig.eyes().phase == EyesPhase::absent; }, 1000), 0);
+  const std::vector<LoopEvent> old = rig.events();
+  for (const LoopEvent& event : old) {
+    if (const auto* eyes = std::get_if<EyesChanged>(&event)) ASSERT_NE(eyes->phase, EyesPhase::absent) << "the queue wasn't full";
+    if (const auto* mask = std::get_if<MaskChanged>(&event)) ASSERT_NE(mask->phase, MaskPhase::alarm) << "the queue wasn't full";
+  }
+  rig.tick();
+  std::optional<EyesPhase> eyes;
+  std::optional<MaskPhase> mask;
+  std::optional<int> alarm_bits;
+  for (const LoopEvent& event : rig.events()) {
+    if (const auto* changed = std::get_if<EyesChanged>(&event)) eyes = changed->phase;
+    if (const auto* changed = std::get_if<MaskChanged>(&event)) mask = changed->phase;
+    if (const auto* changed = std::get_if<ServoChanged>(&event)) alarm_bits = changed->tick.alarm_bits;
+  }
+  EXPECT_EQ(eyes, EyesPhase::absent);
+  EXPECT_EQ(mask, MaskPhase::alarm);
+  EXPECT_EQ(alarm_bits, 0x20);
+  rig.tick();
+  EXPECT_TRUE(rig.events().empty()) << "each is told once";
+}
+
 TEST(DeviceLoop, ATickAllocatesNothingWhateverHappens) {
   RigOptions options;
   options.tracker.faults = {.drop_out = 0.005, .caution = 0.05, .garbage = 0.01, .damaged_byte = 0.001, .lost_byte = 0.001};
