@@ -33,6 +33,7 @@ TEST(ReadableNumber, OfAnyDoubleGivesItBackToItsDigits) {
 
 TEST(ReadableNumber, OfAPlaceWhatIsNothingBesideTheLargestIsNothing) {
   EXPECT_EQ(readable({1250.5, -1.25e-06, -3.2}, 6), "1250.5 0 -3.2");
+  EXPECT_EQ(readable({-1250.5, -1.25e-06, 3.21456}, 6), "-1250.5 0 3.21") << "the largest may be negative";
   EXPECT_EQ(readable({0, 0, 0}, 6), "0 0 0");
   EXPECT_EQ(readable({1e-06, -2e-06, 0.25e-6}, 3), "0.000001 -0.000002 0.00000025");
   EXPECT_EQ(readable({999999.6, 0.4, -0.6}, 6), "1000000 0 -1");
