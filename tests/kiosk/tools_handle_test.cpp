@@ -246,12 +246,17 @@ TEST(HandleTest, a_normal_of_the_other_sense_changes_the_distances_sign_only) {
 }
 
 TEST(HandleTest, an_arrow_toward_the_viewer_is_pulled_by_moving_up) {
-  const stereo::Aim aim = aim_from("top");
+  stereo::Aim aim = aim_from("top");
   const Vec3 at(40, 40, 0);
-  const Pixel taken = *stereo::pixel_of(aim, at);
-  const HandlePull pull(Under::lift_handle, at, Vec3::UnitZ(), std::nullopt, aim, taken);
-  EXPECT_NEAR(pull.at(aim, taken - Pixel(0, 50)).distance, 50 * aim.mm_per_pixel(), 1e-9);
-  EXPECT_NEAR(pull.at(aim, taken + Pixel(300, 0)).distance, 0, 1e-9);
+  for (const double scale : {1.0, 4.0, 0.25}) {
+    aim.view.mm_per_unit = scale;
+    const Pixel taken = *stereo::pixel_of(aim, at);
+    const HandlePull pull(Under::lift_handle, at, Vec3::UnitZ(), std::nullopt, aim, taken);
+    const double distance = pull.at(aim, taken - Pixel(0, 50)).distance;
+    EXPECT_NEAR(distance, 50 * aim.mm_per_pixel() / scale, 1e-9);
+    EXPECT_NEAR((*stereo::pixel_of(aim, at + Vec3(0, distance, 0)) - taken).norm(), 50, 1e-6) << "as far as the pointer goes on the screen";
+    EXPECT_NEAR(pull.at(aim, taken + Pixel(300, 0)).distance, 0, 1e-9);
+  }
 }
 
 TEST(HandleTest, the_ring_moves_in_the_screens_plane_under_the_pointer) {
