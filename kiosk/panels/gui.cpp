@@ -94,9 +94,14 @@ int button_number(display::MouseButton button) {
 }
 
 struct Feed {
-  void operator()(const display::PointerMoved& event) const { move_pointer(event.x, event.y); }
+  // Keys aren't enough: that of Shift itself comes with the modifiers of the moment before.
+  void operator()(const display::PointerMoved& event) const {
+    move_pointer(event.x, event.y);
+    set_modifiers(event.modifiers);
+  }
   void operator()(const display::ButtonChanged& event) const {
     move_pointer(event.x, event.y);
+    set_modifiers(event.modifiers);
     ImGui::GetIO().MouseDown[button_number(event.button)] = event.down;
   }
   void operator()(const display::WheelTurned& event) const {

@@ -81,6 +81,15 @@ TEST_F(QualityPanel, ABarSelectsItsShells) {
   EXPECT_TRUE(last_open);
 }
 
+TEST_F(QualityPanel, ABarClickedWithShiftAddsItsShells) {
+  const std::vector<BarClicked> clicked = clicked_down<BarClicked>(60, true);
+  ASSERT_FALSE(clicked.empty());
+  for (const BarClicked& each : clicked) EXPECT_EQ(each.mode, SelectMode::add);
+  // As the window system says it: the key that is released comes with what was held before.
+  gui_->feed(display::KeyChanged{display::Key::none, false, false, {true, false, false}});
+  for (const BarClicked& each : clicked_down<BarClicked>(60)) EXPECT_EQ(each.mode, SelectMode::set) << "Shift was let go";
+}
+
 TEST_F(QualityPanel, AnErrorIsGoneToAndNamed) {
   std::set<std::size_t> errors;
   for (const ErrorClicked& clicked : clicked_down<ErrorClicked>(60)) errors.insert(clicked.error);
