@@ -1,6 +1,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -8,8 +9,10 @@
 #include <mutex>
 #include <thread>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -42,6 +45,24 @@ class Folder {
   fs::path path_;
 };
 
+/// A variable of the process's surroundings, as long as it lives; null: there is none.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    set(value);
+  }
+  ~Variable() { set(before_ ? before_->c_str() : nullptr); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  void set(const char* value) { value != nullptr ? ::setenv(name_, value, 1) : ::unsetenv(name_); }
+
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
 /// Answers "big N" with N bytes, "hello" with a welcome or a refusal, everything else with itself, and remembers who left and why.
 class Echo final : public ServerHandler {
  public:
@@ -56,15 +77,22 @@ class Echo final : public ServerHandler {
     else
       server->send(client, std::string(line));
   }
-  void disconnected(ClientId, const std::string& why) override {
+  void disconnected(ClientId client, const std::string& why) override {
     const std::lock_guard lock(mutex_);
     left_.push_back(why);
+    who_left_.push_back(client);
     changed_.notify_all();
   }
   std::string wait_for_leaving() {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::seconds(20), [&] { return !left_.empty(); });
     return left_.empty() ? "nobody left" : left_.front();
+  }
+  /// Once so many have left: the clients, by the order in which they left.
+  std::vector<ClientId> wait_for_all_to_leave(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::seconds(20), [&] { return who_left_.size() >= count; });
+    return who_left_;
   }
   Server* server = nullptr;
 
@@ -83,6 +111,7 @@ class Echo final : public ServerHandler {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::string> left_;
+  std::vector<ClientId> who_left_;
 };
 
 class Running {
@@ -170,6 +199,46 @@ TEST(Server, AClientThatTakesNothingIsCutOff) {
   EXPECT_EQ(running.echo().wait_for_leaving(), "it took nothing for 200 ms");
 }
 
+/// How many lines of so many bytes a socket holds that nobody reads.
+std::size_t lines_held(std::size_t line_bytes) {
+  int ends[2];
+  EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends), 0);
+  const Descriptor from(ends[0]), to(ends[1]);
+  const std::string line(line_bytes, 'x');
+  std::size_t count = 0;
+  while (::send(from.get(), line.data(), line.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(line.size())) ++count;
+  return count;
+}
+
+/// Until so many bytes have come that nobody has read.
+bool wait_for_bytes(const LineSocket& socket, std::size_t bytes) {
+  for (int tries = 0; tries < 20'000; ++tries, std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+    int there = 0;
+    if (::ioctl(socket.descriptor(), FIONREAD, &there) == 0 && static_cast<std::size_t>(there) >= bytes) return true;
+  }
+  return false;
+}
+
+TEST(Server, AClientThatWasIdleHasItsWholeTimeToTakeWhatComesNext) {
+  const Folder folder;
+  ServerLimits limits;
+  limits.stall = std::chrono::milliseconds(400);
+  Running running(folder.path() / "s", limits);
+  LineSocket first(connect_to(folder.path() / "s").value(), {}), second(connect_to(folder.path() / "s").value(), {});
+  LineSocket idle(connect_to(folder.path() / "s").value(), {});
+  // What comes fills its socket to the brim, and nothing waits for a place there.
+  const std::size_t held = lines_held(1001);
+  for (std::size_t i = 0; i < held; ++i) say(idle, "big 1000");
+  ASSERT_TRUE(wait_for_bytes(idle, held * 1001));
+  // So long that a client that takes nothing is cut off.
+  say(first, "big 4000000");
+  EXPECT_EQ(running.echo().wait_for_leaving(), "it took nothing for 400 ms");
+  say(second, "big 4000000");
+  ASSERT_TRUE(wait_for_bytes(second, 1));
+  say(idle, "big 1000");
+  EXPECT_THAT(running.echo().wait_for_all_to_leave(3), testing::ElementsAre(1, 2, 3)) << "the idle one began to wait last";
+}
+
 TEST(Server, AClientThatAsksForMoreThanItTakesIsCutOff) {
   const Folder folder;
   ServerLimits limits;
@@ -214,6 +283,31 @@ TEST(LineSocketTest, TakesNoMoreDescriptorsThanItsLimit) {
   const Result<bool> received = receiver.receive();
   ASSERT_FALSE(received);
   EXPECT_EQ(received.error().message, "too many descriptors came");
+}
+
+TEST(LineSocketTest, DescriptorsGoOnceWithALineOfManyParts) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  LineSocket sender(Descriptor{ends[0]}, {}), receiver(Descriptor{ends[1]}, {});
+  std::vector<Descriptor> descriptors;
+  descriptors.push_back(make_shared_memory("test", 1).value());
+  descriptors.push_back(make_shared_memory("test", 1).value());
+  sender.queue(std::string(2'000'000, 'y'), std::move(descriptors));
+  int parts = 0;
+  for (Result<bool> whole = false; !*whole; ++parts) {
+    whole = sender.flush();
+    ASSERT_TRUE(whole);
+    const Result<bool> received = receiver.receive();
+    ASSERT_TRUE(received) << received.error().message;
+  }
+  EXPECT_GT(parts, 2) << "the line went at once";
+  while (receiver.receive().value()) {
+  }
+  const auto line = receiver.next_line();
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->size(), 2'000'000u);
+  EXPECT_TRUE(receiver.take_descriptors(2));
+  EXPECT_FALSE(receiver.take_descriptors(1)) << "there were two only";
 }
 
 TEST(Server, ALiveOneIsNamedAndAStaleSocketReplaced) {
@@ -412,10 +506,40 @@ TEST(Client, AnotherUsersDaemonIsNotTrusted) {
     ASSERT_FALSE(connected) << socket;
     EXPECT_NE(connected.error().message.find("user (65534"), std::string::npos) << connected.error().text();
   }
-  ::chmod(ours.c_str(), 0777);
-  const Result<Descriptor> open_to_all = connect_to(ours / "s");
-  ASSERT_FALSE(open_to_all);
-  EXPECT_NE(open_to_all.error().message.find("others may write to it"), std::string::npos);
+}
+
+TEST(Client, AFolderThatOthersMayWriteToIsNotTrusted) {
+  const Folder folder;
+  const Running running(folder.path() / "s");
+  struct Case {
+    mode_t mode;
+    bool trusted;
+  };
+  for (const Case& each :
+       {Case{0777, false}, Case{0770, false}, Case{0720, false}, Case{0702, false}, Case{0755, true}, Case{0700, true}}) {
+    ASSERT_EQ(::chmod(folder.path().c_str(), each.mode), 0);
+    const Result<Descriptor> connected = connect_to(folder.path() / "s");
+    EXPECT_EQ(connected.has_value(), each.trusted) << std::oct << each.mode;
+    if (connected) continue;
+    EXPECT_THAT(connected.error().message, testing::HasSubstr("others may write to it"));
+  }
+}
+
+TEST(Client, LooksForTheDaemonInTheFolderThatItsSurroundingsName) {
+  struct Case {
+    const char* runtime_directory;
+    const char* xdg_runtime_dir;
+    fs::path folder;
+  };
+  const fs::path own = "/tmp/prismesh-" + std::to_string(::geteuid());
+  for (const Case& each : {Case{"/run/prismesh", "/run/user/1", "/run/prismesh"}, Case{"/run/prismesh:/run/second", "", "/run/prismesh"},
+                           Case{"", "/run/user/1", "/run/user/1/prismesh"}, Case{nullptr, "/run/user/1", "/run/user/1/prismesh"},
+                           Case{"", "", own}, Case{nullptr, nullptr, own}}) {
+    const Variable first("RUNTIME_DIRECTORY", each.runtime_directory), second("XDG_RUNTIME_DIR", each.xdg_runtime_dir);
+    EXPECT_EQ(runtime_directory(std::nullopt), each.folder);
+    EXPECT_EQ(model_socket_path(std::nullopt), each.folder / "model.sock");
+    EXPECT_EQ(model_socket_path("/named"), "/named/model.sock") << "what was named goes before";
+  }
 }
 
 TEST(Server, ASocketPathThatIsTooLongIsSaid) {
