@@ -11,6 +11,7 @@
 #include "cli/report_text.h"
 #include "ipc/messages_json.h"
 #include "ipc/reconnecting_client.h"
+#include "mesh/quality/criteria_names.h"
 
 namespace prismesh::cli {
 
@@ -163,7 +164,8 @@ ipc::Open open_request(const SessionOptions& options, const Common& common) {
   open.path = whole_path(options.deck);
   if (common.length_unit) open.length_unit = std::string(name(*common.length_unit));
   open.target_size = common.target_size;
-  if (common.criteria) open.criteria = whole_path(*common.criteria);
+  if (common.criteria)
+    open.criteria = mesh::quality::is_built_in_criteria(*common.criteria) ? common.criteria->string() : whole_path(*common.criteria);
   return open;
 }
 
