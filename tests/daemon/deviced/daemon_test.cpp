@@ -149,6 +149,9 @@ TEST_F(Deviced, OneClientHoldsTheMaskUntilItsEnd) {
   EXPECT_TRUE(wait_for([&] { return held_at(0.5); }));
   EXPECT_EQ(refusal(first->call(ipc::HoldMask{-0.5}, kPatience)), "accepted") << "the holder may go on";
   EXPECT_TRUE(wait_for([&] { return held_at(-0.5); }));
+  configure(std::string(kBoth) + "travel_mm = 1.5\n");
+  EXPECT_EQ(refusal(second.call(ipc::Reload{}, kPatience)), "accepted");
+  EXPECT_TRUE(wait_for([&] { return held_at(-0.5); })) << "a station that was started anew holds it too";
   first.reset();  // its end
   EXPECT_TRUE(wait_for([&] { return at_work(second.page()); })) << "the mask follows again";
   EXPECT_EQ(refusal(second.call(ipc::HoldMask{0.1}, kPatience)), "accepted");
@@ -261,10 +264,11 @@ TEST_F(Deviced, ATrackerThatTakesLongIsFollowedToo) {
 
 TEST_F(Deviced, ALostMaskWaitsForThePictureOfWhoeverShowsStereo) {
   const auto port = static_cast<std::uint16_t>(20000 + ::getpid() % 20000);
-  configure("[eye_tracker]\ndriver = \"opentrack\"\nudp_port = " + std::to_string(port) +
-            "\n[prism_servo]\ndriver = \"dynamixel\"\nsimulated = true\n");
+  const std::string both = "[eye_tracker]\ndriver = \"opentrack\"\nudp_port = " + std::to_string(port) +
+                           "\n[prism_servo]\ndriver = \"dynamixel\"\nsimulated = true\n";
+  configure(both);
   start();
-  const ipc::DeviceClient client = connect("test");
+  ipc::DeviceClient client = connect("test");
   const auto head = drivers::port::UdpSender::open(port).value();
   int sent = 0;
   /// How long the mask stood still when the head was lost, by the daemon's own clock.
@@ -289,6 +293,9 @@ TEST_F(Deviced, ALostMaskWaitsForThePictureOfWhoeverShowsStereo) {
     ASSERT_TRUE(viewer.send(ipc::PictureShown{false}));
     listed(viewer);
     EXPECT_GE(frozen_ns(), 240'000'000) << "it may still be looked at";
+    configure(both + "travel_mm = 1.5\n");
+    EXPECT_EQ(refusal(client.call(ipc::Reload{}, kPatience)), "accepted");
+    EXPECT_GE(frozen_ns(), 240'000'000) << "so it may with a station that was started anew";
     ASSERT_TRUE(viewer.send(ipc::PictureShown{true}));
     listed(viewer);
   }
