@@ -17,6 +17,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/system/system_error.hpp>
 
 #include "ipc/line_socket.h"
 
@@ -249,9 +250,14 @@ Result<Server> Server::listen(const std::filesystem::path& socket, ServerHandler
   if (!lock) return fail(std::move(lock.error()));
   Result<Descriptor> listening = bind_socket(socket);
   if (!listening) return fail(std::move(listening.error()));
-  auto state = std::make_unique<State>(socket, handler, limits, std::move(*lock), std::move(*listening));
-  state->start();
-  return Server(std::move(state));
+  try {
+    auto state = std::make_unique<State>(socket, handler, limits, std::move(*lock), std::move(*listening));
+    state->start();
+    return Server(std::move(state));
+  } catch (const boost::system::system_error& problem) {
+    // The library has no other way to say that descriptors have run out.
+    return fail(socket.string(), "can't be served: " + problem.code().message());
+  }
 }
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -23,6 +23,7 @@
 #include "ipc/line_socket.h"
 #include "ipc/reconnecting_client.h"
 #include "ipc/server.h"
+#include "tests/support/few_descriptors.h"
 
 namespace prismesh::ipc {
 namespace {
@@ -549,6 +550,23 @@ TEST(Server, ASocketPathThatIsTooLongIsSaid) {
   ASSERT_FALSE(server);
   EXPECT_NE(server.error().message.find("too long for a socket"), std::string::npos);
   EXPECT_FALSE(connect_to(folder.path() / std::string(120, 'd') / "s"));
+}
+
+TEST(Server, WithTooFewDescriptorsItDoesNotStartAndSaysSo) {
+  const Folder folder;
+  Echo echo;
+  int refused = 0;
+  for (int free = 0; free < 12; ++free) {
+    const Result<Server> server = [&] {
+      const prismesh::test::FewDescriptors few(free);
+      return Server::listen(folder.path() / "s", echo);
+    }();
+    if (server) continue;
+    ++refused;
+    EXPECT_THAT(server.error().text(), testing::HasSubstr("Too many open files")) << free;
+  }
+  EXPECT_GE(refused, 4) << "two for the folder and the socket, two and more for the loop";
+  EXPECT_TRUE(Server::listen(folder.path() / "s", echo)) << "later it starts";
 }
 
 TEST(Client, ADaemonThatIsNotThereIsSaid) {

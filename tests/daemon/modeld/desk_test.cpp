@@ -12,8 +12,8 @@
 
 #include "ipc/snapshot.h"
 #include "mesh/document/edit_json.h"
-#include "tests/daemon/modeld/few_descriptors.h"
 #include "tests/daemon/modeld/folder.h"
+#include "tests/support/few_descriptors.h"
 
 namespace prismesh::modeld {
 namespace {

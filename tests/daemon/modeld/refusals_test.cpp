@@ -16,8 +16,8 @@
 #include "daemon/modeld/save_intent.h"
 #include "ipc/messages_json.h"
 #include "mesh/document/edit_json.h"
-#include "tests/daemon/modeld/few_descriptors.h"
 #include "tests/daemon/modeld/folder.h"
+#include "tests/support/few_descriptors.h"
 
 namespace prismesh::modeld {
 namespace {
