@@ -39,6 +39,10 @@ TEST_F(Cli, an_edit_is_a_line_of_json_and_moves_only_its_nodes) {
   for (const char* field : {"edit", "ok", "nodes_moved", "elements_added", "elements_removed", "before", "after", "notes", "ms"})
     EXPECT_TRUE(lift.contains(field)) << field;
   EXPECT_EQ(lift["ok"], true);
+  ASSERT_TRUE(lift["cog_before"].is_array() && lift["cog_after"].is_array());
+  EXPECT_NEAR(lift["cog_before"][2].get<double>(), 0, 1e-12);
+  EXPECT_GT(lift["cog_after"][2].get<double>(), 0.05) << "nine nodes of the plate went up";
+  EXPECT_NEAR(lift["mass_before"].get<double>(), prismesh({"check", deck, "--json"}).json()["mass"].get<double>(), 1e-15);
   EXPECT_EQ(lift["before"], (json{{"warn", 0}, {"fail", 0}}));
   EXPECT_GT(lift["after"]["fail"].get<int>() + lift["after"]["warn"].get<int>(), 0);
   const json difference = prismesh({"diff", deck, path("out.k"), "--json"}).json();

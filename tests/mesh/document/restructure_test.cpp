@@ -54,6 +54,8 @@ void expect_sound(const Document& document) {
   const quality::Weight weight = quality::weigh_model(model);
   EXPECT_NEAR(now.weight.mass, weight.mass, 1e-9 * weight.mass);
   EXPECT_EQ(now.weight.shells, weight.shells);
+  ASSERT_TRUE(now.weight.centre() && weight.centre());
+  EXPECT_NEAR((*now.weight.centre() - *weight.centre()).norm(), 0, 1e-7);
   // marks that follow from the parts' states
   ChunkedArray<std::uint8_t> marks(model.node_count());
   mark_parts(model, *now.parts, marks);
@@ -177,6 +179,24 @@ TEST(Restructure, NewNodesBelongToPartsInSightHiddenOrLocked) {
   expect_sound(document);
   must_apply(document, R"({"edit":"lock","on":"1"})");
   expect_sound(document);
+}
+
+TEST(Restructure, NodesAroundItStaySelectedWhereAPartIsHiddenOrLocked) {
+  for (const char* state : {"hide", "lock"}) {
+    SCOPED_TRACE(state);
+    const Folder folder;
+    Document document = open_text(folder / "a.k", sheet_deck(6, 4));
+    must_apply(document, R"({"edit":"select","expr":"1-9"})");
+    must_apply(document, std::string(R"({"edit":")") + state + R"(","on":"2"})");
+    const std::size_t selected = document.current().selected_nodes;
+    ASSERT_GT(selected, 4u);
+    Change change{document.current().model, {}};
+    change.split(shell(0));
+    must_change(document, change.finish());
+    EXPECT_EQ(document.current().selected_nodes, selected);
+    for (const std::size_t corner : {0, 1, 7, 8}) EXPECT_NE(document.current().node_marks[corner] & kSelected, 0) << corner;
+    expect_sound(document);
+  }
 }
 
 TEST(Restructure, ANewNodeBetweenPartsIsHiddenWithBothAndLockedWithEither) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/quality/mass.h"
 #include "mesh/quality/time_step.h"
 #include "tests/support/make_model.h"
 
@@ -41,6 +42,20 @@ TEST(Report, mass_and_centre_of_a_plate) {
   EXPECT_NEAR((*r.centre_of_gravity - Vec3(50, 25, 0)).norm(), 0, 1e-9);
   EXPECT_EQ(r.elements, 200u);
   EXPECT_EQ(r.counts, (Counts{200, 0, 0}));
+}
+
+TEST(Weight, what_is_added_and_taken_off_again_leaves_mass_and_centre) {
+  const Model model = steel_grid(3, 1, 5);
+  const Weight all = weigh_model(model);
+  Weight rest = all;
+  const Weight last = weigh_shell(model, ShellIndex(2));
+  rest -= last;
+  EXPECT_NEAR(rest.mass, 2 * last.mass, 1e-18);
+  EXPECT_NEAR((*rest.centre() - Vec3(5, 2.5, 0)).norm(), 0, 1e-12);
+  EXPECT_EQ(rest.shells, 2u);
+  rest += last;
+  EXPECT_NEAR((*rest.centre() - Vec3(7.5, 2.5, 0)).norm(), 0, 1e-12);
+  EXPECT_EQ(rest.shells, 3u);
 }
 
 TEST(Report, a_card_s_own_thickness_counts_before_the_section_s) {

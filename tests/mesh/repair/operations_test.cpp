@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/repair/candidates.h"
 #include "tests/mesh/repair/patch_bench.h"
 #include "tests/mesh/repair/validator.h"
 
@@ -151,6 +152,72 @@ TEST(LiftNode, is_refused_where_the_node_stays_or_lies_on_an_edge_of_the_part) {
   EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(1, 2), 0.1)), "done");
 }
 
+TEST(DivideRow, is_refused_where_a_ring_of_quads_runs_into_itself) {
+  // four quads around a square tube, and eight around another: the first is in the row's way again, or is beyond both of its ends
+  for (const std::size_t around : {4, 8}) {
+    std::vector<Vec3> positions;
+    std::vector<std::array<std::size_t, 4>> shells;
+    for (std::size_t i = 0; i < around; ++i) {
+      const double angle = 2 * 3.14159265358979323846 * static_cast<double>(i) / static_cast<double>(around);
+      for (const double height : {0.0, 1.0}) positions.emplace_back(std::cos(angle), std::sin(angle), height);
+      const std::size_t next = (i + 1) % around;
+      shells.push_back({2 * i, 2 * next, 2 * next + 1, 2 * i + 1});
+    }
+    for (const auto& [forward, back] : {std::pair{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {3, 0}, {4, 0}}) {
+      SCOPED_TRACE(std::to_string(around) + " around, " + std::to_string(forward) + " forward, " + std::to_string(back) + " back");
+      Bench bench(model_of(positions, shells));
+      bench.patch.begin();
+      Row row{bench.shell(0), 1};
+      row.forward = forward;
+      row.back = back;
+      const bool is_row = forward + back + 3 <= static_cast<int>(around);  // with its own first quad and one beyond each end
+      EXPECT_EQ(ends_of(bench.patch, row).has_value(), is_row);
+      if (!is_row) {
+        EXPECT_EQ(divide_row(bench.site, row).value_or("done"), "there is no row of quads");
+      }
+    }
+  }
+}
+
+TEST(Redivide, keeps_shells_of_different_thickness_apart) {
+  for (const float thickness : {1.0F, 1.5F}) {
+    Model model = model_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 2}, {0, 2, 3, 3}});
+    model.shell_thickness.set(1, thickness);
+    Bench bench(std::move(model));
+    bench.patch.begin();
+    const Loop loop = loop_of(bench.patch, bench.shell(0), bench.shell(1));
+    ASSERT_EQ(loop.size(), 4u);
+    EXPECT_EQ(redivide(bench.site, bench.shell(0), bench.shell(1), {loop}).value_or("done"),
+              thickness == 1 ? "done" : "they differ in part or thickness");
+  }
+}
+
+TEST(Candidates, lift_each_corner_of_a_warped_quad_to_either_side) {
+  Grid grid = flat(5, 5);
+  grid.place = [](double x, double y) { return Vec3(x, y, x == 2 && y == 2 ? 0.2 : 0); };
+  Bench bench(model_of(grid.positions(), grid.shells()));
+  const LocalShell warped = bench.shell(grid.shell(2, 2));
+  bench.patch.begin();
+  quality::ShellState state = bench.patch.shell(warped).state;
+  state.warn = 1U << static_cast<unsigned>(quality::Metric::warpage);
+  bench.patch.set_judged(warped, bench.patch.shell(warped).composite, state);
+  const LocalNode peak = bench.patch.find(at(grid.node(2, 2)));
+  const double height = bench.patch.position(peak).z();
+  int up = 0, down = 0;
+  for (const Candidate& candidate : candidates_for(bench.site, warped)) {
+    if (candidate.operation != Operation::move) continue;
+    if (!candidate.apply()) {
+      const double by = bench.patch.position(peak).z() - height;
+      up += by > 0.01 ? 1 : 0;
+      down += by < -0.01 ? 1 : 0;
+    }
+    bench.patch.take_back();
+    bench.patch.begin();
+  }
+  EXPECT_EQ(up, 1);
+  EXPECT_EQ(down, 1);
+}
+
 TEST(Patch, works_on_no_node_whose_shells_it_has_not_all) {
   const Grid grid = flat(8, 8);
   const Model model = model_of(grid.positions(), grid.shells());
@@ -162,6 +229,13 @@ TEST(Patch, works_on_no_node_whose_shells_it_has_not_all) {
   EXPECT_EQ(whole, 4u) << "the corners of the shell itself";
   EXPECT_TRUE(patch.node(patch.find(at(grid.node(4, 4)))).is_whole);
   EXPECT_FALSE(patch.node(patch.find(at(grid.node(3, 3)))).is_whole);
+  const auto may_divide = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t l) {
+    return patch.may_divide(patch.find(at(grid.node(i, j))), patch.find(at(grid.node(k, l))));
+  };
+  EXPECT_TRUE(may_divide(4, 4, 5, 4));
+  EXPECT_TRUE(may_divide(4, 3, 4, 4)) << "all of its shells are there";
+  EXPECT_FALSE(may_divide(3, 3, 4, 3)) << "the shell beyond would keep a hanging node";
+  EXPECT_FALSE(may_divide(3, 4, 3, 3));
 }
 
 }  // namespace

@@ -271,6 +271,8 @@ TEST(Welds, of_every_kind_join_sheets) {
   EXPECT_EQ(sheets.across({{beam, 1, 9, {22, 24}}}), 16u) << "a stiffener";
   EXPECT_EQ(sheets.across({{beam, 1, 9, {1, 1045}}}), 16u) << "too long for a weld";
   EXPECT_EQ(sheets.across({{mass, 1, 9, {23, 1023}}}), 16u);
+  EXPECT_EQ(sheets.across({{beam, 1, 9, {22, 23, 1023}}}), 16u) << "a stiffener, turned towards the other sheet";
+  EXPECT_EQ(sheets.across({{beam, 1, 9, {23, 1023, 1045}}}), 32u) << "a weld, turned towards a node far away";
   // nodes of their own, as welds in a file of their own have
   sheets.nodes.push_back({5001, Vec3(11.2, 12.1, 0.2)});
   sheets.nodes.push_back({5002, Vec3(11.2, 12.1, 1.4)});

@@ -157,6 +157,17 @@ TEST(Normals, take_the_first_shell_where_a_folded_sheet_cancels_itself) {
   EXPECT_EQ(normals[6], Vec3(0, 0, 0));
 }
 
+TEST(Normals, of_a_sheet_folded_flat_onto_itself_is_the_first_shells) {
+  // as it lies and turned by an angle, where rounding leaves a little of the sum
+  for (const double angle : {0.0, 0.7}) {
+    const Vec3 along(std::cos(angle), 0.6 * std::sin(angle), 0.8 * std::sin(angle)), across(0, 0.8, -0.6);
+    const Model model =
+        test::make_shells({Vec3::Zero(), along, along + across, across, Vec3::Zero(), across}, {{0, 1, 2, 3}, {1, 4, 5, 2}});
+    const std::vector<Vec3> normals = oriented_normals(model, all_nodes(model), NodeIndex(0));
+    for (const std::size_t folded : {1, 2}) EXPECT_NEAR((normals[folded] - along.cross(across)).norm(), 0, 1e-12) << folded;
+  }
+}
+
 /// Decks whose neighbouring shells disagree. Across smooth edges the normals of the ends have to agree all the same.
 TEST(Normals, hang_together_on_real_decks) {
   const auto decks = test::real_decks();

@@ -92,6 +92,17 @@ TEST(WeightsAcrossWelds, end_at_a_distance_that_scales_with_the_elements) {
     }
 }
 
+TEST(WeightsAcrossWelds, end_at_a_distance_that_scales_with_the_closest_element) {
+  // columns 1 wide and then 4 wide, below one sheet each at the same height
+  const Model model = sheets({{12, 4, [](int i, int j) { return Vec3(i <= 8 ? i : 8 + 4 * (i - 8), j, 0); }},
+                              {4, 4, [](int i, int j) { return Vec3(i, j, 2.5); }},
+                              {4, 4, [](int i, int j) { return Vec3(13 + 2 * i, j, 2.5); }}});
+  const Weighed w(model, nodes_where(model, [](const Vec3&) { return true; }), model.find_node(10000), carried());
+  EXPECT_EQ(w.weights.unreached, 25u);
+  EXPECT_EQ(w(model.find_node(20000)), 0) << "over the small shells";
+  EXPECT_EQ(w(model.find_node(30000)), 1) << "over the large ones";
+}
+
 TEST(WeightsAcrossWelds, carry_a_standing_sheet_whole_with_its_foot) {
   // the second sheet stands on the first, half an element above it; what is high up follows the foot
   const Model model = sheets({flat(0), {20, 12, [](int i, int j) { return Vec3(i, 10, 0.5 + j); }}});

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/model/growth.h"
 #include "tests/support/make_model.h"
 #include "tests/support/whole_model.h"
 
@@ -103,6 +104,16 @@ TEST(ShellTreeTest, passes_over_what_is_no_number) {
   // nothing finite at all
   for (std::size_t n = 0; n < model.node_count(); ++n) model.positions.set(n, Vec3(odd[n % 3], 0, 0));
   EXPECT_TRUE(ShellTree(model, all_shells(model)).empty());
+}
+
+TEST(ShellTreeTest, passes_over_what_was_removed) {
+  Model model = make_model({{1, {0, 0, 0}}, {2, {2, 0, 0}}, {3, {2, 2, 0}}, {4, {0, 0, 5}}, {5, {0, 0, 9}}}, {{1, 1, {1, 2, 3}}});
+  remove_node(model, NodeIndex(3));
+  const NodeSet nodes{NodeIndex(3), NodeIndex(4)};
+  EXPECT_DOUBLE_EQ(ShellTree(model, {}, nodes).closest(Vec3(0, 0, 4))->distance, 5);
+  EXPECT_DOUBLE_EQ(ShellTree(model, all_shells(model), nodes).closest(Vec3(0, 0, 4))->distance, 4);
+  remove_shell(model, ShellIndex(0));
+  EXPECT_DOUBLE_EQ(ShellTree(model, {ShellIndex(0)}, nodes).closest(Vec3(0, 0, 4))->distance, 5);
 }
 
 TEST(ShellTreeTest, measures_slivers_and_points) {
