@@ -553,6 +553,9 @@ TEST(Server, ASocketPathThatIsTooLongIsSaid) {
 }
 
 TEST(Server, WithTooFewDescriptorsItDoesNotStartAndSaysSo) {
+#ifdef PRISMESH_ADDRESS_SANITIZER
+  GTEST_SKIP() << "UndefinedBehaviorSanitizer needs descriptors of its own to look at an object's type";
+#endif
   const Folder folder;
   Echo echo;
   int refused = 0;
