@@ -16,7 +16,7 @@ namespace {
 /// How much is unpacked between two looks at the progress.
 constexpr std::size_t kStep = std::size_t{256} << 10;
 /// zlib counts with 32 bits.
-constexpr std::size_t kMostIn = std::size_t{1} << 30;
+constexpr std::size_t kMaxIn = std::size_t{1} << 30;
 constexpr int kGzip = 16 + MAX_WBITS;
 
 const unsigned char* raw(std::span<const std::byte> bytes) { return reinterpret_cast<const unsigned char*>(bytes.data()); }
@@ -91,7 +91,7 @@ Trouble unpack_gzip(std::span<const std::byte> in, Growing& out, const Progress&
   for (;;) {
     const std::span<char> room = out.room();
     if (room.empty()) return out.failure();
-    const std::size_t given = std::min(in.size() - at, kMostIn);
+    const std::size_t given = std::min(in.size() - at, kMaxIn);
     z.next_in = const_cast<unsigned char*>(raw(in.subspan(at)));
     z.avail_in = static_cast<uInt>(given);
     z.next_out = reinterpret_cast<unsigned char*>(room.data());
@@ -198,7 +198,7 @@ struct GzipHeader {
     header.comm_max = static_cast<uInt>(comment.size() - 1);
     unsigned char nothing = 0;
     inflating.stream.next_in = const_cast<unsigned char*>(raw(like));
-    inflating.stream.avail_in = static_cast<uInt>(std::min(like.size(), kMostIn));
+    inflating.stream.avail_in = static_cast<uInt>(std::min(like.size(), kMaxIn));
     inflating.stream.next_out = &nothing;
     inflating.stream.avail_out = 1;
     inflateGetHeader(&inflating.stream, &header);

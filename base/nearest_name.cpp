@@ -10,14 +10,14 @@ namespace prismesh {
 
 namespace {
 
-constexpr std::size_t kLongest = 64;
+constexpr std::size_t kMaxLength = 64;
 
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  a = a.substr(0, kLongest);
-  b = b.substr(0, kLongest);
-  std::array<std::array<std::size_t, kLongest + 1>, kLongest + 1> cost{};
+  a = a.substr(0, kMaxLength);
+  b = b.substr(0, kMaxLength);
+  std::array<std::array<std::size_t, kMaxLength + 1>, kMaxLength + 1> cost{};
   for (std::size_t i = 0; i <= a.size(); ++i) cost[i][0] = i;
   for (std::size_t j = 0; j <= b.size(); ++j) cost[0][j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i)

@@ -8,7 +8,7 @@ namespace prismesh {
 
 namespace {
 
-constexpr double kLeast = 1e-9, kMost = 1e12;  ///< what is written without a power of ten
+constexpr double kMin = 1e-9, kMax = 1e12;  ///< what is written without a power of ten
 
 std::string in_format(double value, std::chars_format format, int precision) {
   std::array<char, 64> text;
@@ -35,7 +35,7 @@ std::string with_decimals(double value, int decimals) {
   return text == "-0" ? "0" : text;
 }
 
-bool plain(double value) { return value == 0 || (std::abs(value) >= kLeast && std::abs(value) < kMost); }
+bool plain(double value) { return value == 0 || (std::abs(value) >= kMin && std::abs(value) < kMax); }
 
 }  // namespace
 

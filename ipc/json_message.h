@@ -232,7 +232,7 @@ inline Problem take_number(Json& json, const char* name, std::uint64_t& number) 
 /// No message nests deeper than a state with its warnings or an edit with its outline. Asked before parsing, so that a line of
 /// brackets can't take memory a hundred times its size.
 inline bool too_deep(std::string_view line) {
-  constexpr int kDeepest = 12;
+  constexpr int kMaxDepth = 12;
   int depth = 0;
   bool in_text = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -243,7 +243,7 @@ inline bool too_deep(std::string_view line) {
     } else if (c == '"') {
       in_text = true;
     } else if (c == '[' || c == '{') {
-      if (++depth > kDeepest) return true;
+      if (++depth > kMaxDepth) return true;
     } else if (c == ']' || c == '}') {
       --depth;
     }

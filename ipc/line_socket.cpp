@@ -14,12 +14,12 @@ namespace prismesh::ipc {
 namespace {
 
 constexpr std::size_t kReadBytes = 64 * 1024;
-constexpr std::size_t kMostDescriptorsPerMessage = 253;  // the kernel's limit
+constexpr std::size_t kMaxDescriptorsPerMessage = 253;  // the kernel's limit
 
 tl::unexpected<Error> gone(const char* why) { return fail("", std::string("the connection was closed: ") + why); }
 
 struct ControlBuffer {
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int) * kMostDescriptorsPerMessage)> bytes;
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int) * kMaxDescriptorsPerMessage)> bytes;
 };
 
 }  // namespace
@@ -127,7 +127,7 @@ long LineSocket::send_some(Outgoing& out) {
 Result<bool> LineSocket::flush() {
   while (!outgoing_.empty()) {
     Outgoing& out = outgoing_.front();
-    if (out.descriptors.size() > kMostDescriptorsPerMessage) return fail("", "a message has too many descriptors");
+    if (out.descriptors.size() > kMaxDescriptorsPerMessage) return fail("", "a message has too many descriptors");
     const long count = send_some(out);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return false;

@@ -197,11 +197,11 @@ struct Quality {
   std::vector<QualityMetric> metrics;
   std::string metric;
   std::vector<QualityBar> bars;      ///< ascending
-  std::vector<QualityError> errors;  ///< worst first; not more than kMostQualityErrors
+  std::vector<QualityError> errors;  ///< worst first; not more than kMaxQualityErrors
   std::uint64_t error_count = 0;
   std::vector<QualityPart> parts;  ///< with shells that are looked at, ascending by id
 };
-inline constexpr std::size_t kMostQualityErrors = 500;
+inline constexpr std::size_t kMaxQualityErrors = 500;
 struct ShellsFound {
   std::uint64_t shells = 0;
   std::string expr;  ///< their ids, as an expression of kind element; empty: none
@@ -216,11 +216,11 @@ struct EditPreviewed {
   std::uint64_t generation = 0;  ///< that the edit would begin from
   mesh::document::EditReport report;
   std::vector<std::array<double, 3>> points;
-  std::vector<PreviewedShell> shells;  ///< not more than kMostPreviewedShells
+  std::vector<PreviewedShell> shells;  ///< not more than kMaxPreviewedShells
   std::uint64_t shell_count = 0;       ///< so many there would be
   std::vector<std::int64_t> replaced;  ///< ids of shells that would be gone or look otherwise
 };
-inline constexpr std::size_t kMostPreviewedShells = 2000;
+inline constexpr std::size_t kMaxPreviewedShells = 2000;
 struct FieldMade {          ///< descriptor: the values (ipc/field_page.h)
   std::uint64_t field = 0;  ///< a number of its own
   std::string title, unit;

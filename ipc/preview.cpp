@@ -11,7 +11,7 @@ namespace prismesh::ipc {
 namespace {
 
 constexpr std::uint64_t kPreviewMagic = 0x3157'4956'4552'5250;  // "PRREVIW1"
-constexpr std::size_t kMostItems = std::size_t{1} << 31;
+constexpr std::size_t kMaxItems = std::size_t{1} << 31;
 
 struct Header {
   std::uint64_t magic = kPreviewMagic;
@@ -86,7 +86,7 @@ Result<PreviewReader> PreviewReader::map(const Descriptor& descriptor) {
   Header header;
   std::memcpy(static_cast<void*>(&header), bytes.data(), sizeof header);
   if (header.magic != kPreviewMagic) return fail("preview", "it doesn't begin as one");
-  if (header.nodes > kMostItems || header.shells > kMostItems) return fail("preview", "its counts are absurd");
+  if (header.nodes > kMaxItems || header.shells > kMaxItems) return fail("preview", "its counts are absurd");
   reader.layout_ = {static_cast<std::size_t>(header.nodes), static_cast<std::size_t>(header.shells)};
   if (reader.layout_.total() > bytes.size()) return fail("preview", "it is too short for what it holds");
   reader.drag_ = header.drag;

@@ -12,7 +12,7 @@ namespace {
 using Time = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kFirstPause{50};
-constexpr std::chrono::milliseconds kLongestPause{1000};
+constexpr std::chrono::milliseconds kMaxPause{1000};
 /// How long `wait` sleeps between two looks for the welcome.
 constexpr std::chrono::milliseconds kLook{5};
 
@@ -50,7 +50,7 @@ template <class AnyClient>
 void Reconnecting<AnyClient>::try_again_later(Error why) {
   client_.reset();
   trouble_ = std::move(why);
-  pause_ = std::clamp(pause_ * 2, kFirstPause, kLongestPause);
+  pause_ = std::clamp(pause_ * 2, kFirstPause, kMaxPause);
   next_try_ = Time::now() + pause_;
 }
 

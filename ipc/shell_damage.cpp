@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::ipc {
 

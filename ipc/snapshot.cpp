@@ -6,7 +6,7 @@ namespace prismesh::ipc {
 
 namespace {
 
-constexpr std::size_t kLargestTable = std::size_t{256} << 20;
+constexpr std::size_t kMaxTable = std::size_t{256} << 20;
 
 }  // namespace
 
@@ -14,7 +14,7 @@ Result<std::shared_ptr<const SnapshotView>> SnapshotView::map(const Descriptor& 
                                                               std::span<const std::shared_ptr<const Mapping>> segments) {
   const Result<Mapping> mapping = Mapping::map(table_descriptor, false);
   if (!mapping) return fail(mapping.error());
-  if (mapping->bytes().size() > kLargestTable) return fail("snapshot", "its table of contents is larger than any document's");
+  if (mapping->bytes().size() > kMaxTable) return fail("snapshot", "its table of contents is larger than any document's");
   // Decoded from a copy: whoever wrote the table can't change it between the check and the use.
   const std::vector<std::byte> bytes(mapping->bytes().begin(), mapping->bytes().end());
   Result<SnapshotTable> table = decode_table(bytes);

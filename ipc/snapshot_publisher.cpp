@@ -12,7 +12,7 @@
 #include "ipc/outlines.h"
 #include "ipc/shell_damage.h"
 #include "ipc/snapshot_table.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::ipc {
 
@@ -77,7 +77,7 @@ struct PerModel {
   std::array<std::shared_ptr<const mesh::ElementBlock>, mesh::kElementClassCount> elements;
   Outlines lines;
   mesh::ChunkedArray<mesh::PartIndex> shell_parts;
-  std::shared_ptr<const mesh::Growth> growth;
+  std::shared_ptr<const mesh::TopologyChange> topology_change;
   std::shared_ptr<const std::vector<mesh::Part>> parts;
   std::vector<std::uint32_t> shells_of_part;
 };
@@ -94,8 +94,8 @@ std::vector<std::uint32_t> count_shells(const mesh::Model& model) {
   for (std::size_t c = 0; c < model.shell_parts.chunk_count(); ++c)
     for (const mesh::PartIndex part : model.shell_parts.chunk(c))
       if (part.value < counts.size()) ++counts[part.value];
-  if (model.growth)
-    for (const mesh::ShellIndex gone : model.growth->removed_shells)
+  if (model.topology_change)
+    for (const mesh::ShellIndex gone : model.topology_change->removed_shells)
       if (const mesh::PartIndex part = model.shell_parts[gone.value]; part.value < counts.size()) --counts[part.value];
   return counts;
 }
@@ -122,9 +122,10 @@ struct SnapshotPublisher::State {
       per_model.elements = model.elements;
       per_model.lines = outlines(model);
     }
-    if (per_model.parts != model.parts || per_model.growth != model.growth || !same_chunks(per_model.shell_parts, model.shell_parts)) {
+    if (per_model.parts != model.parts || per_model.topology_change != model.topology_change ||
+        !same_chunks(per_model.shell_parts, model.shell_parts)) {
       per_model.parts = model.parts;
-      per_model.growth = model.growth;
+      per_model.topology_change = model.topology_change;
       per_model.shell_parts = model.shell_parts;
       per_model.shells_of_part = count_shells(model);
     }

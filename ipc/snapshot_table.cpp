@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kSnapshotMagic = 0x3354'534d'5350'5250;  // "PRPSMST3"
 // Indices into the arrays are 32 bits wide, and the last value means none.
-constexpr std::uint64_t kMostElements = 2 * std::uint64_t{0xffff'fffe};
+constexpr std::uint64_t kMaxElements = 2 * std::uint64_t{0xffff'fffe};
 
 tl::unexpected<Error> damaged(const std::string& what) { return fail("snapshot", "its table of contents is damaged: " + what); }
 
@@ -72,7 +72,7 @@ Result<TableArray> get_array(ByteReader& in, SnapshotArray array) {
   const auto pieces = in.get<std::uint64_t>();
   if (!in.ok()) return damaged("it ends early");
   if (size != element_size(array)) return damaged("elements of " + std::to_string(size) + " bytes");
-  if (result.count > kMostElements || pieces != (result.count + mesh::kChunkSize - 1) / mesh::kChunkSize)
+  if (result.count > kMaxElements || pieces != (result.count + mesh::kChunkSize - 1) / mesh::kChunkSize)
     return damaged(std::to_string(pieces) + " chunks for " + std::to_string(result.count) + " elements");
   if (!in.holds(pieces, sizeof(TablePiece))) return damaged("it ends early");
   result.pieces.reserve(static_cast<std::size_t>(pieces));

@@ -18,7 +18,7 @@ using tools::Command;
 using tools::Pixel;
 
 constexpr double kPickRadiusPixels = 16;
-constexpr std::size_t kLeastLassoPoints = 3;
+constexpr std::size_t kMinLassoPoints = 3;
 
 render::PixelRect rectangle_of(const Pixel& a, const Pixel& b) {
   return {std::min(a.x(), b.x()), std::min(a.y(), b.y()), std::max(a.x(), b.x()), std::max(a.y(), b.y())};
@@ -126,7 +126,7 @@ void Editor::handle(const tools::OutlineDone& outline) {
   std::vector<Pixel> way =
       is_rectangle(outline.other_kind) ? corners_of(rectangle_of(outline.way.front(), outline.way.back())) : outline.way;
   if (comparing_.two_views()) way = tools::kept_right_of(way, 0.5 * size_.width);  // beyond the cut nothing of this view is seen
-  if (way.size() < kLeastLassoPoints) return;
+  if (way.size() < kMinLassoPoints) return;
   if (outline.mode == SelectMode::set) last_clicked_.reset();
   last_region_.reset();
   mesh::document::SelectLasso edit;

@@ -17,7 +17,7 @@ using panels::Notice;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kFirstBackOff = 100 * kMillisecond;
-constexpr std::int64_t kLongestBackOff = 2000 * kMillisecond;
+constexpr std::int64_t kMaxBackOff = 2000 * kMillisecond;
 /// A step whose picture hasn't come after this long is taken for lost.
 constexpr std::int64_t kStepPatience = 250 * kMillisecond;
 constexpr int kDigits = 6;  ///< of what an edit reports
@@ -80,7 +80,7 @@ void ModelLink::try_connect() {
   if (now < next_attempt_ns_) return;
   Result<ipc::Client> client = ipc::Client::connect(socket_, "prismesh-kiosk");
   if (!client) {
-    back_off_ns_ = std::clamp(back_off_ns_ * 2, kFirstBackOff, kLongestBackOff);
+    back_off_ns_ = std::clamp(back_off_ns_ * 2, kFirstBackOff, kMaxBackOff);
     next_attempt_ns_ = now + back_off_ns_;
     return;
   }

@@ -23,7 +23,7 @@ namespace prismesh::kiosk {
 namespace {
 
 constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2;
-constexpr int kLargestSide = 16384;
+constexpr int kMaxSide = 16384;
 
 struct RenderOptions {
   std::filesystem::path picture;
@@ -70,9 +70,8 @@ tl::unexpected<Error> wrong(const std::string& option, const std::string& value,
 
 Result<void> read_size(const std::string& text, RenderOptions& options) {
   const std::vector<int> sides = numbers<int>(text, 'x');
-  if (sides.size() != 2 || sides[0] < 16 || sides[1] < 16 || sides[0] > kLargestSide || sides[1] > kLargestSide)
-    return wrong("--size", text,
-                 "write width and height in pixels, for example 1920x1080 (16 to " + std::to_string(kLargestSide) + " each)");
+  if (sides.size() != 2 || sides[0] < 16 || sides[1] < 16 || sides[0] > kMaxSide || sides[1] > kMaxSide)
+    return wrong("--size", text, "write width and height in pixels, for example 1920x1080 (16 to " + std::to_string(kMaxSide) + " each)");
   options.width = sides[0];
   options.height = sides[1];
   return {};

@@ -13,8 +13,8 @@
 
 #include "base/clock.h"
 #include "base/log.h"
-#include "daemon/modeld/bench.h"
-#include "daemon/modeld/desk.h"
+#include "daemon/modeld/request_handler.h"
+#include "daemon/modeld/request_scheduler.h"
 #include "daemon/modeld/watchdog.h"
 #include "daemon/modeld/worker.h"
 #include "ipc/client.h"
@@ -53,16 +53,16 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
       : lock(std::move(state_lock)),
         page(std::move(state_page)),
         publisher(StateFolder(options.state_directory).first_number()),
-        bench(StateFolder(options.state_directory), publisher, options.history_bytes),
-        desk(*this, worker, bench, publisher) {}
+        handler(StateFolder(options.state_directory), publisher, options.history_bytes),
+        scheduler(*this, worker, handler, publisher) {}
 
   ipc::Descriptor lock;
   ipc::StatePage page;
   std::optional<ipc::Server> server;
   std::set<ipc::ClientId> greeted;
   ipc::SnapshotPublisher publisher;
-  Bench bench;
-  Desk desk;
+  RequestHandler handler;
+  RequestScheduler scheduler;
   Pulse loop_pulse;
   std::optional<Watchdog> watchdog;  // while the worker ends, too
   Worker worker;                     // last: it ends before what it works on
@@ -79,7 +79,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
       answer(client, request->number, ipc::Failed{"request", 0, "the first message must be a hello"}, {});
       return server->cut(client, "it didn't greet");
     }
-    desk.request(client, request->number, std::move(request->request), line.size());
+    scheduler.request(client, request->number, std::move(request->request), line.size());
   }
 
   void greet(ipc::ClientId client, std::uint64_t number, const ipc::Hello& hello) {
@@ -91,7 +91,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
     }
     Result<ipc::Descriptor> state_page = page.descriptor().duplicate();
     if (!state_page) return server->cut(client, state_page.error().text());
-    if (greeted.insert(client).second) desk.arrived(client);
+    if (greeted.insert(client).second) scheduler.arrived(client);
     server->welcome(client);
     logging::info("client {} is {}", client, hello.program);
     std::vector<ipc::Descriptor> descriptors;
@@ -103,7 +103,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   void disconnected(ipc::ClientId client, const std::string& why) override {
     if (greeted.erase(client) == 0) return;
     logging::info("client {} left: {}", client, why);
-    desk.left(client);
+    scheduler.left(client);
     beat();
   }
 
@@ -143,7 +143,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   void beat() {
     loop_pulse.sign();
     MonotonicClock clock;
-    ipc::Health health = desk.health();
+    ipc::Health health = scheduler.health();
     health.heartbeat_ns = clock.now_ns();
     health.pid = ::getpid();
     page.set_health(health);
@@ -161,7 +161,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   void begin() {
     server->every(std::chrono::nanoseconds(ipc::kHeartbeatPeriodNs), [this] { beat(); });
     beat();
-    desk.start([](const ipc::Answer& answer) {
+    scheduler.start([](const ipc::Answer& answer) {
       if (const auto* failed = std::get_if<ipc::Failed>(&answer))
         logging::error("what was open last time could not be opened: {}", Error{failed->file, failed->line, failed->message}.text());
       if (const auto* state = std::get_if<ipc::State>(&answer))

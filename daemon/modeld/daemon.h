@@ -1,4 +1,4 @@
-// modeld put together: the socket, the desk, the worker, the state page.
+// modeld put together: the socket, the scheduler, the worker, the state page.
 #pragma once
 
 #include <chrono>

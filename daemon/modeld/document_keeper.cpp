@@ -8,7 +8,7 @@
 #include "daemon/modeld/paths.h"
 #include "mesh/deck/deck.h"
 #include "mesh/document/history.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::modeld {
 
@@ -44,7 +44,7 @@ auto if_memory_allows(const Work& work, const std::string& file) -> decltype(wor
 }
 
 bool differs(const Generation& a, const Generation& b) {
-  return &a != &b && (a.model.growth != b.model.growth || !mesh::moved_nodes(a.model, b.model).empty());
+  return &a != &b && (a.model.topology_change != b.model.topology_change || !mesh::moved_nodes(a.model, b.model).empty());
 }
 
 }  // namespace
@@ -188,7 +188,8 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   const bool push = prepared->step == Prepared::Step::push;
   const bool follows = push || own_step(prepared->step) == prepared->next.get();
   // A delta only ever adds to the structure.
-  if (!follows && prepared->step == Prepared::Step::undo && prepared->next->model.growth != open.recorded.current().model.growth)
+  if (!follows && prepared->step == Prepared::Step::undo &&
+      prepared->next->model.topology_change != open.recorded.current().model.topology_change)
     return fail("", "this step can't be undone any more: it changed the structure, and the journal no longer has the state before it");
   Prepared recorded = follows ? *prepared : as_push(*prepared, edit);
   if (push) recorded.drop_oldest = same_drop(*prepared);

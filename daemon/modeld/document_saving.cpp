@@ -8,7 +8,7 @@
 #include "daemon/modeld/paths.h"
 #include "daemon/modeld/save_intent.h"
 #include "mesh/deck/deck.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::modeld {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "mesh/model/growth.h"
 #include "mesh/model/node_set.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::modeld {
 
@@ -68,11 +68,11 @@ Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document
   preview.shell_count = after.size();
   std::unordered_map<std::uint32_t, std::uint32_t> known;
   for (const ShellIndex shell : after) {
-    if (preview.shells.size() == ipc::kMostPreviewedShells) break;
+    if (preview.shells.size() == ipc::kMaxPreviewedShells) break;
     add_shell(next, shell, known, preview);
   }
   for (const ShellIndex shell : before) {
-    if (preview.replaced.size() == ipc::kMostPreviewedShells) break;
+    if (preview.replaced.size() == ipc::kMaxPreviewedShells) break;
     preview.replaced.push_back(now.model.shell_ids[shell.value]);
   }
   return preview;

@@ -9,7 +9,7 @@
 #include "base/nearest_name.h"
 #include "base/parallel_for.h"
 #include "mesh/document/damage.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/quality/composite.h"
 #include "mesh/quality/limits.h"
 
@@ -51,7 +51,7 @@ class Shells {
     if (damaged) {
       listed_ = true;
       list_ = mesh::document::damaged_shells(*document.opened, document.current());
-    } else if (model_.growth) {
+    } else if (model_.topology_change) {
       listed_ = true;
       for (std::size_t s = 0; s < model_.shell_count(); ++s)
         if (!model_.is_removed(ShellIndex(s))) list_.push_back(ShellIndex(s));
@@ -220,7 +220,7 @@ class Gathering {
 
   void add_errors(Figures& all, ipc::Quality& quality) const {
     quality.error_count = all.wrong.size();
-    const auto most = static_cast<std::ptrdiff_t>(std::min(all.wrong.size(), ipc::kMostQualityErrors));
+    const auto most = static_cast<std::ptrdiff_t>(std::min(all.wrong.size(), ipc::kMaxQualityErrors));
     std::partial_sort(all.wrong.begin(), all.wrong.begin() + most, all.wrong.end(), worse);
     all.wrong.resize(static_cast<std::size_t>(most));
     for (const Wrong& wrong : all.wrong) {

@@ -17,7 +17,7 @@ constexpr double kChangesPerSecond = 0.5;                  // between resting an
 constexpr double kLeadS = 0.05;                            // the published velocity is the mean over this time to come ...
 constexpr double kLeadShare = 0.95;                        // ... of which so much is used: rather behind the head than beyond it
 constexpr double kFirstSpeedMmPerS = 200;                  // standard deviation for a head that was just found
-constexpr double kLeastChance = 1e-4;                      // no model is ever ruled out
+constexpr double kMinChance = 1e-4;                        // no model is ever ruled out
 constexpr double kDoubtfulNoise = 3;                       // times the noise of an ordinary sample
 constexpr double kWildSigmas = 7, kWildMm = 12;            // surprises beyond both are no head's
 constexpr double kAgreeMm = 12, kAgreeMmPerS = 1000;       // two samples are of one head
@@ -26,7 +26,7 @@ constexpr double kScatterShare = 1.0 / 60;                 // of a new sample in
 constexpr double kScatterTrust = 0.8, kScatterMostMm = 8;  // ... which is uncertain, and no tracker is as bad as that
 constexpr double kScatterGapS = 0.04;                      // samples farther apart tell of the head rather than of noise
 constexpr std::int64_t kGapNs = 250'000'000;
-constexpr double kLongestStepS = 0.02;  // the moving model's noise is a series in time over kAccelerationLastsS
+constexpr double kMaxStepS = 0.02;      // the moving model's noise is a series in time over kAccelerationLastsS
 constexpr double kAcrossLastsS = 0.15;  // smoothing of the line between the eyes
 
 enum Row { kPlace, kVelocity, kAcceleration };
@@ -64,8 +64,8 @@ double seconds_between(std::int64_t from_ns, std::int64_t until_ns) { return sta
 Vector3d predict(const HeadState& state, std::int64_t time_ns) {
   if (state.time_ns == 0) return state.between_eyes_mm;
   // Beyond the knee the way ahead bends over, to end level at the longest prediction.
-  constexpr double kKneeS = 0.08, kLongestS = static_cast<double>(kLongestPredictionNs) * 1e-9, kBend = 0.5 / (kLongestS - kKneeS);
-  double ahead = std::clamp(seconds_between(state.time_ns, time_ns), -kLongestS, kLongestS);
+  constexpr double kKneeS = 0.08, kMaxS = static_cast<double>(kMaxPredictionNs) * 1e-9, kBend = 0.5 / (kMaxS - kKneeS);
+  double ahead = std::clamp(seconds_between(state.time_ns, time_ns), -kMaxS, kMaxS);
   if (ahead > kKneeS) ahead -= kBend * (ahead - kKneeS) * (ahead - kKneeS);
   return state.between_eyes_mm + state.velocity_mm_s * ahead;
 }
@@ -149,7 +149,7 @@ HeadFilter::Belief HeadFilter::foretold(const Belief& now, double seconds) {
   next.moving = (1 - change) * now.moving + change * (1 - now.moving);
   const std::array<double, 2> chance_now = {1 - now.moving, now.moving};
   const std::array<double, 2> chance_next = {1 - next.moving, next.moving};
-  const int steps = std::max(1, static_cast<int>(std::ceil(seconds / kLongestStepS)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(seconds / kMaxStepS)));
   const std::array<Step, 2> step = {resting_step(seconds / steps), moving_step(seconds / steps)};
   for (std::size_t i = 0; i < 2; ++i) {
     const Estimate& own = now.models[i];
@@ -188,7 +188,7 @@ void HeadFilter::weigh(Belief& foretold, const Vector3d& place_mm, double varian
   }
   const double odds =
       (1 - foretold.moving) / foretold.moving * std::exp(std::clamp(log_likelihood[kResting] - log_likelihood[kMoving], -50.0, 50.0));
-  foretold.moving = std::clamp(1 / (1 + odds), kLeastChance, 1 - kLeastChance);
+  foretold.moving = std::clamp(1 / (1 + odds), kMinChance, 1 - kMinChance);
 }
 
 void HeadFilter::publish(const HeadSample& sample) {

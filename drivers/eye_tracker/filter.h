@@ -20,8 +20,8 @@ struct HeadState {
   Eigen::Vector3d toward_right = Eigen::Vector3d::UnitX();
 };
 
-inline constexpr std::int64_t kLongestPredictionNs = 200'000'000;
-/// The place between the eyes at a time: never extrapolated further than kLongestPredictionNs past the newest measurement (nor further
+inline constexpr std::int64_t kMaxPredictionNs = 200'000'000;
+/// The place between the eyes at a time: never extrapolated further than kMaxPredictionNs past the newest measurement (nor further
 /// back before it), and from 80 ms on ever more slowly, since a head that moves fast is about to stop.
 Eigen::Vector3d predict(const HeadState& state, std::int64_t time_ns);
 

@@ -1,4 +1,4 @@
-// A port over a file descriptor in non-blocking mode: what pseudo-terminals, both ends, are. For this room's own use.
+// A port over a file descriptor in non-blocking mode: what pseudo-terminals, both ends, are. Private to drivers/port.
 #pragma once
 
 #include <memory>

@@ -14,7 +14,7 @@ namespace prismesh::drivers::port {
 namespace {
 
 // Without inotify or an eventfd the thread still looks this often.
-constexpr std::int64_t kLongestSleepNs = 1'000'000'000;
+constexpr std::int64_t kMaxSleepNs = 1'000'000'000;
 
 std::vector<std::string> paths_of(const std::vector<KeeperWork>& keepers) {
   std::vector<std::string> paths;
@@ -55,7 +55,7 @@ void KeeperThread::run(const std::stop_token& stop) {
 
 void KeeperThread::wait_until(std::int64_t due_ns) {
   std::array<pollfd, 2> watched{pollfd{event_, POLLIN, 0}, pollfd{watch_.descriptor(), POLLIN, 0}};
-  const std::int64_t wait = std::clamp<std::int64_t>(due_ns - clock_.now_ns(), 0, kLongestSleepNs);
+  const std::int64_t wait = std::clamp<std::int64_t>(due_ns - clock_.now_ns(), 0, kMaxSleepNs);
   ::poll(watched.data(), watched.size(), static_cast<int>((wait + 999'999) / 1'000'000));
   std::uint64_t taken = 0;
   [[maybe_unused]] const ssize_t ignored = ::read(event_, &taken, sizeof taken);

@@ -1,4 +1,4 @@
-// Why a device's file couldn't be opened, in words that tell the user what to do. For this room's own use.
+// Why a device's file couldn't be opened, in words that tell the user what to do. Private to drivers/port.
 #pragma once
 
 #include <string>

@@ -6,10 +6,10 @@
 namespace prismesh::drivers::prism_servo {
 namespace {
 
-constexpr std::int64_t kLongestAheadNs = 100'000'000;
+constexpr std::int64_t kMaxAheadNs = 100'000'000;
 /// After a stall the goal goes on as if only so long had passed.
-constexpr std::int64_t kLongestStepNs = 20'000'000;
-constexpr std::int64_t kLongestLagNs = 200'000'000;
+constexpr std::int64_t kMaxStepNs = 20'000'000;
+constexpr std::int64_t kMaxLagNs = 200'000'000;
 /// Of a move back: time to come to rest, besides the way itself.
 constexpr std::int64_t kRestNs = 30'000'000;
 constexpr std::int64_t kLagsToRest = 4;
@@ -31,9 +31,7 @@ std::int64_t ns_of(double seconds) { return static_cast<std::int64_t>(seconds * 
 
 double mask_position_at(const MaskState& state, std::int64_t time_ns) {
   if (state.measured_ns == 0) return state.position_mm;
-  const auto seconds = [](std::int64_t ns) {
-    return static_cast<double>(std::clamp<std::int64_t>(ns, -kLongestAheadNs, kLongestAheadNs)) * 1e-9;
-  };
+  const auto seconds = [](std::int64_t ns) { return static_cast<double>(std::clamp<std::int64_t>(ns, -kMaxAheadNs, kMaxAheadNs)) * 1e-9; };
   const double lag = std::max(1e-3, seconds(state.lag_ns));
   // A motor that is pulled toward its goal ends up as far behind it as the goal gets in its lag, and what it is off by now fades away.
   const auto behind_goal = [&](std::int64_t ns) { return state.goal_mm + state.goal_velocity_mm_s * (seconds(ns - state.time_ns) - lag); };
@@ -50,10 +48,10 @@ void MaskControl::set_optics(const display::MaskOptics& optics) {
 }
 
 MaskControl::Output MaskControl::step(const Input& input) {
-  const std::int64_t passed = started_ ? std::clamp<std::int64_t>(input.now_ns - state_.time_ns, 0, kLongestStepNs) : 0;
+  const std::int64_t passed = started_ ? std::clamp<std::int64_t>(input.now_ns - state_.time_ns, 0, kMaxStepNs) : 0;
   started_ = true;
   state_.time_ns = input.now_ns;
-  state_.lag_ns = lag_ns_ = std::clamp<std::int64_t>(input.servo_lag_ns, 0, kLongestLagNs);
+  state_.lag_ns = lag_ns_ = std::clamp<std::int64_t>(input.servo_lag_ns, 0, kMaxLagNs);
   const bool there = look(input);
   wish_velocity_mm_s_ = 0;
   decide(input, there);

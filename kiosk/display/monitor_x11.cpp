@@ -39,8 +39,8 @@ std::vector<std::byte> property(Display* display, RROutput output, Atom name) {
   int format = 0;
   unsigned long count = 0, rest = 0;
   unsigned char* data = nullptr;
-  constexpr long kLongest = 4096;
-  if (XRRGetOutputProperty(display, output, name, 0, kLongest, False, False, AnyPropertyType, &type, &format, &count, &rest, &data) !=
+  constexpr long kMaxLength = 4096;
+  if (XRRGetOutputProperty(display, output, name, 0, kMaxLength, False, False, AnyPropertyType, &type, &format, &count, &rest, &data) !=
           Success ||
       data == nullptr)
     return {};

@@ -40,7 +40,7 @@ std::string error_row(const ipc::QualityError& error) {
 }
 
 constexpr unsigned kOkBar = 0xffb4b0acu;
-constexpr std::size_t kMostPartRows = 6;
+constexpr std::size_t kMaxPartRows = 6;
 constexpr float kHistogramHeight = 11 * kGrid;
 
 /// A count behind its signal, right-aligned at `right`; nothing where it is zero.
@@ -180,7 +180,7 @@ void parts_section(const QualityFacts& facts) {
   std::vector<ipc::QualityPart> parts = facts.figures->parts;
   if (parts.empty()) return;
   section("Parts by composite");
-  const std::size_t shown = std::min(parts.size(), kMostPartRows);
+  const std::size_t shown = std::min(parts.size(), kMaxPartRows);
   std::partial_sort(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(shown), parts.end(),
                     [](const ipc::QualityPart& a, const ipc::QualityPart& b) {
                       return a.composite != b.composite ? a.composite < b.composite : a.part < b.part;

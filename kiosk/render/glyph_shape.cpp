@@ -23,7 +23,7 @@ struct ShapeMetrics {
   GlyphShape shape;
   std::uint16_t metrics;
 };
-constexpr std::array<ShapeMetrics, kMostShapesOfShell> kShapes{
+constexpr std::array<ShapeMetrics, kMaxShapesOfShell> kShapes{
     {{GlyphShape::warped, bits({Metric::warpage})},
      {GlyphShape::short_edge, bits({Metric::min_length})},
      {GlyphShape::long_edge, bits({Metric::max_length})},

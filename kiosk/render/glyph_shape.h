@@ -33,7 +33,7 @@ inline constexpr std::uint32_t kMarkedGlyph = 15;  ///< in place of a shape: the
 /// The shapes of a state's worst: of the failing metrics if any fails, else of the warning ones. `other` only where nothing tells more, a
 /// defect alone. Empty for a shell that is ok.
 std::vector<GlyphShape> shapes_of(const mesh::quality::ShellState& state);
-inline constexpr std::size_t kMostShapesOfShell = 6;  ///< at once
+inline constexpr std::size_t kMaxShapesOfShell = 6;  ///< at once
 
 /// Which diagonal (0: from corner 0 to 2, 1: from 1 to 3), edge (k: from corner k to the next) or corner the shape marks, from the corners'
 /// places (3 or 4); of a triangle's short_edge the corner from which the smallest height falls. 0 where there is nothing to choose, or a

@@ -177,7 +177,7 @@ Result<ModelLayer::Glyphs> ModelLayer::glyphs(std::size_t cap, bool damaged) {
   glyph_cap_ = cap;
   glyphs_of_damage_ = damaged;
   // The preview's share is set aside for all of the drag, so that none of the model's signs come and go with its frames.
-  const std::size_t set_aside = previewing() ? std::min(kMostShapesOfShell * preview_->shells().size(), cap / 2) : 0;
+  const std::size_t set_aside = previewing() ? std::min(kMaxShapesOfShell * preview_->shells().size(), cap / 2) : 0;
   if (preview_glyphs_.stale)
     if (const auto chosen = choose_preview_glyphs(set_aside); !chosen) return fail(chosen.error());
   if (model_glyphs_.stale) {

@@ -7,7 +7,7 @@ namespace prismesh::kiosk::render {
 namespace {
 
 // Sizes in display pixels.
-constexpr float kNodeRadius = 4.2F, kLeastNodeRadius = 1.3F;
+constexpr float kNodeRadius = 4.2F, kMinNodeRadius = 1.3F;
 constexpr float kNodeShareOfSide = 0.26F;  ///< they make room where elements are small
 constexpr float kRimmedNodeRadius =
     2.6F;                              ///< from this size on they are solids with a dark rim: smaller ones couldn't be told from squares
@@ -60,8 +60,8 @@ NodePass::NodePass(const Shaders& shaders)
 void NodePass::draw(const ModelLayer& model, const Frame& frame) const {
   const SelectionRows& rows = model.selected();
   if (rows.count() == 0) return;
-  const float room = frame.fitting_radius(kNodeRadius, kLeastNodeRadius, kNodeShareOfSide, model.typical_side());
-  const float radius = model.previewing() ? kLeastNodeRadius : room;  // the wireframe says where they go
+  const float room = frame.fitting_radius(kNodeRadius, kMinNodeRadius, kNodeShareOfSide, model.typical_side());
+  const float radius = model.previewing() ? kMinNodeRadius : room;  // the wireframe says where they go
   const bool rimmed = radius >= kRimmedNodeRadius;
   const Solid& solid = rimmed ? octahedra_ : squares_;
   rows.texture().bind(unit::kSelection);

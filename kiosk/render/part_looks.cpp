@@ -30,12 +30,12 @@ std::vector<PartState> part_states(const ModelTable& table, bool damaged) {
 }
 
 Colour colour_of_state(const PartState& state) {
-  constexpr float kLeast = 0.3F, kFullShare = 0.1F;
+  constexpr float kMin = 0.3F, kFullShare = 0.1F;
   const std::array<Colour, 3>& grades = grade_colours();
   const std::size_t wrong = state.fail > 0 ? state.fail : state.warn;
   if (wrong == 0) return grades[0];
   const float share = static_cast<float>(wrong) / static_cast<float>(state.shells) / kFullShare;
-  const float strength = kLeast + (1 - kLeast) * std::min(share, 1.0F);
+  const float strength = kMin + (1 - kMin) * std::min(share, 1.0F);
   return (1 - strength) * grades[0] + strength * grades[state.fail > 0 ? 2 : 1];
 }
 

@@ -16,7 +16,7 @@ constexpr float kLineElementHalfWidth = 0.9F;
 constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels short
 constexpr float kPreviewHalfWidth = 0.65F;
 // Signs keep their size on the screen, but make room where elements are small.
-constexpr float kGlyphRadius = 9.0F, kLeastGlyphRadius = 5.0F, kGlyphShareOfSide = 0.7F;
+constexpr float kGlyphRadius = 9.0F, kMinGlyphRadius = 5.0F, kGlyphShareOfSide = 0.7F;
 constexpr double kLinesTowardEye = 1.3;  ///< pixels: what lifts lines off the surface they lie on
 
 }  // namespace
@@ -224,7 +224,7 @@ void ScenePass::draw_glyphs(const Picture& picture, ModelLayer& model, std::size
   }
   if (picture.marked) batches.push_back({model.marked(*picture.marked), textures.positions(), textures.connectivity()});
   frame.set(shaders_.glyphs);
-  shaders_.glyphs.set("least_pixels", frame.fitting_radius(kGlyphRadius, kLeastGlyphRadius, kGlyphShareOfSide, model.typical_side()));
+  shaders_.glyphs.set("least_pixels", frame.fitting_radius(kGlyphRadius, kMinGlyphRadius, kGlyphShareOfSide, model.typical_side()));
   shaders_.glyphs.set("warn_ink", kWarnColour);
   shaders_.glyphs.set("fail_ink", kFailColour);
   shaders_.glyphs.set("mark_ink", kInformationColour);

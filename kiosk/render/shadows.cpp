@@ -5,8 +5,8 @@
 namespace prismesh::kiosk::render {
 
 namespace {
-constexpr double kOff = 0.04;          ///< of the box's diagonal between it and a plane
-constexpr double kLeastFacing = 0.12;  ///< of a plane's normal along the line of sight: under it nothing can be read from it
+constexpr double kOff = 0.04;        ///< of the box's diagonal between it and a plane
+constexpr double kMinFacing = 0.12;  ///< of a plane's normal along the line of sight: under it nothing can be read from it
 }  // namespace
 
 std::vector<ShadowPlane> shadow_planes(const stereo::Box& box, const stereo::View& view) {
@@ -15,7 +15,7 @@ std::vector<ShadowPlane> shadow_planes(const stereo::Box& box, const stereo::Vie
   const Vec3 toward_viewer = view.rotation.conjugate() * Vec3::UnitZ();
   const double off = kOff * (box.high - box.low).norm();
   for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(toward_viewer[axis]) < kLeastFacing) continue;
+    if (std::abs(toward_viewer[axis]) < kMinFacing) continue;
     ShadowPlane plane{axis, box.low - Vec3::Constant(off), box.high + Vec3::Constant(off)};
     plane.low[axis] = plane.high[axis] = toward_viewer[axis] > 0 ? plane.low[axis] : plane.high[axis];
     planes.push_back(plane);

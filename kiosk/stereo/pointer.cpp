@@ -8,7 +8,7 @@ namespace prismesh::kiosk::stereo {
 namespace {
 
 constexpr double kHandleHalfWidthPixels = 8;  ///< of the arrow's head, its widest place
-constexpr double kLeastSlope = 0.06;          ///< of an axis' length on the screen to its true length: under it nothing can be aimed
+constexpr double kMinSlope = 0.06;            ///< of an axis' length on the screen to its true length: under it nothing can be aimed
 
 /// Homogeneous pixel coordinates: divide the first two by the third.
 Vec3 pixel_homogeneous(const Aim& aim, const Eigen::Matrix4d& clip, const Eigen::Vector4d& point) {
@@ -62,7 +62,7 @@ std::optional<double> distance_along(const Aim& aim, const Vec3& point, const Ve
   const Eigen::Vector2d at = start.head<2>() / start.z();
   const Eigen::Vector2d tangent = (step.head<2>() - at * step.z()) / start.z();  // pixels per deck unit
   const double full_length = aim.view.mm_per_unit / aim.mm_per_pixel();
-  if (!(tangent.norm() > kLeastSlope * full_length)) return std::nullopt;
+  if (!(tangent.norm() > kMinSlope * full_length)) return std::nullopt;
   // A line stays a line in the picture: go to the pixel's foot on it, then solve (start + t step) for that place.
   const Eigen::Vector2d along = tangent.normalized();
   const double wanted = along.dot(pixel);

@@ -17,11 +17,11 @@ double progress(std::int64_t since_ns) {
 
 }  // namespace
 
-void DepthFit::change_percent(int steps) { percent_ = std::clamp(percent_ + steps * kPercentStep, 0, kMostPercent); }
+void DepthFit::change_percent(int steps) { percent_ = std::clamp(percent_ + steps * kPercentStep, 0, kMaxPercent); }
 
 void DepthFit::change_degrees(int steps) {
   const auto tenths = [](double degrees) { return static_cast<int>(std::lround(10 * degrees)); };
-  tenths_ = std::clamp(tenths_ + steps * tenths(kDegreesStep), tenths(kLeastDegrees), tenths(kMostDegrees));
+  tenths_ = std::clamp(tenths_ + steps * tenths(kDegreesStep), tenths(kMinDegrees), tenths(kMaxDegrees));
 }
 
 void DepthFit::follow_distance(double eye_distance_mm, std::int64_t now_ns) {

@@ -11,8 +11,8 @@ namespace prismesh::kiosk::tools {
 
 class DepthFit {
  public:
-  static constexpr int kMostPercent = 150, kPercentStep = 10;
-  static constexpr double kLeastDegrees = 0.5, kMostDegrees = 1.5, kDegreesStep = 0.1;
+  static constexpr int kMaxPercent = 150, kPercentStep = 10;
+  static constexpr double kMinDegrees = 0.5, kMaxDegrees = 1.5, kDegreesStep = 0.1;
   static constexpr std::int64_t kGlideNs = 180'000'000;
 
   /// 0 .. 150 % of the fitted depth.

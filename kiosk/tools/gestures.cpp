@@ -67,7 +67,7 @@ void Gestures::lengthen(const Pixel& at) {
     way_.push_back(at);
   else
     way_.back() = at;  // its end follows the pointer; a point stays where it is far enough from the one before
-  if (distance(way_[way_.size() - 2], at) >= kOutlineStep && way_.size() < kMostOutlinePoints) way_.push_back(at);
+  if (distance(way_[way_.size() - 2], at) >= kOutlineStep && way_.size() < kMaxOutlinePoints) way_.push_back(at);
 }
 
 std::vector<Gesture> Gestures::begin_drag(const Pixel& at) {

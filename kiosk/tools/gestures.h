@@ -82,7 +82,7 @@ inline constexpr std::int64_t kDoubleClickMs = 400;
 
 /// An outline's way has a point every so many pixels, and not more than an edit may have.
 inline constexpr double kOutlineStep = 2;
-inline constexpr std::size_t kMostOutlinePoints = 100'000;
+inline constexpr std::size_t kMaxOutlinePoints = 100'000;
 
 /// Follows one mouse. A button pressed over a panel belongs to the panel until it is released. While something is drawn or pulled with one
 /// button, another one may move the view: what was begun waits where it is, and goes on when that button is up.

@@ -99,8 +99,8 @@ namespace {
 
 constexpr double kSlackPixels = 8;
 constexpr int kCircleSteps = 180;
-constexpr double kLeastBallShare = 0.25;  ///< of the arrow's length
-constexpr double kLeastFacing = 0.12;     ///< of a plane to the line of sight: under it a pointer can't be followed in the plane
+constexpr double kMinBallShare = 0.25;  ///< of the arrow's length
+constexpr double kMinFacing = 0.12;     ///< of a plane to the line of sight: under it a pointer can't be followed in the plane
 
 bool on_disk_at(const stereo::Aim& aim, const Vec3& at, const Vec3& direction, const Pixel& pixel) {
   const Vec3 edge = stereo::handle_tip(aim, at, direction) - at;  // as long as the arrow
@@ -153,7 +153,7 @@ Vec3 arrow_direction(const stereo::Aim& aim, const Anchor& anchor) {
 Vec3 ball_place(const stereo::Aim& aim, const Axis& axis, const Vec3& at) {
   const Vec3 centre = axis.point + axis.direction * (at - axis.point).dot(axis.direction);
   const double length = (stereo::handle_tip(aim, centre, axis.direction) - centre).norm();
-  if ((at - centre).norm() >= kLeastBallShare * length) return at;
+  if ((at - centre).norm() >= kMinBallShare * length) return at;
   const auto pixel = stereo::pixel_of(aim, centre);
   const Vec3 sight = stereo::ray_through(aim, pixel.value_or(Pixel::Zero())).direction.normalized();
   Vec3 across = axis.direction.cross(sight);
@@ -173,7 +173,7 @@ void HandlePull::hold(const stereo::Aim& aim, const Pixel& pixel, const Pull& pu
   upward_ = points_at_viewer(aim, start_, direction_) || !stereo::distance_along(aim, start_, direction_, pixel);
   const Vec3 normal = axis_ ? axis_->direction : direction_;
   const stereo::Ray ray = stereo::ray_through(aim, pixel);
-  sideways_ = std::abs(ray.direction.normalized().dot(normal)) < kLeastFacing;
+  sideways_ = std::abs(ray.direction.normalized().dot(normal)) < kMinFacing;
   when_taken_ = raw(aim, pixel);
 }
 

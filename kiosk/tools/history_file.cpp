@@ -29,16 +29,16 @@ HistoryFile::HistoryFile(fs::path file) : file_(std::move(file)) {
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
-    if (!line.empty() && line.size() <= kMostBytes) entries_.emplace_back(line);
+    if (!line.empty() && line.size() <= kMaxBytes) entries_.emplace_back(line);
   }
-  if (entries_.size() > kMost) entries_.erase(entries_.begin(), entries_.end() - kMost);
+  if (entries_.size() > kMax) entries_.erase(entries_.begin(), entries_.end() - kMax);
 }
 
 void HistoryFile::add(const std::string& entry) {
-  if (entry.empty() || entry.size() > kMostBytes || entry.find('\n') != std::string::npos) return;
+  if (entry.empty() || entry.size() > kMaxBytes || entry.find('\n') != std::string::npos) return;
   std::erase(entries_, entry);
   entries_.push_back(entry);
-  if (entries_.size() > kMost) entries_.erase(entries_.begin());
+  if (entries_.size() > kMax) entries_.erase(entries_.begin());
   if (file_.empty()) return;
   std::string text;
   for (const std::string& each : entries_) text += each + "\n";

@@ -12,8 +12,8 @@ std::filesystem::path kiosk_state_folder();
 
 class HistoryFile {
  public:
-  static constexpr std::size_t kMost = 200;        ///< entries; the oldest go
-  static constexpr std::size_t kMostBytes = 4096;  ///< of an entry; a longer one isn't kept
+  static constexpr std::size_t kMax = 200;        ///< entries; the oldest go
+  static constexpr std::size_t kMaxBytes = 4096;  ///< of an entry; a longer one isn't kept
 
   HistoryFile() = default;
   /// Reads what is there; a file that isn't, or can't be read, is an empty history. An empty path: nothing is kept over restarts.

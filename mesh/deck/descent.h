@@ -6,7 +6,7 @@
 
 #include "mesh/deck/card_writer.h"
 #include "mesh/deck/deck.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::deck {
 

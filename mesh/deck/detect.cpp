@@ -7,12 +7,12 @@ namespace {
 
 /// Enough to get past any header of comments; a keyword of its own decides earlier.
 constexpr std::size_t kLookedAt = std::size_t{256} << 10;
-constexpr std::size_t kLongestLine = 200;
+constexpr std::size_t kMaxLineLength = 200;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 std::string upper_line(std::string_view line) {
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
-  std::string out(line.substr(0, kLongestLine));
+  std::string out(line.substr(0, kMaxLineLength));
   for (char& c : out)
     if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
   return out;
@@ -97,7 +97,7 @@ Votes count_votes(std::string_view text) {
   Votes votes;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string line = upper_line(text.substr(0, std::min(end, kLongestLine)));
+    const std::string line = upper_line(text.substr(0, std::min(end, kMaxLineLength)));
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.empty()) continue;
     if (line.starts_with("#RADIOSS")) votes.radioss += kCertain;

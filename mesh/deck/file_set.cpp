@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostFiles = 20000;
+constexpr std::size_t kMaxFiles = 20000;
 
 fs::path normal(const fs::path& path) {
   std::error_code error;
@@ -89,14 +89,14 @@ FileSet::FileSet(fs::path main, FileBytes bytes, StandIns stand_ins)
 std::uint32_t FileSet::include(std::uint32_t from, const std::string& name, std::span<const fs::path> folders, std::string& reason) {
   const auto [at, first] = known_.try_emplace({from, name}, kNoFile, "isn't there");
   auto& [file, why] = at->second;
-  if (first && missing.size() < kMostFiles) {
+  if (first && missing.size() < kMaxFiles) {
     if (const std::optional<fs::path> found = find(name, folders))
       file = open(*found, name, why);
     else
       why = why_not_found(name, folders);
   }
   if (file != kNoFile) return file;
-  if (missing.size() < kMostFiles) missing.push_back(name);
+  if (missing.size() < kMaxFiles) missing.push_back(name);
   reason = why;
   return kNoFile;
 }
@@ -105,7 +105,7 @@ std::uint32_t FileSet::include(std::uint32_t from, const std::string& name, std:
 std::uint32_t FileSet::open(const fs::path& found, const std::string& name, std::string& reason) {
   const std::string canonical = canonical_name(found);
   if (const auto at = by_canonical_.find(canonical); at != by_canonical_.end()) return at->second;
-  if (files.size() >= kMostFiles) {
+  if (files.size() >= kMaxFiles) {
     reason = "is one of too many";
     return kNoFile;
   }

@@ -14,7 +14,7 @@
 
 namespace prismesh::mesh::deck {
 
-inline constexpr int kDeepestInclude = 64;
+inline constexpr int kMaxIncludeDepth = 64;
 
 class FileSet {
  public:

@@ -108,10 +108,10 @@ class Findings {
       std::string list;
       std::size_t told = 0;
       for (const std::string& keyword : keywords) {
-        if (++told > kMostKeywords) break;
+        if (++told > kMaxKeywords) break;
         list += (told > 1 ? ", " : "") + keyword;
       }
-      if (keywords.size() > kMostKeywords) list += " and " + std::to_string(keywords.size() - kMostKeywords) + " other keywords";
+      if (keywords.size() > kMaxKeywords) list += " and " + std::to_string(keywords.size() - kMaxKeywords) + " other keywords";
       return list + ": kept as they are, but not understood; nodes and elements whose numbers they hold can't be removed";
     });
   }
@@ -312,7 +312,7 @@ class Findings {
     });
   }
 
-  static constexpr std::size_t kMostKeywords = 5;
+  static constexpr std::size_t kMaxKeywords = 5;
 
   const Deck& deck_;
   const Model& model_;

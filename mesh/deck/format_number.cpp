@@ -7,7 +7,7 @@
 namespace prismesh::mesh::deck {
 namespace {
 
-constexpr int kMostDigits = 17;  // as many as tell any two doubles apart
+constexpr int kMaxDigits = 17;  // as many as tell any two doubles apart
 
 /// value = d.ddd... * 10^exponent, without trailing zeros.
 struct Digits {
@@ -71,7 +71,7 @@ std::string format_coordinate(double value, std::size_t width, Exponent exponent
   const bool negative = value < 0;
   const double magnitude = std::abs(value);
   std::string text = fit(shortest_digits(magnitude), negative, width, exponent);
-  for (int digits = kMostDigits - 1; text.empty() && digits >= 1; --digits)
+  for (int digits = kMaxDigits - 1; text.empty() && digits >= 1; --digits)
     text = fit(rounded_digits(magnitude, digits), negative, width, exponent);
   return text;
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kBeyondAll = std::numeric_limits<std::int64_t>::max();
 /// Ids taken and ranges passed over in search of one: more than any deck has blocks of ids.
-constexpr int kMostSteps = 200'000;
+constexpr int kMaxSteps = 200'000;
 
 /// The first id from `id` on that the index lacks: ids that count up by one are passed over in a few steps.
 std::int64_t beyond_block(const IdIndex& index, std::int64_t id) {
@@ -132,7 +132,7 @@ Result<std::int64_t> NewIds::find(const Search& search) {
 
 std::optional<std::int64_t> NewIds::first_free(const Search& search, std::int64_t from, std::int64_t to) {
   std::int64_t id = from;
-  for (int step = 0; step < kMostSteps && id <= to; ++step) {
+  for (int step = 0; step < kMaxSteps && id <= to; ++step) {
     const std::int64_t before = id;
     id = beyond_taken(search.referred, id);
     if (id > to) break;
@@ -160,17 +160,17 @@ std::int64_t NewIds::beyond_taken(Referred referred, std::int64_t id) {
 
 /// What is gone may still be named by text that nobody reads.
 bool NewIds::was_removed(Referred referred, std::int64_t id) {
-  if (!model_.growth) return false;
+  if (!model_.topology_change) return false;
   Removed& removed = removed_[referred];
-  const Growth& growth = *model_.growth;
-  const std::size_t count = referred == Referred::node ? growth.removed_nodes.size() : growth.removed_shells.size();
+  const TopologyChange& topology_change = *model_.topology_change;
+  const std::size_t count = referred == Referred::node ? topology_change.removed_nodes.size() : topology_change.removed_shells.size();
   if (removed.seen != count) {
     removed.seen = count;
     removed.ids.clear();
     if (referred == Referred::node)
-      for (const NodeIndex node : growth.removed_nodes) removed.ids.push_back(model_.node_ids[node.value]);
+      for (const NodeIndex node : topology_change.removed_nodes) removed.ids.push_back(model_.node_ids[node.value]);
     else
-      for (const ShellIndex shell : growth.removed_shells) removed.ids.push_back(model_.shell_ids[shell.value]);
+      for (const ShellIndex shell : topology_change.removed_shells) removed.ids.push_back(model_.shell_ids[shell.value]);
     std::sort(removed.ids.begin(), removed.ids.end());
   }
   return std::binary_search(removed.ids.begin(), removed.ids.end(), id);

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "mesh/deck/card_writer.h"
 #include "mesh/deck/deck.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::deck {
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPowersOfTen[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-constexpr std::size_t kLongestNumber = 128;
+constexpr std::size_t kMaxNumberLength = 128;
 constexpr std::uint64_t kExactIntegers = std::uint64_t{1} << 53;
 
 bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
@@ -64,7 +64,7 @@ bool take_apart(std::string_view text, Decimal& decimal) {
 
 /// The number written the way from_chars wants it: no leading plus, an 'e' before the exponent.
 bool parse_slowly(std::string_view text, const Decimal& decimal, double& value) {
-  char buffer[kLongestNumber + 16];
+  char buffer[kMaxNumberLength + 16];
   char* out = buffer;
   std::size_t at = 0;
   if (text[0] == '+' || text[0] == '-') at = 1;
@@ -96,7 +96,7 @@ bool parse_real(std::string_view field, double& value) {
   while (!field.empty() && field.back() == ' ') field.remove_suffix(1);
   value = 0;
   if (field.empty()) return true;
-  if (field.size() > kLongestNumber) return false;
+  if (field.size() > kMaxNumberLength) return false;
   Decimal decimal;
   if (!take_apart(field, decimal)) return false;
   const int power = decimal.exponent - decimal.after_point;

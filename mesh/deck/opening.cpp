@@ -15,7 +15,7 @@ namespace prismesh::mesh::deck {
 namespace {
 
 /// Entities are numbered with 32 bits.
-constexpr std::size_t kMostEntities = 0xfffffffeu;
+constexpr std::size_t kMaxEntities = 0xfffffffeu;
 
 /// One hash over all files: their bytes' hashes and their names relative to the main file.
 Hash128 content_hash(const std::vector<SourceFile>& files, const std::vector<Hash128>& hashes) {
@@ -46,7 +46,7 @@ std::optional<Error> first_error(const Found& found) {
     if (cards.error) return Error{file.path.string(), line_number(file.bytes.text(), cards.error->first), cards.error->second};
     entities += std::max(cards.node_id.size(), cards.shells.id.size());
   }
-  if (entities >= kMostEntities) return Error{found.files[0].path.string(), 0, "has more nodes or elements than this version can number"};
+  if (entities >= kMaxEntities) return Error{found.files[0].path.string(), 0, "has more nodes or elements than this version can number"};
   return std::nullopt;
 }
 

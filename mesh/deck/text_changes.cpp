@@ -11,7 +11,7 @@
 #include "mesh/deck/number.h"
 #include "mesh/deck/text_lines.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::deck {
 namespace {

@@ -9,8 +9,8 @@ namespace prismesh::mesh::deck {
 
 namespace {
 
-constexpr std::size_t kMostOfAKind = 100;
-constexpr std::size_t kMostOtherPlaces = 2;
+constexpr std::size_t kMaxOfAKind = 100;
+constexpr std::size_t kMaxOtherPlaces = 2;
 
 /// The lines of some places, in one pass over each file.
 class LineNumbers {
@@ -49,7 +49,7 @@ void Warnings::note(std::string_view kind, std::uint32_t file, std::size_t offse
   }
   at->count += count;
   const bool known = at->file == file && at->offset == offset;
-  if (!known && at->others.size() < kMostOtherPlaces &&
+  if (!known && at->others.size() < kMaxOtherPlaces &&
       std::find(at->others.begin(), at->others.end(), std::pair(file, offset)) == at->others.end())
     at->others.emplace_back(file, offset);
 }
@@ -66,9 +66,9 @@ void Warnings::note_each(std::string_view kind, std::uint32_t file, std::size_t 
     ++of_kind;
     last = &entry;
   }
-  if (of_kind > kMostOfAKind)
+  if (of_kind > kMaxOfAKind)
     ++last->count;
-  else if (of_kind == kMostOfAKind)
+  else if (of_kind == kMaxOfAKind)
     entries_.push_back({std::string(kind), file, offset, "there are more like these from here on", 1, {}, true});
   else
     entries_.push_back({std::string(kind), file, offset, std::move(message), 1, {}, true});

@@ -3,7 +3,7 @@
 
 #include "base/counted.h"
 #include "mesh/document/apply.h"
-#include "mesh/document/hanging.h"
+#include "mesh/document/dependents.h"
 #include "mesh/document/motion.h"
 #include "mesh/document/surroundings.h"
 

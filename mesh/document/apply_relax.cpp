@@ -7,8 +7,8 @@
 #include "base/counted.h"
 #include "base/readable_number.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/dependents.h"
 #include "mesh/document/edge_middles.h"
-#include "mesh/document/hanging.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/selecting.h"
 #include "mesh/document/surroundings.h"
@@ -83,7 +83,7 @@ class Pins {
     if ((generation_.node_marks[node.value] & kLocked) != 0) return Stays::locked;
     if (generation_.model.node_holds[node.value] != 0) return Stays::held;
     if (names(generation_.around->attached.uses, node)) return Stays::other_element;
-    return names(generation_.around->hanging.joined, node) ? Stays::joined : Stays::goes;
+    return names(generation_.around->dependents.joined, node) ? Stays::joined : Stays::goes;
   }
 
   /// A mid-side node follows the ends of its edge. Where it can't, or is a corner of another shell, they stay, and it with them.

@@ -7,14 +7,14 @@
 #include "mesh/document/restructure.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/repair/repair.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr int kMostAttempts = 5;               ///< until all that is wanted can be written
+constexpr int kMaxAttempts = 5;                ///< until all that is wanted can be written
 constexpr std::size_t kMaxNamedInRepair = 10;  ///< elements that a note names
 
 repair::Options options_of(double angle, const MoveLimits& limits) {
@@ -40,10 +40,10 @@ void say_operations(const repair::Repaired& repaired, EditReport& report) {
 }
 
 void say_left(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
-  if (repaired.left.empty()) return;
-  report.notes.push_back(counted(repaired.left.size(), "element") + " still " + (repaired.left.size() == 1 ? "fails" : "fail"));
-  for (std::size_t i = 0; i < std::min(repaired.left.size(), kMaxNamedInRepair); ++i) {
-    const repair::Left& left = repaired.left[i];
+  if (repaired.unrepaired.empty()) return;
+  report.notes.push_back(counted(repaired.unrepaired.size(), "element") + " still " + (repaired.unrepaired.size() == 1 ? "fails" : "fail"));
+  for (std::size_t i = 0; i < std::min(repaired.unrepaired.size(), kMaxNamedInRepair); ++i) {
+    const repair::Unrepaired& left = repaired.unrepaired[i];
     const auto known = frozen.shells.find(left.shell);
     report.notes.push_back(shell_name(model, left.shell) + ": " +
                            (known == frozen.shells.end() ? left.why : "can't be changed: " + known->second));
@@ -67,7 +67,7 @@ Result<repair::Repaired> repair_writable(const Document& document, const ShellSe
       next = std::move(trial);
       return repaired;
     }
-    if (attempt == kMostAttempts) return fail(done.error());
+    if (attempt == kMaxAttempts) return fail(done.error());
     const Result<std::size_t> found = find_unwritable(document, current.model, repaired->change, frozen, forward);
     if (!found) return fail(found.error());
     if (*found == 0) return fail(done.error());

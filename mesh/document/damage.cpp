@@ -1,6 +1,6 @@
 #include "mesh/document/damage.h"
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
 

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstring>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
 
@@ -76,7 +76,7 @@ void write_added(const Model& before, const Model& model, DeltaWriter& out) {
   out.number(model.shell_count() - before.shell_count());
   for (std::size_t s = before.shell_count(); s < model.shell_count(); ++s) {
     out.number(static_cast<std::uint64_t>(model.shell_ids[s]));
-    out.number(model.growth->shell_parents[s - model.growth->deck_shells].value);
+    out.number(model.topology_change->shell_parents[s - model.topology_change->deck_shells].value);
     write_corners(model.shell_nodes[s], out);
   }
 }

@@ -8,8 +8,8 @@
 #include "mesh/document/apply.h"
 #include "mesh/document/history.h"
 #include "mesh/document/surroundings.h"
-#include "mesh/model/growth.h"
 #include "mesh/model/node_set.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
 

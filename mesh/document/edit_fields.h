@@ -13,8 +13,8 @@ struct Limit {
   bool low_open = false;  ///< low itself is refused
 };
 
-inline constexpr double kLargest = 1e300;  ///< coordinates: finite, with room for arithmetic
-inline constexpr Limit kAnyLength{-kLargest, kLargest};
+inline constexpr double kMax = 1e300;  ///< coordinates: finite, with room for arithmetic
+inline constexpr Limit kAnyLength{-kMax, kMax};
 inline constexpr Limit kTurns{-36000, 36000};  ///< degrees: a hundred turns either way
 
 template <class Visitor>
@@ -72,7 +72,7 @@ void fields(Visitor& v, auto& shaping, const Shaping*) {
   v.optional("origin", shaping.weights.origin);
   v.optional("across_welds", shaping.weights.across_welds);
   v.nested("symmetry", shaping.symmetry);
-  v.optional("max_move", shaping.max_move, Limit{0, kLargest, true});
+  v.optional("max_move", shaping.max_move, Limit{0, kMax, true});
 }
 template <class Visitor>
 void fields(Visitor& v, auto& edit, const Translate*) {
@@ -105,14 +105,14 @@ void fields(Visitor& v, auto& edit, const Lift*) {
 
 template <class Visitor>
 void fields(Visitor& v, auto& limits, const MoveLimits*) {
-  v.optional("free", limits.free, Limit{0, kLargest, true});
-  v.optional("line", limits.line, Limit{0, kLargest});
+  v.optional("free", limits.free, Limit{0, kMax, true});
+  v.optional("line", limits.line, Limit{0, kMax});
 }
 template <class Visitor>
 void fields(Visitor& v, auto& edit, const Relax*) {
   v.optional("mode", edit.mode);
   v.optional("at", edit.at);
-  v.optional("threshold", edit.threshold, Limit{0, kLargest, true});
+  v.optional("threshold", edit.threshold, Limit{0, kMax, true});
   v.optional("scope", edit.scope);
   v.optional("angle", edit.angle, Limit{0, 180});
   v.nested("max_move", edit.max_move);

@@ -17,8 +17,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kLongestOutline = 100'000;
-constexpr int kMostRings = 1'000'000;
+constexpr std::size_t kMaxOutlineLength = 100'000;
+constexpr int kMaxRings = 1'000'000;
 
 // --- enumerations: one table each ---
 
@@ -94,9 +94,9 @@ constexpr std::string_view kNotBuilt[] = {"separate", "weld", "bond", "replace_p
 // --- words for errors ---
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
-  const bool cut = text.size() > kLongest;
-  return "\"" + std::string(text.substr(0, kLongest)) + (cut ? "..." : "") + "\"";
+  constexpr std::size_t kMaxLength = 60;
+  const bool cut = text.size() > kMaxLength;
+  return "\"" + std::string(text.substr(0, kMaxLength)) + (cut ? "..." : "") + "\"";
 }
 
 std::string list(const std::vector<std::string_view>& words) {
@@ -121,9 +121,9 @@ Problem must_be(const std::string& what, const Json& value) { return "must be " 
 // --- reading one value ---
 
 Problem read(const Json& json, double& value, const Limit& limit) {
-  const std::string range = limit.low <= -kLargest && limit.high >= kLargest ? "a number"
-                            : limit.high >= kLargest                         ? "a number greater than 0"
-                                                     : "a number between " + Json(limit.low).dump() + " and " + Json(limit.high).dump();
+  const std::string range = limit.low <= -kMax && limit.high >= kMax ? "a number"
+                            : limit.high >= kMax                     ? "a number greater than 0"
+                                                 : "a number between " + Json(limit.low).dump() + " and " + Json(limit.high).dump();
   if (!json.is_number()) return must_be(range, json);
   const double number = json.get<double>();
   if (!std::isfinite(number) || number < limit.low || number > limit.high || (limit.low_open && number <= limit.low))
@@ -145,9 +145,9 @@ Problem read(const Json& json, bool& value) {
 }
 
 Problem read(const Json& json, int& value) {
-  const std::string what = "a whole number between 1 and " + std::to_string(kMostRings);
+  const std::string what = "a whole number between 1 and " + std::to_string(kMaxRings);
   if (!json.is_number_integer()) return must_be(what, json);
-  const bool fits = json.is_number_unsigned() ? json.get<std::uint64_t>() <= kMostRings : json.get<std::int64_t>() >= 1;
+  const bool fits = json.is_number_unsigned() ? json.get<std::uint64_t>() <= kMaxRings : json.get<std::int64_t>() >= 1;
   if (!fits || json.get<std::int64_t>() < 1) return must_be(what, json);
   value = json.get<int>();
   return std::nullopt;
@@ -171,8 +171,8 @@ Problem read(const Json& json, Vec3& value) {
 }
 
 Problem read(const Json& json, std::vector<std::array<double, 2>>& value) {
-  if (!json.is_array() || json.size() < 3 || json.size() > kLongestOutline)
-    return must_be("a list of 3 to " + std::to_string(kLongestOutline) + " points [x, y]", json);
+  if (!json.is_array() || json.size() < 3 || json.size() > kMaxOutlineLength)
+    return must_be("a list of 3 to " + std::to_string(kMaxOutlineLength) + " points [x, y]", json);
   value.resize(json.size());
   for (std::size_t i = 0; i < json.size(); ++i)
     if (Problem problem = read(json[i], value[i])) return "has a wrong point " + std::to_string(i + 1) + ": it " + *problem;
@@ -180,9 +180,9 @@ Problem read(const Json& json, std::vector<std::array<double, 2>>& value) {
 }
 
 Problem read(const Json& json, std::vector<std::string>& value) {
-  constexpr std::size_t kMost = 1000;
-  const std::string what = "a list of 1 to " + std::to_string(kMost) + " entities like [\"shell:12\", \"shell:40\"]";
-  if (!json.is_array() || json.empty() || json.size() > kMost) return must_be(what, json);
+  constexpr std::size_t kMax = 1000;
+  const std::string what = "a list of 1 to " + std::to_string(kMax) + " entities like [\"shell:12\", \"shell:40\"]";
+  if (!json.is_array() || json.empty() || json.size() > kMax) return must_be(what, json);
   value.clear();
   for (const Json& each : json) {
     if (!each.is_string()) return must_be(what, each);

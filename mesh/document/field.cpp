@@ -8,7 +8,7 @@
 #include "base/parallel_for.h"
 #include "mesh/document/field_values.h"
 #include "mesh/document/surroundings.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/select/expression.h"
 #include "mesh/spatial/surface_distance.h"
 
@@ -38,10 +38,10 @@ std::vector<Vec3> makings_of_added(const Model& before, const Model& now) {
   const auto making = [&](NodeIndex node) -> Vec3 {
     const NodeIndex was = counterpart(before, now, node.value);
     if (was.valid()) return before.position(was);
-    const std::size_t added = node.value - now.growth->deck_nodes;
+    const std::size_t added = node.value - now.topology_change->deck_nodes;
     return is_added(now, node) && added < makings.size() ? makings[added] : Vec3::Constant(kNoValue);
   };
-  for (std::size_t n = now.growth->deck_nodes; n < now.node_count(); ++n) {
+  for (std::size_t n = now.topology_change->deck_nodes; n < now.node_count(); ++n) {
     const NodeOrigin& origin = origin_of(now, NodeIndex(n));
     Vec3 at = Vec3::Zero();
     for (std::size_t p = 0; p < static_cast<std::size_t>(origin.count()); ++p) at += origin.weight[p] * making(origin.parent[p]);
@@ -53,7 +53,7 @@ std::vector<Vec3> makings_of_added(const Model& before, const Model& now) {
 void measure_added(const Model& before, const Model& now, Field& field) {
   const std::vector<Vec3> makings = makings_of_added(before, now);
   for (std::size_t i = 0; i < makings.size(); ++i) {
-    const std::size_t n = now.growth->deck_nodes + i;
+    const std::size_t n = now.topology_change->deck_nodes + i;
     if (now.is_removed(NodeIndex(n)) || std::isfinite(field.values[n])) continue;
     const double way = (now.positions[n] - makings[i]).norm();
     if (!std::isfinite(way)) continue;
@@ -154,7 +154,7 @@ Result<Field> displacement_field(const Model& before, const Model& now, LengthUn
   if (field.figures.measured == 0)
     return fail("displacement",
                 "the two have no node in common whose coordinates are numbers; the distance between their surfaces needs none");
-  if (now.growth) measure_added(before, now, field);
+  if (now.topology_change) measure_added(before, now, field);
   return field;
 }
 

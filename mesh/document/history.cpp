@@ -1,7 +1,7 @@
 #include "mesh/document/history.h"
 
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
 
@@ -25,11 +25,12 @@ std::size_t own_bytes(const Model& before, const Model& next) {
     add(table.node_first), add(table.node_shells), add(table.edge_first);
     add(table.edge_high), add(table.edge_shell_first), add(table.edge_shells);
   }
-  if (next.growth && next.growth != before.growth) {
-    static const Growth none;
-    const Growth& old = before.growth ? *before.growth : none;
-    bytes += own_bytes(old.node_origins, next.growth->node_origins) + own_bytes(old.shell_parents, next.growth->shell_parents);
-    add(next.growth->removed_nodes), add(next.growth->removed_shells), add(next.growth->reshaped_shells);
+  if (next.topology_change && next.topology_change != before.topology_change) {
+    static const TopologyChange none;
+    const TopologyChange& old = before.topology_change ? *before.topology_change : none;
+    bytes +=
+        own_bytes(old.node_origins, next.topology_change->node_origins) + own_bytes(old.shell_parents, next.topology_change->shell_parents);
+    add(next.topology_change->removed_nodes), add(next.topology_change->removed_shells), add(next.topology_change->reshaped_shells);
   }
   return bytes;
 }

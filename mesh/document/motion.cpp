@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "mesh/document/apply.h"
+#include "mesh/document/dependents.h"
 #include "mesh/document/edge_middles.h"
-#include "mesh/document/hanging.h"
 #include "mesh/document/refusal.h"
 #include "mesh/document/selecting.h"
 #include "mesh/document/symmetry.h"
@@ -117,18 +117,18 @@ std::string no_shell_at_grab(const Model& model, const Motion& motion) {
 }
 
 /// The surface, and how each node sets out on it.
-Result<void> find_slideway(const Model& model, Motion& motion) {
+Result<void> find_tracer(const Model& model, Motion& motion) {
   if (!(motion.normal.squaredNorm() > 0))
     return fail("", no_shell_at_grab(model, motion) + ", so there is no surface to slide on; use translate");
   std::vector<Vec3> normals = shape::oriented_normals(model, motion.nodes, motion.grab);
   motion.turns = shape::turns_along(model, motion.nodes, normals, motion.grab);
-  shape::Slideway slideway(model, motion.nodes, std::move(normals));
+  shape::SurfaceTracer tracer(model, motion.nodes, std::move(normals));
   if (motion.plane) {
     std::vector<std::uint8_t> in_plane(motion.nodes.size(), 0);
     for (std::size_t i = 0; i < in_plane.size(); ++i) in_plane[i] = motion.mirrored[i].image == i ? 1 : 0;
-    slideway.keep_in_plane(motion.plane->normal, std::move(in_plane));
+    tracer.keep_in_plane(motion.plane->normal, std::move(in_plane));
   }
-  motion.slideway = std::make_shared<const shape::Slideway>(std::move(slideway));
+  motion.tracer = std::make_shared<const shape::SurfaceTracer>(std::move(tracer));
   return {};
 }
 
@@ -140,7 +140,7 @@ Result<void> find_ways(const Model& model, const Edit& edit, Motion& motion) {
     if (!direction) return fail("", "rotate: the axis must be a direction of finite numbers, not all 0");
     motion.axis = {rotate->point, *direction};
   }
-  if (motion.kind == Motion::Kind::slide) return find_slideway(model, motion);
+  if (motion.kind == Motion::Kind::slide) return find_tracer(model, motion);
   if (motion.kind != Motion::Kind::lift) return {};
   const bool each = std::get<Lift>(edit).each_normal;
   if (!(motion.normal.squaredNorm() > 0))
@@ -206,7 +206,7 @@ std::size_t slide_to(const Motion& motion, const Vec3& displacement, std::span<V
   std::vector<Vec3> by(motion.nodes.size());
   for (std::size_t i = 0; i < by.size(); ++i) by[i] = motion.weight[i] * (motion.turns[i] * displacement);
   if (motion.plane) by = shape::mirror_moves(*motion.plane, motion.mirrored, by);
-  return motion.slideway->positions(by, motion.max_move, out);
+  return motion.tracer->positions(by, motion.max_move, out);
 }
 
 /// Adds to each node's move the mirrored one of its image.

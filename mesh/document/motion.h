@@ -12,7 +12,7 @@
 #include "mesh/document/document.h"
 #include "mesh/shape/mirror.h"
 #include "mesh/shape/rotate.h"
-#include "mesh/shape/slide.h"
+#include "mesh/shape/surface_tracer.h"
 
 namespace prismesh::mesh::document {
 
@@ -28,16 +28,16 @@ struct Motion {
   };
 
   enum class Kind : std::uint8_t { translate, lift, slide, rotate } kind = Kind::translate;
-  NodeSet nodes;                                    ///< those with weight > 0, their images and what hangs on them
-  std::vector<double> weight;                       ///< of each
-  std::vector<Vec3> start;                          ///< of each
-  std::vector<Vec3> normals;                        ///< lift: of each, or one for all
-  shape::Axis axis;                                 ///< rotate
-  std::shared_ptr<const shape::Slideway> slideway;  ///< slide
-  std::vector<Eigen::Quaterniond> turns;            ///< slide: how `by` turns on its way to each node
-  std::optional<shape::Plane> plane;                ///< of symmetry
-  std::vector<shape::Mirrored> mirrored;            ///< with a plane: of each
-  std::size_t without_image = 0;                    ///< nodes acted on that have no image in the plane
+  NodeSet nodes;                                       ///< those with weight > 0, their images and what hangs on them
+  std::vector<double> weight;                          ///< of each
+  std::vector<Vec3> start;                             ///< of each
+  std::vector<Vec3> normals;                           ///< lift: of each, or one for all
+  shape::Axis axis;                                    ///< rotate
+  std::shared_ptr<const shape::SurfaceTracer> tracer;  ///< slide
+  std::vector<Eigen::Quaterniond> turns;               ///< slide: how `by` turns on its way to each node
+  std::optional<shape::Plane> plane;                   ///< of symmetry
+  std::vector<shape::Mirrored> mirrored;               ///< with a plane: of each
+  std::size_t without_image = 0;                       ///< nodes acted on that have no image in the plane
   NodeIndex grab;
   Vec3 normal = Vec3::Zero();  ///< unit normal at the grab; zero where no shell is
   std::vector<Follower> followers;

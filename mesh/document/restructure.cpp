@@ -9,7 +9,7 @@
 #include "mesh/document/selecting.h"
 #include "mesh/document/surroundings.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
 
@@ -76,7 +76,7 @@ void carry_selection(const Changes& changes, Generation& next) {
     ++next.selected_nodes;
   }
   for (const ShellIndex shell : changes.added_shells) {
-    const ShellIndex parent = next.model.growth->shell_parents[shell.value - next.model.growth->deck_shells];
+    const ShellIndex parent = next.model.topology_change->shell_parents[shell.value - next.model.topology_change->deck_shells];
     if ((next.shell_marks[parent.value] & kSelected) == 0) continue;
     next.shell_marks.set(shell.value, kSelected);
     ++next.selected_shells;

@@ -8,7 +8,7 @@
 #include "mesh/document/restructure.h"
 #include "mesh/document/surroundings.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
 
@@ -22,7 +22,7 @@ class Rulebook {
  public:
   Rulebook(const Document& document, const Generation& generation)
       : deck_(*document.deck), generation_(generation), deletion_(*document.deck), division_(*document.deck) {
-    for (const Hanging::Rest& rest : generation.around->hanging.rests)
+    for (const Dependents::Rest& rest : generation.around->dependents.rests)
       if (!rest.tied)
         welded_shells_.push_back(rest.shell);
       else
@@ -85,8 +85,9 @@ class Rulebook {
     return {begin, end};
   }
   bool is_joined(NodeIndex node) const {
-    const auto& joined = generation_.around->hanging.joined;
-    const auto at = std::lower_bound(joined.begin(), joined.end(), node, [](const Hanging::Joined& j, NodeIndex n) { return j.node < n; });
+    const auto& joined = generation_.around->dependents.joined;
+    const auto at =
+        std::lower_bound(joined.begin(), joined.end(), node, [](const Dependents::Joined& j, NodeIndex n) { return j.node < n; });
     return at != joined.end() && at->node == node;
   }
   bool may_be_deleted(Referred referred, std::int64_t id) {

@@ -4,7 +4,7 @@
 
 #include "mesh/document/damage.h"
 #include "mesh/document/selecting.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
 
@@ -42,7 +42,8 @@ ShellSet selected(const Generation& generation) {
 
 /// The shell of an earlier model from which one descends, or itself.
 ShellIndex ancestor_in(const Model& earlier, const Model& model, ShellIndex shell) {
-  while (shell.value >= earlier.shell_count()) shell = model.growth->shell_parents[shell.value - model.growth->deck_shells];
+  while (shell.value >= earlier.shell_count())
+    shell = model.topology_change->shell_parents[shell.value - model.topology_change->deck_shells];
   return shell;
 }
 

@@ -40,7 +40,7 @@ std::shared_ptr<const Surroundings> find_surroundings(std::shared_ptr<const deck
   auto around = std::make_shared<Surroundings>();
   around->attached = find_attached(model);
   around->names = find_names(*deck);
-  around->hanging = find_hanging(*deck, model, around->attached);
+  around->dependents = find_dependents(*deck, model, around->attached);
   around->deck = std::move(deck);
   return around;
 }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mesh/deck/deck.h"
+#include "mesh/document/dependents.h"
 #include "mesh/document/document.h"
-#include "mesh/document/hanging.h"
 #include "mesh/select/names.h"
 
 namespace prismesh::mesh::document {
@@ -27,7 +27,7 @@ struct Surroundings {
   std::shared_ptr<const deck::Deck> deck;  ///< keeps what `names` points into
   select::Names names;
   Attached attached;
-  Hanging hanging;
+  Dependents dependents;
 };
 
 std::shared_ptr<const Surroundings> find_surroundings(std::shared_ptr<const deck::Deck> deck, const Model& model);

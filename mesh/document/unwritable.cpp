@@ -10,7 +10,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr int kMostTrials = 400;
+constexpr int kMaxTrials = 400;
 
 /// Numbers the groups of a change: what shares a node belongs together.
 class Groups {
@@ -115,8 +115,8 @@ class Search {
 
  private:
   void look(std::span<const std::uint32_t> groups) {
-    if (groups.empty() || stopped_ || ++trials_ > kMostTrials) return;
-    stopped_ = progress_ && !progress_(static_cast<double>(trials_ - 1) / kMostTrials);
+    if (groups.empty() || stopped_ || ++trials_ > kMaxTrials) return;
+    stopped_ = progress_ && !progress_(static_cast<double>(trials_ - 1) / kMaxTrials);
     if (stopped_) return;
     const repair::Restructuring part = part_of(model_, change_, groups_, groups);
     Model trial = model_;

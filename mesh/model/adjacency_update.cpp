@@ -6,9 +6,9 @@
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/edge_uses.h"
-#include "mesh/model/growth.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh {
 

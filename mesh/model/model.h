@@ -19,8 +19,8 @@ namespace prismesh::mesh {
 
 using Vec3 = Eigen::Vector3d;
 
-struct Adjacency;  // mesh/model/adjacency.h
-struct Growth;     // mesh/model/growth.h
+struct Adjacency;       // mesh/model/adjacency.h
+struct TopologyChange;  // mesh/model/topology_change.h
 
 /// Corner nodes of a shell in the deck's order; a triangle repeats its third node.
 struct ShellNodes {
@@ -87,7 +87,7 @@ std::string_view why_held(std::uint8_t hold);
 
 /// Nodes, shells, everything else, parts; in the deck's order. Nodes that elements name but nobody defines are not in
 /// the arrays; an element with such a node is left out of the arrays and counted in `skipped`. Nodes and shells that were removed keep
-/// their entries, but no id leads to them (mesh/model/growth.h).
+/// their entries, but no id leads to them (mesh/model/topology_change.h).
 struct Model {
   ChunkedArray<std::int64_t> node_ids;
   ChunkedArray<Vec3> positions;           ///< deck's length unit
@@ -101,14 +101,15 @@ struct Model {
   std::shared_ptr<const std::vector<Part>> parts;                                ///< ascending by id
   std::shared_ptr<const IdIndex> node_index;                                     ///< deck's id -> NodeIndex value
   std::shared_ptr<const IdIndex> shell_index;
-  std::shared_ptr<const Adjacency> adjacency;  ///< of the shells; built by build_adjacency; null after growth until it is built again
-  std::shared_ptr<const Growth> growth;        ///< what was added and removed since the deck was opened; null: nothing
+  std::shared_ptr<const Adjacency>
+      adjacency;  ///< of the shells; built by build_adjacency; null after a topology change until it is built again
+  std::shared_ptr<const TopologyChange> topology_change;  ///< what was added and removed since the deck was opened; null: nothing
 
   std::size_t node_count() const { return positions.size(); }
   std::size_t shell_count() const { return shell_nodes.size(); }
   const Vec3& position(NodeIndex node) const { return positions[node.value]; }
   const ShellNodes& shell(ShellIndex shell) const { return shell_nodes[shell.value]; }
-  bool is_removed(NodeIndex node) const { return growth && (node_holds[node.value] & kRemoved) != 0; }
+  bool is_removed(NodeIndex node) const { return topology_change && (node_holds[node.value] & kRemoved) != 0; }
   bool is_removed(ShellIndex shell) const { return !shell_nodes[shell.value].node[0].valid(); }
 
   NodeIndex find_node(std::int64_t id) const { return NodeIndex(node_index->find(id)); }

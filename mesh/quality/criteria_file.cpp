@@ -15,8 +15,8 @@ namespace {
 
 using Names = std::vector<std::string_view>;
 
-constexpr double kLargestNumber = 1e30;
-constexpr float kMostTriangles = 1e6F;  ///< about a node
+constexpr double kMaxNumber = 1e30;
+constexpr float kMaxTriangles = 1e6F;  ///< about a node
 
 /// Where a limit of a file goes.
 struct Target {
@@ -68,7 +68,7 @@ class Reader {
       const toml::node* node = table.get(target.key);
       if (node == nullptr) continue;
       const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
-      if (!value || !(std::abs(*value) <= kLargestNumber)) return error(*node, what + ": " + std::string(target.key) + " must be a number");
+      if (!value || !(std::abs(*value) <= kMaxNumber)) return error(*node, what + ": " + std::string(target.key) + " must be a number");
       *target.limit = static_cast<float>(*value);
     }
     return {};
@@ -139,7 +139,7 @@ class Reader {
     if (auto done = read_limits(**table, {{"warn_above", &warn}, {"fail_above", &failed}, {"warn_above_at_node", &at_node}}, "triangles");
         !done)
       return done;
-    if (!(at_node >= 0 && at_node <= kMostTriangles))
+    if (!(at_node >= 0 && at_node <= kMaxTriangles))
       return error(*(*table)->get("warn_above_at_node"), "triangles: warn_above_at_node must be from 0 to 1000000");
     if (const toml::node* given = (*table)->get("warn_above"); given != nullptr && warn > failed)
       return error(*given, "triangles: warn_above lies beyond fail_above: a part would fail before it warns");

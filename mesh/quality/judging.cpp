@@ -12,10 +12,10 @@ namespace {
 constexpr int kMinLength = int(Metric::min_length);
 constexpr float kWorstWithoutDefect = -0.99999994F;  ///< the float above -1
 
-constexpr float kMost = 3e38F;  ///< of a limit: what is beyond a float is still a limit
+constexpr float kMax = 3e38F;  ///< of a limit: what is beyond a float is still a limit
 
 float in_float(double limit) {
-  return std::isfinite(limit) ? static_cast<float>(std::clamp<double>(limit, -kMost, kMost)) : static_cast<float>(limit);
+  return std::isfinite(limit) ? static_cast<float>(std::clamp<double>(limit, -kMax, kMax)) : static_cast<float>(limit);
 }
 
 Threshold scaled(const Threshold& threshold, double by) {
@@ -63,8 +63,8 @@ ShapeLimits shape_limits(const std::array<Threshold, kMetricCount>& thresholds, 
 /// The least min_length: of a wanted time step, where there is one and the material is known, else a fraction of the target size; no less
 /// than the multiple of the thickness.
 float least_length(float fraction, float step, float thicknesses, const Sheet& sheet) {
-  const float length = step > 0 && sheet.wave_speed > 0 ? std::min(step * sheet.wave_speed, kMost) : fraction;
-  return thicknesses > 0 && sheet.thickness > 0 ? std::max(length, std::min(thicknesses * sheet.thickness, kMost)) : length;
+  const float length = step > 0 && sheet.wave_speed > 0 ? std::min(step * sheet.wave_speed, kMax) : fraction;
+  return thicknesses > 0 && sheet.thickness > 0 ? std::max(length, std::min(thicknesses * sheet.thickness, kMax)) : length;
 }
 
 /// For a wave speed of 1; the deck takes only a share of what the length gives.

@@ -28,7 +28,7 @@ inline constexpr float kRepeatedAspect = 1e9F;
 inline constexpr float kNoAreaSkew = 90.0F;
 
 /// Of the longest edge squared: with twice its area below that, a shell has none.
-inline constexpr double kLeastArea = 1e-10;
+inline constexpr double kMinArea = 1e-10;
 
 /// Metrics lane by lane, indexed by Metric; those that don't apply are NaN.
 struct BatchValues {

@@ -13,7 +13,7 @@ namespace prismesh::mesh::quality::kernels {
 inline constexpr float kNotApplicable = std::numeric_limits<float>::quiet_NaN();
 inline constexpr double kWorstAspect = 999999936.0;         ///< the float below kRepeatedAspect
 inline constexpr double kWorstSkew = 89.99999237060546875;  ///< the float below kNoAreaSkew
-inline constexpr double kLargest2 = 1e76;                   ///< squared lengths beyond it aren't finite as figures
+inline constexpr double kMax2 = 1e76;                       ///< squared lengths beyond it aren't finite as figures
 /// Added to divisors that may be zero; far below any product of lengths that means something.
 inline constexpr double kTiny = 1e-300;
 
@@ -88,10 +88,10 @@ PRISMESH_INLINE void quads(const ShellBatch& batch, BatchValues& values) {
     const double a0 = norm(n0), a1 = norm(n1), a2 = norm(n2), a3 = norm(n3), area = norm(whole);
     const double j0 = dot(n0, whole), j1 = dot(n1, whole), j2 = dot(n2, whole), j3 = dot(n3, whole);
 
-    const bool finite = l0 + l1 + l2 + l3 < kLargest2;  // no for NaN
-    const double no_plane = kLeastArea * longest2;
+    const bool finite = l0 + l1 + l2 + l3 < kMax2;  // no for NaN
+    const double no_plane = kMinArea * longest2;
     // folded onto itself: its sides cross, so that two corners are turned in
-    const double turned_in = -kLeastArea * area * longest2;
+    const double turned_in = -kMinArea * area * longest2;
     const auto counts = [&](double j) { return j < turned_in ? 1.0 : 0.0; };
     const double inward = counts(j0) + counts(j1) + counts(j2) + counts(j3);
     const bool has_area = (area > no_plane) & (inward < 1.5);
@@ -151,8 +151,8 @@ PRISMESH_INLINE void triangles(const ShellBatch& batch, BatchValues& values) {
     // half the difference of two sides' squares: median times side, without its sine, which is `area` for all three
     const double m0 = l0 - l2, m1 = l1 - l0, m2 = l2 - l1;
 
-    const bool finite = l0 + l1 + l2 < kLargest2;  // no for NaN
-    const bool has_area = area > kLeastArea * longest2;
+    const bool finite = l0 + l1 + l2 < kMax2;  // no for NaN
+    const bool has_area = area > kMinArea * longest2;
     const bool has_edges = (shortest2 > 1e-24 * longest2) & (longest2 > kTiny);
     const auto put = [&](Metric metric, double value) {
       values.value[int(metric)][lane] = finite ? static_cast<float>(value) : kNotApplicable;

@@ -20,10 +20,10 @@ bool has_area(std::span<const Vec3> p) {
   for (std::size_t i = 0; i < count; ++i) longest2 = std::max(longest2, (p[(i + 1) % count] - p[i]).squaredNorm());
   const Vec3 whole = (p[2] - p[0]).cross(p[count - 1] - p[1]);
   const double area = whole.norm();
-  if (!(area > kLeastArea * longest2)) return false;
+  if (!(area > kMinArea * longest2)) return false;
   int turned_in = 0;
   for (std::size_t i = 0; i < count; ++i)
-    turned_in += (p[i] - p[(i + count - 1) % count]).cross(p[(i + 1) % count] - p[i]).dot(whole) < -kLeastArea * area * longest2;
+    turned_in += (p[i] - p[(i + count - 1) % count]).cross(p[(i + 1) % count] - p[i]).dot(whole) < -kMinArea * area * longest2;
   return turned_in < 2;
 }
 

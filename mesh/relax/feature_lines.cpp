@@ -51,7 +51,7 @@ LineEnds line_ends(const Model& model, NodeIndex node, double cos_limit, bool pa
   const auto add = [&](NodeIndex other) {
     const auto last = ends.other.begin() + static_cast<std::ptrdiff_t>(ends.count);
     const auto at = std::lower_bound(ends.other.begin(), last, other);
-    if ((at != last && *at == other) || ends.count == LineEnds::kMost) return;
+    if ((at != last && *at == other) || ends.count == LineEnds::kMax) return;
     std::copy_backward(at, last, last + 1);
     *at = other;
     ++ends.count;

@@ -21,8 +21,8 @@ ShellIndex across(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b
 
 /// Where feature lines go from a node.
 struct LineEnds {
-  static constexpr std::size_t kMost = 3;  ///< more than two make a corner, however many
-  std::array<NodeIndex, kMost> other;      ///< ends of the feature edges at the node, ascending
+  static constexpr std::size_t kMax = 3;  ///< more than two make a corner, however many
+  std::array<NodeIndex, kMax> other;      ///< ends of the feature edges at the node, ascending
   std::size_t count = 0;
 };
 /// With `part_borders` an edge between shells of different parts counts as well.

@@ -11,7 +11,7 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr int kMostPieces = 64;  ///< walked in one go
+constexpr int kMaxPieces = 64;  ///< walked in one go
 constexpr double kAtEnd = 1e-9;
 
 /// The end of the line's next edge beyond `at`; invalid at a corner.
@@ -81,7 +81,7 @@ LinePlace place_on_piece(const Model& model, LinePiece piece, const Vec3& point,
 
 LinePlace follow_line(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
   LinePlace best = place_on_piece(model, piece, point, cos_limit);
-  for (int i = 0; i < kMostPieces; ++i) {
+  for (int i = 0; i < kMaxPieces; ++i) {
     const bool at_from = best.point == model.position(best.piece.from);
     const bool at_to = best.point == model.position(best.piece.to);
     if (!at_from && !at_to) break;

@@ -114,7 +114,7 @@ double length_share(const Net& net) {
 bool set_lengths(const Model& model, const std::function<bool()>& goes_on, Net& net) {
   net.size.resize(net.nodes.size());
   parallel_for(net.nodes.size(), kNetNodeGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) net.size[i] = i < net.movable ? net.footing[i].size : mean_edge(model, net.nodes[i]);
+    for (std::size_t i = begin; i < end; ++i) net.size[i] = i < net.movable ? net.anchor[i].size : mean_edge(model, net.nodes[i]);
   });
   std::vector<double> next = net.size;
   for (int round = 0; round < kSmoothings; ++round) {
@@ -139,7 +139,7 @@ void colour(Net& net) {
       if (spring.to < net.movable && colour_of[spring.to] < 64) taken |= std::uint64_t{1} << colour_of[spring.to];
     const int free = std::countr_one(taken);
     if (free >= 64) {
-      net.footing[i].freedom = Freedom::fixed;  // 64 neighbours that all differ: no mesh
+      net.anchor[i].freedom = Freedom::fixed;  // 64 neighbours that all differ: no mesh
       continue;
     }
     colour_of[i] = static_cast<std::uint8_t>(free);
@@ -153,9 +153,9 @@ void colour(Net& net) {
 Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle,
                      const Progress& progress) {
   const double feature_cos = deterministic_cos_degrees(feature_angle);
-  std::vector<Footing> footings(movable.size());
+  std::vector<SurfaceAnchor> anchors(movable.size());
   const auto find_some = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) footings[i] = find_footing(model, surface, movable[i], feature_cos);
+    for (std::size_t i = begin; i < end; ++i) anchors[i] = find_anchor(model, surface, movable[i], feature_cos);
   };
   const auto tell = [&](double fraction) { return !progress || progress(fraction); };
   if (!parallel_in_stretches(
@@ -166,9 +166,9 @@ Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const 
   Net net;
   Numbers numbers(model);
   for (std::size_t i = 0; i < movable.size(); ++i)
-    if (footings[i].freedom != Freedom::fixed) {
+    if (anchors[i].freedom != Freedom::fixed) {
       numbers.add(movable[i], net);
-      net.footing.push_back(footings[i]);
+      net.anchor.push_back(anchors[i]);
     }
   net.movable = net.nodes.size();
   add_shells(model, numbers, net);

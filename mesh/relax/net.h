@@ -8,9 +8,9 @@
 
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
-#include "mesh/relax/footing.h"
 #include "mesh/relax/reference_surface.h"
 #include "mesh/relax/relax.h"
+#include "mesh/relax/surface_anchor.h"
 
 namespace prismesh::mesh::relax {
 
@@ -26,7 +26,7 @@ struct Net {
   std::vector<NodeIndex> nodes;
   std::vector<Vec3> start;
   std::vector<double> size;                 ///< of the elements about each node: how long its edges should be
-  std::vector<Footing> footing;             ///< of the movable ones
+  std::vector<SurfaceAnchor> anchor;        ///< of the movable ones
   std::vector<std::uint32_t> first_spring;  ///< of the movable ones, and one more
   std::vector<Spring> springs;
   std::vector<std::vector<std::uint32_t>> colours;   ///< movable nodes, no two of a colour in one shell

@@ -18,10 +18,10 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr double kMostLean = 60;       ///< degrees
+constexpr double kMaxLean = 60;        ///< degrees
 constexpr double kNearFoot = 1e-3;     ///< of the size: so far beside the nearest place another one is good enough
-constexpr int kMostFeet = 6;           ///< places tried on the way to the nearest one
-constexpr int kMostSteps = 256;        ///< of a walk over shells
+constexpr int kMaxFeet = 6;            ///< places tried on the way to the nearest one
+constexpr int kMaxSteps = 256;         ///< of a walk over shells
 constexpr double kFarthestOff = 0.25;  ///< of a shell's longest diagonal: farther from its facets the fits aren't believed
 
 /// A place in a shell by its corners' shares, which sum to 1.
@@ -135,7 +135,7 @@ std::pair<ShellIndex, OnFacet> ReferenceSurface::State::walk(ShellIndex from, co
   ShellIndex at = from;
   OnFacet best = on_facet(model, model.shell(at), point);
   // none is nearer than where the point is
-  for (int step = 0; step < kMostSteps && best.distance2 > 0; ++step) {
+  for (int step = 0; step < kMaxSteps && best.distance2 > 0; ++step) {
     const ShellNodes& nodes = model.shell(at);
     const int corners = nodes.corners();
     ShellIndex better;
@@ -193,7 +193,7 @@ OnSurface ReferenceSurface::follow(ShellIndex from, const Vec3& point) const {
   on.distance = (point - on.point).norm();
   // The foot on the facets isn't quite the foot on the surface: along the facets by as much as the point is beside the place that it led
   // to.
-  for (int i = 1; i < kMostFeet; ++i) {
+  for (int i = 1; i < kMaxFeet; ++i) {
     const Vec3 off = point - on.point, beside = off - on.normal * off.dot(on.normal);
     if (!(beside.squaredNorm() > kNearFoot * kNearFoot * on.size * on.size)) break;
     const auto [next_shell, next_facet] = state_->walk(shell, facet.point + beside);
@@ -212,7 +212,7 @@ OnLine ReferenceSurface::follow_line(NodeIndex from, NodeIndex to, const Vec3& p
 }
 
 std::optional<OnSurface> ReferenceSurface::project(const Vec3& point, double radius, const std::optional<Vec3>& toward) const {
-  const double least_cos = deterministic_cos_degrees(kMostLean);
+  const double least_cos = deterministic_cos_degrees(kMaxLean);
   const auto leans = [&](ShellIndex shell) {
     return toward && std::abs(shell_normal(state_->model, state_->model.shell(shell)).dot(*toward)) < least_cos * toward->norm();
   };

@@ -17,7 +17,7 @@ constexpr double kShareOfNet = 0.25;  ///< of the progress, for finding out what
 constexpr double kShareOfSettling = 0.7;
 constexpr double kShareOfBlocks = 0.95;  ///< for a hierarchical relaxation in all blocks but the last
 constexpr int kFirstRings = 6;           ///< about the node a hierarchical relaxation begins with
-constexpr double kLeastMove = 1e-9;      ///< of the size: less is rounding, and the node stays as it is to the bit
+constexpr double kMinMove = 1e-9;        ///< of the size: less is rounding, and the node stays as it is to the bit
 
 bool goes_on(const Progress& progress, double fraction) { return !progress || progress(fraction); }
 
@@ -28,7 +28,7 @@ Relaxed gather(const Net& net, const Settling& settling, const Settled& settled)
   for (std::size_t i = 0; i < net.movable; ++i) {
     relaxed.held_back += settling.held[i];
     const double moved = (settling.at[i] - net.start[i]).norm();
-    if (!(moved > kLeastMove * net.size[i])) continue;
+    if (!(moved > kMinMove * net.size[i])) continue;
     relaxed.nodes.push_back(net.nodes[i]);
     relaxed.positions.push_back(settling.at[i]);
     relaxed.limited += settling.limited[i];

@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::size_t kSettlingGrain = 512;
 constexpr double kAtRest = 2e-3;       ///< of the size: a node that moves less in a round is at rest
-constexpr double kMostStep = 0.25;     ///< of the size, in a round
-constexpr double kMostDrift = 0.2;     ///< of the size: then a node is put back on the surface
-constexpr float kMostGain = 1.5F;      ///< steps go so far beyond the balance, which the neighbours follow
-constexpr float kLeastGain = 0.02F;    ///< and so far towards it where they turned back again and again
+constexpr double kMaxStep = 0.25;      ///< of the size, in a round
+constexpr double kMaxDrift = 0.2;      ///< of the size: then a node is put back on the surface
+constexpr float kMaxGain = 1.5F;       ///< steps go so far beyond the balance, which the neighbours follow
+constexpr float kMinGain = 0.02F;      ///< and so far towards it where they turned back again and again
 constexpr int kRecoveringRounds = 50;  ///< until then a node that turned back gathers pace again
 constexpr double kSwing = 0.25;        ///< of the last step: going back farther is swinging, not settling
-constexpr double kMostInVain = 0.5;    ///< of its way, that being put back on the surface undoes: more, and the node leads nowhere
+constexpr double kMaxInVain = 0.5;     ///< of its way, that being put back on the surface undoes: more, and the node leads nowhere
 constexpr int kFirstCheck = 12;        ///< rounds until the guard looks first
 constexpr int kChecksApart = 3;        ///< times as many rounds before each next time
 
@@ -53,7 +53,7 @@ Pull pull_on(const Vec3& at, std::span<const Spring> springs, const std::vector<
 
 Settling::Settling(const Net& net, const ReferenceSurface& surface, const Guard& guard, const Options& options)
     : at(net.start),
-      footing(net.footing),
+      anchor(net.anchor),
       limited(net.movable, 0),
       held(net.movable, 0),
       net_(net),
@@ -62,13 +62,13 @@ Settling::Settling(const Net& net, const ReferenceSurface& surface, const Guard&
       options_(options),
       good_(net.start),
       last_(net.movable, Vec3::Zero()),
-      gain_(net.movable, kMostGain),
+      gain_(net.movable, kMaxGain),
       drift_(net.movable, 0),
       awake_(net.movable, 1),
       careful_(net.movable, 0) {}
 
 std::optional<double> Settling::limit_of(std::size_t node) const {
-  return footing[node].freedom == Freedom::line ? options_.most_on_line : options_.most_on_surface;
+  return anchor[node].freedom == Freedom::line ? options_.most_on_line : options_.most_on_surface;
 }
 
 /// Where its limit counts from.
@@ -78,7 +78,7 @@ const Vec3& Settling::home_of(std::size_t node) const {
 
 /// Back on the surface, and within the limit.
 void Settling::land(std::size_t node) {
-  at[node] = put_back(surface_, at[node], footing[node]);
+  at[node] = put_back(surface_, at[node], anchor[node]);
   drift_[node] = 0;
   const std::optional<double> limit = limit_of(node);
   for (int i = 0; limit && i < 4; ++i) {
@@ -86,14 +86,14 @@ void Settling::land(std::size_t node) {
     const double length = move.norm();
     if (!(length > *limit)) return;
     limited[node] = 1;
-    at[node] = put_back(surface_, home_of(node) + move * (*limit / length * (1 - 1e-3 * i)), footing[node]);
+    at[node] = put_back(surface_, home_of(node) + move * (*limit / length * (1 - 1e-3 * i)), anchor[node]);
   }
   if (limit && (at[node] - home_of(node)).norm() > *limit) at[node] = net_.start[node];
 }
 
 /// To where the node's springs balance.
 Vec3 Settling::balancing_step(std::size_t node) const {
-  const Footing& foot = footing[node];
+  const SurfaceAnchor& foot = anchor[node];
   if (foot.freedom == Freedom::line) {
     const Pull pull = pull_on(at[node], net_.springs_of(node), at, foot.direction, Vec3::Zero());
     return pull.uu > 0 ? Vec3(pull.u / pull.uu * foot.direction) : Vec3::Zero();
@@ -114,14 +114,14 @@ Vec3 Settling::balancing_step(std::size_t node) const {
 /// All of the way, a half or a quarter of it, or none.
 void Settling::go_carefully(std::size_t node, const Vec3& move) {
   const Vec3 was = at[node];
-  const Footing foot = footing[node];
+  const SurfaceAnchor foot = anchor[node];
   held[node] = 0;
   for (const double share : {1.0, 0.5, 0.25}) {
     at[node] = was + share * move;
     land(node);
     if (guard_.allows(static_cast<std::uint32_t>(node), at[node], at)) return;
     held[node] = 1;
-    footing[node] = foot;
+    anchor[node] = foot;
   }
   at[node] = was;
 }
@@ -129,11 +129,11 @@ void Settling::go_carefully(std::size_t node, const Vec3& move) {
 /// Returns whether the node is still on the move.
 bool Settling::step(std::size_t node) {
   Vec3 move = balancing_step(node);
-  const double most = kMostStep * net_.size[node];
+  const double most = kMaxStep * net_.size[node];
   // A node that turns back has gone too far: that ends what would swing for ever in meshes with very long or crushed elements.
   float& gain = gain_[node];
-  gain = move.dot(last_[node]) < -kSwing * last_[node].squaredNorm() ? std::max(0.5F * gain, kLeastGain)
-                                                                     : std::min(recovery_ * gain, kMostGain);
+  gain =
+      move.dot(last_[node]) < -kSwing * last_[node].squaredNorm() ? std::max(0.5F * gain, kMinGain) : std::min(recovery_ * gain, kMaxGain);
   move *= gain;
   const double length = move.norm();
   if (!std::isfinite(length)) return false;
@@ -161,12 +161,12 @@ void Settling::go(std::size_t node, const Vec3& move) {
     }
   }
   drift_[node] += static_cast<float>((at[node] - was).norm());
-  if (!(drift_[node] > kMostDrift * net_.size[node])) return;
+  if (!(drift_[node] > kMaxDrift * net_.size[node])) return;
   const Vec3 drifted = at[node];
   const double drift = drift_[node];
   land(node);
   // Most of its way was off the surface: it pushes against the end of its sheet, and would go on for ever.
-  if ((at[node] - drifted).norm() > kMostInVain * drift) careful_[node] = 1;
+  if ((at[node] - drifted).norm() > kMaxInVain * drift) careful_[node] = 1;
 }
 
 bool Settling::land_all(const Watcher& watcher) {

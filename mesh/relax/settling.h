@@ -37,7 +37,7 @@ class Settling {
   Settled run(Spreading* spreading, const Watcher& watcher);
 
   std::vector<Vec3> at;               ///< of all nodes of the net; on the surface after run()
-  std::vector<Footing> footing;       ///< of the movable ones
+  std::vector<SurfaceAnchor> anchor;  ///< of the movable ones
   std::vector<std::uint8_t> limited;  ///< those that stopped at their limit
   std::vector<std::uint8_t> held;     ///< those that would go on, if their shells allowed it
 

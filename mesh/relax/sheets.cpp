@@ -15,7 +15,7 @@ namespace prismesh::mesh::relax {
 namespace {
 
 constexpr std::size_t kEnoughNodes = 8;  ///< about a node for a fit; at ends of sheets one looks farther for them
-constexpr int kMostRings = 4;
+constexpr int kMaxRings = 4;
 constexpr std::size_t kUsualNodes = 32;  ///< about a node of a mesh of quads and triangles, and shells
 constexpr std::size_t kUsualShells = 24;
 constexpr std::uint8_t kSmooth = 1;
@@ -97,7 +97,7 @@ LocalFit fit_sheet(const Model& model, const Sheets& sheets, NodeIndex node, std
   add_nodes(model, shells, 0, node, nodes);
   const std::size_t ring = nodes.size();
   std::size_t begin = 0;
-  for (int i = 0; i < kMostRings && (i == 0 || nodes.size() < kEnoughNodes); ++i) {
+  for (int i = 0; i < kMaxRings && (i == 0 || nodes.size() < kEnoughNodes); ++i) {
     const std::size_t end = shells.size();
     add_ring(model, sheets, begin, shells);
     add_nodes(model, shells, end, node, nodes);

@@ -20,12 +20,12 @@ double weight_of(float composite, quality::ShellState state) {
   return (state.warn != 0 ? kWarning : 0) + kImperfect * (1 - static_cast<double>(composite));
 }
 
-void weigh(Burden& burden, const PatchShell& shell) {
-  burden.weight += weight_of(shell.composite, shell.state);
-  burden.worst = std::min(burden.worst, shell.composite);
-  burden.failing += shell.state.fail != 0 ? 1 : 0;
-  burden.warning += shell.state.fail == 0 && shell.state.warn != 0 ? 1 : 0;
-  burden.triangles += corner_count(shell.corners) == 3 ? 1 : 0;
+void weigh(Cost& cost, const PatchShell& shell) {
+  cost.weight += weight_of(shell.composite, shell.state);
+  cost.worst = std::min(cost.worst, shell.composite);
+  cost.failing += shell.state.fail != 0 ? 1 : 0;
+  cost.warning += shell.state.fail == 0 && shell.state.warn != 0 ? 1 : 0;
+  cost.triangles += corner_count(shell.corners) == 3 ? 1 : 0;
 }
 
 bool is_changed(const Patch& patch, const std::vector<LocalShell>& changed, LocalShell shell) {
@@ -52,7 +52,7 @@ int triangle_pairs(const Patch& patch, const std::vector<Corners>& list, const s
   return among + with_others;
 }
 
-void finish(Burden& burden) { burden.weight += kTriangle * burden.triangles + kTrianglePair * burden.triangle_pairs; }
+void finish(Cost& cost) { cost.weight += kTriangle * cost.triangles + kTrianglePair * cost.triangle_pairs; }
 
 std::vector<LocalShell> old_list(const Patch& patch) {
   std::vector<LocalShell> list;
@@ -110,11 +110,11 @@ Vec3 area_normal_of(const Corners& corners, const PositionOf& at) {
 
 /// How far shells are off the surface: at the points that divide edges, but those in lines, and quads into so many parts.
 template <class PositionOf>
-double farthest_off(const Site& site, const std::vector<Corners>& list, int parts, const PositionOf& at) {
+double farthest_off(const RepairContext& context, const std::vector<Corners>& list, int parts, const PositionOf& at) {
   double farthest = 0;
-  const double size = 2 * site.judge.target_size;
+  const double size = 2 * context.judge.target_size;
   const auto look = [&](const Vec3& point, const Vec3& normal) {
-    const auto place = site.surface.project(point, size, normal);
+    const auto place = context.surface.project(point, size, normal);
     farthest = std::max(farthest, place ? place->distance : size);
   };
   for (const Corners& corners : list) {
@@ -122,7 +122,7 @@ double farthest_off(const Site& site, const std::vector<Corners>& list, int part
     const Vec3 normal = area_normal_of(corners, at);
     for (int i = 0; i < count; ++i) {
       const LocalNode a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>((i + 1) % count)];
-      if (b < a || site.patch.line(a, b) != nullptr) continue;
+      if (b < a || context.patch.line(a, b) != nullptr) continue;
       for (int p = 1; p < parts; ++p) look(at(a) + static_cast<double>(p) / parts * (at(b) - at(a)), normal);
     }
     for (int p = 1; count == 4 && p < parts; ++p)
@@ -136,8 +136,8 @@ double farthest_off(const Site& site, const std::vector<Corners>& list, int part
 
 }  // namespace
 
-void judge_shells(const Site& site, std::span<const LocalShell> shells) {
-  Patch& patch = site.patch;
+void judge_shells(const RepairContext& context, std::span<const LocalShell> shells) {
+  Patch& patch = context.patch;
   quality::measure_in_batches(
       shells.size(),
       [&](std::size_t i, const Vec3*(&corner)[4]) {
@@ -150,34 +150,34 @@ void judge_shells(const Site& site, std::span<const LocalShell> shells) {
         quality::ShellState states[quality::kLanes];
         float composites[quality::kLanes];
         for (std::size_t lane = 0; lane < batch.count; ++lane) sheets[lane] = patch.shell(shells[batch.slot[lane]]).sheet;
-        quality::judge_lanes(values, batch.count, site.limits, sheets, states);
-        quality::rate_lanes(values, batch.count, site.limits, sheets, composites);
+        quality::judge_lanes(values, batch.count, context.limits, sheets, states);
+        quality::rate_lanes(values, batch.count, context.limits, sheets, composites);
         for (std::size_t lane = 0; lane < batch.count; ++lane) patch.set_judged(shells[batch.slot[lane]], composites[lane], states[lane]);
       });
 }
 
-Burden burden_before(const Patch& patch) {
-  Burden burden;
+Cost cost_before(const Patch& patch) {
+  Cost cost;
   std::vector<Corners> list;
   for (const auto& [shell, was] : patch.old_shells()) {
-    weigh(burden, was);
+    weigh(cost, was);
     list.push_back(was.corners);
   }
-  burden.triangle_pairs = triangle_pairs(patch, list, old_list(patch));
-  finish(burden);
-  return burden;
+  cost.triangle_pairs = triangle_pairs(patch, list, old_list(patch));
+  finish(cost);
+  return cost;
 }
 
-Burden burden_now(const Patch& patch) {
-  Burden burden;
+Cost cost_now(const Patch& patch) {
+  Cost cost;
   std::vector<Corners> list;
   for (const LocalShell shell : patch.changed_shells()) {
-    weigh(burden, patch.shell(shell));
+    weigh(cost, patch.shell(shell));
     list.push_back(patch.shell(shell).corners);
   }
-  burden.triangle_pairs = triangle_pairs(patch, list, old_list(patch));
-  finish(burden);
-  return burden;
+  cost.triangle_pairs = triangle_pairs(patch, list, old_list(patch));
+  finish(cost);
+  return cost;
 }
 
 bool conforms(const Patch& patch) {
@@ -206,21 +206,21 @@ bool harms(const Patch& patch) {
   return new_one_fails && failing_now >= failing_before;
 }
 
-bool keeps_to_surface(const Site& site) {
-  const Patch& patch = site.patch;
+bool keeps_to_surface(const RepairContext& context) {
+  const Patch& patch = context.patch;
   std::vector<Corners> now, before;
   for (const LocalShell shell : patch.changed_shells()) now.push_back(patch.shell(shell).corners);
-  const double allowed = site.options.most_off_surface * site.judge.target_size;
-  const double off = farthest_off(site, now, 2, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
+  const double allowed = context.options.most_off_surface * context.judge.target_size;
+  const double off = farthest_off(context, now, 2, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
   if (off <= allowed) return true;
   for (const auto& [shell, was] : patch.old_shells()) before.push_back(was.corners);
   // What was there is looked at in more places: its halves have their middles where it has its quarters.
-  return off <= 1.0001 * farthest_off(site, before, 4, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
+  return off <= 1.0001 * farthest_off(context, before, 4, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
 }
 
-std::optional<Vec3> on_surface(const Site& site, const Vec3& point, const Vec3& toward, double radius) {
+std::optional<Vec3> on_surface(const RepairContext& context, const Vec3& point, const Vec3& toward, double radius) {
   const std::optional<Vec3> direction = toward.squaredNorm() > 0 ? std::optional<Vec3>(toward.normalized()) : std::nullopt;
-  const auto place = site.surface.project(point, radius, direction);
+  const auto place = context.surface.project(point, radius, direction);
   return place && place->point.allFinite() ? std::optional<Vec3>(place->point) : std::nullopt;
 }
 

@@ -13,7 +13,7 @@
 namespace prismesh::mesh::repair {
 
 /// All that a repair works with.
-struct Site {
+struct RepairContext {
   Patch& patch;
   const relax::ReferenceSurface& surface;
   const relax::Judge& judge;
@@ -22,10 +22,10 @@ struct Site {
 };
 
 /// Measures and judges shells as they are now.
-void judge_shells(const Site& site, std::span<const LocalShell> shells);
+void judge_shells(const RepairContext& context, std::span<const LocalShell> shells);
 
 /// What the changed shells weigh: failing shells most, then warnings, adjacent triangles, triangles, and how far from ideal each is.
-struct Burden {
+struct Cost {
   double weight = 0;
   float worst = 1;  ///< least composite
   int failing = 0;
@@ -33,8 +33,8 @@ struct Burden {
   int triangles = 0;
   int triangle_pairs = 0;  ///< edges between two triangles
 };
-Burden burden_before(const Patch& patch);
-Burden burden_now(const Patch& patch);
+Cost cost_before(const Patch& patch);
+Cost cost_now(const Patch& patch);
 
 /// Whether the mesh is whole: no shell twice or with a node twice, every edge inside a sheet has two shells, every line as many as it had,
 /// and nothing is folded over.
@@ -44,16 +44,16 @@ bool conforms(const Patch& patch);
 bool harms(const Patch& patch);
 
 /// Whether what changed keeps to the surface: no new edge or centre farther off than allowed, or than what was there before.
-bool keeps_to_surface(const Site& site);
+bool keeps_to_surface(const RepairContext& context);
 
 /// The place on the surface for a point near it; nothing if there is none close by.
-std::optional<Vec3> on_surface(const Site& site, const Vec3& point, const Vec3& toward, double radius);
+std::optional<Vec3> on_surface(const RepairContext& context, const Vec3& point, const Vec3& toward, double radius);
 
 /// Whether a node may be at a place: one of the model no farther from where it was than the options allow.
-bool within_limit(const Site& site, LocalNode node, const Vec3& place);
+bool within_limit(const RepairContext& context, LocalNode node, const Vec3& place);
 
 /// Moves nodes that the change touched, and that may be moved, to where their shells are best; `along_lines`: those on feature lines too.
-void settle(const Site& site, int sweeps, bool along_lines);
+void settle(const RepairContext& context, int sweeps, bool along_lines);
 
 /// Twice a shell's area as a vector.
 Vec3 area_normal(const Patch& patch, const Corners& corners);

@@ -23,23 +23,23 @@ std::string pair_text(const Model& model, std::span<const ShellIndex> shells) {
 Result<void> refused(const std::string& who, std::string_view why) { return fail("", who + ": " + std::string(why)); }
 
 struct Hand {
-  const Site& site;
+  const RepairContext& context;
   const Model& model;
   std::span<const ShellIndex> shells;
   std::span<const NodeIndex> nodes;
 
-  LocalShell shell(std::size_t i) const { return site.patch.find(shells[i]); }
+  LocalShell shell(std::size_t i) const { return context.patch.find(shells[i]); }
 
   Result<void> done(const Refusal& refusal, const std::string& who) const {
     if (refusal) return refused(who, *refusal);
-    if (!conforms(site.patch)) return refused(who, "the mesh would be torn or folded");
+    if (!conforms(context.patch)) return refused(who, "the mesh would be torn or folded");
     return {};
   }
 };
 
 /// The edge two shells share; none with the reason why.
 Result<std::pair<LocalNode, LocalNode>> common_edge(const Hand& hand) {
-  const Patch& patch = hand.site.patch;
+  const Patch& patch = hand.context.patch;
   const Corners& corners = patch.shell(hand.shell(0)).corners;
   const int count = corner_count(corners);
   for (int i = 0; i < count; ++i) {
@@ -51,33 +51,33 @@ Result<std::pair<LocalNode, LocalNode>> common_edge(const Hand& hand) {
 }
 
 /// How far the middle of a quad's diagonal is from the surface.
-double off_surface(const Site& site, LocalNode a, LocalNode b, const Vec3& normal) {
-  const Vec3 middle = 0.5 * (site.patch.position(a) + site.patch.position(b));
-  const double size = (site.patch.position(a) - site.patch.position(b)).norm();
-  const auto place = site.surface.project(middle, size, normal);
+double off_surface(const RepairContext& context, LocalNode a, LocalNode b, const Vec3& normal) {
+  const Vec3 middle = 0.5 * (context.patch.position(a) + context.patch.position(b));
+  const double size = (context.patch.position(a) - context.patch.position(b)).norm();
+  const auto place = context.surface.project(middle, size, normal);
   return place ? place->distance : size;
 }
 
 Result<void> split_one(const Hand& hand) {
-  const Patch& patch = hand.site.patch;
+  const Patch& patch = hand.context.patch;
   const LocalShell quad = hand.shell(0);
   const Corners c = patch.shell(quad).corners;
   const std::string who = shell_text(hand.model, hand.shells[0]);
   if (corner_count(c) != 4) return refused(who, "a triangle has no diagonal; name a neighbour to divide it with");
   const Vec3 normal = area_normal(patch, c).normalized();
-  const double off0 = off_surface(hand.site, c[0], c[2], normal), off1 = off_surface(hand.site, c[1], c[3], normal);
+  const double off0 = off_surface(hand.context, c[0], c[2], normal), off1 = off_surface(hand.context, c[1], c[3], normal);
   const double noise = 1e-3 * (patch.position(c[0]) - patch.position(c[2])).norm();
   // The one nearer to the surface; of equals the shorter, whose triangles have the better angles.
   const bool second = std::abs(off0 - off1) > noise ? off1 < off0
                                                     : (patch.position(c[1]) - patch.position(c[3])).squaredNorm() <
                                                           (patch.position(c[0]) - patch.position(c[2])).squaredNorm();
-  return hand.done(split_quad(hand.site, quad, second ? 1 : 0), who);
+  return hand.done(split_quad(hand.context, quad, second ? 1 : 0), who);
 }
 
 /// The best of several ways that can be gone: the one whose worst shell is best by its angles.
 template <class Ways>
 Result<void> best_way(const Hand& hand, const std::string& who, const Ways& ways) {
-  Patch& patch = hand.site.patch;
+  Patch& patch = hand.context.patch;
   std::optional<std::size_t> best;
   double most = -1;
   Result<void> why = refused(who, "there is no other way");
@@ -85,8 +85,8 @@ Result<void> best_way(const Hand& hand, const std::string& who, const Ways& ways
     patch.begin();
     const Result<void> done = hand.done(ways[i](), who);
     if (done) {
-      judge_shells(hand.site, patch.changed_shells());
-      const double worst = static_cast<double>(burden_now(patch).worst) + 2;
+      judge_shells(hand.context, patch.changed_shells());
+      const double worst = static_cast<double>(cost_now(patch).worst) + 2;
       if (worst > most) {
         most = worst;
         best = i;
@@ -108,12 +108,12 @@ Result<void> split_two(const Hand& hand) {
   std::vector<std::function<Refusal()>> ways;
   for (const RowEnd forward : {RowEnd::low_triangle, RowEnd::high_triangle})
     for (const RowEnd back : {RowEnd::low_triangle, RowEnd::high_triangle})
-      ways.push_back([&hand, edge = *edge, forward, back] { return divide_edge(hand.site, edge.first, edge.second, forward, back); });
+      ways.push_back([&hand, edge = *edge, forward, back] { return divide_edge(hand.context, edge.first, edge.second, forward, back); });
   return best_way(hand, pair_text(hand.model, hand.shells), ways);
 }
 
 Result<void> collapse(const Hand& hand) {
-  const Patch& patch = hand.site.patch;
+  const Patch& patch = hand.context.patch;
   LocalNode a, b;
   if (hand.nodes.size() == 2) {
     a = patch.find(hand.nodes[0]);
@@ -139,13 +139,13 @@ Result<void> collapse(const Hand& hand) {
   }
   const std::string who =
       "the edge from " + node_text(hand.model, patch.node(a).model) + " to " + node_text(hand.model, patch.node(b).model);
-  const auto pair = union_of(hand.site, a, b);
+  const auto pair = union_of(hand.context, a, b);
   if (!pair) return refused(who, "both nodes hold the part's shape or are needed by something else");
-  return hand.done(unite(hand.site, {*pair}), who);
+  return hand.done(unite(hand.context, {*pair}), who);
 }
 
 Result<void> merge(const Hand& hand) {
-  const Patch& patch = hand.site.patch;
+  const Patch& patch = hand.context.patch;
   const std::string who = pair_text(hand.model, hand.shells);
   if (const auto edge = common_edge(hand); !edge) return fail(edge.error());
   for (std::size_t i = 0; i < 2; ++i)
@@ -153,15 +153,15 @@ Result<void> merge(const Hand& hand) {
       return refused(shell_text(hand.model, hand.shells[i]), "it isn't a triangle");
   const Loop loop = loop_of(patch, hand.shell(0), hand.shell(1));
   if (loop.empty()) return refused(who, "they have more than an edge in common");
-  return hand.done(redivide(hand.site, hand.shell(0), hand.shell(1), {loop}), who);
+  return hand.done(redivide(hand.context, hand.shell(0), hand.shell(1), {loop}), who);
 }
 
 Result<void> swap(const Hand& hand) {
   if (const auto edge = common_edge(hand); !edge) return fail(edge.error());
-  const Loop loop = loop_of(hand.site.patch, hand.shell(0), hand.shell(1));
+  const Loop loop = loop_of(hand.context.patch, hand.shell(0), hand.shell(1));
   if (loop.empty()) return refused(pair_text(hand.model, hand.shells), "they have more than an edge in common");
   std::vector<std::function<Refusal()>> ways;
-  const Corners corners = hand.site.patch.shell(hand.shell(0)).corners;
+  const Corners corners = hand.context.patch.shell(hand.shell(0)).corners;
   for (const std::vector<Loop>& pieces : divisions(loop, loop.size() == 6 ? 0 : 2)) {
     if (pieces.size() != 2) continue;
     // As it is: both pieces are what is there.
@@ -170,7 +170,7 @@ Result<void> swap(const Hand& hand) {
     std::sort(piece.begin(), piece.end());
     std::sort(other.begin(), other.end());
     if (first == piece || first == other) continue;
-    ways.push_back([&hand, pieces] { return redivide(hand.site, hand.shell(0), hand.shell(1), pieces); });
+    ways.push_back([&hand, pieces] { return redivide(hand.context, hand.shell(0), hand.shell(1), pieces); });
   }
   return best_way(hand, pair_text(hand.model, hand.shells), ways);
 }
@@ -208,9 +208,9 @@ Result<Restructuring> by_hand(const Model& model, const relax::ReferenceSurface&
   scope.erase(std::unique(scope.begin(), scope.end()), scope.end());
   if (scope.empty()) return fail("", "there is no shell");
   Patch patch(model, scope, kRingsByHand, rules, options.relax.feature_angle);
-  const Site site{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)};
+  const RepairContext context{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)};
   patch.begin();
-  const Result<void> done = carry_out({site, model, shells, nodes}, operation);
+  const Result<void> done = carry_out({context, model, shells, nodes}, operation);
   if (!done) return fail(done.error());
   patch.keep();
   return patch.result();

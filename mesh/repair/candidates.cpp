@@ -33,8 +33,8 @@ double width_of(const Patch& patch, const Corners& corners, int edge) {
   return 0.5 * (length_of(patch, edge_of(corners, edge)) + length_of(patch, edge_of(corners, edge + 2)));
 }
 
-void add_redivisions(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
-  const Patch& patch = site.patch;
+void add_redivisions(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
+  const Patch& patch = context.patch;
   const Corners& corners = patch.shell(shell).corners;
   for (int e = 0; e < corner_count(corners); ++e) {
     const EdgeOf edge = edge_of(corners, e);
@@ -44,42 +44,45 @@ void add_redivisions(const Site& site, LocalShell shell, std::vector<Candidate>&
       const Loop loop = loop_of(patch, shell, other);
       for (std::vector<Loop>& pieces : divisions(loop, 2)) {
         const Operation operation = pieces.size() == 1 ? Operation::merge : Operation::swap;
-        found.push_back({operation, [&site, shell, other, pieces = std::move(pieces)] { return redivide(site, shell, other, pieces); }});
+        found.push_back(
+            {operation, [&context, shell, other, pieces = std::move(pieces)] { return redivide(context, shell, other, pieces); }});
       }
     }
   }
 }
 
-void add_union(const Site& site, LocalNode a, LocalNode b, std::vector<Candidate>& found) {
-  if (const auto pair = union_of(site, a, b)) found.push_back({Operation::collapse, [&site, pair = *pair] { return unite(site, {pair}); }});
+void add_union(const RepairContext& context, LocalNode a, LocalNode b, std::vector<Candidate>& found) {
+  if (const auto pair = union_of(context, a, b))
+    found.push_back({Operation::collapse, [&context, pair = *pair] { return unite(context, {pair}); }});
 }
 
-void add_unions(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
-  const Corners corners = site.patch.shell(shell).corners;
+void add_unions(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
+  const Corners corners = context.patch.shell(shell).corners;
   const int count = corner_count(corners);
   double shortest = 1e300, longest = 0;
   for (int e = 0; e < count; ++e) {
-    shortest = std::min(shortest, length_of(site.patch, edge_of(corners, e)));
-    longest = std::max(longest, length_of(site.patch, edge_of(corners, e)));
+    shortest = std::min(shortest, length_of(context.patch, edge_of(corners, e)));
+    longest = std::max(longest, length_of(context.patch, edge_of(corners, e)));
   }
   for (int e = 0; e < count; ++e) {
     const EdgeOf edge = edge_of(corners, e);
     // Only what is short: the others only move trouble elsewhere.
-    if (length_of(site.patch, edge) <= std::max(1.5 * shortest, 0.5 * site.judge.target_size)) add_union(site, edge.a, edge.b, found);
+    if (length_of(context.patch, edge) <= std::max(1.5 * shortest, 0.5 * context.judge.target_size))
+      add_union(context, edge.a, edge.b, found);
   }
   if (count != 4) return;
   for (std::size_t i = 0; i < 2; ++i)
-    if (length_of(site.patch, {corners[i], corners[i + 2]}) < 0.9 * longest) add_union(site, corners[i], corners[i + 2], found);
+    if (length_of(context.patch, {corners[i], corners[i + 2]}) < 0.9 * longest) add_union(context, corners[i], corners[i + 2], found);
 }
 
 /// How many quads from a shell's edge on are worth dividing in one row with it: bad ones, or with long edges across.
 int run_of(const Patch& patch, const Row& start, bool is_forward, double long_edge) {
-  constexpr int kMost = 12;
+  constexpr int kMax = 12;
   Row row = start;
   int& length = is_forward ? row.forward : row.back;
   LocalShell at = start.start;
   int edge = is_forward ? (start.edge + 2) % 4 : start.edge;
-  for (int run = 0; run < kMost; ++run) {
+  for (int run = 0; run < kMax; ++run) {
     const EdgeOf out = edge_of(patch.shell(at).corners, edge);
     const std::vector<LocalShell> shells = patch.shells_at(out.a, out.b);
     if (shells.size() != 2) return run;
@@ -98,11 +101,11 @@ int run_of(const Patch& patch, const Row& start, bool is_forward, double long_ed
     at = next;
     edge = (entered + 2) % 4;
   }
-  return kMost;
+  return kMax;
 }
 
-void add_row(const Site& site, const Row& row, std::vector<Candidate>& found) {
-  const auto ends = ends_of(site.patch, row);
+void add_row(const RepairContext& context, const Row& row, std::vector<Candidate>& found) {
+  const auto ends = ends_of(context.patch, row);
   if (!ends) return;
   const auto ways = [](int corners) -> std::vector<RowEnd> {
     if (corners == 4) return {RowEnd::low_triangle, RowEnd::high_triangle};
@@ -114,20 +117,20 @@ void add_row(const Site& site, const Row& row, std::vector<Candidate>& found) {
       Row way = row;
       way.forward_end = forward;
       way.back_end = back;
-      found.push_back({Operation::split, [&site, way] { return divide_row(site, way); }});
+      found.push_back({Operation::split, [&context, way] { return divide_row(context, way); }});
     }
 }
 
-void add_rows(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
-  const Patch& patch = site.patch;
+void add_rows(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
+  const Patch& patch = context.patch;
   const Corners& corners = patch.shell(shell).corners;
   if (corner_count(corners) != 4) return;
   for (int direction = 0; direction < 2; ++direction) {
     const double across = width_of(patch, corners, direction);
     // Halves of what is short already are no use.
-    if (across < 0.6 * site.judge.target_size) continue;
+    if (across < 0.6 * context.judge.target_size) continue;
     Row row{shell, direction};
-    const double long_edge = std::max(kLong * site.judge.target_size, 0.8 * across);
+    const double long_edge = std::max(kLong * context.judge.target_size, 0.8 * across);
     const int forward = run_of(patch, row, true, long_edge), back = run_of(patch, row, false, long_edge);
     std::vector<std::pair<int, int>> lengths_tried = {
         {forward, back}, {forward + 1, back + 1}, {forward + 1, back}, {forward, back + 1}, {0, 0}};
@@ -135,15 +138,15 @@ void add_rows(const Site& site, LocalShell shell, std::vector<Candidate>& found)
     for (const auto& [f, b] : lengths_tried) {
       row.forward = f;
       row.back = b;
-      add_row(site, row, found);
+      add_row(context, row, found);
     }
   }
 }
 
 /// From a triangle over quads to another one: both become quads.
-void add_rows_between_triangles(const Site& site, LocalShell shell, std::vector<Candidate>& found) {
+void add_rows_between_triangles(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
   constexpr int kFarthest = 8;
-  const Patch& patch = site.patch;
+  const Patch& patch = context.patch;
   const Corners corners = patch.shell(shell).corners;
   if (corner_count(corners) != 3) return;
   for (int e = 0; e < 3; ++e) {
@@ -159,7 +162,7 @@ void add_rows_between_triangles(const Site& site, LocalShell shell, std::vector<
         if (!ends) break;
         if (ends->forward_corners == 4) continue;
         row.forward_end = row.back_end = RowEnd::absorb;
-        found.push_back({Operation::split, [&site, row] { return divide_row(site, row); }});
+        found.push_back({Operation::split, [&context, row] { return divide_row(context, row); }});
         break;
       }
     }
@@ -168,43 +171,43 @@ void add_rows_between_triangles(const Site& site, LocalShell shell, std::vector<
 
 }  // namespace
 
-std::vector<Candidate> candidates_for(const Site& site, LocalShell shell) {
+std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell shell) {
   std::vector<Candidate> found;
-  const Patch& patch = site.patch;
+  const Patch& patch = context.patch;
   const Corners corners = patch.shell(shell).corners;
   const int count = corner_count(corners);
-  add_unions(site, shell, found);
-  add_redivisions(site, shell, found);
-  add_rows(site, shell, found);
-  add_rows_between_triangles(site, shell, found);
-  found.push_back({std::nullopt, [&site, shell] { return stir(site, shell); }});
+  add_unions(context, shell, found);
+  add_redivisions(context, shell, found);
+  add_rows(context, shell, found);
+  add_rows_between_triangles(context, shell, found);
+  found.push_back({std::nullopt, [&context, shell] { return stir(context, shell); }});
   for (int e = 0; e < count; ++e) {
     const LocalNode node = corners[static_cast<std::size_t>(e)];
-    if (patch.node(node).lines.empty()) found.push_back({Operation::split, [&site, node] { return divide_about(site, node); }});
+    if (patch.node(node).lines.empty()) found.push_back({Operation::split, [&context, node] { return divide_about(context, node); }});
   }
   if (count == 4) {
-    const double most = site.options.most_off_surface * site.judge.target_size;
+    const double most = context.options.most_off_surface * context.judge.target_size;
     const auto warped = 1U << static_cast<unsigned>(quality::Metric::warpage);
     if ((patch.shell(shell).state.warn & warped) != 0)
       for (std::size_t c = 0; c < 4; ++c)
         for (const double distance : {most, -most})
-          found.push_back({Operation::move, [&site, node = corners[c], distance] { return lift_node(site, node, distance); }});
+          found.push_back({Operation::move, [&context, node = corners[c], distance] { return lift_node(context, node, distance); }});
     for (int first = 0; first < 2; ++first)
-      found.push_back({Operation::split, [&site, shell, first] { return split_quad(site, shell, first); }});
+      found.push_back({Operation::split, [&context, shell, first] { return split_quad(context, shell, first); }});
   }
   return found;
 }
 
-std::vector<Candidate> strips_for(const Site& site, LocalShell shell, int edge) {
+std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell, int edge) {
   std::vector<Candidate> found;
-  const Corners& corners = site.patch.shell(shell).corners;
+  const Corners& corners = context.patch.shell(shell).corners;
   if (corner_count(corners) != 4) return found;
-  const double width = width_of(site.patch, corners, edge), size = site.judge.target_size;
+  const double width = width_of(context.patch, corners, edge), size = context.judge.target_size;
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   std::vector<StripCourse> courses;
   // Where a strip ends by itself its limits make no difference.
   const auto is_another = [&](const Strip& strip) {
-    StripCourse course = course_of(site.patch, strip);
+    StripCourse course = course_of(context.patch, strip);
     if (course.quads.empty() || std::find(courses.begin(), courses.end(), course) != courses.end()) return false;
     courses.push_back(std::move(course));
     return true;
@@ -212,7 +215,7 @@ std::vector<Candidate> strips_for(const Site& site, LocalShell shell, int edge) 
   for (const double most : {kInfinite, 0.75 * size, kShort * size}) {
     const Strip strip{shell, edge, 0, most};
     if (width > kShort * size || !is_another(strip)) continue;
-    found.push_back({Operation::collapse, [&site, strip] { return collapse_strip(site, strip); }});
+    found.push_back({Operation::collapse, [&context, strip] { return collapse_strip(context, strip); }});
   }
   if (width < kLong * size) return found;
   std::set<int> pieces = {2};
@@ -223,21 +226,21 @@ std::vector<Candidate> strips_for(const Site& site, LocalShell shell, int edge) 
     for (const int count : pieces)
       for (const bool absorbs : {true, false}) {
         if (!absorbs && (count > 2 || !courses.back().ends_in_triangle)) continue;
-        found.push_back({Operation::split, [&site, strip, count, absorbs] { return divide_strip(site, strip, count, absorbs); }});
+        found.push_back({Operation::split, [&context, strip, count, absorbs] { return divide_strip(context, strip, count, absorbs); }});
       }
   }
   return found;
 }
 
-std::vector<Candidate> tidying_for(const Site& site, LocalShell shell) {
+std::vector<Candidate> tidying_for(const RepairContext& context, LocalShell shell) {
   std::vector<Candidate> found;
-  const Corners corners = site.patch.shell(shell).corners;
+  const Corners corners = context.patch.shell(shell).corners;
   bool is_paired = false;
   for (std::size_t i = 0; i < 3; ++i)
-    for (const LocalShell other : site.patch.shells_at(corners[i], corners[(i + 1) % 3]))
-      is_paired = is_paired || (other != shell && corner_count(site.patch.shell(other).corners) == 3);
-  if (is_paired) add_redivisions(site, shell, found);
-  add_rows_between_triangles(site, shell, found);
+    for (const LocalShell other : context.patch.shells_at(corners[i], corners[(i + 1) % 3]))
+      is_paired = is_paired || (other != shell && corner_count(context.patch.shell(other).corners) == 3);
+  if (is_paired) add_redivisions(context, shell, found);
+  add_rows_between_triangles(context, shell, found);
   return found;
 }
 

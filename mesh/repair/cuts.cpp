@@ -15,7 +15,7 @@ std::vector<LocalNode> EdgeCuts::cut(LocalNode a, LocalNode b) {
 }
 
 std::vector<LocalNode> EdgeCuts::make(LocalNode a, LocalNode b) {
-  Patch& patch = site_.patch;
+  Patch& patch = context_.patch;
   if (!patch.may_divide(a, b)) refusal_ = "no node can come between two nodes there";
   const Vec3 from = patch.position(a), to = patch.position(b);
   const double size = (to - from).norm();
@@ -27,9 +27,9 @@ std::vector<LocalNode> EdgeCuts::make(LocalNode a, LocalNode b) {
     const Vec3 point = from + share * (to - from);
     std::optional<Vec3> place;
     if (is_line)
-      place = site_.surface.project_on_line(point, 0.5 * size);
+      place = context_.surface.project_on_line(point, 0.5 * size);
     else if (!shells.empty())
-      place = on_surface(site_, point, area_normal(patch, patch.shell(shells[0]).corners), size);
+      place = on_surface(context_, point, area_normal(patch, patch.shell(shells[0]).corners), size);
     // A straight edge whose middle isn't near anything known is divided where it is.
     const LocalNode parents[2] = {a, b};
     const double shares[2] = {1 - share, share};
@@ -39,8 +39,8 @@ std::vector<LocalNode> EdgeCuts::make(LocalNode a, LocalNode b) {
   return nodes;
 }
 
-Refusal end_row(const Site& site, const EdgeAt& at, LocalNode middle, RowEnd end) {
-  Patch& patch = site.patch;
+Refusal end_row(const RepairContext& context, const EdgeAt& at, LocalNode middle, RowEnd end) {
+  Patch& patch = context.patch;
   const Corners c = patch.shell(at.shell).corners;
   const Vec3 direction = first_edge(patch, at.shell);
   const auto count = static_cast<std::size_t>(corner_count(c));
@@ -66,8 +66,8 @@ Refusal end_row(const Site& site, const EdgeAt& at, LocalNode middle, RowEnd end
   return std::nullopt;
 }
 
-Refusal divide_quad(const Site& site, const EdgeAt& at, EdgeCuts& cuts) {
-  Patch& patch = site.patch;
+Refusal divide_quad(const RepairContext& context, const EdgeAt& at, EdgeCuts& cuts) {
+  Patch& patch = context.patch;
   if (const Refusal refusal = refuse_dividing(patch, at.shell, 4)) return refusal;
   const Corners c = patch.shell(at.shell).corners;
   const Vec3 direction = first_edge(patch, at.shell);

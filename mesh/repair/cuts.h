@@ -16,7 +16,7 @@ inline EdgeKey edge_key(LocalNode a, LocalNode b) { return {std::min(a, b), std:
 /// New nodes on edges, each made once, so many to an edge that it has `pieces`.
 class EdgeCuts {
  public:
-  explicit EdgeCuts(const Site& site, int pieces = 2) : site_(site), pieces_(pieces) {}
+  explicit EdgeCuts(const RepairContext& context, int pieces = 2) : context_(context), pieces_(pieces) {}
 
   /// The nodes on an edge on the way from `a` to `b`; a refusal is remembered.
   std::vector<LocalNode> cut(LocalNode a, LocalNode b);
@@ -28,7 +28,7 @@ class EdgeCuts {
   /// All of them from the lower to the higher node.
   std::vector<LocalNode> make(LocalNode a, LocalNode b);
 
-  const Site& site_;
+  const RepairContext& context_;
   int pieces_;
   std::map<EdgeKey, std::vector<LocalNode>> cuts_;
   Refusal refusal_;
@@ -40,8 +40,8 @@ struct EdgeAt {
 };
 
 /// A quad into pieces side by side, across the edge and the one opposite.
-Refusal divide_quad(const Site& site, const EdgeAt& at, EdgeCuts& cuts);
+Refusal divide_quad(const RepairContext& context, const EdgeAt& at, EdgeCuts& cuts);
 /// A shell of which only one edge is cut, at `middle`.
-Refusal end_row(const Site& site, const EdgeAt& at, LocalNode middle, RowEnd end);
+Refusal end_row(const RepairContext& context, const EdgeAt& at, LocalNode middle, RowEnd end);
 
 }  // namespace prismesh::mesh::repair

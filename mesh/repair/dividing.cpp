@@ -77,12 +77,12 @@ std::optional<RowEnds> ends_of(const Patch& patch, const Row& row) {
   return RowEnds{corners(walked->forward), corners(walked->back)};
 }
 
-Refusal divide_row(const Site& site, const Row& row) {
-  Patch& patch = site.patch;
+Refusal divide_row(const RepairContext& context, const Row& row) {
+  Patch& patch = context.patch;
   if (corner_count(patch.shell(row.start).corners) != 4) return "a row begins with a quad";
   const auto walked = walk_row(patch, row);
   if (!walked) return "there is no row of quads";
-  EdgeCuts cuts(site);
+  EdgeCuts cuts(context);
   struct End {
     EdgeAt at;
     LocalNode a, b;
@@ -95,19 +95,19 @@ Refusal divide_row(const Site& site, const Row& row) {
     const auto count = static_cast<std::size_t>(corner_count(c));
     ends.push_back({*side->beyond, c[side->beyond->edge], c[(side->beyond->edge + 1) % count], end});
   }
-  if (const Refusal refusal = divide_quad(site, {row.start, static_cast<std::size_t>(row.edge)}, cuts)) return refusal;
+  if (const Refusal refusal = divide_quad(context, {row.start, static_cast<std::size_t>(row.edge)}, cuts)) return refusal;
   for (const Walk* side : {&walked->forward, &walked->back})
     for (const EdgeAt& at : side->quads)
-      if (const Refusal refusal = divide_quad(site, at, cuts)) return refusal;
+      if (const Refusal refusal = divide_quad(context, at, cuts)) return refusal;
   for (const End& end : ends)
-    if (const Refusal refusal = end_row(site, end.at, cuts.middle(end.a, end.b), end.end)) return refusal;
+    if (const Refusal refusal = end_row(context, end.at, cuts.middle(end.a, end.b), end.end)) return refusal;
   return cuts.refusal();
 }
 
-Refusal divide_edge(const Site& site, LocalNode a, LocalNode b, RowEnd first_end, RowEnd second_end) {
-  const Patch& patch = site.patch;
+Refusal divide_edge(const RepairContext& context, LocalNode a, LocalNode b, RowEnd first_end, RowEnd second_end) {
+  const Patch& patch = context.patch;
   const std::vector<LocalShell> shells = patch.shells_at(a, b);
-  EdgeCuts cuts(site);
+  EdgeCuts cuts(context);
   const LocalNode middle = cuts.middle(a, b);
   if (cuts.refusal()) return cuts.refusal();
   for (std::size_t i = 0; i < shells.size(); ++i) {
@@ -115,16 +115,16 @@ Refusal divide_edge(const Site& site, LocalNode a, LocalNode b, RowEnd first_end
     const auto count = static_cast<std::size_t>(corner_count(c));
     std::size_t edge = 0;
     while (edge_key(c[edge], c[(edge + 1) % count]) != edge_key(a, b)) ++edge;
-    if (const Refusal refusal = end_row(site, {shells[i], edge}, middle, i == 0 ? first_end : second_end)) return refusal;
+    if (const Refusal refusal = end_row(context, {shells[i], edge}, middle, i == 0 ? first_end : second_end)) return refusal;
   }
   return std::nullopt;
 }
 
-Refusal divide_about(const Site& site, LocalNode node) {
-  Patch& patch = site.patch;
+Refusal divide_about(const RepairContext& context, LocalNode node) {
+  Patch& patch = context.patch;
   if (!patch.node(node).is_whole) return "the node can't be worked on";
   const std::vector<LocalShell> shells = patch.node(node).shells;
-  EdgeCuts cuts(site);
+  EdgeCuts cuts(context);
   for (const LocalShell shell : shells) {
     if (const Refusal refusal = refuse_dividing(patch, shell, static_cast<std::size_t>(corner_count(patch.shell(shell).corners))))
       return refusal;
@@ -146,7 +146,7 @@ Refusal divide_about(const Site& site, LocalNode node) {
     constexpr double kQuarters[4] = {0.25, 0.25, 0.25, 0.25};
     const LocalNode parents[4] = {c[0], c[1], c[2], c[3]};
     const LocalNode p =
-        patch.add_node(on_surface(site, middle, normal, size).value_or(middle), parents, kQuarters, relax::Freedom::surface);
+        patch.add_node(on_surface(context, middle, normal, size).value_or(middle), parents, kQuarters, relax::Freedom::surface);
     patch.set_corners(shell, turned_like(patch, {node, m, p, n}, direction));
     patch.add_shell(turned_like(patch, {m, next, far, p}, direction), shell);
     patch.add_shell(turned_like(patch, {p, far, last, n}, direction), shell);

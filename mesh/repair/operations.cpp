@@ -97,8 +97,8 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-Refusal split_quad(const Site& site, LocalShell quad, int first) {
-  Patch& patch = site.patch;
+Refusal split_quad(const RepairContext& context, LocalShell quad, int first) {
+  Patch& patch = context.patch;
   const Corners c = patch.shell(quad).corners;
   if (corner_count(c) != 4) return "a triangle has no diagonal";
   if (const Refusal refusal = refuse_dividing(patch, quad, 3)) return refusal;
@@ -125,8 +125,8 @@ Loop loop_of(const Patch& patch, LocalShell first, LocalShell second) {
   return loop;
 }
 
-Refusal redivide(const Site& site, LocalShell first, LocalShell second, const std::vector<Loop>& pieces) {
-  Patch& patch = site.patch;
+Refusal redivide(const RepairContext& context, LocalShell first, LocalShell second, const std::vector<Loop>& pieces) {
+  Patch& patch = context.patch;
   LocalNode u, v;
   if (!shared_edge(patch, first, second, u, v)) return "they have no edge in common";
   if (patch.line(u, v) != nullptr) return "the edge between them has to stay";
@@ -189,8 +189,8 @@ std::vector<std::vector<Loop>> divisions(const Loop& loop, int most_triangles) {
   return found;
 }
 
-std::optional<Union> union_of(const Site& site, LocalNode a, LocalNode b) {
-  const Patch& patch = site.patch;
+std::optional<Union> union_of(const RepairContext& context, LocalNode a, LocalNode b) {
+  const Patch& patch = context.patch;
   const auto rank = [&](LocalNode n) {
     const PatchNode& node = patch.node(n);
     if ((node.rules & kNeeded) != 0 || !node.is_whole) return 4;
@@ -208,8 +208,8 @@ std::optional<Union> union_of(const Site& site, LocalNode a, LocalNode b) {
 
 namespace {
 
-Refusal refuse_union(const Site& site, const Union& pair, LocalNode& other_end) {
-  const Patch& patch = site.patch;
+Refusal refuse_union(const RepairContext& context, const Union& pair, LocalNode& other_end) {
+  const Patch& patch = context.patch;
   const PatchNode& gone = patch.node(pair.gone);
   if (!gone.is_whole || !patch.node(pair.stays).is_whole) return "a node there can't be worked on";
   if ((gone.rules & kNeeded) != 0) return "something else needs the node that would go";
@@ -221,7 +221,7 @@ Refusal refuse_union(const Site& site, const Union& pair, LocalNode& other_end) 
   if (one.is_rim || two.is_rim || one.shells != two.shells) return "that would bend an edge of the part";
   other_end = one.node == pair.stays ? two.node : one.node;
   const double off = distance_to_segment(gone.position, patch.position(pair.stays), patch.position(other_end));
-  if (off > site.options.most_off_surface * site.judge.target_size) return "that would bend an edge of the part";
+  if (off > context.options.most_off_surface * context.judge.target_size) return "that would bend an edge of the part";
   return std::nullopt;
 }
 
@@ -242,11 +242,11 @@ Loop united(const Corners& corners, const std::vector<Union>& unions) {
 
 }  // namespace
 
-Refusal unite(const Site& site, const std::vector<Union>& unions) {
-  Patch& patch = site.patch;
+Refusal unite(const RepairContext& context, const std::vector<Union>& unions) {
+  Patch& patch = context.patch;
   std::vector<LocalNode> other_ends(unions.size());
   for (std::size_t i = 0; i < unions.size(); ++i) {
-    if (const Refusal refusal = refuse_union(site, unions[i], other_ends[i])) return refusal;
+    if (const Refusal refusal = refuse_union(context, unions[i], other_ends[i])) return refusal;
     for (std::size_t j = 0; j < unions.size(); ++j)
       if (i != j && (unions[i].gone == unions[j].gone || unions[i].gone == unions[j].stays)) return "the nodes run into each other";
   }
@@ -276,16 +276,16 @@ Refusal unite(const Site& site, const std::vector<Union>& unions) {
         const Vec3 own = area_normal(patch, patch.shell(shell).corners);
         normal += normal.dot(own) < 0 ? Vec3(-own) : own;
       }
-      const auto place = on_surface(site, middle, normal, site.judge.target_size);
-      if (place && within_limit(site, unions[i].stays, *place)) patch.move(unions[i].stays, *place);
+      const auto place = on_surface(context, middle, normal, context.judge.target_size);
+      if (place && within_limit(context, unions[i].stays, *place)) patch.move(unions[i].stays, *place);
     }
     patch.remove_node(unions[i].gone);
   }
   return std::nullopt;
 }
 
-Refusal stir(const Site& site, LocalShell shell) {
-  Patch& patch = site.patch;
+Refusal stir(const RepairContext& context, LocalShell shell) {
+  Patch& patch = context.patch;
   std::vector<LocalNode> nodes;
   for (const LocalNode corner : patch.shell(shell).corners)
     for (const LocalShell near : patch.node(corner).shells)
@@ -296,21 +296,21 @@ Refusal stir(const Site& site, LocalShell shell) {
   return std::nullopt;
 }
 
-Refusal lift_node(const Site& site, LocalNode node, double distance) {
-  const PatchNode& n = site.patch.node(node);
+Refusal lift_node(const RepairContext& context, LocalNode node, double distance) {
+  const PatchNode& n = context.patch.node(node);
   if (!n.is_whole || n.freedom != relax::Freedom::surface || !n.lines.empty() || (n.rules & kStays) != 0) return "the node can't be moved";
   Vec3 normal = Vec3::Zero();
   for (const LocalShell shell : n.shells) {
-    const Vec3 own = area_normal(site.patch, site.patch.shell(shell).corners);
+    const Vec3 own = area_normal(context.patch, context.patch.shell(shell).corners);
     normal += normal.dot(own) < 0 ? Vec3(-own) : own;
   }
   const double length = normal.norm();
   if (!(length > 0)) return "the node can't be moved";
-  const auto place = site.surface.project(n.position, site.judge.target_size, Vec3(normal / length));
+  const auto place = context.surface.project(n.position, context.judge.target_size, Vec3(normal / length));
   if (!place) return "the node isn't near the surface";
   const Vec3 lifted = place->point + distance * (normal / length);
-  if (!within_limit(site, node, lifted)) return "a node would go farther than it may";
-  site.patch.move(node, lifted, true);
+  if (!within_limit(context, node, lifted)) return "a node would go farther than it may";
+  context.patch.move(node, lifted, true);
   return std::nullopt;
 }
 

@@ -15,12 +15,12 @@ using Refusal = std::optional<std::string_view>;
 using Loop = std::vector<LocalNode>;
 
 /// A quad into two triangles; `first`: 0 for the diagonal from corner 0 to 2, 1 for that from 1 to 3.
-Refusal split_quad(const Site& site, LocalShell quad, int first);
+Refusal split_quad(const RepairContext& context, LocalShell quad, int first);
 
 /// The corners of two shells that share exactly one edge, as one loop in the first's sense of rotation; empty: they don't.
 Loop loop_of(const Patch& patch, LocalShell first, LocalShell second);
 /// Two shells become these (each 3 or 4 of the loop's nodes, in its sense). One shell or two stay, more are new.
-Refusal redivide(const Site& site, LocalShell first, LocalShell second, const std::vector<Loop>& pieces);
+Refusal redivide(const RepairContext& context, LocalShell first, LocalShell second, const std::vector<Loop>& pieces);
 /// The ways of dividing a loop of 4, 5 or 6 nodes into two or three shells with at most as many triangles as given.
 std::vector<std::vector<Loop>> divisions(const Loop& loop, int most_triangles);
 
@@ -29,9 +29,9 @@ struct Union {
   LocalNode gone;
   LocalNode stays;
 };
-Refusal unite(const Site& site, const std::vector<Union>& unions);
+Refusal unite(const RepairContext& context, const std::vector<Union>& unions);
 /// The pair in the order in which it can be united, and null if in none.
-std::optional<Union> union_of(const Site& site, LocalNode a, LocalNode b);
+std::optional<Union> union_of(const RepairContext& context, LocalNode a, LocalNode b);
 
 /// How a row of divided shells ends in the shell beyond.
 enum class RowEnd : std::uint8_t {
@@ -50,7 +50,7 @@ struct Row {
   RowEnd forward_end = RowEnd::low_triangle;
   RowEnd back_end = RowEnd::low_triangle;
 };
-Refusal divide_row(const Site& site, const Row& row);
+Refusal divide_row(const RepairContext& context, const Row& row);
 /// What is beyond a row's end: the number of corners of the shell there; 0: the sheet ends.
 struct RowEnds {
   int forward_corners = 0;
@@ -59,15 +59,15 @@ struct RowEnds {
 std::optional<RowEnds> ends_of(const Patch& patch, const Row& row);
 
 /// The shells at an edge divided with it, each ended as a row is; a triangle that doesn't absorb becomes two.
-Refusal divide_edge(const Site& site, LocalNode a, LocalNode b, RowEnd first_end, RowEnd second_end);
+Refusal divide_edge(const RepairContext& context, LocalNode a, LocalNode b, RowEnd first_end, RowEnd second_end);
 
 /// All shells about a node, divided between it and what is around: quads into three, triangles into two.
-Refusal divide_about(const Site& site, LocalNode node);
+Refusal divide_about(const RepairContext& context, LocalNode node);
 
 /// Changes nothing, but counts the shells about a shell's corners as changed, so that their nodes settle.
-Refusal stir(const Site& site, LocalShell shell);
+Refusal stir(const RepairContext& context, LocalShell shell);
 
 /// Moves a node along the surface's normal.
-Refusal lift_node(const Site& site, LocalNode node, double distance);
+Refusal lift_node(const RepairContext& context, LocalNode node, double distance);
 
 }  // namespace prismesh::mesh::repair

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "mesh/model/growth.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/quality/criteria.h"
 #include "mesh/relax/freedom.h"
 #include "mesh/repair/restructuring.h"

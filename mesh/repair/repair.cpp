@@ -21,10 +21,10 @@ constexpr int kRingsOfPatch = 4;
 constexpr int kStripPasses = 4;
 // How far a round is when shells are next, and what going through them takes of it.
 constexpr double kStripShare = 0.2, kSweepShare = 0.4, kFailShare = kStripShare + kSweepShare;
-constexpr double kLeastGain = 0.05;
+constexpr double kMinGain = 0.05;
 constexpr int kSweepsAtAGlance = 1;
 // Candidates that after a glance gain less aren't looked at closer.
-constexpr double kLeastPromise = -2;
+constexpr double kMinPromise = -2;
 
 /// How hard is tried: how often nodes settle, how many candidates are looked at closely, before and after one could be accepted, and
 /// whether nodes on feature lines settle along those.
@@ -63,7 +63,7 @@ class Repairer {
   Repairer(const Model& model, const relax::ReferenceSurface& surface, const ShellSet& scope, const Rules& rules, const relax::Judge& judge,
            const Options& options)
       : patch_(model, scope, kRingsOfPatch, rules, options.relax.feature_angle),
-        site_{patch_, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {
+        context_{patch_, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {
     in_scope_.assign(patch_.shell_count(), 0);
     for (const ShellIndex shell : scope)
       if (const LocalShell local = patch_.find(shell); local.valid()) in_scope_[local.value] = 1;
@@ -74,13 +74,13 @@ class Repairer {
 
   Result<Repaired> run(const Progress& progress) {
     progress_ = &progress;
-    const quality::Limits limits = site_.limits;
+    const quality::Limits limits = context_.limits;
     judge_all();
     repaired_.bad_before = bad_shells(quality::Grade::warn).size();
-    site_.limits = within(limits);
+    context_.limits = within(limits);
     judge_all();
     relax_neighbourhood();
-    for (round_ = 0; round_ < site_.options.most_rounds && !stopped_; ++round_) {
+    for (round_ = 0; round_ < context_.options.most_rounds && !stopped_; ++round_) {
       repaired_.rounds = round_ + 1;
       bool better = false;
       // Nodes that slid along a line hinder the next strip, which would divide it evenly: they may only when nothing else helps.
@@ -101,7 +101,7 @@ class Repairer {
       relax_neighbourhood();
     }
     if (stopped_) return fail(*stopped_);
-    site_.limits = limits;
+    context_.limits = limits;
     judge_all();
     finish();
     return std::move(repaired_);
@@ -119,7 +119,7 @@ class Repairer {
     std::vector<LocalShell> all;
     for (std::size_t s = 0; s < patch_.shell_count(); ++s)
       if (patch_.shell(LocalShell(s)).is_alive) all.push_back(LocalShell(s));
-    judge_shells(site_, all);
+    judge_shells(context_, all);
     patch_.keep();
   }
 
@@ -146,7 +146,7 @@ class Repairer {
       if (!goes_on(done)) break;
       done += each;
       if (!patch_.shell(shell).is_alive || patch_.shell(shell).state.grade() < least || !is_worth_trying(shell)) continue;
-      if (improve(candidates_for(site_, shell), shell, false))
+      if (improve(candidates_for(context_, shell), shell, false))
         better = true;
       else
         tried_[shell] = changes_;
@@ -170,7 +170,7 @@ class Repairer {
       for (int edge = 0; edge < 2; ++edge) {
         if (!patch_.shell(shell).is_alive || patch_.shell(shell).state.grade() == quality::Grade::ok) break;
         if (refused.contains({shell, edge})) continue;
-        const std::vector<Candidate> found = strips_for(site_, shell, edge);
+        const std::vector<Candidate> found = strips_for(context_, shell, edge);
         if (found.empty()) continue;
         if (!goes_on(0)) return false;
         if (improve(found, shell, false))
@@ -187,7 +187,7 @@ class Repairer {
       const LocalShell shell(s);
       if (!patch_.shell(shell).is_alive || !is_touched(shell) || corner_count(patch_.shell(shell).corners) != 3) continue;
       if (!goes_on(kFailShare + kSweepShare)) return;
-      improve(tidying_for(site_, shell), shell, true);
+      improve(tidying_for(context_, shell), shell, true);
     }
   }
 
@@ -208,9 +208,9 @@ class Repairer {
     if (const Refusal refusal = candidate.apply()) {
       if (reason.rank < 0) reason = {0, *refusal, 0};
     } else {
-      settle(site_, kSweepsAtAGlance, along_lines_);
-      judge_shells(site_, patch_.changed_shells());
-      gain = burden_before(patch_).weight - burden_now(patch_).weight;
+      settle(context_, kSweepsAtAGlance, along_lines_);
+      judge_shells(context_, patch_.changed_shells());
+      gain = cost_before(patch_).weight - cost_now(patch_).weight;
     }
     patch_.take_back();
     return gain;
@@ -218,11 +218,11 @@ class Repairer {
 
   Outcome try_out(const Candidate& candidate, bool only_tidy) {
     if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
-    settle(site_, effort_.sweeps, along_lines_);
-    judge_shells(site_, patch_.changed_shells());
-    const Burden before = burden_before(patch_), now = burden_now(patch_);
+    settle(context_, effort_.sweeps, along_lines_);
+    judge_shells(context_, patch_.changed_shells());
+    const Cost before = cost_before(patch_), now = cost_now(patch_);
     const double gain = before.weight - now.weight;
-    if (gain < kLeastGain) return {0, "no operation makes it better", 4};
+    if (gain < kMinGain) return {0, "no operation makes it better", 4};
     if (only_tidy) {
       if (now.failing > before.failing || now.warning > before.warning) return {};
     } else {
@@ -236,7 +236,7 @@ class Repairer {
       return {0, "there would be too many triangles", 5};
     if (now.triangle_pairs > before.triangle_pairs && pairs_ + now.triangle_pairs - before.triangle_pairs > 0)
       return {0, "there would be two triangles side by side", 5};
-    if (!keeps_to_surface(site_)) return {0, "every operation leaves the surface", 3};
+    if (!keeps_to_surface(context_)) return {0, "every operation leaves the surface", 3};
     return {gain, {}, 0};
   }
 
@@ -245,7 +245,7 @@ class Repairer {
     Outcome reason{0, "no operation is possible", -1};
     std::vector<std::pair<double, std::size_t>> promising;
     for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (const auto gain = glance(candidates[i], reason); gain && *gain > kLeastPromise) promising.emplace_back(*gain, i);
+      if (const auto gain = glance(candidates[i], reason); gain && *gain > kMinPromise) promising.emplace_back(*gain, i);
     std::stable_sort(promising.begin(), promising.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     const Candidate* best = nullptr;
     double most = 0;
@@ -272,7 +272,7 @@ class Repairer {
   }
 
   void keep_change() {
-    const Burden before = burden_before(patch_), now = burden_now(patch_);
+    const Cost before = cost_before(patch_), now = cost_now(patch_);
     triangles_ += now.triangles - before.triangles;
     pairs_ += now.triangle_pairs - before.triangle_pairs;
     touched_.resize(patch_.shell_count(), 0);
@@ -320,7 +320,7 @@ class Repairer {
     if (!goes_on(0)) return;
     std::vector<LocalShell> shells;
     const Model small = patch_.as_model(shells);
-    relax::Options options = site_.options.relax;
+    relax::Options options = context_.options.relax;
     options.checks_on_the_way = false;
     std::vector<Vec3> at_first;
     for (std::size_t n = 0; n < patch_.node_count(); ++n) {
@@ -329,14 +329,14 @@ class Repairer {
     }
     options.limits_from = &at_first;
     const Result<relax::Relaxed> relaxed =
-        relax::relax(small, site_.surface, movable(), site_.judge, options, [&](double) { return goes_on(0); });
+        relax::relax(small, context_.surface, movable(), context_.judge, options, [&](double) { return goes_on(0); });
     if (!relaxed) {
       stopped_ = relaxed.error();
       return;
     }
     patch_.begin();
     for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) patch_.move(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
-    judge_shells(site_, patch_.changed_shells());
+    judge_shells(context_, patch_.changed_shells());
     if (harms(patch_) || !conforms(patch_))
       patch_.take_back();
     else
@@ -357,12 +357,13 @@ class Repairer {
     repaired_.change = patch_.result(&index_of);
     repaired_.relaxed = repaired_.change.moved.size();
     for (const LocalShell shell : bad_shells(quality::Grade::fail))
-      repaired_.left.push_back({index_of[shell.value], std::string(reason_of(shell))});
-    std::sort(repaired_.left.begin(), repaired_.left.end(), [](const Left& a, const Left& b) { return a.shell < b.shell; });
+      repaired_.unrepaired.push_back({index_of[shell.value], std::string(reason_of(shell))});
+    std::sort(repaired_.unrepaired.begin(), repaired_.unrepaired.end(),
+              [](const Unrepaired& a, const Unrepaired& b) { return a.shell < b.shell; });
   }
 
   Patch patch_;
-  Site site_;
+  RepairContext context_;
   std::vector<std::uint8_t> in_scope_;  ///< of the patch's first shells; what came later is
   std::vector<std::uint32_t> touched_;  ///< the last change of each shell
   std::map<LocalShell, std::uint32_t> tried_;

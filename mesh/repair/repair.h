@@ -24,7 +24,7 @@ struct Options {
   int most_rounds = 20;
 };
 
-struct Left {
+struct Unrepaired {
   ShellIndex shell;  ///< of the model, or node_count()-style new ones: shell_count() + i
   std::string why;   ///< "no operation makes it better", "a neighbour is locked", ...
 };
@@ -33,7 +33,7 @@ struct Repaired {
   std::array<std::size_t, kOperationCount> done{};  ///< operations that stayed, by Operation
   std::size_t relaxed = 0;                          ///< nodes that moved
   std::size_t bad_before = 0;                       ///< shells of the scope that failed or warned
-  std::vector<Left> left;                           ///< still failing
+  std::vector<Unrepaired> unrepaired;               ///< still failing
   int rounds = 0;
 };
 

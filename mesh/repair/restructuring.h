@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/model/growth.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
+#include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::repair {
 

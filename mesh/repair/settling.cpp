@@ -28,8 +28,8 @@ bool may_settle(const Patch& patch, LocalNode node) {
 }
 
 /// The sum of the pressures of a node's shells for each of several places of the node.
-void weigh_places(const Site& site, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
-  const Patch& patch = site.patch;
+void weigh_places(const RepairContext& context, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
+  const Patch& patch = context.patch;
   const std::vector<LocalShell>& shells = patch.node(node).shells;
   std::fill(sums.begin(), sums.end(), 0.0);
   quality::measure_in_batches(
@@ -43,7 +43,7 @@ void weigh_places(const Site& site, LocalNode node, std::span<const Vec3> places
         quality::Sheet sheets[quality::kLanes];
         float composites[quality::kLanes];
         for (std::size_t lane = 0; lane < batch.count; ++lane) sheets[lane] = patch.shell(shells[batch.slot[lane] % shells.size()]).sheet;
-        quality::rate_lanes(values, batch.count, site.limits, sheets, composites);
+        quality::rate_lanes(values, batch.count, context.limits, sheets, composites);
         for (std::size_t lane = 0; lane < batch.count; ++lane) sums[batch.slot[lane] / shells.size()] += pressure(composites[lane]);
       });
 }
@@ -82,12 +82,12 @@ Surroundings around(const Patch& patch, LocalNode node) {
 }
 
 /// Whether a line's two edges at a node, were it elsewhere, follow the line as closely as they have to, or as they did.
-bool follows_line(const Site& site, LocalNode node, const Vec3& place) {
-  const Patch& patch = site.patch;
-  const double allowed = site.options.most_off_surface * site.judge.target_size;
+bool follows_line(const RepairContext& context, LocalNode node, const Vec3& place) {
+  const Patch& patch = context.patch;
+  const double allowed = context.options.most_off_surface * context.judge.target_size;
   const auto off = [&](const Vec3& at, const Vec3& end) {
     const Vec3 middle = 0.5 * (at + end);
-    const auto on_line = site.surface.project_on_line(middle, 0.5 * (at - end).norm());
+    const auto on_line = context.surface.project_on_line(middle, 0.5 * (at - end).norm());
     return on_line ? (*on_line - middle).norm() : (at - end).norm();
   };
   double now = 0, before = 0;
@@ -99,38 +99,38 @@ bool follows_line(const Site& site, LocalNode node, const Vec3& place) {
 }
 
 /// The place of least pressure among several, the first of which is the node's own; nothing: its own.
-std::optional<Vec3> best_of(const Site& site, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
-  weigh_places(site, node, places, sums);
+std::optional<Vec3> best_of(const RepairContext& context, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
+  weigh_places(context, node, places, sums);
   const auto best = static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
   return best == 0 ? std::nullopt : std::optional<Vec3>(places[best]);
 }
 
-bool is_better(const Site& site, LocalNode node, const Vec3& place, double sum_now) {
+bool is_better(const RepairContext& context, LocalNode node, const Vec3& place, double sum_now) {
   double sum = 0;
-  weigh_places(site, node, std::span(&place, 1), std::span(&sum, 1));
+  weigh_places(context, node, std::span(&place, 1), std::span(&sum, 1));
   return sum < sum_now;
 }
 
 /// A node on a line goes along that.
-void settle_on_line(const Site& site, LocalNode node, double step) {
-  const Patch& patch = site.patch;
+void settle_on_line(const RepairContext& context, LocalNode node, double step) {
+  const Patch& patch = context.patch;
   const PatchNode& n = patch.node(node);
   const Vec3 at = n.position, one = patch.position(n.lines[0].node), other = patch.position(n.lines[1].node);
   const std::array<Vec3, 5> places = {at, at + step * (one - at), at + step * (other - at), at + 2 * step * (one - at),
                                       at + 2 * step * (other - at)};
   std::array<double, 5> sums{};
-  const auto best = best_of(site, node, places, sums);
+  const auto best = best_of(context, node, places, sums);
   if (!best) return;
   const double radius = 0.5 * std::min((one - at).norm(), (other - at).norm());
-  const auto place = site.surface.project_on_line(*best, radius);
-  if (!place || !place->allFinite() || !within_limit(site, node, *place)) return;
-  if (is_better(site, node, *place, sums[0]) && follows_line(site, node, *place)) site.patch.move(node, *place);
+  const auto place = context.surface.project_on_line(*best, radius);
+  if (!place || !place->allFinite() || !within_limit(context, node, *place)) return;
+  if (is_better(context, node, *place, sums[0]) && follows_line(context, node, *place)) context.patch.move(node, *place);
 }
 
-void settle_in_sheet(const Site& site, LocalNode node, double step) {
-  const Surroundings here = around(site.patch, node);
+void settle_in_sheet(const RepairContext& context, LocalNode node, double step) {
+  const Surroundings here = around(context.patch, node);
   if (!(here.size > 0) || here.normal.squaredNorm() < 0.5) return;
-  const Vec3 at = site.patch.position(node);
+  const Vec3 at = context.patch.position(node);
   const Vec3 across = (here.normal.unitOrthogonal()), along = here.normal.cross(across);
   std::array<Vec3, 10> places;
   places[0] = at;
@@ -141,30 +141,31 @@ void settle_in_sheet(const Site& site, LocalNode node, double step) {
   const Vec3 inward = here.centre - at;
   places[9] = at + inward - here.normal * inward.dot(here.normal);
   std::array<double, 10> sums{};
-  const auto best = best_of(site, node, places, sums);
+  const auto best = best_of(context, node, places, sums);
   if (!best) return;
-  const auto place = on_surface(site, *best, here.normal, here.size);
-  if (place && within_limit(site, node, *place) && is_better(site, node, *place, sums[0])) site.patch.move(node, *place);
+  const auto place = on_surface(context, *best, here.normal, here.size);
+  if (place && within_limit(context, node, *place) && is_better(context, node, *place, sums[0])) context.patch.move(node, *place);
 }
 
 }  // namespace
 
-bool within_limit(const Site& site, LocalNode node, const Vec3& place) {
-  const PatchNode& n = site.patch.node(node);
-  const std::optional<double>& most = n.lines.empty() ? site.options.relax.most_on_surface : site.options.relax.most_on_line;
-  return !n.model.valid() || !most || (place - site.patch.model().position(n.model)).norm() <= *most;
+bool within_limit(const RepairContext& context, LocalNode node, const Vec3& place) {
+  const PatchNode& n = context.patch.node(node);
+  const std::optional<double>& most = n.lines.empty() ? context.options.relax.most_on_surface : context.options.relax.most_on_line;
+  return !n.model.valid() || !most || (place - context.patch.model().position(n.model)).norm() <= *most;
 }
 
-void settle(const Site& site, int sweeps, bool along_lines) {
-  std::vector<LocalNode> nodes = site.patch.changed_nodes();
-  std::erase_if(nodes, [&](LocalNode n) { return !may_settle(site.patch, n) || (!along_lines && !site.patch.node(n).lines.empty()); });
+void settle(const RepairContext& context, int sweeps, bool along_lines) {
+  std::vector<LocalNode> nodes = context.patch.changed_nodes();
+  std::erase_if(nodes,
+                [&](LocalNode n) { return !may_settle(context.patch, n) || (!along_lines && !context.patch.node(n).lines.empty()); });
   double step = 0.2;
   for (int sweep = 0; sweep < sweeps; ++sweep, step *= 0.6)
     for (const LocalNode node : nodes) {
-      if (site.patch.node(node).lines.empty())
-        settle_in_sheet(site, node, step);
+      if (context.patch.node(node).lines.empty())
+        settle_in_sheet(context, node, step);
       else
-        settle_on_line(site, node, step);
+        settle_on_line(context, node, step);
     }
 }
 

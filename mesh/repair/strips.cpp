@@ -105,8 +105,8 @@ RowEnd better_end(const Patch& patch, const EdgeAt& at, LocalNode middle) {
 }
 
 /// A triangle whose edges at a corner are both cut: a triangle there, and a quad.
-Refusal turn_about(const Site& site, LocalShell shell, unsigned edges, EdgeCuts& cuts) {
-  Patch& patch = site.patch;
+Refusal turn_about(const RepairContext& context, LocalShell shell, unsigned edges, EdgeCuts& cuts) {
+  Patch& patch = context.patch;
   if (const Refusal refusal = refuse_dividing(patch, shell, 3)) return refusal;
   if ((patch.shell(shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
   const auto whole = static_cast<std::size_t>(std::countr_zero(~edges & 0b111));  // the edge that isn't cut
@@ -121,8 +121,8 @@ Refusal turn_about(const Site& site, LocalShell shell, unsigned edges, EdgeCuts&
 }
 
 /// Where only one edge of a quad is cut into three: a quad between two triangles.
-Refusal narrow(const Site& site, const EdgeAt& at, const std::vector<LocalNode>& nodes) {
-  Patch& patch = site.patch;
+Refusal narrow(const RepairContext& context, const EdgeAt& at, const std::vector<LocalNode>& nodes) {
+  Patch& patch = context.patch;
   if (const Refusal refusal = refuse_dividing(patch, at.shell, 4)) return refusal;
   if ((patch.shell(at.shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
   const Corners c = patch.shell(at.shell).corners;
@@ -135,16 +135,16 @@ Refusal narrow(const Site& site, const EdgeAt& at, const std::vector<LocalNode>&
 }
 
 /// What becomes of a shell that isn't divided across as a quad.
-Refusal end_strip(const Site& site, LocalShell shell, unsigned edges, EdgeCuts& cuts, int pieces, bool absorbs) {
-  const Corners c = site.patch.shell(shell).corners;
+Refusal end_strip(const RepairContext& context, LocalShell shell, unsigned edges, EdgeCuts& cuts, int pieces, bool absorbs) {
+  const Corners c = context.patch.shell(shell).corners;
   const int count = corner_count(c);
   if (pieces > (count == 4 ? 3 : 2)) return "a strip there would have to end in more pieces than there is a way for";
-  if (std::popcount(edges) == 2) return turn_about(site, shell, edges, cuts);
+  if (std::popcount(edges) == 2) return turn_about(context, shell, edges, cuts);
   const EdgeAt at{shell, static_cast<std::size_t>(std::countr_zero(edges))};
   const std::vector<LocalNode> nodes = cuts.cut(c[at.edge], c[(at.edge + 1) % static_cast<std::size_t>(count)]);
-  if (pieces == 3) return narrow(site, at, nodes);
-  const RowEnd end = count == 4 ? better_end(site.patch, at, nodes[0]) : absorbs ? RowEnd::absorb : RowEnd::two_triangles;
-  return end_row(site, at, nodes[0], end);
+  if (pieces == 3) return narrow(context, at, nodes);
+  const RowEnd end = count == 4 ? better_end(context.patch, at, nodes[0]) : absorbs ? RowEnd::absorb : RowEnd::two_triangles;
+  return end_row(context, at, nodes[0], end);
 }
 
 }  // namespace
@@ -161,33 +161,33 @@ StripCourse course_of(const Patch& patch, const Strip& strip) {
   return course;
 }
 
-Refusal divide_strip(const Site& site, const Strip& strip, int pieces, bool absorbs) {
-  const Patch& patch = site.patch;
+Refusal divide_strip(const RepairContext& context, const Strip& strip, int pieces, bool absorbs) {
+  const Patch& patch = context.patch;
   const Plan plan(patch, strip);
   if (!plan.is_possible()) return "the strip of quads there crosses itself";
-  EdgeCuts cuts(site, pieces);
+  EdgeCuts cuts(context, pieces);
   // All cuts first: an edge is found by its nodes only as long as its shells are whole.
   for (const auto& [a, b] : plan.cut_edges()) cuts.cut(a, b);
   if (cuts.refusal()) return cuts.refusal();
   for (const auto& [shell, edges] : plan.edges()) {
     const bool divides = corner_count(patch.shell(shell).corners) == 4 && Plan::divides(edges);
     const Refusal refusal =
-        divides ? divide_quad(site, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(site, shell, edges, cuts, pieces, absorbs);
+        divides ? divide_quad(context, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(context, shell, edges, cuts, pieces, absorbs);
     if (refusal) return refusal;
   }
   return std::nullopt;
 }
 
-Refusal collapse_strip(const Site& site, const Strip& strip) {
-  const Plan plan(site.patch, strip);
+Refusal collapse_strip(const RepairContext& context, const Strip& strip) {
+  const Plan plan(context.patch, strip);
   if (!plan.is_possible()) return "the strip of quads there crosses itself";
   std::vector<Union> unions;
   for (const auto& [a, b] : plan.cut_edges()) {
-    const auto pair = union_of(site, a, b);
+    const auto pair = union_of(context, a, b);
     if (!pair) return "both nodes hold the part's shape";
     unions.push_back(*pair);
   }
-  return unite(site, unions);
+  return unite(context, unions);
 }
 
 }  // namespace prismesh::mesh::repair

@@ -20,10 +20,10 @@ struct Strip {
 
 /// Divides a strip lengthways. Where it ends a quad becomes a quad and a triangle (of three pieces: with one at each side), and a triangle
 /// a quad (`absorbs`) or two. Of more pieces it has to end by itself.
-Refusal divide_strip(const Site& site, const Strip& strip, int pieces = 2, bool absorbs = true);
+Refusal divide_strip(const RepairContext& context, const Strip& strip, int pieces = 2, bool absorbs = true);
 
 /// Takes a strip out: the two ends of each of its edges become one node. Where it ends a quad becomes a triangle.
-Refusal collapse_strip(const Site& site, const Strip& strip);
+Refusal collapse_strip(const RepairContext& context, const Strip& strip);
 
 /// What a strip goes over: the quads that it divides, each with the edge by which it is entered (0 or 1, the one opposite is the same).
 struct StripQuad {

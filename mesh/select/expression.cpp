@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/select/marking.h"
 #include "mesh/select/parse.h"
 
@@ -15,8 +15,8 @@ namespace prismesh::mesh::select {
 namespace {
 
 /// Sets may be made of sets; decks may be hostile.
-constexpr int kDeepestSets = 32;
-constexpr int kMostSets = 10'000;  ///< looked into by one expression
+constexpr int kMaxSetDepth = 32;
+constexpr int kMaxSets = 10'000;  ///< looked into by one expression
 constexpr std::size_t kStepsBetweenTellings = 64;
 constexpr std::uint64_t kFewIds = 10'000;  ///< a model of fewer counts as one of so many
 
@@ -255,8 +255,8 @@ class Evaluator {
   }
 
   Result<Marks> marks_of(const Item& item, const NamedSet& set, int depth) {
-    if (depth > kDeepestSets) return error(item, set.label() + " is made of itself, or of sets within sets deeper than 32");
-    if (++sets_seen_ > kMostSets) return error(item, set.label() + " is made of too many sets");
+    if (depth > kMaxSetDepth) return error(item, set.label() + " is made of itself, or of sets within sets deeper than 32");
+    if (++sets_seen_ > kMaxSets) return error(item, set.label() + " is made of too many sets");
     of_surfaces_ = of_surfaces_ && (set.kind == Referred::shell_set || set.kind == Referred::part_set);
     Marks marks = marking_.nothing();
     bool first = true;

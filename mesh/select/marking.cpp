@@ -40,7 +40,7 @@ void Marking::each_shell(const Body& body) const {
   std::size_t shell = 0;
   for (std::size_t c = 0; c < model_.shell_parts.chunk_count(); ++c)
     for (const PartIndex part : model_.shell_parts.chunk(c)) {
-      if (!model_.growth || !model_.is_removed(ShellIndex(shell))) body(shell, part);
+      if (!model_.topology_change || !model_.is_removed(ShellIndex(shell))) body(shell, part);
       ++shell;
     }
 }
@@ -52,7 +52,7 @@ Marks Marking::nothing() const {
 Marks Marking::everything() const {
   Marks marks = nothing();
   std::fill(marks.begin(), marks.end(), std::uint8_t{1});
-  if (!model_.growth || kind_ == Kind::part) return marks;
+  if (!model_.topology_change || kind_ == Kind::part) return marks;
   for (std::size_t i = 0; i < marks.size(); ++i)
     if (kind_ == Kind::node ? model_.is_removed(NodeIndex(i)) : model_.is_removed(ShellIndex(i))) marks[i] = 0;
   return marks;

@@ -72,11 +72,11 @@ std::string kind_word(Referred kind) {
 }
 
 std::string list_of(const std::vector<const NamedSet*>& sets) {
-  constexpr std::size_t kMost = 5;
+  constexpr std::size_t kMax = 5;
   std::string list;
-  for (std::size_t i = 0; i < std::min(sets.size(), kMost); ++i)
+  for (std::size_t i = 0; i < std::min(sets.size(), kMax); ++i)
     list += (i == 0 ? "" : i + 1 == sets.size() ? " or " : ", ") + sets[i]->label();
-  if (sets.size() > kMost) list += " or " + std::to_string(sets.size() - kMost) + " more";
+  if (sets.size() > kMax) list += " or " + std::to_string(sets.size() - kMax) + " more";
   return list;
 }
 

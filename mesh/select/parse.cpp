@@ -43,7 +43,7 @@ constexpr std::array<ClassName, 21> kClassNames{{{"node", ItemClass::node},
                                                  {"file", ItemClass::file}}};
 constexpr std::string_view kAll = "all";
 constexpr std::string_view kId = "id";
-constexpr std::int64_t kGreatestId = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kMaxId = std::numeric_limits<std::int64_t>::max();
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -100,8 +100,8 @@ class Parser {
   void step(Action action, std::size_t item = 0) { parsed_.steps.push_back({action, static_cast<std::uint32_t>(item)}); }
 
   Result<void> count_operator(std::size_t place) {
-    if (++operators_ <= kMostOperators) return {};
-    return error_at(place, "there are more than " + std::to_string(kMostOperators) + " of & | ~ ( in the expression");
+    if (++operators_ <= kMaxOperators) return {};
+    return error_at(place, "there are more than " + std::to_string(kMaxOperators) + " of & | ~ ( in the expression");
   }
 
   /// Items by commas, each added to what those before it left or taken from it. Within parentheses a list that begins by taking away
@@ -162,7 +162,7 @@ class Parser {
   Result<void> read_parentheses() {
     const std::size_t open = at_;
     if (const auto counted = count_operator(open); !counted) return counted;
-    if (++depth_ > kDeepestParentheses) return error("parentheses go deeper than " + std::to_string(kDeepestParentheses));
+    if (++depth_ > kMaxParenthesisDepth) return error("parentheses go deeper than " + std::to_string(kMaxParenthesisDepth));
     ++at_;
     if (const auto read = read_list(true); !read) return read;
     if (at_end()) return error("the expression ends where a ) should stand: the ( at column " + std::to_string(open + 1) + " is open");
@@ -272,11 +272,11 @@ class Parser {
     if (auto read = read_number(id, "an id"); !read) return read;
     item.by = Item::By::comparison;
     item.first = std::numeric_limits<std::int64_t>::min();
-    item.last = kGreatestId;
+    item.last = kMaxId;
     if (sign == "<=") item.last = id;
     if (sign == "<") item.last = id - 1;
     if (sign == ">=") item.first = id;
-    if (sign == ">" && id == kGreatestId) return error_at(place, "no id is greater than " + std::to_string(id));
+    if (sign == ">" && id == kMaxId) return error_at(place, "no id is greater than " + std::to_string(id));
     if (sign == ">") item.first = id + 1;
     if (sign == "=" || sign == "==") item.first = item.last = id;
     if (sign == "!=") {

@@ -78,8 +78,8 @@ struct Parsed {
   std::vector<Step> steps;
 };
 
-inline constexpr int kDeepestParentheses = 32;
-inline constexpr int kMostOperators = 1000;  ///< & | ~ ( together; commas are free
+inline constexpr int kMaxParenthesisDepth = 32;
+inline constexpr int kMaxOperators = 1000;  ///< & | ~ ( together; commas are free
 
 /// Errors: file "expression", line the column (from 1).
 Result<Parsed> parse(std::string_view expression);

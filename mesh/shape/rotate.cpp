@@ -15,7 +15,7 @@ namespace prismesh::mesh::shape {
 namespace {
 
 constexpr std::size_t kRotateGrain = 1024;
-constexpr double kMostDegrees = 1e9;  // what the deterministic sine is good for
+constexpr double kMaxDegrees = 1e9;  // what the deterministic sine is good for
 
 /// By how many degrees a node at this distance from the axis may turn at most, so that it doesn't go farther than `most`.
 double degrees_within(double most, double radius) {
@@ -35,7 +35,7 @@ std::optional<Vec3> unit_of(const Vec3& direction) {
 
 std::size_t rotate(std::span<const Vec3> start, std::span<const double> weight, const Axis& axis, double degrees,
                    std::optional<double> max_move, std::span<Vec3> out) {
-  if (!(std::abs(degrees) < kMostDegrees)) {
+  if (!(std::abs(degrees) < kMaxDegrees)) {
     std::fill(out.begin(), out.end(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
     return 0;
   }

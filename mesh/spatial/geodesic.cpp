@@ -11,8 +11,8 @@ namespace prismesh::mesh::spatial {
 namespace {
 
 constexpr std::uint32_t kNowhere = 0xffffffffu;
-constexpr double kWorthwhile = 1e-9;      ///< share of its distance that takes up a done node again
-constexpr std::uint8_t kMostTimes = 200;  ///< a node is taken up again; a bound on the work, far above what meshes need
+constexpr double kWorthwhile = 1e-9;     ///< share of its distance that takes up a done node again
+constexpr std::uint8_t kMaxTimes = 200;  ///< a node is taken up again; a bound on the work, far above what meshes need
 
 /// Nodes by distance, the nearest on top; of equals the lower number, so that the order never depends on history.
 class NearestFirst {
@@ -234,7 +234,7 @@ class March {
   /// are obtuse or the source is near.
   void offer(std::uint32_t node, double distance, std::uint32_t centre, std::uint32_t source) {
     if (done_[node] != 0) {
-      if (!(distance < distance_[node] * (1 - kWorthwhile)) || again_[node] == kMostTimes) return;
+      if (!(distance < distance_[node] * (1 - kWorthwhile)) || again_[node] == kMaxTimes) return;
       ++again_[node];
     } else if (!(distance < distance_[node])) {
       return;

@@ -174,7 +174,7 @@ std::string counting(std::size_t size) {
   return text;
 }
 
-TEST_F(FileCalls, WhatIsReadInPartsAndInterruptedIsWhole) {
+TEST_F(FileCalls, what_is_read_in_parts_and_interrupted_is_whole) {
   const std::string text = counting(10'000);
   const fs::path path = write("a", text);
   disk_.read.part = 777;
@@ -186,7 +186,7 @@ TEST_F(FileCalls, WhatIsReadInPartsAndInterruptedIsWhole) {
   }
 }
 
-TEST_F(FileCalls, AReadThatFailsOrEndsEarlyIsSaid) {
+TEST_F(FileCalls, a_read_that_fails_or_ends_early_is_said) {
   const fs::path path = write("a", counting(10'000));
   disk_.read.part = 777;
   for (int call = 0; call < 13; ++call) {
@@ -201,7 +201,7 @@ TEST_F(FileCalls, AReadThatFailsOrEndsEarlyIsSaid) {
   }
 }
 
-TEST_F(FileCalls, AFileThatChangesWhileItIsReadIsSaid) {
+TEST_F(FileCalls, a_file_that_changes_while_it_is_read_is_said) {
   const fs::path path = write("a", "before");
   const std::function<void()> changes[] = {
       [&] { fs::resize_file(path, 3); },
@@ -220,7 +220,7 @@ TEST_F(FileCalls, AFileThatChangesWhileItIsReadIsSaid) {
   }
 }
 
-TEST_F(FileCalls, ANulFollowsWhatIsRead) {
+TEST_F(FileCalls, a_nul_follows_what_is_read) {
   const fs::path path = write("a", "text");
   ::mallopt(M_PERTURB, 0x5a);  // memory isn't zero by chance
   const Result<FileBytes> bytes = read_file(path);
@@ -229,7 +229,7 @@ TEST_F(FileCalls, ANulFollowsWhatIsRead) {
   EXPECT_EQ(bytes->text().data()[4], '\0');
 }
 
-TEST_F(FileCalls, AnIdentityIsThatOfTheFileSystem) {
+TEST_F(FileCalls, an_identity_is_that_of_the_file_system) {
   const fs::path path = write("a", "text");
   const timespec times[2] = {{1, 2}, {1'700'000'003, 4}};
   ASSERT_EQ(::utimensat(AT_FDCWD, path.c_str(), times, 0), 0);
@@ -242,7 +242,7 @@ TEST_F(FileCalls, AnIdentityIsThatOfTheFileSystem) {
   EXPECT_EQ(identity.modified_ns, 1'700'000'003'000'000'004);
 }
 
-TEST_F(FileCalls, WhatIsWrittenInPartsAndInterruptedIsWhole) {
+TEST_F(FileCalls, what_is_written_in_parts_and_interrupted_is_whole) {
   const std::string text = counting(5'000);
   std::vector<std::string_view> pieces;
   for (std::size_t at = 0; at < text.size(); at += 333) pieces.push_back(std::string_view(text).substr(at, 333));
@@ -256,7 +256,7 @@ TEST_F(FileCalls, WhatIsWrittenInPartsAndInterruptedIsWhole) {
   }
 }
 
-TEST_F(FileCalls, EveryCallThatFailsIsSaidAndLeavesTheOldFile) {
+TEST_F(FileCalls, every_call_that_fails_is_said_and_leaves_the_old_file) {
   const std::pair<int, std::string> errors[] = {{ENOSPC, "the disk is full (No space left on device)"},
                                                 {EDQUOT, "the disk is full (Disk quota exceeded)"},
                                                 {EIO, "can't be written: Input/output error"}};
@@ -273,7 +273,7 @@ TEST_F(FileCalls, EveryCallThatFailsIsSaidAndLeavesTheOldFile) {
   expect_refused("can't be flushed to disk: Too many open files");
 }
 
-TEST_F(FileCalls, AFolderIsFlushedBeforeTheFirstFileIsReplacedAndAfterTheLast) {
+TEST_F(FileCalls, a_folder_is_flushed_before_the_first_file_is_replaced_and_after_the_last) {
   fs::create_directory(folder_ / "sub");
   const PendingFile files[] = {{folder_ / "a", {"1"}}, {folder_ / "sub/b", {"2"}}, {folder_ / "c", {"3"}}};
   Result<StagedFiles> staged = StagedFiles::write(files);
@@ -292,7 +292,7 @@ TEST_F(FileCalls, AFolderIsFlushedBeforeTheFirstFileIsReplacedAndAfterTheLast) {
   EXPECT_EQ(content(folder_ / "sub/b"), "2");
 }
 
-TEST_F(FileCalls, AFolderThatMayNotBeReadIsFlushedWithItsFileSystem) {
+TEST_F(FileCalls, a_folder_that_may_not_be_read_is_flushed_with_its_file_system) {
   const fs::path file = write("a", "");
   refuse(disk_.open_folder, EACCES);
   EXPECT_TRUE(flush_folder(folder_, file));
@@ -310,13 +310,13 @@ TEST_F(FileCalls, AFolderThatMayNotBeReadIsFlushedWithItsFileSystem) {
   EXPECT_EQ(disk_.sync_all.calls, 2);
 }
 
-TEST_F(FileCalls, AFileSystemThatCantFlushFoldersIsTaken) {
+TEST_F(FileCalls, a_file_system_that_cant_flush_folders_is_taken) {
   refuse(disk_.sync_folder, EINVAL);
   EXPECT_TRUE(flush_folder(folder_));
   EXPECT_EQ(disk_.sync_folder.calls, 1);
 }
 
-TEST_F(FileCalls, WhatIsPutInPlaceIsWhatWasWritten) {
+TEST_F(FileCalls, what_is_put_in_place_is_what_was_written) {
   const PendingFile file{folder_ / "a", {"new"}};
   Result<StagedFiles> staged = StagedFiles::write({&file, 1});
   ASSERT_TRUE(staged);
@@ -324,7 +324,7 @@ TEST_F(FileCalls, WhatIsPutInPlaceIsWhatWasWritten) {
   EXPECT_EQ(staged->files().front().identity, identify_file(folder_ / "a").value());
 }
 
-TEST_F(FileCalls, OwnerAndGroupStay) {
+TEST_F(FileCalls, owner_and_group_stay) {
   if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: giving files away needs root";
   const fs::path path = write("a", "old");
   const PendingFile file{path, {"new"}};
@@ -341,7 +341,7 @@ TEST_F(FileCalls, OwnerAndGroupStay) {
   EXPECT_EQ(status.st_gid, 65534u);
 }
 
-TEST_F(FileCalls, WhatIsNoRegularFileIsNotReplaced) {
+TEST_F(FileCalls, what_is_no_regular_file_is_not_replaced) {
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   const PendingFile file{folder_ / "pipe", {"new"}};
   const Result<void> refused = replace_files({&file, 1});
@@ -350,7 +350,7 @@ TEST_F(FileCalls, WhatIsNoRegularFileIsNotReplaced) {
   EXPECT_TRUE(fs::is_fifo(folder_ / "pipe"));
 }
 
-TEST_F(FileCalls, LinksAreFollowedAsFarAsTheKernelDoes) {
+TEST_F(FileCalls, links_are_followed_as_far_as_the_kernel_does) {
   write("0", "old");
   for (int link = 1; link <= 41; ++link)  // by their names and by whole paths
     fs::create_symlink(link % 2 == 0 ? fs::path(std::to_string(link - 1)) : folder_ / std::to_string(link - 1),
@@ -366,7 +366,7 @@ TEST_F(FileCalls, LinksAreFollowedAsFarAsTheKernelDoes) {
   }
 }
 
-TEST_F(FileCalls, ABareNameIsInTheWorkingFolder) {
+TEST_F(FileCalls, a_bare_name_is_in_the_working_folder) {
   const fs::path before = fs::current_path();
   fs::current_path(folder_);
   const PendingFile file{"a", {"new"}};
@@ -377,7 +377,7 @@ TEST_F(FileCalls, ABareNameIsInTheWorkingFolder) {
   EXPECT_EQ(disk_.sync_folder.calls, 2);
 }
 
-TEST_F(FileCalls, FoldersAreMadeAndFlushedIntoThoseAbove) {
+TEST_F(FileCalls, folders_are_made_and_flushed_into_those_above) {
   ASSERT_TRUE(make_folders(folder_ / "a/b/"));
   EXPECT_TRUE(fs::is_directory(folder_ / "a/b"));
   EXPECT_EQ(disk_.sync_folder.calls, 2);

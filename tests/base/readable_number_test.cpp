@@ -9,7 +9,7 @@
 namespace prismesh {
 namespace {
 
-TEST(ReadableNumber, IsWrittenAsPeopleDo) {
+TEST(ReadableNumber, is_written_as_people_do) {
   struct Case {
     double value;
     int digits;
@@ -24,14 +24,14 @@ TEST(ReadableNumber, IsWrittenAsPeopleDo) {
   EXPECT_EQ(readable(std::nan(""), 4), "nan");
 }
 
-TEST(ReadableNumber, OfAnyDoubleGivesItBackToItsDigits) {
+TEST(ReadableNumber, of_any_double_gives_it_back_to_its_digits) {
   double value = 3.7e-12;
   for (int i = 0; i < 400; ++i, value *= -1.173)
     for (const int digits : {1, 3, 6, 15})
       EXPECT_NEAR(std::stod(readable(value, digits)) / value, 1, 5.000001 * std::pow(10, -digits)) << value << ' ' << digits;
 }
 
-TEST(ReadableNumber, OfAPlaceWhatIsNothingBesideTheLargestIsNothing) {
+TEST(ReadableNumber, of_a_place_what_is_nothing_beside_the_largest_is_nothing) {
   EXPECT_EQ(readable({1250.5, -1.25e-06, -3.2}, 6), "1250.5 0 -3.2");
   EXPECT_EQ(readable({-1250.5, -1.25e-06, 3.21456}, 6), "-1250.5 0 3.21") << "the largest may be negative";
   EXPECT_EQ(readable({0, 0, 0}, 6), "0 0 0");

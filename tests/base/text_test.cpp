@@ -23,7 +23,7 @@ std::optional<std::string> decoded(std::string_view text) {
   return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
-TEST(Base64, IsThatOfTheStandard) {
+TEST(Base64, is_that_of_the_standard) {
   // RFC 4648, section 10, and the alphabet's last two.
   constexpr std::pair<std::string_view, std::string_view> kVectors[] = {{"", ""},
                                                                         {"f", "Zg=="},
@@ -45,7 +45,7 @@ TEST(Base64, IsThatOfTheStandard) {
   }
 }
 
-TEST(Base64, TakesNothingThatItWouldNotHaveWritten) {
+TEST(Base64, takes_nothing_that_it_would_not_have_written) {
   for (const std::string_view text :
        {"Z"sv, "Zg"sv, "Zg="sv, "Zm9vY"sv, "Zg==Zg=="sv, "Z==="sv, "===="sv, "=Zg="sv, "Z=g="sv, "Zh=="sv, "Zm9="sv, "Zm 9"sv, "Zm9\n"sv,
         "Zm9-"sv, "Zm9_"sv, "Zm9\0"sv, "Zm9\xff"sv, "Zm9vZm9v\n"sv, "Zg==\n\n\n\n"sv})
@@ -54,7 +54,7 @@ TEST(Base64, TakesNothingThatItWouldNotHaveWritten) {
     EXPECT_FALSE(base64_decode("Zm9vZm9v"sv.substr(0, length))) << "what lies behind a text is none of it";
 }
 
-TEST(NearestName, CountsMissingSurplusWrongAndExchangedLetters) {
+TEST(NearestName, counts_missing_surplus_wrong_and_exchanged_letters) {
   struct Case {
     std::string_view a, b;
     std::size_t distance;
@@ -71,7 +71,7 @@ TEST(NearestName, CountsMissingSurplusWrongAndExchangedLetters) {
   EXPECT_EQ(edit_distance(same.substr(1) + "ab", same), 1U);
 }
 
-TEST(NearestName, IsTheFirstOfEquals) {
+TEST(NearestName, is_the_first_of_equals) {
   const std::vector<std::string_view> known{"still", "sway", "lean", "turn", "tour"};
   EXPECT_EQ(nearest_name("torn", known), "turn");
   EXPECT_EQ(nearest_name("tuor", known), "tour");
@@ -80,7 +80,7 @@ TEST(NearestName, IsTheFirstOfEquals) {
   EXPECT_EQ(nearest_name("still", {}), "");
 }
 
-TEST(LetterCase, IsThatOfAToZAlone) {
+TEST(LetterCase, is_that_of_a_to_z_alone) {
   EXPECT_EQ(upper("azAZ09_@[`{\xe4"sv), "AZAZ09_@[`{\xe4");
   EXPECT_EQ(lower("azAZ09_@[`{\xc4"sv), "azaz09_@[`{\xc4");
 }

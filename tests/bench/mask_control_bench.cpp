@@ -53,7 +53,7 @@ class AnsweringPort final : public port::BytePort {
 
   Parser parser_;
   std::array<std::uint8_t, 256> table_{};
-  std::array<std::byte, dynamixel::kLongestPacket> answer_{};
+  std::array<std::byte, dynamixel::kMaxPacketLength> answer_{};
   std::size_t size_ = 0;
 };
 

@@ -3,7 +3,7 @@
 
 #include "mesh/model/adjacency.h"
 #include "mesh/model/features.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/bench/million_quads.h"
 
 namespace prismesh::mesh {

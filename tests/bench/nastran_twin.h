@@ -37,7 +37,7 @@ class SmallField {
 /// All nodes (GRID) and shells (CQUAD4, CTRIA3 by their corners), a PSHELL and a MAT1 for each part; ids are kept. Element and part ids
 /// beyond eight digits don't fit: a model with one has no twin, and the text is empty.
 inline std::string nastran_twin_text(const Model& model) {
-  constexpr std::int64_t kMost = 99'999'999;
+  constexpr std::int64_t kMax = 99'999'999;
   constexpr std::int64_t kMaterial = 1;
   SmallField out;
   out.text().reserve(50 * model.node_count() + 60 * model.shell_count());
@@ -49,14 +49,14 @@ inline std::string nastran_twin_text(const Model& model) {
   out.real(0.3);
   out.real(7.85e-9);
   for (const Part& part : *model.parts) {
-    if (part.id > kMost) return {};
+    if (part.id > kMax) return {};
     out.entry("PSHELL");
     out.whole(part.id);
     out.whole(kMaterial);
     out.real(part.thickness.value_or(1));
   }
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    if (model.node_ids[i] > kMost) return {};
+    if (model.node_ids[i] > kMax) return {};
     out.entry("GRID");
     out.whole(model.node_ids[i]);
     out.blank();
@@ -64,7 +64,7 @@ inline std::string nastran_twin_text(const Model& model) {
   }
   for (std::size_t i = 0; i < model.shell_count(); ++i) {
     const ShellNodes& shell = model.shell_nodes[i];
-    if (model.shell_ids[i] > kMost) return {};
+    if (model.shell_ids[i] > kMax) return {};
     out.entry(shell.is_triangle() ? "CTRIA3" : "CQUAD4");
     out.whole(model.shell_ids[i]);
     out.whole((*model.parts)[model.shell_parts[i].value].id);

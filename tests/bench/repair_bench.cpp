@@ -46,7 +46,7 @@ void repair_bump(benchmark::State& state) {
     for (int ring = 0; ring < 6; ++ring) covered = shells_touching(bump.model, nodes_of(bump.model, covered));
     const relax::ReferenceSurface surface(bump.model, covered, 30);
     const auto repaired = repair::repair(bump.model, surface, bump.scope, {}, {quality::default_criteria(), 5.0}, {});
-    left = repaired->left.size();
+    left = repaired->unrepaired.size();
     benchmark::DoNotOptimize(repaired);
   }
   state.counters["damaged"] = static_cast<double>(bump.scope.size());

@@ -9,7 +9,7 @@
 
 #include "mesh/deck/deck.h"
 #include "mesh/deck/new_ids.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 namespace {
 

@@ -117,7 +117,7 @@ class Interrupt : public Cli {
   }
 };
 
-TEST_F(Interrupt, CtrlCInTheMiddleOfARepairLeavesNothing) {
+TEST_F(Interrupt, ctrl_c_in_the_middle_of_a_repair_leaves_nothing) {
   const std::string deck = rough_sheet(60);
   const std::string text = read(deck);
   const auto before = names();

@@ -38,7 +38,7 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-TEST_F(Render, WritesAPngOfTheSizeAskedFor) {
+TEST_F(Render, writes_a_png_of_the_size_asked_for) {
   ASSERT_EQ(draw({"--view", "top", "--eye", "-30,10,600", "--colour", "quality", "--profile", "mono-left"}).status, kDone) << said_;
   const std::string png = read(path("a.png"));
   ASSERT_GT(png.size(), 100U);
@@ -52,7 +52,7 @@ TEST_F(Render, WritesAPngOfTheSizeAskedFor) {
   EXPECT_NE(read(path("a.png")), png) << "selected nodes show";
 }
 
-TEST_F(Render, WrongUsageListsWhatThereIs) {
+TEST_F(Render, wrong_usage_lists_what_there_is) {
   const std::pair<std::vector<std::string>, const char*> wrong[] = {{{"--view", "sideways"}, "front, back, left, right, top, bottom, iso"},
                                                                     {{"--profile", "tv"}, "prism-mask, prism-mask-columns"},
                                                                     {{"--colour", "red"}, "parts, quality"},
@@ -67,7 +67,7 @@ TEST_F(Render, WrongUsageListsWhatThereIs) {
   }
 }
 
-TEST_F(Render, AFieldThatCannotBeShownSaysWhatIsMissing) {
+TEST_F(Render, a_field_that_cannot_be_shown_says_what_is_missing) {
   const std::pair<std::vector<std::string>, const char*> wrong[] = {
       {{"--colour", "displacement"}, "--colour displacement: say with --against which deck to compare with"},
       {{"--colour", "distance", "--from", "1"}, "--colour distance: say with --from which nodes are coloured, and with --to"},
@@ -86,7 +86,7 @@ TEST_F(Render, AFieldThatCannotBeShownSaysWhatIsMissing) {
   EXPECT_FALSE(exists("a.png"));
 }
 
-TEST_F(Render, NothingIsWrittenOnFailure) {
+TEST_F(Render, nothing_is_written_on_failure) {
   EXPECT_EQ(draw({"--select", "1,99"}).status, kFailed);
   EXPECT_THAT(said_, StartsWith("expression:3: "));
   EXPECT_FALSE(exists("a.png"));

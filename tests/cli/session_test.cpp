@@ -93,7 +93,7 @@ class PlayedSession : public Cli {
   }
 };
 
-TEST_F(PlayedSession, AnEditIsDoneOnceThoughTheDaemonEndsInTheMiddle) {
+TEST_F(PlayedSession, an_edit_is_done_once_though_the_daemon_ends_in_the_middle) {
   struct Case {
     const char* path_after;
     std::uint64_t edits_after;
@@ -112,7 +112,7 @@ TEST_F(PlayedSession, AnEditIsDoneOnceThoughTheDaemonEndsInTheMiddle) {
   }
 }
 
-TEST_F(PlayedSession, FilesAreNamedFromTheFolderThatTheCommandIsIn) {
+TEST_F(PlayedSession, files_are_named_from_the_folder_that_the_command_is_in) {
   const std::filesystem::path here = std::filesystem::current_path();
   const auto open = std::get<ipc::Open>(asked_by({"open", "sub/deck.k", "--criteria", "own.toml"}));
   EXPECT_EQ(open.path, here / "sub/deck.k");
@@ -126,7 +126,7 @@ TEST_F(PlayedSession, FilesAreNamedFromTheFolderThatTheCommandIsIn) {
   EXPECT_EQ(std::get<ipc::Save>(asked_by({"save"})).path, std::nullopt) << "in place";
 }
 
-TEST_F(PlayedSession, UnsavedEditsAreGivenUpOnlyWhereThatIsSaid) {
+TEST_F(PlayedSession, unsaved_edits_are_given_up_only_where_that_is_said) {
   EXPECT_FALSE(std::get<ipc::Close>(asked_by({"close"})).discard);
   EXPECT_TRUE(std::get<ipc::Close>(asked_by({"close", "--discard"})).discard);
 }

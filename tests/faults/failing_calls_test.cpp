@@ -77,7 +77,7 @@ class FailingCalls : public ::testing::TestWithParam<Session> {
   test::DiskState before_ = test::disk_state_of(root_.disk());
 };
 
-TEST_P(FailingCalls, LoseNothingAcknowledged) {
+TEST_P(FailingCalls, lose_nothing_acknowledged) {
   const std::uint64_t calls = run({});
   ASSERT_FALSE(HasFailure());
   ASSERT_GT(calls, 50u);
@@ -92,7 +92,7 @@ TEST_P(FailingCalls, LoseNothingAcknowledged) {
 
 INSTANTIATE_TEST_SUITE_P(Sessions, FailingCalls, ::testing::ValuesIn(sessions()), [](const auto& tested) { return tested.param.name; });
 
-TEST(ReplacingAFile, SaysWhyItsFolderTakesNone) {
+TEST(ReplacingAFile, says_why_its_folder_takes_none) {
   const Root root;
   for (const auto& [error, message] :
        {std::pair{EACCES, "is read-only (Permission denied)"}, std::pair{EPERM, "is read-only (Operation not permitted)"},

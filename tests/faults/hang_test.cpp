@@ -59,7 +59,7 @@ class Hang : public ::testing::Test {
   test::Folder folder_;
 };
 
-TEST_F(Hang, AnEditThatCantBeJournalledEndsTheDaemon) {
+TEST_F(Hang, an_edit_that_cant_be_journalled_ends_the_daemon) {
   Process daemon(modeld(), environment("sync"));
   ipc::ReconnectingClient connection(ipc::model_socket_path(run()), "test");
   const Result<ipc::Client*> client = connection.wait(kPatience);
@@ -71,7 +71,7 @@ TEST_F(Hang, AnEditThatCantBeJournalledEndsTheDaemon) {
   EXPECT_NE(daemon.standard_error().find("the work under way makes no progress"), std::string::npos) << daemon.standard_error();
 }
 
-TEST_F(Hang, ClientsThatArentServedEndTheDaemon) {
+TEST_F(Hang, clients_that_arent_served_end_the_daemon) {
   Process daemon(modeld(), environment("accept"));
   ipc::ReconnectingClient connection(ipc::model_socket_path(run()), "test");
   const Result<ipc::Client*> client = connection.wait(kPatience);
@@ -82,7 +82,7 @@ TEST_F(Hang, ClientsThatArentServedEndTheDaemon) {
   EXPECT_NE(daemon.standard_error().find("clients aren't served"), std::string::npos) << daemon.standard_error();
 }
 
-TEST_F(Hang, TheStationStartsItAnew) {
+TEST_F(Hang, the_station_starts_it_anew) {
   // A station whose kiosk is a program that only stays.
   const fs::path programs = folder_.path() / "bin", home = folder_.path() / "home";
   fs::create_directories(programs);

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kLittle = 70'000;  ///< what the sockets' side of the daemon needs is less
 
-TEST(Memory, WhereThereIsNoneTheClientIsToldAndTheDocumentIsWhole) {
+TEST(Memory, where_there_is_none_the_client_is_told_and_the_document_is_whole) {
   const test::Folder folder;
   DaemonOptions options;
   options.runtime_directory = folder.path() / "run";
@@ -66,7 +66,7 @@ TEST(Memory, WhereThereIsNoneTheClientIsToldAndTheDocumentIsWhole) {
 }
 
 /// The thread that serves clients: their lines, answers and events.
-TEST(Memory, WhereTheLoopHasNoneClientsAreToldOrCutOffAndTheDaemonGoesOn) {
+TEST(Memory, where_the_loop_has_none_clients_are_told_or_cut_off_and_the_daemon_goes_on) {
   const test::Folder folder;
   DaemonOptions options;
   options.runtime_directory = folder.path() / "run";

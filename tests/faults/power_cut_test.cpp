@@ -126,7 +126,7 @@ void expect_recovery(const Recorded& recorded, const Place& place) {
   std::printf("%zu states of the disk, %zu calls\n", states, recorded.calls.size());
 }
 
-TEST_P(PowerCut, LeavesEveryAcknowledgedEdit) {
+TEST_P(PowerCut, leaves_every_acknowledged_edit) {
   const Root root;
   const Place place{root.disk(), GetParam().write_deck(root.disk())};
   const Recorded recorded = record(GetParam(), root, place);
@@ -135,7 +135,7 @@ TEST_P(PowerCut, LeavesEveryAcknowledgedEdit) {
   expect_recovery(recorded, place);
 }
 
-TEST(PowerCutByChance, LeavesEveryAcknowledgedEdit) {
+TEST(PowerCutByChance, leaves_every_acknowledged_edit) {
   std::mt19937_64 random(test::seed(2));
   std::size_t states = 0, sessions = 0;
   for (; states < states_by_chance(); ++sessions) {
@@ -154,7 +154,7 @@ TEST(PowerCutByChance, LeavesEveryAcknowledgedEdit) {
 }
 
 /// The same of a daemon that is a program of its own, with a client that notes when it was answered.
-TEST(PowerCutOfADaemon, LeavesEveryAcknowledgedEdit) {
+TEST(PowerCutOfADaemon, leaves_every_acknowledged_edit) {
   const fs::path preload = test::programs_folder() / "libfile_calls_preload.so";
   ASSERT_TRUE(fs::exists(preload));
   const Session& session = sessions()[1];

@@ -38,7 +38,7 @@ bool puts_a_deck_file_in_place(const FileCall& call) {
   return call.kind == FileCall::Kind::rename && call.other.find("/state/") == std::string::npos;
 }
 
-TEST(SmallFiles, AChangedByteOfASavesRecordWritesNothingWrong) {
+TEST(SmallFiles, a_changed_byte_of_a_saves_record_writes_nothing_wrong) {
   const Root root;
   const Place place{root.disk(), session_of("three_files").write_deck(root.disk())};
   const DiskState before = test::disk_state_of(root.disk());
@@ -71,7 +71,7 @@ TEST(SmallFiles, AChangedByteOfASavesRecordWritesNothingWrong) {
   EXPECT_EQ(keeper.state().warnings.back().kind, "save-finished");
 }
 
-TEST(SmallFiles, AnIncludeThatWasRestoredByHandIsNotOverwritten) {
+TEST(SmallFiles, an_include_that_was_restored_by_hand_is_not_overwritten) {
   const Root root;
   const Place place{root.disk(), session_of("three_files").write_deck(root.disk())};
   const DiskState before = test::disk_state_of(root.disk());
@@ -93,7 +93,7 @@ TEST(SmallFiles, AnIncludeThatWasRestoredByHandIsNotOverwritten) {
   }
 }
 
-TEST(SmallFiles, ACutOffSaveIsFinishedByTheNextOpeningThatCan) {
+TEST(SmallFiles, a_cut_off_save_is_finished_by_the_next_opening_that_can) {
   const Root root;
   const Place place{root.disk(), session_of("three_files").write_deck(root.disk())};
   const DiskState before = test::disk_state_of(root.disk());
@@ -139,7 +139,7 @@ TEST(SmallFiles, ACutOffSaveIsFinishedByTheNextOpeningThatCan) {
   }
 }
 
-TEST(SmallFiles, EditsThatAreGivenUpAreKeptWhateverFailsMeanwhile) {
+TEST(SmallFiles, edits_that_are_given_up_are_kept_whatever_fails_meanwhile) {
   const Root root;
   const Place place{root.disk(), session_of("one_file").write_deck(root.disk())};
   {
@@ -179,7 +179,7 @@ TEST(SmallFiles, EditsThatAreGivenUpAreKeptWhateverFailsMeanwhile) {
   EXPECT_GT(refused, 0u);
 }
 
-TEST(SmallFiles, AChangedByteOfTheSessionOpensNothingWrong) {
+TEST(SmallFiles, a_changed_byte_of_the_session_opens_nothing_wrong) {
   const Root root;
   const Place place{root.disk(), session_of("one_file").write_deck(root.disk())};
   {
@@ -208,7 +208,7 @@ TEST(SmallFiles, AChangedByteOfTheSessionOpensNothingWrong) {
   EXPECT_EQ(keeper.state().target_size, 12.5);
 }
 
-TEST(SmallFiles, NewFoldersOutliveAPowerCut) {
+TEST(SmallFiles, new_folders_outlive_a_power_cut) {
   const Root root;
   const DiskState before = test::disk_state_of(root.disk());
   test::record_file_calls(root.disk(), root.log());

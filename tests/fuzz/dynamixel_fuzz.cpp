@@ -56,8 +56,8 @@ void try_parser(std::span<const std::byte> bytes) {
     bytes = bytes.subspan(piece);
     while (const Packet* packet = parser.next()) {
       ++in_packets;
-      check(packet->count <= kMostParameters);
-      std::array<std::byte, kLongestPacket> again;
+      check(packet->count <= kMaxParameters);
+      std::array<std::byte, kMaxPacketLength> again;
       const bool status = packet->instruction == Instruction::status;
       const auto error = static_cast<std::uint8_t>(packet->error | (packet->alert ? kAlertBit : 0));
       const std::size_t size =

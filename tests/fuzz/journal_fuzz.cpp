@@ -10,7 +10,7 @@
 #include "mesh/document/document.h"
 #include "mesh/document/journal_records.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/fuzz/require.h"
 #include "tests/support/make_model.h"
 

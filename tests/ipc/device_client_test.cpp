@@ -73,7 +73,7 @@ class DeviceClients : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(DeviceClients, GetsThePageAnswersAndEvents) {
+TEST_F(DeviceClients, gets_the_page_answers_and_events) {
   DevicePage page = DevicePage::create().value();
   EyesState eyes;
   eyes.records = 42;
@@ -100,14 +100,14 @@ TEST_F(DeviceClients, GetsThePageAnswersAndEvents) {
   EXPECT_EQ(reply->request, number);
 }
 
-TEST_F(DeviceClients, ADaemonThatIsNotThereIsSaidWithWhatToDo) {
+TEST_F(DeviceClients, a_daemon_that_is_not_there_is_said_with_what_to_do) {
   const Result<DeviceClient> client = DeviceClient::connect(socket(), "test");
   ASSERT_FALSE(client);
   EXPECT_EQ(client.error().file, socket().string());
   EXPECT_NE(client.error().message.find("prismesh-deviced"), std::string::npos);
 }
 
-TEST_F(DeviceClients, OneThatHangsHoldsNobodyUp) {
+TEST_F(DeviceClients, one_that_hangs_holds_nobody_up) {
   std::atomic<bool> hangs{true};
   DevicePage page = DevicePage::create().value();
   FakeDeviced daemon(socket(), [&](FakeDeviced& self, ClientId client, std::uint64_t number) {
@@ -123,7 +123,7 @@ TEST_F(DeviceClients, OneThatHangsHoldsNobodyUp) {
   EXPECT_EQ(connection.connections(), 1u);
 }
 
-TEST_F(DeviceClients, AFalsePageIsRefused) {
+TEST_F(DeviceClients, a_false_page_is_refused) {
   const auto refused = [&](FakeDeviced::Greeting greeting) {
     FakeDeviced daemon(socket(), std::move(greeting));
     const Result<DeviceClient> client = DeviceClient::connect(socket(), "test");

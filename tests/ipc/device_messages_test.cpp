@@ -30,7 +30,7 @@ T answered(const DeviceAnswer& answer, std::size_t descriptors = 0) {
   return std::get<T>(std::get<DeviceAnswer>(back->message));
 }
 
-TEST(DeviceMessages, RequestsSurviveARoundTrip) {
+TEST(DeviceMessages, requests_survive_a_round_trip) {
   const DeviceHello hello = there_and_back<DeviceHello>(DeviceHello{3, "kiosk"});
   EXPECT_EQ(hello.protocol, 3);
   EXPECT_EQ(hello.program, "kiosk");
@@ -43,7 +43,7 @@ TEST(DeviceMessages, RequestsSurviveARoundTrip) {
   there_and_back<Reload>(Reload{});
 }
 
-TEST(DeviceMessages, AnswersAndEventsSurviveARoundTrip) {
+TEST(DeviceMessages, answers_and_events_survive_a_round_trip) {
   const DeviceWelcome welcome = answered<DeviceWelcome>(DeviceWelcome{1, "0.1.0"}, 1);
   EXPECT_EQ(welcome.version, "0.1.0");
   answered<Done>(Done{});
@@ -65,7 +65,7 @@ TEST(DeviceMessages, AnswersAndEventsSurviveARoundTrip) {
   EXPECT_EQ(std::get<DeviceChanged>(std::get<DeviceEvent>(event->message)).device.where, "/dev/ttyUSB0");
 }
 
-TEST(DeviceMessages, ErrorsNameTheFieldAndTheNearestKnownOne) {
+TEST(DeviceMessages, errors_name_the_field_and_the_nearest_known_one) {
   EXPECT_EQ(device_refusal(R"({"request": "hold_mark"})"), "unknown kind \"hold_mark\"; the nearest is \"hold_mask\"");
   EXPECT_EQ(device_refusal(R"({"request": "hold_mask", "position": 1})"),
             "\"hold_mask\": has no field \"position\"; the nearest is \"position_mm\"");
@@ -78,11 +78,11 @@ TEST(DeviceMessages, ErrorsNameTheFieldAndTheNearestKnownOne) {
       << "modeld's messages are none of deviced's";
 }
 
-TEST(DeviceMessages, ANewerDaemonsFieldsArePassedOver) {
+TEST(DeviceMessages, a_newer_daemons_fields_are_passed_over) {
   EXPECT_TRUE(decode_from_deviced(R"({"answer": "devices", "to": 1, "devices": [{"role": "pen", "force": 3}]})"));
 }
 
-TEST(DeviceMessages, BrokenLinesAreRefusedInWords) {
+TEST(DeviceMessages, broken_lines_are_refused_in_words) {
   const std::string sound = encode_device_request(7, HoldMask{0.25}).value();
   std::mt19937 random(3);
   for (int i = 0; i < 20'000; ++i) {

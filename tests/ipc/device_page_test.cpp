@@ -16,7 +16,7 @@
 namespace prismesh::ipc {
 namespace {
 
-TEST(DevicePage, ShowsWhatWasWritten) {
+TEST(DevicePage, shows_what_was_written) {
   DevicePage page = DevicePage::create().value();
   const DevicePageReader reader = DevicePageReader::map(page.descriptor()).value();
   EXPECT_FALSE(reader.eyes());
@@ -54,7 +54,7 @@ TEST(DevicePage, ShowsWhatWasWritten) {
   EXPECT_TRUE(reader.health()->realtime);
 }
 
-TEST(DevicePage, NoPeerCanShrinkGrowWriteOrUnsealIt) {
+TEST(DevicePage, no_peer_can_shrink_grow_write_or_unseal_it) {
   DevicePage page = DevicePage::create().value();
   const Descriptor peer = page.descriptor().duplicate().value();
   EXPECT_NE(::ftruncate(peer.get(), 0), 0);
@@ -83,7 +83,7 @@ Descriptor imitation(int seals, std::size_t size = sizeof(DevicePageLayout), std
   return memory;
 }
 
-TEST(DevicePage, AReaderRefusesAPageThatCouldBeCutOffOrForged) {
+TEST(DevicePage, a_reader_refuses_a_page_that_could_be_cut_off_or_forged) {
   constexpr int kAll = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE;
   EXPECT_TRUE(DevicePageReader::map(imitation(kAll)));
   for (const int missing : {F_SEAL_SHRINK, F_SEAL_GROW, F_SEAL_FUTURE_WRITE}) {
@@ -105,7 +105,7 @@ TEST(DevicePage, AReaderRefusesAPageThatCouldBeCutOffOrForged) {
   EXPECT_FALSE(DevicePageReader::map(pipe_ends[0]));
 }
 
-TEST(DevicePage, AWriterThatIsKilledLeavesTheLastWholeValue) {
+TEST(DevicePage, a_writer_that_is_killed_leaves_the_last_whole_value) {
   std::mt19937 random(7);
   for (int life = 0; life < 40; ++life) {
     DevicePage page = DevicePage::create().value();

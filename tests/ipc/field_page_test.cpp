@@ -16,7 +16,7 @@
 namespace prismesh::ipc {
 namespace {
 
-TEST(FieldPage, BringsEveryValueAcross) {
+TEST(FieldPage, brings_every_value_across) {
   const std::vector<float> values{1, std::numeric_limits<float>::quiet_NaN(), -3.5F};
   const auto sealed = seal_field(12, false, values);
   ASSERT_TRUE(sealed);
@@ -30,7 +30,7 @@ TEST(FieldPage, BringsEveryValueAcross) {
   EXPECT_EQ((*field)->values()[2], -3.5F);
 }
 
-TEST(FieldPage, RefusesWhatLiesAboutItself) {
+TEST(FieldPage, refuses_what_lies_about_itself) {
   const FieldHeader honest{FieldHeader::kMagic, 1, 4, 1};
   const auto map_of = [](const FieldHeader& header, std::size_t values_bytes) {
     std::vector<std::byte> bytes(sizeof header + values_bytes);
@@ -55,7 +55,7 @@ TEST(FieldPage, RefusesWhatLiesAboutItself) {
   EXPECT_FALSE(FieldValues::map(make_sealed_memory("test", bytes).value()));
 }
 
-TEST(FieldPage, RefusesMemoryThatCanStillBeWritten) {
+TEST(FieldPage, refuses_memory_that_can_still_be_written) {
   const auto open = make_shared_memory("test", sizeof(FieldHeader));
   ASSERT_TRUE(open);
   const FieldHeader empty;
@@ -63,7 +63,7 @@ TEST(FieldPage, RefusesMemoryThatCanStillBeWritten) {
   EXPECT_FALSE(FieldValues::map(*open));
 }
 
-TEST(Snapshot, OlderStatesAreLeasedAndTheCurrentOneStays) {
+TEST(Snapshot, older_states_are_leased_and_the_current_one_stays) {
   mesh::document::Document document = test::grid_document(100, 90);
   test::move_node(document, 10, {1, 2, 3});
   SnapshotPublisher publisher;

@@ -12,7 +12,7 @@ std::string refusal(std::string_view line) {
   return request ? "accepted" : request.error().message;
 }
 
-TEST(Messages, RequestsSurviveARoundTrip) {
+TEST(Messages, requests_survive_a_round_trip) {
   Open open;
   open.path = "/decks/car \"7\".k";
   open.target_size = 0.1;
@@ -42,7 +42,7 @@ TEST(Messages, RequestsSurviveARoundTrip) {
   EXPECT_EQ(std::get<mesh::document::Select>(std::get<ApplyEdit>(edit->request).edit).expr, "1-100");
 }
 
-TEST(Messages, AnswersAndEventsSurviveARoundTrip) {
+TEST(Messages, answers_and_events_survive_a_round_trip) {
   State state;
   state.open = true;
   state.generation = ~std::uint64_t{0};
@@ -69,7 +69,7 @@ TEST(Messages, AnswersAndEventsSurviveARoundTrip) {
   EXPECT_EQ(std::get<DragEnded>(std::get<Event>(event->message)).drag, 4u);
 }
 
-TEST(Messages, ErrorsNameTheFieldAndTheNearestKnownOne) {
+TEST(Messages, errors_name_the_field_and_the_nearest_known_one) {
   EXPECT_EQ(refusal(R"({"request": "opn", "number": 1})"), "unknown kind \"opn\"; the nearest is \"open\"");
   EXPECT_EQ(refusal(R"({"request": "open", "pth": "a.k"})"), "\"open\": has no field \"pth\"; the nearest is \"path\"");
   EXPECT_EQ(refusal(R"({"request": "open", "path": 7})"), "\"open\": field \"path\" must be a text in quotes");
@@ -84,19 +84,19 @@ TEST(Messages, ErrorsNameTheFieldAndTheNearestKnownOne) {
   EXPECT_NE(refusal(R"({"request": "apply_edit", "edit": {"edit": "tranlsate", "by": [0, 0, 1]}})").find("translate"), std::string::npos);
 }
 
-TEST(Messages, ARefusalKeepsTheRequestsNumber) {
+TEST(Messages, a_refusal_keeps_the_requests_number) {
   const auto request = decode_request(R"({"request": "nothing", "number": 17})");
   ASSERT_FALSE(request);
   EXPECT_EQ(request.error().number, 17u);
 }
 
-TEST(Messages, UnknownFieldsOfANewerDaemonArePassedOver) {
+TEST(Messages, unknown_fields_of_a_newer_daemon_are_passed_over) {
   const Result<FromDaemon> answer = decode_from_daemon(R"({"answer": "done", "to": 3, "mood": "sunny"})");
   ASSERT_TRUE(answer) << answer.error().text();
   EXPECT_TRUE(std::holds_alternative<Done>(std::get<Answer>(answer->message)));
 }
 
-TEST(Messages, ALineOfBracketsIsRefusedBeforeItIsParsed) {
+TEST(Messages, a_line_of_brackets_is_refused_before_it_is_parsed) {
   EXPECT_EQ(refusal(std::string(1'000'000, '[')), "it is nested too deeply");
   EXPECT_EQ(refusal(R"({"request": "open", "path": "[[[[[[[[[[[[[[[[[[[["})"), "accepted");
   EXPECT_EQ(refusal(R"({"request": "open", "path": "\"[[[[[[[[[[[[[[[[[[[["})"), "accepted") << "the quote is of the text";
@@ -110,7 +110,7 @@ TEST(Messages, ALineOfBracketsIsRefusedBeforeItIsParsed) {
   EXPECT_NE(refusal(side_by_side + "1]}"), "it is nested too deeply") << "none stands in another";
 }
 
-TEST(Messages, WhatMayBeMissingMayBeNull) {
+TEST(Messages, what_may_be_missing_may_be_null) {
   const auto save = decode_request(R"({"request": "save", "path": null, "number": 4})");
   ASSERT_TRUE(save) << save.error().message;
   EXPECT_FALSE(std::get<Save>(save->request).path);
@@ -119,7 +119,7 @@ TEST(Messages, WhatMayBeMissingMayBeNull) {
   EXPECT_EQ(refusal("\"open\""), "it isn't a JSON object");
 }
 
-TEST(Messages, TextThatIsNotUtf8IsRefusedOneWayAndReplacedTheOther) {
+TEST(Messages, text_that_is_not_utf8_is_refused_one_way_and_replaced_the_other) {
   Open open;
   open.path = "/decks/caf\xe9.k";
   EXPECT_FALSE(encode_request(1, open));
@@ -128,7 +128,7 @@ TEST(Messages, TextThatIsNotUtf8IsRefusedOneWayAndReplacedTheOther) {
   EXPECT_TRUE(decode_from_daemon(encode_answer(1, state)));
 }
 
-TEST(Messages, BrokenLinesAreRefusedInWords) {
+TEST(Messages, broken_lines_are_refused_in_words) {
   const std::string sound = encode_request(7, DragStep{3, 4, {1, 2, 3}, 0.5}).value();
   std::mt19937 random(7);
   for (int i = 0; i < 20'000; ++i) {

@@ -44,7 +44,7 @@ const Edges kTetrahedron{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 const Edges kWedge{{0, 1}, {1, 2}, {0, 2}, {3, 4}, {4, 5}, {3, 5}, {0, 3}, {1, 4}, {2, 5}};
 const Edges kBrick{{0, 1}, {1, 2}, {2, 3}, {0, 3}, {4, 5}, {5, 6}, {6, 7}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 
-TEST(Outlines, OfASolidAreTheEdgesBetweenItsCorners) {
+TEST(Outlines, of_a_solid_are_the_edges_between_its_corners) {
   EXPECT_EQ(solid({0, 1, 2, 3}), kTetrahedron);
   EXPECT_EQ(solid({0, 1, 2, 3, 3, 3, 3, 3}), kTetrahedron);
   EXPECT_EQ(solid({0, 1, 2, 3, 10, 11, 12, 13, 14, 15}), kTetrahedron) << "mid-side nodes aren't corners";
@@ -56,7 +56,7 @@ TEST(Outlines, OfASolidAreTheEdgesBetweenItsCorners) {
   EXPECT_EQ(solid({0, 1, 2, 3, 4}), Edges{}) << "nobody knows what it is";
 }
 
-TEST(Outlines, LeaveOutFacesBetweenSolidsAndNameEachEdgesPart) {
+TEST(Outlines, leave_out_faces_between_solids_and_name_each_edges_part) {
   // Three bricks in a row: the edges round the two faces between them belong to outer faces as well.
   const mesh::Model row =
       model_of(mesh::ElementClass::solid, {{0, 1, 5, 4, 8, 9, 13, 12}, {1, 2, 6, 5, 9, 10, 14, 13}, {2, 3, 7, 6, 10, 11, 15, 14}});
@@ -77,7 +77,7 @@ TEST(Outlines, LeaveOutFacesBetweenSolidsAndNameEachEdgesPart) {
   EXPECT_FALSE(edges.contains({4, 13}));
 }
 
-TEST(Outlines, OfBarsAreTheirEnds) {
+TEST(Outlines, of_bars_are_their_ends) {
   EXPECT_EQ(edges_of(model_of(mesh::ElementClass::beam, {{4, 2, 9}, {2, 3, 9}})), (Edges{{2, 4}, {2, 3}})) << "the third orients it";
   EXPECT_EQ(edges_of(model_of(mesh::ElementClass::discrete, {{1, 0}, {7, 7}, {8}})), (Edges{{0, 1}})) << "a spring to ground has one node";
 }

@@ -29,7 +29,7 @@ bool is_whole(const Sample& sample) {
   return true;
 }
 
-TEST(Seqlock, NothingUntilTheFirstWrite) {
+TEST(Seqlock, nothing_until_the_first_write) {
   SeqlockSlot<Sample> slot;
   EXPECT_FALSE(slot.read());
   slot.write(sample_of(3));
@@ -39,7 +39,7 @@ TEST(Seqlock, NothingUntilTheFirstWrite) {
   EXPECT_EQ(slot.read()->words[39], 3u);
 }
 
-TEST(Seqlock, ReadersNeverSeeHalfAValue) {
+TEST(Seqlock, readers_never_see_half_a_value) {
   SeqlockSlot<Sample> slot;
   std::atomic<bool> done = false;
   std::atomic<std::size_t> seen = 0;
@@ -62,7 +62,7 @@ TEST(Seqlock, ReadersNeverSeeHalfAValue) {
   EXPECT_EQ(slot.read()->words[0], written);
 }
 
-TEST(Seqlock, SurvivesAWriterThatIsKilled) {
+TEST(Seqlock, survives_a_writer_that_is_killed) {
   const Descriptor memory = make_shared_memory("test", sizeof(SeqlockSlot<Sample>)).value();
   Mapping mapping = Mapping::map(memory, true).value();
   auto* slot = new (mapping.writable_bytes().data()) SeqlockSlot<Sample>();
@@ -84,7 +84,7 @@ TEST(Seqlock, SurvivesAWriterThatIsKilled) {
   EXPECT_EQ(slot->read()->words[0], 1'000'000'000u) << "the next writer goes on";
 }
 
-TEST(StatePage, ShowsHealthAndRefusesWriters) {
+TEST(StatePage, shows_health_and_refuses_writers) {
   StatePage page = StatePage::create().value();
   const StatePageReader reader = StatePageReader::map(page.descriptor()).value();
   EXPECT_FALSE(reader.health());
@@ -98,12 +98,12 @@ TEST(StatePage, ShowsHealthAndRefusesWriters) {
   EXPECT_FALSE(Mapping::map(page.descriptor(), true)) << "a reader could write";
 }
 
-TEST(StatePage, OtherMemoryIsNoStatePage) {
+TEST(StatePage, other_memory_is_no_state_page) {
   EXPECT_FALSE(StatePageReader::map(make_shared_memory("test", 64).value()));
   EXPECT_FALSE(StatePageReader::map(make_shared_memory("test", 4096).value()));
 }
 
-TEST(Preview, CarriesFramesWhole) {
+TEST(Preview, carries_frames_whole) {
   std::vector<mesh::NodeIndex> nodes;
   std::vector<mesh::ShellIndex> shells;
   for (std::size_t i = 0; i < 1000; ++i) nodes.emplace_back(2 * i);
@@ -137,7 +137,7 @@ TEST(Preview, CarriesFramesWhole) {
   EXPECT_FALSE(Mapping::map(writer.descriptor(), true)) << "a reader could write";
 }
 
-TEST(Preview, CarriesEveryNumberOfAFrame) {
+TEST(Preview, carries_every_number_of_a_frame) {
   for (const std::size_t judged : {0u, 1u, 2u, 3u}) {  // states are half words
     const std::vector<mesh::NodeIndex> nodes{mesh::NodeIndex(7), mesh::NodeIndex(3)};
     std::vector<mesh::ShellIndex> shells;
@@ -161,7 +161,7 @@ TEST(Preview, CarriesEveryNumberOfAFrame) {
   }
 }
 
-TEST(Preview, ListsOfAnotherLengthStayInTheirPlaces) {
+TEST(Preview, lists_of_another_length_stay_in_their_places) {
   const std::vector<mesh::NodeIndex> nodes(3);
   const std::vector<mesh::ShellIndex> shells(3);
   PreviewWriter writer = PreviewWriter::create(5, 17, nodes, shells).value();
@@ -192,7 +192,7 @@ TEST(Preview, ListsOfAnotherLengthStayInTheirPlaces) {
   EXPECT_FALSE(reader.latest(frame)) << "seen already";
 }
 
-TEST(Preview, AHeaderThatPromisesTooMuchIsRefused) {
+TEST(Preview, a_header_that_promises_too_much_is_refused) {
   PreviewWriter writer = PreviewWriter::create(1, 1, std::vector<mesh::NodeIndex>(10), {}).value();
   const Mapping sound = Mapping::map(writer.descriptor(), false).value();
   for (std::size_t at = 0; at < 40; at += 8) {

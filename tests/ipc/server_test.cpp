@@ -153,7 +153,7 @@ void say(LineSocket& socket, std::string line) {
   }
 }
 
-TEST(Server, CarriesLinesAndDescriptors) {
+TEST(Server, carries_lines_and_descriptors) {
   const Folder folder;
   Running running(folder.path() / "s");
   LineSocket socket(connect_to(folder.path() / "s").value(), {});
@@ -167,7 +167,7 @@ TEST(Server, CarriesLinesAndDescriptors) {
   EXPECT_FALSE(socket.take_descriptors(1)) << "there was one only";
 }
 
-TEST(Server, LongLinesGoThroughWhole) {
+TEST(Server, long_lines_go_through_whole) {
   const Folder folder;
   Running running(folder.path() / "s");
   LineSocket socket(connect_to(folder.path() / "s").value(), {});
@@ -176,7 +176,7 @@ TEST(Server, LongLinesGoThroughWhole) {
   EXPECT_EQ(next_line(socket), line);
 }
 
-TEST(Server, AnOversizedLineIsCutOff) {
+TEST(Server, an_oversized_line_is_cut_off) {
   const Folder folder;
   ServerLimits limits;
   limits.line_bytes = 100'000;
@@ -190,7 +190,7 @@ TEST(Server, AnOversizedLineIsCutOff) {
   EXPECT_EQ(next_line(fine), "others go on");
 }
 
-TEST(Server, AClientThatTakesNothingIsCutOff) {
+TEST(Server, a_client_that_takes_nothing_is_cut_off) {
   const Folder folder;
   ServerLimits limits;
   limits.stall = std::chrono::milliseconds(200);
@@ -220,7 +220,7 @@ bool wait_for_bytes(const LineSocket& socket, std::size_t bytes) {
   return false;
 }
 
-TEST(Server, AClientThatWasIdleHasItsWholeTimeToTakeWhatComesNext) {
+TEST(Server, a_client_that_was_idle_has_its_whole_time_to_take_what_comes_next) {
   const Folder folder;
   ServerLimits limits;
   limits.stall = std::chrono::milliseconds(400);
@@ -240,7 +240,7 @@ TEST(Server, AClientThatWasIdleHasItsWholeTimeToTakeWhatComesNext) {
   EXPECT_THAT(running.echo().wait_for_all_to_leave(3), testing::ElementsAre(1, 2, 3)) << "the idle one began to wait last";
 }
 
-TEST(Server, AClientThatAsksForMoreThanItTakesIsCutOff) {
+TEST(Server, a_client_that_asks_for_more_than_it_takes_is_cut_off) {
   const Folder folder;
   ServerLimits limits;
   limits.queue_bytes = 10'000'000;
@@ -250,7 +250,7 @@ TEST(Server, AClientThatAsksForMoreThanItTakesIsCutOff) {
   EXPECT_EQ(running.echo().wait_for_leaving(), "it reads too slowly");
 }
 
-TEST(Server, DescriptorsThatNobodyAskedForCutTheSenderOff) {
+TEST(Server, descriptors_that_nobody_asked_for_cut_the_sender_off) {
   const Folder folder;
   Running running(folder.path() / "s");
   LineSocket socket(connect_to(folder.path() / "s").value(), {});
@@ -261,7 +261,7 @@ TEST(Server, DescriptorsThatNobodyAskedForCutTheSenderOff) {
   EXPECT_EQ(running.echo().wait_for_leaving(), "descriptors came that nobody asked for");
 }
 
-TEST(LineSocketTest, TakesNoMoreDescriptorsThanItsLimit) {
+TEST(LineSocketTest, takes_no_more_descriptors_than_its_limit) {
   int ends[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
   LineSocket sender(Descriptor{ends[0]}, {});
@@ -286,7 +286,7 @@ TEST(LineSocketTest, TakesNoMoreDescriptorsThanItsLimit) {
   EXPECT_EQ(received.error().message, "too many descriptors came");
 }
 
-TEST(LineSocketTest, DescriptorsGoOnceWithALineOfManyParts) {
+TEST(LineSocketTest, descriptors_go_once_with_a_line_of_many_parts) {
   int ends[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
   LineSocket sender(Descriptor{ends[0]}, {}), receiver(Descriptor{ends[1]}, {});
@@ -311,7 +311,7 @@ TEST(LineSocketTest, DescriptorsGoOnceWithALineOfManyParts) {
   EXPECT_FALSE(receiver.take_descriptors(1)) << "there were two only";
 }
 
-TEST(Server, ALiveOneIsNamedAndAStaleSocketReplaced) {
+TEST(Server, a_live_one_is_named_and_a_stale_socket_replaced) {
   const Folder folder;
   Echo echo;
   {
@@ -330,7 +330,7 @@ TEST(Server, ALiveOneIsNamedAndAStaleSocketReplaced) {
   EXPECT_TRUE(connect_to(folder.path() / "s"));
 }
 
-TEST(Server, TheFolderMustBePrivate) {
+TEST(Server, the_folder_must_be_private) {
   const Folder folder;
   Echo echo;
   for (const mode_t mode : {0777U, 0770U, 0720U, 0702U}) {
@@ -348,7 +348,7 @@ TEST(Server, TheFolderMustBePrivate) {
   EXPECT_EQ(status.st_mode & 0777, 0700u);
 }
 
-TEST(Server, AFolderThatOthersMayLookIntoIsMadePrivate) {
+TEST(Server, a_folder_that_others_may_look_into_is_made_private) {
   const Folder folder;
   const fs::path run = folder.path() / "run";
   fs::create_directory(run);
@@ -359,7 +359,7 @@ TEST(Server, AFolderThatOthersMayLookIntoIsMadePrivate) {
   EXPECT_EQ(status.st_mode & 0777, 0700u);
 }
 
-TEST(Server, AnotherUsersFolderIsNotPrivate) {
+TEST(Server, another_users_folder_is_not_private) {
   if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: a folder of another user needs root";
   const Folder folder;
   const fs::path theirs = folder.path() / "theirs";
@@ -371,7 +371,7 @@ TEST(Server, AnotherUsersFolderIsNotPrivate) {
   EXPECT_NE(made.error().message.find("another user"), std::string::npos) << made.error().message;
 }
 
-TEST(Server, ALinkIsNoPrivateFolderWhateverItsSlashes) {
+TEST(Server, a_link_is_no_private_folder_whatever_its_slashes) {
   const Folder folder;
   fs::create_directory(folder.path() / "real");
   ::chmod((folder.path() / "real").c_str(), 0700);
@@ -383,7 +383,7 @@ TEST(Server, ALinkIsNoPrivateFolderWhateverItsSlashes) {
   }
 }
 
-TEST(Server, TheHoldersNumberIsNotNeededForTheLock) {
+TEST(Server, the_holders_number_is_not_needed_for_the_lock) {
   const Folder folder;
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -396,7 +396,7 @@ TEST(Server, TheHoldersNumberIsNotNeededForTheLock) {
   EXPECT_TRUE(lock) << lock.error().text();
 }
 
-TEST(Server, ClientsThatNeverGreetShutNobodyOut) {
+TEST(Server, clients_that_never_greet_shut_nobody_out) {
   const Folder folder;
   ServerLimits limits;
   limits.clients = 3;
@@ -413,7 +413,7 @@ TEST(Server, ClientsThatNeverGreetShutNobodyOut) {
   EXPECT_EQ(next_line(second), "welcome");
 }
 
-TEST(Server, WhoComesWhenAllPlacesAreTakenIsToldSo) {
+TEST(Server, who_comes_when_all_places_are_taken_is_told_so) {
   const Folder folder;
   ServerLimits limits;
   limits.clients = 1;
@@ -429,7 +429,7 @@ TEST(Server, WhoComesWhenAllPlacesAreTakenIsToldSo) {
   EXPECT_EQ(next_line(welcomed), "still here");
 }
 
-TEST(Server, WhoDoesNotGreetInTimeIsCutOff) {
+TEST(Server, who_does_not_greet_in_time_is_cut_off) {
   const Folder folder;
   ServerLimits limits;
   limits.greeting = std::chrono::milliseconds(200);
@@ -439,7 +439,7 @@ TEST(Server, WhoDoesNotGreetInTimeIsCutOff) {
   EXPECT_EQ(running.echo().wait_for_leaving(), "it didn't greet for 200 ms");
 }
 
-TEST(Server, AnotherUsersProgramIsNotServed) {
+TEST(Server, another_users_program_is_not_served) {
   if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: playing another user needs root";
   constexpr uid_t kNobody = 65534;
   const Folder folder;
@@ -471,7 +471,7 @@ TEST(Server, AnotherUsersProgramIsNotServed) {
   EXPECT_EQ(next_line(ours), "welcome");
 }
 
-TEST(Client, AnotherUsersDaemonIsNotTrusted) {
+TEST(Client, another_users_daemon_is_not_trusted) {
   if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: playing another user needs root";
   constexpr uid_t kNobody = 65534;
   const Folder folder;
@@ -509,7 +509,7 @@ TEST(Client, AnotherUsersDaemonIsNotTrusted) {
   }
 }
 
-TEST(Client, AFolderThatOthersMayWriteToIsNotTrusted) {
+TEST(Client, a_folder_that_others_may_write_to_is_not_trusted) {
   const Folder folder;
   const Running running(folder.path() / "s");
   struct Case {
@@ -526,7 +526,7 @@ TEST(Client, AFolderThatOthersMayWriteToIsNotTrusted) {
   }
 }
 
-TEST(Client, LooksForTheDaemonInTheFolderThatItsSurroundingsName) {
+TEST(Client, looks_for_the_daemon_in_the_folder_that_its_surroundings_name) {
   struct Case {
     const char* runtime_directory;
     const char* xdg_runtime_dir;
@@ -543,7 +543,7 @@ TEST(Client, LooksForTheDaemonInTheFolderThatItsSurroundingsName) {
   }
 }
 
-TEST(Server, ASocketPathThatIsTooLongIsSaid) {
+TEST(Server, a_socket_path_that_is_too_long_is_said) {
   const Folder folder;
   Echo echo;
   const Result<Server> server = Server::listen(folder.path() / std::string(120, 'd') / "s", echo);
@@ -552,7 +552,7 @@ TEST(Server, ASocketPathThatIsTooLongIsSaid) {
   EXPECT_FALSE(connect_to(folder.path() / std::string(120, 'd') / "s"));
 }
 
-TEST(Server, WithTooFewDescriptorsItDoesNotStartAndSaysSo) {
+TEST(Server, with_too_few_descriptors_it_does_not_start_and_says_so) {
 #ifdef PRISMESH_ADDRESS_SANITIZER
   GTEST_SKIP() << "UndefinedBehaviorSanitizer needs descriptors of its own to look at an object's type";
 #endif
@@ -572,7 +572,7 @@ TEST(Server, WithTooFewDescriptorsItDoesNotStartAndSaysSo) {
   EXPECT_TRUE(Server::listen(folder.path() / "s", echo)) << "later it starts";
 }
 
-TEST(Client, ADaemonThatIsNotThereIsSaid) {
+TEST(Client, a_daemon_that_is_not_there_is_said) {
   const Folder folder;
   const Result<Client> client = Client::connect(folder.path() / "model.sock", "test");
   ASSERT_FALSE(client);
@@ -583,7 +583,7 @@ TEST(Client, ADaemonThatIsNotThereIsSaid) {
   EXPECT_FALSE(again.wait(std::chrono::milliseconds(150)));
 }
 
-TEST(Client, WhatIsNoDaemonIsSaid) {
+TEST(Client, what_is_no_daemon_is_said) {
   const Folder folder;
   Running running(folder.path() / "model.sock");
   const Result<Client> client = Client::connect(folder.path() / "model.sock", "test");

@@ -8,7 +8,7 @@
 
 #include "ipc/snapshot_publisher.h"
 #include "ipc/snapshot_table.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/ipc/small_document.h"
 
 namespace prismesh::ipc {
@@ -41,7 +41,7 @@ class Reader {
   std::map<std::uint64_t, std::shared_ptr<const Mapping>> known_;
 };
 
-TEST(Snapshot, HoldsWhatThePictureNeeds) {
+TEST(Snapshot, holds_what_the_picture_needs) {
   mesh::document::Document document = grid_document(100, 90);
   document.settings.criteria.warn_triangles_at_node = 2;
   SnapshotPublisher publisher;
@@ -61,7 +61,7 @@ TEST(Snapshot, HoldsWhatThePictureNeeds) {
   EXPECT_TRUE(view->info().changed);
 }
 
-TEST(Snapshot, SaysWhatIsSelectedHiddenAndLocked) {
+TEST(Snapshot, says_what_is_selected_hidden_and_locked) {
   mesh::document::Document document = grid_document(4, 4);
   auto next = std::make_shared<mesh::document::Generation>(document.current());
   next->selected_nodes = 3;
@@ -81,7 +81,7 @@ TEST(Snapshot, SaysWhatIsSelectedHiddenAndLocked) {
   EXPECT_FALSE(locked->info().can_redo);
 }
 
-TEST(Snapshot, CountsTheNodesThatAreThere) {
+TEST(Snapshot, counts_the_nodes_that_are_there) {
   mesh::document::Document document = grid_document(4, 4);
   auto next = std::make_shared<mesh::document::Generation>(document.current());
   std::vector<std::int64_t> ids;
@@ -99,7 +99,7 @@ TEST(Snapshot, CountsTheNodesThatAreThere) {
   EXPECT_EQ(view->node_count(), 25u) << "indices stay";
 }
 
-TEST(Snapshot, SaysWhetherThereAreUnsavedEditsThoughTheStateIsTheSame) {
+TEST(Snapshot, says_whether_there_are_unsaved_edits_though_the_state_is_the_same) {
   const mesh::document::Document document = grid_document(4, 4);
   SnapshotPublisher publisher;
   Reader reader(publisher);
@@ -107,7 +107,7 @@ TEST(Snapshot, SaysWhetherThereAreUnsavedEditsThoughTheStateIsTheSame) {
   EXPECT_FALSE(reader.map(publisher.publish(document, false).value())->info().changed) << "it was saved";
 }
 
-TEST(Snapshot, CountsTheShellsOfEachPartAnewWhenPartsOrShellsChange) {
+TEST(Snapshot, counts_the_shells_of_each_part_anew_when_parts_or_shells_change) {
   mesh::document::Document document = grid_document(4, 4);
   SnapshotPublisher publisher;
   Reader reader(publisher);
@@ -143,7 +143,7 @@ TEST(Snapshot, CountsTheShellsOfEachPartAnewWhenPartsOrShellsChange) {
   EXPECT_EQ(shells(), (std::vector<std::uint64_t>{15, 0}));
 }
 
-TEST(Snapshot, MemoryThatCouldShrinkUnderItsReaderIsRefused) {
+TEST(Snapshot, memory_that_could_shrink_under_its_reader_is_refused) {
   for (const int seals : {0, F_SEAL_GROW, F_SEAL_SHRINK}) {
     const Descriptor memory(::memfd_create("test", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     ASSERT_EQ(::ftruncate(memory.get(), 4096), 0);
@@ -156,7 +156,7 @@ TEST(Snapshot, MemoryThatCouldShrinkUnderItsReaderIsRefused) {
   EXPECT_FALSE(Mapping::map(file, false)) << "a file can't be sealed at all";
 }
 
-TEST(Snapshot, CopiesOnlyTheChunksThatChanged) {
+TEST(Snapshot, copies_only_the_chunks_that_changed) {
   mesh::document::Document document = grid_document(300, 300);
   SnapshotPublisher publisher;
   Reader reader(publisher);
@@ -175,7 +175,7 @@ TEST(Snapshot, CopiesOnlyTheChunksThatChanged) {
   EXPECT_EQ(after->chunk_version(SnapshotArray::shell_nodes, 3), before->chunk_version(SnapshotArray::shell_nodes, 3));
 }
 
-TEST(Snapshot, SaysOfEachShellByWhatEditsMadeItWorseAndCopiesOnlyThat) {
+TEST(Snapshot, says_of_each_shell_by_what_edits_made_it_worse_and_copies_only_that) {
   using mesh::quality::ShellState;
   mesh::document::Document document = grid_document(300, 300);
   auto opened = std::make_shared<mesh::document::Generation>(document.current());
@@ -206,7 +206,7 @@ TEST(Snapshot, SaysOfEachShellByWhatEditsMadeItWorseAndCopiesOnlyThat) {
   EXPECT_EQ(undone->shell_damage(60000), ShellState{});
 }
 
-TEST(Snapshot, AChunkOfWhichMoreIsUsedIsCopiedAgain) {
+TEST(Snapshot, a_chunk_of_which_more_is_used_is_copied_again) {
   mesh::document::Document document = grid_document(4, 4);
   const auto whole = document.generations.front();
   const auto fewer = std::make_shared<mesh::document::Generation>(*whole);
@@ -232,7 +232,7 @@ TEST(Snapshot, AChunkOfWhichMoreIsUsedIsCopiedAgain) {
   }
 }
 
-TEST(Snapshot, PublishingTheSameAgainCopiesNothing) {
+TEST(Snapshot, publishing_the_same_again_copies_nothing) {
   mesh::document::Document document = grid_document(100, 100);
   SnapshotPublisher publisher;
   const PublishedSnapshot first = publisher.publish(document, false).value();
@@ -242,7 +242,7 @@ TEST(Snapshot, PublishingTheSameAgainCopiesNothing) {
   EXPECT_NE(first.lease, second.lease);
 }
 
-TEST(Snapshot, ReturnedMemoryIsUsedAgain) {
+TEST(Snapshot, returned_memory_is_used_again) {
   mesh::document::Document document = grid_document(200, 200);
   SnapshotPublisher publisher;
   std::uint64_t lease = publisher.publish(document, false)->lease;
@@ -259,7 +259,7 @@ TEST(Snapshot, ReturnedMemoryIsUsedAgain) {
   EXPECT_EQ(publisher.bytes_held(), held);
 }
 
-TEST(Snapshot, LeasedMemoryIsNotUsedAgain) {
+TEST(Snapshot, leased_memory_is_not_used_again) {
   mesh::document::Document document = grid_document(200, 200);
   SnapshotPublisher publisher;
   Reader reader(publisher);
@@ -271,7 +271,7 @@ TEST(Snapshot, LeasedMemoryIsNotUsedAgain) {
   for (int i = 0; i < 40; ++i) EXPECT_EQ(views[static_cast<std::size_t>(i)]->position(17).x(), i);
 }
 
-TEST(Snapshot, ClosingGivesTheMemoryBack) {
+TEST(Snapshot, closing_gives_the_memory_back) {
   mesh::document::Document document = grid_document(100, 100);
   SnapshotPublisher publisher;
   const std::uint64_t lease = publisher.publish(document, false)->lease;
@@ -281,7 +281,7 @@ TEST(Snapshot, ClosingGivesTheMemoryBack) {
   EXPECT_EQ(publisher.bytes_held(), 0u);
 }
 
-TEST(Snapshot, VersionsOfTwoStartsDiffer) {
+TEST(Snapshot, versions_of_two_starts_differ) {
   mesh::document::Document document = grid_document(10, 10);
   SnapshotPublisher one(1);
   SnapshotPublisher two(1'000'000);
@@ -291,7 +291,7 @@ TEST(Snapshot, VersionsOfTwoStartsDiffer) {
             reader_two.map(two.publish(document, false).value())->chunk_version(SnapshotArray::positions, 0));
 }
 
-TEST(Snapshot, AReaderCannotWrite) {
+TEST(Snapshot, a_reader_cannot_write) {
   mesh::document::Document document = grid_document(10, 10);
   SnapshotPublisher publisher;
   const PublishedSnapshot snapshot = publisher.publish(document, false).value();
@@ -302,7 +302,7 @@ TEST(Snapshot, AReaderCannotWrite) {
   EXPECT_FALSE(Mapping::map(snapshot.table, true));
 }
 
-TEST(Snapshot, DrawsBeamsAndTheOutlineOfSolids) {
+TEST(Snapshot, draws_beams_and_the_outline_of_solids) {
   mesh::document::Document document = grid_document(9, 9);
   auto generation = std::make_shared<mesh::document::Generation>(document.current());
   auto beams = std::make_shared<mesh::ElementBlock>();
@@ -341,7 +341,7 @@ SnapshotTable sound_table() {
   return table;
 }
 
-TEST(SnapshotTable, SurvivesARoundTrip) {
+TEST(SnapshotTable, survives_a_round_trip) {
   const Result<SnapshotTable> table = decode_table(encode_table(sound_table()));
   ASSERT_TRUE(table) << table.error().text();
   ASSERT_EQ(table->info.parts.size(), 2u);
@@ -351,7 +351,7 @@ TEST(SnapshotTable, SurvivesARoundTrip) {
   EXPECT_EQ(table->arrays[1].pieces.at(0).offset, 128u);
 }
 
-TEST(SnapshotTable, WhatGoesByNodeShellOrLineHasOneCount) {
+TEST(SnapshotTable, what_goes_by_node_shell_or_line_has_one_count) {
   using enum SnapshotArray;
   const std::vector<SnapshotArray> families[] = {{positions, node_ids, node_marks},
                                                  {shell_nodes, shell_ids, shell_parts, shell_marks, shell_quality, shell_damage}};
@@ -375,7 +375,7 @@ TEST(SnapshotTable, WhatGoesByNodeShellOrLineHasOneCount) {
   EXPECT_FALSE(with({{line_nodes, 6}, {line_parts, 6}}, {}));
 }
 
-TEST(SnapshotTable, ABrokenOneIsRefusedOrHarmless) {
+TEST(SnapshotTable, a_broken_one_is_refused_or_harmless) {
   std::vector<std::byte> bytes = encode_table(sound_table());
   Descriptor memory = make_shared_memory("test", 4096).value();
   const auto segment = std::make_shared<const Mapping>(std::move(Mapping::map(memory, false).value()));
@@ -399,7 +399,7 @@ TEST(SnapshotTable, ABrokenOneIsRefusedOrHarmless) {
   EXPECT_GT(refused, 1000);
 }
 
-TEST(SnapshotTable, ChunksOutsideTheirSegmentAreRefused) {
+TEST(SnapshotTable, chunks_outside_their_segment_are_refused) {
   Descriptor memory = make_shared_memory("test", 4096).value();
   const auto segment = std::make_shared<const Mapping>(std::move(Mapping::map(memory, false).value()));
   SnapshotTable table = sound_table();

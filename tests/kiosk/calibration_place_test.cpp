@@ -32,7 +32,7 @@ class Environment {
   std::optional<std::string> old_;
 };
 
-TEST(CalibrationPlace, IsTheUsersOwnFolder) {
+TEST(CalibrationPlace, is_the_users_own_folder) {
   const Environment home("HOME", "/home/u"), config("XDG_CONFIG_HOME", nullptr);
   const SaveTo usual = usual_place(std::nullopt).value();
   EXPECT_EQ(usual.folder, "/home/u/.config/prismesh/displays");
@@ -42,7 +42,7 @@ TEST(CalibrationPlace, IsTheUsersOwnFolder) {
   EXPECT_EQ(given.settings, "/srv/station.toml");
 }
 
-TEST(CalibrationPlace, WithoutAHomeIsBesideTheSettingsWhereTheyFindItAgain) {
+TEST(CalibrationPlace, without_a_home_is_beside_the_settings_where_they_find_it_again) {
   const Environment home("HOME", nullptr), config("XDG_CONFIG_HOME", nullptr);
   EXPECT_FALSE(usual_place(std::nullopt));
   for (const fs::path settings : {"/srv/station.toml", "conf/station.toml", "station.toml", "../station.toml"}) {

@@ -23,7 +23,7 @@ Colour seen_without(bool red, const Colour& colour) {
           0.02980165F * ll - 0.19318073F * mm + 1.16364789F * s};
 }
 
-TEST(ColourMaps, GoEvenlyAndOnlyDarker) {
+TEST(ColourMaps, go_evenly_and_only_darker) {
   for (const ColourMap map : {ColourMap::crimson, ColourMap::blues}) {
     const auto& colours = colours_of(map);
     float least = 1, most = 0;
@@ -37,7 +37,7 @@ TEST(ColourMaps, GoEvenlyAndOnlyDarker) {
   }
 }
 
-TEST(ColourMaps, AreReadByColourBlindPeople) {
+TEST(ColourMaps, are_read_by_colour_blind_people) {
   for (const ColourMap map : {ColourMap::crimson, ColourMap::blues})
     for (const bool red : {true, false}) {
       const auto& colours = colours_of(map);
@@ -49,13 +49,13 @@ TEST(ColourMaps, AreReadByColourBlindPeople) {
     }
 }
 
-TEST(ColourMaps, TheirEndIsNotTheColourThatMeansFail) {
+TEST(ColourMaps, their_end_is_not_the_colour_that_means_fail) {
   EXPECT_GT((oklab_of(colours_of(ColourMap::crimson).back()) - oklab_of(kFailColour)).norm(), 0.12F);
   for (const ColourMap map : {ColourMap::crimson, ColourMap::blues})
     for (const Colour& colour : colours_of(map)) EXPECT_GT((oklab_of(colour) - oklab_of(kWarnColour)).norm(), 0.2F);
 }
 
-TEST(FieldLookTest, ValuesBelowTheLimitKeepTheirOwnColour) {
+TEST(FieldLookTest, values_below_the_limit_keep_their_own_colour) {
   FieldLook look{true, 1, 5, ColourMap::crimson, 0};
   EXPECT_FALSE(look.colour_of(0.999));
   EXPECT_FALSE(look.colour_of(1));
@@ -96,7 +96,7 @@ class FieldColoursTest : public RenderTest {
   std::vector<float> across_;
 };
 
-TEST_F(FieldColoursTest, ValuesOfNodesBecomeTheMapsColours) {
+TEST_F(FieldColoursTest, values_of_nodes_become_the_maps_colours) {
   Picture picture = plate();
   const Image plain = draw(picture, kColoursWidth, kColoursHeight);
   ASSERT_TRUE(renderer_->set_field(Pane::model, across_, true));
@@ -111,7 +111,7 @@ TEST_F(FieldColoursTest, ValuesOfNodesBecomeTheMapsColours) {
   }
 }
 
-TEST_F(FieldColoursTest, ValuesOfShellsStayWithinTheirShellAndWhatHasNoneKeepsItsColour) {
+TEST_F(FieldColoursTest, values_of_shells_stay_within_their_shell_and_what_has_none_keeps_its_colour) {
   Picture picture = plate();
   const Image plain = draw(picture, kColoursWidth, kColoursHeight);
   std::vector<float> values(40 * 30, 0.0F);
@@ -127,7 +127,7 @@ TEST_F(FieldColoursTest, ValuesOfShellsStayWithinTheirShellAndWhatHasNoneKeepsIt
     EXPECT_EQ(at_place(coloured, picture, column * side, y), at_place(plain, picture, column * side, y)) << column;
 }
 
-TEST_F(FieldColoursTest, ValuesOfAnotherModelAreNotShown) {
+TEST_F(FieldColoursTest, values_of_another_model_are_not_shown) {
   Picture picture = plate();
   const Image plain = draw(picture, kColoursWidth, kColoursHeight);
   across_.push_back(9);
@@ -137,7 +137,7 @@ TEST_F(FieldColoursTest, ValuesOfAnotherModelAreNotShown) {
   EXPECT_EQ(draw(picture, kColoursWidth, kColoursHeight).rgb, plain.rgb);
 }
 
-TEST_F(FieldColoursTest, NewValuesUploadOnlyTheRowsThatDiffer) {
+TEST_F(FieldColoursTest, new_values_upload_only_the_rows_that_differ) {
   plate();
   std::vector<float> values(5 * mesh::kChunkSize, 1.0F);
   ASSERT_TRUE(renderer_->set_field(Pane::model, values, true));
@@ -147,7 +147,7 @@ TEST_F(FieldColoursTest, NewValuesUploadOnlyTheRowsThatDiffer) {
   EXPECT_EQ(renderer_->figures().bytes_uploaded - before, mesh::kChunkSize * 8);
 }
 
-TEST_F(FieldColoursTest, TwoViewsShareThePictureAndKeepToTheirHalves) {
+TEST_F(FieldColoursTest, two_views_share_the_picture_and_keep_to_their_halves) {
   plate(1);
   Picture picture = plate();
   picture.colour = ColourMode::field;
@@ -181,7 +181,7 @@ TEST_F(FieldColoursTest, TwoViewsShareThePictureAndKeepToTheirHalves) {
 }
 
 /// The woven picture is made of the two eyes' images: each of them must hold both halves, and differ by the parallax of the model alone.
-TEST_F(FieldColoursTest, BothEyesSeeBothViews) {
+TEST_F(FieldColoursTest, both_eyes_see_both_views) {
   plate(1);
   Picture picture = plate();
   picture.view.rotation = *stereo::named_rotation("iso");

@@ -67,7 +67,7 @@ class LeftPanels : public GuiTest {
   Panels panels_;
 };
 
-TEST_F(LeftPanels, BothExpressionsOfADistanceAreTakenHoweverTheirFieldsAreLeft) {
+TEST_F(LeftPanels, both_expressions_of_a_distance_are_taken_however_their_fields_are_left) {
   data_.compare.emplace();
   data_.compare->panel_open = true;
   data_.compare->wish.field = "distance";
@@ -87,7 +87,7 @@ TEST_F(LeftPanels, BothExpressionsOfADistanceAreTakenHoweverTheirFieldsAreLeft) 
   EXPECT_THAT(data_.compare->wish.to, testing::HasSubstr("part:3"));
 }
 
-TEST_F(LeftPanels, AnotherDeckIsNamedByItsPath) {
+TEST_F(LeftPanels, another_deck_is_named_by_its_path) {
   data_.compare.emplace();
   data_.compare->panel_open = true;
   data_.compare->wish.field = "displacement";
@@ -101,7 +101,7 @@ TEST_F(LeftPanels, AnotherDeckIsNamedByItsPath) {
   EXPECT_EQ(data_.compare->wish.against, "/decks/before.k");
 }
 
-TEST_F(LeftPanels, NoneRunsOffASmallPictureInTheLargeTypeOfStereo) {
+TEST_F(LeftPanels, none_runs_off_a_small_picture_in_the_large_type_of_stereo) {
   picture_ = {1280, 720};
   ASSERT_TRUE(gui_->set_type(kStereoType));
   data_.profile = "prism-mask";

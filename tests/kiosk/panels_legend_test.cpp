@@ -22,7 +22,7 @@ LegendFacts facts_of(double clear, double full) {
   return facts;
 }
 
-TEST(Legend, NamesTheValueThatIsFarthestTowardTheMapsEnd) {
+TEST(Legend, names_the_value_that_is_farthest_toward_the_maps_end) {
   EXPECT_EQ(worst_words(facts_of(1, 5)), "most 12.35 at shell:12");
   EXPECT_EQ(worst_words(facts_of(0.5, 0)), "least -0.00002 at shell:7") << "small values are the coloured ones";
   LegendFacts even = facts_of(1, 5);
@@ -30,7 +30,7 @@ TEST(Legend, NamesTheValueThatIsFarthestTowardTheMapsEnd) {
   EXPECT_EQ(worst_words(even), "0 everywhere");
 }
 
-TEST(Legend, SaysWhatTheColoursDoNotShow) {
+TEST(Legend, says_what_the_colours_do_not_show) {
   LegendFacts facts = facts_of(1, 5);
   EXPECT_THAT(legend_notes(facts), IsEmpty());
   facts.shells_without = 1;
@@ -89,7 +89,7 @@ class LegendByHand : public GuiTest {
   double row_ = 0;
 };
 
-TEST_F(LegendByHand, EachLimitIsDragged) {
+TEST_F(LegendByHand, each_limit_is_dragged) {
   drag_in_column(left(), -60);
   EXPECT_LT(facts_.look.clear, 0.9);
   EXPECT_EQ(facts_.look.full, 5);
@@ -97,7 +97,7 @@ TEST_F(LegendByHand, EachLimitIsDragged) {
   EXPECT_GT(facts_.look.full, 5.1);
 }
 
-TEST_F(LegendByHand, ALimitIsTypedAfterADoubleClickAndReadAgainAsItWasTyped) {
+TEST_F(LegendByHand, a_limit_is_typed_after_a_double_click_and_read_again_as_it_was_typed) {
   drag_in_column(left(), -30);  // finds the row
   for (const char* typed : {"0.00005", "0.25"}) {
     move(left(), row_);

@@ -30,7 +30,7 @@ Changed changed(const Image& image, const Image& ground) {
   return box;
 }
 
-TEST_F(Overlay, ThePointerIsWhereItPointsOnEveryDisplay) {
+TEST_F(Overlay, the_pointer_is_where_it_points_on_every_display) {
   constexpr int kWidth = 320, kHeight = 200;
   auto gui = panels::Gui::create();
   ASSERT_TRUE(gui) << gui.error().text();

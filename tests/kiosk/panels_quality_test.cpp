@@ -62,13 +62,13 @@ class QualityPanel : public GuiTest {
   Panels panels_;
 };
 
-TEST_F(QualityPanel, ARowChoosesItsMetricAndTheChosenOneLetsGo) {
+TEST_F(QualityPanel, a_row_chooses_its_metric_and_the_chosen_one_lets_go) {
   std::set<std::string> chosen;
   for (const ChooseMetric& choice : clicked_down<ChooseMetric>(60)) chosen.insert(choice.metric);
   EXPECT_EQ(chosen, (std::set<std::string>{"", "aspect"})) << "warpage is chosen already, of skew nothing is wrong";
 }
 
-TEST_F(QualityPanel, ABarSelectsItsShells) {
+TEST_F(QualityPanel, a_bar_selects_its_shells) {
   std::set<double> from;
   bool last_open = false;
   for (double x = 20; x < 300; x += 12)
@@ -81,7 +81,7 @@ TEST_F(QualityPanel, ABarSelectsItsShells) {
   EXPECT_TRUE(last_open);
 }
 
-TEST_F(QualityPanel, ABarClickedWithShiftAddsItsShells) {
+TEST_F(QualityPanel, a_bar_clicked_with_shift_adds_its_shells) {
   const std::vector<BarClicked> clicked = clicked_down<BarClicked>(60, true);
   ASSERT_FALSE(clicked.empty());
   for (const BarClicked& each : clicked) EXPECT_EQ(each.mode, SelectMode::add);
@@ -90,7 +90,7 @@ TEST_F(QualityPanel, ABarClickedWithShiftAddsItsShells) {
   for (const BarClicked& each : clicked_down<BarClicked>(60)) EXPECT_EQ(each.mode, SelectMode::set) << "Shift was let go";
 }
 
-TEST_F(QualityPanel, AnErrorIsGoneToAndNamed) {
+TEST_F(QualityPanel, an_error_is_gone_to_and_named) {
   std::set<std::size_t> errors;
   for (const ErrorClicked& clicked : clicked_down<ErrorClicked>(60)) errors.insert(clicked.error);
   EXPECT_EQ(errors, (std::set<std::size_t>{0, 1}));
@@ -98,7 +98,7 @@ TEST_F(QualityPanel, AnErrorIsGoneToAndNamed) {
   EXPECT_EQ(error_words({12, "no_area", "", std::nullopt, true, {}}), "shell 12: no area");
 }
 
-TEST_F(QualityPanel, PanelsKeepThePointerFromThePictureAndWordsOnItDoNot) {
+TEST_F(QualityPanel, panels_keep_the_pointer_from_the_picture_and_words_on_it_do_not) {
   data_.guidance = "Axis: click the first node, Esc gives up";
   lay_out();
   lay_out();

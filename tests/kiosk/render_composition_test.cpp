@@ -23,7 +23,7 @@ double column_of(const ComposedImage& image, double texel, double row) {
   return (x - image.from_picture(0, 2) - image.from_picture(0, 1) * row) / image.from_picture(0, 0);
 }
 
-TEST(Composition, AtTheDesignPlaceTexelsStandOnTheirEyesColumns) {
+TEST(Composition, at_the_design_place_texels_stand_on_their_eyes_columns) {
   for (const int width : {1280, 641, 1366, 63}) {
     Picture picture = picture_of("prism-mask");
     picture.profile.optics.refractive_index = 1;
@@ -38,7 +38,7 @@ TEST(Composition, AtTheDesignPlaceTexelsStandOnTheirEyesColumns) {
   }
 }
 
-TEST(Composition, TexelsStandWhereTheirWindowsAreSeen) {
+TEST(Composition, texels_stand_where_their_windows_are_seen) {
   for (const char* name : {"prism-mask", "lenticular"})
     for (const Vec3& head : {Vec3(0, 0, 560), Vec3(150, -60, 500), Vec3(-220, 40, 900)}) {
       Picture picture = picture_of(name);
@@ -57,7 +57,7 @@ TEST(Composition, TexelsStandWhereTheirWindowsAreSeen) {
     }
 }
 
-TEST(Composition, ImagesKeepTheirSizeWhileAHeadMoves) {
+TEST(Composition, images_keep_their_size_while_a_head_moves) {
   Picture picture = picture_of("prism-mask");
   const int width = compose(picture, 1920, 1080).images[0].width;
   EXPECT_LT(width, 0.53 * 1920);
@@ -68,7 +68,7 @@ TEST(Composition, ImagesKeepTheirSizeWhileAHeadMoves) {
     }
 }
 
-TEST(Composition, PicturesAreDrawnFromWhereThePointerAims) {
+TEST(Composition, pictures_are_drawn_from_where_the_pointer_aims) {
   for (const char* name : {"prism-mask", "side-by-side", "anaglyph", "mono", "mono-right"})
     for (const double share : {0.0, 0.4, 1.0}) {
       Picture picture = picture_of(name);
@@ -90,7 +90,7 @@ TEST(Composition, PicturesAreDrawnFromWhereThePointerAims) {
     }
 }
 
-TEST(Composition, WithoutDepthThereIsOnePictureForBothEyes) {
+TEST(Composition, without_depth_there_is_one_picture_for_both_eyes) {
   for (const auto& profile : stereo::built_in_profiles()) {
     Picture picture = picture_of(profile.name);
     picture.depth_share = 0;
@@ -103,7 +103,7 @@ TEST(Composition, WithoutDepthThereIsOnePictureForBothEyes) {
   }
 }
 
-TEST(Composition, FixedColumnsFollowAMaskThatWentBackByHalfPeriods) {
+TEST(Composition, fixed_columns_follow_a_mask_that_went_back_by_half_periods) {
   Picture picture = picture_of("prism-mask-columns");
   const auto left_first = [&] {
     const auto numbers = numbers_at(compose(picture, 64, 64).phases, 64, 0.5, 0.5);
@@ -117,7 +117,7 @@ TEST(Composition, FixedColumnsFollowAMaskThatWentBackByHalfPeriods) {
   }
 }
 
-TEST(Composition, NonsenseDoesNoHarm) {
+TEST(Composition, nonsense_does_no_harm) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), huge = 1e300;
   for (const double bad : {nan, huge, -huge, 0.0})
     for (const auto& profile : stereo::built_in_profiles()) {

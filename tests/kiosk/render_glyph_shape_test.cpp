@@ -37,7 +37,7 @@ Corners turned(const Corners& corners, std::size_t by) {
   return made;
 }
 
-TEST(GlyphShape, TheDiagonalThatBendsMoreIsThick) {
+TEST(GlyphShape, the_diagonal_that_bends_more_is_thick) {
   // A kite 20 long and 8 wide, folded along its length: one corner 3 up at 4 from the fold, a bend of 36.9 degrees. About the short
   // diagonal, whose middle is 1.5 up, it bends by twice atan(1.5 cos 20.6 / 10), 16.0 degrees.
   const Corners kite{{0, 0, 0}, {10, -4, 0}, {20, 0, 0}, {10, 4, 3}};
@@ -50,7 +50,7 @@ TEST(GlyphShape, TheDiagonalThatBendsMoreIsThick) {
   EXPECT_EQ(glyph_place(GlyphShape::warped, turned(raised_tip, 3)), 1U);
 }
 
-TEST(GlyphShape, TheShortestAndTheLongestEdge) {
+TEST(GlyphShape, the_shortest_and_the_longest_edge) {
   const Corners quad{{0, 0, 0}, {10, 0, 0}, {10, 4, 0}, {0, 9, 0}};  // edges 10, 4, 11.2, 9
   EXPECT_EQ(glyph_place(GlyphShape::short_edge, quad), 1U);
   EXPECT_EQ(glyph_place(GlyphShape::long_edge, quad), 2U);
@@ -58,33 +58,33 @@ TEST(GlyphShape, TheShortestAndTheLongestEdge) {
   EXPECT_EQ(glyph_place(GlyphShape::short_edge, turned(quad, 1)), 0U);
 }
 
-TEST(GlyphShape, ATrianglesSmallestHeightFallsFromTheCornerAcrossItsLongestEdge) {
+TEST(GlyphShape, a_triangles_smallest_height_falls_from_the_corner_across_its_longest_edge) {
   const Corners triangle{{0, 0, 0}, {10, 0, 0}, {5, 1, 0}};  // longest: edge 0; across: corner 2
   EXPECT_EQ(glyph_place(GlyphShape::short_edge, triangle), 2U);
   EXPECT_EQ(glyph_place(GlyphShape::short_edge, turned(triangle, 1)), 1U);
   EXPECT_EQ(glyph_place(GlyphShape::long_edge, triangle), 0U);
 }
 
-TEST(GlyphShape, TheSharpestAndTheBluntestCorner) {
+TEST(GlyphShape, the_sharpest_and_the_bluntest_corner) {
   const Corners kite{{0, 0, 0}, {20, -2, 0}, {24, 0, 0}, {20, 2, 0}};  // sharp at 0, blunt at 1, 2 or 3
   EXPECT_EQ(glyph_place(GlyphShape::small_angle, kite), 0U);
   EXPECT_EQ(glyph_place(GlyphShape::large_angle, {{{0, 0, 0}, {10, 0, 0}, {5, 1, 0}}}), 2U);
   EXPECT_EQ(glyph_place(GlyphShape::small_angle, {{{0, 0, 0}, {10, 0, 0}, {9, 2, 0}}}), 0U);
 }
 
-TEST(GlyphShape, ACornerThatIsTurnedInIsTheBluntest) {
+TEST(GlyphShape, a_corner_that_is_turned_in_is_the_bluntest) {
   const Corners dart{{0, 0, 0}, {10, 0, 0}, {2, 2, 0}, {0, 10, 0}};
   EXPECT_EQ(glyph_place(GlyphShape::large_angle, dart), 2U) << "more than 180 degrees";
   for (const std::size_t by : {1U, 2U, 3U}) EXPECT_EQ(glyph_place(GlyphShape::large_angle, turned(dart, by)), (6 - by) % 4);
 }
 
-TEST(GlyphShape, NumbersThatAreNoneChooseNothing) {
+TEST(GlyphShape, numbers_that_are_none_choose_nothing) {
   Corners quad = kSquare;
   quad[2].x() = std::numeric_limits<double>::quiet_NaN();
   for (int shape = 0; shape < kGlyphShapeCount; ++shape) EXPECT_EQ(glyph_place(static_cast<GlyphShape>(shape), quad), 0U);
 }
 
-TEST(GlyphShape, EachMetricHasItsShapeAndTheVagueOnesGiveWay) {
+TEST(GlyphShape, each_metric_has_its_shape_and_the_vague_ones_give_way) {
   EXPECT_THAT(shapes_of({}), IsEmpty());
   EXPECT_THAT(shapes_of(failing({Metric::warpage, Metric::aspect})), ElementsAre(GlyphShape::warped, GlyphShape::stretched));
   EXPECT_THAT(shapes_of(failing({Metric::min_length})), ElementsAre(GlyphShape::short_edge));
@@ -116,7 +116,7 @@ std::shared_ptr<test::TestSource> fan(int triangles) {
   return source;
 }
 
-TEST(Clusters, TrianglesThatCrowdAtANodeOfAQuadAreMarkedThere) {
+TEST(Clusters, triangles_that_crowd_at_a_node_of_a_quad_are_marked_there) {
   struct Case {
     int triangles;
     double most;
@@ -137,7 +137,7 @@ TEST(Clusters, TrianglesThatCrowdAtANodeOfAQuadAreMarkedThere) {
   }
 }
 
-TEST(Clusters, AMeshOfTrianglesHasNone) {
+TEST(Clusters, a_mesh_of_triangles_has_none) {
   auto source = fan(6);
   source->shell_nodes.erase(source->shell_nodes.begin(), source->shell_nodes.begin() + 4);
   source->shell_quality.resize(source->shell_nodes.size());
@@ -147,7 +147,7 @@ TEST(Clusters, AMeshOfTrianglesHasNone) {
   EXPECT_THAT(list.choose(table, 100, {}).glyphs, IsEmpty());
 }
 
-TEST(Damage, OnlyWhatEditsMadeWorseGetsGlyphsOnDemand) {
+TEST(Damage, only_what_edits_made_worse_gets_glyphs_on_demand) {
   auto source = std::make_shared<test::TestSource>(test::two_plates());
   source->shell_damage.resize(source->shell_nodes.size());
   source->shell_quality[3] = failing({Metric::warpage});
@@ -164,7 +164,7 @@ TEST(Damage, OnlyWhatEditsMadeWorseGetsGlyphsOnDemand) {
   EXPECT_EQ(chosen.glyphs[0].kind & 15U, static_cast<std::uint32_t>(GlyphShape::stretched)) << "the warpage was there before";
 }
 
-TEST(PartStates, APartIsTheRedderTheMoreOfItFails) {
+TEST(PartStates, a_part_is_the_redder_the_more_of_it_fails) {
   auto source = std::make_shared<test::TestSource>(test::two_plates());
   for (std::size_t s = 0; s < 3; ++s) source->shell_quality[s] = failing({Metric::aspect});
   source->shell_quality[150].warn = 1;

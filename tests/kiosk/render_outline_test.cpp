@@ -42,12 +42,12 @@ Outline outline_of(const TestSource& source) {
   return outline;
 }
 
-TEST(Outline, AFlatSheetHasNoCrease) {
+TEST(Outline, a_flat_sheet_has_no_crease) {
   EXPECT_THAT(outline_of(fan({0, 180})).creases(), IsEmpty());
   EXPECT_THAT(outline_of(fan({0, 180})).borders(), SizeIs(6));
 }
 
-TEST(Outline, ABendIsACreaseWhicheverWayTheNormalsPoint) {
+TEST(Outline, a_bend_is_a_crease_whichever_way_the_normals_point) {
   for (const bool flipped : {false, true}) {
     EXPECT_THAT(outline_of(fan({0, 149}, flipped)).creases(), ElementsAre(NodePair{0, 1})) << flipped;
     EXPECT_THAT(outline_of(fan({0, 151}, flipped)).creases(), IsEmpty()) << flipped;
@@ -55,13 +55,13 @@ TEST(Outline, ABendIsACreaseWhicheverWayTheNormalsPoint) {
   }
 }
 
-TEST(Outline, ThreeSheetsMeetInABorder) {
+TEST(Outline, three_sheets_meet_in_a_border) {
   const Outline outline = outline_of(fan({0, 120, 240}));
   EXPECT_THAT(outline.borders(), testing::Contains(NodePair{0, 1}));
   EXPECT_THAT(outline.creases(), IsEmpty());
 }
 
-TEST(Outline, WhatIsHiddenDoesNotCount) {
+TEST(Outline, what_is_hidden_does_not_count) {
   TestSource source = fan({0, 90});
   EXPECT_THAT(outline_of(source).borders(), testing::Not(testing::Contains(NodePair{0, 1})));
   source.hidden[1] = true;
@@ -69,7 +69,7 @@ TEST(Outline, WhatIsHiddenDoesNotCount) {
   EXPECT_THAT(outline_of(source).borders(), testing::Contains(NodePair{0, 1})) << "the neighbour is gone, so the sheet ends here";
 }
 
-TEST(Outline, TrianglesAndDegenerateShellsHaveTheirOwnSides) {
+TEST(Outline, triangles_and_degenerate_shells_have_their_own_sides) {
   TestSource source;
   for (const mesh::Vec3& at : {mesh::Vec3(0, 0, 0), mesh::Vec3(1, 0, 0), mesh::Vec3(0, 1, 0)}) source.add_node(at);
   source.add_shell(0, 1, 2, 2, 0);
@@ -79,7 +79,7 @@ TEST(Outline, TrianglesAndDegenerateShellsHaveTheirOwnSides) {
   EXPECT_THAT(outline_of(source).borders(), SizeIs(3));
 }
 
-TEST(Outline, FollowsAMoveAsIfStartedAfresh) {
+TEST(Outline, follows_a_move_as_if_started_afresh) {
   auto source = std::make_shared<TestSource>();
   test::add_grid(*source, 120, 120, 0, [](double u, double v) { return mesh::Vec3(u, v, 0); });
   Outline outline;
@@ -101,7 +101,7 @@ mesh::quality::ShellState state(std::initializer_list<mesh::quality::Metric> war
   return made;
 }
 
-TEST(Glyphs, FailuresFindRoomFirstAndTheRestIsCounted) {
+TEST(Glyphs, failures_find_room_first_and_the_rest_is_counted) {
   auto source = std::make_shared<TestSource>();
   test::add_grid(*source, 100, 100, 0, [](double u, double v) { return mesh::Vec3(u, v, 0); });
   for (std::size_t s = 0; s < 1000; ++s) source->shell_quality[s] = state({mesh::quality::Metric::aspect}, {});
@@ -126,7 +126,7 @@ TEST(Glyphs, FailuresFindRoomFirstAndTheRestIsCounted) {
   EXPECT_EQ(list.choose(table, 5000, {5000, 5001, 3}).glyphs.size(), 1027U);
 }
 
-TEST(PreviewPatch, TakesOnlyFramesOfItsDrag) {
+TEST(PreviewPatch, takes_only_frames_of_its_drag) {
   auto source = std::make_shared<TestSource>();
   test::add_grid(*source, 4, 4, 0, [](double u, double v) { return mesh::Vec3(u, v, 0); });
   const std::vector<mesh::NodeIndex> nodes{mesh::NodeIndex(12), mesh::NodeIndex(999)};

@@ -29,7 +29,7 @@ stereo::View view_from(const std::string& name, const stereo::Box& box) {
   return stereo::fit(view, box, {448, 280});
 }
 
-TEST(ShadowPlanes, StandOnTheSidesTurnedAwayFromTheViewer) {
+TEST(ShadowPlanes, stand_on_the_sides_turned_away_from_the_viewer) {
   const stereo::Box box = box_of({-50, -30, -20}, {50, 30, 20});
   const auto planes = shadow_planes(box, view_from("iso", box));  // looks from the right (+x), the front (-y) and above (+z)
   ASSERT_EQ(planes.size(), 3U);
@@ -46,7 +46,7 @@ TEST(ShadowPlanes, StandOnTheSidesTurnedAwayFromTheViewer) {
   }
 }
 
-TEST(ShadowPlanes, OneSeenFromItsEdgeIsLeftOut) {
+TEST(ShadowPlanes, one_seen_from_its_edge_is_left_out) {
   const stereo::Box box = box_of({-50, -30, -20}, {50, 30, 20});
   const auto planes = shadow_planes(box, view_from("top", box));
   ASSERT_EQ(planes.size(), 1U);
@@ -54,7 +54,7 @@ TEST(ShadowPlanes, OneSeenFromItsEdgeIsLeftOut) {
   EXPECT_TRUE(shadow_planes(stereo::Box(), view_from("iso", box)).empty());
 }
 
-TEST(ShadowPlanes, ThePointerFindsThePlaceThatItSees) {
+TEST(ShadowPlanes, the_pointer_finds_the_place_that_it_sees) {
   const stereo::Box box = box_of({-50, -30, -20}, {50, 30, 20});
   stereo::Aim aim;
   aim.view = view_from("iso", box);
@@ -98,7 +98,7 @@ class Shadows : public RenderTest {
   Picture picture_;
 };
 
-TEST_F(Shadows, FallOnThePlaneBehindWhereThingsAreDragged) {
+TEST_F(Shadows, fall_on_the_plane_behind_where_things_are_dragged) {
   const Image none = draw(picture_, kShadowsWidth, kShadowsHeight);
   picture_.shadows = false;
   EXPECT_EQ(draw(picture_, kShadowsWidth, kShadowsHeight).rgb, none.rgb) << "nothing is selected or dragged";
@@ -127,7 +127,7 @@ TEST_F(Shadows, FallOnThePlaneBehindWhereThingsAreDragged) {
   EXPECT_LT(light_at_back(moved, x0 - 25, 30), light_at_back(none, x0 - 25, 30) - 20);
 }
 
-TEST_F(Shadows, FallOfTheSelectionWhileNothingIsDragged) {
+TEST_F(Shadows, fall_of_the_selection_while_nothing_is_dragged) {
   const Image none = draw(picture_, kShadowsWidth, kShadowsHeight);
   for (std::size_t n = 121; n < 125; ++n) source_.node_marks[n] = mesh::document::kSelected;
   source_.key = 2;

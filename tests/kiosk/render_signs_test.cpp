@@ -70,7 +70,7 @@ class Signs : public RenderTest {
   }
 };
 
-TEST_F(Signs, ASelectedNodeKeepsItsSizeWhateverTheZoom) {
+TEST_F(Signs, a_selected_node_keeps_its_size_whatever_the_zoom) {
   show(two_plates());
   Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
   picture.element_edges = false;
@@ -83,7 +83,7 @@ TEST_F(Signs, ASelectedNodeKeepsItsSizeWhateverTheZoom) {
   EXPECT_NEAR((large.high - large.low).y(), (small.high - small.low).y(), 1);
 }
 
-TEST_F(Signs, BothEyesSeeASelectedNodeWhereTheyWouldSeeThePlaceItself) {
+TEST_F(Signs, both_eyes_see_a_selected_node_where_they_would_see_the_place_itself) {
   show(two_plates());
   Picture picture = fitted("side-by-side", "top", kSignsWidth, kSignsHeight);
   picture.element_edges = false;
@@ -109,7 +109,7 @@ TEST_F(Signs, BothEyesSeeASelectedNodeWhereTheyWouldSeeThePlaceItself) {
   EXPECT_GT(parallax[1], 3) << "behind it";
 }
 
-TEST_F(Signs, SelectingCostsTheChunksThatChange) {
+TEST_F(Signs, selecting_costs_the_chunks_that_change) {
   TestSource source;
   test::add_grid(source, 200, 200, 0, [](double u, double v) { return Vec3(u, v, 0); });
   show(source);
@@ -126,7 +126,7 @@ TEST_F(Signs, SelectingCostsTheChunksThatChange) {
   EXPECT_EQ(bytes() - before, sizeof(std::uint32_t)) << "the first chunk's row stays as it is";
 }
 
-TEST_F(Signs, CrowdedNodesAreAllThere) {
+TEST_F(Signs, crowded_nodes_are_all_there) {
   TestSource source;
   test::add_grid(source, 400, 250, 0, [](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, 0); });
   show(source);
@@ -145,7 +145,7 @@ TEST_F(Signs, CrowdedNodesAreAllThere) {
   }
 }
 
-TEST_F(Signs, NodesOfHiddenPartsAreNotMarkedAndComeBack) {
+TEST_F(Signs, nodes_of_hidden_parts_are_not_marked_and_come_back) {
   show(two_plates());
   Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
   TestSource source = two_plates();
@@ -174,7 +174,7 @@ TEST_F(Signs, NodesOfHiddenPartsAreNotMarkedAndComeBack) {
   EXPECT_EQ(draw(picture, kSignsWidth, kSignsHeight).rgb, marked.rgb);
 }
 
-TEST_F(Signs, ThePartInUseIsGreenAndTheOthersGo) {
+TEST_F(Signs, the_part_in_use_is_green_and_the_others_go) {
   show(two_plates());
   Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
   const Vec3 foot(0, 0, 20);
@@ -205,7 +205,7 @@ TEST_F(Signs, ThePartInUseIsGreenAndTheOthersGo) {
   for (const auto& [x, y] : {std::pair{-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) EXPECT_TRUE(green(at(image, on_disk(x, y)))) << x << y;
 }
 
-TEST_F(Signs, TheHandleKeepsItsSizeAndShowsThroughTheModel) {
+TEST_F(Signs, the_handle_keeps_its_size_and_shows_through_the_model) {
   show(two_plates());
   Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
   const Handle shown{{0, 0, 20}, Vec3::UnitZ(), Handle::Use::disk};
@@ -231,7 +231,7 @@ TEST_F(Signs, TheHandleKeepsItsSizeAndShowsThroughTheModel) {
   EXPECT_NEAR(static_cast<double>(handle(picture, shown).pixels), small, 0.06 * small);
 }
 
-TEST_F(Signs, AnArcRunsFromWhereTheGrabWasToWhereItIs) {
+TEST_F(Signs, an_arc_runs_from_where_the_grab_was_to_where_it_is) {
   show(two_plates());
   Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
   Handle turned{{0, 25, 20}, Vec3::UnitZ(), Handle::Use::arc};
@@ -254,7 +254,7 @@ TEST_F(Signs, AnArcRunsFromWhereTheGrabWasToWhereItIs) {
   for (const double degrees : {90.0, 130.0}) EXPECT_FALSE(green(at(idle, place(degrees))));
 }
 
-TEST_F(Signs, TheAxisGoesThroughTheModelAndStandsOutOfIt) {
+TEST_F(Signs, the_axis_goes_through_the_model_and_stands_out_of_it) {
   show(two_plates());
   Picture picture = fitted("mono", "front", kSignsWidth, kSignsHeight);
   Handle turned{{30, 0, 20}, Vec3::UnitZ(), Handle::Use::idle};
@@ -271,7 +271,7 @@ HandleSpace space_of(const stereo::View& view) {
   return space;
 }
 
-TEST(HandleMesh, FacesLookOutward) {
+TEST(HandleMesh, faces_look_outward) {
   const stereo::View view;
   Handle turned{{30, 5, 10}, Vec3(1, 2, 3), Handle::Use::idle};
   for (const bool turn : {false, true}) {
@@ -297,7 +297,7 @@ TEST(HandleMesh, FacesLookOutward) {
   }
 }
 
-TEST(HandleMesh, WhatIsNowhereIsNotDrawn) {
+TEST(HandleMesh, what_is_nowhere_is_not_drawn) {
   const stereo::View view;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(handle_pieces({Vec3::Constant(nan), Vec3::UnitZ()}, space_of(view)).empty());
@@ -312,7 +312,7 @@ TEST(HandleMesh, WhatIsNowhereIsNotDrawn) {
   EXPECT_EQ(handle_pieces(turned, space_of(view)).size(), 1U) << "a grab on the axis has no arc";
 }
 
-TEST_F(Signs, ALassoIsALineInThePlaneOfTheScreenClosedByDashes) {
+TEST_F(Signs, a_lasso_is_a_line_in_the_plane_of_the_screen_closed_by_dashes) {
   show(two_plates());
   Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
   const Image without = draw(picture, kSignsWidth, kSignsHeight);
@@ -386,7 +386,7 @@ std::vector<std::size_t> bytes_of_frames(Renderer& renderer, const std::function
   return bytes;
 }
 
-TEST_F(Signs, AFrameOfADragUploadsWhatMovesWhateverTheModel) {
+TEST_F(Signs, a_frame_of_a_drag_uploads_what_moves_whatever_the_model) {
   Picture picture;
   picture.profile = *stereo::find_profile("mono");
   const auto draw_it = [&] { draw(picture, 64, 40); };

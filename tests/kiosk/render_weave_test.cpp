@@ -60,7 +60,7 @@ double colour_offset(const stereo::Profile& profile, int channel) {
   return (profile.subpixels == stereo::Subpixels::rgb ? channel - 1 : 1 - channel) / 3.0;
 }
 
-TEST_F(Weave, EachSubpixelShowsTheEyeAndTheWindowThatSeesIt) {
+TEST_F(Weave, each_subpixel_shows_the_eye_and_the_window_that_sees_it) {
   struct Case {
     const char* profile;
     Vec3 head;
@@ -128,7 +128,7 @@ TEST_F(Weave, EachSubpixelShowsTheEyeAndTheWindowThatSeesIt) {
     }
 }
 
-TEST_F(Weave, EveryColumnOrRowComesFromItsOwnEye) {
+TEST_F(Weave, every_column_or_row_comes_from_its_own_eye) {
   for (const char* name : {"prism-mask", "prism-mask-columns", "prism-mask-stencil", "row-interlaced"})
     for (const int width : {64, 63})
       for (const bool swap : {false, true}) {
@@ -144,7 +144,7 @@ TEST_F(Weave, EveryColumnOrRowComesFromItsOwnEye) {
       }
 }
 
-TEST_F(Weave, PartsOfAPanelContinueItsColumnsAndRows) {
+TEST_F(Weave, parts_of_a_panel_continue_its_columns_and_rows) {
   for (const char* name : {"prism-mask", "prism-mask-columns", "prism-mask-stencil", "row-interlaced"}) {
     const Image whole = draw(flooded(name), 160, 90);
     for (const auto& [x0, y0] : {std::pair(0, 0), std::pair(7, 3), std::pair(30, 20)}) {
@@ -157,7 +157,7 @@ TEST_F(Weave, PartsOfAPanelContinueItsColumnsAndRows) {
   }
 }
 
-TEST_F(Weave, OtherDisplaysGetWhatTheyNeed) {
+TEST_F(Weave, other_displays_get_what_they_need) {
   EXPECT_EQ(draw(flooded("mono-left"), 40, 10).at(3, 3)[0], 255);
   EXPECT_EQ(draw(flooded("mono-right"), 40, 10).at(3, 3)[0], 0);
   EXPECT_NEAR(draw(flooded("mono"), 40, 10).at(3, 3)[0], 128, 1);
@@ -190,7 +190,7 @@ test::TestSource half_plane(bool rows) {
   return source;
 }
 
-TEST_F(Weave, EveryColumnShowsTheSceneWhereItStands) {
+TEST_F(Weave, every_column_shows_the_scene_where_it_stands) {
   show(half_plane(false));
   struct Case {
     const char* profile;
@@ -218,7 +218,7 @@ TEST_F(Weave, EveryColumnShowsTheSceneWhereItStands) {
       }
 }
 
-TEST_F(Weave, EveryRowShowsTheSceneWhereItStands) {
+TEST_F(Weave, every_row_shows_the_scene_where_it_stands) {
   show(half_plane(true));
   for (const int height : {256, 255}) {
     int wrong = 0;
@@ -298,7 +298,7 @@ test::TestSource seam(double angle, std::uint64_t key) {
   return source;
 }
 
-TEST_F(Weave, AThinLineIsOnePieceForEachEyeWhereverItIs) {
+TEST_F(Weave, a_thin_line_is_one_piece_for_each_eye_wherever_it_is) {
   constexpr int kWidth = 200, kHeight = 120;
   std::uint64_t key = 10;
   for (const char* name : {"prism-mask", "lenticular", "prism-mask-stencil"})
@@ -324,7 +324,7 @@ TEST_F(Weave, AThinLineIsOnePieceForEachEyeWhereverItIs) {
     }
 }
 
-TEST_F(Weave, AnEyesColumnsLookLikeItsOwnPicture) {
+TEST_F(Weave, an_eyes_columns_look_like_its_own_picture) {
   constexpr int kWidth = 640, kHeight = 360;
   show(test::make_crash_box());
   const Image woven = draw(fitted("prism-mask", "iso", kWidth, kHeight), kWidth, kHeight);
@@ -343,7 +343,7 @@ TEST_F(Weave, AnEyesColumnsLookLikeItsOwnPicture) {
   }
 }
 
-TEST_F(Weave, TheRubberBandHasNoParallax) {
+TEST_F(Weave, the_rubber_band_has_no_parallax) {
   for (const auto& [name, head] : {std::pair("prism-mask", Vec3(0, 0, 650)), std::pair("prism-mask", Vec3(80, -30, 580)),
                                    std::pair("lenticular", Vec3(20, 0, 650)), std::pair("prism-mask-columns", Vec3(0, 0, 650))}) {
     Picture picture;
@@ -365,7 +365,7 @@ TEST_F(Weave, TheRubberBandHasNoParallax) {
   }
 }
 
-TEST_F(Weave, WithoutDepthBothEyesSeeTheMonoPicture) {
+TEST_F(Weave, without_depth_both_eyes_see_the_mono_picture) {
   constexpr int kWidth = 320, kHeight = 180;
   show(test::make_crash_box());
   Picture mono = fitted("mono", "iso", kWidth, kHeight);
@@ -388,7 +388,7 @@ TEST_F(Weave, WithoutDepthBothEyesSeeTheMonoPicture) {
   }
 }
 
-TEST_F(Weave, LeakageAddedToTheCorrectedPictureGivesTheWantedOne) {
+TEST_F(Weave, leakage_added_to_the_corrected_picture_gives_the_wanted_one) {
   const auto light = [](double value) { return std::pow(value / 255, 2.2); };
   for (const char* name : {"prism-mask", "prism-mask-columns", "prism-mask-stencil", "row-interlaced", "side-by-side"})
     for (const auto& [left, right] :
@@ -406,7 +406,7 @@ TEST_F(Weave, LeakageAddedToTheCorrectedPictureGivesTheWantedOne) {
     }
 }
 
-TEST_F(Weave, TheCorrectionTakesTheOtherEyesLightFromTheSamePlace) {
+TEST_F(Weave, the_correction_takes_the_other_eyes_light_from_the_same_place) {
   Picture picture = numbered("prism-mask-columns");
   const Image plain = draw(picture, 64, 4);
   picture.profile.crosstalk = {0.1, 0.1};

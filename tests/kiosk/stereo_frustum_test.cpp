@@ -15,7 +15,7 @@ Eigen::Vector2d project(const Eigen::Matrix4d& clip, const Vec3& mm) {
   return at.head<2>() / at.w();
 }
 
-TEST(Frustum, ScreenCornersLandOnThePicturesCornersForAnyEye) {
+TEST(Frustum, screen_corners_land_on_the_pictures_corners_for_any_eye) {
   for (const Vec3& eye : kEyes) {
     const Eigen::Matrix4d clip = clip_from_screen(eye, {kWidth, kHeight}, {50, 5000});
     for (const double sx : {-1.0, 1.0})
@@ -27,7 +27,7 @@ TEST(Frustum, ScreenCornersLandOnThePicturesCornersForAnyEye) {
   }
 }
 
-TEST(Frustum, ParallaxIsThatOfTheEyes) {
+TEST(Frustum, parallax_is_that_of_the_eyes) {
   const EyePair eyes = eyes_from({0, 0, 650}, 63);
   EXPECT_DOUBLE_EQ((eyes.right - eyes.left).x(), 63);
   const Eigen::Matrix4d left = clip_from_screen(eyes.left, {kWidth, kHeight}, {50, 5000});
@@ -38,7 +38,7 @@ TEST(Frustum, ParallaxIsThatOfTheEyes) {
   }
 }
 
-TEST(Frustum, NearAndFarHoldWhatTheViewShows) {
+TEST(Frustum, near_and_far_hold_what_the_view_shows) {
   View view;
   view.bounds = {{100, 0, 0}, 5000};
   for (const Vec3& eye : kEyes) {
@@ -52,12 +52,12 @@ TEST(Frustum, NearAndFarHoldWhatTheViewShows) {
   }
 }
 
-TEST(Frustum, AnEyeBehindTheScreenBreaksNothing) {
+TEST(Frustum, an_eye_behind_the_screen_breaks_nothing) {
   for (const double z : {0.0, -50.0})
     EXPECT_TRUE(clip_from_screen({0, 0, z}, {kWidth, kHeight}, depth_range(View(), {0, 0, z})).allFinite());
 }
 
-TEST(Frustum, AProjectionGoesOntoAnyAffineImageOfThePicture) {
+TEST(Frustum, a_projection_goes_onto_any_affine_image_of_the_picture) {
   const Eigen::Matrix4d clip = clip_from_screen(kEyes[1], {kWidth, kHeight}, {50, 5000});
   EXPECT_TRUE(clip_onto(whole_picture(1280, 1024), clip, 1280, 1024).isApprox(clip, 1e-12)) << "the picture itself";
   ImageMap sheared;
@@ -70,7 +70,7 @@ TEST(Frustum, AProjectionGoesOntoAnyAffineImageOfThePicture) {
   }
 }
 
-TEST(Frustum, PicturesAreDrawnFromAShareOfTheEyesSeparation) {
+TEST(Frustum, pictures_are_drawn_from_a_share_of_the_eyes_separation) {
   PictureEyes eyes{{10, 20, 600}, {3, 4, 0}, 60, 0.5};
   EXPECT_LT((eyes.eyes().right - Vec3(10 + 18, 20 + 24, 600)).norm(), 1e-12);
   EXPECT_LT((eyes.picture_eye(Eye::right) - Vec3(10 + 9, 20 + 12, 600)).norm(), 1e-12);
@@ -92,7 +92,7 @@ Aim some_aim() {
   return aim;
 }
 
-TEST(Pointer, PixelsCountFromTheUpperLeft) {
+TEST(Pointer, pixels_count_from_the_upper_left) {
   Aim aim = some_aim();
   aim.view = View();
   EXPECT_LT((*pixel_of(aim, Vec3::Zero()) - Eigen::Vector2d(500, 280)).norm(), 1e-9);
@@ -101,7 +101,7 @@ TEST(Pointer, PixelsCountFromTheUpperLeft) {
   EXPECT_FALSE(pixel_of(aim, Vec3(0, 0, 700))) << "behind the eye";
 }
 
-TEST(Pointer, ARayPassesThroughWhatItsPixelShows) {
+TEST(Pointer, a_ray_passes_through_what_its_pixel_shows) {
   const Aim aim = some_aim();
   const Vec3 point(140, 260, 350);
   const Ray ray = ray_through(aim, *pixel_of(aim, point));
@@ -110,7 +110,7 @@ TEST(Pointer, ARayPassesThroughWhatItsPixelShows) {
   EXPECT_GT(to_point.dot(ray.direction), 0);
 }
 
-TEST(Pointer, DistanceAlongAnAxisIsExact) {
+TEST(Pointer, distance_along_an_axis_is_exact) {
   const Aim aim = some_aim();
   const Vec3 point(90, 210, 330), direction = Vec3(0.2, -0.5, 0.9).normalized();
   for (const double distance : {-120.0, 0.0, 3.0, 150.0}) {
@@ -119,14 +119,14 @@ TEST(Pointer, DistanceAlongAnAxisIsExact) {
   }
 }
 
-TEST(Pointer, AnAxisThatPointsAtTheEyeGivesNoDistance) {
+TEST(Pointer, an_axis_that_points_at_the_eye_gives_no_distance) {
   const Aim aim = some_aim();
   const Vec3 point(90, 210, 330);
   const Vec3 direction = (ray_through(aim, *pixel_of(aim, point)).origin - point).normalized();
   EXPECT_FALSE(distance_along(aim, point, direction, {500, 300}));
 }
 
-TEST(Pointer, ADisplacementBringsThePointUnderThePixel) {
+TEST(Pointer, a_displacement_brings_the_point_under_the_pixel) {
   const Aim aim = some_aim();
   const Vec3 point(90, 210, 330);
   const Eigen::Vector2d pixel(620, 111);
@@ -135,7 +135,7 @@ TEST(Pointer, ADisplacementBringsThePointUnderThePixel) {
   EXPECT_NEAR(to_screen(aim.view, point + by).z(), to_screen(aim.view, point).z(), 1e-9);
 }
 
-TEST(Pointer, TheHandleIsWhereItIsDrawn) {
+TEST(Pointer, the_handle_is_where_it_is_drawn) {
   const Aim aim = some_aim();
   const Vec3 point(90, 210, 330);
   const Vec3 sideways = aim.view.rotation.conjugate() * Vec3::UnitX();

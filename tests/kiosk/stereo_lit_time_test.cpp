@@ -20,7 +20,7 @@ void draw(PictureTiming& timing, ManualClock& clock, std::initializer_list<std::
   }
 }
 
-TEST(LitTime, WithoutTheDisplaysWordTheWaitIsHalfAPeriod) {
+TEST(LitTime, without_the_displays_word_the_wait_is_half_a_period) {
   ManualClock clock;
   PictureTiming timing({20 * kMs, 7 * kMs});
   draw(timing, clock, {4, 4, 4});
@@ -30,7 +30,7 @@ TEST(LitTime, WithoutTheDisplaysWordTheWaitIsHalfAPeriod) {
   EXPECT_EQ(lit.until_ns - lit.from_ns, 20 * kMs) << "a picture stays for a period";
 }
 
-TEST(LitTime, ARefreshThatTheDisplayTellsFixesThePhase) {
+TEST(LitTime, a_refresh_that_the_display_tells_fixes_the_phase) {
   ManualClock clock;
   clock.advance_ns(1000 * kMs);
   PictureTiming timing({20 * kMs, 0});
@@ -42,7 +42,7 @@ TEST(LitTime, ARefreshThatTheDisplayTellsFixesThePhase) {
   EXPECT_EQ(timing.lit(now).from_ns, now - 17 * kMs + 40 * kMs + 10 * kMs) << "too late for the refresh in 3 ms";
 }
 
-TEST(LitTime, NonsenseFromTheDisplayIsIgnored) {
+TEST(LitTime, nonsense_from_the_display_is_ignored) {
   ManualClock clock;
   clock.advance_ns(5000 * kMs);
   PictureTiming timing({20 * kMs, 0});
@@ -57,7 +57,7 @@ TEST(LitTime, NonsenseFromTheDisplayIsIgnored) {
   EXPECT_EQ(timing.lit(now + 3000 * kMs).from_ns - 3000 * kMs, estimated) << "a phase of long ago says nothing";
 }
 
-TEST(LitTime, OneSlowPictureDoesntMoveTheLightButTheTimeItStays) {
+TEST(LitTime, one_slow_picture_doesnt_move_the_light_but_the_time_it_stays) {
   ManualClock clock;
   PictureTiming timing({20 * kMs, 0});
   draw(timing, clock, {4, 4, 90, 4, 4});
@@ -66,7 +66,7 @@ TEST(LitTime, OneSlowPictureDoesntMoveTheLightButTheTimeItStays) {
   EXPECT_EQ(lit.until_ns - lit.from_ns, 90 * kMs) << "the next one may be slow again";
 }
 
-TEST(LitTime, PicturesAreBegunOncePerRefresh) {
+TEST(LitTime, pictures_are_begun_once_per_refresh) {
   ManualClock clock;
   PictureTiming timing({20 * kMs, 0});
   const std::int64_t begun = clock.now_ns();

@@ -134,7 +134,7 @@ std::int64_t depth_ended_ns(const World& world) {
   return ended;
 }
 
-TEST(TrackedEyes, DepthComesSmoothlyOnceTheHeadIsSeenAndTheMaskFollows) {
+TEST(TrackedEyes, depth_comes_smoothly_once_the_head_is_seen_and_the_mask_follows) {
   World world(prism_mask());
   world.run_ms(300);
   EXPECT_EQ(world.seen.depth_share, 0) << "the mask isn't ready";
@@ -146,7 +146,7 @@ TEST(TrackedEyes, DepthComesSmoothlyOnceTheHeadIsSeenAndTheMaskFollows) {
     EXPECT_LT(std::abs(world.pictures[i].seen.depth_share - world.pictures[i - 1].seen.depth_share), 0.15);
 }
 
-TEST(TrackedEyes, TheHeadIsPredictedToTheLight) {
+TEST(TrackedEyes, the_head_is_predicted_to_the_light) {
   const HeadMotion motion(MotionKind::turn, 5);
   World world(prism_mask(), motion);
   allow_stereo(world);
@@ -168,7 +168,7 @@ TEST(TrackedEyes, TheHeadIsPredictedToTheLight) {
   EXPECT_LT(with, 0.6 * without);
 }
 
-TEST(TrackedEyes, ARestingHeadLetsThePictureRest) {
+TEST(TrackedEyes, a_resting_head_lets_the_picture_rest) {
   World world(prism_mask());
   allow_stereo(world);
   world.run_until_stereo();
@@ -179,7 +179,7 @@ TEST(TrackedEyes, ARestingHeadLetsThePictureRest) {
   EXPECT_LE(world.pictures.size() - pictures, 40u) << "pictures in 20 s of sitting still";
 }
 
-TEST(TrackedEyes, EyesThatAreLostTurnThePictureMonoInTimeAndSmoothly) {
+TEST(TrackedEyes, eyes_that_are_lost_turn_the_picture_mono_in_time_and_smoothly) {
   World world(prism_mask());
   allow_stereo(world);
   world.run_until_stereo();
@@ -198,7 +198,7 @@ TEST(TrackedEyes, EyesThatAreLostTurnThePictureMonoInTimeAndSmoothly) {
   EXPECT_LT(world.now() - back, 1000 * kMillisecondNs);
 }
 
-TEST(TrackedEyes, ATrackerThatTakesLongGivesDepthToo) {
+TEST(TrackedEyes, a_tracker_that_takes_long_gives_depth_too) {
   World world(prism_mask());
   allow_stereo(world);
   world.latency_ms = 150;
@@ -215,7 +215,7 @@ TEST(TrackedEyes, ATrackerThatTakesLongGivesDepthToo) {
       << "the promise counts from when the head was heard of";
 }
 
-TEST(TrackedEyes, AShortGapIsBridged) {
+TEST(TrackedEyes, a_short_gap_is_bridged) {
   World world(prism_mask());
   allow_stereo(world);
   world.run_until_stereo();
@@ -227,7 +227,7 @@ TEST(TrackedEyes, AShortGapIsBridged) {
   for (std::size_t i = before; i < world.pictures.size(); ++i) EXPECT_EQ(world.pictures[i].seen.depth_share, 1);
 }
 
-TEST(TrackedEyes, EveryWayToLoseTheDaemonEndsInMono) {
+TEST(TrackedEyes, every_way_to_lose_the_daemon_ends_in_mono) {
   const std::vector<std::function<void(World&)>> ways{
       [](World& w) { w.daemon_runs = false; },                                                  // killed: the page stays, and stands still
       [](World& w) { w.daemon_runs = w.page_is_there = false; },                                // the link is known to be lost
@@ -247,7 +247,7 @@ TEST(TrackedEyes, EveryWayToLoseTheDaemonEndsInMono) {
   }
 }
 
-TEST(TrackedEyes, TenThousandLossesAtAnyMomentNeverLeaveDepthBehind) {
+TEST(TrackedEyes, ten_thousand_losses_at_any_moment_never_leave_depth_behind) {
   std::mt19937 random(11);
   std::int64_t worst = 0;
   for (int round = 0; round < 100; ++round) {
@@ -273,7 +273,7 @@ TEST(TrackedEyes, TenThousandLossesAtAnyMomentNeverLeaveDepthBehind) {
   EXPECT_GT(worst, 100 * kMillisecondNs) << "losses were seen at all";
 }
 
-TEST(TrackedEyes, NothingInDepthLightsUpWhileTheMaskFliesBack) {
+TEST(TrackedEyes, nothing_in_depth_lights_up_while_the_mask_flies_back) {
   std::mt19937 random(5);
   for (int round = 0; round < 200; ++round) {
     World world(prism_mask());
@@ -299,7 +299,7 @@ TEST(TrackedEyes, NothingInDepthLightsUpWhileTheMaskFliesBack) {
   }
 }
 
-TEST(TrackedEyes, AMaskThatStopsFollowingFadesThePicture) {
+TEST(TrackedEyes, a_mask_that_stops_following_fades_the_picture) {
   World world(prism_mask());
   allow_stereo(world);
   world.run_until_stereo();
@@ -311,7 +311,7 @@ TEST(TrackedEyes, AMaskThatStopsFollowingFadesThePicture) {
   EXPECT_LE(depth_ended_ns(world) - stopped, 200 * kMillisecondNs);
 }
 
-TEST(TrackedEyes, AMaskThatIsNotHeardOfAnyMoreFadesThePictureThoughTheEyesAreSeen) {
+TEST(TrackedEyes, a_mask_that_is_not_heard_of_any_more_fades_the_picture_though_the_eyes_are_seen) {
   World world(prism_mask());
   allow_stereo(world);
   world.run_until_stereo();
@@ -352,7 +352,7 @@ bool are_taken(const Change& change) {
   return eyes.measured_ns() != kStart;
 }
 
-TEST(TrackedEyes, EyesThatNoViewerCanHaveAreNotTaken) {
+TEST(TrackedEyes, eyes_that_no_viewer_can_have_are_not_taken) {
   using ipc::EyesState;
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(are_taken([](EyesState&) {}));
@@ -377,7 +377,7 @@ TEST(TrackedEyes, EyesThatNoViewerCanHaveAreNotTaken) {
     EXPECT_TRUE(are_taken([&](EyesState& eyes) { eyes.eye_separation_mm = separation; })) << separation;
 }
 
-TEST(TrackedEyes, OnlyNewMeasurementsOfATrackedHeadAreTaken) {
+TEST(TrackedEyes, only_new_measurements_of_a_tracked_head_are_taken) {
   using ipc::EyesState;
   for (const ipc::EyesPhase phase : {ipc::EyesPhase::none, ipc::EyesPhase::absent, ipc::EyesPhase::silent, ipc::EyesPhase::searching})
     EXPECT_FALSE(are_taken([&](EyesState& eyes) { eyes.phase = phase; })) << ipc::name(phase);
@@ -386,7 +386,7 @@ TEST(TrackedEyes, OnlyNewMeasurementsOfATrackedHeadAreTaken) {
   EXPECT_FALSE(are_taken([](EyesState& eyes) { eyes.measured_ns += 51 * kMillisecondNs; })) << "of the future";
 }
 
-TEST(TrackedEyes, DepthNeverComesFasterThanItsRiseWhereverItHasFadedTo) {
+TEST(TrackedEyes, depth_never_comes_faster_than_its_rise_wherever_it_has_faded_to) {
   World world(prism_mask());
   allow_stereo(world);
   const std::int64_t rise_ns = world.eyes.limits().rise_ns;
@@ -432,7 +432,7 @@ class Looks {
   bool measures = true;
 };
 
-TEST(TrackedEyes, EyesThatComeBackElsewhereAreGoneOverTo) {
+TEST(TrackedEyes, eyes_that_come_back_elsewhere_are_gone_over_to) {
   Looks looks;
   looks.look_for_ms(500);
   EXPECT_EQ(looks.seen.depth_share, 1);
@@ -452,7 +452,7 @@ TEST(TrackedEyes, EyesThatComeBackElsewhereAreGoneOverTo) {
   EXPECT_NEAR(before, 100, 2.1);
 }
 
-TEST(TrackedEyes, NoTrackerIsSoSlowThatDepthStaysForLonger) {
+TEST(TrackedEyes, no_tracker_is_so_slow_that_depth_stays_for_longer) {
   World world(prism_mask());
   allow_stereo(world);
   world.reading.eyes->lost_after_ns = 60'000 * kMillisecondNs;
@@ -464,7 +464,7 @@ TEST(TrackedEyes, NoTrackerIsSoSlowThatDepthStaysForLonger) {
   EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 500 * kMillisecondNs);
 }
 
-TEST(TrackedEyes, TheSeparationThatWasMeasuredWithTheViewerCounts) {
+TEST(TrackedEyes, the_separation_that_was_measured_with_the_viewer_counts) {
   for (const bool was_measured : {false, true}) {
     FollowOptions options;
     if (was_measured) options.eye_separation_mm = 58;
@@ -475,7 +475,7 @@ TEST(TrackedEyes, TheSeparationThatWasMeasuredWithTheViewerCounts) {
   }
 }
 
-TEST(TrackedEyes, EachTimeThatTheMaskStopsTheDepthFades) {
+TEST(TrackedEyes, each_time_that_the_mask_stops_the_depth_fades) {
   Looks looks;
   for (int round = 0; round < 3; ++round) {
     looks.reading.prism->stereo_allowed = true;
@@ -492,7 +492,7 @@ TEST(TrackedEyes, EachTimeThatTheMaskStopsTheDepthFades) {
   }
 }
 
-TEST(TrackedEyes, AMoveBackThatWasAnnouncedIsMonoForEveryPictureThatTouchesItAndForNoOther) {
+TEST(TrackedEyes, a_move_back_that_was_announced_is_mono_for_every_picture_that_touches_it_and_for_no_other) {
   for (const bool allowed_meanwhile : {true, false}) {
     Looks looks;
     looks.look_for_ms(500);
@@ -515,7 +515,7 @@ TEST(TrackedEyes, AMoveBackThatWasAnnouncedIsMonoForEveryPictureThatTouchesItAnd
   }
 }
 
-TEST(TrackedEyes, AMoveBackThatNobodyAnnouncedInTimeEndsDepthAtOnce) {
+TEST(TrackedEyes, a_move_back_that_nobody_announced_in_time_ends_depth_at_once) {
   Looks looks;
   looks.look_for_ms(500);
   ipc::PrismState& mask = *looks.reading.prism;
@@ -525,7 +525,7 @@ TEST(TrackedEyes, AMoveBackThatNobodyAnnouncedInTimeEndsDepthAtOnce) {
   EXPECT_EQ(looks.look().depth_share, 0) << "no fade while the mask flies";
 }
 
-TEST(TrackedEyes, AnotherDisplayBeginsInMonoAtItsRestingPlace) {
+TEST(TrackedEyes, another_display_begins_in_mono_at_its_resting_place) {
   Looks looks;
   looks.reading.eyes->between_eyes_mm = {200, 0, 650};
   looks.look_for_ms(1000);
@@ -541,7 +541,7 @@ TEST(TrackedEyes, AnotherDisplayBeginsInMonoAtItsRestingPlace) {
   EXPECT_EQ(looks.seen.depth_share, 1);
 }
 
-TEST(TrackedEyes, APageThatSaysNothingOfTheMaskGivesNoDepth) {
+TEST(TrackedEyes, a_page_that_says_nothing_of_the_mask_gives_no_depth) {
   Looks looks;
   const std::optional<ipc::PrismState> mask = std::exchange(looks.reading.prism, std::nullopt);
   looks.look_for_ms(1000);
@@ -561,7 +561,7 @@ TEST(TrackedEyes, APageThatSaysNothingOfTheMaskGivesNoDepth) {
 }
 
 /// Also where pictures take so long that no time is left to fade.
-TEST(TrackedEyes, DepthNeverRisesWhileNothingIsMeasured) {
+TEST(TrackedEyes, depth_never_rises_while_nothing_is_measured) {
   for (std::int64_t ahead_ms = 20; ahead_ms <= 400; ahead_ms += 20) {
     TrackedEyes eyes(prism_mask());
     DeviceReading reading = eyes_measured_at(kStart);
@@ -590,7 +590,7 @@ TEST(TrackedEyes, DepthNeverRisesWhileNothingIsMeasured) {
   }
 }
 
-TEST(TrackedEyes, AnotherDisplayBeginsInMonoThoughTheMaskHadStoppedLongAgo) {
+TEST(TrackedEyes, another_display_begins_in_mono_though_the_mask_had_stopped_long_ago) {
   Looks looks;
   looks.look_for_ms(500);
   looks.reading.prism->stereo_allowed = false;
@@ -609,7 +609,7 @@ TEST(TrackedEyes, AnotherDisplayBeginsInMonoThoughTheMaskHadStoppedLongAgo) {
   EXPECT_EQ(looks.seen.depth_share, 1);
 }
 
-TEST(TrackedEyes, TheMaskIsWhereItWasMeasuredOrWhereItShouldBe) {
+TEST(TrackedEyes, the_mask_is_where_it_was_measured_or_where_it_should_be) {
   TrackedEyes eyes(prism_mask());
   DeviceReading reading;
   ipc::PrismState& mask = reading.prism.emplace();
@@ -626,7 +626,7 @@ TEST(TrackedEyes, TheMaskIsWhereItWasMeasuredOrWhereItShouldBe) {
   EXPECT_EQ(mask_mm(0.306), 0.306);
 }
 
-TEST(TrackedEyes, ThePlaceNeverJumpsAndGoesBackToRestWhenNobodyIsThere) {
+TEST(TrackedEyes, the_place_never_jumps_and_goes_back_to_rest_when_nobody_is_there) {
   const HeadMotion motion(MotionKind::still, 2, Vector3d(180, -40, 720));
   World world(prism_mask(), motion);
   allow_stereo(world);
@@ -648,7 +648,7 @@ TEST(TrackedEyes, ThePlaceNeverJumpsAndGoesBackToRestWhenNobodyIsThere) {
   }
 }
 
-TEST(TrackedEyes, DepthWaitsUntilThePictureStandsAtTheEyes) {
+TEST(TrackedEyes, depth_waits_until_the_picture_stands_at_the_eyes) {
   World world(prism_mask(), HeadMotion(MotionKind::still, 2, Vector3d(200, 0, 650)));
   allow_stereo(world);
   world.run_ms(1500);
@@ -659,7 +659,7 @@ TEST(TrackedEyes, DepthWaitsUntilThePictureStandsAtTheEyes) {
   EXPECT_EQ(world.seen.depth_share, 1);
 }
 
-TEST(TrackedEyes, TheMaskIsPredictedToTheLight) {
+TEST(TrackedEyes, the_mask_is_predicted_to_the_light) {
   World world(prism_mask());
   allow_stereo(world);
   ipc::PrismState& mask = *world.reading.prism;
@@ -673,7 +673,7 @@ TEST(TrackedEyes, TheMaskIsPredictedToTheLight) {
   EXPECT_LT(*world.seen.mask_mm, 0.3);
 }
 
-TEST(TrackedEyes, GlassesKeepTheirDepthWithoutEyes) {
+TEST(TrackedEyes, glasses_keep_their_depth_without_eyes) {
   FollowOptions options;
   options.mono_without_eyes = options.movable_mask = false;
   World world(options, HeadMotion(MotionKind::still, 2, Vector3d(150, 0, 700)));
@@ -687,7 +687,7 @@ TEST(TrackedEyes, GlassesKeepTheirDepthWithoutEyes) {
   EXPECT_NEAR(world.seen.between_eyes_mm.x(), 0, 0.1) << "not frozen where the head was last";
 }
 
-TEST(TrackedEyes, FixedEyesStayInDepthWhateverTheDaemonSays) {
+TEST(TrackedEyes, fixed_eyes_stay_in_depth_whatever_the_daemon_says) {
   FollowOptions options;
   options.follow = options.movable_mask = false;
   options.resting_mm = {30, 20, 600};

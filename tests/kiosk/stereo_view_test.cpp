@@ -26,7 +26,7 @@ Vec3 on_screen(std::string_view name, const Vec3& deck) {
   return to_screen(view, deck);
 }
 
-TEST(View, NamedViewsLookTheWayTheySay) {
+TEST(View, named_views_look_the_way_they_say) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
   EXPECT_TRUE(on_screen("front", z).isApprox(y)) << "up is up";
   EXPECT_TRUE(on_screen("front", y).isApprox(-z)) << "looking along +y";
@@ -43,7 +43,7 @@ TEST(View, NamedViewsLookTheWayTheySay) {
   EXPECT_FALSE(named_rotation("sideways"));
 }
 
-TEST(View, ScreenAndBack) {
+TEST(View, screen_and_back) {
   const View view = some_view();
   const Vec3 point(123, 45, -6);
   EXPECT_LT((to_deck(view, to_screen(view, point)) - point).norm(), 1e-9);
@@ -52,7 +52,7 @@ TEST(View, ScreenAndBack) {
   EXPECT_LT((to_screen(view, view.pivot) - Vec3(12, -7, 0)).norm(), 1e-12) << "the pivot lies in the screen's plane";
 }
 
-TEST(View, EverythingStaysInTheComfortBoxHoweverItIsTurnedAndZoomed) {
+TEST(View, everything_stays_in_the_comfort_box_however_it_is_turned_and_zoomed) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int round = 0; round < 2000; ++round) {
@@ -74,7 +74,7 @@ TEST(View, EverythingStaysInTheComfortBoxHoweverItIsTurnedAndZoomed) {
   }
 }
 
-TEST(View, SmallModelsKeepTheirTrueDepth) {
+TEST(View, small_models_keep_their_true_depth) {
   View view;
   view.bounds = {Vec3::Zero(), 10};
   EXPECT_EQ(depth_scale(view), 1);
@@ -82,7 +82,7 @@ TEST(View, SmallModelsKeepTheirTrueDepth) {
   EXPECT_LT(depth_scale(view), 0.1);
 }
 
-TEST(View, OrbitFollowsTheHand) {
+TEST(View, orbit_follows_the_hand) {
   View view;
   const Vec3 near_point(0, 0, 5);
   EXPECT_GT(to_screen(orbit(view, 0.1, 0), near_point).x(), 0);
@@ -92,14 +92,14 @@ TEST(View, OrbitFollowsTheHand) {
   EXPECT_TRUE(there_and_back.rotation.isApprox(some_view().rotation, 1e-12));
 }
 
-TEST(View, ZoomKeepsWhatIsUnderThePointer) {
+TEST(View, zoom_keeps_what_is_under_the_pointer) {
   const View view = some_view();
   const Eigen::Vector2d at(33, -12);
   const Vec3 under = to_deck(view, Vec3(at.x(), at.y(), 0));
   EXPECT_LT((to_screen(zoom(view, 3.7, at), under).head<2>() - at).norm(), 1e-9);
 }
 
-TEST(View, ANewPivotMovesNothing) {
+TEST(View, a_new_pivot_moves_nothing) {
   const View view = some_view();
   const Vec3 point(50, 60, 70);
   const View moved = with_pivot(view, Vec3(-5, 8, 13));
@@ -111,7 +111,7 @@ TEST(View, ANewPivotMovesNothing) {
   EXPECT_LT((to_screen(turned, Vec3(-5, 8, 13)).head<2>() - pivot.head<2>()).norm(), 1e-9) << "turns about it";
 }
 
-TEST(View, ZoomKeepsThePlaneOfTheScreen) {
+TEST(View, zoom_keeps_the_plane_of_the_screen) {
   const View view = toward_screen_plane(some_view(), Vec3(100, 50, -30), {0, 0, 650});
   EXPECT_NEAR(to_screen(zoom(view, 2.5, {10, 20}), Vec3(100, 50, -30)).z(), 0, 1e-9);
 }
@@ -121,7 +121,7 @@ Eigen::Vector2d seen_on_screen(const View& view, const Vec3& eye, const Vec3& de
   return eye.head<2>() + (mm.head<2>() - eye.head<2>()) * eye.z() / (eye.z() - mm.z());
 }
 
-TEST(View, APointComesIntoThePlaneOfTheScreenWhereTheEyeSeesIt) {
+TEST(View, a_point_comes_into_the_plane_of_the_screen_where_the_eye_sees_it) {
   const Vec3 eye(70, -20, 600), point(150, -60, 210);
   View view = some_view();
   const Eigen::Vector2d seen = seen_on_screen(view, eye, point);
@@ -135,7 +135,7 @@ TEST(View, APointComesIntoThePlaneOfTheScreenWhereTheEyeSeesIt) {
   EXPECT_LT((to_screen(view, point).head<2>() - seen).norm(), 1e-9);
 }
 
-TEST(View, TheComfortBoxIsADegreeOfParallax) {
+TEST(View, the_comfort_box_is_a_degree_of_parallax) {
   const ComfortBox box = comfort_box(650);
   EXPECT_NEAR(box.before_mm, 99, 0.5);
   EXPECT_NEAR(box.behind_mm, 143, 0.5);
@@ -148,7 +148,7 @@ TEST(View, TheComfortBoxIsADegreeOfParallax) {
   EXPECT_GT(comfort_box(650, 1.5).before_mm, box.before_mm);
 }
 
-TEST(View, TheComfortBoxReachesHalfTheEyesDistanceAtMost) {
+TEST(View, the_comfort_box_reaches_half_the_eyes_distance_at_most) {
   // 1 degree at 2 m is 35 mm of parallax: with eyes 63 mm apart that lies 2.48 m behind the screen.
   EXPECT_DOUBLE_EQ(comfort_box(2000, 1, 63).behind_mm, 1000);
   EXPECT_LT(comfort_box(2000, 1, 63).before_mm, 1000);
@@ -157,7 +157,7 @@ TEST(View, TheComfortBoxReachesHalfTheEyesDistanceAtMost) {
   EXPECT_DOUBLE_EQ(comfort_box(650, 20, 63).behind_mm, 325);
 }
 
-TEST(View, DepthStrengthScalesDepthUpToTheComfortBox) {
+TEST(View, depth_strength_scales_depth_up_to_the_comfort_box) {
   View view = some_view();
   view.bounds.radius = 40;  // 10 mm on the screen: true depth
   EXPECT_EQ(depth_scale(view), 1);
@@ -176,7 +176,7 @@ TEST(View, DepthStrengthScalesDepthUpToTheComfortBox) {
   EXPECT_LE(depth_extent(view)[1], view.comfort.before_mm + 1e-9);
 }
 
-TEST(View, FitFillsTheScreenAndKeepsTheRotation) {
+TEST(View, fit_fills_the_screen_and_keeps_the_rotation) {
   Box box;
   box.add(Vec3(1000, -50, 3));
   box.add(Vec3(1400, 80, 20));
@@ -198,7 +198,7 @@ TEST(View, FitFillsTheScreenAndKeepsTheRotation) {
   }
 }
 
-TEST(View, FitOfNothingIsAView) {
+TEST(View, fit_of_nothing_is_a_view) {
   const View view = fit(View(), Box(), {500, 300});
   EXPECT_TRUE(std::isfinite(view.mm_per_unit));
   EXPECT_GT(view.mm_per_unit, 0);

@@ -35,14 +35,14 @@ struct Board {
   }
 };
 
-TEST(ByHand, AClickInTheMiddleMeansTheShellAndNextToAnEdgeTheTwoAtIt) {
+TEST(ByHand, a_click_in_the_middle_means_the_shell_and_next_to_an_edge_the_two_at_it) {
   const Board board;  // shell 1 lies from x -5 to 5, y -10 to 0; shell 4 above it
   EXPECT_THAT(board.at(Operation::split, 1, 0, -5)->shells, ElementsAre(ShellIndex(1)));
   EXPECT_THAT(board.at(Operation::split, 1, 0.5, -0.5)->shells, UnorderedElementsAre(ShellIndex(1), ShellIndex(4)));
   EXPECT_THAT(board.at(Operation::split, 1, 0, -9.7)->shells, ElementsAre(ShellIndex(1))) << "a free edge has no other shell";
 }
 
-TEST(ByHand, NextToAnEdgeOfThreeShellsASplitMeansTheShellAlone) {
+TEST(ByHand, next_to_an_edge_of_three_shells_a_split_means_the_shell_alone) {
   Board board;  // a rib stands on the edge between the shells 1 and 4
   const std::uint32_t a = board.source.add_node({-5, 0, 10}), b = board.source.add_node({5, 0, 10});
   board.source.add_shell(5, 6, b, a, 0);
@@ -51,7 +51,7 @@ TEST(ByHand, NextToAnEdgeOfThreeShellsASplitMeansTheShellAlone) {
       << "which two of them, the operation says";
 }
 
-TEST(ByHand, MergeAndSwapMeanTheNearestEdgesShellsFromWhereverInTheShell) {
+TEST(ByHand, merge_and_swap_mean_the_nearest_edges_shells_from_wherever_in_the_shell) {
   const Board board;
   for (const Operation operation : {Operation::merge, Operation::swap}) {
     EXPECT_THAT(board.at(operation, 1, 3, -5)->shells, UnorderedElementsAre(ShellIndex(1), ShellIndex(2)));
@@ -59,7 +59,7 @@ TEST(ByHand, MergeAndSwapMeanTheNearestEdgesShellsFromWhereverInTheShell) {
   }
 }
 
-TEST(ByHand, ACollapseMeansTheEndsOfTheNearestEdge) {
+TEST(ByHand, a_collapse_means_the_ends_of_the_nearest_edge) {
   const Board board;
   const std::optional<HandTarget> target = board.at(Operation::collapse, 1, 3, -5);
   ASSERT_TRUE(target);
@@ -67,14 +67,14 @@ TEST(ByHand, ACollapseMeansTheEndsOfTheNearestEdge) {
   EXPECT_THAT(target->nodes, UnorderedElementsAre(NodeIndex(2), NodeIndex(6))) << "x 5, y -10 and 0";
 }
 
-TEST(ByHand, WhatIsNoShellIsNoTarget) {
+TEST(ByHand, what_is_no_shell_is_no_target) {
   Board board;
   EXPECT_FALSE(board.at(Operation::split, 999, 0, 0));
   board.source.shell_nodes[1].node[2] = NodeIndex(77777);
   EXPECT_FALSE(board.at(Operation::split, 1, 0, -5));
 }
 
-TEST(ViewGlide, BringsThePointIntoTheMiddleAtTheScaleWantedAndEnds) {
+TEST(ViewGlide, brings_the_point_into_the_middle_at_the_scale_wanted_and_ends) {
   stereo::View view;
   view.mm_per_unit = 0.1;
   view.pan_mm = {30, -12};
@@ -99,7 +99,7 @@ TEST(ViewGlide, BringsThePointIntoTheMiddleAtTheScaleWantedAndEnds) {
   EXPECT_TRUE(now.rotation.isApprox(view.rotation)) << "from where one looked before";
 }
 
-TEST(ViewGlide, AScaleAtWhichAnElementCanBeSeenStays) {
+TEST(ViewGlide, a_scale_at_which_an_element_can_be_seen_stays) {
   EXPECT_EQ(scale_to_look_at(5, 2, 0.25), 2) << "40 pixels";
   EXPECT_DOUBLE_EQ(scale_to_look_at(5, 0.1, 0.25), 48 * 0.25 / 5) << "2 pixels are too few";
   EXPECT_DOUBLE_EQ(scale_to_look_at(5, 100, 0.25), 48 * 0.25 / 5) << "2000 are too many";

@@ -23,7 +23,7 @@ View some_view() {
   return view;
 }
 
-TEST(DepthFit, ThePointGlidesIntoThePlaneWithoutMovingSideways) {
+TEST(DepthFit, the_point_glides_into_the_plane_without_moving_sideways) {
   ManualClock clock;
   DepthFit fit;
   const Vec3 point(30, -25, 20);
@@ -51,7 +51,7 @@ TEST(DepthFit, ThePointGlidesIntoThePlaneWithoutMovingSideways) {
   EXPECT_NEAR(to_screen(view, point).z(), 0, 1e-9);
 }
 
-TEST(DepthFit, TheUserTurnsTheViewMeanwhile) {
+TEST(DepthFit, the_user_turns_the_view_meanwhile) {
   ManualClock clock;
   DepthFit fit;
   const Vec3 point(30, -25, 20);
@@ -65,7 +65,7 @@ TEST(DepthFit, TheUserTurnsTheViewMeanwhile) {
   EXPECT_NEAR(to_screen(view, point).z(), 0, 1e-9);
 }
 
-TEST(DepthFit, StrengthAndComfortKeepTheirLimits) {
+TEST(DepthFit, strength_and_comfort_keep_their_limits) {
   DepthFit fit;
   fit.change_percent(100);
   EXPECT_EQ(fit.percent(), 150);
@@ -77,7 +77,7 @@ TEST(DepthFit, StrengthAndComfortKeepTheirLimits) {
   EXPECT_DOUBLE_EQ(fit.degrees(), 0.5);
 }
 
-TEST(DepthFit, WiderComfortGivesALargeModelMoreDepth) {
+TEST(DepthFit, wider_comfort_gives_a_large_model_more_depth) {
   DepthFit fit;
   View view = some_view();
   view.bounds.radius = 1000;
@@ -86,7 +86,7 @@ TEST(DepthFit, WiderComfortGivesALargeModelMoreDepth) {
   EXPECT_NEAR(stereo::depth_scale(fit.fitted(view, kEyes, 0)) / before, 1.3, 0.07);
 }
 
-TEST(DepthFit, FollowsTheEyesDistanceInSteps) {
+TEST(DepthFit, follows_the_eyes_distance_in_steps) {
   ManualClock clock;
   DepthFit fit;
   const View view = some_view();

@@ -16,7 +16,7 @@ double area_of(const std::vector<Pixel>& outline) {
   return std::abs(twice) / 2;
 }
 
-TEST(Outline, WhatLiesBeyondTheLineIsCutOff) {
+TEST(Outline, what_lies_beyond_the_line_is_cut_off) {
   const std::vector<Pixel> square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
   EXPECT_EQ(kept_right_of(square, -1), square);
   EXPECT_TRUE(kept_right_of(square, 10.5).empty());

@@ -147,17 +147,17 @@ TEST(HistoryFileTest, entries_outlive_the_program_newest_last_each_once) {
     HistoryFile history(file);
     EXPECT_TRUE(history.entries().empty());
     for (const char* entry : {"1-100", "part:3", "1-100", ""}) history.add(entry);
-    history.add(std::string(HistoryFile::kMostBytes + 1, '1'));
+    history.add(std::string(HistoryFile::kMaxBytes + 1, '1'));
     history.add("two\nlines");
   }
   EXPECT_EQ(HistoryFile(file).entries(), (std::vector<std::string>{"part:3", "1-100"}));
   {
     HistoryFile history(file);
-    for (std::size_t i = 0; i < 2 * HistoryFile::kMost; ++i) history.add(std::to_string(i));
+    for (std::size_t i = 0; i < 2 * HistoryFile::kMax; ++i) history.add(std::to_string(i));
   }
   const HistoryFile history(file);
-  ASSERT_EQ(history.entries().size(), HistoryFile::kMost);
-  EXPECT_EQ(history.entries().back(), std::to_string(2 * HistoryFile::kMost - 1));
+  ASSERT_EQ(history.entries().size(), HistoryFile::kMax);
+  EXPECT_EQ(history.entries().back(), std::to_string(2 * HistoryFile::kMax - 1));
   HistoryFile nowhere{std::filesystem::path()};
   nowhere.add("all");
   EXPECT_EQ(nowhere.entries().size(), 1u);

@@ -67,8 +67,8 @@ class Copy:
 
     def build_rules(self, texts):
         """The project's, and less optimisation for the libraries that hold mutants: the compiler's work on them is half of the waiting."""
-        rooms = re.findall(r"^ *prismesh_room\((\w+) ([\w/]+)", self.read("CMakeLists.txt").decode(), re.M)
-        broken = [name for name, folder in rooms if any(file.startswith(folder + "/") for file in texts)]
+        modules = re.findall(r"^ *prismesh_module\((\w+) ([\w/]+)", self.read("CMakeLists.txt").decode(), re.M)
+        broken = [name for name, folder in modules if any(file.startswith(folder + "/") for file in texts)]
         lines = [f"if(TARGET {name})\n  target_compile_options({name} PRIVATE -O1 -w -D_GLIBCXX_ASSERTIONS)\n"
                  f"  set_target_properties({name} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)\nendif()\n" for name in broken]
         return self.read("CMakeLists.txt") + "".join(lines).encode()

@@ -30,7 +30,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 ALSO = {"mesh/": "mesh_document_test"}
 CHEAP_SECONDS = 1  # of a test that is run besides
 KIOSK_TESTS = ("kiosk_test", "pictures_test", "optics_test", "losses_test", "phase_error_test", "station_test", "viewer_test")
-ROOMS = ("base/", "mesh/", "drivers/", "ipc/", "daemon/", "kiosk/", "cli/")
+MODULES = ("base/", "mesh/", "drivers/", "ipc/", "daemon/", "kiosk/", "cli/")
 
 
 def arguments():
@@ -76,8 +76,8 @@ class Output:
 
 
 def changed_lines(base):
-    """The lines of the rooms' sources that differ from `base`: sets by file."""
-    diff = run(["git", "diff", "--unified=0", "--no-color", "--no-ext-diff", base, "--", *ROOMS], cwd=ROOT)
+    """The lines of the sources of the modules that differ from `base`: sets by file."""
+    diff = run(["git", "diff", "--unified=0", "--no-color", "--no-ext-diff", base, "--", *MODULES], cwd=ROOT)
     if diff.returncode != 0:
         raise Failed(diff.stderr.strip())
     lines, file = {}, ""
@@ -93,7 +93,7 @@ def changed_lines(base):
 def files_of(module, files):
     """The sources of a module: a folder, a file, or a file without its ending."""
     module = module.rstrip("/")
-    sources = [file for file in files if re.search(r"\.(cpp|h)$", file) and file.startswith(ROOMS)]
+    sources = [file for file in files if re.search(r"\.(cpp|h)$", file) and file.startswith(MODULES)]
     found = [file for file in sources if file.startswith(module + "/") or file == module or re.sub(r"\.(cpp|h)$", "", file) == module]
     if not found:
         raise Failed(f"there are no sources of a module {module}")

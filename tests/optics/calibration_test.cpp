@@ -308,26 +308,26 @@ class CalibrationTest : public OpticsTest {
   std::mt19937 random_{1};
 };
 
-TEST_F(CalibrationTest, FindsAMaskThatStandsElsewhere) { calibrate_and_judge(situation(0.19, 1, 1)); }
+TEST_F(CalibrationTest, finds_a_mask_that_stands_elsewhere) { calibrate_and_judge(situation(0.19, 1, 1)); }
 
-TEST_F(CalibrationTest, FindsAMaskOfAnotherPitch) {
+TEST_F(CalibrationTest, finds_a_mask_of_another_pitch) {
   calibrate_and_judge(situation(-0.1, 1.0011, 1));
   calibrate_and_judge(situation(0.03, 0.9985, 1));
 }
 
-TEST_F(CalibrationTest, FindsAMaskAtAnotherDistance) {
+TEST_F(CalibrationTest, finds_a_mask_at_another_distance) {
   calibrate_and_judge(situation(0.27, 1, 0.95));
   calibrate_and_judge(situation(-0.2, 1, 1.06));
 }
 
-TEST_F(CalibrationTest, FindsAllOfItThroughAMaskThatLeaks) {
+TEST_F(CalibrationTest, finds_all_of_it_through_a_mask_that_leaks) {
   Situation all = situation(-0.171, 1.0006, 0.972);
   all.display.panel.pitch_mm = 0.2816;
   all.sharpness = {1.1, 0.06};
   for (all.seed = 1; all.seed <= 2; ++all.seed) calibrate_and_judge(all);
 }
 
-TEST_F(CalibrationTest, FindsItWhereTheWindowsAreNarrow) {
+TEST_F(CalibrationTest, finds_it_where_the_windows_are_narrow) {
   Situation narrow = situation(0.11, 1.0004, 0.98);
   narrow.sharpness.window_pixels = 0.5;
   calibrate_and_judge(narrow);

@@ -62,7 +62,7 @@ class Depth : public OpticsTest {
 
 const std::array kHeads{Vec3(0, 0, 650), Vec3(0, 0, 500), Vec3(0, 0, 800), Vec3(120, 50, 650), Vec3(-140, -60, 560)};
 
-TEST_F(Depth, AKnownPointIsWhereItShouldBe) {
+TEST_F(Depth, a_known_point_is_where_it_should_be) {
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   double worst = 0, worst_aside = 0;
   for (const Vec3& head : kHeads)
@@ -80,7 +80,7 @@ TEST_F(Depth, AKnownPointIsWhereItShouldBe) {
   EXPECT_LT(worst_aside, 2);
 }
 
-TEST_F(Depth, ATiltedHeadSeesTheSameDepth) {
+TEST_F(Depth, a_tilted_head_sees_the_same_depth) {
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   for (const double depth : {-100.0, 100.0}) {
     show_square({20, 10, depth});
@@ -89,7 +89,7 @@ TEST_F(Depth, ATiltedHeadSeesTheSameDepth) {
   }
 }
 
-TEST_F(Depth, WithoutDepthTheSquareLiesOnTheScreen) {
+TEST_F(Depth, without_depth_the_square_lies_on_the_screen) {
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   show_square({0, 0, 80});
   Picture picture = picture_for({0, 0, 650});

@@ -72,12 +72,12 @@ class ThinLines : public OpticsTest {
   std::vector<viewer::Viewpoint> views_;
 };
 
-TEST_F(ThinLines, StayWholeAtHalfWidth) {
+TEST_F(ThinLines, stay_whole_at_half_width) {
   const Table table = look_at_lines("prism-mask");
   for (std::size_t i = 0; i < table.lines.size(); ++i) EXPECT_EQ(table.broken[i], 0) << kSlopes[i] << " degrees";
 }
 
-TEST_F(ThinLines, BreakUnderAStencil) {
+TEST_F(ThinLines, break_under_a_stencil) {
   const Table table = look_at_lines("prism-mask-stencil");
   // Known from lines of this length: 1, 23, 61, 38, 18 and 4.9 pieces.
   EXPECT_NEAR(table.mean(1), 23, 8);
@@ -87,7 +87,7 @@ TEST_F(ThinLines, BreakUnderAStencil) {
   EXPECT_NEAR(table.mean(5), 4.9, 2);
 }
 
-TEST_F(ThinLines, ABeamStaysWholeWithAndWithoutMultisampling) {
+TEST_F(ThinLines, a_beam_stays_whole_with_and_without_multisampling) {
   for (const int samples : {1, 4}) {
     make_renderer({.samples = samples});
     const Picture picture = at_head("prism-mask", {0, 0, 650});

@@ -39,7 +39,7 @@ class OwnPicture : public OpticsTest {
   }
 };
 
-TEST_F(OwnPicture, AnywhereInTheWorkingVolume) {
+TEST_F(OwnPicture, anywhere_in_the_working_volume) {
   make_renderer({});
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   show(test::make_crash_box());
@@ -56,7 +56,7 @@ TEST_F(OwnPicture, AnywhereInTheWorkingVolume) {
       }
 }
 
-TEST_F(OwnPicture, WhereverTheMaskIsKnownToStand) {
+TEST_F(OwnPicture, wherever_the_mask_is_known_to_stand) {
   make_renderer({});
   const viewer::MaskDisplay display = OpticsTest::display(1280, 120);
   show(test::make_crash_box());
@@ -74,7 +74,7 @@ TEST_F(OwnPicture, WhereverTheMaskIsKnownToStand) {
     }
 }
 
-TEST_F(OwnPicture, OnAnyPanel) {
+TEST_F(OwnPicture, on_any_panel) {
   // Widths that leave every remainder when divided by four: the even columns begin elsewhere.
   for (const int columns : {1024, 1366, 1279, 1281})
     for (const Vec3& head : {Vec3(0, 0, 650), Vec3(-85, 40, 700)}) {
@@ -88,7 +88,7 @@ TEST_F(OwnPicture, OnAnyPanel) {
     }
 }
 
-TEST_F(OwnPicture, WithTheHeadTilted) {
+TEST_F(OwnPicture, with_the_head_tilted) {
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   Picture picture = at_head("prism-mask", {-40, 30, 610});
   picture.toward_right = Vec3(0.96, 0.22, -0.17).normalized();
@@ -98,7 +98,7 @@ TEST_F(OwnPicture, WithTheHeadTilted) {
   EXPECT_LE(phase.worst_pixels, kOwnPhaseLimit);
 }
 
-TEST_F(OwnPicture, OnALeaningLenticularThatStandsStill) {
+TEST_F(OwnPicture, on_a_leaning_lenticular_that_stands_still) {
   make_renderer({});
   viewer::MaskDisplay display = OpticsTest::display(1280, 160);
   display.lean = 1.0 / 6;
@@ -113,7 +113,7 @@ TEST_F(OwnPicture, OnALeaningLenticularThatStandsStill) {
   }
 }
 
-TEST_F(OwnPicture, SwappedEyesAreNoticed) {
+TEST_F(OwnPicture, swapped_eyes_are_noticed) {
   make_renderer({});
   const viewer::MaskDisplay display = OpticsTest::display(1280, 120);
   show(test::make_crash_box());
@@ -127,7 +127,7 @@ TEST_F(OwnPicture, SwappedEyesAreNoticed) {
   }
 }
 
-TEST_F(OwnPicture, ThoughTheMaskLeaks) {
+TEST_F(OwnPicture, though_the_mask_leaks) {
   make_renderer({});
   const viewer::MaskDisplay display = OpticsTest::display(1280, 160);
   show(test::make_crash_box());

@@ -17,7 +17,7 @@ class PlainDisplays : public OpticsTest, public testing::WithParamInterface<std:
   }
 };
 
-TEST_P(PlainDisplays, EachEyeSeesItsOwnPicture) {
+TEST_P(PlainDisplays, each_eye_sees_its_own_picture) {
   make_renderer({});
   show(test::make_crash_box());
   const auto [profile, kind] = GetParam();
@@ -36,7 +36,7 @@ TEST_P(PlainDisplays, EachEyeSeesItsOwnPicture) {
   }
 }
 
-TEST_P(PlainDisplays, NothingOfTheOtherEyesLightComesThrough) {
+TEST_P(PlainDisplays, nothing_of_the_other_eyes_light_comes_through) {
   const auto [profile, kind] = GetParam();
   const Picture picture = at_head(profile, {0, 0, 650});
   for (const bool left : {true, false}) {

@@ -37,7 +37,7 @@ std::array<double, 2> depths(const Worst& worst) {
   return ends;
 }
 
-TEST_F(WorkingVolume, AShiftAloneServesAThinSlice) {
+TEST_F(WorkingVolume, a_shift_alone_serves_a_thin_slice) {
   const viewer::Owners columns = fixed_columns();
   const auto ends = depths([&](double distance) { return with_shift_alone(columns, {0, 0, distance}).worst_pixels; });
   std::cout << "mask's shift alone, head in the middle: " << ends[0] << " to " << ends[1] << " mm\n";
@@ -46,7 +46,7 @@ TEST_F(WorkingVolume, AShiftAloneServesAThinSlice) {
   EXPECT_NEAR(ends[1], 684, 3);
 }
 
-TEST_F(WorkingVolume, APhaseMapDoublesTheDepthAndTheWidth) {
+TEST_F(WorkingVolume, a_phase_map_doubles_the_depth_and_the_width) {
   const auto ends = depths([&](double distance) { return with_phase_map({0, 0, distance}).worst_pixels; });
   std::cout << "with a phase map, head in the middle: " << ends[0] << " to " << ends[1] << " mm\n";
   EXPECT_LE(ends[0], 560);
@@ -67,7 +67,7 @@ TEST_F(WorkingVolume, APhaseMapDoublesTheDepthAndTheWidth) {
   EXPECT_GT(both, 3 * shift_alone);
 }
 
-TEST_F(WorkingVolume, TheDriversOwnReportAgrees) {
+TEST_F(WorkingVolume, the_drivers_own_report_agrees) {
   using drivers::display::Composing;
   const drivers::display::MaskOptics optics;
   const drivers::display::PanelArea area{0, 0, display_.panel.columns, display_.panel.rows, display_.panel.columns, display_.panel.rows};
@@ -81,7 +81,7 @@ TEST_F(WorkingVolume, TheDriversOwnReportAgrees) {
   }
 }
 
-TEST_F(WorkingVolume, WhatTheServoDoesNotSayShowsAsPhaseError) {
+TEST_F(WorkingVolume, what_the_servo_does_not_say_shows_as_phase_error) {
   const Vec3 head(0, 0, 650);
   const Picture picture = at_head("prism-mask", head);
   const viewer::Owners found = owners(picture, display_.panel);

@@ -111,7 +111,7 @@ Picture nearer(Picture picture, const mesh::Vec3& at, double factor) {
   return picture;
 }
 
-TEST_F(GoldenPicture, EveryProfile) {
+TEST_F(GoldenPicture, every_profile) {
   show(model());
   for (const auto& profile : stereo::built_in_profiles()) {
     std::string name = profile.name;
@@ -120,7 +120,7 @@ TEST_F(GoldenPicture, EveryProfile) {
   }
 }
 
-TEST_F(GoldenPicture, PrismMaskFromTheSide) {
+TEST_F(GoldenPicture, prism_mask_from_the_side) {
   show(model());
   Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
   picture.between_eyes_mm = {150, 60, 520};
@@ -130,21 +130,21 @@ TEST_F(GoldenPicture, PrismMaskFromTheSide) {
   compare("prism_mask_from_the_side", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, CrosstalkTakenOut) {
+TEST_F(GoldenPicture, crosstalk_taken_out) {
   show(model());
   Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
   picture.profile.crosstalk = {0.1, 0.1};
   compare("crosstalk", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, AnaglyphFromTheSide) {
+TEST_F(GoldenPicture, anaglyph_from_the_side) {
   show(model());
   Picture picture = fitted("anaglyph", "iso", kWidth, kHeight);
   picture.between_eyes_mm = {120, 60, 550};
   compare("anaglyph_from_the_side", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, Quality) {
+TEST_F(GoldenPicture, quality) {
   show(model());
   Picture picture = fitted("mono", "iso", kWidth, kHeight);
   picture.colour = ColourMode::quality;
@@ -189,7 +189,7 @@ test::TestSource bad_shells() {
   return source;
 }
 
-TEST_F(GoldenPicture, Signs) {
+TEST_F(GoldenPicture, signs) {
   const test::TestSource source = bad_shells();
   show(source);
   Picture picture = fitted("mono", "top", 2 * kWidth, kHeight);
@@ -201,7 +201,7 @@ TEST_F(GoldenPicture, Signs) {
   compare("signs_far", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, PartsByTheirState) {
+TEST_F(GoldenPicture, parts_by_their_state) {
   show(model());
   Picture picture = fitted("mono", "iso", kWidth, kHeight);
   picture.colour = ColourMode::part_states;
@@ -210,7 +210,7 @@ TEST_F(GoldenPicture, PartsByTheirState) {
 }
 
 /// Before on the left, after on the right, by how far nodes went.
-TEST_F(GoldenPicture, BeforeAndAfterByDisplacement) {
+TEST_F(GoldenPicture, before_and_after_by_displacement) {
   test::TestSource before = model(), after = model();
   std::vector<float> way(after.positions.size(), 0);
   for (std::size_t n = 0; n < after.positions.size(); ++n) {
@@ -237,7 +237,7 @@ TEST_F(GoldenPicture, BeforeAndAfterByDisplacement) {
   compare("two_views_prism_mask", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, WhatASplitWouldDo) {
+TEST_F(GoldenPicture, what_a_split_would_do) {
   test::TestSource source = model();
   show(source);
   const mesh::ShellNodes quad = source.shell_nodes[22 * 12 + 11];
@@ -251,13 +251,13 @@ TEST_F(GoldenPicture, WhatASplitWouldDo) {
   compare("split", draw(nearer(fitted("mono", "iso", kWidth, kHeight), change.points[0], 4), kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, Lifting) {
+TEST_F(GoldenPicture, lifting) {
   Picture picture = lifted();
   picture.rubber_band = PixelRect{420, 40, 600, 130};
   compare("lifting", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, Shadows) {
+TEST_F(GoldenPicture, shadows) {
   Picture picture = lifted();
   picture.shadows = true;
   compare("shadows", draw(picture, kWidth, kHeight));
@@ -266,7 +266,7 @@ TEST_F(GoldenPicture, Shadows) {
   compare("shadows_of_the_selection", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, SelectedNodesBehindSomethingShowThrough) {
+TEST_F(GoldenPicture, selected_nodes_behind_something_show_through) {
   test::TestSource source = model();
   for (auto& state : source.shell_quality) state = {};
   const std::size_t plate = 23 * 31;  // the closing plate lies under the hat
@@ -276,7 +276,7 @@ TEST_F(GoldenPicture, SelectedNodesBehindSomethingShowThrough) {
   compare("selection", draw(nearer(fitted("mono", "iso", kWidth, kHeight), source.positions[23 * 14 + 11], 1.8), kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, Handle) {
+TEST_F(GoldenPicture, handle) {
   const test::TestSource source = model();
   show(source);
   const mesh::Vec3 foot = source.positions[23 * 14 + 13];
@@ -295,7 +295,7 @@ TEST_F(GoldenPicture, Handle) {
   compare("handle_side_by_side", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, Rotation) {
+TEST_F(GoldenPicture, rotation) {
   const test::TestSource source = model();
   show(source);
   const mesh::Vec3 grab = source.positions[23 * 14 + 11];
@@ -309,7 +309,7 @@ TEST_F(GoldenPicture, Rotation) {
   compare("rotation", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, Lasso) {
+TEST_F(GoldenPicture, lasso) {
   show(model());
   Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
   for (int i = 0; i < 60; ++i) {

@@ -30,12 +30,12 @@ class VerdictLibrary {
     if (quality() == nullptr) return nullptr;
     return [](double coordinates[][3]) {
       // The library's record is 23 numbers, in the order of its header; bits of the request in the order of its metrics.
-      enum { kSkew = 6, kTaper = 7, kWarpage = 8, kArea = 9, kStretch = 10, kSmallest = 11, kLargest = 12, kScaled = 16, kEdges = 1 };
+      enum { kSkew = 6, kTaper = 7, kWarpage = 8, kArea = 9, kStretch = 10, kMin = 11, kMax = 12, kScaled = 16, kEdges = 1 };
       constexpr unsigned kRequest = 1 | 2 | 4 | 8 | 16 | 32 | 64 | 128 | 2048;
       double record[32] = {};
       quality()(4, coordinates, kRequest, record);
-      return QuadValues{record[kSkew],     record[kTaper],   record[kWarpage], record[kArea], record[kStretch],
-                        record[kSmallest], record[kLargest], record[kScaled],  record[kEdges]};
+      return QuadValues{record[kSkew], record[kTaper], record[kWarpage], record[kArea], record[kStretch],
+                        record[kMin],  record[kMax],   record[kScaled],  record[kEdges]};
     };
   }
 

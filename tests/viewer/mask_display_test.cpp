@@ -8,7 +8,7 @@
 namespace prismesh::viewer {
 namespace {
 
-TEST(MaskDisplay, HasTheExamplesMeasures) {
+TEST(MaskDisplay, has_the_examples_measures) {
   const MaskDisplay display;
   EXPECT_NEAR(display.air_gap_mm(), 2.894, 5e-4);
   EXPECT_NEAR(display.glass_mm(), 4.40, 5e-3);
@@ -17,7 +17,7 @@ TEST(MaskDisplay, HasTheExamplesMeasures) {
   EXPECT_NEAR(display.ideal_mask_mm({63, 0, 650}), 0.5 * display.element_pitch_mm(), 1e-9) << "one eye separation: the eyes swap";
 }
 
-TEST(MaskDisplay, ARayInAirGoesStraight) {
+TEST(MaskDisplay, a_ray_in_air_goes_straight) {
   MaskDisplay air;
   air.index = 1;
   const Point eye{-120, 60, 500};
@@ -27,7 +27,7 @@ TEST(MaskDisplay, ARayInAirGoesStraight) {
   EXPECT_NEAR(place.v_mm, eye.y + t * (-30 - eye.y), 1e-9);
 }
 
-TEST(MaskDisplay, ARefractedRayObeysSnell) {
+TEST(MaskDisplay, a_refracted_ray_obeys_snell) {
   const MaskDisplay display;
   const Point eye{40, -20, 600};
   const double x = 150, y = 110;
@@ -38,7 +38,7 @@ TEST(MaskDisplay, ARefractedRayObeysSnell) {
   EXPECT_NEAR((place.u_mm - x) * (y - eye.y), (place.v_mm - y) * (x - eye.x), 1e-9) << "and stays in its plane";
 }
 
-TEST(MaskDisplay, AtTheDesignDistanceColumnsAlternateBetweenTheEyes) {
+TEST(MaskDisplay, at_the_design_distance_columns_alternate_between_the_eyes) {
   for (const int columns : {1280, 1366, 1279, 1281}) {
     MaskDisplay display;
     display.panel.columns = columns;
@@ -55,7 +55,7 @@ TEST(MaskDisplay, AtTheDesignDistanceColumnsAlternateBetweenTheEyes) {
   }
 }
 
-TEST(MaskDisplay, TheMaskFollowsTheHead) {
+TEST(MaskDisplay, the_mask_follows_the_head) {
   MaskDisplay display;
   display.lean = 0.1;
   for (const Point head : {Point{0, 0, 650}, Point{55, 30, 580}, Point{-90, -80, 720}}) {
@@ -67,7 +67,7 @@ TEST(MaskDisplay, TheMaskFollowsTheHead) {
   }
 }
 
-TEST(MaskDisplay, WindowAndElementAreEachOthersInverse) {
+TEST(MaskDisplay, window_and_element_are_each_others_inverse) {
   MaskDisplay display;
   display.lean = -0.21;
   const Point eye{-75, 42, 560};
@@ -81,7 +81,7 @@ TEST(MaskDisplay, WindowAndElementAreEachOthersInverse) {
   }
 }
 
-TEST(MaskDisplay, TwoDirectionsGiveThePlaceTheyCameFrom) {
+TEST(MaskDisplay, two_directions_give_the_place_they_came_from) {
   const Eyes eyes = eyes_around({30, -15, 640}, 61, {1, 0.05, 0.1});
   const Point at{-40, 25, 90};
   const auto aim = [&](const Point& eye) {
@@ -94,7 +94,7 @@ TEST(MaskDisplay, TwoDirectionsGiveThePlaceTheyCameFrom) {
   EXPECT_NEAR(found.z, at.z, 1e-9);
 }
 
-TEST(MaskDisplay, NonsenseIsNamed) {
+TEST(MaskDisplay, nonsense_is_named) {
   MaskDisplay display;
   EXPECT_TRUE(display.check());
   display.index = 0.5;

@@ -28,7 +28,7 @@ LightImage columns(const Panel& panel, Colour even, Colour odd) {
 
 constexpr Colour kRed{1, 0, 0}, kBlue{0, 0, 1}, kWhite{1, 1, 1}, kBlack{0, 0, 0};
 
-TEST(Seen, EachEyeSeesItsColumnsOnly) {
+TEST(Seen, each_eye_sees_its_columns_only) {
   const MaskDisplay display = small_display();
   const Eyes eyes = eyes_around({0, 0, 650});
   const LightImage picture = columns(display.panel, kWhite, kBlack);
@@ -41,7 +41,7 @@ TEST(Seen, EachEyeSeesItsColumnsOnly) {
     for (const float light : right.at(x, 3)) EXPECT_NEAR(light, 0, 0.03);
 }
 
-TEST(Seen, HalfAPeriodOfTheMaskSwapsTheEyes) {
+TEST(Seen, half_a_period_of_the_mask_swaps_the_eyes) {
   const MaskDisplay display = small_display();
   const Eyes eyes = eyes_around({0, 0, 650});
   const LightImage picture = columns(display.panel, kRed, kBlue);
@@ -50,7 +50,7 @@ TEST(Seen, HalfAPeriodOfTheMaskSwapsTheEyes) {
   EXPECT_NEAR(seen.at(50, 4)[2], 1, 0.03);
 }
 
-TEST(Seen, AMaskOffByAQuarterMixesHalfOfEach) {
+TEST(Seen, a_mask_off_by_a_quarter_mixes_half_of_each) {
   const MaskDisplay display = small_display();
   const Seen seen =
       *look(display, columns(display.panel, kWhite, kBlack), eyes_around({0, 0, 650}).left, 0.25 * display.element_pitch_mm());
@@ -61,14 +61,14 @@ TEST(Seen, AMaskOffByAQuarterMixesHalfOfEach) {
   EXPECT_NEAR(std::abs(light[0] - light[2]), 1, 0.03) << "a colour fringe";
 }
 
-TEST(Seen, WholePixelsMixAllColoursAlike) {
+TEST(Seen, whole_pixels_mix_all_colours_alike) {
   MaskDisplay display = small_display();
   display.panel.stripes = Stripes::none;
   const Seen seen = *look(display, columns(display.panel, kWhite, kBlack), eyes_around({0, 0, 650}).left, 0.1 * display.element_pitch_mm());
   for (const float light : seen.at(50, 4)) EXPECT_NEAR(light, 0.8, 0.03);
 }
 
-TEST(Seen, StripesLieWhereThePanelHasThem) {
+TEST(Seen, stripes_lie_where_the_panel_has_them) {
   MaskDisplay display = small_display();
   LightImage picture(display.panel.columns, display.panel.rows);
   for (int y = 0; y < display.panel.rows; ++y) picture.at(100, y) = kWhite;
@@ -87,21 +87,21 @@ TEST(Seen, StripesLieWhereThePanelHasThem) {
   }
 }
 
-TEST(Seen, LeakIsTheOtherEyesLight) {
+TEST(Seen, leak_is_the_other_eyes_light) {
   const MaskDisplay display = small_display();
   const Seen seen = *look(display, columns(display.panel, kRed, kBlue), eyes_around({0, 0, 650}).left, 0, {1, 0.07});
   EXPECT_NEAR(seen.at(50, 4)[0], 1, 0.03);
   EXPECT_NEAR(seen.at(50, 4)[2], 0.07, 0.01);
 }
 
-TEST(Seen, BlackBetweenStripesDarkensNothingOfAWholePixel) {
+TEST(Seen, black_between_stripes_darkens_nothing_of_a_whole_pixel) {
   MaskDisplay display = small_display();
   display.panel.black_share = 0.3;
   const Seen seen = *look(display, LightImage(200, 8, kWhite), eyes_around({0, 0, 650}).left, 0);
   for (const float light : seen.at(50, 4)) EXPECT_NEAR(light, 1, 1e-4) << "a pixel's light is given, however it is spread";
 }
 
-TEST(Seen, TheGridShowsARampWhereItIs) {
+TEST(Seen, the_grid_shows_a_ramp_where_it_is) {
   const MaskDisplay display = small_display();
   LightImage ramp(200, 8);
   for (int y = 0; y < 8; ++y)
@@ -114,7 +114,7 @@ TEST(Seen, TheGridShowsARampWhereItIs) {
   }
 }
 
-TEST(Seen, TheOthersShareIsFound) {
+TEST(Seen, the_others_share_is_found) {
   const MaskDisplay display = small_display();
   LightImage own(200, 8), other(200, 8), mixed(200, 8);
   for (int y = 0; y < 8; ++y)
@@ -129,7 +129,7 @@ TEST(Seen, TheOthersShareIsFound) {
   EXPECT_EQ(share_of_other(places, places, places), 0);
 }
 
-TEST(Seen, PiecesAreCounted) {
+TEST(Seen, pieces_are_counted) {
   const MaskDisplay display = small_display();
   const LightImage dark(200, 8);
   LightImage lines = dark;
@@ -140,7 +140,7 @@ TEST(Seen, PiecesAreCounted) {
   EXPECT_EQ(pieces_in(*look(display, dark, eye, 0), *look(display, dark, eye, 0)), 0);
 }
 
-TEST(Seen, WhatCannotBeIsRefused) {
+TEST(Seen, what_cannot_be_is_refused) {
   const MaskDisplay display = small_display();
   EXPECT_FALSE(look(display, LightImage(199, 8), {0, 0, 650}, 0));
   EXPECT_FALSE(look(display, LightImage(200, 8), {0, 0, -650}, 0));
@@ -157,7 +157,7 @@ Owners alternating(const Panel& panel, int stripes_shifted = 0) {
   return *owners_of(panel, left, right);
 }
 
-TEST(Owners, StripesAreReadFromPictures) {
+TEST(Owners, stripes_are_read_from_pictures) {
   const Panel panel = small_display().panel;
   const Owners owners = alternating(panel, 1);
   EXPECT_EQ(owners.at(3, 0), Owner::right);
@@ -167,7 +167,7 @@ TEST(Owners, StripesAreReadFromPictures) {
   EXPECT_FALSE(owners_of(panel, LightImage(4, 4), LightImage(4, 5)));
 }
 
-TEST(PhaseErrors, AreTheDistanceFromTheWindowToTheMiddleOfTheRun) {
+TEST(PhaseErrors, are_the_distance_from_the_window_to_the_middle_of_the_run) {
   const MaskDisplay display = small_display();
   const Eyes eyes = eyes_around({0, 0, 650});
   EXPECT_LT(phase_summary(display, alternating(display.panel), eyes, 0, {4}).worst_pixels, 0.02);
@@ -184,7 +184,7 @@ TEST(PhaseErrors, AreTheDistanceFromTheWindowToTheMiddleOfTheRun) {
       std::isinf(phase_summary(display, *owners_of(display.panel, LightImage(200, 8), LightImage(200, 8)), eyes, 0, {4}).worst_pixels));
 }
 
-TEST(PhaseErrors, GrowAtTheScreensEdgeWithDepthAsTheLawSays) {
+TEST(PhaseErrors, grow_at_the_screens_edge_with_depth_as_the_law_says) {
   MaskDisplay display;
   display.panel.rows = 1;
   for (const double distance : {580.0, 700.0}) {
@@ -194,7 +194,7 @@ TEST(PhaseErrors, GrowAtTheScreensEdgeWithDepthAsTheLawSays) {
   }
 }
 
-TEST(PlainDisplays, GiveEachEyeItsPart) {
+TEST(PlainDisplays, give_each_eye_its_part) {
   LightImage picture(4, 4);
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) picture.at(x, y) = {static_cast<float>(x), static_cast<float>(y), 0.5F};
@@ -208,7 +208,7 @@ TEST(PlainDisplays, GiveEachEyeItsPart) {
   EXPECT_FALSE(plain_kind_from("hologram"));
 }
 
-TEST(PlainDisplays, ResizingKeepsTheLight) {
+TEST(PlainDisplays, resizing_keeps_the_light) {
   LightImage picture(6, 2);
   for (int x = 0; x < 6; ++x) picture.at(x, 0) = {static_cast<float>(x), 0, 0};
   const LightImage small = resized(picture, 4, 1);

@@ -7,7 +7,7 @@
 namespace prismesh::drivers::eye_tracker::dynasight {
 namespace {
 
-constexpr double kMost = std::numeric_limits<std::int16_t>::max();
+constexpr double kMax = std::numeric_limits<std::int16_t>::max();
 
 std::int16_t big_endian(std::byte high, std::byte low) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(std::to_integer<unsigned>(high) << 8 | std::to_integer<unsigned>(low)));
@@ -15,7 +15,7 @@ std::int16_t big_endian(std::byte high, std::byte low) {
 
 int exponent_for(double largest_units) {
   int exponent = 0;
-  while (exponent < kLargestExponent && std::round(largest_units / (1 << exponent)) > kMost) ++exponent;
+  while (exponent < kMaxExponent && std::round(largest_units / (1 << exponent)) > kMax) ++exponent;
   return exponent;
 }
 
@@ -50,7 +50,7 @@ Record record_for(const Eigen::Vector3d& place_mm, Status status, int target) {
   Record record{.status = status, .target = target, .exponent = exponent_for(units.cwiseAbs().maxCoeff()), .numbers = {}};
   for (int axis = 0; axis < 3; ++axis) {
     const double number = std::round(units[axis] / (1 << record.exponent));
-    record.numbers[static_cast<std::size_t>(axis)] = static_cast<std::int16_t>(std::clamp(number, -kMost, kMost));
+    record.numbers[static_cast<std::size_t>(axis)] = static_cast<std::int16_t>(std::clamp(number, -kMax, kMax));
   }
   return record;
 }

@@ -19,7 +19,7 @@ namespace prismesh::drivers::eye_tracker::dynasight {
 
 inline constexpr std::size_t kRecordBytes = 8;
 inline constexpr double kUnitMm = 0.05;
-inline constexpr int kLargestExponent = 3;
+inline constexpr int kMaxExponent = 3;
 
 enum class Status : std::uint8_t {
   search = 0,   ///< no target; the coordinates mean nothing

@@ -8,7 +8,7 @@
 namespace prismesh::drivers::eye_tracker::dynasight {
 namespace {
 
-constexpr std::int32_t kLargestStepUnits = static_cast<std::int32_t>(kLargestStepMm / kUnitMm);
+constexpr std::int32_t kMaxStepUnits = static_cast<std::int32_t>(kMaxStepMm / kUnitMm);
 // A coordinate whose high byte looks like a marker is at least this large, whatever the exponent: 1433.6 mm. Nobody who looks at the
 // display is there, and this is what tells a stream cut one byte early from the right one: there x begins with the second marker.
 constexpr std::int32_t kMarkerUnits = 0x7000;
@@ -26,7 +26,7 @@ bool continues(const Record& before, const Record& after) {
   if (before.target != after.target) return false;
   if (!before.sees_head() || !after.sees_head()) return true;  // a search's coordinates mean nothing
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (std::abs(after.units(axis) - before.units(axis)) > kLargestStepUnits) return false;
+    if (std::abs(after.units(axis) - before.units(axis)) > kMaxStepUnits) return false;
   return true;
 }
 

@@ -21,7 +21,7 @@ inline constexpr int kAgreeingRecordsRivalled = 16;  ///< when another way has i
 inline constexpr int kAgreeingRecordsToRegain = 2;   ///< when they go on from where the head was just before a byte got lost
 inline constexpr int kBadRecordsToLoss = 3;          ///< in a row, before synchronisation counts as lost
 inline constexpr std::size_t kRegainBytes = 480;     ///< what is remembered of the head after a loss, counted in bytes since: a second's
-inline constexpr double kLargestStepMm = 40;         ///< between two records, along each axis: 2.4 m/s at 60 Hz
+inline constexpr double kMaxStepMm = 40;             ///< between two records, along each axis: 2.4 m/s at 60 Hz
 
 /// What a byte completed.
 struct Heard {

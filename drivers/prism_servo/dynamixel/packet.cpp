@@ -28,7 +28,7 @@ constexpr std::uint8_t low(unsigned value) { return static_cast<std::uint8_t>(va
 /// Writes a packet from front to back, stuffing as it goes.
 class Writer {
  public:
-  explicit Writer(std::span<std::byte> to) : to_(to.first(std::min(to.size(), kLongestPacket))) {}
+  explicit Writer(std::span<std::byte> to) : to_(to.first(std::min(to.size(), kMaxPacketLength))) {}
 
   void plain(std::uint8_t byte) {
     if (size_ < to_.size()) to_[size_] = static_cast<std::byte>(byte);
@@ -139,7 +139,7 @@ Parser::Found Parser::look() {
   const std::size_t total = kInstructionAt + length;
   const bool answer_is_short =
       size_ > kInstructionAt && buffer_[kInstructionAt] == static_cast<std::uint8_t>(Instruction::status) && length < 4;
-  if (buffer_[kIdAt] > kBroadcastId || buffer_[kIdAt] == 0xFD || length < 3 || total > kLongestPacket || answer_is_short) {
+  if (buffer_[kIdAt] > kBroadcastId || buffer_[kIdAt] == 0xFD || length < 3 || total > kMaxPacketLength || answer_is_short) {
     ++bad_packets_;
     ++bytes_skipped_;
     drop(1);
@@ -189,7 +189,7 @@ bool Parser::unpack(std::size_t end) {
       error_is_next = false;
       continue;
     }
-    if (packet_.count == kMostParameters) return false;
+    if (packet_.count == kMaxParameters) return false;
     packet_.parameters[packet_.count++] = byte;
   }
   return last_three != 0xFFFFFDU && !error_is_next;

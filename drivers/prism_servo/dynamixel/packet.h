@@ -41,8 +41,8 @@ inline constexpr std::uint8_t kBroadcastId = 0xFE;
 inline constexpr std::uint8_t kLastId = 252;
 inline constexpr std::uint8_t kAlertBit = 0x80;
 /// No packet of this dialogue is longer; a length field that says more is noise.
-inline constexpr std::size_t kLongestPacket = 128;
-inline constexpr std::size_t kMostParameters = 80;
+inline constexpr std::size_t kMaxPacketLength = 128;
+inline constexpr std::size_t kMaxParameters = 80;
 /// Bytes around the parameters: header, id, length, instruction, CRC.
 inline constexpr std::size_t kPacketFrame = 10;
 
@@ -52,7 +52,7 @@ struct Packet {
   std::uint8_t error = 0;  ///< of a status: Refusal, without the alert bit
   bool alert = false;      ///< of a status
   std::uint8_t count = 0;  ///< of parameters, the error byte of a status not among them
-  std::array<std::uint8_t, kMostParameters> parameters{};
+  std::array<std::uint8_t, kMaxParameters> parameters{};
 
   std::span<const std::uint8_t> data() const { return {parameters.data(), count}; }
 };
@@ -60,7 +60,7 @@ struct Packet {
 /// CRC-16, polynomial 0x8005, most significant bit first. `from`: of the bytes before.
 std::uint16_t crc16(std::span<const std::uint8_t> bytes, std::uint16_t from = 0);
 
-/// An instruction's bytes, stuffed. Returns their number, 0 if they don't fit into `to` or are longer than kLongestPacket.
+/// An instruction's bytes, stuffed. Returns their number, 0 if they don't fit into `to` or are longer than kMaxPacketLength.
 std::size_t encode(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters, std::span<std::byte> to);
 /// A servo's answer. `error` with its alert bit.
 std::size_t encode_status(std::uint8_t id, std::uint8_t error, std::span<const std::uint8_t> parameters, std::span<std::byte> to);
@@ -78,7 +78,7 @@ std::uint32_t number_at(std::span<const std::uint8_t> data, std::size_t at, std:
 class Parser {
  public:
   /// Takes bytes in and returns how many: all of them if `next` has been called until it returned nullptr and there are no more than
-  /// kLongestPacket.
+  /// kMaxPacketLength.
   std::size_t take(std::span<const std::byte> bytes);
   /// The next whole packet whose CRC is right, instructions (an adapter's echo) as well as answers; valid until the next call.
   const Packet* next();
@@ -95,7 +95,7 @@ class Parser {
   std::size_t next_header(std::size_t from, std::size_t end) const;
   void drop(std::size_t bytes);
 
-  std::array<std::uint8_t, 2 * kLongestPacket> buffer_{};
+  std::array<std::uint8_t, 2 * kMaxPacketLength> buffer_{};
   std::size_t size_ = 0;
   Packet packet_;
   std::uint64_t bad_packets_ = 0, bytes_skipped_ = 0;

@@ -123,7 +123,7 @@ std::int64_t Servo::line_ns(std::size_t bytes) const {
 // --- what comes in ---
 
 void Servo::hear(std::int64_t now_ns) {
-  std::array<std::byte, kLongestPacket> bytes;
+  std::array<std::byte, kMaxPacketLength> bytes;
   // Bounded: a line that never falls silent must not hold the tick.
   for (int round = 0; round < 8; ++round) {
     const port::PortCount count = port_.read(bytes);

@@ -111,7 +111,7 @@ class Servo final : public PrismServo {
   PrismServo::Counts counts_;
   Stage stage_ = Stage::searching;
   Question question_;
-  std::array<std::byte, 2 * kLongestPacket> out_{};
+  std::array<std::byte, 2 * kMaxPacketLength> out_{};
   std::size_t out_size_ = 0;
   std::int64_t line_free_ns_ = 0;  ///< nothing is sent before: the line is ours and the servo's in turn
   std::int64_t last_sent_ns_ = 0;

@@ -103,7 +103,7 @@ void SimulatedServo::step(std::int64_t now_ns) {
 }
 
 void SimulatedServo::hear(std::int64_t now_ns) {
-  std::array<std::byte, kLongestPacket> bytes;
+  std::array<std::byte, kMaxPacketLength> bytes;
   while (true) {
     const port::PortCount count = port_.read(bytes);
     if (count.bytes == 0) break;
@@ -142,7 +142,7 @@ void SimulatedServo::ping(std::int64_t now_ns) {
 void SimulatedServo::read(const Packet& packet, std::int64_t now_ns) {
   if (value(kStatusReturnLevel) < kAnswerReads || packet.id == kBroadcastId) return;
   const std::size_t from = number_at(packet.data(), 0, 2), count = number_at(packet.data(), 2, 2);
-  if (packet.count != 4 || count == 0 || count > kMostParameters || !readable(from, from + count)) {
+  if (packet.count != 4 || count == 0 || count > kMaxParameters || !readable(from, from + count)) {
     ++counts_.refused;
     return answer(now_ns, Refusal::access, {});
   }

@@ -67,7 +67,7 @@ class SimulatedServo {
   struct Answer {
     std::int64_t due_ns = 0;
     std::size_t size = 0;
-    std::array<std::byte, kLongestPacket> bytes{};
+    std::array<std::byte, kMaxPacketLength> bytes{};
   };
   void factory_registers();
   void forget_volatile();

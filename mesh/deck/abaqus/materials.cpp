@@ -148,9 +148,9 @@ class Reader {
     // The thickness then comes from nodes or from a distribution.
     if (given.has("NODALTHICKNESS") || given.has("SHELLTHICKNESS")) return;
     if (given.has("COMPOSITE")) {
-      constexpr std::size_t kMostLayers = 100000;
+      constexpr std::size_t kMaxLayers = 100000;
       double sum = 0;
-      for (const std::string_view line : lines_of(block, kMostLayers)) {
+      for (const std::string_view line : lines_of(block, kMaxLayers)) {
         const auto [thickness, points, material] = first_fields<3>(line);
         sum += number(thickness).value_or(0);
         if (!part.material) take_layer_material(material, part);

@@ -7,8 +7,8 @@
 namespace prismesh::mesh::deck::abaqus {
 namespace {
 
-constexpr std::size_t kFullLine = 16;     // fields of a line that goes on in the next without a comma at its end
-constexpr std::size_t kMostNodes = 5000;  // of an element without a known number of them
+constexpr std::size_t kFullLine = 16;    // fields of a line that goes on in the next without a comma at its end
+constexpr std::size_t kMaxNodes = 5000;  // of an element without a known number of them
 
 /// Digits; anything else is for the slow way.
 inline bool plain_integer(std::string_view field, std::int64_t& value) {
@@ -107,7 +107,7 @@ class PieceReader {
       numbers_.clear();
       skip_ = nullptr;
       const std::size_t offset = line.offset;
-      const std::size_t wanted = type_->nodes > 0 ? type_->nodes + 1u : kMostNodes + 1;
+      const std::size_t wanted = type_->nodes > 0 ? type_->nodes + 1u : kMaxNodes + 1;
       if (!read_line(line)) return false;
       // A card goes on where its line ends with a comma, or is full.
       while (numbers_.size() < wanted && (line.text.back() == ',' || (type_->nodes > 0 && numbers_.size() % kFullLine == 0)) &&
@@ -138,13 +138,13 @@ class PieceReader {
           return fail_at(line.offset,
                          std::string("expected ") + (numbers_.empty() ? "an element" : "a node") + " number but found " + quoted(field));
       }
-      if (numbers_.size() <= kMostNodes) numbers_.push_back(value);
+      if (numbers_.size() <= kMaxNodes) numbers_.push_back(value);
     }
     return true;
   }
 
   void add_element(std::size_t offset) {
-    const std::size_t nodes = std::min<std::size_t>(numbers_.size() - 1, type_->nodes > 0 ? type_->nodes : kMostNodes);
+    const std::size_t nodes = std::min<std::size_t>(numbers_.size() - 1, type_->nodes > 0 ? type_->nodes : kMaxNodes);
     const auto node = [&](std::size_t n) { return numbers_[n + 1]; };
     if (type_->element_class == ElementClass::shell) {
       const std::size_t corners = type_->corners;

@@ -81,16 +81,16 @@ Result<void> shift_instances(Walk& walk, Found& found) {
     extent.add(cards.shells.id);
     for (const RawElements& elements : cards.elements) extent.add(elements.id);
   }
-  constexpr std::int64_t kLargest = 900'000'000'000'000'000;
+  constexpr std::int64_t kMax = 900'000'000'000'000'000;
   std::int64_t used = extents.back().last;
   std::int64_t least = extents.back().first;
   for (std::size_t i = 0; i < walk.instances.size(); ++i) {
     if (extents[i].last == 0) continue;
     if (extents[i].first <= used && extents[i].last >= least) {
       std::int64_t round = 1000;
-      while (round < extents[i].last && round < kLargest / 10) round *= 10;
+      while (round < extents[i].last && round < kMax / 10) round *= 10;
       const std::int64_t shift = (used / round + 1) * round;
-      if (shift > kLargest - extents[i].last)
+      if (shift > kMax - extents[i].last)
         return fail(found.files[0].path.string(), "has instances whose numbers are too large to be told apart");
       walk.instances[i].shift = shift;
       found.warnings.note("renumbered-instance", walk.scopes[walk.instances[i].scope].file, walk.scopes[walk.instances[i].scope].begin,

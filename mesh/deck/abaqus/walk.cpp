@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostWords = 60000;
+constexpr std::size_t kMaxWords = 60000;
 constexpr std::string_view kOtherWord = "(another keyword)";
 
 Frame::Kind kind_of(std::string_view system) {
@@ -87,9 +87,9 @@ void Walk::include(std::uint32_t from, std::size_t offset, std::string_view name
     warnings.note_each("missing-include", from, offset, "the include file " + shown + " " + reason);
   else if (open_[file])
     warnings.note("circular-include", from, offset, "the include file " + shown + " includes itself; it is read once");
-  else if (depth >= kDeepestInclude)
+  else if (depth >= kMaxIncludeDepth)
     warnings.note("deep-include", from, offset,
-                  "the include file " + shown + " is nested more than " + std::to_string(kDeepestInclude) + " deep; it isn't read");
+                  "the include file " + shown + " is nested more than " + std::to_string(kMaxIncludeDepth) + " deep; it isn't read");
   else if (uses_[file]++ > 0)
     warnings.note("repeated-include", from, offset, "the include file " + shown + " is included again; it is read once");
   else
@@ -99,7 +99,7 @@ void Walk::include(std::uint32_t from, std::size_t offset, std::string_view name
 std::uint32_t Walk::word_of(const std::string& name) {
   const auto at = word_by_name_.find(name);
   if (at != word_by_name_.end()) return at->second;
-  if (words.size() >= kMostWords) return word_of(std::string(kOtherWord));
+  if (words.size() >= kMaxWords) return word_of(std::string(kOtherWord));
   words.push_back(name);
   return word_by_name_[name] = static_cast<std::uint32_t>(words.size() - 1);
 }
@@ -231,12 +231,12 @@ namespace {
 
 /// A place to cut after about `wanted`: where a line's end is a card's end for certain. `end` if there is none soon.
 std::size_t card_boundary(std::string_view text, std::size_t wanted, std::size_t end, bool elements) {
-  constexpr int kMostLines = 1000;
+  constexpr int kMaxLines = 1000;
   constexpr std::ptrdiff_t kCommasOfFullLine = 15;  // commas of a line that is full, so that it may go on without a comma at its end
   std::size_t begin = text.find('\n', wanted);
   if (begin == std::string_view::npos || ++begin >= end) return end;
   if (!elements) return begin;
-  for (int line = 0; line < kMostLines; ++line) {
+  for (int line = 0; line < kMaxLines; ++line) {
     const std::size_t next = text.find('\n', begin);
     if (next == std::string_view::npos || next + 1 >= end) return end;
     const std::string_view shown = trim(text.substr(begin, next - begin));
@@ -339,7 +339,7 @@ void Walk::read_values() {
 
 /// A piece for each instance of its part.
 Result<void> Walk::place_instances() {
-  constexpr std::size_t kMostCopied = std::size_t{256} << 20;
+  constexpr std::size_t kMaxCopied = std::size_t{256} << 20;
   std::vector<std::size_t> bytes(scopes.size());
   for (const Piece& piece : pieces)
     if (piece.instance == kNone)
@@ -366,7 +366,7 @@ Result<void> Walk::place_instances() {
       warnings.note_each("repeated-part", scope.file, scope.begin,
                          "the part " + scope.name + " has " + std::to_string(scope.instances.size()) +
                              " instances: each is shown, and their nodes can't be moved");
-      if (bytes[s] > 0 && scope.instances.size() - 1 > (kMostCopied - copied) / bytes[s])
+      if (bytes[s] > 0 && scope.instances.size() - 1 > (kMaxCopied - copied) / bytes[s])
         return fail(files.files[scope.file].path.string(), line_number(text(scope.file), scope.begin),
                     "the part " + scope.name + " has " + std::to_string(scope.instances.size()) +
                         " instances; all of them together are more than this version shows");

@@ -16,7 +16,7 @@ namespace {
 
 /// "Floating point numbers can occupy 20 spaces at most, including the sign, the point and the exponent."
 constexpr std::size_t kNumberWidth = 20;
-constexpr std::int64_t kLargestId = 999'999'999;
+constexpr std::int64_t kMaxId = 999'999'999;
 constexpr std::size_t kIdsOnALine = 16;
 
 std::size_t end_of_line(std::string_view text, std::size_t offset) {
@@ -312,8 +312,8 @@ class Writer : public CardWriter {
     return std::vector<Replacement>{{tail.at, 0, unended ? tail.line_end + lines : lines + tail.line_end}};
   }
 
-  std::int64_t largest_node_id(std::uint16_t style) const override { return (style & kStyleShifted) != 0 ? 0 : kLargestId; }
-  std::int64_t largest_shell_id(std::uint16_t style) const override { return (style & kStyleShifted) != 0 ? 0 : kLargestId; }
+  std::int64_t largest_node_id(std::uint16_t style) const override { return (style & kStyleShifted) != 0 ? 0 : kMaxId; }
+  std::int64_t largest_shell_id(std::uint16_t style) const override { return (style & kStyleShifted) != 0 ? 0 : kMaxId; }
 
  private:
   mutable BlockFinder blocks_{is_keyword};

@@ -26,7 +26,7 @@ std::string expand_tabs(std::string_view line) {
 void Card::cut(std::string_view line, std::span<const int> widths, Columns columns) {
   count_ = 0;
   if (line.find(',') != std::string_view::npos) {
-    while (count_ < kMostFields) {
+    while (count_ < kMaxFields) {
       const std::size_t comma = line.find(',');
       fields_[count_++] = trim(line.substr(0, comma));
       if (comma == std::string_view::npos) return;
@@ -39,7 +39,7 @@ void Card::cut(std::string_view line, std::span<const int> widths, Columns colum
     line = expanded_;
   }
   for (const int standard : widths) {
-    if (line.empty() || count_ == kMostFields) return;
+    if (line.empty() || count_ == kMaxFields) return;
     const auto width = std::min(static_cast<std::size_t>(field_width(standard, columns)), line.size());
     fields_[count_++] = trim(line.substr(0, width));
     line.remove_prefix(width);

@@ -15,7 +15,7 @@ namespace prismesh::mesh::deck::lsdyna {
 
 class Parameters;
 
-inline constexpr std::size_t kMostFields = 24;
+inline constexpr std::size_t kMaxFields = 24;
 inline constexpr int kWideColumns = 20;
 
 /// The width of a field in a column layout: eight columns become ten with I10, all become twenty when wide.
@@ -40,7 +40,7 @@ class Card {
   std::optional<std::int64_t> integer(std::size_t field, const Parameters& parameters) const;
 
  private:
-  std::array<std::string_view, kMostFields> fields_;
+  std::array<std::string_view, kMaxFields> fields_;
   std::size_t count_ = 0;
   std::string expanded_;
 };

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Affine3d;
 
 /// Transformations by nodes of includes that are transformed by nodes themselves: deeper nobody goes on purpose.
-constexpr int kDeepestLookup = 32;
+constexpr int kMaxLookupDepth = 32;
 constexpr double kFarthest = 1e60;
 constexpr double kFarthestNode = 1e200;
 
@@ -78,7 +78,7 @@ class Resolver {
   std::optional<Affine3d> own_map(std::uint32_t c, int depth) {
     State& state = states_[c];
     if (state.progress == Progress::done) return state.own;
-    if (state.progress == Progress::begun || depth > kDeepestLookup) return std::nullopt;
+    if (state.progress == Progress::begun || depth > kMaxLookupDepth) return std::nullopt;
     state.progress = Progress::begun;
     const IncludeContext& context = contexts_[c];
     Affine3d moved = Affine3d::Identity();

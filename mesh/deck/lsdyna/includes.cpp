@@ -9,8 +9,8 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-constexpr std::size_t kLongestName = 4096;
-constexpr std::size_t kMostPaths = 100;
+constexpr std::size_t kMaxNameLength = 4096;
+constexpr std::size_t kMaxPaths = 100;
 
 /// Whether a name goes on in the next line.
 bool goes_on(std::string_view part) {
@@ -40,7 +40,7 @@ std::vector<IncludeName> include_names(std::string_view text, const Block& block
     name_goes_on = goes_on(part);
     if (name_goes_on) part = trim(part.substr(0, part.size() - 1));
     std::string& name = names.back().name;
-    if (name.size() + part.size() <= kLongestName) name += part;
+    if (name.size() + part.size() <= kMaxNameLength) name += part;
   }
   // Some writers put names with blanks between quotes.
   for (IncludeName& each : names) {
@@ -59,9 +59,9 @@ bool IncludeContext::same_as(const IncludeContext& other) const {
 namespace {
 
 /// Greater offsets fit no field, and their sums must stay numbers.
-constexpr std::int64_t kLargestOffset = 1'000'000'000'000'000;
-constexpr double kLargestFactor = 1e30;
-constexpr std::size_t kLongestAffix = 256;
+constexpr std::int64_t kMaxOffset = 1'000'000'000'000'000;
+constexpr double kMaxFactor = 1e30;
+constexpr std::size_t kMaxAffixLength = 256;
 
 /// The fields of an *INCLUDE_TRANSFORM after the file's name.
 class TransformCards {
@@ -77,8 +77,8 @@ class TransformCards {
     } else if (number == 2) {
       add_offset(0, to.other);
       // The outer include's prefix stands before the inner one's.
-      if (!card.text(1).empty()) context.prefix = (context.prefix + std::string(card.text(1)) + ".").substr(0, kLongestAffix);
-      if (!card.text(2).empty()) context.suffix = ("." + std::string(card.text(2)) + context.suffix).substr(0, kLongestAffix);
+      if (!card.text(1).empty()) context.prefix = (context.prefix + std::string(card.text(1)) + ".").substr(0, kMaxAffixLength);
+      if (!card.text(2).empty()) context.suffix = ("." + std::string(card.text(2)) + context.suffix).substr(0, kMaxAffixLength);
     } else if (number == 3) {
       context.mass *= factor(0);
       context.time *= factor(1);
@@ -93,7 +93,7 @@ class TransformCards {
  private:
   void add_offset(std::size_t field, std::int64_t& to) {
     const std::optional<std::int64_t> value = card_->integer(field, parameters_);
-    if (value && *value > -kLargestOffset && *value < kLargestOffset)
+    if (value && *value > -kMaxOffset && *value < kMaxOffset)
       to += *value;
     else
       problem_ = "has an offset of ids that can't be used";
@@ -101,7 +101,7 @@ class TransformCards {
   double factor(std::size_t field) {
     const std::optional<double> value = card_->real(field, parameters_);
     if (value && *value == 0) return 1;
-    if (value && *value > 1 / kLargestFactor && *value < kLargestFactor) return *value;
+    if (value && *value > 1 / kMaxFactor && *value < kMaxFactor) return *value;
     problem_ = "has a factor of units that can't be used";
     return 1;
   }
@@ -134,7 +134,7 @@ IncludeContext read_transform(std::string_view text, const Block& block, const P
   }
   // Where factors multiply up beyond all units, positions would be no numbers any more.
   for (double* const factor : {&context.mass, &context.time, &context.length})
-    if (!(*factor > 1 / kLargestFactor && *factor < kLargestFactor)) {
+    if (!(*factor > 1 / kMaxFactor && *factor < kMaxFactor)) {
       *factor = 1;
       problem = "has a factor of units that can't be used";
     }
@@ -142,7 +142,7 @@ IncludeContext read_transform(std::string_view text, const Block& block, const P
 }
 
 void IncludeSearch::add_path(const std::string& path) {
-  if (paths_.size() < kMostPaths) paths_.push_back(main_folder_ / with_slashes(path));
+  if (paths_.size() < kMaxPaths) paths_.push_back(main_folder_ / with_slashes(path));
 }
 
 std::vector<std::filesystem::path> IncludeSearch::folders(const std::filesystem::path& from_folder) const {

@@ -9,7 +9,7 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-constexpr std::size_t kLongestKeyword = 256;
+constexpr std::size_t kMaxKeywordLength = 256;
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 std::size_t line_feed_at(std::string_view text, std::size_t at) {
@@ -42,7 +42,7 @@ void read_keyword_options(std::string_view rest, Columns& columns) {
 /// Name and columns from a keyword line; `columns` holds what the *KEYWORD line said.
 Block read_keyword(std::string_view line, Columns& columns) {
   Block block;
-  line = trim(line.substr(1)).substr(0, kLongestKeyword);
+  line = trim(line.substr(1)).substr(0, kMaxKeywordLength);
   const std::string text = upper(line);
   std::size_t length = 0;
   while (length < text.size() && text[length] != ' ' && text[length] != '\t' && text[length] != ',') ++length;

@@ -13,8 +13,8 @@ constexpr std::array<int, 4> kNodeWidths = {8, 16, 16, 16};
 constexpr std::array<int, 10> kElementWidths = {8, 8, 8, 8, 8, 8, 8, 8, 8, 8};
 constexpr std::array<int, 5> kThicknessWidths = {16, 16, 16, 16, 16};
 constexpr std::array<int, 4> kMassWidths = {8, 8, 16, 8};
-constexpr std::size_t kMostElementFields = 10;
-constexpr std::size_t kShortestUsualLine = 40;
+constexpr std::size_t kMaxElementFields = 10;
+constexpr std::size_t kMinUsualLineLength = 40;
 
 class PieceReader {
  public:
@@ -35,7 +35,7 @@ class PieceReader {
   /// Cards of a block are mostly as long as its first. Growing step by step would touch twice the memory.
   void make_room(const Segment& segment) {
     const std::string_view text = text_.substr(segment.begin, segment.end - segment.begin);
-    const std::size_t line = std::max(std::min(text.find('\n'), text.size()) + 1, kShortestUsualLine);
+    const std::size_t line = std::max(std::min(text.find('\n'), text.size()) + 1, kMinUsualLineLength);
     const std::size_t count = text.size() / line + 1;
     const auto reserve = [&](auto& values) {
       if (values.size() + count > values.capacity()) values.reserve(std::max(values.size() + count, 2 * values.capacity()));
@@ -170,7 +170,7 @@ class PieceReader {
 
   bool read_shell(const Line& line) {
     bool usable = true;
-    if (!cut_integers(line, kMostElementFields, usable)) return false;
+    if (!cut_integers(line, kMaxElementFields, usable)) return false;
     if (usable && element_id_is_bad(line)) return false;
     const std::array<std::int64_t, 4> midside = {fields_[6], fields_[7], fields_[8], fields_[9]};
     const bool has_midside = std::any_of(midside.begin(), midside.end(), [](std::int64_t n) { return n > 0; });
@@ -280,7 +280,7 @@ class PieceReader {
   /// Ids and nodes on one card, or ids on the first and nodes on those that follow.
   bool read_solid(const Line& line) {
     bool usable = true;
-    if (!cut_integers(line, kMostElementFields, usable)) return false;
+    if (!cut_integers(line, kMaxElementFields, usable)) return false;
     if (usable && element_id_is_bad(line)) return false;
     const std::int64_t id = fields_[0];
     const std::int64_t part = fields_[1];
@@ -291,7 +291,7 @@ class PieceReader {
     Line card;
     for (int i = 0; i < node_lines && lines_->next(card); ++i) {
       bool card_usable = true;
-      if (!cut_integers(card, kMostElementFields, card_usable)) return false;
+      if (!cut_integers(card, kMaxElementFields, card_usable)) return false;
       usable &= card_usable;
       nodes_.insert(nodes_.end(), fields_.begin(), fields_.end());
     }
@@ -343,7 +343,7 @@ class PieceReader {
   std::optional<Line> pending_;
   bool shell_is_kept_ = false;
   Card card_;
-  std::array<std::int64_t, kMostElementFields> fields_{};
+  std::array<std::int64_t, kMaxElementFields> fields_{};
   std::vector<std::int64_t> nodes_;
 };
 

@@ -13,8 +13,8 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-constexpr int kDeepestExpression = 64;
-constexpr std::size_t kLongestExpression = 1 << 20;
+constexpr int kMaxExpressionDepth = 64;
+constexpr std::size_t kMaxExpressionLength = 1 << 20;
 
 /// "R  tEnd" is the real parameter "tend", "rtbumper" is "tbumper".
 struct TypedName {
@@ -229,7 +229,7 @@ void Parameters::read_expressions(std::string_view text, const Block& block, Def
     const std::string_view body = line.text.substr(free ? comma + 1 : head.size());
     // A line whose name is blank goes on with the expression above it.
     if (!free && trim(head).empty()) {
-      if (expression.size() < kLongestExpression) expression += trim(body);
+      if (expression.size() < kMaxExpressionLength) expression += trim(body);
       continue;
     }
     finish();
@@ -308,7 +308,7 @@ class Evaluator {
     return value;
   }
   Number power() {
-    if (++depth_ > kDeepestExpression) return give_up();
+    if (++depth_ > kMaxExpressionDepth) return give_up();
     Number value = signed_atom();
     if (!failed_ && take("**")) {
       const Number exponent = power();
@@ -363,7 +363,7 @@ class Evaluator {
   }
 
   Number call(const std::string& name) {
-    if (++depth_ > kDeepestExpression) return give_up();
+    if (++depth_ > kMaxExpressionDepth) return give_up();
     std::vector<Number> arguments{sum()};
     while (!failed_ && take(",")) arguments.push_back(sum());
     --depth_;

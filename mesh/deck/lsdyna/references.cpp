@@ -27,7 +27,7 @@ constexpr std::array<int, 6> kMoves = {8, 16, 16, 16, 8, 8};
 constexpr std::int64_t kEveryId = std::numeric_limits<std::int64_t>::max() / 4;
 
 /// Blocks that nobody understands and that follow each other are put together from here on, so that a deck of nothing else stays small.
-constexpr std::size_t kMostUnread = 4096;
+constexpr std::size_t kMaxUnread = 4096;
 
 /// How many blocks a thread takes at a time.
 constexpr std::size_t kJobsAtOnce = 64;
@@ -528,7 +528,7 @@ class BlockReader {
 };
 
 bool ReferenceReader::extends_last(const Job& job) const {
-  if (jobs_.size() < kMostUnread || job.rule || job.encrypted) return false;
+  if (jobs_.size() < kMaxUnread || job.rule || job.encrypted) return false;
   const Job& last = jobs_.back();
   return !last.rule && !last.encrypted && last.file == job.file && last.end == job.keyword && last.parameters == job.parameters &&
          last.offsets == job.offsets;

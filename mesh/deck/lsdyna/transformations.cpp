@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Kind = TransformStep::Kind;
 
-constexpr std::size_t kMostSteps = 1000;  ///< thousands of includes may name one transformation
+constexpr std::size_t kMaxSteps = 1000;  ///< thousands of includes may name one transformation
 /// Farther than this no model reaches, and products of such numbers still are numbers.
 constexpr double kMaxTransformed = 1e60;
 
@@ -240,7 +240,7 @@ void Transformations::read(std::string_view text, std::uint32_t file, const Bloc
   if (!id || *id <= 0) return;
   Transformation transformation{file, block.keyword, {}};
   while (lines.next(line)) {
-    if (transformation.steps.size() == kMostSteps) {
+    if (transformation.steps.size() == kMaxSteps) {
       transformation.steps.push_back({.word = "thousand and first card"});
       break;
     }

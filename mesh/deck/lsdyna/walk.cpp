@@ -11,9 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostWalks = 4000;  ///< also of contexts, which are looked through for each include
+constexpr std::size_t kMaxWalks = 4000;  ///< also of contexts, which are looked through for each include
 constexpr std::size_t kFreeRepeats = std::size_t{64} << 20;
-constexpr std::size_t kMostRepeats = 16;  ///< times the size of all files
+constexpr std::size_t kMaxRepeats = 16;  ///< times the size of all files
 
 }  // namespace
 
@@ -181,7 +181,7 @@ void Walk::include_transformed(const Visit& from, const Block& block, Columns co
   if (!context.same_as(nothing)) {
     const auto known = std::find_if(contexts.begin() + 1, contexts.end(), [&](const IncludeContext& c) { return c.same_as(context); });
     index = static_cast<std::uint32_t>(known - contexts.begin());
-    if (index >= kMostWalks) {
+    if (index >= kMaxWalks) {
       warnings.note("too-many-includes", from.file, block.keyword, "more includes are transformed than can be shown; this one isn't read");
       return;
     }
@@ -212,7 +212,7 @@ bool Walk::may_walk_again(std::uint32_t file) {
   std::size_t total = 0;
   for (const SourceFile& each : files.files) total += each.bytes.text().size();
   walked_again_ += files.files[file].bytes.text().size();
-  return walks_ < kMostWalks && walked_again_ <= kFreeRepeats + kMostRepeats * total;
+  return walks_ < kMaxWalks && walked_again_ <= kFreeRepeats + kMaxRepeats * total;
 }
 
 void Walk::include_one(const Visit& from, const IncludeName& name, Columns columns, std::uint32_t context) {
@@ -233,8 +233,8 @@ void Walk::include_one(const Visit& from, const IncludeName& name, Columns colum
     warn("circular-include", "includes itself; it is read once");
   } else if (states_[file].walked.contains(context)) {
     if (states_[file].has_mesh) warn("repeated-include", "is included twice; its nodes can't be moved");
-  } else if (from.depth >= kDeepestInclude) {
-    warn("deep-include", "is nested more than " + std::to_string(kDeepestInclude) + " deep; it isn't read");
+  } else if (from.depth >= kMaxIncludeDepth) {
+    warn("deep-include", "is nested more than " + std::to_string(kMaxIncludeDepth) + " deep; it isn't read");
   } else if (!states_[file].walked.empty() && !may_walk_again(file)) {
     warn("too-many-includes", "is included too often to be shown at each place; it isn't read again");
   } else {

@@ -14,7 +14,7 @@ constexpr std::size_t kCommaColumns = 16;
 /// Of a line, however long, no more is looked at: ten free fields are shorter.
 constexpr std::size_t kLineColumns = 400;
 /// More continuations than any card has.
-constexpr std::size_t kMostLines = 1000000;
+constexpr std::size_t kMaxLines = 1000000;
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 
@@ -95,7 +95,7 @@ void CardLines::read(std::string_view text, std::size_t at) {
     if (kind != LineKind::continuation) break;
     end = line.offset + line.text.size();
     next = line.next;
-    if (lines.size() < kMostLines)
+    if (lines.size() < kMaxLines)
       lines.push_back(line);
     else
       cut_off = true;

@@ -10,7 +10,7 @@
 namespace prismesh::mesh::deck::nastran {
 
 Result<std::string> without_in_case_set(std::string text, std::span<const std::int64_t> leaving) {
-  constexpr std::size_t kLongestLine = 72;
+  constexpr std::size_t kMaxLineLength = 72;
   constexpr std::string_view kBetween = ", \t\r\n";
   if (text.find('$') != std::string::npos) return fail("", "has comments between its ids");
   const std::size_t equals = text.find('=');
@@ -43,7 +43,7 @@ Result<std::string> without_in_case_set(std::string text, std::span<const std::i
   }
   for (std::size_t at = 0; at < text.size();) {
     const Line line = line_at(text, at);
-    if (line.text.size() > kLongestLine) return fail("", "would have a line that is too long");
+    if (line.text.size() > kMaxLineLength) return fail("", "would have a line that is too long");
     at = line.next;
   }
   return text;

@@ -145,7 +145,7 @@ class PieceReader {
   bool read_system(const char* at, const char* end, std::size_t width) {
     end = std::min(at + width, end);
     std::int64_t id = 0;
-    if (!plain_integer(at, end, id) || id > kLargestSystem) return false;
+    if (!plain_integer(at, end, id) || id > kMaxSystem) return false;
     system_ = static_cast<std::uint32_t>(id);
     if (id == 0 && std::find(at, end, '0') == end) system_ = kSystemOfGrdset;
     return true;
@@ -216,8 +216,8 @@ class PieceReader {
     if (copies == 0) {
       facts_.note("unread-replication", line.offset, "a replication follows no card or isn't understood; what it makes isn't shown");
       replication_.clear();
-    } else if (made_copies_ > Replication::kMostCopies) {
-      fail_at(line.offset, "the replications up to here make more than " + std::to_string(Replication::kMostCopies) + " cards");
+    } else if (made_copies_ > Replication::kMaxCopies) {
+      fail_at(line.offset, "the replications up to here make more than " + std::to_string(Replication::kMaxCopies) + " cards");
       return lines_.next;
     }
     place_ = {piece_.file, line.offset, lines_.end};
@@ -264,7 +264,7 @@ class PieceReader {
     if (!id && is_all_digits(card_.text(0))) return fail_at(offset_, too_long("GRID", card_.text(0)));
     if (!id || *id <= 0) return fail_at(offset_, "a GRID needs an id above 0, but this one has " + quoted(card_.text(0)));
     const std::optional<std::int64_t> system = card_.integer(1);
-    if (!system || *system < 0 || *system > kLargestSystem)
+    if (!system || *system < 0 || *system > kMaxSystem)
       return fail_at(offset_, "expected the coordinate system of GRID " + std::to_string(*id) + " but found " + quoted(card_.text(1)));
     Vec3 at;
     for (int axis = 0; axis < 3; ++axis) {
@@ -375,7 +375,7 @@ class PieceReader {
       references_.read(card_, place_);
     } else if (name == "GRDSET") {
       const std::int64_t system = card_.integer_or_zero(1);
-      facts_.grid_default.emplace_back(offset_, system < 0 || system > kLargestSystem ? 0 : system);
+      facts_.grid_default.emplace_back(offset_, system < 0 || system > kMaxSystem ? 0 : system);
     } else if (name == "SPOINT" || name == "EPOINT") {
       read_scalar_points();
     } else if (is_old_element(name)) {

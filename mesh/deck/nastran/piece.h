@@ -24,7 +24,7 @@ struct Piece {
 
 /// In PieceRun::frame until the deck's systems are known: the system's id, or this for grid points that leave it to GRDSET.
 inline constexpr std::uint32_t kSystemOfGrdset = 0xffffffffu;
-inline constexpr std::int64_t kLargestSystem = 0xfffffffe;
+inline constexpr std::int64_t kMaxSystem = 0xfffffffe;
 
 /// Corner thicknesses of a shell's own that only the property completes.
 struct ThicknessFields {

@@ -45,7 +45,7 @@ std::size_t Replication::read(const Card& card) {
   if (name != "=" && name != "==") {
     std::int64_t count = 0;
     if (!raised_ || !parse_integer(without_parentheses(name.substr(1)), count) || count < 1) return 0;
-    return static_cast<std::size_t>(std::min<std::int64_t>(count, kMostCopies + 1));
+    return static_cast<std::size_t>(std::min<std::int64_t>(count, kMaxCopies + 1));
   }
   std::vector<Field> next(std::max(card.size(), fields_.size()));
   bool rest = name == "==";

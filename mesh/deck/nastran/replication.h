@@ -22,7 +22,7 @@ class Replication {
   /// The next copy, which becomes the template.
   void make(Card& copy);
 
-  static constexpr std::size_t kMostCopies = 100000;
+  static constexpr std::size_t kMaxCopies = 100000;
 
  private:
   struct Field {

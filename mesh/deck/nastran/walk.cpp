@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A file name may go on over lines; more than that is a quote that nobody closed.
-constexpr std::size_t kMostNameLines = 20;
-constexpr std::size_t kLongestName = 4096;
+constexpr std::size_t kMaxNameLines = 20;
+constexpr std::size_t kMaxNameLength = 4096;
 
 bool is_end_of_word(std::string_view text, std::size_t at) {
   return at >= text.size() || std::string_view(" \t\r,$='\"").find(text[at]) != std::string_view::npos;
@@ -85,10 +85,10 @@ IncludeName include_name(std::string_view text, const Mark& mark) {
   const char quote = text[at];
   const std::string_view line = trim(line_at(text, at).text);
   if (quote != '\'' && quote != '"')
-    return {std::string(line.substr(0, std::min(line.find_first_of(" \t$"), kLongestName))), mark.next, false};
+    return {std::string(line.substr(0, std::min(line.find_first_of(" \t$"), kMaxNameLength))), mark.next, false};
   std::string name;
   std::size_t from = at + 1;
-  for (std::size_t lines = 0; lines < kMostNameLines && from < text.size() && name.size() < kLongestName; ++lines) {
+  for (std::size_t lines = 0; lines < kMaxNameLines && from < text.size() && name.size() < kMaxNameLength; ++lines) {
     const Line part = line_at(text, from);
     const std::size_t end = part.text.find(quote);
     name += trim(part.text.substr(0, end));
@@ -217,9 +217,9 @@ std::size_t Walk::include(std::uint32_t from, const Mark& mark, int depth) {
     warnings.note("circular-include", from, mark.offset, "the include file " + name + " includes itself; it is read once");
   } else if (states_[file].walked) {
     warnings.note("repeated-include", from, mark.offset, "the include file " + name + " is included twice; its nodes can't be moved");
-  } else if (depth >= kDeepestInclude) {
+  } else if (depth >= kMaxIncludeDepth) {
     warnings.note("deep-include", from, mark.offset,
-                  "the include file " + name + " is nested more than " + std::to_string(kDeepestInclude) + " deep; it isn't read");
+                  "the include file " + name + " is nested more than " + std::to_string(kMaxIncludeDepth) + " deep; it isn't read");
   } else {
     walk_file(file, find_marks(files.files[file].bytes.text()), depth + 1);
   }

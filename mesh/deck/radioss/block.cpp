@@ -8,8 +8,8 @@
 namespace prismesh::mesh::deck::radioss {
 namespace {
 
-constexpr std::size_t kLongestKeyword = 200;
-constexpr std::size_t kMostWords = 12;
+constexpr std::size_t kMaxKeywordLength = 200;
+constexpr std::size_t kMaxWords = 12;
 
 bool is_comment(char first) { return first == '#' || first == '$'; }
 
@@ -24,8 +24,8 @@ std::string Keyword::joined() const {
 Keyword keyword_at(std::string_view text, std::size_t offset) {
   Keyword out;
   std::string_view line = text.substr(offset, std::min(text.find_first_of("\r\n", offset), text.size()) - offset);
-  line = trim(line.substr(0, kLongestKeyword));
-  while (!line.empty() && line.front() == '/' && out.words.size() + out.numbers.size() < kMostWords) {
+  line = trim(line.substr(0, kMaxKeywordLength));
+  while (!line.empty() && line.front() == '/' && out.words.size() + out.numbers.size() < kMaxWords) {
     line.remove_prefix(1);
     const std::string_view part = trim(line.substr(0, line.find('/')));
     line.remove_prefix(std::min(line.find('/'), line.size()));

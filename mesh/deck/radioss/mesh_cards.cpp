@@ -32,7 +32,7 @@ constexpr std::array<CardForm, 18> kForms = {{
     {"XELEM", CardKind::element, ElementClass::other, {0}, 0},
 }};
 
-constexpr std::size_t kMostIntegers = 11;
+constexpr std::size_t kMaxIntegers = 11;
 
 bool is_blank(std::string_view line) { return line.find_first_not_of(" \t") == std::string_view::npos; }
 
@@ -262,7 +262,7 @@ class PieceReader {
   IdOffsets added_;
   std::optional<Lines> lines_;
   std::string untabbed_;
-  std::array<std::int64_t, kMostIntegers> fields_{};
+  std::array<std::int64_t, kMaxIntegers> fields_{};
   std::vector<std::int64_t> nodes_;
 };
 

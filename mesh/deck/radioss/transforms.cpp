@@ -14,9 +14,9 @@ using Eigen::Vector3d;
 using Kind = Transform::Kind;
 
 /// Frames and nodes looked at, for all cards together: more is a deck made to waste time.
-constexpr std::size_t kMostWork = std::size_t{1} << 28;
-constexpr int kDeepestGroup = 16;
-constexpr double kLeastScale = 1e-6;   ///< beyond it, and its inverse, a factor is a mistake
+constexpr std::size_t kMaxWork = std::size_t{1} << 28;
+constexpr int kMaxGroupDepth = 16;
+constexpr double kMinScale = 1e-6;     ///< beyond it, and its inverse, a factor is a mistake
 constexpr double kOrthonormal = 1e-3;  ///< by how much a matrix may miss being a rotation or a reflection
 
 Kind kind_of(std::string_view word) {
@@ -162,7 +162,7 @@ std::optional<Affine3d> affine_of(const Transform& t, const std::array<std::opti
       return finite(mirror);
     }
     case Kind::scaling: {
-      if (!(t.points[0].cwiseAbs().minCoeff() > kLeastScale) || !(t.points[0].cwiseAbs().maxCoeff() < 1 / kLeastScale)) return std::nullopt;
+      if (!(t.points[0].cwiseAbs().minCoeff() > kMinScale) || !(t.points[0].cwiseAbs().maxCoeff() < 1 / kMinScale)) return std::nullopt;
       const Vector3d centre = t.nodes[0] > 0 ? *at[0] : Vector3d(Vector3d::Zero());
       return finite(Affine3d(Eigen::Translation3d(centre) * Eigen::Scaling(t.points[0]) * Eigen::Translation3d(-centre)));
     }
@@ -206,7 +206,7 @@ void Transformer::run(const std::vector<Transform>& transforms) {
     const bool by_group = transform.group > 0 && transform.submodel == 0;
     const bool known = by_group ? collect(transform.group, 0, members) : transform.submodel > 0 && transform.group == 0;
     work_ += by_group ? 1000 + members.ranges.size() : found_.frames.size();
-    if (!map || !known || work_ > kMostWork)
+    if (!map || !known || work_ > kMaxWork)
       hold(transform, by_group && known ? &members : nullptr);
     else if (by_group)
       move_group(members, *map);
@@ -300,8 +300,8 @@ void Transformer::hold(const Transform& transform, const Members* members) {
   found_.warnings.note("unread-transform", transform.file, transform.offset,
                        "a transformation can't be worked out; what it moves is shown where its cards put it and can't be moved");
   // Once there have been too many of them, all nodes are held: that costs one pass.
-  const std::int64_t submodel = work_ > kMostWork ? 0 : transform.submodel;
-  if (work_ > kMostWork) members = nullptr;
+  const std::int64_t submodel = work_ > kMaxWork ? 0 : transform.submodel;
+  if (work_ > kMaxWork) members = nullptr;
   if (held_.contains(0) || (!members && !held_.insert(submodel).second)) return;
   for (PieceCards& cards : found_.cards)
     for (std::size_t r = 0; r < cards.node_runs.size(); ++r) {
@@ -317,7 +317,7 @@ void Transformer::hold(const Transform& transform, const Members* members) {
 /// False: the group isn't there, or is one whose nodes aren't worked out here.
 bool Transformer::collect(std::int64_t group, int depth, Members& members) {
   const auto at = groups_.find(group);
-  if (at == groups_.end() || depth > kDeepestGroup || work_ > kMostWork) return false;
+  if (at == groups_.end() || depth > kMaxGroupDepth || work_ > kMaxWork) return false;
   const Block& block = *at->second;
   work_ += 100 + block.body.end - block.body.begin;
   const Keyword keyword = keyword_at(around_.files[block.file].bytes.text(), block.offset);

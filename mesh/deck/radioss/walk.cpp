@@ -12,10 +12,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Text that submodels may bring in once more each.
-constexpr std::size_t kMostRepeatedBytes = std::size_t{1} << 27;
-constexpr std::size_t kLongestInclude = 4096;
-constexpr std::size_t kMostContexts = 100000;
-constexpr std::int64_t kLargestOffset = 9'999'999'999;  ///< what ten columns hold
+constexpr std::size_t kMaxRepeatedBytes = std::size_t{1} << 27;
+constexpr std::size_t kMaxIncludeLength = 4096;
+constexpr std::size_t kMaxContexts = 100000;
+constexpr std::int64_t kMaxOffset = 9'999'999'999;  ///< what ten columns hold
 
 /// The next line at or after the start of a line `at` that begins with a slash or a hash; the text's size if there is none.
 std::size_t next_mark(std::string_view text, std::size_t at) {
@@ -119,11 +119,11 @@ void Walk::finish_block() {
 }
 
 void Walk::begin_submodel(const Block& block, const Keyword& keyword) {
-  if (contexts.size() >= kMostContexts) return;
-  if (contexts[context_].depth >= kDeepestInclude) {
+  if (contexts.size() >= kMaxContexts) return;
+  if (contexts[context_].depth >= kMaxIncludeDepth) {
     warnings.note(
         "deep-submodel", block.file, block.offset,
-        "submodels stand in each other more than " + std::to_string(kDeepestInclude) + " deep; what follows is read as part of the last");
+        "submodels stand in each other more than " + std::to_string(kMaxIncludeDepth) + " deep; what follows is read as part of the last");
     return;
   }
   Context context;
@@ -149,7 +149,7 @@ void Walk::begin_submodel(const Block& block, const Keyword& keyword) {
     std::array<std::int64_t, 6> offsets{};
     for (std::size_t f = 0; f < offsets.size(); ++f) {
       std::int64_t value = 0;
-      if (parse_integer(trim(field(card.text, context.field_width(), f)), value) && std::abs(value) <= kLargestOffset) offsets[f] = value;
+      if (parse_integer(trim(field(card.text, context.field_width(), f)), value) && std::abs(value) <= kMaxOffset) offsets[f] = value;
       if (f > 0 && offsets[f] == 0) offsets[f] = offsets[0];
     }
     context.added.set += offsets[0];
@@ -194,7 +194,7 @@ void Walk::read_begin(const Block& block) {
 void Walk::include(std::uint32_t from, std::size_t offset, int depth) {
   const std::string_view text = files.files[from].bytes.text();
   std::string_view line = text.substr(offset, std::min(text.find_first_of("\r\n", offset), text.size()) - offset);
-  const std::string name(trim(line.substr(8, kLongestInclude)));
+  const std::string name(trim(line.substr(8, kMaxIncludeLength)));
   // Names are relative to where the solver is started, which is where the main file is; the file's own folder helps where it isn't.
   const std::vector<fs::path> folders = {main_folder_, files.folder_of(from)};
   std::string reason;
@@ -211,12 +211,12 @@ void Walk::include(std::uint32_t from, std::size_t offset, int depth) {
   if (in_block_ && keyword_.word(0) == "SUBMODEL") finish_block();
   if (states_[file].open) {
     warnings.note("circular-include", from, offset, "the include file " + name + " includes itself; it is read once");
-  } else if (depth >= kDeepestInclude) {
+  } else if (depth >= kMaxIncludeDepth) {
     warnings.note("deep-include", from, offset,
-                  "the include file " + name + " is nested more than " + std::to_string(kDeepestInclude) + " deep; it isn't read");
+                  "the include file " + name + " is nested more than " + std::to_string(kMaxIncludeDepth) + " deep; it isn't read");
   } else if (!walked_.insert({file, context_}).second) {
     warnings.note("repeated-include", from, offset, "the include file " + name + " is included twice; its nodes can't be moved");
-  } else if (states_[file].uses > 1 && (repeated_bytes_ += bytes) > kMostRepeatedBytes) {
+  } else if (states_[file].uses > 1 && (repeated_bytes_ += bytes) > kMaxRepeatedBytes) {
     warnings.note("repeated-include", from, offset, "the include file " + name + " is used too often; it isn't read here");
   } else {
     walk_file(file, depth + 1);

@@ -100,7 +100,7 @@ class Deviced : public ::testing::Test {
   std::unique_ptr<Process> daemon_;
 };
 
-TEST_F(Deviced, SimulatedDevicesAreReadThroughRealPseudoTerminals) {
+TEST_F(Deviced, simulated_devices_are_read_through_real_pseudo_terminals) {
   start();
   ipc::DeviceClient client = connect("test");
   ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
@@ -120,7 +120,7 @@ TEST_F(Deviced, SimulatedDevicesAreReadThroughRealPseudoTerminals) {
   EXPECT_TRUE(devices.devices[1].simulated);
 }
 
-TEST_F(Deviced, AWebcamsPosesAreReadFromLoopback) {
+TEST_F(Deviced, a_webcams_poses_are_read_from_loopback) {
   // A port that nobody else on this machine is likely to use.
   const std::string port = std::to_string(20000 + ::getpid() % 20000);
   configure("[eye_tracker]\ndriver = \"opentrack\"\nsimulated = true\nudp_port = " + port + "\n");
@@ -133,7 +133,7 @@ TEST_F(Deviced, AWebcamsPosesAreReadFromLoopback) {
   EXPECT_NE(refusal(client.call(ipc::HoldMask{0}, kPatience)).find("no prism servo is configured"), std::string::npos);
 }
 
-TEST_F(Deviced, OneClientHoldsTheMaskUntilItsEnd) {
+TEST_F(Deviced, one_client_holds_the_mask_until_its_end) {
   start();
   auto first = std::make_unique<ipc::DeviceClient>(connect("wizard"));
   ipc::DeviceClient second = connect("other");
@@ -161,7 +161,7 @@ TEST_F(Deviced, OneClientHoldsTheMaskUntilItsEnd) {
   EXPECT_TRUE(wait_for([&] { return at_work(second.page()); }));
 }
 
-TEST_F(Deviced, SettingsAreReadAgainOnRequest) {
+TEST_F(Deviced, settings_are_read_again_on_request) {
   start();
   ipc::DeviceClient client = connect("test");
   ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
@@ -183,7 +183,7 @@ TEST_F(Deviced, SettingsAreReadAgainOnRequest) {
   EXPECT_TRUE(client.poll());
 }
 
-TEST_F(Deviced, ChangesAreToldToClients) {
+TEST_F(Deviced, changes_are_told_to_clients) {
   configure("[eye_tracker]\ndriver = \"dynasight\"\nport = \"" + (folder_ / "not-there").string() + "\"\n");
   start();
   ipc::DeviceClient client = connect("test");
@@ -195,7 +195,7 @@ TEST_F(Deviced, ChangesAreToldToClients) {
   EXPECT_NE(device.trouble.find("not-there"), std::string::npos) << device.trouble;
 }
 
-TEST_F(Deviced, WhatIsNoMessageIsRefusedInWords) {
+TEST_F(Deviced, what_is_no_message_is_refused_in_words) {
   start();
   const ipc::DeviceClient client = connect("test");
   ipc::LineSocket raw(ipc::connect_to(socket()).value(), {});
@@ -219,7 +219,7 @@ TEST_F(Deviced, WhatIsNoMessageIsRefusedInWords) {
   EXPECT_NE(say(R"({"request": "hello", "number": 1, "protocol": 99, "program": "old"})").find("old protocol 99"), std::string::npos);
 }
 
-TEST_F(Deviced, AKilledDaemonIsNoticedAndFoundAgainWithANewPage) {
+TEST_F(Deviced, a_killed_daemon_is_noticed_and_found_again_with_a_new_page) {
   start();
   ipc::ReconnectingDeviceClient connection(socket(), "test");
   ipc::DeviceClient* client = connection.wait(kPatience).value();
@@ -253,7 +253,7 @@ TEST_F(Deviced, AKilledDaemonIsNoticedAndFoundAgainWithANewPage) {
   EXPECT_EQ(connection.connections(), 4u);
 }
 
-TEST_F(Deviced, ATrackerThatTakesLongIsFollowedToo) {
+TEST_F(Deviced, a_tracker_that_takes_long_is_followed_too) {
   configure("[eye_tracker]\ndriver = \"dynasight\"\nsimulated = true\nmotion = \"still\"\nlatency_ms = 150\n");
   start();
   const ipc::DeviceClient client = connect("test");
@@ -262,7 +262,7 @@ TEST_F(Deviced, ATrackerThatTakesLongIsFollowedToo) {
   EXPECT_GE(client.page().eyes()->time_ns - client.page().eyes()->measured_ns, 150'000'000);
 }
 
-TEST_F(Deviced, ALostMaskWaitsForThePictureOfWhoeverShowsStereo) {
+TEST_F(Deviced, a_lost_mask_waits_for_the_picture_of_whoever_shows_stereo) {
   const auto port = static_cast<std::uint16_t>(20000 + ::getpid() % 20000);
   const std::string both = "[eye_tracker]\ndriver = \"opentrack\"\nudp_port = " + std::to_string(port) +
                            "\n[prism_servo]\ndriver = \"dynamixel\"\nsimulated = true\n";
@@ -314,7 +314,7 @@ TEST_F(Deviced, ALostMaskWaitsForThePictureOfWhoeverShowsStereo) {
   EXPECT_TRUE(at_once()) << "who showed it has gone";
 }
 
-TEST_F(Deviced, AClientThatNeverStopsAskingFillsNoMemory) {
+TEST_F(Deviced, a_client_that_never_stops_asking_fills_no_memory) {
 #if defined(PRISMESH_ADDRESS_SANITIZER) || defined(PRISMESH_THREAD_SANITIZER)
   GTEST_SKIP() << "a sanitizer keeps what was freed";
 #endif
@@ -339,7 +339,7 @@ TEST_F(Deviced, AClientThatNeverStopsAskingFillsNoMemory) {
   EXPECT_EQ(listed(flood).devices.size(), 2u);
 }
 
-TEST_F(Deviced, ATerminalThatClosesEndsItAsCleanly) {
+TEST_F(Deviced, a_terminal_that_closes_ends_it_as_cleanly) {
   start();
   const ipc::DeviceClient client = connect("test");
   ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
@@ -348,7 +348,7 @@ TEST_F(Deviced, ATerminalThatClosesEndsItAsCleanly) {
   EXPECT_EQ(client.page().prism()->phase, MaskPhase::absent);
 }
 
-TEST_F(Deviced, StartedWithNohupItOutlivesItsTerminal) {
+TEST_F(Deviced, started_with_nohup_it_outlives_its_terminal) {
   daemon_ = std::make_unique<Process>(std::vector<std::string>{"nohup", program("prismesh-deviced"), "--runtime-dir",
                                                                (folder_ / "run").string(), "--config", config().string()},
                                       surroundings());
@@ -358,7 +358,7 @@ TEST_F(Deviced, StartedWithNohupItOutlivesItsTerminal) {
   EXPECT_TRUE(daemon_->running());
 }
 
-TEST_F(Deviced, OnTheWayOutThePageSaysThatNothingIsToBeReliedOn) {
+TEST_F(Deviced, on_the_way_out_the_page_says_that_nothing_is_to_be_relied_on) {
   start();
   const ipc::DeviceClient client = connect("test");
   ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
@@ -370,7 +370,7 @@ TEST_F(Deviced, OnTheWayOutThePageSaysThatNothingIsToBeReliedOn) {
   EXPECT_FALSE(fs::exists(socket()));
 }
 
-TEST_F(Deviced, WrongUseAndWrongSettingsAreSaid) {
+TEST_F(Deviced, wrong_use_and_wrong_settings_are_said) {
   Process wrong({program("prismesh-deviced"), "--runtime"}, {});
   EXPECT_EQ(wrong.wait_for_exit(), 2);
   EXPECT_NE(wrong.standard_error().find("--runtime is no option of prismesh-deviced\nusage: prismesh-deviced"), std::string::npos);
@@ -389,7 +389,7 @@ TEST_F(Deviced, WrongUseAndWrongSettingsAreSaid) {
   EXPECT_NE(second.standard_error().find("already runs here"), std::string::npos) << second.standard_error();
 }
 
-TEST_F(Deviced, TheCommandLineShowsThem) {
+TEST_F(Deviced, the_command_line_shows_them) {
   Ran ran = devices();
   EXPECT_EQ(ran.status, 1);
   EXPECT_NE(ran.err.find("start the device daemon with"), std::string::npos) << ran.err;
@@ -423,7 +423,7 @@ TEST_F(Deviced, TheCommandLineShowsThem) {
   EXPECT_EQ(watching.wait_for_exit(), 0);
 }
 
-TEST_F(Deviced, ProgramsThatNeverGreetDoNotTakeThePlaceOfAClient) {
+TEST_F(Deviced, programs_that_never_greet_do_not_take_the_place_of_a_client) {
   start();
   ipc::DeviceClient first = connect("first");
   std::vector<ipc::Descriptor> silent;

@@ -26,7 +26,7 @@ std::vector<MaskPhase> mask_phases(const std::vector<LoopEvent>& events) {
   return phases;
 }
 
-TEST(DeviceLoop, StartsUpByStepsThatThePageShows) {
+TEST(DeviceLoop, starts_up_by_steps_that_the_page_shows) {
   LoopRig rig;
   EXPECT_EQ(rig.eyes().phase, EyesPhase::none) << "before the first tick";
   rig.tick();
@@ -41,7 +41,7 @@ TEST(DeviceLoop, StartsUpByStepsThatThePageShows) {
   EXPECT_THAT(mask_phases(events), ElementsAre(MaskPhase::homing, MaskPhase::following));
 }
 
-TEST(DeviceLoop, PublishesWhereTheHeadIsAndTheMaskFollows) {
+TEST(DeviceLoop, publishes_where_the_head_is_and_the_mask_follows) {
   RigOptions options;
   LoopRig rig(options);
   rig.start();
@@ -70,7 +70,7 @@ TEST(DeviceLoop, PublishesWhereTheHeadIsAndTheMaskFollows) {
   EXPECT_EQ(rig.eyes().times_lost, 0u);
 }
 
-TEST(DeviceLoop, AHeadThatLeavesIsSearchedAndTheMaskFreezesAndParks) {
+TEST(DeviceLoop, a_head_that_leaves_is_searched_and_the_mask_freezes_and_parks) {
   bool there = true;
   RigOptions options;
   options.head = [&](double) {
@@ -98,7 +98,7 @@ TEST(DeviceLoop, AHeadThatLeavesIsSearchedAndTheMaskFreezesAndParks) {
   EXPECT_LE(back, 2000);
 }
 
-TEST(DeviceLoop, AFrozenMaskParksAtOnceWhenThePictureIsMono) {
+TEST(DeviceLoop, a_frozen_mask_parks_at_once_when_the_picture_is_mono) {
   const auto parking_after = [](bool mono) {
     bool there = true;
     RigOptions options;
@@ -115,7 +115,7 @@ TEST(DeviceLoop, AFrozenMaskParksAtOnceWhenThePictureIsMono) {
   EXPECT_GE(parking_after(false), 200);
 }
 
-TEST(DeviceLoop, AnUnpluggedTrackerIsAbsentWithTheNextTick) {
+TEST(DeviceLoop, an_unplugged_tracker_is_absent_with_the_next_tick) {
   LoopRig rig;
   rig.start();
   rig.events();
@@ -132,7 +132,7 @@ TEST(DeviceLoop, AnUnpluggedTrackerIsAbsentWithTheNextTick) {
   EXPECT_LE(back, 2000);
 }
 
-TEST(DeviceLoop, AnUnpluggedServoAllowsNoStereo) {
+TEST(DeviceLoop, an_unplugged_servo_allows_no_stereo) {
   LoopRig rig;
   rig.start();
   rig.servo_line.unplug();
@@ -149,7 +149,7 @@ TEST(DeviceLoop, AnUnpluggedServoAllowsNoStereo) {
   EXPECT_LE(back, 2000);
 }
 
-TEST(DeviceLoop, DevicesThatFallSilentOnAnOpenPortAreLostByTheAgeOfTheirData) {
+TEST(DeviceLoop, devices_that_fall_silent_on_an_open_port_are_lost_by_the_age_of_their_data) {
   LoopRig rig;
   rig.start();
   rig.tracker.set_power(false);
@@ -171,7 +171,7 @@ TEST(DeviceLoop, DevicesThatFallSilentOnAnOpenPortAreLostByTheAgeOfTheirData) {
   EXPECT_LE(back, 2000);
 }
 
-TEST(DeviceLoop, CalibrationHoldsTheMaskAndLetsItGo) {
+TEST(DeviceLoop, calibration_holds_the_mask_and_lets_it_go) {
   LoopRig rig;
   rig.start();
   ASSERT_TRUE(rig.loop.tell(SetHold{-0.8}));
@@ -184,7 +184,7 @@ TEST(DeviceLoop, CalibrationHoldsTheMaskAndLetsItGo) {
   EXPECT_GE(rig.run_until([&] { return rig.following(); }), 0);
 }
 
-TEST(DeviceLoop, AJammedMaskIsSaidAndLetGoUntilItIsRearmed) {
+TEST(DeviceLoop, a_jammed_mask_is_said_and_let_go_until_it_is_rearmed) {
   RigOptions options;
   options.head = [](double seconds) {
     SimulatedHead head;
@@ -208,7 +208,7 @@ TEST(DeviceLoop, AJammedMaskIsSaidAndLetGoUntilItIsRearmed) {
   EXPECT_GE(back, 0) << rig.state();
 }
 
-TEST(DeviceLoop, AFaultThatJoinsTheMotorsAlarmIsTold) {
+TEST(DeviceLoop, a_fault_that_joins_the_motors_alarm_is_told) {
   LoopRig rig;
   rig.start();
   rig.servo.raise_hardware_error(0x20);
@@ -223,7 +223,7 @@ TEST(DeviceLoop, AFaultThatJoinsTheMotorsAlarmIsTold) {
   EXPECT_THAT(told, ElementsAre(0x24));
 }
 
-TEST(DeviceLoop, ANewDisplayIsTakenWithoutAPause) {
+TEST(DeviceLoop, a_new_display_is_taken_without_a_pause) {
   LoopRig rig;
   rig.start();
   SetDisplay display;
@@ -236,7 +236,7 @@ TEST(DeviceLoop, ANewDisplayIsTakenWithoutAPause) {
   EXPECT_GE(rig.run_until([&] { return rig.following(); }, 1000), 0);
 }
 
-TEST(DeviceLoop, OnTheWayOutTheMotorIsLetGoAndThePageSaysSo) {
+TEST(DeviceLoop, on_the_way_out_the_motor_is_let_go_and_the_page_says_so) {
   LoopRig rig;
   rig.start();
   EXPECT_TRUE(rig.servo.torque());
@@ -253,7 +253,7 @@ TEST(DeviceLoop, OnTheWayOutTheMotorIsLetGoAndThePageSaysSo) {
   EXPECT_FALSE(rig.mask().stereo_allowed);
 }
 
-TEST(DeviceLoop, WithoutDevicesThereAreNone) {
+TEST(DeviceLoop, without_devices_there_are_none) {
   ManualClock clock;
   ipc::DevicePage page = ipc::DevicePage::create().value();
   const ipc::DevicePageReader reader = ipc::DevicePageReader::map(page.descriptor()).value();
@@ -268,7 +268,7 @@ TEST(DeviceLoop, WithoutDevicesThereAreNone) {
   EXPECT_FALSE(loop.next_event()) << "nothing has changed";
 }
 
-TEST(DeviceLoop, CommandsThatFindNoPlaceAreRefusedNotLost) {
+TEST(DeviceLoop, commands_that_find_no_place_are_refused_not_lost) {
   ipc::DevicePage page = ipc::DevicePage::create().value();
   DeviceLoop loop({}, {}, page);
   int taken = 0;
@@ -279,7 +279,7 @@ TEST(DeviceLoop, CommandsThatFindNoPlaceAreRefusedNotLost) {
   EXPECT_TRUE(loop.tell(EndHold{}));
 }
 
-TEST(DeviceLoop, ChangesThatFindNoPlaceAreToldLater) {
+TEST(DeviceLoop, changes_that_find_no_place_are_told_later) {
   LoopRig rig;
   rig.start();
   rig.events();
@@ -313,7 +313,7 @@ TEST(DeviceLoop, ChangesThatFindNoPlaceAreToldLater) {
   EXPECT_TRUE(rig.events().empty()) << "each is told once";
 }
 
-TEST(DeviceLoop, ATickAllocatesNothingWhateverHappens) {
+TEST(DeviceLoop, a_tick_allocates_nothing_whatever_happens) {
   RigOptions options;
   options.tracker.faults = {.drop_out = 0.005, .caution = 0.05, .garbage = 0.01, .damaged_byte = 0.001, .lost_byte = 0.001};
   LoopRig rig(options);

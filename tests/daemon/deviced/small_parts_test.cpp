@@ -19,7 +19,7 @@ using drivers::settings::TrackerDriver;
 using ipc::EyesPhase;
 using namespace std::chrono_literals;
 
-TEST(Ring, GivesBackInOrderAndRefusesWhenFull) {
+TEST(Ring, gives_back_in_order_and_refuses_when_full) {
   Ring<int, 4> ring;
   EXPECT_FALSE(ring.pop());
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.push(i));
@@ -30,7 +30,7 @@ TEST(Ring, GivesBackInOrderAndRefusesWhenFull) {
   EXPECT_FALSE(ring.pop());
 }
 
-TEST(Ring, CarriesEverythingFromOneThreadToAnother) {
+TEST(Ring, carries_everything_from_one_thread_to_another) {
   struct Pair {
     std::uint64_t a = 0, b = 0;
   };
@@ -49,7 +49,7 @@ TEST(Ring, CarriesEverythingFromOneThreadToAnother) {
   }
 }
 
-TEST(LoopThread, TicksThatWereSleptThroughAreLeftOut) {
+TEST(LoopThread, ticks_that_were_slept_through_are_left_out) {
   constexpr std::int64_t kDue = 1'000'000'000'000, kShort = kTickPeriodNs / 10;
   EXPECT_EQ(next_due_ns(kDue, kDue), kDue + kTickPeriodNs);
   EXPECT_EQ(next_due_ns(kDue, kDue + kShort), kDue + kTickPeriodNs);
@@ -61,7 +61,7 @@ TEST(LoopThread, TicksThatWereSleptThroughAreLeftOut) {
   EXPECT_EQ(next_due_ns(next_due_ns(kDue, ended), ended), kDue + 251 * kTickPeriodNs) << "in step with the time before";
 }
 
-TEST(LoopThread, TicksAndKeepsAnAccountThatReadersSee) {
+TEST(LoopThread, ticks_and_keeps_an_account_that_readers_see) {
   ipc::DevicePage page = ipc::DevicePage::create().value();
   const ipc::DevicePageReader reader = ipc::DevicePageReader::map(page.descriptor()).value();
   DeviceLoop loop({}, {}, page);
@@ -83,7 +83,7 @@ TEST(LoopThread, TicksAndKeepsAnAccountThatReadersSee) {
   EXPECT_GE(reader.prism()->time_ns, ticked_ns + 24 * kTickPeriodNs) << "it winds down for 25 ticks";
 }
 
-TEST(StillLooks, AreCountedInARowAndSaidOnce) {
+TEST(StillLooks, are_counted_in_a_row_and_said_once) {
   StillLooks looks(7, 3);
   for (const std::uint64_t ticks : {7, 7, 8, 8, 8, 9}) EXPECT_FALSE(looks.stuck(ticks)) << "one of three saw a tick";
   EXPECT_FALSE(looks.stuck(9));
@@ -92,7 +92,7 @@ TEST(StillLooks, AreCountedInARowAndSaidOnce) {
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(looks.stuck(9)) << "said already";
 }
 
-TEST(Watchdog, NoticesALoopThatStopsTicking) {
+TEST(Watchdog, notices_a_loop_that_stops_ticking) {
   std::atomic<std::uint64_t> ticks{0};
   std::atomic<int> stuck{0};
   std::atomic<bool> hangs{false};
@@ -114,7 +114,7 @@ TEST(Watchdog, NoticesALoopThatStopsTicking) {
   EXPECT_EQ(stuck, 1);
 }
 
-TEST(Words, ATrackerSaysWhatToDo) {
+TEST(Words, a_tracker_says_what_to_do) {
   drivers::settings::EyeTrackerSettings settings;
   settings.driver = TrackerDriver::dynasight;
   settings.port = "/dev/serial/by-id/tracker";
@@ -143,7 +143,7 @@ TEST(Words, ATrackerSaysWhatToDo) {
   EXPECT_NE(info.trouble.find("start opentrack"), std::string::npos) << info.trouble;
 }
 
-TEST(Words, AServoSaysWhatToDo) {
+TEST(Words, a_servo_says_what_to_do) {
   drivers::settings::PrismServoSettings settings;
   settings.port = "/dev/ttyUSB1";
   ServoStatus status;
@@ -174,7 +174,7 @@ TEST(Words, AServoSaysWhatToDo) {
   EXPECT_NE(servo_info(settings, status, {}).trouble, "");
 }
 
-TEST(Words, EveryPhaseHasAName) {
+TEST(Words, every_phase_has_a_name) {
   for (int phase = 0; phase <= static_cast<int>(EyesPhase::tracking); ++phase) EXPECT_NE(name(static_cast<EyesPhase>(phase)), "unknown");
   for (int phase = 0; phase <= static_cast<int>(MaskPhase::alarm); ++phase) EXPECT_NE(name(static_cast<MaskPhase>(phase)), "unknown");
 }

@@ -21,7 +21,7 @@ StationPlan plan_with_both() {
   return plan;
 }
 
-TEST(StationPlan, TellsTheLoopWhatTheServoAndTheDisplayCanDo) {
+TEST(StationPlan, tells_the_loop_what_the_servo_and_the_display_can_do) {
   StationPlan plan = plan_with_both();
   plan.settings.prism_servo.travel_mm = 1.25;
   plan.settings.prism_servo.speed_mm_s = 3;
@@ -38,7 +38,7 @@ TEST(StationPlan, TellsTheLoopWhatTheServoAndTheDisplayCanDo) {
   EXPECT_EQ(loop.optics.zero_mm, 0.3);
 }
 
-TEST(StationPlan, WaitsLongerForTheEyesOfASlowTracker) {
+TEST(StationPlan, waits_longer_for_the_eyes_of_a_slow_tracker) {
   const auto lost_after_ms = [](double latency_ms) {
     StationPlan plan = plan_with_both();
     plan.settings.eye_tracker.latency_ms = latency_ms;
@@ -50,7 +50,7 @@ TEST(StationPlan, WaitsLongerForTheEyesOfASlowTracker) {
   EXPECT_EQ(lost_after_ms(150), 230);
 }
 
-TEST(StationPlan, TheSeparationThatWasMeasuredGoesBeforeTheTrackers) {
+TEST(StationPlan, the_separation_that_was_measured_goes_before_the_trackers) {
   StationPlan plan = plan_with_both();
   plan.settings.eye_tracker.eye_separation_mm = 61;
   EXPECT_EQ(loop_settings(plan).eye_separation_mm, 61);
@@ -58,7 +58,7 @@ TEST(StationPlan, TheSeparationThatWasMeasuredGoesBeforeTheTrackers) {
   EXPECT_EQ(loop_settings(plan).eye_separation_mm, 58);
 }
 
-TEST(StationPlan, HasTheDevicesThatAreNamedAndOfUse) {
+TEST(StationPlan, has_the_devices_that_are_named_and_of_use) {
   StationPlan plan = plan_with_both();
   EXPECT_TRUE(plan.has_tracker() && plan.has_servo());
   plan.profile.mask_moves = false;
@@ -71,7 +71,7 @@ TEST(StationPlan, HasTheDevicesThatAreNamedAndOfUse) {
   EXPECT_FALSE(plan.has_tracker());
 }
 
-TEST(StationPlan, AnotherTrackerServoOrMaskThatMovesIsAnotherStation) {
+TEST(StationPlan, another_tracker_servo_or_mask_that_moves_is_another_station) {
   const StationPlan plan = plan_with_both();
   StationPlan other = plan;
   other.profile.optics.zero_mm = 0.3;
@@ -105,7 +105,7 @@ class PlanFiles : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(PlanFiles, AreReadWithTheServosOwnNumbers) {
+TEST_F(PlanFiles, are_read_with_the_servos_own_numbers) {
   const Result<StationPlan> plan =
       read("[display]\nprofile = 'prism-mask'\n[prism_servo]\ndriver = 'dynamixel'\nsimulated = true\nid = 7\ntravel_mm = 1.5\n");
   ASSERT_TRUE(plan) << plan.error().text();
@@ -115,7 +115,7 @@ TEST_F(PlanFiles, AreReadWithTheServosOwnNumbers) {
   EXPECT_EQ(plan->servo.travel_mm, 1.5);
 }
 
-TEST_F(PlanFiles, WithATravelThatNoServoHasAreRefusedWhereAServoMoves) {
+TEST_F(PlanFiles, with_a_travel_that_no_servo_has_are_refused_where_a_servo_moves) {
   const std::string servo = "[prism_servo]\ndriver = 'dynamixel'\nsimulated = true\ntravel_mm = 3\n";
   const Result<StationPlan> plan = read("[display]\nprofile = 'prism-mask'\n" + servo);
   ASSERT_FALSE(plan);

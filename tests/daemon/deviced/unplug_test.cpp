@@ -67,7 +67,7 @@ class Unplug : public ::testing::Test {
   std::int64_t slowest_ms_ = 0;
 };
 
-TEST_F(Unplug, TheTracker) {
+TEST_F(Unplug, the_tracker) {
   rig_.start();
   const auto servo_before = rig_.servo.counts();
   for (int i = 0; i < unplugs(); ++i) {
@@ -96,7 +96,7 @@ TEST_F(Unplug, TheTracker) {
               static_cast<int>(slowest_ms_), oldest_eyes_ms_);
 }
 
-TEST_F(Unplug, TheServo) {
+TEST_F(Unplug, the_servo) {
   rig_.start();
   const std::uint64_t resyncs = rig_.eyes().resyncs, lost = rig_.eyes().times_lost;
   for (int i = 0; i < unplugs(); ++i) {

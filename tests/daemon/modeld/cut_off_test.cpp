@@ -149,9 +149,9 @@ class CutOff : public ::testing::TestWithParam<Long> {
 };
 
 /// How often to try until a stroke was early enough: only a machine that stands still for as long as the edit takes makes it miss.
-constexpr int kMostTries = 10;
+constexpr int kMaxTries = 10;
 
-TEST_P(CutOff, AKillLeavesTheDocumentAsItWas) {
+TEST_P(CutOff, a_kill_leaves_the_document_as_it_was) {
   std::string undisturbed;
   {
     const std::unique_ptr<Station> whole = edited();
@@ -163,7 +163,7 @@ TEST_P(CutOff, AKillLeavesTheDocumentAsItWas) {
   const std::unique_ptr<Station> station = edited();
   Lives& lives = station->lives;
   int hits = 0;
-  for (int attempt = 0; attempt < kMostTries && hits < 3 && !HasFailure(); ++attempt) {
+  for (int attempt = 0; attempt < kMaxTries && hits < 3 && !HasFailure(); ++attempt) {
     const Shown before = shown_by(lives.client());
     const std::string record = journal_in(station->folder.state());
     const bool in_the_middle = reach_the_middle(lives.client(), 1 + hits) != 0;
@@ -189,12 +189,12 @@ TEST_P(CutOff, AKillLeavesTheDocumentAsItWas) {
   lives.end_in_order();
 }
 
-TEST_P(CutOff, ACancelLeavesTheDocumentAsItWas) {
+TEST_P(CutOff, a_cancel_leaves_the_document_as_it_was) {
   const std::unique_ptr<Station> station = edited();
   ipc::Client& client = station->lives.client();
   ipc::Client view = ipc::Client::connect(ipc::model_socket_path(station->folder.path() / "run"), "view").value();
   bool hit = false;
-  for (int attempt = 0; attempt < kMostTries && !hit && !HasFailure(); ++attempt) {
+  for (int attempt = 0; attempt < kMaxTries && !hit && !HasFailure(); ++attempt) {
     const Shown before = shown_by(client);
     const std::string record = journal_in(station->folder.state());
     if (const std::uint64_t number = reach_the_middle(client, 1); number != 0) {
@@ -226,12 +226,12 @@ TEST_P(CutOff, ACancelLeavesTheDocumentAsItWas) {
 
 /// Tries a stroke until it comes in the middle; false: none did.
 bool tried_until_it_hits(const std::function<bool()>& stroke) {
-  for (int attempt = 0; attempt < kMostTries && !::testing::Test::HasFailure(); ++attempt)
+  for (int attempt = 0; attempt < kMaxTries && !::testing::Test::HasFailure(); ++attempt)
     if (stroke()) return true;
   return false;
 }
 
-TEST_P(CutOff, TheClientsDeathLeavesTheDocumentAsItWas) {
+TEST_P(CutOff, the_clients_death_leaves_the_document_as_it_was) {
   const std::unique_ptr<Station> station = edited();
   ipc::Client& watcher = station->lives.client();
   EXPECT_TRUE(tried_until_it_hits([&] {
@@ -252,7 +252,7 @@ TEST_P(CutOff, TheClientsDeathLeavesTheDocumentAsItWas) {
   EXPECT_EQ(apply(watcher, R"({"edit":"translate","by":[0,0,0.25],"on":"1313"})").report.nodes_moved, 1u);
 }
 
-TEST_P(CutOff, AnInterruptedCommandLeavesTheDocumentAsItWas) {
+TEST_P(CutOff, an_interrupted_command_leaves_the_document_as_it_was) {
   const std::unique_ptr<Station> station = edited();
   ipc::Client& watcher = station->lives.client();
   EXPECT_TRUE(tried_until_it_hits([&] {

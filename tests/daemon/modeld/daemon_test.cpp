@@ -84,7 +84,7 @@ double height(const ipc::SnapshotView& view, std::int64_t id) {
   return 0;
 }
 
-TEST_F(Serving, TwoClientsWatchOneDocument) {
+TEST_F(Serving, two_clients_watch_one_document) {
   Client editor = client("editor");
   Client watcher = client("watcher");
   EXPECT_NE(editor.welcome().client, watcher.welcome().client);
@@ -106,7 +106,7 @@ TEST_F(Serving, TwoClientsWatchOneDocument) {
   EXPECT_NE((*after)->chunk_version(ipc::SnapshotArray::positions, 0), (*before)->chunk_version(ipc::SnapshotArray::positions, 0));
 }
 
-TEST_F(Serving, ADragIsPreviewedAndCommitted) {
+TEST_F(Serving, a_drag_is_previewed_and_committed) {
   Client owner = client();
   open(owner, folder_.sheet());
   const auto answer = owner.call(ipc::BeginDrag{patch()}, kServingPatience);
@@ -128,7 +128,7 @@ TEST_F(Serving, ADragIsPreviewedAndCommitted) {
   EXPECT_TRUE(next<ipc::DragEnded>(owner)->committed);
 }
 
-TEST_F(Serving, AnExpressionIsCountedAndSelectsNothing) {
+TEST_F(Serving, an_expression_is_counted_and_selects_nothing) {
   Client client = this->client();
   const ipc::State before = open(client, folder_.sheet());
   const auto ask = [&](const std::string& expr, mesh::select::Kind kind) {
@@ -147,7 +147,7 @@ TEST_F(Serving, AnExpressionIsCountedAndSelectsNothing) {
   EXPECT_EQ(after.selected_nodes, 0u);
 }
 
-TEST_F(Serving, CountingALongExpressionStopsWhenTold) {
+TEST_F(Serving, counting_a_long_expression_stops_when_told) {
   Client asker = client();
   open(asker, folder_.sheet());
   std::string expression = "1001";
@@ -166,7 +166,7 @@ TEST_F(Serving, CountingALongExpressionStopsWhenTold) {
   FAIL() << "no answer came";
 }
 
-TEST_F(Serving, OnlyTheOwnerStepsAndEndsADrag) {
+TEST_F(Serving, only_the_owner_steps_and_ends_a_drag) {
   Client owner = client("owner");
   Client other = client("other");
   open(owner, folder_.sheet());
@@ -186,7 +186,7 @@ TEST_F(Serving, OnlyTheOwnerStepsAndEndsADrag) {
   EXPECT_FALSE(std::get<ipc::State>(owner.call(ipc::GetState{}, kServingPatience).value()).changed);
 }
 
-TEST_F(Serving, EditsWaitUntilTheDragEnds) {
+TEST_F(Serving, edits_wait_until_the_drag_ends) {
   Client owner = client("owner");
   Client other = client("other");
   open(owner, folder_.sheet());
@@ -203,7 +203,7 @@ TEST_F(Serving, EditsWaitUntilTheDragEnds) {
   EXPECT_TRUE(std::holds_alternative<ipc::Edited>(reply->answer));
 }
 
-TEST_F(Serving, TheOwnersDeathCancelsItsDrag) {
+TEST_F(Serving, the_owners_death_cancels_its_drag) {
   Client watcher = client("watcher");
   open(watcher, folder_.sheet());
   {
@@ -219,7 +219,7 @@ TEST_F(Serving, TheOwnersDeathCancelsItsDrag) {
   EXPECT_TRUE(watcher.call(ipc::BeginDrag{patch()}, kServingPatience)) << "others may drag again";
 }
 
-TEST_F(Serving, ADragThatMovesNothingLeavesNothing) {
+TEST_F(Serving, a_drag_that_moves_nothing_leaves_nothing) {
   Client owner = client();
   const std::uint64_t generation = open(owner, folder_.sheet()).generation;
   const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kServingPatience).value());
@@ -229,7 +229,7 @@ TEST_F(Serving, ADragThatMovesNothingLeavesNothing) {
   EXPECT_FALSE(next<ipc::DragEnded>(owner)->committed);
 }
 
-TEST_F(Serving, RefusalsAreSentences) {
+TEST_F(Serving, refusals_are_sentences) {
   Client one = client();
   EXPECT_EQ(one.call(ipc::ApplyEdit{move_node(1, 0.25)}, kServingPatience).error().message, "no document is open");
   EXPECT_EQ(one.snapshot().error().message, "no document is open");
@@ -255,7 +255,7 @@ TEST_F(Serving, RefusalsAreSentences) {
   EXPECT_TRUE(next<ipc::DocumentClosed>(one));
 }
 
-TEST_F(Serving, EveryoneIsToldWhichDeckASaveGoesOnAs) {
+TEST_F(Serving, everyone_is_told_which_deck_a_save_goes_on_as) {
   Client editor = client("editor"), watcher = client("watcher");
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k", copy = folder_.path() / "copy.k";
   open(editor, deck);
@@ -275,7 +275,7 @@ TEST_F(Serving, EveryoneIsToldWhichDeckASaveGoesOnAs) {
   EXPECT_EQ(std::get<ipc::State>(editor.call(ipc::GetState{}, kServingPatience).value()).path, other.string());
 }
 
-TEST_F(Serving, AClientMustGreetInTheSameProtocol) {
+TEST_F(Serving, a_client_must_greet_in_the_same_protocol) {
   const fs::path path = ipc::model_socket_path(folder_.path() / "run");
   const auto first_answer = [&](const std::string& line) -> std::string {
     ipc::LineSocket socket(ipc::connect_to(path).value(), {});
@@ -295,7 +295,7 @@ TEST_F(Serving, AClientMustGreetInTheSameProtocol) {
   EXPECT_NE(first_answer("rubbish").find("it isn't JSON"), std::string::npos);
 }
 
-TEST_F(Serving, ProgramsThatNeverGreetDoNotTakeThePlaceOfAClient) {
+TEST_F(Serving, programs_that_never_greet_do_not_take_the_place_of_a_client) {
   const fs::path path = ipc::model_socket_path(folder_.path() / "run");
   Client first = client("first");
   std::vector<ipc::Descriptor> silent;
@@ -306,7 +306,7 @@ TEST_F(Serving, ProgramsThatNeverGreetDoNotTakeThePlaceOfAClient) {
   EXPECT_TRUE(state) << state.error().text();
 }
 
-TEST_F(Serving, TwoSnapshotsAreUnderWayTogether) {
+TEST_F(Serving, two_snapshots_are_under_way_together) {
   Client client = this->client();
   open(client, folder_.sheet());
   std::vector<std::shared_ptr<const ipc::SnapshotView>> held{client.snapshot().value()};
@@ -341,7 +341,7 @@ TEST_F(Serving, TwoSnapshotsAreUnderWayTogether) {
   EXPECT_TRUE(left_a_segment) << "this looks at nothing";
 }
 
-TEST_F(Serving, HealthIsThereWithoutAsking) {
+TEST_F(Serving, health_is_there_without_asking) {
   Client one = client();
   const auto first = one.health();
   ASSERT_TRUE(first);
@@ -354,7 +354,7 @@ TEST_F(Serving, HealthIsThereWithoutAsking) {
   EXPECT_GT(one.health()->heartbeat_ns, heartbeat) << "the heart beats by itself";
 }
 
-TEST_F(Serving, ARestartIsSeenAndTheDocumentIsBack) {
+TEST_F(Serving, a_restart_is_seen_and_the_document_is_back) {
   const fs::path deck = folder_.sheet();
   Client one = client();
   open(one, deck);
@@ -374,7 +374,7 @@ TEST_F(Serving, ARestartIsSeenAndTheDocumentIsBack) {
   EXPECT_EQ(height(**again.snapshot(), 1313), moved);
 }
 
-TEST_F(Serving, OneStateFolderHasOneDaemon) {
+TEST_F(Serving, one_state_folder_has_one_daemon) {
   const auto second = Daemon::start({folder_.path() / "run2", folder_.state()});
   ASSERT_FALSE(second);
   EXPECT_NE(second.error().message.find("already runs here"), std::string::npos);
@@ -383,7 +383,7 @@ TEST_F(Serving, OneStateFolderHasOneDaemon) {
   EXPECT_NE(third.error().message.find("already runs here"), std::string::npos);
 }
 
-TEST_F(Serving, SnapshotsOfAClientThatDiesAreReturned) {
+TEST_F(Serving, snapshots_of_a_client_that_dies_are_returned) {
   Client editor = client("editor");
   open(editor, folder_.sheet());
   for (int i = 0; i < 20; ++i) {

@@ -11,7 +11,7 @@
 
 #include "daemon/modeld/document_keeper.h"
 #include "mesh/document/edit_json.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -50,7 +50,7 @@ class Keeping : public ::testing::Test {
   Folder folder_;
 };
 
-TEST_F(Keeping, TheHistoryKeepsToItsBytesAndSaysWhatGoes) {
+TEST_F(Keeping, the_history_keeps_to_its_bytes_and_says_what_goes) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper all = keeper();
   ASSERT_TRUE(all.open(request(deck), {}));
@@ -82,7 +82,7 @@ TEST_F(Keeping, TheHistoryKeepsToItsBytesAndSaysWhatGoes) {
   EXPECT_LT(undone, 12) << "the oldest have gone";
 }
 
-TEST_F(Keeping, TheStateSaysWhichFilesHoldWhichParts) {
+TEST_F(Keeping, the_state_says_which_files_hold_which_parts) {
   DocumentKeeper keeper = this->keeper();
   ASSERT_TRUE(keeper.open(request(folder_.two_files()), {}));
   const std::vector<ipc::DeckFile> files = keeper.state().files;
@@ -96,7 +96,7 @@ TEST_F(Keeping, TheStateSaysWhichFilesHoldWhichParts) {
   EXPECT_EQ(shells, keeper.state().shells);
 }
 
-TEST_F(Keeping, ARestartBringsEveryEditBack) {
+TEST_F(Keeping, a_restart_brings_every_edit_back) {
   const fs::path deck = folder_.sheet();
   double expected = 0;
   {
@@ -120,7 +120,7 @@ TEST_F(Keeping, ARestartBringsEveryEditBack) {
   EXPECT_EQ(height(second, 1313), expected - 0.25);
 }
 
-TEST_F(Keeping, UndoReachesBackBeyondASaveInPlace) {
+TEST_F(Keeping, undo_reaches_back_beyond_a_save_in_place) {
   const fs::path deck = folder_.sheet();
   const std::string original = test::whole_file(deck);
   DocumentKeeper first = keeper();
@@ -140,7 +140,7 @@ TEST_F(Keeping, UndoReachesBackBeyondASaveInPlace) {
   EXPECT_TRUE(test::compare_decks(original, test::whole_file(deck)).other_changes.empty());
 }
 
-TEST_F(Keeping, ASaveThatRoundedWritesNothingTheSecondTime) {
+TEST_F(Keeping, a_save_that_rounded_writes_nothing_the_second_time) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
@@ -162,7 +162,7 @@ TEST_F(Keeping, ASaveThatRoundedWritesNothingTheSecondTime) {
   EXPECT_EQ(one->lines_changed, 1u);
 }
 
-TEST_F(Keeping, WhatWasUndoneBeyondASaveSurvivesARestart) {
+TEST_F(Keeping, what_was_undone_beyond_a_save_survives_a_restart) {
   const fs::path deck = folder_.sheet();
   double start = 0;
   {
@@ -181,7 +181,7 @@ TEST_F(Keeping, WhatWasUndoneBeyondASaveSurvivesARestart) {
   EXPECT_TRUE(second.changed()) << "the deck on disk has the edit";
 }
 
-TEST_F(Keeping, SelectionAndLockedPartsSurviveASaveAndARestart) {
+TEST_F(Keeping, selection_and_locked_parts_survive_a_save_and_a_restart) {
   const fs::path deck = folder_.sheet();
   {
     DocumentKeeper first = keeper();
@@ -211,7 +211,7 @@ class CarriedAlone : public ::testing::TestWithParam<const char*> {
   Folder folder_;
 };
 
-TEST_P(CarriedAlone, SurvivesASaveAndARestart) {
+TEST_P(CarriedAlone, survives_a_save_and_a_restart) {
   for (const bool grown : {false, true}) {
     const fs::path deck = folder_.sheet(grown ? "grown.k" : "moved.k");
     ipc::Open request;
@@ -250,7 +250,7 @@ INSTANTIATE_TEST_SUITE_P(Keeping, CarriedAlone,
                                            R"({"edit":"select","expr":"1-10","kind":"element"})"),
                          name_of_carried);
 
-TEST_F(Keeping, TheUsersUnitAndCriteriaAreThoseOfTheDocument) {
+TEST_F(Keeping, the_users_unit_and_criteria_are_those_of_the_document) {
   ipc::Open asked = request(folder_.sheet());
   asked.length_unit = "m";
   asked.criteria = "strict";
@@ -270,7 +270,7 @@ TEST_F(Keeping, TheUsersUnitAndCriteriaAreThoseOfTheDocument) {
   EXPECT_EQ(refused.error().message, "unknown length unit \"feet\": mm, m or in");
 }
 
-TEST_F(Keeping, ASaveTakesTheRecordOfAnEarlierOneAway) {
+TEST_F(Keeping, a_save_takes_the_record_of_an_earlier_one_away) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
@@ -286,7 +286,7 @@ TEST_F(Keeping, ASaveTakesTheRecordOfAnEarlierOneAway) {
   EXPECT_TRUE(state_files(".saving").empty()) << "it would be taken for what happened to the deck as it is now";
 }
 
-TEST_F(Keeping, ASaveThatWasTakenBackLeavesNothingBehindAndCanBeMadeAgain) {
+TEST_F(Keeping, a_save_that_was_taken_back_leaves_nothing_behind_and_can_be_made_again) {
   const fs::path deck = folder_.two_files(), include = folder_.path() / "rest.k";
   const std::string deck_before = test::whole_file(deck), include_before = test::whole_file(include);
   DocumentKeeper first = keeper();
@@ -323,7 +323,7 @@ TEST_F(Keeping, ASaveThatWasTakenBackLeavesNothingBehindAndCanBeMadeAgain) {
   EXPECT_EQ(saved->nodes_written, 2u);
 }
 
-TEST_F(Keeping, ADeckThatSomethingElseChangedKeepsItsOldJournalAndSaysSo) {
+TEST_F(Keeping, a_deck_that_something_else_changed_keeps_its_old_journal_and_says_so) {
   const fs::path deck = folder_.sheet();
   {
     DocumentKeeper first = keeper();
@@ -339,7 +339,7 @@ TEST_F(Keeping, ADeckThatSomethingElseChangedKeepsItsOldJournalAndSaysSo) {
   EXPECT_EQ(state_files(".journal").size(), 2u) << "the old journal is kept";
 }
 
-TEST_F(Keeping, SavingInPlaceIsRefusedWhenTheDeckChangedOnDisk) {
+TEST_F(Keeping, saving_in_place_is_refused_when_the_deck_changed_on_disk) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
@@ -355,7 +355,7 @@ TEST_F(Keeping, SavingInPlaceIsRefusedWhenTheDeckChangedOnDisk) {
   EXPECT_TRUE(first.edit(move_edit(1313, 0.25))) << "and edited";
 }
 
-TEST_F(Keeping, UnsavedEditsAreNotGivenUpByAccident) {
+TEST_F(Keeping, unsaved_edits_are_not_given_up_by_accident) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
@@ -371,7 +371,7 @@ TEST_F(Keeping, UnsavedEditsAreNotGivenUpByAccident) {
   EXPECT_EQ(first.state().recovered_edits, 0u);
 }
 
-TEST_F(Keeping, AnEditThatCantBeJournalledIsNotDone) {
+TEST_F(Keeping, an_edit_that_cant_be_journalled_is_not_done) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
@@ -396,7 +396,7 @@ TEST_F(Keeping, AnEditThatCantBeJournalledIsNotDone) {
 
 #if !defined(PRISMESH_ADDRESS_SANITIZER) && !defined(PRISMESH_THREAD_SANITIZER)
 /// In a process of its own, since what other tests have given back to the heap is memory as well.
-TEST_F(Keeping, ADeckTooLargeForTheMemoryLeavesWhatIsOpen) {
+TEST_F(Keeping, a_deck_too_large_for_the_memory_leaves_what_is_open) {
   const auto in_little_memory = [this] {
     const fs::path large = folder_.path() / "large.k";
     std::ofstream out(large);
@@ -433,7 +433,7 @@ TEST_F(Keeping, ADeckTooLargeForTheMemoryLeavesWhatIsOpen) {
 }
 #endif
 
-TEST_F(Keeping, ADeckThatEndsTheDaemonEveryTimeIsLeft) {
+TEST_F(Keeping, a_deck_that_ends_the_daemon_every_time_is_left) {
   const fs::path deck = folder_.sheet();
   const StateFolder state(folder_.state());
   ASSERT_TRUE(state.write_session({request(deck), 3}));
@@ -445,7 +445,7 @@ TEST_F(Keeping, ADeckThatEndsTheDaemonEveryTimeIsLeft) {
   EXPECT_EQ((*state.read_session())->attempts, 0u);
 }
 
-TEST_F(Keeping, OfADamagedJournalWhatIsBeforeTheDamageIsShownUntilTheUserDecides) {
+TEST_F(Keeping, of_a_damaged_journal_what_is_before_the_damage_is_shown_until_the_user_decides) {
   const fs::path deck = folder_.sheet();
   fs::path journal;
   std::string text;
@@ -499,7 +499,7 @@ TEST_F(Keeping, OfADamagedJournalWhatIsBeforeTheDamageIsShownUntilTheUserDecides
   EXPECT_EQ(height(after, 1313), last);
 }
 
-TEST_F(Keeping, ADamagedJournalWithoutAGoodEditMakesRoomWhenTheDeckIsSaved) {
+TEST_F(Keeping, a_damaged_journal_without_a_good_edit_makes_room_when_the_deck_is_saved) {
   const fs::path deck = folder_.sheet();
   fs::path journal;
   {
@@ -525,7 +525,7 @@ TEST_F(Keeping, ADamagedJournalWithoutAGoodEditMakesRoomWhenTheDeckIsSaved) {
   EXPECT_TRUE(third.changed());
 }
 
-TEST_F(Keeping, AFolderThatMayBeWrittenButNotReadIsSavedInto) {
+TEST_F(Keeping, a_folder_that_may_be_written_but_not_read_is_saved_into) {
   if (::geteuid() != 0) GTEST_SKIP() << "SKIPPED ALOUD: becoming another user needs root";
   const fs::path folder = folder_.path() / "deck", deck = folder / "sheet.k";
   fs::create_directory(folder);
@@ -552,7 +552,7 @@ TEST_F(Keeping, AFolderThatMayBeWrittenButNotReadIsSavedInto) {
   EXPECT_EQ(height(second, 1313), last);
 }
 
-TEST_F(Keeping, NumbersNeverBeginAgainThoughTheClockIsSetBack) {
+TEST_F(Keeping, numbers_never_begin_again_though_the_clock_is_set_back) {
   const StateFolder state(folder_.state());
   std::uint64_t last = state.first_number();
   for (int life = 0; life < 5; ++life) {  // within a second: for what was noted the clock has been set back by hours
@@ -564,7 +564,7 @@ TEST_F(Keeping, NumbersNeverBeginAgainThoughTheClockIsSetBack) {
   EXPECT_LT(state.first_number(), 99'999'999'999'999'999u) << "it isn't as it was written";
 }
 
-TEST_F(Keeping, NothingOpenIsSaid) {
+TEST_F(Keeping, nothing_open_is_said) {
   DocumentKeeper first = keeper();
   EXPECT_EQ(first.edit(Undo{}).error().message, "no document is open");
   EXPECT_EQ(first.save(std::nullopt).error().message, "no document is open");

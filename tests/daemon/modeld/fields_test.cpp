@@ -159,7 +159,7 @@ class Fields : public ::testing::Test {
   Grid wavy_;
 };
 
-TEST_F(Fields, DisplacementIsHowFarEachNodeIsFromTheDecksText) {
+TEST_F(Fields, displacement_is_how_far_each_node_is_from_the_decks_text) {
   open();
   const std::uint64_t first = edit(R"({"edit":"translate","by":[0.5,-1,2],"on":"60-75"})");
   const std::vector<Vec> after_first = places();
@@ -186,7 +186,7 @@ TEST_F(Fields, DisplacementIsHowFarEachNodeIsFromTheDecksText) {
   expect_field(get(older), expected);
 }
 
-TEST_F(Fields, DistanceFromAnotherDecksSurfaceIsTheLeastOverAllItsTriangles) {
+TEST_F(Fields, distance_from_another_decks_surface_is_the_least_over_all_its_triangles) {
   const Grid other = write_grid(folder_.path() / "other.k", 5001, kSide, flatter);
   open();
   edit(R"({"edit":"translate","by":[0,0,1.5],"on":"60-75"})");
@@ -221,7 +221,7 @@ TEST_F(Fields, DistanceFromAnotherDecksSurfaceIsTheLeastOverAllItsTriangles) {
   expect_field(get(request), expected);
 }
 
-TEST_F(Fields, DistanceFromTheOpenedSurfaceIsTheLeastOverAllItsTriangles) {
+TEST_F(Fields, distance_from_the_opened_surface_is_the_least_over_all_its_triangles) {
   open();
   edit(R"({"edit":"lift","distance":2.5,"on":"80-120"})");
   edit(R"({"edit":"translate","by":[1,0.5,0],"on":"30-40"})");
@@ -233,7 +233,7 @@ TEST_F(Fields, DistanceFromTheOpenedSurfaceIsTheLeastOverAllItsTriangles) {
   expect_field(get(request), expected);
 }
 
-TEST_F(Fields, DistanceOfTwoExpressionsIsFromNodesToShells) {
+TEST_F(Fields, distance_of_two_expressions_is_from_nodes_to_shells) {
   open();
   ipc::GetField request;
   request.field = "distance";
@@ -257,7 +257,7 @@ TEST_F(Fields, DistanceOfTwoExpressionsIsFromNodesToShells) {
   EXPECT_EQ(got.made.shells_without, 0u) << "the others aren't meant to have a value";
 }
 
-TEST_F(Fields, NewNodesAreMeasuredFromBetweenThoseTheyWereMadeOf) {
+TEST_F(Fields, new_nodes_are_measured_from_between_those_they_were_made_of) {
   open();
   edit(R"({"edit":"translate","by":[0,0,2],"on":"1-196","falloff":{"profile":"constant"}})");
   edit(R"({"edit":"split","at":["shell:64","shell:65"]})");
@@ -287,7 +287,7 @@ TEST_F(Fields, NewNodesAreMeasuredFromBetweenThoseTheyWereMadeOf) {
   EXPECT_GT(farthest, 0.9) << "the ends of one at least were moved";
 }
 
-TEST_F(Fields, ShellsThatShouldHaveAValueAndHaveNoneAreCounted) {
+TEST_F(Fields, shells_that_should_have_a_value_and_have_none_are_counted) {
   open();
   edit(R"({"edit":"split","at":["shell:64"]})");
   ipc::GetField warpage;
@@ -298,7 +298,7 @@ TEST_F(Fields, ShellsThatShouldHaveAValueAndHaveNoneAreCounted) {
   EXPECT_EQ(got.made.measured, static_cast<std::uint64_t>((kSide - 1) * (kSide - 1) - 1));
 }
 
-TEST_F(Fields, LimitsAreTheSameLengthsInADeckInMetres) {
+TEST_F(Fields, limits_are_the_same_lengths_in_a_deck_in_metres) {
   open("m");
   edit(R"({"edit":"translate","by":[0,0,0.002],"on":"60-75"})");
   const Got displacement = get({});
@@ -312,7 +312,7 @@ TEST_F(Fields, LimitsAreTheSameLengthsInADeckInMetres) {
   EXPECT_DOUBLE_EQ(distance.made.full, 0.001);
 }
 
-TEST_F(Fields, WhatCannotBeMadeIsASentence) {
+TEST_F(Fields, what_cannot_be_made_is_a_sentence) {
   EXPECT_NE(refusal({}).find("no document"), std::string::npos);
   open();
   ipc::GetField request;

@@ -10,7 +10,7 @@
 
 #include "daemon/modeld/document_keeper.h"
 #include "mesh/document/edit_json.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/daemon/modeld/folder.h"
 
 namespace prismesh::modeld {
@@ -56,7 +56,7 @@ class Growing : public ::testing::Test {
 constexpr auto kSplit = R"({"edit":"split","at":["shell:1"]})";
 constexpr auto kMove = R"({"edit":"translate","by":[0,0,0.05],"on":"1"})";
 
-TEST_F(Growing, ComesBackAfterARestartAndCanBeUndone) {
+TEST_F(Growing, comes_back_after_a_restart_and_can_be_undone) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -77,7 +77,7 @@ TEST_F(Growing, ComesBackAfterARestartAndCanBeUndone) {
   }
 }
 
-TEST_F(Growing, ASaveInPlaceBeginsAnewWithWhatIsSelected) {
+TEST_F(Growing, a_save_in_place_begins_anew_with_what_is_selected) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -102,7 +102,7 @@ TEST_F(Growing, ASaveInPlaceBeginsAnewWithWhatIsSelected) {
   EXPECT_EQ(second.state().shells, 3u);
 }
 
-TEST_F(Growing, StepsBackBeyondASaveAndForthAgainAreBroughtBack) {
+TEST_F(Growing, steps_back_beyond_a_save_and_forth_again_are_brought_back) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -122,7 +122,7 @@ TEST_F(Growing, StepsBackBeyondASaveAndForthAgainAreBroughtBack) {
   }
 }
 
-TEST_F(Growing, StepsBackBeyondASaveInOneLife) {
+TEST_F(Growing, steps_back_beyond_a_save_in_one_life) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -137,7 +137,7 @@ TEST_F(Growing, StepsBackBeyondASaveInOneLife) {
   expect_same(before, first.document().current());
 }
 
-TEST_F(Growing, WhatIsCarriedOverASaveTakesNoStepBackAway) {
+TEST_F(Growing, what_is_carried_over_a_save_takes_no_step_back_away) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -162,7 +162,7 @@ TEST_F(Growing, WhatIsCarriedOverASaveTakesNoStepBackAway) {
   expect_same(shown, first.document().current());
 }
 
-TEST_F(Growing, AStepBackThatTheJournalCantHoldIsRefusedAndWhatIsShownIsOnRecord) {
+TEST_F(Growing, a_step_back_that_the_journal_cant_hold_is_refused_and_what_is_shown_is_on_record) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -185,7 +185,7 @@ TEST_F(Growing, AStepBackThatTheJournalCantHoldIsRefusedAndWhatIsShownIsOnRecord
   expect_same(shown, first.document().current());
 }
 
-TEST_F(Growing, AnEditThatIsToldToStopLeavesEverythingAsItWas) {
+TEST_F(Growing, an_edit_that_is_told_to_stop_leaves_everything_as_it_was) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -207,7 +207,7 @@ std::map<std::string, std::string> everything_in(const fs::path& folder) {
   return all;
 }
 
-TEST_F(Growing, ASaveThatIsToldToStopLeavesEveryFileUntilItPutsTheFirstInPlace) {
+TEST_F(Growing, a_save_that_is_told_to_stop_leaves_every_file_until_it_puts_the_first_in_place) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);

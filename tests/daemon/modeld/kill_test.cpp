@@ -103,7 +103,7 @@ int cycles() {
   return wanted != nullptr && std::atoi(wanted) > 0 ? std::atoi(wanted) : 60;
 }
 
-TEST_F(Killing, NoAcknowledgedEditIsLost) {
+TEST_F(Killing, no_acknowledged_edit_is_lost) {
   const std::string original = test::whole_file(lives_.deck());
   lives_.start();
   lives_.wait_until_open();

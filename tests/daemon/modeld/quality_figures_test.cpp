@@ -69,7 +69,7 @@ class Figures : public ::testing::Test {
   Document document_;
 };
 
-TEST_F(Figures, CountByMetricWhatTheStatesSay) {
+TEST_F(Figures, count_by_metric_what_the_states_say) {
   lift(kMiddle, 3);
   lift(kMiddle + 60, 1.1);
   const ipc::Quality quality = figures();
@@ -90,7 +90,7 @@ TEST_F(Figures, CountByMetricWhatTheStatesSay) {
   EXPECT_GT(quality.parts[0].composite, quality.parts[0].least_composite);
 }
 
-TEST_F(Figures, TheWorstErrorComesFirstWithItsValueAndPlace) {
+TEST_F(Figures, the_worst_error_comes_first_with_its_value_and_place) {
   lift(kMiddle + 120, 1.2);
   lift(kMiddle, 4);
   const ipc::Quality quality = figures("warpage");
@@ -109,7 +109,7 @@ TEST_F(Figures, TheWorstErrorComesFirstWithItsValueAndPlace) {
   EXPECT_NEAR((centre - mesh::Vec3(quality.errors[0].at[0], quality.errors[0].at[1], quality.errors[0].at[2])).norm(), 0, 1e-12);
 }
 
-TEST_F(Figures, EveryBarSelectsAsManyShellsAsItShows) {
+TEST_F(Figures, every_bar_selects_as_many_shells_as_it_shows) {
   lift(kMiddle, 3);
   for (int m = 0; m < mesh::quality::kMetricCount; ++m) {
     const std::string metric(mesh::quality::name(static_cast<Metric>(m)));
@@ -131,7 +131,7 @@ TEST_F(Figures, EveryBarSelectsAsManyShellsAsItShows) {
   }
 }
 
-TEST_F(Figures, BarsAreAsWideAsEachOtherReachTheLimitAndTellHowTheirShellsAreJudged) {
+TEST_F(Figures, bars_are_as_wide_as_each_other_reach_the_limit_and_tell_how_their_shells_are_judged) {
   lift(kMiddle, 3);
   lift(kMiddle + 60, 1.1);
   const Metric metric = Metric::warpage;
@@ -164,7 +164,7 @@ TEST_F(Figures, BarsAreAsWideAsEachOtherReachTheLimitAndTellHowTheirShellsAreJud
   EXPECT_EQ(ok + warn + fail, document_.current().model.shell_count());
 }
 
-TEST_F(Figures, AShellThatIsNoneCountsAsADefectOnly) {
+TEST_F(Figures, a_shell_that_is_none_counts_as_a_defect_only) {
   lift(kMiddle + 60, 3);
   move_towards(kMiddle, kMiddle + 1, 1);  // two shells lose an edge
   const std::uint64_t shells = document_.current().model.shell_count();
@@ -200,7 +200,7 @@ TEST_F(Figures, AShellThatIsNoneCountsAsADefectOnly) {
 }
 
 /// Criteria may look at thickness and material: then each shell has a limit of its own.
-TEST_F(Figures, TheWorstIsWorstByItsOwnLimit) {
+TEST_F(Figures, the_worst_is_worst_by_its_own_limit) {
   const std::filesystem::path file = folder_.path() / "thick.toml";
   std::ofstream(file) << "[metrics.min_length]\nfail_below_thicknesses = 5\n";  // of 0.8: below 4
   OpenOptions options;
@@ -223,7 +223,7 @@ TEST_F(Figures, TheWorstIsWorstByItsOwnLimit) {
   EXPECT_TRUE(ids_at(kMiddle).contains(quality.errors[0].shell));
 }
 
-TEST_F(Figures, DamageIsWhatTheEditsDid) {
+TEST_F(Figures, damage_is_what_the_edits_did) {
   EXPECT_EQ(figures("", true).error_count, 0u);
   lift(kMiddle, 3);
   const ipc::Quality quality = figures("", true);
@@ -234,7 +234,7 @@ TEST_F(Figures, DamageIsWhatTheEditsDid) {
   EXPECT_EQ(figures("", true).error_count, 0u);
 }
 
-TEST_F(Figures, AnUnknownMetricIsRefusedWithTheNearest) {
+TEST_F(Figures, an_unknown_metric_is_refused_with_the_nearest) {
   const auto refused = quality_figures(document_, {"warpege", false});
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("\"warpage\""), std::string::npos);
@@ -243,7 +243,7 @@ TEST_F(Figures, AnUnknownMetricIsRefusedWithTheNearest) {
   EXPECT_EQ(not_found.error().text(), refused.error().text());
 }
 
-TEST_F(Figures, WhatOnlyWarnsIsWorseThanNothingAndThenInTheDecksOrder) {
+TEST_F(Figures, what_only_warns_is_worse_than_nothing_and_then_in_the_decks_order) {
   const std::filesystem::path file = folder_.path() / "own.toml";
   std::ofstream(file) << "[metrics.warpage]\nwarn_above = 2\n";
   OpenOptions options;
@@ -260,7 +260,7 @@ TEST_F(Figures, WhatOnlyWarnsIsWorseThanNothingAndThenInTheDecksOrder) {
                              [](const auto& one, const auto& other) { return one.shell < other.shell; }));
 }
 
-TEST_F(Figures, TheWorstComesFirstAlsoWhereWhatWarnsFailsAtOnce) {
+TEST_F(Figures, the_worst_comes_first_also_where_what_warns_fails_at_once) {
   for (const char* text : {"[metrics.warpage]\nwarn_above = 2\nfail_above = 2\n", "[metrics.warpage]\nwarn_above = 2\nfail_above = 9\n"}) {
     const std::filesystem::path file = folder_.path() / "own.toml";
     std::ofstream(file, std::ios::trunc) << text;
@@ -279,7 +279,7 @@ TEST_F(Figures, TheWorstComesFirstAlsoWhereWhatWarnsFailsAtOnce) {
   }
 }
 
-TEST_F(Figures, APreviewSaysWhatAnEditWouldDoAndDoesNothing) {
+TEST_F(Figures, a_preview_says_what_an_edit_would_do_and_does_nothing) {
   const std::uint64_t number = document_.current().number;
   const std::set<std::int64_t> touched = ids_at(kMiddle);
   Translate edit;
@@ -306,7 +306,7 @@ TEST_F(Figures, APreviewSaysWhatAnEditWouldDoAndDoesNothing) {
   }
 }
 
-TEST_F(Figures, APreviewOfASplitShowsTheShellsThatItMakes) {
+TEST_F(Figures, a_preview_of_a_split_shows_the_shells_that_it_makes) {
   const Edit edit = parse_edit(R"({"edit":"split","at":["shell:64"]})").value();
   const Result<ipc::EditPreviewed> preview = preview_edit(document_, edit);
   ASSERT_TRUE(preview) << preview.error().text();
@@ -322,7 +322,7 @@ TEST_F(Figures, APreviewOfASplitShowsTheShellsThatItMakes) {
   EXPECT_TRUE(shown.contains(64));
 }
 
-TEST_F(Figures, APreviewLeavesShellsOutWhoseCornersStandNowhere) {
+TEST_F(Figures, a_preview_leaves_shells_out_whose_corners_stand_nowhere) {
   // A corner of two of the shells about the node has no place.
   auto broken = std::make_shared<Generation>(document_.current());
   const std::set<std::int64_t> touched = ids_at(kMiddle), nowhere = ids_at(kMiddle + 1);
@@ -349,7 +349,7 @@ TEST_F(Figures, APreviewLeavesShellsOutWhoseCornersStandNowhere) {
   EXPECT_EQ(shown, expected);
 }
 
-TEST_F(Figures, AnEditThatCantBeDoneIsRefusedInItsOwnWords) {
+TEST_F(Figures, an_edit_that_cant_be_done_is_refused_in_its_own_words) {
   Translate edit;
   edit.by = {0, 0, 3};
   edit.shaping.on = "99999999";

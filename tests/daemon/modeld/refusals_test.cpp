@@ -1,4 +1,4 @@
-// What the keeper and the bench can't do: a sentence, and everything is as it was.
+// What the keeper and the handler can't do: a sentence, and everything is as it was.
 #include <algorithm>
 #include <fstream>
 #include <functional>
@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "base/hash.h"
-#include "daemon/modeld/bench.h"
 #include "daemon/modeld/daemon.h"
 #include "daemon/modeld/document_keeper.h"
+#include "daemon/modeld/request_handler.h"
 #include "daemon/modeld/save_intent.h"
 #include "ipc/messages_json.h"
 #include "mesh/document/edit_json.h"
@@ -65,7 +65,7 @@ class Refusals : public ::testing::Test {
   DocumentKeeper keeper_{StateFolder(folder_.state())};
 };
 
-TEST_F(Refusals, WithoutADocumentThereIsNothingToSaveOrClose) {
+TEST_F(Refusals, without_a_document_there_is_nothing_to_save_or_close) {
   const std::string other = (folder_.path() / "other.k").string();
   EXPECT_EQ(keeper_.save_copy(other).error().message, "no document is open");
   EXPECT_EQ(keeper_.save_as(other).error().message, "no document is open");
@@ -75,7 +75,7 @@ TEST_F(Refusals, WithoutADocumentThereIsNothingToSaveOrClose) {
   EXPECT_FALSE(fs::exists(other));
 }
 
-TEST_F(Refusals, ADeckIsSavedUnderAWholePathOnly) {
+TEST_F(Refusals, a_deck_is_saved_under_a_whole_path_only) {
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
   const std::string why = "the path must be absolute: the daemon has its own working folder";
@@ -87,7 +87,7 @@ TEST_F(Refusals, ADeckIsSavedUnderAWholePathOnly) {
   EXPECT_TRUE(keeper_.changed());
 }
 
-TEST_F(Refusals, ADeckThatCannotBeOpenedAsAskedLeavesNoJournalAndIsNotOpenedAgain) {
+TEST_F(Refusals, a_deck_that_cannot_be_opened_as_asked_leaves_no_journal_and_is_not_opened_again) {
   ipc::Open no_size = open_request(folder_.sheet());
   no_size.target_size = 0;
   EXPECT_EQ(keeper_.open(no_size, {}).error().text(), "the target size must be greater than 0");
@@ -98,7 +98,7 @@ TEST_F(Refusals, ADeckThatCannotBeOpenedAsAskedLeavesNoJournalAndIsNotOpenedAgai
   EXPECT_TRUE(fs::is_empty(folder_.state()));
 }
 
-TEST_F(Refusals, ADeckThatIsGoneAfterARestartIsAnHonestRefusalEachTime) {
+TEST_F(Refusals, a_deck_that_is_gone_after_a_restart_is_an_honest_refusal_each_time) {
   open_sheet();
   keeper_ = DocumentKeeper(StateFolder(folder_.state()));
   fs::remove(folder_.path() / "sheet.k");
@@ -109,13 +109,13 @@ TEST_F(Refusals, ADeckThatIsGoneAfterARestartIsAnHonestRefusalEachTime) {
     EXPECT_EQ(opened.error().message.find("ended the daemon"), std::string::npos) << "it was refused, nothing ended";
   }
   ipc::SnapshotPublisher publisher(1);
-  Bench bench(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
-  EXPECT_THAT(words(bench.reopen({}).answer), HasSubstr("sheet.k"));
+  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
+  EXPECT_THAT(words(handler.reopen({}).answer), HasSubstr("sheet.k"));
   folder_.sheet();
   EXPECT_TRUE(*keeper_.reopen({})) << "it is there again";
 }
 
-TEST_F(Refusals, ASessionFileThatIsNoneIsSaid) {
+TEST_F(Refusals, a_session_file_that_is_none_is_said) {
   const fs::path file = folder_.state() / "session.json";
   const auto with_check = [](const std::string& line) { return line + "\ncheck " + hash128(std::as_bytes(std::span(line))).hex() + "\n"; };
   const std::string get_state = ipc::encode_request(0, ipc::GetState{}).value();
@@ -144,7 +144,7 @@ TEST_F(Refusals, ASessionFileThatIsNoneIsSaid) {
   EXPECT_EQ(keeper_.state().warnings.back().kind, "session-not-noted");
 }
 
-TEST_F(Refusals, ARecordOfASaveThatCannotBeReadIsPutAsideAndSaid) {
+TEST_F(Refusals, a_record_of_a_save_that_cannot_be_read_is_put_aside_and_said) {
   open_sheet();
   const fs::path deck = keeper_.document().path, record = StateFolder::save_intent(journal());
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
@@ -170,7 +170,7 @@ TEST_F(Refusals, ARecordOfASaveThatCannotBeReadIsPutAsideAndSaid) {
   }
 }
 
-TEST_F(Refusals, WithoutItsJournalADocumentCanStillBeGivenUpOrSaved) {
+TEST_F(Refusals, without_its_journal_a_document_can_still_be_given_up_or_saved) {
   const fs::path deck = folder_.sheet();
   const std::string before = test::whole_file(deck);
   for (const char* way : {"close", "another", "save"}) {
@@ -199,7 +199,7 @@ TEST_F(Refusals, WithoutItsJournalADocumentCanStillBeGivenUpOrSaved) {
   }
 }
 
-TEST_F(Refusals, ADamagedJournalMakesRoomOrStaysWhereItIs) {
+TEST_F(Refusals, a_damaged_journal_makes_room_or_stays_where_it_is) {
   const fs::path deck = folder_.sheet();
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
@@ -220,7 +220,7 @@ TEST_F(Refusals, ADamagedJournalMakesRoomOrStaysWhereItIs) {
   EXPECT_TRUE(keeper_.edit(json_edit(kRaise)));
 }
 
-TEST_F(Refusals, ASaveIsRefusedWhereItsRecordOrTheNextJournalCannotBeMade) {
+TEST_F(Refusals, a_save_is_refused_where_its_record_or_the_next_journal_cannot_be_made) {
   const fs::path deck = folder_.sheet();
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
@@ -236,7 +236,7 @@ TEST_F(Refusals, ASaveIsRefusedWhereItsRecordOrTheNextJournalCannotBeMade) {
   EXPECT_NE(test::whole_file(deck), before);
 }
 
-TEST_F(Refusals, TheCriteriaOfAnOpenDocumentOutliveTheirFile) {
+TEST_F(Refusals, the_criteria_of_an_open_document_outlive_their_file) {
   const fs::path criteria = folder_.path() / "own.toml", deck = folder_.sheet(), other = folder_.path() / "other.k";
   std::ofstream(criteria) << "[metrics.warpage]\nwarn_above = 0.001\nfail_above = 0.002\n";
   ipc::Open asked = open_request(deck);
@@ -255,7 +255,7 @@ TEST_F(Refusals, TheCriteriaOfAnOpenDocumentOutliveTheirFile) {
   EXPECT_GT(keeper_.state().counts.fail, 0u) << "judged by the criteria that it was opened with";
 }
 
-TEST_F(Refusals, SavingAsAnotherDeckToldToStopWhenItIsWrittenLeavesACopy) {
+TEST_F(Refusals, saving_as_another_deck_told_to_stop_when_it_is_written_leaves_a_copy) {
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
   const fs::path deck = keeper_.document().path, other = folder_.path() / "other.k";
@@ -268,7 +268,7 @@ TEST_F(Refusals, SavingAsAnotherDeckToldToStopWhenItIsWrittenLeavesACopy) {
   EXPECT_EQ(keeper_.state().path, other.string());
 }
 
-TEST_F(Refusals, WhatASaveElsewhereCouldNotWriteIsSaidBeforeItIsTried) {
+TEST_F(Refusals, what_a_save_elsewhere_could_not_write_is_said_before_it_is_tried) {
   fs::create_directory(folder_.path() / "deck");
   const fs::path outside = folder_.path() / "outside.k", deck = folder_.path() / "deck/main.k";
   fs::copy_file(folder_.sheet(), outside);
@@ -281,7 +281,7 @@ TEST_F(Refusals, WhatASaveElsewhereCouldNotWriteIsSaidBeforeItIsTried) {
   EXPECT_FALSE(fs::exists(folder_.path() / "new"));
 }
 
-TEST_F(Refusals, WhatWasClosedIsNotOpenedByTheNextLife) {
+TEST_F(Refusals, what_was_closed_is_not_opened_by_the_next_life) {
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
   ASSERT_TRUE(keeper_.close(true));
@@ -291,7 +291,7 @@ TEST_F(Refusals, WhatWasClosedIsNotOpenedByTheNextLife) {
   EXPECT_FALSE(*opened);
 }
 
-TEST_F(Refusals, WhatWasSaidOfTheOldDeckIsNotSaidOfTheOneThatASaveAsGoesOnAs) {
+TEST_F(Refusals, what_was_said_of_the_old_deck_is_not_said_of_the_one_that_a_save_as_goes_on_as) {
   const fs::path deck = folder_.sheet();
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
@@ -309,7 +309,7 @@ TEST_F(Refusals, WhatWasSaidOfTheOldDeckIsNotSaidOfTheOneThatASaveAsGoesOnAs) {
   EXPECT_EQ(keeper_.state().recovered_edits, 0u);
 }
 
-TEST_F(Refusals, AJournalOfAnEarlierTimeIsKeptBesideTheOneOfASaveAs) {
+TEST_F(Refusals, a_journal_of_an_earlier_time_is_kept_beside_the_one_of_a_save_as) {
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
   const auto save_as_other = [&] {
     ASSERT_TRUE(keeper_.open(open_request(deck), {}));
@@ -331,63 +331,63 @@ TEST_F(Refusals, AJournalOfAnEarlierTimeIsKeptBesideTheOneOfASaveAs) {
   EXPECT_EQ(keeper_.state().journalled_edits, 0u);
 }
 
-// --- the bench ---
+// --- the handler ---
 
 class BenchRefusals : public ::testing::Test {
  protected:
-  void SetUp() override { ASSERT_EQ(words(bench_.open(open_request(folder_.sheet()), {}).answer), "done"); }
+  void SetUp() override { ASSERT_EQ(words(handler_.open(open_request(folder_.sheet()), {}).answer), "done"); }
   static mesh::document::Edit dragged() { return json_edit(R"({"edit":"translate","by":[0,0,0],"on":"1313"})"); }
 
   test::Folder folder_;
   ipc::SnapshotPublisher publisher_{1};
-  Bench bench_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30};
+  RequestHandler handler_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30};
 };
 
-TEST_F(BenchRefusals, QuestionsThatHaveNoAnswerAreSentences) {
-  EXPECT_THAT(words(bench_.quality({"warpege", false}).answer), HasSubstr("\"warpage\""));
-  EXPECT_THAT(words(bench_.find({"warpege", std::nullopt, std::nullopt, false}).answer), HasSubstr("\"warpage\""));
-  EXPECT_THAT(words(bench_.preview({json_edit(R"({"edit":"translate","by":[0,0,1],"on":"9"})")}).answer), HasSubstr("no node 9"));
-  EXPECT_THAT(words(bench_.count({"9", mesh::select::Kind::node}).answer), HasSubstr("no node 9"));
-  EXPECT_THAT(words(bench_.begin_drag(1, json_edit(R"({"edit":"grow"})")).answer), HasSubstr("only shaping edits can be dragged"));
-  EXPECT_THAT(words(bench_.begin_drag(1, json_edit(R"({"edit":"translate","by":[0,0,1],"on":"9"})")).answer), HasSubstr("no node 9"));
+TEST_F(BenchRefusals, questions_that_have_no_answer_are_sentences) {
+  EXPECT_THAT(words(handler_.quality({"warpege", false}).answer), HasSubstr("\"warpage\""));
+  EXPECT_THAT(words(handler_.find({"warpege", std::nullopt, std::nullopt, false}).answer), HasSubstr("\"warpage\""));
+  EXPECT_THAT(words(handler_.preview({json_edit(R"({"edit":"translate","by":[0,0,1],"on":"9"})")}).answer), HasSubstr("no node 9"));
+  EXPECT_THAT(words(handler_.count({"9", mesh::select::Kind::node}).answer), HasSubstr("no node 9"));
+  EXPECT_THAT(words(handler_.begin_drag(1, json_edit(R"({"edit":"grow"})")).answer), HasSubstr("only shaping edits can be dragged"));
+  EXPECT_THAT(words(handler_.begin_drag(1, json_edit(R"({"edit":"translate","by":[0,0,1],"on":"9"})")).answer), HasSubstr("no node 9"));
   const auto go_on = [](double) { return true; };
   ipc::GetField field;
   field.against_generation = 99;
-  EXPECT_THAT(words(bench_.field(field, go_on).answer), HasSubstr("the history has no state 99 any more"));
+  EXPECT_THAT(words(handler_.field(field, go_on).answer), HasSubstr("the history has no state 99 any more"));
   field.against_generation.reset();
   field.against = folder_.sheet("other.k").string();
-  EXPECT_EQ(words(bench_.field(field, [](double) { return false; }).answer), field.against + ": cancelled") << "where it was";
-  const ipc::Answer one = bench_.field(field, go_on).answer, other = bench_.field(field, go_on).answer;
+  EXPECT_EQ(words(handler_.field(field, [](double) { return false; }).answer), field.against + ": cancelled") << "where it was";
+  const ipc::Answer one = handler_.field(field, go_on).answer, other = handler_.field(field, go_on).answer;
   ASSERT_EQ(words(one), "done");
   EXPECT_NE(std::get<ipc::FieldMade>(one).field, std::get<ipc::FieldMade>(other).field);
 }
 
-TEST_F(BenchRefusals, AnEditCountsThoughViewsCannotBeGivenIt) {
+TEST_F(BenchRefusals, an_edit_counts_though_views_cannot_be_given_it) {
 #ifdef PRISMESH_ADDRESS_SANITIZER
   GTEST_SKIP() << "UndefinedBehaviorSanitizer needs descriptors of its own to look at an object's type";
 #endif
   const Outcome told = [&] {
     const test::FewDescriptors none(0);
-    return bench_.edit(json_edit(kRaise));
+    return handler_.edit(json_edit(kRaise));
   }();
   const auto* edited = std::get_if<ipc::Edited>(&told.answer);
   ASSERT_NE(edited, nullptr) << words(told.answer);
   EXPECT_THAT(edited->report.notes, ::testing::Contains(HasSubstr("the views couldn't be given the new state: ")));
-  ASSERT_TRUE(told.face);
-  EXPECT_EQ(told.face->state.generation, edited->generation);
-  EXPECT_TRUE(told.face->state.changed);
-  const Outcome next = bench_.edit(json_edit(kRaise));
+  ASSERT_TRUE(told.published);
+  EXPECT_EQ(told.published->state.generation, edited->generation);
+  EXPECT_TRUE(told.published->state.changed);
+  const Outcome next = handler_.edit(json_edit(kRaise));
   for (const std::string& note : std::get<ipc::Edited>(next.answer).report.notes) EXPECT_EQ(note.find("views"), std::string::npos);
 }
 
-TEST_F(BenchRefusals, WhatNeedsSharedMemoryIsRefusedWithoutItAndDoneOnceThereIsSome) {
+TEST_F(BenchRefusals, what_needs_shared_memory_is_refused_without_it_and_done_once_there_is_some) {
 #ifdef PRISMESH_ADDRESS_SANITIZER
   GTEST_SKIP() << "UndefinedBehaviorSanitizer needs descriptors of its own to look at an object's type";
 #endif
   const auto go_on = [](double) { return true; };
   const std::pair<const char*, std::function<Outcome()>> works[] = {
-      {"a drag", [&] { return bench_.begin_drag(7, dragged()); }},
-      {"a field", [&] { return bench_.field({}, go_on); }},
+      {"a drag", [&] { return handler_.begin_drag(7, dragged()); }},
+      {"a field", [&] { return handler_.field({}, go_on); }},
   };
   for (const auto& [what, work] : works) {
     int free = 0;
@@ -399,29 +399,29 @@ TEST_F(BenchRefusals, WhatNeedsSharedMemoryIsRefusedWithoutItAndDoneOnceThereIsS
       if (words(outcome.answer) == "done") break;
       EXPECT_THAT(words(outcome.answer), HasSubstr("Too many open files")) << what << " with " << free << " free";
       EXPECT_TRUE(outcome.descriptors.empty());
-      EXPECT_FALSE(outcome.face);
+      EXPECT_FALSE(outcome.published);
     }
     EXPECT_GT(free, 0) << what << " needs some";
     EXPECT_LT(free, 20) << what;
   }
 }
 
-TEST_F(BenchRefusals, ADragWhoseEditCannotBeKeptSaysWhyToEveryone) {
-  ASSERT_EQ(words(bench_.begin_drag(7, dragged()).answer), "done");
-  bench_.step_drag({7, 1, {0, 0, 0.5}, 0, 0});
+TEST_F(BenchRefusals, a_drag_whose_edit_cannot_be_kept_says_why_to_everyone) {
+  ASSERT_EQ(words(handler_.begin_drag(7, dragged()).answer), "done");
+  handler_.step_drag({7, 1, {0, 0, 0.5}, 0, 0});
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_.state()))
     if (entry.path().extension() == ".journal") fs::remove(entry.path());
-  const Outcome outcome = bench_.commit_drag();
+  const Outcome outcome = handler_.commit_drag();
   EXPECT_THAT(words(outcome.answer), HasSubstr("the journal has been deleted"));
   ASSERT_EQ(outcome.events.size(), 1u);
   const auto& ended = std::get<ipc::DragEnded>(outcome.events.front());
   EXPECT_EQ(ended.drag, 7u);
   EXPECT_FALSE(ended.committed);
   EXPECT_THAT(ended.why, HasSubstr("the journal has been deleted"));
-  EXPECT_FALSE(outcome.face) << "nothing changed";
+  EXPECT_FALSE(outcome.published) << "nothing changed";
 }
 
-TEST(DaemonStart, IsASentenceWhereItCannotBeAndLeavesNothingInTheWay) {
+TEST(DaemonStart, is_a_sentence_where_it_cannot_be_and_leaves_nothing_in_the_way) {
   const test::Folder folder;
   std::ofstream(folder.path() / "file") << "no folder";
   const auto why_not = [](const DaemonOptions& options) {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/modeld/bench.h"
+#include "daemon/modeld/request_handler.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/folder.h"
 
@@ -37,7 +37,7 @@ class SaveAs : public ::testing::Test {
 
 constexpr const char* kLift = R"({"edit":"translate","by":[0,0,0.25],"on":"1313","falloff":{"profile":"constant"}})";
 
-TEST_F(SaveAs, GoesOnUnderTheNewNameWithItsHistory) {
+TEST_F(SaveAs, goes_on_under_the_new_name_with_its_history) {
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
   const std::string original = test::whole_file(deck);
   double start = 0;
@@ -78,7 +78,7 @@ TEST_F(SaveAs, GoesOnUnderTheNewNameWithItsHistory) {
   EXPECT_EQ(second.state().warnings.size(), warnings);
 }
 
-TEST_F(SaveAs, TakesIncludesAndStructureAlong) {
+TEST_F(SaveAs, takes_includes_and_structure_along) {
   const fs::path deck = folder_.two_files(), other = folder_.path() / "new/main.k";
   auto killed = std::make_unique<DocumentKeeper>(keeper());
   DocumentKeeper& first = *killed;
@@ -102,14 +102,14 @@ TEST_F(SaveAs, TakesIncludesAndStructureAlong) {
   EXPECT_EQ(height(second, 5), 0.5);
 }
 
-TEST_F(SaveAs, SaysWhatItWouldReplaceAndMakeAndTouchesNothing) {
+TEST_F(SaveAs, says_what_it_would_replace_and_make_and_touches_nothing) {
   const fs::path deck = folder_.two_files();
   ipc::SnapshotPublisher publisher(1);
-  Bench bench(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
+  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
   ipc::Open request;
   request.path = deck.string();
-  ASSERT_TRUE(std::holds_alternative<ipc::State>(bench.open(request, {}).answer));
-  const auto ask = [&](const fs::path& target, bool asks) { return bench.save({target.string(), true, asks}).answer; };
+  ASSERT_TRUE(std::holds_alternative<ipc::State>(handler.open(request, {}).answer));
+  const auto ask = [&](const fs::path& target, bool asks) { return handler.save({target.string(), true, asks}).answer; };
 
   const fs::path made = folder_.path() / "new";
   ipc::Answer answer = ask(made / "main.k", true);
@@ -133,26 +133,26 @@ TEST_F(SaveAs, SaysWhatItWouldReplaceAndMakeAndTouchesNothing) {
   EXPECT_THAT(std::get<ipc::Failed>(answer).message, ::testing::HasSubstr("absolute"));
 }
 
-TEST_F(SaveAs, ACopyLeavesTheDocumentAsItWas) {
+TEST_F(SaveAs, a_copy_leaves_the_document_as_it_was) {
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
   ipc::SnapshotPublisher publisher(1);
-  Bench bench(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
+  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
   ipc::Open request;
   request.path = deck.string();
-  ASSERT_TRUE(std::holds_alternative<ipc::State>(bench.open(request, {}).answer));
-  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(bench.edit(mesh::document::parse_edit(kLift).value()).answer));
+  ASSERT_TRUE(std::holds_alternative<ipc::State>(handler.open(request, {}).answer));
+  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(handler.edit(mesh::document::parse_edit(kLift).value()).answer));
   ipc::Save copy{other.string(), false, false, true};
-  const Outcome copied = bench.save(copy);
+  const Outcome copied = handler.save(copy);
   ASSERT_TRUE(std::holds_alternative<ipc::Saved>(copied.answer));
   EXPECT_NE(test::whole_file(other), test::whole_file(deck));
-  ASSERT_TRUE(copied.face);
-  EXPECT_EQ(copied.face->state.path, deck.string());
-  EXPECT_TRUE(copied.face->state.changed) << "the deck itself doesn't have the edit";
+  ASSERT_TRUE(copied.published);
+  EXPECT_EQ(copied.published->state.path, deck.string());
+  EXPECT_TRUE(copied.published->state.changed) << "the deck itself doesn't have the edit";
   copy.stays_unsaved = false;
-  EXPECT_FALSE(bench.save(copy).face->state.changed);
+  EXPECT_FALSE(handler.save(copy).published->state.changed);
 }
 
-TEST_F(SaveAs, WhereItCantGoOnTheDocumentIsTheOneItWas) {
+TEST_F(SaveAs, where_it_cant_go_on_the_document_is_the_one_it_was) {
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
   auto killed = std::make_unique<DocumentKeeper>(keeper());
   DocumentKeeper& first = *killed;
@@ -177,7 +177,7 @@ TEST_F(SaveAs, WhereItCantGoOnTheDocumentIsTheOneItWas) {
   EXPECT_NEAR(height(second, 1313), lifted + 0.25, 1e-9);
 }
 
-TEST_F(SaveAs, DoesNotGoOnAsADeckThatIsReadAsAnotherModel) {
+TEST_F(SaveAs, does_not_go_on_as_a_deck_that_is_read_as_another_model) {
   // Beside the old deck the new one shares its include, which something else has written anew since: with a node or a shell more.
   const std::pair<std::string, std::string> additions[] = {
       {"*NODE\n", "       7             9.0             9.0             0.0\n"},
@@ -200,7 +200,7 @@ TEST_F(SaveAs, DoesNotGoOnAsADeckThatIsReadAsAnotherModel) {
   }
 }
 
-TEST_F(SaveAs, AnotherDeckIsOpenedWithoutTheEditsOnlyOnceItIsRead) {
+TEST_F(SaveAs, another_deck_is_opened_without_the_edits_only_once_it_is_read) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   open(first, deck);

@@ -32,7 +32,7 @@ struct CutOffSaveCase {
   SaveOutcome outcome;
 };
 
-TEST(SaveIntents, AreSettledWithoutOverwritingWhatOthersWrote) {
+TEST(SaveIntents, are_settled_without_overwriting_what_others_wrote) {
   const LeftByACut replaced{"new", "", "new"}, waiting{"old", "new", "new"};
   const CutOffSaveCase cases[] = {
       {"before the first", {{"old", "new", "old"}, {"old", "new", "old"}}, SaveOutcome::not_begun},
@@ -119,7 +119,7 @@ class RecordOfASave : public ::testing::Test {
   SaveIntent intent_;
 };
 
-TEST_F(RecordOfASave, LeavesTheJournalOfTheSavedDeckWhereItGotEditsAfterwards) {
+TEST_F(RecordOfASave, leaves_the_journal_of_the_saved_deck_where_it_got_edits_afterwards) {
   find_at_the_next_opening(unsaved_, 2, 0);  // restored by hand: the save counts as not begun
   EXPECT_EQ(edits_brought_back(), 0u);
   EXPECT_TRUE(fs::exists(next_journal_)) << "it holds an edit that was made after the save";
@@ -128,13 +128,13 @@ TEST_F(RecordOfASave, LeavesTheJournalOfTheSavedDeckWhereItGotEditsAfterwards) {
   EXPECT_EQ(edits_brought_back(), 1u);
 }
 
-TEST_F(RecordOfASave, RetiresTheJournalOfASavedDeckThatHoldsNothingElse) {
+TEST_F(RecordOfASave, retires_the_journal_of_a_saved_deck_that_holds_nothing_else) {
   find_at_the_next_opening(unsaved_, 2, 1);
   EXPECT_EQ(edits_brought_back(), 0u);
   EXPECT_FALSE(fs::exists(next_journal_));
 }
 
-TEST_F(RecordOfASave, LeavesTheJournalOfBeforeWhereItGotEditsAfterwards) {
+TEST_F(RecordOfASave, leaves_the_journal_of_before_where_it_got_edits_afterwards) {
   leave(first_journal_, first_edits_);
   find_at_the_next_opening(saved_, 1, 0);  // the save had one of its two edits
   EXPECT_EQ(edits_brought_back(), 1u);
@@ -143,7 +143,7 @@ TEST_F(RecordOfASave, LeavesTheJournalOfBeforeWhereItGotEditsAfterwards) {
   EXPECT_EQ(edits_brought_back(), 2u);
 }
 
-TEST_F(RecordOfASave, RetiresTheJournalWhoseEditsAreAllInTheDeck) {
+TEST_F(RecordOfASave, retires_the_journal_whose_edits_are_all_in_the_deck) {
   leave(first_journal_, first_edits_);
   find_at_the_next_opening(saved_, 2, 0);
   EXPECT_EQ(edits_brought_back(), 1u);

@@ -52,13 +52,13 @@ class SessionCommand : public ::testing::Test {
 
 const char* const kMoveCorner = R"({"edit": "translate", "by": [0, 0, 0.25], "on": "1313"})";
 
-TEST_F(SessionCommand, WithoutADaemonItSaysSoAtOnce) {
+TEST_F(SessionCommand, without_a_daemon_it_says_so_at_once) {
   const Ran ran = session({"state"});
   EXPECT_EQ(ran.status, 1);
   EXPECT_NE(ran.err.find("nobody listens there"), std::string::npos) << ran.err;
 }
 
-TEST_F(SessionCommand, EditsAndSavesTheOpenDocument) {
+TEST_F(SessionCommand, edits_and_saves_the_open_document) {
   const auto deck = folder_.sheet();
   const std::string original = test::whole_file(deck);
   start();
@@ -80,7 +80,7 @@ TEST_F(SessionCommand, EditsAndSavesTheOpenDocument) {
   EXPECT_EQ(daemon_->wait_for_exit(), 0);
 }
 
-TEST_F(SessionCommand, SaysTheWarningsOfTheOpenDeck) {
+TEST_F(SessionCommand, says_the_warnings_of_the_open_deck) {
   const auto deck = folder_.two_files();
   std::filesystem::remove(folder_.path() / "rest.k");
   start();
@@ -95,7 +95,7 @@ TEST_F(SessionCommand, SaysTheWarningsOfTheOpenDeck) {
 }
 
 /// A limit on the size of files ends a program by a signal unless the program wants it otherwise.
-TEST_F(SessionCommand, AFileThatMayNotGrowIsAnErrorAndNoEnd) {
+TEST_F(SessionCommand, a_file_that_may_not_grow_is_an_error_and_no_end) {
   const auto deck = folder_.sheet();
   const std::string limited = "ulimit -f 8; exec \"$@\"";
   daemon_ = std::make_unique<Process>(std::vector<std::string>{"/bin/sh", "-c", limited, "sh", program("prismesh-modeld"), "--runtime-dir",
@@ -117,7 +117,7 @@ TEST_F(SessionCommand, AFileThatMayNotGrowIsAnErrorAndNoEnd) {
   EXPECT_TRUE(std::filesystem::is_empty(target.parent_path()));
 }
 
-TEST_F(SessionCommand, GoesOnWhenTheDaemonIsRestarted) {
+TEST_F(SessionCommand, goes_on_when_the_daemon_is_restarted) {
   const auto deck = folder_.sheet();
   start();
   wait_until_there();

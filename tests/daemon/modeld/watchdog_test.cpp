@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Watchdog, SilenceIsToldAfterSoManyBeatsWithoutASign) {
+TEST(Watchdog, silence_is_told_after_so_many_beats_without_a_sign) {
   Pulse pulse;
   Silence silence("it", pulse, 3);
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(silence.beat()) << "no signs are expected";
@@ -18,7 +18,7 @@ TEST(Watchdog, SilenceIsToldAfterSoManyBeatsWithoutASign) {
   EXPECT_TRUE(silence.beat());
 }
 
-TEST(Watchdog, EachSignBeginsTheCountAnew) {
+TEST(Watchdog, each_sign_begins_the_count_anew) {
   Pulse pulse;
   Silence silence("it", pulse, 3);
   pulse.begin();
@@ -36,7 +36,7 @@ TEST(Watchdog, EachSignBeginsTheCountAnew) {
   }
 }
 
-TEST(Watchdog, TellsOnceWhatIsSilent) {
+TEST(Watchdog, tells_once_what_is_silent) {
   Pulse lively, hung;
   std::promise<std::string> told;
   std::vector<Silence> watched;

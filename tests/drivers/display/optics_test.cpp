@@ -20,7 +20,7 @@ double seen_through(const MaskOptics& optics, double eye_x, double distance, dou
   return m + optics.air_gap_mm() * optics.refractive_index * std::tan(std::asin(std::sin(angle) / optics.refractive_index));
 }
 
-TEST(Optics, TheExampleDisplayHasItsKnownFigures) {
+TEST(Optics, the_example_display_has_its_known_figures) {
   const MaskOptics optics;
   EXPECT_NEAR(optics.air_gap_mm(), 2.894, 1e-3);
   EXPECT_NEAR(optics.air_gap_mm() * optics.refractive_index, 4.40, 5e-3) << "thickness of the glass";
@@ -29,7 +29,7 @@ TEST(Optics, TheExampleDisplayHasItsKnownFigures) {
   EXPECT_NEAR(mask_position_mm(optics, {63, 0, 650}), optics.mask_pitch_mm() / 2, 1e-9) << "an eye separation on, the eyes swap";
 }
 
-TEST(Optics, AWindowsNumberIsThatOfItsElement) {
+TEST(Optics, a_windows_number_is_that_of_its_element) {
   MaskOptics optics;
   for (const double eye_x : {0.0, -31.5, 200.0})
     for (const double distance : {400.0, 650.0, 900.0})
@@ -44,7 +44,7 @@ TEST(Optics, AWindowsNumberIsThatOfItsElement) {
   EXPECT_NEAR(window_number(optics, {20, 5, 600}, 0, m + (m - 20) * optics.air_gap_mm() / 600, 80), 55, 1e-9);
 }
 
-TEST(Optics, AtTheDesignPlaceEachEyeHasItsColumnsOnAPanelOfAnyWidth) {
+TEST(Optics, at_the_design_place_each_eye_has_its_columns_on_a_panel_of_any_width) {
   for (int columns = 1; columns < 2000; columns += columns < 40 ? 1 : 61) {
     MaskOptics optics;
     optics.refractive_index = 1;
@@ -73,7 +73,7 @@ double worst_with_shift_alone(double x, double distance) {
   return worst;
 }
 
-TEST(Optics, TheLinearLawIsAsGoodAsItIsKnownToBe) {
+TEST(Optics, the_linear_law_is_as_good_as_it_is_known_to_be) {
   EXPECT_LT(worst_with_shift_alone(0, 650), 0.08);
   EXPECT_NEAR(worst_with_shift_alone(63, 650), 0.14, 0.01);
   EXPECT_NEAR(worst_with_shift_alone(126, 650), 0.27, 0.01);
@@ -81,7 +81,7 @@ TEST(Optics, TheLinearLawIsAsGoodAsItIsKnownToBe) {
   EXPECT_NEAR(worst_with_shift_alone(0, 699), 0.25, 0.01) << "and the farthest";
 }
 
-TEST(Optics, MovingHeadAndMaskTogetherChangesNothingInTheMiddle) {
+TEST(Optics, moving_head_and_mask_together_changes_nothing_in_the_middle) {
   for (const double lean : {0.0, 0.3333, -0.18})
     for (const Vector3d& head : {Vector3d(0, 0, 650), Vector3d(240, -130, 480), Vector3d(-90, 60, 1200)}) {
       MaskOptics optics;
@@ -92,7 +92,7 @@ TEST(Optics, MovingHeadAndMaskTogetherChangesNothingInTheMiddle) {
     }
 }
 
-TEST(Optics, ALeaningMaskIsTheSamePatternMovedAsideWithHeight) {
+TEST(Optics, a_leaning_mask_is_the_same_pattern_moved_aside_with_height) {
   MaskOptics optics;
   optics.lean = 1.0 / 3;
   optics.refractive_index = 1;  // the relation is exact without refraction
@@ -101,7 +101,7 @@ TEST(Optics, ALeaningMaskIsTheSamePatternMovedAsideWithHeight) {
     EXPECT_NEAR(window_number(optics, eye, 0.1, 20 + optics.lean * v, v), window_number(optics, eye, 0.1, 20, 0), 1e-9);
 }
 
-TEST(Optics, SkewRaysBendAsSnellSays) {
+TEST(Optics, skew_rays_bend_as_snell_says) {
   const MaskOptics optics;
   const Vector3d eye(50, 80, 500);
   const double m = 31 * optics.mask_pitch_mm(), w = -90;
@@ -113,7 +113,7 @@ TEST(Optics, SkewRaysBendAsSnellSays) {
   EXPECT_NEAR(window_number(optics, eye, 0, on_panel.x(), on_panel.y()), 31, 1e-8);
 }
 
-TEST(Optics, EvenlySpacedWindowsAreNearTheRealOnes) {
+TEST(Optics, evenly_spaced_windows_are_near_the_real_ones) {
   MaskOptics optics;
   for (const Vector3d& eye : {Vector3d(-31.5, 0, 650), Vector3d(150, 40, 500), Vector3d(-200, 0, 900)}) {
     const WindowRow row = window_row(optics, eye, 0.2, kWidth);
@@ -128,7 +128,7 @@ TEST(Optics, EvenlySpacedWindowsAreNearTheRealOnes) {
   EXPECT_NEAR(exact.spacing_mm, 2 * kPitch, 1e-12) << "two pixels at the design distance";
 }
 
-TEST(Optics, CalibratedScalesDontDisturbEachOther) {
+TEST(Optics, calibrated_scales_dont_disturb_each_other) {
   MaskOptics optics;
   const double pitch = optics.mask_pitch_mm(), gap = optics.air_gap_mm();
   optics.gap_scale = 1.1;
@@ -138,7 +138,7 @@ TEST(Optics, CalibratedScalesDontDisturbEachOther) {
   EXPECT_DOUBLE_EQ(optics.air_gap_mm(), 1.1 * gap);
 }
 
-TEST(Optics, AnyFiniteEyeGivesFiniteNumbers) {
+TEST(Optics, any_finite_eye_gives_finite_numbers) {
   const MaskOptics optics;
   const double extreme[] = {0, -1e308, 1e308, 1e-308, -5, 650, std::numeric_limits<double>::denorm_min()};
   for (const double x : extreme)

@@ -28,7 +28,7 @@ double worst_error(const MaskOptics& optics, const EyePair& eyes, double mask, c
   return worst;
 }
 
-TEST(PhaseMap, IsTheExactNumbersToAThousandthOfAWindow) {
+TEST(PhaseMap, is_the_exact_numbers_to_a_thousandth_of_a_window) {
   MaskOptics optics;
   optics.panel_columns = 1920;
   EXPECT_LT(worst_error(optics, eyes_from({0, 0, 650}, 63), 0, kPanel), 2e-4);
@@ -39,7 +39,7 @@ TEST(PhaseMap, IsTheExactNumbersToAThousandthOfAWindow) {
   EXPECT_LT(worst_error(optics, eyes_from({60, 30, 700}, 63), 0, kPanel), 4e-4) << "leaning";
 }
 
-TEST(PhaseMap, CountsFromThePanelsCentre) {
+TEST(PhaseMap, counts_from_the_panels_centre) {
   MaskOptics optics;
   optics.panel_columns = 1920;
   const EyePair eyes = eyes_from({33, 12, 600}, 63);
@@ -53,7 +53,7 @@ TEST(PhaseMap, CountsFromThePanelsCentre) {
     }
 }
 
-TEST(PhaseMap, LinearNumbersAreExact) {
+TEST(PhaseMap, linear_numbers_are_exact) {
   const std::array<LinearNumbers, 2> numbers{{{0.5, 0, -0.25}, {0.5, 0, -0.75}}};
   const PhaseMap map = phase_map(numbers, 1366, 100);
   for (int column = 0; column < 1366; ++column) {

@@ -14,7 +14,7 @@ double error_at(const Eigen::Vector3d& head, Composing composing, const PanelAre
   return worst_phase_error(optics, head, kMeanEyeSeparationMm, panel, composing);
 }
 
-TEST(WorkingBox, AtTheDesignPlaceOnlyRefractionIsLeft) {
+TEST(WorkingBox, at_the_design_place_only_refraction_is_left) {
   MaskOptics air;
   air.refractive_index = 1;
   EXPECT_LT(error_at({0, 0, 650}, Composing::fixed_columns, kSmallPanel, air), 1e-3);
@@ -22,7 +22,7 @@ TEST(WorkingBox, AtTheDesignPlaceOnlyRefractionIsLeft) {
   EXPECT_NEAR(error_at({0, 0, 650}, Composing::fixed_columns), 0.13, 0.02);
 }
 
-TEST(WorkingBox, ATinyPanelShowsTheEyesSeparationAlone) {
+TEST(WorkingBox, a_tiny_panel_shows_the_eyes_separation_alone) {
   // The eyes' windows are D0 / D pixels apart, their columns one.
   MaskOptics air;
   air.refractive_index = 1;
@@ -31,7 +31,7 @@ TEST(WorkingBox, ATinyPanelShowsTheEyesSeparationAlone) {
     EXPECT_NEAR(error_at({0, 0, distance}, Composing::fixed_columns, tiny, air), 0.5 * std::abs(650 / distance - 1), 0.015) << distance;
 }
 
-TEST(WorkingBox, AShiftAloneServesANarrowBox) {
+TEST(WorkingBox, a_shift_alone_serves_a_narrow_box) {
   const auto depths = working_depths({}, 0, kMeanEyeSeparationMm, kSmallPanel, Composing::fixed_columns, 0.25);
   ASSERT_TRUE(depths);
   // One eye straight before the panel has 582 to 699 mm (see the optics' tests); two, beside the middle, a little less.
@@ -40,7 +40,7 @@ TEST(WorkingBox, AShiftAloneServesANarrowBox) {
   EXPECT_FALSE(working_depths({}, 100, kMeanEyeSeparationMm, kSmallPanel, Composing::fixed_columns, 0.25));
 }
 
-TEST(WorkingBox, SubpixelsServeALargerOne) {
+TEST(WorkingBox, subpixels_serve_a_larger_one) {
   const auto depths = working_depths({}, 0, kMeanEyeSeparationMm, kSmallPanel, Composing::subpixels, 0.25);
   ASSERT_TRUE(depths);
   EXPECT_LT(depths->nearest_mm, 556);
@@ -50,7 +50,7 @@ TEST(WorkingBox, SubpixelsServeALargerOne) {
     EXPECT_LT(error_at(head, Composing::subpixels), 0.5) << "no eye looks at the other's light; head at " << head.transpose();
 }
 
-TEST(WorkingBox, WholePixelsAreTooCoarseToGainMuch) {
+TEST(WorkingBox, whole_pixels_are_too_coarse_to_gain_much) {
   // Near, each window finds a pixel, half a pixel away at worst (and half of what the eyes are too far apart). Far, there are more windows
   // than pixels: one in a thousand gets none.
   for (const double distance : {450.0, 500.0}) {

@@ -84,7 +84,7 @@ TEST(DynasightRecord, a_place_survives_to_half_a_step_of_its_exponent) {
 TEST(DynasightRecord, what_is_too_far_is_said_as_far_as_can_be) {
   const Record record = record_for({1e9, -1e9, 20'000});
   EXPECT_EQ(record.numbers, (std::array<std::int16_t, 3>{32767, -32767, 32767}));
-  EXPECT_EQ(record.exponent, kLargestExponent);
+  EXPECT_EQ(record.exponent, kMaxExponent);
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ TEST(DynasightStation, noise_on_the_line_costs_samples_but_no_sample_is_wild) {
   EXPECT_GT(samples.size(), 120u * 60 / 2);
   for (const HeadSample& sample : samples) {
     EXPECT_TRUE(plausible_head(sample.between_eyes_mm));
-    EXPECT_LE((sample.between_eyes_mm - station.truth_mm(sample.measured_ns)).cwiseAbs().maxCoeff(), 2 * kLargestStepMm);
+    EXPECT_LE((sample.between_eyes_mm - station.truth_mm(sample.measured_ns)).cwiseAbs().maxCoeff(), 2 * kMaxStepMm);
   }
   const LineCounts& counts = station.tracker()->counts();
   EXPECT_GT(counts.bytes_skipped, 100u);

@@ -180,7 +180,7 @@ TEST(DynasightSynchroniser, one_damaged_byte_costs_at_most_its_record_and_never_
       for (const Heard& heard : run.heard) {
         if (!heard.believed) continue;
         // There is no checksum: an error below the step that a head could make can't be seen.
-        EXPECT_LE((heard.record.place_mm() - Eigen::Vector3d(-30.5, 20.5, 651)).cwiseAbs().maxCoeff(), kLargestStepMm + 2);
+        EXPECT_LE((heard.record.place_mm() - Eigen::Vector3d(-30.5, 20.5, 651)).cwiseAbs().maxCoeff(), kMaxStepMm + 2);
       }
     }
 }
@@ -204,7 +204,7 @@ TEST(DynasightSynchroniser, a_lost_or_an_extra_byte_costs_a_few_records) {
       for (const Heard& heard : run.heard) {
         // An extra byte near the end leaves a record of wrong numbers, and below a step that a head could make nothing tells.
         if (!heard.believed) continue;
-        EXPECT_LE((heard.record.place_mm() - Eigen::Vector3d(-30.5, 20.5, 651)).cwiseAbs().maxCoeff(), kLargestStepMm + 2)
+        EXPECT_LE((heard.record.place_mm() - Eigen::Vector3d(-30.5, 20.5, 651)).cwiseAbs().maxCoeff(), kMaxStepMm + 2)
             << where << " " << extra;
       }
       EXPECT_EQ(run.heard.back().record, sent.records.back());

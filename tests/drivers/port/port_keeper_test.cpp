@@ -15,7 +15,7 @@ constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
 /// A line in memory, its keeper, and what both sides of the keeper do.
-struct Bench {
+struct KeeperFixture {
   ManualClock clock;
   MemoryLine line{clock, {}};
   PortKeeper keeper{clock, [this] { return line.open_host(); }, "/dev/a"};
@@ -45,21 +45,21 @@ struct Bench {
 };
 
 TEST(PortKeeper, opens_at_once_and_hands_over) {
-  Bench bench;
-  EXPECT_EQ(bench.keeper.port(), nullptr);
-  EXPECT_EQ(bench.keeper.work(), kNever);
-  BytePort* port = bench.keeper.port();
+  KeeperFixture fixture;
+  EXPECT_EQ(fixture.keeper.port(), nullptr);
+  EXPECT_EQ(fixture.keeper.work(), kNever);
+  BytePort* port = fixture.keeper.port();
   ASSERT_NE(port, nullptr);
-  EXPECT_EQ(bench.keeper.port(), port) << "the same until it's given back";
-  EXPECT_TRUE(bench.keeper.report().open);
+  EXPECT_EQ(fixture.keeper.port(), port) << "the same until it's given back";
+  EXPECT_TRUE(fixture.keeper.report().open);
 }
 
 TEST(PortKeeper, waits_double_up_to_a_second) {
-  Bench bench;
-  bench.line.unplug();
-  bench.keeper.work();
-  EXPECT_EQ(bench.attempts_until_ms(5000), (std::vector<std::int64_t>{50, 150, 350, 750, 1550, 2550, 3550, 4550}));
-  const KeeperReport report = bench.keeper.report();
+  KeeperFixture fixture;
+  fixture.line.unplug();
+  fixture.keeper.work();
+  EXPECT_EQ(fixture.attempts_until_ms(5000), (std::vector<std::int64_t>{50, 150, 350, 750, 1550, 2550, 3550, 4550}));
+  const KeeperReport report = fixture.keeper.report();
   EXPECT_FALSE(report.open);
   EXPECT_EQ(report.attempts, 9u);
   EXPECT_EQ(report.openings, 0u);
@@ -68,87 +68,87 @@ TEST(PortKeeper, waits_double_up_to_a_second) {
 }
 
 TEST(PortKeeper, work_before_the_time_does_nothing) {
-  Bench bench;
-  bench.line.unplug();
-  bench.keeper.work();
+  KeeperFixture fixture;
+  fixture.line.unplug();
+  fixture.keeper.work();
   for (int i = 0; i < 49; ++i) {
-    bench.clock.advance_ns(kMs);
-    EXPECT_EQ(bench.keeper.work(), 50 * kMs);
+    fixture.clock.advance_ns(kMs);
+    EXPECT_EQ(fixture.keeper.work(), 50 * kMs);
   }
-  EXPECT_EQ(bench.keeper.report().attempts, 1u);
+  EXPECT_EQ(fixture.keeper.report().attempts, 1u);
 }
 
 TEST(PortKeeper, an_arrival_cuts_the_wait_short_and_starts_it_over) {
-  Bench bench;
-  bench.line.unplug();
-  bench.attempts_until_ms(3000);
-  bench.keeper.hurry();
+  KeeperFixture fixture;
+  fixture.line.unplug();
+  fixture.attempts_until_ms(3000);
+  fixture.keeper.hurry();
   // there, but not ready yet: tries come close together again
-  EXPECT_EQ(bench.keeper.work(), 3050 * kMs);
-  EXPECT_EQ(bench.attempts_until_ms(3400), (std::vector<std::int64_t>{3050, 3150, 3350}));
-  bench.line.plug_in();
-  bench.keeper.hurry();
-  bench.keeper.work();
-  EXPECT_NE(bench.keeper.port(), nullptr);
+  EXPECT_EQ(fixture.keeper.work(), 3050 * kMs);
+  EXPECT_EQ(fixture.attempts_until_ms(3400), (std::vector<std::int64_t>{3050, 3150, 3350}));
+  fixture.line.plug_in();
+  fixture.keeper.hurry();
+  fixture.keeper.work();
+  EXPECT_NE(fixture.keeper.port(), nullptr);
 }
 
 TEST(PortKeeper, a_proven_port_that_dies_is_tried_again_at_once) {
-  Bench bench;
-  bench.keeper.work();
-  ASSERT_TRUE(bench.tick());
-  bench.advance_to_ms(5000);
-  bench.line.unplug();
-  EXPECT_FALSE(bench.tick());
-  EXPECT_EQ(bench.keeper.port(), nullptr);
-  bench.line.plug_in();
-  bench.keeper.work();
-  EXPECT_TRUE(bench.tick());
-  EXPECT_FALSE(bench.keeper.report().reason);
-  EXPECT_EQ(bench.keeper.report().openings, 2u);
+  KeeperFixture fixture;
+  fixture.keeper.work();
+  ASSERT_TRUE(fixture.tick());
+  fixture.advance_to_ms(5000);
+  fixture.line.unplug();
+  EXPECT_FALSE(fixture.tick());
+  EXPECT_EQ(fixture.keeper.port(), nullptr);
+  fixture.line.plug_in();
+  fixture.keeper.work();
+  EXPECT_TRUE(fixture.tick());
+  EXPECT_FALSE(fixture.keeper.report().reason);
+  EXPECT_EQ(fixture.keeper.report().openings, 2u);
 }
 
 TEST(PortKeeper, a_port_that_opens_and_dies_at_once_is_not_opened_without_pause) {
-  Bench bench;
+  KeeperFixture fixture;
   int openings = 0;
   for (std::int64_t ms = 0; ms < 10'000; ++ms) {
-    bench.advance_to_ms(ms);
-    bench.line.plug_in();
-    bench.keeper.work();
-    openings += bench.tick();
-    bench.line.unplug();
-    bench.tick();
+    fixture.advance_to_ms(ms);
+    fixture.line.plug_in();
+    fixture.keeper.work();
+    openings += fixture.tick();
+    fixture.line.unplug();
+    fixture.tick();
   }
   EXPECT_EQ(openings, 14) << "50, 100, 200, 400, 800 ms, then each second";
 }
 
 TEST(PortKeeper, a_port_that_went_away_is_reported_as_that) {
-  Bench bench;
-  bench.keeper.work();
-  ASSERT_TRUE(bench.tick());
-  bench.clock.advance_ns(100 * kMs);  // not proven yet, so the next try waits
-  bench.line.unplug();
-  EXPECT_FALSE(bench.tick());
-  bench.keeper.work();
-  const KeeperReport report = bench.keeper.report();
+  KeeperFixture fixture;
+  fixture.keeper.work();
+  ASSERT_TRUE(fixture.tick());
+  fixture.clock.advance_ns(100 * kMs);  // not proven yet, so the next try waits
+  fixture.line.unplug();
+  EXPECT_FALSE(fixture.tick());
+  fixture.keeper.work();
+  const KeeperReport report = fixture.keeper.report();
   EXPECT_FALSE(report.open);
   ASSERT_TRUE(report.reason);
   EXPECT_EQ(report.reason->text(), "/dev/a: went away: Input/output error");
 }
 
 TEST(PortKeeper, giving_nothing_back_is_nothing) {
-  Bench bench;
-  bench.keeper.give_back();
-  bench.keeper.work();
-  EXPECT_NE(bench.keeper.port(), nullptr);
+  KeeperFixture fixture;
+  fixture.keeper.give_back();
+  fixture.keeper.work();
+  EXPECT_NE(fixture.keeper.port(), nullptr);
 }
 
 TEST(PortKeeper, giving_back_wakes_the_other_side) {
-  Bench bench;
+  KeeperFixture fixture;
   int woken = 0;
-  bench.keeper.on_give_back([](void* count) { ++*static_cast<int*>(count); }, &woken);
-  bench.keeper.work();
-  bench.keeper.port();
-  bench.keeper.give_back();
+  fixture.keeper.on_give_back([](void* count) { ++*static_cast<int*>(count); }, &woken);
+  fixture.keeper.work();
+  fixture.keeper.port();
+  fixture.keeper.give_back();
   EXPECT_EQ(woken, 1);
 }
 

@@ -17,7 +17,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 template <class Encode>
 Bytes encoded(Encode encode_into) {
-  std::array<std::byte, kLongestPacket> buffer{};
+  std::array<std::byte, kMaxPacketLength> buffer{};
   const std::size_t count = encode_into(std::span(buffer));
   Bytes bytes;
   for (std::size_t i = 0; i < count; ++i) bytes.push_back(std::to_integer<std::uint8_t>(buffer[i]));
@@ -168,7 +168,7 @@ TEST(dynamixel_parser, noise_between_packets_costs_none) {
   for (int round = 0; round < 300; ++round) {
     const Stream stream = stream_of(20, random, 30);
     Bytes bytes = stream.bytes;
-    bytes.insert(bytes.end(), kLongestPacket, 0);  // what noise has announced ends here at the latest
+    bytes.insert(bytes.end(), kMaxPacketLength, 0);  // what noise has announced ends here at the latest
     Parser parser;
     const std::vector<Seen> found = parsed(bytes, 1 + random() % 60, &parser);
     ASSERT_LE(found.size(), stream.packets.size());
@@ -200,7 +200,7 @@ TEST(dynamixel_parser, garbage_only_is_counted_and_nothing_else) {
   for (std::uint8_t& byte : garbage) byte = static_cast<std::uint8_t>(random());
   Parser parser;
   EXPECT_TRUE(parsed(garbage, 64, &parser).empty());
-  EXPECT_GT(parser.bytes_skipped(), garbage.size() - kLongestPacket);
+  EXPECT_GT(parser.bytes_skipped(), garbage.size() - kMaxPacketLength);
 }
 
 }  // namespace

@@ -207,7 +207,7 @@ TEST(servo_dialogue, answers_of_another_length_and_refusals_are_no_readings) {
     for (int i = 0; i < 600; ++i) {
       // On the line before the answer to what is asked at this tick.
       if (i % 5 == 0) {
-        std::array<std::byte, kLongestPacket> stray;
+        std::array<std::byte, kMaxPacketLength> stray;
         const std::array<std::uint8_t, 12> zeros{};
         const std::size_t lengths[] = {0, 3, 4, 7, 9, 12};
         const auto data = std::span(zeros).first(refusals ? 0 : lengths[static_cast<std::size_t>(i / 5) % 6]);

@@ -184,7 +184,7 @@ TEST(dynamixel_servo, no_reading_is_of_the_future) {
   ServoRig rig(settings);
   ASSERT_GT(rig.run_until_ready(), 0);
   rig.powered = true;
-  std::array<std::byte, kLongestPacket> stray;
+  std::array<std::byte, kMaxPacketLength> stray;
   const std::size_t size = encode_status(1, 0, std::array<std::uint8_t, 8>{}, stray);
   int fresh = 0;
   for (int i = 0; i < 400; ++i) {
@@ -260,7 +260,7 @@ TEST(dynamixel_servo, tolerates_its_own_echo) {
 
 TEST(dynamixel_servo, another_servos_answers_are_not_taken_for_its_own) {
   ServoRig rig;
-  std::array<std::byte, kLongestPacket> pong, motion;
+  std::array<std::byte, kMaxPacketLength> pong, motion;
   const std::size_t pong_size = encode_status(2, 0, std::array<std::uint8_t, 3>{0x5E, 0x01, 1}, pong);  // model 350
   const std::size_t motion_size = encode_status(2, 0, std::array<std::uint8_t, 8>{}, motion);           // at tick 0: -2.5 mm
   for (int i = 0; i < 400; ++i) {
@@ -528,7 +528,7 @@ TEST(dynamixel_servo, what_it_refuses_is_tried_again_once_a_second) {
 TEST(dynamixel_servo, a_register_that_it_refuses_to_tell_is_said) {
   ServoRig rig;
   ASSERT_GE(rig.run_until([&] { return rig.last().phase == ServoPhase::setting_up; }), 0);
-  std::array<std::byte, kLongestPacket> refusal;
+  std::array<std::byte, kMaxPacketLength> refusal;
   const std::size_t size = encode_status(1, 7, {}, refusal);  // access error
   for (int i = 0; i < 20 && rig.last().trouble == ServoTrouble::none; ++i) {
     rig.line().inject(port::Direction::to_host, std::span(refusal).first(size));

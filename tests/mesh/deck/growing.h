@@ -8,7 +8,7 @@
 
 #include "mesh/deck/new_ids.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -8,7 +8,7 @@
 
 #include "mesh/document/surroundings.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"
 #include "tests/support/real_deck.h"
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr int kWays = 5;  ///< split one, split two, swap, collapse, merge
 constexpr std::array<std::string_view, kWays> kWayNames{"split", "split of two", "swap", "collapse", "merge"};
 constexpr int kWanted = 3;  ///< of each
-constexpr int kMostTries = 60;
+constexpr int kMaxTries = 60;
 
 /// What an operation is asked for at the shell: itself, its neighbour over an edge, or that edge. Empty: the shell has no such place.
 std::vector<std::string> place_for(const Model& model, int way, ShellIndex shell, int turn) {
@@ -45,7 +45,7 @@ Edit edit_for(int way, std::vector<std::string> at) {
 /// Where an operation is tried the `i`th time: merging at each edge of what was split, the others anywhere.
 ShellIndex candidate(const Model& model, int way, int i) {
   const auto number = static_cast<std::size_t>(i);
-  const std::size_t of_deck = model.growth ? model.growth->deck_shells : model.shell_count();
+  const std::size_t of_deck = model.topology_change ? model.topology_change->deck_shells : model.shell_count();
   if (way == 4 && of_deck + number / 3 < model.shell_count()) return ShellIndex(of_deck + number / 3);
   return ShellIndex((number * 7919 + static_cast<std::size_t>(way) * 104729) % model.shell_count());
 }
@@ -54,7 +54,7 @@ ShellIndex candidate(const Model& model, int way, int i) {
 std::array<int, kWays> work_by_hand(Document& document) {
   std::array<int, kWays> done{};
   for (int way = 0; way < kWays; ++way)
-    for (int i = 0; i < kMostTries && done[static_cast<std::size_t>(way)] < kWanted; ++i) {
+    for (int i = 0; i < kMaxTries && done[static_cast<std::size_t>(way)] < kWanted; ++i) {
       const Model& model = document.current().model;
       const ShellIndex shell = candidate(model, way, i);
       if (model.is_removed(shell)) continue;
@@ -119,15 +119,15 @@ std::vector<std::int64_t> heirs(const Model& model, const select::Chosen& chosen
   std::vector<bool> in(count, false);
   if (of_nodes) {
     for (const NodeIndex node : chosen.nodes) in[node.value] = true;
-    for (std::size_t n = model.growth->deck_nodes; n < count; ++n) {
-      const NodeOrigin& origin = model.growth->node_origins[n - model.growth->deck_nodes];
+    for (std::size_t n = model.topology_change->deck_nodes; n < count; ++n) {
+      const NodeOrigin& origin = model.topology_change->node_origins[n - model.topology_change->deck_nodes];
       in[n] =
           std::all_of(origin.parent.begin(), origin.parent.begin() + origin.count(), [&](NodeIndex parent) { return in[parent.value]; });
     }
   } else {
     for (const ShellIndex shell : chosen.shells) in[shell.value] = true;
-    for (std::size_t s = model.growth->deck_shells; s < count; ++s)
-      in[s] = in[model.growth->shell_parents[s - model.growth->deck_shells].value];
+    for (std::size_t s = model.topology_change->deck_shells; s < count; ++s)
+      in[s] = in[model.topology_change->shell_parents[s - model.topology_change->deck_shells].value];
   }
   std::vector<std::int64_t> ids;
   for (std::size_t i = 0; i < count; ++i) {
@@ -168,7 +168,7 @@ std::size_t expect_sets_inherited(const Document& document, const Document& agai
   return compared;
 }
 
-TEST(ByHandRealDecks, AreSavedWithTheirCardsAndSets) {
+TEST(ByHandRealDecks, are_saved_with_their_cards_and_sets) {
   const auto models = test::real_decks();
   if (!models) GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks: OPERATIONS BY HAND ON THEM ARE NOT TESTED";
   for (const char* path :

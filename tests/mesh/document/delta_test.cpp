@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {
@@ -63,7 +63,7 @@ Generation sheet_with_a_hole() {
   return generation;
 }
 
-TEST(Delta, WhatFitsIsTakenAndEachThingThatDoesNotIsRefused) {
+TEST(Delta, what_fits_is_taken_and_each_thing_that_does_not_is_refused) {
   struct Case {
     std::string DeltaSections::*section;
     std::string good;
@@ -151,7 +151,7 @@ TEST(Delta, WhatFitsIsTakenAndEachThingThatDoesNotIsRefused) {
   }
 }
 
-TEST(Delta, SaysInItsBytesWhatChanges) {
+TEST(Delta, says_in_its_bytes_what_changes) {
   DeltaSections sections;
   sections.moved = all_numbers({2, 3}) + point_bytes(1, 2, 3) + number_bytes(10) + point_bytes(4, 5, 6);
   sections.node_runs = all_numbers({2, 0, 2, kSelected, 3, 1, kSelected | kLocked});

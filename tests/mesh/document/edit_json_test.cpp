@@ -18,7 +18,7 @@ std::string why_not(const std::string& text) {
   return edit ? "" : edit.error().text();
 }
 
-TEST(EditJson, EveryEditReadsItsExample) {
+TEST(EditJson, every_edit_reads_its_example) {
   for (
       const char* text : {
           R"({"edit":"select","expr":"1-100,205,!17,part:3"})",
@@ -58,7 +58,7 @@ TEST(EditJson, EveryEditReadsItsExample) {
   }
 }
 
-TEST(EditJson, DefaultsAreThoseOfTheContract) {
+TEST(EditJson, defaults_are_those_of_the_contract) {
   const auto translate = std::get<Translate>(parse_edit(R"({"edit":"translate","by":[1,2,3]})").value());
   EXPECT_EQ(translate.by, Vec3(1, 2, 3));
   EXPECT_EQ(translate.shaping.weights.falloff.profile, shape::Profile::smooth);
@@ -75,7 +75,7 @@ TEST(EditJson, DefaultsAreThoseOfTheContract) {
   EXPECT_FALSE(std::get<Lift>(parse_edit(R"({"edit":"lift","distance":1})").value()).each_normal);
 }
 
-TEST(EditJson, DoublesKeepEveryBit) {
+TEST(EditJson, doubles_keep_every_bit) {
   for (const double value : {0.1, 1.0 / 3.0, 5e-324, -0.0, 123456789.123456789, 1e299}) {
     Lift lift;
     lift.distance = value;
@@ -84,7 +84,7 @@ TEST(EditJson, DoublesKeepEveryBit) {
   }
 }
 
-TEST(EditJson, NamesTheNearestKnown) {
+TEST(EditJson, names_the_nearest_known) {
   EXPECT_EQ(
       why_not(R"({"edit":"lift","distence":1})"),
       "lift has no field \"distence\"; the nearest is \"distance\" (known: edit, distance, normals, on, grab, grab_at, falloff, free_ends, "
@@ -96,7 +96,7 @@ TEST(EditJson, NamesTheNearestKnown) {
   EXPECT_THAT(why_not(R"({"edit":"select","expr":"1","kind":"elment"})"), HasSubstr("must be one of node, element, part"));
 }
 
-TEST(EditJson, NamesTheWrongType) {
+TEST(EditJson, names_the_wrong_type) {
   EXPECT_EQ(why_not(R"({"edit":"lift","distance":"1"})"), "lift: \"distance\" must be a number, not the text \"1\"");
   EXPECT_EQ(why_not(R"({"edit":"translate","by":[0,1]})"), "translate: \"by\" must be a list of 3 numbers, not a list of 2");
   EXPECT_THAT(why_not(R"({"edit":"translate","by":[0,1,"x"]})"), HasSubstr("number 3 must be a number, not the text \"x\""));
@@ -114,7 +114,7 @@ TEST(EditJson, NamesTheWrongType) {
   EXPECT_THAT(why_not("[1]"), HasSubstr("an edit is an object"));
 }
 
-TEST(EditJson, WhatIsWrongWithinAFieldIsSaid) {
+TEST(EditJson, what_is_wrong_within_a_field_is_said) {
   const std::pair<std::string, std::string> cases[] = {
       {R"({"edit":"select_lasso","outline":[[0,0],[1,0],[0,"x"]],"view":[]})",
        R"(select_lasso: "outline" has a wrong point 3: it must be a list of 2 numbers; number 2 must be a number, not the text "x")"},
@@ -144,11 +144,11 @@ TEST(EditJson, WhatIsWrongWithinAFieldIsSaid) {
   for (const auto& [text, words] : cases) EXPECT_THAT(why_not(text), testing::StartsWith(words)) << text;
 }
 
-TEST(EditJson, WhatIsNotThereYetIsRefusedByName) {
+TEST(EditJson, what_is_not_there_yet_is_refused_by_name) {
   EXPECT_THAT(why_not(R"({"edit":"weld","mode":"full"})"), HasSubstr("\"weld\" isn't there yet in this version"));
 }
 
-TEST(EditJson, AxesAndPlanesAreCheckedWhereTheyAreWritten) {
+TEST(EditJson, axes_and_planes_are_checked_where_they_are_written) {
   EXPECT_EQ(why_not(R"({"edit":"rotate","point":[0,0,0],"axis":[0,0,0],"degrees":5})"),
             "rotate: \"axis\" must be a direction, not [0, 0, 0]");
   EXPECT_THAT(why_not(R"({"edit":"rotate","point":[0,0,0],"axis":[0,0,1]})"), HasSubstr("needs the field \"degrees\""));
@@ -160,7 +160,7 @@ TEST(EditJson, AxesAndPlanesAreCheckedWhereTheyAreWritten) {
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"symmetry":[1,0,0]})"), HasSubstr("must be an object like {\"point\""));
 }
 
-TEST(EditJson, NumbersThatAreNotFiniteAreRefused) {
+TEST(EditJson, numbers_that_are_not_finite_are_refused) {
   bool syntax_error = false;
   EXPECT_FALSE(parse_edit(R"({"edit":"lift","distance":1e999})", &syntax_error));
   EXPECT_FALSE(parse_edit(R"({"edit":"lift","distance":NaN})", &syntax_error));
@@ -169,7 +169,7 @@ TEST(EditJson, NumbersThatAreNotFiniteAreRefused) {
     EXPECT_FALSE(edit_from_json(Json{{"edit", "lift"}, {"distance", value}})) << value;
 }
 
-TEST(EditJson, SyntaxErrorsAreToldApart) {
+TEST(EditJson, syntax_errors_are_told_apart) {
   bool syntax_error = true;
   EXPECT_FALSE(parse_edit(R"({"edit":"lfit"})", &syntax_error));
   EXPECT_FALSE(syntax_error);
@@ -179,7 +179,7 @@ TEST(EditJson, SyntaxErrorsAreToldApart) {
   EXPECT_TRUE(syntax_error);
 }
 
-TEST(EditJson, RecipesDontNest) {
+TEST(EditJson, recipes_dont_nest) {
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"on":{"edit":"lift","distance":1}})"), HasSubstr("must be a recipe that selects"));
   std::string deep = R"({"edit":"lift","distance":1,"on":)";
   std::string text;

@@ -17,7 +17,7 @@ const std::vector<std::string> kEdits{
     R"({"edit":"lock","on":"1"})",
 };
 
-TEST(History, UndoAndRedoAreBitExact) {
+TEST(History, undo_and_redo_are_bit_exact) {
   Document document = make_sheet(30, 30);
   std::vector<std::shared_ptr<const Generation>> states{document.generations[0]};
   for (const std::string& edit : kEdits) {
@@ -39,14 +39,14 @@ TEST(History, UndoAndRedoAreBitExact) {
   EXPECT_THAT(refusal(document, R"({"edit":"redo"})"), HasSubstr("there is nothing to redo"));
 }
 
-TEST(History, UndoSaysHowManyNodesWentBack) {
+TEST(History, undo_says_how_many_nodes_went_back) {
   Document document = make_sheet(10, 10);
   must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5-20","falloff":{"profile":"constant"}})");
   EXPECT_EQ(must_apply(document, R"({"edit":"undo"})").nodes_moved, 16u);
   EXPECT_EQ(must_apply(document, R"({"edit":"redo"})").nodes_moved, 16u);
 }
 
-TEST(History, ANewEditDropsRedoAndNumbersAreNeverReused) {
+TEST(History, a_new_edit_drops_redo_and_numbers_are_never_reused) {
   Document document = make_sheet(10, 10);
   must_apply(document, kEdits[0]);
   must_apply(document, kEdits[1]);
@@ -60,7 +60,7 @@ TEST(History, ANewEditDropsRedoAndNumbersAreNeverReused) {
   EXPECT_EQ(document.generations.size(), 3u);
 }
 
-TEST(History, AFailedEditLeavesNoTrace) {
+TEST(History, a_failed_edit_leaves_no_trace) {
   Document document = make_sheet(4, 4);
   must_apply(document, kEdits[0]);
   must_apply(document, R"({"edit":"undo"})");
@@ -69,7 +69,7 @@ TEST(History, AFailedEditLeavesNoTrace) {
   EXPECT_EQ(document.next_number, 2u);
 }
 
-TEST(History, ATargetSizeThatIsNoneIsRefused) {
+TEST(History, a_target_size_that_is_none_is_refused) {
   for (const double size : {0.0, -1.0, 1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     auto deck = std::make_shared<deck::Deck>();
     OpenOptions options;
@@ -81,7 +81,7 @@ TEST(History, ATargetSizeThatIsNoneIsRefused) {
   }
 }
 
-TEST(History, PreparingChangesNothing) {
+TEST(History, preparing_changes_nothing) {
   Document document = make_sheet(4, 4);
   const Result<Prepared> prepared = prepare(document, edit_of(kEdits[0]));
   ASSERT_TRUE(prepared);
@@ -90,7 +90,7 @@ TEST(History, PreparingChangesNothing) {
   EXPECT_TRUE(selected_ids(document).empty());
 }
 
-TEST(History, KeepsItsByteCapAndSaysSo) {
+TEST(History, keeps_its_byte_cap_and_says_so) {
   // each step owns a chunk or two of positions and quality: 5 steps fit, no more
   Document probe = make_sheet(10, 10);
   must_apply(probe, R"({"edit":"translate","by":[0,0,1],"on":"5"})");
@@ -110,7 +110,7 @@ TEST(History, KeepsItsByteCapAndSaysSo) {
   EXPECT_THAT(refusal(document, R"({"edit":"undo"})"), HasSubstr("nothing to undo any more: the oldest steps went"));
 }
 
-TEST(History, WithoutRoomForOneStepTheEditStillHappens) {
+TEST(History, without_room_for_one_step_the_edit_still_happens) {
   Document document = make_sheet(10, 10);
   document.history_bytes = 0;
   must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5"})");

@@ -52,7 +52,7 @@ class JournalFaultTest : public testing::Test {
   }
 };
 
-TEST_F(JournalFaultTest, AFailedWriteLeavesTheJournalAsItWas) {
+TEST_F(JournalFaultTest, a_failed_write_leaves_the_journal_as_it_was) {
   for (const int error : {ENOSPC, EIO, EDQUOT})
     for (const bool half : {false, true}) {
       Session session;
@@ -67,7 +67,7 @@ TEST_F(JournalFaultTest, AFailedWriteLeavesTheJournalAsItWas) {
     }
 }
 
-TEST_F(JournalFaultTest, AFailedFlushMovesWhatWasAcknowledgedToANewFile) {
+TEST_F(JournalFaultTest, a_failed_flush_moves_what_was_acknowledged_to_a_new_file) {
   Session session;
   struct stat before {};
   ASSERT_EQ(::stat(session.path.c_str(), &before), 0);
@@ -78,7 +78,7 @@ TEST_F(JournalFaultTest, AFailedFlushMovesWhatWasAcknowledgedToANewFile) {
   EXPECT_NE(before.st_ino, after.st_ino);
 }
 
-TEST_F(JournalFaultTest, WhenNothingCanBeFlushedNoEditsAreTakenUntilTheJournalIsWrittenAnew) {
+TEST_F(JournalFaultTest, when_nothing_can_be_flushed_no_edits_are_taken_until_the_journal_is_written_anew) {
   for (const int truncate_error : {0, EIO}) {
     Session session;
     Document document = small();
@@ -116,7 +116,7 @@ TEST_F(JournalFaultTest, WhenNothingCanBeFlushedNoEditsAreTakenUntilTheJournalIs
   expect_same(again, document);
 }
 
-TEST_F(JournalFaultTest, AJournalThatWasDeletedOrChangedTakesNoEdit) {
+TEST_F(JournalFaultTest, a_journal_that_was_deleted_or_changed_takes_no_edit) {
   Session session;
   Document document = small();
   Result<Journal> journal = Journal::recover(session.path, document);
@@ -136,7 +136,7 @@ TEST_F(JournalFaultTest, AJournalThatWasDeletedOrChangedTakesNoEdit) {
   EXPECT_THAT(work(document, *journal, R"({"edit":"invert"})").error().message, HasSubstr("has been deleted"));
 }
 
-TEST(Journal, AFullDiskLosesNothing) {
+TEST(Journal, a_full_disk_loses_nothing) {
   Folder folder;
   if (::mount("none", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0)
     GTEST_SKIP() << "SKIPPED ALOUD: a full disk needs a small tmpfs, and mounting one needs root";
@@ -177,7 +177,7 @@ struct DiskFault {
   std::string words;
 };
 
-TEST_F(JournalFaultTest, AJournalThatCannotBeMadeIsASentenceAndLeavesNothing) {
+TEST_F(JournalFaultTest, a_journal_that_cannot_be_made_is_a_sentence_and_leaves_nothing) {
   const DiskFault faults[] = {
       {[] { disk.lock_error = ENOLCK; }, "the journal can't be written: No locks available"},
       {[] { disk.folder_sync_error = EIO; }, "the journal can't be written: Input/output error"},
@@ -200,7 +200,7 @@ TEST_F(JournalFaultTest, AJournalThatCannotBeMadeIsASentenceAndLeavesNothing) {
   }
 }
 
-TEST_F(JournalFaultTest, WithoutHardLinksAJournalIsMadeAllTheSameAndReplacesNothing) {
+TEST_F(JournalFaultTest, without_hard_links_a_journal_is_made_all_the_same_and_replaces_nothing) {
   for (const int error : {EPERM, EOPNOTSUPP}) {
     const Folder folder;
     disk.link_error = error;
@@ -235,7 +235,7 @@ void expect_unrecovered(const std::filesystem::path& path, const std::string& wo
   }
 }
 
-TEST_F(JournalFaultTest, AJournalThatCannotBeReadIsASentenceAndStaysAsItIs) {
+TEST_F(JournalFaultTest, a_journal_that_cannot_be_read_is_a_sentence_and_stays_as_it_is) {
   const Session session;
   const DiskFault faults[] = {
       {[] { disk.lock_error = ENOLCK; }, "the journal can't be locked: No locks available"},
@@ -252,7 +252,7 @@ TEST_F(JournalFaultTest, AJournalThatCannotBeReadIsASentenceAndStaysAsItIs) {
   expect_unrecovered(session.folder / "pipe.journal", "the journal isn't a regular file");
 }
 
-TEST_F(JournalFaultTest, WhatCannotBeCutOffOrKeptBesideIsLeftForTheNextTime) {
+TEST_F(JournalFaultTest, what_cannot_be_cut_off_or_kept_beside_is_left_for_the_next_time) {
   const Session session;
   const std::string whole = content_of(session.path);
   put_content(session.path, whole.substr(0, whole.size() - 1));
@@ -277,7 +277,7 @@ TEST_F(JournalFaultTest, WhatCannotBeCutOffOrKeptBesideIsLeftForTheNextTime) {
   EXPECT_EQ(copies_of(session.path), std::vector{damaged});
 }
 
-TEST_F(JournalFaultTest, AFileThatCannotBeReachedOrIsAnotherOneTakesNoEdit) {
+TEST_F(JournalFaultTest, a_file_that_cannot_be_reached_or_is_another_one_takes_no_edit) {
   const std::pair<std::function<void()>, std::string> faults[] = {
       {[] { disk.status_error = EIO; }, "the journal can't be reached: Input/output error"},
       {[] { disk.other_device = true; }, "the journal has been moved away or replaced"},
@@ -289,7 +289,7 @@ TEST_F(JournalFaultTest, AFileThatCannotBeReachedOrIsAnotherOneTakesNoEdit) {
   }
 }
 
-TEST_F(JournalFaultTest, AFileThatCannotBeWrittenAnewTakesNoEditUntilItCan) {
+TEST_F(JournalFaultTest, a_file_that_cannot_be_written_anew_takes_no_edit_until_it_can) {
   const std::function<void()> faults[] = {
       [] { disk.read_error = EIO; },
       [] { disk.ends_early = true; },
@@ -331,7 +331,7 @@ JournalHeader header_for(const Document& document) {
           5.0,       ""};
 }
 
-TEST(JournalOfAnother, TheSameDeckReadDifferentlyIsRefused) {
+TEST(JournalOfAnother, the_same_deck_read_differently_is_refused) {
   const Folder folder;
   const JournalHeader same = header_for(small());
   std::vector<JournalHeader> others(3, same);
@@ -349,7 +349,7 @@ TEST(JournalOfAnother, TheSameDeckReadDifferentlyIsRefused) {
   EXPECT_TRUE(Journal::recover(folder / "a.journal", document));
 }
 
-TEST(JournalOfAnother, ARecordThatDoesNotFitNamesItsEditAndItsLine) {
+TEST(JournalOfAnother, a_record_that_does_not_fit_names_its_edit_and_its_line) {
   struct Case {
     Prepared::Step step;
     std::string delta, why;
@@ -381,7 +381,7 @@ TEST(JournalOfAnother, ARecordThatDoesNotFitNamesItsEditAndItsLine) {
   }
 }
 
-TEST(JournalOfAnother, AnEditedDocumentTakesNoJournal) {
+TEST(JournalOfAnother, an_edited_document_takes_no_journal) {
   const Session session;
   Document edited = small();
   must_apply(edited, kSession[0]);
@@ -394,7 +394,7 @@ TEST(JournalOfAnother, AnEditedDocumentTakesNoJournal) {
   EXPECT_EQ(made.error().message, "a journal is started before the first edit; this document has been edited");
 }
 
-TEST(JournalOfAnother, IntentsThatAreNoEditsNameTheirLine) {
+TEST(JournalOfAnother, intents_that_are_no_edits_name_their_line) {
   const Session session({kSession[0]});
   const std::string good = content_of(session.path);
   put_content(session.path,

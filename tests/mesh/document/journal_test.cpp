@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Journal, BringsBackEveryGeneration) {
+TEST(Journal, brings_back_every_generation) {
   const Session session;
   Document document = small();
   const Result<Journal> journal = Journal::recover(session.path, document);
@@ -24,7 +24,7 @@ TEST(Journal, BringsBackEveryGeneration) {
   expect_same(document.current(), *session.after.front().opened);
 }
 
-TEST(Journal, GoesOnAfterRecovery) {
+TEST(Journal, goes_on_after_recovery) {
   const Session session;
   Document expected = session.after.back();
   {
@@ -41,7 +41,7 @@ TEST(Journal, GoesOnAfterRecovery) {
   expect_same(document, expected);
 }
 
-TEST(Journal, CutAnywhereGivesExactlyTheAcknowledgedPrefix) {
+TEST(Journal, cut_anywhere_gives_exactly_the_acknowledged_prefix) {
   const Session session;
   const std::string whole = content_of(session.path);
   const std::filesystem::path cut = session.folder / "cut.journal";
@@ -61,7 +61,7 @@ TEST(Journal, CutAnywhereGivesExactlyTheAcknowledgedPrefix) {
   EXPECT_EQ(records, kSession.size());
 }
 
-TEST(Journal, ACutHeaderIsDamage) {
+TEST(Journal, a_cut_header_is_damage) {
   const Session session;
   const std::string whole = content_of(session.path);
   for (std::size_t size = 0; size < session.bytes.front(); ++size) {
@@ -71,7 +71,7 @@ TEST(Journal, ACutHeaderIsDamage) {
   }
 }
 
-TEST(Journal, EveryFlippedByteIsFoundAndWhatIsBeforeItIsBroughtBack) {
+TEST(Journal, every_flipped_byte_is_found_and_what_is_before_it_is_brought_back) {
   const Session session({kSession[0], kSession[1], kSession[4]});
   const std::string whole = content_of(session.path);
   const std::size_t last = session.bytes[2];
@@ -117,7 +117,7 @@ TEST(Journal, EveryFlippedByteIsFoundAndWhatIsBeforeItIsBroughtBack) {
     }
 }
 
-TEST(Journal, DamageNamesItsLine) {
+TEST(Journal, damage_names_its_line) {
   const Session session;
   std::string text = content_of(session.path);
   const std::size_t third = text.find("\"n\":3");
@@ -136,7 +136,7 @@ TEST(Journal, DamageNamesItsLine) {
   EXPECT_THAT(refused.error().message, HasSubstr("save the deck"));
 }
 
-TEST(Journal, LostDoubledOrSwappedRecordsAreFound) {
+TEST(Journal, lost_doubled_or_swapped_records_are_found) {
   const Session session;
   const std::string whole = content_of(session.path);
   const auto record = [&](std::size_t k) { return whole.substr(session.bytes[k], session.bytes[k + 1] - session.bytes[k]); };
@@ -155,7 +155,7 @@ TEST(Journal, LostDoubledOrSwappedRecordsAreFound) {
   EXPECT_FALSE(Journal::recover(session.path, document));
 }
 
-TEST(Journal, ARecordOfAnotherHistoryIsFound) {
+TEST(Journal, a_record_of_another_history_is_found) {
   const Session session({kSession[0], kSession[1]});
   const Session other({R"({"edit":"select","expr":"2-20"})", kSession[1]});
   const std::string spliced = content_of(session.path).substr(0, session.bytes[1]) + content_of(other.path).substr(other.bytes[1]);
@@ -170,7 +170,7 @@ TEST(Journal, ARecordOfAnotherHistoryIsFound) {
   EXPECT_EQ(journal->records(), 1u);
 }
 
-TEST(Journal, BlocksThatNeverReachedTheDiskLeaveWhatIsBeforeThem) {
+TEST(Journal, blocks_that_never_reached_the_disk_leave_what_is_before_them) {
   const Session session;
   const std::string whole = content_of(session.path);
   const std::size_t last = session.bytes[session.bytes.size() - 2];
@@ -192,7 +192,7 @@ TEST(Journal, BlocksThatNeverReachedTheDiskLeaveWhatIsBeforeThem) {
   }
 }
 
-TEST(Journal, IsPinnedToItsDeck) {
+TEST(Journal, is_pinned_to_its_deck) {
   const Session session;
   Document other = make_document(test::make_grid(5, 4, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); }), 1 << 30, 8);
   const Result<Journal> journal = Journal::recover(session.path, other);
@@ -202,7 +202,7 @@ TEST(Journal, IsPinnedToItsDeck) {
   EXPECT_THAT(journal.error().message, HasSubstr(session.after[0].deck->content.hex()));
 }
 
-TEST(Journal, TakesOverGuessedSettingsOnly) {
+TEST(Journal, takes_over_guessed_settings_only) {
   const Session session;
   OpenOptions too_large;
   too_large.target_size = 77;
@@ -226,7 +226,7 @@ TEST(Journal, TakesOverGuessedSettingsOnly) {
   }
 }
 
-TEST(Journal, WhatWasShapedIsRelaxedTowardsAfterARecoveryToo) {
+TEST(Journal, what_was_shaped_is_relaxed_towards_after_a_recovery_too) {
   const Session session({R"({"edit":"translate","by":[1,1,4],"on":"15"})", R"({"edit":"select","expr":"all"})"});
   Document recovered = small(), live = session.after.back();
   ASSERT_TRUE(Journal::recover(session.path, recovered));
@@ -234,7 +234,7 @@ TEST(Journal, WhatWasShapedIsRelaxedTowardsAfterARecoveryToo) {
   EXPECT_TRUE(same_bytes(recovered.current().model.positions, live.current().model.positions));
 }
 
-TEST(Journal, RefusesWhatExistsAndWhatIsInUse) {
+TEST(Journal, refuses_what_exists_and_what_is_in_use) {
   Session session;
   Document document = small();
   Result<Journal> again = Journal::create(session.path, document);
@@ -252,7 +252,7 @@ TEST(Journal, RefusesWhatExistsAndWhatIsInUse) {
   EXPECT_FALSE(Journal::create(session.folder / "late.journal", document)) << "an edited document";
 }
 
-TEST(Journal, RemembersWhichStepsTheHistoryDropped) {
+TEST(Journal, remembers_which_steps_the_history_dropped) {
   Document document = small();
   must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"5"})");
   Document capped = small();
@@ -264,7 +264,7 @@ TEST(Journal, RemembersWhichStepsTheHistoryDropped) {
   expect_same(again, session.after.back());
 }
 
-TEST(Replay, GoesOnAfterAFailure) {
+TEST(Replay, goes_on_after_a_failure) {
   const Session session({
       R"({"edit":"select","expr":"1-3"})",
       R"({"edit":"select","expr":"30"})",
@@ -291,7 +291,7 @@ TEST(Replay, GoesOnAfterAFailure) {
   EXPECT_EQ(steps[3].report.nodes_moved, 3u);
 }
 
-TEST(Replay, StopsWhenTold) {
+TEST(Replay, stops_when_told) {
   const Session session;
   const Result<JournalIntents> intents = read_intents(session.path);
   ASSERT_TRUE(intents) << intents.error().text();
@@ -301,7 +301,7 @@ TEST(Replay, StopsWhenTold) {
   EXPECT_EQ(replay(document, *intents, [&](double) { return ++asked < 3; }).size(), 2u);
 }
 
-TEST(Replay, LeavesAnotherSelectionThanWasMeantAlone) {
+TEST(Replay, leaves_another_selection_than_was_meant_alone) {
   const Session session({
       R"({"edit":"select","expr":"1-3"})",                                               // 0: there
       R"({"edit":"select","expr":"30"})",                                                // 1: not on the variant
@@ -334,7 +334,7 @@ TEST(Replay, LeavesAnotherSelectionThanWasMeantAlone) {
   EXPECT_EQ(steps[13].report.nodes_moved, 3u);
 }
 
-TEST(Replay, RelaxesAndRepairsNoOtherSelectionThanWasMeant) {
+TEST(Replay, relaxes_and_repairs_no_other_selection_than_was_meant) {
   JournalIntents intents;
   for (const char* edit : {R"({"edit":"select","expr":"6"})", R"({"edit":"select","expr":"99"})", R"({"edit":"relax"})",
                            R"({"edit":"repair","scope":"selection"})", R"({"edit":"relax","scope":"part"})",
@@ -350,7 +350,7 @@ TEST(Replay, RelaxesAndRepairsNoOtherSelectionThanWasMeant) {
   EXPECT_TRUE(steps[6].applied);
 }
 
-TEST(Replay, ReadsScripts) {
+TEST(Replay, reads_scripts) {
   const Folder folder;
   put_content(folder / "script.jsonl", "{\"edit\":\"select\",\"expr\":\"1\"}\r\n\n{\"edit\":\"undo\"}");
   const Result<JournalIntents> intents = read_intents(folder / "script.jsonl");
@@ -367,7 +367,7 @@ TEST(Replay, ReadsScripts) {
   EXPECT_TRUE(syntax_error);
 }
 
-TEST(Replay, ATornTailIsSaid) {
+TEST(Replay, a_torn_tail_is_said) {
   const Session session;
   const std::string whole = content_of(session.path);
   put_content(session.path, whole.substr(0, whole.size() - 1));

@@ -12,14 +12,14 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-TEST(Move, ConstantMovesAllByTheSame) {
+TEST(Move, constant_moves_all_by_the_same) {
   Document document = make_sheet(4, 4);
   const EditReport report = must_apply(document, R"({"edit":"translate","by":[1,-2,3],"on":"1-25","falloff":{"profile":"constant"}})");
   EXPECT_EQ(report.nodes_moved, 25u);
   for (int i = 0; i < 25; ++i) EXPECT_EQ(document.current().model.positions[i], document.opened->model.positions[i] + Vec3(1, -2, 3));
 }
 
-TEST(Move, FreeEndStretchesEvenly) {
+TEST(Move, free_end_stretches_evenly) {
   // dragging the free edge of a strip stretches it in proportion: 0 at the rim, the whole at the edge
   Document document = make_sheet(8, 2);
   must_apply(document, R"({"edit":"select","expr":"3-9,12-18,21-27"})");
@@ -31,7 +31,7 @@ TEST(Move, FreeEndStretchesEvenly) {
     }
 }
 
-TEST(Move, LiftGoesAlongTheNormal) {
+TEST(Move, lift_goes_along_the_normal) {
   Document document = make_sheet(6, 6);
   must_apply(document, R"({"edit":"lift","distance":2,"on":"1-49","grab":25,"free_ends":false})");
   EXPECT_NEAR(std::abs(place_of(document, 25).z()), 2, 1e-12);
@@ -40,7 +40,7 @@ TEST(Move, LiftGoesAlongTheNormal) {
   EXPECT_LT(std::abs(place_of(document, 24).z()), 2);
 }
 
-TEST(Move, MaxMoveHoldsBack) {
+TEST(Move, max_move_holds_back) {
   Document document = make_sheet(4, 4);
   const EditReport report =
       must_apply(document, R"({"edit":"translate","by":[3,0,4],"on":"1-25","max_move":2.5,"falloff":{"profile":"constant"}})");
@@ -48,14 +48,14 @@ TEST(Move, MaxMoveHoldsBack) {
   EXPECT_LT((place_of(document, 1) - Vec3(1.5, 0, 2)).norm(), 1e-12);
 }
 
-TEST(Move, SaysWhatMovesAlong) {
+TEST(Move, says_what_moves_along) {
   Document document = make_document(make_assembly());
   const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"100,148","falloff":{"profile":"constant"}})");
   EXPECT_THAT(report.notes, Contains("1 beam moved along at shared nodes"));
   EXPECT_THAT(report.notes, Contains("1 solid moved along at shared nodes"));
 }
 
-TEST(Move, NamesSpringsAndOthersAsElements) {
+TEST(Move, names_springs_and_others_as_elements) {
   const std::vector<test::NodeSpec> nodes{
       {1, Vec3(0, 0, 0)}, {2, Vec3(5, 0, 0)}, {3, Vec3(5, 5, 0)}, {4, Vec3(0, 5, 0)}, {5, Vec3(0, 0, 9)}};
   Document document = make_document(
@@ -65,7 +65,7 @@ TEST(Move, NamesSpringsAndOthersAsElements) {
   EXPECT_THAT(report.notes, Contains("1 other element moved along at shared nodes"));
 }
 
-TEST(Move, SaysWhatItCantReach) {
+TEST(Move, says_what_it_cant_reach) {
   Document document = make_sheet(10, 2);
   // two islands of the sheet; the grab is on the first
   const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"1-3,12-14,9-11,20-22","grab":1})");
@@ -73,7 +73,7 @@ TEST(Move, SaysWhatItCantReach) {
   EXPECT_EQ(place_of(document, 11), Vec3(50, 0, 0));
 }
 
-TEST(Move, CountsFollow) {
+TEST(Move, counts_follow) {
   Document document = make_sheet(4, 4);
   const EditReport report = must_apply(document, R"({"edit":"translate","by":[0,0,9],"on":"13"})");
   EXPECT_EQ(report.before.fail, 0u);
@@ -84,7 +84,7 @@ TEST(Move, CountsFollow) {
                          quality::judge_model(document.current().model, document.settings.criteria, document.settings.target_size)));
 }
 
-TEST(Move, HeldNodesRefuse) {
+TEST(Move, held_nodes_refuse) {
   Model model = test::make_grid(4, 4, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
   model.node_holds.set(6, kHeldByParameter);
   model.node_holds.set(7, kHeldByInclude);
@@ -96,7 +96,7 @@ TEST(Move, HeldNodesRefuse) {
   EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":"8"})"), HasSubstr("used more than once"));
 }
 
-TEST(Move, RefusesWhatMakesNoSense) {
+TEST(Move, refuses_what_makes_no_sense) {
   Document document = make_document(make_assembly());
   EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1})"), HasSubstr("nothing is selected"));
   EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":"100-102","grab":148})"),
@@ -106,7 +106,7 @@ TEST(Move, RefusesWhatMakesNoSense) {
   EXPECT_EQ(document.generations.size(), 1u);
 }
 
-TEST(Move, GrabByCoordinatesIsTheNearestNodeActedOn) {
+TEST(Move, grab_by_coordinates_is_the_nearest_node_acted_on) {
   Document by_id = make_sheet(6, 6);
   Document by_place = make_sheet(6, 6);
   must_apply(by_id, R"({"edit":"translate","by":[0,0,1],"on":"1-49","grab":25,"free_ends":false})");
@@ -123,7 +123,7 @@ TEST(Move, GrabByCoordinatesIsTheNearestNodeActedOn) {
   expect_same(by_id.current(), by_both.current());
 }
 
-TEST(Move, ARecipeActsWithoutSelecting) {
+TEST(Move, a_recipe_acts_without_selecting) {
   Document document = make_document(make_assembly());
   must_apply(document,
              R"({"edit":"translate","by":[0,0,1],"on":{"edit":"select","expr":"1","kind":"part"},"falloff":{"profile":"constant"}})");
@@ -132,7 +132,7 @@ TEST(Move, ARecipeActsWithoutSelecting) {
   EXPECT_EQ(place_of(document, 105).z(), 0);
 }
 
-TEST(Move, MidsideNodesFollowTheirEdge) {
+TEST(Move, midside_nodes_follow_their_edge) {
   Model model = test::make_grid(2, 1, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
   // two 8-node shells: the middles stand behind the corners as nodes that no adjacency knows
   std::vector<test::NodeSpec> nodes;
@@ -161,7 +161,7 @@ TEST(Move, MidsideNodesFollowTheirEdge) {
   EXPECT_EQ(place_of(document, 2).z(), 0);
 }
 
-TEST(Move, OnlyTouchedChunksAreCopied) {
+TEST(Move, only_touched_chunks_are_copied) {
   Document document = make_sheet(200, 200);
   must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"20000-20050","falloff":{"profile":"constant"}})");
   const Generation& before = *document.generations[0];
@@ -191,7 +191,7 @@ const std::vector<std::string> kShapingSession{
     R"({"edit":"translate","by":[1,0,0],"on":"200-7000","origin":"free_edge","falloff":{"profile":"sharp","along":[0,1,0]}})",
 };
 
-TEST(Move, TheSameBytesWhateverTheNumberOfThreads) {
+TEST(Move, the_same_bytes_whatever_the_number_of_threads) {
   Document alone = make_wavy(90);
   Document together = make_wavy(90);
   {
@@ -205,7 +205,7 @@ TEST(Move, TheSameBytesWhateverTheNumberOfThreads) {
   expect_same(alone, together);
 }
 
-TEST(Drag, ShowsBitForBitWhatTheEditWillDo) {
+TEST(Drag, shows_bit_for_bit_what_the_edit_will_do) {
   for (const char* text : {R"({"edit":"translate","by":[0,0,0],"on":"1000-5000","max_move":20})",
                            R"({"edit":"lift","distance":0,"on":"1000-5000","grab":[200,190,3],"falloff":{"profile":"root"}})",
                            R"({"edit":"lift","distance":0,"on":"1-8281","normals":"each","free_ends":false})"}) {
@@ -230,7 +230,7 @@ TEST(Drag, ShowsBitForBitWhatTheEditWillDo) {
   }
 }
 
-TEST(Drag, JudgesATriangleWhoseThirdCornerStaysAsATriangle) {
+TEST(Drag, judges_a_triangle_whose_third_corner_stays_as_a_triangle) {
   // nearly equilateral: fine as a triangle, but its angle of 180 degrees would fail in a quad
   const Model model = test::make_shells({{0, 0, 0}, {5, 0, 0}, {2.5, 4.5, 0}}, {{0, 1, 2, 2}});
   Document document = make_document(model);
@@ -242,7 +242,7 @@ TEST(Drag, JudgesATriangleWhoseThirdCornerStaysAsATriangle) {
   EXPECT_EQ(drag->counts().ok, 1u);
 }
 
-TEST(Drag, NothingIsKept) {
+TEST(Drag, nothing_is_kept) {
   Document document = make_sheet(6, 6);
   const std::shared_ptr<const Generation> before = document.generations[0];
   Result<Drag> drag =
@@ -256,7 +256,7 @@ TEST(Drag, NothingIsKept) {
   EXPECT_EQ(drag->positions()[0], before->model.position(drag->nodes()[0]));
 }
 
-TEST(Drag, RefusesAsTheEditDoes) {
+TEST(Drag, refuses_as_the_edit_does) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"lock","on":"1"})");
   const auto refuse = [&](const char* text) {

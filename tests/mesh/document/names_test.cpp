@@ -62,7 +62,7 @@ class NamesTest : public ::testing::Test {
   Document document_;
 };
 
-TEST_F(NamesTest, SetsOfTheDeck) {
+TEST_F(NamesTest, sets_of_the_deck) {
   EXPECT_THAT(selected("set:17"), ElementsAre(1, 2, 11));
   EXPECT_THAT(selected("set:\"flange nodes\",!11"), ElementsAre(1, 2));
   EXPECT_THAT(selected("set:18"), ElementsAre(2, 3, 11, 14));
@@ -73,13 +73,13 @@ TEST_F(NamesTest, SetsOfTheDeck) {
             "expression:1: there is no set \"flang nodes\"; did you mean \"Flange nodes\"?");
 }
 
-TEST_F(NamesTest, FilesOfTheDeck) {
+TEST_F(NamesTest, files_of_the_deck) {
   EXPECT_THAT(selected("file:main.k"), ElementsAre(1, 2, 3, 4));
   EXPECT_THAT(selected("file:bumper.k"), ElementsAre(2, 3, 11, 12, 13, 14));
   EXPECT_THAT(selected("file:welds.k"), ElementsAre(21, 22));
 }
 
-TEST_F(NamesTest, PartsAreHiddenLockedAndReversedByFile) {
+TEST_F(NamesTest, parts_are_hidden_locked_and_reversed_by_file) {
   must_apply(document_, R"({"edit":"hide","on":"file:bumper.k"})");
   EXPECT_THAT(parts_with(&PartState::hidden), ElementsAre(2));
   must_apply(document_, R"({"edit":"only","on":"file:welds.k"})");
@@ -96,7 +96,7 @@ TEST_F(NamesTest, PartsAreHiddenLockedAndReversedByFile) {
   EXPECT_THAT(parts_with(&PartState::locked), ElementsAre(3));
 }
 
-TEST_F(NamesTest, ReversingTwiceIsNothingAndDeselectsWhatItHides) {
+TEST_F(NamesTest, reversing_twice_is_nothing_and_deselects_what_it_hides) {
   selected("1-4");
   must_apply(document_, R"({"edit":"hide","on":"2"})");
   must_apply(document_, R"({"edit":"reverse"})");
@@ -108,7 +108,7 @@ TEST_F(NamesTest, ReversingTwiceIsNothingAndDeselectsWhatItHides) {
   EXPECT_THAT(parts_with(&PartState::hidden), ElementsAre(1, 3));
 }
 
-TEST_F(NamesTest, RealDecksSetsHaveTheirMembers) {
+TEST_F(NamesTest, real_decks_sets_have_their_members) {
   const char* models = std::getenv("PRISMESH_MODELS");
   if (models == nullptr) GTEST_SKIP() << "PRISMESH_MODELS isn't set";
   struct Case {

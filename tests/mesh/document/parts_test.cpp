@@ -23,7 +23,7 @@ std::size_t marked(const Document& document, NodeMark mark) {
   return count;
 }
 
-TEST(Parts, HideShowOnly) {
+TEST(Parts, hide_show_only) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"hide","on":"2,4"})");
   EXPECT_THAT(hidden_parts(document), ElementsAre(2, 4));
@@ -37,7 +37,7 @@ TEST(Parts, HideShowOnly) {
   EXPECT_EQ(marked(document, kHidden), 0u);
 }
 
-TEST(Parts, HidingDeselectsOfElementsTheHiddenOnesAndTheirNodesOnly) {
+TEST(Parts, hiding_deselects_of_elements_the_hidden_ones_and_their_nodes_only) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"select","expr":"4-5","kind":"element"})");  // side by side, of parts 1 and 2
   ASSERT_EQ(document.current().selected_nodes, 6u);
@@ -51,7 +51,7 @@ TEST(Parts, HidingDeselectsOfElementsTheHiddenOnesAndTheirNodesOnly) {
   EXPECT_EQ(document.current().selected_shells, 1u);
 }
 
-TEST(Parts, WithoutOnItIsTheSelectionsParts) {
+TEST(Parts, without_on_it_is_the_selections_parts) {
   Document document = make_document(make_assembly());
   EXPECT_THAT(refusal(document, R"({"edit":"hide"})"), HasSubstr("nothing is selected"));
   must_apply(document, R"({"edit":"select","expr":"100-101,110-111"})");
@@ -63,7 +63,7 @@ TEST(Parts, WithoutOnItIsTheSelectionsParts) {
   EXPECT_THAT(hidden_parts(document), ElementsAre(3));
 }
 
-TEST(Parts, WhatIsHiddenIsNoLongerSelected) {
+TEST(Parts, what_is_hidden_is_no_longer_selected) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"select","expr":"103-106"})");
   const EditReport report = must_apply(document, R"({"edit":"hide","on":"2"})");
@@ -73,14 +73,14 @@ TEST(Parts, WhatIsHiddenIsNoLongerSelected) {
   EXPECT_THAT(selected_ids(document), ElementsAre(103, 104, 105, 106));
 }
 
-TEST(Parts, ARowOfNodesThinnerThanAShellStandsForThePartsItTouches) {
+TEST(Parts, a_row_of_nodes_thinner_than_a_shell_stands_for_the_parts_it_touches) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"select","expr":"100-103"})");
   must_apply(document, R"({"edit":"hide"})");
   EXPECT_THAT(hidden_parts(document), ElementsAre(1));
 }
 
-TEST(Parts, WhatIsSelectedThoughItIsHiddenStaysSoWhileOthersAreShown) {
+TEST(Parts, what_is_selected_though_it_is_hidden_stays_so_while_others_are_shown) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"hide","on":"2,4"})");
   must_apply(document, R"({"edit":"select","expr":"106-107"})");
@@ -88,7 +88,7 @@ TEST(Parts, WhatIsSelectedThoughItIsHiddenStaysSoWhileOthersAreShown) {
   EXPECT_THAT(selected_ids(document), ElementsAre(106, 107));
 }
 
-TEST(Parts, InvertingElementsLeavesHiddenOnesOut) {
+TEST(Parts, inverting_elements_leaves_hidden_ones_out) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"select","expr":"1","kind":"element"})");
   must_apply(document, R"({"edit":"hide","on":"2"})");
@@ -96,7 +96,7 @@ TEST(Parts, InvertingElementsLeavesHiddenOnesOut) {
   EXPECT_EQ(document.current().selected_shells, 15u);
 }
 
-TEST(Parts, LockedNodesRefuseToMove) {
+TEST(Parts, locked_nodes_refuse_to_move) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"lock","on":"2"})");
   EXPECT_EQ(marked(document, kLocked), 25u);
@@ -108,7 +108,7 @@ TEST(Parts, LockedNodesRefuseToMove) {
   must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"103-106","falloff":{"profile":"constant"}})");
 }
 
-TEST(Parts, ALockedBeamOrSolidHoldsTheNodesItShares) {
+TEST(Parts, a_locked_beam_or_solid_holds_the_nodes_it_shares) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"lock","on":"3,4"})");
   EXPECT_EQ(marked(document, kLocked), 10u);
@@ -117,7 +117,7 @@ TEST(Parts, ALockedBeamOrSolidHoldsTheNodesItShares) {
   EXPECT_THAT(refusal(document, R"({"edit":"translate","by":[0,0,1],"on":"148"})"), HasSubstr("the locked part 4"));
 }
 
-TEST(Parts, UndoBringsBackStatesAndMarks) {
+TEST(Parts, undo_brings_back_states_and_marks) {
   Document document = make_document(make_assembly());
   const std::shared_ptr<const Generation> first = document.generations[0];
   must_apply(document, R"({"edit":"lock","on":"1"})");
@@ -127,7 +127,7 @@ TEST(Parts, UndoBringsBackStatesAndMarks) {
   expect_same(document.current(), *first);
 }
 
-TEST(Parts, AnEditThatChangesNoPartSaysSo) {
+TEST(Parts, an_edit_that_changes_no_part_says_so) {
   Document document = make_document(make_assembly());
   EXPECT_THAT(must_apply(document, R"({"edit":"show","on":"1"})").notes, ElementsAre("no part changed"));
   EXPECT_THAT(refusal(document, R"({"edit":"hide","on":"77"})"), testing::StartsWith("expression:1: "));

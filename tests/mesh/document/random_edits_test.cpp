@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"
 #include "tests/support/seed.h"
 
@@ -181,7 +181,7 @@ void expect_conforming(const Model& model) {
 
 class RandomEdits : public ::testing::TestWithParam<Sheet> {};
 
-TEST_P(RandomEdits, AreUndoneToTheByteAndReadAgainAsTheyWereMeant) {
+TEST_P(RandomEdits, are_undone_to_the_byte_and_read_again_as_they_were_meant) {
   const Sheet& form = GetParam();
   const std::string text = form.text();
   std::size_t changed = 0;

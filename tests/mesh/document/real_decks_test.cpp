@@ -90,7 +90,7 @@ void expect_saved_as_edited(const Document& document, const fs::path& target) {
   }
 }
 
-TEST(RealDecks, EditedSavedAndRecovered) {
+TEST(RealDecks, edited_saved_and_recovered) {
   const char* models = std::getenv("PRISMESH_MODELS");
   if (models == nullptr || !fs::exists(fs::path(models) / "counts.json"))
     GTEST_SKIP() << "PRISMESH_MODELS doesn't point to the real decks: EDITING THEM IS NOT TESTED";

@@ -30,7 +30,7 @@ std::size_t differing(const Model& a, const Model& b) {
   return count;
 }
 
-TEST(Relax, MakesWhatASlideCrushedFineAgain) {
+TEST(Relax, makes_what_a_slide_crushed_fine_again) {
   Document document = slid_sheet();
   ASSERT_GT(document.current().counts.fail, 0u);
   const auto surface = document.current().surface;
@@ -46,7 +46,7 @@ TEST(Relax, MakesWhatASlideCrushedFineAgain) {
   EXPECT_EQ(document.current().counts.fail, report.before.fail);
 }
 
-TEST(Relax, MovesSelectedNodesOnly) {
+TEST(Relax, moves_selected_nodes_only) {
   Document document = slid_sheet();
   const Model before = document.current().model;
   must_apply(document, R"({"edit":"select","expr":"115-117"})");
@@ -56,7 +56,7 @@ TEST(Relax, MovesSelectedNodesOnly) {
   EXPECT_EQ(differing(before, document.current().model), report.nodes_moved);
 }
 
-TEST(Relax, OfFailingElementsLooksOneRingFurther) {
+TEST(Relax, of_failing_elements_looks_one_ring_further) {
   Document document = slid_sheet();
   const Model before = document.current().model;
   const EditReport report = must_apply(document, R"({"edit":"relax","scope":"failed"})");
@@ -65,7 +65,7 @@ TEST(Relax, OfFailingElementsLooksOneRingFurther) {
   EXPECT_LT(report.after.fail, report.before.fail);
 }
 
-TEST(Relax, OfDamagedElementsLooksOneRingFurtherToo) {
+TEST(Relax, of_damaged_elements_looks_one_ring_further_too) {
   Document document = slid_sheet();
   const Model before = document.current().model;
   const EditReport damaged = must_apply(document, R"({"edit":"relax","scope":"damaged"})");
@@ -90,7 +90,7 @@ TEST(Relax, OfDamagedElementsLooksOneRingFurtherToo) {
   EXPECT_TRUE(beyond_the_damaged);
 }
 
-TEST(Relax, LeavesWhatElseHangsOnNodesInPlace) {
+TEST(Relax, leaves_what_else_hangs_on_nodes_in_place) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"slide","by":[3.5,0,0],"on":"111-137","grab":122})");
   const Vec3 beam = place_of(document, 100), solid = place_of(document, 148);
@@ -100,7 +100,7 @@ TEST(Relax, LeavesWhatElseHangsOnNodesInPlace) {
   EXPECT_THAT(report.notes, Contains("2 nodes with elements other than shells stay"));
 }
 
-TEST(Relax, LeavesLockedAndHeldNodesAndSaysSo) {
+TEST(Relax, leaves_locked_and_held_nodes_and_says_so) {
   Model model = make_assembly();
   model.node_holds.set(model.find_node(112).value, kHeldByParameter);
   Document document = make_document(std::move(model));
@@ -118,7 +118,7 @@ TEST(Relax, LeavesLockedAndHeldNodesAndSaysSo) {
   }
 }
 
-TEST(Relax, SaysWhereThereIsNothingToDo) {
+TEST(Relax, says_where_there_is_nothing_to_do) {
   Document document = make_sheet(6, 6);
   const Model before = document.current().model;
   EXPECT_THAT(must_apply(document, R"({"edit":"relax","scope":"damaged"})").notes,
@@ -134,7 +134,7 @@ TEST(Relax, SaysWhereThereIsNothingToDo) {
   EXPECT_THAT(refusal(document, R"({"edit":"relax","mode":"from","at":99999,"scope":"all"})"), HasSubstr("99999"));
 }
 
-TEST(Relax, RefusesNumbersWithoutSense) {
+TEST(Relax, refuses_numbers_without_sense) {
   Document document = make_sheet(6, 6);
   constexpr double kNothing = std::numeric_limits<double>::quiet_NaN(), kMuch = std::numeric_limits<double>::infinity();
   constexpr const char* kMove = "relax: max_move must be greater than 0, or 0 on lines";
@@ -167,7 +167,7 @@ TEST(Relax, RefusesNumbersWithoutSense) {
   }
 }
 
-TEST(Relax, FromANodeWithoutASelectionGoesAsFarAsItMust) {
+TEST(Relax, from_a_node_without_a_selection_goes_as_far_as_it_must) {
   Document document = make_sheet(20, 20);
   must_apply(document, R"({"edit":"translate","by":[2.5,1.5,0],"on":"221","falloff":{"profile":"constant"}})");
   const EditReport report = must_apply(document, R"({"edit":"relax","mode":"from","at":221,"threshold":0.25})");
@@ -176,7 +176,7 @@ TEST(Relax, FromANodeWithoutASelectionGoesAsFarAsItMust) {
   EXPECT_LT((place_of(document, 221) - Vec3(50, 50, 0)).norm(), 0.75);
 }
 
-TEST(Relax, KeepsToItsLimits) {
+TEST(Relax, keeps_to_its_limits) {
   Document document = slid_sheet();
   const Model before = document.current().model;
   const EditReport report = must_apply(document, R"({"edit":"relax","scope":"all","max_move":{"free":0.3,"line":0.1}})");
@@ -185,7 +185,7 @@ TEST(Relax, KeepsToItsLimits) {
     EXPECT_LE((document.current().model.positions[n] - before.positions[n]).norm(), 0.3);
 }
 
-TEST(Relax, KeepsBordersInPlaceWhereLinesMayNotMove) {
+TEST(Relax, keeps_borders_in_place_where_lines_may_not_move) {
   Document document =
       make_document(test::make_grid(12, 12, [](int i, int j) { return Vec3(5.0 * i + (i > 0 && i < 12 ? j % 2 : 0), 5.0 * j, 0); }));
   const Model before = document.current().model;
@@ -198,7 +198,7 @@ TEST(Relax, KeepsBordersInPlaceWhereLinesMayNotMove) {
   }
 }
 
-TEST(Relax, LeavesTheDocumentAsItWasWhenStopped) {
+TEST(Relax, leaves_the_document_as_it_was_when_stopped) {
   Document document = slid_sheet();
   const auto current = &document.current();
   int heard = 0;
@@ -227,7 +227,7 @@ Model sheet_with_middle() {
   return model;
 }
 
-TEST(Relax, LetsMidSideNodesFollowTheEndsOfTheirEdge) {
+TEST(Relax, lets_mid_side_nodes_follow_the_ends_of_their_edge) {
   Document document = make_document(sheet_with_middle());
   const Vec3 middle = place_of(document, 1000), left = place_of(document, 31), right = place_of(document, 32);
   const EditReport report = must_apply(document, R"({"edit":"relax","scope":"all"})");
@@ -239,7 +239,7 @@ TEST(Relax, LetsMidSideNodesFollowTheEndsOfTheirEdge) {
   EXPECT_EQ(place_of(document, 1000), middle);
 }
 
-TEST(Relax, AMidSideNodeThatIsMovedWithItsEdgeIsReached) {
+TEST(Relax, a_mid_side_node_that_is_moved_with_its_edge_is_reached) {
   Document document = make_document(sheet_with_middle());
   const EditReport report =
       must_apply(document, R"({"edit":"translate","by":[0,0,1],"on":"all","grab":31,"falloff":{"profile":"linear"}})");
@@ -247,7 +247,7 @@ TEST(Relax, AMidSideNodeThatIsMovedWithItsEdgeIsReached) {
   EXPECT_GT(place_of(document, 1000).z(), 0);
 }
 
-TEST(Relax, LeavesTheEndsOfAnEdgeWhoseMiddleCannotFollow) {
+TEST(Relax, leaves_the_ends_of_an_edge_whose_middle_cannot_follow) {
   Model model = sheet_with_middle();
   model.node_holds.set(model.find_node(1000).value, kHeldByParameter);
   Document document = make_document(std::move(model));
@@ -259,7 +259,7 @@ TEST(Relax, LeavesTheEndsOfAnEdgeWhoseMiddleCannotFollow) {
   EXPECT_GT(report.nodes_moved, 0u);
 }
 
-TEST(Relax, KeepsMidSideNodesOfRealDecksInTheirPlacesOnTheEdge) {
+TEST(Relax, keeps_mid_side_nodes_of_real_decks_in_their_places_on_the_edge) {
   const auto decks = test::real_decks();
   if (!decks) GTEST_SKIP() << "PRISMESH_MODELS names no folder of decks";
   Document document = make_document(test::open_real(*decks, "ccx_furnace"));  // 300 triangles of six nodes

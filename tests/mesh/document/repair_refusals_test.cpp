@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"
 #include "tests/mesh/document/restructuring.h"
 
@@ -36,7 +36,7 @@ std::string refused_alone(Document& document, const std::string& json) {
   return why;
 }
 
-TEST(RepairRefusals, AnEmptyScopeIsASentence) {
+TEST(RepairRefusals, an_empty_scope_is_a_sentence) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(8, 6));
   EXPECT_THAT(refused_alone(document, R"({"edit":"repair","scope":"selection"})"), HasSubstr("repair: nothing is selected"));
@@ -55,7 +55,7 @@ TEST(RepairRefusals, AnEmptyScopeIsASentence) {
   }
 }
 
-TEST(RepairRefusals, WhatIsLockedStaysAsItIsAndIsSaid) {
+TEST(RepairRefusals, what_is_locked_stays_as_it_is_and_is_said) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(8, 6));
   must_apply(document, kDent);
@@ -71,7 +71,7 @@ TEST(RepairRefusals, WhatIsLockedStaysAsItIsAndIsSaid) {
   EXPECT_LT(must_apply(document, R"({"edit":"repair"})").after.fail, report.after.fail) << "unlocked, it is repaired";
 }
 
-TEST(RepairLimits, NoNodeGoesFartherThanMaxMove) {
+TEST(RepairLimits, no_node_goes_farther_than_max_move) {
   // A sheet whose columns are crushed on the left, borders and all: to cure it nodes of both kinds have to go far.
   const Folder folder;
   std::string text = "*NODE\n";
@@ -107,7 +107,7 @@ TEST(RepairLimits, NoNodeGoesFartherThanMaxMove) {
   EXPECT_LE(line, 0.1 + 1e-9);
 }
 
-TEST(RepairRefusals, ByHandWhatIsNotThereOrLockedIsRefused) {
+TEST(RepairRefusals, by_hand_what_is_not_there_or_locked_is_refused) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(8, 6));
   const std::pair<std::string, std::string> cases[] = {
@@ -135,14 +135,14 @@ TEST(RepairRefusals, ByHandWhatIsNotThereOrLockedIsRefused) {
   must_apply(document, R"({"edit":"split","at":["shell:1"]})");
 }
 
-TEST(RepairRefusals, WhatIsGoneIsNotThere) {
+TEST(RepairRefusals, what_is_gone_is_not_there) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(8, 6));
   must_apply(document, R"({"edit":"collapse","at":["node:31","node:32"]})");
   const Model& model = document.current().model;
-  ASSERT_TRUE(model.growth);
-  ASSERT_EQ(model.growth->removed_nodes.size(), 1u);
-  const std::string gone = std::to_string(model.node_ids[model.growth->removed_nodes[0].value]);
+  ASSERT_TRUE(model.topology_change);
+  ASSERT_EQ(model.topology_change->removed_nodes.size(), 1u);
+  const std::string gone = std::to_string(model.node_ids[model.topology_change->removed_nodes[0].value]);
   EXPECT_THAT(refused_alone(document, R"({"edit":"collapse","at":["node:)" + gone + R"(","node:33"]})"),
               HasSubstr("there is no node " + gone));
   EXPECT_FALSE(refused_alone(document, R"({"edit":"translate","by":[0,0,1],"on":")" + gone + "\"}").empty());

@@ -108,7 +108,7 @@ void expect_saved(const Document& document, const std::filesystem::path& target)
 
 ShellIndex shell(std::size_t i) { return ShellIndex(i); }
 
-TEST(Restructure, SplittingCountsMarksAndSaves) {
+TEST(Restructure, splitting_counts_marks_and_saves) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(6, 4));
   must_apply(document, R"({"edit":"select","expr":"1,2","kind":"element"})");
@@ -136,7 +136,7 @@ TEST(Restructure, SplittingCountsMarksAndSaves) {
   expect_sound(document);
 }
 
-TEST(Restructure, AMiddleOfSelectedCornersIsSelected) {
+TEST(Restructure, a_middle_of_selected_corners_is_selected) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(6, 4));
   must_apply(document, R"({"edit":"select","expr":"1,2,8,9"})");
@@ -147,7 +147,7 @@ TEST(Restructure, AMiddleOfSelectedCornersIsSelected) {
   expect_sound(document);
 }
 
-TEST(Restructure, CollapsingTakesNodesAndShellsOutOfAll) {
+TEST(Restructure, collapsing_takes_nodes_and_shells_out_of_all) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(6, 6));
   must_apply(document, R"({"edit":"select","expr":"all","kind":"node"})");
@@ -163,7 +163,7 @@ TEST(Restructure, CollapsingTakesNodesAndShellsOutOfAll) {
   expect_saved(document, folder / "b.k");
 }
 
-TEST(Restructure, NewNodesBelongToPartsInSightHiddenOrLocked) {
+TEST(Restructure, new_nodes_belong_to_parts_in_sight_hidden_or_locked) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(6, 4));
   must_apply(document, R"({"edit":"hide","on":"1"})");
@@ -181,7 +181,7 @@ TEST(Restructure, NewNodesBelongToPartsInSightHiddenOrLocked) {
   expect_sound(document);
 }
 
-TEST(Restructure, NodesAroundItStaySelectedWhereAPartIsHiddenOrLocked) {
+TEST(Restructure, nodes_around_it_stay_selected_where_a_part_is_hidden_or_locked) {
   for (const char* state : {"hide", "lock"}) {
     SCOPED_TRACE(state);
     const Folder folder;
@@ -199,7 +199,7 @@ TEST(Restructure, NodesAroundItStaySelectedWhereAPartIsHiddenOrLocked) {
   }
 }
 
-TEST(Restructure, ANewNodeBetweenPartsIsHiddenWithBothAndLockedWithEither) {
+TEST(Restructure, a_new_node_between_parts_is_hidden_with_both_and_locked_with_either) {
   // The edge from node 4 to node 11 lies between the parts.
   for (const auto& [edit, marks] :
        {std::pair(R"({"edit":"hide","on":"1"})", 0), {R"({"edit":"hide","on":"2"})", 0}, {R"({"edit":"hide","on":"1-2"})", int{kHidden}}}) {
@@ -216,7 +216,7 @@ TEST(Restructure, ANewNodeBetweenPartsIsHiddenWithBothAndLockedWithEither) {
   }
 }
 
-TEST(Restructure, BeamsAndMidSideNodesKeepTheirSayOverTheNodesTheyShare) {
+TEST(Restructure, beams_and_mid_side_nodes_keep_their_say_over_the_nodes_they_share) {
   const Folder folder;
   std::string text = sheet_deck(6, 4);
   // A beam up from node 9, a corner of shells of part 1; shell 902 of part 2, whose mid-side node 924 is a corner of shell 903 of part 1.
@@ -260,7 +260,7 @@ TEST(Restructure, BeamsAndMidSideNodesKeepTheirSayOverTheNodesTheyShare) {
               HasSubstr("node 922 would move but belongs to the locked part 2"));
 }
 
-TEST(Restructure, WithoutAFreeIdNothingIsAdded) {
+TEST(Restructure, without_a_free_id_nothing_is_added) {
   for (const char* ranges :
        {"*SET_NODE_LIST_GENERATE\n         3\n        30  99999999\n", "*SET_SHELL_LIST_GENERATE\n         3\n        20  99999999\n"}) {
     const Folder folder;
@@ -278,17 +278,17 @@ TEST(Restructure, WithoutAFreeIdNothingIsAdded) {
 }
 
 /// What a user does with a model after its structure changed.
-TEST(Restructure, EveryOtherEditWorksOnWhatHasGrown) {
+TEST(Restructure, every_other_edit_works_on_what_has_grown) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(12, 10));
   std::mt19937 random(4);
   must_change(document, any_change(document.current().model, random, 40));
   must_change(document, any_change(document.current().model, random, 40));
-  for (int i = 0; i < 20 && document.current().model.growth->removed_shells.empty(); ++i)
+  for (int i = 0; i < 20 && document.current().model.topology_change->removed_shells.empty(); ++i)
     must_change(document, any_change(document.current().model, random, 40));
-  ASSERT_GT(document.current().model.growth->removed_shells.size(), 0u);
-  ASSERT_GT(document.current().model.growth->node_origins.size(), 0u);
-  ASSERT_GT(document.current().model.growth->removed_nodes.size(), 0u);
+  ASSERT_GT(document.current().model.topology_change->removed_shells.size(), 0u);
+  ASSERT_GT(document.current().model.topology_change->node_origins.size(), 0u);
+  ASSERT_GT(document.current().model.topology_change->removed_nodes.size(), 0u);
   const auto view = R"([0.02,0,0,0, 0,0.02,0,0, 0,0,-0.01,0, -0.6,-0.5,0,1])";
   for (const std::string& edit : {
            std::string(R"({"edit":"select","expr":"all","kind":"node"})"),
@@ -325,7 +325,7 @@ TEST(Restructure, EveryOtherEditWorksOnWhatHasGrown) {
   EXPECT_EQ(&document.current(), document.opened.get());
 }
 
-TEST(Restructure, RulesSayWhatIsToBeLeftAlone) {
+TEST(Restructure, rules_say_what_is_to_be_left_alone) {
   const Folder folder;
   std::string text = sheet_deck(6, 4);
   text.insert(text.find("*END"),
@@ -351,7 +351,7 @@ TEST(Restructure, RulesSayWhatIsToBeLeftAlone) {
   EXPECT_EQ(int{rules_for(document, document.current()).node(model.find_node(25))}, int{repair::kNeeded}) << "a constraint names it";
 }
 
-TEST(Restructure, RulesKeepWeldedShellsAndShellsWithMidSideNodesWhole) {
+TEST(Restructure, rules_keep_welded_shells_and_shells_with_mid_side_nodes_whole) {
   const Folder folder;
   std::string text = sheet_deck(6, 4);
   // A second sheet above the first, a weld between them, and one shell of the first with mid-side nodes.
@@ -381,7 +381,7 @@ TEST(Restructure, RulesKeepWeldedShellsAndShellsWithMidSideNodesWhole) {
   EXPECT_EQ(node(13), 0) << "an inner node elsewhere";
 }
 
-TEST(Restructure, WhatCardsJoinStaysInPlace) {
+TEST(Restructure, what_cards_join_stays_in_place) {
   const Folder folder;
   std::string text = sheet_deck(6, 4);
   text.insert(text.find("*END"), "*CONSTRAINED_SPOTWELD\n        10        13\n");
@@ -392,7 +392,7 @@ TEST(Restructure, WhatCardsJoinStaysInPlace) {
   EXPECT_EQ(int{rules.node(document.current().model.find_node(11))}, 0);
 }
 
-TEST(Restructure, WhatTextThatIsntReadMayNameStaysWhole) {
+TEST(Restructure, what_text_that_isnt_read_may_name_stays_whole) {
   const Folder folder;
   std::string text = sheet_deck(6, 4);
   text.insert(text.find("*END"), "*NOBODY_KNOWS_THIS\n        16        17\n*DEFINE_ELEMENT_DEATH_SHELL\n         8       0.5\n");
@@ -410,7 +410,7 @@ TEST(Restructure, WhatTextThatIsntReadMayNameStaysWhole) {
   must_apply(document, R"({"edit":"split","at":["shell:9"]})");
 }
 
-TEST(Restructure, WhatCannotBeSavedIsRefusedAndNothingChanges) {
+TEST(Restructure, what_cannot_be_saved_is_refused_and_nothing_changes) {
   const Folder folder;
   std::string text = sheet_deck(6, 6);
   text.insert(text.find("*END"), "*BOUNDARY_SPC_NODE\n        18         0         1         1         1         0         0         0\n");
@@ -433,13 +433,14 @@ void expect_same_growth(const Model& a, const Model& b) {
   EXPECT_TRUE(same_bytes(a.shell_nodes, b.shell_nodes));
   EXPECT_TRUE(same_bytes(a.shell_parts, b.shell_parts));
   EXPECT_TRUE(same_bytes(a.shell_thickness, b.shell_thickness));
-  ASSERT_EQ(a.growth != nullptr, b.growth != nullptr);
-  if (!a.growth) return;
-  EXPECT_EQ(a.growth->removed_nodes, b.growth->removed_nodes);
-  EXPECT_EQ(a.growth->removed_shells, b.growth->removed_shells);
-  ASSERT_EQ(a.growth->node_origins.size(), b.growth->node_origins.size());
-  for (std::size_t i = 0; i < a.growth->node_origins.size(); ++i) EXPECT_EQ(a.growth->node_origins[i], b.growth->node_origins[i]);
-  EXPECT_TRUE(same_bytes(a.growth->shell_parents, b.growth->shell_parents));
+  ASSERT_EQ(a.topology_change != nullptr, b.topology_change != nullptr);
+  if (!a.topology_change) return;
+  EXPECT_EQ(a.topology_change->removed_nodes, b.topology_change->removed_nodes);
+  EXPECT_EQ(a.topology_change->removed_shells, b.topology_change->removed_shells);
+  ASSERT_EQ(a.topology_change->node_origins.size(), b.topology_change->node_origins.size());
+  for (std::size_t i = 0; i < a.topology_change->node_origins.size(); ++i)
+    EXPECT_EQ(a.topology_change->node_origins[i], b.topology_change->node_origins[i]);
+  EXPECT_TRUE(same_bytes(a.topology_change->shell_parents, b.topology_change->shell_parents));
   EXPECT_EQ(changes_between(a, b).empty(), true);
 }
 
@@ -480,7 +481,7 @@ void work_at_random(Document& document, Journal& journal, std::mt19937& random, 
   }
 }
 
-TEST(RestructureJournal, BringsBackTheSameBytesAfterAnySession) {
+TEST(RestructureJournal, brings_back_the_same_bytes_after_any_session) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
     const Folder folder;
@@ -492,7 +493,7 @@ TEST(RestructureJournal, BringsBackTheSameBytesAfterAnySession) {
       ASSERT_TRUE(journal);
       work_at_random(document, *journal, random, 40);
     }
-    ASSERT_TRUE(document.current().model.growth);
+    ASSERT_TRUE(document.current().model.topology_change);
     for (int life = 0; life < 2; ++life) {  // what was brought back goes on and is brought back again
       Document recovered = open_text(folder / "a.k", text);
       Result<Journal> journal = Journal::recover(folder / "j", recovered);
@@ -513,7 +514,7 @@ TEST(RestructureJournal, BringsBackTheSameBytesAfterAnySession) {
   }
 }
 
-TEST(RestructureJournal, DeltaThatIsNoneIsRefused) {
+TEST(RestructureJournal, delta_that_is_none_is_refused) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(6, 6));
   std::mt19937 random(3);
@@ -548,7 +549,7 @@ TEST(RestructureJournal, DeltaThatIsNoneIsRefused) {
   EXPECT_GT(refused, delta.size());
 }
 
-TEST(RestructureJournal, WhatAnOlderProgramWroteIsStillRead) {
+TEST(RestructureJournal, what_an_older_program_wrote_is_still_read) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(3, 3));
   const std::vector<std::byte> old{std::byte{1}, std::byte{0}, std::byte{1}, std::byte{2}, std::byte{1},

@@ -12,7 +12,7 @@
 #include "mesh/document/history.h"
 #include "mesh/document/restructure.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {

@@ -58,7 +58,7 @@ double first_warning(const Document& document) {
   return warns;
 }
 
-TEST(Rounding, SaysHowTheShellsAreJudgedWhenTheDeckIsReadAgain) {
+TEST(Rounding, says_how_the_shells_are_judged_when_the_deck_is_read_again) {
   const Folder folder;
   put_content(folder / "far.nas", far_sheet());
   const Document opened = open_far(folder / "far.nas");

@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(Select, ModesCombineNodes) {
+TEST(Select, modes_combine_nodes) {
   Document document = make_sheet(4, 4);
   must_apply(document, R"({"edit":"select","expr":"1-5"})");
   EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 3, 4, 5));
@@ -24,7 +24,7 @@ TEST(Select, ModesCombineNodes) {
   EXPECT_THAT(selected_ids(document), ElementsAre(9));
 }
 
-TEST(Select, WhatNamesEverythingAgainAndAgainIsRefusedWhereItIsTooMuch) {
+TEST(Select, what_names_everything_again_and_again_is_refused_where_it_is_too_much) {
   Document document = make_sheet(4, 4);
   std::string ranges = "1-25";
   for (int i = 0; i < 500'000; ++i) ranges += ",1-25";
@@ -37,7 +37,7 @@ TEST(Select, WhatNamesEverythingAgainAndAgainIsRefusedWhereItIsTooMuch) {
   EXPECT_THAT(refused.error().message, HasSubstr("more than 1000 times over"));
 }
 
-TEST(Select, ALongExpressionStopsWhenTold) {
+TEST(Select, a_long_expression_stops_when_told) {
   Document document = make_sheet(4, 4);
   Select edit;
   edit.expr = "1";
@@ -50,7 +50,7 @@ TEST(Select, ALongExpressionStopsWhenTold) {
   EXPECT_EQ(asked, 100);
 }
 
-TEST(Select, MarksTheShellsThatAreSelectedAndNoOthers) {
+TEST(Select, marks_the_shells_that_are_selected_and_no_others) {
   Document document = make_document(make_assembly());
   const auto marked = [&] {
     std::vector<std::int64_t> ids;
@@ -70,7 +70,7 @@ TEST(Select, MarksTheShellsThatAreSelectedAndNoOthers) {
   EXPECT_THAT(marked(), ElementsAre());
 }
 
-TEST(Select, ElementsStayElementsUntilNodesCome) {
+TEST(Select, elements_stay_elements_until_nodes_come) {
   Document document = make_sheet(4, 4);
   must_apply(document, R"({"edit":"select","expr":"1","kind":"element"})");
   EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 6, 7));
@@ -86,7 +86,7 @@ TEST(Select, ElementsStayElementsUntilNodesCome) {
   EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 6, 7, 25));
 }
 
-TEST(Select, APartBringsItsBeamsAndSolids) {
+TEST(Select, a_part_brings_its_beams_and_solids) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"select","expr":"3","kind":"part"})");
   EXPECT_THAT(selected_ids(document), ElementsAre(100, 900));
@@ -96,7 +96,7 @@ TEST(Select, APartBringsItsBeamsAndSolids) {
   EXPECT_EQ(selected_ids(document).size(), 25u);  // node 100 is part 1's too
 }
 
-TEST(Select, RegionStopsAtACrease) {
+TEST(Select, region_stops_at_a_crease) {
   // an L: 4 columns flat, then 4 upright
   Document document = make_document(
       test::make_grid(8, 2, [](int i, int j) { return i <= 4 ? Vec3(5.0 * i, 5.0 * j, 0) : Vec3(20, 5.0 * j, 5.0 * (i - 4)); }));
@@ -110,7 +110,7 @@ TEST(Select, RegionStopsAtACrease) {
   EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":30})"), HasSubstr("there is no node 30; the nearest id is 27"));
 }
 
-TEST(Select, RegionByPartPieceAndFreeEdge) {
+TEST(Select, region_by_part_piece_and_free_edge) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"select_region","at":[2,2,0],"by":"part"})");
   EXPECT_EQ(document.current().selected_shells, 16u);
@@ -131,7 +131,7 @@ TEST(Select, RegionByPartPieceAndFreeEdge) {
   EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":[0,0,0]})"), HasSubstr("no shell is in sight"));
 }
 
-TEST(Select, LassoSelectsThroughOrWhatIsVisible) {
+TEST(Select, lasso_selects_through_or_what_is_visible) {
   // a sheet of 4 x 4 shells, and a smaller one, part 2, above its middle
   std::vector<test::NodeSpec> nodes;
   std::vector<test::ShellSpec> shells;
@@ -159,7 +159,7 @@ TEST(Select, LassoSelectsThroughOrWhatIsVisible) {
               HasSubstr("the view keeps no depth"));
 }
 
-TEST(Select, GrowShrinkInvert) {
+TEST(Select, grow_shrink_invert) {
   Document document = make_sheet(4, 4);
   EXPECT_THAT(refusal(document, R"({"edit":"grow"})"), HasSubstr("nothing is selected"));
   must_apply(document, R"({"edit":"select","expr":"13"})");
@@ -179,7 +179,7 @@ TEST(Select, GrowShrinkInvert) {
   EXPECT_THAT(selected_ids(document), ElementsAre(7, 8, 12, 13));
 }
 
-TEST(Select, SaysWhenNothingIsSelectedNow) {
+TEST(Select, says_when_nothing_is_selected_now) {
   const std::pair<std::vector<std::string>, std::string> cases[] = {
       {{R"({"edit":"select","expr":"1-5"})"}, R"({"edit":"select","expr":"1-9","mode":"subtract"})"},
       {{R"({"edit":"select","expr":"1-5"})"}, R"({"edit":"select","expr":"6-9","mode":"intersect"})"},
@@ -197,7 +197,7 @@ TEST(Select, SaysWhenNothingIsSelectedNow) {
   }
 }
 
-TEST(Select, AClosedSheetHasNoFreeEdgeAndAnEmptyDeckNoPlace) {
+TEST(Select, a_closed_sheet_has_no_free_edge_and_an_empty_deck_no_place) {
   std::vector<test::NodeSpec> corners;
   for (int i = 0; i < 8; ++i) corners.push_back({1 + i, Vec3(5.0 * (i & 1), 5.0 * (i >> 1 & 1), 5.0 * (i >> 2))});
   Document box = make_document(test::make_model(corners, {{1, 1, {1, 3, 4, 2}},
@@ -213,7 +213,7 @@ TEST(Select, AClosedSheetHasNoFreeEdgeAndAnEmptyDeckNoPlace) {
   EXPECT_EQ(refusal(empty, R"({"edit":"select_region","at":[0,0,0]})"), "no shell is in sight, so there is no region");
 }
 
-TEST(Select, ARecipeThatFindsNothingIsRefusedAsTheSelectionIs) {
+TEST(Select, a_recipe_that_finds_nothing_is_refused_as_the_selection_is) {
   Document document = make_sheet(4, 4);
   EXPECT_THAT(refusal(document, R"({"edit":"lift","distance":1,"on":{"edit":"select_region","at":99}})"),
               HasSubstr("there is no node 99; the nearest id is 25"));
@@ -223,7 +223,7 @@ TEST(Select, ARecipeThatFindsNothingIsRefusedAsTheSelectionIs) {
             "no shell is in sight, so there is no region");
 }
 
-TEST(Select, HiddenPartsAreLeftAloneUnlessNamed) {
+TEST(Select, hidden_parts_are_left_alone_unless_named) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"hide","on":"2,4"})");
   must_apply(document, R"({"edit":"select_region","at":100})");
@@ -238,13 +238,13 @@ TEST(Select, HiddenPartsAreLeftAloneUnlessNamed) {
   EXPECT_THAT(refusal(document, R"({"edit":"select_region","at":118})"), HasSubstr("no shell in sight"));
 }
 
-TEST(Select, ABadExpressionNamesItsColumn) {
+TEST(Select, a_bad_expression_names_its_column) {
   Document document = make_sheet(2, 2);
   EXPECT_THAT(refusal(document, R"({"edit":"select","expr":"1,99"})"), testing::StartsWith("expression:3: "));
   EXPECT_EQ(document.generations.size(), 1u);
 }
 
-TEST(Select, SharesEveryChunkItDoesNotTouch) {
+TEST(Select, shares_every_chunk_it_does_not_touch) {
   Document document = make_sheet(200, 200);
   const auto untouched = document.current().model.positions.chunk_owner(0);
   must_apply(document, R"({"edit":"select","expr":"1-10"})");

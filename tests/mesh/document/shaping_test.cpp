@@ -63,7 +63,7 @@ Model wavy_with_midsides() {
   return model;
 }
 
-TEST(Shaping, ABentFlangeKeepsItsWidth) {
+TEST(Shaping, a_bent_flange_keeps_its_width) {
   // the half beyond x = 50 turns up by a right angle
   Document document = make_sheet(20, 4);
   const EditReport report = must_apply(
@@ -73,7 +73,7 @@ TEST(Shaping, ABentFlangeKeepsItsWidth) {
   for (int i = 10; i <= 20; ++i) EXPECT_EQ(place_of(document, 1 + i), Vec3(50, 0, 5.0 * (i - 10)));
 }
 
-TEST(Shaping, FreeEndsTurnAsAWhole) {
+TEST(Shaping, free_ends_turn_as_a_whole) {
   // the weights of a rotation are those of a translation: the free edge follows whole, the rim stays
   Document document = make_sheet(8, 2);
   must_apply(
@@ -89,7 +89,7 @@ TEST(Shaping, FreeEndsTurnAsAWhole) {
     }
 }
 
-TEST(Shaping, SlidingLeavesNoFace) {
+TEST(Shaping, sliding_leaves_no_face) {
   Document document = make_document(wavy_with_midsides());
   must_apply(document, R"({"edit":"slide","by":[14,9,2],"on":"300-1400","free_ends":false})");
   ShellSet shells;
@@ -104,7 +104,7 @@ TEST(Shaping, SlidingLeavesNoFace) {
   EXPECT_GT(moved, 700u);
 }
 
-TEST(Shaping, BothSidesOfAPlane) {
+TEST(Shaping, both_sides_of_a_plane) {
   for (const char* text : {R"({"edit":"translate","by":[1.5,2.5,-3],"on":"36-39,57-60,78-81,99-102")",
                            R"({"edit":"translate","by":[1.5,2.5,-3],"on":"1-300","grab":100)",
                            R"({"edit":"lift","distance":4,"normals":"each","on":"22-300","grab":100)",
@@ -126,7 +126,7 @@ TEST(Shaping, BothSidesOfAPlane) {
   }
 }
 
-TEST(Shaping, NodesWithoutAnImageAreCounted) {
+TEST(Shaping, nodes_without_an_image_are_counted) {
   Model model = symmetric_sheet();
   for (const std::size_t node : {2u * 21 + 3, 2u * 21 + 4}) model.positions.set(node, model.positions[node] + Vec3(0, 0, 2));
   Document document = make_document(std::move(model));
@@ -137,7 +137,7 @@ TEST(Shaping, NodesWithoutAnImageAreCounted) {
   EXPECT_EQ(report.nodes_moved, 6u);
 }
 
-TEST(Shaping, ALockedImageRefuses) {
+TEST(Shaping, a_locked_image_refuses) {
   Document document = make_document(make_assembly());
   must_apply(document, R"({"edit":"lock","on":"2"})");
   const std::string plane = R"(,"symmetry":{"point":[20,0,0],"normal":[1,0,0]}})";
@@ -162,7 +162,7 @@ const std::vector<std::string> kOptions{
     R"(,"falloff":{"profile":"constant"})",
 };
 
-TEST(Shaping, ADragShowsBitForBitWhatItsEditWillDo) {
+TEST(Shaping, a_drag_shows_bit_for_bit_what_its_edit_will_do) {
   for (const std::string& kind : kKinds)
     for (const std::string& option : kOptions) {
       const std::string text = "{" + kind + R"(,"on":"500-1200")" + option + "}";
@@ -197,7 +197,7 @@ TEST(Shaping, ADragShowsBitForBitWhatItsEditWillDo) {
     }
 }
 
-TEST(Shaping, ADragPassesOverWhatNoCoordinateHolds) {
+TEST(Shaping, a_drag_passes_over_what_no_coordinate_holds) {
   Document document = make_sheet(6, 6);
   for (const std::string& kind : kKinds) {
     Result<Drag> drag = Drag::begin(document.generations[0], document.settings, edit_of("{" + kind + R"(,"on":"1-49","grab":25})"));
@@ -231,7 +231,7 @@ std::vector<std::string> random_session(unsigned seed, int count) {
   return edits;
 }
 
-TEST(Shaping, UndoAndRedoOfAnySessionAreExact) {
+TEST(Shaping, undo_and_redo_of_any_session_are_exact) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     Document document = make_document(wavy_with_midsides());
     const Generation opened = document.current();
@@ -249,7 +249,7 @@ TEST(Shaping, UndoAndRedoOfAnySessionAreExact) {
   }
 }
 
-TEST(Shaping, TheSameBytesWithAnyNumberOfThreads) {
+TEST(Shaping, the_same_bytes_with_any_number_of_threads) {
   std::vector<Document> documents;
   for (const std::size_t threads : {1u, 2u, 8u}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -260,7 +260,7 @@ TEST(Shaping, TheSameBytesWithAnyNumberOfThreads) {
   expect_same(documents[0], documents[2]);
 }
 
-TEST(Shaping, TheJournalRebuildsEveryKind) {
+TEST(Shaping, the_journal_rebuilds_every_kind) {
   const Folder folder;
   Document document = make_document(wavy_with_midsides());
   {
@@ -287,7 +287,7 @@ TEST(Shaping, TheJournalRebuildsEveryKind) {
   expect_same(replayed.current(), document.current());
 }
 
-TEST(Shaping, AVariantIsFoundByPlace) {
+TEST(Shaping, a_variant_is_found_by_place) {
   // the same sheet with other ids and twice as fine: what was grabbed and its image are found where they were
   Document document = make_document(symmetric_sheet());
   const std::string recipe =
@@ -308,7 +308,7 @@ TEST(Shaping, AVariantIsFoundByPlace) {
   }
 }
 
-TEST(Shaping, WhatMakesNoSenseIsRefusedInASentence) {
+TEST(Shaping, what_makes_no_sense_is_refused_in_a_sentence) {
   Document document = make_document(make_assembly());
   const auto refuse = [&](const Edit& edit) {
     const Result<EditReport> report = try_apply(document, edit);

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/document/unwritable.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"
 #include "tests/mesh/document/restructuring.h"
 
@@ -54,7 +54,7 @@ Document open_half_odd(const std::filesystem::path& path) {
 /// A node pulled out of the sheet: the quads about it are warped, which dividing them cures.
 std::string dent(int node) { return R"({"edit":"translate","by":[1,1,4],"on":")" + std::to_string(node) + R"("})"; }
 
-TEST(Unwritable, RepairsElsewhereAndNamesWhatItLeft) {
+TEST(Unwritable, repairs_elsewhere_and_names_what_it_left) {
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");
   must_apply(document, dent(sheet_node(3, 4)));
@@ -70,9 +70,9 @@ TEST(Unwritable, RepairsElsewhereAndNamesWhatItLeft) {
     if (static_cast<int>(s) % kSheetColumns >= kOddColumns) continue;
     EXPECT_FALSE(model.is_removed(ShellIndex(s)));
   }
-  ASSERT_TRUE(model.growth);
-  for (std::size_t s = model.growth->deck_shells; s < model.shell_count(); ++s) {
-    const ShellIndex parent = model.growth->shell_parents[s - model.growth->deck_shells];
+  ASSERT_TRUE(model.topology_change);
+  for (std::size_t s = model.topology_change->deck_shells; s < model.shell_count(); ++s) {
+    const ShellIndex parent = model.topology_change->shell_parents[s - model.topology_change->deck_shells];
     EXPECT_GE((model.shell_ids[parent.value] - 1) % kSheetColumns, kOddColumns) << "a piece of what can't be divided";
   }
   const Result<deck::SaveReport> saved = save(document, folder / "b.k");
@@ -80,7 +80,7 @@ TEST(Unwritable, RepairsElsewhereAndNamesWhatItLeft) {
   EXPECT_EQ(saved->shells_added, report.elements_added);
 }
 
-TEST(Unwritable, WhatCannotBeWrittenAnywhereIsLeftAndNothingIsDone) {
+TEST(Unwritable, what_cannot_be_written_anywhere_is_left_and_nothing_is_done) {
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");
   must_apply(document, dent(sheet_node(3, 4)));
@@ -93,7 +93,7 @@ TEST(Unwritable, WhatCannotBeWrittenAnywhereIsLeftAndNothingIsDone) {
   EXPECT_TRUE(saved) << saved.error().text();
 }
 
-TEST(Unwritable, TheSearchFindsEachPlaceHasAProgressAndStopsWhenTold) {
+TEST(Unwritable, the_search_finds_each_place_has_a_progress_and_stops_when_told) {
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");
   must_apply(document, R"({"edit":"translate","by":[0.125,0,0.25],"on":"all","falloff":{"profile":"constant"}})");
@@ -132,7 +132,7 @@ TEST(Unwritable, TheSearchFindsEachPlaceHasAProgressAndStopsWhenTold) {
   }
 }
 
-TEST(Unwritable, ARepairStopsWhereverItIsToldAndItsProgressNeverGoesBack) {
+TEST(Unwritable, a_repair_stops_wherever_it_is_told_and_its_progress_never_goes_back) {
   const Folder folder;
   Document document = open_half_odd(folder / "a.k");
   must_apply(document, dent(sheet_node(3, 4)));

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/quality/report.h"
 #include "tests/mesh/quality/mixed_grid.h"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/quality/composite.h"
 #include "mesh/quality/mass.h"
 #include "mesh/quality/report.h"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/quality/structure.h"
 #include "tests/support/make_model.h"
 

@@ -102,10 +102,10 @@ TEST(relax_net, has_no_colour_twice_in_a_shell) {
       }
 }
 
-/// The footing of a node of `model` on `reference`.
-relax::Footing footing_on(const Model& model, const Model& reference, NodeIndex node) {
+/// The anchor of a node of `model` on `reference`.
+relax::SurfaceAnchor footing_on(const Model& model, const Model& reference, NodeIndex node) {
   const relax::ReferenceSurface surface(reference, all_shells(reference), 30);
-  return relax::find_footing(model, surface, node, deterministic_cos_degrees(30));
+  return relax::find_anchor(model, surface, node, deterministic_cos_degrees(30));
 }
 
 bool has_corner(const Model& model, ShellIndex shell, NodeIndex node) {
@@ -115,12 +115,12 @@ bool has_corner(const Model& model, ShellIndex shell, NodeIndex node) {
 
 TEST(relax_footing, inside_is_the_sheet_on_an_edge_its_line_and_in_a_corner_nothing) {
   const Model model = squares(6, 6);
-  const relax::Footing inside = footing_on(model, model, grid_node(6, 3, 2));
+  const relax::SurfaceAnchor inside = footing_on(model, model, grid_node(6, 3, 2));
   EXPECT_EQ(inside.freedom, relax::Freedom::surface);
   EXPECT_TRUE(has_corner(model, inside.shell, grid_node(6, 3, 2)));
   EXPECT_NEAR(std::abs(inside.direction.z()), 1, 1e-12);
   EXPECT_NEAR(inside.size, 5, 1e-9);
-  const relax::Footing edge = footing_on(model, model, grid_node(6, 3, 0));
+  const relax::SurfaceAnchor edge = footing_on(model, model, grid_node(6, 3, 0));
   EXPECT_EQ(edge.freedom, relax::Freedom::line);
   EXPECT_NEAR(std::abs(edge.direction.x()), 1, 1e-12);
   EXPECT_LE(std::max(edge.from, edge.to), grid_node(6, 4, 0));
@@ -155,9 +155,9 @@ TEST(relax_footing, of_a_piece_with_numbers_of_its_own_is_where_it_lies) {
   const Model reference = squares(9, 9);
   const Model piece = make_grid(3, 3, [](int i, int j) { return Vec3(5.0 * (i + 3), 5.0 * (j + 3), 0); });
   for (const auto& [i, j] : {std::pair(1, 1), std::pair(2, 1), std::pair(2, 2)}) {
-    const relax::Footing footing = footing_on(piece, reference, grid_node(3, i, j));
-    EXPECT_EQ(footing.freedom, relax::Freedom::surface);
-    EXPECT_TRUE(has_corner(reference, footing.shell, grid_node(9, i + 3, j + 3))) << i << ' ' << j;
+    const relax::SurfaceAnchor anchor = footing_on(piece, reference, grid_node(3, i, j));
+    EXPECT_EQ(anchor.freedom, relax::Freedom::surface);
+    EXPECT_TRUE(has_corner(reference, anchor.shell, grid_node(9, i + 3, j + 3))) << i << ' ' << j;
   }
   EXPECT_EQ(footing_on(piece, reference, grid_node(3, 1, 0)).freedom, relax::Freedom::fixed) << "its border is no line of the reference";
 }
@@ -166,10 +166,10 @@ TEST(relax_footing, leads_back_along_the_sheet_and_along_the_line_to_its_end) {
   const Model model = squares(6, 6);
   const relax::ReferenceSurface surface(model, all_shells(model), 30);
   const double cosine = deterministic_cos_degrees(30);
-  relax::Footing inside = relax::find_footing(model, surface, grid_node(6, 1, 1), cosine);
+  relax::SurfaceAnchor inside = relax::find_anchor(model, surface, grid_node(6, 1, 1), cosine);
   EXPECT_LT((relax::put_back(surface, Vec3(22, 17, 3), inside) - Vec3(22, 17, 0)).norm(), 1e-9);
-  EXPECT_EQ(inside.shell, ShellIndex(std::size_t{4 + 6 * 3})) << "the footing follows";
-  relax::Footing edge = relax::find_footing(model, surface, grid_node(6, 1, 0), cosine);
+  EXPECT_EQ(inside.shell, ShellIndex(std::size_t{4 + 6 * 3})) << "the anchor follows";
+  relax::SurfaceAnchor edge = relax::find_anchor(model, surface, grid_node(6, 1, 0), cosine);
   EXPECT_LT((relax::put_back(surface, Vec3(22, 2, 3), edge) - Vec3(22, 0, 0)).norm(), 1e-9);
   EXPECT_EQ(std::max(edge.from, edge.to), grid_node(6, 5, 0));
   EXPECT_LT((relax::put_back(surface, Vec3(44, 8, 0), edge) - Vec3(30, 0, 0)).norm(), 1e-9) << "not round the corner";

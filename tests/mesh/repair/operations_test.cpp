@@ -8,16 +8,16 @@
 #include <gtest/gtest.h>
 
 #include "mesh/repair/candidates.h"
-#include "tests/mesh/repair/patch_bench.h"
+#include "tests/mesh/repair/patch_fixture.h"
 #include "tests/mesh/repair/validator.h"
 
 namespace prismesh::mesh::repair {
 namespace {
 
-/// A bench on a grid, whose nodes are named by their places in it.
-struct GridBench : Bench {
-  explicit GridBench(const Grid& made, Rules forbidden = {})
-      : Bench(model_of(made.positions(), made.shells()), std::move(forbidden)), grid(made) {
+/// A fixture on a grid, whose nodes are named by their places in it.
+struct GridFixture : PatchFixture {
+  explicit GridFixture(const Grid& made, Rules forbidden = {})
+      : PatchFixture(model_of(made.positions(), made.shells()), std::move(forbidden)), grid(made) {
     patch.begin();
   }
   LocalNode node(std::size_t i, std::size_t j) const { return patch.find(at(grid.node(i, j))); }
@@ -65,44 +65,44 @@ TEST(Divisions, are_all_with_at_most_so_many_triangles) {
 TEST(UnionOf, takes_the_freer_node_away) {
   // A roof: its ridge is the line of nodes with i = 2.
   const Grid roof{4, 4, [](double x, double y) { return Vec3(x, y, 1 - std::abs(x - 2)); }, {}};
-  const GridBench bench(roof);
+  const GridFixture fixture(roof);
   const auto goes = [&](LocalNode a, LocalNode b) {
-    const std::optional<Union> there = union_of(bench.site, a, b), back = union_of(bench.site, b, a);
+    const std::optional<Union> there = union_of(fixture.context, a, b), back = union_of(fixture.context, b, a);
     EXPECT_EQ(there.has_value(), back.has_value());
     if (!there || !back) return LocalNode();
     EXPECT_EQ(there->gone, back->gone) << "whatever the order";
     EXPECT_EQ(there->stays, there->gone == a ? b : a);
     return there->gone;
   };
-  EXPECT_EQ(goes(bench.node(1, 1), bench.node(1, 2)), bench.node(1, 2)) << "of equals the one that was there before stays";
-  EXPECT_EQ(goes(bench.node(1, 1), bench.node(2, 1)), bench.node(1, 1)) << "one on the ridge stays";
-  EXPECT_EQ(goes(bench.node(0, 1), bench.node(1, 1)), bench.node(1, 1)) << "one on the border stays";
-  EXPECT_EQ(goes(bench.node(0, 0), bench.node(0, 1)), bench.node(0, 1)) << "the corner stays";
-  EXPECT_EQ(goes(bench.node(2, 0), bench.node(2, 1)), bench.node(2, 1)) << "the ridge's end stays";
-  EXPECT_FALSE(goes(bench.node(0, 0), bench.node(4, 0)).valid()) << "both hold the shape";
+  EXPECT_EQ(goes(fixture.node(1, 1), fixture.node(1, 2)), fixture.node(1, 2)) << "of equals the one that was there before stays";
+  EXPECT_EQ(goes(fixture.node(1, 1), fixture.node(2, 1)), fixture.node(1, 1)) << "one on the ridge stays";
+  EXPECT_EQ(goes(fixture.node(0, 1), fixture.node(1, 1)), fixture.node(1, 1)) << "one on the border stays";
+  EXPECT_EQ(goes(fixture.node(0, 0), fixture.node(0, 1)), fixture.node(0, 1)) << "the corner stays";
+  EXPECT_EQ(goes(fixture.node(2, 0), fixture.node(2, 1)), fixture.node(2, 1)) << "the ridge's end stays";
+  EXPECT_FALSE(goes(fixture.node(0, 0), fixture.node(4, 0)).valid()) << "both hold the shape";
 }
 
 TEST(UnionOf, keeps_what_is_needed_or_has_to_stay) {
   const Grid grid = flat(4, 4);
   const NodeIndex needed = at(grid.node(1, 2)), staying = at(grid.node(2, 3));
-  const GridBench bench(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
-                          return node == needed ? std::uint8_t{kNeeded} : node == staying ? std::uint8_t{kStays} : std::uint8_t{0};
-                        }));
-  EXPECT_EQ(union_of(bench.site, bench.node(1, 1), bench.node(1, 2))->gone, bench.node(1, 1));
-  EXPECT_EQ(union_of(bench.site, bench.node(2, 2), bench.node(2, 3))->gone, bench.node(2, 2));
-  EXPECT_EQ(union_of(bench.site, bench.node(0, 2), bench.node(1, 2))->gone, bench.node(0, 2)) << "even one of the border goes";
+  const GridFixture fixture(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
+                              return node == needed ? std::uint8_t{kNeeded} : node == staying ? std::uint8_t{kStays} : std::uint8_t{0};
+                            }));
+  EXPECT_EQ(union_of(fixture.context, fixture.node(1, 1), fixture.node(1, 2))->gone, fixture.node(1, 1));
+  EXPECT_EQ(union_of(fixture.context, fixture.node(2, 2), fixture.node(2, 3))->gone, fixture.node(2, 2));
+  EXPECT_EQ(union_of(fixture.context, fixture.node(0, 2), fixture.node(1, 2))->gone, fixture.node(0, 2)) << "even one of the border goes";
 }
 
 TEST(Unite, puts_the_node_in_the_middle_unless_it_has_to_stay) {
   for (const bool stays : {false, true}) {
     const Grid grid = flat(4, 4);
     const NodeIndex kept = at(grid.node(1, 1));
-    GridBench bench(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
-                      return stays && node == kept ? std::uint8_t{kStays} : std::uint8_t{0};
-                    }));
-    ASSERT_EQ(bench.refusal(unite(bench.site, {{bench.node(2, 1), bench.node(1, 1)}})), "done");
-    EXPECT_NEAR((bench.patch.position(bench.node(1, 1)) - Vec3(stays ? 1 : 1.5, 1, 0)).norm(), 0, 1e-9);
-    const Model after = bench.after();
+    GridFixture fixture(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
+                          return stays && node == kept ? std::uint8_t{kStays} : std::uint8_t{0};
+                        }));
+    ASSERT_EQ(fixture.refusal(unite(fixture.context, {{fixture.node(2, 1), fixture.node(1, 1)}})), "done");
+    EXPECT_NEAR((fixture.patch.position(fixture.node(1, 1)) - Vec3(stays ? 1 : 1.5, 1, 0)).norm(), 0, 1e-9);
+    const Model after = fixture.after();
     EXPECT_EQ(what_is_wrong(after), "");
     EXPECT_EQ(live_nodes(after), 24U);
     EXPECT_EQ(live_shells(after), 16U) << "the two quads at the edge are triangles now";
@@ -111,19 +111,19 @@ TEST(Unite, puts_the_node_in_the_middle_unless_it_has_to_stay) {
 }
 
 TEST(Unite, shortens_a_straight_line_and_bends_none) {
-  GridBench bench(flat(4, 4));
-  ASSERT_EQ(bench.refusal(unite(bench.site, {{bench.node(2, 0), bench.node(1, 0)}})), "done");
-  EXPECT_EQ(bench.patch.position(bench.node(1, 0)), Vec3(1, 0, 0)) << "on a line the node stays where it is";
-  EXPECT_EQ(what_is_wrong(bench.after()), "");
-  GridBench arc(Grid{4, 4, [](double x, double y) { return Vec3(x, y * (1 + 0.1 * x * (4 - x)) - 0.2 * x * (4 - x), 0); }, {}});
-  EXPECT_EQ(arc.refusal(unite(arc.site, {{arc.node(2, 0), arc.node(1, 0)}})), "that would bend an edge of the part");
-  GridBench corner(flat(4, 4));
-  EXPECT_EQ(corner.refusal(unite(corner.site, {{corner.node(0, 0), corner.node(1, 0)}})), "both nodes hold the part's shape");
-  GridBench across(flat(4, 1));
-  EXPECT_EQ(across.refusal(unite(across.site, {{across.node(2, 0), across.node(2, 1)}})), "that would bend an edge of the part")
+  GridFixture fixture(flat(4, 4));
+  ASSERT_EQ(fixture.refusal(unite(fixture.context, {{fixture.node(2, 0), fixture.node(1, 0)}})), "done");
+  EXPECT_EQ(fixture.patch.position(fixture.node(1, 0)), Vec3(1, 0, 0)) << "on a line the node stays where it is";
+  EXPECT_EQ(what_is_wrong(fixture.after()), "");
+  GridFixture arc(Grid{4, 4, [](double x, double y) { return Vec3(x, y * (1 + 0.1 * x * (4 - x)) - 0.2 * x * (4 - x), 0); }, {}});
+  EXPECT_EQ(arc.refusal(unite(arc.context, {{arc.node(2, 0), arc.node(1, 0)}})), "that would bend an edge of the part");
+  GridFixture corner(flat(4, 4));
+  EXPECT_EQ(corner.refusal(unite(corner.context, {{corner.node(0, 0), corner.node(1, 0)}})), "both nodes hold the part's shape");
+  GridFixture across(flat(4, 1));
+  EXPECT_EQ(across.refusal(unite(across.context, {{across.node(2, 0), across.node(2, 1)}})), "that would bend an edge of the part")
       << "the sheet would be pinched off";
-  GridBench twice(flat(4, 4));
-  EXPECT_EQ(twice.refusal(unite(twice.site, {{twice.node(2, 1), twice.node(1, 1)}, {twice.node(2, 2), twice.node(2, 1)}})),
+  GridFixture twice(flat(4, 4));
+  EXPECT_EQ(twice.refusal(unite(twice.context, {{twice.node(2, 1), twice.node(1, 1)}, {twice.node(2, 2), twice.node(2, 1)}})),
             "the nodes run into each other");
 }
 
@@ -132,24 +132,24 @@ TEST(LiftNode, goes_along_the_normal_whichever_way_its_shells_are_turned) {
   std::vector<std::array<std::size_t, 4>> shells = grid.shells();
   for (const std::size_t turned : {grid.shell(1, 1), grid.shell(2, 2), grid.shell(2, 1)})
     std::reverse(shells[turned].begin(), shells[turned].end());
-  Bench bench(model_of(grid.positions(), shells));
-  bench.patch.begin();
-  const LocalNode middle = bench.patch.find(at(grid.node(2, 2)));
-  ASSERT_FALSE(lift_node(bench.site, middle, 0.25));
-  const Vec3 moved = bench.patch.position(middle) - grid.place(2, 2);
+  PatchFixture fixture(model_of(grid.positions(), shells));
+  fixture.patch.begin();
+  const LocalNode middle = fixture.patch.find(at(grid.node(2, 2)));
+  ASSERT_FALSE(lift_node(fixture.context, middle, 0.25));
+  const Vec3 moved = fixture.patch.position(middle) - grid.place(2, 2);
   EXPECT_NEAR(moved.norm(), 0.25, 1e-9);
   EXPECT_NEAR(std::abs(moved.dot(Vec3(0, -0.8, 0.6))), 0.25, 1e-9);
-  EXPECT_TRUE(lift_node(bench.site, bench.patch.find(at(grid.node(0, 2))), 0.25)) << "the border holds the shape";
+  EXPECT_TRUE(lift_node(fixture.context, fixture.patch.find(at(grid.node(0, 2))), 0.25)) << "the border holds the shape";
 }
 
 TEST(LiftNode, is_refused_where_the_node_stays_or_lies_on_an_edge_of_the_part) {
   const Grid roof{4, 4, [](double x, double y) { return Vec3(x, y, 1 - std::abs(x - 2)); }, {}};
   const NodeIndex staying = at(roof.node(1, 1));
-  GridBench bench(roof,
-                  rules_of_nodes([&](NodeIndex node) -> std::uint8_t { return node == staying ? std::uint8_t{kStays} : std::uint8_t{0}; }));
-  EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(1, 1), 0.1)), "the node can't be moved");
-  EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(2, 1), 0.1)), "the node can't be moved");
-  EXPECT_EQ(bench.refusal(lift_node(bench.site, bench.node(1, 2), 0.1)), "done");
+  GridFixture fixture(
+      roof, rules_of_nodes([&](NodeIndex node) -> std::uint8_t { return node == staying ? std::uint8_t{kStays} : std::uint8_t{0}; }));
+  EXPECT_EQ(fixture.refusal(lift_node(fixture.context, fixture.node(1, 1), 0.1)), "the node can't be moved");
+  EXPECT_EQ(fixture.refusal(lift_node(fixture.context, fixture.node(2, 1), 0.1)), "the node can't be moved");
+  EXPECT_EQ(fixture.refusal(lift_node(fixture.context, fixture.node(1, 2), 0.1)), "done");
 }
 
 TEST(DivideRow, is_refused_where_a_ring_of_quads_runs_into_itself) {
@@ -165,15 +165,15 @@ TEST(DivideRow, is_refused_where_a_ring_of_quads_runs_into_itself) {
     }
     for (const auto& [forward, back] : {std::pair{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {3, 0}, {4, 0}}) {
       SCOPED_TRACE(std::to_string(around) + " around, " + std::to_string(forward) + " forward, " + std::to_string(back) + " back");
-      Bench bench(model_of(positions, shells));
-      bench.patch.begin();
-      Row row{bench.shell(0), 1};
+      PatchFixture fixture(model_of(positions, shells));
+      fixture.patch.begin();
+      Row row{fixture.shell(0), 1};
       row.forward = forward;
       row.back = back;
       const bool is_row = forward + back + 3 <= static_cast<int>(around);  // with its own first quad and one beyond each end
-      EXPECT_EQ(ends_of(bench.patch, row).has_value(), is_row);
+      EXPECT_EQ(ends_of(fixture.patch, row).has_value(), is_row);
       if (!is_row) {
-        EXPECT_EQ(divide_row(bench.site, row).value_or("done"), "there is no row of quads");
+        EXPECT_EQ(divide_row(fixture.context, row).value_or("done"), "there is no row of quads");
       }
     }
   }
@@ -183,11 +183,11 @@ TEST(Redivide, keeps_shells_of_different_thickness_apart) {
   for (const float thickness : {1.0F, 1.5F}) {
     Model model = model_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 2}, {0, 2, 3, 3}});
     model.shell_thickness.set(1, thickness);
-    Bench bench(std::move(model));
-    bench.patch.begin();
-    const Loop loop = loop_of(bench.patch, bench.shell(0), bench.shell(1));
+    PatchFixture fixture(std::move(model));
+    fixture.patch.begin();
+    const Loop loop = loop_of(fixture.patch, fixture.shell(0), fixture.shell(1));
     ASSERT_EQ(loop.size(), 4u);
-    EXPECT_EQ(redivide(bench.site, bench.shell(0), bench.shell(1), {loop}).value_or("done"),
+    EXPECT_EQ(redivide(fixture.context, fixture.shell(0), fixture.shell(1), {loop}).value_or("done"),
               thickness == 1 ? "done" : "they differ in part or thickness");
   }
 }
@@ -195,24 +195,24 @@ TEST(Redivide, keeps_shells_of_different_thickness_apart) {
 TEST(Candidates, lift_each_corner_of_a_warped_quad_to_either_side) {
   Grid grid = flat(5, 5);
   grid.place = [](double x, double y) { return Vec3(x, y, x == 2 && y == 2 ? 0.2 : 0); };
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  const LocalShell warped = bench.shell(grid.shell(2, 2));
-  bench.patch.begin();
-  quality::ShellState state = bench.patch.shell(warped).state;
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  const LocalShell warped = fixture.shell(grid.shell(2, 2));
+  fixture.patch.begin();
+  quality::ShellState state = fixture.patch.shell(warped).state;
   state.warn = 1U << static_cast<unsigned>(quality::Metric::warpage);
-  bench.patch.set_judged(warped, bench.patch.shell(warped).composite, state);
-  const LocalNode peak = bench.patch.find(at(grid.node(2, 2)));
-  const double height = bench.patch.position(peak).z();
+  fixture.patch.set_judged(warped, fixture.patch.shell(warped).composite, state);
+  const LocalNode peak = fixture.patch.find(at(grid.node(2, 2)));
+  const double height = fixture.patch.position(peak).z();
   int up = 0, down = 0;
-  for (const Candidate& candidate : candidates_for(bench.site, warped)) {
+  for (const Candidate& candidate : candidates_for(fixture.context, warped)) {
     if (candidate.operation != Operation::move) continue;
     if (!candidate.apply()) {
-      const double by = bench.patch.position(peak).z() - height;
+      const double by = fixture.patch.position(peak).z() - height;
       up += by > 0.01 ? 1 : 0;
       down += by < -0.01 ? 1 : 0;
     }
-    bench.patch.take_back();
-    bench.patch.begin();
+    fixture.patch.take_back();
+    fixture.patch.begin();
   }
   EXPECT_EQ(up, 1);
   EXPECT_EQ(down, 1);

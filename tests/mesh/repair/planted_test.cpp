@@ -132,7 +132,7 @@ TEST_P(Planted, is_found_and_repaired) {
   const Mended mended = mend(bad, is_meant ? bad : good);
   EXPECT_GE(mended.repaired.bad_before, failing.size());
   EXPECT_EQ(bad_shells(mended.model, quality::Grade::fail).size(), 0U);
-  EXPECT_TRUE(mended.repaired.left.empty());
+  EXPECT_TRUE(mended.repaired.unrepaired.empty());
   // Where one quad alone is warped its triangles may have no other place.
   EXPECT_LE(triangle_pairs(mended.model), triangle_pairs(bad) + (defect.plant == plant_warped ? 1 : 0));
   expect_same_shape(is_meant ? bad : good, mended.model);
@@ -160,7 +160,7 @@ TEST(PlantedTogether, are_all_repaired) {
   plant_pair(mesh, grid, 7, 7);
   const Mended mended = mend(mesh.model(), good);
   EXPECT_TRUE(bad_shells(mended.model, quality::Grade::fail).empty());
-  EXPECT_TRUE(mended.repaired.left.empty());
+  EXPECT_TRUE(mended.repaired.unrepaired.empty());
   expect_same_shape(good, mended.model);
 }
 
@@ -195,7 +195,7 @@ TEST(PlantedOnATube, a_narrow_strip_stays_where_longer_edges_would_leave_the_sur
     options.most_off_surface = most_off_surface;
     const Result<Repaired> repaired = repair(model, surface, bad_shells(model, quality::Grade::fail), rules, judge, options);
     EXPECT_TRUE(repaired.has_value());
-    return repaired ? repaired->left.size() : 999;
+    return repaired ? repaired->unrepaired.size() : 999;
   };
   EXPECT_EQ(left_with(0.02), 8U);
   EXPECT_EQ(left_with(0.1), 0U);
@@ -255,7 +255,7 @@ TEST(Scope, what_fails_beside_it_is_left_as_it_is) {
   const auto repaired = repair(bad, surface, scope, {}, {quality::default_criteria(), 1.0}, {});
   ASSERT_TRUE(repaired.has_value());
   EXPECT_EQ(repaired->bad_before, 2u);
-  EXPECT_TRUE(repaired->left.empty()) << "what isn't in scope isn't told";
+  EXPECT_TRUE(repaired->unrepaired.empty()) << "what isn't in scope isn't told";
   const Model after = carried_out(bad, repaired->change);
   for (const ShellIndex shell : scope) EXPECT_EQ(grade_of(after, shell), quality::Grade::ok);
   for (const ShellIndex shell : beside) EXPECT_EQ(after.shell(shell), bad.shell(shell));
@@ -275,7 +275,7 @@ TEST(Scope, what_is_left_is_told_by_the_models_numbers) {
   ASSERT_FALSE(failing.empty());
   ShellSet told;
   const Mended mended = mend(bad, good, rules);
-  for (const Left& left : mended.repaired.left) told.push_back(left.shell);
+  for (const Unrepaired& left : mended.repaired.unrepaired) told.push_back(left.shell);
   EXPECT_EQ(told, failing);
 }
 
@@ -287,7 +287,7 @@ std::set<std::string> reasons(const Model& model, const Rules& rules, double mos
   const auto repaired = repair(model, surface, all_shells(model), rules, {quality::default_criteria(), 1.0}, options);
   EXPECT_TRUE(repaired.has_value());
   std::set<std::string> why;
-  for (const Left& left : repaired->left) why.insert(left.why);
+  for (const Unrepaired& left : repaired->unrepaired) why.insert(left.why);
   return why;
 }
 

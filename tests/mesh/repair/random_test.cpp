@@ -73,7 +73,7 @@ std::size_t failing(const Model& model) { return failing_shells(model).size(); }
 /// What is told to be left are the shells of the result that fail, ascending, each with a reason.
 void expect_left_is_what_fails(const Repaired& repaired, const Model& after) {
   ShellSet told;
-  for (const Left& left : repaired.left) {
+  for (const Unrepaired& left : repaired.unrepaired) {
     told.push_back(left.shell);
     EXPECT_FALSE(left.why.empty()) << left.shell.value;
   }
@@ -225,10 +225,10 @@ TEST(Bad, input_is_left_alone_and_said) {
   const relax::ReferenceSurface surface(good, all_shells(good), 30);
   const auto repaired = repair(model, surface, all_shells(model), {}, {quality::default_criteria(), 1.0}, {});
   ASSERT_TRUE(repaired.has_value());
-  EXPECT_FALSE(repaired->left.empty());
+  EXPECT_FALSE(repaired->unrepaired.empty());
   for (const auto& [node, position] : repaired->change.moved) EXPECT_TRUE(position.allFinite());
   for (const NewNode& node : repaired->change.new_nodes) EXPECT_TRUE(node.position.allFinite());
-  for (const Left& left : repaired->left) EXPECT_FALSE(left.why.empty());
+  for (const Unrepaired& left : repaired->unrepaired) EXPECT_FALSE(left.why.empty());
 }
 
 }  // namespace

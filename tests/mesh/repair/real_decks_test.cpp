@@ -174,7 +174,7 @@ TEST_P(RealDecks, are_repaired_where_a_bump_damaged_them) {
                 << ")\n";
   }
   std::map<std::string, int> why;
-  for (const Left& shell : repaired->left) ++why[shell.why];
+  for (const Unrepaired& shell : repaired->unrepaired) ++why[shell.why];
   for (const auto& [reason, count] : why) std::cout << "    left, " << reason << ": " << count << '\n';
   // Slopes up to 56 degrees; with steeper ones it is the table that counts.
   if (GetParam().height <= 1.0) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/mesh/repair/patch_bench.h"
+#include "tests/mesh/repair/patch_fixture.h"
 
 namespace prismesh::mesh::repair {
 namespace {
@@ -22,19 +22,19 @@ struct Settled {
 };
 
 /// The node (i, j), shifted to the place for (i + by_x, j + by_y), settles.
-Settled settle_shifted(Bench& bench, const Grid& grid, std::size_t i, std::size_t j, double by_x, double by_y, bool along_lines) {
-  const LocalNode node = bench.patch.find(at(grid.node(i, j)));
+Settled settle_shifted(PatchFixture& fixture, const Grid& grid, std::size_t i, std::size_t j, double by_x, double by_y, bool along_lines) {
+  const LocalNode node = fixture.patch.find(at(grid.node(i, j)));
   const Vec3 shifted = grid.place(static_cast<double>(i) + by_x, static_cast<double>(j) + by_y);
-  bench.patch.begin();
-  bench.patch.move(node, shifted);
-  settle(bench.site, 30, along_lines);
-  return {shifted, bench.patch.position(node)};
+  fixture.patch.begin();
+  fixture.patch.move(node, shifted);
+  settle(fixture.context, 30, along_lines);
+  return {shifted, fixture.patch.position(node)};
 }
 
 TEST(Settling, a_node_on_a_crease_slides_along_it) {
   const Grid grid = step();
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  const Settled settled = settle_shifted(bench, grid, 4, 5, 0, 0.6, true);
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  const Settled settled = settle_shifted(fixture, grid, 4, 5, 0, 0.6, true);
   EXPECT_LT(std::abs(settled.after.y() - 5), 0.1);
   EXPECT_NEAR(settled.after.x(), 4, 1e-12);
   EXPECT_NEAR(settled.after.z(), 0, 1e-12);
@@ -42,15 +42,15 @@ TEST(Settling, a_node_on_a_crease_slides_along_it) {
 
 TEST(Settling, a_node_on_a_crease_stays_unless_lines_are_asked_for) {
   const Grid grid = step();
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  const Settled settled = settle_shifted(bench, grid, 4, 5, 0, 0.6, false);
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  const Settled settled = settle_shifted(fixture, grid, 4, 5, 0, 0.6, false);
   EXPECT_EQ(settled.after, settled.before);
 }
 
 TEST(Settling, a_node_where_lines_meet_stays) {
   const Grid grid = step();
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  const Settled settled = settle_shifted(bench, grid, 4, 10, 0, -0.3, true);
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  const Settled settled = settle_shifted(fixture, grid, 4, 10, 0, -0.3, true);
   EXPECT_EQ(settled.after, settled.before);
 }
 
@@ -59,31 +59,32 @@ TEST(Settling, a_node_that_has_to_stay_stays_on_its_line) {
   Rules rules;
   const std::size_t node = grid.node(4, 5);
   rules.node = [node](NodeIndex n) { return static_cast<std::uint8_t>(n.value == node ? kStays : 0); };
-  Bench bench(model_of(grid.positions(), grid.shells()), rules);
-  const Settled settled = settle_shifted(bench, grid, 4, 5, 0, 0.6, true);
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()), rules);
+  const Settled settled = settle_shifted(fixture, grid, 4, 5, 0, 0.6, true);
   EXPECT_EQ(settled.after, settled.before);
 }
 
 TEST(Settling, no_farther_along_a_line_than_it_may) {
   const Grid grid = step();
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  bench.options.relax.most_on_line = 0.05;
-  const LocalNode node = bench.patch.find(at(grid.node(4, 5)));
-  const Vec3 home = bench.patch.position(node);
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  fixture.options.relax.most_on_line = 0.05;
+  const LocalNode node = fixture.patch.find(at(grid.node(4, 5)));
+  const Vec3 home = fixture.patch.position(node);
   // Its neighbours on the line went on, so it would like to follow.
-  bench.patch.begin();
-  for (const std::size_t j : {4, 6}) bench.patch.move(bench.patch.find(at(grid.node(4, j))), grid.place(4, static_cast<double>(j) + 0.5));
-  bench.patch.move(node, home);
-  settle(bench.site, 30, true);
-  const double way = (bench.patch.position(node) - home).norm();
+  fixture.patch.begin();
+  for (const std::size_t j : {4, 6})
+    fixture.patch.move(fixture.patch.find(at(grid.node(4, j))), grid.place(4, static_cast<double>(j) + 0.5));
+  fixture.patch.move(node, home);
+  settle(fixture.context, 30, true);
+  const double way = (fixture.patch.position(node) - home).norm();
   EXPECT_GT(way, 0.01);
   EXPECT_LE(way, 0.05);
 }
 
 TEST(Settling, an_end_of_a_tube_stays_round) {
   const Grid grid = open_tube();
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  const Settled settled = settle_shifted(bench, grid, 10, 0, 0.6, 0, true);
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  const Settled settled = settle_shifted(fixture, grid, 10, 0, 0.6, 0, true);
   EXPECT_LT((settled.after - grid.place(10, 0)).norm(), 0.1);
   EXPECT_NEAR(settled.after.y(), 0, 1e-12);
   EXPECT_NEAR(std::hypot(settled.after.x(), settled.after.z()), 4, 2e-4);
@@ -93,16 +94,16 @@ TEST(Settling, not_where_a_lines_edge_would_cut_a_bend) {
   // Edges of 1 on a radius of 2: the longer one of them gets, the farther it is from the end's circle.
   const Grid grid{11, 6, [](double x, double y) { return Vec3(2 * std::sin(x / 2), y, 2 * std::cos(x / 2)); }, {}};
   const auto slid = [&](double most_off_surface) {
-    Bench bench(model_of(grid.positions(), grid.shells()));
-    bench.options.most_off_surface = most_off_surface;
-    const LocalNode node = bench.patch.find(at(grid.node(5, 0)));
-    const Vec3 home = bench.patch.position(node);
-    bench.patch.begin();
+    PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+    fixture.options.most_off_surface = most_off_surface;
+    const LocalNode node = fixture.patch.find(at(grid.node(5, 0)));
+    const Vec3 home = fixture.patch.position(node);
+    fixture.patch.begin();
     for (const std::size_t i : {4, 5, 6})
-      bench.patch.move(bench.patch.find(at(grid.node(i, 1))), grid.place(static_cast<double>(i) + 0.5, 1), true);
-    bench.patch.move(node, home);
-    settle(bench.site, 30, true);
-    return (bench.patch.position(node) - home).norm();
+      fixture.patch.move(fixture.patch.find(at(grid.node(i, 1))), grid.place(static_cast<double>(i) + 0.5, 1), true);
+    fixture.patch.move(node, home);
+    settle(fixture.context, 30, true);
+    return (fixture.patch.position(node) - home).norm();
   };
   EXPECT_GT(slid(1.0), 0.1);
   EXPECT_LT(slid(0.02), 0.02);

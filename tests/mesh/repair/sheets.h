@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "mesh/model/adjacency.h"
-#include "mesh/model/growth.h"
 #include "mesh/model/model.h"
+#include "mesh/model/topology_change.h"
 #include "mesh/relax/reference_surface.h"
 #include "mesh/repair/repair.h"
 

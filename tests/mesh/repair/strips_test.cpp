@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/mesh/repair/patch_bench.h"
+#include "tests/mesh/repair/patch_fixture.h"
 #include "tests/mesh/repair/validator.h"
 
 namespace prismesh::mesh::repair {
@@ -17,11 +17,11 @@ std::size_t edges_with(const Model& model, std::size_t shells) {
 
 TEST(Strips, go_from_one_end_of_the_sheet_to_the_other_without_a_triangle) {
   const Grid grid = flat(5, 4);
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  const Strip strip{bench.shell(grid.shell(2, 1)), 0};
-  EXPECT_EQ(course_of(bench.patch, strip).quads.size(), 4U);
-  ASSERT_FALSE(bench.divide(strip));
-  const Model after = bench.after();
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  const Strip strip{fixture.shell(grid.shell(2, 1)), 0};
+  EXPECT_EQ(course_of(fixture.patch, strip).quads.size(), 4U);
+  ASSERT_FALSE(fixture.divide(strip));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(live_shells(after), 24U);
   EXPECT_EQ(live_nodes(after), 35U);
@@ -30,9 +30,9 @@ TEST(Strips, go_from_one_end_of_the_sheet_to_the_other_without_a_triangle) {
 
 TEST(Strips, are_divided_into_as_many_as_asked_evenly) {
   const Grid grid{4, 3, [](double x, double y) { return Vec3(x < 3 ? x : x + 3, y, 0); }, {}};
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  ASSERT_FALSE(bench.divide({bench.shell(grid.shell(2, 1)), 0}, 4));
-  const Model after = bench.after();
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  ASSERT_FALSE(fixture.divide({fixture.shell(grid.shell(2, 1)), 0}, 4));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(live_shells(after), 12U + 3 * 3);
   for (const ShellIndex shell : all_shells(after)) {
@@ -55,9 +55,9 @@ TEST(Strips, close_around_a_tube) {
       const std::size_t next = (i + 1) % kAround;
       shells.push_back({i + j * kAround, next + j * kAround, next + (j + 1) * kAround, i + (j + 1) * kAround});
     }
-  Bench bench(model_of(positions, shells));
-  ASSERT_FALSE(bench.divide({bench.shell(17), 1}));
-  const Model after = bench.after();
+  PatchFixture fixture(model_of(positions, shells));
+  ASSERT_FALSE(fixture.divide({fixture.shell(17), 1}));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(live_shells(after), 5 * kAround);
   EXPECT_EQ(edges_with(after, 1), 2 * kAround);
@@ -83,10 +83,10 @@ Model star() {
 }
 
 TEST(Strips, divide_every_sheet_where_three_meet) {
-  Bench bench(star());
-  ASSERT_EQ(edges_with(bench.model, 3), 4U);
-  ASSERT_FALSE(bench.divide({bench.shell(1), 1}));  // across the edges that run along the junction
-  const Model after = bench.after();
+  PatchFixture fixture(star());
+  ASSERT_EQ(edges_with(fixture.model, 3), 4U);
+  ASSERT_FALSE(fixture.divide({fixture.shell(1), 1}));  // across the edges that run along the junction
+  const Model after = fixture.after();
   EXPECT_EQ(live_shells(after), 36U + 9);
   EXPECT_EQ(edges_with(after, 3), 5U);
   EXPECT_EQ(triangles(after), 0U);
@@ -96,12 +96,12 @@ TEST(Strips, divide_every_sheet_where_three_meet) {
 TEST(Strips, end_before_short_edges_in_a_triangle_that_has_the_shorter_diagonal) {
   // Columns get narrower from 3 to 0.75.
   const Grid grid{3, 6, [](double x, double y) { return Vec3(x == 2 || x == 3 ? 1 + (x - 1) * (3 - 0.375 * y) : x, y, 0); }, {}};
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  const Strip strip{bench.shell(grid.shell(1, 0)), 0, 2.0};
-  const std::vector<StripQuad> quads = course_of(bench.patch, strip).quads;
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  const Strip strip{fixture.shell(grid.shell(1, 0)), 0, 2.0};
+  const std::vector<StripQuad> quads = course_of(fixture.patch, strip).quads;
   EXPECT_EQ(quads.size(), 2U) << "the edges are 3, 2.625, 2.25 and then 1.875 long";
-  ASSERT_FALSE(bench.divide(strip));
-  const Model after = bench.after();
+  ASSERT_FALSE(fixture.divide(strip));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(triangles(after), 1U);
   EXPECT_EQ(live_shells(after), 18U + 3);
@@ -109,22 +109,22 @@ TEST(Strips, end_before_short_edges_in_a_triangle_that_has_the_shorter_diagonal)
 
 TEST(Strips, of_three_end_in_a_quad_between_two_triangles) {
   const Grid grid{3, 6, [](double x, double y) { return Vec3(x == 2 || x == 3 ? 1 + (x - 1) * (3 - 0.375 * y) : x, y, 0); }, {}};
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  ASSERT_FALSE(bench.divide({bench.shell(grid.shell(1, 0)), 0, 2.0}, 3));
-  const Model after = bench.after();
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  ASSERT_FALSE(fixture.divide({fixture.shell(grid.shell(1, 0)), 0, 2.0}, 3));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(triangles(after), 2U);
   EXPECT_EQ(triangle_pairs(after), 0U);
   EXPECT_EQ(live_shells(after), 18U + 2 * 2 + 2);
-  EXPECT_TRUE(bench.divide({bench.shell(grid.shell(1, 0)), 0, 2.0}, 4)) << "there is no way to end four";
+  EXPECT_TRUE(fixture.divide({fixture.shell(grid.shell(1, 0)), 0, 2.0}, 4)) << "there is no way to end four";
 }
 
 TEST(Strips, end_in_a_triangle) {
   const Model model = model_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 2, 0}}, {{0, 1, 3, 2}, {2, 3, 4, 4}});
   for (const bool absorbs : {true, false}) {
-    Bench bench(model);
-    ASSERT_FALSE(bench.divide({bench.shell(0), 0}, 2, absorbs));
-    const Model after = bench.after();
+    PatchFixture fixture(model);
+    ASSERT_FALSE(fixture.divide({fixture.shell(0), 0}, 2, absorbs));
+    const Model after = fixture.after();
     EXPECT_EQ(what_is_wrong(after), "");
     EXPECT_EQ(live_shells(after), absorbs ? 3U : 4U);
     EXPECT_EQ(triangles(after), absorbs ? 0U : 2U);
@@ -134,9 +134,9 @@ TEST(Strips, end_in_a_triangle) {
 TEST(Strips, go_around_a_triangle) {
   // Quads at two edges of a triangle, and a third one that leads from one to the other outside.
   const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, -1, 0}, {1, -1, 0}};
-  Bench bench(model_of(positions, {{0, 1, 2, 2}, {3, 0, 2, 4}, {5, 6, 1, 0}, {3, 4, 6, 5}}));
-  ASSERT_FALSE(bench.divide({bench.shell(1), 1}));
-  const Model after = bench.after();
+  PatchFixture fixture(model_of(positions, {{0, 1, 2, 2}, {3, 0, 2, 4}, {5, 6, 1, 0}, {3, 4, 6, 5}}));
+  ASSERT_FALSE(fixture.divide({fixture.shell(1), 1}));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(live_shells(after), 8U);
   EXPECT_EQ(triangles(after), 1U) << "at the corner between the quads";
@@ -146,36 +146,36 @@ TEST(Strips, stop_before_what_may_not_be_divided) {
   const Grid grid = flat(5, 6);
   Rules rules;
   rules.shell = [&](ShellIndex shell) { return shell == shell_at(2 + 3 * 5) ? std::uint8_t{kIndivisible} : std::uint8_t{0}; };
-  Bench bench(model_of(grid.positions(), grid.shells()), rules);
-  const Strip strip{bench.shell(2 + 0 * 5), 0};
-  EXPECT_EQ(course_of(bench.patch, strip).quads.size(), 2U);
-  ASSERT_FALSE(bench.divide(strip));
-  const Model after = bench.after();
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()), rules);
+  const Strip strip{fixture.shell(2 + 0 * 5), 0};
+  EXPECT_EQ(course_of(fixture.patch, strip).quads.size(), 2U);
+  ASSERT_FALSE(fixture.divide(strip));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(triangles(after), 1U) << "in the shell before";
-  EXPECT_EQ(after.shell(shell_at(17)).node, bench.model.shell(shell_at(17)).node);
+  EXPECT_EQ(after.shell(shell_at(17)).node, fixture.model.shell(shell_at(17)).node);
 }
 
 TEST(Strips, that_cross_themselves_are_refused) {
   // The way from edge 2-3 of the first quad leads through the second and third into its edge 3-0.
   const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 1}};
-  Bench bench(model_of(positions, {{0, 1, 2, 3}, {3, 2, 4, 1}, {1, 4, 3, 0}}));
-  const Strip strip{bench.shell(0), 0};
-  const Refusal refusal = bench.divide(strip);
+  PatchFixture fixture(model_of(positions, {{0, 1, 2, 3}, {3, 2, 4, 1}, {1, 4, 3, 0}}));
+  const Strip strip{fixture.shell(0), 0};
+  const Refusal refusal = fixture.divide(strip);
   ASSERT_TRUE(refusal);
   EXPECT_EQ(*refusal, "the strip of quads there crosses itself");
-  EXPECT_TRUE(course_of(bench.patch, strip).quads.empty());
+  EXPECT_TRUE(course_of(fixture.patch, strip).quads.empty());
 }
 
 TEST(Strips, go_and_leave_the_sheet_whole) {
   const Grid grid{5, 4, [](double x, double y) { return Vec3(x < 3 ? x : x - 0.75, y, 0); }, {}};
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  ASSERT_FALSE(bench.collapse({bench.shell(grid.shell(2, 1)), 0}));
-  const Model after = bench.after();
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  ASSERT_FALSE(fixture.collapse({fixture.shell(grid.shell(2, 1)), 0}));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(live_shells(after), 16U);
   EXPECT_EQ(triangles(after), 0U);
-  const Shape was = shape_of(bench.model), is = shape_of(after);
+  const Shape was = shape_of(fixture.model), is = shape_of(after);
   EXPECT_EQ(is.euler, was.euler);
   EXPECT_NEAR(is.free_length, was.free_length, 1e-9);
   EXPECT_NEAR(is.area, was.area, 1e-9);
@@ -184,9 +184,9 @@ TEST(Strips, go_and_leave_the_sheet_whole) {
 TEST(Strips, that_go_end_before_long_edges_in_a_triangle) {
   // The third column widens from 0.25 upwards.
   const Grid grid{4, 6, [](double x, double y) { return Vec3(x < 3 ? x : x - 0.75 + 0.2 * y, y, 0); }, {}};
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  ASSERT_FALSE(bench.collapse({bench.shell(grid.shell(2, 0)), 0, 0, 0.7}));
-  const Model after = bench.after();
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  ASSERT_FALSE(fixture.collapse({fixture.shell(grid.shell(2, 0)), 0, 0, 0.7}));
+  const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(triangles(after), 1U);
   EXPECT_EQ(live_shells(after), 24U - 2) << "the edges are 0.25, 0.45, 0.65 and then 0.85 long";
@@ -195,8 +195,8 @@ TEST(Strips, that_go_end_before_long_edges_in_a_triangle) {
 TEST(Strips, between_two_lines_of_the_part_stay) {
   // A sheet of one column between two free edges.
   const Grid grid = flat(1, 4);
-  Bench bench(model_of(grid.positions(), grid.shells()));
-  EXPECT_TRUE(bench.collapse({bench.shell(1), 0}));
+  PatchFixture fixture(model_of(grid.positions(), grid.shells()));
+  EXPECT_TRUE(fixture.collapse({fixture.shell(1), 0}));
 }
 
 TEST(Repairs, cure_a_squeezed_sheet_by_taking_strips_out) {
@@ -215,7 +215,7 @@ TEST(Repairs, cure_a_squeezed_sheet_by_taking_strips_out) {
   const Model after = carried_out(model, repaired->change);
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(triangles(after), 0U);
-  EXPECT_TRUE(repaired->left.empty());
+  EXPECT_TRUE(repaired->unrepaired.empty());
 }
 
 TEST(Repairs, cure_a_stretched_sheet_by_whole_strips) {
@@ -236,7 +236,7 @@ TEST(Repairs, cure_a_stretched_sheet_by_whole_strips) {
   const Model after = carried_out(model, repaired->change);
   EXPECT_EQ(what_is_wrong(after), "");
   EXPECT_EQ(triangles(after), 0U);
-  EXPECT_TRUE(repaired->left.empty());
+  EXPECT_TRUE(repaired->unrepaired.empty());
 }
 
 }  // namespace

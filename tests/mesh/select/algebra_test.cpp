@@ -246,7 +246,7 @@ TEST(SetsOfSets, that_multiply_are_refused) {
 
 TEST_F(Algebra, takes_any_number_of_parentheses_beside_each_other) {
   std::string expression = "(10)";
-  for (int i = 0; i < 2 * kDeepestParentheses; ++i) expression += ",(20)";
+  for (int i = 0; i < 2 * kMaxParenthesisDepth; ++i) expression += ",(20)";
   EXPECT_EQ(of(expression), (Ids{10, 20}));
 }
 

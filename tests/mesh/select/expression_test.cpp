@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::select {

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "base/deterministic_math.h"
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::select {

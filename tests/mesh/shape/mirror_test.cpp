@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::shape {
@@ -18,7 +18,7 @@ Model sheet() {
   return test::make_grid(10, 4, [](int i, int j) { return Vec3(5.0 * (i - 5), 5.0 * j, 0); });
 }
 
-TEST(Mirror, FindsTheNodeAtTheMirroredPlace) {
+TEST(Mirror, finds_the_node_at_the_mirrored_place) {
   const Model model = sheet();
   NodeSet nodes;
   for (int j = 0; j <= 4; ++j)
@@ -28,7 +28,7 @@ TEST(Mirror, FindsTheNodeAtTheMirroredPlace) {
     for (int i = 0; i <= 10; ++i) EXPECT_EQ(images[test::grid_node(10, i, j).value], test::grid_node(10, 10 - i, j));
 }
 
-TEST(Mirror, AllowsAQuarterOfASide) {
+TEST(Mirror, allows_a_quarter_of_a_side) {
   Model model = sheet();
   const NodeIndex node = test::grid_node(10, 8, 2), near = test::grid_node(10, 2, 2);
   model.positions.set(near.value, model.position(near) + Vec3(0.8, 0.8, 0));
@@ -40,7 +40,7 @@ TEST(Mirror, AllowsAQuarterOfASide) {
   EXPECT_EQ(find_images(coarse, {node}, kAcrossX)[0], near);
 }
 
-TEST(Mirror, ANodeWithoutShellsHasTheSheetsTolerance) {
+TEST(Mirror, a_node_without_shells_has_the_sheets_tolerance) {
   const Model grid = sheet();
   std::vector<test::NodeSpec> nodes;
   std::vector<test::ShellSpec> shells;
@@ -59,7 +59,7 @@ TEST(Mirror, ANodeWithoutShellsHasTheSheetsTolerance) {
   EXPECT_FALSE(images[2].valid()) << "1.5 away";
 }
 
-TEST(Mirror, ARemovedNodeIsNobodysImage) {
+TEST(Mirror, a_removed_node_is_nobodys_image) {
   Model model = sheet();
   const NodeIndex node = test::grid_node(10, 8, 2), opposite = test::grid_node(10, 2, 2);
   ASSERT_EQ(find_images(model, {node}, kAcrossX)[0], opposite);
@@ -70,7 +70,7 @@ TEST(Mirror, ARemovedNodeIsNobodysImage) {
   EXPECT_FALSE(find_images(model, {node}, kAcrossX)[0].valid());
 }
 
-TEST(Mirror, OneImageForOneNodeAndTheClosestFirst) {
+TEST(Mirror, one_image_for_one_node_and_the_closest_first) {
   // two nodes close together on the right, one on the left
   const Model model = test::make_shells(
       {{10, 0, 0}, {20, 0, 0}, {20, 10, 0}, {10, 0, 1}, {20, 0, 1}, {20, 10, 1}, {-10, 0, 0.9}, {-20, 0, 9}, {-20, 10, 9}},
@@ -80,7 +80,7 @@ TEST(Mirror, OneImageForOneNodeAndTheClosestFirst) {
   EXPECT_EQ(images[1], NodeIndex(std::size_t{6}));
 }
 
-TEST(Mirror, SheetsOnTopOfEachOtherKeepToTheirPart) {
+TEST(Mirror, sheets_on_top_of_each_other_keep_to_their_part) {
   std::vector<test::NodeSpec> nodes;
   std::vector<test::ShellSpec> shells;
   // left part 2 stands before left part 1 in the deck, right the other way round
@@ -108,19 +108,19 @@ std::vector<Vec3> mirrored_moves(const Plane& plane, const std::vector<Vec3>& st
   return mirror_moves(plane, nodes, moves);
 }
 
-TEST(Mirror, OneHalfActedOnMovesAndTheOtherMirrorsIt) {
+TEST(Mirror, one_half_acted_on_moves_and_the_other_mirrors_it) {
   const std::vector<Vec3> moves =
       mirrored_moves(kAcrossX, {{7, 0, 0}, {-7, 0, 0}}, {0.5, 0}, Vec3(20, 0, 0), {1, 0}, {{1, 2, 3}, Vec3::Zero()});
   EXPECT_EQ(moves[0], Vec3(1, 2, 3));
   EXPECT_EQ(moves[1], Vec3(-1, 2, 3));
 }
 
-TEST(Mirror, InThePlaneNothingMovesAcrossIt) {
+TEST(Mirror, in_the_plane_nothing_moves_across_it) {
   const std::vector<Vec3> moves = mirrored_moves(kAcrossX, {{0, 5, 0}}, {1}, Vec3(20, 0, 0), {0}, {{1, 2, 3}});
   EXPECT_EQ(moves[0], Vec3(0, 2, 3));
 }
 
-TEST(Mirror, WithBothHalvesActedOnTheyMeetInThePlaneWithoutAStep) {
+TEST(Mirror, with_both_halves_acted_on_they_meet_in_the_plane_without_a_step) {
   // all follow whole: from the grab's distance on each half moves as one, between them the move across grows evenly
   std::vector<Vec3> start, moves;
   std::vector<std::uint32_t> images;
@@ -136,14 +136,14 @@ TEST(Mirror, WithBothHalvesActedOnTheyMeetInThePlaneWithoutAStep) {
   for (const Vec3& move : inside) EXPECT_EQ(move, Vec3(0, 1, 0));
 }
 
-TEST(Mirror, WhatIsSymmetricAlreadyStaysAsItIs) {
+TEST(Mirror, what_is_symmetric_already_stays_as_it_is) {
   const std::vector<Vec3> moves =
       mirrored_moves(kAcrossX, {{3, 0, 0}, {-3, 0, 0}}, {0.75, 0.75}, Vec3(6, 0, 0), {1, 0}, {{1, 2, 3}, {-1, 2, 3}});
   EXPECT_EQ(moves[0], Vec3(1, 2, 3));
   EXPECT_EQ(moves[1], Vec3(-1, 2, 3));
 }
 
-TEST(Mirror, ImagesMoveAsMirrorImagesToTheBit) {
+TEST(Mirror, images_move_as_mirror_images_to_the_bit) {
   std::vector<Vec3> start, moves;
   std::vector<double> weight;
   std::vector<std::uint32_t> images;
@@ -159,7 +159,7 @@ TEST(Mirror, ImagesMoveAsMirrorImagesToTheBit) {
   for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(both[i ^ 1], kAcrossX.mirrored(both[i]));
 }
 
-TEST(Mirror, FindsImagesInAPlaneAnywhere) {
+TEST(Mirror, finds_images_in_a_plane_anywhere) {
   const Plane plane{Vec3(3, 1, 7), Vec3(1, 2, 2) / 3};
   std::vector<Vec3> points;
   std::vector<std::array<int, 4>> shells;
@@ -174,7 +174,7 @@ TEST(Mirror, FindsImagesInAPlaneAnywhere) {
   for (std::size_t k = 0; k < 18; ++k) EXPECT_EQ(find_images(model, {NodeIndex(k)}, plane)[0], NodeIndex((k + 9) % 18)) << k;
 }
 
-TEST(Mirror, AllowsAQuarterOfTheShortestSide) {
+TEST(Mirror, allows_a_quarter_of_the_shortest_side) {
   for (const auto& [off, found] : {std::pair(0.24, true), std::pair(0.26, false)}) {
     // shells ten times as long as wide
     const Model model = test::make_grid(4, 2, [off = off](int i, int j) { return Vec3(10.0 * (i - 2) + (i == 0 ? off : 0), j, 0); });
@@ -182,7 +182,7 @@ TEST(Mirror, AllowsAQuarterOfTheShortestSide) {
   }
 }
 
-TEST(Mirror, SharesCountFromThePlaneWhereverItIs) {
+TEST(Mirror, shares_count_from_the_plane_wherever_it_is) {
   const Plane plane{Vec3(100, 5, 0), Vec3::UnitX()};
   std::vector<Vec3> start, moves;
   std::vector<std::uint32_t> images;

@@ -19,7 +19,7 @@ std::vector<Vec3> rotated(const std::vector<Vec3>& start, const std::vector<doub
   return out;
 }
 
-TEST(Rotate, QuarterTurnsAreExact) {
+TEST(Rotate, quarter_turns_are_exact) {
   const std::vector<Vec3> start{{3, 4, 5}, {-7.25, 0.1, -2}};
   const std::vector<double> whole{1, 1};
   for (const double turns : {-4.0, 0.0, 4.0, 8.0}) EXPECT_EQ(rotated(start, whole, kAboutZ, 90 * turns), start);
@@ -30,21 +30,21 @@ TEST(Rotate, QuarterTurnsAreExact) {
   EXPECT_EQ(rotated(start, {0.5, 0.25}, kAboutZ, 360)[1], Vec3(-0.1, -7.25, -2));
 }
 
-TEST(Rotate, ATurnByNothingLeavesEveryBit) {
+TEST(Rotate, a_turn_by_nothing_leaves_every_bit) {
   const std::vector<Vec3> start{{0.1, 0.2, 0.3}, {1.0 / 3, -1e-9, 7.7}, {123.456, 0.7, -0.1}};
   const Axis axis{Vec3(1e3 + 0.1, -7.3, 1.0 / 7), unit_of(Vec3(1, 2, 3)).value()};
   EXPECT_EQ(rotated(start, {1, 1, 1}, axis, 0), start);
   EXPECT_EQ(rotated(start, {0, 0, 0}, axis, 33), start);
 }
 
-TEST(Rotate, IsRightHandedAboutAnyAxis) {
+TEST(Rotate, is_right_handed_about_any_axis) {
   const Axis axis{Vec3(1, 2, 3), unit_of(Vec3(1, 1, 1)).value()};
   // a third of a turn about the diagonal takes x to y to z
   const Vec3 out = rotated({axis.point + Vec3(2, 0, 0)}, {1}, axis, 120)[0];
   EXPECT_LT((out - (axis.point + Vec3(0, 2, 0))).norm(), 1e-14);
 }
 
-TEST(Rotate, EveryNodeKeepsToItsCircle) {
+TEST(Rotate, every_node_keeps_to_its_circle) {
   const Axis axis{Vec3(10, -3, 2), unit_of(Vec3(0.3, -2, 1)).value()};
   std::vector<Vec3> start;
   std::vector<double> weight;
@@ -60,7 +60,7 @@ TEST(Rotate, EveryNodeKeepsToItsCircle) {
   }
 }
 
-TEST(Rotate, ABentStripKeepsItsLengthWhereItMovesAsOne) {
+TEST(Rotate, a_bent_strip_keeps_its_length_where_it_moves_as_one) {
   // a flange of 20 rows: the first ten bend, the rest turn as one
   std::vector<Vec3> start;
   std::vector<double> weight;
@@ -76,7 +76,7 @@ TEST(Rotate, ABentStripKeepsItsLengthWhereItMovesAsOne) {
   for (std::size_t i = 10; i < 20; ++i) EXPECT_NEAR((out[i + 1] - out[i]).norm(), 5, 1e-13);
 }
 
-TEST(Rotate, ALimitStopsOnTheCircle) {
+TEST(Rotate, a_limit_stops_on_the_circle) {
   std::vector<Vec3> out(3);
   const std::vector<Vec3> start{{1, 0, 0}, {10, 0, 0}, {100, 0, 7}};
   EXPECT_EQ(rotate(start, std::vector<double>{1, 1, 1}, kAboutZ, -170, 3.0, out), 2u);
@@ -89,12 +89,12 @@ TEST(Rotate, ALimitStopsOnTheCircle) {
   }
 }
 
-TEST(Rotate, WhatIsNoAngleGivesNoCoordinates) {
+TEST(Rotate, what_is_no_angle_gives_no_coordinates) {
   for (const double degrees : {1e9, -1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
     EXPECT_FALSE(rotated({Vec3(1, 0, 0)}, {1}, kAboutZ, degrees)[0].allFinite());
 }
 
-TEST(Rotate, DirectionsOfAnyLength) {
+TEST(Rotate, directions_of_any_length) {
   EXPECT_EQ(unit_of(Vec3(0, -3e-300, 0)), Vec3(0, -1, 0));
   EXPECT_EQ(unit_of(Vec3(1e300, 0, 0)), Vec3(1, 0, 0));
   EXPECT_FALSE(unit_of(Vec3::Zero()));
@@ -102,7 +102,7 @@ TEST(Rotate, DirectionsOfAnyLength) {
   EXPECT_FALSE(unit_of(Vec3(0, std::numeric_limits<double>::quiet_NaN(), 1)));
 }
 
-TEST(Rotate, TheLimitCountsFromTheAxisWhereverItIs) {
+TEST(Rotate, the_limit_counts_from_the_axis_wherever_it_is) {
   const Axis axis{Vec3(100, 0, -4), Vec3::UnitZ()};
   const std::vector<Vec3> start{{110, 0, 5}, {110, 0, 5}};
   std::vector<Vec3> out(2);

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 #include "tests/support/make_model.h"
 #include "tests/support/whole_model.h"
 

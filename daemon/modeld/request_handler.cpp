@@ -1,4 +1,4 @@
-#include "daemon/modeld/bench.h"
+#include "daemon/modeld/request_handler.h"
 
 #include <utility>
 
@@ -22,7 +22,7 @@ Outcome told(Result<Found> found) {
 }  // namespace
 
 /// Publishes the current generation for views and tells everyone. The edit counts whether or not there was memory for it.
-void Bench::show(const std::string& made_by, Outcome& outcome) {
+void RequestHandler::show(const std::string& made_by, Outcome& outcome) {
   const mesh::document::Document& document = keeper_.document();
   const ipc::State state = keeper_.state();
   if (Result<ipc::PublishedSnapshot> published = publisher_.publish(document, state.changed))
@@ -30,31 +30,31 @@ void Bench::show(const std::string& made_by, Outcome& outcome) {
   else if (auto* edited = std::get_if<ipc::Edited>(&outcome.answer))
     edited->report.notes.push_back("the views couldn't be given the new state: " + published.error().text());
   outcome.events.emplace_back(ipc::GenerationPublished{state.generation, made_by, state.history_bytes, state.history_cap});
-  outcome.face = Face{std::make_shared<const mesh::document::Document>(document), state};
+  outcome.published = PublishedState{std::make_shared<const mesh::document::Document>(document), state};
 }
 
-Outcome Bench::opened() {
+Outcome RequestHandler::opened() {
   Outcome outcome;
   show(keeper_.document().current().made_by, outcome);
   outcome.events.insert(outcome.events.begin(), ipc::DocumentOpened{keeper_.document().path.string()});
-  outcome.answer = outcome.face->state;
+  outcome.answer = outcome.published->state;
   return outcome;
 }
 
-Outcome Bench::open(const ipc::Open& request, const Progress& progress) {
+Outcome RequestHandler::open(const ipc::Open& request, const Progress& progress) {
   const Result<bool> done = keeper_.open(request, progress);
   if (!done) return {failed(done.error()), {}, {}, {}};
   // Open already: only the asker learns how it is; other views have nothing to start over.
   return *done ? opened() : Outcome{keeper_.state(), {}, {}, {}};
 }
 
-Outcome Bench::reopen(const Progress& progress) {
+Outcome RequestHandler::reopen(const Progress& progress) {
   const Result<bool> done = keeper_.reopen(progress);
   if (!done) return {failed(done.error()), {}, {}, {}};
   return *done ? opened() : Outcome{};
 }
 
-Outcome Bench::edit(const mesh::document::Edit& edit, const Progress& progress) {
+Outcome RequestHandler::edit(const mesh::document::Edit& edit, const Progress& progress) {
   Result<mesh::document::EditReport> report = keeper_.edit(edit, progress);
   if (!report) return {failed(report.error()), {}, {}, {}};
   Outcome outcome;
@@ -64,7 +64,7 @@ Outcome Bench::edit(const mesh::document::Edit& edit, const Progress& progress) 
   return outcome;
 }
 
-Outcome Bench::count(const ipc::Count& request, const Progress& progress) const {
+Outcome RequestHandler::count(const ipc::Count& request, const Progress& progress) const {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
   const mesh::document::Generation& current = keeper_.document().current();
   const Result<mesh::select::Chosen> chosen =
@@ -73,22 +73,22 @@ Outcome Bench::count(const ipc::Count& request, const Progress& progress) const 
   return {ipc::Counted{chosen->nodes.size(), chosen->shells.size(), chosen->parts.size()}, {}, {}, {}};
 }
 
-Outcome Bench::quality(const ipc::GetQuality& request) const {
+Outcome RequestHandler::quality(const ipc::GetQuality& request) const {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
   return told(quality_figures(keeper_.document(), request));
 }
 
-Outcome Bench::find(const ipc::FindShells& request) const {
+Outcome RequestHandler::find(const ipc::FindShells& request) const {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
   return told(find_shells(keeper_.document(), request));
 }
 
-Outcome Bench::preview(const ipc::PreviewEdit& request) const {
+Outcome RequestHandler::preview(const ipc::PreviewEdit& request) const {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
   return told(preview_edit(keeper_.document(), request.edit));
 }
 
-Outcome Bench::field(const ipc::GetField& request, const Progress& progress) {
+Outcome RequestHandler::field(const ipc::GetField& request, const Progress& progress) {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
   // Most fields are there before anybody could read how far they are.
   const auto tell = [&](double fraction) { return fraction <= 0 || progress(fraction); };
@@ -103,7 +103,7 @@ Outcome Bench::field(const ipc::GetField& request, const Progress& progress) {
   return outcome;
 }
 
-Outcome Bench::save(const ipc::Save& request, const Progress& progress) {
+Outcome RequestHandler::save(const ipc::Save& request, const Progress& progress) {
   if (request.asks && request.path) {
     Result<std::optional<ipc::SaveWould>> would = keeper_.would(*request.path);
     if (!would) return {failed(would.error()), {}, {}, {}};
@@ -120,16 +120,16 @@ Outcome Bench::save(const ipc::Save& request, const Progress& progress) {
   return outcome;
 }
 
-Outcome Bench::close(const ipc::Close& request) {
+Outcome RequestHandler::close(const ipc::Close& request) {
   if (const Result<void> done = keeper_.close(request.discard); !done) return {failed(done.error()), {}, {}, {}};
   publisher_.forget();
   Outcome outcome;
   outcome.events.emplace_back(ipc::DocumentClosed{});
-  outcome.face = Face{};
+  outcome.published = PublishedState{};
   return outcome;
 }
 
-Outcome Bench::begin_drag(std::uint64_t number, const mesh::document::Edit& edit) {
+Outcome RequestHandler::begin_drag(std::uint64_t number, const mesh::document::Edit& edit) {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
   Result<DragSession> drag = DragSession::begin(number, keeper_.document(), edit);
   if (!drag) return {failed(drag.error()), {}, {}, {}};
@@ -143,11 +143,11 @@ Outcome Bench::begin_drag(std::uint64_t number, const mesh::document::Edit& edit
   return outcome;
 }
 
-void Bench::step_drag(const ipc::DragStep& step) {
+void RequestHandler::step_drag(const ipc::DragStep& step) {
   if (drag_) drag_->step(step);
 }
 
-Outcome Bench::commit_drag() {
+Outcome RequestHandler::commit_drag() {
   if (!drag_->moved()) {
     Outcome outcome = cancel_drag("it moved nothing");
     outcome.answer = ipc::Edited{{}, keeper_.document().current().number};
@@ -161,7 +161,7 @@ Outcome Bench::commit_drag() {
   return outcome;
 }
 
-Outcome Bench::cancel_drag(const std::string& why) {
+Outcome RequestHandler::cancel_drag(const std::string& why) {
   drag_.reset();
   Outcome outcome;
   outcome.events.emplace_back(ipc::DragEnded{drag_number_, false, why});

@@ -1,4 +1,4 @@
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 #include <algorithm>
 
@@ -6,18 +6,19 @@ namespace prismesh::mesh {
 
 namespace {
 
-/// The model's growth, for writing: copied where another model holds it as well.
-Growth& own_growth(Model& model) {
-  if (!model.growth || model.growth.use_count() > 1) {
-    auto growth = model.growth ? std::make_shared<Growth>(*model.growth) : std::make_shared<Growth>();
-    if (!model.growth) {
-      growth->deck_nodes = model.node_count();
-      growth->deck_shells = model.shell_count();
+/// The model's topology change, for writing: copied where another model holds it as well.
+TopologyChange& own_topology_change(Model& model) {
+  if (!model.topology_change || model.topology_change.use_count() > 1) {
+    auto topology_change =
+        model.topology_change ? std::make_shared<TopologyChange>(*model.topology_change) : std::make_shared<TopologyChange>();
+    if (!model.topology_change) {
+      topology_change->deck_nodes = model.node_count();
+      topology_change->deck_shells = model.shell_count();
     }
-    model.growth = std::move(growth);
+    model.topology_change = std::move(topology_change);
   }
   // Nobody else holds it, and it was made above, not as a constant.
-  return const_cast<Growth&>(*model.growth);
+  return const_cast<TopologyChange&>(*model.topology_change);
 }
 
 template <class T>
@@ -68,9 +69,9 @@ NodeOrigin centre_origin(const ShellNodes& shell) {
 }
 
 NodeIndex add_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin) {
-  Growth& growth = own_growth(model);
+  TopologyChange& topology_change = own_topology_change(model);
   const NodeIndex node(model.node_count());
-  push_back(growth.node_origins, origin);
+  push_back(topology_change.node_origins, origin);
   push_back(model.node_ids, id);
   push_back(model.positions, position);
   push_back(model.node_holds, std::uint8_t{0});
@@ -80,9 +81,9 @@ NodeIndex add_node(Model& model, std::int64_t id, const Vec3& position, const No
 }
 
 ShellIndex add_shell(Model& model, std::int64_t id, const ShellNodes& nodes, ShellIndex parent) {
-  Growth& growth = own_growth(model);
+  TopologyChange& topology_change = own_topology_change(model);
   const ShellIndex shell(model.shell_count());
-  push_back(growth.shell_parents, parent);
+  push_back(topology_change.shell_parents, parent);
   push_back(model.shell_ids, id);
   push_back(model.shell_nodes, nodes);
   push_back(model.shell_parts, PartIndex(model.shell_parts[parent.value]));
@@ -94,53 +95,57 @@ ShellIndex add_shell(Model& model, std::int64_t id, const ShellNodes& nodes, She
 
 void set_shell_nodes(Model& model, ShellIndex shell, const ShellNodes& nodes) {
   if (model.shell(shell) == nodes) return;
-  Growth& growth = own_growth(model);
+  TopologyChange& topology_change = own_topology_change(model);
   // An added shell is written anew whatever happened to it.
-  if (shell.value < growth.deck_shells) growth.reshaped_shells.push_back(shell);
+  if (shell.value < topology_change.deck_shells) topology_change.reshaped_shells.push_back(shell);
   model.shell_nodes.set(shell.value, nodes);
   model.adjacency.reset();
 }
 
 void remove_shell(Model& model, ShellIndex shell) {
-  own_growth(model).removed_shells.push_back(shell);
+  own_topology_change(model).removed_shells.push_back(shell);
   model.shell_nodes.set(shell.value, kNoNodes);
   IdIndex::remove(model.shell_index, model.shell_ids[shell.value]);
   model.adjacency.reset();
 }
 
 void remove_node(Model& model, NodeIndex node) {
-  own_growth(model).removed_nodes.push_back(node);
+  own_topology_change(model).removed_nodes.push_back(node);
   model.node_holds.set(node.value, static_cast<std::uint8_t>(model.node_holds[node.value] | kRemoved));
   IdIndex::remove(model.node_index, model.node_ids[node.value]);
   model.adjacency.reset();
 }
 
-std::size_t live_nodes(const Model& model) { return model.node_count() - (model.growth ? model.growth->removed_nodes.size() : 0); }
-std::size_t live_shells(const Model& model) { return model.shell_count() - (model.growth ? model.growth->removed_shells.size() : 0); }
+std::size_t live_nodes(const Model& model) {
+  return model.node_count() - (model.topology_change ? model.topology_change->removed_nodes.size() : 0);
+}
+std::size_t live_shells(const Model& model) {
+  return model.shell_count() - (model.topology_change ? model.topology_change->removed_shells.size() : 0);
+}
 
-bool is_added(const Model& model, NodeIndex node) { return model.growth && node.value >= model.growth->deck_nodes; }
-bool is_added(const Model& model, ShellIndex shell) { return model.growth && shell.value >= model.growth->deck_shells; }
+bool is_added(const Model& model, NodeIndex node) { return model.topology_change && node.value >= model.topology_change->deck_nodes; }
+bool is_added(const Model& model, ShellIndex shell) { return model.topology_change && shell.value >= model.topology_change->deck_shells; }
 
 const NodeOrigin& origin_of(const Model& model, NodeIndex node) {
-  return model.growth->node_origins[node.value - model.growth->deck_nodes];
+  return model.topology_change->node_origins[node.value - model.topology_change->deck_nodes];
 }
 
 ShellIndex deck_ancestor(const Model& model, ShellIndex shell) {
   // A parent was there before its child, so this ends.
-  while (is_added(model, shell)) shell = model.growth->shell_parents[shell.value - model.growth->deck_shells];
+  while (is_added(model, shell)) shell = model.topology_change->shell_parents[shell.value - model.topology_change->deck_shells];
   return shell;
 }
 
 Changes changes_between(const Model& before, const Model& after) {
   Changes changes;
-  if (!after.growth || after.growth == before.growth) return changes;
+  if (!after.topology_change || after.topology_change == before.topology_change) return changes;
   changes.added_nodes = added_between<NodeIndex>(before.node_count(), after.node_count(), after);
   changes.added_shells = added_between<ShellIndex>(before.shell_count(), after.shell_count(), after);
-  changes.removed_nodes = removed_since(after.growth->removed_nodes, before.node_count(), before);
-  changes.removed_shells = removed_since(after.growth->removed_shells, before.shell_count(), before);
+  changes.removed_nodes = removed_since(after.topology_change->removed_nodes, before.node_count(), before);
+  changes.removed_shells = removed_since(after.topology_change->removed_shells, before.shell_count(), before);
   // Shells that `before` has as added ones may have been given other nodes since without being listed.
-  std::vector<ShellIndex> reshaped = after.growth->reshaped_shells;
-  for (std::size_t s = after.growth->deck_shells; s < before.shell_count(); ++s) reshaped.push_back(ShellIndex(s));
+  std::vector<ShellIndex> reshaped = after.topology_change->reshaped_shells;
+  for (std::size_t s = after.topology_change->deck_shells; s < before.shell_count(); ++s) reshaped.push_back(ShellIndex(s));
   std::erase_if(reshaped, [&](ShellIndex s) {
     return s.value >= before.shell_count() || before.is_removed(s) || after.is_removed(s) || before.shell(s) == after.shell(s);
   });

@@ -20,10 +20,10 @@ namespace prismesh::mesh::shape {
 /// sharp the crease: only faces that hang together with its own are ever reached, never a sheet close by. Where three or more shells meet
 /// in an edge it goes on over the one that leads straightest on. A node on a free edge stays on the line of free edges and stops at its
 /// corners (as FreeEdges has them); a way that meets a free edge from within ends there. A node without a shell stays.
-class Slideway {
+class SurfaceTracer {
  public:
   /// `nodes` with their `normals` (of unit length; zero without a shell). Copies no mesh: it shares the model's chunks.
-  Slideway(const Model& surface, const NodeSet& nodes, std::vector<Vec3> normals);
+  SurfaceTracer(const Model& surface, const NodeSet& nodes, std::vector<Vec3> normals);
 
   /// These nodes keep to the plane at right angles to `normal` that they lie in: they walk where it cuts the surface. `nodes` has one
   /// entry for each, other than 0 for those.

@@ -7,7 +7,7 @@
 
 namespace prismesh::mesh::relax {
 
-struct Footing {
+struct SurfaceAnchor {
   Freedom freedom = Freedom::fixed;
   ShellIndex shell;               ///< surface: of the reference
   NodeIndex from, to;             ///< line: of the reference
@@ -17,9 +17,9 @@ struct Footing {
 
 /// Of a node of a mesh that lies on the surface. Free edges, junctions and borders between parts are the mesh's; creases and corners are
 /// the surface's, wherever the mesh's elements lean now. Fixed: a corner, in no shell, not finite, or not near the surface. By any thread.
-Footing find_footing(const Model& model, const ReferenceSurface& surface, NodeIndex node, double feature_cos);
+SurfaceAnchor find_anchor(const Model& model, const ReferenceSurface& surface, NodeIndex node, double feature_cos);
 
-/// The place on the node's line or sheet that is nearest to a point; `footing` follows.
-Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footing);
+/// The place on the node's line or sheet that is nearest to a point; `anchor` follows.
+Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, SurfaceAnchor& anchor);
 
 }  // namespace prismesh::mesh::relax

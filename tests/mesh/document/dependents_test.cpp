@@ -12,8 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/document/dependents.h"
 #include "mesh/document/drag.h"
-#include "mesh/document/hanging.h"
 #include "mesh/document/surroundings.h"
 #include "tests/mesh/document/document_fixture.h"
 

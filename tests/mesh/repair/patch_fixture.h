@@ -9,21 +9,21 @@
 namespace prismesh::mesh::repair {
 
 /// A patch of a whole model, to try operations in.
-struct Bench {
-  explicit Bench(Model made, Rules forbidden = {})
+struct PatchFixture {
+  explicit PatchFixture(Model made, Rules forbidden = {})
       : model(std::move(made)),
         surface(model, all_shells(model), options.relax.feature_angle),
         rules(std::move(forbidden)),
         patch(model, all_shells(model), 1, rules, options.relax.feature_angle),
-        site{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {}
+        context{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {}
 
   Refusal divide(const Strip& strip, int pieces = 2, bool absorbs = true) {
     patch.begin();
-    return divide_strip(site, strip, pieces, absorbs);
+    return divide_strip(context, strip, pieces, absorbs);
   }
   Refusal collapse(const Strip& strip) {
     patch.begin();
-    return collapse_strip(site, strip);
+    return collapse_strip(context, strip);
   }
   Model after() const { return carried_out(model, patch.result()); }
   LocalShell shell(std::size_t s) const { return patch.find(shell_at(s)); }
@@ -34,7 +34,7 @@ struct Bench {
   relax::ReferenceSurface surface;
   Rules rules;
   Patch patch;
-  Site site;
+  RepairContext context;
 };
 
 }  // namespace prismesh::mesh::repair

@@ -1,18 +1,18 @@
-#include "tests/house/include_rules.h"
+#include "tests/architecture/include_rules.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <set>
 
-namespace prismesh::house {
+namespace prismesh::architecture {
 namespace {
 
-using Rooms = std::set<std::string, std::less<>>;
+using Modules = std::set<std::string, std::less<>>;
 
-/// What each room of mesh/ stands on directly; what those stand on follows.
-const std::map<std::string, Rooms, std::less<>>& mesh_rooms() {
-  static const std::map<std::string, Rooms, std::less<>> kRooms{
+/// What each module of mesh/ stands on directly; what those stand on follows.
+const std::map<std::string, Modules, std::less<>>& mesh_modules() {
+  static const std::map<std::string, Modules, std::less<>> kModules{
       {"mesh/model", {}},
       {"mesh/deck", {"mesh/model"}},
       {"mesh/spatial", {"mesh/model"}},
@@ -24,18 +24,18 @@ const std::map<std::string, Rooms, std::less<>>& mesh_rooms() {
       {"mesh/contact", {"mesh/repair"}},
       {"mesh/document", {"mesh/deck", "mesh/quality", "mesh/select", "mesh/shape", "mesh/contact"}},
   };
-  return kRooms;
+  return kModules;
 }
 
 bool mesh_stands_on(std::string_view from, std::string_view to) {
-  const auto found = mesh_rooms().find(from);
-  if (found == mesh_rooms().end()) return false;
+  const auto found = mesh_modules().find(from);
+  if (found == mesh_modules().end()) return false;
   return std::any_of(found->second.begin(), found->second.end(),
                      [&](const std::string& below) { return below == to || mesh_stands_on(below, to); });
 }
 
-/// The floor a room is on: "mesh/deck" -> "mesh".
-std::string_view floor_of(std::string_view room) { return room.substr(0, room.find('/')); }
+/// The layer a module is on: "mesh/deck" -> "mesh".
+std::string_view layer_of(std::string_view module) { return module.substr(0, module.find('/')); }
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
@@ -58,30 +58,30 @@ bool is_quoted(std::string_view line) { return line.find('"') != std::string_vie
 
 }  // namespace
 
-std::string room_of(std::string_view path) {
-  constexpr std::array kFloors{"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "tests"};
-  const std::string_view floor = floor_of(path);
+std::string module_of(std::string_view path) {
+  constexpr std::array kLayers{"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "tests"};
+  const std::string_view layer = layer_of(path);
   if (path.starts_with("tests/viewer/")) return "tests/viewer";
-  if (floor == path || std::find(kFloors.begin(), kFloors.end(), floor) == kFloors.end()) return {};
-  if (floor != "mesh" && floor != "daemon") return std::string(floor);
-  const std::size_t second = path.find('/', floor.size() + 1);
+  if (layer == path || std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end()) return {};
+  if (layer != "mesh" && layer != "daemon") return std::string(layer);
+  const std::size_t second = path.find('/', layer.size() + 1);
   return std::string(path.substr(0, second));
 }
 
 bool may_include(std::string_view from, std::string_view to) {
   if (from == to || from == "tests") return true;
-  const std::string_view floor = floor_of(from), other = floor_of(to);
+  const std::string_view layer = layer_of(from), other = layer_of(to);
   if (other == "base") return true;
   if (from == "tests/viewer") return false;  // it judges what the others draw
-  if (floor == "mesh") return mesh_stands_on(from, to);
-  if (floor == "ipc") return other == "mesh" || other == "drivers";
-  if (floor == "kiosk" || floor == "cli" || floor == "daemon") return other == "ipc" || other == "mesh" || other == "drivers";
+  if (layer == "mesh") return mesh_stands_on(from, to);
+  if (layer == "ipc") return other == "mesh" || other == "drivers";
+  if (layer == "kiosk" || layer == "cli" || layer == "daemon") return other == "ipc" || other == "mesh" || other == "drivers";
   return false;
 }
 
 std::vector<std::string> include_violations(std::string_view path, std::string_view text) {
   std::vector<std::string> violations;
-  const std::string from = room_of(path);
+  const std::string from = module_of(path);
   long number = 0;
   while (!text.empty()) {
     ++number;
@@ -90,7 +90,7 @@ std::vector<std::string> include_violations(std::string_view path, std::string_v
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     const std::string_view file = included_file(line);
     if (file.empty()) continue;
-    const std::string to = room_of(file);
+    const std::string to = module_of(file);
     const std::string where = std::string(path) + ":" + std::to_string(number) + ": ";
     if (to.empty() && is_quoted(line))
       violations.push_back(where + "\"" + std::string(file) + "\" isn't written from the project's root");
@@ -100,4 +100,4 @@ std::vector<std::string> include_violations(std::string_view path, std::string_v
   return violations;
 }
 
-}  // namespace prismesh::house
+}  // namespace prismesh::architecture

@@ -12,7 +12,7 @@
 #include "base/deterministic_math.h"
 #include "base/readable_number.h"
 #include "mesh/deck/naming.h"
-#include "mesh/document/hanging.h"
+#include "mesh/document/dependents.h"
 #include "mesh/document/motion.h"
 #include "mesh/document/surroundings.h"
 #include "mesh/model/adjacency.h"
@@ -23,7 +23,7 @@ namespace prismesh::mesh::document {
 namespace {
 
 constexpr std::size_t kMaxNamedInReport = 5;  ///< cards and nodes that a note names
-constexpr std::size_t kMostLost = 100;        ///< connections that a report lists
+constexpr std::size_t kMaxLost = 100;         ///< connections that a report lists
 constexpr int kRingsSearched = 4;             ///< how far along its sheet a node may have come and still be found there
 
 bool contains(const NodeSet& nodes, NodeIndex node) { return std::binary_search(nodes.begin(), nodes.end(), node); }
@@ -34,23 +34,23 @@ std::string card_of(const Surroundings& around, std::uint32_t referrer) {
 
 /// Cards that join nodes of which only some moved.
 void note_split_joins(const Generation& before, const NodeSet& moved, EditReport& report) {
-  const Hanging& hanging = before.around->hanging;
+  const Dependents& dependents = before.around->dependents;
   std::map<std::uint32_t, std::size_t> moved_of;
-  auto at = hanging.joined.begin();
+  auto at = dependents.joined.begin();
   for (const NodeIndex node : moved) {
-    if (at == hanging.joined.end()) break;
-    at = std::lower_bound(at, hanging.joined.end(), node, [](const Hanging::Joined& j, NodeIndex n) { return j.node < n; });
-    for (; at != hanging.joined.end() && at->node == node; ++at) ++moved_of[at->join];
+    if (at == dependents.joined.end()) break;
+    at = std::lower_bound(at, dependents.joined.end(), node, [](const Dependents::Joined& j, NodeIndex n) { return j.node < n; });
+    for (; at != dependents.joined.end() && at->node == node; ++at) ++moved_of[at->join];
   }
   std::size_t named = 0, more = 0;
   for (const auto& [join, count] : moved_of) {
-    const NodeSet& nodes = hanging.joins[join].nodes;
+    const NodeSet& nodes = dependents.joins[join].nodes;
     if (count == nodes.size()) continue;
     if (named++ >= kMaxNamedInReport) {
       ++more;
       continue;
     }
-    std::string note = card_of(*before.around, hanging.joins[join].referrer) + ": " + std::to_string(count) + " of its " +
+    std::string note = card_of(*before.around, dependents.joins[join].referrer) + ": " + std::to_string(count) + " of its " +
                        std::to_string(nodes.size()) + " nodes moved; left in place: ";
     std::size_t left = 0;
     for (const NodeIndex node : nodes) {
@@ -71,7 +71,7 @@ ShellSet around(const Model& model, ShellIndex shell) {
 }
 
 /// How far the node is from the sheet it lies on; looks at the shell alone first.
-double gap_at(const Model& model, const Hanging::Rest& rest) {
+double gap_at(const Model& model, const Dependents::Rest& rest) {
   if (model.is_removed(rest.node) || model.is_removed(rest.shell)) return 0;  // nothing is left that could be lost
   const Vec3& point = model.position(rest.node);
   const auto distance = [&](const ShellSet& shells) {
@@ -85,7 +85,7 @@ double gap_at(const Model& model, const Hanging::Rest& rest) {
 /// Three digits are enough to say how far apart things are.
 std::string short_length(double length) { return readable(length, 3); }
 
-std::string lost_connection(const Generation& before, const Hanging::Rest& rest, double gap) {
+std::string lost_connection(const Generation& before, const Dependents::Rest& rest, double gap) {
   const Model& model = before.model;
   const std::string node = "node:" + std::to_string(model.node_ids[rest.node.value]);
   std::string what;
@@ -105,33 +105,34 @@ std::string lost_connection(const Generation& before, const Hanging::Rest& rest,
 
 /// Nodes that lay on a sheet and don't any more.
 void list_lost(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report) {
-  const Hanging& hanging = before.around->hanging;
-  if (hanging.rests.empty()) return;
+  const Dependents& dependents = before.around->dependents;
+  if (dependents.rests.empty()) return;
   std::vector<std::uint32_t> doubtful;
-  auto rest = hanging.rests.begin();
+  auto rest = dependents.rests.begin();
   for (const NodeIndex node : moved) {
-    rest = std::lower_bound(rest, hanging.rests.end(), node, [](const Hanging::Rest& r, NodeIndex n) { return r.node < n; });
-    if (rest == hanging.rests.end()) break;
-    if (rest->node == node) doubtful.push_back(static_cast<std::uint32_t>(rest - hanging.rests.begin()));
+    rest = std::lower_bound(rest, dependents.rests.end(), node, [](const Dependents::Rest& r, NodeIndex n) { return r.node < n; });
+    if (rest == dependents.rests.end()) break;
+    if (rest->node == node) doubtful.push_back(static_cast<std::uint32_t>(rest - dependents.rests.begin()));
   }
-  auto by_shell = hanging.rests_by_shell.begin();
+  auto by_shell = dependents.rests_by_shell.begin();
   for (const ShellIndex shell : shells_touching(before.model, moved)) {
-    by_shell = std::lower_bound(by_shell, hanging.rests_by_shell.end(), shell,
-                                [&](std::uint32_t r, ShellIndex s) { return hanging.rests[r].shell < s; });
-    for (; by_shell != hanging.rests_by_shell.end() && hanging.rests[*by_shell].shell == shell; ++by_shell) doubtful.push_back(*by_shell);
+    by_shell = std::lower_bound(by_shell, dependents.rests_by_shell.end(), shell,
+                                [&](std::uint32_t r, ShellIndex s) { return dependents.rests[r].shell < s; });
+    for (; by_shell != dependents.rests_by_shell.end() && dependents.rests[*by_shell].shell == shell; ++by_shell)
+      doubtful.push_back(*by_shell);
   }
   std::sort(doubtful.begin(), doubtful.end());
   doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
   std::size_t carried = 0;
   for (const std::uint32_t r : doubtful) {
-    const Hanging::Rest& each = hanging.rests[r];
+    const Dependents::Rest& each = dependents.rests[r];
     const double gap = gap_at(after.model, each);
     if (gap <= each.reach) {
       carried += !each.tied && contains(moved, each.node);
       continue;
     }
     if (gap_at(before.model, each) > each.reach) continue;  // lost before
-    if (++report.lost_connections <= kMostLost) report.lost.push_back(lost_connection(before, each, gap));
+    if (++report.lost_connections <= kMaxLost) report.lost.push_back(lost_connection(before, each, gap));
   }
   if (carried > 0) report.notes.push_back(counted(carried, "node") + " of welds moved along with the sheets they lie on");
   if (report.lost_connections > 0)

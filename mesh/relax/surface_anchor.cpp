@@ -1,4 +1,4 @@
-#include "mesh/relax/footing.h"
+#include "mesh/relax/surface_anchor.h"
 
 #include <optional>
 
@@ -66,7 +66,7 @@ Freedom freedom_there(const Standing& at, double feature_cos) {
 
 }  // namespace
 
-Footing find_footing(const Model& model, const ReferenceSurface& surface, NodeIndex node, double feature_cos) {
+SurfaceAnchor find_anchor(const Model& model, const ReferenceSurface& surface, NodeIndex node, double feature_cos) {
   if (model.adjacency->shells_of(node).empty() || !model.position(node).allFinite()) return {};
   const Standing at(model, surface, node);
   const Freedom freedom = freedom_there(at, feature_cos);
@@ -76,26 +76,26 @@ Footing find_footing(const Model& model, const ReferenceSurface& surface, NodeIn
     std::optional<OnLine> line;
     if (at.is_known) line = line_at(at);
     if (!line || line->distance > near) line = surface.find_line(at.point, near);
-    return line ? Footing{freedom, {}, line->from, line->to, line->tangent, line->size} : Footing();
+    return line ? SurfaceAnchor{freedom, {}, line->from, line->to, line->tangent, line->size} : SurfaceAnchor();
   }
   std::optional<OnSurface> on;
   if (at.is_known) on = surface.follow(surface.model().adjacency->shells_of(node).front(), at.point);
   if (!on || on->distance > near) on = surface.project(at.point, near);
-  return on ? Footing{freedom, on->shell, {}, {}, on->normal, on->size} : Footing();
+  return on ? SurfaceAnchor{freedom, on->shell, {}, {}, on->normal, on->size} : SurfaceAnchor();
 }
 
-Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, Footing& footing) {
-  if (footing.freedom == Freedom::line) {
-    const OnLine on = surface.follow_line(footing.from, footing.to, point);
-    footing.from = on.from;
-    footing.to = on.to;
+Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, SurfaceAnchor& anchor) {
+  if (anchor.freedom == Freedom::line) {
+    const OnLine on = surface.follow_line(anchor.from, anchor.to, point);
+    anchor.from = on.from;
+    anchor.to = on.to;
     // the piece may run the other way
-    if (on.tangent.squaredNorm() > 0) footing.direction = on.tangent;
+    if (on.tangent.squaredNorm() > 0) anchor.direction = on.tangent;
     return on.point;
   }
-  const OnSurface on = surface.follow(footing.shell, point);
-  footing.shell = on.shell;
-  footing.direction = on.normal;
+  const OnSurface on = surface.follow(anchor.shell, point);
+  anchor.shell = on.shell;
+  anchor.direction = on.normal;
   return on.point;
 }
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/modeld/bench.h"
+#include "daemon/modeld/request_handler.h"
 #include "daemon/modeld/worker.h"
 #include "ipc/messages.h"
 #include "ipc/server.h"
@@ -31,10 +31,10 @@ class Outlet {
   virtual void post(std::function<void()> work) = 0;
 };
 
-class Desk {
+class RequestScheduler {
  public:
-  Desk(Outlet& outlet, Worker& worker, Bench& bench, ipc::SnapshotPublisher& publisher)
-      : outlet_(outlet), worker_(worker), bench_(bench), publisher_(publisher) {}
+  RequestScheduler(Outlet& outlet, Worker& worker, RequestHandler& handler, ipc::SnapshotPublisher& publisher)
+      : outlet_(outlet), worker_(worker), handler_(handler), publisher_(publisher) {}
 
   /// Opens again what was open in the last life.
   void start(std::function<void(const ipc::Answer&)> when_done);
@@ -97,9 +97,9 @@ class Desk {
 
   Outlet& outlet_;
   Worker& worker_;
-  Bench& bench_;  ///< the worker's
+  RequestHandler& handler_;  ///< the worker's
   ipc::SnapshotPublisher& publisher_;
-  Face face_;
+  PublishedState published_;
   std::map<ipc::ClientId, Client> clients_;
   std::deque<Waiting> waiting_;
   std::optional<HeldDrag> drag_;

@@ -70,8 +70,8 @@ void find_welds_at_opening(benchmark::State& state) {
   const Document& document = welded_million();
   std::size_t found = 0;
   for (auto _ : state) {
-    const Hanging hanging = find_hanging(*document.deck, document.opened->model, document.current().around->attached);
-    found = hanging.rests.size();
+    const Dependents dependents = find_dependents(*document.deck, document.opened->model, document.current().around->attached);
+    found = dependents.rests.size();
   }
   state.counters["rests"] = static_cast<double>(found);
 }

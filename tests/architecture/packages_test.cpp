@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/house/tree.h"
+#include "tests/architecture/tree.h"
 
-namespace prismesh::house {
+namespace prismesh::architecture {
 namespace {
 
 using Sections = std::map<std::string, std::vector<std::string>>;
@@ -64,4 +64,4 @@ TEST(Packages, are_installed_in_one_place_that_removes_nothing) {
 }
 
 }  // namespace
-}  // namespace prismesh::house
+}  // namespace prismesh::architecture

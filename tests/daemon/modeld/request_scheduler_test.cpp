@@ -1,5 +1,5 @@
-// Who may do what when: the desk with a loop that the test turns by hand, so that each order of events can be had.
-#include "daemon/modeld/desk.h"
+// Who may do what when: the scheduler with a loop that the test turns by hand, so that each order of events can be had.
+#include "daemon/modeld/request_scheduler.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -88,8 +88,8 @@ constexpr ipc::ClientId kOne = 1, kOther = 2;
 class DeskTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    desk_.arrived(kOne);
-    desk_.arrived(kOther);
+    scheduler_.arrived(kOne);
+    scheduler_.arrived(kOther);
     ipc::Open open;
     open.path = folder_.sheet().string();
     ask<ipc::State>(kOne, open);
@@ -103,7 +103,7 @@ class DeskTest : public ::testing::Test {
     return std::get<A>(told.answer);
   }
   std::uint64_t begin(ipc::ClientId client, ipc::Request request, std::size_t bytes = 100) {
-    desk_.request(client, ++number_, std::move(request), bytes);
+    scheduler_.request(client, ++number_, std::move(request), bytes);
     return number_;
   }
   /// What a request is refused with.
@@ -125,7 +125,7 @@ class DeskTest : public ::testing::Test {
     std::vector<std::shared_ptr<const ipc::Mapping>> segments;
     for (std::size_t i = 0; i < snapshot.segments.size(); ++i)
       segments.push_back(std::make_shared<const ipc::Mapping>(ipc::Mapping::map(told.descriptors[i + 1], false).value()));
-    desk_.request(kOne, 0, ipc::ReturnSnapshot{snapshot.lease}, 0);
+    scheduler_.request(kOne, 0, ipc::ReturnSnapshot{snapshot.lease}, 0);
     return ipc::SnapshotView::map(told.descriptors[0], segments).value();
   }
   /// Where views see the node that is dragged.
@@ -139,17 +139,17 @@ class DeskTest : public ::testing::Test {
 
   test::Folder folder_;
   ipc::SnapshotPublisher publisher_{1};
-  Bench bench_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30};
+  RequestHandler handler_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30};
   HandTurnedLoop loop_;
   Worker worker_;
-  Desk desk_{loop_, worker_, bench_, publisher_};
+  RequestScheduler scheduler_{loop_, worker_, handler_, publisher_};
   std::uint64_t number_ = 0;
 };
 
-TEST_F(DeskTest, AClientThatGoesWhileItsDragBeginsLeavesNoDragBehind) {
+TEST_F(DeskTest, a_client_that_goes_while_its_drag_begins_leaves_no_drag_behind) {
   begin(kOne, drag());
   loop_.await();
-  desk_.left(kOne);
+  scheduler_.left(kOne);
   const auto until_ended = [&] {
     while (loop_.ended_drags().empty()) {
       loop_.await();
@@ -161,7 +161,7 @@ TEST_F(DeskTest, AClientThatGoesWhileItsDragBeginsLeavesNoDragBehind) {
   EXPECT_GT(ask<ipc::DragBegun>(kOther, drag()).drag, 0u) << "others may drag";
 }
 
-TEST_F(DeskTest, AStepThatComesAfterANewerOneIsLeftOut) {
+TEST_F(DeskTest, a_step_that_comes_after_a_newer_one_is_left_out) {
   const double before = height();
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
   begin(kOne, step(held, 2, 0.5));
@@ -170,7 +170,7 @@ TEST_F(DeskTest, AStepThatComesAfterANewerOneIsLeftOut) {
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, AStepOfAnEarlierDragDoesNotMoveTheNextOne) {
+TEST_F(DeskTest, a_step_of_an_earlier_drag_does_not_move_the_next_one) {
   const double before = height();
   const std::uint64_t first = ask<ipc::DragBegun>(kOne, drag()).drag;
   ask<ipc::Done>(kOne, ipc::CancelDrag{first});
@@ -181,7 +181,7 @@ TEST_F(DeskTest, AStepOfAnEarlierDragDoesNotMoveTheNextOne) {
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, WhatComesAfterTheCommitDoesNotMoveIt) {
+TEST_F(DeskTest, what_comes_after_the_commit_does_not_move_it) {
   const double before = height();
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
   begin(kOne, step(held, 1, 0.5));
@@ -191,7 +191,7 @@ TEST_F(DeskTest, WhatComesAfterTheCommitDoesNotMoveIt) {
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, OnlyItsHolderReturnsASnapshot) {
+TEST_F(DeskTest, only_its_holder_returns_a_snapshot) {
   const std::uint64_t lease = ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{}).lease;
   begin(kOther, ipc::ReturnSnapshot{lease});
   ask<ipc::Done>(kOne, ipc::Close{});
@@ -200,7 +200,7 @@ TEST_F(DeskTest, OnlyItsHolderReturnsASnapshot) {
   EXPECT_EQ(publisher_.bytes_held(), 0u);
 }
 
-TEST_F(DeskTest, OneDragAtATimeAndOnlyByItsOwnNumberIsEnded) {
+TEST_F(DeskTest, one_drag_at_a_time_and_only_by_its_own_number_is_ended) {
   // One that still waits for something else to end holds the place as well.
   Translate translate;
   translate.shaping.on = "1314";
@@ -219,17 +219,17 @@ TEST_F(DeskTest, OneDragAtATimeAndOnlyByItsOwnNumberIsEnded) {
   EXPECT_GT(ask<ipc::DragBegun>(kOther, drag()).drag, held) << "now it is the other's turn";
 }
 
-TEST_F(DeskTest, AClientThatOnlyWatchesGoesWithoutEndingAnothersDrag) {
+TEST_F(DeskTest, a_client_that_only_watches_goes_without_ending_anothers_drag) {
   const double before = height();
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
-  desk_.left(kOther);
+  scheduler_.left(kOther);
   begin(kOther, step(held, 7, 9));
   begin(kOne, step(held, 1, 0.5));
   ask<ipc::Edited>(kOne, ipc::CommitDrag{held});
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, RequestsWaitUpToANumberAndASize) {
+TEST_F(DeskTest, requests_wait_up_to_a_number_and_a_size) {
   const ipc::GetQuality any;
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;  // edits wait until it ends
   Translate translate;
@@ -250,7 +250,7 @@ TEST_F(DeskTest, RequestsWaitUpToANumberAndASize) {
   ASSERT_TRUE(std::holds_alternative<ipc::Edited>(loop_.until_answered(kOther, last).answer)) << "what was answered no longer counts";
 }
 
-TEST_F(DeskTest, SnapshotsAreHeldUpToANumberAndOfStatesThatAreThere) {
+TEST_F(DeskTest, snapshots_are_held_up_to_a_number_and_of_states_that_are_there) {
   ipc::GetSnapshot gone;
   gone.generation = 4711;
   EXPECT_EQ(refusal(kOne, gone), "the history has no state 4711 any more");
@@ -262,7 +262,7 @@ TEST_F(DeskTest, SnapshotsAreHeldUpToANumberAndOfStatesThatAreThere) {
   ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{});
 }
 
-TEST_F(DeskTest, OnlyWhoAskedForSomethingLongStopsIt) {
+TEST_F(DeskTest, only_who_asked_for_something_long_stops_it) {
   EXPECT_EQ(refusal(kOne, ipc::Cancel{}), "nothing of yours is under way that can be stopped");
   Translate translate;
   translate.shaping.on = "1313";
@@ -272,7 +272,7 @@ TEST_F(DeskTest, OnlyWhoAskedForSomethingLongStopsIt) {
   EXPECT_EQ(refusal(kOne, ipc::Cancel{}), "nothing of yours is under way that can be stopped") << "it is done";
 }
 
-TEST_F(DeskTest, WhatWaitsIsDoneInTheOrderInWhichItCame) {
+TEST_F(DeskTest, what_waits_is_done_in_the_order_in_which_it_came) {
   Translate up;
   up.shaping.on = "1313";
   up.by = {0, 0, 0.5};
@@ -287,7 +287,7 @@ TEST_F(DeskTest, WhatWaitsIsDoneInTheOrderInWhichItCame) {
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, ADragBeginsWithWhatIsGrabbedAndWhichWayIsOut) {
+TEST_F(DeskTest, a_drag_begins_with_what_is_grabbed_and_which_way_is_out) {
   const ipc::DragBegun begun = ask<ipc::DragBegun>(kOne, drag());
   EXPECT_EQ(begun.grab, 1313);
   EXPECT_EQ(begun.base_generation, ask<ipc::State>(kOther, ipc::GetState{}).generation);
@@ -296,7 +296,7 @@ TEST_F(DeskTest, ADragBeginsWithWhatIsGrabbedAndWhichWayIsOut) {
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(begun.normal[axis], out[axis], 0.02);
 }
 
-TEST_F(DeskTest, ViewsSeeTheStateThatIsTold) {
+TEST_F(DeskTest, views_see_the_state_that_is_told) {
   struct Step {
     const char* edit;  ///< null: a save in place
     bool changed, hidden, locked, can_undo, can_redo;
@@ -340,7 +340,7 @@ TEST_F(DeskTest, ViewsSeeTheStateThatIsTold) {
   EXPECT_EQ(refusal(kOther, ipc::ApplyEdit{Undo{}}), "there is nothing to undo");
 }
 
-TEST_F(DeskTest, AnEarlierStateIsShownAsItWasAndWhatTheClientHasIsntSentAgain) {
+TEST_F(DeskTest, an_earlier_state_is_shown_as_it_was_and_what_the_client_has_isnt_sent_again) {
   const double before = height();
   const std::uint64_t first = ask<ipc::State>(kOne, ipc::GetState{}).generation;
   Translate up;
@@ -362,7 +362,7 @@ TEST_F(DeskTest, AnEarlierStateIsShownAsItWasAndWhatTheClientHasIsntSentAgain) {
   EXPECT_EQ(again.descriptors.size(), 1u) << "the table alone";
 }
 
-TEST_F(DeskTest, ASnapshotForWhichThereAreNoDescriptorsIsRefusedAndHoldsNothing) {
+TEST_F(DeskTest, a_snapshot_for_which_there_are_no_descriptors_is_refused_and_holds_nothing) {
   int free = 0;
   std::string why;
   for (; free < 20; ++free) {
@@ -377,33 +377,33 @@ TEST_F(DeskTest, ASnapshotForWhichThereAreNoDescriptorsIsRefusedAndHoldsNothing)
   EXPECT_LT(free, 20);
   ask<ipc::Done>(kOther, ipc::Close{});
   EXPECT_GT(publisher_.bytes_held(), 0u) << "the one that was given";
-  desk_.left(kOne);
+  scheduler_.left(kOne);
   EXPECT_EQ(publisher_.bytes_held(), 0u) << "those that were refused hold nothing";
 }
 
-TEST_F(DeskTest, WhatAClientWaitedForIsNotDoneOnceItHasGone) {
+TEST_F(DeskTest, what_a_client_waited_for_is_not_done_once_it_has_gone) {
   const double before = height();
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
   Translate up;
   up.shaping.on = "1313";
   up.by = {0, 0, 0.5};
   begin(kOther, ipc::ApplyEdit{up});
-  desk_.left(kOther);
+  scheduler_.left(kOther);
   ask<ipc::Done>(kOne, ipc::CancelDrag{held});
   EXPECT_EQ(height(), before);
   EXPECT_EQ(refusal(kOne, ipc::ApplyEdit{Undo{}}), "there is nothing to undo");
 }
 
-TEST_F(DeskTest, WhatAClientHeldIsReturnedWhenItGoes) {
+TEST_F(DeskTest, what_a_client_held_is_returned_when_it_goes) {
   ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{});
   ask<ipc::Done>(kOther, ipc::Close{});
   EXPECT_GT(publisher_.bytes_held(), 0u);
-  desk_.left(kOne);
+  scheduler_.left(kOne);
   EXPECT_EQ(publisher_.bytes_held(), 0u);
-  EXPECT_EQ(desk_.health().clients, 1u);
+  EXPECT_EQ(scheduler_.health().clients, 1u);
 }
 
-TEST_F(DeskTest, WhatCannotBeAskedYetOrAtAllIsSaid) {
+TEST_F(DeskTest, what_cannot_be_asked_yet_or_at_all_is_said) {
   ask<ipc::Done>(kOne, ipc::Close{});
   EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "no document is open");
   EXPECT_FALSE(ask<ipc::State>(kOne, ipc::GetState{}).busy);
@@ -417,7 +417,7 @@ TEST_F(DeskTest, WhatCannotBeAskedYetOrAtAllIsSaid) {
   EXPECT_EQ(refusal(kOne, ipc::Hello{}), "this can't be asked now") << "a second greeting";
 }
 
-TEST_F(DeskTest, ACameraIsSharedWithTheOthers) {
+TEST_F(DeskTest, a_camera_is_shared_with_the_others) {
   begin(kOne, ipc::ShareCamera{});
   EXPECT_EQ(loop_.told(), (std::vector<ipc::ClientId>{kOther}));
 }

@@ -1,4 +1,4 @@
-#include "mesh/shape/slide.h"
+#include "mesh/shape/surface_tracer.h"
 
 #include <cmath>
 #include <functional>
@@ -24,7 +24,7 @@ std::vector<Vec3> slid(const Model& model, NodeIndex grab, const Vec3& by, std::
   std::vector<Vec3> displacement;
   for (const Eigen::Quaterniond& turn : turns_along(model, nodes, normals, grab)) displacement.push_back(turn * by);
   std::vector<Vec3> out(nodes.size());
-  Slideway(model, nodes, normals).positions(displacement, max_move, out);
+  SurfaceTracer(model, nodes, normals).positions(displacement, max_move, out);
   return out;
 }
 
@@ -55,7 +55,7 @@ Model edge_of_a_box() {
 /// The plates unrolled: how far along, across.
 Vec3 rolled(double along, double across) { return Vec3(std::min(along, 50.0), across, -std::max(along - 50, 0.0)); }
 
-TEST(Slide, OnAPlaneItIsThePartInThePlane) {
+TEST(Slide, on_a_plane_it_is_the_part_in_the_plane) {
   const Model model = test::make_grid(10, 10, [](int i, int j) { return Vec3(5.0 * i + 0.3 * (j % 3), 5.0 * j + 0.2 * (i % 4), 7); });
   const std::vector<Vec3> out = slid(model, test::grid_node(10, 5, 5), Vec3(3.3, -8.1, 40));
   for (int j = 3; j <= 7; ++j)
@@ -65,7 +65,7 @@ TEST(Slide, OnAPlaneItIsThePartInThePlane) {
     }
 }
 
-TEST(Slide, WalksRoundACrease) {
+TEST(Slide, walks_round_a_crease) {
   const Model model = edge_of_a_box();
   // straight over the crease, along lines of nodes and askew; from the first plate, from the crease, and by a grab on the other plate
   for (const Vec3& by : {Vec3(17, 0, 0), Vec3(12.5, 7.3, 0), Vec3(-13.1, 4.9, 0)}) {
@@ -81,7 +81,7 @@ TEST(Slide, WalksRoundACrease) {
   EXPECT_LT((out[test::grid_node(20, 6, 5).value] - rolled(30 - 21, 27)).norm(), 1e-9);
 }
 
-TEST(Slide, OnACylinderItTurnsTheSheetAboutItsAxis) {
+TEST(Slide, on_a_cylinder_it_turns_the_sheet_about_its_axis) {
   constexpr int kAround = 40;
   const double angle = M_PI / kAround;  // half a turn
   const double chord = 2 * 30 * std::sin(angle / 2);
@@ -102,7 +102,7 @@ TEST(Slide, OnACylinderItTurnsTheSheetAboutItsAxis) {
     }
 }
 
-TEST(Slide, OnAConeItGoesStraight) {
+TEST(Slide, on_a_cone_it_goes_straight) {
   // in the unrolled cone a way at right angles to the generator ends at sqrt(r^2 + l^2) from the apex, one along it at r - l
   constexpr int kAround = 30;
   const double angle = M_PI / kAround;
@@ -120,7 +120,7 @@ TEST(Slide, OnAConeItGoesStraight) {
   EXPECT_LT((up[grab.value] - model.position(grab) * (1 - 13.7 / slant)).norm(), 1e-9);
 }
 
-TEST(Slide, StaysOnFacesThatBendEveryWay) {
+TEST(Slide, stays_on_faces_that_bend_every_way) {
   const Model model = test::make_grid(40, 40, [](int i, int j) {
     return Vec3(5.0 * i + 0.8 * std::sin(7.0 * i + j), 5.0 * j + 0.8 * std::cos(3.0 * i + 5 * j),
                 12 * std::sin(i / 6.0) * std::cos(j / 7.0));
@@ -139,7 +139,7 @@ TEST(Slide, StaysOnFacesThatBendEveryWay) {
   }
 }
 
-TEST(Slide, NeverJumpsToASheetCloseBy) {
+TEST(Slide, never_jumps_to_a_sheet_close_by) {
   // a second sheet a tenth of a millimetre beneath, tilted so that it cuts through where nodes pass
   std::vector<Vec3> points;
   std::vector<std::array<int, 4>> shells;
@@ -157,7 +157,7 @@ TEST(Slide, NeverJumpsToASheetCloseBy) {
   for (std::size_t i = 0; i < 121; ++i) EXPECT_EQ(out[i].z(), 0);
 }
 
-TEST(Slide, StraightOnWhereThreeSheetsMeet) {
+TEST(Slide, straight_on_where_three_sheets_meet) {
   // a plane with a rib standing on it at x = 25
   std::vector<Vec3> points;
   std::vector<std::array<int, 4>> shells;
@@ -173,7 +173,7 @@ TEST(Slide, StraightOnWhereThreeSheetsMeet) {
   EXPECT_LT((out[test::grid_node(10, 4, 4).value] - Vec3(34, 21, 0)).norm(), 1e-12);
 }
 
-TEST(Slide, TheBorderKeepsItsLineAndItsCorners) {
+TEST(Slide, the_border_keeps_its_line_and_its_corners) {
   const Model model = test::make_grid(10, 10, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
   const std::vector<Vec3> out = slid(model, test::grid_node(10, 5, 5), Vec3(7, 12, 0));
   const auto at = [&](int i, int j) { return out[test::grid_node(10, i, j).value]; };
@@ -185,13 +185,13 @@ TEST(Slide, TheBorderKeepsItsLineAndItsCorners) {
   EXPECT_LT((at(9, 5) - Vec3(50, 25 + 12 * 5 / 7.0, 0)).norm(), 1e-9);  // a way from within ends at the border
 }
 
-TEST(Slide, TheBorderGoesRoundACreaseToo) {
+TEST(Slide, the_border_goes_round_a_crease_too) {
   const std::vector<Vec3> out = slid(edge_of_a_box(), test::grid_node(20, 5, 5), Vec3(17, 3, 0));
   EXPECT_LT((out[test::grid_node(20, 8, 0).value] - rolled(57, 0)).norm(), 1e-9);
   EXPECT_LT((out[test::grid_node(20, 8, 10).value] - rolled(57, 50)).norm(), 1e-9);
 }
 
-TEST(Slide, ALimitStopsOnTheSurface) {
+TEST(Slide, a_limit_stops_on_the_surface) {
   const Model model = edge_of_a_box();
   const std::vector<Vec3> out = slid(model, test::grid_node(20, 5, 5), Vec3(17, 2, 0), 11.0);
   EXPECT_LT(farthest_off(model, out), 1e-12);
@@ -203,7 +203,7 @@ TEST(Slide, ALimitStopsOnTheSurface) {
   EXPECT_NEAR((out[test::grid_node(20, 4, 5).value] - Vec3(20, 25, 0)).norm(), 11, 1e-12);
 }
 
-TEST(Slide, AQuadThatNamesACornerTwiceIsATriangle) {
+TEST(Slide, a_quad_that_names_a_corner_twice_is_a_triangle) {
   // the plane's middle column: each quad cut in two, one half a triangle, the other written as a quad with its first corner twice
   std::vector<Vec3> points;
   std::vector<std::array<int, 4>> shells;
@@ -227,7 +227,7 @@ TEST(Slide, AQuadThatNamesACornerTwiceIsATriangle) {
   }
 }
 
-TEST(Slide, NothingIsAskedOfNodesWithoutAShellOrOfCollapsedShells) {
+TEST(Slide, nothing_is_asked_of_nodes_without_a_shell_or_of_collapsed_shells) {
   std::vector<Vec3> points{{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {0, 5, 0}, {99, 0, 0}, {10, 0, 0}, {10, 5, 0}};
   // a quad, one without area, a lone node
   const Model model = test::make_shells(points, {{0, 1, 2, 3}, {1, 1, 2, 2}, {1, 5, 6, 2}});
@@ -246,14 +246,14 @@ Model slanted_roof() {
   });
 }
 
-TEST(Slide, InAPlaneItStaysThereWhereStraightOnWouldLeaveIt) {
+TEST(Slide, in_a_plane_it_stays_there_where_straight_on_would_leave_it) {
   const Model model = slanted_roof();
   const NodeSet nodes{test::grid_node(12, 2, 5), test::grid_node(12, 3, 5)};  // at (22.5, 25) and (27.5, 25)
   const std::vector<Vec3> by(2, Vec3(30, 0, 0));
-  Slideway slideway(model, nodes, std::vector<Vec3>(2, Vec3::UnitZ()));
-  slideway.keep_in_plane(Vec3::UnitY(), {1, 0});
+  SurfaceTracer tracer(model, nodes, std::vector<Vec3>(2, Vec3::UnitZ()));
+  tracer.keep_in_plane(Vec3::UnitY(), {1, 0});
   std::vector<Vec3> out(2);
-  EXPECT_EQ(slideway.positions(by, std::nullopt, out), 0u);
+  EXPECT_EQ(tracer.positions(by, std::nullopt, out), 0u);
   const Vec3 crossing(42.5, 25, 0);
   EXPECT_LT((out[0] - (crossing + 10 * Vec3(1, 0, -1).normalized())).norm(), 1e-9);
   // the other keeps its angle to the line in which the faces meet
@@ -262,20 +262,20 @@ TEST(Slide, InAPlaneItStaysThereWhereStraightOnWouldLeaveIt) {
   EXPECT_LT((out[1] - (crossing + 15 * (along.x() * along + std::sqrt(1 - along.x() * along.x()) * down))).norm(), 1e-9);
 }
 
-TEST(Slide, AnEdgeOutOfThePlaneHoldsItsNodes) {
+TEST(Slide, an_edge_out_of_the_plane_holds_its_nodes) {
   const Model model = test::make_grid(10, 10, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
   const NodeSet nodes{test::grid_node(10, 4, 0), test::grid_node(10, 6, 0)};
   for (const auto& [normal, moves] : {std::pair(Vec3(Vec3::UnitX()), false), std::pair(Vec3(Vec3::UnitY()), true)}) {
-    Slideway slideway(model, nodes, std::vector<Vec3>(2, Vec3::UnitZ()));
-    slideway.keep_in_plane(normal, {1, 0});
+    SurfaceTracer tracer(model, nodes, std::vector<Vec3>(2, Vec3::UnitZ()));
+    tracer.keep_in_plane(normal, {1, 0});
     std::vector<Vec3> out(2);
-    slideway.positions(std::vector<Vec3>(2, Vec3(7, 0, 0)), std::nullopt, out);
+    tracer.positions(std::vector<Vec3>(2, Vec3(7, 0, 0)), std::nullopt, out);
     EXPECT_EQ(out[0], Vec3(moves ? 27 : 20, 0, 0));
     EXPECT_EQ(out[1], Vec3(37, 0, 0)) << "it keeps to no plane";
   }
 }
 
-TEST(Slide, TheBorderLeadsOnOverManyNodesBothWays) {
+TEST(Slide, the_border_leads_on_over_many_nodes_both_ways) {
   const Model model = test::make_grid(10, 10, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
   for (const double by : {12.0, -12.0}) {
     const std::vector<Vec3> out = slid(model, test::grid_node(10, 5, 5), Vec3(by, by, 0));
@@ -287,19 +287,19 @@ TEST(Slide, TheBorderLeadsOnOverManyNodesBothWays) {
   }
 }
 
-TEST(Slide, TellsHowManyTheLimitStopped) {
+TEST(Slide, tells_how_many_the_limit_stopped) {
   const Model model = test::make_grid(10, 10, [](int i, int j) { return Vec3(5.0 * i, 5.0 * j, 0); });
   const NodeSet nodes = all_nodes(model);
-  const Slideway slideway(model, nodes, std::vector<Vec3>(nodes.size(), Vec3::UnitZ()));
+  const SurfaceTracer tracer(model, nodes, std::vector<Vec3>(nodes.size(), Vec3::UnitZ()));
   const std::vector<Vec3> by(nodes.size(), Vec3(7, 0, 0));
   std::vector<Vec3> out(nodes.size());
-  EXPECT_EQ(slideway.positions(by, 3.0, out), 81u + 2 * 9) << "all inside, and those of the two edges along the way";
+  EXPECT_EQ(tracer.positions(by, 3.0, out), 81u + 2 * 9) << "all inside, and those of the two edges along the way";
   for (int i = 1; i <= 9; ++i)
     for (const int j : {0, 4, 10}) {
       const NodeIndex node = test::grid_node(10, i, j);
       EXPECT_LT((out[node.value] - (model.position(node) + Vec3(3, 0, 0))).norm(), 1e-12) << i << ' ' << j;
     }
-  EXPECT_EQ(slideway.positions(by, 7.001, out), 0u);
+  EXPECT_EQ(tracer.positions(by, 7.001, out), 0u);
 }
 
 }  // namespace

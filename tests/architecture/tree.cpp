@@ -1,4 +1,4 @@
-#include "tests/house/tree.h"
+#include "tests/architecture/tree.h"
 
 #include <algorithm>
 #include <fstream>
@@ -6,7 +6,7 @@
 
 #include "tests/support/places.h"
 
-namespace prismesh::house {
+namespace prismesh::architecture {
 
 std::filesystem::path project_root() { return test::source_folder(); }
 
@@ -17,8 +17,8 @@ std::string read_text(const std::filesystem::path& path) {
 
 std::vector<SourceText> source_tree() {
   std::vector<SourceText> sources;
-  for (const char* floor : {"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "tests"}) {
-    const std::filesystem::path folder = project_root() / floor;
+  for (const char* layer : {"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "tests"}) {
+    const std::filesystem::path folder = project_root() / layer;
     if (!std::filesystem::is_directory(folder)) continue;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
       const std::filesystem::path& path = entry.path();
@@ -30,4 +30,4 @@ std::vector<SourceText> source_tree() {
   return sources;
 }
 
-}  // namespace prismesh::house
+}  // namespace prismesh::architecture

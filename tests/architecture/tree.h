@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace prismesh::house {
+namespace prismesh::architecture {
 
 /// A C++ file of ours; the path is relative to the project's root.
 struct SourceText {
@@ -19,4 +19,4 @@ std::string read_text(const std::filesystem::path& path);
 /// Every .h and .cpp of the product and its tests, ascending by path.
 std::vector<SourceText> source_tree();
 
-}  // namespace prismesh::house
+}  // namespace prismesh::architecture

@@ -1,5 +1,5 @@
-// Where the worker does what clients ask for: each call is one request from beginning to end, with its answer and what everyone
-// must hear. One thread; knows no clients.
+// Handles requests on the worker thread: each call is one request from beginning to end, with its answer and the events for all clients.
+// Single-threaded; knows no clients.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@
 namespace prismesh::modeld {
 
 /// What may be shown of the document; a value that later work doesn't change.
-struct Face {
+struct PublishedState {
   std::shared_ptr<const mesh::document::Document> document;  ///< null: none is open
   ipc::State state;
 };
@@ -25,12 +25,12 @@ struct Outcome {
   ipc::Answer answer = ipc::Done{};
   std::vector<ipc::Descriptor> descriptors;
   std::vector<ipc::Event> events;
-  std::optional<Face> face;  ///< if it changed
+  std::optional<PublishedState> published;  ///< if it changed
 };
 
-class Bench {
+class RequestHandler {
  public:
-  Bench(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes)
+  RequestHandler(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes)
       : keeper_(std::move(folder), history_bytes), publisher_(publisher) {}
 
   Outcome open(const ipc::Open& request, const Progress& progress);

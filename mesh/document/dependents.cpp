@@ -1,4 +1,4 @@
-#include "mesh/document/hanging.h"
+#include "mesh/document/dependents.h"
 
 #include <algorithm>
 #include <array>
@@ -23,11 +23,11 @@ namespace prismesh::mesh::document {
 namespace {
 
 /// Beams, springs and solids that hang together count as one weld up to this many: sixteen solids make the largest nuggets.
-constexpr std::size_t kMostOfAWeld = 16;
+constexpr std::size_t kMaxOfAWeld = 16;
 constexpr double kReachOfSize = 0.25;  ///< how far from a shell a node still lies on it, as a share of the shell's size
 constexpr double kReachOfTied = 0.5;   ///< the same for tied nodes, which are offset by half of both thicknesses
 constexpr std::size_t kSearchGrain = 16384;
-constexpr double kMostCells = 64;  ///< a shell over more cells than this is looked at more closely at once
+constexpr double kMaxCells = 64;  ///< a shell over more cells than this is looked at more closely at once
 
 bool has(std::string_view text, std::string_view word) { return text.find(word) != std::string_view::npos; }
 
@@ -75,7 +75,7 @@ class CardNodes {
 };
 
 struct Cards {
-  std::vector<Hanging::Join> joins;
+  std::vector<Dependents::Join> joins;
   std::vector<std::pair<NodeIndex, std::uint32_t>> tied;  ///< with the contact's referrer
 };
 
@@ -108,7 +108,7 @@ Cards find_cards(const References& references, const Model& model) {
       nodes.add(reference, cards.joins[join->second].nodes);
     }
   }
-  for (Hanging::Join& join : cards.joins) {
+  for (Dependents::Join& join : cards.joins) {
     std::sort(join.nodes.begin(), join.nodes.end());
     join.nodes.erase(std::unique(join.nodes.begin(), join.nodes.end()), join.nodes.end());
   }
@@ -123,7 +123,7 @@ bool may_be_weld(ElementClass element_class) {
 }
 
 /// Nodes that no shell uses, of elements that hang together with few others over such nodes.
-std::vector<Hanging::Rest> weld_nodes(const Model& model, const Attached& attached, const std::vector<std::uint8_t>& is_middle) {
+std::vector<Dependents::Rest> weld_nodes(const Model& model, const Attached& attached, const std::vector<std::uint8_t>& is_middle) {
   std::array<std::vector<std::uint32_t>, kElementClassCount> number;  // of each element, from 0 over all classes
   std::uint32_t count = 0;
   for (std::size_t c = 0; c < model.elements.size(); ++c)
@@ -148,11 +148,11 @@ std::vector<Hanging::Rest> weld_nodes(const Model& model, const Attached& attach
     parent[y] = x;
     size[x] += size[y];
   }
-  std::vector<Hanging::Rest> nodes;
+  std::vector<Dependents::Rest> nodes;
   for (const Attached::Use& use : attached.uses) {
-    if (!may_be_weld(use.element_class) || !lone(use.node) || size[root(number_of(use))] > kMostOfAWeld) continue;
+    if (!may_be_weld(use.element_class) || !lone(use.node) || size[root(number_of(use))] > kMaxOfAWeld) continue;
     if (!nodes.empty() && nodes.back().node == use.node) continue;
-    Hanging::Rest rest;
+    Dependents::Rest rest;
     rest.node = use.node;
     rest.element_class = use.element_class;
     rest.of = use.element;
@@ -181,8 +181,8 @@ using Cell = std::array<std::int64_t, 3>;
 /// Which cells of a grid hold a point, by a table of bits that may say yes too often.
 class CellTable {
  public:
-  CellTable(const Model& model, const std::vector<Hanging::Rest>& points, double width) : width_(width), bits_(kBits, 0) {
-    for (const Hanging::Rest& point : points) bits_[slot(cell_of(model.position(point.node)))] = 1;
+  CellTable(const Model& model, const std::vector<Dependents::Rest>& points, double width) : width_(width), bits_(kBits, 0) {
+    for (const Dependents::Rest& point : points) bits_[slot(cell_of(model.position(point.node)))] = 1;
   }
   Cell cell_of(const Vec3& point) const {
     Cell cell;
@@ -194,7 +194,7 @@ class CellTable {
     const Cell a = cell_of(low), b = cell_of(high);
     double cells = 1;
     for (std::size_t i = 0; i < 3; ++i) cells *= static_cast<double>(b[i] - a[i] + 1);
-    if (cells > kMostCells) return true;
+    if (cells > kMaxCells) return true;
     for (std::int64_t x = a[0]; x <= b[0]; ++x)
       for (std::int64_t y = a[1]; y <= b[1]; ++y)
         for (std::int64_t z = a[2]; z <= b[2]; ++z)
@@ -215,7 +215,7 @@ class CellTable {
 };
 
 /// Shells within whose reach a point may be.
-ShellSet shells_near(const Model& model, const std::vector<Hanging::Rest>& points) {
+ShellSet shells_near(const Model& model, const std::vector<Dependents::Rest>& points) {
   double sum = 0;
   std::size_t asked = 0;
   for (std::size_t s = 0; s < model.shell_count(); s += 64)
@@ -243,7 +243,7 @@ ShellSet shells_near(const Model& model, const std::vector<Hanging::Rest>& point
 }
 
 /// The nearest shell that the node isn't a corner of; for a tied node none of its own parts.
-std::optional<spatial::SurfacePoint> sheet_under(const Model& model, const spatial::ShellTree& tree, const Hanging::Rest& rest,
+std::optional<spatial::SurfacePoint> sheet_under(const Model& model, const spatial::ShellTree& tree, const Dependents::Rest& rest,
                                                  double far) {
   const Vec3& point = model.position(rest.node);
   if (!rest.tied) return tree.closest(point);
@@ -257,7 +257,7 @@ std::optional<spatial::SurfacePoint> sheet_under(const Model& model, const spati
   return best;
 }
 
-void find_rests(const Model& model, std::vector<Hanging::Rest> points, Hanging& hanging) {
+void find_rests(const Model& model, std::vector<Dependents::Rest> points, Dependents& dependents) {
   if (points.empty() || model.shell_count() == 0) return;
   const ShellSet near = shells_near(model, points);
   const spatial::ShellTree tree(model, near);
@@ -276,43 +276,43 @@ void find_rests(const Model& model, std::vector<Hanging::Rest> points, Hanging& 
     }
   });
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (lies[i] != 0) hanging.rests.push_back(points[i]);
+    if (lies[i] != 0) dependents.rests.push_back(points[i]);
 }
 
 }  // namespace
 
-Hanging find_hanging(const deck::Deck& deck, const Model& model, const Attached& attached) {
-  Hanging hanging;
+Dependents find_dependents(const deck::Deck& deck, const Model& model, const Attached& attached) {
+  Dependents dependents;
   Cards cards;
   if (deck.references) cards = find_cards(*deck.references, model);
-  hanging.joins = std::move(cards.joins);
-  for (std::size_t j = 0; j < hanging.joins.size(); ++j)
-    for (const NodeIndex node : hanging.joins[j].nodes) hanging.joined.push_back({node, static_cast<std::uint32_t>(j)});
-  std::sort(hanging.joined.begin(), hanging.joined.end());
+  dependents.joins = std::move(cards.joins);
+  for (std::size_t j = 0; j < dependents.joins.size(); ++j)
+    for (const NodeIndex node : dependents.joins[j].nodes) dependents.joined.push_back({node, static_cast<std::uint32_t>(j)});
+  std::sort(dependents.joined.begin(), dependents.joined.end());
 
   std::vector<std::uint8_t> is_middle(model.node_count(), 0);
   if (model.midside)
     for (const MidsideNodes& midside : *model.midside)
       for (const NodeIndex node : midside.node)
         if (node.valid()) is_middle[node.value] = 1;
-  std::vector<Hanging::Rest> points = weld_nodes(model, attached, is_middle);
+  std::vector<Dependents::Rest> points = weld_nodes(model, attached, is_middle);
   for (const auto& [node, referrer] : cards.tied) {
     if (model.adjacency->shells_of(node).empty()) continue;
-    Hanging::Rest rest;
+    Dependents::Rest rest;
     rest.node = node;
     rest.tied = true;
     rest.of = referrer;
     points.push_back(rest);
   }
-  const auto by_node = [](const Hanging::Rest& a, const Hanging::Rest& b) { return a.node < b.node; };
+  const auto by_node = [](const Dependents::Rest& a, const Dependents::Rest& b) { return a.node < b.node; };
   std::stable_sort(points.begin(), points.end(), by_node);
   points.erase(std::unique(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.node == b.node; }), points.end());
-  find_rests(model, std::move(points), hanging);
-  hanging.rests_by_shell.resize(hanging.rests.size());
-  std::iota(hanging.rests_by_shell.begin(), hanging.rests_by_shell.end(), 0u);
-  std::stable_sort(hanging.rests_by_shell.begin(), hanging.rests_by_shell.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return hanging.rests[a].shell < hanging.rests[b].shell; });
-  return hanging;
+  find_rests(model, std::move(points), dependents);
+  dependents.rests_by_shell.resize(dependents.rests.size());
+  std::iota(dependents.rests_by_shell.begin(), dependents.rests_by_shell.end(), 0u);
+  std::stable_sort(dependents.rests_by_shell.begin(), dependents.rests_by_shell.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return dependents.rests[a].shell < dependents.rests[b].shell; });
+  return dependents;
 }
 
 namespace {
@@ -324,21 +324,21 @@ struct Carried {
 };
 
 std::vector<Carried> find_carried(const Generation& generation, const Motion& motion) {
-  const Hanging& hanging = generation.around->hanging;
+  const Dependents& dependents = generation.around->dependents;
   const Model& model = generation.model;
   std::vector<Carried> carried;
-  auto rest = hanging.rests_by_shell.begin();
+  auto rest = dependents.rests_by_shell.begin();
   for (const ShellIndex shell : shells_touching(model, motion.nodes)) {
-    rest = std::lower_bound(rest, hanging.rests_by_shell.end(), shell,
-                            [&](std::uint32_t r, ShellIndex s) { return hanging.rests[r].shell < s; });
-    for (; rest != hanging.rests_by_shell.end() && hanging.rests[*rest].shell == shell; ++rest) {
-      const Hanging::Rest& each = hanging.rests[*rest];
+    rest = std::lower_bound(rest, dependents.rests_by_shell.end(), shell,
+                            [&](std::uint32_t r, ShellIndex s) { return dependents.rests[r].shell < s; });
+    for (; rest != dependents.rests_by_shell.end() && dependents.rests[*rest].shell == shell; ++rest) {
+      const Dependents::Rest& each = dependents.rests[*rest];
       if (each.tied || model.is_removed(each.node) || std::binary_search(motion.nodes.begin(), motion.nodes.end(), each.node)) continue;
       if ((generation.node_marks[each.node.value] & kLocked) != 0 || model.node_holds[each.node.value] != 0) continue;
       const auto on = spatial::ShellTree(model, {shell}).closest(model.position(each.node), each.reach);
       if (on) carried.push_back({each.node, *on});
     }
-    if (rest == hanging.rests_by_shell.end()) break;
+    if (rest == dependents.rests_by_shell.end()) break;
   }
   std::sort(carried.begin(), carried.end(), [](const Carried& a, const Carried& b) { return a.node < b.node; });
   return carried;
@@ -388,7 +388,7 @@ void insert_nodes(const Model& model, const std::vector<Carried>& carried, Motio
 }  // namespace
 
 void add_welded(const Generation& generation, const NodeSet& acted_on, Motion& motion) {
-  if (generation.around->hanging.rests.empty()) return;
+  if (generation.around->dependents.rests.empty()) return;
   const std::vector<Carried> carried = find_carried(generation, motion);
   if (carried.empty()) return;
   insert_nodes(generation.model, carried, motion);

@@ -1,4 +1,4 @@
-#include "mesh/shape/slide.h"
+#include "mesh/shape/surface_tracer.h"
 
 #include <algorithm>
 #include <array>
@@ -17,11 +17,11 @@ namespace prismesh::mesh::shape {
 namespace {
 
 constexpr std::size_t kSlideGrain = 128;
-constexpr double kOnTheSpot = 1e-9;      // shares of a face, and sines of angles: nearer counts as the same
-constexpr double kAlongside = 1e-6;      // sine of the angle of a line that counts as lying in a plane
-constexpr std::size_t kMostAround = 24;  // shells at a node that its normal is taken of
-constexpr int kMostFaces = 10'000;       // of one way
-constexpr int kMostFacesOnTheSpot = 64;  // without getting on: round a needle's point there is no straight on
+constexpr double kOnTheSpot = 1e-9;     // shares of a face, and sines of angles: nearer counts as the same
+constexpr double kAlongside = 1e-6;     // sine of the angle of a line that counts as lying in a plane
+constexpr std::size_t kMaxAround = 24;  // shells at a node that its normal is taken of
+constexpr int kMaxFaces = 10'000;       // of one way
+constexpr int kMaxFacesOnTheSpot = 64;  // without getting on: round a needle's point there is no straight on
 
 /// One triangle of a shell. Its side i runs from corner i to the next and lies opposite corner (i + 2) % 3.
 struct Face {
@@ -75,11 +75,11 @@ class Walk {
     left_ = flat.norm();
     if (!(left_ > 0) || !set_out(node, normal, flat / left_)) return;
     int on_the_spot = 0;
-    for (int faces = 0; faces < kMostFaces && left_ > 0 && !stopped_; ++faces) {
+    for (int faces = 0; faces < kMaxFaces && left_ > 0 && !stopped_; ++faces) {
       const double before = left_;
       if (!cross_face()) return;
       on_the_spot = left_ < before ? 0 : on_the_spot + 1;
-      if (on_the_spot > kMostFacesOnTheSpot) return;
+      if (on_the_spot > kMaxFacesOnTheSpot) return;
     }
   }
 
@@ -94,7 +94,7 @@ class Walk {
     left_ = length > 0 ? by.dot(line) / length : 0;
     NodeIndex to = left_ >= 0 ? both[0] : both[1];
     left_ = std::abs(left_);
-    for (int edges = 0; edges < kMostFaces && left_ > 0 && !stopped_; ++edges) {
+    for (int edges = 0; edges < kMaxFaces && left_ > 0 && !stopped_; ++edges) {
       const Vec3 edge = model_.position(to) - here_;
       const double edge_length = edge.norm();
       if (left_ <= edge_length) return go_to(here_ + edge * (left_ / edge_length));
@@ -263,7 +263,7 @@ class Walk {
       NodeIndex after, before;
       int sense = 0;  ///< 0: not known yet
     };
-    std::array<Around, kMostAround> around;
+    std::array<Around, kMaxAround> around;
     const std::size_t count = std::min(shells.size(), around.size());
     for (std::size_t i = 0; i < count; ++i) {
       const ShellNodes& shell = model_.shell(shells[i]);
@@ -323,7 +323,7 @@ class Walk {
 
 }  // namespace
 
-Slideway::Slideway(const Model& surface, const NodeSet& nodes, std::vector<Vec3> normals)
+SurfaceTracer::SurfaceTracer(const Model& surface, const NodeSet& nodes, std::vector<Vec3> normals)
     : surface_(surface), nodes_(nodes), normals_(std::move(normals)), on_free_edge_(nodes.size(), 0) {
   parallel_for(nodes_.size(), kSlideGrain, [&](std::size_t begin, std::size_t end) {
     std::array<NodeIndex, 2> unused{};
@@ -331,12 +331,12 @@ Slideway::Slideway(const Model& surface, const NodeSet& nodes, std::vector<Vec3>
   });
 }
 
-void Slideway::keep_in_plane(const Vec3& normal, std::vector<std::uint8_t> nodes) {
+void SurfaceTracer::keep_in_plane(const Vec3& normal, std::vector<std::uint8_t> nodes) {
   plane_ = normal;
   in_plane_ = std::move(nodes);
 }
 
-std::size_t Slideway::positions(std::span<const Vec3> by, std::optional<double> max_move, std::span<Vec3> out) const {
+std::size_t SurfaceTracer::positions(std::span<const Vec3> by, std::optional<double> max_move, std::span<Vec3> out) const {
   std::atomic<std::size_t> stopped = 0;
   parallel_for(nodes_.size(), kSlideGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t stopped_here = 0;

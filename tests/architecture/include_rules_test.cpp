@@ -1,20 +1,20 @@
-#include "tests/house/include_rules.h"
+#include "tests/architecture/include_rules.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/house/tree.h"
+#include "tests/architecture/tree.h"
 
-namespace prismesh::house {
+namespace prismesh::architecture {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(IncludeRules, floors_stand_on_those_below) {
-  for (const char* room : {"cli", "kiosk", "daemon/modeld"})
+TEST(IncludeRules, layers_stand_on_those_below) {
+  for (const char* module : {"cli", "kiosk", "daemon/modeld"})
     for (const char* below : {"ipc", "mesh/document", "mesh/model", "drivers", "base"})
-      EXPECT_TRUE(may_include(room, below)) << room << " " << below;
+      EXPECT_TRUE(may_include(module, below)) << module << " " << below;
   EXPECT_TRUE(may_include("ipc", "mesh/document"));
   EXPECT_TRUE(may_include("mesh/model", "base"));
 }
@@ -34,7 +34,7 @@ TEST(IncludeRules, nothing_looks_up) {
   EXPECT_FALSE(may_include("kiosk", "tests"));
 }
 
-TEST(IncludeRules, rooms_of_the_mesh_keep_their_order) {
+TEST(IncludeRules, modules_of_the_mesh_keep_their_order) {
   EXPECT_TRUE(may_include("mesh/document", "mesh/deck"));
   EXPECT_TRUE(may_include("mesh/document", "mesh/spatial"));
   EXPECT_TRUE(may_include("mesh/shape", "mesh/model"));
@@ -42,13 +42,13 @@ TEST(IncludeRules, rooms_of_the_mesh_keep_their_order) {
   EXPECT_FALSE(may_include("mesh/shape", "mesh/select"));
   EXPECT_FALSE(may_include("mesh/select", "mesh/quality"));
   EXPECT_FALSE(may_include("mesh/model", "mesh/spatial"));
-  EXPECT_FALSE(may_include("mesh/model", "mesh/no_such_room"));
+  EXPECT_FALSE(may_include("mesh/model", "mesh/no_such_module"));
 }
 
 TEST(IncludeRules, the_simulated_viewer_shares_nothing_with_what_it_judges) {
   for (const char* judged : {"kiosk", "drivers", "ipc", "mesh/model", "tests"}) EXPECT_FALSE(may_include("tests/viewer", judged)) << judged;
   EXPECT_TRUE(may_include("tests", "tests/viewer"));
-  EXPECT_EQ(room_of("tests/viewer/seen.cpp"), "tests/viewer");
+  EXPECT_EQ(module_of("tests/viewer/seen.cpp"), "tests/viewer");
 }
 
 TEST(IncludeRules, a_planted_violation_is_found_at_its_line) {
@@ -85,4 +85,4 @@ TEST(Headers, say_what_they_are_and_guard_themselves) {
 }
 
 }  // namespace
-}  // namespace prismesh::house
+}  // namespace prismesh::architecture

@@ -29,7 +29,7 @@ NodeOrigin edge_origin(NodeIndex a, NodeIndex b, double weight_of_b = 0.5);
 NodeOrigin centre_origin(const ShellNodes& shell);
 
 /// What a model has more and less than the deck it was opened from.
-struct Growth {
+struct TopologyChange {
   std::size_t deck_nodes = 0;  ///< nodes from this index on were added
   std::size_t deck_shells = 0;
   ChunkedArray<NodeOrigin> node_origins;   ///< of the added nodes

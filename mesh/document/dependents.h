@@ -15,7 +15,7 @@ namespace prismesh::mesh::document {
 struct Motion;
 
 /// Found once, when a deck is opened; by index, so it holds for all generations.
-struct Hanging {
+struct Dependents {
   /// A node that lies on a sheet without being a corner of it.
   struct Rest {
     NodeIndex node;
@@ -44,7 +44,7 @@ struct Hanging {
 
 /// `uses` as in Attached. Costs the model where there is something that may lie on it.
 struct Attached;
-Hanging find_hanging(const deck::Deck& deck, const Model& model, const Attached& attached);
+Dependents find_dependents(const deck::Deck& deck, const Model& model, const Attached& attached);
 
 /// Lets the nodes of welds that lie on shells with moving corners follow these, unless they move already, are held or belong to a locked
 /// part. `acted_on`: the nodes the edit names; those carried aren't unreached any more. Costs the shells that touch moving nodes.

@@ -1,5 +1,5 @@
 // Adding and removing nodes and shells: indices stay, ids are found, copies aren't touched, and what differs is told.
-#include "mesh/model/growth.h"
+#include "mesh/model/topology_change.h"
 
 #include <functional>
 #include <map>
@@ -41,7 +41,7 @@ Model sheet(std::size_t columns, std::size_t rows) {
   return model;
 }
 
-TEST(Growth, adds_at_the_end_and_finds_by_id) {
+TEST(TopologyChange, adds_at_the_end_and_finds_by_id) {
   const Model before = sheet(2, 1);
   Model model = before;
   const NodeIndex middle = add_node(model, 77, {0.5, 0, 0}, edge_origin(NodeIndex(std::size_t{0}), NodeIndex(std::size_t{1})));
@@ -65,7 +65,7 @@ TEST(Growth, adds_at_the_end_and_finds_by_id) {
   EXPECT_EQ(model.adjacency, nullptr);
 }
 
-TEST(Growth, keeps_the_entries_of_what_is_removed) {
+TEST(TopologyChange, keeps_the_entries_of_what_is_removed) {
   const Model before = sheet(2, 1);
   Model model = before;
   remove_shell(model, ShellIndex(std::size_t{0}));
@@ -85,7 +85,7 @@ TEST(Growth, keeps_the_entries_of_what_is_removed) {
   EXPECT_TRUE(adjacency.shells_of(NodeIndex(std::size_t{0})).empty());
 }
 
-TEST(Growth, tells_what_differs) {
+TEST(TopologyChange, tells_what_differs) {
   const Model opened = sheet(3, 1);
   Model model = opened;
   EXPECT_TRUE(changes_between(opened, model).empty());
@@ -115,7 +115,7 @@ TEST(Growth, tells_what_differs) {
   EXPECT_TRUE(moved_nodes(opened, model).empty()) << "what is gone hasn't moved";
 }
 
-TEST(Growth, tells_each_kind_of_difference_by_itself) {
+TEST(TopologyChange, tells_each_kind_of_difference_by_itself) {
   const Model opened = sheet(2, 1);
   const std::map<std::string, std::function<void(Model&)>> edits{
       {"a node added",
@@ -133,16 +133,16 @@ TEST(Growth, tells_each_kind_of_difference_by_itself) {
   }
 }
 
-TEST(Growth, lists_only_shells_of_the_deck_as_reshaped) {
+TEST(TopologyChange, lists_only_shells_of_the_deck_as_reshaped) {
   Model model = sheet(2, 1);
   const ShellIndex added = add_shell(model, 5, model.shell(ShellIndex(std::size_t{0})), ShellIndex(std::size_t{0}));
   set_shell_nodes(model, added, model.shell(ShellIndex(std::size_t{1})));
-  EXPECT_TRUE(model.growth->reshaped_shells.empty());
+  EXPECT_TRUE(model.topology_change->reshaped_shells.empty());
   set_shell_nodes(model, ShellIndex(std::size_t{1}), model.shell(ShellIndex(std::size_t{0})));
-  EXPECT_EQ(model.growth->reshaped_shells, std::vector{ShellIndex(std::size_t{1})});
+  EXPECT_EQ(model.topology_change->reshaped_shells, std::vector{ShellIndex(std::size_t{1})});
 }
 
-TEST(Growth, shares_what_it_does_not_change) {
+TEST(TopologyChange, shares_what_it_does_not_change) {
   const Model before = sheet(300, 60);
   Model model = before;
   add_node(model, 1'000'000, {0, 0, 1}, edge_origin(NodeIndex(std::size_t{0}), NodeIndex(std::size_t{1})));
@@ -236,7 +236,7 @@ void change_at_random(std::mt19937& random, Model& model) {
   }
 }
 
-TEST(Growth, adjacency_brought_up_to_date_is_that_built_anew) {
+TEST(TopologyChange, adjacency_brought_up_to_date_is_that_built_anew) {
   std::mt19937 random(20);
   for (int round = 0; round < 20; ++round) {
     Model before = sheet(20 + random() % 20, 15);
@@ -253,7 +253,7 @@ TEST(Growth, adjacency_brought_up_to_date_is_that_built_anew) {
   }
 }
 
-TEST(Growth, adjacency_of_what_is_only_taken_away_or_only_put_there) {
+TEST(TopologyChange, adjacency_of_what_is_only_taken_away_or_only_put_there) {
   const Model before = sheet(12, 12);
   Model less = before;
   for (std::size_t s = 0; s < 6; ++s) remove_shell(less, ShellIndex(s * 24));

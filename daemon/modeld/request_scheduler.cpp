@@ -1,4 +1,4 @@
-#include "daemon/modeld/desk.h"
+#include "daemon/modeld/request_scheduler.h"
 
 #include <algorithm>
 #include <chrono>
@@ -15,9 +15,9 @@ namespace prismesh::modeld {
 
 namespace {
 
-constexpr std::size_t kMostWaiting = 256;
-constexpr std::size_t kMostWaitingBytes = std::size_t{32} << 20;
-constexpr std::size_t kMostLeases = 256;
+constexpr std::size_t kMaxWaiting = 256;
+constexpr std::size_t kMaxWaitingBytes = std::size_t{32} << 20;
+constexpr std::size_t kMaxLeases = 256;
 constexpr std::int64_t kProgressPeriodNs = 100'000'000;
 
 constexpr const char* kNoMemory = "there isn't enough memory to do this; everything is as it was";
@@ -50,17 +50,17 @@ void post_in_any_case(Outlet& outlet, const std::function<void()>& work) {
 
 }  // namespace
 
-void Desk::start(std::function<void(const ipc::Answer&)> when_done) {
-  run([this, progress = watch("open")] { return bench_.reopen(progress); },
+void RequestScheduler::start(std::function<void(const ipc::Answer&)> when_done) {
+  run([this, progress = watch("open")] { return handler_.reopen(progress); },
       [this, when_done = std::move(when_done)](Outcome& outcome) {
         tell(outcome);
         when_done(outcome.answer);
       });
 }
 
-void Desk::arrived(ipc::ClientId client) { clients_.try_emplace(client); }
+void RequestScheduler::arrived(ipc::ClientId client) { clients_.try_emplace(client); }
 
-void Desk::left(ipc::ClientId client) {
+void RequestScheduler::left(ipc::ClientId client) {
   const auto found = clients_.find(client);
   if (found == clients_.end()) return;
   for (const std::uint64_t lease : found->second.leases) publisher_.release(lease);
@@ -71,7 +71,7 @@ void Desk::left(ipc::ClientId client) {
   pump();
 }
 
-void Desk::request(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes) {
+void RequestScheduler::request(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes) {
   if (!clients_.contains(client)) return;
   if (const auto* step = std::get_if<ipc::DragStep>(&request)) return take_step(client, *step);
   if (const auto* commit = std::get_if<ipc::CommitDrag>(&request)) return end_drag(client, number, commit->drag, true);
@@ -84,13 +84,13 @@ void Desk::request(ipc::ClientId client, std::uint64_t number, ipc::Request requ
   line_up(client, number, std::move(request), bytes);
 }
 
-void Desk::refuse(ipc::ClientId client, std::uint64_t number, const std::string& why) {
+void RequestScheduler::refuse(ipc::ClientId client, std::uint64_t number, const std::string& why) {
   outlet_.answer(client, number, ipc::Failed{"", 0, why}, {});
 }
 
-void Desk::line_up(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes) {
+void RequestScheduler::line_up(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes) {
   Client& from = clients_[client];
-  if (from.waiting >= kMostWaiting || from.waiting_bytes + bytes > kMostWaitingBytes)
+  if (from.waiting >= kMaxWaiting || from.waiting_bytes + bytes > kMaxWaitingBytes)
     return refuse(client, number, "too many requests of yours are waiting; wait for some answers first");
   if (std::holds_alternative<ipc::BeginDrag>(request)) {
     const bool another_waits = std::any_of(waiting_.begin(), waiting_.end(),
@@ -104,7 +104,7 @@ void Desk::line_up(ipc::ClientId client, std::uint64_t number, ipc::Request requ
   pump();
 }
 
-void Desk::take_step(ipc::ClientId client, const ipc::DragStep& step) {
+void RequestScheduler::take_step(ipc::ClientId client, const ipc::DragStep& step) {
   // A step has no answer; one that comes after the end of its drag is late, not wrong.
   if (!drag_ || drag_->owner != client || drag_->number != step.drag || drag_->ending || step.sequence <= drag_->last_sequence) return;
   drag_->last_sequence = step.sequence;
@@ -112,7 +112,7 @@ void Desk::take_step(ipc::ClientId client, const ipc::DragStep& step) {
   pump();
 }
 
-void Desk::end_drag(ipc::ClientId client, std::uint64_t number, std::uint64_t drag, bool commit) {
+void RequestScheduler::end_drag(ipc::ClientId client, std::uint64_t number, std::uint64_t drag, bool commit) {
   if (!drag_ || drag_->owner != client || drag_->number != drag || drag_->ending)
     return refuse(client, number, "you hold no drag " + std::to_string(drag));
   drag_->ending = Ending{number, commit};
@@ -120,11 +120,11 @@ void Desk::end_drag(ipc::ClientId client, std::uint64_t number, std::uint64_t dr
   pump();
 }
 
-void Desk::give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::GetSnapshot& request) {
-  if (!face_.document) return refuse(client, number, running_ ? "the document is still being opened" : "no document is open");
+void RequestScheduler::give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::GetSnapshot& request) {
+  if (!published_.document) return refuse(client, number, running_ ? "the document is still being opened" : "no document is open");
   Client& to = clients_[client];
-  if (to.leases.size() >= kMostLeases) return refuse(client, number, "you hold too many snapshots; return some first");
-  const mesh::document::Document& document = *face_.document;
+  if (to.leases.size() >= kMaxLeases) return refuse(client, number, "you hold too many snapshots; return some first");
+  const mesh::document::Document& document = *published_.document;
   std::size_t at = document.cursor;
   if (request.generation) {
     at = 0;
@@ -132,7 +132,7 @@ void Desk::give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::
     if (at == document.generations.size())
       return refuse(client, number, "the history has no state " + std::to_string(*request.generation) + " any more");
   }
-  Result<ipc::PublishedSnapshot> published = publisher_.publish_other(document, at, face_.state.changed);
+  Result<ipc::PublishedSnapshot> published = publisher_.publish_other(document, at, published_.state.changed);
   if (!published) return outlet_.answer(client, number, ipc::Failed{published.error().file, 0, published.error().message}, {});
   ipc::Snapshot snapshot{published->lease, document.generations[at]->number, published->segments, {}};
   std::vector<ipc::Descriptor> descriptors;
@@ -152,42 +152,42 @@ void Desk::give_snapshot(ipc::ClientId client, std::uint64_t number, const ipc::
 }
 
 /// Views that move together: whoever hears it decides whether to follow.
-void Desk::share_camera(ipc::ClientId client, const ipc::ShareCamera& shared) {
+void RequestScheduler::share_camera(ipc::ClientId client, const ipc::ShareCamera& shared) {
   std::vector<ipc::ClientId> others;  // a list of its own: telling a client that is cut off for it changes the map
   for (const auto& [other, facts] : clients_)
     if (other != client) others.push_back(other);
   for (const ipc::ClientId other : others) outlet_.tell(other, ipc::CameraMoved{client, shared.camera});
 }
 
-void Desk::give_back(ipc::ClientId client, std::uint64_t lease) {
+void RequestScheduler::give_back(ipc::ClientId client, std::uint64_t lease) {
   // Only what the client holds: nobody returns another one's.
   if (clients_[client].leases.erase(lease) > 0) publisher_.release(lease);
 }
 
-void Desk::cancel(ipc::ClientId client, std::uint64_t number) {
+void RequestScheduler::cancel(ipc::ClientId client, std::uint64_t number) {
   if (!long_ || long_->asker != client) return refuse(client, number, "nothing of yours is under way that can be stopped");
   cancelled_ = true;
   outlet_.answer(client, number, ipc::Done{}, {});
 }
 
-ipc::State Desk::state() const {
-  ipc::State state = face_.state;
+ipc::State RequestScheduler::state() const {
+  ipc::State state = published_.state;
   state.busy = running_ && !stepping_;
   return state;
 }
 
-ipc::Health Desk::health() const {
+ipc::Health RequestScheduler::health() const {
   ipc::Health health;
-  health.generation = face_.state.generation;
+  health.generation = published_.state.generation;
   health.clients = clients_.size();
   health.progress = progress_;
-  health.open = face_.state.open;
+  health.open = published_.state.open;
   health.busy = running_ && !stepping_;
   health.dragging = drag_.has_value();
   return health;
 }
 
-void Desk::pump() {
+void RequestScheduler::pump() {
   if (running_) return;
   if (drag_) return pump_drag();
   if (waiting_.empty()) return;
@@ -206,7 +206,7 @@ void Desk::pump() {
 }
 
 /// While a drag is under way nothing else is: its newest step first, then its end.
-void Desk::pump_drag() {
+void RequestScheduler::pump_drag() {
   HeldDrag& drag = *drag_;
   const auto over = [this](ipc::ClientId client, std::uint64_t number) {
     return [this, client, number](Outcome& outcome) {
@@ -214,55 +214,56 @@ void Desk::pump_drag() {
       finish(client, number, outcome);
     };
   };
-  if (drag.orphaned) return run([this] { return bench_.cancel_drag("its client has gone"); }, over(0, 0));
+  if (drag.orphaned) return run([this] { return handler_.cancel_drag("its client has gone"); }, over(0, 0));
   if (drag.newest) {
     const ipc::DragStep step = *std::exchange(drag.newest, std::nullopt);
     stepping_ = true;
     return run(
         [this, step] {
-          bench_.step_drag(step);
+          handler_.step_drag(step);
           return Outcome{};
         },
         [](Outcome&) {});
   }
   if (!drag.ending) return;
   const Ending ending = *drag.ending;
-  run([this, ending] { return ending.commit ? bench_.commit_drag() : bench_.cancel_drag("it was cancelled"); },
+  run([this, ending] { return ending.commit ? handler_.commit_drag() : handler_.cancel_drag("it was cancelled"); },
       over(drag.owner, ending.number));
 }
 
-void Desk::begin(Waiting next) {
+void RequestScheduler::begin(Waiting next) {
   const auto answer = [this, client = next.client, number = next.number](Outcome& outcome) { finish(client, number, outcome); };
   if (auto* open = std::get_if<ipc::Open>(&next.request))
     run_long(next, "open", OnDeath::goes_on,
-             [this, request = std::move(*open)](const Progress& progress) { return bench_.open(request, progress); });
+             [this, request = std::move(*open)](const Progress& progress) { return handler_.open(request, progress); });
   else if (auto* edit = std::get_if<ipc::ApplyEdit>(&next.request))
     run_long(next, std::string(mesh::document::name(edit->edit)), OnDeath::stops,
-             [this, edit = std::move(edit->edit)](const Progress& progress) { return bench_.edit(edit, progress); });
+             [this, edit = std::move(edit->edit)](const Progress& progress) { return handler_.edit(edit, progress); });
   else if (auto* count = std::get_if<ipc::Count>(&next.request))
     run_long(next, "Counting", OnDeath::stops,
-             [this, request = std::move(*count)](const Progress& progress) { return bench_.count(request, progress); });
+             [this, request = std::move(*count)](const Progress& progress) { return handler_.count(request, progress); });
   else if (auto* quality = std::get_if<ipc::GetQuality>(&next.request))
-    run([this, request = std::move(*quality)] { return bench_.quality(request); }, answer);
+    run([this, request = std::move(*quality)] { return handler_.quality(request); }, answer);
   else if (auto* find = std::get_if<ipc::FindShells>(&next.request))
-    run([this, request = std::move(*find)] { return bench_.find(request); }, answer);
+    run([this, request = std::move(*find)] { return handler_.find(request); }, answer);
   else if (auto* preview = std::get_if<ipc::PreviewEdit>(&next.request))
-    run([this, request = std::move(*preview)] { return bench_.preview(request); }, answer);
+    run([this, request = std::move(*preview)] { return handler_.preview(request); }, answer);
   else if (auto* field = std::get_if<ipc::GetField>(&next.request))
     run_long(next, "Comparing", OnDeath::stops,
-             [this, request = std::move(*field)](const Progress& progress) { return bench_.field(request, progress); });
+             [this, request = std::move(*field)](const Progress& progress) { return handler_.field(request, progress); });
   else if (auto* save = std::get_if<ipc::Save>(&next.request))
     run_long(next, "Saving", OnDeath::goes_on,
-             [this, request = std::move(*save)](const Progress& progress) { return bench_.save(request, progress); });
+             [this, request = std::move(*save)](const Progress& progress) { return handler_.save(request, progress); });
   else if (auto* close = std::get_if<ipc::Close>(&next.request))
-    run([this, request = *close] { return bench_.close(request); }, answer);
+    run([this, request = *close] { return handler_.close(request); }, answer);
   else if (auto* drag = std::get_if<ipc::BeginDrag>(&next.request))
     begin_drag(next, drag->edit);
   else
     refuse(next.client, next.number, "this can't be asked now");
 }
 
-void Desk::run_long(const Waiting& next, std::string what, OnDeath on_death, const std::function<Outcome(const Progress&)>& work) {
+void RequestScheduler::run_long(const Waiting& next, std::string what, OnDeath on_death,
+                                const std::function<Outcome(const Progress&)>& work) {
   long_ = Long{next.client, on_death};
   cancelled_ = false;
   run([work, progress = watch(std::move(what))] { return work(progress); },
@@ -273,9 +274,9 @@ void Desk::run_long(const Waiting& next, std::string what, OnDeath on_death, con
       });
 }
 
-void Desk::begin_drag(const Waiting& next, const mesh::document::Edit& edit) {
+void RequestScheduler::begin_drag(const Waiting& next, const mesh::document::Edit& edit) {
   const std::uint64_t drag = next_drag_++;
-  run([this, drag, edit] { return bench_.begin_drag(drag, edit); },
+  run([this, drag, edit] { return handler_.begin_drag(drag, edit); },
       [this, drag, client = next.client, number = next.number](Outcome& outcome) {
         if (std::holds_alternative<ipc::DragBegun>(outcome.answer)) {
           drag_ = HeldDrag{};
@@ -287,7 +288,7 @@ void Desk::begin_drag(const Waiting& next, const mesh::document::Edit& edit) {
       });
 }
 
-void Desk::run(std::function<Outcome()> work, std::function<void(Outcome&)> then) {
+void RequestScheduler::run(std::function<Outcome()> work, std::function<void(Outcome&)> then) {
   // Shared, since what is posted must be copyable and descriptors aren't.
   auto outcome = std::make_shared<Outcome>();
   auto over = [this, outcome, then = std::move(then)] {
@@ -306,20 +307,20 @@ void Desk::run(std::function<Outcome()> work, std::function<void(Outcome&)> then
   running_ = true;
 }
 
-void Desk::finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome) {
-  if (outcome.face) face_ = std::move(*outcome.face);
-  outcome.face.reset();
+void RequestScheduler::finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome) {
+  if (outcome.published) published_ = std::move(*outcome.published);
+  outcome.published.reset();
   // The asker hears first: when others see the new generation, its edit is acknowledged.
   if (clients_.contains(client)) outlet_.answer(client, number, outcome.answer, std::move(outcome.descriptors));
   tell(outcome);
 }
 
-void Desk::tell(Outcome& outcome) {
-  if (outcome.face) face_ = std::move(*outcome.face);
+void RequestScheduler::tell(Outcome& outcome) {
+  if (outcome.published) published_ = std::move(*outcome.published);
   for (const ipc::Event& event : outcome.events) outlet_.tell_all(event);
 }
 
-Progress Desk::watch(std::string what) {
+Progress RequestScheduler::watch(std::string what) {
   return [this, what = std::move(what), last_ns = std::int64_t{0}](double fraction) mutable {
     worker_.show_progress();
     MonotonicClock clock;
