@@ -9,7 +9,7 @@
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
 #include "cli/report_text.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::cli {
@@ -111,7 +111,7 @@ int check(const CheckOptions& options, const Common& common, const Surroundings&
   mesh::ShellSet shells;
   if (options.select) {
     Result<mesh::select::Chosen> chosen =
-        mesh::select::evaluate(model, *options.select, mesh::select::Kind::element, document->current().around->names);
+        mesh::select::evaluate(model, *options.select, mesh::select::Kind::element, document->current().relations->names);
     if (!chosen) return refuse(chosen.error());
     shells = std::move(chosen->shells);
   }

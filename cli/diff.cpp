@@ -8,6 +8,7 @@
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
 #include "mesh/deck/deck.h"
+#include "mesh/document/distance_fields.h"
 
 namespace prismesh::cli {
 

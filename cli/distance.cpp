@@ -7,7 +7,8 @@
 #include "cli/json_output.h"
 #include "cli/open_deck.h"
 #include "cli/report_text.h"
-#include "mesh/document/field.h"
+#include "mesh/document/distance_fields.h"
+#include "mesh/document/make_field.h"
 
 namespace prismesh::cli {
 

@@ -10,6 +10,7 @@
 #include "cli/device_figures.h"
 #include "cli/figures.h"
 #include "mesh/document/document.h"
+#include "mesh/document/edit_report.h"
 #include "mesh/document/journal.h"
 
 namespace prismesh::cli {

@@ -1,6 +1,8 @@
 #include "cli/open_deck.h"
 
 #include "cli/progress_bar.h"
+#include "mesh/document/open.h"
+#include "mesh/document/save.h"
 
 namespace prismesh::cli {
 

@@ -20,6 +20,9 @@
 #include "ipc/snapshot_publisher.h"
 #include "mesh/deck/deck.h"
 #include "mesh/document/field.h"
+#include "mesh/document/field_wish.h"
+#include "mesh/document/make_field.h"
+#include "mesh/document/prepare.h"
 
 namespace prismesh::cli {
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "cli/run.h"
 #include "mesh/document/document.h"
+#include "mesh/document/edit_report.h"
 
 namespace prismesh::cli {
 

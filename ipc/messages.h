@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "mesh/deck/deck.h"
-#include "mesh/document/document.h"
 #include "mesh/document/edit.h"
+#include "mesh/document/edit_report.h"
 
 namespace prismesh::ipc {
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 
 namespace prismesh::ipc {
 

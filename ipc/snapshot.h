@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "ipc/descriptor.h"
-#include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 
 namespace prismesh::ipc {
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "ipc/snapshot.h"
+#include "mesh/document/document.h"
 
 namespace prismesh::ipc {
 

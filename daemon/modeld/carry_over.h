@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 #include "mesh/document/journal.h"
 
 namespace prismesh::modeld {

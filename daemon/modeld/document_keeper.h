@@ -10,7 +10,11 @@
 #include "ipc/messages.h"
 #include "mesh/deck/staged_save.h"
 #include "mesh/document/document.h"
+#include "mesh/document/edit_report.h"
+#include "mesh/document/generation.h"
 #include "mesh/document/journal.h"
+#include "mesh/document/open.h"
+#include "mesh/document/prepare.h"
 
 namespace prismesh::modeld {
 

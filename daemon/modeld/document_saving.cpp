@@ -8,6 +8,8 @@
 #include "daemon/modeld/paths.h"
 #include "daemon/modeld/save_intent.h"
 #include "mesh/deck/deck.h"
+#include "mesh/document/open.h"
+#include "mesh/document/save.h"
 #include "mesh/model/topology_change.h"
 
 namespace prismesh::modeld {
@@ -59,7 +61,7 @@ void rename_files(Document& document, const Document& other) {
   document.path = other.path;
   for (std::shared_ptr<const Generation>& generation : document.generations) {
     auto renamed = std::make_shared<Generation>(*generation);
-    renamed->around = other.opened->around;  // by which expressions name files
+    renamed->relations = other.opened->relations;  // by which expressions name files
     generation = std::move(renamed);
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "mesh/document/prepare.h"
 #include "mesh/model/node_set.h"
 #include "mesh/model/topology_change.h"
 

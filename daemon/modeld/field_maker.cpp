@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "mesh/document/field.h"
+#include "mesh/document/field_wish.h"
+#include "mesh/document/make_field.h"
 
 namespace prismesh::modeld {
 

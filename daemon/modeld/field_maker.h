@@ -12,6 +12,7 @@
 #include "ipc/field_page.h"
 #include "ipc/messages.h"
 #include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 
 namespace prismesh::modeld {
 

@@ -4,7 +4,7 @@
 
 #include "daemon/modeld/edit_preview.h"
 #include "daemon/modeld/quality_figures.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
 
 namespace prismesh::modeld {
 
@@ -68,7 +68,7 @@ Outcome RequestHandler::count(const ipc::Count& request, const Progress& progres
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
   const mesh::document::Generation& current = keeper_.document().current();
   const Result<mesh::select::Chosen> chosen =
-      mesh::select::evaluate(current.model, request.expr, request.kind, current.around->names, progress);
+      mesh::select::evaluate(current.model, request.expr, request.kind, current.relations->names, progress);
   if (!chosen) return {failed(chosen.error()), {}, {}, {}};
   return {ipc::Counted{chosen->nodes.size(), chosen->shells.size(), chosen->parts.size()}, {}, {}, {}};
 }

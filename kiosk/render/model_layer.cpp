@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "mesh/document/document.h"
-
 namespace prismesh::kiosk::render {
 
 using ipc::SnapshotArray;

@@ -8,7 +8,7 @@
 
 #include "kiosk/render/model_source.h"
 #include "kiosk/stereo/view.h"
-#include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 
 namespace prismesh::kiosk::render {
 

@@ -5,7 +5,7 @@
 
 #include "base/parallel_for.h"
 #include "kiosk/render/palette.h"
-#include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 #include "mesh/quality/criteria.h"
 
 namespace prismesh::kiosk::render {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 
 namespace prismesh::kiosk::render {
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "mesh/document/document.h"
+#include "mesh/document/edit.h"
+#include "mesh/document/edit_report.h"
 
 namespace prismesh::mesh::document {
 

@@ -3,9 +3,10 @@
 
 #include "base/counted.h"
 #include "mesh/document/apply.h"
-#include "mesh/document/dependents.h"
-#include "mesh/document/motion.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/dependents_report.h"
+#include "mesh/document/inverted_shells.h"
+#include "mesh/document/plan_motion.h"
 
 namespace prismesh::mesh::document {
 
@@ -22,13 +23,13 @@ NodeSet put_positions(const NodeSet& nodes, const std::vector<Vec3>& positions, 
   return moved;
 }
 
-/// Says what else hangs on the moved nodes.
-void note_attached(const Attached& attached, const NodeSet& moved, EditReport& report) {
+/// Says which elements other than shells moved along.
+void note_attached(const std::vector<ElementUse>& element_uses, const NodeSet& moved, EditReport& report) {
   std::array<std::vector<std::uint32_t>, kElementClassCount> elements;
-  auto use = attached.uses.begin();
+  auto use = element_uses.begin();
   for (const NodeIndex node : moved) {
-    use = std::lower_bound(use, attached.uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
-    for (; use != attached.uses.end() && use->node == node; ++use)
+    use = std::lower_bound(use, element_uses.end(), node, [](const ElementUse& u, NodeIndex n) { return u.node < n; });
+    for (; use != element_uses.end() && use->node == node; ++use)
       elements[static_cast<std::size_t>(use->element_class)].push_back(use->element);
   }
   for (int c = 0; c < kElementClassCount; ++c) {
@@ -55,7 +56,7 @@ void report_inverted(const Model& before, const Model& after, const ShellSet& to
 }
 
 Result<void> move(const Document& document, const Edit& edit, Generation& next, EditReport& report) {
-  const Result<Motion> motion = plan_motion(document.current(), edit, &document);
+  const Result<Motion> motion = plan_motion(document.current(), edit, document.deck.get());
   if (!motion) return fail(motion.error());
   std::vector<Vec3> positions(motion->nodes.size());
   const std::size_t held_back = positions_at(*motion, displacement_of(edit), positions);
@@ -72,8 +73,8 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
   if (motion->without_image > 0)
     report.notes.push_back(counted(motion->without_image, "node") + " without an image on the other side of the plane of symmetry");
   if (held_back > 0) report.notes.push_back(counted(held_back, "node") + " held back by max_move");
-  note_attached(document.current().around->attached, moved, report);
-  report_hanging(document.current(), next, moved, report);
+  note_attached(document.current().relations->element_uses, moved, report);
+  report_dependents(document.current(), next, moved, report);
   report_inverted(document.current().model, next.model, touched, *motion, displacement_of(edit).degrees, report);
   return {};
 }

@@ -2,8 +2,9 @@
 
 #include "base/counted.h"
 #include "mesh/document/apply.h"
-#include "mesh/document/selecting.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/part_marks.h"
+#include "mesh/document/selection.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::document {
@@ -23,7 +24,7 @@ PartFlags parts_of_selection(const Document& document) {
   const Generation& current = document.current();
   const Model& model = current.model;
   PartFlags flags(model.parts->size(), 0);
-  const Picked selected = picked(current);
+  const Selection selected = selection_of(current);
   if (selected.kind != select::Kind::node) {
     flag_parts_of(model, selected.shells, flags);
     return flags;
@@ -32,10 +33,8 @@ PartFlags parts_of_selection(const Document& document) {
   flag_parts_of(model, inside.empty() ? shells_touching(model, selected.nodes) : inside, flags);
   for (const NodeIndex node : selected.nodes) {
     if (!model.adjacency->shells_of(node).empty()) continue;
-    const auto& uses = document.current().around->attached.uses;
-    auto use = std::lower_bound(uses.begin(), uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
-    for (; use != uses.end() && use->node == node; ++use) {
-      const PartIndex part = model.elements[static_cast<std::size_t>(use->element_class)]->part[use->element];
+    for (const ElementUse& use : uses_at(*current.relations, node)) {
+      const PartIndex part = model.elements[static_cast<std::size_t>(use.element_class)]->part[use.element];
       if (part.valid()) flags[part.value] = 1;
     }
   }
@@ -45,7 +44,7 @@ PartFlags parts_of_selection(const Document& document) {
 Result<PartFlags> parts_named(const Document& document, const SetParts& edit) {
   const Model& model = document.current().model;
   if (edit.on) {
-    const Result<select::Chosen> chosen = select::evaluate(model, *edit.on, select::Kind::part, document.current().around->names);
+    const Result<select::Chosen> chosen = select::evaluate(model, *edit.on, select::Kind::part, document.current().relations->names);
     if (!chosen) return fail(chosen.error());
     PartFlags flags(model.parts->size(), 0);
     for (const PartIndex part : chosen->parts) flags[part.value] = 1;
@@ -73,8 +72,8 @@ void set_state(PartState& state, VisibilityAction action, bool is_named) {
 
 /// What goes out of sight is no longer selected: nobody should move what they can't see.
 void deselect_hidden(const Document& document, Generation& next, EditReport& report) {
-  const Picked before = picked(document.current());
-  Picked after = before;
+  const Selection before = selection_of(document.current());
+  Selection after = before;
   std::erase_if(after.shells, [&](ShellIndex shell) {
     const PartIndex part = next.model.shell_parts[shell.value];
     return part.valid() && (*next.parts)[part.value].hidden;

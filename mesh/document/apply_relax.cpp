@@ -7,11 +7,12 @@
 #include "base/counted.h"
 #include "base/readable_number.h"
 #include "mesh/document/apply.h"
-#include "mesh/document/dependents.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/dependents_report.h"
 #include "mesh/document/edge_middles.h"
+#include "mesh/document/edit_targets.h"
 #include "mesh/document/scope.h"
-#include "mesh/document/selecting.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/selection.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/relax/relax.h"
 
@@ -45,7 +46,7 @@ Result<Reach> find_reach(const Document& document, const Relax& edit) {
   if (!shells) return fail(shells.error());
   Reach reach;
   if (by_selection) {
-    reach.nodes = selection(current);
+    reach.nodes = selected_nodes(current);
     reach.shells = shells_touching(current.model, reach.nodes);
     return reach;
   }
@@ -82,8 +83,8 @@ class Pins {
   Stays by_itself(NodeIndex node) const {
     if ((generation_.node_marks[node.value] & kLocked) != 0) return Stays::locked;
     if (generation_.model.node_holds[node.value] != 0) return Stays::held;
-    if (names(generation_.around->attached.uses, node)) return Stays::other_element;
-    return names(generation_.around->dependents.joined, node) ? Stays::joined : Stays::goes;
+    if (!uses_at(*generation_.relations, node).empty()) return Stays::other_element;
+    return is_joined(*generation_.relations, node) ? Stays::joined : Stays::goes;
   }
 
   /// A mid-side node follows the ends of its edge. Where it can't, or is a corner of another shell, they stay, and it with them.
@@ -96,12 +97,6 @@ class Pins {
       if (!node.valid() || (model.adjacency->shells_of(node).empty() && by_itself(node) == Stays::goes)) continue;
       beside_middles_.insert(beside_middles_.end(), {node, corners.node[i], corners.node[(i + 1) % count]});
     }
-  }
-
-  template <class Entry>
-  static bool names(const std::vector<Entry>& entries, NodeIndex node) {
-    const auto at = std::lower_bound(entries.begin(), entries.end(), node, [](const Entry& e, NodeIndex n) { return e.node < n; });
-    return at != entries.end() && at->node == node;
   }
 
   const Generation& generation_;
@@ -160,7 +155,7 @@ void put_positions(const Document& document, const relax::Relaxed& relaxed, Gene
   const ShellSet touched = shells_touching(next.model, relaxed.nodes);
   quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, touched, next.quality, next.counts);
   update_weight(document.current(), touched, next);
-  report_hanging(document.current(), next, moved, report);
+  report_dependents(document.current(), next, moved, report);
 }
 
 }  // namespace

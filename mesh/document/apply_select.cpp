@@ -2,8 +2,10 @@
 #include <iterator>
 
 #include "mesh/document/apply.h"
-#include "mesh/document/selecting.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/edit_targets.h"
+#include "mesh/document/part_marks.h"
+#include "mesh/document/selection.h"
 #include "mesh/select/region.h"
 
 namespace prismesh::mesh::document {
@@ -25,32 +27,32 @@ std::vector<IndexType> combined(const std::vector<IndexType>& a, const std::vect
 }
 
 /// Elements meet elements as elements; as soon as one side is nodes, nodes meet nodes.
-Picked combine(const Model& model, const Picked& old, Picked added, SelectMode mode) {
+Selection combine(const Model& model, const Selection& old, Selection added, SelectMode mode) {
   if (mode == SelectMode::set) return added;
   const bool nothing_yet = old.nodes.empty();
   const bool as_nodes = added.kind == Kind::node || (old.kind == Kind::node && !nothing_yet);
   if (as_nodes) return {combined(old.nodes, added.nodes, mode), {}, Kind::node};
   // Nodes of a selected part's beams and solids belong to no selected shell; they are combined by themselves, since a shell that
   // stays keeps all its nodes.
-  const auto beyond_shells = [&](const Picked& set) { return combined(set.nodes, nodes_of(model, set.shells), SelectMode::subtract); };
-  Picked out;
+  const auto beyond_shells = [&](const Selection& set) { return combined(set.nodes, nodes_of(model, set.shells), SelectMode::subtract); };
+  Selection out;
   out.kind = nothing_yet || old.kind == added.kind ? added.kind : Kind::element;
   out.shells = combined(old.shells, added.shells, mode);
   out.nodes = combined(nodes_of(model, out.shells), combined(beyond_shells(old), beyond_shells(added), mode), SelectMode::add);
   return out;
 }
 
-void select_into(const Document& document, Picked added, SelectMode mode, Generation& next, EditReport& report) {
-  const Picked before = picked(document.current());
-  const Picked after = combine(next.model, before, std::move(added), mode);
+void select_into(const Document& document, Selection added, SelectMode mode, Generation& next, EditReport& report) {
+  const Selection before = selection_of(document.current());
+  const Selection after = combine(next.model, before, std::move(added), mode);
   put_selection(next, before, after);
   if (after.nodes.empty()) report.notes.push_back("nothing is selected now");
 }
 
 /// The selection with other shells. Nodes of a selected part's beams and solids, which belong to no shell, stay.
-Picked with_shells(const Model& model, const Picked& before, ShellSet shells) {
+Selection with_shells(const Model& model, const Selection& before, ShellSet shells) {
   const NodeSet beyond = combined(before.nodes, nodes_of(model, before.shells), SelectMode::subtract);
-  Picked after{combined(nodes_of(model, shells), beyond, SelectMode::add), {}, Kind::element};
+  Selection after{combined(nodes_of(model, shells), beyond, SelectMode::add), {}, Kind::element};
   after.shells = std::move(shells);
   return after;
 }
@@ -65,16 +67,16 @@ Result<void> need_selection(const Generation& generation, std::string_view edit)
 }  // namespace
 
 Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report, const Progress& progress) {
-  Result<select::Chosen> chosen = select::evaluate(next.model, edit.expr, edit.kind, next.around->names, progress);
+  Result<select::Chosen> chosen = select::evaluate(next.model, edit.expr, edit.kind, next.relations->names, progress);
   if (!chosen) return fail(chosen.error());
-  Picked added{std::move(chosen->nodes), {}, edit.kind};
+  Selection added{std::move(chosen->nodes), {}, edit.kind};
   if (edit.kind != Kind::node) added.shells = std::move(chosen->shells);
   select_into(document, std::move(added), edit.mode, next, report);
   return {};
 }
 
 Result<void> apply_edit(const Document& document, const SelectRegion& edit, Generation& next, EditReport& report) {
-  Result<Picked> added = region_at(next, edit);
+  Result<Selection> added = region_at(next, edit);
   if (!added) return fail(added.error());
   select_into(document, std::move(*added), edit.mode, next, report);
   return {};
@@ -89,9 +91,9 @@ Result<void> apply_edit(const Document& document, const SelectLasso& edit, Gener
 
 Result<void> apply_edit(const Document& document, const Grow& edit, Generation& next, EditReport&) {
   if (const Result<void> some = need_selection(next, "grow"); !some) return some;
-  const Picked before = picked(document.current());
+  const Selection before = selection_of(document.current());
   const std::vector<std::uint8_t> out_of_sight = hidden_parts(next);
-  Picked after{{}, {}, Kind::node};
+  Selection after{{}, {}, Kind::node};
   if (before.kind == Kind::node)
     after.nodes = select::grow(next.model, before.nodes, edit.rings, out_of_sight);
   else
@@ -102,9 +104,9 @@ Result<void> apply_edit(const Document& document, const Grow& edit, Generation& 
 
 Result<void> apply_edit(const Document& document, const Shrink& edit, Generation& next, EditReport& report) {
   if (const Result<void> some = need_selection(next, "shrink"); !some) return some;
-  const Picked before = picked(document.current());
+  const Selection before = selection_of(document.current());
   const std::vector<std::uint8_t> out_of_sight = hidden_parts(next);
-  Picked after{{}, {}, Kind::node};
+  Selection after{{}, {}, Kind::node};
   if (before.kind == Kind::node)
     after.nodes = select::shrink(next.model, before.nodes, edit.rings, out_of_sight);
   else
@@ -115,8 +117,8 @@ Result<void> apply_edit(const Document& document, const Shrink& edit, Generation
 }
 
 Result<void> apply_edit(const Document& document, const Invert&, Generation& next, EditReport& report) {
-  const Picked before = picked(document.current());
-  Picked after{{}, {}, before.kind == Kind::node ? Kind::node : Kind::element};
+  const Selection before = selection_of(document.current());
+  Selection after{{}, {}, before.kind == Kind::node ? Kind::node : Kind::element};
   if (before.kind == Kind::node) {
     after.nodes = select::invert(next.model, before.nodes);
     std::erase_if(after.nodes, [&](NodeIndex node) { return hidden(next, node); });

@@ -1,7 +1,7 @@
 // What a document's edits made worse.
 #pragma once
 
-#include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 
 namespace prismesh::mesh::document {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 
 namespace prismesh::mesh::document {
 

@@ -1,20 +1,16 @@
+#include "mesh/document/dependents_report.h"
+
 #include <algorithm>
-#include <array>
+#include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
-#include <utility>
-
-#include <Eigen/Geometry>
+#include <vector>
 
 #include "base/counted.h"
-#include "base/deterministic_math.h"
 #include "base/readable_number.h"
 #include "mesh/deck/naming.h"
-#include "mesh/document/dependents.h"
-#include "mesh/document/motion.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/spatial/closest_point.h"
 
@@ -28,29 +24,29 @@ constexpr int kRingsSearched = 4;             ///< how far along its sheet a nod
 
 bool contains(const NodeSet& nodes, NodeIndex node) { return std::binary_search(nodes.begin(), nodes.end(), node); }
 
-std::string card_of(const Surroundings& around, std::uint32_t referrer) {
-  return deck::card_name(around.deck->format, around.deck->references->referrers()[referrer]);
+std::string card_of(const DeckRelations& relations, std::uint32_t referrer) {
+  return deck::card_name(relations.deck->format, relations.deck->references->referrers()[referrer]);
 }
 
 /// Cards that join nodes of which only some moved.
 void note_split_joins(const Generation& before, const NodeSet& moved, EditReport& report) {
-  const Dependents& dependents = before.around->dependents;
+  const Dependents& dependents = before.relations->dependents;
   std::map<std::uint32_t, std::size_t> moved_of;
-  auto at = dependents.joined.begin();
+  auto at = dependents.joined_nodes.begin();
   for (const NodeIndex node : moved) {
-    if (at == dependents.joined.end()) break;
-    at = std::lower_bound(at, dependents.joined.end(), node, [](const Dependents::Joined& j, NodeIndex n) { return j.node < n; });
-    for (; at != dependents.joined.end() && at->node == node; ++at) ++moved_of[at->join];
+    if (at == dependents.joined_nodes.end()) break;
+    at = std::lower_bound(at, dependents.joined_nodes.end(), node, [](const JoinedNode& j, NodeIndex n) { return j.node < n; });
+    for (; at != dependents.joined_nodes.end() && at->node == node; ++at) ++moved_of[at->card];
   }
   std::size_t named = 0, more = 0;
   for (const auto& [join, count] : moved_of) {
-    const NodeSet& nodes = dependents.joins[join].nodes;
+    const NodeSet& nodes = dependents.joining_cards[join].nodes;
     if (count == nodes.size()) continue;
     if (named++ >= kMaxNamedInReport) {
       ++more;
       continue;
     }
-    std::string note = card_of(*before.around, dependents.joins[join].referrer) + ": " + std::to_string(count) + " of its " +
+    std::string note = card_of(*before.relations, dependents.joining_cards[join].referrer) + ": " + std::to_string(count) + " of its " +
                        std::to_string(nodes.size()) + " nodes moved; left in place: ";
     std::size_t left = 0;
     for (const NodeIndex node : nodes) {
@@ -71,7 +67,7 @@ ShellSet around(const Model& model, ShellIndex shell) {
 }
 
 /// How far the node is from the sheet it lies on; looks at the shell alone first.
-double gap_at(const Model& model, const Dependents::Rest& rest) {
+double gap_at(const Model& model, const NodeOnSheet& rest) {
   if (model.is_removed(rest.node) || model.is_removed(rest.shell)) return 0;  // nothing is left that could be lost
   const Vec3& point = model.position(rest.node);
   const auto distance = [&](const ShellSet& shells) {
@@ -85,12 +81,12 @@ double gap_at(const Model& model, const Dependents::Rest& rest) {
 /// Three digits are enough to say how far apart things are.
 std::string short_length(double length) { return readable(length, 3); }
 
-std::string lost_connection(const Generation& before, const Dependents::Rest& rest, double gap) {
+std::string lost_connection(const Generation& before, const NodeOnSheet& rest, double gap) {
   const Model& model = before.model;
   const std::string node = "node:" + std::to_string(model.node_ids[rest.node.value]);
   std::string what;
   if (rest.tied)
-    what = node + ", which " + card_of(*before.around, rest.of) + " ties,";
+    what = node + ", which " + card_of(*before.relations, rest.of) + " ties,";
   else
     what = std::string(name(rest.element_class)) + ":" +
            std::to_string(model.elements[static_cast<std::size_t>(rest.element_class)]->id[rest.of]) + " at " + node;
@@ -105,27 +101,27 @@ std::string lost_connection(const Generation& before, const Dependents::Rest& re
 
 /// Nodes that lay on a sheet and don't any more.
 void list_lost(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report) {
-  const Dependents& dependents = before.around->dependents;
-  if (dependents.rests.empty()) return;
+  const Dependents& dependents = before.relations->dependents;
+  if (dependents.on_sheets.empty()) return;
   std::vector<std::uint32_t> doubtful;
-  auto rest = dependents.rests.begin();
+  auto rest = dependents.on_sheets.begin();
   for (const NodeIndex node : moved) {
-    rest = std::lower_bound(rest, dependents.rests.end(), node, [](const Dependents::Rest& r, NodeIndex n) { return r.node < n; });
-    if (rest == dependents.rests.end()) break;
-    if (rest->node == node) doubtful.push_back(static_cast<std::uint32_t>(rest - dependents.rests.begin()));
+    rest = std::lower_bound(rest, dependents.on_sheets.end(), node, [](const NodeOnSheet& r, NodeIndex n) { return r.node < n; });
+    if (rest == dependents.on_sheets.end()) break;
+    if (rest->node == node) doubtful.push_back(static_cast<std::uint32_t>(rest - dependents.on_sheets.begin()));
   }
-  auto by_shell = dependents.rests_by_shell.begin();
+  auto by_shell = dependents.on_sheets_by_shell.begin();
   for (const ShellIndex shell : shells_touching(before.model, moved)) {
-    by_shell = std::lower_bound(by_shell, dependents.rests_by_shell.end(), shell,
-                                [&](std::uint32_t r, ShellIndex s) { return dependents.rests[r].shell < s; });
-    for (; by_shell != dependents.rests_by_shell.end() && dependents.rests[*by_shell].shell == shell; ++by_shell)
+    by_shell = std::lower_bound(by_shell, dependents.on_sheets_by_shell.end(), shell,
+                                [&](std::uint32_t r, ShellIndex s) { return dependents.on_sheets[r].shell < s; });
+    for (; by_shell != dependents.on_sheets_by_shell.end() && dependents.on_sheets[*by_shell].shell == shell; ++by_shell)
       doubtful.push_back(*by_shell);
   }
   std::sort(doubtful.begin(), doubtful.end());
   doubtful.erase(std::unique(doubtful.begin(), doubtful.end()), doubtful.end());
   std::size_t carried = 0;
   for (const std::uint32_t r : doubtful) {
-    const Dependents::Rest& each = dependents.rests[r];
+    const NodeOnSheet& each = dependents.on_sheets[r];
     const double gap = gap_at(after.model, each);
     if (gap <= each.reach) {
       carried += !each.tied && contains(moved, each.node);
@@ -140,67 +136,11 @@ void list_lost(const Generation& before, const Generation& after, const NodeSet&
                            (report.lost_connections > 1 ? ", ..." : ""));
 }
 
-Vec3 normal_of(const Model& model, ShellIndex shell) {
-  const ShellNodes& nodes = model.shell(shell);
-  const auto at = [&](std::size_t i) { return model.position(nodes.node[i]); };
-  return nodes.is_triangle() ? Vec3((at(1) - at(0)).cross(at(2) - at(0))) : Vec3((at(2) - at(0)).cross(at(3) - at(1)));
-}
-
-/// Whether every corner turns the same way as the whole: the Jacobian is greater than 0 there.
-bool is_convex(const Model& model, ShellIndex shell, const Vec3& normal) {
-  const ShellNodes& nodes = model.shell(shell);
-  const int corners = nodes.corners();
-  for (int i = 0; i < corners; ++i) {
-    const Vec3& here = model.position(nodes.node[static_cast<std::size_t>(i)]);
-    const Vec3 out = model.position(nodes.node[static_cast<std::size_t>((i + 1) % corners)]) - here;
-    const Vec3 in = here - model.position(nodes.node[static_cast<std::size_t>((i + corners - 1) % corners)]);
-    if (!(in.cross(out).dot(normal) > 0)) return false;
-  }
-  return true;
-}
-
-/// A direction turned about an axis (Rodrigues).
-Vec3 turned(const Vec3& direction, const Vec3& axis, double degrees) {
-  const double cosine = deterministic_cos_degrees(degrees);
-  return cosine * direction + deterministic_sin_degrees(degrees) * axis.cross(direction) + (1 - cosine) * axis.dot(direction) * axis;
-}
-
-/// A shell's normal turned as its corners turn on average, by their own weights and by those of their images.
-Vec3 turned_with(const Motion& motion, const ShellNodes& shell, double degrees, const Vec3& normal) {
-  double own = 0, mirrored = 0;
-  const int corners = shell.corners();
-  for (int i = 0; i < corners; ++i) {
-    const NodeIndex node = shell.node[static_cast<std::size_t>(i)];
-    const auto at = std::lower_bound(motion.nodes.begin(), motion.nodes.end(), node);
-    if (at == motion.nodes.end() || *at != node) continue;
-    const auto place = static_cast<std::size_t>(at - motion.nodes.begin());
-    const std::uint32_t image = motion.plane ? motion.mirrored[place].image : shape::Mirrored::kNone;
-    own += (image != shape::Mirrored::kNone ? motion.mirrored[place].own : 1.0) * motion.weight[place] / corners;
-    if (image != shape::Mirrored::kNone) mirrored += motion.mirrored[image].own * motion.weight[image] / corners;
-  }
-  const Vec3 turn = turned(normal, motion.axis.direction, degrees * own);
-  return motion.plane ? turned(turn, motion.plane->mirrored(motion.axis.direction), -degrees * mirrored) : turn;
-}
-
 }  // namespace
 
-void report_hanging(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report) {
+void report_dependents(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report) {
   note_split_joins(before, moved, report);
   list_lost(before, after, moved, report);
-}
-
-std::vector<ShellIndex> inverted_shells(const Model& before, const Model& after, const ShellSet& shells, const Motion& motion,
-                                        double degrees) {
-  std::vector<ShellIndex> inverted;
-  for (const ShellIndex shell : shells) {
-    Vec3 was = normal_of(before, shell);
-    if (!(was.squaredNorm() > 0)) continue;
-    const Vec3 is = normal_of(after, shell);
-    const bool was_convex = is_convex(before, shell, was);
-    if (motion.kind == Motion::Kind::rotate) was = turned_with(motion, before.shell(shell), degrees, was);
-    if (!(is.dot(was) > 0) || (was_convex && !is_convex(after, shell, is))) inverted.push_back(shell);
-  }
-  return inverted;
 }
 
 }  // namespace prismesh::mesh::document

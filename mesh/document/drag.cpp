@@ -5,6 +5,7 @@
 
 #include "base/parallel_for.h"
 #include "mesh/document/motion.h"
+#include "mesh/document/plan_motion.h"
 
 namespace prismesh::mesh::document {
 

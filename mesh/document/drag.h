@@ -7,7 +7,12 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/document/document.h"
+#include "base/error.h"
+#include "mesh/document/edit.h"
+#include "mesh/document/generation.h"
+#include "mesh/document/settings.h"
+#include "mesh/model/node_set.h"
+#include "mesh/quality/judging.h"
 
 namespace prismesh::mesh::document {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "mesh/document/document.h"
+#include "mesh/document/prepare.h"
 
 namespace prismesh::mesh::document {
 

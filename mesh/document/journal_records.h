@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "mesh/document/document.h"
+#include "mesh/document/prepare.h"
 
 namespace prismesh::mesh::document {
 

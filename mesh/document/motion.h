@@ -1,5 +1,5 @@
-// Where nodes go for a displacement: the one arithmetic that applying an edit and dragging share, so that a drag shows bit for
-// bit what its edit will do. Private to mesh/document.
+// What a shaping edit moves, and where to for a displacement: applying an edit and dragging share it, so that a drag shows bit for bit
+// what its edit will do. Private to mesh/document.
 #pragma once
 
 #include <array>
@@ -9,14 +9,15 @@
 #include <span>
 #include <vector>
 
-#include "mesh/document/document.h"
+#include "mesh/document/edit.h"
+#include "mesh/model/node_set.h"
 #include "mesh/shape/mirror.h"
 #include "mesh/shape/rotate.h"
 #include "mesh/shape/surface_tracer.h"
 
 namespace prismesh::mesh::document {
 
-/// What a shaping edit moves, before its displacement is known.
+/// Known before the displacement is.
 struct Motion {
   /// A node for which no weight is known: a mid-side node follows the ends of its edge, half each; the node of a weld that lies on a
   /// shell follows its corners. Positions in `nodes`; followers never follow followers.
@@ -28,7 +29,7 @@ struct Motion {
   };
 
   enum class Kind : std::uint8_t { translate, lift, slide, rotate } kind = Kind::translate;
-  NodeSet nodes;                                       ///< those with weight > 0, their images and what hangs on them
+  NodeSet nodes;                                       ///< those with weight > 0, their images and followers
   std::vector<double> weight;                          ///< of each
   std::vector<Vec3> start;                             ///< of each
   std::vector<Vec3> normals;                           ///< lift: of each, or one for all
@@ -43,11 +44,10 @@ struct Motion {
   std::vector<Follower> followers;
   std::size_t unreached = 0;  ///< nodes acted on with no way from the grab
   std::optional<double> max_move;
-};
 
-/// Works out what moves. `document` may be null: it only helps to name the place of what refuses.
-/// Errors: nothing acted on, no such grab, a locked or held node would move, no normal at the grab of a lift.
-Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const Document* document);
+  /// Position of a node in `nodes`, or Follower::kStays. Costs a binary search.
+  std::uint32_t place_of(NodeIndex node) const;
+};
 
 /// Positions of motion.nodes at a displacement. `out` has one entry each. Returns how many nodes max_move held back.
 std::size_t positions_at(const Motion& motion, const Displacement& displacement, std::span<Vec3> out);

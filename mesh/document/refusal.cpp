@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/counted.h"
-#include "mesh/document/apply.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::document {
@@ -36,8 +35,7 @@ struct Card {
   std::string_view text;
 };
 
-Card card_of(const Document& document, NodeIndex node) {
-  const deck::Deck& deck = *document.deck;
+Card card_of(const deck::Deck& deck, NodeIndex node) {
   if (deck.node_runs.empty() || node.value >= deck.node_line.size()) return {};
   const deck::SourceFile& file = deck.file_of(node);
   const std::string_view text = file.bytes.text();
@@ -65,7 +63,7 @@ std::string why_held(std::uint8_t hold, const Card& card) {
 
 }  // namespace
 
-Result<void> refuse_held(const Generation& generation, const NodeSet& nodes, const Document* document) {
+Result<void> refuse_held(const Generation& generation, const NodeSet& nodes, const deck::Deck* deck) {
   const Model& model = generation.model;
   NodeIndex first_locked, first_held;
   std::size_t locked = 0, held = 0;
@@ -80,7 +78,7 @@ Result<void> refuse_held(const Generation& generation, const NodeSet& nodes, con
                         (locked > 1 ? " (" + counted(locked, "such node") + " in all)" : "") + "; unlock the part or deselect its nodes");
   }
   if (held > 0) {
-    const Card card = document != nullptr && document->deck ? card_of(*document, first_held) : Card{};
+    const Card card = deck != nullptr ? card_of(*deck, first_held) : Card{};
     return fail(card.file, card.line,
                 "node " + std::to_string(model.node_ids[first_held.value]) + " can't be moved: it " +
                     why_held(model.node_holds[first_held.value], card) + (held > 1 ? " (" + counted(held, "such node") + " in all)" : "") +

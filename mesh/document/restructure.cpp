@@ -6,8 +6,9 @@
 #include "mesh/deck/new_ids.h"
 #include "mesh/deck/text_changes.h"
 #include "mesh/document/apply.h"
-#include "mesh/document/selecting.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/part_marks.h"
+#include "mesh/document/selection.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"
 
@@ -31,37 +32,6 @@ NodeSet corners_of_changed(const Model& before, const Model& after, const Change
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   std::erase_if(nodes, [&](NodeIndex node) { return after.is_removed(node); });
   return nodes;
-}
-
-/// What the parts' states say of one node.
-std::uint8_t part_marks_of(const Generation& generation, NodeIndex node) {
-  const Model& model = generation.model;
-  const std::vector<PartState>& states = *generation.parts;
-  bool in_sight = false, hidden = false, locked = false;
-  const auto note = [&](PartIndex part) {
-    const PartState state = part.valid() ? states[part.value] : PartState{};
-    (state.hidden ? hidden : in_sight) = true;
-    locked = locked || state.locked;
-  };
-  for (const ShellIndex shell : model.adjacency->shells_of(node)) note(model.shell_parts[shell.value]);
-  const auto& uses = generation.around->attached.uses;
-  auto use = std::lower_bound(uses.begin(), uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
-  for (; use != uses.end() && use->node == node; ++use)
-    note(model.elements[static_cast<std::size_t>(use->element_class)]->part[use->element]);
-  if (model.midside)
-    for (const MidsideNodes& midside : *model.midside)
-      if (std::find(midside.node.begin(), midside.node.end(), node) != midside.node.end()) note(model.shell_parts[midside.shell.value]);
-  return static_cast<std::uint8_t>((locked ? kLocked : 0) | (hidden && !in_sight ? kHidden : 0));
-}
-
-void mark_parts_at(const NodeSet& nodes, Generation& next) {
-  const std::vector<PartState>& states = *next.parts;
-  if (std::all_of(states.begin(), states.end(), [](const PartState& state) { return state == PartState{}; })) return;
-  for (const NodeIndex node : nodes) {
-    const std::uint8_t old = next.node_marks[node.value];
-    const auto mark = static_cast<std::uint8_t>((old & kSelected) | part_marks_of(next, node));
-    if (mark != old) next.node_marks.set(node.value, mark);
-  }
 }
 
 /// A new node is selected if all it comes from are, a new shell if its parent is; what is gone isn't.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/document/document.h"
+#include "mesh/document/edit_report.h"
 #include "mesh/repair/restructuring.h"
 #include "mesh/repair/rules.h"
 

@@ -5,8 +5,8 @@
 
 #include "mesh/deck/descent.h"
 #include "mesh/deck/naming.h"
+#include "mesh/document/deck_relations.h"
 #include "mesh/document/restructure.h"
-#include "mesh/document/surroundings.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"
 
@@ -22,11 +22,8 @@ class Rulebook {
  public:
   Rulebook(const Document& document, const Generation& generation)
       : deck_(*document.deck), generation_(generation), deletion_(*document.deck), division_(*document.deck) {
-    for (const Dependents::Rest& rest : generation.around->dependents.rests)
-      if (!rest.tied)
-        welded_shells_.push_back(rest.shell);
-      else
-        tied_shells_.push_back(rest.shell);
+    for (const NodeOnSheet& each : generation.relations->dependents.on_sheets)
+      (each.tied ? tied_shells_ : welded_shells_).push_back(each.shell);
     sort_unique(welded_shells_);
     sort_unique(tied_shells_);
     if (generation.model.midside)
@@ -54,10 +51,9 @@ class Rulebook {
     if (of_held_file(a) && of_held_file(b)) return false;
     if (!may_be_between(a, b)) return false;
     const auto of_a = uses_of(a), of_b = uses_of(b);
-    return std::none_of(of_a.begin(), of_a.end(), [&](const Attached::Use& use) {
-      return std::any_of(of_b.begin(), of_b.end(), [&](const Attached::Use& other) {
-        return use.element_class == other.element_class && use.element == other.element;
-      });
+    return std::none_of(of_a.begin(), of_a.end(), [&](const ElementUse& use) {
+      return std::any_of(of_b.begin(), of_b.end(),
+                         [&](const ElementUse& other) { return use.element_class == other.element_class && use.element == other.element; });
     });
   }
 
@@ -77,19 +73,7 @@ class Rulebook {
   bool of_held_file(NodeIndex node) const {
     return node.value < deck_.node_line.size() && !deck_.node_runs.empty() && deck_.is_held(deck_.run_of(node).file);
   }
-  std::span<const Attached::Use> uses_of(NodeIndex node) const {
-    const auto& uses = generation_.around->attached.uses;
-    const auto begin = std::lower_bound(uses.begin(), uses.end(), node, [](const Attached::Use& u, NodeIndex n) { return u.node < n; });
-    auto end = begin;
-    while (end != uses.end() && end->node == node) ++end;
-    return {begin, end};
-  }
-  bool is_joined(NodeIndex node) const {
-    const auto& joined = generation_.around->dependents.joined;
-    const auto at =
-        std::lower_bound(joined.begin(), joined.end(), node, [](const Dependents::Joined& j, NodeIndex n) { return j.node < n; });
-    return at != joined.end() && at->node == node;
-  }
+  std::span<const ElementUse> uses_of(NodeIndex node) const { return uses_at(*generation_.relations, node); }
   bool may_be_deleted(Referred referred, std::int64_t id) {
     return !deck_.references || deletion_.may_be_deleted(referred, id).has_value();
   }
@@ -109,7 +93,7 @@ class Rulebook {
   std::uint8_t find_node(NodeIndex node) {
     if (node.value >= model().node_count()) return 0;
     if ((generation_.node_marks[node.value] & kLocked) != 0 || model().node_holds[node.value] != 0 || !uses_of(node).empty() ||
-        is_joined(node) || contains(middle_nodes_, node))
+        is_joined(*generation_.relations, node) || contains(middle_nodes_, node))
       return kAllNodeRules;
     for (const ShellIndex shell : model().adjacency->shells_of(node))
       if (is_middled(shell)) return kAllNodeRules;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "mesh/document/damage.h"
-#include "mesh/document/selecting.h"
+#include "mesh/document/selection.h"
 #include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
@@ -37,7 +37,7 @@ ShellSet of_parts(const Model& model, const ShellSet& of) {
 
 ShellSet selected(const Generation& generation) {
   if (generation.selection_kind != select::Kind::node) return selected_shells(generation);
-  return shells_touching(generation.model, selection(generation));
+  return shells_touching(generation.model, selected_nodes(generation));
 }
 
 /// The shell of an earlier model from which one descends, or itself.

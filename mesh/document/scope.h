@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "mesh/document/document.h"
+#include "mesh/document/edit.h"
 #include "mesh/relax/reference_surface.h"
 
 namespace prismesh::mesh::document {

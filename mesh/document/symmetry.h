@@ -1,30 +1,35 @@
 // Symmetric editing within a motion: the images join what moves. Private to mesh/document.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+#include "mesh/document/edit.h"
 #include "mesh/document/motion.h"
+#include "mesh/shape/mirror.h"
+#include "mesh/shape/weights.h"
 
 namespace prismesh::mesh::document {
 
-/// The plane of a symmetry. Errors: no direction, numbers that aren't finite.
-Result<shape::Plane> plane_of(const Symmetry& symmetry);
+/// The plane of a symmetry, and the images in it of the nodes acted on (weight > 0).
+struct Mirroring {
+  shape::Plane plane;
+  std::vector<std::pair<NodeIndex, NodeIndex>> images;  ///< nodes acted on and their images, each with the other one; ascending
+  std::size_t without_image = 0;                        ///< nodes acted on that have none
 
-/// Nodes acted on (weight > 0) and their images, each with the other one; ascending.
-struct Images {
-  std::vector<std::pair<NodeIndex, NodeIndex>> of;
-  std::size_t missing = 0;  ///< nodes acted on without one
-
-  NodeIndex find(NodeIndex node) const;  ///< invalid without one
+  NodeIndex image_of(NodeIndex node) const;  ///< invalid without one
 };
-Images find_images(const Model& model, const shape::Weights& weights, const shape::Plane& plane);
+/// Nothing without a symmetry. Errors: no direction, numbers that aren't finite.
+Result<std::optional<Mirroring>> find_mirroring(const Model& model, const shape::Weights& weights, const std::optional<Symmetry>& symmetry);
 
 /// The weights with the images among the nodes: an image that isn't acted on itself gets the weight of what it mirrors, so that it counts
 /// as moving.
-shape::Weights with_images(const shape::Weights& weights, const Images& images);
+shape::Weights with_images(const shape::Weights& weights, const Mirroring& mirroring);
 
-/// Once motion.nodes stand: the own weights again, and how each node's move and its image's become one.
-void link_images(const shape::Weights& weights, const Images& images, const shape::Plane& plane, Motion& motion);
+/// Once motion.nodes and motion.followers are known: enters the nodes' own weights, and how each node's move and its image's become one.
+void link_images(const shape::Weights& weights, const Mirroring& mirroring, Motion& motion);
 
 }  // namespace prismesh::mesh::document

@@ -8,6 +8,8 @@
 #include "mesh/deck/sample.h"
 #include "mesh/document/document.h"
 #include "mesh/document/edit_json.h"
+#include "mesh/document/open.h"
+#include "mesh/document/prepare.h"
 
 namespace prismesh::mesh::document {
 namespace {

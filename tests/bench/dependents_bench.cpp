@@ -4,9 +4,13 @@
 
 #include <benchmark/benchmark.h>
 
+#include "mesh/document/deck_relations.h"
 #include "mesh/document/document.h"
 #include "mesh/document/drag.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/find_dependents.h"
+#include "mesh/document/generation.h"
+#include "mesh/document/open.h"
+#include "mesh/document/prepare.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/select/expression.h"
 #include "tests/bench/million_document.h"
@@ -70,8 +74,8 @@ void find_welds_at_opening(benchmark::State& state) {
   const Document& document = welded_million();
   std::size_t found = 0;
   for (auto _ : state) {
-    const Dependents dependents = find_dependents(*document.deck, document.opened->model, document.current().around->attached);
-    found = dependents.rests.size();
+    const Dependents dependents = find_dependents(*document.deck, document.opened->model, document.current().relations->element_uses);
+    found = dependents.on_sheets.size();
   }
   state.counters["rests"] = static_cast<double>(found);
 }
@@ -105,7 +109,7 @@ void algebra_on_a_million(benchmark::State& state) {
   const Generation& current = welded_million().current();
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        select::evaluate(current.model, "(part:1 & id>5000 | beam:all) & ~1-900000:10", select::Kind::node, current.around->names));
+        select::evaluate(current.model, "(part:1 & id>5000 | beam:all) & ~1-900000:10", select::Kind::node, current.relations->names));
 }
 BENCHMARK(algebra_on_a_million)->Unit(benchmark::kMillisecond);
 

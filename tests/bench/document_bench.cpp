@@ -10,7 +10,11 @@
 #include "mesh/document/document.h"
 #include "mesh/document/drag.h"
 #include "mesh/document/edit_json.h"
+#include "mesh/document/edit_report.h"
+#include "mesh/document/generation.h"
 #include "mesh/document/journal.h"
+#include "mesh/document/prepare.h"
+#include "mesh/document/selection.h"
 #include "tests/bench/million_document.h"
 
 namespace prismesh::mesh::document {
@@ -46,7 +50,7 @@ BENCHMARK(generation_copy)->Unit(benchmark::kMicrosecond);
 
 void selection_of_10k(benchmark::State& state) {
   const Document& document = million();
-  for (auto _ : state) benchmark::DoNotOptimize(selection(document.current()));
+  for (auto _ : state) benchmark::DoNotOptimize(selected_nodes(document.current()));
 }
 BENCHMARK(selection_of_10k)->Unit(benchmark::kMicrosecond);
 

@@ -4,6 +4,9 @@
 #include "daemon/modeld/quality_figures.h"
 #include "ipc/messages_json.h"
 #include "mesh/document/field.h"
+#include "mesh/document/field_wish.h"
+#include "mesh/document/make_field.h"
+#include "mesh/document/prepare.h"
 #include "tests/bench/million_document.h"
 
 namespace {

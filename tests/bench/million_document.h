@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/document/document.h"
+#include "mesh/document/open.h"
 #include "mesh/model/adjacency.h"
 #include "tests/bench/million_quads.h"
 

@@ -5,6 +5,7 @@
 #include <benchmark/benchmark.h>
 
 #include "ipc/snapshot_publisher.h"
+#include "mesh/document/prepare.h"
 #include "tests/bench/million_document.h"
 
 namespace prismesh::ipc {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "mesh/deck/deck.h"
+#include "mesh/document/distance_fields.h"
 #include "mesh/document/field.h"
 #include "tests/cli/cli_fixture.h"
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "mesh/document/document.h"
+#include "mesh/document/generation.h"
 
 namespace prismesh::ipc::test {
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "kiosk/render/model_source.h"
-#include "mesh/document/document.h"
 
 namespace prismesh::test {
 

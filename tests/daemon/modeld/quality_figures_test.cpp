@@ -12,6 +12,7 @@
 
 #include "daemon/modeld/edit_preview.h"
 #include "mesh/document/edit_json.h"
+#include "mesh/document/open.h"
 #include "mesh/model/node_set.h"
 #include "mesh/quality/limits.h"
 #include "tests/daemon/modeld/folder.h"

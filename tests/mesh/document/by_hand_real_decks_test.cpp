@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"
@@ -153,13 +153,13 @@ std::size_t expect_sets_inherited(const Document& document, const Document& agai
   const Generation& opened = *document.opened;
   const Model& model = document.current().model;
   std::size_t compared = 0;
-  for (const select::NamedSet& set : select::find_sets(*opened.around->names.references)) {
+  for (const select::NamedSet& set : select::find_sets(*opened.relations->names.references)) {
     const bool of_nodes = set.kind == Referred::node_set;
     if (!of_nodes && set.kind != Referred::shell_set && set.kind != Referred::element_set) continue;
     const select::Kind kind = of_nodes ? select::Kind::node : select::Kind::element;
-    const auto before = select::evaluate(opened.model, set.label(), kind, opened.around->names);
+    const auto before = select::evaluate(opened.model, set.label(), kind, opened.relations->names);
     if (!before) continue;  // of things that aren't in the model
-    const auto after = select::evaluate(again.current().model, set.label(), kind, again.current().around->names);
+    const auto after = select::evaluate(again.current().model, set.label(), kind, again.current().relations->names);
     EXPECT_TRUE(after) << set.label() << ": " << after.error().text();
     if (!after) continue;
     EXPECT_EQ(members(again.current().model, *after, of_nodes), heirs(model, *before, of_nodes)) << set.label();

@@ -12,9 +12,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents.h"
 #include "mesh/document/drag.h"
-#include "mesh/document/surroundings.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {

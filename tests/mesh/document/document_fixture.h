@@ -16,6 +16,12 @@
 
 #include "mesh/document/document.h"
 #include "mesh/document/edit_json.h"
+#include "mesh/document/edit_report.h"
+#include "mesh/document/generation.h"
+#include "mesh/document/open.h"
+#include "mesh/document/prepare.h"
+#include "mesh/document/save.h"
+#include "mesh/document/selection.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::document {
@@ -77,7 +83,7 @@ inline std::string refusal(Document& document, const std::string& json) {
 
 inline std::vector<std::int64_t> selected_ids(const Document& document) {
   std::vector<std::int64_t> ids;
-  for (const NodeIndex node : selection(document.current())) ids.push_back(document.current().model.node_ids[node.value]);
+  for (const NodeIndex node : selected_nodes(document.current())) ids.push_back(document.current().model.node_ids[node.value]);
   return ids;
 }
 

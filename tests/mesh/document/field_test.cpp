@@ -1,4 +1,8 @@
 #include "mesh/document/field.h"
+#include "mesh/document/distance_fields.h"
+#include "mesh/document/field_wish.h"
+#include "mesh/document/make_field.h"
+#include "mesh/document/quality_fields.h"
 
 #include <cmath>
 #include <limits>

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mesh/document/surroundings.h"
+#include "mesh/document/deck_relations.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {
@@ -125,7 +125,8 @@ TEST_F(NamesTest, real_decks_sets_have_their_members) {
   for (const Case& each : cases) {
     const Result<Document> document = open(std::filesystem::path(models) / each.deck, OpenOptions{});
     ASSERT_TRUE(document) << document.error().text();
-    const auto chosen = select::evaluate(document->current().model, each.expression, select::Kind::node, document->current().around->names);
+    const auto chosen =
+        select::evaluate(document->current().model, each.expression, select::Kind::node, document->current().relations->names);
     ASSERT_TRUE(chosen) << each.deck << ": " << chosen.error().text();
     EXPECT_EQ(chosen->nodes.size(), each.nodes) << each.deck << " " << each.expression;
   }

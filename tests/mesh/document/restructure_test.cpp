@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/document/deck_relations.h"
 #include "mesh/document/delta.h"
+#include "mesh/document/edit_targets.h"
 #include "mesh/document/journal.h"
-#include "mesh/document/selecting.h"
-#include "mesh/document/surroundings.h"
+#include "mesh/document/part_marks.h"
+#include "mesh/document/selection.h"
 #include "mesh/quality/mass.h"
 #include "tests/mesh/document/restructuring.h"
 

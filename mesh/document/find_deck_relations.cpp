@@ -1,27 +1,31 @@
-#include "mesh/document/surroundings.h"
+#include "mesh/document/find_deck_relations.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "mesh/document/find_dependents.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
 
-Attached find_attached(const Model& model) {
-  Attached attached;
+std::vector<ElementUse> find_element_uses(const Model& model) {
+  std::vector<ElementUse> uses;
   std::size_t count = 0;
   for (const auto& block : model.elements)
     if (block) count += block->nodes.size();
-  attached.uses.reserve(count);
+  uses.reserve(count);
   for (std::size_t c = 0; c < model.elements.size(); ++c) {
     if (!model.elements[c]) continue;
     const ElementBlock& block = *model.elements[c];
     for (std::size_t e = 0; e < block.size(); ++e)
       for (std::size_t n = block.first_node[e]; n < block.first_node[e + 1]; ++n)
-        if (block.nodes[n].valid()) attached.uses.push_back({block.nodes[n], static_cast<ElementClass>(c), static_cast<std::uint32_t>(e)});
+        if (block.nodes[n].valid()) uses.push_back({block.nodes[n], static_cast<ElementClass>(c), static_cast<std::uint32_t>(e)});
   }
-  std::sort(attached.uses.begin(), attached.uses.end());
-  attached.uses.erase(std::unique(attached.uses.begin(), attached.uses.end()), attached.uses.end());
-  return attached;
+  std::sort(uses.begin(), uses.end());
+  uses.erase(std::unique(uses.begin(), uses.end()), uses.end());
+  return uses;
 }
 
 /// Points into the deck.
@@ -36,13 +40,13 @@ select::Names find_names(const deck::Deck& deck) {
 
 }  // namespace
 
-std::shared_ptr<const Surroundings> find_surroundings(std::shared_ptr<const deck::Deck> deck, const Model& model) {
-  auto around = std::make_shared<Surroundings>();
-  around->attached = find_attached(model);
-  around->names = find_names(*deck);
-  around->dependents = find_dependents(*deck, model, around->attached);
-  around->deck = std::move(deck);
-  return around;
+std::shared_ptr<const DeckRelations> find_deck_relations(std::shared_ptr<const deck::Deck> deck, const Model& model) {
+  auto relations = std::make_shared<DeckRelations>();
+  relations->names = find_names(*deck);
+  relations->element_uses = find_element_uses(model);
+  relations->dependents = find_dependents(*deck, model, relations->element_uses);
+  relations->deck = std::move(deck);
+  return relations;
 }
 
 }  // namespace prismesh::mesh::document

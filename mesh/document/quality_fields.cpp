@@ -1,8 +1,8 @@
-// Fields of the shells' quality.
+#include "mesh/document/quality_fields.h"
+
 #include <algorithm>
 #include <array>
 
-#include "mesh/document/field.h"
 #include "mesh/document/field_values.h"
 #include "mesh/quality/composite.h"
 #include "mesh/quality/limits.h"

@@ -1,0 +1,37 @@
+// What a deck says besides its shells, as edits need it: the names that expressions may use, the elements at nodes and what depends on
+// nodes. Found when the deck is opened, shared by all generations.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mesh/deck/deck.h"
+#include "mesh/document/dependents.h"
+#include "mesh/select/names.h"
+
+namespace prismesh::mesh::document {
+
+/// An element other than a shell at a node: it moves along when the node is moved.
+struct ElementUse {
+  NodeIndex node;
+  ElementClass element_class = ElementClass::other;
+  std::uint32_t element = 0;  ///< index in Model::elements[element_class]
+  auto operator<=>(const ElementUse&) const = default;
+};
+
+struct DeckRelations {
+  std::shared_ptr<const deck::Deck> deck;  ///< keeps what `names` points into
+  select::Names names;
+  std::vector<ElementUse> element_uses;  ///< ascending
+  Dependents dependents;
+};
+
+/// The elements other than shells at a node. Costs a binary search.
+std::span<const ElementUse> uses_at(const DeckRelations& relations, NodeIndex node);
+/// Whether a card joins the node to others. Costs a binary search.
+bool is_joined(const DeckRelations& relations, NodeIndex node);
+
+}  // namespace prismesh::mesh::document

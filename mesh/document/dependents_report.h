@@ -1,0 +1,13 @@
+// Says what an edit did to what depends on the nodes it moved. Rules: docs/connections.md. Private to mesh/document.
+#pragma once
+
+#include "mesh/document/edit_report.h"
+#include "mesh/document/generation.h"
+#include "mesh/model/node_set.h"
+
+namespace prismesh::mesh::document {
+
+/// Notes cards of whose nodes only some moved, and lists nodes that no longer lie on their sheets. `moved` ascending.
+void report_dependents(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report);
+
+}  // namespace prismesh::mesh::document

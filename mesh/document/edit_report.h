@@ -1,0 +1,33 @@
+// What an edit changed, as figures and sentences.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/quality/report.h"
+
+namespace prismesh::mesh::document {
+
+struct EditReport {
+  std::string edit;
+  std::size_t nodes_moved = 0;
+  std::size_t elements_added = 0;
+  std::size_t elements_removed = 0;
+  quality::Counts before;
+  quality::Counts after;
+  // of edits that move nodes:
+  std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)
+  std::size_t lost_connections = 0;   ///< nodes that lay on a sheet and no longer do (docs/connections.md)
+  std::vector<std::string> lost;      ///< the first hundred of them, a sentence each
+  std::optional<double> mass_before;  ///< of the shells whose mass is known; absent if none is
+  std::optional<double> mass_after;
+  std::optional<std::array<double, 3>> centre_before;  ///< of gravity
+  std::optional<std::array<double, 3>> centre_after;
+  std::vector<std::string> notes;
+  double milliseconds = 0;
+};
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,15 @@
+// Finds what depends on nodes without sharing them. Private to mesh/document.
+#pragma once
+
+#include <span>
+
+#include "mesh/deck/deck.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/dependents.h"
+
+namespace prismesh::mesh::document {
+
+/// `uses` as in DeckRelations. Costs the model where there is something that may lie on it.
+Dependents find_dependents(const deck::Deck& deck, const Model& model, std::span<const ElementUse> uses);
+
+}  // namespace prismesh::mesh::document

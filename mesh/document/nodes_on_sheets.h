@@ -1,0 +1,19 @@
+// Finds the nodes that lie on sheets without being corners of them. Rules: docs/connections.md. Private to mesh/document.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/dependents.h"
+
+namespace prismesh::mesh::document {
+
+/// Nodes that may lie on a sheet because a weld has them: neither corners nor mid-side nodes, of elements connected to few others over such
+/// nodes. `uses` ascending. Ascending by node, each once; shell and reach are not set.
+std::vector<NodeOnSheet> find_weld_nodes(const Model& model, std::span<const ElementUse> uses);
+
+/// Those of the candidates that lie on a sheet, in the same order, with shell and reach. Costs the shells of the model.
+std::vector<NodeOnSheet> find_sheets(const Model& model, std::vector<NodeOnSheet> candidates);
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,18 @@
+// Saving a document's current generation.
+#pragma once
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "mesh/deck/staged_save.h"
+#include "mesh/document/document.h"
+
+namespace prismesh::mesh::document {
+
+/// Saves the current generation (deck::save).
+Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress = {});
+/// The same up to the point where files are replaced; its report is complete. The document's deck must outlive it.
+Result<deck::StagedSave> stage_save(const Document& document, const std::filesystem::path& target, const Progress& progress = {});
+
+}  // namespace prismesh::mesh::document

@@ -1,0 +1,17 @@
+// What a document's elements are judged by.
+#pragma once
+
+#include "base/units.h"
+#include "mesh/quality/criteria.h"
+
+namespace prismesh::mesh::document {
+
+struct Settings {
+  LengthUnit length_unit = LengthUnit::mm;
+  bool length_unit_guessed = true;
+  double target_size = 1;
+  bool target_size_guessed = true;
+  quality::Criteria criteria;
+};
+
+}  // namespace prismesh::mesh::document
