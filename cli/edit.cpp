@@ -67,7 +67,7 @@ void refuse_edit(const Surroundings& surroundings, const Common& common, const W
 Result<document::Prepared> prepare_shown(const document::Document& document, const document::Edit& edit, const Surroundings& surroundings) {
   MonotonicClock clock;
   ProgressBar bar(surroundings, std::string(name(edit)), clock);
-  return document::prepare(document, edit, bar.progress());
+  return document::prepare(document, edit, bar.progress(), &clock);
 }
 
 /// Does the edits one after the other. False: one was refused, and said.

@@ -31,7 +31,7 @@ std::vector<document::ReplayStep> replay_watched(document::Document& document, c
                                                  const ReplayOptions& options, const Surroundings& surroundings) {
   MonotonicClock clock;
   ProgressBar bar(surroundings, "replaying " + options.journal.filename().string(), clock);
-  return document::replay(document, intents, bar.progress());
+  return document::replay(document, intents, bar.progress(), &clock);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
       : lock(std::move(state_lock)),
         page(std::move(state_page)),
         publisher(StateFolder(options.state_directory).first_number()),
-        handler(StateFolder(options.state_directory), publisher, options.history_bytes),
+        handler(StateFolder(options.state_directory), publisher, options.history_bytes, clock),
         scheduler(*this, worker, handler, publisher) {}
 
   ipc::Descriptor lock;
@@ -61,6 +61,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   std::optional<ipc::Server> server;
   std::set<ipc::ClientId> greeted;
   ipc::SnapshotPublisher publisher;
+  MonotonicClock clock;
   RequestHandler handler;
   RequestScheduler scheduler;
   Pulse loop_pulse;
@@ -142,7 +143,6 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
 
   void beat() {
     loop_pulse.sign();
-    MonotonicClock clock;
     ipc::Health health = scheduler.health();
     health.heartbeat_ns = clock.now_ns();
     health.pid = ::getpid();

@@ -174,7 +174,7 @@ std::size_t DocumentKeeper::same_drop(const Prepared& prepared) const {
   return 0;
 }
 
-Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progress) {
+Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progress, Clock* clock) {
   if (!open_) return fail("", "no document is open");
   OpenDocument& open = *open_;
   if (open.unfinished)
@@ -182,7 +182,7 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
         open.document.path.string(),
         "its last save isn't finished, and edits made now could be lost: save again to finish it, save under another name, or close "
         "the document");
-  Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, edit, progress); }, "");
+  Result<Prepared> prepared = if_memory_allows([&] { return prepare(open.document, edit, progress, clock); }, "");
   if (!prepared) return fail(std::move(prepared.error()));
   EditReport report = prepared->report;
   const bool push = prepared->step == Prepared::Step::push;

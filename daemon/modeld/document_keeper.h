@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/clock.h"
 #include "base/progress.h"
 #include "daemon/modeld/state_folder.h"
 #include "ipc/messages.h"
@@ -31,7 +32,7 @@ class DocumentKeeper {
   /// What was open when the last life ended; false if nothing was. Errors: as `open`; a deck that ended several lives is left.
   Result<bool> reopen(const Progress& progress);
   /// Prepares, journals, commits.
-  Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit, const Progress& progress = {});
+  Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit, const Progress& progress = {}, Clock* clock = nullptr);
   /// Told to stop before the first file is put in place, it leaves all files as they were; from then on it goes on. Where a save in place
   /// fails between the files, those that were replaced get back what they held. If even that fails no edits are taken until the save is
   /// called again and finishes it.

@@ -51,8 +51,8 @@ void add_shell(const mesh::document::Generation& next, ShellIndex shell, std::un
 
 }  // namespace
 
-Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document, const mesh::document::Edit& edit) {
-  Result<mesh::document::Prepared> prepared = mesh::document::prepare(document, edit);
+Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document, const mesh::document::Edit& edit, Clock* clock) {
+  Result<mesh::document::Prepared> prepared = mesh::document::prepare(document, edit, {}, clock);
   if (!prepared) return fail(std::move(prepared.error()));
   const mesh::document::Generation& now = document.current();
   const mesh::document::Generation& next = *prepared->next;

@@ -55,7 +55,7 @@ Outcome RequestHandler::reopen(const Progress& progress) {
 }
 
 Outcome RequestHandler::edit(const mesh::document::Edit& edit, const Progress& progress) {
-  Result<mesh::document::EditReport> report = keeper_.edit(edit, progress);
+  Result<mesh::document::EditReport> report = keeper_.edit(edit, progress, &clock_);
   if (!report) return {failed(report.error()), {}, {}, {}};
   Outcome outcome;
   const std::string made_by = report->edit;
@@ -85,7 +85,7 @@ Outcome RequestHandler::find(const ipc::FindShells& request) const {
 
 Outcome RequestHandler::preview(const ipc::PreviewEdit& request) const {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
-  return told(preview_edit(keeper_.document(), request.edit));
+  return told(preview_edit(keeper_.document(), request.edit, &clock_));
 }
 
 Outcome RequestHandler::field(const ipc::GetField& request, const Progress& progress) {

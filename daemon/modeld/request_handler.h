@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/progress.h"
 #include "daemon/modeld/document_keeper.h"
 #include "daemon/modeld/drag_session.h"
@@ -30,8 +31,8 @@ struct Outcome {
 
 class RequestHandler {
  public:
-  RequestHandler(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes)
-      : keeper_(std::move(folder), history_bytes), publisher_(publisher) {}
+  RequestHandler(StateFolder folder, ipc::SnapshotPublisher& publisher, std::size_t history_bytes, Clock& clock)
+      : keeper_(std::move(folder), history_bytes), publisher_(publisher), clock_(clock) {}
 
   Outcome open(const ipc::Open& request, const Progress& progress);
   /// What was open when the last life ended. The answer is Failed if that couldn't be opened.
@@ -60,6 +61,7 @@ class RequestHandler {
   DocumentKeeper keeper_;
   FieldMaker fields_;
   ipc::SnapshotPublisher& publisher_;
+  Clock& clock_;  ///< for how long edits take
   std::optional<DragSession> drag_;
   std::uint64_t drag_number_ = 0;
 };

@@ -27,7 +27,7 @@ struct EditReport {
   std::optional<std::array<double, 3>> centre_before;  ///< of gravity
   std::optional<std::array<double, 3>> centre_after;
   std::vector<std::string> notes;
-  double milliseconds = 0;
+  double milliseconds = 0;  ///< of working it out, where a clock was given
 };
 
 }  // namespace prismesh::mesh::document

@@ -71,7 +71,8 @@ class Journal {
 /// header.
 Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syntax_error = nullptr);
 
-/// Executes the intents on a document, going on after an edit that can't be applied. Told to stop, it returns the steps so far.
-std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents, const Progress& progress = {});
+/// Executes the intents on a document, going on after an edit that can't be applied. Told to stop, it returns the steps so far. `clock` as
+/// for prepare.
+std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents, const Progress& progress = {}, Clock* clock = nullptr);
 
 }  // namespace prismesh::mesh::document

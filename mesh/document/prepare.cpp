@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/clock.h"
 #include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/history.h"
@@ -67,9 +66,8 @@ void say_weights(const quality::Weight& before, const quality::Weight& after, Ed
 
 }  // namespace
 
-Result<Prepared> prepare(const Document& document, const Edit& edit, const Progress& progress) {
-  MonotonicClock clock;
-  const std::int64_t start_ns = clock.now_ns();
+Result<Prepared> prepare(const Document& document, const Edit& edit, const Progress& progress, Clock* clock) {
+  const std::int64_t start_ns = clock != nullptr ? clock->now_ns() : 0;
   Result<Prepared> prepared = std::visit(
       [&](const auto& each) -> Result<Prepared> {
         using E = std::decay_t<decltype(each)>;
@@ -85,7 +83,7 @@ Result<Prepared> prepare(const Document& document, const Edit& edit, const Progr
     say_weights(document.current().weight, prepared->next->weight, prepared->report);
   prepared->report.before = document.current().counts;
   prepared->report.after = prepared->next->counts;
-  prepared->report.milliseconds = static_cast<double>(clock.now_ns() - start_ns) * 1e-6;
+  if (clock != nullptr) prepared->report.milliseconds = static_cast<double>(clock->now_ns() - start_ns) * 1e-6;
   return prepared;
 }
 
@@ -104,8 +102,8 @@ void commit(Document& document, Prepared prepared) {
   document.cursor = generations.size() - 1;
 }
 
-Result<EditReport> apply(Document& document, const Edit& edit, const Progress& progress) {
-  Result<Prepared> prepared = prepare(document, edit, progress);
+Result<EditReport> apply(Document& document, const Edit& edit, const Progress& progress, Clock* clock) {
+  Result<Prepared> prepared = prepare(document, edit, progress, clock);
   if (!prepared) return fail(prepared.error());
   EditReport report = prepared->report;
   commit(document, std::move(*prepared));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "mesh/document/document.h"
@@ -23,11 +24,11 @@ struct Prepared {
 
 /// Works the edit out on the current generation; the document doesn't change. Deterministic. Errors: expression:column,
 /// nothing selected, a locked or held node would move (named), nothing to undo, cancelled. `progress` hears of relax and repair, which may
-/// take long; the other edits don't look at it.
-Result<Prepared> prepare(const Document& document, const Edit& edit, const Progress& progress = {});
+/// take long; the other edits don't look at it. `clock` may be null: the report's milliseconds stay 0.
+Result<Prepared> prepare(const Document& document, const Edit& edit, const Progress& progress = {}, Clock* clock = nullptr);
 /// Makes it the current generation; drops redo and, over the byte cap, the oldest generations. Can't fail.
 void commit(Document& document, Prepared prepared);
 /// prepare, then commit.
-Result<EditReport> apply(Document& document, const Edit& edit, const Progress& progress = {});
+Result<EditReport> apply(Document& document, const Edit& edit, const Progress& progress = {}, Clock* clock = nullptr);
 
 }  // namespace prismesh::mesh::document

@@ -117,7 +117,7 @@ class MeantHistory {
 
 }  // namespace
 
-std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents, const Progress& progress) {
+std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents, const Progress& progress, Clock* clock) {
   std::vector<ReplayStep> steps;
   MeantHistory meant;
   for (std::size_t i = 0; i < intents.edits.size(); ++i) {
@@ -143,7 +143,7 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
     const auto within = [&](double fraction) {
       return progress((static_cast<double>(i) + fraction) / static_cast<double>(intents.edits.size()));
     };
-    Result<EditReport> report = apply(document, edit, progress ? Progress(within) : Progress());
+    Result<EditReport> report = apply(document, edit, progress ? Progress(within) : Progress(), clock);
     if (!report && report.error().message == cancelled().message) break;
     step.applied = report.has_value();
     if (report)

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/clock.h"
 #include "base/hash.h"
 #include "daemon/modeld/daemon.h"
 #include "daemon/modeld/document_keeper.h"
@@ -109,7 +110,8 @@ TEST_F(Refusals, a_deck_that_is_gone_after_a_restart_is_an_honest_refusal_each_t
     EXPECT_EQ(opened.error().message.find("ended the daemon"), std::string::npos) << "it was refused, nothing ended";
   }
   ipc::SnapshotPublisher publisher(1);
-  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
+  ManualClock clock;
+  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30, clock);
   EXPECT_THAT(words(handler.reopen({}).answer), HasSubstr("sheet.k"));
   folder_.sheet();
   EXPECT_TRUE(*keeper_.reopen({})) << "it is there again";
@@ -340,7 +342,8 @@ class BenchRefusals : public ::testing::Test {
 
   test::Folder folder_;
   ipc::SnapshotPublisher publisher_{1};
-  RequestHandler handler_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30};
+  ManualClock clock_;
+  RequestHandler handler_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30, clock_};
 };
 
 TEST_F(BenchRefusals, questions_that_have_no_answer_are_sentences) {

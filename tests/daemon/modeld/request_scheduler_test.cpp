@@ -1,5 +1,6 @@
 // Who may do what when: the scheduler with a loop that the test turns by hand, so that each order of events can be had.
 #include "daemon/modeld/request_scheduler.h"
+#include "base/clock.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -139,7 +140,8 @@ class DeskTest : public ::testing::Test {
 
   test::Folder folder_;
   ipc::SnapshotPublisher publisher_{1};
-  RequestHandler handler_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30};
+  ManualClock clock_;
+  RequestHandler handler_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30, clock_};
   HandTurnedLoop loop_;
   Worker worker_;
   RequestScheduler scheduler_{loop_, worker_, handler_, publisher_};

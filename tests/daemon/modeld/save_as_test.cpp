@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/clock.h"
 #include "daemon/modeld/request_handler.h"
 #include "mesh/document/edit_json.h"
 #include "tests/daemon/modeld/folder.h"
@@ -105,7 +106,8 @@ TEST_F(SaveAs, takes_includes_and_structure_along) {
 TEST_F(SaveAs, says_what_it_would_replace_and_make_and_touches_nothing) {
   const fs::path deck = folder_.two_files();
   ipc::SnapshotPublisher publisher(1);
-  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
+  ManualClock clock;
+  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30, clock);
   ipc::Open request;
   request.path = deck.string();
   ASSERT_TRUE(std::holds_alternative<ipc::State>(handler.open(request, {}).answer));
@@ -136,7 +138,8 @@ TEST_F(SaveAs, says_what_it_would_replace_and_make_and_touches_nothing) {
 TEST_F(SaveAs, a_copy_leaves_the_document_as_it_was) {
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
   ipc::SnapshotPublisher publisher(1);
-  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30);
+  ManualClock clock;
+  RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30, clock);
   ipc::Open request;
   request.path = deck.string();
   ASSERT_TRUE(std::holds_alternative<ipc::State>(handler.open(request, {}).answer));

@@ -90,6 +90,22 @@ TEST(History, preparing_changes_nothing) {
   EXPECT_TRUE(selected_ids(document).empty());
 }
 
+/// Goes on by 3 ms each time it is read.
+class SteppingClock final : public Clock {
+ public:
+  std::int64_t now_ns() override { return now_ns_ += 3'000'000; }
+
+ private:
+  std::int64_t now_ns_ = 0;
+};
+
+TEST(History, an_edit_takes_the_time_of_the_clock_given) {
+  const Document document = make_sheet(4, 4);
+  SteppingClock clock;
+  EXPECT_EQ(prepare(document, edit_of(kEdits[0]), {}, &clock)->report.milliseconds, 3);
+  EXPECT_EQ(prepare(document, edit_of(kEdits[0]))->report.milliseconds, 0);
+}
+
 TEST(History, keeps_its_byte_cap_and_says_so) {
   // each step owns a chunk or two of positions and quality: 5 steps fit, no more
   Document probe = make_sheet(10, 10);
