@@ -7,7 +7,8 @@
 #include "cli/line_diff.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
 #include "mesh/document/distance_fields.h"
 
 namespace prismesh::cli {

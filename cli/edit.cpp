@@ -1,4 +1,5 @@
 #include "mesh/document/edit.h"
+#include "mesh/deck/save.h"
 #include "mesh/document/prepare.h"
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "cli/open_deck.h"
 
 #include "cli/progress_bar.h"
+#include "mesh/deck/save.h"
 #include "mesh/document/open.h"
 #include "mesh/document/save.h"
 

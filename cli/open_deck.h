@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/commands.h"
+#include "mesh/deck/save.h"
 #include "mesh/document/document.h"
 
 namespace prismesh::cli {

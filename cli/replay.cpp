@@ -6,6 +6,7 @@
 #include "cli/open_deck.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
+#include "mesh/deck/save.h"
 #include "mesh/document/journal.h"
 
 namespace prismesh::cli {

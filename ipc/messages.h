@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/document/edit.h"
 #include "mesh/document/edit_report.h"
 

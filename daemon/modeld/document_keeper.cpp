@@ -6,7 +6,8 @@
 
 #include "daemon/modeld/deck_files.h"
 #include "daemon/modeld/paths.h"
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
 #include "mesh/document/history.h"
 #include "mesh/model/topology_change.h"
 

@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "daemon/modeld/state_folder.h"
 #include "ipc/messages.h"
+#include "mesh/deck/open.h"
 #include "mesh/deck/staged_save.h"
 #include "mesh/document/document.h"
 #include "mesh/document/edit_report.h"

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "mesh/deck/open.h"
 #include "mesh/document/field.h"
 #include "mesh/document/field_wish.h"
 #include "mesh/document/make_field.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 
 namespace prismesh::kiosk::tools {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 
 namespace prismesh::mesh::deck {
 

@@ -2,8 +2,8 @@
 // that isn't understood.
 #pragma once
 
-#include "mesh/deck/deck.h"
-#include "mesh/deck/warnings.h"
+#include "mesh/deck/assembly/warnings.h"
+#include "mesh/deck/data/deck.h"
 
 namespace prismesh::mesh::deck {
 

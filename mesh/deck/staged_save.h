@@ -8,8 +8,10 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/progress.h"
-#include "mesh/deck/deck.h"
-#include "mesh/deck/text_changes.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save_report.h"
 
 namespace prismesh::mesh::deck {
 
@@ -22,7 +24,7 @@ class StagedSave {
     bool as_read = false;  ///< it gets back what it held when it was read
   };
 
-  /// As save (mesh/deck/deck.h), up to the point where files are replaced. The deck must outlive this. Errors: the same.
+  /// As save (mesh/deck/save.h), up to the point where files are replaced. The deck must outlive this. Errors: the same.
   static Result<StagedSave> write(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
                                   const Progress& progress = {});
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/document/dependents.h"
 #include "mesh/select/names.h"
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/document/generation.h"
 #include "mesh/document/settings.h"
 

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/document/deck_relations.h"
 
 namespace prismesh::mesh::document {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents.h"
 

@@ -1,6 +1,8 @@
 #include "mesh/document/open.h"
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/data/length_unit.h"
+#include "mesh/deck/open.h"
 #include "mesh/document/find_deck_relations.h"
 #include "mesh/quality/judging.h"
 

@@ -8,7 +8,8 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/units.h"
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
 #include "mesh/document/document.h"
 #include "mesh/quality/criteria.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/error.h"
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/document/edit.h"
 #include "mesh/document/generation.h"
 #include "mesh/document/motion.h"

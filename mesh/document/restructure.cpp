@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "mesh/deck/new_ids.h"
-#include "mesh/deck/text_changes.h"
+#include "mesh/deck/editing/new_ids.h"
+#include "mesh/deck/editing/text_changes.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/part_marks.h"

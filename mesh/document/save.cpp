@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "base/counted.h"
-#include "mesh/deck/text_changes.h"
+#include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/save.h"
 #include "mesh/model/node_set.h"
 
 namespace prismesh::mesh::document {

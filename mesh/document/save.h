@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "mesh/deck/save.h"
 #include "mesh/deck/staged_save.h"
 #include "mesh/document/document.h"
 

@@ -41,7 +41,7 @@ struct TopologyChange {
 
 /// Every function drops the adjacency: whoever has finished an edit builds it again or brings it up to date.
 /// Preconditions, here and below: indices are those of nodes and shells that aren't removed; an id was never one of the model's, and
-/// fits the deck (mesh/deck/new_ids.h).
+/// fits the deck (mesh/deck/editing/new_ids.h).
 NodeIndex add_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin);
 
 /// `nodes`: a triangle repeats its third. Part and thickness are the parent's.

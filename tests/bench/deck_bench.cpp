@@ -11,9 +11,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include "mesh/deck/deck.h"
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
 #include "mesh/deck/sample.h"
+#include "mesh/deck/save.h"
 #include "tests/bench/nastran_twin.h"
 
 namespace prismesh::mesh::deck {

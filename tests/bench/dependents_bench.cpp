@@ -4,6 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "mesh/deck/open.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/document.h"
 #include "mesh/document/drag.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/file.h"
-#include "mesh/deck/format_number.h"
+#include "mesh/deck/text/format_number.h"
 #include "mesh/model/model.h"
 
 namespace prismesh::mesh::bench {

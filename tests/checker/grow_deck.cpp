@@ -7,8 +7,10 @@
 #include <set>
 #include <vector>
 
-#include "mesh/deck/deck.h"
-#include "mesh/deck/new_ids.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/editing/new_ids.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "mesh/model/topology_change.h"
 
 namespace {

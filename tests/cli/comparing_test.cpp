@@ -1,7 +1,8 @@
 // diff and distance give the figures of the fields that views are coloured by.
 #include <cmath>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
 #include "mesh/document/distance_fields.h"
 #include "mesh/document/field.h"
 #include "tests/cli/cli_fixture.h"

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
 #include "tests/cli/cli_fixture.h"
 #include "tests/support/places.h"
 

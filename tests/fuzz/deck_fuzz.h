@@ -17,7 +17,9 @@
 
 #include <Eigen/SVD>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 
 namespace prismesh::fuzz {
 

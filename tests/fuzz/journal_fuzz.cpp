@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/base64.h"
+#include "mesh/deck/open.h"
 #include "mesh/document/delta.h"
 #include "mesh/document/document.h"
 #include "mesh/document/generation.h"

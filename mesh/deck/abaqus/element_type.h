@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/model/model.h"
 
 namespace prismesh::mesh::deck::abaqus {

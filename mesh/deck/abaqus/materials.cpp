@@ -4,7 +4,7 @@
 #include <optional>
 #include <set>
 
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mesh/deck/abaqus/walk.h"
-#include "mesh/deck/piece_cards.h"
+#include "mesh/deck/assembly/piece_cards.h"
 
 namespace prismesh::mesh::deck::abaqus {
 

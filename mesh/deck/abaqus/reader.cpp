@@ -8,7 +8,7 @@
 #include "mesh/deck/abaqus/references.h"
 #include "mesh/deck/abaqus/sets.h"
 #include "mesh/deck/abaqus/walk.h"
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {
@@ -136,8 +136,7 @@ void note_unread_mesh(const Walk& walk, Warnings& warnings) {
 
 }  // namespace
 
-Result<OpenedDeck> read(FileSet files, const Progress& progress) {
-  Watch watch(progress);
+Result<Found> read(FileSet files, Watch& watch) {
   Walk walk(std::move(files));
   if (Result<void> walked = walk.run(); !walked) return fail(walked.error());
   watch.tell(kWalked);
@@ -151,7 +150,7 @@ Result<OpenedDeck> read(FileSet files, const Progress& progress) {
   read_pieces(
       found, walk.pieces.size(), [&](std::size_t p) { return read_piece(walk, walk.pieces[p]); }, watch);
   if (watch.stopped()) return fail(cancelled());
-  // After an error pieces are cut short; finish() tells of it.
+  // After an error pieces are cut short; opening tells of it.
   const bool whole = std::none_of(found.cards.begin(), found.cards.end(), [](const PieceCards& cards) { return cards.error.has_value(); });
   if (whole) {
     note_left_out(found);
@@ -161,7 +160,7 @@ Result<OpenedDeck> read(FileSet files, const Progress& progress) {
     found.references = find_references(walk);
   }
   found.missing_files = std::move(walk.files.missing);
-  return finish(std::move(found), watch);
+  return found;
 }
 
 }  // namespace prismesh::mesh::deck::abaqus

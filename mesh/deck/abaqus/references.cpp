@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {

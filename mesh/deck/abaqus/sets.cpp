@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mesh/deck/abaqus/materials.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/deck/abaqus/walk.h"
-#include "mesh/deck/piece_cards.h"
+#include "mesh/deck/assembly/piece_cards.h"
 
 namespace prismesh::mesh::deck::abaqus {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "mesh/deck/number.h"
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {

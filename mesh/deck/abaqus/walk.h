@@ -10,9 +10,9 @@
 
 #include "mesh/deck/abaqus/element_type.h"
 #include "mesh/deck/abaqus/keyword.h"
-#include "mesh/deck/file_set.h"
-#include "mesh/deck/frame.h"
-#include "mesh/deck/warnings.h"
+#include "mesh/deck/assembly/file_set.h"
+#include "mesh/deck/assembly/warnings.h"
+#include "mesh/deck/data/frame.h"
 
 namespace prismesh::mesh::deck::abaqus {
 

@@ -7,9 +7,9 @@
 #include "mesh/deck/abaqus/keyword.h"
 #include "mesh/deck/abaqus/mesh_cards.h"
 #include "mesh/deck/abaqus/references.h"
-#include "mesh/deck/format_number.h"
-#include "mesh/deck/number.h"
-#include "mesh/deck/text_lines.h"
+#include "mesh/deck/text/format_number.h"
+#include "mesh/deck/text/number.h"
+#include "mesh/deck/text/text_lines.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/assembly/piece_cards.h"
+#include "mesh/deck/assembly/warnings.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/lsdyna/includes.h"
 #include "mesh/deck/lsdyna/transformations.h"
-#include "mesh/deck/piece_cards.h"
-#include "mesh/deck/warnings.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 

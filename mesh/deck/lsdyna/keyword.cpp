@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "base/letter_case.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/assembly/piece_cards.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/lsdyna/includes.h"
 #include "mesh/deck/lsdyna/parameters.h"
-#include "mesh/deck/piece_cards.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "base/letter_case.h"
-#include "mesh/deck/lsdyna/card.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/lsdyna/card_fields.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
@@ -104,10 +104,10 @@ void Parameters::read(std::string_view text, const Block& block, std::vector<Par
   if (has("_DUPLICATION")) {
     Lines lines(text, block.begin, block.end);
     Line line;
-    Card card;
+    CardFields card;
     if (!lines.next(line) || history_->duplication != 0) return;
     card.cut(line.text, block.columns);
-    history_->duplication = static_cast<int>(std::clamp<std::int64_t>(card.integer(0, *this).value_or(1), 1, 5));
+    history_->duplication = static_cast<int>(std::clamp<std::int64_t>(integer(card.text(0)).value_or(1), 1, 5));
     return;
   }
   const Definition definition{has("_LOCAL") ? Scope::local : Scope::global, has("_MUTABLE"), 0, &problems};
@@ -190,7 +190,7 @@ void Parameters::read_definitions(std::string_view text, const Block& block, Def
   const bool one_a_card = block.name.find("_TYPE") != std::string::npos;
   Lines lines(text, block.begin, block.end);
   Line line;
-  Card card;
+  CardFields card;
   while (lines.next(line)) {
     card.cut(line.text, block.columns);
     definition.offset = line.offset;

@@ -3,15 +3,15 @@
 #include <optional>
 #include <utility>
 
+#include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/lsdyna/include_frames.h"
 #include "mesh/deck/lsdyna/walk.h"
-#include "mesh/deck/opening.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
 /// What is read with one walk; nullopt: there is an encrypted block among the mesh, so the walk has to look for them.
-std::optional<Result<OpenedDeck>> read_once(Walk& walk, Watch& watch) {
+std::optional<Found> read_once(Walk& walk, Watch& watch) {
   walk.run();
   watch.tell(kWalked);
   Found found;
@@ -35,16 +35,15 @@ std::optional<Result<OpenedDeck>> read_once(Walk& walk, Watch& watch) {
   found.time_step = walk.definitions.time_step();
   found.parts = walk.definitions.parts();
   found.warnings = std::move(walk.warnings);
-  return finish(std::move(found), watch);
+  return found;
 }
 
 }  // namespace
 
-Result<OpenedDeck> read(FileSet files, const Progress& progress) {
-  Watch watch(progress);
+Result<Found> read(FileSet files, Watch& watch) {
   const std::filesystem::path path = files.files[0].path;
   Walk walk(std::move(files), false);
-  std::optional<Result<OpenedDeck>> opened = read_once(walk, watch);
+  std::optional<Found> opened = read_once(walk, watch);
   if (opened) return std::move(*opened);
   Walk careful(FileSet::again(std::move(walk.files)), true);
   opened = read_once(careful, watch);

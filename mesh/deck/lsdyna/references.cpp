@@ -14,7 +14,7 @@
 #include "base/parallel_for.h"
 #include "mesh/deck/lsdyna/card.h"
 #include "mesh/deck/lsdyna/reference_tables.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {

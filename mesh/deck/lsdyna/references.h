@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/lsdyna/keyword.h"
 #include "mesh/deck/lsdyna/parameters.h"
 #include "mesh/model/references.h"

@@ -6,7 +6,7 @@
 #include "base/letter_case.h"
 #include "mesh/deck/lsdyna/field_line.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {

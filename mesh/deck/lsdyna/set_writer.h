@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/writing/card_writer.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 

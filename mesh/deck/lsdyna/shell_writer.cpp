@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/deck/format_number.h"
 #include "mesh/deck/lsdyna/field_line.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/format_number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {

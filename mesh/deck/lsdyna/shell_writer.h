@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/writing/card_writer.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 

@@ -12,7 +12,7 @@
 
 #include <Eigen/Geometry>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/lsdyna/keyword.h"
 #include "mesh/deck/lsdyna/parameters.h"
 

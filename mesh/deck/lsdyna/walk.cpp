@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "mesh/deck/number.h"
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {

@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/deck/deck.h"
-#include "mesh/deck/file_set.h"
+#include "mesh/deck/assembly/file_set.h"
+#include "mesh/deck/assembly/warnings.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/lsdyna/definitions.h"
 #include "mesh/deck/lsdyna/includes.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
 #include "mesh/deck/lsdyna/references.h"
 #include "mesh/deck/lsdyna/transformations.h"
 #include "mesh/deck/lsdyna/unseen.h"
-#include "mesh/deck/warnings.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 

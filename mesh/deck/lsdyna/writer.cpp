@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/deck/format_number.h"
 #include "mesh/deck/lsdyna/field_line.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
 #include "mesh/deck/lsdyna/parameters.h"
 #include "mesh/deck/lsdyna/set_writer.h"
 #include "mesh/deck/lsdyna/shell_writer.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/format_number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {

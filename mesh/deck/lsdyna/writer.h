@@ -4,8 +4,8 @@
 #include <memory>
 #include <string_view>
 
-#include "mesh/deck/card_writer.h"
 #include "mesh/deck/lsdyna/keyword.h"
+#include "mesh/deck/writing/card_writer.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 

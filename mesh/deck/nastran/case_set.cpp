@@ -5,7 +5,7 @@
 #include "base/letter_case.h"
 #include "mesh/deck/nastran/card.h"
 #include "mesh/deck/nastran/card_edit.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::nastran {
 

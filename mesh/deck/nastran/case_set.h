@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/writing/card_writer.h"
 
 namespace prismesh::mesh::deck::nastran {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/nastran/card.h"
 
 namespace prismesh::mesh::deck::nastran {

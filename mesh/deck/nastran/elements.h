@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/nastran/card.h"
 
 namespace prismesh::mesh::deck::nastran {

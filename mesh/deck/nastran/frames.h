@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/deck/frame.h"
+#include "mesh/deck/data/frame.h"
 #include "mesh/deck/nastran/card.h"
 #include "mesh/model/model.h"
 

@@ -6,7 +6,7 @@
 
 #include "mesh/deck/nastran/elements.h"
 #include "mesh/deck/nastran/replication.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::nastran {
 namespace {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/deck/assembly/piece_cards.h"
 #include "mesh/deck/nastran/definitions.h"
 #include "mesh/deck/nastran/frames.h"
 #include "mesh/deck/nastran/references.h"
-#include "mesh/deck/piece_cards.h"
 
 namespace prismesh::mesh::deck::nastran {
 

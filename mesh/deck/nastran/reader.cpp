@@ -4,10 +4,10 @@
 #include <string>
 #include <utility>
 
+#include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/nastran/settle.h"
 #include "mesh/deck/nastran/walk.h"
-#include "mesh/deck/number.h"
-#include "mesh/deck/opening.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::nastran {
 namespace {
@@ -56,8 +56,7 @@ void settle_notices(Found& found, std::span<PieceFacts> facts) {
 
 }  // namespace
 
-Result<OpenedDeck> read(FileSet files, const Progress& progress) {
-  Watch watch(progress);
+Result<Found> read(FileSet files, Watch& watch) {
   Walk walk(std::move(files));
   walk.run();
   watch.tell(kWalked);
@@ -88,7 +87,7 @@ Result<OpenedDeck> read(FileSet files, const Progress& progress) {
   settle_element_ids(found);
   for (PieceFacts& some : facts) found.references.append(std::move(some.references));
   facts.clear();
-  return finish(std::move(found), watch);
+  return found;
 }
 
 }  // namespace prismesh::mesh::deck::nastran

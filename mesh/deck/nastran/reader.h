@@ -1,13 +1,13 @@
 // Reads Nastran bulk data: walks over its files, reads all cards in parallel, and puts the model together.
 #pragma once
 
-#include "base/progress.h"
-#include "mesh/deck/deck.h"
-#include "mesh/deck/file_set.h"
+#include "base/error.h"
+#include "mesh/deck/assembly/file_set.h"
+#include "mesh/deck/assembly/read_pieces.h"
 
 namespace prismesh::mesh::deck::nastran {
 
-/// `files` holds the main file. Errors: those of deck::open.
-Result<OpenedDeck> read(FileSet files, const Progress& progress);
+/// `files` holds the main file. Errors: as read in formats/formats.h.
+Result<Found> read(FileSet files, Watch& watch);
 
 }  // namespace prismesh::mesh::deck::nastran

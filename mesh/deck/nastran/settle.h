@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/nastran/piece.h"
-#include "mesh/deck/opening.h"
 
 namespace prismesh::mesh::deck::nastran {
 

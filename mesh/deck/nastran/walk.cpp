@@ -7,8 +7,8 @@
 
 #include "base/letter_case.h"
 #include "base/parallel_for.h"
-#include "mesh/deck/number.h"
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::nastran {
 namespace {

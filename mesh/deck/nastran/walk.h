@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "mesh/deck/deck.h"
-#include "mesh/deck/file_set.h"
+#include "mesh/deck/assembly/file_set.h"
+#include "mesh/deck/assembly/warnings.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/nastran/piece.h"
 #include "mesh/deck/nastran/references.h"
-#include "mesh/deck/warnings.h"
 
 namespace prismesh::mesh::deck::nastran {
 

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "base/letter_case.h"
-#include "mesh/deck/format_number.h"
 #include "mesh/deck/nastran/card_edit.h"
 #include "mesh/deck/nastran/case_set.h"
 #include "mesh/deck/nastran/elements.h"
 #include "mesh/deck/nastran/references.h"
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/format_number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::nastran {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/deck/number.h"
 #include "mesh/deck/radioss/references.h"
 #include "mesh/deck/radioss/transforms.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::radioss {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/radioss/definitions.h"
 #include "mesh/deck/radioss/mesh_cards.h"
 #include "mesh/deck/radioss/walk.h"

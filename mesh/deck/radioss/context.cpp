@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::radioss {
 namespace {

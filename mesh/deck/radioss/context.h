@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/radioss/block.h"
 
 namespace prismesh::mesh::deck::radioss {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::radioss {
 namespace {

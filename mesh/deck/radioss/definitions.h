@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
 #include "mesh/deck/radioss/block.h"
 #include "mesh/deck/radioss/context.h"
 #include "mesh/deck/radioss/parameters.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/deck/piece_cards.h"
+#include "mesh/deck/assembly/piece_cards.h"
 #include "mesh/deck/radioss/context.h"
 #include "mesh/deck/radioss/parameters.h"
 

@@ -2,18 +2,11 @@
 
 #include <utility>
 
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/radioss/assembly.h"
 
 namespace prismesh::mesh::deck::radioss {
-namespace {
-
-constexpr double kWalked = 0.2;  ///< how far the walk brings the progress: about its share of the time
-
-}  // namespace
-
-Result<OpenedDeck> read(FileSet files, const Progress& progress) {
-  Watch watch(progress);
+Result<Found> read(FileSet files, Watch& watch) {
   Walk walk(std::move(files));
   walk.run();
   watch.tell(kWalked);
@@ -31,7 +24,7 @@ Result<OpenedDeck> read(FileSet files, const Progress& progress) {
   found.missing_files = std::move(walk.files.missing);
   found.warnings = std::move(walk.warnings);
   if (!watch.stopped()) collected.complete(found, directions);
-  return finish(std::move(found), watch);
+  return found;
 }
 
 }  // namespace prismesh::mesh::deck::radioss

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::radioss {
 namespace {

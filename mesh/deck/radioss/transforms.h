@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "mesh/deck/frame.h"
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/data/frame.h"
 #include "mesh/deck/radioss/definitions.h"
 
 namespace prismesh::mesh::deck::radioss {

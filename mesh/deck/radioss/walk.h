@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/deck/file_set.h"
+#include "mesh/deck/assembly/file_set.h"
+#include "mesh/deck/assembly/warnings.h"
 #include "mesh/deck/radioss/block.h"
 #include "mesh/deck/radioss/context.h"
-#include "mesh/deck/warnings.h"
 
 namespace prismesh::mesh::deck::radioss {
 

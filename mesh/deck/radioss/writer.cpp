@@ -4,12 +4,12 @@
 #include <cmath>
 #include <set>
 
-#include "mesh/deck/format_number.h"
-#include "mesh/deck/number.h"
 #include "mesh/deck/radioss/block.h"
 #include "mesh/deck/radioss/mesh_cards.h"
 #include "mesh/deck/radioss/references.h"
-#include "mesh/deck/text_lines.h"
+#include "mesh/deck/text/format_number.h"
+#include "mesh/deck/text/number.h"
+#include "mesh/deck/text/text_lines.h"
 
 namespace prismesh::mesh::deck::radioss {
 namespace {

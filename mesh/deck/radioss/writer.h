@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/writing/card_writer.h"
 
 namespace prismesh::mesh::deck::radioss {
 

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/deck/new_ids.h"
+#include "mesh/deck/editing/new_ids.h"
+#include "mesh/deck/open.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"
 #include "tests/mesh/deck/deck_files.h"

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "mesh/model/adjacency.h"
 #include "tests/mesh/deck/growing.h"
 

@@ -1,4 +1,4 @@
-#include "mesh/deck/number.h"
+#include "mesh/deck/text/number.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/deck/format_number.h"
+#include "mesh/deck/text/format_number.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 namespace {

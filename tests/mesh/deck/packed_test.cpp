@@ -3,6 +3,8 @@
 #include <iostream>
 
 #include "base/compression.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -2,9 +2,11 @@
 #include <functional>
 
 #include "base/compression.h"
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/open.h"
 #include "mesh/deck/sample.h"
+#include "mesh/deck/save.h"
 #include "mesh/deck/staged_save.h"
+#include "mesh/deck/writing/card_writer.h"
 #include "tests/mesh/deck/growing.h"
 
 namespace prismesh::mesh::deck {

@@ -12,7 +12,10 @@
 #include <unistd.h>
 
 #include "base/hash.h"
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/data/length_unit.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 
 namespace prismesh::mesh::deck {
 namespace {

@@ -3,8 +3,10 @@
 
 #include <thread>
 
+#include "mesh/deck/data/on_disk.h"
 #include "mesh/deck/lsdyna/writer.h"
-#include "mesh/deck/on_disk.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

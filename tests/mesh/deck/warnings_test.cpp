@@ -1,5 +1,5 @@
 // How what is odd about a deck is put together: which lines of which file are named.
-#include "mesh/deck/warnings.h"
+#include "mesh/deck/assembly/warnings.h"
 
 #include "tests/mesh/deck/deck_files.h"
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/deck/save.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/deck/save.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "mesh/deck/save.h"
 #include "mesh/document/journal.h"
 #include "mesh/spatial/closest_point.h"
 #include "tests/mesh/document/document_fixture.h"

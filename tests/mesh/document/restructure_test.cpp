@@ -1,5 +1,6 @@
 // Edits that add, remove and reshape shells, through the whole document: figures, marks, history, journal, saving.
 #include "mesh/document/restructure.h"
+#include "mesh/deck/save.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/deck/save.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/deck/save.h"
 #include "mesh/document/unwritable.h"
 #include "mesh/model/topology_change.h"
 #include "tests/mesh/document/document_fixture.h"

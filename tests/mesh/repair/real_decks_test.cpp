@@ -8,7 +8,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "mesh/deck/opening.h"
+#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/open.h"
 #include "mesh/quality/report.h"
 #include "mesh/relax/freedom.h"
 #include "tests/mesh/repair/sheets.h"

@@ -6,7 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/select/loops.h"
 #include "mesh/select/region.h"

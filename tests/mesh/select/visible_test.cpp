@@ -13,7 +13,8 @@
 #include <Eigen/LU>
 
 #include "base/deterministic_math.h"
-#include "mesh/deck/deck.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/open.h"
 #include "tests/support/make_model.h"
 #include "tests/support/whole_model.h"
 

@@ -1,5 +1,7 @@
 // Abaqus input: what is read, from decks of our own.
 #include "mesh/deck/abaqus/element_type.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "mesh/model/adjacency.h"
 #include "tests/mesh/deck/growing.h"
 

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

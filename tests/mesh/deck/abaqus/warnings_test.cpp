@@ -1,4 +1,6 @@
 // What the reader of Abaqus input warns of or refuses: the sentence and the line it names; and where instances and systems put nodes.
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/growing.h"
 
 namespace prismesh::mesh::deck {

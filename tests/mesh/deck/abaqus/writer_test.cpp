@@ -1,7 +1,7 @@
 // How Abaqus lines are written.
 #include "mesh/deck/abaqus/mesh_cards.h"
 #include "mesh/deck/abaqus/references.h"
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/formats/formats.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -1,4 +1,6 @@
 // What edits carry along in the cards that name nodes and shells, and which ids they give: each rule of docs/formats/editing.md.
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/growing.h"
 
 namespace prismesh::mesh::deck {

@@ -1,5 +1,6 @@
 // Each column layout of node and element cards, and mixtures of them, against positions written down here.
 #include "mesh/deck/lsdyna/mesh_cards.h"
+#include "mesh/deck/open.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -1,5 +1,7 @@
 // Parts, sections, materials, the time step and the guess at the unit.
 #include "mesh/deck/lsdyna/definitions.h"
+#include "mesh/deck/data/length_unit.h"
+#include "mesh/deck/open.h"
 
 #include "tests/mesh/deck/deck_files.h"
 

@@ -2,7 +2,9 @@
 #include <cmath>
 #include <functional>
 
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/formats/formats.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/growing.h"
 
 namespace prismesh::mesh::deck {

@@ -1,5 +1,7 @@
 // Element cards of every kind and option that is read.
 #include "mesh/deck/lsdyna/keyword.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -1,12 +1,13 @@
 // Which cards of a keyword deck name what: the tables, keyword by keyword, and truths counted by hand in real decks.
 #include "mesh/model/references.h"
+#include "mesh/deck/open.h"
 
 #include <cstdlib>
 #include <iostream>
 #include <set>
 
+#include "mesh/deck/editing/naming.h"
 #include "mesh/deck/lsdyna/reference_tables.h"
-#include "mesh/deck/naming.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

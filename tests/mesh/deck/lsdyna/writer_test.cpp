@@ -1,7 +1,8 @@
 // The writer of keyword decks by itself: text in, text out, in each layout of columns. What it writes is written down here.
 #include "mesh/deck/lsdyna/writer.h"
+#include "mesh/deck/open.h"
 
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/formats/formats.h"
 #include "mesh/deck/lsdyna/mesh_cards.h"
 #include "tests/mesh/deck/deck_files.h"
 

@@ -1,5 +1,6 @@
 // What the reader of bulk data warns of: the sentence and the line it names.
 #include "mesh/deck/nastran/card.h"
+#include "mesh/deck/open.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -1,8 +1,9 @@
 // What saving changes in Nastran bulk data: the fields that must, in the width and manner of their card.
 #include <functional>
 
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/formats/formats.h"
 #include "mesh/deck/nastran/writer.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/growing.h"
 
 namespace prismesh::mesh::deck {

@@ -1,5 +1,7 @@
 // Radioss starter decks of our own: what is read, where it is shown, what is written back.
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/formats/formats.h"
+#include "mesh/deck/open.h"
+#include "mesh/deck/save.h"
 #include "tests/mesh/deck/radioss/starter_deck.h"
 
 namespace prismesh::mesh::deck {

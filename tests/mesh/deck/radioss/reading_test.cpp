@@ -1,4 +1,5 @@
 // What is read of starter decks: refusals with their line, warnings, groups, units, parts, parameters and submodels.
+#include "mesh/deck/open.h"
 #include "mesh/deck/radioss/context.h"
 #include "mesh/deck/radioss/definitions.h"
 #include "tests/mesh/deck/radioss/starter_deck.h"

@@ -1,7 +1,9 @@
 // What edits write into starter decks: new nodes and shells, lists, segments, blocks of the other kind. The wanted text is written down.
+#include "mesh/deck/open.h"
 #include "mesh/deck/radioss/writer.h"
+#include "mesh/deck/save.h"
 
-#include "mesh/deck/card_writer.h"
+#include "mesh/deck/formats/formats.h"
 #include "tests/mesh/deck/growing.h"
 #include "tests/mesh/deck/radioss/starter_deck.h"
 

@@ -1,0 +1,123 @@
+// A deck: the text of its files, kept word for word, and where in it the card of each node and shell stands, so that saving rewrites only
+// what changed.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/units.h"
+#include "mesh/deck/data/frame.h"
+#include "mesh/model/model.h"
+#include "mesh/model/references.h"
+
+namespace prismesh::mesh::deck {
+
+enum class Format : std::uint8_t { ls_dyna, nastran, radioss, abaqus };
+std::string_view name(Format format);  ///< "ls-dyna", ...
+
+/// Something odd that opened all the same. Each kind is reported once, with its first place and how often.
+struct Warning {
+  std::string file;
+  long line = 0;
+  std::string kind;  ///< a stable word: "missing-include", "undefined-node", "duplicate-node", ...
+  std::string message;
+  std::size_t count = 1;
+};
+
+/// Element cards of the deck by kind, those included whose nodes lack and that the model therefore leaves out. A shell
+/// card with fewer than three nodes counts as the four-node form.
+struct ElementCounts {
+  std::size_t quad = 0;
+  std::size_t tri = 0;
+  std::size_t quad8 = 0;
+  std::size_t tri6 = 0;
+  std::size_t beam = 0;
+  std::size_t solid = 0;
+  std::size_t tshell = 0;
+  std::size_t other = 0;  ///< springs, masses, particles, belts, ...
+
+  std::size_t shells() const { return quad + tri + quad8 + tri6; }
+  ElementCounts& operator+=(const ElementCounts& more);
+};
+
+/// One file of the deck.
+struct SourceFile {
+  std::filesystem::path path;      ///< as opened
+  std::filesystem::path relative;  ///< to the main file's folder; the main file: its name. May start with ".."
+  FileBytes bytes;
+};
+
+/// What is added to the ids that an include's text gives, to make those of the model: LS-DYNA's *INCLUDE_TRANSFORM, what the includes
+/// around it add counted in.
+struct IdOffsets {
+  std::int64_t node = 0;
+  std::int64_t element = 0;
+  std::int64_t part = 0;
+  std::int64_t material = 0;
+  std::int64_t set = 0;
+  std::int64_t function = 0;
+  std::int64_t define = 0;  ///< everything under *DEFINE but functions
+  std::int64_t other = 0;   ///< sections, hourglass controls, ...
+  bool operator==(const IdOffsets&) const = default;
+};
+
+/// Nodes or shells that follow each other in one file in one style and one frame.
+struct CardRun {
+  std::uint32_t first = 0;  ///< index of the first node or shell; runs ascend
+  std::uint32_t file = 0;   ///< index into files
+  std::uint16_t style = 0;  ///< how their cards are laid out: a number that only the format's own reader and writer know
+  std::uint32_t frame = 0;  ///< index into frames, in which coordinates are given, and into id_offsets
+  bool operator==(const CardRun&) const = default;
+};
+
+/// The greatest ids of a file's nodes and shells, as in the model; 0: it has none.
+struct LastIds {
+  std::int64_t node = 0;
+  std::int64_t shell = 0;
+};
+
+struct OnDisk;  // mesh/deck/data/on_disk.h
+
+/// Everything about the text that editing and saving need.
+struct Deck {
+  Format format = Format::ls_dyna;
+  std::vector<SourceFile> files;       ///< main file first, includes in the order they are read
+  std::vector<Frame> frames{Frame()};  ///< [0]: the basic system
+  std::vector<IdOffsets> id_offsets;   ///< of the cards of a frame; none beyond its end
+  std::vector<CardRun> node_runs;
+  std::vector<std::uint64_t> node_line;  ///< byte offset in its file of each node's card
+  std::vector<CardRun> shell_runs;
+  std::vector<std::uint64_t> shell_line;        ///< byte offset in its file of each shell's card
+  Hash128 content;                              ///< of all files' bytes and relative names
+  std::vector<LastIds> last_ids;                ///< by file
+  std::vector<std::int64_t> left_out_elements;  ///< ids of element cards that the model lacks, ascending: they are taken all the same
+  std::vector<std::uint32_t> held_files;        ///< ascending: those that stand for several places, whose cards must not change
+  ElementCounts element_cards;
+  std::map<std::string, std::size_t, std::less<>> element_kinds;  ///< cards by the deck's own word: "CQUAD4", "SHELL_THICKNESS", "S4R"
+  std::shared_ptr<const References> references;                   ///< cards that name entities; never null after opening
+  TimeStepControl time_step;
+  std::optional<LengthUnit> length_unit;  ///< where the deck itself says so
+  std::vector<Warning> warnings;
+  std::vector<std::string> missing_files;  ///< includes that weren't found, as written
+  std::shared_ptr<OnDisk> on_disk;         ///< what saving in place has left on disk; never null after opening
+
+  bool is_held(std::uint32_t file) const { return std::binary_search(held_files.begin(), held_files.end(), file); }
+  const CardRun& run_of(NodeIndex node) const;
+  const CardRun& run_of(ShellIndex shell) const;
+  const SourceFile& file_of(NodeIndex node) const { return files[run_of(node).file]; }
+  /// What its cards' ids lack to those of the model.
+  IdOffsets offsets_of(const CardRun& run) const { return run.frame < id_offsets.size() ? id_offsets[run.frame] : IdOffsets(); }
+};
+
+/// Files that are read in the place of others: by canonical name.
+using StandIns = std::map<std::string, std::filesystem::path>;
+
+}  // namespace prismesh::mesh::deck

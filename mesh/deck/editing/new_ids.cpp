@@ -1,0 +1,200 @@
+#include "mesh/deck/editing/new_ids.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "mesh/deck/editing/descent.h"
+#include "mesh/deck/formats/formats.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+constexpr std::int64_t kBeyondAll = std::numeric_limits<std::int64_t>::max();
+/// Ids taken and ranges passed over in search of one: more than any deck has blocks of ids.
+constexpr int kMaxSteps = 200'000;
+
+/// The first id from `id` on that the index lacks: ids that count up by one are passed over in a few steps.
+std::int64_t beyond_block(const IdIndex& index, std::int64_t id) {
+  if (index.find(id) == IdIndex::kNotFound) return id;
+  const std::size_t rank = index.lower_bound(id);
+  std::size_t low = 0, high = index.size() - rank;  // the block holds `low` more, and not `high` more
+  while (high - low > 1) {
+    const std::size_t middle = low + (high - low) / 2;
+    if (index.at(rank + middle).first - id == static_cast<std::int64_t>(middle))
+      low = middle;
+    else
+      high = middle;
+  }
+  const std::int64_t last = index.at(rank + low).first;
+  return last == kBeyondAll ? kBeyondAll : last + 1;
+}
+
+/// The least id from which on only greater steps lie outside of all that `reference` names, one after `id`.
+std::int64_t beyond(const Reference& reference, std::int64_t id) {
+  const std::int64_t last = reference.step == 1 ? reference.last : id;
+  return last == kBeyondAll ? kBeyondAll : last + 1;
+}
+
+void gather_numbers(std::string_view text, std::vector<std::int64_t>& numbers) {
+  for (std::size_t at = 0; at < text.size();) {
+    if (text[at] < '0' || text[at] > '9') {
+      ++at;
+      continue;
+    }
+    std::int64_t value = 0;
+    std::size_t digits = 0;
+    for (; at < text.size() && text[at] >= '0' && text[at] <= '9'; ++at)
+      if (++digits <= 18) value = value * 10 + (text[at] - '0');
+    if (digits <= 18 && value > 0 && (numbers.empty() || numbers.back() != value)) numbers.push_back(value);
+  }
+}
+
+}  // namespace
+
+bool all_named_by(const References& references, Referred referred, std::span<const std::int64_t> parents, std::uint32_t referrer) {
+  const Referrer& set = references.referrers()[referrer];
+  return std::all_of(parents.begin(), parents.end(), [&](std::int64_t parent) {
+    const std::vector<Reference> naming = references.naming(referred, parent);
+    return std::any_of(naming.begin(), naming.end(), [&](const Reference& r) {
+      return same_set(references.referrers()[r.referrer], set) && (r.role == ReferenceRole::list || r.role == ReferenceRole::range);
+    });
+  });
+}
+
+NewIds::NewIds(const Deck& deck, const Model& model) : deck_(deck), model_(model), writer_(card_writer(deck.format)) {
+  for (const auto& block : model.elements)
+    if (block && block->size() > 0) other_elements_.emplace_back(block->id);
+  largest_in_shells_ = kBeyondAll;
+  for (const CardRun& run : deck.shell_runs)
+    largest_in_shells_ =
+        std::min(largest_in_shells_, writer_->largest_shell_id(run.style) + std::min<std::int64_t>(0, deck.offsets_of(run).node));
+}
+
+Result<std::int64_t> NewIds::node(const NodeOrigin& origin) {
+  const NodeIndex home = home_of(model_, origin);
+  if (!home.valid())
+    return fail(deck_.files[0].path.string(),
+                "a new node would have to stand in an include that is used twice, or beside nodes that have no cards of their own");
+  const CardRun& run = deck_.run_of(home);
+  Search search{Referred::node, {}, run.file, deck_.last_ids[run.file].node, 1, 0};
+  for (int p = 0; p < origin.count(); ++p)
+    for (const NodeIndex ancestor : deck_ancestors(model_, origin.parent[static_cast<std::size_t>(p)]))
+      search.parents.push_back(model_.node_ids[ancestor.value]);
+  std::sort(search.parents.begin(), search.parents.end());
+  search.parents.erase(std::unique(search.parents.begin(), search.parents.end()), search.parents.end());
+  const std::int64_t offset = deck_.offsets_of(run).node;
+  search.least = std::max<std::int64_t>(1, offset + 1);
+  // Shells have narrower fields for node ids than nodes in some layouts, and in some files.
+  search.largest = std::min(writer_->largest_node_id(run.style) + std::min<std::int64_t>(offset, 0), largest_in_shells_);
+  return find(search);
+}
+
+Result<std::int64_t> NewIds::shell(ShellIndex parent) {
+  const ShellIndex ancestor = deck_ancestor(model_, parent);
+  const CardRun& run = deck_.run_of(ancestor);
+  const std::int64_t offset = deck_.offsets_of(run).element;
+  return find({Referred::shell,
+               {model_.shell_ids[ancestor.value]},
+               run.file,
+               deck_.last_ids[run.file].shell,
+               std::max<std::int64_t>(1, offset + 1),
+               writer_->largest_shell_id(run.style) + std::min<std::int64_t>(offset, 0)});
+}
+
+Result<std::int64_t> NewIds::find(const Search& search) {
+  // Within a range that holds all it comes from: nothing has to be written to make it one of them.
+  const References& references = *deck_.references;
+  std::optional<std::pair<std::int64_t, std::int64_t>> within;
+  for (const Reference& range : references.naming(search.referred, search.parents.front()))
+    if (range.role == ReferenceRole::range && range.step == 1 &&
+        std::all_of(search.parents.begin(), search.parents.end(), [&](std::int64_t p) { return range.names(p); }))
+      within = within ? std::pair(std::max(within->first, range.first), std::min(within->second, range.last))
+                      : std::pair(range.first, range.last);
+  std::int64_t& next = next_.try_emplace({search.referred, search.file}, search.last_in_file + 1).first->second;
+  std::int64_t& lowest = lowest_.try_emplace(search.referred, 1).first->second;
+  std::optional<std::int64_t> id;
+  if (within) {
+    const std::int64_t from = std::max(within->first, search.least);
+    const std::int64_t to = std::min(within->second, search.largest);
+    if (from <= next) id = first_free(search, next, to);
+    if (!id) id = first_free(search, from, to);
+  }
+  if (!id) id = first_free(search, std::max(next, search.least), search.largest);
+  if (!id && (id = first_free(search, std::max(lowest, search.least), search.largest))) lowest = *id + 1;
+  if (!id)
+    return fail(deck_.files[search.file].path.string(),
+                "no id is left for a new " + std::string(name(search.referred)) + ": those up to " + std::to_string(search.largest) +
+                    ", the largest that the file's fields hold, are taken, or lie in ranges of ids that mean something else");
+  if (*id == next) ++next;
+  std::vector<std::int64_t>& given = given_[search.referred];
+  given.insert(std::upper_bound(given.begin(), given.end(), *id), *id);
+  return *id;
+}
+
+std::optional<std::int64_t> NewIds::first_free(const Search& search, std::int64_t from, std::int64_t to) {
+  std::int64_t id = from;
+  for (int step = 0; step < kMaxSteps && id <= to; ++step) {
+    const std::int64_t before = id;
+    id = beyond_taken(search.referred, id);
+    if (id > to) break;
+    id = beyond_references(search, id);
+    if (id != before) continue;
+    if (!named_in_unread(id)) return id;
+    ++id;
+  }
+  return std::nullopt;
+}
+
+std::int64_t NewIds::beyond_taken(Referred referred, std::int64_t id) {
+  if (referred == Referred::node) {
+    id = beyond_block(*model_.node_index, id);
+  } else {
+    // Some formats number all elements together.
+    id = beyond_block(*model_.shell_index, id);
+    for (const IdIndex& others : other_elements_) id = beyond_block(others, id);
+    const auto& left_out = deck_.left_out_elements;
+    if (std::binary_search(left_out.begin(), left_out.end(), id)) return id + 1;
+  }
+  const std::vector<std::int64_t>& given = given_[referred];
+  return std::binary_search(given.begin(), given.end(), id) || was_removed(referred, id) ? id + 1 : id;
+}
+
+/// What is gone may still be named by text that nobody reads.
+bool NewIds::was_removed(Referred referred, std::int64_t id) {
+  if (!model_.topology_change) return false;
+  Removed& removed = removed_[referred];
+  const TopologyChange& topology_change = *model_.topology_change;
+  const std::size_t count = referred == Referred::node ? topology_change.removed_nodes.size() : topology_change.removed_shells.size();
+  if (removed.seen != count) {
+    removed.seen = count;
+    removed.ids.clear();
+    if (referred == Referred::node)
+      for (const NodeIndex node : topology_change.removed_nodes) removed.ids.push_back(model_.node_ids[node.value]);
+    else
+      for (const ShellIndex shell : topology_change.removed_shells) removed.ids.push_back(model_.shell_ids[shell.value]);
+    std::sort(removed.ids.begin(), removed.ids.end());
+  }
+  return std::binary_search(removed.ids.begin(), removed.ids.end(), id);
+}
+
+std::int64_t NewIds::beyond_references(const Search& search, std::int64_t id) const {
+  for (const Reference& reference : deck_.references->naming(search.referred, id)) {
+    if (reference.role == ReferenceRole::range && all_named_by(*deck_.references, search.referred, search.parents, reference.referrer))
+      continue;
+    return beyond(reference, id);
+  }
+  return id;
+}
+
+bool NewIds::named_in_unread(std::int64_t id) {
+  if (!unread_numbers_) {
+    unread_numbers_.emplace();
+    for (const UnreadText& unread : deck_.references->unread())
+      if (!unread.encrypted)
+        gather_numbers(deck_.files[unread.file].bytes.text().substr(unread.begin, unread.end - unread.begin), *unread_numbers_);
+    std::sort(unread_numbers_->begin(), unread_numbers_->end());
+  }
+  return std::binary_search(unread_numbers_->begin(), unread_numbers_->end(), id);
+}
+
+}  // namespace prismesh::mesh::deck

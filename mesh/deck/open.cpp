@@ -1,0 +1,113 @@
+#include "mesh/deck/open.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "mesh/deck/assembly/assemble.h"
+#include "mesh/deck/assembly/file_set.h"
+#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/data/on_disk.h"
+#include "mesh/deck/detect.h"
+#include "mesh/deck/findings.h"
+#include "mesh/deck/formats/formats.h"
+#include "mesh/deck/text/number.h"
+#include "mesh/model/adjacency.h"
+
+namespace prismesh::mesh::deck {
+
+namespace {
+
+/// How far unpacking brings the progress; the walk over the text goes on from there.
+constexpr double kUnpacked = 0.1;
+
+/// Entities are numbered with 32 bits.
+constexpr std::size_t kMaxEntities = 0xfffffffeu;
+
+/// One hash over all files: their bytes' hashes and their names relative to the main file.
+Hash128 content_hash(const std::vector<SourceFile>& files, const std::vector<Hash128>& hashes) {
+  std::string all;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    all += hashes[i].hex();
+    // The main file may be renamed without becoming another deck.
+    if (i > 0) all += files[i].relative.generic_string();
+    all += '\n';
+  }
+  return hash128(std::as_bytes(std::span(all)));
+}
+
+/// The greatest id of each file's entities: what new ones go on from.
+template <class Ids, class Field>
+void find_last_ids(const Ids& ids, const std::vector<CardRun>& runs, Field field, std::vector<LastIds>& last) {
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const std::size_t end = r + 1 < runs.size() ? runs[r + 1].first : ids.size();
+    std::int64_t& greatest = last[runs[r].file].*field;
+    for (std::size_t i = runs[r].first; i < end; ++i) greatest = std::max(greatest, ids[i]);
+  }
+}
+
+std::optional<Error> first_error(const Found& found) {
+  std::size_t entities = 0;
+  for (const PieceCards& cards : found.cards) {
+    const SourceFile& file = found.files[cards.file];
+    if (cards.error) return Error{file.path.string(), line_number(file.bytes.text(), cards.error->first), cards.error->second};
+    entities += std::max(cards.node_id.size(), cards.shells.id.size());
+  }
+  if (entities >= kMaxEntities) return Error{found.files[0].path.string(), 0, "has more nodes or elements than this version can number"};
+  return std::nullopt;
+}
+
+/// The model and the deck, complete. Errors: the first malformed card (file and line), too many entities, cancelled.
+Result<OpenedDeck> finish(Found found, Watch& watch) {
+  if (watch.stopped()) return fail(cancelled());
+  if (std::optional<Error> error = first_error(found)) return fail(std::move(*error));
+
+  auto deck = std::make_shared<Deck>();
+  deck->format = found.format;
+  deck->content = content_hash(found.files, found.hashes);
+  deck->time_step = found.time_step;
+  deck->length_unit = found.length_unit;
+  deck->frames = std::move(found.frames);
+  deck->id_offsets = std::move(found.id_offsets);
+  OpenedDeck opened;
+  opened.model = assemble(found.cards, std::move(found.parts), *deck, found.warnings);
+  deck->files = std::move(found.files);
+  std::sort(deck->left_out_elements.begin(), deck->left_out_elements.end());
+  deck->last_ids.resize(deck->files.size());
+  find_last_ids(opened.model.node_ids, deck->node_runs, &LastIds::node, deck->last_ids);
+  find_last_ids(opened.model.shell_ids, deck->shell_runs, &LastIds::shell, deck->last_ids);
+  deck->on_disk = std::make_shared<OnDisk>();
+  for (std::size_t i = 0; i < deck->files.size(); ++i)
+    deck->on_disk->files.push_back({deck->files[i].bytes.identity(), found.hashes[i], true});
+  deck->missing_files = std::move(found.missing_files);
+  found.references.finish();
+  deck->references = std::make_shared<const References>(std::move(found.references));
+  watch.tell(kAssembled);
+  if (watch.stopped()) return fail(cancelled());
+  opened.model.adjacency = std::make_shared<const Adjacency>(build_adjacency(opened.model));
+  note_findings(*deck, opened.model, found.warnings);
+  deck->warnings = found.warnings.finish(deck->files);
+  watch.tell(1);
+  if (watch.stopped()) return fail(cancelled());
+  opened.deck = std::move(deck);
+  return opened;
+}
+
+}  // namespace
+
+Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress, const StandIns& stand_ins) {
+  if (progress && !progress(0)) return fail(cancelled());
+  const Progress unpacking = [&](double fraction) { return !progress || progress(kUnpacked * fraction); };
+  Result<FileSet> files = FileSet::begin(path, stand_ins, unpacking);
+  if (!files) return fail(std::move(files.error()));
+  const Detected detected = detect_format(files->files[0].bytes.text());
+  if (!detected.format) return fail(path.string(), "is no deck: it looks like " + detected.looks_like);
+  Watch watch(progress);
+  Result<Found> found = read(*detected.format, std::move(*files), watch);
+  if (!found) return fail(std::move(found.error()));
+  return finish(std::move(*found), watch);
+}
+
+}  // namespace prismesh::mesh::deck

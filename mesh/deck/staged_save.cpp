@@ -1,0 +1,270 @@
+#include "mesh/deck/staged_save.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <mutex>
+
+#include "base/compression.h"
+#include "mesh/deck/assembly/file_set.h"
+#include "mesh/deck/data/deck.h"
+#include "mesh/deck/data/on_disk.h"
+#include "mesh/deck/editing/text_changes.h"
+
+namespace prismesh::mesh::deck {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the progress: making new cards takes longer than writing files, and packing many times as long as both.
+constexpr double kShareOfCards = 0.8;
+constexpr double kShareOfCardsWithPacking = 0.2;
+constexpr double kShareOfPacking = 0.7;
+
+std::vector<std::string_view> content_of(const SourceFile& file, const std::vector<Replacement>& replacements) {
+  const std::string_view text = file.bytes.text();
+  std::vector<std::string_view> pieces;
+  pieces.reserve(2 * replacements.size() + 1);
+  std::size_t at = 0;
+  for (const Replacement& replacement : replacements) {
+    pieces.push_back(text.substr(at, replacement.offset - at));
+    pieces.push_back(replacement.text);
+    at = replacement.offset + replacement.length;
+  }
+  pieces.push_back(text.substr(at));
+  return pieces;
+}
+
+/// What the file gets on disk. A packed one is packed again in its own manner, or stays as it is; `packed` keeps what that makes.
+Result<std::vector<std::string_view>> stored_content_of(const SourceFile& file, const std::vector<Replacement>& replacements,
+                                                        std::deque<std::string>& packed, const Progress& progress) {
+  if (!file.bytes.is_packed()) return content_of(file, replacements);
+  const std::span<const std::byte> stored = file.bytes.bytes();
+  if (replacements.empty()) return std::vector{std::string_view(reinterpret_cast<const char*>(stored.data()), stored.size())};
+  Result<std::string> anew = pack(content_of(file, replacements), stored, progress);
+  if (!anew) return fail(anew.error().message == cancelled().message ? anew.error() : Error{file.path.string(), 0, anew.error().message});
+  packed.push_back(std::move(*anew));
+  return std::vector<std::string_view>{packed.back()};
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error) && !error) return true;
+  return fs::absolute(a, error).lexically_normal() == fs::absolute(b, error).lexically_normal();
+}
+
+/// One file that is going to be written.
+struct Plan {
+  std::size_t file = 0;
+  fs::path target;
+};
+
+/// Files in the order they are put in place: includes first, the main file last.
+std::vector<std::size_t> writing_order(const Deck& deck) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 1; i < deck.files.size(); ++i) order.push_back(i);
+  order.push_back(0);
+  return order;
+}
+
+/// Refuses unless the file on disk is still what was read or what was last saved over it.
+Result<void> check_unchanged(const SourceFile& file, OnDisk::File& known) {
+  const Result<FileIdentity> now = identify_file(file.path);
+  if (!now) return fail(file.path.string(), "is gone from disk since it was opened; nothing was written. Save into another folder instead");
+  if (*now == known.identity) return {};
+  // A copy or a touch changes the file's times only; its bytes decide.
+  if (now->size == known.identity.size) {
+    const Result<FileBytes> bytes = read_file(file.path);
+    if (!bytes) return fail(bytes.error());
+    if (hash128(bytes->bytes()) == known.content) {
+      known.identity = bytes->identity();
+      return {};
+    }
+  }
+  return fail(file.path.string(),
+              "has changed on disk since it was opened; nothing was written. Save into another folder, or close it and open it again");
+}
+
+Result<std::vector<Plan>> plan_in_place(const Deck& deck, const TextChanges& text) {
+  std::vector<Plan> plans;
+  for (const std::size_t file : writing_order(deck)) {
+    OnDisk::File& known = deck.on_disk->files[file];
+    if (Result<void> unchanged = check_unchanged(deck.files[file], known); !unchanged) return fail(unchanged.error());
+    if (!text.by_file[file].empty() || !known.as_read) plans.push_back({file, deck.files[file].path});
+  }
+  return plans;
+}
+
+/// Whether an include's name means something else, or still the old file, in another folder.
+bool stays_behind(const SourceFile& include) {
+  return include.relative.is_absolute() || include.relative.begin() == include.relative.end() || *include.relative.begin() == "..";
+}
+
+Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const TextChanges& text, const fs::path& target) {
+  const bool other_folder = !same_file(folder_of(target), folder_of(deck.files[0].path));
+  std::vector<Plan> plans;
+  for (const std::size_t file : writing_order(deck)) {
+    const SourceFile& source = deck.files[file];
+    if (file != 0 && other_folder && stays_behind(source))
+      return fail(source.path.string(), "is an include outside the main file's folder, so the deck can't be saved into another folder");
+    const fs::path to = file == 0 ? target : target.parent_path() / source.relative;
+    const auto own = std::find_if(deck.files.begin(), deck.files.end(), [&](const SourceFile& other) { return same_file(other.path, to); });
+    if (own == deck.files.end()) {
+      plans.push_back({file, to});
+    } else if (file == 0) {
+      return fail(target.string(), "is a file of the deck itself; the main file can't take its place");
+    } else if (!text.by_file[file].empty() || !deck.on_disk->files[file].as_read) {
+      return fail(source.path.string(),
+                  "is an include that has changed, and a deck saved under another name beside the old one would share it; save into "
+                  "another folder");
+    }
+  }
+  return plans;
+}
+
+Result<std::vector<Plan>> plan(const Deck& deck, const TextChanges& text, const fs::path& target) {
+  return same_file(target, deck.files[0].path) ? plan_in_place(deck, text) : plan_elsewhere(deck, text, target);
+}
+
+std::string rounding_note(const Rounding& rounding) {
+  char error[32];
+  std::snprintf(error, sizeof error, "%.1e", rounding.largest_error);
+  return std::to_string(rounding.count) + (rounding.count == 1 ? " number was" : " numbers were") +
+         " rounded to what their fields hold, by " + error + " at most; first at " + rounding.first;
+}
+
+/// Sets that text hides can't be given the new ones.
+std::string encrypted_note(const Deck& deck) {
+  for (const UnreadText& unread : deck.references->unread())
+    if (unread.encrypted)
+      return "the encrypted text at " + place_of(deck, unread.file, unread.begin) +
+             " may hold sets, which the new nodes and shells haven't joined";
+  return "";
+}
+
+/// A progress of its own for the part of the work from `begin` to `begin + share`.
+Progress part_of(const Progress& progress, double begin, double share) {
+  return [&progress, begin, share](double fraction) { return !progress || progress(begin + fraction * share); };
+}
+
+/// Files with their content, ready to be written; `packed` keeps what packing makes.
+Result<std::vector<PendingFile>> pending_files(const Deck& deck, const std::vector<Plan>& plans, const TextChanges& text,
+                                               std::deque<std::string>& packed, const Progress& progress) {
+  std::vector<PendingFile> pending;
+  for (const Plan& plan : plans) {
+    const double part = 1 / static_cast<double>(plans.size());
+    const Progress packing = part_of(progress, static_cast<double>(pending.size()) * part, part);
+    Result<std::vector<std::string_view>> stored = stored_content_of(deck.files[plan.file], text.by_file[plan.file], packed, packing);
+    if (!stored) return fail(stored.error());
+    pending.push_back({plan.target, std::move(*stored)});
+  }
+  return pending;
+}
+
+SaveReport report_of(const Deck& deck, const TextChanges& text, const std::vector<Plan>& plans) {
+  SaveReport report;
+  report.nodes_written = text.nodes_moved;
+  report.nodes_added = text.nodes_added;
+  report.nodes_removed = text.nodes_removed;
+  report.shells_changed = text.shells_changed;
+  report.shells_added = text.shells_added;
+  report.shells_removed = text.shells_removed;
+  report.set_cards_changed = text.set_cards;
+  report.lines_changed = text.lines;
+  for (const Plan& plan : plans) report.files_written.push_back(plan.target);
+  if (text.rounding.count > 0) report.notes.push_back(rounding_note(text.rounding));
+  if (text.shells_turned > 0)
+    report.notes.push_back("the material angles of " + std::to_string(text.shells_turned) +
+                           (text.shells_turned == 1 ? " shell" : " shells") +
+                           " were turned with their first edges, to which they are taken to be relative");
+  if (text.nodes_added + text.shells_added > 0)
+    if (std::string note = encrypted_note(deck); !note.empty()) report.notes.push_back(std::move(note));
+  return report;
+}
+
+}  // namespace
+
+Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, const Model& model, const fs::path& target,
+                                     const Progress& progress) {
+  const std::lock_guard lock(deck.on_disk->mutex);
+  const bool packs = std::any_of(deck.files.begin(), deck.files.end(), [](const SourceFile& file) { return file.bytes.is_packed(); });
+  const double of_cards = packs ? kShareOfCardsWithPacking : kShareOfCards, before_writing = of_cards + (packs ? kShareOfPacking : 0);
+  const Result<TextChanges> text = text_changes(deck, original, model, part_of(progress, 0, of_cards));
+  if (!text) return fail(text.error());
+  StagedSave save;
+  save.deck_ = &deck;
+  save.in_place_ = same_file(target, deck.files[0].path);
+  const Result<std::vector<Plan>> plans = plan(deck, *text, target);
+  if (!plans) return fail(plans.error());
+
+  std::deque<std::string> packed;
+  const Result<std::vector<PendingFile>> pending =
+      pending_files(deck, *plans, *text, packed, part_of(progress, of_cards, before_writing - of_cards));
+  if (!pending) return fail(pending.error());
+  Result<StagedFiles> staged = StagedFiles::write(*pending, part_of(progress, before_writing, 1 - before_writing));
+  if (!staged) return fail(std::move(staged.error()));
+  save.staged_ = std::move(*staged);
+  for (std::size_t i = 0; i < plans->size(); ++i) {
+    const std::size_t file = (*plans)[i].file;
+    const Hash128 before = save.in_place_ ? deck.on_disk->files[file].content : Hash128{};
+    save.files_.push_back({file, before, hash128((*pending)[i].pieces), text->by_file[file].empty()});
+  }
+  save.rounding_ = text->rounding;
+  save.report_ = report_of(deck, *text, *plans);
+  return save;
+}
+
+Result<std::vector<fs::path>> StagedSave::targets(const Deck& deck, const Model& original, const Model& model, const fs::path& target) {
+  const std::lock_guard lock(deck.on_disk->mutex);
+  const Result<TextChanges> text = text_changes(deck, original, model);
+  if (!text) return fail(text.error());
+  const Result<std::vector<Plan>> plans = plan(deck, *text, target);
+  if (!plans) return fail(plans.error());
+  std::vector<fs::path> places;
+  for (const Plan& each : *plans) places.push_back(each.target);
+  return places;
+}
+
+Result<OpenedDeck> StagedSave::open(const Progress& progress) const {
+  StandIns stand_ins;
+  for (std::size_t i = staged_.in_place(); i < files_.size(); ++i)
+    stand_ins[canonical_name(deck_->files[files_[i].index].path)] = staged_.files()[i].temporary;
+  return deck::open(deck_->files[0].path, progress, stand_ins);
+}
+
+Result<void> StagedSave::put_in_place() {
+  const std::lock_guard lock(deck_->on_disk->mutex);
+  Result<void> placed = staged_.put_in_place();
+  if (in_place_) remember_written();
+  return placed;
+}
+
+/// What is on disk now, also where only some of the files could be replaced.
+void StagedSave::remember_written() {
+  for (std::size_t i = 0; i < staged_.in_place(); ++i)
+    deck_->on_disk->files[files_[i].index] = {staged_.files()[i].identity, files_[i].after, files_[i].as_read};
+}
+
+Result<void> StagedSave::take_back() {
+  const std::lock_guard lock(deck_->on_disk->mutex);
+  std::vector<PendingFile> before;
+  for (std::size_t i = staged_.in_place(); i-- > 0;) {
+    const SourceFile& source = deck_->files[files_[i].index];
+    const std::span<const std::byte> bytes = source.bytes.bytes();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (hash128(bytes) != files_[i].before)
+      return fail(source.path.string(), "can't be given back what it held: the deck was saved over before");
+    const Result<FileIdentity> now = identify_file(source.path);
+    if (!now || *now != staged_.files()[i].identity) return fail(source.path.string(), "has been changed by something else meanwhile");
+    before.push_back({source.path, {text}});
+  }
+  if (Result<void> replaced = replace_files(before); !replaced) return replaced;
+  for (std::size_t i = 0; i < staged_.in_place(); ++i) {
+    const Result<FileIdentity> identity = identify_file(deck_->files[files_[i].index].path);
+    if (identity) deck_->on_disk->files[files_[i].index] = {*identity, files_[i].before, true};
+  }
+  staged_ = {};
+  return {};
+}
+
+}  // namespace prismesh::mesh::deck
