@@ -1,6 +1,4 @@
 #include "mesh/document/edit.h"
-#include "mesh/deck/save.h"
-#include "mesh/document/prepare.h"
 
 #include <filesystem>
 #include <ostream>
@@ -12,7 +10,10 @@
 #include "cli/open_deck.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
+#include "mesh/deck/save.h"
+#include "mesh/document/edit_kinds.h"
 #include "mesh/document/journal.h"
+#include "mesh/document/prepare.h"
 
 namespace prismesh::cli {
 

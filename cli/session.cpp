@@ -11,6 +11,7 @@
 #include "cli/report_text.h"
 #include "ipc/messages_json.h"
 #include "ipc/reconnecting_client.h"
+#include "mesh/document/edit_kinds.h"
 #include "mesh/quality/criteria_names.h"
 
 namespace prismesh::cli {

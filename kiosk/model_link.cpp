@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "base/readable_number.h"
 #include "kiosk/notices.h"
+#include "mesh/document/edit_kinds.h"
 
 namespace prismesh::kiosk {
 namespace {
@@ -35,10 +36,12 @@ std::string text_of(const ipc::Failed& failed) { return Error{failed.file, faile
 
 bool was_stopped(const ipc::Failed& failed) { return failed.message == cancelled().message; }
 
-bool is_selecting(std::string_view edit) {
-  constexpr std::array<std::string_view, 6> kSelecting{"select", "select_region", "select_lasso", "grow", "shrink", "invert"};
-  return std::find(kSelecting.begin(), kSelecting.end(), edit) != kSelecting.end();
+static bool is_of(std::string_view edit, mesh::document::EditGroup group) {
+  const mesh::document::EditKind* kind = mesh::document::find_edit_kind(edit);
+  return kind != nullptr && kind->group == group;
 }
+
+bool is_selecting(std::string_view edit) { return is_of(edit, mesh::document::EditGroup::selection); }
 
 /// What the server is at, for people.
 static std::string busy_words(const std::string& what, bool can_stop) {
@@ -53,10 +56,7 @@ static bool is_long(const ipc::Request& request) {
          std::holds_alternative<ipc::ApplyEdit>(request) || std::holds_alternative<ipc::GetField>(request);
 }
 
-bool is_mending(std::string_view edit) {
-  constexpr std::array<std::string_view, 6> kMending{"relax", "repair", "split", "collapse", "merge", "swap"};
-  return std::find(kMending.begin(), kMending.end(), edit) != kMending.end();
-}
+bool is_mending(std::string_view edit) { return is_of(edit, mesh::document::EditGroup::mending); }
 
 ModelLink::ModelLink(std::filesystem::path socket, std::optional<std::filesystem::path> deck, Clock& clock, Trace trace)
     : socket_(std::move(socket)), deck_(std::move(deck)), clock_(clock), trace_(trace) {}

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "mesh/document/edit_kinds.h"
 #include "mesh/document/prepare.h"
 #include "mesh/select/expression.h"
 

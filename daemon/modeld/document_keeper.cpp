@@ -8,6 +8,7 @@
 #include "daemon/modeld/paths.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/open.h"
+#include "mesh/document/edit_kinds.h"
 #include "mesh/document/history.h"
 #include "mesh/model/topology_change.h"
 

@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "mesh/document/edit_kinds.h"
 
 namespace prismesh::modeld {
 

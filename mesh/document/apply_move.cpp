@@ -5,6 +5,7 @@
 #include "mesh/document/apply.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/dependents_report.h"
+#include "mesh/document/edit_kinds.h"
 #include "mesh/document/inverted_shells.h"
 #include "mesh/document/plan_motion.h"
 

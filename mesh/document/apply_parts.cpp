@@ -3,6 +3,7 @@
 #include "base/counted.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/deck_relations.h"
+#include "mesh/document/edit_kinds.h"
 #include "mesh/document/part_marks.h"
 #include "mesh/document/selection.h"
 #include "mesh/model/adjacency.h"

@@ -1,5 +1,5 @@
-// An edit is data: what to do, on what, from where. One definition for kiosk, pen, command line, scripts and tests; the
-// JSON form is in edit_json.h.
+// An edit is data: what to do, on what, from where. One definition for kiosk, pen, command line, scripts and tests. The list of kinds is
+// in edit_kinds.h, the JSON form in edit_json.h.
 #pragma once
 
 #include <array>
@@ -152,8 +152,5 @@ Shaping* shaping_of(Edit& edit);
 /// How far it goes; zero for the others. And the same edit going otherwise.
 Displacement displacement_of(const Edit& edit);
 void set_displacement(Edit& edit, const Displacement& displacement);
-
-/// The edit's name as in its JSON ("translate", "hide", ...).
-std::string_view name(const Edit& edit);
 
 }  // namespace prismesh::mesh::document

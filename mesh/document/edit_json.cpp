@@ -1,4 +1,5 @@
 #include "mesh/document/edit_json.h"
+#include "mesh/document/edit_kinds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,30 +60,6 @@ const Names<shape::Profile>& names(shape::Profile) {
          {shape::Profile::constant, shape::Profile::linear, shape::Profile::smooth, shape::Profile::sharp, shape::Profile::root,
           shape::Profile::sphere, shape::Profile::inverse_square, shape::Profile::gaussian})
       all.emplace_back(shape::name(profile), profile);
-    return all;
-  }();
-  return table;
-}
-
-struct EditName {
-  std::string_view name;
-  Edit blank;  ///< with its defaults; for the part edits, with the action
-};
-const std::vector<EditName>& edit_names() {
-  static const std::vector<EditName> table = [] {
-    std::vector<EditName> all;
-    for (const VisibilityAction action : {VisibilityAction::hide, VisibilityAction::show, VisibilityAction::only, VisibilityAction::reverse,
-                                          VisibilityAction::lock, VisibilityAction::unlock})
-      all.push_back({"", SetParts{action, std::nullopt}});
-    for (Edit edit :
-         {Edit(Select{}), Edit(SelectRegion{}), Edit(SelectLasso{}), Edit(Grow{}), Edit(Shrink{}), Edit(Invert{}), Edit(Translate{}),
-          Edit(Lift{}), Edit(Slide{}), Edit(Rotate{}), Edit(Relax{}), Edit(Repair{}), Edit(Undo{}), Edit(Redo{})})
-      all.push_back({"", std::move(edit)});
-    for (const repair::Operation operation :
-         {repair::Operation::split, repair::Operation::collapse, repair::Operation::merge, repair::Operation::swap})
-      all.push_back({"", Restructure{operation, {}}});
-    for (EditName& entry : all) entry.name = name(entry.blank);
-    std::sort(all.begin(), all.end(), [](const EditName& a, const EditName& b) { return a.name < b.name; });
     return all;
   }();
   return table;
@@ -440,7 +417,7 @@ Result<Edit> blank_edit(const Json& json) {
   if (!found->is_string()) return fail("", "\"edit\" " + *must_be("the name of an edit", *found));
   const std::string& wanted = found->get_ref<const std::string&>();
   std::vector<std::string_view> known;
-  for (const EditName& entry : edit_names()) {
+  for (const EditKind& entry : edit_kinds()) {
     if (entry.name == wanted) return entry.blank;
     known.push_back(entry.name);
   }

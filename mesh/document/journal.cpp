@@ -5,6 +5,7 @@
 #include "base/base64.h"
 #include "mesh/document/delta.h"
 #include "mesh/document/edit_json.h"
+#include "mesh/document/edit_kinds.h"
 #include "mesh/document/history.h"
 #include "mesh/document/journal_file.h"
 #include "mesh/document/journal_records.h"
@@ -76,7 +77,9 @@ std::string edit_name(std::string_view intent) {
 /// own.
 bool reshapes(std::string_view intent) {
   const Result<Edit> edit = parse_edit(intent);
-  return edit && (shaping_of(*edit) != nullptr || std::holds_alternative<Undo>(*edit) || std::holds_alternative<Redo>(*edit));
+  if (!edit) return false;
+  const EditGroup group = kind_of(*edit).group;
+  return group == EditGroup::shaping || group == EditGroup::step;
 }
 
 /// The generation that the record's delta makes out of the current one.

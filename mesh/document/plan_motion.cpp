@@ -1,4 +1,5 @@
 #include "mesh/document/plan_motion.h"
+#include "mesh/document/edit_kinds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +51,7 @@ Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& no
   return std::optional<NodeIndex>();
 }
 
-Motion::Kind kind_of(const Edit& edit) {
+Motion::Kind motion_kind(const Edit& edit) {
   if (std::holds_alternative<Lift>(edit)) return Motion::Kind::lift;
   if (std::holds_alternative<Slide>(edit)) return Motion::Kind::slide;
   return std::holds_alternative<Rotate>(edit) ? Motion::Kind::rotate : Motion::Kind::translate;
@@ -186,7 +187,7 @@ Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const
   followers.insert(followers.end(), welds.begin(), welds.end());
 
   Motion motion;
-  motion.kind = kind_of(edit);
+  motion.kind = motion_kind(edit);
   motion.grab = weights->grab;
   motion.max_move = shaping->max_move;
   motion.unreached = count_unreached(*weights, weighted, welds);

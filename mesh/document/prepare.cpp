@@ -1,4 +1,5 @@
 #include "mesh/document/prepare.h"
+#include "mesh/document/edit_kinds.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <type_traits>
 #include <variant>
 
 #include "base/file.h"
 #include "mesh/document/edit_json.h"
+#include "mesh/document/edit_kinds.h"
 #include "mesh/document/journal.h"
 #include "mesh/document/journal_records.h"
 
@@ -60,32 +60,6 @@ Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syn
 
 namespace {
 
-/// What an edit has to do with the selection.
-struct SelectionUse {
-  bool reads = false;   ///< it acts on the selection, or starts from it
-  bool writes = false;  ///< it makes another one
-};
-
-SelectionUse selection_use(const Edit& edit) {
-  return std::visit(
-      [](const auto& e) -> SelectionUse {
-        using T = std::decay_t<decltype(e)>;
-        if constexpr (std::is_same_v<T, Select> || std::is_same_v<T, SelectRegion> || std::is_same_v<T, SelectLasso>)
-          return {e.mode != SelectMode::set, true};
-        else if constexpr (std::is_same_v<T, Grow> || std::is_same_v<T, Shrink> || std::is_same_v<T, Invert>)
-          return {true, true};
-        else if constexpr (std::is_same_v<T, SetParts>)
-          return {!e.on, false};
-        else if constexpr (requires { e.shaping; })
-          return {!e.shaping.on, false};
-        else if constexpr (requires { e.scope; })
-          return {e.scope == Scope::selection || e.scope == Scope::part, false};
-        else
-          return {};
-      },
-      edit);
-}
-
 /// The history as the intents meant it, so that an undo of an edit that couldn't be applied doesn't take back another one, and
 /// that what acts on a selection doesn't act on one that was left over because the right one couldn't be made.
 class MeantHistory {
@@ -127,7 +101,7 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
     step.line = i < intents.lines.size() ? intents.lines[i] : 0;
     step.edit = name(edit);
     const bool back = std::holds_alternative<Undo>(edit);
-    const bool is_step = back || std::holds_alternative<Redo>(edit);
+    const bool is_step = kind_of(edit).group == EditGroup::step;
     if (is_step && meant.skips(back)) {
       step.message = "the edit that it stands for wasn't applied";
       steps.push_back(std::move(step));

@@ -12,6 +12,7 @@
 #include "kiosk/tools/history_file.h"
 #include "kiosk/tools/shaping_options.h"
 #include "kiosk/tools/typed_number.h"
+#include "mesh/document/edit_kinds.h"
 #include "tests/kiosk/test_source.h"
 
 namespace prismesh::kiosk::tools {
