@@ -35,7 +35,7 @@ DeviceLoop::DeviceLoop(const LoopSettings& settings, const LoopPorts& ports, ipc
     : settings_(settings),
       ports_(ports),
       page_(page),
-      seat_(settings.tracker),
+      tracker_(settings.tracker),
       filter_({settings.tracker.noise_mm}),
       control_(settings.optics, settings.limits) {
   eyes_.lost_after_ns = settings.limits.eyes_lost_ns;
@@ -63,7 +63,7 @@ void DeviceLoop::tick(std::int64_t now_ns) {
 }
 
 void DeviceLoop::wind_down(std::int64_t now_ns) {
-  leave_tracker();
+  release_tracker();
   publish_eyes(now_ns);
   tick_servo(now_ns, servo_tick_.reading.position_mm, false);
   mask_.state.time_ns = now_ns;
@@ -91,23 +91,23 @@ void DeviceLoop::obey(const LoopCommand& command) {
              command);
 }
 
-DeviceLoop::Tracker* DeviceLoop::seated_tracker() {
-  if (Tracker* seated = seat_.tracker()) return seated;
+DeviceLoop::Tracker* DeviceLoop::attached_tracker() {
+  if (Tracker* attached = tracker_.tracker()) return attached;
   if (ports_.tracker_line != nullptr)
-    if (drivers::port::BytePort* port = ports_.tracker_line->port()) return &seat_.sit(*port);
+    if (drivers::port::BytePort* port = ports_.tracker_line->port()) return &tracker_.attach(*port);
   if (ports_.tracker_datagrams != nullptr)
-    if (drivers::port::DatagramPort* port = ports_.tracker_datagrams->port()) return &seat_.sit(*port);
+    if (drivers::port::DatagramPort* port = ports_.tracker_datagrams->port()) return &tracker_.attach(*port);
   return nullptr;
 }
 
-void DeviceLoop::leave_tracker() {
-  seat_.leave();
+void DeviceLoop::release_tracker() {
+  tracker_.detach();
   if (ports_.tracker_line != nullptr) ports_.tracker_line->give_back();
   if (ports_.tracker_datagrams != nullptr) ports_.tracker_datagrams->give_back();
 }
 
 void DeviceLoop::poll_tracker(std::int64_t now_ns) {
-  Tracker* tracker = seated_tracker();
+  Tracker* tracker = attached_tracker();
   if (tracker == nullptr) return;
   Tracker::Polled polled = tracker->poll(now_ns);
   // It arrived at some moment since the last tick: half of it ago, on average.
@@ -117,12 +117,12 @@ void DeviceLoop::poll_tracker(std::int64_t now_ns) {
   eyes_.records = counts.records;
   eyes_.bytes_skipped = counts.bytes_skipped;
   eyes_.resyncs = counts.resyncs;
-  if (polled.status == PortStatus::gone) leave_tracker();
+  if (polled.status == PortStatus::gone) release_tracker();
 }
 
 EyesPhase DeviceLoop::judge_eyes(std::int64_t now_ns) {
   if (ports_.tracker_line == nullptr && ports_.tracker_datagrams == nullptr) return EyesPhase::none;
-  const Tracker* tracker = seat_.tracker();
+  const Tracker* tracker = tracker_.tracker();
   if (tracker == nullptr) return EyesPhase::absent;
   if (!tracker->synchronised()) return EyesPhase::silent;
   const std::int64_t measured_ns = filter_.state().time_ns;

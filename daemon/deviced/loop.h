@@ -9,8 +9,8 @@
 
 #include "daemon/deviced/ring.h"
 #include "drivers/display/optics.h"
+#include "drivers/eye_tracker/configured/tracker.h"
 #include "drivers/eye_tracker/filter.h"
-#include "drivers/eye_tracker/tracker_seat.h"
 #include "drivers/port/port_keeper.h"
 #include "drivers/prism_servo/dynamixel/servo.h"
 #include "drivers/prism_servo/mask_control.h"
@@ -88,8 +88,8 @@ class DeviceLoop {
 
   void take_commands();
   void obey(const LoopCommand& command);
-  Tracker* seated_tracker();
-  void leave_tracker();
+  Tracker* attached_tracker();
+  void release_tracker();
   void poll_tracker(std::int64_t now_ns);
   ipc::EyesPhase judge_eyes(std::int64_t now_ns);
   void publish_eyes(std::int64_t now_ns);
@@ -103,7 +103,7 @@ class DeviceLoop {
   Ring<LoopCommand, 64> commands_;
   Ring<LoopEvent, 256> events_;
 
-  drivers::eye_tracker::TrackerSeat seat_;
+  drivers::eye_tracker::configured::ConfiguredTracker tracker_;
   drivers::eye_tracker::HeadFilter filter_;
   ipc::EyesState eyes_;
   std::optional<Servo> servo_;

@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "daemon/deviced/loop_thread.h"
 #include "daemon/deviced/watchdog.h"
-#include "drivers/eye_tracker/simulated_tracker.h"
+#include "drivers/eye_tracker/configured/simulator.h"
 #include "drivers/port/keeper_thread.h"
 #include "drivers/port/open_port.h"
 #include "drivers/port/pty_pair.h"
@@ -19,7 +19,7 @@ namespace prismesh::deviced {
 
 namespace {
 
-using drivers::eye_tracker::SimulatedTrackerThread;
+using drivers::eye_tracker::configured::SimulatedTrackerThread;
 using drivers::port::BytePort;
 using drivers::port::DatagramKeeper;
 using drivers::port::DatagramPort;

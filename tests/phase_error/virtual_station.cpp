@@ -8,8 +8,8 @@
 
 #include "base/clock.h"
 #include "daemon/deviced/loop.h"
+#include "drivers/eye_tracker/configured/tracker.h"
 #include "drivers/eye_tracker/dynasight/simulator.h"
-#include "drivers/eye_tracker/tracker_seat.h"
 #include "drivers/port/memory_line.h"
 #include "drivers/prism_servo/dynamixel/simulated_servo.h"
 #include "ipc/device_page.h"
@@ -43,11 +43,11 @@ deviced::LoopSettings loop_settings(const StationSettings& settings) {
 class PlainLoop {
  public:
   PlainLoop(const deviced::LoopSettings& settings, drivers::port::BytePort& tracker, drivers::port::BytePort& servo, ipc::DevicePage& page)
-      : seat_(settings.tracker), servo_(servo, settings.servo), control_(settings.optics, settings.limits), page_(page) {
-    seat_.sit(tracker);
+      : tracker_(settings.tracker), servo_(servo, settings.servo), control_(settings.optics, settings.limits), page_(page) {
+    tracker_.attach(tracker);
   }
   void tick(std::int64_t now_ns) {
-    const auto polled = seat_.tracker()->poll(now_ns);
+    const auto polled = tracker_.tracker()->poll(now_ns);
     if (polled.fresh) head_ = {polled.sample.measured_ns, polled.sample.between_eyes_mm, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX()};
     ipc::EyesState eyes;
     eyes.time_ns = now_ns;
@@ -67,7 +67,7 @@ class PlainLoop {
   }
 
  private:
-  drivers::eye_tracker::TrackerSeat seat_;
+  drivers::eye_tracker::configured::ConfiguredTracker tracker_;
   dynamixel::Servo servo_;
   MaskControl control_;
   MaskControl::Output mask_;

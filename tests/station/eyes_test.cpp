@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "base/clock.h"
-#include "drivers/eye_tracker/simulated_tracker.h"
+#include "drivers/eye_tracker/configured/simulator.h"
 #include "ipc/client.h"
 #include "ipc/device_client.h"
 #include "tests/station/station.h"
@@ -21,7 +21,7 @@
 namespace prismesh::test {
 namespace {
 
-using drivers::eye_tracker::SimulatedTrackerThread;
+using drivers::eye_tracker::configured::SimulatedTrackerThread;
 using drivers::prism_servo::MaskPhase;
 
 constexpr double kMs = 1e-6;

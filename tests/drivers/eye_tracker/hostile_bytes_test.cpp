@@ -5,14 +5,16 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/eye_tracker/configured/tracker.h"
 #include "drivers/eye_tracker/opentrack/datagram.h"
 #include "drivers/eye_tracker/plausible.h"
-#include "drivers/eye_tracker/tracker_seat.h"
 #include "tests/drivers/eye_tracker/tracker_station.h"
 #include "tests/drivers/port/allocations.h"
 
 namespace prismesh::drivers::eye_tracker {
 namespace {
+
+using configured::ConfiguredTracker;
 
 using Random = std::mt19937_64;
 constexpr std::int64_t kMillisecondNs = 1'000'000;
@@ -129,15 +131,15 @@ TEST(HostileBytes, polling_sitting_and_leaving_allocate_nothing) {
   dynasight::TrackerStation station({.faults = {.drop_out = 0.01, .garbage = 0.2, .damaged_byte = 0.01, .lost_byte = 0.01}});
   settings::EyeTrackerSettings settings;
   settings.driver = settings::TrackerDriver::dynasight;
-  TrackerSeat seat(settings);
+  ConfiguredTracker configured(settings);
   const auto port = *station.line().open_host();
   bool heard = false;
   std::uint64_t allocated = 0;
   for (int life = 0; life < 5; ++life) {
     const std::uint64_t before_sitting = port::allocations_of_this_thread();
-    EyeTracker& tracker = seat.sit(*port);
+    EyeTracker& tracker = configured.attach(*port);
     allocated += port::allocations_of_this_thread() - before_sitting;
-    EXPECT_EQ(seat.tracker(), &tracker);
+    EXPECT_EQ(configured.tracker(), &tracker);
     for (int i = 0; i < 400; ++i) {
       for (int k = 0; k < 20; ++k) {
         station.clock().advance_ns(kMillisecondNs / 4);
@@ -148,9 +150,9 @@ TEST(HostileBytes, polling_sitting_and_leaving_allocate_nothing) {
       allocated += port::allocations_of_this_thread() - before;
     }
     const std::uint64_t before_leaving = port::allocations_of_this_thread();
-    seat.leave();
+    configured.detach();
     allocated += port::allocations_of_this_thread() - before_leaving;
-    EXPECT_EQ(seat.tracker(), nullptr);
+    EXPECT_EQ(configured.tracker(), nullptr);
   }
   EXPECT_TRUE(heard);
   EXPECT_EQ(allocated, 0u);

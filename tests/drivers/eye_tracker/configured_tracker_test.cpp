@@ -1,17 +1,20 @@
 // The simulated trackers as a station without hardware has them: over a real pseudo-terminal and real loopback datagrams, in real time.
 // What is asserted are places, never how fast the machine was.
-#include "drivers/eye_tracker/simulated_tracker.h"
+#include "drivers/eye_tracker/configured/simulator.h"
 
 #include <thread>
 
 #include <gtest/gtest.h>
 
+#include "drivers/eye_tracker/configured/tracker.h"
 #include "drivers/eye_tracker/plausible.h"
-#include "drivers/eye_tracker/tracker_seat.h"
 #include "drivers/port/open_port.h"
 
 namespace prismesh::drivers::eye_tracker {
 namespace {
+
+using configured::ConfiguredTracker;
+using configured::SimulatedTrackerThread;
 
 settings::EyeTrackerSettings simulated(settings::TrackerDriver driver) {
   settings::EyeTrackerSettings settings;
@@ -49,8 +52,8 @@ TEST(SimulatedTracker, a_dynasight_streams_over_a_pseudo_terminal_in_both_dialec
       ASSERT_TRUE(device) << device.error().text();
       const auto port = port::open_port((*device)->port_path(), settings.baud);
       ASSERT_TRUE(port) << port.error().text();
-      TrackerSeat seat(settings);
-      EXPECT_TRUE(hear(seat.sit(**port), 10));
+      ConfiguredTracker configured(settings);
+      EXPECT_TRUE(hear(configured.attach(**port), 10));
     }
 }
 
@@ -59,12 +62,12 @@ TEST(SimulatedTracker, a_port_that_is_opened_again_finds_the_device_still_there)
   const auto settings = simulated(settings::TrackerDriver::dynasight);
   const auto device = SimulatedTrackerThread::start(settings, clock);
   ASSERT_TRUE(device);
-  TrackerSeat seat(settings);
+  ConfiguredTracker configured(settings);
   for (int i = 0; i < 3; ++i) {
     const auto port = port::open_port((*device)->port_path(), settings.baud);
     ASSERT_TRUE(port) << port.error().text();
-    EXPECT_TRUE(hear(seat.sit(**port), 3));
-    seat.leave();
+    EXPECT_TRUE(hear(configured.attach(**port), 3));
+    configured.detach();
   }
 }
 
@@ -75,8 +78,8 @@ TEST(SimulatedTracker, when_the_device_ends_its_port_is_gone) {
   ASSERT_TRUE(device);
   const auto port = port::open_port((*device)->port_path(), settings.baud);
   ASSERT_TRUE(port);
-  TrackerSeat seat(settings);
-  EyeTracker& tracker = seat.sit(**port);
+  ConfiguredTracker configured(settings);
+  EyeTracker& tracker = configured.attach(**port);
   EXPECT_TRUE(hear(tracker, 3));
   device->reset();
   auto status = port::PortStatus::ok;
@@ -96,8 +99,8 @@ TEST(SimulatedTracker, opentrack_sends_to_loopback) {
   const auto device = SimulatedTrackerThread::start(settings, clock);
   ASSERT_TRUE(device) << device.error().text();
   EXPECT_EQ((*device)->port_path(), "");
-  TrackerSeat seat(settings);
-  EXPECT_TRUE(hear(seat.sit(**port), 10));
+  ConfiguredTracker configured(settings);
+  EXPECT_TRUE(hear(configured.attach(**port), 10));
 }
 
 TEST(SimulatedTracker, what_cannot_be_played_is_refused_with_a_reason) {

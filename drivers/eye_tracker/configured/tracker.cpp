@@ -1,8 +1,8 @@
-#include "drivers/eye_tracker/tracker_seat.h"
+#include "drivers/eye_tracker/configured/tracker.h"
 
 #include "base/clock.h"
 
-namespace prismesh::drivers::eye_tracker {
+namespace prismesh::drivers::eye_tracker::configured {
 
 dynasight::DynasightTracker::Options dynasight_options(const settings::EyeTrackerSettings& settings) {
   return {.dialect = settings.dialect,
@@ -20,18 +20,18 @@ opentrack::OpentrackTracker::Options opentrack_options(const settings::EyeTracke
   return options;
 }
 
-TrackerSeat::TrackerSeat(const settings::EyeTrackerSettings& settings)
+ConfiguredTracker::ConfiguredTracker(const settings::EyeTrackerSettings& settings)
     : dynasight_(dynasight_options(settings)), opentrack_(opentrack_options(settings)) {}
 
-EyeTracker& TrackerSeat::sit(port::BytePort& port) { return tracker_.emplace<dynasight::DynasightTracker>(port, dynasight_); }
+EyeTracker& ConfiguredTracker::attach(port::BytePort& port) { return tracker_.emplace<dynasight::DynasightTracker>(port, dynasight_); }
 
-EyeTracker& TrackerSeat::sit(port::DatagramPort& port) { return tracker_.emplace<opentrack::OpentrackTracker>(port, opentrack_); }
+EyeTracker& ConfiguredTracker::attach(port::DatagramPort& port) { return tracker_.emplace<opentrack::OpentrackTracker>(port, opentrack_); }
 
-void TrackerSeat::leave() { tracker_.emplace<std::monostate>(); }
+void ConfiguredTracker::detach() { tracker_.emplace<std::monostate>(); }
 
-EyeTracker* TrackerSeat::tracker() {
+EyeTracker* ConfiguredTracker::tracker() {
   if (auto* dynasight = std::get_if<dynasight::DynasightTracker>(&tracker_)) return dynasight;
   return std::get_if<opentrack::OpentrackTracker>(&tracker_);
 }
 
-}  // namespace prismesh::drivers::eye_tracker
+}  // namespace prismesh::drivers::eye_tracker::configured

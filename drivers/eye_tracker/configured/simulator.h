@@ -1,5 +1,5 @@
-// A simulated eye tracker for stations without one: the device's side is played on a thread of its own, over a pseudo-terminal
-// (DynaSight/D4D) or loopback datagrams (opentrack), so that the daemon opens and reads it as it would the real thing.
+// A simulated eye tracker for stations without one: a thread plays the device's side over a pseudo-terminal (DynaSight, D4D) or loopback
+// datagrams (opentrack), and the daemon opens and reads it like the real device.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include "drivers/eye_tracker/simulated_head.h"
 #include "drivers/settings/settings.h"
 
-namespace prismesh::drivers::eye_tracker {
+namespace prismesh::drivers::eye_tracker::configured {
 
 class SimulatedTrackerThread {
  public:
@@ -35,4 +35,4 @@ class SimulatedTrackerThread {
   std::jthread thread_;
 };
 
-}  // namespace prismesh::drivers::eye_tracker
+}  // namespace prismesh::drivers::eye_tracker::configured

@@ -1,5 +1,5 @@
-// Where a station's eye tracker sits: the driver that the settings name, while its port is there. Ports come and go in the real-time loop
-// (port/port_keeper.h), so taking a port and letting it go doesn't allocate.
+// The eye tracker that a station's settings name, while its port is there. Ports come and go in the real-time loop
+// (port/port_keeper.h), so attaching to a port and detaching from it doesn't allocate.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@
 #include "drivers/port/udp_port.h"
 #include "drivers/settings/settings.h"
 
-namespace prismesh::drivers::eye_tracker {
+namespace prismesh::drivers::eye_tracker::configured {
 
 /// Milliseconds to nanoseconds and the like: a driver's options from the settings.
 dynasight::DynasightTracker::Options dynasight_options(const settings::EyeTrackerSettings& settings);
 opentrack::OpentrackTracker::Options opentrack_options(const settings::EyeTrackerSettings& settings);
 
-class TrackerSeat {
+class ConfiguredTracker {
  public:
-  explicit TrackerSeat(const settings::EyeTrackerSettings& settings);
+  explicit ConfiguredTracker(const settings::EyeTrackerSettings& settings);
 
-  /// A new tracker on that port, its counts at zero. The port must outlive it: `leave` before giving the port back. The settings' driver
+  /// A new tracker on that port, its counts at zero. The port must outlive it: `detach` before giving the port back. The settings' driver
   /// must be of the port's kind: dynasight reads bytes, opentrack datagrams.
-  EyeTracker& sit(port::BytePort& port);
-  EyeTracker& sit(port::DatagramPort& port);
-  void leave();
+  EyeTracker& attach(port::BytePort& port);
+  EyeTracker& attach(port::DatagramPort& port);
+  void detach();
   /// Null while there is no port.
   EyeTracker* tracker();
 
@@ -35,4 +35,4 @@ class TrackerSeat {
   std::variant<std::monostate, dynasight::DynasightTracker, opentrack::OpentrackTracker> tracker_;
 };
 
-}  // namespace prismesh::drivers::eye_tracker
+}  // namespace prismesh::drivers::eye_tracker::configured

@@ -1,4 +1,4 @@
-#include "drivers/eye_tracker/simulated_tracker.h"
+#include "drivers/eye_tracker/configured/simulator.h"
 
 #include <chrono>
 #include <functional>
@@ -11,7 +11,7 @@
 #include "drivers/port/pty_pair.h"
 #include "drivers/port/udp_port.h"
 
-namespace prismesh::drivers::eye_tracker {
+namespace prismesh::drivers::eye_tracker::configured {
 namespace {
 
 constexpr auto kStep = std::chrono::milliseconds(1);
@@ -85,4 +85,4 @@ Result<std::unique_ptr<SimulatedTrackerThread>> SimulatedTrackerThread::start(co
 
 SimulatedTrackerThread::~SimulatedTrackerThread() = default;
 
-}  // namespace prismesh::drivers::eye_tracker
+}  // namespace prismesh::drivers::eye_tracker::configured
