@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "mesh/spatial/geodesic.h"
+#include "mesh/spatial/cut_patch.h"
 
 namespace prismesh::mesh::shape {
 

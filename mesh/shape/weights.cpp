@@ -12,6 +12,7 @@
 #include "mesh/model/adjacency.h"
 #include "mesh/shape/free_edge.h"
 #include "mesh/shape/weights_carried.h"
+#include "mesh/spatial/cut_patch.h"
 #include "mesh/spatial/geodesic.h"
 
 namespace prismesh::mesh::shape {

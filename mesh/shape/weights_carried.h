@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/model/model.h"
-#include "mesh/spatial/geodesic.h"
+#include "mesh/spatial/patch.h"
 
 namespace prismesh::mesh::shape {
 

@@ -1,19 +1,11 @@
 // What lies in front of an obtuse corner, laid flat.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
-#include "mesh/spatial/geodesic.h"
+#include "mesh/spatial/patch.h"
 
 namespace prismesh::mesh::spatial {
-
-/// How many of a local shell's corners are distinct: 4, 3, or 2 for a line.
-inline int corner_count(const std::array<std::uint32_t, 4>& corner) {
-  if (corner[1] == corner[0]) return 1;
-  if (corner[2] == corner[1]) return 2;
-  return corner[3] == corner[2] ? 3 : 4;
-}
 
 /// Angle in radians between a local shell's two sides at one of its local nodes; 0 for a line.
 double corner_angle(const Patch& patch, std::uint32_t shell, std::uint32_t node);

@@ -14,6 +14,7 @@
 #include "mesh/shape/normals.h"
 #include "mesh/shape/weights.h"
 #include "mesh/spatial/closest_point.h"
+#include "mesh/spatial/cut_patch.h"
 #include "mesh/spatial/geodesic.h"
 #include "tests/bench/million_quads.h"
 #include "tests/support/whole_model.h"

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/spatial/cut_patch.h"
 #include "mesh/spatial/geodesic.h"
 #include "tests/mesh/spatial/exact_geodesic.h"
 #include "tests/mesh/spatial/trial_sheets.h"

@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "mesh/spatial/cut_patch.h"
 #include "tests/mesh/spatial/trial_sheets.h"
 #include "tests/support/make_model.h"
 #include "tests/support/whole_model.h"

@@ -1,4 +1,5 @@
-// Cutting patches out of a model, with what marching needs to know of their shape.
+#include "mesh/spatial/cut_patch.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "base/deterministic_math.h"
-#include "mesh/spatial/geodesic.h"
+#include "mesh/model/adjacency.h"
 #include "mesh/spatial/unfold.h"
 
 namespace prismesh::mesh::spatial {
