@@ -9,21 +9,10 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "mesh/model/model.h"
-#include "mesh/model/node_set.h"
+#include "mesh/select/chosen.h"
 #include "mesh/select/names.h"
 
 namespace prismesh::mesh::select {
-
-enum class Kind : std::uint8_t { node, element, part };
-
-/// What an expression names. Bare numbers are ids of the kind in hand; `node:`, `shell:`, `part:` and the other element
-/// classes change it for one item.
-struct Chosen {
-  NodeSet nodes;                 ///< kind node: the nodes; element: the nodes of `shells`; part: of all the parts' elements
-  ShellSet shells;               ///< kind element: the shells; part: the shells of `parts`; else empty
-  std::vector<PartIndex> parts;  ///< kind part: the parts, ascending, also those without shells; else empty
-  bool of_surfaces = false;      ///< every item names shells, parts, sets of those or files
-};
 
 /// Evaluates an expression, its items from left to right, starting with nothing. Cost: the model's size once and for each operator, then
 /// what each item names, never the width of a range; the reverse index once if a set is named.

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mesh/model/model.h"
-#include "mesh/select/expression.h"
+#include "mesh/select/chosen.h"
 #include "mesh/select/parse.h"
 
 namespace prismesh::mesh::select {

@@ -11,9 +11,6 @@
 
 namespace prismesh::mesh::select {
 
-/// A shell that passes this close to a node lies on it and doesn't hide it; a share of the shell's longest edge.
-inline constexpr double kLiesOnShell = 1e-3;
-
 /// Of `candidates`, the nodes in the picture that no shell in sight hides. `view` takes deck coordinates to clip space (column-major 4x4,
 /// perspective or orthographic, the nearer the smaller z/w); what it cuts off before its near plane hides nothing, and nodes beyond its
 /// planes aren't in the picture. `out_of_sight` has an entry for each part, not 0 where the part is hidden; empty: all are in sight.

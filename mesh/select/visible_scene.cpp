@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
-#include "mesh/select/visible.h"
 #include "mesh/spatial/distance.h"
 
 namespace prismesh::mesh::select {

@@ -15,6 +15,9 @@
 
 namespace prismesh::mesh::select {
 
+/// A shell that passes this close to a node lies on it and doesn't hide it; a share of the shell's longest edge.
+inline constexpr double kLiesOnShell = 1e-3;
+
 /// A place in the picture: normalised device coordinates, z the depth.
 using Seen = Vec3;
 
