@@ -12,7 +12,7 @@
 #include "ipc/messages_json.h"
 #include "ipc/reconnecting_client.h"
 #include "mesh/document/edit_kinds.h"
-#include "mesh/quality/criteria_names.h"
+#include "mesh/quality/criteria.h"
 
 namespace prismesh::cli {
 

@@ -12,6 +12,8 @@
 #include "mesh/model/topology_change.h"
 #include "mesh/quality/composite.h"
 #include "mesh/quality/limits.h"
+#include "mesh/quality/measure.h"
+#include "mesh/quality/sheet.h"
 
 namespace prismesh::modeld {
 
@@ -204,7 +206,7 @@ class Gathering {
       if (!has(state.warn, m) || (metric_ >= 0 && m != metric_)) continue;
       const auto at = static_cast<std::size_t>(m);
       const Sheet sheet = m == int(Metric::min_length) ? mesh::quality::sheet_of(generation_.model, ShellIndex(shell)) : Sheet();
-      const Wrong candidate{shell, m, values[at], severity(values[at], limits_of(m, triangle, sheet)), has(state.fail, m)};
+      const Wrong candidate{shell, m, values[at], severity(values[at], threshold_of(m, triangle, sheet)), has(state.fail, m)};
       if (worst.metric < 0 || worse(candidate, worst)) worst = candidate;
     }
     return worst;
@@ -261,7 +263,7 @@ class Gathering {
     const double least = nth(0), most = nth(sorted.size() - 1);
     double low = nth(tail), high = nth(sorted.size() - 1 - tail);
     // What warns and fails shall be seen as far as there is any of it, but a value of a million shall not push all others into one bar.
-    const Threshold limit = limits_of(metric_, mesh::quality::is_of_triangles(static_cast<Metric>(metric_)));
+    const Threshold limit = threshold_of(metric_, mesh::quality::is_of_triangles(static_cast<Metric>(metric_)));
     const double reach = 0.25;
     if (std::isfinite(limit.fail_high)) high = std::min(std::max(high, limit.fail_high * (1 + reach)), most);
     if (std::isfinite(limit.fail_low)) low = std::max(std::min(low, limit.fail_low * (1 - reach)), least);
@@ -288,9 +290,9 @@ class Gathering {
   }
 
   /// For this target size; without a sheet as if nothing were known of thickness and material.
-  Threshold limits_of(int metric, bool triangle, const Sheet& sheet = {}) const {
-    return mesh::quality::limits_of(document_.settings.criteria, static_cast<Metric>(metric), triangle, document_.settings.target_size,
-                                    sheet);
+  Threshold threshold_of(int metric, bool triangle, const Sheet& sheet = {}) const {
+    return mesh::quality::threshold_of(document_.settings.criteria, static_cast<Metric>(metric), triangle, document_.settings.target_size,
+                                       sheet);
   }
 
   std::string unit(int metric) const {

@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "mesh/quality/metrics.h"
+
 namespace prismesh::kiosk::render {
 
 using mesh::Vec3;

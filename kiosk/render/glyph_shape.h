@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mesh/model/model.h"
-#include "mesh/quality/criteria.h"
+#include "mesh/quality/shell_state.h"
 
 namespace prismesh::kiosk::render {
 

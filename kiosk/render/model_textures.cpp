@@ -6,7 +6,7 @@
 #include "base/parallel_for.h"
 #include "kiosk/render/palette.h"
 #include "mesh/document/generation.h"
-#include "mesh/quality/criteria.h"
+#include "mesh/quality/shell_state.h"
 
 namespace prismesh::kiosk::render {
 

@@ -6,6 +6,8 @@
 #include "base/parallel_for.h"
 #include "mesh/document/motion.h"
 #include "mesh/document/plan_motion.h"
+#include "mesh/quality/judge.h"
+#include "mesh/quality/sheet.h"
 
 namespace prismesh::mesh::document {
 

@@ -12,7 +12,9 @@
 #include "mesh/document/generation.h"
 #include "mesh/document/settings.h"
 #include "mesh/model/node_set.h"
-#include "mesh/quality/judging.h"
+#include "mesh/quality/report.h"
+#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_state.h"
 
 namespace prismesh::mesh::document {
 

@@ -4,7 +4,7 @@
 #include "mesh/deck/data/length_unit.h"
 #include "mesh/deck/open.h"
 #include "mesh/document/find_deck_relations.h"
-#include "mesh/quality/judging.h"
+#include "mesh/quality/sheet.h"
 
 namespace prismesh::mesh::document {
 

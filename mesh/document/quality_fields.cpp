@@ -5,7 +5,9 @@
 
 #include "mesh/document/field_values.h"
 #include "mesh/quality/composite.h"
+#include "mesh/quality/judge.h"
 #include "mesh/quality/limits.h"
+#include "mesh/quality/measure.h"
 #include "mesh/quality/time_step.h"
 
 namespace prismesh::mesh::document {
@@ -25,7 +27,8 @@ std::string title_of(Metric metric) {
 
 /// From warning to failing where the criteria say both on one side; else from the harmless end of the values to the other.
 FieldLimits colours_of(Metric metric, const Settings& settings, const FieldFigures& figures) {
-  const quality::Threshold limits = quality::limits_of(settings.criteria, metric, quality::is_of_triangles(metric), settings.target_size);
+  const quality::Threshold limits =
+      quality::threshold_of(settings.criteria, metric, quality::is_of_triangles(metric), settings.target_size);
   if (std::isfinite(limits.warn_high) && std::isfinite(limits.fail_high)) return apart(limits.warn_high, limits.fail_high);
   if (std::isfinite(limits.warn_low) && std::isfinite(limits.fail_low)) return apart(limits.warn_low, limits.fail_low);
   return apart(figures.min, figures.max);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "mesh/quality/judging.h"
+#include "mesh/quality/judge_lanes.h"
+#include "mesh/quality/shell_batch.h"
 
 namespace prismesh::mesh::quality {
 

@@ -3,7 +3,9 @@
 
 #include <span>
 
+#include "mesh/model/model.h"
 #include "mesh/quality/criteria.h"
+#include "mesh/quality/sheet.h"
 
 namespace prismesh::mesh::quality {
 

@@ -7,7 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
-#include "mesh/quality/judging.h"
+#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_batch.h"
 
 namespace prismesh::mesh::quality {
 

@@ -10,7 +10,8 @@
 
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/quality/judging.h"
+#include "mesh/quality/judge_lanes.h"
+#include "mesh/quality/shell_batch.h"
 #include "mesh/quality/time_step.h"
 
 namespace prismesh::mesh::quality {

@@ -6,6 +6,7 @@
 
 #include "mesh/model/node_set.h"
 #include "mesh/quality/criteria.h"
+#include "mesh/quality/shell_state.h"
 
 namespace prismesh::mesh::quality {
 

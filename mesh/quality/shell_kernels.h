@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "mesh/quality/shell_batch.h"
+#include "mesh/quality/shell_lanes.h"
 
 #define PRISMESH_INLINE inline __attribute__((always_inline))
 

@@ -9,6 +9,8 @@
 
 #include "mesh/model/adjacency.h"
 #include "mesh/quality/composite.h"
+#include "mesh/quality/judge.h"
+#include "mesh/quality/measure.h"
 #include "mesh/quality/metrics.h"
 #include "mesh/quality/report.h"
 #include "mesh/quality/structure.h"

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "mesh/quality/composite.h"
+#include "mesh/quality/judge.h"
+#include "mesh/quality/measure.h"
 #include "tests/fuzz/require.h"
 
 using namespace prismesh;  // NOLINT: a fuzz target is a program of its own

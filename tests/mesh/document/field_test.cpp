@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/model/topology_change.h"
+#include "mesh/quality/measure.h"
 #include "tests/mesh/document/document_fixture.h"
 
 namespace prismesh::mesh::document {

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "mesh/model/topology_change.h"
+#include "mesh/quality/judge.h"
+#include "mesh/quality/measure.h"
 #include "mesh/quality/report.h"
+#include "mesh/quality/sheet.h"
 #include "tests/mesh/quality/mixed_grid.h"
 
 namespace prismesh::mesh::quality {

@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/quality/judge.h"
 #include "mesh/quality/limits.h"
+#include "mesh/quality/measure.h"
 #include "tests/support/places.h"
 
 namespace prismesh::mesh::quality {
@@ -147,7 +149,7 @@ TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
   for (const Sheet& sheet : {Sheet(), Sheet(1.0), Sheet(3.0), Sheet(0, 1.5), Sheet(0, 9.0), Sheet(7.0, 9.0)})
     for (const bool of_triangle : {false, true})
       for (const Metric metric : {Metric::min_length, Metric::max_length, Metric::skew, Metric::aspect}) {
-        const Threshold limits = limits_of(criteria, metric, of_triangle, 10, sheet);
+        const Threshold limits = threshold_of(criteria, metric, of_triangle, 10, sheet);
         const auto judged = [&](float value) {
           Values values = of_triangle ? good_triangle() : good_quad();
           values[int(metric)] = value;
@@ -163,8 +165,8 @@ TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
           }
         }
       }
-  EXPECT_NEAR(limits_of(criteria, Metric::min_length, false, 10, Sheet(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
-  EXPECT_NEAR(limits_of(criteria, Metric::min_length, false, 10, Sheet(7.0, 9.0)).fail_low, 7.7, 1e-5);
+  EXPECT_NEAR(threshold_of(criteria, Metric::min_length, false, 10, Sheet(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
+  EXPECT_NEAR(threshold_of(criteria, Metric::min_length, false, 10, Sheet(7.0, 9.0)).fail_low, 7.7, 1e-5);
 }
 
 TEST(Criteria, of_our_own_are_known_by_name) {

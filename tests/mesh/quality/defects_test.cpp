@@ -6,7 +6,9 @@
 
 #include "mesh/model/topology_change.h"
 #include "mesh/quality/composite.h"
+#include "mesh/quality/judge.h"
 #include "mesh/quality/mass.h"
+#include "mesh/quality/measure.h"
 #include "mesh/quality/report.h"
 #include "tests/support/make_model.h"
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "mesh/quality/measure.h"
 #include "mesh/quality/shell_batch.h"
 #include "mesh/quality/shell_kernels.h"
 #include "tests/mesh/quality/mixed_grid.h"

@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "mesh/quality/judge.h"
 #include "mesh/quality/mass.h"
+#include "mesh/quality/measure.h"
 #include "mesh/quality/metrics.h"
 #include "mesh/quality/report.h"
 #include "mesh/quality/time_step.h"

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/quality/measure.h"
 #include "mesh/quality/metrics.h"
 #include "tests/support/verdict_library.h"
 

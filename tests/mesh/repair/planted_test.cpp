@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/quality/judge.h"
+#include "mesh/quality/measure.h"
 #include "mesh/quality/metrics.h"
 #include "tests/mesh/repair/sheets.h"
 #include "tests/mesh/repair/validator.h"

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/quality/judge.h"
+#include "mesh/quality/measure.h"
 #include "mesh/quality/report.h"
 #include "mesh/relax/freedom.h"
 #include "tests/mesh/repair/sheets.h"

@@ -1,0 +1,45 @@
+#include "mesh/quality/judge.h"
+
+#include "mesh/quality/judge_lanes.h"
+#include "mesh/quality/shell_batch.h"
+
+namespace prismesh::mesh::quality {
+
+ShellState judge(const Values& values, const Criteria& criteria, double target_size, const Sheet& sheet) {
+  const BatchValues batch = batch_of(values);
+  const Limits limits = limits_for(criteria, target_size);
+  ShellState state;
+  judge_lanes(batch, 1, limits, limits.need_sheets() ? &sheet : nullptr, &state);
+  return state;
+}
+
+void judge_points(std::span<const Vec3> moving, std::span<const Vec3> fixed, std::span<const std::array<std::int32_t, 4>> corners,
+                  std::span<const Sheet> sheets, const Criteria& criteria, double target_size, std::span<ShellState> out,
+                  std::span<float> composites) {
+  const Limits limits = limits_for(criteria, target_size);
+  const bool by_sheet = limits.need_sheets() && !sheets.empty();
+  measure_in_batches(
+      corners.size(),
+      [&](std::size_t i, const Vec3*(&corner)[4]) {
+        for (std::size_t c = 0; c < 4; ++c) {
+          const std::int32_t at = corners[i][c];
+          corner[c] = at >= 0 ? &moving[static_cast<std::size_t>(at)] : &fixed[static_cast<std::uint32_t>(~at)];
+        }
+        return corners[i][3] == corners[i][2] ? Shape::triangle : Shape::quad;
+      },
+      [&](const ShellBatch& batch, const BatchValues& values) {
+        ShellState states[kLanes];
+        Sheet room[kLanes];
+        if (by_sheet)
+          for (std::size_t lane = 0; lane < batch.count; ++lane) room[lane] = sheets[batch.slot[lane]];
+        const Sheet* lane_sheets = by_sheet ? room : nullptr;
+        judge_lanes(values, batch.count, limits, lane_sheets, states);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = states[lane];
+        if (composites.empty()) return;
+        float rated[kLanes];
+        rate_lanes(values, batch.count, limits, lane_sheets, rated);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) composites[batch.slot[lane]] = rated[lane];
+      });
+}
+
+}  // namespace prismesh::mesh::quality

@@ -1,0 +1,95 @@
+#include "mesh/quality/limits.h"
+
+namespace prismesh::mesh::quality {
+
+namespace {
+
+constexpr float kMax = 3e38F;  ///< of a limit: what is beyond a float is still a limit
+
+float in_float(double limit) {
+  return std::isfinite(limit) ? static_cast<float>(std::clamp<double>(limit, -kMax, kMax)) : static_cast<float>(limit);
+}
+
+Threshold scaled(const Threshold& threshold, double by) {
+  const auto scale = [by](float limit) { return in_float(limit * by); };
+  return {scale(threshold.warn_low), scale(threshold.warn_high), scale(threshold.fail_low), scale(threshold.fail_high)};
+}
+
+bool is_length(int metric) { return metric == kMinLength || metric == int(Metric::max_length); }
+
+/// What an element of the target size has that is a square or an equilateral triangle.
+float ideal(Metric metric, bool of_triangle, double target_size) {
+  switch (metric) {
+    case Metric::warpage:
+    case Metric::skew:
+    case Metric::taper: return 0;
+    case Metric::aspect:
+    case Metric::jacobian: return 1;
+    case Metric::min_angle_quad:
+    case Metric::max_angle_quad: return 90;
+    case Metric::min_angle_tri:
+    case Metric::max_angle_tri: return 60;
+    case Metric::min_length: return static_cast<float>(of_triangle ? 0.8660254037844386 * target_size : target_size);
+    case Metric::max_length: break;
+  }
+  return static_cast<float>(target_size);
+}
+
+ShapeLimits shape_limits(const std::array<Threshold, kMetricCount>& thresholds, bool of_triangle, double target_size) {
+  ShapeLimits shape;
+  for (int m = 0; m < kMetricCount; ++m) {
+    const Threshold& t = shape.threshold[m] = scaled(thresholds[m], is_length(m) ? target_size : 1.0);
+    const float best = ideal(static_cast<Metric>(m), of_triangle, target_size);
+    if (std::isfinite(t.fail_low))
+      shape.side[m][0] = {t.fail_low, best > t.fail_low ? 1 / span_of(t.fail_low, best) : 1 / span_of(t.fail_low, t.fail_low)};
+    if (std::isfinite(t.fail_high))
+      shape.side[m][1] = {t.fail_high, best < t.fail_high ? -1 / span_of(t.fail_high, best) : -1 / span_of(t.fail_high, t.fail_high)};
+  }
+  shape.ideal_min_length = ideal(Metric::min_length, of_triangle, target_size);
+  return shape;
+}
+
+/// The least min_length: of a wanted time step, where there is one and the material is known, else a fraction of the target size; no less
+/// than the multiple of the thickness.
+float least_length(float fraction, float step, float thicknesses, const Sheet& sheet) {
+  const float length = step > 0 && sheet.wave_speed > 0 ? std::min(step * sheet.wave_speed, kMax) : fraction;
+  return thicknesses > 0 && sheet.thickness > 0 ? std::max(length, std::min(thicknesses * sheet.thickness, kMax)) : length;
+}
+
+/// For a wave speed of 1; the deck takes only a share of what the length gives.
+float length_of_step(double time_step, const Criteria& criteria) { return static_cast<float>(time_step / criteria.time_step_scale); }
+
+}  // namespace
+
+Limits limits_for(const Criteria& criteria, double target_size) {
+  Limits limits;
+  limits.quad = shape_limits(criteria.quad, false, target_size);
+  limits.triangle = shape_limits(criteria.triangle, true, target_size);
+  limits.warn_thicknesses = criteria.warn_min_length_thicknesses;
+  limits.fail_thicknesses = criteria.fail_min_length_thicknesses;
+  limits.warn_step = length_of_step(criteria.warn_time_step, criteria);
+  limits.fail_step = length_of_step(criteria.fail_time_step, criteria);
+  return limits;
+}
+
+Threshold threshold_of(const Criteria& criteria, Metric metric, bool of_triangle, double target_size, const Sheet& sheet) {
+  const int m = int(metric);
+  const Threshold& given = (of_triangle ? criteria.triangle : criteria.quad)[static_cast<std::size_t>(m)];
+  if (!is_length(m)) return given;
+  Threshold limits = scaled(given, target_size);
+  if (m != kMinLength) return limits;
+  const float warn_step = length_of_step(criteria.warn_time_step, criteria), fail_step = length_of_step(criteria.fail_time_step, criteria);
+  limits.warn_low = least_length(limits.warn_low, warn_step, criteria.warn_min_length_thicknesses, sheet);
+  limits.fail_low = least_length(limits.fail_low, fail_step, criteria.fail_min_length_thicknesses, sheet);
+  return limits;
+}
+
+void least_lengths(const ShapeLimits& shape, const Limits& limits, const Sheet* sheets, std::size_t count, float* warn, float* fail) {
+  const Threshold& t = shape.threshold[kMinLength];
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    warn[lane] = least_length(t.warn_low, limits.warn_step, limits.warn_thicknesses, sheets[lane]);
+    fail[lane] = least_length(t.fail_low, limits.fail_step, limits.fail_thicknesses, sheets[lane]);
+  }
+}
+
+}  // namespace prismesh::mesh::quality
