@@ -8,6 +8,7 @@
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
 #include "mesh/model/topology_change.h"
+#include "mesh/repair/by_hand.h"
 #include "mesh/repair/repair.h"
 
 namespace prismesh::mesh::document {

@@ -4,7 +4,8 @@
 #include "mesh/deck/data/length_unit.h"
 #include "mesh/deck/open.h"
 #include "mesh/document/find_deck_relations.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/mass.h"
+#include "mesh/quality/report.h"
 
 namespace prismesh::mesh::document {
 

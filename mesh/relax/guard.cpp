@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
+#include "mesh/quality/judge_lanes.h"
+#include "mesh/quality/shell_batch.h"
 #include "mesh/relax/stretches.h"
 
 namespace prismesh::mesh::relax {

@@ -8,9 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "mesh/quality/judging.h"
+#include "mesh/quality/limits.h"
+#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_state.h"
 #include "mesh/relax/net.h"
-#include "mesh/relax/relax.h"
+#include "mesh/relax/options.h"
 
 namespace prismesh::mesh::relax {
 

@@ -6,10 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "base/error.h"
+#include "base/progress.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
 #include "mesh/relax/reference_surface.h"
-#include "mesh/relax/relax.h"
 #include "mesh/relax/surface_anchor.h"
 
 namespace prismesh::mesh::relax {

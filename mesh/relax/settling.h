@@ -8,6 +8,7 @@
 
 #include "mesh/relax/guard.h"
 #include "mesh/relax/net.h"
+#include "mesh/relax/options.h"
 
 namespace prismesh::mesh::relax {
 

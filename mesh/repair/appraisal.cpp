@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
+#include "mesh/quality/judge_lanes.h"
 #include "mesh/quality/shell_batch.h"
+#include "mesh/repair/patch_geometry.h"
 
 namespace prismesh::mesh::repair {
 
@@ -99,13 +99,6 @@ bool edge_conforms(const Patch& patch, LocalNode a, LocalNode b) {
   const double size = std::sqrt(first.squaredNorm() * second.squaredNorm());
   // A crease may be sharp, a sheet may not be folded onto itself.
   return first.dot(second) < (line != nullptr ? 0.9 : 0.3) * size;
-}
-
-template <class PositionOf>
-Vec3 area_normal_of(const Corners& corners, const PositionOf& at) {
-  const bool is_triangle = corner_count(corners) == 3;
-  const Vec3 across = at(corners[is_triangle ? 1 : 2]) - at(corners[0]);
-  return across.cross(is_triangle ? Vec3(at(corners[2]) - at(corners[0])) : Vec3(at(corners[3]) - at(corners[1])));
 }
 
 /// How far shells are off the surface: at the points that divide edges, but those in lines, and quads into so many parts.
@@ -216,16 +209,6 @@ bool keeps_to_surface(const RepairContext& context) {
   for (const auto& [shell, was] : patch.old_shells()) before.push_back(was.corners);
   // What was there is looked at in more places: its halves have their middles where it has its quarters.
   return off <= 1.0001 * farthest_off(context, before, 4, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
-}
-
-std::optional<Vec3> on_surface(const RepairContext& context, const Vec3& point, const Vec3& toward, double radius) {
-  const std::optional<Vec3> direction = toward.squaredNorm() > 0 ? std::optional<Vec3>(toward.normalized()) : std::nullopt;
-  const auto place = context.surface.project(point, radius, direction);
-  return place && place->point.allFinite() ? std::optional<Vec3>(place->point) : std::nullopt;
-}
-
-Vec3 area_normal(const Patch& patch, const Corners& corners) {
-  return area_normal_of(corners, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
 }
 
 }  // namespace prismesh::mesh::repair

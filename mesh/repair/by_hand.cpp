@@ -1,11 +1,17 @@
+#include "mesh/repair/by_hand.h"
+
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "mesh/model/adjacency.h"
-#include "mesh/repair/operations.h"
-#include "mesh/repair/patch.h"
-#include "mesh/repair/repair.h"
+#include "mesh/repair/appraisal.h"
+#include "mesh/repair/divide.h"
+#include "mesh/repair/patch_geometry.h"
+#include "mesh/repair/redivide.h"
+#include "mesh/repair/unite.h"
 
 namespace prismesh::mesh::repair {
 

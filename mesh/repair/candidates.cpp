@@ -6,7 +6,11 @@
 #include <limits>
 #include <set>
 
+#include "mesh/repair/divide.h"
+#include "mesh/repair/node_moves.h"
+#include "mesh/repair/redivide.h"
 #include "mesh/repair/strips.h"
+#include "mesh/repair/unite.h"
 
 namespace prismesh::mesh::repair {
 

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
-#include "mesh/repair/operations.h"
+#include "mesh/repair/context.h"
+#include "mesh/repair/operation.h"
+#include "mesh/repair/reshaping.h"
 
 namespace prismesh::mesh::repair {
 

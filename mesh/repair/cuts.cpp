@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "mesh/repair/pieces.h"
+#include "mesh/repair/patch_geometry.h"
+#include "mesh/repair/placement.h"
 
 namespace prismesh::mesh::repair {
 

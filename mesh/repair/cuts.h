@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/repair/operations.h"
+#include "mesh/repair/context.h"
+#include "mesh/repair/reshaping.h"
+#include "mesh/repair/row.h"
 
 namespace prismesh::mesh::repair {
 

@@ -8,9 +8,10 @@
 #include <set>
 #include <string_view>
 
+#include "mesh/relax/relax.h"
 #include "mesh/repair/appraisal.h"
 #include "mesh/repair/candidates.h"
-#include "mesh/repair/patch.h"
+#include "mesh/repair/settling.h"
 #include "mesh/repair/strips.h"
 
 namespace prismesh::mesh::repair {

@@ -1,11 +1,14 @@
-// Where nodes go after the structure about them changed: each in turn to the place near it where its shells are best.
+#include "mesh/repair/settling.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
+#include "mesh/quality/judge_lanes.h"
 #include "mesh/quality/shell_batch.h"
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/patch_geometry.h"
+#include "mesh/repair/placement.h"
 
 namespace prismesh::mesh::repair {
 
@@ -148,12 +151,6 @@ void settle_in_sheet(const RepairContext& context, LocalNode node, double step) 
 }
 
 }  // namespace
-
-bool within_limit(const RepairContext& context, LocalNode node, const Vec3& place) {
-  const PatchNode& n = context.patch.node(node);
-  const std::optional<double>& most = n.lines.empty() ? context.options.relax.most_on_surface : context.options.relax.most_on_line;
-  return !n.model.valid() || !most || (place - context.patch.model().position(n.model)).norm() <= *most;
-}
 
 void settle(const RepairContext& context, int sweeps, bool along_lines) {
   std::vector<LocalNode> nodes = context.patch.changed_nodes();

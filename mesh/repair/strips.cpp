@@ -7,7 +7,7 @@
 #include <set>
 
 #include "mesh/repair/cuts.h"
-#include "mesh/repair/pieces.h"
+#include "mesh/repair/unite.h"
 
 namespace prismesh::mesh::repair {
 

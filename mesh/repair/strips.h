@@ -4,7 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "mesh/repair/operations.h"
+#include "mesh/repair/context.h"
+#include "mesh/repair/reshaping.h"
 
 namespace prismesh::mesh::repair {
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/repair/operations.h"
+#include "mesh/repair/redivide.h"
 #include "tests/mesh/repair/patch_fixture.h"
 
 namespace prismesh::mesh::repair {

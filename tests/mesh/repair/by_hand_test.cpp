@@ -1,6 +1,7 @@
 // Operations by hand: what each does, and what it says where it can't.
 #include <gtest/gtest.h>
 
+#include "mesh/repair/by_hand.h"
 #include "tests/mesh/repair/sheets.h"
 #include "tests/mesh/repair/validator.h"
 

@@ -1,5 +1,5 @@
 // Operations on a patch one by one, in small sheets whose result is known beforehand.
-#include "mesh/repair/operations.h"
+#include "mesh/repair/redivide.h"
 
 #include <algorithm>
 #include <map>
@@ -8,6 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "mesh/repair/candidates.h"
+#include "mesh/repair/divide.h"
+#include "mesh/repair/node_moves.h"
+#include "mesh/repair/unite.h"
 #include "tests/mesh/repair/patch_fixture.h"
 #include "tests/mesh/repair/validator.h"
 

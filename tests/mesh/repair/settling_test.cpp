@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/repair/settling.h"
 #include "tests/mesh/repair/patch_fixture.h"
 
 namespace prismesh::mesh::repair {

@@ -1,9 +1,11 @@
-// Dividing shells in a row or about a node: no hanging nodes at the ends.
+#include "mesh/repair/divide.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "mesh/repair/cuts.h"
-#include "mesh/repair/pieces.h"
+#include "mesh/repair/patch_geometry.h"
+#include "mesh/repair/placement.h"
 
 namespace prismesh::mesh::repair {
 

@@ -1,0 +1,20 @@
+// The data that the stages of a repair share.
+#pragma once
+
+#include "mesh/quality/limits.h"
+#include "mesh/relax/options.h"
+#include "mesh/relax/reference_surface.h"
+#include "mesh/repair/options.h"
+#include "mesh/repair/patch.h"
+
+namespace prismesh::mesh::repair {
+
+struct RepairContext {
+  Patch& patch;
+  const relax::ReferenceSurface& surface;
+  const relax::Judge& judge;
+  const Options& options;
+  quality::Limits limits;  ///< the judge's
+};
+
+}  // namespace prismesh::mesh::repair

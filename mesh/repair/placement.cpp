@@ -1,0 +1,17 @@
+#include "mesh/repair/placement.h"
+
+namespace prismesh::mesh::repair {
+
+std::optional<Vec3> on_surface(const RepairContext& context, const Vec3& point, const Vec3& toward, double radius) {
+  const std::optional<Vec3> direction = toward.squaredNorm() > 0 ? std::optional<Vec3>(toward.normalized()) : std::nullopt;
+  const auto place = context.surface.project(point, radius, direction);
+  return place && place->point.allFinite() ? std::optional<Vec3>(place->point) : std::nullopt;
+}
+
+bool within_limit(const RepairContext& context, LocalNode node, const Vec3& place) {
+  const PatchNode& n = context.patch.node(node);
+  const std::optional<double>& most = n.lines.empty() ? context.options.relax.most_on_surface : context.options.relax.most_on_line;
+  return !n.model.valid() || !most || (place - context.patch.model().position(n.model)).norm() <= *most;
+}
+
+}  // namespace prismesh::mesh::repair
