@@ -29,14 +29,12 @@ struct Parser {
 /// A subcommand whose options are of type Options and that runs `command` with them.
 template <class Options>
 std::pair<CLI::App*, Options*> add_command(Parser& parser, const std::string& name, const std::string& what,
-                                           int (*command)(const Options&, const Common&, const Surroundings&)) {
+                                           int (*command)(const Options&, const Common&, const Context&)) {
   CLI::App* app = parser.app.add_subcommand(name, what);
   app->fallthrough();  // options that every command takes may stand after it
   auto options = std::make_shared<Options>();
   app->callback([&parser, options, command] {
-    parser.chosen = [options, command, &common = parser.common](const Surroundings& surroundings) {
-      return command(*options, common, surroundings);
-    };
+    parser.chosen = [options, command, &common = parser.common](const Context& context) { return command(*options, common, context); };
   });
   return {app, options.get()};
 }
@@ -212,12 +210,12 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
     if (problem.get_exit_code() != static_cast<int>(CLI::ExitCodes::Success)) return usage_error(*parser, args, problem);
     std::ostringstream text;  // --help and --version come as exceptions too
     parser->app.exit(problem, text, text);
-    return Action([text = text.str()](const Surroundings& surroundings) {
-      surroundings.out << text;
+    return Action([text = text.str()](const Context& context) {
+      context.out << text;
       return kDone;
     });
   }
-  return Action([parser](const Surroundings& surroundings) { return parser->chosen(surroundings); });
+  return Action([parser](const Context& context) { return parser->chosen(context); });
 }
 
 }  // namespace prismesh::cli

@@ -100,12 +100,12 @@ void print_text(std::ostream& out, const mesh::document::Document& document, con
 
 }  // namespace
 
-int check(const CheckOptions& options, const Common& common, const Surroundings& surroundings) {
+int check(const CheckOptions& options, const Common& common, const Context& context) {
   const auto refuse = [&](const Error& error) {
-    say(surroundings, error);
+    say(context, error);
     return kFailed;
   };
-  const Result<mesh::document::Document> document = open_deck(options.deck, common, surroundings);
+  const Result<mesh::document::Document> document = open_deck(options.deck, common, context);
   if (!document) return refuse(document.error());
   const mesh::Model& model = document->current().model;
   mesh::ShellSet shells;
@@ -115,13 +115,13 @@ int check(const CheckOptions& options, const Common& common, const Surroundings&
     if (!chosen) return refuse(chosen.error());
     shells = std::move(chosen->shells);
   }
-  say_warnings(surroundings, *document);
+  say_warnings(context, *document);
   const CheckFigures figures = check_figures(*document, options.select ? &shells : nullptr, options.chordal);
-  for (const std::string& sentence : figures.unknown) say(surroundings, Error{document->path.string(), 0, "note: " + sentence});
+  for (const std::string& sentence : figures.unknown) say(context, Error{document->path.string(), 0, "note: " + sentence});
   if (common.json)
-    surroundings.out << check_json(*document, figures) << '\n';
+    context.out << check_json(*document, figures) << '\n';
   else
-    print_text(surroundings.out, *document, figures);
+    print_text(context.out, *document, figures);
   return kDone;
 }
 

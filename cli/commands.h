@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/units.h"
-#include "cli/run.h"
+#include "cli/context.h"
 
 namespace prismesh::cli {
 
@@ -27,14 +27,14 @@ struct Common {
 struct InfoOptions {
   std::filesystem::path deck;
 };
-int info(const InfoOptions& options, const Common& common, const Surroundings& surroundings);
+int info(const InfoOptions& options, const Common& common, const Context& context);
 
 struct CheckOptions {
   std::filesystem::path deck;
   std::optional<std::string> select;  ///< an expression: judge the shells it names
   bool chordal = false;               ///< also how far edges are from the smooth surface
 };
-int check(const CheckOptions& options, const Common& common, const Surroundings& surroundings);
+int check(const CheckOptions& options, const Common& common, const Context& context);
 
 struct EditOptions {
   std::filesystem::path deck;
@@ -43,33 +43,33 @@ struct EditOptions {
   std::filesystem::path output;
   std::optional<std::filesystem::path> journal;
 };
-int edit(const EditOptions& options, const Common& common, const Surroundings& surroundings);
+int edit(const EditOptions& options, const Common& common, const Context& context);
 
 struct ReplayOptions {
   std::filesystem::path journal;
   std::filesystem::path deck;
   std::filesystem::path output;
 };
-int replay(const ReplayOptions& options, const Common& common, const Surroundings& surroundings);
+int replay(const ReplayOptions& options, const Common& common, const Context& context);
 
 struct DiffOptions {
   std::filesystem::path a;
   std::filesystem::path b;
 };
-int diff(const DiffOptions& options, const Common& common, const Surroundings& surroundings);
+int diff(const DiffOptions& options, const Common& common, const Context& context);
 
 struct DistanceOptions {
   std::filesystem::path deck;
   std::string from;  ///< expressions
   std::string to;
 };
-int distance(const DistanceOptions& options, const Common& common, const Surroundings& surroundings);
+int distance(const DistanceOptions& options, const Common& common, const Context& context);
 
 struct SampleOptions {
   std::optional<std::size_t> elements;
   std::filesystem::path output;
 };
-int sample(const SampleOptions& options, const Common& common, const Surroundings& surroundings);
+int sample(const SampleOptions& options, const Common& common, const Context& context);
 
 struct RenderOptions {
   std::filesystem::path deck;
@@ -82,7 +82,7 @@ struct RenderOptions {
   std::vector<std::string>
       passed_on;  ///< options and values that the kiosk reads: --size, --profile, --eye, --mask, --view, --map, --bands
 };
-int render(const RenderOptions& options, const Common& common, const Surroundings& surroundings);
+int render(const RenderOptions& options, const Common& common, const Context& context);
 
 /// Talks to a running modeld.
 struct SessionOptions {
@@ -95,7 +95,7 @@ struct SessionOptions {
   std::optional<std::filesystem::path> output;  ///< save: elsewhere than in place
   bool discard = false;                         ///< close: unsaved edits too
 };
-int session(const SessionOptions& options, const Common& common, const Surroundings& surroundings);
+int session(const SessionOptions& options, const Common& common, const Context& context);
 
 /// Asks a running deviced.
 struct DevicesOptions {
@@ -104,6 +104,6 @@ struct DevicesOptions {
   bool rearm = false;   ///< first let a mask that was stuck or switched itself off try again
   bool reload = false;  ///< first let the daemon read settings and profile again
 };
-int devices(const DevicesOptions& options, const Common& common, const Surroundings& surroundings);
+int devices(const DevicesOptions& options, const Common& common, const Context& context);
 
 }  // namespace prismesh::cli

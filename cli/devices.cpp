@@ -86,49 +86,48 @@ Result<void> act(ipc::DeviceClient& client, const DevicesOptions& options) {
 }
 
 Result<void> act_and_print(ipc::DeviceClient& client, const DevicesOptions& options, bool first, const Common& common,
-                           const Surroundings& surroundings) {
+                           const Context& context) {
   if (first)
     if (Result<void> acted = act(client, options); !acted) return acted;
   const Result<DeviceFigures> figures = look(client);
   if (!figures) return fail(figures.error());
   if (common.json)
-    surroundings.out << devices_json(*figures) << '\n';
+    context.out << devices_json(*figures) << '\n';
   else
-    print(surroundings.out, *figures);
-  surroundings.out.flush();
+    print(context.out, *figures);
+  context.out.flush();
   return {};
 }
 
 /// Until the user stops it; a daemon that is started again is found again.
-void watch(ipc::ReconnectingDeviceClient& connection, const DevicesOptions& options, const Common& common,
-           const Surroundings& surroundings) {
+void watch(ipc::ReconnectingDeviceClient& connection, const DevicesOptions& options, const Common& common, const Context& context) {
   const auto pause = [&] {
-    for (auto slept = std::chrono::milliseconds(0); slept < kWatchPeriod && !surroundings.stop(); slept += std::chrono::milliseconds(50))
+    for (auto slept = std::chrono::milliseconds(0); slept < kWatchPeriod && !context.stop(); slept += std::chrono::milliseconds(50))
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
   };
   // The first look was printed already.
-  for (pause(); !surroundings.stop() && surroundings.out.good(); pause()) {
+  for (pause(); !context.stop() && context.out.good(); pause()) {
     if (const Result<ipc::DeviceClient*> client = connection.wait(kDevicedPatience); !client)
-      say(surroundings, client.error());
-    else if (const Result<void> printed = act_and_print(**client, options, false, common, surroundings); !printed)
+      say(context, client.error());
+    else if (const Result<void> printed = act_and_print(**client, options, false, common, context); !printed)
       connection.lost(printed.error());
   }
 }
 
 }  // namespace
 
-int devices(const DevicesOptions& options, const Common& common, const Surroundings& surroundings) {
+int devices(const DevicesOptions& options, const Common& common, const Context& context) {
   ipc::ReconnectingDeviceClient connection(ipc::device_socket_path(options.runtime_directory), "prismesh devices");
   const Result<ipc::DeviceClient*> client = connection.wait(std::chrono::milliseconds(0));
   if (!client) {
-    say(surroundings, client.error());
+    say(context, client.error());
     return kFailed;
   }
-  if (const Result<void> printed = act_and_print(**client, options, true, common, surroundings); !printed) {
-    say(surroundings, printed.error());
+  if (const Result<void> printed = act_and_print(**client, options, true, common, context); !printed) {
+    say(context, printed.error());
     return kFailed;
   }
-  if (options.watch) watch(connection, options, common, surroundings);
+  if (options.watch) watch(connection, options, common, context);
   return kDone;
 }
 

@@ -90,9 +90,9 @@ Difference compare(const OpenedDeck& a, const OpenedDeck& b) {
   return difference;
 }
 
-Result<OpenedDeck> open_one(const std::filesystem::path& path, const Surroundings& surroundings) {
+Result<OpenedDeck> open_one(const std::filesystem::path& path, const Context& context) {
   MonotonicClock clock;
-  ProgressBar bar(surroundings, "reading " + path.filename().string(), clock);
+  ProgressBar bar(context, "reading " + path.filename().string(), clock);
   Result<OpenedDeck> opened = mesh::deck::open(path, bar.progress());
   if (!opened && opened.error().file.empty()) opened.error().file = path.string();
   return opened;
@@ -100,29 +100,28 @@ Result<OpenedDeck> open_one(const std::filesystem::path& path, const Surrounding
 
 }  // namespace
 
-int diff(const DiffOptions& options, const Common& common, const Surroundings& surroundings) {
-  const Result<OpenedDeck> a = open_one(options.a, surroundings);
-  const Result<OpenedDeck> b = a ? open_one(options.b, surroundings) : a;
+int diff(const DiffOptions& options, const Common& common, const Context& context) {
+  const Result<OpenedDeck> a = open_one(options.a, context);
+  const Result<OpenedDeck> b = a ? open_one(options.b, context) : a;
   if (!b) {
-    say(surroundings, b.error());
+    say(context, b.error());
     return kFailed;
   }
   const Difference d = compare(*a, *b);
   if (common.json) {
-    surroundings.out << diff_json(d) << '\n';
+    context.out << diff_json(d) << '\n';
     return kDone;
   }
-  surroundings.out << "nodes: " << d.nodes_moved << " moved (at most " << rounded(d.max_displacement) << "), " << d.nodes_added
-                   << " added, " << d.nodes_removed << " removed\n"
-                   << "elements: " << d.elements_added << " added, " << d.elements_removed << " removed, " << d.elements_changed
-                   << " changed\n"
-                   << "lines: " << d.lines_changed << " changed\n";
+  context.out << "nodes: " << d.nodes_moved << " moved (at most " << rounded(d.max_displacement) << "), " << d.nodes_added << " added, "
+              << d.nodes_removed << " removed\n"
+              << "elements: " << d.elements_added << " added, " << d.elements_removed << " removed, " << d.elements_changed << " changed\n"
+              << "lines: " << d.lines_changed << " changed\n";
   const auto say_field = [&](const char* what, const std::optional<FieldFigures>& field) {
     if (field && field->max > 0)
-      surroundings.out << what << ": at most " << rounded(field->max) << " (" << field->max_at << "), mean " << rounded(field->mean)
-                       << " over " << field->measured << " nodes\n";
+      context.out << what << ": at most " << rounded(field->max) << " (" << field->max_at << "), mean " << rounded(field->mean) << " over "
+                  << field->measured << " nodes\n";
   };
-  if (!d.displacement) surroundings.out << "displacement: the two decks have no node in common\n";
+  if (!d.displacement) context.out << "displacement: the two decks have no node in common\n";
   say_field("displacement", d.displacement);
   say_field("distance of the second's shells from the first's", d.surface_distance);
   return kDone;

@@ -24,14 +24,14 @@ Gap::End end_of(const mesh::Model& model, const spatial::Closest::End& end) {
 
 }  // namespace
 
-int distance(const DistanceOptions& options, const Common& common, const Surroundings& surroundings) {
+int distance(const DistanceOptions& options, const Common& common, const Context& context) {
   const auto refuse = [&](const Error& error) {
-    say(surroundings, error);
+    say(context, error);
     return kFailed;
   };
-  const Result<mesh::document::Document> document = open_deck(options.deck, common, surroundings);
+  const Result<mesh::document::Document> document = open_deck(options.deck, common, context);
   if (!document) return refuse(document.error());
-  say_warnings(surroundings, *document);
+  say_warnings(context, *document);
   const mesh::Model& model = document->current().model;
   const Result<spatial::Shape> from = mesh::document::shape_named(document->current(), options.from);
   if (!from) return refuse(from.error());
@@ -43,14 +43,14 @@ int distance(const DistanceOptions& options, const Common& common, const Surroun
   if (const auto field = mesh::document::gap_field(model, *from, *to, document->settings.length_unit))
     gap.nodes = figures_of(*field, model);
   if (common.json) {
-    surroundings.out << distance_json(gap) << '\n';
+    context.out << distance_json(gap) << '\n';
     return kDone;
   }
-  surroundings.out << rounded(gap.distance) << ' ' << name(document->settings.length_unit) << " from " << gap.from.entity << " ("
-                   << gap.from.point.transpose() << ") to " << gap.to.entity << " (" << gap.to.point.transpose() << ")\n";
+  context.out << rounded(gap.distance) << ' ' << name(document->settings.length_unit) << " from " << gap.from.entity << " ("
+              << gap.from.point.transpose() << ") to " << gap.to.entity << " (" << gap.to.point.transpose() << ")\n";
   if (gap.nodes)
-    surroundings.out << gap.nodes->measured << " nodes: " << rounded(gap.nodes->min) << " to " << rounded(gap.nodes->max) << " ("
-                     << gap.nodes->max_at << "), mean " << rounded(gap.nodes->mean) << '\n';
+    context.out << gap.nodes->measured << " nodes: " << rounded(gap.nodes->min) << " to " << rounded(gap.nodes->max) << " ("
+                << gap.nodes->max_at << "), mean " << rounded(gap.nodes->mean) << '\n';
   return kDone;
 }
 

@@ -54,45 +54,45 @@ bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b)
 }
 
 /// Says why an edit wasn't done: the reason itself, and the edit's place where the reason has one of its own.
-void refuse_edit(const Surroundings& surroundings, const Common& common, const WantedEdit& wanted, Error reason) {
+void refuse_edit(const Context& context, const Common& common, const WantedEdit& wanted, Error reason) {
   const std::string edit(name(wanted.edit));
-  if (common.json) surroundings.out << failed_edit_json(edit, reason.text()) << '\n';
+  if (common.json) context.out << failed_edit_json(edit, reason.text()) << '\n';
   if (reason.file.empty()) {
-    say(surroundings, Error{wanted.file, wanted.line, std::move(reason.message)});
+    say(context, Error{wanted.file, wanted.line, std::move(reason.message)});
     return;
   }
-  say(surroundings, reason);
-  say(surroundings, Error{wanted.file, wanted.line, "this " + edit + " was not done, and nothing is written"});
+  say(context, reason);
+  say(context, Error{wanted.file, wanted.line, "this " + edit + " was not done, and nothing is written"});
 }
 
 /// Edits that take long show how far they are, and stop when the user asks.
-Result<document::Prepared> prepare_shown(const document::Document& document, const document::Edit& edit, const Surroundings& surroundings) {
+Result<document::Prepared> prepare_shown(const document::Document& document, const document::Edit& edit, const Context& context) {
   MonotonicClock clock;
-  ProgressBar bar(surroundings, std::string(name(edit)), clock);
+  ProgressBar bar(context, std::string(name(edit)), clock);
   return document::prepare(document, edit, bar.progress(), &clock);
 }
 
 /// Does the edits one after the other. False: one was refused, and said.
 bool apply_all(const std::vector<WantedEdit>& wanted, document::Document& document, JournalGuard& journal, const Common& common,
-               const Surroundings& surroundings) {
+               const Context& context) {
   for (const WantedEdit& one : wanted) {
-    Result<document::Prepared> prepared = prepare_shown(document, one.edit, surroundings);
+    Result<document::Prepared> prepared = prepare_shown(document, one.edit, context);
     if (!prepared) {
-      refuse_edit(surroundings, common, one, prepared.error());
+      refuse_edit(context, common, one, prepared.error());
       return false;
     }
     if (const Result<void> kept = journal.append(document, one.edit, *prepared); !kept) {
-      refuse_edit(surroundings, common, one, kept.error());
+      refuse_edit(context, common, one, kept.error());
       return false;
     }
     const document::EditReport report = prepared->report;
     document::commit(document, std::move(*prepared));
     if (common.json)
-      surroundings.out << edit_json(report) << '\n';
+      context.out << edit_json(report) << '\n';
     else
-      print_edit(surroundings.out, report);
-    if (surroundings.stop()) {
-      say(surroundings, Error{one.file, one.line, "cancelled after this edit; nothing is written"});
+      print_edit(context.out, report);
+    if (context.stop()) {
+      say(context, Error{one.file, one.line, "cancelled after this edit; nothing is written"});
       return false;
     }
   }
@@ -101,33 +101,33 @@ bool apply_all(const std::vector<WantedEdit>& wanted, document::Document& docume
 
 }  // namespace
 
-int edit(const EditOptions& options, const Common& common, const Surroundings& surroundings) {
+int edit(const EditOptions& options, const Common& common, const Context& context) {
   if (options.journal && is_one_file(*options.journal, options.output)) {
-    say(surroundings, Error{options.journal->string(), 0, "can't be both the journal and the deck that is written"});
+    say(context, Error{options.journal->string(), 0, "can't be both the journal and the deck that is written"});
     return kWrongUsage;
   }
   std::vector<WantedEdit> wanted;
   if (const auto refusal = read_edits(options.edits, "--edit", options.script, wanted)) {
-    say(surroundings, refusal->error);
+    say(context, refusal->error);
     return refusal->status;
   }
   const auto refuse = [&](const Error& error) {
-    say(surroundings, error);
+    say(context, error);
     return kFailed;
   };
-  Result<document::Document> document = open_deck(options.deck, common, surroundings);
+  Result<document::Document> document = open_deck(options.deck, common, context);
   if (!document) return refuse(document.error());
-  say_warnings(surroundings, *document);
-  if (!wanted.empty()) say_guesses(surroundings, *document);
+  say_warnings(context, *document);
+  if (!wanted.empty()) say_guesses(context, *document);
   JournalGuard journal;
   if (options.journal)
     if (const Result<void> created = journal.create(*options.journal, *document); !created) return refuse(created.error());
-  if (!apply_all(wanted, *document, journal, common, surroundings)) return kFailed;
-  if (!output_is_good(surroundings)) return kFailed;
-  const Result<mesh::deck::SaveReport> saved = save_deck(*document, options.output, surroundings);
+  if (!apply_all(wanted, *document, journal, common, context)) return kFailed;
+  if (!output_is_good(context)) return kFailed;
+  const Result<mesh::deck::SaveReport> saved = save_deck(*document, options.output, context);
   if (!saved) return refuse(saved.error());
   journal.keep();
-  for (const std::string& note : saved->notes) say(surroundings, Error{options.output.string(), 0, "note: " + note});
+  for (const std::string& note : saved->notes) say(context, Error{options.output.string(), 0, "note: " + note});
   return kDone;
 }
 

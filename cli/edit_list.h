@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "cli/run.h"
+#include "cli/context.h"
 #include "mesh/document/edit.h"
 
 namespace prismesh::cli {

@@ -59,16 +59,16 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
 
 }  // namespace
 
-int info(const InfoOptions& options, const Common& common, const Surroundings& surroundings) {
-  const Result<mesh::document::Document> document = open_deck(options.deck, common, surroundings);
+int info(const InfoOptions& options, const Common& common, const Context& context) {
+  const Result<mesh::document::Document> document = open_deck(options.deck, common, context);
   if (!document) {
-    say(surroundings, document.error());
+    say(context, document.error());
     return kFailed;
   }
   if (common.json)
-    surroundings.out << info_json(*document, part_figures(document->current().model)) << '\n';
+    context.out << info_json(*document, part_figures(document->current().model)) << '\n';
   else
-    print_text(surroundings.out, *document);
+    print_text(context.out, *document);
   return kDone;
 }
 

@@ -7,9 +7,9 @@
 
 namespace prismesh::cli {
 
-Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, const Common& common, const Surroundings& surroundings) {
+Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, const Common& common, const Context& context) {
   MonotonicClock clock;
-  ProgressBar bar(surroundings, "reading " + deck.filename().string(), clock);
+  ProgressBar bar(context, "reading " + deck.filename().string(), clock);
   mesh::document::OpenOptions options;
   options.length_unit = common.length_unit;
   options.target_size = common.target_size;
@@ -21,9 +21,9 @@ Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, co
 }
 
 Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& document, const std::filesystem::path& target,
-                                         const Surroundings& surroundings) {
+                                         const Context& context) {
   MonotonicClock clock;
-  ProgressBar bar(surroundings, "saving " + target.filename().string(), clock);
+  ProgressBar bar(context, "saving " + target.filename().string(), clock);
   Result<mesh::deck::SaveReport> saved = mesh::document::save(document, target, bar.progress());
   if (!saved && saved.error().file.empty()) saved.error().file = target.string();
   return saved;

@@ -13,8 +13,8 @@ constexpr int kWidth = 30;
 
 }  // namespace
 
-ProgressBar::ProgressBar(const Surroundings& surroundings, std::string what, Clock& clock)
-    : surroundings_(surroundings), what_(std::move(what)), clock_(clock), next_draw_ns_(clock.now_ns() + kPatienceNs) {}
+ProgressBar::ProgressBar(const Context& context, std::string what, Clock& clock)
+    : surroundings_(context), what_(std::move(what)), clock_(clock), next_draw_ns_(clock.now_ns() + kPatienceNs) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) surroundings_.err << "\r\x1b[K" << std::flush;

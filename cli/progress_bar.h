@@ -6,15 +6,15 @@
 
 #include "base/clock.h"
 #include "base/progress.h"
-#include "cli/run.h"
+#include "cli/context.h"
 
 namespace prismesh::cli {
 
-/// Draws on `surroundings.err` if that is a terminal, not before the work has taken 0.3 s, and at most ten times a second.
+/// Draws on `context.err` if that is a terminal, not before the work has taken 0.3 s, and at most ten times a second.
 /// Goes away without a trace when it dies.
 class ProgressBar {
  public:
-  ProgressBar(const Surroundings& surroundings, std::string what, Clock& clock);
+  ProgressBar(const Context& context, std::string what, Clock& clock);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -25,7 +25,7 @@ class ProgressBar {
  private:
   void draw(double fraction);
 
-  const Surroundings& surroundings_;
+  const Context& surroundings_;
   std::string what_;
   Clock& clock_;
   std::int64_t next_draw_ns_;

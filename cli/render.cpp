@@ -106,11 +106,11 @@ Result<std::optional<FieldWish>> wished_field(const RenderOptions& options) {
 }
 
 Result<SealedField> seal_field(const mesh::document::Document& document, const FieldWish& wish, const RenderOptions& options,
-                               const Surroundings& surroundings) {
+                               const Context& context) {
   std::optional<mesh::deck::OpenedDeck> other;
   if (needs_other(wish)) {
     MonotonicClock clock;
-    ProgressBar bar(surroundings, "reading " + options.against->filename().string(), clock);
+    ProgressBar bar(context, "reading " + options.against->filename().string(), clock);
     Result<mesh::deck::OpenedDeck> opened = mesh::deck::open(*options.against, bar.progress());
     if (!opened && opened.error().file.empty()) opened.error().file = options.against->string();
     if (!opened) return fail(std::move(opened.error()));
@@ -154,12 +154,12 @@ Result<pid_t> start(const std::filesystem::path& program, const std::vector<std:
 }
 
 /// Waits for a child, ending it when the user wants to stop. Returns its wait status.
-int wait_for(pid_t child, const Surroundings& surroundings) {
+int wait_for(pid_t child, const Context& context) {
   int status = 0;
   bool told = false;
   while (true) {
-    if (surroundings.stop() && !told) told = kill(child, SIGTERM) == 0;
-    const pid_t ended = waitpid(child, &status, surroundings.interrupted != nullptr ? WNOHANG : 0);
+    if (context.stop() && !told) told = kill(child, SIGTERM) == 0;
+    const pid_t ended = waitpid(child, &status, context.interrupted != nullptr ? WNOHANG : 0);
     if (ended == child) return status;
     if (ended < 0 && errno != EINTR) return status;
     if (ended == 0) usleep(5000);
@@ -168,26 +168,26 @@ int wait_for(pid_t child, const Surroundings& surroundings) {
 
 }  // namespace
 
-int render(const RenderOptions& options, const Common& common, const Surroundings& surroundings) {
+int render(const RenderOptions& options, const Common& common, const Context& context) {
   const auto refuse = [&](const Error& error) {
-    say(surroundings, error);
+    say(context, error);
     return kFailed;
   };
   const Result<std::optional<FieldWish>> wish = wished_field(options);
   if (!wish) {
-    say(surroundings, wish.error());
+    say(context, wish.error());
     return kWrongUsage;
   }
   const Result<std::filesystem::path> kiosk = find_kiosk();
   if (!kiosk) return refuse(kiosk.error());
-  Result<mesh::document::Document> document = open_deck(options.deck, common, surroundings);
+  Result<mesh::document::Document> document = open_deck(options.deck, common, context);
   if (!document) return refuse(document.error());
   if (options.select) {
     mesh::document::Select select;
     select.expr = *options.select;
     if (const auto selected = mesh::document::apply(*document, select); !selected) return refuse(selected.error());
   }
-  say_warnings(surroundings, *document);
+  say_warnings(context, *document);
   const auto sealed = seal(*document);
   if (!sealed) return refuse(sealed.error());
   const std::vector<int> descriptors = (*sealed)->descriptors();
@@ -199,7 +199,7 @@ int render(const RenderOptions& options, const Common& common, const Surrounding
   arguments.insert(arguments.end(), options.passed_on.begin(), options.passed_on.end());
   std::optional<SealedField> coloured;
   if (*wish) {
-    Result<SealedField> field = seal_field(*document, **wish, options, surroundings);
+    Result<SealedField> field = seal_field(*document, **wish, options, context);
     if (!field) return refuse(field.error());
     coloured = std::move(*field);
     arguments.insert(arguments.end(), coloured->arguments.begin(), coloured->arguments.end());
@@ -207,12 +207,12 @@ int render(const RenderOptions& options, const Common& common, const Surrounding
   } else if (options.colour) {
     arguments.insert(arguments.end(), {"--colour", *options.colour});
   }
-  surroundings.err.flush();
+  context.err.flush();
   const Result<pid_t> child = start(*kiosk, arguments, inherited);
   if (!child) return refuse(child.error());
-  const int status = wait_for(*child, surroundings);
+  const int status = wait_for(*child, context);
   if (WIFEXITED(status)) return WEXITSTATUS(status);
-  if (surroundings.stop()) return refuse(Error{options.output.string(), 0, "stopped; no picture was written"});
+  if (context.stop()) return refuse(Error{options.output.string(), 0, "stopped; no picture was written"});
   return refuse(Error{kiosk->string(), 0, "ended by signal " + std::to_string(WTERMSIG(status)) + "; no picture was written"});
 }
 

@@ -62,21 +62,19 @@ double as_written(float value) {
   return same;
 }
 
-void say(const Surroundings& surroundings, const Error& error) { surroundings.err << printable(error.text()) << '\n'; }
+void say(const Context& context, const Error& error) { context.err << printable(error.text()) << '\n'; }
 
-void say_warnings(const Surroundings& surroundings, const mesh::document::Document& document) {
-  say_warnings(surroundings, document.deck->warnings);
-}
+void say_warnings(const Context& context, const mesh::document::Document& document) { say_warnings(context, document.deck->warnings); }
 
-void say_warnings(const Surroundings& surroundings, std::span<const mesh::deck::Warning> warnings) {
+void say_warnings(const Context& context, std::span<const mesh::deck::Warning> warnings) {
   for (const mesh::deck::Warning& warning : warnings) {
     std::string message = "warning: " + warning.message;
     if (warning.count > 1) message += " (" + std::to_string(warning.count) + " times)";
-    say(surroundings, Error{warning.file, warning.line, std::move(message)});
+    say(context, Error{warning.file, warning.line, std::move(message)});
   }
 }
 
-void say_guesses(const Surroundings& surroundings, const mesh::document::Document& document) {
+void say_guesses(const Context& context, const mesh::document::Document& document) {
   const mesh::document::Settings& settings = document.settings;
   std::string guesses, options;
   const auto add = [&](bool guessed, const std::string& what, const char* option) {
@@ -87,13 +85,13 @@ void say_guesses(const Surroundings& surroundings, const mesh::document::Documen
   };
   add(settings.length_unit_guessed, "length unit " + std::string(name(settings.length_unit)), "--length-unit");
   add(settings.target_size_guessed, "target size " + shortest(settings.target_size) + " from the median edge", "--target-size");
-  if (!guesses.empty()) say(surroundings, Error{document.path.string(), 0, "note: guessed " + guesses + "; set with " + options});
+  if (!guesses.empty()) say(context, Error{document.path.string(), 0, "note: guessed " + guesses + "; set with " + options});
 }
 
-bool output_is_good(const Surroundings& surroundings) {
-  surroundings.out.flush();
-  if (surroundings.out) return true;
-  say(surroundings, Error{"standard output", 0, "can't be written"});
+bool output_is_good(const Context& context) {
+  context.out.flush();
+  if (context.out) return true;
+  say(context, Error{"standard output", 0, "can't be written"});
   return false;
 }
 

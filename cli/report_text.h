@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "cli/run.h"
+#include "cli/context.h"
 #include "mesh/document/document.h"
 #include "mesh/document/edit_report.h"
 
@@ -27,14 +27,14 @@ double as_written(float value);
 void print_edit(std::ostream& out, const mesh::document::EditReport& report);
 
 /// A reason on standard error, as `file:line: message`.
-void say(const Surroundings& surroundings, const Error& error);
+void say(const Context& context, const Error& error);
 /// The deck's warnings and guessed settings on standard error, for commands whose output has no room for them.
-void say_warnings(const Surroundings& surroundings, const mesh::document::Document& document);
-void say_warnings(const Surroundings& surroundings, std::span<const mesh::deck::Warning> warnings);
-void say_guesses(const Surroundings& surroundings, const mesh::document::Document& document);
+void say_warnings(const Context& context, const mesh::document::Document& document);
+void say_warnings(const Context& context, std::span<const mesh::deck::Warning> warnings);
+void say_guesses(const Context& context, const mesh::document::Document& document);
 
 /// Whether all results so far have reached standard output; asked before a deck is written, since a command that fails writes
 /// nothing. Says so if not.
-bool output_is_good(const Surroundings& surroundings);
+bool output_is_good(const Context& context);
 
 }  // namespace prismesh::cli

@@ -8,21 +8,21 @@
 
 namespace prismesh::cli {
 
-int run(std::span<const std::string> args, const Surroundings& surroundings) {
+int run(std::span<const std::string> args, const Context& context) {
   const Result<Action> action = parse_arguments(args);
   if (!action) {
-    say(surroundings, action.error());
+    say(context, action.error());
     return kWrongUsage;
   }
   try {
-    const int status = (*action)(surroundings);
-    return status == kDone && !output_is_good(surroundings) ? kFailed : status;
+    const int status = (*action)(context);
+    return status == kDone && !output_is_good(context) ? kFailed : status;
   } catch (const std::bad_alloc&) {
-    say(surroundings, Error{"prismesh " + args[0], 0, "there isn't enough memory to do this"});
+    say(context, Error{"prismesh " + args[0], 0, "there isn't enough memory to do this"});
     return kFailed;
   }
 }
 
-int run(std::span<const std::string> args, std::ostream& out, std::ostream& err) { return run(args, Surroundings{out, err}); }
+int run(std::span<const std::string> args, std::ostream& out, std::ostream& err) { return run(args, Context{out, err}); }
 
 }  // namespace prismesh::cli

@@ -8,17 +8,17 @@ namespace prismesh::cli {
 
 namespace {
 
-Result<void> write_watched(const SampleOptions& options, const Surroundings& surroundings) {
+Result<void> write_watched(const SampleOptions& options, const Context& context) {
   MonotonicClock clock;
-  ProgressBar bar(surroundings, "making " + options.output.filename().string(), clock);
+  ProgressBar bar(context, "making " + options.output.filename().string(), clock);
   return mesh::deck::write_sample(options.output, options.elements.value_or(mesh::deck::kSampleShellsDefault), bar.progress());
 }
 
 }  // namespace
 
-int sample(const SampleOptions& options, const Common&, const Surroundings& surroundings) {
-  if (const Result<void> written = write_watched(options, surroundings); !written) {
-    say(surroundings, written.error());
+int sample(const SampleOptions& options, const Common&, const Context& context) {
+  if (const Result<void> written = write_watched(options, context); !written) {
+    say(context, written.error());
     return kFailed;
   }
   return kDone;

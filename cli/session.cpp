@@ -31,8 +31,8 @@ constexpr std::int64_t kPatienceWithCancel_ns = 30'000'000'000;
 
 class Session {
  public:
-  Session(const SessionOptions& options, const Surroundings& surroundings)
-      : socket_(ipc::model_socket_path(options.runtime_directory)), client_(socket_, "prismesh session"), surroundings_(surroundings) {}
+  Session(const SessionOptions& options, const Context& context)
+      : socket_(ipc::model_socket_path(options.runtime_directory)), client_(socket_, "prismesh session"), surroundings_(context) {}
 
   /// Connects. A daemon that was never there is an error at once; one that has gone is waited for. A daemon that ends in order
   /// takes its socket away, so a socket that nobody listens to belongs to one that may be on its way back.
@@ -130,10 +130,10 @@ class Session {
 
   std::filesystem::path socket_;
   ipc::ReconnectingClient client_;
-  const Surroundings& surroundings_;
+  const Context& surroundings_;
 };
 
-void print_state(std::ostream& out, const Surroundings& surroundings, const ipc::State& state) {
+void print_state(std::ostream& out, const Context& context, const ipc::State& state) {
   if (!state.open) {
     out << (state.busy ? "a deck is being opened\n" : "no document is open\n");
     return;
@@ -145,13 +145,13 @@ void print_state(std::ostream& out, const Surroundings& surroundings, const ipc:
       << (state.target_size_guessed ? " (guessed)" : "") << '\n'
       << (state.changed ? "unsaved edits" : "no unsaved edits") << (state.can_undo ? ", undo" : "") << (state.can_redo ? ", redo" : "")
       << "; " << state.recovered_edits << " edits came back from the journal when it was opened\n";
-  say_warnings(surroundings, state.warnings);
+  say_warnings(context, state.warnings);
 }
 
-void print_saved(std::ostream& out, const Surroundings& surroundings, const ipc::Saved& saved) {
+void print_saved(std::ostream& out, const Context& context, const ipc::Saved& saved) {
   out << "saved " << printable(saved.path) << ": " << counted(saved.nodes_written, "node") << " written, "
       << counted(saved.lines_changed, "line") << " changed\n";
-  for (const std::string& note : saved.notes) say(surroundings, Error{saved.path, 0, "note: " + note});
+  for (const std::string& note : saved.notes) say(context, Error{saved.path, 0, "note: " + note});
 }
 
 std::string whole_path(const std::filesystem::path& path) {
@@ -170,38 +170,38 @@ ipc::Open open_request(const SessionOptions& options, const Common& common) {
   return open;
 }
 
-int edit_all(Session& session, const std::vector<WantedEdit>& wanted, const Common& common, const Surroundings& surroundings) {
+int edit_all(Session& session, const std::vector<WantedEdit>& wanted, const Common& common, const Context& context) {
   for (const WantedEdit& one : wanted) {
     const Result<document::EditReport> report = session.edit(one.edit);
     if (!report) {
-      if (common.json) surroundings.out << failed_edit_json(std::string(name(one.edit)), report.error().text()) << '\n';
-      say(surroundings, report.error().file.empty() ? Error{one.file, one.line, report.error().message} : report.error());
+      if (common.json) context.out << failed_edit_json(std::string(name(one.edit)), report.error().text()) << '\n';
+      say(context, report.error().file.empty() ? Error{one.file, one.line, report.error().message} : report.error());
       return kFailed;
     }
     if (common.json)
-      surroundings.out << edit_json(*report) << '\n';
+      context.out << edit_json(*report) << '\n';
     else
-      print_edit(surroundings.out, *report);
+      print_edit(context.out, *report);
   }
   return kDone;
 }
 
 }  // namespace
 
-int session(const SessionOptions& options, const Common& common, const Surroundings& surroundings) {
+int session(const SessionOptions& options, const Common& common, const Context& context) {
   std::vector<WantedEdit> wanted;
   if (options.action == SessionAction::undo) wanted.push_back({document::Undo{}, "undo", 0});
   if (options.action == SessionAction::redo) wanted.push_back({document::Redo{}, "redo", 0});
   if (const auto refusal = read_edits(options.edits, "EDIT", options.script, wanted)) {
-    say(surroundings, refusal->error);
+    say(context, refusal->error);
     return refusal->status;
   }
-  Session session(options, surroundings);
+  Session session(options, context);
   Result<ipc::Answer> answer = ipc::Done{};
   switch (options.action) {
     case SessionAction::edit:
     case SessionAction::undo:
-    case SessionAction::redo: return edit_all(session, wanted, common, surroundings);
+    case SessionAction::redo: return edit_all(session, wanted, common, context);
     case SessionAction::open:
       answer = session.ask_again(open_request(options, common), "reading " + options.deck.filename().string());
       break;
@@ -219,15 +219,15 @@ int session(const SessionOptions& options, const Common& common, const Surroundi
     case SessionAction::close: answer = session.ask(ipc::Close{options.discard}, "closing"); break;
   }
   if (!answer) {
-    say(surroundings, answer.error());
+    say(context, answer.error());
     return kFailed;
   }
   if (common.json)
-    surroundings.out << ipc::answer_fields(*answer) << '\n';
+    context.out << ipc::answer_fields(*answer) << '\n';
   else if (const auto* state = std::get_if<ipc::State>(&*answer))
-    print_state(surroundings.out, surroundings, *state);
+    print_state(context.out, context, *state);
   else if (const auto* saved = std::get_if<ipc::Saved>(&*answer))
-    print_saved(surroundings.out, surroundings, *saved);
+    print_saved(context.out, context, *saved);
   return kDone;
 }
 

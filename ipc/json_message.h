@@ -18,8 +18,8 @@
 
 #include "base/error.h"
 #include "base/nearest_name.h"
+#include "ipc/envelope.h"
 #include "ipc/messages.h"
-#include "ipc/messages_json.h"
 
 namespace prismesh::ipc::json_message {
 

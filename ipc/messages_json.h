@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 
 #include "base/error.h"
+#include "ipc/envelope.h"
 #include "ipc/messages.h"
 
 namespace prismesh::ipc {
@@ -22,27 +22,10 @@ std::string encode_event(const Event& event);
 /// An answer's fields alone, as an object in one line: for programs that print what they were told.
 std::string answer_fields(const Answer& answer);
 
-template <class AnyRequest>
-struct Numbered {
-  std::uint64_t number = 0;
-  AnyRequest request;
-};
 using NumberedRequest = Numbered<Request>;
-/// A request that can't be read; `number` is 0 where not even that can.
-struct BadRequest {
-  std::uint64_t number = 0;
-  std::string message;
-};
 /// Errors name the field and, for an unknown one, the nearest known.
 tl::expected<NumberedRequest, BadRequest> decode_request(std::string_view line);
 
-/// What a daemon says.
-template <class AnyAnswer, class AnyEvent>
-struct Said {
-  std::uint64_t to = 0;         ///< the request that is answered
-  std::size_t descriptors = 0;  ///< that ride with the line
-  std::variant<AnyAnswer, AnyEvent> message;
-};
 using FromDaemon = Said<Answer, Event>;
 Result<FromDaemon> decode_from_daemon(std::string_view line);
 

@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "ipc/snapshot.h"
+#include "base/error.h"
+#include "ipc/snapshot_info.h"
 
 namespace prismesh::ipc {
 

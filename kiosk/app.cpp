@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "drivers/settings/settings.h"
-#include "kiosk/calibration/calibrator.h"
+#include "kiosk/calibrator.h"
 #include "kiosk/display/headless.h"
 #include "kiosk/display/x11.h"
 #include "kiosk/headless_kiosk.h"
@@ -25,7 +25,7 @@ Result<void> run_in_window(const AppOptions& options, const StationOptions& what
 
 /// Calibrates the display that the window covers.
 Result<void> run_calibration(const AppOptions& options, const StationOptions& what) {
-  Result<calibration::SaveTo> save_to = calibration::usual_place(options.config);
+  Result<SaveTo> save_to = usual_place(options.config);
   if (!save_to) return fail(save_to.error());
   if (!what.profile.stereo())
     return fail("--calibrate",
@@ -36,7 +36,7 @@ Result<void> run_calibration(const AppOptions& options, const StationOptions& wh
   Result<std::unique_ptr<Station>> station = Station::create(what);
   if (!station) return fail(station.error());
   (*station)->place((*window)->monitor(), (*window)->place());
-  auto calibrator = calibration::Calibrator::create(**window, **station, what.profile, std::move(*save_to));
+  auto calibrator = Calibrator::create(**window, **station, what.profile, std::move(*save_to));
   if (!calibrator) return fail(calibrator.error());
   const Result<std::optional<std::filesystem::path>> saved = (*calibrator)->run();
   if (!saved) return fail(saved.error());

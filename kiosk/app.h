@@ -2,30 +2,9 @@
 // when something changed.
 #pragma once
 
-#include <filesystem>
-#include <optional>
-#include <string>
-
-#include "kiosk/display/window.h"
-#include "mesh/model/model.h"
+#include "kiosk/app_options.h"
 
 namespace prismesh::kiosk {
-
-struct AppOptions {
-  std::optional<std::filesystem::path> runtime_dir;  ///< where the daemons' sockets are
-  std::optional<std::filesystem::path> config;       ///< a settings file, read after the system's and the user's
-  std::optional<std::filesystem::path> deck;         ///< opened at the start
-  display::PixelSize size{1600, 900};
-  bool fullscreen = false;
-  std::optional<std::string> profile;       ///< a name or a profile file; empty: the settings', or else mono
-  std::optional<mesh::Vec3> fixed_eyes_mm;  ///< the eyes are here, whatever a tracker says
-  int headless_frames = 0;                  ///< > 0: no window; so many pictures are written to `shots`, then the program ends
-  double pace_seconds = 0;                  ///< between those pictures
-  std::filesystem::path shots;
-  bool calibrate = false;  ///< lead through the display's calibration instead
-  bool follow = false;     ///< move together with other kiosks that follow
-  bool trace = false;      ///< what happens goes to standard output, a line each
-};
 
 /// Runs until the window is closed or the pictures are written. Returns the exit status: 0 done, 1 it couldn't be done;
 /// reasons go to standard error.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kiosk/model_link.h"
-#include "kiosk/panels/legend.h"
+#include "kiosk/panels/legend_facts.h"
 #include "kiosk/render/renderer.h"
 #include "kiosk/tools/compare_wish.h"
 

@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "kiosk/device_link.h"
-#include "kiosk/panels/panels.h"
+#include "kiosk/panels/panel_facts.h"
 #include "kiosk/stereo/lit_time.h"
 #include "kiosk/stereo/tracked_eyes.h"
 #include "kiosk/trace.h"

@@ -5,7 +5,7 @@
 #include <deque>
 #include <string>
 
-#include "kiosk/app.h"
+#include "kiosk/app_options.h"
 #include "kiosk/render/offscreen.h"
 #include "kiosk/station.h"
 

@@ -15,7 +15,7 @@
 
 #include "base/clock.h"
 #include "ipc/client.h"
-#include "kiosk/panels/panels.h"
+#include "kiosk/panels/panel_facts.h"
 #include "kiosk/tools/deck_warnings.h"
 #include "kiosk/trace.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "kiosk/panels/panels.h"
+#include "kiosk/panels/panel_facts.h"
 #include "kiosk/trace.h"
 
 namespace prismesh::kiosk {

@@ -3,7 +3,7 @@
 
 #include "kiosk/calibration/pattern.h"
 #include "kiosk/render/gl.h"
-#include "kiosk/render/renderer.h"
+#include "kiosk/render/picture.h"
 
 namespace prismesh::kiosk::calibration {
 

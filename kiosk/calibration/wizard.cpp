@@ -58,7 +58,7 @@ Eigen::Vector3d seat_mm(const Profile& profile, const Seat& seat) { return {seat
 
 double stepped(double value, double by, double low, double high) { return std::clamp(value + by, low, high); }
 
-int bar_pixels(const Surroundings& surroundings) { return ruler_bar(surroundings.panel.width).bars.front().pixels; }
+int bar_pixels(const Setup& setup) { return ruler_bar(setup.panel.width).bars.front().pixels; }
 
 /// To thousandths; zero is +0.000 from either side.
 std::string with_sign(double value) { return fmt::format("{:+.3f}", std::round(value * 1000) == 0 ? 0.0 : value); }
@@ -69,14 +69,13 @@ std::string eye_to_close(bool left_eye_looks) {
 
 }  // namespace
 
-Wizard::Wizard(const Profile& start, const Surroundings& surroundings)
-    : profile_(start), surroundings_(surroundings), steps_(steps_for(start)) {
-  profile_.optics.panel_columns = surroundings.panel.width;
+Wizard::Wizard(const Profile& start, const Setup& setup) : profile_(start), setup_(setup), steps_(steps_for(start)) {
+  profile_.optics.panel_columns = setup.panel.width;
   if (!profile_.eye_separation_mm) profile_.eye_separation_mm = drivers::display::kMeanEyeSeparationMm;
-  const std::optional<display::Monitor>& monitor = surroundings_.monitor;
+  const std::optional<display::Monitor>& monitor = setup_.monitor;
   if (monitor && monitor->edid && monitor->edid->width_mm > 0 && monitor->native.width > 0)
     profile_.optics.pixel_pitch_mm = monitor->edid->width_mm / monitor->native.width;
-  bar_mm_ = bar_pixels(surroundings_) * profile_.optics.pixel_pitch_mm;
+  bar_mm_ = bar_pixels(setup_) * profile_.optics.pixel_pitch_mm;
   enter();
 }
 
@@ -88,7 +87,7 @@ void Wizard::enter() {
 }
 
 /// A mask that stands still is shifted in the picture instead, and the picture follows the head: one place tells all.
-std::size_t Wizard::seats() const { return surroundings_.mask_answers ? kSeats.size() : 1; }
+std::size_t Wizard::seats() const { return setup_.mask_answers ? kSeats.size() : 1; }
 
 Page Wizard::page(const Now& now) const {
   Page page;
@@ -96,7 +95,7 @@ Page Wizard::page(const Now& now) const {
   page.count = static_cast<int>(steps_.size());
   page.next = "Next";
   page.profile = profile_;
-  if (!surroundings_.mask_answers) page.weave_mask_mm = 0;
+  if (!setup_.mask_answers) page.weave_mask_mm = 0;
   switch (step()) {
     case Step::link: link_page(now, page); break;
     case Step::size: size_page(now, page); break;
@@ -117,7 +116,7 @@ void Wizard::link_page(const Now& /*now*/, Page& page) const {
       "left one looks greyer or darker, colours arrive at half width: set RGB or 4:4:4 in the graphics settings.";
   page.pattern = colour_stripes();
   page.profile = flat(profile_);
-  const display::LinkReport report = display::check_link(result(), surroundings_.monitor);
+  const display::LinkReport report = display::check_link(result(), setup_.monitor);
   page.remarks = report.refusals;
   page.remarks.insert(page.remarks.end(), report.doubts.begin(), report.doubts.end());
   page.next = "They look alike";
@@ -127,8 +126,8 @@ void Wizard::size_page(const Now& /*now*/, Page& page) const {
   page.title = "The size of a pixel";
   page.task = "Lay a ruler along the white bar and set the length that you read.";
   page.value = fmt::format("{:.1f} mm", bar_mm_);
-  page.remarks.push_back(fmt::format("a pixel is then {:.4f} mm wide", bar_mm_ / bar_pixels(surroundings_)));
-  page.pattern = ruler_bar(surroundings_.panel.width);
+  page.remarks.push_back(fmt::format("a pixel is then {:.4f} mm wide", bar_mm_ / bar_pixels(setup_)));
+  page.pattern = ruler_bar(setup_.panel.width);
   page.profile = flat(profile_);
 }
 
@@ -150,8 +149,8 @@ void Wizard::pitch_page(const Now& /*now*/, Page& page) const {
   page.value = with_sign(100 * (profile_.optics.pitch_scale - 1)) + " %";
   page.pattern = one_eye_bright(true);
   // Leaning by one mask pitch over the picture's height lets the phase run through once from top to bottom: where it fits is bright.
-  page.profile.optics.lean += profile_.optics.mask_pitch_mm() / (surroundings_.panel.height * profile_.optics.pixel_pitch_mm);
-  if (surroundings_.mask_answers) page.hold_mask_mm = 0;
+  page.profile.optics.lean += profile_.optics.mask_pitch_mm() / (setup_.panel.height * profile_.optics.pixel_pitch_mm);
+  if (setup_.mask_answers) page.hold_mask_mm = 0;
 }
 
 void Wizard::places_page(const Now& now, Page& page) const {
@@ -163,8 +162,8 @@ void Wizard::places_page(const Now& now, Page& page) const {
   page.remarks.push_back(fmt::format("place {} of {}", seat + 1, seats()));
   if (std::string where = where_to_sit(now); !where.empty()) page.remarks.push_back(std::move(where));
   page.pattern = one_eye_bright(true);
-  page.profile.optics.zero_mm = surroundings_.mask_answers ? 0 : -mask_mm_;
-  if (surroundings_.mask_answers) page.hold_mask_mm = mask_mm_;
+  page.profile.optics.zero_mm = setup_.mask_answers ? 0 : -mask_mm_;
+  if (setup_.mask_answers) page.hold_mask_mm = mask_mm_;
   page.next = "Choose";
 }
 
@@ -206,7 +205,7 @@ void Wizard::adjust(int steps, bool coarse) {
   const double by = steps * (coarse ? kCoarse : 1);
   switch (step()) {
     case Step::size: {
-      const double pixels = bar_pixels(surroundings_);
+      const double pixels = bar_pixels(setup_);
       bar_mm_ = stepped(bar_mm_, by * kBarStepMm, 0.05 * pixels, 2.0 * pixels);
       profile_.optics.pixel_pitch_mm = bar_mm_ / pixels;
       break;
@@ -245,9 +244,9 @@ Result<void> Wizard::choose_place(const Now& now) {
     choice.between_eyes_mm = now.between_eyes_mm;
   }
   // As if the mask had been moved by what the picture was shifted.
-  if (!surroundings_.mask_answers)
+  if (!setup_.mask_answers)
     choice.mask_mm += drivers::display::mask_position_mm(profile_.optics, choice.between_eyes_mm) + profile_.optics.zero_mm;
-  if (surroundings_.mask_answers && now.mask_mm) choice.mask_mm = *now.mask_mm;
+  if (setup_.mask_answers && now.mask_mm) choice.mask_mm = *now.mask_mm;
   choices_.push_back(choice);
   Result<drivers::display::MaskFit> fit = drivers::display::fit_mask(profile_.optics, choices_);
   if (!fit) {
@@ -296,9 +295,9 @@ void Wizard::back() {
 
 Profile Wizard::result() const {
   Profile profile = profile_;
-  profile.monitor.pixels = {surroundings_.panel.width, surroundings_.panel.height};
-  if (surroundings_.monitor && surroundings_.monitor->edid) {
-    const drivers::display::MonitorIdentity& identity = surroundings_.monitor->edid->identity;
+  profile.monitor.pixels = {setup_.panel.width, setup_.panel.height};
+  if (setup_.monitor && setup_.monitor->edid) {
+    const drivers::display::MonitorIdentity& identity = setup_.monitor->edid->identity;
     profile.monitor.name = identity.maker + " " + identity.model;
     profile.monitor.serial = identity.serial;
   }

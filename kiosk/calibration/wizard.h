@@ -28,8 +28,8 @@ enum class Step : std::uint8_t {
   check,            ///< a last look, then it is saved
 };
 
-/// Where the display stands.
-struct Surroundings {
+/// The display's setup: its monitor, its panel and its mask.
+struct Setup {
   std::optional<display::Monitor> monitor;
   display::PixelSize panel;   ///< what the picture covers
   bool mask_answers = false;  ///< a servo takes the mask where it is told
@@ -59,7 +59,7 @@ struct Page {
 class Wizard {
  public:
   /// `start`: what is known of this kind of display. Steps that don't apply to it are left out.
-  Wizard(const drivers::display::Profile& start, const Surroundings& surroundings);
+  Wizard(const drivers::display::Profile& start, const Setup& setup);
 
   Step step() const { return steps_[at_]; }
   Page page(const Now& now) const;
@@ -90,7 +90,7 @@ class Wizard {
   std::string where_to_sit(const Now& now) const;
 
   drivers::display::Profile profile_;
-  Surroundings surroundings_;
+  Setup setup_;
   std::vector<Step> steps_;
   std::size_t at_ = 0;
   bool finished_ = false;

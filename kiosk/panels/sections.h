@@ -3,8 +3,9 @@
 
 #include <vector>
 
+#include "kiosk/display/window.h"
 #include "kiosk/panels/layout.h"
-#include "kiosk/panels/panels.h"
+#include "kiosk/panels/panel_facts.h"
 
 namespace prismesh::kiosk::panels {
 

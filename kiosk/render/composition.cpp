@@ -180,11 +180,6 @@ std::array<ImageFrame, 2> frames_for(const Picture& picture, const stereo::Pictu
 
 }  // namespace
 
-PanelArea panel_area(const PanelPlace& place, int width, int height) {
-  if (place.width <= 0 || place.height <= 0) return {0, 0, width, height, width, height};
-  return {place.x, place.y, width, height, place.width, place.height};
-}
-
 Composition compose(const Picture& picture, int width, int height) {
   const PanelArea area = panel_area(picture.panel, width, height);
   const stereo::PictureEyes eyes = tame_eyes(picture);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "drivers/display/phase_map.h"
-#include "kiosk/render/renderer.h"
+#include "kiosk/render/picture.h"
 
 namespace prismesh::kiosk::render {
 
@@ -44,8 +44,5 @@ struct Composition {
 
 /// Composes a picture of width x height pixels. Eyes that aren't finite are taken to be at the design place.
 Composition compose(const Picture& picture, int width, int height);
-
-/// The panel that a picture of width x height pixels lies on.
-drivers::display::PanelArea panel_area(const PanelPlace& place, int width, int height);
 
 }  // namespace prismesh::kiosk::render

@@ -4,7 +4,7 @@
 #include "kiosk/render/gl.h"
 #include "kiosk/render/model_layer.h"
 #include "kiosk/render/palette.h"
-#include "kiosk/render/renderer.h"
+#include "kiosk/render/picture.h"
 
 namespace prismesh::kiosk::render {
 

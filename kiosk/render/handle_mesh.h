@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "kiosk/render/renderer.h"
+#include "kiosk/render/picture.h"
 
 namespace prismesh::kiosk::render {
 

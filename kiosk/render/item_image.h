@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kiosk/render/model_table.h"
-#include "kiosk/render/renderer.h"
+#include "kiosk/render/picture.h"
 #include "kiosk/stereo/pointer.h"
 
 namespace prismesh::kiosk::render {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "kiosk/render/model_source.h"
-#include "kiosk/render/renderer.h"
+#include "kiosk/render/picture.h"
 #include "kiosk/stereo/pointer.h"
 #include "kiosk/tools/gestures.h"
 

@@ -60,10 +60,10 @@ TEST(Text, numbers_in_the_fewest_digits) {
 
 TEST(ProgressBar, draws_on_a_terminal_after_a_while_and_goes_away) {
   std::ostringstream out, err;
-  const Surroundings surroundings{out, err, true};
+  const Context context{out, err, true};
   ManualClock clock;
   {
-    ProgressBar bar(surroundings, "reading a.k", clock);
+    ProgressBar bar(context, "reading a.k", clock);
     const Progress progress = bar.progress();
     EXPECT_TRUE(progress(0.1));
     EXPECT_EQ(err.str(), "");
@@ -81,9 +81,9 @@ TEST(ProgressBar, draws_on_a_terminal_after_a_while_and_goes_away) {
 TEST(ProgressBar, is_silent_in_a_pipe_and_stops_work_when_asked) {
   std::ostringstream out, err;
   std::atomic<bool> interrupted{false};
-  const Surroundings surroundings{out, err, false, &interrupted};
+  const Context context{out, err, false, &interrupted};
   ManualClock clock;
-  ProgressBar bar(surroundings, "reading", clock);
+  ProgressBar bar(context, "reading", clock);
   const Progress progress = bar.progress();
   clock.advance_ns(5'000'000'000);
   EXPECT_TRUE(progress(0.5));

@@ -8,9 +8,9 @@
 
 #include "drivers/settings/choose_profile.h"
 #include "drivers/settings/settings.h"
-#include "kiosk/calibration/calibrator.h"
+#include "kiosk/calibrator.h"
 
-namespace prismesh::kiosk::calibration {
+namespace prismesh::kiosk {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,4 +57,4 @@ TEST(CalibrationPlace, without_a_home_is_beside_the_settings_where_they_find_it_
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk::calibration
+}  // namespace prismesh::kiosk

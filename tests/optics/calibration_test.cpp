@@ -63,7 +63,7 @@ class CalibrationTest : public OpticsTest {
     situation_ = situation;
     random_.seed(situation.seed);
     start_ = profile_named("prism-mask");
-    wizard_.emplace(start_, kiosk::calibration::Surroundings{std::nullopt, kSize, true});
+    wizard_.emplace(start_, kiosk::calibration::Setup{std::nullopt, kSize, true});
     sit(0, 0);
   }
 

@@ -15,7 +15,7 @@
 #include "kiosk/render/renderer.h"
 #include "kiosk/station.h"
 
-namespace prismesh::kiosk::calibration {
+namespace prismesh::kiosk {
 
 /// Where a finished calibration goes.
 struct SaveTo {
@@ -42,10 +42,10 @@ class Calibrator {
   void take_key(const display::KeyChanged& key);
   void act(panels::WizardAction action);
   void begin_when_ready();
-  Now now() const;
+  calibration::Now now() const;
   Result<void> draw();
-  void lay_out(const Page& page);
-  panels::WizardFacts facts(const Page& page) const;
+  void lay_out(const calibration::Page& page);
+  panels::WizardFacts facts(const calibration::Page& page) const;
   void save();
   void wait() const;
 
@@ -54,9 +54,9 @@ class Calibrator {
   drivers::display::Profile start_;
   SaveTo save_to_;
   std::unique_ptr<render::Renderer> renderer_;  ///< of its own, without a model
-  std::optional<PatternPainter> painter_;
+  std::optional<calibration::PatternPainter> painter_;
   std::optional<panels::Gui> gui_;
-  std::optional<Wizard> wizard_;
+  std::optional<calibration::Wizard> wizard_;
   std::int64_t began_ns_ = 0;
   std::int64_t laid_out_ns_ = 0;
   std::string trouble_;
@@ -66,4 +66,4 @@ class Calibrator {
   bool left_ = false;
 };
 
-}  // namespace prismesh::kiosk::calibration
+}  // namespace prismesh::kiosk

@@ -1,4 +1,4 @@
-#include "kiosk/calibration/calibrator.h"
+#include "kiosk/calibrator.h"
 
 #include <poll.h>
 
@@ -10,7 +10,7 @@
 #include "drivers/settings/choose_profile.h"
 #include "drivers/settings/settings.h"
 
-namespace prismesh::kiosk::calibration {
+namespace prismesh::kiosk {
 namespace {
 
 using panels::WizardAction;
@@ -50,7 +50,7 @@ Result<std::unique_ptr<Calibrator>> Calibrator::create(display::Window& window, 
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create({.samples = 1});
   if (!renderer) return fail(renderer.error());
   calibrator->renderer_ = std::move(*renderer);
-  Result<PatternPainter> painter = PatternPainter::create();
+  Result<calibration::PatternPainter> painter = calibration::PatternPainter::create();
   if (!painter) return fail(painter.error());
   calibrator->painter_ = std::move(*painter);
   Result<panels::Gui> gui = panels::Gui::create();
@@ -83,16 +83,16 @@ void Calibrator::begin_when_ready() {
   const bool answers = prism && prism->phase != MaskPhase::absent && prism->phase != MaskPhase::stuck && prism->phase != MaskPhase::alarm;
   const bool ready = !start_.mask_moves || (answers && prism->phase != MaskPhase::homing);
   if (!ready && station_.clock.now_ns() - began_ns_ < kDevicesPatienceNs) return;
-  Surroundings surroundings;
-  surroundings.monitor = window_.monitor();
-  surroundings.panel = surroundings.monitor ? surroundings.monitor->shown : window_.size();
-  surroundings.mask_answers = start_.mask_moves && answers;
-  wizard_.emplace(start_, surroundings);
+  calibration::Setup setup;
+  setup.monitor = window_.monitor();
+  setup.panel = setup.monitor ? setup.monitor->shown : window_.size();
+  setup.mask_answers = start_.mask_moves && answers;
+  wizard_.emplace(start_, setup);
 }
 
-Now Calibrator::now() const {
+calibration::Now Calibrator::now() const {
   const stereo::DeviceReading reading = station_.devices.read();
-  Now now;
+  calibration::Now now;
   now.eyes_seen = reading.eyes && reading.eyes->phase == ipc::EyesPhase::tracking;
   now.between_eyes_mm = now.eyes_seen ? reading.eyes->head().between_eyes_mm : kRestingEyesMm;
   if (reading.prism && reading.prism->measured_ns > 0) now.mask_mm = reading.prism->position_mm;
@@ -153,7 +153,7 @@ void Calibrator::act(panels::WizardAction action) {
   }
 }
 
-panels::WizardFacts Calibrator::facts(const Page& page) const {
+panels::WizardFacts Calibrator::facts(const calibration::Page& page) const {
   panels::WizardFacts facts;
   facts.number = page.number;
   facts.count = page.count;
@@ -167,7 +167,7 @@ panels::WizardFacts Calibrator::facts(const Page& page) const {
   return facts;
 }
 
-void Calibrator::lay_out(const Page& page) {
+void Calibrator::lay_out(const calibration::Page& page) {
   const std::int64_t now_ns = station_.clock.now_ns();
   std::vector<WizardAction> actions;
   gui_->layout(window_.size(), static_cast<double>(now_ns - std::exchange(laid_out_ns_, now_ns)) * 1e-9, [&] {
@@ -178,7 +178,7 @@ void Calibrator::lay_out(const Page& page) {
 }
 
 Result<void> Calibrator::draw() {
-  Page page;
+  calibration::Page page;
   page.profile = start_;
   page.pattern.ground = {0.2F, 0.2F, 0.2F};
   if (wizard_) page = wizard_->page(now());
@@ -230,4 +230,4 @@ void Calibrator::wait() const {
   ::poll(watched.data(), watched.size(), kBeatMs);
 }
 
-}  // namespace prismesh::kiosk::calibration
+}  // namespace prismesh::kiosk

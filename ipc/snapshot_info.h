@@ -1,0 +1,56 @@
+// What a snapshot holds: its arrays, and what views show beside them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh/document/generation.h"
+
+namespace prismesh::ipc {
+
+/// The arrays of a snapshot. Element types are those of mesh::Model and mesh::document::Generation.
+enum class SnapshotArray : std::uint8_t {
+  positions,
+  node_ids,
+  node_marks,
+  shell_nodes,
+  shell_ids,
+  shell_parts,
+  shell_marks,
+  shell_quality,
+  shell_damage,  ///< ShellState: by what the document's edits made the shell worse (mesh/document/damage.h)
+  line_nodes,
+  line_parts
+};
+inline constexpr int kSnapshotArrayCount = 11;
+
+/// Bytes of one element of an array.
+std::size_t element_size(SnapshotArray array);
+
+struct SnapshotPart {
+  std::int64_t id = 0;
+  std::string name;
+  bool hidden = false;
+  bool locked = false;
+  std::uint32_t shells = 0;
+};
+
+struct SnapshotInfo {
+  std::uint64_t generation = 0;
+  std::string document;     ///< path
+  std::string length_unit;  ///< "mm", ...
+  double target_size = 1;
+  double most_triangles_at_node = 0;  ///< more are a cluster (mesh::quality::Criteria::warn_triangles_at_node)
+  mesh::quality::Counts counts;
+  std::uint64_t nodes = 0;  ///< that are there; the arrays hold removed ones too
+  std::uint64_t selected_nodes = 0;
+  std::uint64_t selected_shells = 0;
+  bool can_undo = false;
+  bool can_redo = false;
+  bool changed = false;             ///< differs from what was last opened or saved
+  std::vector<SnapshotPart> parts;  ///< by PartIndex
+};
+
+}  // namespace prismesh::ipc
