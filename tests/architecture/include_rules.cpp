@@ -2,40 +2,23 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <set>
+
+#include "tests/architecture/cycles.h"
+#include "tests/architecture/modules.h"
 
 namespace prismesh::architecture {
 namespace {
 
-using Modules = std::set<std::string, std::less<>>;
-
-/// What each module of mesh/ stands on directly; what those stand on follows.
-const std::map<std::string, Modules, std::less<>>& mesh_modules() {
-  static const std::map<std::string, Modules, std::less<>> kModules{
-      {"mesh/model", {}},
-      {"mesh/deck", {"mesh/model"}},
-      {"mesh/spatial", {"mesh/model"}},
-      {"mesh/quality", {"mesh/spatial"}},
-      {"mesh/select", {"mesh/spatial"}},
-      {"mesh/shape", {"mesh/spatial"}},
-      {"mesh/relax", {"mesh/quality"}},
-      {"mesh/repair", {"mesh/relax"}},
-      {"mesh/contact", {"mesh/repair"}},
-      {"mesh/document", {"mesh/deck", "mesh/quality", "mesh/select", "mesh/shape", "mesh/contact"}},
-  };
-  return kModules;
+/// Whether a module uses another, directly or through others.
+bool uses(std::string_view from, std::string_view to) {
+  const auto found = std::find_if(modules().begin(), modules().end(), [&](const Module& module) { return module.folder == from; });
+  return found != modules().end() &&
+         std::any_of(found->uses.begin(), found->uses.end(), [&](const std::string& used) { return used == to || uses(used, to); });
 }
 
-bool mesh_stands_on(std::string_view from, std::string_view to) {
-  const auto found = mesh_modules().find(from);
-  if (found == mesh_modules().end()) return false;
-  return std::any_of(found->second.begin(), found->second.end(),
-                     [&](const std::string& below) { return below == to || mesh_stands_on(below, to); });
-}
-
-/// The layer a module is on: "mesh/deck" -> "mesh".
-std::string_view layer_of(std::string_view module) { return module.substr(0, module.find('/')); }
+/// "mesh/deck" -> "mesh".
+std::string_view layer_of(std::string_view path) { return path.substr(0, path.find('/')); }
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
@@ -56,27 +39,32 @@ std::string_view included_file(std::string_view line) {
 
 bool is_quoted(std::string_view line) { return line.find('"') != std::string_view::npos; }
 
+/// Takes the first line off a text.
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+/// "mesh/deck/save.cpp" -> "mesh/deck/save".
+std::string pair_of(std::string_view path) { return std::string(path.substr(0, path.rfind('.'))); }
+
 }  // namespace
 
 std::string module_of(std::string_view path) {
   constexpr std::array kLayers{"base", "mesh", "drivers", "ipc", "daemon", "kiosk", "cli", "tests"};
   const std::string_view layer = layer_of(path);
-  if (path.starts_with("tests/viewer/")) return "tests/viewer";
   if (layer == path || std::find(kLayers.begin(), kLayers.end(), layer) == kLayers.end()) return {};
-  if (layer != "mesh" && layer != "daemon") return std::string(layer);
-  const std::size_t second = path.find('/', layer.size() + 1);
-  return std::string(path.substr(0, second));
+  if (path.starts_with("tests/viewer/")) return "tests/viewer";
+  if (layer == "tests") return "tests";
+  return std::string(path.substr(0, path.rfind('/')));
 }
 
 bool may_include(std::string_view from, std::string_view to) {
   if (from == to || from == "tests") return true;
-  const std::string_view layer = layer_of(from), other = layer_of(to);
-  if (other == "base") return true;
-  if (from == "tests/viewer") return false;  // it judges what the others draw
-  if (layer == "mesh") return mesh_stands_on(from, to);
-  if (layer == "ipc") return other == "mesh" || other == "drivers";
-  if (layer == "kiosk" || layer == "cli" || layer == "daemon") return other == "ipc" || other == "mesh" || other == "drivers";
-  return false;
+  if (from == "tests/viewer") return to == "base";  // it judges what the others draw
+  return uses(from, to);
 }
 
 std::vector<std::string> include_violations(std::string_view path, std::string_view text) {
@@ -85,9 +73,7 @@ std::vector<std::string> include_violations(std::string_view path, std::string_v
   long number = 0;
   while (!text.empty()) {
     ++number;
-    const std::size_t end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = take_line(text);
     const std::string_view file = included_file(line);
     if (file.empty()) continue;
     const std::string to = module_of(file);
@@ -98,6 +84,21 @@ std::vector<std::string> include_violations(std::string_view path, std::string_v
       violations.push_back(where + from + " must not include " + to + " (" + std::string(file) + ")");
   }
   return violations;
+}
+
+std::vector<std::string> pair_cycles(const std::vector<SourceText>& sources) {
+  std::set<std::string> pairs;
+  for (const SourceText& source : sources) pairs.insert(pair_of(source.path));
+  Graph graph;
+  for (const SourceText& source : sources) {
+    const std::string pair = pair_of(source.path);
+    std::string_view text = source.text;
+    while (!text.empty()) {
+      const std::string included = pair_of(included_file(take_line(text)));
+      if (included != pair && pairs.contains(included)) graph[pair].insert(included);
+    }
+  }
+  return cycles(graph);
 }
 
 }  // namespace prismesh::architecture

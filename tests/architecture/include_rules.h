@@ -1,19 +1,25 @@
-// Who may include whom: the layers, and the modules inside mesh/. The picture is in docs/architecture.md.
+// Who may include whom: each module the modules that it uses, no header–source pair itself through others.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tests/architecture/tree.h"
+
 namespace prismesh::architecture {
 
-/// A file's module: "base", "mesh/deck", "drivers", "ipc", "daemon/modeld", "kiosk", "cli", "tests"; empty for none of ours.
+/// The module of a file: its folder for the product ("mesh/deck/lsdyna"), "tests/viewer", or "tests"; empty for files of others.
 std::string module_of(std::string_view path);
 
-/// Whether a file in module `from` may include one of module `to`.
+/// Whether a file of module `from` may include one of module `to`.
 bool may_include(std::string_view from, std::string_view to);
 
 /// Every include in a source text that breaks a rule, as "path:line: sentence".
 std::vector<std::string> include_violations(std::string_view path, std::string_view text);
+
+/// Header–source pairs that include each other, directly or through others. A pair is a header and the source of the same name in one
+/// folder.
+std::vector<std::string> pair_cycles(const std::vector<SourceText>& sources);
 
 }  // namespace prismesh::architecture

@@ -1,0 +1,84 @@
+#include "tests/architecture/modules.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "tests/architecture/cycles.h"
+
+namespace prismesh::architecture {
+
+const std::vector<Module>& modules() {
+  static const std::vector<Module> kModules{
+      {"base", {}},
+
+      {"mesh/model", {"base"}},
+      {"mesh/deck/text", {"base"}},
+      {"mesh/deck/data", {"mesh/model"}},
+      {"mesh/deck/assembly", {"mesh/deck/data", "mesh/deck/text"}},
+      {"mesh/deck/writing", {"mesh/deck/data"}},
+      {"mesh/deck/lsdyna", {"mesh/deck/assembly", "mesh/deck/writing"}},
+      {"mesh/deck/nastran", {"mesh/deck/assembly", "mesh/deck/writing"}},
+      {"mesh/deck/radioss", {"mesh/deck/assembly", "mesh/deck/writing"}},
+      {"mesh/deck/abaqus", {"mesh/deck/assembly", "mesh/deck/writing"}},
+      {"mesh/deck/formats", {"mesh/deck/lsdyna", "mesh/deck/nastran", "mesh/deck/radioss", "mesh/deck/abaqus"}},
+      {"mesh/deck/editing", {"mesh/deck/formats"}},
+      {"mesh/deck/sample", {"mesh/model"}},
+      {"mesh/deck", {"mesh/deck/editing", "mesh/deck/sample"}},
+      {"mesh/spatial", {"mesh/model"}},
+      {"mesh/quality", {"mesh/model"}},
+      {"mesh/select", {"mesh/spatial"}},
+      {"mesh/shape", {"mesh/spatial"}},
+      {"mesh/relax", {"mesh/quality", "mesh/spatial"}},
+      {"mesh/repair", {"mesh/relax"}},
+      {"mesh/document", {"mesh/deck", "mesh/repair", "mesh/select", "mesh/shape"}},
+
+      {"drivers/settings", {"base"}},
+      {"drivers/port", {"base"}},
+      {"drivers/display", {"base"}},
+      {"drivers/eye_tracker", {"drivers/port"}},
+      {"drivers/eye_tracker/dynasight", {"drivers/eye_tracker", "drivers/settings"}},
+      {"drivers/eye_tracker/opentrack", {"drivers/eye_tracker", "drivers/settings"}},
+      {"drivers/eye_tracker/configured", {"drivers/eye_tracker/dynasight", "drivers/eye_tracker/opentrack"}},
+      {"drivers/prism_servo", {"drivers/display", "drivers/eye_tracker"}},
+      {"drivers/prism_servo/dynamixel", {"drivers/prism_servo", "drivers/settings"}},
+
+      {"ipc", {"mesh/document", "drivers/prism_servo"}},
+
+      {"daemon/modeld", {"ipc", "drivers/settings"}},
+      {"daemon/deviced", {"ipc", "drivers/eye_tracker/configured", "drivers/prism_servo/dynamixel"}},
+
+      {"kiosk/display", {"drivers/display"}},
+      {"kiosk/stereo", {"ipc"}},
+      {"kiosk/render", {"kiosk/stereo"}},
+      {"kiosk/tools", {"kiosk/display", "kiosk/render"}},
+      {"kiosk/panels", {"kiosk/tools"}},
+      {"kiosk/calibration", {"kiosk/display", "kiosk/render"}},
+      {"kiosk", {"kiosk/panels", "kiosk/calibration", "drivers/settings"}},
+
+      {"cli", {"ipc"}},
+  };
+  return kModules;
+}
+
+std::vector<std::string> table_faults(const std::vector<Module>& table, const std::vector<std::string>& folders) {
+  std::vector<std::string> faults;
+  std::set<std::string> named;
+  for (const Module& module : table) {
+    if (!named.insert(module.folder).second) faults.push_back(module.folder + " is named twice");
+    if (std::find(folders.begin(), folders.end(), module.folder) == folders.end())
+      faults.push_back(module.folder + " is a module without sources");
+  }
+  for (const std::string& folder : folders)
+    if (!named.contains(folder)) faults.push_back(folder + " holds sources and is missing in the table of modules");
+  Graph graph;
+  for (const Module& module : table)
+    for (const std::string& used : module.uses) {
+      if (!named.contains(used)) faults.push_back(module.folder + " uses " + used + ", which is no module");
+      graph[module.folder].insert(used);
+    }
+  for (const std::string& cycle : cycles(graph)) faults.push_back("modules use each other: " + cycle);
+  return faults;
+}
+
+}  // namespace prismesh::architecture
