@@ -66,7 +66,7 @@ struct PieceCards {
   RawShells shells;
   std::array<RawElements, kElementClassCount> elements;  ///< by ElementClass; [shell] stays empty
   ElementCounts counts;
-  std::vector<std::pair<std::string_view, std::size_t>> kinds;  ///< element cards by the deck's own word; the text must outlive the piece
+  std::vector<std::pair<std::string, std::size_t>> kinds;  ///< element cards by the deck's own keyword
   std::vector<Oddity> oddities;
   std::optional<std::pair<std::size_t, std::string>> error;  ///< offset and sentence
   bool encrypted = false;                                    ///< ran into an encrypted block
