@@ -24,9 +24,9 @@ namespace {
 
 using Time = std::chrono::steady_clock;
 
-/// How often the main thread looks what the loop has told.
-constexpr std::chrono::milliseconds kLook{20};
-/// A device that changes all the time is told about, and logged, so often at most; the page shows every change.
+/// How often the main thread reads the loop's events.
+constexpr std::chrono::milliseconds kPollPeriod{20};
+/// Min. time between two messages and log lines about a device that keeps changing; the state page shows every change.
 constexpr std::chrono::milliseconds kTellPause{500};
 
 ipc::ServerLimits limits() {
@@ -36,7 +36,7 @@ ipc::ServerLimits limits() {
   return limits;
 }
 
-/// On the watchdog's thread, while the loop hangs: nothing can be wound down.
+/// Called on the watchdog's thread while the loop hangs, so the devices can't be shut down in order.
 [[noreturn]] void end_stuck() {
   logging::critical("the device loop hangs, so this daemon ends to be started again; the prism servo stops by its own watchdog");
   logging::flush();
@@ -54,8 +54,8 @@ void log(const ipc::DeviceInfo& device) {
 
 }  // namespace
 
-struct Daemon::State final : ipc::ServerHandler {
-  State(DaemonOptions wanted, StationPlan sound, ipc::DevicePage device_page)
+struct Daemon::Impl final : ipc::ServerHandler {
+  Impl(DaemonOptions wanted, StationPlan sound, ipc::DevicePage device_page)
       : options(std::move(wanted)), plan(std::move(sound)), page(std::move(device_page)) {}
 
   struct Told {
@@ -68,16 +68,16 @@ struct Daemon::State final : ipc::ServerHandler {
   ipc::DevicePage page;
   bool memory_locked = false;
   std::optional<ipc::Server> server;
-  std::map<ipc::ClientId, std::string> greeted;  ///< their programs
+  std::map<ipc::ClientId, std::string> greeted;  ///< name of the client's program
   std::set<ipc::ClientId> showing_stereo;
-  bool picture_mono = true;  ///< as the loop was told
+  bool picture_mono = true;  ///< as last sent to the loop
   std::optional<ipc::ClientId> holder;
   ipc::HoldMask hold;
-  std::deque<LoopCommand> untaken;  ///< the loop's ring was full
+  std::deque<LoopCommand> untaken;  ///< commands that didn't fit into the loop's ring
   std::vector<ipc::DeviceInfo> devices;
   std::map<std::string, Told> told;  ///< by role
-  std::string no_station;            ///< why there is none
-  std::unique_ptr<Station> station;  // last: it ends before what it writes to
+  std::string no_station;            ///< why no station runs; empty: one does
+  std::unique_ptr<Station> station;  // last: it ends before the page that it writes to
 
   // --- the station ---
 
@@ -94,19 +94,19 @@ struct Daemon::State final : ipc::ServerHandler {
   }
 
   void tell_loop(const LoopCommand& command) {
-    // Of each kind only the newest counts, so a client that asks without end fills no memory.
+    // Only the newest command of each kind is kept, so that a client can't fill the memory.
     std::erase_if(untaken, [&](const LoopCommand& older) { return older.index() == command.index(); });
     untaken.push_back(command);
     while (station && !untaken.empty() && station->tell(untaken.front())) untaken.pop_front();
   }
 
-  void look() {
+  void poll_station() {
     if (!station) return;
     while (!untaken.empty() && station->tell(untaken.front())) untaken.pop_front();
-    devices = station->look();
+    devices = station->poll();
     for (const ipc::DeviceInfo& device : devices) {
       const Time::time_point now = Time::now();
-      // What comes and goes while a station starts isn't worth a word.
+      // Changes while a station starts aren't reported.
       Told& last = told.try_emplace(device.role, Told{{}, now}).first->second;
       if (last.device == device || now - last.at < kTellPause) continue;
       last = {device, now};
@@ -168,7 +168,7 @@ struct Daemon::State final : ipc::ServerHandler {
     if (greeted.erase(client) == 0) return;
     logging::info("client {} left: {}", client, why);
     if (holder == client) end_hold();
-    // What it drew is no longer seen.
+    // The picture that this client drew is no longer shown.
     if (showing_stereo.erase(client) > 0) picture_shown();
   }
 
@@ -176,12 +176,12 @@ struct Daemon::State final : ipc::ServerHandler {
 
   template <class Other>
   ipc::DeviceAnswer done(ipc::ClientId, const Other&) {
-    return ipc::Done{};  // hello and picture_shown don't come here
+    return ipc::Done{};  // hello and picture_shown are handled elsewhere
   }
 
   ipc::DeviceAnswer done(ipc::ClientId, const ipc::GetDevices&) {
     if (!station) return ipc::Failed{"", 0, no_station};
-    look();
+    poll_station();
     return ipc::Devices{devices, plan.profile.name};
   }
 
@@ -249,7 +249,7 @@ struct Daemon::State final : ipc::ServerHandler {
 
   void tell_all(const ipc::DeviceEvent& event) {
     const std::string line = ipc::encode_device_event(event);
-    // A copy: sending to a client that is cut off for it changes the map.
+    // A copy: a send that cuts its client off changes the map.
     const std::map<ipc::ClientId, std::string> all = greeted;
     for (const auto& [client, program] : all) server->send(client, line);
   }
@@ -260,7 +260,7 @@ Result<Daemon> Daemon::start(const DaemonOptions& options) {
   if (!plan) return fail(std::move(plan.error()));
   Result<ipc::DevicePage> page = ipc::DevicePage::create();
   if (!page) return fail(std::move(page.error()));
-  auto state = std::make_unique<State>(options, std::move(*plan), std::move(*page));
+  auto state = std::make_unique<Impl>(options, std::move(*plan), std::move(*page));
   Result<ipc::Server> server = ipc::Server::listen(ipc::device_socket_path(options.runtime_directory), *state, limits());
   if (!server) return fail(std::move(server.error()));
   state->server = std::move(*server);
@@ -269,15 +269,15 @@ Result<Daemon> Daemon::start(const DaemonOptions& options) {
   else
     logging::warn("{}", refused);
   if (Result<void> started = state->start_station(); !started) return fail(std::move(started.error()));
-  state->server->every(kLook, [state = state.get()] { state->look(); });
+  state->server->every(kPollPeriod, [state = state.get()] { state->poll_station(); });
   return Daemon(std::move(state));
 }
 
-Daemon::Daemon(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Daemon::Daemon(std::unique_ptr<Impl> state) : impl_(std::move(state)) {}
 Daemon::Daemon(Daemon&&) noexcept = default;
 Daemon::~Daemon() = default;
 
-void Daemon::run() { state_->server->run(); }
-void Daemon::stop() { state_->server->stop(); }
+void Daemon::run() { impl_->server->run(); }
+void Daemon::stop() { impl_->server->stop(); }
 
 }  // namespace prismesh::deviced

@@ -1,4 +1,4 @@
-// deviced put together: the socket, the station with its loop, the state page.
+// The daemon deviced: joins the socket, the station with its device loop, and the state page.
 #pragma once
 
 #include <filesystem>
@@ -11,29 +11,29 @@ namespace prismesh::deviced {
 
 struct DaemonOptions {
   std::filesystem::path runtime_directory;
-  std::optional<std::filesystem::path> config;  ///< a settings file, read after the system's and the user's
+  std::optional<std::filesystem::path> config;  ///< a settings file that overrides the system's and the user's
 };
 
-/// The exit status when the device loop hangs: whoever supervises the daemon starts it again.
+/// Exit status when the device loop hangs, so that the supervisor restarts the daemon.
 inline constexpr int kStuckStatus = 70;
 
 class Daemon {
  public:
-  /// Errors: another daemon holds the folder; settings or profile that can't be used (file and line); no memory.
+  /// Errors: another daemon holds the folder; settings or profile can't be used (file and line); no memory.
   static Result<Daemon> start(const DaemonOptions& options);
   Daemon(Daemon&&) noexcept;
-  /// The motor is let go before this returns.
+  /// Switches the motor's torque off before it returns.
   ~Daemon();
 
-  /// Serves until SIGTERM, SIGINT or a terminal's SIGHUP, or `stop`.
+  /// Serves clients until SIGTERM, SIGINT, a terminal's SIGHUP or `stop`.
   void run();
-  /// From any thread.
+  /// May be called from any thread.
   void stop();
 
  private:
-  struct State;
-  explicit Daemon(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit Daemon(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace prismesh::deviced

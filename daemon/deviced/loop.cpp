@@ -23,7 +23,7 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 void store(std::array<double, 3>& to, const Eigen::Vector3d& from) { to = {from.x(), from.y(), from.z()}; }
 
-/// But for what it has measured.
+/// Compares all fields but the measurements.
 bool same_servo(const ServoChanged& a, const ServoChanged& b) {
   return a.open == b.open && a.tick.phase == b.tick.phase && a.tick.trouble == b.tick.trouble &&
          a.tick.trouble_number == b.tick.trouble_number && a.tick.alarm_bits == b.tick.alarm_bits;
@@ -52,7 +52,7 @@ void DeviceLoop::tick(std::int64_t now_ns) {
   input.head = filter_.state();
   input.head_seen = eyes_.phase == EyesPhase::tracking;
   input.servo = servo_tick_;
-  // What is decided here goes out with the next tick.
+  // Decisions made here are sent with the next tick.
   input.servo_lag_ns = (servo_ ? servo_->lag_ns() : 0) + kTickPeriodNs;
   input.picture_mono = picture_mono_;
   input.hold_mm = hold_mm_ ? &*hold_mm_ : nullptr;
@@ -110,7 +110,7 @@ void DeviceLoop::poll_tracker(std::int64_t now_ns) {
   Tracker* tracker = attached_tracker();
   if (tracker == nullptr) return;
   Tracker::Polled polled = tracker->poll(now_ns);
-  // It arrived at some moment since the last tick: half of it ago, on average.
+  // The sample arrived at an unknown moment since the last tick: half a period ago on average.
   polled.sample.measured_ns -= kTickPeriodNs / 2;
   if (polled.fresh) filter_.take(polled.sample);
   const drivers::eye_tracker::LineCounts& counts = tracker->counts();
@@ -158,7 +158,7 @@ void DeviceLoop::tick_servo(std::int64_t now_ns, double goal_mm, bool powered) {
 }
 
 void DeviceLoop::tell_changes(std::int64_t now_ns) {
-  // What finds no place in the ring is told by a later tick: it still differs from what was told.
+  // An event that doesn't fit into the ring is sent by a later tick, because the state still differs from the reported one.
   if (eyes_.phase != told_eyes_ && events_.push(EyesChanged{now_ns, eyes_.phase})) told_eyes_ = eyes_.phase;
   const MaskPhase mask = mask_.state.phase;
   if (mask != told_mask_ && events_.push(MaskChanged{now_ns, mask})) told_mask_ = mask;

@@ -1,6 +1,6 @@
-// What deviced does again and again: takes in what the eye tracker says, filters it, moves the mask after the eyes, and publishes both.
-// Pure: the time, the ports and the page are passed in. A tick neither allocates nor locks, logs or blocks; what is worth telling goes
-// into a ring for the main thread, and what the main thread wants comes through another.
+// The device loop: reads the eye tracker, filters the head position, moves the mask after the eyes, and publishes eyes and mask. Time,
+// ports and page are passed in. A tick doesn't allocate, lock, log or block. Events for the main thread go into one ring, commands from it
+// come through another.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace prismesh::deviced {
 
 inline constexpr std::int64_t kTickPeriodNs = 4'000'000;
 
-/// Where the loop's devices are plugged in. Null where there is no such device. The keepers outlive the loop.
+/// The loop's ports; null where a device is missing. The keepers must outlive the loop.
 struct LoopPorts {
   drivers::port::PortKeeper* tracker_line = nullptr;
   drivers::port::DatagramKeeper* tracker_datagrams = nullptr;
@@ -32,11 +32,11 @@ struct LoopSettings {
   drivers::settings::EyeTrackerSettings tracker;
   drivers::prism_servo::dynamixel::ServoSettings servo;
   drivers::display::MaskOptics optics;
-  drivers::prism_servo::MaskLimits limits;  ///< `eyes_lost_ns` also tells when a tracker counts as searching
+  drivers::prism_servo::MaskLimits limits;  ///< after `eyes_lost_ns` without a head the tracker counts as searching, too
   double eye_separation_mm = drivers::display::kMeanEyeSeparationMm;
 };
 
-// What the main thread tells the loop.
+// Commands from the main thread to the loop.
 struct SetPictureMono {
   bool mono = true;
 };
@@ -51,7 +51,7 @@ struct SetDisplay {
 };
 using LoopCommand = std::variant<SetPictureMono, SetHold, EndHold, AskRearm, SetDisplay>;
 
-// What the loop tells the main thread: changes only, so a fault is told once.
+// Events from the loop to the main thread: changes only, so that a fault is reported once.
 struct EyesChanged {
   std::int64_t time_ns = 0;
   ipc::EyesPhase phase = ipc::EyesPhase::none;
@@ -62,7 +62,7 @@ struct MaskChanged {
 };
 struct ServoChanged {
   std::int64_t time_ns = 0;
-  bool open = false;  ///< its port
+  bool open = false;  ///< the servo's port is open
   drivers::prism_servo::PrismServo::Tick tick;
 };
 using LoopEvent = std::variant<EyesChanged, MaskChanged, ServoChanged>;
@@ -71,14 +71,14 @@ class DeviceLoop {
  public:
   DeviceLoop(const LoopSettings& settings, const LoopPorts& ports, ipc::DevicePage& page);
 
-  /// Once a period. Of the page, the slots of the eyes and the prism are written; health belongs to whoever drives the loop.
+  /// Called once a period. Writes the page's slots for eyes and prism; the caller writes the health slot.
   void tick(std::int64_t now_ns);
-  /// In place of `tick` on the way out: the motor is let go, and the page says that nothing is to be relied on any more. Some ticks of
-  /// it, so that the servo has heard it.
+  /// Called instead of `tick` before the loop ends: switches the motor's torque off and publishes that eyes and mask are unknown. Call it
+  /// for several periods, so that the servo receives the command.
   void wind_down(std::int64_t now_ns);
 
-  // From one other thread.
-  /// False: the loop hasn't taken earlier ones yet.
+  // Called from one other thread.
+  /// Returns false if the ring is full.
   bool tell(const LoopCommand& command) { return commands_.push(command); }
   std::optional<LoopEvent> next_event() { return events_.pop(); }
 

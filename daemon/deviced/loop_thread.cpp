@@ -16,10 +16,10 @@ namespace prismesh::deviced {
 
 namespace {
 
-/// Above ordinary work and the kernel's threads at 1, below its interrupt threads at 50, which bring the bytes.
+/// Above ordinary work and the kernel's threads at 1, below the interrupt threads at 50 that deliver the ports' bytes.
 constexpr int kPriority = 40;
 constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
-/// How long the servo may take to hear that it is let go.
+/// How long the servo may take to receive the torque-off command.
 constexpr int kWindDownTicks = 25;
 
 timespec as_timespec(std::int64_t ns) { return {static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)}; }
@@ -75,12 +75,12 @@ Result<std::unique_ptr<LoopThread>> LoopThread::start(DeviceLoop& loop, ipc::Dev
   return made;
 }
 
-/// pthread_create's status.
+/// Returns pthread_create's status.
 int LoopThread::create(bool realtime) {
   health_.realtime = realtime;
   pthread_attr_t attributes;
   ::pthread_attr_init(&attributes);
-  // All of a locked stack is there from the start; the usual 8 MiB would be for nothing.
+  // A locked stack is fully resident, so the default of 8 MiB would be wasted.
   ::pthread_attr_setstacksize(&attributes, kStackBytes);
   if (realtime) {
     sched_param priority{};
@@ -102,7 +102,7 @@ LoopThread::~LoopThread() {
 }
 
 void* LoopThread::enter(void* self) {
-  ::pthread_setname_np(::pthread_self(), "device loop");  // for top and chrt
+  ::pthread_setname_np(::pthread_self(), "device loop");  // the name that top and chrt show
   static_cast<LoopThread*>(self)->run();
   return nullptr;
 }
@@ -131,7 +131,7 @@ void LoopThread::keep_account(std::int64_t due_ns, std::int64_t began_ns, std::i
   costs_[health_.ticks % costs_.size()] = cpu_ns;
   ++health_.ticks;
   if (health_.ticks % costs_.size() == 0) {
-    // The order of the costs is of no more use.
+    // nth_element may reorder the costs: they are overwritten next.
     std::nth_element(costs_.begin(), costs_.begin() + costs_.size() / 2, costs_.end());
     health_.tick_cpu_ns = costs_[costs_.size() / 2];
   }

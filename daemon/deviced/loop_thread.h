@@ -1,5 +1,5 @@
-// Drives the device loop in real time: a thread of its own with SCHED_FIFO where the system grants it, ticks at absolute times, and an
-// account of how well it keeps them on the device page.
+// Runs the device loop in real time: a thread with SCHED_FIFO where the system grants it, ticks at absolute times, and the timing figures
+// on the device page.
 #pragma once
 
 #include <pthread.h>
@@ -16,26 +16,26 @@
 
 namespace prismesh::deviced {
 
-/// Locks the process's memory, now and in future, if all of it may be: with a limit, a later allocation would fail instead.
-/// Empty: done; else why not, and what would help.
+/// Locks the process's memory, present and future, unless a limit applies: then a later allocation would fail. Returns an empty text, or
+/// why it wasn't locked and what would help.
 std::string lock_memory();
 
-/// When the tick after one that was due at `due_ns` and ended at `ended_ns` is due. Periods that were slept through are left out, not made
-/// up for: after a stall the devices must not be driven by many ticks at once.
+/// Returns when the next tick is due after one that was due at `due_ns` and ended at `ended_ns`. Skips missed periods: after a stall the
+/// devices must not receive many ticks at once.
 std::int64_t next_due_ns(std::int64_t due_ns, std::int64_t ended_ns);
 
 class LoopThread {
  public:
-  /// Starts ticking. `memory_locked` and `simulated` go into the health that it publishes. Errors: the system gives no thread.
+  /// Starts ticking. `memory_locked` and `simulated` are published as health. Errors: no thread can be created.
   static Result<std::unique_ptr<LoopThread>> start(DeviceLoop& loop, ipc::DevicePage& page, bool memory_locked, bool simulated);
-  /// Winds the loop down (the motor is let go) and ends.
+  /// Winds the loop down, which switches the motor's torque off, and ends the thread.
   ~LoopThread();
   LoopThread(const LoopThread&) = delete;
   LoopThread& operator=(const LoopThread&) = delete;
 
-  /// Why SCHED_FIFO was refused, and what would help; empty if it wasn't.
+  /// Why SCHED_FIFO was refused and what would help; empty if it was granted.
   const std::string& refused() const { return refused_; }
-  /// Ticks that have ended: for whoever watches that they do.
+  /// Number of completed ticks, for the watchdog.
   std::uint64_t ticks() const { return ticks_.load(std::memory_order_relaxed); }
 
  private:

@@ -1,4 +1,4 @@
-// prismesh-deviced: the daemon of eye tracker and prism servo. Options and logging; the rest is in daemon.h.
+// prismesh-deviced, the daemon for eye tracker and prism servo: options and logging. The rest is in daemon.h.
 #include <csignal>
 #include <cstdio>
 
@@ -21,9 +21,9 @@ constexpr const char* kUsage =
 int main(int argc, char** argv) {
   const prismesh::ProgramOptions given = prismesh::program_options({"prismesh-deviced", kUsage, {"--runtime-dir", "--config"}}, argc, argv);
   if (given.end) return *given.end;
-  // Whoever read the log may go away: an error of writing, no end.
+  // A closed log pipe is a write error, and must not end the process.
   std::signal(SIGPIPE, SIG_IGN);
-  // Writing a core takes seconds in which the ports would stay open with nobody behind them.
+  // Writing a core file takes seconds, during which the ports would stay open without a loop.
   ::prctl(PR_SET_DUMPABLE, 0);
   prismesh::logging::start("deviced");
 

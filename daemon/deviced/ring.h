@@ -1,4 +1,4 @@
-// A queue of a fixed size between two threads, one that writes and one that reads; nobody waits for anybody, nothing is allocated.
+// A wait-free queue of fixed size from one writing thread to one reading thread. It doesn't allocate.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ template <class T, std::size_t Places>
 requires std::is_trivially_copyable_v<T>
 class Ring {
  public:
-  /// The writing thread. False: it is full, and nothing was put in.
+  /// Called by the writing thread. Returns false if the queue is full; then nothing is added.
   bool push(const T& value) {
     const std::size_t at = written_.load(std::memory_order_relaxed);
     if (at - read_.load(std::memory_order_acquire) == Places) return false;
@@ -22,7 +22,7 @@ class Ring {
     return true;
   }
 
-  /// The reading thread.
+  /// Called by the reading thread. Returns nothing if the queue is empty.
   std::optional<T> pop() {
     const std::size_t at = read_.load(std::memory_order_relaxed);
     if (at == written_.load(std::memory_order_acquire)) return std::nullopt;

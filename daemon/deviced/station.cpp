@@ -28,7 +28,7 @@ using drivers::port::PortKeeper;
 using drivers::prism_servo::dynamixel::SimulatedServoThread;
 using drivers::settings::TrackerDriver;
 
-/// Records that stay away for so long, five at 60 Hz, are missed.
+/// Records count as missing after so long: five at 60 Hz.
 constexpr std::int64_t kMissedNs = 80'000'000;
 
 PortKeeper::Maker line(const std::string& path, int baud) {
@@ -68,16 +68,16 @@ LoopSettings loop_settings(const StationPlan& plan) {
   settings.optics = plan.profile.optics;
   settings.limits.travel_mm = plan.settings.prism_servo.travel_mm;
   settings.limits.speed_mm_s = plan.settings.prism_servo.speed_mm_s;
-  // What a slow tracker says, a webcam's say, is old when it comes.
+  // A slow tracker's samples, for example a webcam's, are already old when they arrive.
   const std::int64_t latency_ns = nanoseconds(plan.settings.eye_tracker.latency_ms);
   settings.limits.eyes_lost_ns = std::max(settings.limits.eyes_lost_ns, latency_ns + kMissedNs);
   settings.eye_separation_mm = plan.eye_separation_mm();
   return settings;
 }
 
-/// In the order in which the parts are made; they end in the opposite one: watchdog, loop, keepers, simulators.
-struct Station::State {
-  explicit State(StationPlan wanted) : plan(std::move(wanted)) {}
+/// Members stand in the order of their construction; they end in reverse: watchdog, loop, keepers, simulators.
+struct Station::Impl {
+  explicit Impl(StationPlan wanted) : plan(std::move(wanted)) {}
 
   StationPlan plan;
   MonotonicClock clock;
@@ -154,29 +154,29 @@ struct Station::State {
   KeeperReport tracker_report() const { return tracker_line ? tracker_line->report() : tracker_datagrams->report(); }
 };
 
-Station::Station(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Station::Station(std::unique_ptr<Impl> state) : impl_(std::move(state)) {}
 Station::~Station() = default;
 
 Result<std::unique_ptr<Station>> Station::start(const StationPlan& plan, ipc::DevicePage& page, bool memory_locked,
                                                 std::function<void()> stuck) {
-  auto state = std::make_unique<State>(plan);
+  auto state = std::make_unique<Impl>(plan);
   if (Result<void> started = state->start_simulators(); !started) return fail(std::move(started.error()));
   state->make_keepers();
   if (Result<void> started = state->start_loop(page, memory_locked, std::move(stuck)); !started) return fail(std::move(started.error()));
   return std::unique_ptr<Station>(new Station(std::move(state)));
 }
 
-bool Station::tell(const LoopCommand& command) { return state_->loop->tell(command); }
+bool Station::tell(const LoopCommand& command) { return impl_->loop->tell(command); }
 
-std::vector<ipc::DeviceInfo> Station::look() {
-  while (const std::optional<LoopEvent> event = state_->loop->next_event()) state_->take_in(*event);
-  const auto& settings = state_->plan.settings;
+std::vector<ipc::DeviceInfo> Station::poll() {
+  while (const std::optional<LoopEvent> event = impl_->loop->next_event()) impl_->take_in(*event);
+  const auto& settings = impl_->plan.settings;
   std::vector<ipc::DeviceInfo> all;
-  if (state_->plan.has_tracker()) all.push_back(tracker_info(settings.eye_tracker, state_->tracker_status(), state_->tracker_report()));
-  if (state_->plan.has_servo()) all.push_back(servo_info(settings.prism_servo, state_->servo, state_->servo_line->report()));
+  if (impl_->plan.has_tracker()) all.push_back(tracker_info(settings.eye_tracker, impl_->tracker_status(), impl_->tracker_report()));
+  if (impl_->plan.has_servo()) all.push_back(servo_info(settings.prism_servo, impl_->servo, impl_->servo_line->report()));
   return all;
 }
 
-const std::string& Station::refused() const { return state_->loop_thread->refused(); }
+const std::string& Station::refused() const { return impl_->loop_thread->refused(); }
 
 }  // namespace prismesh::deviced

@@ -13,11 +13,11 @@ void watch(const std::stop_token& stop, const std::function<std::uint64_t()>& ti
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
-  StillLooks looks(ticks(), times.looks);
+  StallCounter counter(ticks(), times.max_checks);
   while (!stop.stop_requested()) {
-    wake.wait_for(lock, stop, times.look, [] { return false; });
+    wake.wait_for(lock, stop, times.period, [] { return false; });
     if (stop.stop_requested()) return;
-    if (looks.stuck(ticks())) return stuck();
+    if (counter.stalled(ticks())) return stuck();
   }
 }
 

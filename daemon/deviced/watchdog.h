@@ -1,5 +1,4 @@
-// Notices a device loop that hangs. The loop can't say so itself, and what it drives is stopped by the devices' own watchdogs; the
-// process has to end, so that it is started anew.
+// Detects a device loop that hangs. The devices stop by their own watchdogs; the process must end, so that its supervisor restarts it.
 #pragma once
 
 #include <chrono>
@@ -11,32 +10,32 @@
 namespace prismesh::deviced {
 
 struct WatchdogTimes {
-  std::chrono::milliseconds look{250};
-  /// So many looks in a row without a tick: stuck. Looks, not a time, so that a process that was stopped or a machine that slept isn't
-  /// taken for a hang.
-  int looks = 6;
+  std::chrono::milliseconds period{250};
+  /// The loop hangs after so many checks in a row without a tick. Counts checks instead of time, so that a stopped process or a machine
+  /// that slept isn't taken for a hang.
+  int max_checks = 6;
 };
 
-/// Counts looks in a row that saw no tick.
-class StillLooks {
+/// Counts checks in a row without a new tick.
+class StallCounter {
  public:
-  StillLooks(std::uint64_t ticks, int looks) : last_(ticks), looks_(looks) {}
-  /// Takes a look. True when the ticks have stood still for all of the looks, once for each time that they stand still.
-  bool stuck(std::uint64_t ticks) {
-    still_ = ticks == last_ ? still_ + 1 : 0;
+  StallCounter(std::uint64_t ticks, int max_checks) : last_(ticks), max_checks_(max_checks) {}
+  /// Checks the number of ticks. Returns true once in each stall: at the `max_checks`-th check in a row without a new tick.
+  bool stalled(std::uint64_t ticks) {
+    without_tick_ = ticks == last_ ? without_tick_ + 1 : 0;
     last_ = ticks;
-    return still_ == looks_;
+    return without_tick_ == max_checks_;
   }
 
  private:
   std::uint64_t last_;
-  int looks_;
-  int still_ = 0;
+  int max_checks_;
+  int without_tick_ = 0;
 };
 
 class Watchdog {
  public:
-  /// `ticks` counts while all is well; called from a thread of the watchdog's own, as is `stuck`, once.
+  /// `ticks` returns the number of ticks so far. `stuck` is called once when the loop hangs. Both are called from the watchdog's thread.
   Watchdog(std::function<std::uint64_t()> ticks, std::function<void()> stuck, const WatchdogTimes& times = {});
 
  private:

@@ -51,7 +51,7 @@ std::size_t steps_to_carry(const Generation& current) { return steps_to(current)
 
 Result<void> carry_over(const Generation& current, Document& recorded, Journal& journal) {
   for (const Edit& step : steps_to(current)) {
-    // The first step's delta takes everything along; the others say in words what it held.
+    // The first step's delta holds the whole change; the other steps add the intents.
     auto next = std::make_shared<Generation>(current);
     next->number = recorded.next_number;
     next->made_by = name(step);

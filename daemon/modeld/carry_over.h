@@ -1,4 +1,4 @@
-// What a document is beyond its deck: the selection and the parts' states. After a save in place the new journal begins with it.
+// Carries the selection and the part states over into the journal that a save in place begins.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,15 @@
 
 namespace prismesh::modeld {
 
-/// How many steps the functions below journal.
+/// Number of steps that the functions below add to the journal.
 std::size_t steps_to_carry(const mesh::document::Generation& current);
 
-/// Journals the steps that lead from `recorded` (freshly opened from the saved deck) to the same selection and part states as
-/// `current`, and takes `recorded` there. Positions that the deck's columns couldn't hold to the last digit come along.
+/// Journals the steps that give `recorded`, freshly opened from the saved deck, the selection and part states of `current`, and applies
+/// them to `recorded`. Node positions that the deck's columns rounded are carried over too. Errors: the journal can't be written.
 Result<void> carry_over(const mesh::document::Generation& current, mesh::document::Document& recorded, mesh::document::Journal& journal);
 
-/// The same where `recorded` has other indices, since nodes or shells came or went: by ids. Positions are those of the saved deck.
+/// The same, matched by ids, for a `recorded` whose indices differ because nodes or shells were added or removed. Positions are those of
+/// the saved deck.
 Result<void> carry_over_by_ids(const mesh::document::Generation& current, mesh::document::Document& recorded,
                                mesh::document::Journal& journal);
 

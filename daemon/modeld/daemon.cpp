@@ -26,9 +26,9 @@ namespace prismesh::modeld {
 
 namespace {
 
-/// The loop says every half second that it turns.
-constexpr std::chrono::milliseconds kWatchBeat{500};
-static_assert(kWatchBeat.count() * 1'000'000 >= ipc::kHeartbeatPeriodNs);
+/// The loop gives a heartbeat every half second.
+constexpr std::chrono::milliseconds kWatchPeriod{500};
+static_assert(kWatchPeriod.count() * 1'000'000 >= ipc::kHeartbeatPeriodNs);
 constexpr std::chrono::seconds kMaxUnserved{20};
 
 constexpr const char* kNoMemoryToAnswer = "there isn't enough memory for the answer";
@@ -38,9 +38,9 @@ bool says_what_was_done(const ipc::Answer& answer) {
          std::holds_alternative<ipc::State>(answer) || std::holds_alternative<ipc::DragBegun>(answer);
 }
 
-/// By a signal, so that the stacks of all threads can be looked at later. What is acknowledged is on disk.
+/// Aborts, so that a core file shows the stacks of all threads. Acknowledged edits are on disk.
 void end_hung_process(const std::string& what) {
-  ::alarm(5);  // should even the log hang
+  ::alarm(5);  // in case the log hangs too
   logging::critical("{}: the daemon hangs and ends itself, to be started anew; what was acknowledged is on disk", what);
   logging::flush();
   std::abort();
@@ -48,8 +48,8 @@ void end_hung_process(const std::string& what) {
 
 }  // namespace
 
-struct Daemon::State final : ipc::ServerHandler, Outlet {
-  State(const DaemonOptions& options, ipc::Descriptor state_lock, ipc::StatePage state_page)
+struct Daemon::Impl final : ipc::ServerHandler, ClientChannel {
+  Impl(const DaemonOptions& options, ipc::Descriptor state_lock, ipc::StatePage state_page)
       : lock(std::move(state_lock)),
         page(std::move(state_page)),
         publisher(StateFolder(options.state_directory).first_number()),
@@ -64,9 +64,9 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   MonotonicClock clock;
   RequestHandler handler;
   RequestScheduler scheduler;
-  Pulse loop_pulse;
-  std::optional<Watchdog> watchdog;  // while the worker ends, too
-  Worker worker;                     // last: it ends before what it works on
+  Heartbeat loop_heartbeat;
+  std::optional<Watchdog> watchdog;  // outlives the worker, whose end it watches
+  Worker worker;                     // last: it ends before the objects that it works on
 
   // --- from the socket ---
 
@@ -117,7 +117,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
     try {
       server->send(client, ipc::encode_answer(number, answer, count), std::move(descriptors));
     } catch (const std::bad_alloc&) {
-      // What was done must not be called failed; the client asks again how things are.
+      // A completed request must not be reported as failed. The client reconnects and asks for the state.
       if (says_what_was_done(answer)) return server->cut(client, kNoMemoryToAnswer);
       server->send(client, ipc::encode_answer(number, ipc::Failed{"", 0, kNoMemoryToAnswer}, 0));
     }
@@ -133,7 +133,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   }
 
   void tell_all(const ipc::Event& event) override {
-    // A copy: sending to a client that is cut off for it changes the set.
+    // A copy: a send that cuts its client off changes the set.
     const std::set<ipc::ClientId> all = greeted;
     for (const ipc::ClientId client : all) tell(client, event);
     beat();
@@ -142,7 +142,7 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
   void post(std::function<void()> work) override { server->post(std::move(work)); }
 
   void beat() {
-    loop_pulse.sign();
+    loop_heartbeat.beat();
     ipc::Health health = scheduler.health();
     health.heartbeat_ns = clock.now_ns();
     health.pid = ::getpid();
@@ -151,11 +151,11 @@ struct Daemon::State final : ipc::ServerHandler, Outlet {
 
   void watch(std::chrono::seconds limit) {
     if (limit.count() == 0) return;
-    const auto beats = [](std::chrono::seconds silence) { return static_cast<int>(silence / kWatchBeat); };
-    std::vector<Silence> watched;
-    watched.emplace_back("clients aren't served", loop_pulse, beats(std::min(limit, kMaxUnserved)));
-    watched.emplace_back("the work under way makes no progress", worker.pulse(), beats(limit));
-    watchdog.emplace(std::move(watched), kWatchBeat, end_hung_process);
+    const auto periods = [](std::chrono::seconds silence) { return static_cast<int>(silence / kWatchPeriod); };
+    std::vector<HeartbeatMonitor> watched;
+    watched.emplace_back("clients aren't served", loop_heartbeat, periods(std::min(limit, kMaxUnserved)));
+    watched.emplace_back("the work under way makes no progress", worker.heartbeat(), periods(limit));
+    watchdog.emplace(std::move(watched), kWatchPeriod, end_hung_process);
   }
 
   void begin() {
@@ -176,7 +176,7 @@ Result<Daemon> Daemon::start(const DaemonOptions& options) {
   if (!lock) return fail(std::move(lock.error()));
   Result<ipc::StatePage> page = ipc::StatePage::create();
   if (!page) return fail(std::move(page.error()));
-  auto state = std::make_unique<State>(options, std::move(*lock), std::move(*page));
+  auto state = std::make_unique<Impl>(options, std::move(*lock), std::move(*page));
   Result<ipc::Server> server = ipc::Server::listen(ipc::model_socket_path(options.runtime_directory), *state);
   if (!server) return fail(std::move(server.error()));
   state->server = std::move(*server);
@@ -185,15 +185,15 @@ Result<Daemon> Daemon::start(const DaemonOptions& options) {
   return Daemon(std::move(state));
 }
 
-Daemon::Daemon(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Daemon::Daemon(std::unique_ptr<Impl> state) : impl_(std::move(state)) {}
 Daemon::Daemon(Daemon&&) noexcept = default;
 Daemon::~Daemon() = default;
 
 void Daemon::run() {
-  state_->loop_pulse.begin();
-  state_->server->run();
-  state_->loop_pulse.end();
+  impl_->loop_heartbeat.begin();
+  impl_->server->run();
+  impl_->loop_heartbeat.end();
 }
-void Daemon::stop() { state_->server->stop(); }
+void Daemon::stop() { impl_->server->stop(); }
 
 }  // namespace prismesh::modeld

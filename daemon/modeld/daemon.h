@@ -1,4 +1,4 @@
-// modeld put together: the socket, the scheduler, the worker, the state page.
+// The daemon modeld: joins the socket, the scheduler, the worker and the state page.
 #pragma once
 
 #include <chrono>
@@ -13,26 +13,26 @@ namespace prismesh::modeld {
 struct DaemonOptions {
   std::filesystem::path runtime_directory;
   std::filesystem::path state_directory;
-  std::size_t history_bytes = std::size_t{2} << 30;  ///< what the states kept for undo and redo may take
-  std::chrono::seconds hang_limit{60};               ///< without a sign of life for so long the process ends itself; 0: it never does
+  std::size_t history_bytes = std::size_t{2} << 30;  ///< max. memory of the states kept for undo and redo
+  std::chrono::seconds hang_limit{60};               ///< the process aborts after so long without a heartbeat; 0: never
 };
 
 class Daemon {
  public:
-  /// Takes both folders for itself. Errors: another daemon holds one of them, one can't be made or isn't private.
+  /// Locks both folders. Errors: another daemon holds one of them; one can't be made or isn't private.
   static Result<Daemon> start(const DaemonOptions& options);
   Daemon(Daemon&&) noexcept;
   ~Daemon();
 
-  /// Serves until SIGTERM or SIGINT, or `stop`.
+  /// Serves clients until SIGTERM, SIGINT or `stop`.
   void run();
-  /// From any thread.
+  /// May be called from any thread.
   void stop();
 
  private:
-  struct State;
-  explicit Daemon(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit Daemon(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace prismesh::modeld

@@ -1,4 +1,4 @@
-// Which file of a deck holds which parts: what views offer to hide and lock by file.
+// Lists which file of a deck holds which parts, so that views can hide and lock by file.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace prismesh::modeld {
 
-/// The deck's files that hold shells, in the deck's order. Costs a pass over the shells.
+/// Returns the deck's files that hold shells, in the deck's order. Cost: one pass over the shells.
 std::vector<ipc::DeckFile> files_with_shells(const mesh::document::Document& document);
 
 }  // namespace prismesh::modeld

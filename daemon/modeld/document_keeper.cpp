@@ -21,7 +21,7 @@ using namespace mesh::document;
 using mesh::deck::OpenedDeck;
 using mesh::deck::Warning;
 
-/// A deck that ended so many lives of the daemon isn't opened by itself again.
+/// After opening a deck has ended the daemon so many times, it isn't reopened automatically.
 constexpr std::uint64_t kMaxReopenings = 3;
 
 Result<OpenOptions> options_of(const ipc::Open& request) {
@@ -35,7 +35,7 @@ Result<OpenOptions> options_of(const ipc::Open& request) {
   return options;
 }
 
-/// What the work gives, or an error where there is too little memory for it. For work that changes nothing until it is done.
+/// Runs the work and turns bad_alloc into an error. The work must change nothing before it returns.
 template <class Work>
 auto if_memory_allows(const Work& work, const std::string& file) -> decltype(work()) {
   try {
@@ -126,9 +126,9 @@ Result<bool> DocumentKeeper::reopen(const Progress& progress) {
   if (last.attempts >= kMaxReopenings)
     return fail(last.open.path, "opening it ended the daemon " + std::to_string(last.attempts) + " times; open it by hand to try again");
   ++last.attempts;
-  (void)folder_.write_session(last);  // without room for it, only the count of attempts is lost
+  (void)folder_.write_session(last);  // if that fails, only the number of attempts is lost
   const Result<bool> opened = open(last.open, progress);
-  // An honest refusal is no crash.
+  // An error isn't a crash, so it doesn't count as an attempt.
   if (!opened) {
     --last.attempts;
     (void)folder_.write_session(last);
@@ -137,27 +137,27 @@ Result<bool> DocumentKeeper::reopen(const Progress& progress) {
   return true;
 }
 
-/// The document's generation that one of `recorded` is, or is a copy of.
+/// The document's generation that a generation of `recorded` is a copy of, or the same.
 const Generation* DocumentKeeper::original_of(const Generation* recorded) const {
   for (const Twin& twin : open_->twins)
     if (twin.recorded.get() == recorded) return twin.of.get();
   return recorded;
 }
 
-/// The generation that `recorded` would go to by itself; null if it has none.
+/// The document's generation that an undo or redo of `recorded` leads to; null if `recorded` has no such step.
 const Generation* DocumentKeeper::own_step(Prepared::Step step) const {
   const Document& recorded = open_->recorded;
   if (step == Prepared::Step::undo) return recorded.can_undo() ? original_of(recorded.generations[recorded.cursor - 1].get()) : nullptr;
   return recorded.can_redo() ? original_of(recorded.generations[recorded.cursor + 1].get()) : nullptr;
 }
 
-/// The journal's form of an undo or redo that its own history, shorter than the document's after a save, can't make.
+/// Turns an undo or redo into a new step of `recorded`, whose history is shorter than the document's after a save.
 Prepared DocumentKeeper::as_push(const Prepared& prepared, const Edit& edit) {
   auto next = std::make_shared<Generation>(*prepared.next);
   next->number = open_->recorded.next_number;
   next->made_by = name(edit);
   Prepared push;
-  // Counted as the document counts, so that it keeps a state before each that the document keeps one before.
+  // Uses the document's cap, so that `recorded` can undo each step that the document can undo.
   push.drop_oldest = generations_over_cap(open_->recorded, *next);
   push.next = std::move(next);
   std::erase_if(open_->twins, [](const Twin& twin) { return twin.recorded.use_count() == 1; });
@@ -165,7 +165,7 @@ Prepared DocumentKeeper::as_push(const Prepared& prepared, const Edit& edit) {
   return push;
 }
 
-/// How many of the oldest of `recorded` go, so that it has no less than the document keeps.
+/// Number of oldest generations that `recorded` drops, so that it keeps all that the document keeps.
 std::size_t DocumentKeeper::same_drop(const Prepared& prepared) const {
   const Document &document = open_->document, &recorded = open_->recorded;
   if (prepared.drop_oldest == 0) return 0;
@@ -189,13 +189,13 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   EditReport report = prepared->report;
   const bool push = prepared->step == Prepared::Step::push;
   const bool follows = push || own_step(prepared->step) == prepared->next.get();
-  // A delta only ever adds to the structure.
+  // A delta can add nodes and shells, but can't take a topology change back.
   if (!follows && prepared->step == Prepared::Step::undo &&
       prepared->next->model.topology_change != open.recorded.current().model.topology_change)
     return fail("", "this step can't be undone any more: it changed the structure, and the journal no longer has the state before it");
   Prepared recorded = follows ? *prepared : as_push(*prepared, edit);
   if (push) recorded.drop_oldest = same_drop(*prepared);
-  // What is on record can't fail for want of memory any more.
+  // After the record is written, nothing may fail for lack of memory.
   open.recorded.generations.reserve(open.recorded.generations.size() + 1);
   open.document.generations.reserve(open.document.generations.size() + 1);
   if (Result<void> appended = open.journal.append(open.recorded, edit, recorded); !appended) return fail(std::move(appended.error()));
@@ -213,7 +213,7 @@ Result<void> DocumentKeeper::close(bool discard) {
   return {};
 }
 
-/// The journal of a document that is given up isn't in the way of the next opening.
+/// Closes the document and retires its journal, so that the next opening of the deck begins without these edits.
 Result<void> DocumentKeeper::let_go() {
   if (Result<void> ended = end_unfinished_save(); !ended) return ended;
   const fs::path path = open_->journal.path();
@@ -222,7 +222,7 @@ Result<void> DocumentKeeper::let_go() {
   std::error_code problem;
   if (empty)
     fs::remove(path, problem);
-  else if (is_there(path))  // somebody may have deleted it
+  else if (is_there(path))  // the user may have deleted it
     if (const Result<fs::path> retired = folder_.retire(path, lost ? ".discarded" : ".closed"); !retired) return fail(retired.error());
   open_.reset();
   return {};
@@ -252,7 +252,7 @@ ipc::State DocumentKeeper::state() const {
   state.changed = changed();
   state.recovered_edits = open_->recovered;
   state.journalled_edits = open_->journal.records();
-  // A generation's own bytes are what keeping the one before it costs.
+  // own_bytes of a generation is the cost of keeping the one before it.
   for (std::size_t i = 1; i < document.generations.size(); ++i) state.history_bytes += document.generations[i]->own_bytes;
   state.history_cap = document.history_bytes;
   for (const auto& generation : document.generations) state.generations.push_back({generation->number, generation->made_by});

@@ -1,5 +1,5 @@
-// The open document, its journal and its deck on disk, kept in step: an edit is on disk before it counts, a save gives the
-// journal a new base, a restart brings everything back. One thread; no sockets.
+// Keeps the open document, its journal and its deck on disk consistent: an edit is on disk before it is committed, a save begins a new
+// journal, and a restart recovers all edits. Used by one thread; knows no sockets.
 #pragma once
 
 #include <memory>
@@ -22,49 +22,49 @@ namespace prismesh::modeld {
 
 class DocumentKeeper {
  public:
-  /// `history_bytes`: what the states kept for undo and redo may take.
+  /// `history_bytes`: max. memory of the states kept for undo and redo.
   explicit DocumentKeeper(StateFolder folder, std::size_t history_bytes = mesh::document::OpenOptions{}.history_bytes)
       : folder_(std::move(folder)), history_bytes_(history_bytes) {}
 
-  /// Opens a deck and brings back what its journal holds. A document that is open already is given up, which takes that it has
-  /// no unsaved edits; on an error it stays. False: this deck was open already. Errors: those of the deck, of the journal,
-  /// unsaved edits.
+  /// Opens a deck and recovers the edits in its journal. Closes the document that is open, if its edits are saved; on an error that one
+  /// stays open. Returns false if this deck is already open. Errors: of the deck, of the journal, unsaved edits.
   Result<bool> open(const ipc::Open& request, const Progress& progress);
-  /// What was open when the last life ended; false if nothing was. Errors: as `open`; a deck that ended several lives is left.
+  /// Opens the deck that was open when the daemon ended; returns false if none was. Errors: as `open`; opening this deck ended the daemon
+  /// several times.
   Result<bool> reopen(const Progress& progress);
-  /// Prepares, journals, commits.
+  /// Prepares the edit, journals it, commits it. Errors: of the edit, of the journal.
   Result<mesh::document::EditReport> edit(const mesh::document::Edit& edit, const Progress& progress = {}, Clock* clock = nullptr);
-  /// Told to stop before the first file is put in place, it leaves all files as they were; from then on it goes on. Where a save in place
-  /// fails between the files, those that were replaced get back what they held. If even that fails no edits are taken until the save is
-  /// called again and finishes it.
+  /// Saves in place, or a copy to `path` that counts as saved. A cancel before the first file is replaced leaves all files as they were; a
+  /// later one is ignored. If a save in place fails between two files, the replaced files get their former content back. If that fails
+  /// too, edits are refused until `save` is called again and finishes.
   Result<ipc::Saved> save(const std::optional<std::string>& path, const Progress& progress = {});
-  /// Saves the deck elsewhere; edits that its own deck doesn't have stay unsaved.
+  /// Writes a copy of the deck. Edits that the document's own deck doesn't hold stay unsaved.
   Result<ipc::Saved> save_copy(const std::string& path, const Progress& progress = {});
-  /// Saves the deck elsewhere and goes on as the document of that deck, with its history; the deck it was stays as it is on disk. Errors:
-  /// as save, and where the written deck can't be gone on with: then it is a copy, and the document is the one it was.
+  /// Writes the deck to `path` and makes it the document's deck; the history stays, the former deck stays as it is on disk. Errors: as
+  /// `save`; the written deck can't be read as the document: then it remains as a copy and the document keeps its deck.
   Result<ipc::Saved> save_as(const std::string& path, const Progress& progress = {});
-  /// What a save elsewhere would do to what is there; nothing, if it would only write new files into folders that are there.
+  /// Returns what a save to `path` would replace or make; nothing, if it would only write new files into existing folders.
   Result<std::optional<ipc::SaveWould>> would(const std::string& path) const;
   Result<void> close(bool discard);
 
   bool is_open() const { return open_.has_value(); }
   const mesh::document::Document& document() const { return open_->document; }
-  /// Whether positions differ from what was last opened or saved.
+  /// Whether the mesh differs from the deck as it was last opened or saved.
   bool changed() const;
-  /// All but `busy`.
+  /// All fields but `busy`.
   ipc::State state() const;
 
  private:
-  /// A generation of `recorded` and the document's that it is a copy of.
+  /// A generation of `recorded` and the generation of the document that it is a copy of.
   struct Twin {
     std::shared_ptr<const mesh::document::Generation> recorded;
     std::shared_ptr<const mesh::document::Generation> of;
   };
-  /// A save in place that is ready to replace the deck's files: all that recovery from the saved deck needs is on disk.
+  /// A save in place that is ready to replace the deck's files: everything that recovery from the saved deck needs is on disk.
   struct ReadySave {
     mesh::deck::StagedSave staged;
     std::filesystem::path intent;
-    mesh::document::Document next;  ///< what will be recorded from then on: the saved deck, with the selection and the parts' states
+    mesh::document::Document next;  ///< `recorded` after the save: the saved deck, with the selection and the part states
     mesh::document::Journal journal;
     ipc::Saved saved;
 
@@ -76,22 +76,22 @@ class DocumentKeeper {
           journal(std::move(next_journal)) {}
     ReadySave(ReadySave&&) = default;
     ReadySave& operator=(ReadySave&&) = default;
-    /// The end of the daemon takes nothing from disk that the next one finishes the save with.
+    /// Leaves the staged files on disk: after the daemon's end the next one finishes the save with them.
     ~ReadySave() { staged.leave(); }
   };
   struct OpenDocument {
     ipc::Open request;
     mesh::document::Document document;
-    /// What recovery from the deck on disk and the journal would give. The same as `document` until a save in place: then the
-    /// document keeps its history, while the journal's begins with the saved deck.
+    /// The document as recovery from deck and journal would give it. Equal to `document` until a save in place: after that, `document`
+    /// keeps its history and the history of `recorded` begins with the saved deck.
     mesh::document::Document recorded;
     mesh::document::Journal journal;
     std::shared_ptr<const mesh::document::Generation> saved;  ///< what `changed` compares with
     std::uint64_t recovered = 0;
-    std::vector<mesh::deck::Warning> warnings;  ///< beside the deck's
+    std::vector<mesh::deck::Warning> warnings;  ///< in addition to the deck's
     std::vector<ipc::DeckFile> files;
     std::vector<Twin> twins;
-    std::optional<ReadySave> unfinished;  ///< a save that failed when some files were replaced already
+    std::optional<ReadySave> unfinished;  ///< a save that failed after some files were replaced
   };
 
   Result<OpenDocument> load(const ipc::Open& request, const Progress& progress);

@@ -1,4 +1,4 @@
-// How the open document gets onto disk: in place, elsewhere, or as another deck that it goes on as.
+// Saves the open document: in place, as a copy, or as another deck that becomes the document's.
 #include <algorithm>
 #include <limits>
 
@@ -23,15 +23,15 @@ using namespace mesh::document;
 using mesh::deck::OpenedDeck;
 using mesh::deck::Warning;
 
-/// Of a save in place: the rest is reading again what was written.
+/// Share of the progress of a save in place; the rest is for reading the written deck again.
 constexpr double kShareOfWriting = 0.6;
 
-/// A progress of its own for the part of the work from `begin` to `begin + share`.
+/// Maps the progress of a part of the work onto the range from `begin` to `begin + share`.
 Progress part_of(const Progress& whole, double begin, double share) {
   return [&whole, begin, share](double fraction) { return !whole || whole(begin + fraction * share); };
 }
 
-/// Whether nodes or shells came, went or have other corners since the deck was read.
+/// Whether nodes or shells were added, removed or given other corners since the deck was read.
 bool has_grown(const Document& document) { return !mesh::changes_between(document.opened->model, document.current().model).empty(); }
 
 std::string names_of(const SaveIntent& intent) {
@@ -40,7 +40,7 @@ std::string names_of(const SaveIntent& intent) {
   return names;
 }
 
-/// All if it can't be read: then nothing is known to be in it that could be lost by keeping it.
+/// Number of records in a journal; the max. value if it can't be read, so that the caller keeps the file.
 std::uint64_t records_in(const fs::path& journal) {
   const Result<JournalIntents> intents = read_intents(journal);
   return intents ? intents->edits.size() : std::numeric_limits<std::uint64_t>::max();
@@ -52,25 +52,25 @@ ipc::Saved report_of(const fs::path& target, const mesh::deck::SaveReport& repor
 
 Result<Journal> start_journal(const StateFolder& folder, const fs::path& path, Document& document) {
   if (!is_there(path)) return Journal::create(path, document);
-  // Edits of another time on a deck that looked just like this one were saved or given up since, or their journal would be in
-  // use. It isn't deleted.
+  // A journal of that name holds edits of an earlier time on a deck with the same content; they were saved or discarded since. It is kept.
   if (const Result<fs::path> retired = folder.retire(path, ".old"); !retired) return fail(retired.error());
   return Journal::create(path, document);
 }
 
-/// The document's files have the names of another deck of the same content.
+/// Gives the document's files the names of another deck with the same content.
 void rename_files(Document& document, const Document& other) {
   document.path = other.path;
   for (std::shared_ptr<const Generation>& generation : document.generations) {
     auto renamed = std::make_shared<Generation>(*generation);
-    renamed->relations = other.opened->relations;  // by which expressions name files
+    renamed->relations = other.opened->relations;  // expressions name files by it
     generation = std::move(renamed);
   }
 }
 
 }  // namespace
 
-/// Saves of this deck that were cut off, before it is read: are they finished, did they not begin, can't they be told any more?
+/// Settles interrupted saves of this deck before it is read: finishes them, or discards those that hadn't begun, and adds a warning where
+/// the result is unknown.
 Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warning>& warnings) {
   const auto warn = [&](const char* kind, std::string message) { warnings.push_back({path.string(), 0, kind, std::move(message), 1}); };
   for (const fs::path& file : folder_.save_intents(path)) {
@@ -92,7 +92,7 @@ Result<void> DocumentKeeper::settle_saves(const fs::path& path, std::vector<Warn
            "a save was cut off between the deck's files, and can't be finished since something else has changed or removed some of them: " +
                names_of(*intent));
     const bool saved = *outcome == SaveOutcome::complete || *outcome == SaveOutcome::finished;
-    // Which of the two journals is obsolete; one that holds more than at that time holds edits of later, and stays.
+    // One of the two journals is obsolete. If it holds more records than the intent says, they are later edits, and it stays.
     const fs::path obsolete = saved ? journal : folder_.journal(path, intent->deck_after);
     if (is_there(obsolete) && records_in(obsolete) <= (saved ? intent->records : intent->records_of_next))
       if (const Result<fs::path> retired = folder_.retire(obsolete, saved ? ".saved" : ".unused"); !retired) return fail(retired.error());
@@ -125,7 +125,7 @@ Result<ipc::Saved> DocumentKeeper::save_as(const std::string& path, const Progre
   if (same_file(open.document.path, path)) return save_in_place(progress);
   const Result<fs::path> target = absolute(path);
   if (!target) return fail(target.error());
-  // Where neither way can be gone, the next opening of the deck goes one.
+  // If neither finishing nor taking back works, the next opening of the deck settles it.
   (void)end_unfinished_save();
   std::vector<Warning> of_earlier_saves;
   if (Result<void> settled = settle_saves(*target, of_earlier_saves); !settled) return fail(std::move(settled.error()));
@@ -140,7 +140,7 @@ Result<ipc::Saved> DocumentKeeper::save_as(const std::string& path, const Progre
   return saved;
 }
 
-/// The document goes on as the deck that was just written to `target`. Whenever the daemon dies, either deck has all edits.
+/// Makes the deck that was just written to `target` the document's deck. Whenever the daemon dies, one of the two decks has all edits.
 Result<void> DocumentKeeper::become(const fs::path& target, const Progress& progress, ipc::Saved& saved) {
   OpenDocument& open = *open_;
   Result<OpenedDeck> opened = mesh::deck::open(target, progress);
@@ -164,7 +164,7 @@ Result<void> DocumentKeeper::become(const fs::path& target, const Progress& prog
   open.files = files_with_shells(open.document);
   open.warnings.clear();
   open.recovered = 0;
-  // A journal that stays is opened with its deck again, and its edits come back there: too many rather than too few.
+  // An old journal that can't be retired is recovered with its deck, so edits appear twice rather than being lost.
   if (open.unfinished)
     open.unfinished.reset();
   else
@@ -212,11 +212,11 @@ Result<ipc::Saved> DocumentKeeper::save_in_place(const Progress& progress) {
   return finish_save(std::move(*ready));
 }
 
-/// A damaged journal makes room for one that holds what is shown. The deck needs no change for it.
+/// Retires a damaged journal and begins one that holds the document as it is shown. The deck isn't changed.
 Result<void> DocumentKeeper::begin_journal_anew() {
   OpenDocument& open = *open_;
   const fs::path path = open.journal.path();
-  if (is_there(path))  // somebody may have deleted it
+  if (is_there(path))  // the user may have deleted it
     if (const Result<fs::path> retired = folder_.retire(path, ".damaged"); !retired) return fail(retired.error());
   Document next = open.document;
   next.generations = {next.opened};
@@ -230,7 +230,7 @@ Result<void> DocumentKeeper::begin_journal_anew() {
   return {};
 }
 
-/// What is open, read from a deck that it was saved as. Errors: it would not be read as what is shown.
+/// Reads the document from a deck that it was saved as. Errors: the deck's mesh isn't the document's.
 Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck opened) const {
   const Document& now = open_->document;
   const bool grown = has_grown(now);
@@ -240,7 +240,7 @@ Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck ope
   OpenOptions options;
   options.length_unit = now.settings.length_unit;
   options.target_size = now.settings.target_size;
-  options.judged_by = now.settings.criteria;  // their file may be gone
+  options.judged_by = now.settings.criteria;  // the criteria file may have been removed
   options.history_bytes = now.history_bytes;
   Result<Document> next = mesh::document::open(path, std::move(opened), options);
   if (!next) return next;
@@ -254,7 +254,7 @@ Result<Document> DocumentKeeper::read_again(const fs::path& path, OpenedDeck ope
   return next;
 }
 
-/// The journal of a deck as it was read again: it begins with the selection and the parts' states.
+/// Begins the journal of a deck that was read again; the selection and the part states are its first steps.
 Result<Journal> DocumentKeeper::begin_journal(Document& next) const {
   Result<Journal> journal = start_journal(folder_, folder_.journal(next.path, next.deck->content), next);
   if (!journal) return journal;
@@ -264,7 +264,7 @@ Result<Journal> DocumentKeeper::begin_journal(Document& next) const {
   return journal;
 }
 
-/// The saved deck is what edits are compared with and journalled on from now on.
+/// Makes the saved deck the base that edits are compared with and journalled against.
 void DocumentKeeper::go_on_with(Document next, Journal journal, ipc::Saved& saved) {
   OpenDocument& open = *open_;
   open.journal = std::move(journal);
@@ -283,9 +283,9 @@ void DocumentKeeper::go_on_with(Document next, Journal journal, ipc::Saved& save
   open.recorded = std::move(next);
 }
 
-/// After a save in place the deck on disk is another one, so its text is read again and a new journal begins, with the selection and the
-/// parts' states; all of it before the first file is replaced, so that whenever the daemon dies, deck and journal belong together. The
-/// history stays, unless nodes or shells came or went: then what was read has other indices, and the history begins anew.
+/// Reads the staged deck and begins its journal, with the selection and the part states, before the first file is replaced: whenever the
+/// daemon dies, the deck on disk has a journal that fits it. The history stays unless nodes or shells were added or removed: then the
+/// indices differ and the history begins anew.
 Result<DocumentKeeper::ReadySave> DocumentKeeper::make_ready(mesh::deck::StagedSave staged, const Progress& progress) {
   OpenDocument& open = *open_;
   Result<OpenedDeck> opened = staged.open(progress);
@@ -315,7 +315,7 @@ Result<DocumentKeeper::ReadySave> DocumentKeeper::make_ready(mesh::deck::StagedS
   return ready;
 }
 
-/// Replaces the deck's files and goes on with the new journal.
+/// Replaces the deck's files and switches to the new journal.
 Result<ipc::Saved> DocumentKeeper::finish_save(ReadySave save) {
   OpenDocument& open = *open_;
   if (Result<void> placed = save.staged.put_in_place(); !placed) {
@@ -335,19 +335,19 @@ Result<ipc::Saved> DocumentKeeper::finish_save(ReadySave save) {
   const fs::path old = open.journal.path();
   const bool whole = open.journal.takes_edits();
   go_on_with(std::move(save.next), std::move(save.journal), save.saved);
-  // Where this fails the intent stays, and the next opening does it.
+  // If this fails the intent stays, and the next opening of the deck retires the journal.
   if (const Result<fs::path> retired = folder_.retire(old, whole ? ".saved" : ".damaged"); retired) folder_.remove(save.intent);
   return std::move(save.saved);
 }
 
-/// A save that replaced nothing, or has taken back what it replaced: all is as before it.
+/// Discards a save that replaced no file, or has restored the files that it replaced.
 void DocumentKeeper::forget(ReadySave& save) {
   folder_.remove(save.journal.path());
   folder_.remove(save.intent);
   save.staged = {};
 }
 
-/// Before the document is given up: its deck is left whole. Errors: neither way can be gone.
+/// Takes an unfinished save back, or else finishes it, so that no deck is left half saved. Errors: neither works.
 Result<void> DocumentKeeper::end_unfinished_save() {
   if (!open_->unfinished) return {};
   ReadySave save = std::move(*open_->unfinished);

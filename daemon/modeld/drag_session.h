@@ -1,4 +1,4 @@
-// A drag as the worker carries it: the mesh's drag and the preview its frames go to.
+// A drag under way: the core's drag and the preview page that its frames go to.
 #pragma once
 
 #include "ipc/messages.h"
@@ -9,15 +9,15 @@ namespace prismesh::modeld {
 
 class DragSession {
  public:
-  /// Errors as mesh::document::Drag::begin; no memory for the preview.
+  /// Errors: as mesh::document::Drag::begin; no memory for the preview.
   static Result<DragSession> begin(std::uint64_t number, const mesh::document::Document& document, const mesh::document::Edit& edit);
 
   ipc::DragBegun begun() const;
   const ipc::Descriptor& preview() const { return preview_.descriptor(); }
-  /// Works the displacement out and publishes the frame.
+  /// Computes the displaced nodes and the states of the shells they touch, and publishes them as a frame.
   void step(const ipc::DragStep& step);
   bool moved() const { return moved_; }
-  /// What the drag stands for at its last step.
+  /// Returns the edit that the drag's last step amounts to.
   mesh::document::Edit edit() const { return drag_.edit(); }
 
  private:

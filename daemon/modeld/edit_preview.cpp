@@ -23,7 +23,7 @@ ShellSet united(std::initializer_list<const ShellSet*> sets) {
   return all;
 }
 
-/// Shells at the moved nodes, each as it is in a model where it is there.
+/// Shells at the moved nodes, each taken from a model that has it.
 ShellSet at_nodes(const Model& model, const mesh::NodeSet& nodes) {
   return nodes.empty() ? ShellSet() : mesh::shells_touching(model, nodes);
 }

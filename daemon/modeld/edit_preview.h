@@ -1,4 +1,4 @@
-// What an edit would do, told without doing it.
+// Previews an edit without applying it.
 #pragma once
 
 #include "base/clock.h"
@@ -8,7 +8,8 @@
 
 namespace prismesh::modeld {
 
-/// Works the edit out and says what the next generation would have otherwise. Errors: those of the edit.
+/// Prepares the edit and returns what the next generation would change: moved nodes and the shells they touch, before and after. Errors:
+/// of the edit.
 Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document, const mesh::document::Edit& edit, Clock* clock = nullptr);
 
 }  // namespace prismesh::modeld

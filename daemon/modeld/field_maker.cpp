@@ -40,15 +40,16 @@ bool FieldMaker::OtherDeck::is_current() const {
          });
 }
 
-Result<FieldMaker::State> FieldMaker::other_state(const Document& document, const Generation& of, const ipc::GetField& request,
-                                                  const Progress& progress) {
+Result<FieldMaker::ComparedModel> FieldMaker::compared_model(const Document& document, const Generation& of, const ipc::GetField& request,
+                                                             const Progress& progress) {
   if (request.against_generation) {
     const Result<const Generation*> other = generation_of(document, *request.against_generation);
     if (!other) return fail(other.error());
-    return State{&(*other)->model, words_of(**other)};
+    return ComparedModel{&(*other)->model, words_of(**other)};
   }
-  if (request.against == "opened") return State{&document.opened->model, "the deck as it was opened"};
-  if (request.against == "surface") return State{of.surface ? of.surface.get() : &document.opened->model, "the surface as last shaped"};
+  if (request.against == "opened") return ComparedModel{&document.opened->model, "the deck as it was opened"};
+  if (request.against == "surface")
+    return ComparedModel{of.surface ? of.surface.get() : &document.opened->model, "the surface as last shaped"};
   const std::filesystem::path path(request.against);
   if (!path.is_absolute())
     return fail("field", "\"against\" is \"opened\", \"surface\" or a deck's absolute path, not \"" + request.against + "\"");
@@ -60,7 +61,7 @@ Result<FieldMaker::State> FieldMaker::other_state(const Document& document, cons
     other_ = OtherDeck{path, {}, opened->deck->missing_files.empty(), std::move(opened->model)};
     for (const mesh::deck::SourceFile& file : opened->deck->files) other_->files.emplace_back(file.path, file.bytes.identity());
   }
-  return State{&other_->model, path.filename().string()};
+  return ComparedModel{&other_->model, path.filename().string()};
 }
 
 Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::GetField& request, const Progress& progress) {
@@ -74,9 +75,9 @@ Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::G
     if (!found) return fail(found.error());
     of = *found;
   }
-  State other;
+  ComparedModel other;
   if (needs_other(*wish)) {
-    Result<State> found = other_state(document, *of, request, progress);
+    Result<ComparedModel> found = compared_model(document, *of, request, progress);
     if (!found) return fail(found.error());
     other = std::move(*found);
   }
@@ -90,7 +91,7 @@ Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::G
   answer.title = field->title;
   answer.unit = field->unit;
   answer.of = words_of(*of);
-  answer.against = other.words;
+  answer.against = other.description;
   if (wish->of == mesh::document::FieldWish::Of::gap) {
     answer.of = wish->from + " of " + answer.of;
     answer.against = wish->to;
@@ -106,7 +107,7 @@ Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::G
   answer.clear = field->limits.clear;
   answer.full = field->limits.full;
   answer.new_nodes = field->new_nodes;
-  // Of a distance between two expressions only what the one names is meant to have values.
+  // In a distance between two expressions only the entities of the first have values.
   if (wish->of != mesh::document::FieldWish::Of::gap) answer.shells_without = shells_without_value(of->model, *field);
   return Made{std::move(answer), std::move(*values)};
 }

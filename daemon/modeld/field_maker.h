@@ -1,4 +1,4 @@
-// Makes the fields that clients ask for: finds what is compared with what, and seals the values.
+// Makes the fields (a value per node or shell) that clients ask for, in sealed shared memory.
 #pragma once
 
 #include <filesystem>
@@ -22,23 +22,22 @@ class FieldMaker {
     ipc::FieldMade answer;
     ipc::Descriptor values;
   };
-  /// Errors: those of the field and of the other deck, a state that the history has no more, cancelled.
+  /// Errors: of the field and of the other deck; the state is no longer in the history; cancelled.
   Result<Made> make(const mesh::document::Document& document, const ipc::GetField& request, const Progress& progress);
 
  private:
-  /// A state, and what to call it.
-  struct State {
+  struct ComparedModel {
     const mesh::Model* model = nullptr;
-    std::string words;
+    std::string description;  ///< for the legend
   };
-  Result<State> other_state(const mesh::document::Document& document, const mesh::document::Generation& of, const ipc::GetField& request,
-                            const Progress& progress);
+  Result<ComparedModel> compared_model(const mesh::document::Document& document, const mesh::document::Generation& of,
+                                       const ipc::GetField& request, const Progress& progress);
 
-  /// The deck that was compared with last, and the files it was read from.
+  /// The deck of the last comparison, kept because reading it is expensive, and the files it was read from.
   struct OtherDeck {
     std::filesystem::path path;
     std::vector<std::pair<std::filesystem::path, FileIdentity>> files;
-    bool whole = true;  ///< no include was missing, which may be there the next time
+    bool whole = true;  ///< no include was missing; a missing one may exist the next time
     mesh::Model model;
     bool is_current() const;
   };

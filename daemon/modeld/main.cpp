@@ -1,4 +1,4 @@
-// prismesh-modeld: the document's daemon. Options and logging; the rest is in daemon.h.
+// prismesh-modeld, the document daemon: options and logging. The rest is in daemon.h.
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   const prismesh::ProgramOptions given =
       prismesh::program_options({"prismesh-modeld", kUsage, {"--runtime-dir", "--state-dir", "--config"}}, argc, argv);
   if (given.end) return *given.end;
-  // Whoever read the log may go away, and a journal may grow beyond what a file may hold: both are errors of writing, no end.
+  // A closed log pipe (SIGPIPE) and a journal beyond the file size limit (SIGXFSZ) are write errors, and must not end the process.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   prismesh::logging::start("modeld");
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", settings.error().text().c_str());
     return 1;
   }
-  // A device's mistyped key shall not keep anybody from their deck.
+  // An error in a device's settings must not prevent opening a deck.
   if (!settings) {
     prismesh::logging::warn("the settings are left aside: {}", settings.error().text());
     settings = prismesh::drivers::settings::Settings{};

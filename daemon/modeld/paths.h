@@ -1,4 +1,4 @@
-// Questions about paths that clients name.
+// Checks on paths that clients name.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ inline bool same_file(const std::filesystem::path& a, const std::filesystem::pat
   return std::filesystem::equivalent(a, b, problem) && !problem;
 }
 
-/// The path as it is. Errors: it isn't absolute.
+/// Returns the path unchanged. Errors: it isn't absolute.
 inline Result<std::filesystem::path> absolute(const std::string& path) {
   if (!std::filesystem::path(path).is_absolute()) return fail(path, "the path must be absolute: the daemon has its own working folder");
   return std::filesystem::path(path);

@@ -33,7 +33,7 @@ using mesh::quality::Values;
 constexpr std::size_t kGrain = mesh::kChunkSize;
 constexpr std::size_t kBars = 24;
 constexpr int kStateBits = 16;
-constexpr double kTail = 0.002;  ///< the share of the shells at either end that may stretch the histogram by nothing
+constexpr double kTail = 0.002;  ///< share of the shells at either end that doesn't widen the histogram's range
 
 bool has(std::uint16_t bits, int bit) { return (bits >> bit & 1) != 0; }
 
@@ -46,7 +46,7 @@ Result<int> metric_named(const std::string& wanted) {
   return fail("", "there is no metric \"" + wanted + "\"; the nearest is \"" + std::string(nearest_name(wanted, known)) + "\"");
 }
 
-/// The shells that are looked at: all that are there, or the damaged ones.
+/// The shells that are counted: all of the model, or the damaged ones.
 class Shells {
  public:
   Shells(const Document& document, bool damaged) : model_(document.current().model) {
@@ -73,8 +73,8 @@ class Shells {
   mesh::ShellSet list_;
 };
 
-/// How far a value lies beyond its limits: 0 at the one that warns, 1 at the one that fails, and on; whatever the metric's unit. What has
-/// one limit only counts from the other end by its size.
+/// Distance of a value beyond its limits, without unit: 0 at the warn limit, 1 at the fail limit, growing linearly. A metric with only one
+/// limit is scaled by that limit's magnitude.
 double severity(double value, const Threshold& limit) {
   const auto beyond = [](double v, double warn, double failing) {
     if (!std::isfinite(warn) && !std::isfinite(failing)) return 0.0;
@@ -98,14 +98,14 @@ bool worse(const Wrong& a, const Wrong& b) {
   return a.shell < b.shell;
 }
 
-/// A shell that is none fails by its defects only: its metrics mean nothing.
+/// A degenerate shell fails by its defects only; its metrics have no meaning.
 ShellState counted(ShellState state) {
   if (!state.has_defect()) return state;
   const auto defects = static_cast<std::uint16_t>(state.fail & ShellState::kDefectBits);
   return {defects, defects};
 }
 
-/// Not a number where a shell is in no bar.
+/// NaN for a shell that is in no bar.
 float value_for_bars(ShellState state, const Values& values, int metric) {
   return state.has_defect() ? std::numeric_limits<float>::quiet_NaN() : values[static_cast<std::size_t>(metric)];
 }
@@ -116,7 +116,7 @@ struct PartSum {
   double least = 1;
 };
 
-/// Figures of a range of shells; ranges are added in order, so sums don't depend on the number of threads.
+/// Figures of a range of shells. Ranges are added in order, so that sums don't depend on the number of threads.
 struct Figures {
   std::array<std::uint64_t, kStateBits> warn{}, fail{};
   std::vector<Wrong> wrong;
@@ -195,7 +195,7 @@ class Gathering {
     return figures;
   }
 
-  /// Of the metric that is asked for, or of all.
+  /// Of the requested metric, or of all.
   Wrong worst_of(std::size_t shell, ShellState state, const Values& values) const {
     Wrong worst;
     if (state.warn == 0) return worst;
@@ -262,7 +262,7 @@ class Gathering {
     const auto tail = static_cast<std::size_t>(kTail * static_cast<double>(sorted.size()));
     const double least = nth(0), most = nth(sorted.size() - 1);
     double low = nth(tail), high = nth(sorted.size() - 1 - tail);
-    // What warns and fails shall be seen as far as there is any of it, but a value of a million shall not push all others into one bar.
+    // The range includes the limits that shells exceed, but one extreme value must not squeeze all others into one bar.
     const Threshold limit = threshold_of(metric_, mesh::quality::is_of_triangles(static_cast<Metric>(metric_)));
     const double reach = 0.25;
     if (std::isfinite(limit.fail_high)) high = std::min(std::max(high, limit.fail_high * (1 + reach)), most);
@@ -280,7 +280,7 @@ class Gathering {
       if (std::isnan(value)) continue;
       const double share = std::clamp((value - low) / (high - low), 0.0, 1.0);
       auto b = std::min(static_cast<std::size_t>(share * kBars), kBars - 1);
-      // By the bars' own ends, so that who asks for a bar's shells gets as many as it says.
+      // Compares with the bar's ends as sent to the client, so that find_shells with them gives as many shells as the bar counts.
       while (b > 0 && value < quality.bars[b].from) --b;
       while (b + 1 < kBars && value >= quality.bars[b].to) ++b;
       const ShellState state = generation_.quality[shells_[i]];
@@ -289,7 +289,7 @@ class Gathering {
     }
   }
 
-  /// For this target size; without a sheet as if nothing were known of thickness and material.
+  /// Limits for this target size; without a sheet, thickness and material count as unknown.
   Threshold threshold_of(int metric, bool triangle, const Sheet& sheet = {}) const {
     return mesh::quality::threshold_of(document_.settings.criteria, static_cast<Metric>(metric), triangle, document_.settings.target_size,
                                        sheet);

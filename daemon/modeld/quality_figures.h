@@ -1,4 +1,4 @@
-// A generation's quality in figures: counts by metric, a histogram, what is worst, and parts.
+// Sums up a generation's quality: counts by metric, a histogram, the worst shells, counts by part.
 #pragma once
 
 #include "base/error.h"
@@ -7,9 +7,9 @@
 
 namespace prismesh::modeld {
 
-/// Costs a pass over the shells (of the damaged ones only, if those are asked for). Errors: no such metric, with the nearest name.
+/// Cost: one pass over the shells, or over the damaged ones if only those are asked for. Errors: unknown metric, with the nearest name.
 Result<ipc::Quality> quality_figures(const mesh::document::Document& document, const ipc::GetQuality& request);
-/// Errors: as above.
+/// Returns the shells whose metric lies in the requested half-open interval [from, to), as an expression. Errors: as above.
 Result<ipc::ShellsFound> find_shells(const mesh::document::Document& document, const ipc::FindShells& request);
 
 }  // namespace prismesh::modeld

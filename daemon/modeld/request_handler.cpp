@@ -12,7 +12,7 @@ namespace {
 
 ipc::Failed failed(const Error& error) { return {error.file, error.line, error.message}; }
 
-/// The outcome of a question that changes nothing: its answer, or why there is none.
+/// The outcome of a query: its answer, or Failed with the reason.
 template <class Found>
 Outcome told(Result<Found> found) {
   if (!found) return {failed(found.error()), {}, {}, {}};
@@ -21,12 +21,12 @@ Outcome told(Result<Found> found) {
 
 }  // namespace
 
-/// Publishes the current generation for views and tells everyone. The edit counts whether or not there was memory for it.
+/// Publishes the current generation and notifies all clients. The edit stays valid if there is no memory for the snapshot.
 void RequestHandler::show(const std::string& made_by, Outcome& outcome) {
   const mesh::document::Document& document = keeper_.document();
   const ipc::State state = keeper_.state();
   if (Result<ipc::PublishedSnapshot> published = publisher_.publish(document, state.changed))
-    publisher_.release(published->lease);  // it stays current
+    publisher_.release(published->lease);  // the publisher keeps the current one
   else if (auto* edited = std::get_if<ipc::Edited>(&outcome.answer))
     edited->report.notes.push_back("the views couldn't be given the new state: " + published.error().text());
   outcome.events.emplace_back(ipc::GenerationPublished{state.generation, made_by, state.history_bytes, state.history_cap});
@@ -44,7 +44,7 @@ Outcome RequestHandler::opened() {
 Outcome RequestHandler::open(const ipc::Open& request, const Progress& progress) {
   const Result<bool> done = keeper_.open(request, progress);
   if (!done) return {failed(done.error()), {}, {}, {}};
-  // Open already: only the asker learns how it is; other views have nothing to start over.
+  // Already open: only the asking client gets the state; other views stay as they are.
   return *done ? opened() : Outcome{keeper_.state(), {}, {}, {}};
 }
 
@@ -90,7 +90,7 @@ Outcome RequestHandler::preview(const ipc::PreviewEdit& request) const {
 
 Outcome RequestHandler::field(const ipc::GetField& request, const Progress& progress) {
   if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
-  // Most fields are there before anybody could read how far they are.
+  // Most fields are made before a user could read a progress message.
   const auto tell = [&](double fraction) { return fraction <= 0 || progress(fraction); };
   Result<FieldMaker::Made> made = fields_.make(keeper_.document(), request, tell);
   Outcome outcome;

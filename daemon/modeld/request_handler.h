@@ -1,5 +1,5 @@
-// Handles requests on the worker thread: each call is one request from beginning to end, with its answer and the events for all clients.
-// Single-threaded; knows no clients.
+// Handles requests on the worker thread. Each call handles one request and returns its answer and the events for all clients. Used by one
+// thread; knows no clients.
 #pragma once
 
 #include <memory>
@@ -16,9 +16,9 @@
 
 namespace prismesh::modeld {
 
-/// What may be shown of the document; a value that later work doesn't change.
+/// An immutable view of the document for answers and snapshots.
 struct PublishedState {
-  std::shared_ptr<const mesh::document::Document> document;  ///< null: none is open
+  std::shared_ptr<const mesh::document::Document> document;  ///< null: no document is open
   ipc::State state;
 };
 
@@ -35,20 +35,20 @@ class RequestHandler {
       : keeper_(std::move(folder), history_bytes), publisher_(publisher), clock_(clock) {}
 
   Outcome open(const ipc::Open& request, const Progress& progress);
-  /// What was open when the last life ended. The answer is Failed if that couldn't be opened.
+  /// Reopens the deck that was open when the daemon ended. The answer is Failed if that can't be opened.
   Outcome reopen(const Progress& progress);
-  /// `progress` is asked by long edits only; told to stop, they leave everything as it was.
+  /// Only long edits report to `progress`; a cancelled edit changes nothing.
   Outcome edit(const mesh::document::Edit& edit, const Progress& progress = {});
   Outcome count(const ipc::Count& request, const Progress& progress = {}) const;
   Outcome quality(const ipc::GetQuality& request) const;
   Outcome find(const ipc::FindShells& request) const;
   Outcome preview(const ipc::PreviewEdit& request) const;
-  /// A field as views colour by it; another deck that it is compared with is read here, and kept for the next time.
+  /// Makes a field that views colour by. A deck to compare with is read here and kept for the next request.
   Outcome field(const ipc::GetField& request, const Progress& progress);
-  /// Told to stop before the first file is put in place, it leaves all files as they were; from then on it goes on.
+  /// A cancel before the first file is replaced leaves all files as they were; a later one is ignored.
   Outcome save(const ipc::Save& request, const Progress& progress = {});
   Outcome close(const ipc::Close& request);
-  /// The answer is DragBegun, or Failed and there is no drag.
+  /// Answers DragBegun, or Failed; then no drag is under way.
   Outcome begin_drag(std::uint64_t number, const mesh::document::Edit& edit);
   void step_drag(const ipc::DragStep& step);
   Outcome commit_drag();
@@ -61,7 +61,7 @@ class RequestHandler {
   DocumentKeeper keeper_;
   FieldMaker fields_;
   ipc::SnapshotPublisher& publisher_;
-  Clock& clock_;  ///< for how long edits take
+  Clock& clock_;  ///< measures how long edits take
   std::optional<DragSession> drag_;
   std::uint64_t drag_number_ = 0;
 };

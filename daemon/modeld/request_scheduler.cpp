@@ -23,7 +23,7 @@ constexpr std::int64_t kProgressPeriodNs = 100'000'000;
 
 constexpr const char* kNoMemory = "there isn't enough memory to do this; everything is as it was";
 
-/// What the work gives; an exception, which work leaves everything as it was for, is an answer like another.
+/// Runs the work and turns exceptions into Failed answers. Work that throws has changed nothing.
 Outcome done_or_failed(const std::function<Outcome()>& work) {
   Outcome failed;
   try {
@@ -38,11 +38,11 @@ Outcome done_or_failed(const std::function<Outcome()>& work) {
   return failed;
 }
 
-/// Without it nothing else would ever be done: where memory lacks it is tried until there is some.
-void post_in_any_case(Outlet& outlet, const std::function<void()>& work) {
+/// Retries until there is memory: without this post the scheduler would wait for ever.
+void post_in_any_case(ClientChannel& channel, const std::function<void()>& work) {
   for (;;) {
     try {
-      return outlet.post(work);
+      return channel.post(work);
     } catch (const std::bad_alloc&) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -81,12 +81,12 @@ void RequestScheduler::request(ipc::ClientId client, std::uint64_t number, ipc::
   if (const auto* snapshot = std::get_if<ipc::GetSnapshot>(&request)) return give_snapshot(client, number, *snapshot);
   if (const auto* camera = std::get_if<ipc::ShareCamera>(&request)) return share_camera(client, *camera);
   if (std::holds_alternative<ipc::Cancel>(request)) return cancel(client, number);
-  if (std::holds_alternative<ipc::GetState>(request)) return outlet_.answer(client, number, state(), {});
+  if (std::holds_alternative<ipc::GetState>(request)) return channel_.answer(client, number, state(), {});
   line_up(client, number, std::move(request), bytes);
 }
 
 void RequestScheduler::refuse(ipc::ClientId client, std::uint64_t number, const std::string& why) {
-  outlet_.answer(client, number, ipc::Failed{"", 0, why}, {});
+  channel_.answer(client, number, ipc::Failed{"", 0, why}, {});
 }
 
 void RequestScheduler::line_up(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes) {
@@ -106,7 +106,7 @@ void RequestScheduler::line_up(ipc::ClientId client, std::uint64_t number, ipc::
 }
 
 void RequestScheduler::take_step(ipc::ClientId client, const ipc::DragStep& step) {
-  // A step has no answer; one that comes after the end of its drag is late, not wrong.
+  // A step has no answer, so one that arrives after the end of its drag is ignored.
   if (!drag_ || drag_->owner != client || drag_->number != step.drag || drag_->ending || step.sequence <= drag_->last_sequence) return;
   drag_->last_sequence = step.sequence;
   drag_->newest = step;
@@ -134,7 +134,7 @@ void RequestScheduler::give_snapshot(ipc::ClientId client, std::uint64_t number,
       return refuse(client, number, "the history has no state " + std::to_string(*request.generation) + " any more");
   }
   Result<ipc::PublishedSnapshot> published = publisher_.publish_other(document, at, published_.state.changed);
-  if (!published) return outlet_.answer(client, number, ipc::Failed{published.error().file, 0, published.error().message}, {});
+  if (!published) return channel_.answer(client, number, ipc::Failed{published.error().file, 0, published.error().message}, {});
   ipc::Snapshot snapshot{published->lease, document.generations[at]->number, published->segments, {}};
   std::vector<ipc::Descriptor> descriptors;
   descriptors.push_back(std::move(published->table));
@@ -149,26 +149,26 @@ void RequestScheduler::give_snapshot(ipc::ClientId client, std::uint64_t number,
     descriptors.push_back(std::move(*descriptor));
   }
   to.leases.insert(snapshot.lease);
-  outlet_.answer(client, number, snapshot, std::move(descriptors));
+  channel_.answer(client, number, snapshot, std::move(descriptors));
 }
 
-/// Views that move together: whoever hears it decides whether to follow.
+/// For views that move together: each client decides whether to follow.
 void RequestScheduler::share_camera(ipc::ClientId client, const ipc::ShareCamera& shared) {
-  std::vector<ipc::ClientId> others;  // a list of its own: telling a client that is cut off for it changes the map
+  std::vector<ipc::ClientId> others;  // a copy: a message that cuts its client off changes the map
   for (const auto& [other, facts] : clients_)
     if (other != client) others.push_back(other);
-  for (const ipc::ClientId other : others) outlet_.tell(other, ipc::CameraMoved{client, shared.camera});
+  for (const ipc::ClientId other : others) channel_.tell(other, ipc::CameraMoved{client, shared.camera});
 }
 
 void RequestScheduler::give_back(ipc::ClientId client, std::uint64_t lease) {
-  // Only what the client holds: nobody returns another one's.
+  // A client can return only its own leases.
   if (clients_[client].leases.erase(lease) > 0) publisher_.release(lease);
 }
 
 void RequestScheduler::cancel(ipc::ClientId client, std::uint64_t number) {
   if (!long_ || long_->asker != client) return refuse(client, number, "nothing of yours is under way that can be stopped");
   cancelled_ = true;
-  outlet_.answer(client, number, ipc::Done{}, {});
+  channel_.answer(client, number, ipc::Done{}, {});
 }
 
 ipc::State RequestScheduler::state() const {
@@ -206,7 +206,7 @@ void RequestScheduler::pump() {
   }
 }
 
-/// While a drag is under way nothing else is: its newest step first, then its end.
+/// While a drag is under way no other request runs. Runs its newest step first, then its end.
 void RequestScheduler::pump_drag() {
   HeldDrag& drag = *drag_;
   const auto over = [this](ipc::ClientId client, std::uint64_t number) {
@@ -290,20 +290,20 @@ void RequestScheduler::begin_drag(const Waiting& next, const mesh::document::Edi
 }
 
 void RequestScheduler::run(std::function<Outcome()> work, std::function<void(Outcome&)> then) {
-  // Shared, since what is posted must be copyable and descriptors aren't.
+  // Shared: a posted function must be copyable, and descriptors aren't.
   auto outcome = std::make_shared<Outcome>();
   auto over = [this, outcome, then = std::move(then)] {
     running_ = false;
     stepping_ = false;
     progress_ = 0;
     then(*outcome);
-    // However it ended: who was told how far it is learns that it is over.
-    if (!told_.empty()) outlet_.tell_all(ipc::ProgressMade{std::exchange(told_, {}), 1});
+    // Whatever the outcome, clients that were told of progress are told that the work is over.
+    if (!reported_.empty()) channel_.tell_all(ipc::ProgressMade{std::exchange(reported_, {}), 1});
     pump();
   };
   worker_.run([this, work = std::move(work), outcome, over = std::move(over)] {
     *outcome = done_or_failed(work);
-    post_in_any_case(outlet_, over);
+    post_in_any_case(channel_, over);
   });
   running_ = true;
 }
@@ -311,14 +311,14 @@ void RequestScheduler::run(std::function<Outcome()> work, std::function<void(Out
 void RequestScheduler::finish(ipc::ClientId client, std::uint64_t number, Outcome& outcome) {
   if (outcome.published) published_ = std::move(*outcome.published);
   outcome.published.reset();
-  // The asker hears first: when others see the new generation, its edit is acknowledged.
-  if (clients_.contains(client)) outlet_.answer(client, number, outcome.answer, std::move(outcome.descriptors));
+  // Answers first: before others see the new generation, its edit is acknowledged.
+  if (clients_.contains(client)) channel_.answer(client, number, outcome.answer, std::move(outcome.descriptors));
   tell(outcome);
 }
 
 void RequestScheduler::tell(Outcome& outcome) {
   if (outcome.published) published_ = std::move(*outcome.published);
-  for (const ipc::Event& event : outcome.events) outlet_.tell_all(event);
+  for (const ipc::Event& event : outcome.events) channel_.tell_all(event);
 }
 
 Progress RequestScheduler::watch(std::string what) {
@@ -327,10 +327,10 @@ Progress RequestScheduler::watch(std::string what) {
     MonotonicClock clock;
     if (const std::int64_t now_ns = clock.now_ns(); now_ns - last_ns > kProgressPeriodNs) {
       last_ns = now_ns;
-      outlet_.post([this, what, fraction] {
+      channel_.post([this, what, fraction] {
         progress_ = fraction;
-        told_ = what;
-        outlet_.tell_all(ipc::ProgressMade{what, fraction});
+        reported_ = what;
+        channel_.tell_all(ipc::ProgressMade{what, fraction});
       });
     }
     return !worker_.stopping() && !cancelled_;

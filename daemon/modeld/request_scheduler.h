@@ -1,5 +1,5 @@
-// Who may do what when: takes the clients' requests, lets the worker do one thing at a time, holds edits back while a drag is
-// under way. Everything here belongs to the loop's thread.
+// Schedules the clients' requests: gives the worker one at a time and queues edits while a drag is under way. Used by the loop's thread
+// only.
 #pragma once
 
 #include <atomic>
@@ -20,31 +20,31 @@
 
 namespace prismesh::modeld {
 
-/// The way to the clients, and from the worker back to the loop.
-class Outlet {
+/// Sends messages to the clients, and posts work from the worker back to the loop.
+class ClientChannel {
  public:
-  virtual ~Outlet() = default;
+  virtual ~ClientChannel() = default;
   virtual void answer(ipc::ClientId client, std::uint64_t number, const ipc::Answer& answer, std::vector<ipc::Descriptor> descriptors) = 0;
   virtual void tell(ipc::ClientId client, const ipc::Event& event) = 0;
   virtual void tell_all(const ipc::Event& event) = 0;
-  /// From any thread: runs in the loop, soon.
+  /// Queues `work` for the loop's thread. May be called from any thread.
   virtual void post(std::function<void()> work) = 0;
 };
 
 class RequestScheduler {
  public:
-  RequestScheduler(Outlet& outlet, Worker& worker, RequestHandler& handler, ipc::SnapshotPublisher& publisher)
-      : outlet_(outlet), worker_(worker), handler_(handler), publisher_(publisher) {}
+  RequestScheduler(ClientChannel& channel, Worker& worker, RequestHandler& handler, ipc::SnapshotPublisher& publisher)
+      : channel_(channel), worker_(worker), handler_(handler), publisher_(publisher) {}
 
-  /// Opens again what was open in the last life.
+  /// Reopens the deck that was open when the daemon ended.
   void start(std::function<void(const ipc::Answer&)> when_done);
   void arrived(ipc::ClientId client);
-  /// The client's drag is cancelled, its snapshots are returned, what it still waits for is dropped.
+  /// Cancels the client's drag, returns its snapshots and drops its waiting requests.
   void left(ipc::ClientId client);
-  /// `bytes` is what the request takes while it waits.
+  /// `bytes`: memory of the request while it waits.
   void request(ipc::ClientId client, std::uint64_t number, ipc::Request request, std::size_t bytes);
 
-  /// All but the process's own figures.
+  /// All fields but those of the process.
   ipc::Health health() const;
 
  private:
@@ -67,7 +67,7 @@ class RequestScheduler {
     std::uint64_t number = 0;
     ipc::ClientId owner = 0;
     std::uint64_t last_sequence = 0;
-    std::optional<ipc::DragStep> newest;  ///< not worked out yet; a newer one replaces it
+    std::optional<ipc::DragStep> newest;  ///< not computed yet; a newer step replaces it
     std::optional<Ending> ending;
     bool orphaned = false;
   };
@@ -87,7 +87,7 @@ class RequestScheduler {
   void pump_drag();
   void begin(Waiting next);
   void run(std::function<Outcome()> work, std::function<void(Outcome&)> then);
-  /// Whether long work outlives the client that asked for it.
+  /// What happens to long work when the client that asked for it leaves.
   enum class OnDeath : std::uint8_t { stops, goes_on };
   void run_long(const Waiting& next, std::string what, OnDeath on_death, const std::function<Outcome(const Progress&)>& work);
   void begin_drag(const Waiting& next, const mesh::document::Edit& edit);
@@ -95,9 +95,9 @@ class RequestScheduler {
   void tell(Outcome& outcome);
   Progress watch(std::string what);
 
-  Outlet& outlet_;
+  ClientChannel& channel_;
   Worker& worker_;
-  RequestHandler& handler_;  ///< the worker's
+  RequestHandler& handler_;  ///< used on the worker's thread only
   ipc::SnapshotPublisher& publisher_;
   PublishedState published_;
   std::map<ipc::ClientId, Client> clients_;
@@ -105,15 +105,15 @@ class RequestScheduler {
   std::optional<HeldDrag> drag_;
   std::uint64_t next_drag_ = 1;
   bool running_ = false;
-  bool stepping_ = false;  ///< what runs is a drag's step: too short to call it busy
+  bool stepping_ = false;  ///< a drag's step is running: too short to report busy
   double progress_ = 0;
-  std::string told_;  ///< what clients have been told the progress of
+  std::string reported_;  ///< the work whose progress clients were last told; empty: none
   struct Long {
     ipc::ClientId asker = 0;
     OnDeath on_death = OnDeath::stops;
   };
-  std::optional<Long> long_;             ///< the work under way, if its asker may stop it
-  std::atomic<bool> cancelled_ = false;  ///< it is to stop; the worker looks at it
+  std::optional<Long> long_;             ///< the work under way, if the asking client may cancel it
+  std::atomic<bool> cancelled_ = false;  ///< asks the worker to stop the work under way
 };
 
 }  // namespace prismesh::modeld

@@ -25,8 +25,8 @@ std::optional<Hash128> content_of(const fs::path& file) {
 
 enum class FileState : std::uint8_t {
   replaced,
-  waiting,  ///< what it is to become lies beside it
-  lost,     ///< it isn't what it was, or what it is to become isn't there
+  waiting,  ///< not replaced; the temporary file is there
+  lost,     ///< its content has changed, or the temporary file is missing
 };
 
 FileState state_of(const SaveIntent::File& file) {

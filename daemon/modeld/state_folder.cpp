@@ -23,10 +23,10 @@ constexpr const char* kJournal = ".journal";
 constexpr const char* kIntent = ".saving";
 constexpr const char* kSession = "session.json";
 constexpr const char* kNumbers = "numbers";
-constexpr std::uint64_t kNumbersOfALife = std::uint64_t{1} << 34;  ///< of chunks: a thousand a second for half a year
+constexpr std::uint64_t kNumbersOfALife = std::uint64_t{1} << 34;  ///< chunk numbers: a thousand a second for half a year
 constexpr std::size_t kRetiredKept = 50;
 
-/// One deck has one name here, whatever links lead to it.
+/// Resolves links, so that a deck has one name here.
 std::string deck_name(const fs::path& deck) {
   std::error_code problem;
   fs::path real = fs::canonical(deck, problem);
@@ -46,7 +46,7 @@ std::vector<fs::path> files_with(const fs::path& folder, const std::string& begi
   return found;
 }
 
-/// What stands under a line, so that a changed byte is found.
+/// Checksum behind a line, so that a changed byte is found.
 std::string check_line(std::string_view line) { return "check " + hash128(std::as_bytes(std::span(line))).hex() + "\n"; }
 
 void prune_retired(const fs::path& folder) {
@@ -100,7 +100,7 @@ std::uint64_t StateFolder::first_number() const {
   const std::uint64_t first = std::max(clock, noted);
   const std::string line = std::to_string(first + kNumbersOfALife), check = check_line(line);
   const PendingFile file{folder_ / kNumbers, {line, "\n", check}};
-  (void)replace_files(std::span(&file, 1));  // without it, the clock has to do
+  (void)replace_files(std::span(&file, 1));  // if that fails, the clock has to suffice
   return first;
 }
 
@@ -148,7 +148,7 @@ void StateFolder::forget_session() const { remove(folder_ / kSession); }
 
 void StateFolder::remove(const fs::path& file) const {
   std::error_code problem;
-  if (fs::remove(file, problem)) (void)flush_folder(folder_);  // what comes back after a power cut is found to be obsolete
+  if (fs::remove(file, problem)) (void)flush_folder(folder_);  // a file that a power cut brings back is found to be obsolete
 }
 
 }  // namespace prismesh::modeld

@@ -1,4 +1,4 @@
-// modeld's files between two lives: journals named by their deck, and what was open. The rules are in docs/protocol.md.
+// Files that modeld keeps between two runs: journals named by their deck, and which deck was open. docs/protocol.md has the rules.
 #pragma once
 
 #include <filesystem>
@@ -11,33 +11,34 @@
 
 namespace prismesh::modeld {
 
-/// $STATE_DIRECTORY, else $XDG_STATE_HOME/prismesh, else ~/.local/state/prismesh; `override` before all.
+/// Returns `override` if given, else $STATE_DIRECTORY, else $XDG_STATE_HOME/prismesh, else ~/.local/state/prismesh.
 std::filesystem::path state_directory(const std::optional<std::filesystem::path>& override = {});
 
 class StateFolder {
  public:
   explicit StateFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// The journal of a deck in one state of its content.
+  /// Path of the journal of a deck with this content.
   std::filesystem::path journal(const std::filesystem::path& deck, const Hash128& content) const;
-  /// Journals of the same deck in other states.
+  /// Journals of the same deck with other contents.
   std::vector<std::filesystem::path> other_journals(const std::filesystem::path& deck, const Hash128& content) const;
-  /// Beside a journal: what a save that is under way will have changed.
+  /// Path of the save intent (save_intent.h) that belongs to a journal.
   static std::filesystem::path save_intent(const std::filesystem::path& journal);
-  /// Save intents of a deck, whatever its state.
+  /// Save intents of a deck, whatever its content.
   std::vector<std::filesystem::path> save_intents(const std::filesystem::path& deck) const;
 
-  /// Removes a file of this folder, if it is there, so that it stays removed.
+  /// Removes a file of this folder if it exists, and flushes the folder, so that a power cut doesn't bring it back.
   void remove(const std::filesystem::path& file) const;
-  /// A number above all that earlier lives have begun with and those they may have counted up to from there. By the clock, and by what is
-  /// noted here in case it was set back.
+  /// Returns a first chunk number above all numbers that earlier runs can have used. Derived from the clock, and from a noted number in
+  /// case the clock was set back.
   std::uint64_t first_number() const;
-  /// Takes a journal out of use without deleting it: it gets `ending` and a number. Only the newest are kept.
+  /// Renames a journal to `ending` and a number, so that it is no longer used. Only the newest retired journals are kept. Returns the new
+  /// path. Errors: it can't be renamed.
   Result<std::filesystem::path> retire(const std::filesystem::path& journal, const char* ending) const;
 
   struct Session {
     ipc::Open open;
-    std::uint64_t attempts = 0;  ///< starts that tried to open it and didn't get to the end
+    std::uint64_t attempts = 0;  ///< starts of the daemon that began to open it and never finished
   };
   Result<void> write_session(const Session& session) const;
   Result<std::optional<Session>> read_session() const;

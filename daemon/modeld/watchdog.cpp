@@ -4,16 +4,16 @@
 
 namespace prismesh::modeld {
 
-bool Silence::beat() {
-  const std::uint64_t count = pulse_.count();
-  const bool silent = count % 2 == 1 && count == last_;
+bool HeartbeatMonitor::is_hung() {
+  const std::uint64_t count = heartbeat_.count();
+  const bool missing = count % 2 == 1 && count == last_;
   last_ = count;
-  silent_ = silent ? silent_ + 1 : 0;
-  return silent_ >= max_beats_;
+  missing_ = missing ? missing_ + 1 : 0;
+  return missing_ >= max_periods_;
 }
 
-Watchdog::Watchdog(std::vector<Silence> watched, std::chrono::milliseconds beat, std::function<void(const std::string&)> on_hang)
-    : watched_(std::move(watched)), beat_(beat), on_hang_(std::move(on_hang)), thread_([this] { watch(); }) {}
+Watchdog::Watchdog(std::vector<HeartbeatMonitor> watched, std::chrono::milliseconds period, std::function<void(const std::string&)> on_hang)
+    : watched_(std::move(watched)), period_(period), on_hang_(std::move(on_hang)), thread_([this] { watch(); }) {}
 
 Watchdog::~Watchdog() {
   {
@@ -26,9 +26,9 @@ Watchdog::~Watchdog() {
 
 void Watchdog::watch() {
   std::unique_lock lock(mutex_);
-  while (!ending_.wait_for(lock, beat_, [this] { return ended_; }))
-    for (Silence& each : watched_)
-      if (each.beat()) return on_hang_(each.what());
+  while (!ending_.wait_for(lock, period_, [this] { return ended_; }))
+    for (HeartbeatMonitor& each : watched_)
+      if (each.is_hung()) return on_hang_(each.fault());
 }
 
 }  // namespace prismesh::modeld

@@ -1,5 +1,5 @@
-// Ends a daemon that hangs, so that whoever keeps it starts it anew; nothing acknowledged is lost by that. A daemon hangs when its loop
-// serves no client any more, or the work under way, which journals edits, shows no progress.
+// Ends a daemon that hangs, so that its supervisor restarts it. Acknowledged edits are on disk. A daemon hangs when its loop serves no
+// client, or when the work under way shows no progress.
 #pragma once
 
 #include <atomic>
@@ -14,43 +14,45 @@
 
 namespace prismesh::modeld {
 
-/// Signs of life of one thread. From any thread.
-class Pulse {
+/// Heartbeats of one thread. May be read from any thread.
+class Heartbeat {
  public:
-  /// From `begin` to `end` there must be a sign now and then.
+  /// Between `begin` and `end` the thread must call `beat` regularly.
   void begin() { count_.fetch_add(1, std::memory_order_relaxed); }
-  void sign() { count_.fetch_add(2, std::memory_order_relaxed); }
+  void beat() { count_.fetch_add(2, std::memory_order_relaxed); }
   void end() { count_.fetch_add(1, std::memory_order_relaxed); }
 
   std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
 
  private:
-  std::atomic<std::uint64_t> count_ = 0;  ///< odd: signs are expected
+  std::atomic<std::uint64_t> count_ = 0;  ///< odd: beats are expected
 };
 
-/// Counts the beats for which a pulse has been silent. Beats instead of time: a process that was stopped, or a machine that slept, isn't
-/// hung.
-class Silence {
+/// Counts the periods for which a heartbeat has been missing. Counts periods instead of time, so that a stopped process or a machine that
+/// slept isn't taken for a hang.
+class HeartbeatMonitor {
  public:
-  Silence(std::string what, const Pulse& pulse, int max_beats) : what_(std::move(what)), pulse_(pulse), max_beats_(max_beats) {}
+  /// `fault` says what it means when the heartbeat is missing for `max_periods`.
+  HeartbeatMonitor(std::string fault, const Heartbeat& heartbeat, int max_periods)
+      : fault_(std::move(fault)), heartbeat_(heartbeat), max_periods_(max_periods) {}
 
-  /// A beat has passed. True: there were no signs for as many as there may be.
-  bool beat();
-  const std::string& what() const { return what_; }
+  /// Called once a period. Returns true when the heartbeat has been missing for `max_periods` or more.
+  bool is_hung();
+  const std::string& fault() const { return fault_; }
 
  private:
-  std::string what_;
-  const Pulse& pulse_;
-  int max_beats_;
-  int silent_ = 0;
+  std::string fault_;
+  const Heartbeat& heartbeat_;
+  int max_periods_;
+  int missing_ = 0;
   std::uint64_t last_ = 0;
 };
 
-/// A thread of its own that looks at pulses once a beat.
+/// Checks heartbeats once a period, in a thread of its own.
 class Watchdog {
  public:
-  /// `on_hang` is called once, in the watchdog's thread, with what is silent.
-  Watchdog(std::vector<Silence> watched, std::chrono::milliseconds beat, std::function<void(const std::string& what)> on_hang);
+  /// `on_hang` is called once, in the watchdog's thread, with the monitor's fault.
+  Watchdog(std::vector<HeartbeatMonitor> watched, std::chrono::milliseconds period, std::function<void(const std::string& fault)> on_hang);
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
@@ -58,8 +60,8 @@ class Watchdog {
  private:
   void watch();
 
-  std::vector<Silence> watched_;
-  std::chrono::milliseconds beat_;
+  std::vector<HeartbeatMonitor> watched_;
+  std::chrono::milliseconds period_;
   std::function<void(const std::string&)> on_hang_;
   std::mutex mutex_;
   std::condition_variable ending_;

@@ -33,9 +33,9 @@ void Worker::serve() {
       job = std::move(jobs_.front());
       jobs_.pop_front();
     }
-    pulse_.begin();
+    heartbeat_.begin();
     job();
-    pulse_.end();
+    heartbeat_.end();
   }
 }
 

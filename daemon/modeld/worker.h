@@ -1,4 +1,4 @@
-// One thread for work that takes time: jobs in order, one after the other.
+// A thread that runs jobs in order, one at a time.
 #pragma once
 
 #include <atomic>
@@ -15,17 +15,17 @@ namespace prismesh::modeld {
 class Worker {
  public:
   Worker();
-  /// Asks the job under way to stop, lets it end, and drops the rest.
+  /// Asks the job under way to stop, waits for its end, and drops the rest.
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
   void run(std::function<void()> job);
-  /// Whether long jobs should stop now.
+  /// Whether the job under way should stop.
   bool stopping() const { return stopping_; }
-  /// Signs are expected while a job is under way; jobs give them by `show_progress`.
-  const Pulse& pulse() const { return pulse_; }
-  void show_progress() { pulse_.sign(); }
+  /// Beats are expected while a job is under way; jobs give them by `show_progress`.
+  const Heartbeat& heartbeat() const { return heartbeat_; }
+  void show_progress() { heartbeat_.beat(); }
 
  private:
   void serve();
@@ -34,7 +34,7 @@ class Worker {
   std::condition_variable wake_;
   std::deque<std::function<void()>> jobs_;
   std::atomic<bool> stopping_ = false;
-  Pulse pulse_;
+  Heartbeat heartbeat_;
   std::thread thread_;
 };
 

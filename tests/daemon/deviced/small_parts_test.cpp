@@ -7,7 +7,7 @@
 #include "daemon/deviced/loop_thread.h"
 #include "daemon/deviced/ring.h"
 #include "daemon/deviced/watchdog.h"
-#include "daemon/deviced/words.h"
+#include "daemon/deviced/device_status.h"
 
 namespace prismesh::deviced {
 namespace {
@@ -83,13 +83,13 @@ TEST(LoopThread, ticks_and_keeps_an_account_that_readers_see) {
   EXPECT_GE(reader.prism()->time_ns, ticked_ns + 24 * kTickPeriodNs) << "it winds down for 25 ticks";
 }
 
-TEST(StillLooks, are_counted_in_a_row_and_said_once) {
-  StillLooks looks(7, 3);
-  for (const std::uint64_t ticks : {7, 7, 8, 8, 8, 9}) EXPECT_FALSE(looks.stuck(ticks)) << "one of three saw a tick";
-  EXPECT_FALSE(looks.stuck(9));
-  EXPECT_FALSE(looks.stuck(9));
-  EXPECT_TRUE(looks.stuck(9));
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(looks.stuck(9)) << "said already";
+TEST(StallCounter, reports_a_stall_once) {
+  StallCounter counter(7, 3);
+  for (const std::uint64_t ticks : {7, 7, 8, 8, 8, 9}) EXPECT_FALSE(counter.stalled(ticks)) << "one of three saw a tick";
+  EXPECT_FALSE(counter.stalled(9));
+  EXPECT_FALSE(counter.stalled(9));
+  EXPECT_TRUE(counter.stalled(9));
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(counter.stalled(9)) << "already reported";
 }
 
 TEST(Watchdog, notices_a_loop_that_stops_ticking) {
@@ -127,17 +127,17 @@ TEST(Words, a_tracker_says_what_to_do) {
   EXPECT_EQ(info.state, "absent");
   EXPECT_EQ(info.trouble, "/dev/serial/by-id/tracker: nothing is plugged in there");
 
-  info = tracker_info(settings, {EyesPhase::silent, kFirstWordNs / 2}, {});
+  info = tracker_info(settings, {EyesPhase::silent, kMaxFirstSilenceNs / 2}, {});
   EXPECT_EQ(info.trouble, "") << "it has only just been opened";
-  info = tracker_info(settings, {EyesPhase::silent, 2 * kFirstWordNs}, {});
+  info = tracker_info(settings, {EyesPhase::silent, 2 * kMaxFirstSilenceNs}, {});
   EXPECT_NE(info.trouble.find("19200 baud"), std::string::npos) << info.trouble;
-  info = tracker_info(settings, {EyesPhase::searching, 2 * kFirstWordNs}, {});
+  info = tracker_info(settings, {EyesPhase::searching, 2 * kMaxFirstSilenceNs}, {});
   EXPECT_EQ(info.state, "searching");
   EXPECT_EQ(info.trouble, "") << "nobody sits there: no fault";
 
   settings.driver = TrackerDriver::opentrack;
   settings.simulated = true;
-  info = tracker_info(settings, {EyesPhase::silent, 2 * kFirstWordNs}, {});
+  info = tracker_info(settings, {EyesPhase::silent, 2 * kMaxFirstSilenceNs}, {});
   EXPECT_EQ(info.where, "127.0.0.1:4242");
   EXPECT_TRUE(info.simulated);
   EXPECT_NE(info.trouble.find("start opentrack"), std::string::npos) << info.trouble;

@@ -22,7 +22,7 @@ namespace {
 using namespace mesh::document;
 
 /// Remembers what clients are told. What the worker posts waits until the test lets it run.
-class HandTurnedLoop final : public Outlet {
+class HandTurnedLoop final : public ClientChannel {
  public:
   struct Told {
     ipc::Answer answer;

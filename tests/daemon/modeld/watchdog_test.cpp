@@ -9,41 +9,41 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Watchdog, silence_is_told_after_so_many_beats_without_a_sign) {
-  Pulse pulse;
-  Silence silence("it", pulse, 3);
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(silence.beat()) << "no signs are expected";
-  pulse.begin();
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(silence.beat());
-  EXPECT_TRUE(silence.beat());
+TEST(Watchdog, a_hang_is_found_after_max_periods_without_a_beat) {
+  Heartbeat heartbeat;
+  HeartbeatMonitor monitor("it", heartbeat, 3);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(monitor.is_hung()) << "no beats are expected";
+  heartbeat.begin();
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(monitor.is_hung());
+  EXPECT_TRUE(monitor.is_hung());
 }
 
-TEST(Watchdog, each_sign_begins_the_count_anew) {
-  Pulse pulse;
-  Silence silence("it", pulse, 3);
-  pulse.begin();
+TEST(Watchdog, each_beat_restarts_the_count) {
+  Heartbeat heartbeat;
+  HeartbeatMonitor monitor("it", heartbeat, 3);
+  heartbeat.begin();
   for (int i = 0; i < 30; ++i) {
-    EXPECT_FALSE(silence.beat()) << i;
-    if (i % 3 == 0) pulse.sign();
+    EXPECT_FALSE(monitor.is_hung()) << i;
+    if (i % 3 == 0) heartbeat.beat();
   }
-  pulse.end();
-  for (int i = 0; i < 30; ++i) EXPECT_FALSE(silence.beat()) << "it is over";
-  // Work that begins and ends between two beats is another work.
+  heartbeat.end();
+  for (int i = 0; i < 30; ++i) EXPECT_FALSE(monitor.is_hung()) << "it is over";
+  // Work that begins and ends between two periods doesn't hang.
   for (int i = 0; i < 30; ++i) {
-    pulse.begin();
-    EXPECT_FALSE(silence.beat());
-    pulse.end();
+    heartbeat.begin();
+    EXPECT_FALSE(monitor.is_hung());
+    heartbeat.end();
   }
 }
 
-TEST(Watchdog, tells_once_what_is_silent) {
-  Pulse lively, hung;
+TEST(Watchdog, reports_once_which_heartbeat_is_missing) {
+  Heartbeat lively, hung;
   std::promise<std::string> told;
-  std::vector<Silence> watched;
+  std::vector<HeartbeatMonitor> watched;
   watched.emplace_back("lively", lively, 1);
   watched.emplace_back("hung", hung, 2);
   hung.begin();
-  const Watchdog watchdog(std::move(watched), 1ms, [&](const std::string& what) { told.set_value(what); });
+  const Watchdog watchdog(std::move(watched), 1ms, [&](const std::string& fault) { told.set_value(fault); });
   EXPECT_EQ(told.get_future().get(), "hung");
 }
 

@@ -1,4 +1,4 @@
-#include "daemon/deviced/words.h"
+#include "daemon/deviced/device_status.h"
 
 #include "drivers/prism_servo/dynamixel/servo.h"
 
@@ -62,7 +62,7 @@ ipc::DeviceInfo tracker_info(const EyeTrackerSettings& settings, const TrackerSt
   info.simulated = settings.simulated;
   info.state = name(status.phase);
   if (status.phase == EyesPhase::absent) info.trouble = not_open(port);
-  if (status.phase == EyesPhase::silent && status.age_ns > kFirstWordNs) info.trouble = silence_of(settings);
+  if (status.phase == EyesPhase::silent && status.age_ns > kMaxFirstSilenceNs) info.trouble = silence_of(settings);
   return info;
 }
 

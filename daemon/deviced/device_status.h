@@ -1,4 +1,4 @@
-// The devices in words that a user can act on.
+// Describes the devices' status in sentences that a user can act on.
 #pragma once
 
 #include <cstdint>
@@ -16,20 +16,20 @@ namespace prismesh::deviced {
 
 std::string_view name(drivers::prism_servo::MaskPhase phase);
 
-/// A device that has just been opened says nothing yet; that is a trouble only after so long.
-inline constexpr std::int64_t kFirstWordNs = 1'500'000'000;
+/// A silent device counts as trouble only so long after its port was opened.
+inline constexpr std::int64_t kMaxFirstSilenceNs = 1'500'000'000;
 
 struct TrackerStatus {
   ipc::EyesPhase phase = ipc::EyesPhase::none;
-  std::int64_t age_ns = 0;  ///< how long it has been in that phase
+  std::int64_t age_ns = 0;  ///< time since the phase began
 };
-/// The settings' port is the pseudo-terminal where the device is simulated.
+/// For a simulated device, `settings` names the pseudo-terminal as its port.
 ipc::DeviceInfo tracker_info(const drivers::settings::EyeTrackerSettings& settings, const TrackerStatus& status,
                              const drivers::port::KeeperReport& port);
 
 struct ServoStatus {
   drivers::prism_servo::MaskPhase mask = drivers::prism_servo::MaskPhase::absent;
-  bool open = false;  ///< its port
+  bool open = false;  ///< the servo's port is open
   drivers::prism_servo::PrismServo::Tick tick;
 };
 ipc::DeviceInfo servo_info(const drivers::settings::PrismServoSettings& settings, const ServoStatus& status,
