@@ -218,7 +218,7 @@ def main():
              (("cylinder", cylinder, off_cylinder), ("cone", cone, off_cone), ("torus", torus, off_torus))]
     if models and (models / "counts.json").exists():
         parts.append(("bumper beam", *real_part(models), None))
-    print("| part | smoothed by | composite mean | least | failing | off the surface: mean | most |")
+    print("| part | smoothed by | composite mean | min | failing | off the surface: mean | max |")
     print("|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
