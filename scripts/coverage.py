@@ -1,9 +1,9 @@
-"""Prints what tests reach of modules, from the JSON that llvm-cov exports: figures of each, then the error branches that no test takes and that have
-no reason in the list of reasons. Every branch that goes one way only is written into a file of its own.
+"""Prints what tests reach of modules, from the JSON that llvm-cov exports: figures of each module, then the error branches that no test takes and that
+have no reason in the list of reasons. Writes every branch that goes one way only into a separate file.
 
 usage: coverage.py EXPORT.json REASONS.txt ONE_WAY.txt MODULE..   (a folder or the beginning of a file's path, as in base/file)
 
-A line of the list of reasons is `FILE: CONDITION => REASON`, with the condition or statement as printed here; it holds for each like it in that file.
+A line of the list of reasons is `FILE: CONDITION => REASON`, with the condition or statement as printed here; it holds for all equal ones in that file.
 """
 
 import json
@@ -15,7 +15,7 @@ from error_branches import SAYS_ERROR, ErrorBranches
 
 
 class Unreached:
-    """What no test takes in one place."""
+    """A branch or statement that no test takes."""
 
     def __init__(self, path, line, how, text):
         self.path, self.line, self.how, self.text = path, line, how, re.sub(r"\s+", " ", text).strip()
@@ -65,13 +65,13 @@ def read_reasons(path):
 
 
 def of_the_project(path):
-    """A file's path from the project's root. What is compiled in batches is named as if it stood in the build folder."""
+    """A file's path from the project's root. Sources that are compiled in batches have paths in the build folder."""
     path = os.path.relpath(os.path.normpath(path))
     return path.removeprefix("build/coverage/")
 
 
 def belongs(path, module):
-    """Whether a file is of a module: in its folder, or the file itself with any extension."""
+    """Whether a file belongs to a module: in its folder, or the file itself with any extension."""
     return path.startswith(module + "/") or os.path.splitext(path)[0] == module
 
 
@@ -84,7 +84,7 @@ def part(covered, count):
 
 
 def unreached(path, entry):
-    """The branches of a file that go one way only, those of them that lead to an error, and how many branches lead to one in all.
+    """The branches of a file that go one way only, those of them that lead to an error, and the number of all branches that lead to one.
 
     Branches of a template or inline function count together: each instance is listed once.
     """

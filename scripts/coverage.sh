@@ -1,11 +1,11 @@
-# Which lines and branches the tests of the users' data reach. Sourced by ./station.
+# Measures which lines and branches tests reach in the modules that hold users' data. Sourced by ./station.
 
 coverage_modules=(base/file mesh/deck mesh/document daemon/modeld)
 coverage_tests=(base_test mesh_deck_test mesh_deck_{lsdyna,nastran,radioss,abaqus}_test mesh_document_test modeld_test faults_test cli_test)
 
 # run_coverage [MODULE..]: runs the tests built with counters and prints what they reach of these modules (default: those that hold users'
-# data), and each error branch that none takes and that tests/untested_errors.txt gives no reason for. Every branch that goes one way only lies in
-# out/coverage/one_way.txt. The counts are kept in a mapped file (%c), so that programs that a test kills leave theirs too.
+# data), and each error branch that no test takes and that has no reason in tests/untested_errors.txt. It writes every branch that goes one way
+# only to out/coverage/one_way.txt. The counts are in a mapped file (%c), so that programs that a test kills leave theirs too.
 run_coverage() {
   local name objects=()
   [ $# -gt 0 ] || set -- "${coverage_modules[@]}"

@@ -1,6 +1,6 @@
-"""Finds the branches that lead to an error: conditions of an `if` whose statement says one, and statements that say one by themselves.
+"""Finds the branches that lead to an error: conditions of an `if` whose statement reports one, and statements that report one by themselves.
 
-The text is read without a compiler: the words below are what this project's functions for errors, notes and warnings are called.
+The text is read without a compiler: the words below are the names of this project's functions for errors, notes and warnings.
 """
 
 import re
@@ -21,7 +21,7 @@ def without_quotes(text):
 
 
 class Guard:
-    """One `if` or `while`: where its condition, its statement and its `else` stand in the text."""
+    """One `if` or `while`: the places of its condition, its statement and its `else` in the text."""
 
     def __init__(self, text, opening):
         self.opening = opening
@@ -46,7 +46,7 @@ def end_of(text, opening):
 
 
 def statement_end(text, place):
-    """Where the statement that begins at or after `place` is over."""
+    """The end of the statement that begins at or after `place`."""
     while place < len(text) and text[place].isspace():
         place += 1
     if text[place : place + 1] == "{":
@@ -70,7 +70,7 @@ class ErrorBranches:
         return self.starts[line - 1] + column - 1
 
     def way_to_error(self, line, column):
-        """Which way of the condition that stands there leads to an error: True, False, or None if neither does or it is no `if`'s."""
+        """Which value of the condition at that place leads to an error: True, False, or None if neither does or it belongs to no `if`."""
         place = self.place(line, column)
         around = [guard for guard in self.guards if guard.opening < place < guard.closing]
         if not around:
@@ -82,13 +82,13 @@ class ErrorBranches:
         return negated if says_error(guard.otherwise) else None
 
     def negated(self, opening, place):
-        """Whether an odd number of `!( … )` lies around the place."""
+        """Whether an odd number of `!( … )` enclose the place."""
         count = 0
         for found in re.compile(r"!\s*\(").finditer(self.text, opening, place):
             count += end_of(self.text, found.end() - 1) > place
         return count % 2 == 1
 
     def guarded_by(self, line, column):
-        """The places of the conditions in whose statement that place lies, as (opening, closing)."""
+        """The places of the conditions whose statement contains that place, as (opening, closing)."""
         place = self.place(line, column)
         return [(one.opening, one.closing) for one in self.guards if one.closing < place < one.end]

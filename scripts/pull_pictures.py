@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the documentation's pictures of a pull: docs/pictures/pull.png, which moves (APNG), and docs/pictures/kiosk.png.
+"""Makes the documentation's pictures of a pull: docs/pictures/pull.png, an animation (APNG), and docs/pictures/kiosk.png.
 
-    scripts/pull_pictures.py [FOLDER]      FOLDER: where the pictures go; default docs/pictures
+    scripts/pull_pictures.py [FOLDER]      FOLDER: where the pictures are written; default docs/pictures
 
-Runs our own programs from build/bin on an X server without a screen: the kiosk shows the sample, a scripted pointer pulls the arrow of the sill's
+Runs the programs of build/bin on an X server without a screen. The kiosk shows the sample, a scripted pointer pulls the arrow of the sill's
 outer face, and each frame is copied from the screen. Needs the packages of the section [test] in packages.txt.
 """
 import json
@@ -28,7 +28,7 @@ MIDDLE = 700, 400  # where the handle is put
 PULL_PIXELS = 56
 STEPS = 15
 STEP_MS, REST_MS = 110, 800
-CROP = (320, 20, 1072, 600)  # what the moving picture shows of the screen: left, top, width, height
+CROP = (320, 20, 1072, 600)  # the animation's part of the screen: left, top, width, height
 TIMEOUT_S = 60
 
 
@@ -69,7 +69,7 @@ class Kiosk:
         self.xdotool("search", "--sync", "--onlyvisible", "--name", "^Prismesh$", "windowmove", "--sync", "0", "0", "windowfocus")
 
     def wait_for(self, wanted):
-        """Reads the kiosk's trace up to a line that is `wanted`. Keeps where the handle is: foot and tip in pixels."""
+        """Reads the kiosk's trace up to a line that is `wanted`. Stores the handle's foot and tip in pixels."""
         for line in self.process.stdout:
             if line.startswith("handle ") and line != "handle none\n":
                 self.handle = tuple(map(float, line.split()[1:5]))
@@ -108,7 +108,7 @@ class Kiosk:
         self.wait_for(lambda line: line.startswith("picture "))
 
     def rest(self, x, y):
-        """Waits until all that the pointer did is on the screen."""
+        """Waits until the screen shows everything that the pointer did."""
         rests = f"rests presses {self.presses} releases {self.releases} pointer {round(x)} {round(y)}"
         self.wait_for(lambda line: line == rests)
         time.sleep(0.1)  # the X server copies the picture a moment after the kiosk has handed it over
@@ -126,7 +126,7 @@ def chunk(kind, data):
 
 
 def packed(rows, pixel_bytes):
-    """PNG's compressed rows: all as they are, or all as differences to the pixels at the left or above, whichever is shortest."""
+    """PNG's compressed rows: plain, or as differences from the pixels at the left or above, whichever is shortest."""
     above = [bytes(len(rows[0])), *rows]
     left = [bytes(pixel_bytes) + row for row in rows]
     forms = [
@@ -153,7 +153,7 @@ def differing(before, after):
 
 
 def changes(before, after, box):
-    """The box's rows; what is as before is left transparent."""
+    """The box's rows; unchanged pixels are transparent."""
     x, y, width, height = box
     rows = []
     for line in range(y, y + height):
@@ -165,7 +165,7 @@ def changes(before, after, box):
 
 
 def write_png(file, frames, delays_ms):
-    """One frame: a PNG. Several: an APNG that repeats for ever, of which each frame holds what differs from the one before."""
+    """Writes one frame as a PNG, several as an APNG that repeats for ever. Each frame holds what differs from the one before."""
     width, height = len(frames[0][0]) // 4, len(frames[0])
     if len(frames) == 1:
         opaque = [b"".join(row[at : at + 3] for at in range(0, len(row), 4)) for row in frames[0]]
@@ -194,7 +194,7 @@ def cropped(frame):
 
 
 def pull(screen, kiosk):
-    """Selects the sill's face and pulls its arrow. The frames, how long each is shown, and the index of the one that is farthest."""
+    """Selects the sill's face and pulls its arrow. Returns the frames, their durations, and the index of the farthest one."""
     session("edit", json.dumps({"edit": "select_region", "at": SILL_FACE, "angle": 30}))
     kiosk.wait_for(lambda line: line.startswith("handle ") and line != "handle none")
     foot = kiosk.handle[:2]

@@ -1,4 +1,4 @@
-# What the station's commands are made of. Sourced by ./station with the project's root as working directory.
+# Steps of the station's commands. Sourced by ./station with the project's root as working directory.
 
 say() { printf '\n== %s\n' "$*"; }
 give_up() {
@@ -18,9 +18,9 @@ packages() {
   done
 }
 
-# install GROUP..: installs what lacks; touches nothing, and needs no network, when all is there.
+# install GROUP..: installs missing packages. If none is missing it changes nothing and needs no network.
 install() {
-  command -v dpkg-query >/dev/null || give_up "this needs Debian 12 (dpkg isn't here); packages.txt lists what to install by other means"
+  command -v dpkg-query >/dev/null || give_up "this needs Debian 12 (dpkg is missing); packages.txt lists what to install by other means"
   local wanted missing as_root=()
   wanted=$(packages "$@" | sort -u)
   # shellcheck disable=SC2086  # one word a package
@@ -28,12 +28,12 @@ install() {
     awk '$2 == "installed" { print $1 }' | sort -u))
   [ -z "$missing" ] && return 0
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || give_up "these packages lack, and there is neither root nor sudo to install them:" $missing
+    command -v sudo >/dev/null || give_up "these packages are missing, and there is neither root nor sudo to install them:" $missing
     as_root=(sudo)
   fi
   say "Installing" $missing
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq </dev/null ||
-    echo "station: the package lists could not be refreshed; going on with those that are here" >&2
+    echo "station: the package lists could not be refreshed; the present ones are used" >&2
   # shellcheck disable=SC2086
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends --no-remove $missing </dev/null ||
     give_up "the packages above could not be installed"
@@ -52,23 +52,23 @@ configure_and_build() {
   cmake --build --preset "$preset" ${1:+--target "$@"}
 }
 
-# build_release [TESTS [BENCHMARKS]]: the programs; with ON also tests or benchmarks, which need the test packages.
+# build_release [TESTS [BENCHMARKS]]: builds the programs; with ON also tests or benchmarks, which need the test packages.
 build_release() {
   say "Building"
   configure_and_build release "-DPRISMESH_TESTS=${1:-OFF}" "-DPRISMESH_BENCH=${2:-OFF}"
 }
 
-# sources: every C++ file that is ours, one a line.
+# sources: prints every C++ file of the project, one a line.
 sources() {
   local folder folders=()
   for folder in base mesh drivers ipc daemon kiosk cli tests scripts; do
-    [ ! -d "$folder" ] || folders+=("$folder")  # find fails where one of its folders lacks
+    [ ! -d "$folder" ] || folders+=("$folder")  # find fails if one of its folders is missing
   done
   find "${folders[@]}" -name '*.h' -o -name '*.cpp' | sort
 }
 
 run_tidy() {
-  # In a folder of its own: clang can't read the headers that GCC has compiled, and each source stands by itself there.
+  # In a folder of its own: clang can't read the headers that GCC has precompiled, and each source is compiled by itself there.
   cmake --preset release -B build/tidy -Wno-dev --log-level=WARNING -DPRISMESH_BENCH=ON -DPRISMESH_PRECOMPILED=OFF -DPRISMESH_UNITY=OFF \
     -DPRISMESH_RUNS= >/dev/null
   local files

@@ -48,15 +48,15 @@ run_ctest() {
 stages=()  # names
 declare -A stage_seconds
 
-# spent_seconds: sets `spent` to the processor time of all that this shell has run and waited for. `times` must not run in a subshell, which
-# has run nothing.
+# spent_seconds: sets `spent` to the processor time of everything that this shell has run and waited for. `times` must not run in a subshell,
+# which has run nothing.
 spent_seconds() {
   mkdir -p out/test
   times >out/test/times
   spent=$(awk 'NR == 2 { for (i = 1; i <= 2; ++i) { split($i, part, "[ms]"); sum += 60 * part[1] + part[2] } printf "%.1f", sum }' out/test/times)
 }
 
-# stage NAME command..: runs it and notes its processor time.
+# stage NAME command..: runs the command and records its processor time.
 stage() {
   local name=$1 before status=0
   shift
@@ -69,8 +69,8 @@ stage() {
   return "$status"
 }
 
-# measure_yardstick: sets `yardstick` to the processor time of compiling a fixed text. Machines, and how busy they are, differ by a factor of
-# two: stages are compared as multiples of it.
+# measure_yardstick: sets `yardstick` to the processor time of compiling a fixed text. Machines and their load differ by a factor of two, so
+# stages are compared as multiples of it.
 measure_yardstick() {
   local before
   spent_seconds
@@ -81,11 +81,11 @@ measure_yardstick() {
   yardstick=$(awk -v a="$before" -v b="$spent" 'BEGIN { printf "%.2f", (b - a) / 2 }')
 }
 
-# cpu_report YARDSTICK: processor minutes by stage, beside what tests/cpu_seconds.txt has noted for a cold run, and a warning for what has
-# grown by more than a tenth.
+# cpu_report YARDSTICK: prints processor minutes by stage beside those that tests/cpu_seconds.txt notes for a cold run, and warns of a stage
+# that has grown by more than a tenth.
 cpu_report() {
   local name
-  printf '\nProcessor minutes by stage (noted: of a cold run, scaled to this machine; see docs/building.md)\n'
+  printf '\nProcessor minutes by stage (noted: for a cold run, scaled to this machine; see docs/building.md)\n'
   for name in "${stages[@]}"; do printf '%s\t%s\n' "$name" "${stage_seconds[$name]}"; done |
     awk -F '\t' -v now="$1" '
       FNR == NR { if ($0 !~ /^#/ && NF > 1) noted[$1] = $2; next }
@@ -99,7 +99,7 @@ cpu_report() {
     ' tests/cpu_seconds.txt -
 }
 
-# step NAME command..: a build or check that counts as one test when it fails, and tells whether the rest makes sense.
+# step NAME command..: runs a build or check that counts as one failed test when it fails; its status says whether to go on.
 step() {
   local name=$1
   shift
@@ -115,7 +115,7 @@ check_format() {
   count_one "clang-format" "$status"
 }
 
-# fuzz_one TARGET SECONDS: what it said lies in out/fuzz/NAME.log, how it ended in out/fuzz/NAME.status.
+# fuzz_one TARGET SECONDS: writes its output to out/fuzz/NAME.log and its status to out/fuzz/NAME.status.
 fuzz_one() {
   local target=$1 name seeds=() status=0
   name=$(basename "$target")
@@ -127,8 +127,7 @@ fuzz_one() {
   echo "$status" >"out/fuzz/$name.status"
 }
 
-# run_fuzzers SECONDS: every target from its seeds, as many at a time as there are processors; what it finds stays in build/corpus,
-# what breaks it in out/fuzz.
+# run_fuzzers SECONDS: runs every target from its seeds, one on each processor. New inputs stay in build/corpus, failing ones in out/fuzz.
 run_fuzzers() {
   local target name status
   mkdir -p out/fuzz
@@ -176,9 +175,9 @@ run_all_tests() {
   closing_line
 }
 
-# run_soak MINUTES: what takes too long for every change. Half of the time each fuzz target goes on, the other half sanitized tests run in
-# random order and with new random numbers: edits by chance, daemons killed in the middle. Besides, states of the disk after a power cut: some
-# 1,700 a minute asked for (100,800 in an hour).
+# run_soak MINUTES: runs what takes too long for every change. For half of the time the fuzz targets run; for the other half sanitized tests
+# run in random order and with new random numbers: random edits, daemons killed in the middle. Besides, it tries states of the disk after a
+# power cut: some 1,700 for each minute (100,800 in an hour).
 run_soak() {
   local seconds=$(($1 * 60)) targets name end seed=$RANDOM status
   mkdir -p out/test out/soak
@@ -198,7 +197,7 @@ run_soak() {
     done
     seed=$((seed + 1))
   done
-  say "States that a power cut may leave"
+  say "States of the disk after a power cut"
   status=0
   if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- faults_test; then
     PRISMESH_SEED=$seed PRISMESH_POWER_CUTS=$((seconds * 28)) build/bin/faults_test --gtest_brief=1 </dev/null || status=$?

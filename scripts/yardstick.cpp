@@ -1,4 +1,4 @@
-// Compiled to measure how fast this machine compiles: see measure_yardstick. Changing it changes what all noted figures mean.
+// Compiled to measure how fast this machine compiles (measure_yardstick in scripts/test.sh). A change here makes all noted figures invalid.
 #include <algorithm>
 #include <map>
 #include <regex>
