@@ -118,7 +118,7 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
       return progress((static_cast<double>(i) + fraction) / static_cast<double>(intents.edits.size()));
     };
     Result<EditReport> report = apply(document, edit, progress ? Progress(within) : Progress(), clock);
-    if (!report && report.error().message == cancelled().message) break;
+    if (!report && is_cancelled(report.error())) break;
     step.applied = report.has_value();
     if (report)
       step.report = std::move(*report);
