@@ -44,14 +44,14 @@ struct Definition<mesh::Vec3> {
   static Problem read(const Json& json, mesh::Vec3& value, Author author, DirectionLimits);
 };
 template <>
-struct Definition<mesh::document::Place> {
-  static void write(Json& json, const mesh::document::Place& value);
-  static Problem read(const Json& json, mesh::document::Place& value, Author author);
+struct Definition<mesh::document::NodeReference> {
+  static void write(Json& json, const mesh::document::NodeReference& value);
+  static Problem read(const Json& json, mesh::document::NodeReference& value, Author author);
 };
 template <>
-struct Definition<mesh::document::Where> {
-  static void write(Json& json, const mesh::document::Where& value);
-  static Problem read(const Json& json, mesh::document::Where& value, Author author);
+struct Definition<mesh::document::TargetNodes> {
+  static void write(Json& json, const mesh::document::TargetNodes& value);
+  static Problem read(const Json& json, mesh::document::TargetNodes& value, Author author);
 };
 /// An edit within another object. edit_from_json reads one that stands by itself.
 template <>

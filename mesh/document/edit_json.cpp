@@ -102,17 +102,17 @@ Problem Definition<mesh::Vec3>::read(const Json& json, mesh::Vec3& value, Author
   return std::nullopt;
 }
 
-void Definition<document::Place>::write(Json& json, const document::Place& value) {
+void Definition<document::NodeReference>::write(Json& json, const document::NodeReference& value) {
   std::visit([&](const auto& place) { json = place; }, value);
 }
 
-Problem Definition<document::Place>::read(const Json& json, document::Place& value, Author author) {
+Problem Definition<document::NodeReference>::read(const Json& json, document::NodeReference& value, Author author) {
   if (json.is_array()) return json::read(json, value.emplace<std::array<double, 3>>(), author);
   if (!json::read(json, value.emplace<std::int64_t>(), author)) return std::nullopt;
   return must_be("a node's id or its coordinates [x, y, z]", json, author);
 }
 
-void Definition<document::Where>::write(Json& json, const document::Where& value) {
+void Definition<document::TargetNodes>::write(Json& json, const document::TargetNodes& value) {
   std::visit(
       [&]<class Each>(const Each& each) {
         if constexpr (std::is_same_v<Each, std::string>)
@@ -123,7 +123,7 @@ void Definition<document::Where>::write(Json& json, const document::Where& value
       value);
 }
 
-Problem Definition<document::Where>::read(const Json& json, document::Where& value, Author author) {
+Problem Definition<document::TargetNodes>::read(const Json& json, document::TargetNodes& value, Author author) {
   if (json.is_string()) return json::read(json, value.emplace<std::string>(), author);
   if (!json.is_object()) return must_be("an expression in quotes or a recipe like {\"edit\": \"select_region\", ...}", json, author);
   // Checked before the recipe is read, so that recipes can't nest and no input can exhaust the stack.

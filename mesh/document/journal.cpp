@@ -30,7 +30,7 @@ bool is_fresh(const Document& document) { return document.generations.size() == 
 
 JournalHeader header_of(const Document& document) {
   const Model& model = document.opened->model;
-  const Settings& settings = document.settings;
+  const DocumentSettings& settings = document.settings;
   return {PRISMESH_VERSION,
           {document.path.string(), document.deck->content.hex(), model.node_count(), model.shell_count(), model.parts->size()},
           {settings.length_unit, settings.target_size, settings.criteria.name}};
@@ -50,7 +50,7 @@ Result<void> check_deck(const JournalHeader& header, const Document& document, c
 
 /// Takes settings that were only guessed from the journal; settings that the user gave stay.
 void take_settings(const JournalHeader& header, Document& document) {
-  Settings& settings = document.settings;
+  DocumentSettings& settings = document.settings;
   if (settings.length_unit_guessed) settings.length_unit = header.settings.length_unit;
   if (!settings.target_size_guessed || settings.target_size == header.settings.target_size || !(header.settings.target_size > 0)) return;
   settings.target_size = header.settings.target_size;

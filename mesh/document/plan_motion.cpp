@@ -42,7 +42,7 @@ Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& no
     const NodeIndex node = model.find_node(std::get<std::int64_t>(*shaping.grab));
     if (node.valid() && std::binary_search(nodes.begin(), nodes.end(), node)) return node;
     if (!shaping.grab_at) {
-      const Result<NodeIndex> found = find_place(model, *shaping.grab);
+      const Result<NodeIndex> found = find_referenced_node(model, *shaping.grab);
       if (!found) return fail("", "grab: " + found.error().message);
       return fail("", "the grabbed node " + std::to_string(model.node_ids[found->value]) + " isn't among the nodes to be moved");
     }
@@ -51,10 +51,10 @@ Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& no
   return std::optional<NodeIndex>();
 }
 
-Motion::Kind motion_kind(const Edit& edit) {
-  if (std::holds_alternative<Lift>(edit)) return Motion::Kind::lift;
-  if (std::holds_alternative<Slide>(edit)) return Motion::Kind::slide;
-  return std::holds_alternative<Rotate>(edit) ? Motion::Kind::rotate : Motion::Kind::translate;
+ShapingKind motion_kind(const Edit& edit) {
+  if (std::holds_alternative<Lift>(edit)) return ShapingKind::lift;
+  if (std::holds_alternative<Slide>(edit)) return ShapingKind::slide;
+  return std::holds_alternative<Rotate>(edit) ? ShapingKind::rotate : ShapingKind::translate;
 }
 
 /// Refuses numbers that aren't finite or in range. JSON has no NaN, but a program may pass one.
@@ -101,8 +101,8 @@ Result<void> find_directions(const Model& model, const Edit& edit, Motion& motio
     if (!direction) return fail("", "rotate: the axis must be a direction of finite numbers, not all 0");
     motion.axis = {rotate->point, *direction};
   }
-  if (motion.kind == Motion::Kind::slide) return find_tracer(model, motion);
-  if (motion.kind != Motion::Kind::lift) return {};
+  if (motion.kind == ShapingKind::slide) return find_tracer(model, motion);
+  if (motion.kind != ShapingKind::lift) return {};
   const bool each = std::get<Lift>(edit).each_normal;
   if (!(motion.normal.squaredNorm() > 0))
     return fail("", no_shell_at_grab(model, motion) + ", so there is no normal to lift along; use translate");
