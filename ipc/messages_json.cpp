@@ -33,7 +33,7 @@ PRISMESH_MESSAGE(ipc::CameraMoved, "camera_moved", f("client", m.client), f("cam
 PRISMESH_MESSAGE(ipc::GetSnapshot, "get_snapshot", f("generation", m.generation), f("have_segments", m.have_segments));
 PRISMESH_MESSAGE(ipc::ReturnSnapshot, "return_snapshot", f("lease", m.lease));
 PRISMESH_MESSAGE(ipc::Welcome, "welcome", f("protocol", m.protocol), f("version", m.version), f("client", m.client));
-PRISMESH_MESSAGE(ipc::State, "state", f("open", m.open), f("busy", m.busy), f("path", m.path), f("length_unit", m.length_unit),
+PRISMESH_MESSAGE(ipc::DocumentState, "state", f("open", m.open), f("busy", m.busy), f("path", m.path), f("length_unit", m.length_unit),
                  f("length_unit_guessed", m.length_unit_guessed), f("target_size", m.target_size),
                  f("target_size_guessed", m.target_size_guessed), f("generation", m.generation), f("nodes", m.nodes), f("shells", m.shells),
                  f("parts", m.parts), f("selected_nodes", m.selected_nodes), f("counts", m.counts), f("can_undo", m.can_undo),

@@ -52,7 +52,7 @@ class DocumentKeeper {
   /// Whether positions differ from what was last opened or saved.
   bool changed() const;
   /// All but `busy`.
-  ipc::State state() const;
+  ipc::DocumentState state() const;
 
  private:
   /// A generation of `recorded` and the document's that it is a copy of.

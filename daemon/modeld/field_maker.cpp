@@ -40,15 +40,16 @@ bool FieldMaker::OtherDeck::is_current() const {
          });
 }
 
-Result<FieldMaker::State> FieldMaker::other_state(const Document& document, const Generation& of, const ipc::GetField& request,
-                                                  const Progress& progress) {
+Result<FieldMaker::ComparedState> FieldMaker::other_state(const Document& document, const Generation& of, const ipc::GetField& request,
+                                                          const Progress& progress) {
   if (request.against_generation) {
     const Result<const Generation*> other = generation_of(document, *request.against_generation);
     if (!other) return fail(other.error());
-    return State{&(*other)->model, words_of(**other)};
+    return ComparedState{&(*other)->model, words_of(**other)};
   }
-  if (request.against == "opened") return State{&document.opened->model, "the deck as it was opened"};
-  if (request.against == "surface") return State{of.surface ? of.surface.get() : &document.opened->model, "the surface as last shaped"};
+  if (request.against == "opened") return ComparedState{&document.opened->model, "the deck as it was opened"};
+  if (request.against == "surface")
+    return ComparedState{of.surface ? of.surface.get() : &document.opened->model, "the surface as last shaped"};
   const std::filesystem::path path(request.against);
   if (!path.is_absolute())
     return fail("field", "\"against\" is \"opened\", \"surface\" or a deck's absolute path, not \"" + request.against + "\"");
@@ -60,10 +61,10 @@ Result<FieldMaker::State> FieldMaker::other_state(const Document& document, cons
     other_ = OtherDeck{path, {}, opened->deck->missing_files.empty(), std::move(opened->model)};
     for (const mesh::deck::SourceFile& file : opened->deck->files) other_->files.emplace_back(file.path, file.bytes.identity());
   }
-  return State{&other_->model, path.filename().string()};
+  return ComparedState{&other_->model, path.filename().string()};
 }
 
-Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::GetField& request, const Progress& progress) {
+Result<FieldMaker::MadeField> FieldMaker::make(const Document& document, const ipc::GetField& request, const Progress& progress) {
   Result<mesh::document::FieldWish> wish = mesh::document::field_wish(request.field);
   if (!wish) return fail(wish.error());
   wish->from = request.from;
@@ -74,9 +75,9 @@ Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::G
     if (!found) return fail(found.error());
     of = *found;
   }
-  State other;
+  ComparedState other;
   if (needs_other(*wish)) {
-    Result<State> found = other_state(document, *of, request, progress);
+    Result<ComparedState> found = other_state(document, *of, request, progress);
     if (!found) return fail(found.error());
     other = std::move(*found);
   }
@@ -108,7 +109,7 @@ Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::G
   answer.new_nodes = field->new_nodes;
   // Of a distance between two expressions only what the one names is meant to have values.
   if (wish->of != mesh::document::FieldWish::Of::gap) answer.shells_without = shells_without_value(of->model, *field);
-  return Made{std::move(answer), std::move(*values)};
+  return MadeField{std::move(answer), std::move(*values)};
 }
 
 }  // namespace prismesh::modeld

@@ -18,21 +18,21 @@ namespace prismesh::modeld {
 
 class FieldMaker {
  public:
-  struct Made {
+  struct MadeField {
     ipc::FieldMade answer;
     ipc::Descriptor values;
   };
   /// Errors: those of the field and of the other deck, a state that the history has no more, cancelled.
-  Result<Made> make(const mesh::document::Document& document, const ipc::GetField& request, const Progress& progress);
+  Result<MadeField> make(const mesh::document::Document& document, const ipc::GetField& request, const Progress& progress);
 
  private:
-  /// A state, and what to call it.
-  struct State {
+  /// A state to compare with, and its name for people.
+  struct ComparedState {
     const mesh::Model* model = nullptr;
     std::string words;
   };
-  Result<State> other_state(const mesh::document::Document& document, const mesh::document::Generation& of, const ipc::GetField& request,
-                            const Progress& progress);
+  Result<ComparedState> other_state(const mesh::document::Document& document, const mesh::document::Generation& of,
+                                    const ipc::GetField& request, const Progress& progress);
 
   /// The deck that was compared with last, and the files it was read from.
   struct OtherDeck {

@@ -19,7 +19,7 @@ namespace prismesh::modeld {
 /// What may be shown of the document; a value that later work doesn't change.
 struct PublishedState {
   std::shared_ptr<const mesh::document::Document> document;  ///< null: none is open
-  ipc::State state;
+  ipc::DocumentState state;
 };
 
 struct Outcome {
