@@ -11,7 +11,7 @@
 namespace prismesh {
 
 std::string base64_encode(std::span<const std::byte> bytes);
-/// Nothing if the text isn't exactly what base64_encode gives for some bytes (no blanks, padding, zero spare bits).
+/// Empty if the text isn't exactly what base64_encode returns for some bytes: no blanks, complete padding, zero spare bits.
 std::optional<std::vector<std::byte>> base64_decode(std::string_view text);
 
 }  // namespace prismesh

@@ -1,4 +1,4 @@
-// Time as an argument, so that loops can be driven by tests.
+// Clocks as arguments, so that tests control the time of a loop.
 #pragma once
 
 #include <cmath>
@@ -6,7 +6,7 @@
 
 namespace prismesh {
 
-/// Settings are in milliseconds, time is in nanoseconds.
+/// Converts a setting in milliseconds.
 inline std::int64_t nanoseconds(double milliseconds) { return std::llround(milliseconds * 1e6); }
 
 class Clock {

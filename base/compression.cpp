@@ -13,7 +13,7 @@
 namespace prismesh {
 namespace {
 
-/// How much is unpacked between two looks at the progress.
+/// Bytes that are unpacked between two calls of the progress.
 constexpr std::size_t kStep = std::size_t{256} << 10;
 /// zlib counts with 32 bits.
 constexpr std::size_t kMaxIn = std::size_t{1} << 30;
@@ -22,25 +22,25 @@ constexpr int kGzip = 16 + MAX_WBITS;
 const unsigned char* raw(std::span<const std::byte> bytes) { return reinterpret_cast<const unsigned char*>(bytes.data()); }
 
 /// Text that grows up to a limit.
-class Growing {
+class GrowingText {
  public:
-  Growing(std::size_t first, std::size_t most) : most_(most) { reserve(std::clamp<std::size_t>(first, 1024, most)); }
+  GrowingText(std::size_t first, std::size_t max) : max_(max) { reserve(std::clamp<std::size_t>(first, 1024, max)); }
 
-  /// Room for at least one more byte; empty: there is none, and failure() says why.
+  /// Space for at least one more byte; empty if there is none: failure() tells why.
   std::span<char> room() {
-    if (size_ == capacity_) reserve(capacity_ + std::min(capacity_ / 2 + 1, most_ - capacity_));
+    if (size_ == capacity_) reserve(capacity_ + std::min(capacity_ / 2 + 1, max_ - capacity_));
     return {data_.get() + size_, size_ < capacity_ ? std::min(capacity_ - size_, kStep) : 0};
   }
   void took(std::size_t count) { size_ += count; }
   std::string failure() const {
-    return size_ >= most_ ? "unpacks to far more than any deck would (more than " + std::to_string(most_ >> 10) + " KB); it isn't read"
-                          : "is too large for this machine's memory once unpacked";
+    return size_ >= max_ ? "unpacks to far more than any deck would (more than " + std::to_string(max_ >> 10) + " KB); it isn't read"
+                         : "is too large for this machine's memory once unpacked";
   }
   std::size_t size() const { return size_; }
   /// The text with a NUL behind it; null: out of memory.
   std::unique_ptr<char[]> finish() {
     data_[size_] = '\0';
-    // What was guessed too large is given back.
+    // Returns memory if the guess was far too large.
     if (capacity_ - size_ < size_ / 8 + 4096) return std::move(data_);
     std::unique_ptr<char[]> fitting(new (std::nothrow) char[size_ + 1]);
     if (!fitting) return std::move(data_);
@@ -58,7 +58,7 @@ class Growing {
     capacity_ = capacity;
   }
 
-  std::size_t most_;
+  std::size_t max_;
   std::unique_ptr<char[]> data_;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
@@ -80,17 +80,15 @@ bool is_zero(std::span<const std::byte> bytes) {
   return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
 }
 
-/// Nothing, or what is wrong.
-using Trouble = std::string;
-
-Trouble unpack_gzip(std::span<const std::byte> in, Growing& out, const Progress& progress) {
+/// Errors name no file.
+Result<void> unpack_gzip(std::span<const std::byte> in, GrowingText& out, const Progress& progress) {
   Inflating inflating;
-  if (!inflating.good) return "can't be unpacked: out of memory";
+  if (!inflating.good) return fail("", "can't be unpacked: out of memory");
   z_stream& z = inflating.stream;
   std::size_t at = 0;
   for (;;) {
     const std::span<char> room = out.room();
-    if (room.empty()) return out.failure();
+    if (room.empty()) return fail("", out.failure());
     const std::size_t given = std::min(in.size() - at, kMaxIn);
     z.next_in = const_cast<unsigned char*>(raw(in.subspan(at)));
     z.avail_in = static_cast<uInt>(given);
@@ -102,14 +100,15 @@ Trouble unpack_gzip(std::span<const std::byte> in, Growing& out, const Progress&
     if (result == Z_STREAM_END) {
       const std::span<const std::byte> rest = in.subspan(at);
       if (is_zero(rest)) return {};
-      if (packing_of(rest) != Packing::gzip) return "has something else behind its gzip data";
-      if (inflateReset(&z) != Z_OK) return "can't be unpacked: out of memory";
+      if (packing_of(rest) != Packing::gzip) return fail("", "has something else behind its gzip data");
+      if (inflateReset(&z) != Z_OK) return fail("", "can't be unpacked: out of memory");
     } else if (result == Z_BUF_ERROR || (result == Z_OK && at == in.size() && z.avail_out > 0)) {
-      return "is cut off: its gzip data end too early";
+      return fail("", "is cut off: its gzip data end too early");
     } else if (result != Z_OK) {
-      return std::string("is damaged: its gzip data can't be unpacked") + (z.msg ? std::string(" (") + z.msg + ")" : std::string());
+      return fail("",
+                  std::string("is damaged: its gzip data can't be unpacked") + (z.msg ? std::string(" (") + z.msg + ")" : std::string()));
     }
-    if (progress && !progress(static_cast<double>(at) / static_cast<double>(in.size()))) return cancelled().message;
+    if (progress && !progress(static_cast<double>(at) / static_cast<double>(in.size()))) return fail(cancelled());
   }
 }
 
@@ -120,26 +119,27 @@ struct FreeCompressor {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 };
 
-Trouble unpack_zstd(std::span<const std::byte> in, Growing& out, const Progress& progress) {
+/// Errors name no file.
+Result<void> unpack_zstd(std::span<const std::byte> in, GrowingText& out, const Progress& progress) {
   const std::unique_ptr<ZSTD_DCtx, FreeDecompressor> context(ZSTD_createDCtx());
-  if (!context) return "can't be unpacked: out of memory";
+  if (!context) return fail("", "can't be unpacked: out of memory");
   ZSTD_inBuffer from{in.data(), in.size(), 0};
   for (std::size_t left = 1; from.pos < from.size || left != 0;) {
     const std::span<char> room = out.room();
-    if (room.empty()) return out.failure();
+    if (room.empty()) return fail("", out.failure());
     ZSTD_outBuffer to{room.data(), room.size(), 0};
     const std::size_t before = from.pos;
     // Zero at the end of each frame; the next one begins by itself.
     left = ZSTD_decompressStream(context.get(), &to, &from);
     out.took(to.pos);
-    if (ZSTD_isError(left)) return std::string("is damaged, or is no zstd file all through (") + ZSTD_getErrorName(left) + ")";
-    if (left != 0 && from.pos == from.size && from.pos == before && to.pos == 0) return "is cut off: its zstd data end too early";
-    if (progress && !progress(static_cast<double>(from.pos) / static_cast<double>(from.size))) return cancelled().message;
+    if (ZSTD_isError(left)) return fail("", std::string("is damaged, or is no zstd file all through (") + ZSTD_getErrorName(left) + ")");
+    if (left != 0 && from.pos == from.size && from.pos == before && to.pos == 0) return fail("", "is cut off: its zstd data end too early");
+    if (progress && !progress(static_cast<double>(from.pos) / static_cast<double>(from.size))) return fail(cancelled());
   }
   return {};
 }
 
-/// How large the text will probably be: what the file says of itself, where that is likely.
+/// Guesses the size of the text: the size that the file states, where that is plausible.
 std::size_t likely_size(std::span<const std::byte> in, Packing packing) {
   const std::size_t usual = 5 * in.size();
   if (packing == Packing::zstd) {
@@ -162,7 +162,7 @@ Packing packing_of(std::span<const std::byte> bytes) {
   // 8: deflate, the only method there is.
   if (b[0] == 0x1f && b[1] == 0x8b && b[2] == 8) return Packing::gzip;
   if (b[0] == 0x28 && b[1] == 0xb5 && b[2] == 0x2f && b[3] == 0xfd) return Packing::zstd;
-  // A frame to be skipped, with which some tools begin.
+  // A skippable frame; some tools begin with one.
   if ((b[0] & 0xf0) == 0x50 && b[1] == 0x2a && b[2] == 0x4d && b[3] == 0x18) return Packing::zstd;
   return Packing::none;
 }
@@ -171,18 +171,16 @@ Result<FileBytes> unpack(FileBytes file, const std::filesystem::path& path, cons
   const std::span<const std::byte> in = file.bytes();
   const Packing packing = packing_of(in);
   if (packing == Packing::none) return file;
-  const std::size_t most = most_unpacked(in.size());
-  Growing out(likely_size(in, packing), most);
-  const Trouble trouble = packing == Packing::gzip ? unpack_gzip(in, out, progress) : unpack_zstd(in, out, progress);
-  if (trouble == cancelled().message) return fail(cancelled());
-  if (!trouble.empty()) return fail(path.string(), trouble);
+  GrowingText out(likely_size(in, packing), max_unpacked(in.size()));
+  const Result<void> unpacked = packing == Packing::gzip ? unpack_gzip(in, out, progress) : unpack_zstd(in, out, progress);
+  if (!unpacked) return is_cancelled(unpacked.error()) ? fail(unpacked.error()) : fail(path.string(), unpacked.error().message);
   const std::size_t size = out.size();
   return FileBytes::unpacked(std::move(file), out.finish(), size);
 }
 
 namespace {
 
-/// The name, the time and the like of a gzip file's first member; the buffers must outlive the header.
+/// The header of a gzip file's first member: name, time and so on. The buffers must outlive the header.
 struct GzipHeader {
   gz_header header{};
   std::array<unsigned char, 4096> name{};
@@ -204,22 +202,22 @@ struct GzipHeader {
     inflateGetHeader(&inflating.stream, &header);
     inflate(&inflating.stream, Z_BLOCK);
     level = header.xflags == 2 ? 9 : header.xflags == 4 ? 1 : 6;
-    // zlib leaves out what isn't there: it has set its pointer to null.
+    // zlib has set the pointers of missing fields to null, and leaves these fields out.
     header.extra = nullptr;
     header.extra_len = 0;
     header.hcrc = 0;
   }
 };
 
-/// Gives a text to what packs it, a megabyte or less at a time.
-class Giving {
+/// Passes a text to a packer, at most a megabyte at a time, and reports the progress.
+class TextFeed {
  public:
-  Giving(std::span<const std::string_view> text, const Progress& progress) : text_(text), progress_(progress) {
+  TextFeed(std::span<const std::string_view> text, const Progress& progress) : text_(text), progress_(progress) {
     for (const std::string_view piece : text) all_ += piece.size();
   }
   std::size_t all() const { return all_; }
 
-  /// `take(part)` is false when it can't go on. Errors: that, or cancelled.
+  /// Calls `take(part)` with each part; it returns false if it can't continue. Errors: that, cancelled.
   template <typename Take>
   Result<void> to(const Take& take) {
     std::size_t given = 0;
@@ -244,7 +242,7 @@ class Giving {
   std::size_t all_ = 0;
 };
 
-Result<std::string> pack_gzip(Giving text, std::span<const std::byte> like) {
+Result<std::string> pack_gzip(TextFeed text, std::span<const std::byte> like) {
   GzipHeader header(like);
   z_stream z{};
   if (deflateInit2(&z, header.level, Z_DEFLATED, kGzip, 8, Z_DEFAULT_STRATEGY) != Z_OK) return fail("", "can't be packed: out of memory");
@@ -271,10 +269,10 @@ Result<std::string> pack_gzip(Giving text, std::span<const std::byte> like) {
   return out;
 }
 
-Result<std::string> pack_zstd(Giving text, std::span<const std::byte> like) {
+Result<std::string> pack_zstd(TextFeed text, std::span<const std::byte> like) {
   const std::unique_ptr<ZSTD_CCtx, FreeCompressor> context(ZSTD_createCCtx());
   if (!context) return fail("", "can't be packed: out of memory");
-  // Bit 2 of the byte behind the magic number; a frame to be skipped has none, and a checksum does no harm.
+  // Bit 2 of the byte behind the magic number; a skippable frame has none, and a checksum does no harm.
   const bool plain_frame = raw(like)[0] == 0x28;
   const bool checksum = !plain_frame || like.size() < 5 || (raw(like)[4] & 4) != 0;
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, checksum);
@@ -301,8 +299,8 @@ Result<std::string> pack_zstd(Giving text, std::span<const std::byte> like) {
 }  // namespace
 
 Result<std::string> pack(std::span<const std::string_view> text, std::span<const std::byte> like, const Progress& progress) {
-  const Giving giving(text, progress);
-  return packing_of(like) == Packing::zstd ? pack_zstd(giving, like) : pack_gzip(giving, like);
+  const TextFeed feed(text, progress);
+  return packing_of(like) == Packing::zstd ? pack_zstd(feed, like) : pack_gzip(feed, like);
 }
 
 }  // namespace prismesh

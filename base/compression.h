@@ -1,4 +1,4 @@
-// Files packed with gzip or zstd, told by their bytes, whatever they are called.
+// Unpacks and packs files with gzip or zstd. The bytes tell which, not the file's name.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,20 @@ namespace prismesh {
 
 enum class Packing : std::uint8_t { none, gzip, zstd };
 
-/// By the first bytes.
+/// Judges by the first bytes.
 Packing packing_of(std::span<const std::byte> bytes);
 
-/// The most that `packed_bytes` may unpack to: a file that holds more was made to exhaust memory. No real text packs nearly as well.
-constexpr std::size_t most_unpacked(std::size_t packed_bytes) { return 200 * packed_bytes + (std::size_t{256} << 10); }
+/// The largest size that `packed_bytes` may unpack to: a file that holds more was made to exhaust memory. No real text packs nearly as
+/// well.
+constexpr std::size_t max_unpacked(std::size_t packed_bytes) { return 200 * packed_bytes + (std::size_t{256} << 10); }
 
-/// A file with its text unpacked and its stored bytes kept beside it; one that isn't packed comes back as it is. All members of a gzip
-/// file and all frames of a zstd file are read. Errors, with `path`: damaged, cut off, unpacks to more than most_unpacked, something else
-/// behind the packed data, cancelled.
+/// Unpacks a file and keeps its stored bytes beside the text; returns an unpacked file as it is. Reads all members of a gzip file and all
+/// frames of a zstd file. Errors, with `path`: damaged, cut off, unpacks to more than max_unpacked, other data after the packed data;
+/// cancelled, without it.
 Result<FileBytes> unpack(FileBytes file, const std::filesystem::path& path, const Progress& progress = {});
 
-/// Text packed in the manner of `like`, which packing_of knows: gzip with the same name and time in its header and about the same effort,
-/// zstd with a checksum if that has one. Errors: out of memory, cancelled.
+/// Packs text as `like`, a gzip or zstd file, is packed: gzip with the same name and time in its header and about the same level, zstd
+/// with a checksum if `like` has one. Errors: out of memory, cancelled.
 Result<std::string> pack(std::span<const std::string_view> text, std::span<const std::byte> like, const Progress& progress = {});
 
 }  // namespace prismesh

@@ -1,4 +1,4 @@
-// Numbers of things in sentences.
+// Writes a count with its noun.
 #pragma once
 
 #include <cstddef>

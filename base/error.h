@@ -1,6 +1,7 @@
-// What went wrong, where, in words a user can act on; and the result type that carries it.
+// Error: what went wrong and where, in words a user can act on. Result: a value, or an Error.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -8,14 +9,20 @@
 
 namespace prismesh {
 
+enum class ErrorKind : std::uint8_t {
+  failure,
+  cancelled,  ///< the work was told to stop (base/progress.h)
+};
+
 /// A recoverable failure. `file` is the user's file (or a device's or socket's name, or "expression"); `line` counts
 /// from 1, is a column for expressions, and is 0 where no line applies.
 struct Error {
   std::string file;
   long line = 0;
   std::string message;
+  ErrorKind kind = ErrorKind::failure;
 
-  /// "file:line: message", without the parts that are absent.
+  /// "file:line: message", without the parts that are empty.
   std::string text() const;
 };
 

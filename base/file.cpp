@@ -39,7 +39,7 @@ class Descriptor {
     if (fd_ >= 0) ::close(fd_);
   }
   int get() const { return fd_; }
-  /// Closes now: some file systems tell of a failed write only here. 0 or an errno.
+  /// Closes now: some file systems report a failed write only here. 0 or an errno.
   int close() {
     const int fd = std::exchange(fd_, -1);
     return ::close(fd) == 0 ? 0 : errno;
@@ -111,7 +111,7 @@ Result<FileBytes> read_file(const fs::path& path) {
 
 namespace {
 
-/// Where a write to `path` must go: what a chain of symbolic links points to, so that the link stays a link.
+/// The file that `path` leads to through symbolic links. Writing to it keeps the link.
 Result<fs::path> follow_links(const fs::path& path) {
   fs::path target = path;
   for (int links = 0; links <= kLinkDepth; ++links) {
@@ -136,7 +136,7 @@ struct Staging {
   }
 };
 
-/// How much of all files is written.
+/// Counts the bytes written of all files.
 class Written {
  public:
   Written(std::span<const PendingFile> files, const Progress& progress) : progress_(progress) {
@@ -144,7 +144,7 @@ class Written {
       for (const std::string_view piece : file.pieces) all_ += piece.size();
   }
   void add(std::size_t bytes) { written_ += bytes; }
-  /// Tells the progress. False: stop.
+  /// Reports the progress. False: stop.
   bool goes_on() const { return !progress_ || progress_(all_ == 0 ? 1.0 : static_cast<double>(written_) / static_cast<double>(all_)); }
 
  private:
@@ -310,7 +310,7 @@ Result<StagedFiles> StagedFiles::write(std::span<const PendingFile> files, const
     folders[folder_of(one->target)] = one->temporary;
     staged.files_.push_back(std::move(*one));
   }
-  // A folder that can't be flushed is found before anything is replaced.
+  // Finds a folder that can't be flushed before anything is replaced.
   for (const auto& [folder, file] : folders)
     if (Result<void> flushed = flush_folder(folder, file); !flushed) return fail(std::move(flushed.error()));
   // Flushing may have taken long.

@@ -1,4 +1,4 @@
-// Reading and writing whole files so that nothing half-written is ever seen.
+// Reads and writes whole files; no reader ever sees a half-written one.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace prismesh {
 
-/// What tells whether a file on disk is still the one that was read.
+/// Tells whether a file on disk is still the one that was read.
 struct FileIdentity {
   std::uint64_t device = 0;
   std::uint64_t inode = 0;
@@ -36,7 +36,7 @@ class FileBytes {
   bool is_packed() const { return packed_ != nullptr; }
   const FileIdentity& identity() const { return identity_; }
 
-  /// A file whose bytes unpack to `text`, of `size` characters and a NUL.
+  /// The same file with its unpacked text: `size` characters and a NUL.
   static FileBytes unpacked(FileBytes file, std::unique_ptr<char[]> text, std::size_t size);
 
  private:
@@ -59,19 +59,19 @@ struct PendingFile {
   std::vector<std::string_view> pieces;  ///< the content, in order; the memory must outlive the call
 };
 
-/// Files that are written and flushed to disk beside their targets, with the folders that name them, and wait to be put in place. What
-/// isn't put in place goes with this.
+/// Files that are written and flushed to disk beside their targets, with the folders that name them, and wait to be put in place. The
+/// destructor removes those that aren't in place.
 class StagedFiles {
  public:
   struct File {
-    std::filesystem::path shown;      ///< the target as it was asked for
-    std::filesystem::path target;     ///< what it points to, where it is a link
+    std::filesystem::path shown;      ///< the target as the caller named it
+    std::filesystem::path target;     ///< the same with links resolved
     std::filesystem::path temporary;  ///< beside the target
     FileIdentity identity;            ///< of what was written; putting it in place doesn't change it
   };
 
-  /// An existing target's permissions are taken over; folders that lack are made. The progress is told each 8 MB or less, and for the
-  /// last time when all is written. Errors: a file can't be written, cancelled; then no temporary file remains.
+  /// Keeps an existing target's permissions and makes missing folders. Reports progress at least every 8 MB, and for the last time when
+  /// everything is written. Errors: a file can't be written, cancelled; then no temporary file remains.
   static Result<StagedFiles> write(std::span<const PendingFile> files, const Progress& progress = {});
 
   StagedFiles() = default;
@@ -81,10 +81,10 @@ class StagedFiles {
 
   const std::vector<File>& files() const { return files_; }
   std::size_t in_place() const { return in_place_; }  ///< of the files, from the first on
-  /// Renames those that aren't in place yet, in their order (so put the file that names the others last), and flushes the folders. After
-  /// an error it may be called again and goes on. Errors: a file can't be replaced, a folder can't be flushed; how many are in place.
+  /// Renames those that aren't in place yet, in order (so put the file that names the others last), and flushes the folders. After an
+  /// error it may be called again and continues. Errors: a file can't be replaced, a folder can't be flushed; how many are in place.
   Result<void> put_in_place();
-  /// What isn't in place yet stays on disk beside its target.
+  /// Files that aren't in place yet stay on disk beside their targets.
   void leave() { files_.resize(in_place_); }
 
  private:
@@ -96,11 +96,11 @@ class StagedFiles {
 /// remains. Told to stop, it stops before the first rename or not at all. Errors: those of StagedFiles.
 Result<void> replace_files(std::span<const PendingFile> files, const Progress& progress = {});
 
-/// What a folder names is on disk afterwards. Where a folder may be written but not read, all of its file system is flushed, through
+/// Flushes a folder's entries to disk. A folder that may be written but not read is flushed with its whole file system, through
 /// `file_in_it`. Errors: it can't be flushed.
 Result<void> flush_folder(const std::filesystem::path& folder, const std::filesystem::path& file_in_it = {});
 
-/// Makes a folder, with those on the way to it, so that they are there after a power cut too. Errors: one can't be made.
+/// Makes a folder and its missing parents, and flushes them, so that they survive a power cut. Errors: one can't be made.
 Result<void> make_folders(const std::filesystem::path& folder);
 
 /// The folder that a file is in; "." for a bare name.

@@ -1,4 +1,4 @@
-// Content hashes: for pinning a deck and for telling a whole record from a torn one. Not for secrets.
+// Content hashes: they identify a deck's content and find damaged records. Not cryptographic.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct Hash128 {
 
 /// XXH3-128 of the bytes.
 Hash128 hash128(std::span<const std::byte> bytes);
-/// The same of the pieces one after the other.
+/// The hash of the concatenated pieces.
 Hash128 hash128(std::span<const std::string_view> pieces);
 /// XXH3-64 of the bytes.
 std::uint64_t hash64(std::span<const std::byte> bytes);

@@ -29,7 +29,7 @@ LargeBlock::LargeBlock(std::size_t bytes) : size_(bytes) {
     return;
   }
   if (bytes > SIZE_MAX / 2) throw std::bad_alloc();
-  // As much more as alignment may take, given back at once. What lies beyond the last whole large page is never touched.
+  // Maps one page more for the alignment and unmaps the excess at once. Memory beyond the last whole large page is never touched.
   const std::size_t wanted = round_up(bytes, kLargePage) + kLargePage;
   void* mapped = ::mmap(nullptr, wanted, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (mapped == MAP_FAILED) throw std::bad_alloc();

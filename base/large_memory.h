@@ -1,5 +1,5 @@
-// Memory for arrays of many megabytes. Untouched memory comes from the kernel in pages of 4 KB, and fetching them one by one costs more
-// than most of what is done with them; pages of 2 MB cost a tenth. Where the kernel has none, all works the same, only slower.
+// Memory for arrays of many megabytes, in pages of 2 MB. The kernel gives untouched memory in pages of 4 KB; the page faults cost more
+// than most work on the array, and large pages cost a tenth. Where the kernel has none, everything works the same, but slower.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@ namespace prismesh {
 
 inline constexpr std::size_t kLargePage = std::size_t{2} << 20;
 
-/// Asks for large pages where they fit wholly into [begin, begin + bytes), for memory that hasn't been touched yet. Only advice.
+/// Advises the kernel to use large pages where they fit wholly into [begin, begin + bytes). The memory must not have been touched yet.
 void prefer_large_pages(void* begin, std::size_t bytes);
 
-/// Room for `count` elements in a vector, in large pages where that pays. To be called before the vector grows.
+/// Reserves room for `count` elements in a vector, in large pages where that pays. Call it before the vector grows.
 template <class T>
 void reserve_large(std::vector<T>& values, std::size_t count) {
   if (count <= values.capacity()) return;
@@ -24,7 +24,7 @@ void reserve_large(std::vector<T>& values, std::size_t count) {
   if (values.empty() && count * sizeof(T) >= 2 * kLargePage) prefer_large_pages(values.data(), count * sizeof(T));
 }
 
-/// Bytes of its own, aligned to large pages; given back when it goes.
+/// Owns bytes aligned to large pages.
 class LargeBlock {
  public:
   LargeBlock() = default;
@@ -42,11 +42,11 @@ class LargeBlock {
   std::size_t mapped_ = 0;  ///< 0: it came from the heap
 };
 
-/// Makes objects in large blocks, from any thread. A block goes when all its objects have gone, so only objects that live about
-/// equally long belong together.
+/// Makes objects in large blocks, on any thread. A block is freed with its last object, so put only objects of similar lifetime into
+/// one pool.
 class LargePool {
  public:
-  /// An object in the pool, of all bytes zero but what its default constructor writes.
+  /// Makes an object in zeroed memory.
   template <class T>
   std::shared_ptr<T> make() {
     static_assert(alignof(T) <= kAlignment);

@@ -1,4 +1,4 @@
-// Upper and lower case of the letters A to Z. Keywords and names in decks are ASCII; other bytes stay as they are, whatever the locale.
+// Upper and lower case of the letters A to Z. Keywords and names in decks are ASCII; other bytes are unchanged, whatever the locale.
 #pragma once
 
 #include <string>

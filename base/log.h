@@ -10,10 +10,10 @@ namespace prismesh::logging {
 
 enum class Level : std::uint8_t { info, warning, error, critical };
 
-/// `program` stands in every line. What is logged before this goes to standard output.
+/// Writes `program` into every line. Lines logged before this go to standard output.
 void start(std::string_view program);
 void write(Level level, std::string_view text);
-/// What was written has left the process afterwards.
+/// Returns when everything written has left the process.
 void flush();
 
 template <class... Args>

@@ -1,4 +1,4 @@
-// What the user probably meant: the known name nearest to a mistyped one.
+// Finds the known name nearest to a mistyped one.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace prismesh {
 
-/// Fewest insertions, deletions, replacements and swaps of neighbouring letters that turn `a` into `b`, bytes compared without
-/// regard to case (optimal string alignment). Cost: |a| * |b|; longer names than 64 bytes are compared by their first 64.
+/// The min number of insertions, deletions, replacements and swaps of neighbouring letters that turn `a` into `b`, ignoring case (optimal
+/// string alignment distance). Cost: |a| * |b|. Only the first 64 bytes of a name are compared.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The nearest of `known` (of equals the first); empty if `known` is.
+/// The nearest of `known`, the first of several; empty if `known` is empty.
 std::string_view nearest_name(std::string_view name, std::span<const std::string_view> known);
 
 }  // namespace prismesh

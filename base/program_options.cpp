@@ -11,7 +11,7 @@ std::optional<std::filesystem::path> ProgramOptions::path(std::string_view optio
   return found->second;
 }
 
-ProgramOptions program_options(const ProgramUse& use, int count, char** values) {
+ProgramOptions program_options(const ProgramUsage& use, int count, char** values) {
   ProgramOptions options;
   if (count == 2 && std::string_view(values[1]) == "--help") {
     std::fputs(use.usage.c_str(), stdout);

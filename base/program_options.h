@@ -1,4 +1,4 @@
-// What a daemon is started with: --help, --version, and options that each take a path.
+// Reads a daemon's command line: --help, --version, and options that each take a path.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace prismesh {
 
-struct ProgramUse {
+struct ProgramUsage {
   std::string name;                         ///< of the program
   std::string usage;                        ///< lines of text
   std::vector<std::string_view> with_path;  ///< "--runtime-dir", ...
@@ -18,13 +18,13 @@ struct ProgramUse {
 
 struct ProgramOptions {
   std::map<std::string, std::filesystem::path, std::less<>> paths;
-  /// Set: the program has nothing to do but end so, because help or version was asked for (and printed), or its use was wrong (and told
-  /// on standard error).
+  /// The exit status, if the program has to end now: help or version was asked for and printed, or the command line is wrong and the
+  /// error is on standard error.
   std::optional<int> end;
 
   std::optional<std::filesystem::path> path(std::string_view option) const;
 };
 
-ProgramOptions program_options(const ProgramUse& use, int count, char** values);
+ProgramOptions program_options(const ProgramUsage& use, int count, char** values);
 
 }  // namespace prismesh

@@ -1,4 +1,4 @@
-// How long work says how far it is and learns that it should stop.
+// How long work reports its progress and is told to stop.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,13 @@
 
 namespace prismesh {
 
-/// Called now and then with the fraction done (0..1), from the thread that started the work; false means stop: the work
-/// then fails with the error `cancelled()`. An empty function means nobody watches.
+/// Is called repeatedly with the fraction done (0..1), on the thread that started the work. Returns false to stop: the work then fails
+/// with the error `cancelled()`. An empty function is never called.
 using Progress = std::function<bool(double fraction)>;
 
 /// The error of work that was told to stop.
-inline Error cancelled() { return {{}, 0, "cancelled"}; }
+inline Error cancelled() { return {{}, 0, "cancelled", ErrorKind::cancelled}; }
+/// Whether an error is that of work that was told to stop, whatever file it names.
+inline bool is_cancelled(const Error& error) { return error.kind == ErrorKind::cancelled; }
 
 }  // namespace prismesh

@@ -8,7 +8,7 @@ namespace prismesh {
 
 namespace {
 
-constexpr double kMin = 1e-9, kMax = 1e12;  ///< what is written without a power of ten
+constexpr double kMin = 1e-9, kMax = 1e12;  ///< range of numbers without an exponent
 
 std::string in_format(double value, std::chars_format format, int precision) {
   std::array<char, 64> text;
@@ -16,7 +16,7 @@ std::string in_format(double value, std::chars_format format, int precision) {
   return {text.data(), end};
 }
 
-/// Where the first digit stands: 0 for the ones, 1 for the tens, -1 for the tenths. After rounding to that many digits.
+/// The decimal position of the first digit after rounding to that many digits: 0 for ones, 1 for tens, -1 for tenths.
 int place_of_first_digit(double value, int digits) {
   const std::string text = in_format(value, std::chars_format::scientific, digits - 1);
   const std::size_t exponent = text.find('e');

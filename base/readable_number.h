@@ -1,4 +1,4 @@
-// Measured numbers in sentences and on panels, as people write them.
+// Writes measured numbers for sentences and panels, as people write them.
 #pragma once
 
 #include <array>
@@ -6,12 +6,12 @@
 
 namespace prismesh {
 
-/// At most `digits` significant digits (1 to 15) and no power of ten: "0.0000125", "1234568". Only from 1e12 on and below 1e-9 one:
-/// "1.25e-10". Never "-0".
+/// At most `digits` significant digits (1 to 15), without an exponent: "0.0000125", "1234568". Only numbers from 1e12 and below 1e-9 have
+/// one: "1.25e-10". Never "-0".
 std::string readable(double value, int digits);
 
-/// Three numbers of one kind, divided by spaces: the largest with so many digits, the others to the same decimal. What is nothing beside
-/// the largest is 0: "1250.5 0 -3.2".
+/// Three numbers of one kind, separated by spaces: the largest with `digits` significant digits, the others rounded to the same decimal:
+/// "1250.5 0 -3.2".
 std::string readable(const std::array<double, 3>& values, int digits);
 
 }  // namespace prismesh

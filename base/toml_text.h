@@ -1,4 +1,4 @@
-// Writing TOML by hand, so that a user's file keeps its order and comments.
+// Writes values of TOML. Files are changed as text, so that they keep their order and comments.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace prismesh {
 
-/// The text as a basic string of TOML, its quotes included; control characters are escaped.
+/// The text as a basic string of TOML, with its quotes; control characters are escaped.
 std::string toml_quoted(std::string_view text);
 
 }  // namespace prismesh

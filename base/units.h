@@ -1,4 +1,4 @@
-// Units that a deck can be in. Decks don't declare them; the document's settings do.
+// Length units of decks. A deck doesn't declare its unit; the document's settings do.
 #pragma once
 
 #include <optional>

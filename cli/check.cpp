@@ -73,7 +73,7 @@ void print_parts(std::ostream& out, const mesh::Model& model, const std::vector<
 }
 
 void print_text(std::ostream& out, const mesh::document::Document& document, const CheckFigures& figures) {
-  const mesh::document::Settings& settings = document.settings;
+  const mesh::document::DocumentSettings& settings = document.settings;
   const mesh::Model& model = document.current().model;
   const quality::Report& report = figures.report;
   out << report.elements << " shells: " << report.counts.ok << " ok, " << report.counts.warn << " warn, " << report.counts.fail

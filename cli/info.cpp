@@ -26,7 +26,7 @@ namespace {
 void print_text(std::ostream& out, const mesh::document::Document& document) {
   const mesh::deck::Deck& deck = *document.deck;
   const mesh::deck::ElementCounts& n = deck.element_cards;
-  const mesh::document::Settings& settings = document.settings;
+  const mesh::document::DocumentSettings& settings = document.settings;
   const std::string unit(name(settings.length_unit));
   const auto guessed = [](bool is) { return is ? " (guessed)" : ""; };
   out << printable(document.path.string()) << ": " << name(deck.format) << ", " << counted(deck.files.size(), "file") << '\n';

@@ -67,7 +67,7 @@ std::string info_json(const document::Document& document, const std::vector<Part
         {{"file", printable(w.file)}, {"line", w.line}, {"kind", w.kind}, {"message", printable(w.message)}, {"count", w.count}});
   Json cards = Json::object();
   for (const auto& [kind, count] : deck.element_kinds) cards[printable(kind)] = count;
-  const document::Settings& settings = document.settings;
+  const document::DocumentSettings& settings = document.settings;
   const Json json = {{"format", name(deck.format)},
                      {"files", std::move(files)},
                      {"length_unit", name(settings.length_unit)},

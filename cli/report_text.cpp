@@ -75,7 +75,7 @@ void say_warnings(const Context& context, std::span<const mesh::deck::Warning> w
 }
 
 void say_guesses(const Context& context, const mesh::document::Document& document) {
-  const mesh::document::Settings& settings = document.settings;
+  const mesh::document::DocumentSettings& settings = document.settings;
   std::string guesses, options;
   const auto add = [&](bool guessed, const std::string& what, const char* option) {
     if (!guessed) return;

@@ -9,6 +9,7 @@
 #include "cli/json_output.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"
+#include "ipc/failure.h"
 #include "ipc/messages_json.h"
 #include "ipc/reconnecting_client.h"
 #include "mesh/document/edit_kinds.h"
@@ -81,11 +82,11 @@ class Session {
   }
 
   /// The state, once what was open is open again.
-  Result<ipc::State> state() {
+  Result<ipc::DocumentState> state() {
     for (;;) {
       const Result<ipc::Answer> answer = ask_again(ipc::GetState{}, "waiting");
       if (!answer) return fail(answer.error());
-      const auto* state = std::get_if<ipc::State>(&*answer);
+      const auto* state = std::get_if<ipc::DocumentState>(&*answer);
       if (state == nullptr) return fail("", "the daemon answered something else than its state");
       if (state->open || !state->busy) return *state;
       if (surroundings_.stop()) return fail("", "stopped");
@@ -95,12 +96,12 @@ class Session {
 
   /// Does an edit once, even if the daemon goes in the middle: its journal then tells whether the edit counts.
   Result<document::EditReport> edit(const document::Edit& edit) {
-    const Result<ipc::State> before = state();
+    const Result<ipc::DocumentState> before = state();
     if (!before) return fail(before.error());
     bool lost = false;
     Result<ipc::Answer> answer = ask(ipc::ApplyEdit{edit}, std::string(name(edit)), &lost);
     if (!answer && lost) {
-      const Result<ipc::State> after = state();
+      const Result<ipc::DocumentState> after = state();
       if (!after) return fail(after.error());
       if (after->path != before->path) return fail(after->path, "the daemon was restarted with another document");
       if (after->journalled_edits == before->journalled_edits + 1) {
@@ -124,7 +125,7 @@ class Session {
 
  private:
   static Result<ipc::Answer> unfailed(ipc::Answer answer) {
-    if (auto* failed = std::get_if<ipc::Failed>(&answer)) return fail(std::move(failed->file), failed->line, std::move(failed->message));
+    if (const auto* failed = std::get_if<ipc::Failed>(&answer)) return fail(ipc::error_from(*failed));
     return answer;
   }
 
@@ -133,7 +134,7 @@ class Session {
   const Context& surroundings_;
 };
 
-void print_state(std::ostream& out, const Context& context, const ipc::State& state) {
+void print_state(std::ostream& out, const Context& context, const ipc::DocumentState& state) {
   if (!state.open) {
     out << (state.busy ? "a deck is being opened\n" : "no document is open\n");
     return;
@@ -206,7 +207,7 @@ int session(const SessionOptions& options, const Common& common, const Context& 
       answer = session.ask_again(open_request(options, common), "reading " + options.deck.filename().string());
       break;
     case SessionAction::state: {
-      Result<ipc::State> state = session.state();
+      Result<ipc::DocumentState> state = session.state();
       answer = state ? Result<ipc::Answer>(std::move(*state)) : fail(state.error());
       break;
     }
@@ -224,7 +225,7 @@ int session(const SessionOptions& options, const Common& common, const Context& 
   }
   if (common.json)
     context.out << ipc::answer_fields(*answer) << '\n';
-  else if (const auto* state = std::get_if<ipc::State>(&*answer))
+  else if (const auto* state = std::get_if<ipc::DocumentState>(&*answer))
     print_state(context.out, context, *state);
   else if (const auto* saved = std::get_if<ipc::Saved>(&*answer))
     print_saved(context.out, context, *saved);

@@ -1,5 +1,5 @@
-// Small binary records in native byte order, both ends on one machine: appended to and read from a byte array. Reading
-// never passes the end; after the first failure everything read is zero and `ok` stays false.
+// Writes and reads small binary records in native byte order, for processes on one machine. Reading never passes the end; after the
+// first failure every value read is zero and `ok` stays false.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,7 @@ class ByteReader {
     const std::span<const std::byte> from = take(static_cast<std::size_t>(size));
     return {reinterpret_cast<const char*>(from.data()), from.size()};
   }
-  /// Whether `count` records of at least `size` bytes can still follow: to be asked before memory is reserved for them.
+  /// Whether `count` records of at least `size` bytes can still follow. Check it before reserving memory for them.
   bool holds(std::uint64_t count, std::size_t size) const { return ok_ && count <= rest_.size() / size; }
   bool ok() const { return ok_; }
   bool at_end() const { return rest_.empty(); }

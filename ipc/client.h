@@ -1,4 +1,4 @@
-// A client of modeld: one connection, requests with answers, events in between. Never blocks longer than the caller allows.
+// A client of modeld: one connection for requests, answers and events. Never blocks longer than the caller allows.
 #pragma once
 
 #include <chrono>
@@ -25,10 +25,10 @@ class Client {
  public:
   /// Connects and exchanges hellos. Errors: nobody listens (names the socket and says how to start), other protocol version.
   static Result<Client> connect(const std::filesystem::path& socket, const std::string& program);
-  /// Connects and sends the hello without waiting for the welcome, for loops that mustn't stand still. Until `greeted` is true nothing
-  /// else may be called.
+  /// Connects and sends the hello without waiting for the welcome, for loops that mustn't block. Until `greeted` returns true, call nothing
+  /// else.
   static Result<Client> begin(const std::filesystem::path& socket, const std::string& program);
-  /// Whether the welcome has come, waiting for it at most `patience`. Errors as of `connect`.
+  /// Whether the welcome has arrived; waits for it at most `patience`. Errors as of `connect`.
   Result<bool> greeted(std::chrono::milliseconds patience = std::chrono::milliseconds(0));
   Client(Client&&) noexcept;
   Client& operator=(Client&&) noexcept;
@@ -36,7 +36,7 @@ class Client {
 
   /// Sends without waiting; returns the request's number. Fails when the daemon is gone.
   Result<std::uint64_t> send(const Request& request);
-  /// Sends and waits for the answer; events that come meanwhile are kept for `next_event`. A Failed answer is an Error.
+  /// Sends and waits for the answer; events that arrive meanwhile are kept for `next_event`. A Failed answer is an Error.
   Result<Answer> call(const Request& request, std::chrono::milliseconds patience = std::chrono::minutes(10));
 
   struct Reply {
@@ -48,9 +48,9 @@ class Client {
   std::optional<Event> next_event();
   std::optional<Reply> next_reply();  ///< answers to `send`
 
-  /// The current generation; keeps mapped what is shared with earlier ones. The lease goes back when the view dies.
+  /// The current generation; segments shared with earlier snapshots stay mapped. The view's destructor returns the lease.
   Result<std::shared_ptr<const SnapshotView>> snapshot();
-  /// What `snapshot` puts into GetSnapshot::have_segments; for those who `send` it.
+  /// The segments to list in GetSnapshot::have_segments when it is sent with `send`.
   std::vector<std::uint64_t> segments() const;
   /// The snapshot that came with a Snapshot answer to `send`.
   Result<std::shared_ptr<const SnapshotView>> take_snapshot(const Snapshot& answer);
@@ -60,15 +60,15 @@ class Client {
   Result<PreviewReader> take_preview(const DragBegun& begun);
 
   const Welcome& welcome() const;
-  /// How modeld is, without asking it; nothing before its first heartbeat.
+  /// modeld's health, read from its state page without a request; empty before its first heartbeat.
   std::optional<Health> health() const;
 
   int descriptor() const;  ///< for poll(2)
 
  private:
-  struct State;
-  explicit Client(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit Client(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace prismesh::ipc

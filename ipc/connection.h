@@ -1,5 +1,5 @@
-// A client's end of a daemon's socket, whatever the messages: requests out, answers and events in. Never blocks longer than the
-// caller allows. What the clients of the daemons share; only their sources include it.
+// A client's connection to a daemon, for any set of messages: sends requests, receives answers and events. Never blocks longer than the
+// caller allows. Only the sources of the daemons' clients include it.
 #pragma once
 
 #include <algorithm>
@@ -16,18 +16,19 @@
 
 #include <poll.h>
 
+#include "ipc/failure.h"
 #include "ipc/line_socket.h"
 #include "ipc/messages_json.h"
 
 namespace prismesh::ipc {
 
-/// A daemon that listens but doesn't greet for so long is given up.
+/// Max time that a listening daemon may take to greet.
 inline constexpr std::chrono::seconds kGreetingPatience{10};
 
-/// poll(2) until the socket is ready or the time has come; false: the time has come.
+/// Waits (poll(2)) until the socket is ready or the time has come; false if the time has come.
 Result<bool> wait_for_socket(int socket, short what, std::chrono::steady_clock::time_point until);
 
-/// Waits for a client's welcome as long as one may take; `client` is what `begin` of its class has given.
+/// Waits for the welcome of a client at most kGreetingPatience; `client` is the result of its class's `begin`.
 template <class AnyClient>
 Result<AnyClient> welcomed(Result<AnyClient> client, const std::filesystem::path& socket) {
   if (!client) return client;
@@ -65,7 +66,7 @@ class Connection {
     const Time::time_point until = Time::now() + patience;
     for (;;) {
       if (std::optional<Answer> answer = take_reply(number)) {
-        if (auto* failed = std::get_if<Failed>(&*answer)) return fail(std::move(failed->file), failed->line, std::move(failed->message));
+        if (const auto* failed = std::get_if<Failed>(&*answer)) return fail(error_from(*failed));
         return std::move(*answer);
       }
       const Result<bool> turned = turn(until);
@@ -81,7 +82,7 @@ class Connection {
     return wait(*number, patience);
   }
 
-  /// One round of sending and receiving, waiting for something to do until `until`; false: the time has come.
+  /// Sends and receives once, waiting until `until` for something to do; false if the time has come.
   Result<bool> turn(Time::time_point until) {
     if (Result<void> flushed = flush(); !flushed) return fail(std::move(flushed.error()));
     const auto what = static_cast<short>(socket_.queued_bytes() > 0 ? POLLIN | POLLOUT : POLLIN);
@@ -92,7 +93,7 @@ class Connection {
     return true;
   }
 
-  /// Takes the answer to a hello, with the state page that rides with it; false: none has come within `patience`.
+  /// Takes the answer to a hello and its state page; false if none arrived within `patience`.
   template <class Welcome, class Page>
   Result<bool> take_welcome(std::uint64_t hello, std::chrono::milliseconds patience, Welcome& welcome, std::optional<Page>& page) {
     const Time::time_point until = Time::now() + patience;
@@ -105,9 +106,9 @@ class Connection {
     if (!answer) return fail(answer.error());
     const auto* welcomed = std::get_if<Welcome>(&*answer);
     if (welcomed == nullptr) return fail(path_.string(), std::string("what listens there isn't ") + Protocol::kDaemon);
-    const std::vector<Descriptor> riders = take_riders(hello);
-    if (riders.empty()) return fail(path_.string(), "the daemon's welcome lacks the state page");
-    Result<Page> mapped = Page::map(riders.front());
+    const std::vector<Descriptor> descriptors = take_descriptors_of(hello);
+    if (descriptors.empty()) return fail(path_.string(), "the state page is missing in the daemon's welcome");
+    Result<Page> mapped = Page::map(descriptors.front());
     if (!mapped) return fail(std::move(mapped.error()));
     welcome = *welcomed;
     page = std::move(*mapped);
@@ -127,9 +128,9 @@ class Connection {
     return reply;
   }
   bool answered(std::uint64_t number) const { return find_reply(number) != replies_.end(); }
-  /// The descriptors that rode with the answer to a request; none: none did, or they were taken.
-  std::vector<Descriptor> take_riders(std::uint64_t number) {
-    auto node = riders_.extract(number);
+  /// The descriptors that came with the answer to a request; empty if there were none or they were taken.
+  std::vector<Descriptor> take_descriptors_of(std::uint64_t number) {
+    auto node = descriptors_.extract(number);
     return node ? std::move(node.mapped()) : std::vector<Descriptor>();
   }
 
@@ -137,9 +138,9 @@ class Connection {
   int descriptor() const { return socket_.descriptor(); }
 
  protected:
-  /// Requests that go along with the next message.
+  /// Requests to send with the next message.
   virtual std::vector<Request> due() { return {}; }
-  /// An answer has come, and is about to be put among the replies.
+  /// Called for each answer before it is put among the replies.
   virtual void arrived(std::uint64_t, const Answer&) {}
 
  private:
@@ -179,7 +180,7 @@ class Connection {
       return {};
     }
     auto& answer = std::get<Answer>(message->message);
-    if (!descriptors->empty()) riders_[message->to] = std::move(*descriptors);
+    if (!descriptors->empty()) descriptors_[message->to] = std::move(*descriptors);
     arrived(message->to, answer);
     replies_.push_back({message->to, std::move(answer)});
     return {};
@@ -203,7 +204,7 @@ class Connection {
   std::uint64_t next_number_ = 1;
   std::deque<Event> events_;
   std::deque<Reply> replies_;
-  std::map<std::uint64_t, std::vector<Descriptor>> riders_;  ///< by the number of the request they answer
+  std::map<std::uint64_t, std::vector<Descriptor>> descriptors_;  ///< by the number of the request they answer
 };
 
 }  // namespace prismesh::ipc

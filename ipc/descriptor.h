@@ -1,4 +1,4 @@
-// File descriptors and mappings that close themselves.
+// Owners of file descriptors and mappings, and shared memory.
 #pragma once
 
 #include <cstddef>
@@ -49,11 +49,11 @@ class Mapping {
 Result<Descriptor> make_shared_memory(const char* name, std::size_t size);
 /// Anonymous shared memory with this content, sealed against any change.
 Result<Descriptor> make_sealed_memory(const char* name, std::span<const std::byte> content);
-/// Adds F_SEAL_FUTURE_WRITE and closes the set of seals: mappings made before can write, later ones only read.
+/// Adds F_SEAL_FUTURE_WRITE and F_SEAL_SEAL: mappings made before can write, later ones only read.
 Result<void> seal_for_readers(const Descriptor& descriptor);
-/// Whether a page that came from another process has all the seals that its reader relies on. `name` is the page's, for the error.
+/// Checks that a page from another process has all the seals that its reader relies on. `name` is the page's, for the error.
 Result<void> check_page_seals(const Descriptor& descriptor, const char* name);
-/// Backs a range with memory now, so that lack of memory is an error here and no SIGBUS at the first write.
+/// Allocates the memory of a range now, so that missing memory is an error here instead of a SIGBUS at the first write.
 Result<void> reserve(const Descriptor& descriptor, std::size_t offset, std::size_t size);
 
 }  // namespace prismesh::ipc

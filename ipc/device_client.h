@@ -1,5 +1,5 @@
-// A client of deviced: one connection, its state page, requests with answers, events in between. Never blocks longer than the
-// caller allows; looking at the page costs no call at all.
+// A client of deviced: one connection for requests, answers and events, and the daemon's state page. Never blocks longer than the caller
+// allows; reading the page needs no system call.
 #pragma once
 
 #include <chrono>
@@ -20,10 +20,10 @@ class DeviceClient {
  public:
   /// Connects and exchanges hellos. Errors: nobody listens (names the socket and says how to start), other protocol version.
   static Result<DeviceClient> connect(const std::filesystem::path& socket, const std::string& program);
-  /// Connects and sends the hello without waiting for the welcome, for loops that mustn't stand still. Until `greeted` is true nothing
-  /// else may be called.
+  /// Connects and sends the hello without waiting for the welcome, for loops that mustn't block. Until `greeted` returns true, call nothing
+  /// else.
   static Result<DeviceClient> begin(const std::filesystem::path& socket, const std::string& program);
-  /// Whether the welcome has come, waiting for it at most `patience`. Errors as of `connect`.
+  /// Whether the welcome has arrived; waits for it at most `patience`. Errors as of `connect`.
   Result<bool> greeted(std::chrono::milliseconds patience = std::chrono::milliseconds(0));
   DeviceClient(DeviceClient&&) noexcept;
   DeviceClient& operator=(DeviceClient&&) noexcept;
@@ -31,7 +31,7 @@ class DeviceClient {
 
   /// Sends without waiting; returns the request's number. Fails when the daemon is gone.
   Result<std::uint64_t> send(const DeviceRequest& request);
-  /// Sends and waits for the answer; events that come meanwhile are kept for `next_event`. A Failed answer is an Error.
+  /// Sends and waits for the answer; events that arrive meanwhile are kept for `next_event`. A Failed answer is an Error.
   Result<DeviceAnswer> call(const DeviceRequest& request, std::chrono::milliseconds patience = std::chrono::seconds(10));
 
   struct Reply {
@@ -44,15 +44,15 @@ class DeviceClient {
   std::optional<Reply> next_reply();  ///< answers to `send`
 
   const DeviceWelcome& welcome() const;
-  /// The state page of this life of the daemon. It stays as it was when the daemon dies: look at its times.
+  /// The state page of the daemon's process. It keeps its content when the daemon dies: check its times.
   const DevicePageReader& page() const;
 
   int descriptor() const;  ///< for poll(2)
 
  private:
-  struct State;
-  explicit DeviceClient(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit DeviceClient(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace prismesh::ipc

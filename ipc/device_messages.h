@@ -1,5 +1,5 @@
-// What clients and deviced say to each other, besides the state page: plain structs, one JSON definition each. Same framing as
-// modeld's (one JSON object a line: {"request": "get_devices", "number": 5}). docs/protocol.md describes them.
+// The messages between deviced and its clients, as plain structs (their JSON: device_messages_json.cpp). One JSON object on each line, as
+// modeld's: {"request": "get_devices", "number": 5}. docs/protocol.md describes them.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@ struct DeviceHello {
   std::string program;
 };
 struct GetDevices {};
-struct PictureShown {  ///< no answer: what the kiosk shows has changed from stereo to mono or back
+struct PictureShown {  ///< no answer: the kiosk has changed from stereo to mono or back
   bool mono = true;
 };
-struct HoldMask {  ///< calibration: the mask goes there and stays until ReleaseMask or the client's end. One client at a time.
+struct HoldMask {  ///< for calibration: moves the mask and holds it until ReleaseMask or the client's end. One client at a time.
   double position_mm = 0;
 };
 struct ReleaseMask {};
-struct Rearm {};   ///< try again after a stuck mask or a motor's alarm; homes
-struct Reload {};  ///< reads settings and profile again: a calibration was saved
+struct Rearm {};   ///< tries again after a stuck mask or a motor's alarm, and homes
+struct Reload {};  ///< reads settings and profile again, after a calibration was saved
 
 using DeviceRequest = std::variant<DeviceHello, GetDevices, PictureShown, HoldMask, ReleaseMask, Rearm, Reload>;
 
@@ -36,19 +36,19 @@ struct DeviceWelcome {  ///< descriptor: the state page
   int protocol = kDeviceProtocolVersion;
   std::string version;
 };
-/// One device in words.
+/// The state of a device, for people.
 struct DeviceInfo {
   std::string role;   ///< "eye tracker", "prism servo"
   std::string kind;   ///< "dynasight", "opentrack", "dynamixel"
   std::string where;  ///< its port
   bool simulated = false;
   std::string state;    ///< EyesPhase or MaskPhase, in words
-  std::string trouble;  ///< what is wrong, and what to do about it; empty when all is well
+  std::string trouble;  ///< what is wrong, and what to do about it; empty if nothing is
   bool operator==(const DeviceInfo&) const = default;
 };
 struct Devices {
   std::vector<DeviceInfo> devices;
-  std::string profile;  ///< the display profile that the mask is moved for
+  std::string profile;  ///< the display profile in use
 };
 using DeviceAnswer = std::variant<Failed, Done, DeviceWelcome, Devices>;
 

@@ -2,26 +2,26 @@
 
 #include "ipc/json_message.h"
 
+// --- the definitions: each message's kind and its fields ---
+
+namespace prismesh::json {
+
+PRISMESH_MESSAGE(ipc::DeviceHello, "hello", f("protocol", m.protocol), f("program", m.program));
+PRISMESH_MESSAGE(ipc::GetDevices, "get_devices", );
+PRISMESH_MESSAGE(ipc::PictureShown, "picture_shown", f("mono", m.mono));
+PRISMESH_MESSAGE(ipc::HoldMask, "hold_mask", f("position_mm", m.position_mm));
+PRISMESH_MESSAGE(ipc::ReleaseMask, "release_mask", );
+PRISMESH_MESSAGE(ipc::Rearm, "rearm", );
+PRISMESH_MESSAGE(ipc::Reload, "reload", );
+PRISMESH_MESSAGE(ipc::DeviceWelcome, "welcome", f("protocol", m.protocol), f("version", m.version));
+PRISMESH_MESSAGE(ipc::Devices, "devices", f("devices", m.devices), f("profile", m.profile));
+PRISMESH_MESSAGE(ipc::DeviceChanged, "device_changed", f("device", m.device));
+PRISMESH_JSON_OBJECT(ipc::DeviceInfo, f("role", m.role), f("kind", m.kind), f("where", m.where), f("simulated", m.simulated),
+                     f("state", m.state), f("trouble", m.trouble));
+
+}  // namespace prismesh::json
+
 namespace prismesh::ipc {
-
-// --- the definitions: each message's tag and its fields ---
-
-namespace json_message {
-
-PRISMESH_MESSAGE(DeviceHello, "hello", f("protocol", m.protocol), f("program", m.program));
-PRISMESH_MESSAGE(GetDevices, "get_devices", );
-PRISMESH_MESSAGE(PictureShown, "picture_shown", f("mono", m.mono));
-PRISMESH_MESSAGE(HoldMask, "hold_mask", f("position_mm", m.position_mm));
-PRISMESH_MESSAGE(ReleaseMask, "release_mask", );
-PRISMESH_MESSAGE(Rearm, "rearm", );
-PRISMESH_MESSAGE(Reload, "reload", );
-PRISMESH_MESSAGE(DeviceWelcome, "welcome", f("protocol", m.protocol), f("version", m.version));
-PRISMESH_MESSAGE(Devices, "devices", f("devices", m.devices), f("profile", m.profile));
-PRISMESH_MESSAGE(DeviceChanged, "device_changed", f("device", m.device));
-PRISMESH_PART(DeviceInfo, f("role", m.role), f("kind", m.kind), f("where", m.where), f("simulated", m.simulated), f("state", m.state),
-              f("trouble", m.trouble));
-
-}  // namespace json_message
 
 Result<std::string> encode_device_request(std::uint64_t number, const DeviceRequest& request) {
   return json_message::encode_request(number, request);

@@ -1,4 +1,4 @@
-// deviced's messages as lines of JSON, in modeld's manner (ipc/messages_json.h). docs/protocol.md lists them.
+// deviced's messages as lines of JSON, in the same form as modeld's (ipc/messages_json.h). docs/protocol.md lists them.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@ namespace prismesh::ipc {
 
 /// Without the line's end. Errors: text in the request isn't UTF-8.
 Result<std::string> encode_device_request(std::uint64_t number, const DeviceRequest& request);
-/// `descriptors` is how many ride with the line.
+/// `descriptors`: how many are sent with the line.
 std::string encode_device_answer(std::uint64_t to, const DeviceAnswer& answer, std::size_t descriptors = 0);
 std::string encode_device_event(const DeviceEvent& event);
-/// An answer's fields alone, as an object in one line: for programs that print what they were told.
+/// An answer's fields alone, as an object in one line, for programs that print answers.
 std::string device_answer_fields(const DeviceAnswer& answer);
 
 /// Errors name the field and, for an unknown one, the nearest known.

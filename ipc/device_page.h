@@ -1,5 +1,5 @@
-// The device daemon's state page: where the eyes are, where the mask is, and how the devices are, in shared memory that readers
-// look at without asking. A page belongs to one life of the daemon: a new daemon makes a new page.
+// deviced's state page: the positions of eyes and mask and the state of the devices, in shared memory that clients read without a
+// request. Each process of the daemon makes a new page.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace prismesh::ipc {
 enum class EyesPhase : std::uint8_t {
   none,       ///< no tracker is configured
   absent,     ///< configured, but its port can't be opened or went away
-  silent,     ///< the port is open, but nothing sensible comes
+  silent,     ///< the port is open, but no valid data arrive
   searching,  ///< the tracker works and sees no head
   tracking,
 };
@@ -29,8 +29,8 @@ std::string_view name(EyesPhase phase);
 /// The eyes, written at each tick.
 struct EyesState {
   std::int64_t time_ns = 0;                  ///< CLOCK_MONOTONIC of the tick that wrote this
-  std::int64_t measured_ns = 0;              ///< of the newest measurement; 0: never. Its age is what tells fresh from stale ...
-  std::int64_t lost_after_ns = 100'000'000;  ///< ... older than this the eyes are lost: more with a tracker that takes long
+  std::int64_t measured_ns = 0;              ///< of the newest measurement; 0: never. If it is ...
+  std::int64_t lost_after_ns = 100'000'000;  ///< ... older than this, the eyes are lost; longer for slow trackers
   std::array<double, 3> between_eyes_mm{};
   std::array<double, 3> velocity_mm_s{};
   std::array<double, 3> toward_right{1, 0, 0};
@@ -43,14 +43,14 @@ struct EyesState {
 
 using PrismState = drivers::prism_servo::MaskState;
 
-/// How the daemon itself is.
+/// The health of the daemon itself.
 struct DeviceHealth {
   std::int64_t heartbeat_ns = 0;
   std::int64_t pid = 0;
   std::uint64_t ticks = 0;
   std::uint64_t ticks_late = 0;  ///< by more than a period
   std::int64_t worst_late_ns = 0;
-  std::int64_t tick_cpu_ns = 0;  ///< median of late
+  std::int64_t tick_cpu_ns = 0;  ///< recent median
   bool realtime = false;         ///< SCHED_FIFO was granted
   bool memory_locked = false;
   bool simulated = false;  ///< at least one device is

@@ -1,4 +1,4 @@
-// What goes around a message on its way: numbers, descriptors, and what can't be read.
+// What is sent with a message: its number, its count of descriptors; and requests that can't be read.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,16 @@ struct Numbered {
   std::uint64_t number = 0;
   AnyRequest request;
 };
-/// A request that can't be read; `number` is 0 where not even that can.
+/// A request that can't be read; `number` is 0 if it can't be read either.
 struct BadRequest {
   std::uint64_t number = 0;
   std::string message;
 };
-/// What a daemon says.
+/// A message from a daemon: an answer or an event.
 template <class AnyAnswer, class AnyEvent>
 struct Said {
   std::uint64_t to = 0;         ///< the request that is answered
-  std::size_t descriptors = 0;  ///< that ride with the line
+  std::size_t descriptors = 0;  ///< that belong to the line
   std::variant<AnyAnswer, AnyEvent> message;
 };
 

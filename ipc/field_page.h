@@ -1,4 +1,4 @@
-// A field's values in shared memory: sealed, a float for each node or shell of one generation.
+// A field's values in sealed shared memory: a float for each node or shell of one generation.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace prismesh::ipc {
 
-/// What stands before the values.
+/// The header before the values.
 struct FieldHeader {
   static constexpr std::uint64_t kMagic = 0x646c656966736d70;  // "pmsfield"
   std::uint64_t magic = kMagic;
@@ -19,17 +19,17 @@ struct FieldHeader {
   std::uint64_t on_nodes = 0;  ///< 1, or 0: on shells
 };
 
-/// Memory that can't be changed any more. Errors: no memory.
+/// Memory that is sealed against any change. Errors: no memory.
 Result<Descriptor> seal_field(std::uint64_t generation, bool on_nodes, std::span<const float> values);
 
-/// Values as a view maps them: checked against the memory's size and seals before anything is read.
+/// Values as a view maps them. The memory's size and seals are checked before anything is read.
 class FieldValues {
  public:
   static Result<std::shared_ptr<const FieldValues>> map(const Descriptor& descriptor);
 
   std::uint64_t generation() const { return header_.generation; }
   bool on_nodes() const { return header_.on_nodes != 0; }
-  /// By node or shell index; NaN: no value. How many there are is the writer's word: compare it with the model's counts.
+  /// By node or shell index; NaN: no value. Their number isn't checked: compare it with the model's counts.
   std::span<const float> values() const;
 
  private:

@@ -57,7 +57,7 @@ Result<bool> LineSocket::receive() {
 }
 
 Result<void> LineSocket::keep_descriptors(const void* received) {
-  // CMSG_NXTHDR wants a pointer that isn't const, and changes nothing.
+  // CMSG_NXTHDR takes a non-const pointer, but changes nothing.
   auto* message = const_cast<msghdr*>(static_cast<const msghdr*>(received));
   for (cmsghdr* header = CMSG_FIRSTHDR(message); header != nullptr; header = CMSG_NXTHDR(message, header)) {
     if (header->cmsg_level != SOL_SOCKET || header->cmsg_type != SCM_RIGHTS) continue;
@@ -132,7 +132,7 @@ Result<bool> LineSocket::flush() {
     if (count < 0 && errno == EINTR) continue;
     if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return false;
     if (count < 0) return gone(std::strerror(errno));
-    // They have gone with the first byte.
+    // They were sent with the first byte.
     out.descriptors.clear();
     out.sent += static_cast<std::size_t>(count);
     queued_bytes_ -= static_cast<std::size_t>(count);
@@ -143,10 +143,10 @@ Result<bool> LineSocket::flush() {
 
 namespace {
 
-/// Whoever may put a socket into the folder could answer in the daemon's place.
+/// A user who may write to the folder could put a socket there and answer in the daemon's place.
 Result<void> check_folder(const std::filesystem::path& folder) {
   struct stat status {};
-  if (::stat(folder.c_str(), &status) != 0) return {};  // then connecting says what is wrong
+  if (::stat(folder.c_str(), &status) != 0) return {};  // then connecting tells what is wrong
   if (status.st_uid != ::geteuid() && status.st_uid != 0)
     return fail(folder.string(),
                 "belongs to another user (" + std::to_string(status.st_uid) + "), so whoever answers there is not to be trusted");

@@ -1,4 +1,4 @@
-// A connected local socket that carries lines of text, and descriptors with the lines that name them. Never blocks.
+// A connected local socket for lines of text, and for descriptors that belong to lines. Never blocks.
 #pragma once
 
 #include <cstddef>
@@ -15,24 +15,24 @@
 namespace prismesh::ipc {
 
 struct LineLimits {
-  std::size_t line_bytes = std::size_t{8} << 20;  ///< longest line taken
-  std::size_t descriptors = 253;                  ///< most that may wait for their line; 0: none are taken
+  std::size_t line_bytes = std::size_t{8} << 20;  ///< max length of a line
+  std::size_t descriptors = 253;                  ///< max number that may wait for their line; 0: none are accepted
 };
 
 class LineSocket {
  public:
   LineSocket(Descriptor socket, LineLimits limits);
 
-  /// Takes in what has arrived, up to a few hundred kilobytes. False: nothing was there. Errors: the other side is gone, a line is
-  /// too long, descriptors that weren't asked for.
+  /// Reads what has arrived, up to a few hundred kilobytes. False if nothing has. Errors: the other side is gone, a line is too long,
+  /// unexpected descriptors.
   Result<bool> receive();
   /// The next whole line, without its end; valid until the next call of receive.
   std::optional<std::string_view> next_line();
-  /// The descriptors that ride with the line just taken. Errors: fewer have come than it names.
+  /// The descriptors of the line just taken. Errors: fewer have arrived than it names.
   Result<std::vector<Descriptor>> take_descriptors(std::size_t count);
 
   void queue(std::string line, std::vector<Descriptor> descriptors = {});
-  /// Sends what the other side takes now; true when nothing is left.
+  /// Sends as much as the other side accepts now; true when nothing is left.
   Result<bool> flush();
   std::size_t queued_bytes() const { return queued_bytes_; }
 
@@ -57,7 +57,7 @@ class LineSocket {
   std::size_t queued_bytes_ = 0;
 };
 
-/// Connects to a listening socket. Errors say whether nobody listens (with `remedy`: what to do then) or the socket may not be used.
+/// Connects to a listening socket. Errors: nobody listens (with `remedy`, what to do then), the socket may not be used.
 Result<Descriptor> connect_to(const std::filesystem::path& socket, std::string_view remedy = "start its daemon");
 
 }  // namespace prismesh::ipc

@@ -1,5 +1,5 @@
-// What clients and modeld say to each other: plain structs, one JSON definition each (messages_json.cpp). One message a line.
-// docs/protocol.md describes them for other programs.
+// The messages between modeld and its clients, as plain structs (their JSON: messages_json.cpp). docs/protocol.md describes them for other
+// programs.
 #pragma once
 
 #include <array>
@@ -27,12 +27,12 @@ struct Open {
   std::optional<std::string> length_unit;
   std::optional<double> target_size;
   std::optional<std::string> criteria;
-  bool discard = false;  ///< unsaved edits of the document that is open are given up, once the other deck is read; false: refused
+  bool discard = false;  ///< discards unsaved edits of the open document once the other deck is read; false: refused with unsaved edits
 };
 struct Save {
   std::optional<std::string> path;  ///< absent: the deck's own
-  bool becomes = false;             ///< the document goes on as the deck at `path`; false: that is a copy
-  bool asks = false;                ///< where a file would be replaced or a folder made nothing is written, and the answer is SaveWould
+  bool becomes = false;             ///< the document becomes the deck at `path`; false: it is saved as a copy
+  bool asks = false;                ///< if a file would be replaced or a folder made, nothing is written and the answer is SaveWould
   bool stays_unsaved = false;       ///< of a copy: edits that the document's own deck doesn't have still count as unsaved
 };
 struct Close {
@@ -57,33 +57,33 @@ struct CommitDrag {
 struct CancelDrag {
   std::uint64_t drag = 0;
 };
-struct Count {  ///< what an id expression names; selects nothing
+struct Count {  ///< counts what an expression names; selects nothing
   std::string expr;
   mesh::select::Kind kind = mesh::select::Kind::node;
 };
-/// What is wrong with the shells, in figures. Costs a pass over the shells: ask where they are looked at, once a generation.
+/// Asks for statistics of the shells' quality. Costs a pass over the shells: ask only where they are shown, once for a generation.
 struct GetQuality {
-  std::string metric;    ///< whose histogram and errors; empty: no histogram, the errors of all metrics
+  std::string metric;    ///< for histogram and errors; empty: no histogram, the errors of all metrics
   bool damaged = false;  ///< only shells that the document's edits made worse
 };
-/// The shells whose metric is in [from, to); absent bounds are open.
+/// Finds the shells whose metric is in [from, to). Without a bound that side is open.
 struct FindShells {
   std::string metric;
   std::optional<double> from, to;
   bool damaged = false;
 };
-struct PreviewEdit {  ///< what an edit would do; nothing is done
+struct PreviewEdit {  ///< asks what an edit would do, without applying it
   mesh::document::Edit edit;
 };
-/// One number for each node or shell, for colours and figures (mesh/document/field.h).
+/// Asks for a field (mesh/document/field.h).
 struct GetField {
-  std::string field = "displacement";               ///< as mesh::document::field_wish takes it
+  std::string field = "displacement";               ///< a name for mesh::document::field_wish
   std::optional<std::uint64_t> generation;          ///< absent: the current one
   std::string against = "opened";                   ///< or "surface": as last shaped; or another deck's path
-  std::optional<std::uint64_t> against_generation;  ///< goes before `against`
+  std::optional<std::uint64_t> against_generation;  ///< replaces `against`
   std::string from, to;                             ///< of "distance": expressions
 };
-/// From where a view looks, for views that move together. Screen millimetres and deck coordinates, as kiosk/stereo/view.h has them.
+/// The camera of a view, for views that move together. In screen millimetres and deck coordinates, as in kiosk/stereo/view.h.
 struct Camera {
   std::array<double, 3> pivot{};
   std::vector<double> rotation{1, 0, 0, 0};  ///< a unit quaternion, real part first
@@ -91,14 +91,14 @@ struct Camera {
   std::array<double, 3> stands_mm{};  ///< the pivot: right, up, before the screen
   bool operator==(const Camera&) const = default;
 };
-struct ShareCamera {  ///< no answer; the other clients hear CameraMoved
+struct ShareCamera {  ///< no answer; the other clients receive CameraMoved
   Camera camera;
 };
-/// Asks what is under way, if it is this client's and can be stopped, to stop: it is answered as failed and leaves everything as it was.
+/// Stops the work under way, if this client asked for it and it can be stopped. Its answer is Failed, and nothing has changed.
 struct Cancel {};
 struct GetState {};
 struct GetSnapshot {
-  std::optional<std::uint64_t> generation;   ///< one of State::generations; absent: the current one
+  std::optional<std::uint64_t> generation;   ///< one of DocumentState::generations; absent: the current one
   std::vector<std::uint64_t> have_segments;  ///< segments the client still has mapped
 };
 struct ReturnSnapshot {  ///< no answer
@@ -122,16 +122,16 @@ struct Welcome {
 };
 /// A file of the deck that holds elements, and the parts that these belong to.
 struct DeckFile {
-  std::string name;  ///< as `file:NAME` in an expression means it
+  std::string name;  ///< NAME of `file:NAME` in an expression
   std::uint64_t shells = 0;
   std::vector<std::int64_t> parts;  ///< ids, ascending
 };
-/// A generation that can be asked for.
+/// A generation that GetSnapshot and GetField can name.
 struct ListedGeneration {
   std::uint64_t number = 0;
   std::string made_by;
 };
-struct State {
+struct DocumentState {
   bool open = false;
   bool busy = false;
   std::string path;
@@ -144,10 +144,10 @@ struct State {
   std::uint64_t selected_nodes = 0;
   mesh::quality::Counts counts;
   bool can_undo = false, can_redo = false, changed = false;
-  std::uint64_t recovered_edits = 0;   ///< brought back from the journal when the document was opened
-  std::uint64_t journalled_edits = 0;  ///< acknowledged since the deck was opened or last saved in place: what a restart brings back
-  std::uint64_t history_bytes = 0, history_cap = 0;  ///< what the states kept for undo and redo take, and may take
-  std::vector<ListedGeneration> generations;         ///< oldest first: what undo and redo walk
+  std::uint64_t recovered_edits = 0;   ///< restored from the journal when the document was opened
+  std::uint64_t journalled_edits = 0;  ///< acknowledged since the deck was opened or last saved in place; a restart restores them
+  std::uint64_t history_bytes = 0, history_cap = 0;  ///< size of the generations kept for undo and redo, and its max
+  std::vector<ListedGeneration> generations;         ///< oldest first; undo and redo move among them
   std::vector<DeckFile> files;
   std::vector<mesh::deck::Warning> warnings;
 };
@@ -156,10 +156,10 @@ struct Saved {
   std::uint64_t nodes_written = 0, lines_changed = 0;
   std::vector<std::string> notes;
 };
-/// Nothing was saved: what the save would do to what is there. Ask without `asks` to do it.
+/// Nothing was saved; tells what the save would replace and make. Send it without `asks` to save.
 struct SaveWould {
-  std::vector<std::string> replace;  ///< files that are there and aren't the deck's own
-  std::vector<std::string> make;     ///< folders that aren't there
+  std::vector<std::string> replace;  ///< existing files that aren't the deck's own
+  std::vector<std::string> make;     ///< missing folders
 };
 struct Edited {
   mesh::document::EditReport report;
@@ -175,10 +175,10 @@ struct QualityMetric {
 };
 struct QualityBar {
   double from = 0, to = 0;
-  bool open_below = false, open_above = false;  ///< holds all that lies farther out
-  std::uint64_t ok = 0, warn = 0, fail = 0;     ///< shells, by what the metric alone says
+  bool open_below = false, open_above = false;  ///< also counts all values beyond
+  std::uint64_t ok = 0, warn = 0, fail = 0;     ///< shells, judged by the metric alone
 };
-/// A shell that warns or fails, and the metric by which it does most.
+/// A shell that warns or fails, and its worst metric.
 struct QualityError {
   std::int64_t shell = 0;
   std::string metric;
@@ -197,43 +197,43 @@ struct Quality {
   std::vector<QualityMetric> metrics;
   std::string metric;
   std::vector<QualityBar> bars;      ///< ascending
-  std::vector<QualityError> errors;  ///< worst first; not more than kMaxQualityErrors
+  std::vector<QualityError> errors;  ///< worst first; max kMaxQualityErrors
   std::uint64_t error_count = 0;
-  std::vector<QualityPart> parts;  ///< with shells that are looked at, ascending by id
+  std::vector<QualityPart> parts;  ///< those with counted shells, ascending by id
 };
 inline constexpr std::size_t kMaxQualityErrors = 500;
 struct ShellsFound {
   std::uint64_t shells = 0;
   std::string expr;  ///< their ids, as an expression of kind element; empty: none
 };
-/// Shells as an edit would leave them: those it would make, and those whose corners it would move or change.
+/// A shell as an edit would leave it: a new one, or one whose corners it would move or change.
 struct PreviewedShell {
   std::int64_t shell = 0;
   std::vector<std::uint32_t> corners;  ///< four, into `points`; a triangle repeats its third
   std::uint32_t warn = 0, fail = 0;    ///< mesh::quality::ShellState
 };
 struct EditPreviewed {
-  std::uint64_t generation = 0;  ///< that the edit would begin from
+  std::uint64_t generation = 0;  ///< that the edit would be applied to
   mesh::document::EditReport report;
   std::vector<std::array<double, 3>> points;
-  std::vector<PreviewedShell> shells;  ///< not more than kMaxPreviewedShells
-  std::uint64_t shell_count = 0;       ///< so many there would be
-  std::vector<std::int64_t> replaced;  ///< ids of shells that would be gone or look otherwise
+  std::vector<PreviewedShell> shells;  ///< max kMaxPreviewedShells
+  std::uint64_t shell_count = 0;       ///< without that limit
+  std::vector<std::int64_t> replaced;  ///< ids of shells that would be removed or changed
 };
 inline constexpr std::size_t kMaxPreviewedShells = 2000;
 struct FieldMade {          ///< descriptor: the values (ipc/field_page.h)
-  std::uint64_t field = 0;  ///< a number of its own
+  std::uint64_t field = 0;  ///< its number, unique
   std::string title, unit;
-  std::string of;       ///< which state, in words
-  std::string against;  ///< compared with what, in words; empty: nothing
+  std::string of;       ///< the state it is of, in words
+  std::string against;  ///< what it is compared with, in words; empty: nothing
   std::uint64_t generation = 0;
   bool on_nodes = true;
   std::uint64_t measured = 0;  ///< nodes or shells with a value
   double min = 0, mean = 0, max = 0;
   std::string min_at, max_at;        ///< "node:7", "shell:12"
   double clear = 0, full = 1;        ///< suggested limits of a colour map
-  std::uint64_t new_nodes = 0;       ///< have a value, and count in no figure (mesh/document/field.h)
-  std::uint64_t shells_without = 0;  ///< without a value though they should have one
+  std::uint64_t new_nodes = 0;       ///< have a value, but aren't in the figures (mesh/document/field.h)
+  std::uint64_t shells_without = 0;  ///< existing shells without a value
 };
 struct DragBegun {  ///< descriptor: the preview
   std::uint64_t drag = 0;
@@ -246,17 +246,17 @@ struct DragBegun {  ///< descriptor: the preview
 struct Snapshot {  ///< descriptors: the table, then the segments listed in new_segments
   std::uint64_t lease = 0;
   std::uint64_t generation = 0;
-  std::vector<std::uint64_t> segments;      ///< all that the table uses, in the table's order
-  std::vector<std::uint64_t> new_segments;  ///< those that ride with this message, in this order
+  std::vector<std::uint64_t> segments;      ///< used by the table, in its order
+  std::vector<std::uint64_t> new_segments;  ///< those sent with this message, in this order
 };
-using Answer = std::variant<Failed, Done, Welcome, State, Saved, SaveWould, Edited, Counted, Quality, ShellsFound, EditPreviewed, DragBegun,
-                            Snapshot, FieldMade>;
+using Answer = std::variant<Failed, Done, Welcome, DocumentState, Saved, SaveWould, Edited, Counted, Quality, ShellsFound, EditPreviewed,
+                            DragBegun, Snapshot, FieldMade>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {
   std::uint64_t generation = 0;
   std::string made_by;
-  std::uint64_t history_bytes = 0, history_cap = 0;  ///< as in State
+  std::uint64_t history_bytes = 0, history_cap = 0;  ///< as in DocumentState
 };
 struct DocumentOpened {
   std::string path;

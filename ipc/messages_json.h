@@ -16,10 +16,10 @@ namespace prismesh::ipc {
 
 /// Without the line's end. Errors: text in the request isn't UTF-8.
 Result<std::string> encode_request(std::uint64_t number, const Request& request);
-/// `descriptors` is how many ride with the line. Text that isn't UTF-8 (names in decks) arrives with replacement characters.
+/// `descriptors`: how many are sent with the line. Text that isn't UTF-8 (names in decks) gets replacement characters.
 std::string encode_answer(std::uint64_t to, const Answer& answer, std::size_t descriptors = 0);
 std::string encode_event(const Event& event);
-/// An answer's fields alone, as an object in one line: for programs that print what they were told.
+/// An answer's fields alone, as an object in one line, for programs that print answers.
 std::string answer_fields(const Answer& answer);
 
 using NumberedRequest = Numbered<Request>;

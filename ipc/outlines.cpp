@@ -20,7 +20,7 @@ struct Line {
   PartIndex part;
 };
 
-/// A face by its corners in ascending order (a triangle's fourth is invalid), and whose it is.
+/// A face by its corners in ascending order (a triangle's fourth is invalid), and the element it belongs to.
 struct Face {
   std::array<NodeIndex, 4> sorted;
   std::uint32_t element = 0;

@@ -1,5 +1,5 @@
-// What is drawn of elements that aren't shells: beams and discrete elements as lines, solids and thick shells by the
-// outline of their outer faces.
+// Finds the lines to draw for elements that aren't shells: beams and discrete elements, and the edges of the outer faces of solids and
+// thick shells.
 #pragma once
 
 #include "mesh/model/model.h"
@@ -11,7 +11,7 @@ struct Outlines {
   mesh::ChunkedArray<mesh::PartIndex> parts;  ///< of each pair; invalid where the card names none
 };
 
-/// Of solids: the edges of faces that belong to one element only, each edge once for all. Costs the model once.
+/// For solids: the edges of faces that belong to one element only, each edge once. Costs the model.
 Outlines outlines(const mesh::Model& model);
 
 }  // namespace prismesh::ipc

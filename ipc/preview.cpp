@@ -114,7 +114,7 @@ bool PreviewReader::latest(PreviewFrame& frame) const {
     if (turn == 0) return false;
     const auto* from = reinterpret_cast<const std::uint64_t*>(data + layout_.frame_at(turn));
     load_words(words.data(), from, 1);
-    // Frames are compared by number only once one was taken; until then `positions` is empty.
+    // Before the first frame `positions` is empty, and the numbers aren't compared.
     if (!frame.positions.empty() && words[0] <= frame.sequence) return false;
     load_words(words.data(), from, words.size());
     if (turns.load() != turn) continue;

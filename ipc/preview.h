@@ -1,5 +1,5 @@
-// What a drag changes, frame by frame, in shared memory: positions of the nodes that move, states of the shells they touch.
-// One writer (modeld), any number of readers; neither waits for the other (ipc/seqlock.h).
+// The frames of a drag in shared memory: positions of the nodes that move, and states of the shells they touch. One writer (modeld) and
+// any number of readers; none waits for another (ipc/seqlock.h).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace prismesh::ipc {
 
-/// Where things lie in a preview's memory; worked out from the two counts by writer and reader alike.
+/// The layout of a preview's memory, which writer and reader compute from the two counts.
 struct PreviewLayout {
   std::size_t nodes = 0;
   std::size_t shells = 0;
@@ -38,10 +38,10 @@ class PreviewWriter {
   Descriptor descriptor_;
   Mapping mapping_;
   PreviewLayout layout_;
-  std::vector<std::uint64_t> frame_;  ///< the next frame, laid out as it lies in memory
+  std::vector<std::uint64_t> frame_;  ///< the next frame, in the layout of the memory
 };
 
-/// A frame as a reader copied it out whole.
+/// A reader's copy of a whole frame.
 struct PreviewFrame {
   std::uint64_t sequence = 0;
   std::vector<mesh::Vec3> positions;              ///< of PreviewReader::nodes()
@@ -54,11 +54,11 @@ class PreviewReader {
   static Result<PreviewReader> map(const Descriptor& descriptor);
   std::uint64_t drag() const;
   std::uint64_t base_generation() const;
-  /// The indices are the writer's word: whoever follows one compares it with the model's counts.
+  /// The indices aren't checked: compare one with the model's counts before using it.
   std::span<const mesh::NodeIndex> nodes() const;
   std::span<const mesh::ShellIndex> shells() const;
-  /// Copies the newest frame if it is newer than frame.sequence; false if there is none or the writer was faster (try at the
-  /// next picture).
+  /// Copies the newest frame if it is newer than frame.sequence; false if there is none, or if the writer overwrote it meanwhile (try
+  /// again for the next picture).
   bool latest(PreviewFrame& frame) const;
 
  private:

@@ -45,7 +45,7 @@ Result<Descriptor> lock_folder(const std::filesystem::path& folder, const std::s
     while (!who.empty() && who.back() == '\n') who.pop_back();
     return fail(folder.string(), whose + " already runs here (process " + who + "); stop it, or give this one another folder");
   }
-  // Only for people who look for who holds the lock: on a full disk they go without.
+  // The process's id is only for people who look for the lock's holder; on a full disk it is missing.
   const std::string own = std::to_string(::getpid()) + "\n";
   if (::ftruncate(lock.get(), 0) == 0) (void)!::pwrite(lock.get(), own.data(), own.size(), 0);
   return lock;

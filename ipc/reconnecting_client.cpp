@@ -13,7 +13,7 @@ using Time = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kFirstPause{50};
 constexpr std::chrono::milliseconds kMaxPause{1000};
-/// How long `wait` sleeps between two looks for the welcome.
+/// How long `wait` sleeps between two checks for the welcome.
 constexpr std::chrono::milliseconds kLook{5};
 
 }  // namespace
@@ -59,7 +59,7 @@ Result<AnyClient*> Reconnecting<AnyClient>::wait(std::chrono::milliseconds patie
   const Time::time_point until = Time::now() + patience;
   for (;;) {
     if (AnyClient* connected = client()) return connected;
-    // One that was never tried is tried once, and may take a moment to greet.
+    // The first attempt is always made, and the daemon may take a moment to greet.
     if (Time::now() >= until && !client_) return fail(trouble_);
     if (Time::now() >= until + kGreetingPatience) return fail(trouble_);
     std::this_thread::sleep_until(client_ ? Time::now() + kLook : std::min(next_try_, until));

@@ -1,4 +1,4 @@
-// A connection that comes back: a daemon may be restarted at any time, and whoever was connected goes on.
+// A connection that is restored when a daemon restarts.
 #pragma once
 
 #include <chrono>
@@ -12,18 +12,18 @@
 
 namespace prismesh::ipc {
 
-/// For programs with a loop of their own: ask for the client in each turn, say when a call of it failed.
+/// For programs with a loop of their own: get the client in each turn, and report when a call of it fails.
 template <class AnyClient>
 class Reconnecting {
  public:
   Reconnecting(std::filesystem::path socket, std::string program) : socket_(std::move(socket)), program_(std::move(program)) {}
 
-  /// The connected client, or null; never waits. Tries to connect at most every so often: at once after a loss, then after 50 ms, twice
-  /// that, up to a second. A client that is new to the caller (`connections` has changed) knows no snapshots, drags or pages of the old.
+  /// The connected client, or null; never waits. Tries to connect at once after a loss, then after 50 ms, 100 ms and so on, up to a second.
+  /// A new client (`connections` has changed) knows no snapshots, drags or pages of the old one.
   AnyClient* client();
   /// As `client`, trying again for up to `patience`. Errors: why the last try failed.
   Result<AnyClient*> wait(std::chrono::milliseconds patience);
-  /// A call failed because the daemon is gone: the connection is given up.
+  /// Closes the connection, after a call failed because the daemon is gone.
   void lost(const Error& why);
 
   std::size_t connections() const { return connections_; }

@@ -1,5 +1,5 @@
-// A page of shared memory that one process writes and others look at: made, filled with its layout and sealed in one place, and
-// checked by its readers in one place. A page belongs to one life of its writer.
+// A sealed page of shared memory that one process writes and others read. Creates it with its layout, and checks it for readers. Each
+// process of the writer makes a new page.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace prismesh::ipc {
 
-/// `Layout` begins with two words, magic and version, and says what they must be: `kName` (for people), `kMagic`, `kVersion`.
+/// `Layout` begins with two words, magic and version, and has their values `kMagic` and `kVersion`, and a name for errors, `kName`.
 template <class Layout>
 class SealedPage {
  public:
-  /// Errors: no memory. All of it is there afterwards, so that writing it can't fail.
+  /// Allocates all memory, so that writing can't fail later. Errors: no memory.
   static Result<SealedPage> create() {
     Result<Descriptor> memory = make_shared_memory(Layout::kName, sizeof(Layout));
     if (!memory) return fail(std::move(memory.error()));
@@ -45,7 +45,7 @@ class SealedPage {
 template <class Layout>
 class SealedPageReader {
  public:
-  /// Errors: memory that could shrink or be written by somebody else, of another size, or that holds something else.
+  /// Errors: memory that could shrink or be written by another process, has another size, or holds something else.
   static Result<SealedPageReader> map(const Descriptor& descriptor) {
     if (Result<void> sealed = check_page_seals(descriptor, Layout::kName); !sealed) return fail(std::move(sealed.error()));
     Result<Mapping> mapping = Mapping::map(descriptor, false);

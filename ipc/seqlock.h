@@ -1,5 +1,5 @@
-// One writer, any number of readers, in shared memory; nobody waits for anybody. Two buffers take turns and a count says
-// which one is whole, so a writer that dies in the middle of a write leaves the last whole value, and the next writer goes on.
+// A value in shared memory with one writer and any number of readers; none waits for another. The writer alternates between two buffers,
+// and a count tells which one is complete. A writer that dies during a write leaves the last complete value, and the next writer continues.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@ namespace prismesh::ipc {
 
 static_assert(std::atomic_ref<std::uint64_t>::is_always_lock_free, "shared memory needs atomics without locks");
 
-/// The count of a pair of buffers. Value n lies in buffer n % 2; count 0 means that nothing was written yet.
+/// The count of a pair of buffers. Value n is in buffer n % 2; count 0 means that nothing was written yet.
 ///
 /// No fences (they can't be checked by ThreadSanitizer): words are stored with release and loaded with acquire. A reader that
 /// sees a word of value n + 2 in the buffer of value n therefore sees the count n + 1, which was stored before that word, and
-/// drops what it has copied.
+/// discards its copy.
 class TurnCount {
  public:
   std::uint64_t load() const { return std::atomic_ref(const_cast<std::uint64_t&>(count_)).load(std::memory_order_acquire); }
@@ -36,7 +36,7 @@ inline void load_words(std::uint64_t* to, const std::uint64_t* from, std::size_t
   for (std::size_t i = 0; i < count; ++i) to[i] = std::atomic_ref(const_cast<std::uint64_t&>(from[i])).load(std::memory_order_acquire);
 }
 
-/// A small value in shared memory. Memory that is all zero is a slot that was never written.
+/// A small value in shared memory. A slot of zeros was never written.
 template <class T>
 requires std::is_trivially_copyable_v<T>
 class SeqlockSlot {
@@ -49,8 +49,8 @@ class SeqlockSlot {
     count_.store(next);
   }
 
-  /// The newest value and, in `count`, how many were written before and with it. Nothing if none was written, or if the writer was
-  /// faster every time (it would have to publish during each of several copies).
+  /// The newest value and, in `count`, how many were written up to it. Empty if none was written, or if the writer published during each of
+  /// several attempts to copy.
   std::optional<T> read(std::uint64_t* count = nullptr) const {
     for (int attempt = 0; attempt < 16; ++attempt) {
       const std::uint64_t now = count_.load();

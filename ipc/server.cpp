@@ -76,15 +76,15 @@ struct ServedClient {
   bool closed = false;
   bool writing = false;
   bool welcomed = false;
-  bool surplus = false;  ///< one too many: it is only told so
+  bool surplus = false;  ///< one too many: it is only refused
   Time::time_point since = Time::now();
-  Time::time_point last_progress = Time::now();  ///< when it last took something of what is queued
+  Time::time_point last_progress = Time::now();  ///< when it last accepted queued bytes
 };
 
 }  // namespace
 
-struct Server::State {
-  State(std::filesystem::path where, ServerHandler& to, const ServerLimits& bounds, Descriptor folder_lock, Descriptor socket)
+struct Server::Impl {
+  Impl(std::filesystem::path where, ServerHandler& to, const ServerLimits& bounds, Descriptor folder_lock, Descriptor socket)
       : path(std::move(where)),
         handler(to),
         limits(bounds),
@@ -112,7 +112,7 @@ struct Server::State {
   void start() {
     accept_next();
     watch_stalls();
-    // A terminal that closes ends a daemon like the others, unless it was started not to mind (nohup).
+    // A closing terminal ends the daemon, unless it was started to ignore that (nohup).
     struct sigaction hang_up {};
     if (::sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) signals.add(SIGHUP);
     signals.async_wait([this](const error_code& problem, int) {
@@ -124,7 +124,7 @@ struct Server::State {
     watched->async_wait(stream_descriptor::wait_read, [this](const error_code& problem) {
       if (problem) return;
       if (accept_all()) return accept_next();
-      // Out of descriptors: the waiting client stays ready, so look again only after a while.
+      // Out of descriptors: the waiting client stays ready, so try again only after a while.
       retry.expires_after(std::chrono::milliseconds(200));
       retry.async_wait([this](const error_code& stopped) {
         if (!stopped) accept_next();
@@ -132,7 +132,7 @@ struct Server::State {
     });
   }
 
-  /// False: the process can't take more connections now.
+  /// False if the process can't accept more connections now.
   bool accept_all() {
     for (;;) {
       Descriptor socket(::accept4(listening.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -208,9 +208,9 @@ struct Server::State {
     connections.erase(client);
     (void)connection->lines.flush();
     connection->watched->cancel();
-    // Its descriptor closes with the last handler that holds it; the other side sees the end now.
+    // The descriptor closes with the last handler that holds it; the other side is told now.
     ::shutdown(connection->lines.descriptor(), SHUT_RDWR);
-    // Told from the loop: the daemon may be in the middle of sending to this client.
+    // Called from the loop: the daemon may be in the middle of sending to this client.
     asio::post(loop, [this, client, why] { handler.disconnected(client, why); });
   }
 
@@ -237,7 +237,7 @@ struct Server::State {
       try {
         work();
       } catch (const std::bad_alloc&) {
-        // Next time, perhaps.
+        // It is tried again next time.
       }
       repeat(timer, period, std::move(work));
     });
@@ -251,64 +251,64 @@ Result<Server> Server::listen(const std::filesystem::path& socket, ServerHandler
   Result<Descriptor> listening = bind_socket(socket);
   if (!listening) return fail(std::move(listening.error()));
   try {
-    auto state = std::make_unique<State>(socket, handler, limits, std::move(*lock), std::move(*listening));
-    state->start();
-    return Server(std::move(state));
+    auto impl = std::make_unique<Impl>(socket, handler, limits, std::move(*lock), std::move(*listening));
+    impl->start();
+    return Server(std::move(impl));
   } catch (const boost::system::system_error& problem) {
-    // The library has no other way to say that descriptors have run out.
+    // The library throws when descriptors have run out.
     return fail(socket.string(), "can't be served: " + problem.code().message());
   }
 }
 
-Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Server::Server(Server&&) noexcept = default;
 Server& Server::operator=(Server&&) noexcept = default;
 
 Server::~Server() {
-  if (!state_) return;
-  for (const auto& [client, connection] : state_->connections) (void)connection->lines.flush();
-  ::unlink(state_->path.c_str());
+  if (!impl_) return;
+  for (const auto& [client, connection] : impl_->connections) (void)connection->lines.flush();
+  ::unlink(impl_->path.c_str());
 }
 
 void Server::run() {
   for (;;) {
     try {
-      state_->loop.run();
+      impl_->loop.run();
       return;
     } catch (const std::bad_alloc&) {
-      // One piece of work is left out; the others go on.
+      // This work is skipped; the others continue.
     }
   }
 }
-void Server::stop() { state_->loop.stop(); }
-void Server::post(std::function<void()> work) { asio::post(state_->loop, std::move(work)); }
+void Server::stop() { impl_->loop.stop(); }
+void Server::post(std::function<void()> work) { asio::post(impl_->loop, std::move(work)); }
 
 void Server::every(std::chrono::nanoseconds period, std::function<void()> work) {
-  state_->timers.push_back(std::make_unique<asio::steady_timer>(state_->loop));
-  state_->repeat(*state_->timers.back(), period, std::move(work));
+  impl_->timers.push_back(std::make_unique<asio::steady_timer>(impl_->loop));
+  impl_->repeat(*impl_->timers.back(), period, std::move(work));
 }
 
 void Server::send(ClientId client, std::string line, std::vector<Descriptor> descriptors) {
-  const std::shared_ptr<ServedClient> connection = state_->find(client);
+  const std::shared_ptr<ServedClient> connection = impl_->find(client);
   if (!connection) return;
   if (connection->lines.queued_bytes() == 0) connection->last_progress = Time::now();
   connection->lines.queue(std::move(line), std::move(descriptors));
-  if (connection->lines.queued_bytes() > state_->limits.queue_bytes) return cut(client, "it reads too slowly");
-  state_->write_next(client);
+  if (connection->lines.queued_bytes() > impl_->limits.queue_bytes) return cut(client, "it reads too slowly");
+  impl_->write_next(client);
 }
 
 void Server::welcome(ClientId client) {
-  if (const std::shared_ptr<ServedClient> connection = state_->find(client)) connection->welcomed = true;
+  if (const std::shared_ptr<ServedClient> connection = impl_->find(client)) connection->welcomed = true;
 }
 
 std::optional<std::string> Server::refusal(ClientId client) const {
-  const std::shared_ptr<ServedClient> connection = state_->find(client);
+  const std::shared_ptr<ServedClient> connection = impl_->find(client);
   if (!connection || !connection->surplus) return std::nullopt;
-  return std::to_string(state_->limits.clients) + (state_->limits.clients == 1 ? " program is" : " programs are") +
+  return std::to_string(impl_->limits.clients) + (impl_->limits.clients == 1 ? " program is" : " programs are") +
          " connected already, as many as this daemon serves; close one of them";
 }
 
-void Server::cut(ClientId client, const std::string& why) { state_->close(client, why); }
+void Server::cut(ClientId client, const std::string& why) { impl_->close(client, why); }
 
 std::optional<std::string> protocol_refusal(int ours, int theirs, const std::string& program) {
   if (ours == theirs) return std::nullopt;

@@ -1,4 +1,4 @@
-// What a snapshot says of each shell beside its quality: by which metrics the document's edits made it worse.
+// Finds for each shell the metrics by which the document's edits made it worse.
 #pragma once
 
 #include <memory>
@@ -7,11 +7,11 @@
 
 namespace prismesh::ipc {
 
-/// Kept from one generation to the next, so that a chunk that didn't change stays the same chunk.
+/// Keeps its result from one generation to the next, so that an unchanged chunk stays the same chunk.
 class ShellDamage {
  public:
-  /// For each shell of `now` the bits of its state that the shell of the deck from which it descends hadn't in `opened`. Costs the chunks
-  /// of states that differ from those seen last.
+  /// For each shell of `now` the bits of its state that the deck's shell it descends from didn't have in `opened`. Costs the chunks of
+  /// states that changed since the last call.
   const mesh::ChunkedArray<mesh::quality::ShellState>& of(const std::shared_ptr<const mesh::document::Generation>& opened,
                                                           const mesh::document::Generation& now);
 

@@ -15,7 +15,7 @@ Result<std::shared_ptr<const SnapshotView>> SnapshotView::map(const Descriptor& 
   const Result<Mapping> mapping = Mapping::map(table_descriptor, false);
   if (!mapping) return fail(mapping.error());
   if (mapping->bytes().size() > kMaxTable) return fail("snapshot", "its table of contents is larger than any document's");
-  // Decoded from a copy: whoever wrote the table can't change it between the check and the use.
+  // Decoded from a copy, so that the writer of the table can't change it between check and use.
   const std::vector<std::byte> bytes(mapping->bytes().begin(), mapping->bytes().end());
   Result<SnapshotTable> table = decode_table(bytes);
   if (!table) return fail(std::move(table.error()));

@@ -1,5 +1,5 @@
-// A generation in shared memory, for views: what a picture needs, in the model's own chunks. A view sees which chunks changed since the
-// last snapshot by their versions, so that it uploads only those.
+// A generation in shared memory, for views: what a picture needs, in the model's chunks. Chunk versions tell a view which chunks changed
+// since the last snapshot, so that it uploads only those.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace prismesh::ipc {
 
-/// A snapshot as a view maps it: read-only, checked against the descriptors' sizes before anything is read.
+/// A snapshot as a view maps it: read-only. The descriptors' sizes are checked before anything is read.
 class SnapshotView {
  public:
   /// `table` is the snapshot's table of contents, `segments` the shared memory it points into, in the table's order.
@@ -23,7 +23,7 @@ class SnapshotView {
   const SnapshotInfo& info() const { return info_; }
   std::size_t size(SnapshotArray array) const;  ///< elements
   std::size_t chunk_count(SnapshotArray array) const;
-  /// Two chunks with one version have the same content, whatever snapshots of one document they come from.
+  /// Two chunks with the same version have the same content, in all snapshots of a document.
   std::uint64_t chunk_version(SnapshotArray array, std::size_t chunk) const;
   /// The used bytes of a chunk (kChunkSize elements but for the last).
   std::span<const std::byte> chunk_bytes(SnapshotArray array, std::size_t chunk) const;
@@ -52,9 +52,9 @@ class SnapshotView {
   mesh::quality::ShellState shell_damage(std::size_t shell) const {
     return at<mesh::quality::ShellState>(SnapshotArray::shell_damage, shell);
   }
-  // line_nodes: pairs of NodeIndex, what is drawn as lines: beams, discrete elements and the outlines of solids' outer faces;
-  // line_parts: the PartIndex of each pair (invalid where the card names none).
-  // Indices inside the arrays aren't checked here: whoever follows one compares it with node_count() or info().parts.size().
+  // line_nodes: pairs of NodeIndex, drawn as lines: beams, discrete elements and the edges of solids' outer faces; line_parts: the
+  // PartIndex of each pair (invalid where the card names none).
+  // Indices in the arrays aren't checked: compare one with node_count() or info().parts.size() before using it.
 
  private:
   struct Piece {

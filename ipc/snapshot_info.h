@@ -1,4 +1,4 @@
-// What a snapshot holds: its arrays, and what views show beside them.
+// The contents of a snapshot: its arrays, and what views show besides them.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ enum class SnapshotArray : std::uint8_t {
   shell_parts,
   shell_marks,
   shell_quality,
-  shell_damage,  ///< ShellState: by what the document's edits made the shell worse (mesh/document/damage.h)
+  shell_damage,  ///< ShellState: the metrics by which the document's edits made the shell worse (mesh/document/damage.h)
   line_nodes,
   line_parts
 };
@@ -44,7 +44,7 @@ struct SnapshotInfo {
   double target_size = 1;
   double most_triangles_at_node = 0;  ///< more are a cluster (mesh::quality::Criteria::warn_triangles_at_node)
   mesh::quality::Counts counts;
-  std::uint64_t nodes = 0;  ///< that are there; the arrays hold removed ones too
+  std::uint64_t nodes = 0;  ///< existing ones; the arrays also hold removed ones
   std::uint64_t selected_nodes = 0;
   std::uint64_t selected_shells = 0;
   bool can_undo = false;

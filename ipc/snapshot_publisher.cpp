@@ -36,12 +36,12 @@ struct Segment {
   std::size_t slots = 0;
   std::size_t backed = 0;         ///< slots that have memory; the others were never written
   std::size_t used = 0;           ///< slots that hold a chunk
-  std::vector<std::size_t> free;  ///< slots that don't, the next to use last
+  std::vector<std::size_t> free;  ///< empty slots; the last is used next
 };
 
-/// A chunk of a generation that lies in shared memory, as long as a snapshot needs it.
+/// A chunk of a generation in shared memory, kept as long as a snapshot needs it.
 struct Copy {
-  std::shared_ptr<const void> owner;  ///< kept: the address stands for the content only while the chunk lives
+  std::shared_ptr<const void> owner;  ///< kept alive: the address identifies the content only as long
   SnapshotArray array{};
   Segment* segment = nullptr;
   std::size_t slot = 0;
@@ -62,7 +62,7 @@ struct Published {
   std::vector<Copy*> copies;
 };
 
-/// What has to be equal for a snapshot to serve again.
+/// A snapshot can be reused if this is equal.
 struct Wanted {
   std::shared_ptr<const Generation> generation;
   std::shared_ptr<const mesh::deck::Deck> deck;
@@ -72,7 +72,7 @@ struct Wanted {
   bool operator==(const Wanted&) const = default;
 };
 
-/// Figures that depend on the elements alone and are worked out once a model.
+/// Figures that depend on the elements alone and are computed once for a model.
 struct PerModel {
   std::array<std::shared_ptr<const mesh::ElementBlock>, mesh::kElementClassCount> elements;
   Outlines lines;
@@ -102,8 +102,8 @@ std::vector<std::uint32_t> count_shells(const mesh::Model& model) {
 
 }  // namespace
 
-struct SnapshotPublisher::State {
-  explicit State(std::uint64_t first_number) : next_number(first_number) {}
+struct SnapshotPublisher::Impl {
+  explicit Impl(std::uint64_t first_number) : next_number(first_number) {}
 
   mutable std::mutex mutex;
   std::uint64_t next_number;  ///< of versions and segments
@@ -167,7 +167,7 @@ struct SnapshotPublisher::State {
     return slot;
   }
 
-  /// The chunk in shared memory, copied there unless it is there already.
+  /// The chunk in shared memory; copies it if it isn't there yet.
   Result<Copy*> hold(SnapshotArray array, std::shared_ptr<const void> owner, std::span<const std::byte> bytes, std::size_t still_to_come) {
     ArraySpace& space = spaces[index_of(array)];
     if (const auto known = space.by_owner.find(owner.get()); known != space.by_owner.end() && known->second->bytes >= bytes.size()) {
@@ -210,7 +210,7 @@ struct SnapshotPublisher::State {
     published.reset();
   }
 
-  /// Memory that no snapshot uses goes back, but for one empty segment an array.
+  /// Frees memory that no snapshot uses, except one empty segment for each array.
   void shrink() {
     for (ArraySpace& space : spaces) {
       bool kept_one = false;
@@ -312,71 +312,71 @@ struct SnapshotPublisher::State {
   }
 };
 
-SnapshotPublisher::SnapshotPublisher(std::uint64_t first_number) : state_(std::make_unique<State>(first_number)) {}
+SnapshotPublisher::SnapshotPublisher(std::uint64_t first_number) : impl_(std::make_unique<Impl>(first_number)) {}
 SnapshotPublisher::~SnapshotPublisher() = default;
 
 Result<PublishedSnapshot> SnapshotPublisher::publish(const Document& document, bool changed) {
-  const std::lock_guard lock(state_->mutex);
+  const std::lock_guard lock(impl_->mutex);
   const Wanted wanted{document.generations[document.cursor], document.deck, document.can_undo(), document.can_redo(), changed};
-  if (!state_->current || state_->current_of != wanted) {
-    Result<std::shared_ptr<Published>> made = state_->make(document, changed);
+  if (!impl_->current || impl_->current_of != wanted) {
+    Result<std::shared_ptr<Published>> made = impl_->make(document, changed);
     if (!made) return fail(std::move(made.error()));
-    std::swap(state_->current, *made);
-    state_->current_of = wanted;
-    state_->drop(*made);
-    state_->shrink();
+    std::swap(impl_->current, *made);
+    impl_->current_of = wanted;
+    impl_->drop(*made);
+    impl_->shrink();
   }
-  return state_->lease(state_->current);
+  return impl_->lease(impl_->current);
 }
 
 Result<PublishedSnapshot> SnapshotPublisher::publish_other(const Document& document, std::size_t generation, bool changed) {
   if (generation == document.cursor) return publish(document, changed);
   Document at_it = document;
   at_it.cursor = generation;
-  const std::lock_guard lock(state_->mutex);
-  Result<std::shared_ptr<Published>> made = state_->make(at_it, changed);
+  const std::lock_guard lock(impl_->mutex);
+  Result<std::shared_ptr<Published>> made = impl_->make(at_it, changed);
   if (!made) return fail(std::move(made.error()));
-  Result<PublishedSnapshot> leased = state_->lease(*made);
-  if (!leased) state_->drop(*made);
+  Result<PublishedSnapshot> leased = impl_->lease(*made);
+  if (!leased) impl_->drop(*made);
   return leased;
 }
 
 void SnapshotPublisher::forget() {
-  const std::lock_guard lock(state_->mutex);
-  state_->current_of.reset();
-  state_->drop(state_->current);
-  state_->per_model = {};
-  state_->damage = {};
-  state_->shrink();
+  const std::lock_guard lock(impl_->mutex);
+  impl_->current_of.reset();
+  impl_->drop(impl_->current);
+  impl_->per_model = {};
+  impl_->damage = {};
+  impl_->shrink();
 }
 
 void SnapshotPublisher::release(std::uint64_t lease) {
-  const std::lock_guard lock(state_->mutex);
-  const auto held = state_->leases.find(lease);
-  if (held == state_->leases.end()) return;
+  const std::lock_guard lock(impl_->mutex);
+  const auto held = impl_->leases.find(lease);
+  if (held == impl_->leases.end()) return;
   std::shared_ptr<Published> published = std::move(held->second);
-  state_->leases.erase(held);
-  state_->drop(published);
-  state_->shrink();
+  impl_->leases.erase(held);
+  impl_->drop(published);
+  impl_->shrink();
 }
 
 Result<Descriptor> SnapshotPublisher::segment(std::uint64_t id) const {
-  const std::lock_guard lock(state_->mutex);
-  for (const ArraySpace& space : state_->spaces)
+  const std::lock_guard lock(impl_->mutex);
+  for (const ArraySpace& space : impl_->spaces)
     for (const auto& segment : space.segments)
       if (segment->number == id) return segment->descriptor.duplicate();
   return fail("snapshot", "segment " + std::to_string(id) + " is gone");
 }
 
 std::size_t SnapshotPublisher::bytes_copied() const {
-  const std::lock_guard lock(state_->mutex);
-  return state_->bytes_copied;
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->bytes_copied;
 }
 
 std::size_t SnapshotPublisher::bytes_held() const {
-  const std::lock_guard lock(state_->mutex);
+  const std::lock_guard lock(impl_->mutex);
   std::size_t bytes = 0;
-  for (const ArraySpace& space : state_->spaces)
+  for (const ArraySpace& space : impl_->spaces)
     for (const auto& segment : space.segments) bytes += segment->mapping.bytes().size();
   return bytes;
 }

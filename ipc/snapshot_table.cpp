@@ -84,7 +84,7 @@ Result<TableArray> get_array(ByteReader& in, SnapshotArray array) {
   return result;
 }
 
-/// What goes by node, by shell and by line has one count.
+/// Arrays by node must have the same count, and so must those by shell and those by line.
 bool counts_agree(const SnapshotTable& table) {
   const auto count = [&](SnapshotArray array) { return table.arrays[static_cast<std::size_t>(array)].count; };
   for (const SnapshotArray array : {SnapshotArray::node_ids, SnapshotArray::node_marks})

@@ -1,5 +1,5 @@
-// A snapshot's table of contents: which bytes of which segment hold each chunk, and what a view shows beside the arrays.
-// Written by the publisher, read by views (docs/protocol.md has its layout).
+// Writes and reads a snapshot's table of contents: segment and offset of each chunk, and what a view shows besides the arrays. Layout:
+// docs/protocol.md.
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct SnapshotTable {
 };
 
 std::vector<std::byte> encode_table(const SnapshotTable& table);
-/// Checks everything that can be checked without the segments: counts that agree with each other and with the table's size,
-/// alignment. Memory used stays in proportion to the bytes given.
+/// Checks what can be checked without the segments: that counts agree with each other and with the table's size, and alignment. Uses memory
+/// in proportion to the bytes.
 Result<SnapshotTable> decode_table(std::span<const std::byte> bytes);
 
 }  // namespace prismesh::ipc

@@ -1,5 +1,5 @@
-// The state page: a page of shared memory in which a daemon says how it is, for anyone to look at without asking. modeld sends
-// its descriptor with Welcome.
+// The state page: shared memory in which modeld publishes its health, for clients to read without a request. modeld sends its descriptor
+// with Welcome.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace prismesh::ipc {
 
-/// How a daemon is.
+/// The health of a daemon.
 struct Health {
   std::int64_t heartbeat_ns = 0;  ///< CLOCK_MONOTONIC when this was written; modeld writes at least every kHeartbeatPeriodNs
   std::int64_t pid = 0;
   std::uint64_t generation = 0;  ///< published last; 0: no document
   std::uint64_t clients = 0;
-  double progress = 0;  ///< of what it is busy with, 0..1
+  double progress = 0;  ///< of the work under way, 0..1
   bool open = false;
   bool busy = false;
   bool dragging = false;
 };
 inline constexpr std::int64_t kHeartbeatPeriodNs = 500'000'000;
 
-/// The page as it lies in memory.
+/// The page's layout in memory.
 struct StatePageLayout {
   static constexpr const char* kName = "prismesh-state";
   static constexpr std::uint64_t kMagic = 0x3145'5441'5453'5250;  // "PRSTATE1"

@@ -43,11 +43,11 @@ void BeforeAfter::ask() {
   asked_on_ = link_.connections();
   link_.question(ipc::GetState{}, [this](const ipc::Answer& answer) {
     asked_on_.reset();
-    if (const auto* state = std::get_if<ipc::State>(&answer); state != nullptr && wanted_) begin(*state);
+    if (const auto* state = std::get_if<ipc::DocumentState>(&answer); state != nullptr && wanted_) begin(*state);
   });
 }
 
-void BeforeAfter::begin(const ipc::State& state) {
+void BeforeAfter::begin(const ipc::DocumentState& state) {
   if (!link_.snapshot() || state.generation != link_.snapshot()->info().generation) return;  // a newer one is on its way: asked again then
   wanted_ = false;
   const auto newest = std::find_if(state.generations.begin(), state.generations.end(),

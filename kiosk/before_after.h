@@ -39,7 +39,7 @@ class BeforeAfter {
     std::uint64_t before = 0, after = 0;  ///< generations
   };
   void ask();
-  void begin(const ipc::State& state);
+  void begin(const ipc::DocumentState& state);
   void show();
 
   ModelLink& link_;

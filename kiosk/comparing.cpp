@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "ipc/failure.h"
+
 namespace prismesh::kiosk {
 
 namespace {
@@ -94,7 +96,7 @@ void Comparing::follow_states() {
   if (states_of_ == current || (!panel_open_ && !wish_.two_views)) return;
   states_of_ = current;
   link_.question(ipc::GetState{}, [this](const ipc::Answer& answer) {
-    const auto* state = std::get_if<ipc::State>(&answer);
+    const auto* state = std::get_if<ipc::DocumentState>(&answer);
     if (state == nullptr) return;
     states_ = state->generations;
     const auto known = [&](std::uint64_t number) {
@@ -178,8 +180,7 @@ void Comparing::took_field(Pane pane, const ipc::GetField& asked, const ipc::Ans
   const auto* made = std::get_if<ipc::FieldMade>(&answer);
   if (made == nullptr) {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer))
-      view.field_problem =
-          was_stopped(*failed) ? "stopped; choose it again to see it" : Error{failed->file, failed->line, failed->message}.text();
+      view.field_problem = was_stopped(*failed) ? "stopped; choose it again to see it" : ipc::error_from(*failed).text();
     view.made.reset();
     if (Result<void> cleared = renderer_.set_field(pane, {}, true); !cleared) failed_ = cleared.error();
     return;

@@ -8,6 +8,7 @@
 
 #include "base/progress.h"
 #include "base/readable_number.h"
+#include "ipc/failure.h"
 #include "kiosk/notices.h"
 #include "mesh/document/edit_kinds.h"
 
@@ -30,11 +31,11 @@ struct Overloaded : Visitors... {
 template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
-std::string text_of(const ipc::Failed& failed) { return Error{failed.file, failed.line, failed.message}.text(); }
+std::string text_of(const ipc::Failed& failed) { return ipc::error_from(failed).text(); }
 
 }  // namespace
 
-bool was_stopped(const ipc::Failed& failed) { return failed.message == cancelled().message; }
+bool was_stopped(const ipc::Failed& failed) { return is_cancelled(ipc::error_from(failed)); }
 
 static bool is_of(std::string_view edit, mesh::document::EditGroup group) {
   const mesh::document::EditKind* kind = mesh::document::find_edit_kind(edit);
@@ -176,7 +177,7 @@ void ModelLink::heard(const ipc::Event& event) {
 
 void ModelLink::ask_state() {
   ask(ipc::GetState{}, [this](const ipc::Answer& answer) {
-    if (const auto* state = std::get_if<ipc::State>(&answer)) took_state(*state);
+    if (const auto* state = std::get_if<ipc::DocumentState>(&answer)) took_state(*state);
   });
 }
 
@@ -185,7 +186,7 @@ void ModelLink::is_document(const std::string& path) {
   if (std::exchange(document_path_, path) != path && path != becoming_) ++document_number_;
 }
 
-void ModelLink::took_state(const ipc::State& state) {
+void ModelLink::took_state(const ipc::DocumentState& state) {
   const bool first = !state_ || state_->path != state.path;
   state_ = state;
   history_bytes_ = state.history_bytes;
@@ -290,7 +291,7 @@ void ModelLink::open(const std::filesystem::path& deck, bool discard) {
     fetched_ = false;
     stale_ = true;
     trace_.line("document " + whole.string());
-    if (const auto* state = std::get_if<ipc::State>(&answer)) {
+    if (const auto* state = std::get_if<ipc::DocumentState>(&answer)) {
       if (state->recovered_edits > 0)
         say(Notice::Kind::information,
             fmt::format("{} edits that had not been saved were brought back from the journal.", state->recovered_edits));

@@ -74,7 +74,7 @@ class ModelLink {
 
   bool connected() const { return client_.has_value(); }
   const std::filesystem::path& socket() const { return socket_; }
-  const std::optional<ipc::State>& state() const { return state_; }
+  const std::optional<ipc::DocumentState>& state() const { return state_; }
   /// Of the deck that is open, the worst first.
   const std::vector<tools::ToldWarning>& warnings() const { return warnings_; }
   /// The current generation; null while no document is open. Stays while the server is away.
@@ -147,7 +147,7 @@ class ModelLink {
   void read();
   void heard(const ipc::Event& event);
   void ask_state();
-  void took_state(const ipc::State& state);
+  void took_state(const ipc::DocumentState& state);
   void is_document(const std::string& path);
   void say_warnings();
   void took_saved(const ipc::Saved& saved, bool becomes, const std::string& remark);
@@ -178,7 +178,7 @@ class ModelLink {
   std::map<std::uint64_t, Waiting> waiting_;
   std::int64_t next_attempt_ns_ = 0;
   std::int64_t back_off_ns_ = 0;
-  std::optional<ipc::State> state_;
+  std::optional<ipc::DocumentState> state_;
   std::shared_ptr<const ipc::SnapshotView> snapshot_;
   std::vector<tools::ToldWarning> warnings_;
   std::string document_path_;

@@ -16,6 +16,7 @@
 #include "ipc/device_client.h"
 #include "ipc/device_messages_json.h"
 #include "ipc/device_page.h"
+#include "ipc/failure.h"
 #include "ipc/server.h"
 
 namespace prismesh::deviced {
@@ -221,7 +222,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
 
   ipc::DeviceAnswer done(ipc::ClientId, const ipc::Reload&) {
     Result<StationPlan> fresh = read_plan(options.config);
-    if (!fresh) return failed(fresh.error());
+    if (!fresh) return ipc::failed_from(fresh.error());
     const bool go_on = station && fresh->same_devices(plan);
     plan = std::move(*fresh);
     logging::info("settings and the profile \"{}\" were read again{}", plan.profile.name, go_on ? "" : "; the devices are started anew");
@@ -234,16 +235,14 @@ struct Daemon::Impl final : ipc::ServerHandler {
     if (started) return ipc::Done{};
     no_station = started.error().text();
     logging::error("{}", no_station);
-    return failed(started.error());
+    return ipc::failed_from(started.error());
   }
 
   // --- to the socket ---
 
-  static ipc::Failed failed(const Error& error) { return {error.file, error.line, error.message}; }
-
   void answer(ipc::ClientId client, std::uint64_t number, const ipc::DeviceAnswer& answer) {
     if (const auto* refused = std::get_if<ipc::Failed>(&answer))
-      logging::info("client {}: refused: {}", client, Error{refused->file, refused->line, refused->message}.text());
+      logging::info("client {}: refused: {}", client, ipc::error_from(*refused).text());
     server->send(client, ipc::encode_device_answer(number, answer));
   }
 

@@ -18,6 +18,7 @@
 #include "daemon/modeld/watchdog.h"
 #include "daemon/modeld/worker.h"
 #include "ipc/client.h"
+#include "ipc/failure.h"
 #include "ipc/messages_json.h"
 #include "ipc/server.h"
 #include "ipc/state_page.h"
@@ -35,7 +36,7 @@ constexpr const char* kNoMemoryToAnswer = "there isn't enough memory for the ans
 
 bool says_what_was_done(const ipc::Answer& answer) {
   return std::holds_alternative<ipc::Edited>(answer) || std::holds_alternative<ipc::Saved>(answer) ||
-         std::holds_alternative<ipc::State>(answer) || std::holds_alternative<ipc::DragBegun>(answer);
+         std::holds_alternative<ipc::DocumentState>(answer) || std::holds_alternative<ipc::DragBegun>(answer);
 }
 
 /// Aborts, so that a core file shows the stacks of all threads. Acknowledged edits are on disk.
@@ -112,7 +113,7 @@ struct Daemon::Impl final : ipc::ServerHandler, ClientChannel {
 
   void answer(ipc::ClientId client, std::uint64_t number, const ipc::Answer& answer, std::vector<ipc::Descriptor> descriptors) override {
     if (const auto* failed = std::get_if<ipc::Failed>(&answer))
-      logging::info("client {}: refused: {}", client, Error{failed->file, failed->line, failed->message}.text());
+      logging::info("client {}: refused: {}", client, ipc::error_from(*failed).text());
     const std::size_t count = descriptors.size();
     try {
       server->send(client, ipc::encode_answer(number, answer, count), std::move(descriptors));
@@ -163,8 +164,8 @@ struct Daemon::Impl final : ipc::ServerHandler, ClientChannel {
     beat();
     scheduler.start([](const ipc::Answer& answer) {
       if (const auto* failed = std::get_if<ipc::Failed>(&answer))
-        logging::error("what was open last time could not be opened: {}", Error{failed->file, failed->line, failed->message}.text());
-      if (const auto* state = std::get_if<ipc::State>(&answer))
+        logging::error("what was open last time could not be opened: {}", ipc::error_from(*failed).text());
+      if (const auto* state = std::get_if<ipc::DocumentState>(&answer))
         logging::info("opened {} again with {} edits from the journal", state->path, state->recovered_edits);
     });
   }

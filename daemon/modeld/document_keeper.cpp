@@ -230,8 +230,8 @@ Result<void> DocumentKeeper::let_go() {
 
 bool DocumentKeeper::changed() const { return open_ && differs(*open_->saved, open_->document.current()); }
 
-ipc::State DocumentKeeper::state() const {
-  ipc::State state;
+ipc::DocumentState DocumentKeeper::state() const {
+  ipc::DocumentState state;
   if (!open_) return state;
   const Document& document = open_->document;
   const Generation& current = document.current();

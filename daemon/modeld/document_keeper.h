@@ -52,7 +52,7 @@ class DocumentKeeper {
   /// Whether the mesh differs from the deck as it was last opened or saved.
   bool changed() const;
   /// All fields but `busy`.
-  ipc::State state() const;
+  ipc::DocumentState state() const;
 
  private:
   /// A generation of `recorded` and the generation of the document that it is a copy of.

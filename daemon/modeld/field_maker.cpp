@@ -64,7 +64,7 @@ Result<FieldMaker::ComparedModel> FieldMaker::compared_model(const Document& doc
   return ComparedModel{&other_->model, path.filename().string()};
 }
 
-Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::GetField& request, const Progress& progress) {
+Result<FieldMaker::MadeField> FieldMaker::make(const Document& document, const ipc::GetField& request, const Progress& progress) {
   Result<mesh::document::FieldWish> wish = mesh::document::field_wish(request.field);
   if (!wish) return fail(wish.error());
   wish->from = request.from;
@@ -109,7 +109,7 @@ Result<FieldMaker::Made> FieldMaker::make(const Document& document, const ipc::G
   answer.new_nodes = field->new_nodes;
   // In a distance between two expressions only the entities of the first have values.
   if (wish->of != mesh::document::FieldWish::Of::gap) answer.shells_without = shells_without_value(of->model, *field);
-  return Made{std::move(answer), std::move(*values)};
+  return MadeField{std::move(answer), std::move(*values)};
 }
 
 }  // namespace prismesh::modeld

@@ -18,12 +18,12 @@ namespace prismesh::modeld {
 
 class FieldMaker {
  public:
-  struct Made {
+  struct MadeField {
     ipc::FieldMade answer;
     ipc::Descriptor values;
   };
   /// Errors: of the field and of the other deck; the state is no longer in the history; cancelled.
-  Result<Made> make(const mesh::document::Document& document, const ipc::GetField& request, const Progress& progress);
+  Result<MadeField> make(const mesh::document::Document& document, const ipc::GetField& request, const Progress& progress);
 
  private:
   struct ComparedModel {

@@ -4,18 +4,17 @@
 
 #include "daemon/modeld/edit_preview.h"
 #include "daemon/modeld/quality_figures.h"
+#include "ipc/failure.h"
 #include "mesh/document/deck_relations.h"
 
 namespace prismesh::modeld {
 
 namespace {
 
-ipc::Failed failed(const Error& error) { return {error.file, error.line, error.message}; }
-
 /// The outcome of a query: its answer, or Failed with the reason.
-template <class Found>
-Outcome told(Result<Found> found) {
-  if (!found) return {failed(found.error()), {}, {}, {}};
+template <class Answer>
+Outcome told(Result<Answer> found) {
+  if (!found) return {ipc::failed_from(found.error()), {}, {}, {}};
   return {std::move(*found), {}, {}, {}};
 }
 
@@ -24,7 +23,7 @@ Outcome told(Result<Found> found) {
 /// Publishes the current generation and notifies all clients. The edit stays valid if there is no memory for the snapshot.
 void RequestHandler::show(const std::string& made_by, Outcome& outcome) {
   const mesh::document::Document& document = keeper_.document();
-  const ipc::State state = keeper_.state();
+  const ipc::DocumentState state = keeper_.state();
   if (Result<ipc::PublishedSnapshot> published = publisher_.publish(document, state.changed))
     publisher_.release(published->lease);  // the publisher keeps the current one
   else if (auto* edited = std::get_if<ipc::Edited>(&outcome.answer))
@@ -43,20 +42,20 @@ Outcome RequestHandler::opened() {
 
 Outcome RequestHandler::open(const ipc::Open& request, const Progress& progress) {
   const Result<bool> done = keeper_.open(request, progress);
-  if (!done) return {failed(done.error()), {}, {}, {}};
+  if (!done) return {ipc::failed_from(done.error()), {}, {}, {}};
   // Already open: only the asking client gets the state; other views stay as they are.
   return *done ? opened() : Outcome{keeper_.state(), {}, {}, {}};
 }
 
 Outcome RequestHandler::reopen(const Progress& progress) {
   const Result<bool> done = keeper_.reopen(progress);
-  if (!done) return {failed(done.error()), {}, {}, {}};
+  if (!done) return {ipc::failed_from(done.error()), {}, {}, {}};
   return *done ? opened() : Outcome{};
 }
 
 Outcome RequestHandler::edit(const mesh::document::Edit& edit, const Progress& progress) {
   Result<mesh::document::EditReport> report = keeper_.edit(edit, progress, &clock_);
-  if (!report) return {failed(report.error()), {}, {}, {}};
+  if (!report) return {ipc::failed_from(report.error()), {}, {}, {}};
   Outcome outcome;
   const std::string made_by = report->edit;
   outcome.answer = ipc::Edited{std::move(*report), keeper_.document().current().number};
@@ -65,40 +64,40 @@ Outcome RequestHandler::edit(const mesh::document::Edit& edit, const Progress& p
 }
 
 Outcome RequestHandler::count(const ipc::Count& request, const Progress& progress) const {
-  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   const mesh::document::Generation& current = keeper_.document().current();
   const Result<mesh::select::Chosen> chosen =
       mesh::select::evaluate(current.model, request.expr, request.kind, current.relations->names, progress);
-  if (!chosen) return {failed(chosen.error()), {}, {}, {}};
+  if (!chosen) return {ipc::failed_from(chosen.error()), {}, {}, {}};
   return {ipc::Counted{chosen->nodes.size(), chosen->shells.size(), chosen->parts.size()}, {}, {}, {}};
 }
 
 Outcome RequestHandler::quality(const ipc::GetQuality& request) const {
-  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   return told(quality_figures(keeper_.document(), request));
 }
 
 Outcome RequestHandler::find(const ipc::FindShells& request) const {
-  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   return told(find_shells(keeper_.document(), request));
 }
 
 Outcome RequestHandler::preview(const ipc::PreviewEdit& request) const {
-  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   return told(preview_edit(keeper_.document(), request.edit, &clock_));
 }
 
 Outcome RequestHandler::field(const ipc::GetField& request, const Progress& progress) {
-  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   // Most fields are made before a user could read a progress message.
   const auto tell = [&](double fraction) { return fraction <= 0 || progress(fraction); };
-  Result<FieldMaker::Made> made = fields_.make(keeper_.document(), request, tell);
+  Result<FieldMaker::MadeField> made = fields_.make(keeper_.document(), request, tell);
   Outcome outcome;
   if (made) {
     outcome.answer = std::move(made->answer);
     outcome.descriptors.push_back(std::move(made->values));
   } else {
-    outcome.answer = failed(made.error());
+    outcome.answer = ipc::failed_from(made.error());
   }
   return outcome;
 }
@@ -106,13 +105,13 @@ Outcome RequestHandler::field(const ipc::GetField& request, const Progress& prog
 Outcome RequestHandler::save(const ipc::Save& request, const Progress& progress) {
   if (request.asks && request.path) {
     Result<std::optional<ipc::SaveWould>> would = keeper_.would(*request.path);
-    if (!would) return {failed(would.error()), {}, {}, {}};
+    if (!would) return {ipc::failed_from(would.error()), {}, {}, {}};
     if (*would) return {std::move(**would), {}, {}, {}};
   }
   Result<ipc::Saved> saved = request.path && request.becomes         ? keeper_.save_as(*request.path, progress)
                              : request.path && request.stays_unsaved ? keeper_.save_copy(*request.path, progress)
                                                                      : keeper_.save(request.path, progress);
-  if (!saved) return {failed(saved.error()), {}, {}, {}};
+  if (!saved) return {ipc::failed_from(saved.error()), {}, {}, {}};
   Outcome outcome;
   outcome.answer = std::move(*saved);
   if (request.becomes) outcome.events.emplace_back(ipc::DocumentOpened{keeper_.document().path.string()});
@@ -121,7 +120,7 @@ Outcome RequestHandler::save(const ipc::Save& request, const Progress& progress)
 }
 
 Outcome RequestHandler::close(const ipc::Close& request) {
-  if (const Result<void> done = keeper_.close(request.discard); !done) return {failed(done.error()), {}, {}, {}};
+  if (const Result<void> done = keeper_.close(request.discard); !done) return {ipc::failed_from(done.error()), {}, {}, {}};
   publisher_.forget();
   Outcome outcome;
   outcome.events.emplace_back(ipc::DocumentClosed{});
@@ -130,11 +129,11 @@ Outcome RequestHandler::close(const ipc::Close& request) {
 }
 
 Outcome RequestHandler::begin_drag(std::uint64_t number, const mesh::document::Edit& edit) {
-  if (!keeper_.is_open()) return {failed({"", 0, "no document is open"}), {}, {}, {}};
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   Result<DragSession> drag = DragSession::begin(number, keeper_.document(), edit);
-  if (!drag) return {failed(drag.error()), {}, {}, {}};
+  if (!drag) return {ipc::failed_from(drag.error()), {}, {}, {}};
   Result<ipc::Descriptor> preview = drag->preview().duplicate();
-  if (!preview) return {failed(preview.error()), {}, {}, {}};
+  if (!preview) return {ipc::failed_from(preview.error()), {}, {}, {}};
   drag_ = std::move(*drag);
   drag_number_ = number;
   Outcome outcome;

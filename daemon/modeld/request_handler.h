@@ -19,7 +19,7 @@ namespace prismesh::modeld {
 /// An immutable view of the document for answers and snapshots.
 struct PublishedState {
   std::shared_ptr<const mesh::document::Document> document;  ///< null: no document is open
-  ipc::State state;
+  ipc::DocumentState state;
 };
 
 struct Outcome {

@@ -171,8 +171,8 @@ void RequestScheduler::cancel(ipc::ClientId client, std::uint64_t number) {
   channel_.answer(client, number, ipc::Done{}, {});
 }
 
-ipc::State RequestScheduler::state() const {
-  ipc::State state = published_.state;
+ipc::DocumentState RequestScheduler::state() const {
+  ipc::DocumentState state = published_.state;
   state.busy = running_ && !stepping_;
   return state;
 }

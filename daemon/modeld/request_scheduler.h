@@ -80,7 +80,7 @@ class RequestScheduler {
   void share_camera(ipc::ClientId client, const ipc::ShareCamera& shared);
   void give_back(ipc::ClientId client, std::uint64_t lease);
   void cancel(ipc::ClientId client, std::uint64_t number);
-  ipc::State state() const;
+  ipc::DocumentState state() const;
 
   /// Starts the next piece of work if none is under way.
   void pump();

@@ -273,8 +273,12 @@ Result<void> write_sample(const std::filesystem::path& path, std::size_t shells,
     return fail(path.string(), "a sample has " + std::to_string(kSampleShellsMin) + " to " + std::to_string(kSampleShellsMax) +
                                    " shells, not " + std::to_string(shells));
   const Result<std::string> text = make_text(shells, progress);
-  if (!text) return fail(path.string(), text.error().message);
-  if (progress && !progress(1)) return fail(path.string(), cancelled().message);
+  const auto at_path = [&](Error error) {
+    error.file = path.string();
+    return fail(std::move(error));
+  };
+  if (!text) return at_path(text.error());
+  if (progress && !progress(1)) return at_path(cancelled());
   const PendingFile file{path, {*text}};
   return replace_files(std::span(&file, 1));
 }

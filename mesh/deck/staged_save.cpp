@@ -42,7 +42,7 @@ Result<std::vector<std::string_view>> stored_content_of(const SourceFile& file, 
   const std::span<const std::byte> stored = file.bytes.bytes();
   if (replacements.empty()) return std::vector{std::string_view(reinterpret_cast<const char*>(stored.data()), stored.size())};
   Result<std::string> anew = pack(content_of(file, replacements), stored, progress);
-  if (!anew) return fail(anew.error().message == cancelled().message ? anew.error() : Error{file.path.string(), 0, anew.error().message});
+  if (!anew) return fail(is_cancelled(anew.error()) ? anew.error() : Error{file.path.string(), 0, anew.error().message});
   packed.push_back(std::move(*anew));
   return std::vector<std::string_view>{packed.back()};
 }

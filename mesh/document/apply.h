@@ -1,4 +1,4 @@
-// The edits themselves: each turns a copy of the current generation into the next one. Private to mesh/document.
+// Applies each kind of edit to a copy of the current generation. Private to mesh/document.
 #pragma once
 
 #include "mesh/document/document.h"
@@ -7,7 +7,7 @@
 
 namespace prismesh::mesh::document {
 
-/// `next` starts as a copy of `document.current()`. Notes and figures go to `report`; counts before and after don't.
+/// `next` starts as a copy of `document.current()`. Adds notes and figures to `report`, but not its counts before and after.
 Result<void> apply_edit(const Document& document, const Select& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const SelectRegion& edit, Generation& next, EditReport& report);
 Result<void> apply_edit(const Document& document, const SelectLasso& edit, Generation& next, EditReport& report);
@@ -23,7 +23,7 @@ Result<void> apply_edit(const Document& document, const Relax& edit, Generation&
 Result<void> apply_edit(const Document& document, const Repair& edit, Generation& next, EditReport& report, const Progress& progress);
 Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report);
 
-/// Brings the weight of `next` up to date after the shells given have changed since `before`.
+/// Updates the weight of `next` for `shells`, which differ from `before`.
 void update_weight(const Generation& before, const ShellSet& shells, Generation& next);
 
 }  // namespace prismesh::mesh::document

@@ -24,7 +24,7 @@ NodeSet put_positions(const NodeSet& nodes, const std::vector<Vec3>& positions, 
   return moved;
 }
 
-/// Says which elements other than shells moved along.
+/// Notes how many elements of each other class moved at shared nodes.
 void note_attached(const std::vector<ElementUse>& element_uses, const NodeSet& moved, EditReport& report) {
   std::array<std::vector<std::uint32_t>, kElementClassCount> elements;
   auto use = element_uses.begin();
@@ -44,15 +44,14 @@ void note_attached(const std::vector<ElementUse>& element_uses, const NodeSet& m
   }
 }
 
-void report_inverted(const Model& before, const Model& after, const ShellSet& touched, const Motion& motion, double degrees,
-                     EditReport& report) {
-  const ShellSet inverted = inverted_shells(before, after, touched, motion, degrees);
+/// `inverted`: shells of `model`.
+void report_inverted(const Model& model, const ShellSet& inverted, EditReport& report) {
   report.inverted = inverted.size();
   if (inverted.empty()) return;
   std::string note =
-      counted(inverted.size(), "element") + " turned over or folded: shell:" + std::to_string(before.shell_ids[inverted[0].value]);
+      counted(inverted.size(), "element") + " turned over or folded: shell:" + std::to_string(model.shell_ids[inverted[0].value]);
   for (std::size_t i = 1; i < std::min<std::size_t>(inverted.size(), 5); ++i)
-    note += ", shell:" + std::to_string(before.shell_ids[inverted[i].value]);
+    note += ", shell:" + std::to_string(model.shell_ids[inverted[i].value]);
   report.notes.push_back(note + (inverted.size() > 5 ? ", ..." : ""));
 }
 
@@ -76,7 +75,8 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
   if (held_back > 0) report.notes.push_back(counted(held_back, "node") + " held back by max_move");
   note_attached(document.current().relations->element_uses, moved, report);
   report_dependents(document.current(), next, moved, report);
-  report_inverted(document.current().model, next.model, touched, *motion, displacement_of(edit).degrees, report);
+  const Model& before = document.current().model;
+  report_inverted(before, inverted_shells(before, next.model, touched, *motion, displacement_of(edit).degrees), report);
   return {};
 }
 

@@ -19,8 +19,8 @@ void flag_parts_of(const Model& model, const ShellSet& shells, PartFlags& flags)
     if (const PartIndex part = model.shell_parts[shell.value]; part.valid()) flags[part.value] = 1;
 }
 
-/// Parts of what is selected: of the selected shells; for nodes, of the shells that lie inside the selection, or, if it is thinner
-/// than a shell, of all that touch it; and of other elements at nodes that no shell uses.
+/// The parts of the selection: of the selected shells; for nodes, of the shells with all nodes selected, or, if there are none, of all
+/// shells that touch it; and of other elements at nodes that no shell uses.
 PartFlags parts_of_selection(const Document& document) {
   const Generation& current = document.current();
   const Model& model = current.model;
@@ -71,7 +71,7 @@ void set_state(PartState& state, VisibilityAction action, bool is_named) {
   }
 }
 
-/// What goes out of sight is no longer selected: nobody should move what they can't see.
+/// Deselects what is hidden: nobody should move what they can't see.
 void deselect_hidden(const Document& document, Generation& next, EditReport& report) {
   const Selection before = selection_of(document.current());
   Selection after = before;

@@ -20,7 +20,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr double kThreshold = 0.15;  ///< of the target size, where the edit says none
+constexpr double kThreshold = 0.15;  ///< of the target size, if the edit has none
 
 Result<void> refuse_unsound(const Relax& edit) {
   const auto positive = [](const std::optional<double>& value) { return !value || (*value > 0 && std::isfinite(*value)); };
@@ -33,7 +33,7 @@ Result<void> refuse_unsound(const Relax& edit) {
   return {};
 }
 
-/// Where relaxing looks, before anything is left out.
+/// The shells and nodes of the edit's scope, before any are left out.
 struct Reach {
   ShellSet shells;
   NodeSet nodes;
@@ -59,7 +59,7 @@ Result<Reach> find_reach(const Document& document, const Relax& edit) {
   return reach;
 }
 
-/// Why nodes stay, in the order in which the reasons are asked for.
+/// Why nodes stay, in the order in which the reasons are checked.
 enum class Stays : std::uint8_t { locked, held, other_element, joined, mid_side, goes };
 constexpr std::array<std::string_view, 5> kWhyStays{"of locked parts", "held by the deck", "with elements other than shells",
                                                     "that cards join", "beside mid-side nodes that can't follow"};
@@ -87,7 +87,7 @@ class Pins {
     return is_joined(*generation_.relations, node) ? Stays::joined : Stays::goes;
   }
 
-  /// A mid-side node follows the ends of its edge. Where it can't, or is a corner of another shell, they stay, and it with them.
+  /// A mid-side node follows the ends of its edge. If it can't, or is a corner of another shell, the ends stay, and so does it.
   void pin_beside_middles(const MidsideNodes& midside) {
     const Model& model = generation_.model;
     const ShellNodes& corners = model.shell(midside.shell);
@@ -103,7 +103,7 @@ class Pins {
   NodeSet beside_middles_;
 };
 
-/// The nodes that may go; says how many may not.
+/// The nodes that may move; notes how many may not.
 NodeSet movable_of(const Generation& generation, const NodeSet& nodes, EditReport& report) {
   const Pins pins(generation);
   std::array<std::size_t, kWhyStays.size()> stay{};
@@ -165,7 +165,7 @@ Result<void> apply_edit(const Document& document, const Relax& edit, Generation&
   const Generation& current = document.current();
   NodeIndex at;
   if (edit.mode == RelaxMode::from) {
-    const Result<NodeIndex> found = find_place(current.model, *edit.at);
+    const Result<NodeIndex> found = find_referenced_node(current.model, *edit.at);
     if (!found) return fail("", "relax: " + found.error().message);
     at = *found;
   }

@@ -15,7 +15,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr int kMaxAttempts = 5;                ///< until all that is wanted can be written
+constexpr int kMaxAttempts = 5;                ///< to find changes that can be written
 constexpr std::size_t kMaxNamedInRepair = 10;  ///< elements that a note names
 
 repair::Options options_of(double angle, const MoveLimits& limits) {
@@ -30,7 +30,7 @@ relax::Judge judge_of(const Document& document) { return {document.settings.crit
 
 std::string shell_name(const Model& model, ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 
-void say_operations(const repair::Repaired& repaired, EditReport& report) {
+void note_operations(const repair::Repaired& repaired, EditReport& report) {
   std::string said;
   constexpr std::array<std::string_view, repair::kOperationCount> kDone{"split", "collapsed", "merged", "swapped", "moved"};
   for (std::size_t i = 0; i < repaired.done.size(); ++i)
@@ -40,7 +40,7 @@ void say_operations(const repair::Repaired& repaired, EditReport& report) {
   report.notes.push_back("of " + counted(repaired.bad_before, "element") + " that failed or warned in the scope: " + said);
 }
 
-void say_left(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
+void note_unrepaired(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
   if (repaired.unrepaired.empty()) return;
   report.notes.push_back(counted(repaired.unrepaired.size(), "element") + " still " + (repaired.unrepaired.size() == 1 ? "fails" : "fail"));
   for (std::size_t i = 0; i < std::min(repaired.unrepaired.size(), kMaxNamedInRepair); ++i) {
@@ -51,13 +51,22 @@ void say_left(const repair::Repaired& repaired, const Frozen& frozen, const Mode
   }
 }
 
-/// Repairs, and again without what can't be written. Errors: cancelled; what can't be written however often it is tried.
-Result<repair::Repaired> repair_writable(const Document& document, const ShellSet& scope, const repair::Options& options, Frozen& frozen,
-                                         Generation& next, EditReport& report, const Progress& progress) {
+/// What a repair works on and fills in.
+struct RepairTask {
+  const Document& document;
+  repair::Options options;
+  Generation& next;
+  EditReport& report;
+  Frozen frozen;  ///< shells that must stay as they are, since the deck can't be written otherwise
+};
+
+/// Repairs the scope, and repeats without the changes that can't be written. Errors: cancelled; no set of changes can be written.
+Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope, const Progress& progress) {
+  auto& [document, options, next, report, frozen] = task;
   const Generation& current = document.current();
   const relax::ReferenceSurface surface = surface_about(current, scope, options.relax.feature_angle);
   const repair::Rules rules = with_frozen(rules_for(document, current), frozen);
-  double furthest = 0;  // an attempt more doesn't take the progress back
+  double furthest = 0;  // the progress doesn't go back when another attempt begins
   const Progress forward = [&](double fraction) { return !progress || progress(furthest = std::max(furthest, fraction)); };
   for (int attempt = 1;; ++attempt) {
     Result<repair::Repaired> repaired = repair::repair(current.model, surface, scope, rules, judge_of(document), options, forward);
@@ -86,12 +95,12 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
                                                         : "nothing to repair: every element in the scope is fine");
     return {};
   }
-  Frozen frozen;
-  const Result<repair::Repaired> repaired =
-      repair_writable(document, *scope, options_of(edit.angle, edit.max_move), frozen, next, report, progress);
+  RepairTask task{document, options_of(edit.angle, edit.max_move), next, report, {}};
+  const Result<repair::Repaired> repaired = repair_writable(task, *scope, progress);
   if (!repaired) return fail(repaired.error());
-  say_operations(*repaired, report);
-  say_left(*repaired, frozen, next.model, report);
+  const Frozen& frozen = task.frozen;
+  note_operations(*repaired, report);
+  note_unrepaired(*repaired, frozen, next.model, report);
   if (!frozen.shells.empty())
     report.notes.push_back(counted(frozen.shells.size(), "element") +
                            " left as they are, since the deck can't be written otherwise: " + frozen.shells.begin()->second);
@@ -100,15 +109,15 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
 
 namespace {
 
-/// What an operation by hand acts on.
-struct Hand {
+/// The shells and nodes that an operation by hand acts on.
+struct HandTargets {
   ShellSet shells;
   NodeSet nodes;
 };
 
-Result<Hand> find_hand(const Model& model, const Restructure& edit) {
+Result<HandTargets> find_hand_targets(const Model& model, const Restructure& edit) {
   const std::string what(repair::name(edit.operation));
-  Hand hand;
+  HandTargets targets;
   for (const std::string& at : edit.at) {
     const std::size_t colon = at.find(':');
     const std::string kind = at.substr(0, colon), digits = colon == std::string::npos ? "" : at.substr(colon + 1);
@@ -118,14 +127,14 @@ Result<Hand> find_hand(const Model& model, const Restructure& edit) {
     const ShellIndex shell = kind == "shell" ? model.find_shell(id) : ShellIndex();
     const NodeIndex node = kind == "node" ? model.find_node(id) : NodeIndex();
     if (!shell.valid() && !node.valid()) return fail("", what + ": there is no " + kind + " " + digits);
-    if (shell.valid()) hand.shells.push_back(shell);
-    if (node.valid()) hand.nodes.push_back(node);
+    if (shell.valid()) targets.shells.push_back(shell);
+    if (node.valid()) targets.nodes.push_back(node);
   }
-  if (hand.shells.empty() && hand.nodes.empty()) return fail("", what + ": \"at\" names no shell and no node");
-  return hand;
+  if (targets.shells.empty() && targets.nodes.empty()) return fail("", what + ": \"at\" names no shell and no node");
+  return targets;
 }
 
-/// What the rules know too, with the card that stands in the way.
+/// Refuses to divide a shell that a card forbids to divide; the rules refuse it too, but name no card.
 Result<void> refuse_indivisible(const Document& document, const Model& model, const ShellSet& shells) {
   if (!document.deck->references) return {};
   deck::DivisionCheck division(*document.deck);
@@ -138,18 +147,18 @@ Result<void> refuse_indivisible(const Document& document, const Model& model, co
 
 Result<void> apply_edit(const Document& document, const Restructure& edit, Generation& next, EditReport& report) {
   const Generation& current = document.current();
-  const Result<Hand> hand = find_hand(current.model, edit);
-  if (!hand) return fail(hand.error());
+  const Result<HandTargets> targets = find_hand_targets(current.model, edit);
+  if (!targets) return fail(targets.error());
   if (edit.operation == repair::Operation::split)
-    if (const Result<void> may = refuse_indivisible(document, current.model, hand->shells); !may) return may;
+    if (const Result<void> may = refuse_indivisible(document, current.model, targets->shells); !may) return may;
   const repair::Options options = options_of(30, {});
-  NodeSet nodes = hand->nodes;
+  NodeSet nodes = targets->nodes;
   std::sort(nodes.begin(), nodes.end());
   ShellSet about = shells_touching(current.model, nodes);
-  about.insert(about.end(), hand->shells.begin(), hand->shells.end());
+  about.insert(about.end(), targets->shells.begin(), targets->shells.end());
   const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
   const Result<repair::Restructuring> change =
-      repair::by_hand(current.model, surface, edit.operation, hand->shells, hand->nodes, rules_for(document, current),
+      repair::by_hand(current.model, surface, edit.operation, targets->shells, targets->nodes, rules_for(document, current),
                       {document.settings.criteria, document.settings.target_size}, options);
   if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
   return restructure(document, *change, next, report);

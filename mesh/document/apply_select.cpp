@@ -26,14 +26,14 @@ std::vector<IndexType> combined(const std::vector<IndexType>& a, const std::vect
   return out;
 }
 
-/// Elements meet elements as elements; as soon as one side is nodes, nodes meet nodes.
+/// Combines elements with elements; if one side is nodes, combines the nodes of both.
 Selection combine(const Model& model, const Selection& old, Selection added, SelectMode mode) {
   if (mode == SelectMode::set) return added;
   const bool nothing_yet = old.nodes.empty();
   const bool as_nodes = added.kind == Kind::node || (old.kind == Kind::node && !nothing_yet);
   if (as_nodes) return {combined(old.nodes, added.nodes, mode), {}, Kind::node};
-  // Nodes of a selected part's beams and solids belong to no selected shell; they are combined by themselves, since a shell that
-  // stays keeps all its nodes.
+  // Nodes of a selected part's beams and solids belong to no selected shell; they are combined separately, since a shell that stays
+  // keeps all its nodes.
   const auto beyond_shells = [&](const Selection& set) { return combined(set.nodes, nodes_of(model, set.shells), SelectMode::subtract); };
   Selection out;
   out.kind = nothing_yet || old.kind == added.kind ? added.kind : Kind::element;

@@ -8,7 +8,7 @@ ShellSet damaged_shells(const Generation& opened, const Generation& now) {
   ShellSet damaged;
   const std::size_t of_deck = opened.quality.size();
   for (std::size_t c = 0; c < now.quality.chunk_count(); ++c) {
-    // Compared by hand, not by shares_chunk: arrays of different sizes may share all chunks but the last.
+    // The pointers are compared instead of shares_chunk: arrays of different sizes may share all chunks but the last.
     if (c < opened.quality.chunk_count() && now.quality.chunk_owner(c) == opened.quality.chunk_owner(c) && (c + 1) * kChunkSize <= of_deck)
       continue;
     const std::span<const quality::ShellState> states = now.quality.chunk(c);

@@ -1,5 +1,5 @@
-// What a deck says besides its shells, as edits need it: the names that expressions may use, the elements at nodes and what depends on
-// nodes. Found when the deck is opened, shared by all generations.
+// What edits need of a deck besides its shells: names for expressions, the elements at nodes, and what depends on nodes. Found when the
+// deck is opened, shared by all generations.
 #pragma once
 
 #include <compare>
@@ -14,7 +14,7 @@
 
 namespace prismesh::mesh::document {
 
-/// An element other than a shell at a node: it moves along when the node is moved.
+/// An element other than a shell at a node. It moves with the node.
 struct ElementUse {
   NodeIndex node;
   ElementClass element_class = ElementClass::other;

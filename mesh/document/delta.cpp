@@ -17,7 +17,7 @@ constexpr std::uint8_t kVersionWithoutGrowth = 1;  ///< of journals that were wr
 class DeltaWriter {
  public:
   void byte(std::uint8_t value) { bytes_.push_back(static_cast<std::byte>(value)); }
-  /// Seven bits a byte, lowest first; the top bit says that more follow.
+  /// Seven bits in each byte, lowest first; the top bit tells that more follow.
   void number(std::uint64_t value) {
     for (; value >= 0x80; value >>= 7) byte(static_cast<std::uint8_t>(value | 0x80));
     byte(static_cast<std::uint8_t>(value));
@@ -60,7 +60,7 @@ void write_indices(const std::vector<IndexType>& indices, DeltaWriter& out, cons
   }
 }
 
-/// New entries one by one. What an edit adds is still there after it.
+/// Writes new entries one by one. None of them is removed: an edit doesn't remove what it adds.
 void write_added(const Model& before, const Model& model, DeltaWriter& out) {
   out.number(model.node_count() - before.node_count());
   for (std::size_t n = before.node_count(); n < model.node_count(); ++n) {
@@ -95,11 +95,11 @@ struct Run {
   std::uint8_t mark = 0;
 };
 
-/// Runs of entries that differ and got the same mark; new ones had none.
+/// Writes runs of entries that changed to the same mark; new entries had none.
 std::vector<Run> changed_runs(const ChunkedArray<std::uint8_t>& before, const ChunkedArray<std::uint8_t>& after) {
   std::vector<Run> runs;
   for (std::size_t c = 0; c < after.chunk_count(); ++c) {
-    // Compared by hand, not by shares_chunk: a grown array shares all chunks but the last.
+    // The pointers are compared instead of shares_chunk: a grown array shares all chunks but the last.
     const bool known = c < before.chunk_count();
     if (known && after.chunk_owner(c) == before.chunk_owner(c)) continue;
     const std::span<const std::uint8_t> a = known ? before.chunk(c) : std::span<const std::uint8_t>();
@@ -170,7 +170,7 @@ class DeltaReader {
     for (int shift = 0; shift < 64; shift += 8) word |= static_cast<std::uint64_t>(byte()) << shift;
     return std::bit_cast<double>(word);
   }
-  /// A count of things of at least `bytes_each` bytes: never more than can follow, so that nobody reserves for an absurd one.
+  /// A count of entries of at least `bytes_each` bytes; 0 if so many can't follow, so that no memory is reserved for them.
   std::uint64_t count(std::size_t bytes_each) {
     const std::uint64_t value = number();
     if (value > left() / bytes_each) ok_ = false;
@@ -184,7 +184,7 @@ class DeltaReader {
   bool ok_ = true;
 };
 
-/// A node that is there; `end`: one past the last that may be named.
+/// Reads an existing node below `end`.
 NodeIndex read_node(DeltaReader& in, const Model& model, std::size_t end) {
   const std::uint64_t value = in.number();
   if (!in.ok() || value >= end || model.is_removed(NodeIndex(static_cast<std::size_t>(value)))) {
@@ -200,10 +200,10 @@ ShellNodes read_corners(DeltaReader& in, const Model& model) {
   return nodes;
 }
 
-/// An id that nothing in the index has.
+/// Reads an id that isn't in the index.
 std::int64_t read_id(DeltaReader& in, const IdIndex& taken) {
   const std::uint64_t value = in.number();
-  const auto id = static_cast<std::int64_t>(value);  // of 63 bits at most
+  const auto id = static_cast<std::int64_t>(value);  // max 63 bits
   if (!in.ok() || value == 0 || taken.find(id) != IdIndex::kNotFound) {
     in.refuse();
     return 0;
@@ -294,7 +294,7 @@ NodeSet read_moved(DeltaReader& in, Model& model) {
   return moved;
 }
 
-/// Returns by how many the selected entries grew.
+/// Returns by how much the number of selected entries grew.
 std::int64_t read_runs(DeltaReader& in, std::uint8_t known_bits, ChunkedArray<std::uint8_t>& marks) {
   std::int64_t selected = 0;
   const std::uint64_t count = in.count(3);

@@ -1,4 +1,4 @@
-// What depends on nodes without sharing them: nodes that lie on sheets (of welds, and tied ones), and cards that join nodes. Rules:
+// What depends on nodes without sharing them: nodes of welds and tied nodes, which lie on sheets, and cards that join nodes. Rules:
 // docs/connections.md.
 #pragma once
 
@@ -16,7 +16,7 @@ struct NodeOnSheet {
   NodeIndex node;
   ShellIndex shell;              ///< the nearest, when the deck was opened
   double reach = 0;              ///< farther than this from the sheet it doesn't lie on it
-  bool tied = false;             ///< a node of a sheet of its own that a contact ties: it isn't carried along
+  bool tied = false;             ///< a node of another sheet that a contact ties: it doesn't follow
   ElementClass element_class{};  ///< not tied: the element it belongs to
   std::uint32_t of = 0;          ///< that element's index, or the number of the contact's card among the referrers
 };

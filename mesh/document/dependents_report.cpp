@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kMaxNamedInReport = 5;  ///< cards and nodes that a note names
 constexpr std::size_t kMaxLost = 100;         ///< connections that a report lists
-constexpr int kRingsSearched = 4;             ///< how far along its sheet a node may have come and still be found there
+constexpr int kRingsSearched = 4;             ///< max distance along its sheet at which a node is still found
 
 bool contains(const NodeSet& nodes, NodeIndex node) { return std::binary_search(nodes.begin(), nodes.end(), node); }
 
@@ -28,7 +28,7 @@ std::string card_of(const DeckRelations& relations, std::uint32_t referrer) {
   return deck::card_name(relations.deck->format, relations.deck->references->referrers()[referrer]);
 }
 
-/// Cards that join nodes of which only some moved.
+/// Notes the joining cards of which only some nodes moved.
 void note_split_joins(const Generation& before, const NodeSet& moved, EditReport& report) {
   const Dependents& dependents = before.relations->dependents;
   std::map<std::uint32_t, std::size_t> moved_of;
@@ -59,16 +59,16 @@ void note_split_joins(const Generation& before, const NodeSet& moved, EditReport
   if (more > 0) report.notes.push_back("so it is with " + counted(more, "more card") + " that join nodes");
 }
 
-/// The shells around one, ring by ring over shared nodes.
+/// The shells around one, by rings over shared nodes.
 ShellSet around(const Model& model, ShellIndex shell) {
   ShellSet shells{shell};
   for (int ring = 0; ring < kRingsSearched; ++ring) shells = shells_touching(model, nodes_of(model, shells));
   return shells;
 }
 
-/// How far the node is from the sheet it lies on; looks at the shell alone first.
+/// The distance of the node from the sheet it lies on; checks the shell alone first.
 double gap_at(const Model& model, const NodeOnSheet& rest) {
-  if (model.is_removed(rest.node) || model.is_removed(rest.shell)) return 0;  // nothing is left that could be lost
+  if (model.is_removed(rest.node) || model.is_removed(rest.shell)) return 0;  // there is no connection to lose
   const Vec3& point = model.position(rest.node);
   const auto distance = [&](const ShellSet& shells) {
     const auto on = spatial::ShellTree(model, shells).closest(point);
@@ -78,7 +78,7 @@ double gap_at(const Model& model, const NodeOnSheet& rest) {
   return close <= rest.reach ? close : std::min(close, distance(around(model, rest.shell)));
 }
 
-/// Three digits are enough to say how far apart things are.
+/// Three digits are enough for a gap.
 std::string short_length(double length) { return readable(length, 3); }
 
 std::string lost_connection(const Generation& before, const NodeOnSheet& rest, double gap) {
@@ -99,7 +99,7 @@ std::string lost_connection(const Generation& before, const NodeOnSheet& rest, d
   return what + why;
 }
 
-/// Nodes that lay on a sheet and don't any more.
+/// Lists the nodes that lay on a sheet and no longer do.
 void list_lost(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report) {
   const Dependents& dependents = before.relations->dependents;
   if (dependents.on_sheets.empty()) return;

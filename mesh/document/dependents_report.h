@@ -1,4 +1,4 @@
-// Says what an edit did to what depends on the nodes it moved. Rules: docs/connections.md. Private to mesh/document.
+// Reports what an edit did to connections of the nodes it moved. Rules: docs/connections.md. Private to mesh/document.
 #pragma once
 
 #include "mesh/document/edit_report.h"
@@ -7,7 +7,7 @@
 
 namespace prismesh::mesh::document {
 
-/// Notes cards of whose nodes only some moved, and lists nodes that no longer lie on their sheets. `moved` ascending.
+/// Notes the joining cards of which only some nodes moved, and lists nodes that no longer lie on their sheets. `moved` ascending.
 void report_dependents(const Generation& before, const Generation& after, const NodeSet& moved, EditReport& report);
 
 }  // namespace prismesh::mesh::document

@@ -11,7 +11,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-// Where the paper's maps begin and end.
+// Limits of the maps in the paper.
 constexpr FieldLimits kDisplacementLimits_mm{1, 5};
 constexpr FieldLimits kDistanceLimits_mm{0.05, 1};
 
@@ -19,15 +19,15 @@ FieldLimits in_unit(const FieldLimits& millimetres, LengthUnit unit) {
   return {millimetres.clear / millimetres_per(unit), millimetres.full / millimetres_per(unit)};
 }
 
-/// The node with the same id in another model; invalid if there is none. Mostly it stands at the same place.
+/// The node with the same id in another model; invalid if there is none. Usually it has the same index.
 NodeIndex counterpart(const Model& other, const Model& model, std::size_t node) {
   const std::int64_t id = model.node_ids[node];
   if (node < other.node_count() && other.node_ids[node] == id && !other.is_removed(NodeIndex(node))) return NodeIndex(node);
   return other.find_node(id);
 }
 
-/// Where the nodes that were added to `now` would have been made in another state: between the nodes that they come from. By their place
-/// among the added ones; not finite where that state doesn't know those.
+/// The positions at which the nodes added to `now` would have been made in another state: between the nodes that they come from. In the
+/// order of the added nodes; not finite where that state doesn't have the nodes they come from.
 std::vector<Vec3> makings_of_added(const Model& before, const Model& now) {
   std::vector<Vec3> makings;
   const auto making = [&](NodeIndex node) -> Vec3 {
@@ -57,13 +57,13 @@ void measure_added(const Model& before, const Model& now, Field& field) {
   }
 }
 
-/// Both models have the same nodes at the same places in this chunk of the second.
+/// Whether both models have the same nodes at the same positions in this chunk of the second.
 bool same_nodes(const Model& a, const Model& b, std::size_t chunk) {
   return b.positions.shares_chunk(a.positions, chunk) && b.node_ids.shares_chunk(a.node_ids, chunk) &&
          b.node_holds.shares_chunk(a.node_holds, chunk);
 }
 
-/// 1 for each corner of a shell that is there.
+/// 1 for each corner of an existing shell.
 std::vector<std::uint8_t> corners_of_shells(const Model& model) {
   std::vector<std::uint8_t> is_corner(model.node_count());
   for (std::size_t c = 0; c < model.shell_nodes.chunk_count(); ++c)
@@ -95,7 +95,7 @@ ShellSet shells_near(const Model& model, const Bounds& bounds, double reach) {
   return near;
 }
 
-/// Nodes that have to be asked for, and how far at most the surface is from any of them.
+/// Nodes whose distance must be computed, and the max distance of the surface from any of them.
 struct Questions {
   std::vector<std::uint32_t> nodes;
   std::vector<Vec3> points;
@@ -159,7 +159,7 @@ Result<Field> surface_distance_field(const Model& surface, const Model& now, Len
   const Questions questions = moved_corners(surface, now, still);
   std::vector<double> distances;
   if (!questions.points.empty()) {
-    // Farther away than they have moved nothing can be closest.
+    // The closest point can't be farther away than a node has moved.
     const spatial::ShellTree tree(surface, shells_near(surface, questions.bounds, questions.reach * (1 + 1e-9)));
     Result<std::vector<double>> found = spatial::distances_to(tree, questions.points, progress);
     if (!found) return fail(found.error());

@@ -16,9 +16,9 @@ namespace prismesh::mesh::document {
 struct Document {
   std::filesystem::path path;
   std::shared_ptr<const deck::Deck> deck;
-  Settings settings;
-  std::size_t history_bytes = std::size_t{2} << 30;            ///< cap on what old generations hold for themselves
-  std::vector<std::shared_ptr<const Generation>> generations;  ///< oldest first; what undo and redo walk
+  DocumentSettings settings;
+  std::size_t history_bytes = std::size_t{2} << 30;            ///< max size of what the old generations don't share
+  std::vector<std::shared_ptr<const Generation>> generations;  ///< oldest first; undo and redo move among them
   std::size_t cursor = 0;                                      ///< the current one
   std::shared_ptr<const Generation> opened;                    ///< as read from the deck; what saving compares with
   std::uint64_t next_number = 1;

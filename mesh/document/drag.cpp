@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kDragGrain = 1024;  ///< of a parallel range: some 100 microseconds
 
-/// Where each corner's coordinates come from: >= 0 the moving node of that number, < 0 the fixed point of the number's complement.
+/// The source of each corner's coordinates: >= 0 the index of the moving node, < 0 the complement of the fixed point's index.
 class Corners {
  public:
   Corners(const Model& model, const NodeSet& moving) : model_(model), moving_(moving) {
@@ -40,7 +40,7 @@ class Corners {
 
   const Model& model_;
   const NodeSet& moving_;
-  std::vector<std::int32_t> table_;  ///< by NodeIndex, where most of the model moves
+  std::vector<std::int32_t> table_;  ///< by NodeIndex; used if a large share of the model moves
 };
 
 void add(quality::Counts& counts, quality::ShellState state, std::size_t one) {
@@ -62,7 +62,7 @@ quality::Counts total(quality::Counts sum, const std::vector<quality::Counts>& p
 
 }  // namespace
 
-Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const Settings& settings, const Edit& edit) {
+Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const DocumentSettings& settings, const Edit& edit) {
   Result<Motion> motion = plan_motion(*base, edit, nullptr);
   if (!motion) return fail(motion.error());
   Drag drag;

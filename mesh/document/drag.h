@@ -1,5 +1,5 @@
-// A drag under way: weights once, then positions and quality of what moves for each displacement. Nothing is kept until
-// the edit it stands for is applied.
+// A drag: plans the motion once, then computes positions and quality for each displacement. The document changes only when the drag's edit
+// is applied.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct Motion;
 class Drag {
  public:
   /// `edit` is a Translate, Lift, Slide or Rotate; its displacement is ignored. Errors as `prepare`.
-  static Result<Drag> begin(std::shared_ptr<const Generation> base, const Settings& settings, const Edit& edit);
+  static Result<Drag> begin(std::shared_ptr<const Generation> base, const DocumentSettings& settings, const Edit& edit);
 
   /// Nodes that can move (weight > 0) and the shells that touch them; fixed for the whole drag.
   const NodeSet& nodes() const;
@@ -32,7 +32,8 @@ class Drag {
   /// The unit normal at the grab: the direction of a lift.
   const Vec3& normal() const;
 
-  /// Moves to a displacement. Bit for bit what applying the edit will give. A displacement that no coordinate can hold is passed over.
+  /// Moves to a displacement, with bit for bit the positions that applying the edit will give. A displacement that gives coordinates that
+  /// aren't finite is ignored.
   void step(const Displacement& displacement);
   const std::vector<Vec3>& positions() const { return positions_; }           ///< of nodes()
   const std::vector<quality::ShellState>& states() const { return states_; }  ///< of shells()
@@ -43,8 +44,8 @@ class Drag {
 
  private:
   std::shared_ptr<const Generation> base_;
-  std::shared_ptr<const Motion> motion_;  ///< nodes, weights, where from: what applying the edit uses too
-  Settings settings_;
+  std::shared_ptr<const Motion> motion_;  ///< as applying the edit uses it
+  DocumentSettings settings_;
   Edit edit_;
   ShellSet shells_;
   Displacement displacement_;

@@ -1,4 +1,4 @@
-// Mid-side nodes and the ends of their edges: what moves with an end. Private to mesh/document.
+// Finds the mid-side nodes that move with the ends of their edges. Private to mesh/document.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ struct EdgeMiddle {
   std::array<NodeIndex, 2> end;
 };
 
-/// The mid-side nodes of `shells` on edges with an end among `nodes`, or among these themselves, with the ends of their edges; ascending,
-/// each once. A node that is a corner elsewhere moves as one and isn't among them. Both sets ascending.
+/// The mid-side nodes of `shells` that are among `nodes`, or on an edge with an end among them; ascending, each once. A node that is also a
+/// corner of a shell moves as a corner and isn't included. Both sets ascending.
 std::vector<EdgeMiddle> middles_in(const Model& model, const NodeSet& nodes, const ShellSet& shells);
 
 }  // namespace prismesh::mesh::document

@@ -1,5 +1,5 @@
-// An edit is data: what to do, on what, from where. One definition for kiosk, pen, command line, scripts and tests. The list of kinds is
-// in edit_kinds.h, the JSON form in edit_json.h.
+// The edits, as data. One definition for kiosk, command line, scripts and tests. The list of kinds is in edit_kinds.h, the JSON form in
+// edit_json.h.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ namespace prismesh::mesh::document {
 
 enum class SelectMode : std::uint8_t { set, add, subtract, intersect };
 
-/// A node by id, or by coordinates (the nearest node): coordinates survive a remeshed variant.
-using Place = std::variant<std::int64_t, std::array<double, 3>>;
+/// A node by id, or by coordinates (the nearest node). Coordinates also hold for a remeshed variant of the deck.
+using NodeReference = std::variant<std::int64_t, std::array<double, 3>>;
 
 struct Select {
   std::string expr;
@@ -30,16 +30,16 @@ struct Select {
 /// shared edges; or the loop of free edges nearest to the place, whose nodes it selects.
 enum class RegionBy : std::uint8_t { features, part, piece, free_edge };
 struct SelectRegion {
-  Place at;
+  NodeReference at;
   double angle = 30;  ///< degrees
   RegionBy by = RegionBy::features;
-  bool across_welds = false;  ///< goes on over sheets that are welded to those it has reached
+  bool across_welds = false;  ///< continues on sheets that are welded to those reached
   SelectMode mode = SelectMode::set;
 };
 struct SelectLasso {
   std::vector<std::array<double, 2>> outline;  ///< normalised device coordinates
   std::array<double, 16> view{};               ///< deck coordinates to clip space, column-major
-  bool visible = false;                        ///< only nodes that no shell in sight hides from this view
+  bool visible = false;                        ///< only nodes that no visible part's shell hides in this view
   SelectMode mode = SelectMode::set;
 };
 struct Grow {
@@ -51,31 +51,31 @@ struct Shrink {
 struct Invert {};
 
 enum class VisibilityAction : std::uint8_t { hide, show, only, reverse, lock, unlock };
-/// Parts named by `on` (an expression of kind part); without it, the parts of the selection; show and unlock with nothing
-/// selected: all parts. `reverse` shows what is hidden and hides the rest, of the parts named or of all.
+/// Acts on the parts named by `on` (an expression of kind part), without it on the parts of the selection; show and unlock with nothing
+/// selected act on all parts. `reverse` shows hidden parts and hides visible ones, among those named or all.
 struct SetParts {
   VisibilityAction action = VisibilityAction::hide;
   std::optional<std::string> on;
 };
 
-/// What an edit acts on: an expression of kind node, or a recipe, worked out on the model as it is when the edit is applied; its
-/// mode is ignored. A recipe of a region by coordinates means the same place on a remeshed variant.
-using Where = std::variant<std::string, Select, SelectRegion, SelectLasso>;
+/// The nodes that an edit acts on: an expression of kind node, or a recipe that selects, evaluated when the edit is applied; its mode is
+/// ignored. A recipe of a region by coordinates finds the same region on a remeshed variant.
+using TargetNodes = std::variant<std::string, Select, SelectRegion, SelectLasso>;
 
-/// The same edit mirrored: on the images of the nodes acted on, with the images of the displacements. A node on the plane stays on it.
+/// Applies the edit mirrored as well: to the images of the nodes acted on, with mirrored displacements. A node on the plane stays on it.
 struct Symmetry {
   Vec3 point = Vec3::Zero();    ///< on the plane, deck coordinates
   Vec3 normal = Vec3::UnitX();  ///< of any length but zero
 };
 
-/// What a shaping edit acts on and how it fades out.
+/// What a shaping edit acts on, and how its effect falls off.
 struct Shaping {
-  std::optional<Where> on;    ///< without it the selection
-  std::optional<Place> grab;  ///< coordinates: the nearest node of those acted on; absent: the node farthest from the border
+  std::optional<TargetNodes> on;      ///< without it the selection
+  std::optional<NodeReference> grab;  ///< coordinates: the nearest node of those acted on; absent: the node farthest from the border
   std::optional<std::array<double, 3>> grab_at;  ///< where the node `grab` was: used where no such node is acted on (a variant)
   shape::WeightOptions weights;
   std::optional<Symmetry> symmetry;
-  std::optional<double> max_move;  ///< no node moves farther; deck's length unit
+  std::optional<double> max_move;  ///< of each node; deck's length unit
 };
 struct Translate {
   Vec3 by = Vec3::Zero();
@@ -86,55 +86,55 @@ struct Lift {
   bool each_normal = false;  ///< "normals": "each": every node along its own normal
   Shaping shaping;
 };
-/// On the surface: nodes walk their share of `by` over the faces as they were; `by` is meant at the grab and turns with the sheet.
+/// Moves nodes on the surface: each goes its share of `by` over the faces as they were. `by` holds at the grab and turns with the sheet.
 struct Slide {
   Vec3 by = Vec3::Zero();
   Shaping shaping;
 };
-/// About an axis: every node by its weight's share of the angle, on a circle.
+/// Rotates about an axis: every node on a circle by its weight's share of the angle.
 struct Rotate {
   Vec3 point = Vec3::Zero();  ///< on the axis, deck coordinates
   Vec3 axis = Vec3::UnitZ();  ///< of any length but zero
   double degrees = 0;         ///< right-handed
   Shaping shaping;
 };
-/// How far a shaping edit goes; each kind reads its own.
+/// The displacement of a shaping edit; each kind uses its own field.
 struct Displacement {
   Vec3 by = Vec3::Zero();  ///< translate, slide
   double distance = 0;     ///< lift
   double degrees = 0;      ///< rotate
 };
 
-/// Which shells relaxing and repairing look at.
+/// Which shells are relaxed or repaired.
 enum class Scope : std::uint8_t {
   selection,  ///< relax: the selected nodes; repair: the shells at them
   part,       ///< the parts of the selection
   all,
-  damaged,  ///< what this document's edits made worse (damage.h)
-  failed,   ///< whatever fails
+  damaged,  ///< shells that this document's edits made worse (damage.h)
+  failed,   ///< shells that fail
 };
 enum class RelaxMode : std::uint8_t { full, from };
-/// How far nodes may go, by what they are on; deck's length unit. Absent: as far as it takes.
+/// Max distances that nodes may move; deck's length unit. Absent: no limit.
 struct MoveLimits {
   std::optional<double> free;  ///< inside a sheet
   std::optional<double> line;  ///< on a feature line
 };
-/// Nodes find better places on the surface they are on.
+/// Moves nodes along their surface to improve the elements.
 struct Relax {
   RelaxMode mode = RelaxMode::full;
-  std::optional<Place> at;          ///< mode from: where it begins
-  std::optional<double> threshold;  ///< mode from: neighbours join while a node is displaced farther; absent: 0.15 of the target size
+  std::optional<NodeReference> at;  ///< mode from: the first node
+  std::optional<double> threshold;  ///< mode from: a node that moves farther adds its neighbours; absent: 0.15 of the target size
   Scope scope = Scope::selection;
   double angle = 30;  ///< degrees; sharper edges are features
   MoveLimits max_move;
 };
-/// Local changes to the structure until what is bad is valid or nothing gets better.
+/// Changes the structure locally until the bad shells are valid or nothing improves.
 struct Repair {
   Scope scope = Scope::damaged;
   double angle = 30;
   MoveLimits max_move;
 };
-/// One operation by hand, on shells ("shell:12") or the edge between two nodes ("node:7").
+/// One operation, chosen by the user, on shells ("shell:12") or the edge between two nodes ("node:7").
 struct Restructure {
   repair::Operation operation = repair::Operation::split;
   std::vector<std::string> at;
@@ -146,10 +146,10 @@ struct Redo {};
 using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, Translate, Lift, Slide, Rotate, Relax, Repair,
                           Restructure, Undo, Redo>;
 
-/// What a shaping edit says of where and how; null for the others.
+/// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);
 Shaping* shaping_of(Edit& edit);
-/// How far it goes; zero for the others. And the same edit going otherwise.
+/// The displacement of a shaping edit; zero for the others.
 Displacement displacement_of(const Edit& edit);
 void set_displacement(Edit& edit, const Displacement& displacement);
 

@@ -1,131 +1,128 @@
-// The fields of each edit, named once: reading and writing JSON both walk these lists. Private to mesh/document.
+// The JSON definitions of edits: the fields of each, named once for reading and writing. For sources that turn edits, or messages that
+// hold edits, into JSON and back.
 #pragma once
 
+#include "base/json/read.h"
+#include "base/json/write.h"
 #include "mesh/document/edit.h"
 
-namespace prismesh::mesh::document {
+namespace prismesh::json {
 
-// A visitor has required(name, value), optional(name, value), direction(name, vector) and nested(name, object).
-// Numbers carry their limits as a Limit argument, so that the error can name them.
-struct Limit {
-  double low;
-  double high;
-  bool low_open = false;  ///< low itself is refused
+// --- enumerations ---
+
+PRISMESH_JSON_NAMES(mesh::select::Kind,
+                    {{"node", mesh::select::Kind::node}, {"element", mesh::select::Kind::element}, {"part", mesh::select::Kind::part}});
+PRISMESH_JSON_NAMES(mesh::document::SelectMode, {{"set", mesh::document::SelectMode::set},
+                                                 {"add", mesh::document::SelectMode::add},
+                                                 {"subtract", mesh::document::SelectMode::subtract},
+                                                 {"intersect", mesh::document::SelectMode::intersect}});
+PRISMESH_JSON_NAMES(mesh::document::RegionBy, {{"features", mesh::document::RegionBy::features},
+                                               {"part", mesh::document::RegionBy::part},
+                                               {"piece", mesh::document::RegionBy::piece},
+                                               {"free_edge", mesh::document::RegionBy::free_edge}});
+PRISMESH_JSON_NAMES(mesh::document::Scope, {{"selection", mesh::document::Scope::selection},
+                                            {"part", mesh::document::Scope::part},
+                                            {"all", mesh::document::Scope::all},
+                                            {"damaged", mesh::document::Scope::damaged},
+                                            {"failed", mesh::document::Scope::failed}});
+PRISMESH_JSON_NAMES(mesh::document::RelaxMode, {{"full", mesh::document::RelaxMode::full}, {"from", mesh::document::RelaxMode::from}});
+PRISMESH_JSON_NAMES(mesh::shape::Origin, {{"grab", mesh::shape::Origin::grab}, {"free_edge", mesh::shape::Origin::free_edge}});
+template <>
+struct Definition<mesh::shape::Profile> {
+  static const Names<mesh::shape::Profile>& names();
 };
 
-inline constexpr double kMax = 1e300;  ///< coordinates: finite, with room for arithmetic
-inline constexpr Limit kAnyLength{-kMax, kMax};
-inline constexpr Limit kTurns{-36000, 36000};  ///< degrees: a hundred turns either way
+// --- values ---
 
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Select*) {
-  v.required("expr", edit.expr);
-  v.optional("kind", edit.kind);
-  v.optional("mode", edit.mode);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const SelectRegion*) {
-  v.required("at", edit.at);
-  v.optional("angle", edit.angle, Limit{0, 180});
-  v.optional("by", edit.by);
-  v.optional("across_welds", edit.across_welds);
-  v.optional("mode", edit.mode);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const SelectLasso*) {
-  v.required("outline", edit.outline);
-  v.required("view", edit.view);
-  v.optional("visible", edit.visible);
-  v.optional("mode", edit.mode);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Grow*) {
-  v.optional("rings", edit.rings);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Shrink*) {
-  v.optional("rings", edit.rings);
-}
-template <class Visitor>
-void fields(Visitor&, auto&, const Invert*) {}
-template <class Visitor>
-void fields(Visitor&, auto&, const Undo*) {}
-template <class Visitor>
-void fields(Visitor&, auto&, const Redo*) {}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const SetParts*) {
-  v.optional("on", edit.on);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& falloff, const shape::Falloff*) {
-  v.optional("profile", falloff.profile);
-  v.optional("flat", falloff.flat, Limit{0, 1});
-  v.optional("along", falloff.along);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& shaping, const Shaping*) {
-  v.optional("on", shaping.on);
-  v.optional("grab", shaping.grab);
-  v.optional("grab_at", shaping.grab_at);
-  v.nested("falloff", shaping.weights.falloff);
-  v.optional("free_ends", shaping.weights.free_ends);
-  v.optional("origin", shaping.weights.origin);
-  v.optional("across_welds", shaping.weights.across_welds);
-  v.nested("symmetry", shaping.symmetry);
-  v.optional("max_move", shaping.max_move, Limit{0, kMax, true});
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Translate*) {
-  v.required("by", edit.by);
-  fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
-}
-template <class Visitor>
-void fields(Visitor& v, auto& symmetry, const Symmetry*) {
-  v.required("point", symmetry.point);
-  v.direction("normal", symmetry.normal);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Slide*) {
-  v.required("by", edit.by);
-  fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Rotate*) {
-  v.required("point", edit.point);
-  v.direction("axis", edit.axis);
-  v.required("degrees", edit.degrees, kTurns);
-  fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Lift*) {
-  v.required("distance", edit.distance, kAnyLength);
-  v.normals("normals", edit.each_normal);
-  fields(v, edit.shaping, static_cast<const Shaping*>(nullptr));
-}
+/// The limit of a vector that must not be zero.
+struct DirectionLimits {};
 
-template <class Visitor>
-void fields(Visitor& v, auto& limits, const MoveLimits*) {
-  v.optional("free", limits.free, Limit{0, kMax, true});
-  v.optional("line", limits.line, Limit{0, kMax});
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Relax*) {
-  v.optional("mode", edit.mode);
-  v.optional("at", edit.at);
-  v.optional("threshold", edit.threshold, Limit{0, kMax, true});
-  v.optional("scope", edit.scope);
-  v.optional("angle", edit.angle, Limit{0, 180});
-  v.nested("max_move", edit.max_move);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Repair*) {
-  v.optional("scope", edit.scope);
-  v.optional("angle", edit.angle, Limit{0, 180});
-  v.nested("max_move", edit.max_move);
-}
-template <class Visitor>
-void fields(Visitor& v, auto& edit, const Restructure*) {
-  v.required("at", edit.at);
-}
+template <>
+struct Definition<mesh::Vec3> {
+  static void write(Json& json, const mesh::Vec3& value);
+  static Problem read(const Json& json, mesh::Vec3& value, Author author);
+  static Problem read(const Json& json, mesh::Vec3& value, Author author, DirectionLimits);
+};
+template <>
+struct Definition<mesh::document::NodeReference> {
+  static void write(Json& json, const mesh::document::NodeReference& value);
+  static Problem read(const Json& json, mesh::document::NodeReference& value, Author author);
+};
+template <>
+struct Definition<mesh::document::TargetNodes> {
+  static void write(Json& json, const mesh::document::TargetNodes& value);
+  static Problem read(const Json& json, mesh::document::TargetNodes& value, Author author);
+};
+/// An edit within another object. edit_from_json reads one that stands by itself.
+template <>
+struct Definition<mesh::document::Edit> {
+  static void write(Json& json, const mesh::document::Edit& value);
+  static Problem read(const Json& json, mesh::document::Edit& value, Author author);
+};
 
-}  // namespace prismesh::mesh::document
+// --- parts of edits ---
+
+inline constexpr NumberLimits kPositive{0, kMaxNumber, true};
+inline constexpr NumberLimits kNotNegative{0, kMaxNumber};
+inline constexpr NumberLimits kEdgeAngles{0, 180};
+inline constexpr NumberLimits kTurns{-36000, 36000};  ///< degrees: a hundred turns either way
+inline constexpr WholeNumberLimits kRings{1, 1'000'000};
+inline constexpr ListLimits kOutline{3, 100'000, "points [x, y]", "point"};
+inline constexpr ListLimits kEntities{1, 1000, "entities like [\"shell:12\", \"shell:40\"]", ""};
+inline constexpr TwoWords kNormals{"grab", "each", "\"grab\" (all nodes along the normal at the grab) or \"each\""};
+
+template <>
+struct Definition<mesh::shape::Falloff> {
+  static constexpr std::string_view kExample = R"({"profile": "smooth"})";
+  static void fields(auto& m, auto& f) {
+    f("profile", m.profile);
+    f("flat", m.flat, NumberLimits{0, 1});
+    f("along", m.along, DirectionLimits{});
+  }
+};
+template <>
+struct Definition<mesh::document::Symmetry> {
+  static constexpr std::string_view kExample = R"({"point": [0, 0, 0], "normal": [0, 1, 0]})";
+  static void fields(auto& m, auto& f) {
+    f.required("point", m.point);
+    f.required("normal", m.normal, DirectionLimits{});
+  }
+};
+template <>
+struct Definition<mesh::document::MoveLimits> {
+  static constexpr std::string_view kExample = R"({"free": 2, "line": 0.5})";
+  static bool is_absent(const mesh::document::MoveLimits& m) { return !m.free && !m.line; }
+  static void fields(auto& m, auto& f) {
+    f("free", m.free, kPositive);
+    f("line", m.line, kNotNegative);
+  }
+};
+PRISMESH_JSON_OBJECT(mesh::document::Shaping, f("on", m.on), f("grab", m.grab), f("grab_at", m.grab_at), f("falloff", m.weights.falloff),
+                     f("free_ends", m.weights.free_ends), f("origin", m.weights.origin), f("across_welds", m.weights.across_welds),
+                     f("symmetry", m.symmetry), f("max_move", m.max_move, kPositive));
+
+// --- edits; the field "edit" tells which it is ---
+
+PRISMESH_JSON_OBJECT(mesh::document::Select, f.required("expr", m.expr), f("kind", m.kind), f("mode", m.mode));
+PRISMESH_JSON_OBJECT(mesh::document::SelectRegion, f.required("at", m.at), f("angle", m.angle, kEdgeAngles), f("by", m.by),
+                     f("across_welds", m.across_welds), f("mode", m.mode));
+PRISMESH_JSON_OBJECT(mesh::document::SelectLasso, f.required("outline", m.outline, kOutline), f.required("view", m.view),
+                     f("visible", m.visible), f("mode", m.mode));
+PRISMESH_JSON_OBJECT(mesh::document::Grow, f("rings", m.rings, kRings));
+PRISMESH_JSON_OBJECT(mesh::document::Shrink, f("rings", m.rings, kRings));
+PRISMESH_JSON_OBJECT(mesh::document::Invert, );
+PRISMESH_JSON_OBJECT(mesh::document::SetParts, f("on", m.on));
+PRISMESH_JSON_OBJECT(mesh::document::Translate, f.required("by", m.by), Definition<mesh::document::Shaping>::fields(m.shaping, f));
+PRISMESH_JSON_OBJECT(mesh::document::Lift, f.required("distance", m.distance), f("normals", m.each_normal, kNormals),
+                     Definition<mesh::document::Shaping>::fields(m.shaping, f));
+PRISMESH_JSON_OBJECT(mesh::document::Slide, f.required("by", m.by), Definition<mesh::document::Shaping>::fields(m.shaping, f));
+PRISMESH_JSON_OBJECT(mesh::document::Rotate, f.required("point", m.point), f.required("axis", m.axis, DirectionLimits{}),
+                     f.required("degrees", m.degrees, kTurns), Definition<mesh::document::Shaping>::fields(m.shaping, f));
+PRISMESH_JSON_OBJECT(mesh::document::Relax, f("mode", m.mode), f("at", m.at), f("threshold", m.threshold, kPositive), f("scope", m.scope),
+                     f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move));
+PRISMESH_JSON_OBJECT(mesh::document::Repair, f("scope", m.scope), f("angle", m.angle, kEdgeAngles), f("max_move", m.max_move));
+PRISMESH_JSON_OBJECT(mesh::document::Restructure, f.required("at", m.at, kEntities));
+PRISMESH_JSON_OBJECT(mesh::document::Undo, );
+PRISMESH_JSON_OBJECT(mesh::document::Redo, );
+
+}  // namespace prismesh::json

@@ -1,4 +1,4 @@
-// The kinds of edits, one row each: the one place that says which there are, how they are named and what they change.
+// The table of the kinds of edits: their names and what they change.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace prismesh::mesh::document {
 enum class EditGroup : std::uint8_t {
   selection,  ///< changes the selection alone
   parts,      ///< changes the parts' states
-  shaping,    ///< moves nodes to a new shape that relaxing and repairing then keep; has a Shaping and a Displacement, can be dragged
+  shaping,    ///< changes the shape, which relaxing and repairing then keep; has a Shaping and a Displacement, can be dragged
   mending,    ///< relaxes nodes or changes the structure, and keeps the shape
   step,       ///< goes to another generation of the history
 };
@@ -20,7 +20,7 @@ enum class EditGroup : std::uint8_t {
 struct EditKind {
   std::string_view name;  ///< as in its JSON ("translate", "hide", ...)
   EditGroup group = EditGroup::selection;
-  Edit blank;  ///< with its defaults; for the part edits with the action, for those by hand with the operation
+  Edit blank;  ///< with its defaults, and for SetParts and Restructure its action or operation
 };
 
 /// All kinds, ascending by name.
@@ -30,10 +30,10 @@ std::string_view name(const Edit& edit);
 /// Null if there is none of that name.
 const EditKind* find_edit_kind(std::string_view name);
 
-/// What an edit has to do with the selection.
+/// How an edit uses the selection.
 struct SelectionUse {
-  bool reads = false;   ///< it acts on the selection, or starts from it
-  bool writes = false;  ///< it makes another one
+  bool reads = false;   ///< it acts on the selection, or changes it
+  bool writes = false;  ///< it makes a new one
 };
 SelectionUse selection_use(const Edit& edit);
 

@@ -1,4 +1,4 @@
-// What an edit changed, as figures and sentences.
+// The report of an edit: what it changed, as figures and sentences.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct EditReport {
   std::optional<std::array<double, 3>> centre_before;  ///< of gravity
   std::optional<std::array<double, 3>> centre_after;
   std::vector<std::string> notes;
-  double milliseconds = 0;  ///< of working it out, where a clock was given
+  double milliseconds = 0;  ///< time taken; 0 without a clock
 };
 
 }  // namespace prismesh::mesh::document

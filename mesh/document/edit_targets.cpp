@@ -19,11 +19,11 @@
 
 namespace prismesh::mesh::document {
 
-Result<NodeIndex> find_place(const Model& model, const Place& place) {
+Result<NodeIndex> find_referenced_node(const Model& model, const NodeReference& reference) {
   if (model.node_count() == 0) return fail("", "the model has no nodes");
-  if (const auto* point = std::get_if<std::array<double, 3>>(&place))
+  if (const auto* point = std::get_if<std::array<double, 3>>(&reference))
     return select::nearest_node(model, Vec3((*point)[0], (*point)[1], (*point)[2]));
-  const std::int64_t id = std::get<std::int64_t>(place);
+  const std::int64_t id = std::get<std::int64_t>(reference);
   const NodeIndex node = model.find_node(id);
   if (node.valid()) return node;
   const IdIndex& ids = *model.node_index;
@@ -34,14 +34,14 @@ Result<NodeIndex> find_place(const Model& model, const Place& place) {
 
 namespace {
 
-/// What a region begins with. Errors: no such node, no shell in sight.
-Result<ShellSet> region_start(const Model& model, const Place& place, select::OutOfSight hidden) {
-  if (const auto* point = std::get_if<std::array<double, 3>>(&place)) {
+/// The shells that a region begins with. Errors: no such node, no shell in sight.
+Result<ShellSet> region_start(const Model& model, const NodeReference& reference, select::OutOfSight hidden) {
+  if (const auto* point = std::get_if<std::array<double, 3>>(&reference)) {
     ShellSet near = select::shells_near(model, Vec3((*point)[0], (*point)[1], (*point)[2]), hidden);
     if (near.empty()) return fail("", "no shell is in sight, so there is no region");
     return near;
   }
-  const Result<NodeIndex> node = find_place(model, place);
+  const Result<NodeIndex> node = find_referenced_node(model, reference);
   if (!node) return fail(node.error());
   ShellSet around = select::shells_at(model, *node, hidden);
   if (around.empty())
@@ -96,17 +96,17 @@ Result<NodeSet> nodes_in_outline(const Generation& generation, const SelectLasso
   return visible;
 }
 
-Result<NodeSet> nodes_at(const Generation& generation, const Where& where) {
+Result<NodeSet> nodes_at(const Generation& generation, const TargetNodes& target) {
   const Model& model = generation.model;
   const auto expression_nodes = [&](std::string_view expression, select::Kind kind) -> Result<NodeSet> {
     Result<select::Chosen> chosen = select::evaluate(model, expression, kind, generation.relations->names);
     if (!chosen) return fail(chosen.error());
     return std::move(chosen->nodes);
   };
-  if (const auto* expression = std::get_if<std::string>(&where)) return expression_nodes(*expression, select::Kind::node);
-  if (const auto* recipe = std::get_if<Select>(&where)) return expression_nodes(recipe->expr, recipe->kind);
-  if (const auto* lasso = std::get_if<SelectLasso>(&where)) return nodes_in_outline(generation, *lasso);
-  Result<Selection> region = region_at(generation, std::get<SelectRegion>(where));
+  if (const auto* expression = std::get_if<std::string>(&target)) return expression_nodes(*expression, select::Kind::node);
+  if (const auto* recipe = std::get_if<Select>(&target)) return expression_nodes(recipe->expr, recipe->kind);
+  if (const auto* lasso = std::get_if<SelectLasso>(&target)) return nodes_in_outline(generation, *lasso);
+  Result<Selection> region = region_at(generation, std::get<SelectRegion>(target));
   if (!region) return fail(region.error());
   return std::move(region->nodes);
 }

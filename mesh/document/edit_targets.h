@@ -1,4 +1,4 @@
-// The nodes and shells that an edit names. Private to mesh/document.
+// Finds the nodes and shells that an edit names. Private to mesh/document.
 #pragma once
 
 #include "base/error.h"
@@ -10,14 +10,14 @@
 namespace prismesh::mesh::document {
 
 /// A node by id, or the nearest to coordinates. Errors: no such node.
-Result<NodeIndex> find_place(const Model& model, const Place& place);
+Result<NodeIndex> find_referenced_node(const Model& model, const NodeReference& reference);
 
-/// The nodes that `where` names on this generation. Errors: those of the expression, no such node, nothing there.
-Result<NodeSet> nodes_at(const Generation& generation, const Where& where);
+/// The nodes that `target` names on this generation. Errors: those of the expression, no such node, nothing there.
+Result<NodeSet> nodes_at(const Generation& generation, const TargetNodes& target);
 
-/// A region of what is in sight: shells, or the nodes of a loop of free edges. Errors: no such node, no shell in sight there, no free edge.
+/// A region of visible parts: shells, or the nodes of a loop of free edges. Errors: no such node, no visible shell there, no free edge.
 Result<Selection> region_at(const Generation& generation, const SelectRegion& recipe);
-/// The nodes in an outline that belong to parts in sight; if asked, those that no shell hides. Errors: a view without depth.
+/// The nodes in an outline that belong to visible parts; with `visible`, those that no shell hides. Errors: a view without depth.
 Result<NodeSet> nodes_in_outline(const Generation& generation, const SelectLasso& recipe);
 
 }  // namespace prismesh::mesh::document

@@ -1,5 +1,5 @@
-// One number for each node or shell of a model, to be seen as colour and told as figures: how far it has moved, how far it lies from a
-// surface, how good it is. Definitions: docs/comparing.md.
+// A field: one number for each node or shell of a model, shown as colours and figures, such as displacement, distance from a surface or
+// quality. Definitions: docs/comparing.md.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@
 
 namespace prismesh::mesh::document {
 
-/// Where a colour map begins and ends. What lies beyond `clear` keeps its own colour, what lies beyond `full` has the map's last one.
-/// `full` < `clear`: small values are the worse ones.
+/// The range of a colour map. Values beyond `clear` keep their part's colour, values beyond `full` get the map's last colour. If
+/// `full` < `clear`, small values are the worse ones.
 struct FieldLimits {
   double clear = 0;
   double full = 1;
   bool operator==(const FieldLimits&) const = default;
 };
 
-/// Of the values that are numbers.
+/// Statistics of the values that are numbers.
 struct FieldFigures {
   std::size_t measured = 0;
   double min = 0, mean = 0, max = 0;
@@ -33,10 +33,10 @@ struct Field {
   std::vector<float> values;  ///< by NodeIndex or ShellIndex, removed ones included; NaN: no value
   FieldFigures figures;       ///< of the values before they were rounded to floats
   FieldLimits limits;         ///< suggested
-  std::size_t new_nodes = 0;  ///< have a value in a displacement, but count in no figure: a saved deck doesn't know where they come from
+  std::size_t new_nodes = 0;  ///< have a displacement, but aren't in the figures: a saved deck doesn't tell where they come from
 };
 
-/// Shells that are there, but have no value of their own or at one of their corners: they keep their colour whatever the limits.
+/// The number of existing shells without a value, or with a corner without one. They keep their part's colour.
 std::size_t shells_without_value(const Model& model, const Field& field);
 
 }  // namespace prismesh::mesh::document

@@ -1,4 +1,4 @@
-// Filling a field's values and telling its figures. Private to mesh/document.
+// Fills a field's values and computes its figures. Private to mesh/document.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace prismesh::mesh::document {
 
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-/// `measure(begin, end, out)` puts a double each into `out`, for whole chunks, from any thread. Figures are added up chunk by chunk.
+/// `measure(begin, end, out)` writes a double for each entry into `out`, for whole chunks, on any thread. Figures are added up by chunk.
 template <class Measure>
 void fill(Field& field, std::size_t count, const Measure& measure) {
   struct Partial {
@@ -56,7 +56,7 @@ void fill(Field& field, std::size_t count, const Measure& measure) {
   if (all.measured > 0) all.mean = sum / static_cast<double>(all.measured);
 }
 
-/// Limits that differ even where the values don't.
+/// Limits that differ even if the values don't.
 inline FieldLimits apart(double clear, double full) {
   if (clear != full) return {clear, full};
   return {clear, full + std::max(1e-6, 1e-3 * std::abs(full))};

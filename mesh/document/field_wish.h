@@ -1,4 +1,4 @@
-// Which field is wanted, and its name.
+// The choice of a field, and its name.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace prismesh::mesh::document {
 
-/// Which field is wanted.
+/// The choice of a field.
 struct FieldWish {
   enum class Of : std::uint8_t { displacement, surface_distance, gap, metric, composite, time_step };
   Of of = Of::displacement;
@@ -18,10 +18,11 @@ struct FieldWish {
   std::string from, to;  ///< of a gap: expressions
 };
 
-/// "displacement", "distance-to-original", "distance", "metric:NAME", "composite", "time-step". Errors: names the nearest.
+/// "displacement", "distance-to-original", "distance", "metric:NAME", "composite", "time-step". Errors: there is no such field; names the
+/// nearest.
 Result<FieldWish> field_wish(std::string_view name);
 std::string name(const FieldWish& wish);
-/// Whether it compares with another state.
+/// Whether the field compares with another state.
 inline bool needs_other(const FieldWish& wish) {
   return wish.of == FieldWish::Of::displacement || wish.of == FieldWish::Of::surface_distance;
 }

@@ -1,4 +1,4 @@
-// Finds what a deck says besides its shells. Private to mesh/document.
+// Finds the relations of a deck. Private to mesh/document.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace prismesh::mesh::document {
 
-/// Of a deck just opened and its model. Costs the model where something may lie on shells.
+/// `deck` has just been opened as `model`. Costs the model if anything may lie on shells.
 std::shared_ptr<const DeckRelations> find_deck_relations(std::shared_ptr<const deck::Deck> deck, const Model& model);
 
 }  // namespace prismesh::mesh::document

@@ -9,7 +9,7 @@
 
 namespace prismesh::mesh::document {
 
-/// `uses` as in DeckRelations. Costs the model where there is something that may lie on it.
+/// `uses` as in DeckRelations. Costs the model if anything may lie on its shells.
 Dependents find_dependents(const deck::Deck& deck, const Model& model, std::span<const ElementUse> uses);
 
 }  // namespace prismesh::mesh::document

@@ -23,7 +23,6 @@ WeightedNodes find_weighted(const Model& model, const shape::Weights& weights) {
       ++weighted.reached_middles;
     } else if (weights.weight[i] > 0) {
       weighted.nodes.push_back(weights.nodes[i]);
-      weighted.weight.push_back(weights.weight[i]);
     }
   }
   for (const EdgeMiddle& each : middles)

@@ -1,4 +1,4 @@
-// Nodes that no weight is known for, but that move along with others: mid-side nodes and nodes of welds. Private to mesh/document.
+// Finds the nodes that have no weight of their own but follow others: mid-side nodes and nodes of welds. Private to mesh/document.
 #pragma once
 
 #include <array>
@@ -20,14 +20,13 @@ struct FollowerNode {
 /// The nodes that weights move, and the mid-side nodes that follow them.
 struct WeightedNodes {
   NodeSet nodes;                      ///< weight > 0, no mid-side nodes
-  std::vector<double> weight;         ///< of each
   std::vector<FollowerNode> middles;  ///< ascending by node: half of each end of the edge
-  std::size_t reached_middles = 0;    ///< mid-side nodes among those of the weights: they need no way from the grab
+  std::size_t reached_middles = 0;    ///< mid-side nodes among those of the weights: they need no path from the grab
 };
 WeightedNodes find_weighted(const Model& model, const shape::Weights& weights);
 
-/// The nodes of welds that lie on shells with moving corners and follow these, unless they are among `moving`, are held or belong to a
-/// locked part. Both ascending. Costs the shells that touch moving nodes.
+/// The nodes of welds that lie on shells with moving corners and follow these, but for those that are among `moving`, are held or belong to
+/// a locked part. Both ascending. Costs the shells that touch moving nodes.
 std::vector<FollowerNode> find_weld_followers(const Generation& generation, const NodeSet& moving);
 
 }  // namespace prismesh::mesh::document

@@ -11,12 +11,12 @@ template <class T>
 std::size_t own_bytes(const ChunkedArray<T>& before, const ChunkedArray<T>& next) {
   std::size_t chunks = 0;
   for (std::size_t c = 0; c < next.chunk_count(); ++c)
-    // Compared by hand, not by shares_chunk: a grown array shares all chunks but the last.
+    // The pointers are compared instead of shares_chunk: a grown array shares all chunks but the last.
     if (c >= before.chunk_count() || next.chunk_owner(c) != before.chunk_owner(c)) ++chunks;
   return chunks * sizeof(typename ChunkedArray<T>::Chunk);
 }
 
-/// What an edit of the structure makes anew whatever it changed.
+/// Bytes of the tables that every edit of the structure makes anew.
 std::size_t own_bytes(const Model& before, const Model& next) {
   std::size_t bytes = 0;
   const auto add = [&](const auto& values) { bytes += values.size() * sizeof(values[0]); };
@@ -40,7 +40,7 @@ std::size_t own_bytes(const Model& before, const Model& next) {
 std::size_t own_bytes(const Generation& before, const Generation& next) {
   const Model& a = before.model;
   const Model& b = next.model;
-  // The generation itself and its chunk pointers: what even an edit that changes nothing costs.
+  // The generation itself and its chunk pointers, which an edit costs even if it changes nothing.
   const std::size_t pointers = b.positions.chunk_count() * 4 + b.shell_nodes.chunk_count() * 6;
   std::size_t bytes = sizeof(Generation) + pointers * sizeof(std::shared_ptr<void>);
   bytes += own_bytes(a.node_ids, b.node_ids) + own_bytes(a.positions, b.positions) + own_bytes(a.node_holds, b.node_holds);
@@ -54,7 +54,7 @@ std::size_t own_bytes(const Generation& before, const Generation& next) {
 }
 
 std::size_t generations_over_cap(const Document& document, const Generation& next) {
-  // generations[i].own_bytes is what keeping generations[i - 1] beside it costs.
+  // generations[i].own_bytes is the cost of keeping generations[i - 1].
   std::size_t total = next.own_bytes;
   for (std::size_t i = 1; i <= document.cursor; ++i) total += document.generations[i]->own_bytes;
   std::size_t drop = 0;

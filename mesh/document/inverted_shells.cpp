@@ -18,7 +18,7 @@ Vec3 normal_of(const Model& model, ShellIndex shell) {
   return nodes.is_triangle() ? Vec3((at(1) - at(0)).cross(at(2) - at(0))) : Vec3((at(2) - at(0)).cross(at(3) - at(1)));
 }
 
-/// Whether every corner turns the same way as the whole: the Jacobian is greater than 0 there.
+/// Whether the Jacobian is greater than 0 at every corner.
 bool is_convex(const Model& model, ShellIndex shell, const Vec3& normal) {
   const ShellNodes& nodes = model.shell(shell);
   const int corners = nodes.corners();
@@ -37,7 +37,7 @@ Vec3 turned(const Vec3& direction, const Vec3& axis, double degrees) {
   return cosine * direction + deterministic_sin_degrees(degrees) * axis.cross(direction) + (1 - cosine) * axis.dot(direction) * axis;
 }
 
-/// A shell's normal turned as its corners turn on average, by their own weights and by those of their images.
+/// A shell's normal, turned by the average turn of its corners: by their own weights and by those of their images.
 Vec3 turned_with(const Motion& motion, const ShellNodes& shell, double degrees, const Vec3& normal) {
   double own = 0, mirrored = 0;
   const int corners = shell.corners();
@@ -64,7 +64,7 @@ std::vector<ShellIndex> inverted_shells(const Model& before, const Model& after,
     if (!(was.squaredNorm() > 0)) continue;
     const Vec3 is = normal_of(after, shell);
     const bool was_convex = is_convex(before, shell, was);
-    if (motion.kind == Motion::Kind::rotate) was = turned_with(motion, before.shell(shell), degrees, was);
+    if (motion.kind == ShapingKind::rotate) was = turned_with(motion, before.shell(shell), degrees, was);
     if (!(is.dot(was) > 0) || (was_convex && !is_convex(after, shell, is))) inverted.push_back(shell);
   }
   return inverted;

@@ -1,4 +1,4 @@
-// Shells that a motion turns over or folds. Private to mesh/document.
+// Finds the shells that a motion turns over or folds. Private to mesh/document.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace prismesh::mesh::document {
 
-/// Shells that the edit turned over: the normal by more than 90 degrees (beyond what a rotation by `degrees` turns it), or a corner that
-/// now bends inwards so far that its Jacobian is no longer greater than 0. `shells` are those that touch moved nodes.
+/// Shells whose normal turned by more than 90 degrees (beyond what a rotation by `degrees` turns it), or of which a corner's Jacobian is no
+/// longer greater than 0. `shells` are those that touch moved nodes.
 std::vector<ShellIndex> inverted_shells(const Model& before, const Model& after, const ShellSet& shells, const Motion& motion,
                                         double degrees);
 

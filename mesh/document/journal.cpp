@@ -1,8 +1,8 @@
 #include "mesh/document/journal.h"
 
-#include <nlohmann/json.hpp>
-
 #include "base/base64.h"
+#include "base/json/read.h"
+#include "base/json/write.h"
 #include "mesh/document/delta.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/edit_kinds.h"
@@ -13,10 +13,10 @@
 
 namespace prismesh::mesh::document {
 
-struct Journal::State {
+struct Journal::Impl {
   JournalFile file;
   std::uint64_t records = 0;
-  std::string check;  ///< what the next record chains to
+  std::string check;  ///< of the last record; the next record's check covers it
   bool cut_torn_tail = false;
   std::optional<Error> damage;
   bool takes_edits = true;
@@ -24,41 +24,36 @@ struct Journal::State {
 
 namespace {
 
-std::string intent_text(const Edit& edit) { return edit_to_json(edit).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+std::string intent_text(const Edit& edit) { return json::to_line(edit_to_json(edit)); }
 
 bool is_fresh(const Document& document) { return document.generations.size() == 1 && document.generations.front() == document.opened; }
 
 JournalHeader header_of(const Document& document) {
   const Model& model = document.opened->model;
+  const DocumentSettings& settings = document.settings;
   return {PRISMESH_VERSION,
-          document.path.string(),
-          document.deck->content.hex(),
-          model.node_count(),
-          model.shell_count(),
-          model.parts->size(),
-          document.settings.length_unit,
-          document.settings.target_size,
-          document.settings.criteria.name};
+          {document.path.string(), document.deck->content.hex(), model.node_count(), model.shell_count(), model.parts->size()},
+          {settings.length_unit, settings.target_size, settings.criteria.name}};
 }
 
 Result<void> check_deck(const JournalHeader& header, const Document& document, const std::string& file) {
   const std::string hash = document.deck->content.hex();
-  if (header.deck_hash != hash)
+  if (header.deck.hash != hash)
     return fail(file, 1,
-                "this is the journal of another deck or of another state of it: it belongs to " + header.deck_path + " with content " +
-                    header.deck_hash + ", while " + document.path.string() + " has content " + hash);
+                "this is the journal of another deck or of another state of it: it belongs to " + header.deck.path + " with content " +
+                    header.deck.hash + ", while " + document.path.string() + " has content " + hash);
   const Model& model = document.opened->model;
-  if (header.nodes != model.node_count() || header.shells != model.shell_count() || header.parts != model.parts->size())
+  if (header.deck.nodes != model.node_count() || header.deck.shells != model.shell_count() || header.deck.parts != model.parts->size())
     return fail(file, 1, "the journal was written by version " + header.program + ", which read this deck differently; replay it instead");
   return {};
 }
 
-/// What was only guessed this time is what it was then; what the user says now counts.
+/// Takes settings that were only guessed from the journal; settings that the user gave stay.
 void take_settings(const JournalHeader& header, Document& document) {
-  Settings& settings = document.settings;
-  if (settings.length_unit_guessed) settings.length_unit = header.length_unit;
-  if (!settings.target_size_guessed || settings.target_size == header.target_size || !(header.target_size > 0)) return;
-  settings.target_size = header.target_size;
+  DocumentSettings& settings = document.settings;
+  if (settings.length_unit_guessed) settings.length_unit = header.settings.length_unit;
+  if (!settings.target_size_guessed || settings.target_size == header.settings.target_size || !(header.settings.target_size > 0)) return;
+  settings.target_size = header.settings.target_size;
   auto judged = std::make_shared<Generation>(*document.opened);
   judged->quality = quality::judge_model(judged->model, settings.criteria, settings.target_size);
   judged->counts = quality::count(judged->quality);
@@ -67,14 +62,15 @@ void take_settings(const JournalHeader& header, Document& document) {
 }
 
 std::string edit_name(std::string_view intent) {
-  const nlohmann::json json = nlohmann::json::parse(intent, nullptr, false);
-  if (!json.is_object()) return "edit";
-  const auto found = json.find("edit");
-  return found != json.end() && found->is_string() ? found->get<std::string>() : "edit";
+  const json::Json edit = json::Json::parse(intent, nullptr, false);
+  std::string name = "edit";
+  if (!edit.is_object()) return name;
+  json::FieldReader(edit, json::Author::program)("edit", name);
+  return name;
 }
 
-/// Whether the edit gave the model a new shape to relax and repair towards. A step back or forth beyond a save stands as an edit of its
-/// own.
+/// Whether the edit gave the model a new shape, which relaxing and repairing keep. Undo and redo across a save are recorded as edits with a
+/// delta.
 bool reshapes(std::string_view intent) {
   const Result<Edit> edit = parse_edit(intent);
   if (!edit) return false;
@@ -82,7 +78,7 @@ bool reshapes(std::string_view intent) {
   return group == EditGroup::shaping || group == EditGroup::step;
 }
 
-/// The generation that the record's delta makes out of the current one.
+/// The generation that results from applying the record's delta to the current one.
 Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, const JournalRecord& record) {
   const std::optional<std::vector<std::byte>> delta = base64_decode(record.delta);
   if (!delta) return fail("", "its delta isn't base64");
@@ -117,23 +113,23 @@ Result<void> take_record(const JournalRecord& record, Document& document, const 
 
 }  // namespace
 
-Journal::Journal(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Journal::Journal(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Journal::Journal(Journal&&) noexcept = default;
 Journal& Journal::operator=(Journal&&) noexcept = default;
 Journal::~Journal() = default;
 
-const std::filesystem::path& Journal::path() const { return state_->file.path(); }
-std::uint64_t Journal::records() const { return state_->records; }
-bool Journal::cut_torn_tail() const { return state_->cut_torn_tail; }
-const std::optional<Error>& Journal::damage() const { return state_->damage; }
-bool Journal::takes_edits() const { return state_->takes_edits; }
+const std::filesystem::path& Journal::path() const { return impl_->file.path(); }
+std::uint64_t Journal::records() const { return impl_->records; }
+bool Journal::cut_torn_tail() const { return impl_->cut_torn_tail; }
+const std::optional<Error>& Journal::damage() const { return impl_->damage; }
+bool Journal::takes_edits() const { return impl_->takes_edits; }
 
 Result<Journal> Journal::create(const std::filesystem::path& path, const Document& document) {
   if (!is_fresh(document)) return fail(path.string(), "a journal is started before the first edit; this document has been edited");
   const std::string text = header_text(header_of(document));
   Result<JournalFile> file = JournalFile::create(path, text);
   if (!file) return fail(file.error());
-  return Journal(std::make_unique<State>(State{std::move(*file), 0, check_in(text), false, std::nullopt, true}));
+  return Journal(std::make_unique<Impl>(Impl{std::move(*file), 0, check_in(text), false, std::nullopt, true}));
 }
 
 Result<Journal> Journal::recover(const std::filesystem::path& path, Document& document) {
@@ -165,21 +161,22 @@ Result<Journal> Journal::recover(const std::filesystem::path& path, Document& do
     if (const Result<void> done = file->truncate(end->bytes); !done) return fail(done.error());
   document = std::move(rebuilt_document);
   return Journal(
-      std::make_unique<State>(State{std::move(*file), end->records, end->check, end->torn_tail, std::move(damage), cut || !end->damage}));
+      std::make_unique<Impl>(Impl{std::move(*file), end->records, end->check, end->torn_tail, std::move(damage), cut || !end->damage}));
 }
 
 Result<void> Journal::append(const Document& document, const Edit& edit, const Prepared& prepared) {
-  if (!state_->takes_edits)
+  if (!impl_->takes_edits)
     return fail(
-        state_->damage->file, state_->damage->line,
+        impl_->damage->file, impl_->damage->line,
         "the journal is damaged here, so edits can't be kept: save the deck to go on with what is shown, or close it and give up its "
         "edits (prismesh session close --discard)");
   const bool push = prepared.step == Prepared::Step::push;
   const std::string delta = push ? base64_encode(encode_delta(document.current(), *prepared.next)) : "";
-  const std::string text = record_text(state_->records + 1, intent_text(edit), prepared.step, prepared.drop_oldest, delta, state_->check);
-  if (const Result<void> appended = state_->file.append(text); !appended) return appended;
-  ++state_->records;
-  state_->check = check_in(text);
+  const std::string intent = intent_text(edit);
+  const std::string text = record_text({impl_->records + 1, intent, prepared.step, prepared.drop_oldest, delta}, impl_->check);
+  if (const Result<void> appended = impl_->file.append(text); !appended) return appended;
+  ++impl_->records;
+  impl_->check = check_in(text);
   return {};
 }
 

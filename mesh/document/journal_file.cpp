@@ -89,7 +89,7 @@ Result<JournalFile> JournalFile::create(const fs::path& path, std::string_view t
   const int fd = write_beside(path, text, made, error);
   if (fd < 0) return fail(path.string(), "the journal can't be written: " + reason_of(error));
   JournalFile file(path, fd, text.size());
-  // Linked rather than renamed: a link never replaces what is there, so the journal appears whole or not at all.
+  // Linked instead of renamed: a link never replaces a file, so the journal appears whole or not at all.
   if (::link(made.c_str(), path.c_str()) != 0) error = errno;
   if (error == EPERM || error == EOPNOTSUPP)
     error = ::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0 ? 0 : errno;
@@ -147,14 +147,14 @@ Result<void> JournalFile::truncate(std::size_t size) {
   return {};
 }
 
-/// After a failed write: what was written of the record goes again.
+/// After a failed write: removes the written part of the record.
 Result<void> JournalFile::take_back(const std::string& reason) {
   if (::ftruncate(fd_, static_cast<off_t>(size_)) != 0) return start_afresh(reason);
   return fail(path_.string(), reason + "; the edit wasn't made");
 }
 
-/// After a failed flush: the kernel has marked the pages clean, so this file's state on disk is unknown and flushing again would
-/// prove nothing. What was acknowledged goes into a new file that takes its place.
+/// After a failed flush: the kernel has marked the pages clean, so this file's state on disk is unknown and another flush would prove
+/// nothing. Writes the acknowledged records to a new file that replaces it.
 Result<void> JournalFile::start_afresh(const std::string& reason) {
   broken_ = reason;
   if (rewrite() == 0 || erase_tail()) return fail(path_.string(), reason + "; the edit wasn't made");
@@ -181,7 +181,7 @@ int JournalFile::rewrite() {
   return 0;
 }
 
-/// Should the file be read again after all, the refused record must not be in it: it goes, or its bytes do.
+/// Removes the refused record, or overwrites its bytes, so that a later reader of the file doesn't find it.
 bool JournalFile::erase_tail() {
   struct stat status {};
   if (::ftruncate(fd_, static_cast<off_t>(size_)) == 0) return true;

@@ -1,4 +1,4 @@
-// The journal's file: grows by whole records that are on disk before anyone hears of them. Private to mesh/document.
+// The journal's file: it grows by whole records, which are on disk when `append` returns. Private to mesh/document.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace prismesh::mesh::document {
 
 class JournalFile {
  public:
-  /// Makes a file with this text, whole and on disk, where none was. Errors: it exists, can't be written.
+  /// Makes a new file with this text, flushed to disk. Errors: it exists, can't be written.
   static Result<JournalFile> create(const std::filesystem::path& path, std::string_view text);
   /// Opens a file and reads it. Errors: not there, not readable or writable, in use by another process.
   static Result<JournalFile> open(const std::filesystem::path& path, std::string& text);
@@ -22,12 +22,12 @@ class JournalFile {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Appends and flushes to disk. After an error the file holds what it held before; if that can't be had, this and every
-  /// later append is refused.
+  /// Appends and flushes to disk. After an error the file holds what it held before; if it can't be restored, this and every later append
+  /// fails.
   Result<void> append(std::string_view text);
   /// Cuts the file off and flushes.
   Result<void> truncate(std::size_t size);
-  /// Puts a text beside the file, under a new name, on disk; that name.
+  /// Writes a text to a new file beside this one, flushed to disk; returns its name.
   Result<std::filesystem::path> keep_copy(std::string_view text) const;
 
  private:
@@ -40,8 +40,8 @@ class JournalFile {
 
   std::filesystem::path path_;
   int fd_ = -1;
-  std::size_t size_ = 0;  ///< of what was acknowledged
-  std::string broken_;    ///< why no more can be appended
+  std::size_t size_ = 0;  ///< of the acknowledged records
+  std::string broken_;    ///< why nothing can be appended any more
 };
 
 }  // namespace prismesh::mesh::document

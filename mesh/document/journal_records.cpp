@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
-
 #include "base/hash.h"
+#include "base/json/read.h"
+#include "base/json/write.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::string_view kMagic = "{\"prismesh_journal\":1,";
 constexpr std::string_view kBeforeCheck = ",\"check\":\"";
@@ -34,7 +32,7 @@ std::string check_of(std::string_view before, std::string_view open_line) {
 
 std::string check_of_delta(std::string_view delta) { return hex(hash64(std::as_bytes(std::span(delta)))); }
 
-/// Closes an object whose fields are written but for the brace.
+/// Adds the check and the brace to an object whose other fields are written.
 std::string sealed(std::string open_line, std::string_view before) {
   const std::string check = check_of(before, open_line);
   open_line += kBeforeCheck;
@@ -42,8 +40,6 @@ std::string sealed(std::string open_line, std::string_view before) {
   open_line += kAfterCheck;
   return open_line;
 }
-
-std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 std::string_view step_name(Prepared::Step step) {
   switch (step) {
@@ -54,13 +50,7 @@ std::string_view step_name(Prepared::Step step) {
   return "push";
 }
 
-std::optional<Prepared::Step> step_from(const std::string& text) {
-  for (const Prepared::Step step : {Prepared::Step::push, Prepared::Step::undo, Prepared::Step::redo})
-    if (text == step_name(step)) return step;
-  return std::nullopt;
-}
-
-/// Reads lines and their checks one after the other.
+/// Walks over the lines and verifies their checks.
 class Walker {
  public:
   Walker(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -100,7 +90,7 @@ class Walker {
   JournalEnd end_;
 };
 
-/// What a sealed line says; it was written by record_text, but a forger's is a typed error all the same.
+/// The fields of a record's line, without the intent, which is taken from the text as it is.
 struct RecordFields {
   std::uint64_t number = 0;
   Prepared::Step step = Prepared::Step::push;
@@ -109,48 +99,41 @@ struct RecordFields {
   std::string delta_check;
 };
 
-std::optional<RecordFields> record_fields(const Json& json) {
-  RecordFields fields;
-  const auto whole = [&](const char* field, auto& into) {
-    const auto at = json.find(field);
-    if (at == json.end() || !at->is_number_unsigned()) return false;
-    into = at->get<std::uint64_t>();
-    return true;
-  };
-  if (!json.is_object() || !whole("n", fields.number) || !whole("dropped", fields.drop_oldest) || !whole("delta", fields.delta_size))
-    return std::nullopt;
-  const auto step = json.find("step");
-  const auto check = json.find("delta_check");
-  if (step == json.end() || !step->is_string() || check == json.end() || !check->is_string()) return std::nullopt;
-  const std::optional<Prepared::Step> known = step_from(step->get<std::string>());
-  if (!known) return std::nullopt;
-  fields.step = *known;
-  fields.delta_check = check->get<std::string>();
+}  // namespace
+
+}  // namespace prismesh::mesh::document
+
+namespace prismesh::json {
+
+PRISMESH_JSON_NAMES(LengthUnit,
+                    {{name(LengthUnit::mm), LengthUnit::mm}, {name(LengthUnit::m), LengthUnit::m}, {name(LengthUnit::in), LengthUnit::in}});
+PRISMESH_JSON_OBJECT(mesh::document::JournalHeader, f.required("program", m.program), f.required("deck", m.deck),
+                     f.required("settings", m.settings));
+PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::Deck, f.required("path", m.path), f.required("hash", m.hash),
+                     f.required("nodes", m.nodes), f.required("shells", m.shells), f.required("parts", m.parts));
+PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::Settings, f.required("length_unit", m.length_unit),
+                     f.required("target_size", m.target_size), f.required("criteria", m.criteria));
+PRISMESH_JSON_NAMES(mesh::document::Prepared::Step,
+                    {{mesh::document::step_name(mesh::document::Prepared::Step::push), mesh::document::Prepared::Step::push},
+                     {mesh::document::step_name(mesh::document::Prepared::Step::undo), mesh::document::Prepared::Step::undo},
+                     {mesh::document::step_name(mesh::document::Prepared::Step::redo), mesh::document::Prepared::Step::redo}});
+PRISMESH_JSON_OBJECT(mesh::document::RecordFields, f.required("n", m.number), f.required("step", m.step),
+                     f.required("dropped", m.drop_oldest), f.required("delta", m.delta_size), f.required("delta_check", m.delta_check));
+
+}  // namespace prismesh::json
+
+namespace prismesh::mesh::document {
+
+namespace {
+
+/// The fields of a line without its seal. A forged line, with a right check, may still have wrong fields.
+template <class Fields>
+std::optional<Fields> read_fields(std::string_view open_line) {
+  Fields fields;
+  const json::Json object = json::Json::parse(std::string(open_line) + "}", nullptr, false);
+  if (json::read(object, fields, json::Author::program)) return std::nullopt;
   return fields;
 }
-
-std::optional<JournalHeader> header_fields(const Json& json) {
-  if (!json.is_object()) return std::nullopt;
-  try {
-    JournalHeader header;
-    header.program = json.at("program").get<std::string>();
-    header.deck_path = json.at("deck").at("path").get<std::string>();
-    header.deck_hash = json.at("deck").at("hash").get<std::string>();
-    header.nodes = json.at("deck").at("nodes").get<std::size_t>();
-    header.shells = json.at("deck").at("shells").get<std::size_t>();
-    header.parts = json.at("deck").at("parts").get<std::size_t>();
-    const auto unit = length_unit_from(json.at("settings").at("length_unit").get<std::string>());
-    if (!unit) return std::nullopt;
-    header.length_unit = *unit;
-    header.target_size = json.at("settings").at("target_size").get<double>();
-    header.criteria = json.at("settings").at("criteria").get<std::string>();
-    return header;
-  } catch (const Json::exception&) {
-    return std::nullopt;
-  }
-}
-
-Json parsed(std::string_view open_line) { return Json::parse(std::string(open_line) + "}", nullptr, false); }
 
 Result<void> read_header(Walker& walker, const std::function<Result<void>(const JournalHeader&)>& on_header) {
   const std::string_view text = walker.rest();
@@ -159,13 +142,13 @@ Result<void> read_header(Walker& walker, const std::function<Result<void>(const 
   const std::string_view line = text.substr(0, newline);
   const std::optional<std::string_view> open_line = walker.unsealed(line);
   if (!open_line) return walker.damaged(0, "its first line isn't as it was written");
-  const std::optional<JournalHeader> header = header_fields(parsed(*open_line));
+  const std::optional<JournalHeader> header = read_fields<JournalHeader>(*open_line);
   if (!header) return walker.damaged(0, "its first line doesn't say which deck it belongs to");
   walker.advance(newline + 1, 1, check_in(line), false);
   return on_header(*header);
 }
 
-/// The edit's JSON within a record's line, word for word: {"n":..,"edit":{...},"step":...
+/// The edit's JSON within a record's line, as it is written: {"n":..,"edit":{...},"step":...
 std::optional<std::string_view> intent_in(std::string_view open_line) {
   constexpr std::string_view kBefore = ",\"edit\":";
   constexpr std::string_view kAfter = ",\"step\":\"";
@@ -175,61 +158,54 @@ std::optional<std::string_view> intent_in(std::string_view open_line) {
   return open_line.substr(begin + kBefore.size(), end - begin - kBefore.size());
 }
 
-/// Whether another record follows the one that the text begins with. A delta is base64, and quotes within an intent are escaped, so that
-/// nothing else looks so.
+/// Whether another record follows the one that the text begins with. Only the beginning of a record looks like one: a delta is base64, and
+/// quotes within an intent are escaped.
 bool another_record_in(std::string_view text) { return text.find(kRecordBegins, 1) != std::string_view::npos; }
 
-enum class Found : std::uint8_t { record, torn };
+enum class RecordState : std::uint8_t { complete, torn };
 
-/// One record. A record is torn if the text ends before it does, by its own sealed word for its length. Everything else that is wrong is
-/// damage.
-Result<Found> read_record(Walker& walker, const std::function<Result<void>(const JournalRecord&)>& on_record) {
+/// Reads one record. It is torn if the text ends before the record does, by the length in its sealed line. Everything else that is wrong
+/// is damage.
+Result<RecordState> read_record(Walker& walker, const std::function<Result<void>(const JournalRecord&)>& on_record) {
   const std::string_view text = walker.rest();
   const std::size_t newline = text.find('\n');
-  if (newline == std::string_view::npos) return Found::torn;
+  if (newline == std::string_view::npos) return RecordState::torn;
   const std::string_view line = text.substr(0, newline);
   const std::optional<std::string_view> open_line = walker.unsealed(line);
   if (!open_line) return walker.damaged(0, "this line isn't as it was written");
-  const std::optional<RecordFields> fields = record_fields(parsed(*open_line));
+  const std::optional<RecordFields> fields = read_fields<RecordFields>(*open_line);
   const std::optional<std::string_view> intent = intent_in(*open_line);
   if (!fields || !intent || fields->number != walker.end().records + 1) return walker.damaged(0, "this line is no record of an edit");
-  if (text.size() - newline - 1 < fields->delta_size || text.size() - newline - 1 - fields->delta_size < 1) return Found::torn;
+  if (text.size() - newline - 1 < fields->delta_size || text.size() - newline - 1 - fields->delta_size < 1) return RecordState::torn;
   const std::string_view delta = text.substr(newline + 1, fields->delta_size);
   if (text[newline + 1 + fields->delta_size] != '\n' || check_of_delta(delta) != fields->delta_check)
     return walker.damaged(1, "the changes of edit " + std::to_string(fields->number) + " aren't as they were written");
-  const JournalRecord record{walker.end().lines + 1, fields->number, *intent, fields->step, fields->drop_oldest, delta};
+  const JournalRecord record{fields->number, *intent, fields->step, fields->drop_oldest, delta, walker.end().lines + 1};
   walker.advance(newline + 1 + fields->delta_size + 1, 2, check_in(line), true);
   if (const Result<void> taken = on_record(record); !taken) return fail(taken.error());
-  return Found::record;
+  return RecordState::complete;
 }
 
 }  // namespace
 
 std::string header_text(const JournalHeader& header) {
   std::string line(kMagic);
-  line += "\"program\":" + dumped(header.program);
-  line += ",\"deck\":" + dumped({{"path", header.deck_path},
-                                 {"hash", header.deck_hash},
-                                 {"nodes", header.nodes},
-                                 {"shells", header.shells},
-                                 {"parts", header.parts}});
-  line +=
-      ",\"settings\":" +
-      dumped({{"length_unit", std::string(name(header.length_unit))}, {"target_size", header.target_size}, {"criteria", header.criteria}});
+  line += "\"program\":" + json::to_line(header.program);
+  line += ",\"deck\":" + json::to_line(json::to_json(header.deck));
+  line += ",\"settings\":" + json::to_line(json::to_json(header.settings));
   return sealed(std::move(line), "") + "\n";
 }
 
-std::string record_text(std::uint64_t number, std::string_view intent, Prepared::Step step, std::size_t drop_oldest, std::string_view delta,
-                        std::string_view check) {
-  std::string line = "{\"n\":" + std::to_string(number) + ",\"edit\":";
-  line += intent;
+std::string record_text(const JournalRecord& record, std::string_view check) {
+  std::string line = "{\"n\":" + std::to_string(record.number) + ",\"edit\":";
+  line += record.intent;
   line += ",\"step\":\"";
-  line += step_name(step);
-  line += "\",\"dropped\":" + std::to_string(drop_oldest) + ",\"delta\":" + std::to_string(delta.size());
-  line += ",\"delta_check\":\"" + check_of_delta(delta) + "\"";
+  line += step_name(record.step);
+  line += "\",\"dropped\":" + std::to_string(record.drop_oldest) + ",\"delta\":" + std::to_string(record.delta.size());
+  line += ",\"delta_check\":\"" + check_of_delta(record.delta) + "\"";
   std::string text = sealed(std::move(line), check) + "\n";
-  text.reserve(text.size() + delta.size() + 1);
-  text += delta;
+  text.reserve(text.size() + record.delta.size() + 1);
+  text += record.delta;
   text += '\n';
   return text;
 }
@@ -257,14 +233,14 @@ Result<JournalEnd> read_journal(std::string_view text, const std::string& file,
       if (!taken) refused = taken.error();
       return taken;
     };
-    const Result<Found> found = read_record(walker, taking);
-    if (!found && !refused.message.empty()) return fail(std::move(refused));
-    if (found && *found == Found::record) continue;
-    // Records are written one at a time and flushed, so a power cut leaves the last one only in pieces.
-    if (found)
+    const Result<RecordState> state = read_record(walker, taking);
+    if (!state && !refused.message.empty()) return fail(std::move(refused));
+    if (state && *state == RecordState::complete) continue;
+    // Records are written one at a time and flushed, so a power cut damages only the last one.
+    if (state)
       walker.set_torn();
     else
-      walker.set_damaged(found.error(), !another_record_in(walker.rest()));
+      walker.set_damaged(state.error(), !another_record_in(walker.rest()));
     break;
   }
   return walker.end();

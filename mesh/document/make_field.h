@@ -1,4 +1,4 @@
-// The field that is wanted of a generation.
+// Computes a field of a generation by name.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@
 
 namespace prismesh::mesh::document {
 
-/// What an expression names as a shape: shells, parts, sets of those and files count with their surfaces (and with the nodes of their
-/// other elements); as soon as it names anything else, with all its nodes. Errors: those of select::evaluate.
+/// The shape that an expression names: if it names only shells, parts, sets of these and files, their surfaces and the nodes of their other
+/// elements; otherwise all its nodes. Errors: those of select::evaluate.
 Result<spatial::Shape> shape_named(const Generation& generation, const std::string& expression);
 
-/// The wished field of a generation. `other`: what it is compared with; needed where needs_other says so.
+/// `other`: the model to compare with; required if needs_other(wish).
 Result<Field> make_field(const FieldWish& wish, const Generation& generation, const Document& document, const Model* other,
                          const Progress& progress = {});
 

@@ -14,7 +14,7 @@ std::uint32_t Motion::place_of(NodeIndex node) const {
 
 namespace {
 
-/// Along the surface; the moves of a pair of images become one before they set out, each on its own side's faces.
+/// Moves along the surface. The moves of a pair of images are added first; then each goes over the faces of its own side.
 std::size_t slide_to(const Motion& motion, const Vec3& displacement, std::span<Vec3> out) {
   std::vector<Vec3> by(motion.nodes.size());
   for (std::size_t i = 0; i < by.size(); ++i) by[i] = motion.weight[i] * (motion.turns[i] * displacement);
@@ -39,7 +39,7 @@ void follow(const Motion& motion, std::span<Vec3> out) {
   }
 }
 
-/// Straight back towards the start. Returns how many nodes were beyond the limit.
+/// Limits the moves to max_move. Returns how many nodes were beyond it.
 std::size_t hold_back(const Motion& motion, std::span<Vec3> out) {
   if (!motion.max_move) return 0;
   std::size_t held_back = 0;
@@ -58,19 +58,19 @@ std::size_t hold_back(const Motion& motion, std::span<Vec3> out) {
 std::size_t positions_at(const Motion& motion, const Displacement& displacement, std::span<Vec3> out) {
   std::size_t held_back = 0;
   switch (motion.kind) {
-    case Motion::Kind::translate: shape::translate(motion.start, motion.weight, displacement.by, out); break;
-    case Motion::Kind::lift: shape::lift(motion.start, motion.weight, motion.normals, displacement.distance, out); break;
-    case Motion::Kind::rotate:
+    case ShapingKind::translate: shape::translate(motion.start, motion.weight, displacement.by, out); break;
+    case ShapingKind::lift: shape::lift(motion.start, motion.weight, motion.normals, displacement.distance, out); break;
+    case ShapingKind::rotate:
       held_back = shape::rotate(motion.start, motion.weight, motion.axis, displacement.degrees, motion.max_move, out);
       break;
-    case Motion::Kind::slide: held_back = slide_to(motion, displacement.by, out); break;
+    case ShapingKind::slide: held_back = slide_to(motion, displacement.by, out); break;
   }
-  if (motion.plane && motion.kind != Motion::Kind::slide) mirror(motion, out);
+  if (motion.plane && motion.kind != ShapingKind::slide) mirror(motion, out);
   follow(motion, out);
-  // on a circle and on the surface a node stops on its way
-  if (motion.kind == Motion::Kind::translate || motion.kind == Motion::Kind::lift) held_back = hold_back(motion, out);
+  // Rotating and sliding limit a node on its path.
+  if (motion.kind == ShapingKind::translate || motion.kind == ShapingKind::lift) held_back = hold_back(motion, out);
   for (std::size_t i = 0; i < out.size(); ++i)
-    if (out[i] == motion.start[i]) out[i] = motion.start[i];  // -0 stays -0: what hasn't moved keeps its bits
+    if (out[i] == motion.start[i]) out[i] = motion.start[i];  // -0 stays -0: a node that hasn't moved keeps its bits
   return held_back;
 }
 

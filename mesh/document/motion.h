@@ -1,5 +1,5 @@
-// What a shaping edit moves, and where to for a displacement: applying an edit and dragging share it, so that a drag shows bit for bit
-// what its edit will do. Private to mesh/document.
+// The nodes that a shaping edit moves, and their positions at a displacement. Applying an edit and dragging share it, so that a drag shows
+// bit for bit what its edit will do. Private to mesh/document.
 #pragma once
 
 #include <array>
@@ -17,7 +17,9 @@
 
 namespace prismesh::mesh::document {
 
-/// Known before the displacement is.
+enum class ShapingKind : std::uint8_t { translate, lift, slide, rotate };
+
+/// Everything about a motion that doesn't depend on the displacement.
 struct Motion {
   /// A node for which no weight is known: a mid-side node follows the ends of its edge, half each; the node of a weld that lies on a
   /// shell follows its corners. Positions in `nodes`; followers never follow followers.
@@ -28,7 +30,7 @@ struct Motion {
     std::array<double, 4> share{};
   };
 
-  enum class Kind : std::uint8_t { translate, lift, slide, rotate } kind = Kind::translate;
+  ShapingKind kind = ShapingKind::translate;
   NodeSet nodes;                                       ///< those with weight > 0, their images and followers
   std::vector<double> weight;                          ///< of each
   std::vector<Vec3> start;                             ///< of each

@@ -16,7 +16,7 @@ namespace {
 
 bool has(std::string_view text, std::string_view word) { return text.find(word) != std::string_view::npos; }
 
-/// Cards that are wrong when only some of their nodes move.
+/// Keywords of cards that are wrong if only some of their nodes move.
 bool joins_nodes(std::string_view keyword) {
   if (!keyword.empty() && (keyword.front() == '/' || keyword.front() == '*')) keyword.remove_prefix(1);
   if (has(keyword, "CONSTRAINED_")) return !has(keyword, "GLOBAL") && !has(keyword, "_IN_SOLID");
@@ -70,7 +70,7 @@ NodeCards find_node_cards(const References& references, const Model& model) {
     else if (joins_nodes(keyword))
       cards_are[r] = Card::join;
   }
-  // where a keyword's cards have no ids, each line joins its own nodes
+  // If a keyword's cards have no ids, each line joins its own nodes.
   std::map<std::pair<std::uint32_t, std::uint64_t>, std::uint32_t> join_of;
   CardNodes nodes(references, model);
   for (const Reference& reference : references.all()) {

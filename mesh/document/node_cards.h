@@ -15,7 +15,7 @@ struct NodeCards {
   std::vector<std::pair<NodeIndex, std::uint32_t>> tied;  ///< with the contact's referrer
 };
 
-/// Decks write their keywords in either case. Costs the references.
+/// Keywords are compared ignoring case. Costs the references.
 NodeCards find_node_cards(const References& references, const Model& model);
 
 }  // namespace prismesh::mesh::document

@@ -18,10 +18,10 @@ namespace {
 
 /// Connected beams, springs and solids count as one weld up to this many: sixteen solids make the largest nuggets.
 constexpr std::size_t kMaxOfAWeld = 16;
-constexpr double kReachOfSize = 0.25;  ///< how far from a shell a node still lies on it, as a share of the shell's size
+constexpr double kReachOfSize = 0.25;  ///< max distance at which a node lies on a shell, as a share of the shell's size
 constexpr double kReachOfTied = 0.5;   ///< the same for tied nodes, which are offset by half of both thicknesses
 constexpr std::size_t kSearchGrain = 16384;
-constexpr double kMaxCells = 64;  ///< a shell over more cells than this is looked at more closely at once
+constexpr double kMaxCells = 64;  ///< a shell over more cells than this is checked exactly at once
 
 bool may_be_weld(ElementClass element_class) {
   return element_class == ElementClass::beam || element_class == ElementClass::solid || element_class == ElementClass::discrete ||
@@ -95,7 +95,7 @@ double reach_of(const Model& model, ShellIndex shell, bool tied) {
 
 using Cell = std::array<std::int64_t, 3>;
 
-/// Which cells of a grid hold a point, by a table of bits that may say yes too often.
+/// A table of bits for the cells of a grid that hold a point; it may have false positives.
 class CellTable {
  public:
   CellTable(const Model& model, const std::vector<NodeOnSheet>& points, double width) : width_(width), bits_(kBits, 0) {
@@ -131,7 +131,7 @@ class CellTable {
   std::vector<std::uint8_t> bits_;
 };
 
-/// Shells within whose reach a point may be.
+/// Shells that may have a point within their reach.
 ShellSet shells_near(const Model& model, const std::vector<NodeOnSheet>& points) {
   double sum = 0;
   std::size_t asked = 0;
@@ -159,7 +159,7 @@ ShellSet shells_near(const Model& model, const std::vector<NodeOnSheet>& points)
   return all;
 }
 
-/// The nearest shell that the node isn't a corner of; for a tied node none of its own parts.
+/// The nearest shell that the node isn't a corner of, and for a tied node isn't of its own parts.
 std::optional<spatial::SurfacePoint> sheet_under(const Model& model, const spatial::ShellTree& tree, const NodeOnSheet& candidate,
                                                  double far) {
   const Vec3& point = model.position(candidate.node);

@@ -9,8 +9,8 @@
 
 namespace prismesh::mesh::document {
 
-/// Nodes that may lie on a sheet because a weld has them: neither corners nor mid-side nodes, of elements connected to few others over such
-/// nodes. `uses` ascending. Ascending by node, each once; shell and reach are not set.
+/// Nodes of welds, which may lie on a sheet: neither corners nor mid-side nodes, of elements connected to few others through such nodes.
+/// `uses` ascending. The result is ascending by node, each once; shell and reach aren't set.
 std::vector<NodeOnSheet> find_weld_nodes(const Model& model, std::span<const ElementUse> uses);
 
 /// Those of the candidates that lie on a sheet, in the same order, with shell and reach. Costs the shells of the model.

@@ -11,8 +11,8 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-Result<Settings> find_settings(const deck::Deck& deck, const Model& model, const OpenOptions& options) {
-  Settings settings;
+Result<DocumentSettings> find_settings(const deck::Deck& deck, const Model& model, const OpenOptions& options) {
+  DocumentSettings settings;
   const std::optional<LengthUnit> known = options.length_unit ? options.length_unit : deck.length_unit;
   settings.length_unit_guessed = !known;
   settings.length_unit = known ? *known : deck::guess_length_unit(model);
@@ -31,7 +31,8 @@ Result<Settings> find_settings(const deck::Deck& deck, const Model& model, const
   return settings;
 }
 
-std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const deck::Deck>& deck, Model model, const Settings& settings) {
+std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const deck::Deck>& deck, Model model,
+                                                   const DocumentSettings& settings) {
   auto first = std::make_shared<Generation>();
   first->relations = find_deck_relations(deck, model);
   first->node_marks = ChunkedArray<std::uint8_t>::filled(model.node_count());
@@ -49,7 +50,7 @@ std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const d
 }  // namespace
 
 Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened, const OpenOptions& options) {
-  Result<Settings> settings = find_settings(*opened.deck, opened.model, options);
+  Result<DocumentSettings> settings = find_settings(*opened.deck, opened.model, options);
   if (!settings) return fail(settings.error());
   Document document;
   document.path = path;

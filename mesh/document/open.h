@@ -1,4 +1,4 @@
-// Opening a deck as a document.
+// Opens a deck as a document.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct OpenOptions {
   std::optional<LengthUnit> length_unit;
   std::optional<double> target_size;
   std::optional<std::filesystem::path> criteria;
-  std::optional<quality::Criteria> judged_by;        ///< goes before `criteria`; the deck still has its say on the time step
+  std::optional<quality::Criteria> judged_by;        ///< replaces `criteria`; the deck's time-step control still applies
   std::size_t history_bytes = std::size_t{2} << 30;  ///< Document::history_bytes
   Progress progress;
 };
@@ -27,7 +27,7 @@ struct OpenOptions {
 /// Opens a deck: model, guessed or given settings, quality of every shell. Errors: those of deck::open and load_criteria, a
 /// target size that isn't positive.
 Result<Document> open(const std::filesystem::path& path, const OpenOptions& options);
-/// A document of a deck that is open already.
+/// Makes a document of a deck that is open already.
 Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened, const OpenOptions& options);
 
 }  // namespace prismesh::mesh::document

@@ -18,7 +18,7 @@ std::vector<std::uint8_t> hidden_parts(const Generation& generation) {
 
 namespace {
 
-/// What a node's uses say; private bits above the marks'.
+/// A bit above those of the marks: a visible part uses the node.
 constexpr std::uint8_t kUsedInSight = 8;
 
 void note_use(std::vector<std::uint8_t>& bits, NodeIndex node, const PartState* state) {
@@ -74,7 +74,7 @@ void mark_parts(const Model& model, const std::vector<PartState>& states, Chunke
 
 namespace {
 
-/// What the parts' states say of one node.
+/// The marks of one node by the parts' states.
 std::uint8_t part_marks_of(const Generation& generation, NodeIndex node) {
   const Model& model = generation.model;
   const std::vector<PartState>& states = *generation.parts;

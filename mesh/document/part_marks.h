@@ -1,4 +1,4 @@
-// Which parts are hidden, and what part states mean for nodes. Private to mesh/document.
+// Derives the marks of nodes from the states of parts. Private to mesh/document.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace prismesh::mesh::document {
 /// An entry for each part, 1 where it is hidden; empty if none is.
 std::vector<std::uint8_t> hidden_parts(const Generation& generation);
 
-/// Sets kLocked and kHidden in `marks` as the parts' states say, leaving the other bits. Costs the model.
+/// Sets kLocked and kHidden in `marks` from the parts' states and keeps the other bits. Costs the model.
 void mark_parts(const Model& model, const std::vector<PartState>& states, ChunkedArray<std::uint8_t>& marks);
 /// The same at a few nodes of a generation.
 void mark_parts_at(const NodeSet& nodes, Generation& next);

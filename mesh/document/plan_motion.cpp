@@ -1,5 +1,4 @@
 #include "mesh/document/plan_motion.h"
-#include "mesh/document/edit_kinds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "mesh/document/edit_kinds.h"
 #include "mesh/document/edit_targets.h"
 #include "mesh/document/followers.h"
 #include "mesh/document/refusal.h"
@@ -34,7 +34,7 @@ NodeIndex nearest_of(const Model& model, const NodeSet& nodes, const Vec3& point
   return best;
 }
 
-/// The grab among the nodes acted on; nothing if the edit leaves it open.
+/// The grab among the nodes acted on; empty if the edit has none.
 Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& nodes, const Shaping& shaping) {
   const auto point_of = [](const std::array<double, 3>& point) { return Vec3(point[0], point[1], point[2]); };
   if (shaping.grab) {
@@ -42,7 +42,7 @@ Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& no
     const NodeIndex node = model.find_node(std::get<std::int64_t>(*shaping.grab));
     if (node.valid() && std::binary_search(nodes.begin(), nodes.end(), node)) return node;
     if (!shaping.grab_at) {
-      const Result<NodeIndex> found = find_place(model, *shaping.grab);
+      const Result<NodeIndex> found = find_referenced_node(model, *shaping.grab);
       if (!found) return fail("", "grab: " + found.error().message);
       return fail("", "the grabbed node " + std::to_string(model.node_ids[found->value]) + " isn't among the nodes to be moved");
     }
@@ -51,13 +51,13 @@ Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& no
   return std::optional<NodeIndex>();
 }
 
-Motion::Kind motion_kind(const Edit& edit) {
-  if (std::holds_alternative<Lift>(edit)) return Motion::Kind::lift;
-  if (std::holds_alternative<Slide>(edit)) return Motion::Kind::slide;
-  return std::holds_alternative<Rotate>(edit) ? Motion::Kind::rotate : Motion::Kind::translate;
+ShapingKind motion_kind(const Edit& edit) {
+  if (std::holds_alternative<Lift>(edit)) return ShapingKind::lift;
+  if (std::holds_alternative<Slide>(edit)) return ShapingKind::slide;
+  return std::holds_alternative<Rotate>(edit) ? ShapingKind::rotate : ShapingKind::translate;
 }
 
-/// Numbers that make no sense, whoever wrote them: JSON has no NaN, a program may.
+/// Refuses numbers that aren't finite or in range. JSON has no NaN, but a program may pass one.
 Result<void> refuse_unsound(const Edit& edit, const Shaping& shaping) {
   const std::string what(name(edit));
   const Displacement displacement = displacement_of(edit);
@@ -77,7 +77,7 @@ std::string no_shell_at_grab(const Model& model, const Motion& motion) {
   return "no shell touches the grabbed node " + std::to_string(model.node_ids[motion.grab.value]);
 }
 
-/// The surface, and how each node sets out on it.
+/// Enters the surface to slide on, and the direction in which each node starts.
 Result<void> find_tracer(const Model& model, Motion& motion) {
   if (!(motion.normal.squaredNorm() > 0))
     return fail("", no_shell_at_grab(model, motion) + ", so there is no surface to slide on; use translate");
@@ -93,16 +93,16 @@ Result<void> find_tracer(const Model& model, Motion& motion) {
   return {};
 }
 
-/// What the kind of motion needs besides weights: axis, normals, surface.
-Result<void> find_ways(const Model& model, const Edit& edit, Motion& motion) {
+/// Enters what the kind of motion needs besides weights: axis, normals, surface.
+Result<void> find_directions(const Model& model, const Edit& edit, Motion& motion) {
   motion.normal = shape::oriented_normals(model, {motion.grab}, motion.grab).front();
   if (const auto* rotate = std::get_if<Rotate>(&edit)) {
     const std::optional<Vec3> direction = shape::unit_of(rotate->axis);
     if (!direction) return fail("", "rotate: the axis must be a direction of finite numbers, not all 0");
     motion.axis = {rotate->point, *direction};
   }
-  if (motion.kind == Motion::Kind::slide) return find_tracer(model, motion);
-  if (motion.kind != Motion::Kind::lift) return {};
+  if (motion.kind == ShapingKind::slide) return find_tracer(model, motion);
+  if (motion.kind != ShapingKind::lift) return {};
   const bool each = std::get<Lift>(edit).each_normal;
   if (!(motion.normal.squaredNorm() > 0))
     return fail("", no_shell_at_grab(model, motion) + ", so there is no normal to lift along; use translate");
@@ -113,7 +113,7 @@ Result<void> find_ways(const Model& model, const Edit& edit, Motion& motion) {
   return {};
 }
 
-/// The nodes that the edit names.
+/// The nodes that the edit acts on.
 Result<NodeSet> nodes_acted_on(const Generation& generation, const Edit& edit, const Shaping& shaping) {
   Result<NodeSet> nodes = shaping.on ? nodes_at(generation, *shaping.on) : selected_nodes(generation);
   if (!nodes) return nodes;
@@ -128,7 +128,7 @@ Result<shape::Weights> find_weights(const Generation& generation, const Edit& ed
   const Result<std::optional<NodeIndex>> grab = find_grab(generation.model, *nodes, shaping);
   if (!grab) return fail(grab.error());
   Result<shape::Weights> weights = shape::compute_weights(generation.model, *nodes, *grab, shaping.weights);
-  // a constant falloff asks for no way along the surface: pieces apart move too
+  // A constant falloff needs no path along the surface: separate pieces move too.
   if (weights && shaping.weights.falloff.profile == shape::Profile::constant) weights->unreached = 0;
   return weights;
 }
@@ -143,25 +143,28 @@ NodeSet with_followers(const NodeSet& nodes, const std::vector<FollowerNode>& fo
   return all;
 }
 
-/// Enters all that moves, each node once.
-void put_nodes(const Model& model, const WeightedNodes& weighted, const std::vector<FollowerNode>& followers, Motion& motion) {
-  motion.nodes = with_followers(weighted.nodes, followers);
-  std::size_t w = 0;
+/// Enters the nodes and their followers, each once, with its own weight: an image that isn't acted on and a follower have none.
+void put_nodes(const Model& model, const shape::Weights& weights, const NodeSet& nodes, const std::vector<FollowerNode>& followers,
+               Motion& motion) {
+  motion.nodes = with_followers(nodes, followers);
+  auto weighted = weights.nodes.begin();
   for (const NodeIndex node : motion.nodes) {
-    const bool has_weight = w < weighted.nodes.size() && weighted.nodes[w] == node;
-    motion.weight.push_back(has_weight ? weighted.weight[w++] : 0.0);
+    weighted = std::lower_bound(weighted, weights.nodes.end(), node);
+    const bool has_weight = weighted != weights.nodes.end() && *weighted == node;
+    motion.weight.push_back(has_weight ? weights.weight[static_cast<std::size_t>(weighted - weights.nodes.begin())] : 0.0);
     motion.start.push_back(model.position(node));
   }
   for (const FollowerNode& follower : followers) {
     Motion::Follower& placed = motion.followers.emplace_back();
     placed.node = motion.place_of(follower.node);
+    motion.weight[placed.node] = 0;
     for (std::size_t i = 0; i < follower.leader.size(); ++i)
       if (follower.leader[i].valid()) placed.of[i] = motion.place_of(follower.leader[i]);
     placed.share = follower.share;
   }
 }
 
-/// How many of the nodes named neither a weight moves nor something they depend on.
+/// The number of nodes acted on that neither have a weight nor follow a node that moves.
 std::size_t count_unreached(const shape::Weights& weights, const WeightedNodes& weighted, const std::vector<FollowerNode>& welds) {
   std::size_t reached = weighted.reached_middles;
   for (const FollowerNode& weld : welds)
@@ -191,10 +194,10 @@ Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const
   motion.grab = weights->grab;
   motion.max_move = shaping->max_move;
   motion.unreached = count_unreached(*weights, weighted, welds);
-  put_nodes(model, weighted, followers, motion);
-  if (*mirroring) link_images(*weights, **mirroring, motion);
+  put_nodes(model, *weights, weighted.nodes, followers, motion);
+  if (*mirroring) link_images(**mirroring, motion);
   if (const Result<void> free = refuse_held(generation, motion.nodes, named_by); !free) return fail(free.error());
-  if (const Result<void> found = find_ways(model, edit, motion); !found) return fail(found.error());
+  if (const Result<void> found = find_directions(model, edit, motion); !found) return fail(found.error());
   return motion;
 }
 

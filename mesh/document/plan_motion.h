@@ -1,4 +1,4 @@
-// Works out what a shaping edit moves: the same for dragging and applying. Private to mesh/document.
+// Plans the motion of a shaping edit, for dragging and applying alike. Private to mesh/document.
 #pragma once
 
 #include "base/error.h"
@@ -9,8 +9,8 @@
 
 namespace prismesh::mesh::document {
 
-/// The motion of a shaping edit on a generation. `named_by` may be null: it adds the file and line of the card that refuses.
-/// Errors: nothing acted on, no such grab, a locked or held node would move, no normal at the grab of a lift.
+/// The motion of a shaping edit on a generation. `named_by` may be null; with it an error names the file and line of the card that holds a
+/// node. Errors: nothing acted on, no such grab, a locked or held node would move, no normal at the grab of a lift.
 Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const deck::Deck* named_by);
 
 }  // namespace prismesh::mesh::document

@@ -1,4 +1,4 @@
-// Working out an edit, and making it the current generation.
+// Prepares an edit, and commits it as the current generation.
 #pragma once
 
 #include <cstddef>
@@ -14,19 +14,19 @@
 
 namespace prismesh::mesh::document {
 
-/// What an edit would do, before anyone knows of it: so that it can be journalled first.
+/// A prepared edit. It can be journalled before it is committed.
 struct Prepared {
-  std::shared_ptr<const Generation> next;  ///< for undo and redo: the generation gone to
+  std::shared_ptr<const Generation> next;  ///< for undo and redo: the generation to go to
   enum class Step : std::uint8_t { push, undo, redo } step = Step::push;
-  std::size_t drop_oldest = 0;  ///< generations that go when this one comes, so that the history keeps its byte cap
+  std::size_t drop_oldest = 0;  ///< generations to drop on commit, so that the history keeps its byte cap
   EditReport report;
 };
 
-/// Works the edit out on the current generation; the document doesn't change. Deterministic. Errors: expression:column,
-/// nothing selected, a locked or held node would move (named), nothing to undo, cancelled. `progress` hears of relax and repair, which may
-/// take long; the other edits don't look at it. `clock` may be null: the report's milliseconds stay 0.
+/// Applies the edit to a copy of the current generation; the document doesn't change. Deterministic. `progress` is called by relax, repair
+/// and select, which may take long. `clock` may be null: the report's milliseconds stay 0. Errors: expression:column, nothing selected, a
+/// locked or held node would move (named), nothing to undo, cancelled.
 Result<Prepared> prepare(const Document& document, const Edit& edit, const Progress& progress = {}, Clock* clock = nullptr);
-/// Makes it the current generation; drops redo and, over the byte cap, the oldest generations. Can't fail.
+/// Makes it the current generation. Drops what could be redone and, over the byte cap, the oldest generations. Can't fail.
 void commit(Document& document, Prepared prepared);
 /// prepare, then commit.
 Result<EditReport> apply(Document& document, const Edit& edit, const Progress& progress = {}, Clock* clock = nullptr);

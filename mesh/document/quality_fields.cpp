@@ -25,8 +25,8 @@ std::string title_of(Metric metric) {
   return title;
 }
 
-/// From warning to failing where the criteria say both on one side; else from the harmless end of the values to the other.
-FieldLimits colours_of(Metric metric, const Settings& settings, const FieldFigures& figures) {
+/// From warning to failing if the criteria have both on one side; otherwise from the better end of the values to the worse one.
+FieldLimits colours_of(Metric metric, const DocumentSettings& settings, const FieldFigures& figures) {
   const quality::Threshold limits =
       quality::threshold_of(settings.criteria, metric, quality::is_of_triangles(metric), settings.target_size);
   if (std::isfinite(limits.warn_high) && std::isfinite(limits.fail_high)) return apart(limits.warn_high, limits.fail_high);
@@ -34,7 +34,7 @@ FieldLimits colours_of(Metric metric, const Settings& settings, const FieldFigur
   return apart(figures.min, figures.max);
 }
 
-/// The shells of a chunk that are there.
+/// The existing shells of a chunk.
 std::vector<ShellIndex> live_shells_in(const Model& model, std::size_t begin, std::size_t end) {
   std::vector<ShellIndex> shells;
   for (std::size_t s = begin; s < end; ++s)
@@ -49,14 +49,14 @@ Result<Field> unless_empty(Field field, const char* why) {
 
 }  // namespace
 
-Result<Field> metric_field(const Model& model, Metric metric, const Settings& settings) {
+Result<Field> metric_field(const Model& model, Metric metric, const DocumentSettings& settings) {
   Field field{title_of(metric), std::string(quality::unit_of(metric, name(settings.length_unit))), false, {}, {}, {}};
   fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
     std::vector<quality::Values> values(shells.size());
     quality::measure_shells(model, shells, values);
     for (std::size_t i = 0; i < shells.size(); ++i)
-      // What is no shell has no value: that it fails is told as its defect.
+      // A defective shell has no value; its defect is reported instead.
       if (!quality::judge(values[i], settings.criteria, settings.target_size).has_defect())
         out[shells[i].value - begin] = values[i][static_cast<std::size_t>(metric)];
   });
@@ -64,7 +64,7 @@ Result<Field> metric_field(const Model& model, Metric metric, const Settings& se
   return unless_empty(std::move(field), "there is no shell that it applies to");
 }
 
-Result<Field> composite_field(const Model& model, const Settings& settings) {
+Result<Field> composite_field(const Model& model, const DocumentSettings& settings) {
   Field field{"composite quality", {}, false, {}, {}, {kClearComposite, kFailingComposite}};
   fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);

@@ -1,4 +1,4 @@
-// Fields of the shells' quality: a metric, the composite, the stable time step.
+// Computes fields of the shells' quality: a metric, the composite, the stable time step.
 #pragma once
 
 #include "base/error.h"
@@ -10,11 +10,12 @@
 
 namespace prismesh::mesh::document {
 
-/// A metric of each shell that it applies to. Suggested limits: where it warns and where it fails, for quads; else all of it.
-Result<Field> metric_field(const Model& model, quality::Metric metric, const Settings& settings);
+/// A metric of each shell that it applies to. Suggested limits: the quads' limits of warning and failing; the whole range if there are
+/// none.
+Result<Field> metric_field(const Model& model, quality::Metric metric, const DocumentSettings& settings);
 
 /// quality::composite of each shell. Suggested limits: halfway to failing, and failing.
-Result<Field> composite_field(const Model& model, const Settings& settings);
+Result<Field> composite_field(const Model& model, const DocumentSettings& settings);
 
 /// The stable time step of each shell whose material is known, TSSFAC included, in the deck's time unit. Suggested limits: twice the
 /// smallest, and the smallest.

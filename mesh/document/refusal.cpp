@@ -52,7 +52,7 @@ std::string parameter_in(std::string_view card) {
   return std::string(card.substr(begin, card.find_first_of(" ,\t\r)+-*/", begin + 1) - begin));
 }
 
-/// With the parameter's name where that is the reason.
+/// Names the parameter if that is the reason.
 std::string why_held(std::uint8_t hold, const Card& card) {
   std::string why(mesh::why_held(hold));
   if ((hold & kHeldByParameter) != 0)

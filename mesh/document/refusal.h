@@ -1,4 +1,4 @@
-// Nodes that must stay where they are, and the words for it. Private to mesh/document.
+// Refuses to move nodes that must keep their positions. Private to mesh/document.
 #pragma once
 
 #include "base/error.h"

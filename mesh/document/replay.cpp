@@ -11,7 +11,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-/// A script: one edit a line; empty lines are passed over.
+/// Reads a script: one edit a line; empty lines are skipped.
 Result<JournalIntents> read_script(std::string_view text, const std::string& file, bool* syntax_error) {
   JournalIntents intents;
   long line = 0;
@@ -40,8 +40,8 @@ Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syn
 
   JournalIntents intents;
   const auto on_header = [&](const JournalHeader& header) -> Result<void> {
-    intents.deck_path = header.deck_path;
-    intents.deck_hash = header.deck_hash;
+    intents.deck_path = header.deck.path;
+    intents.deck_hash = header.deck.hash;
     return {};
   };
   const auto on_record = [&](const JournalRecord& record) -> Result<void> {
@@ -60,11 +60,11 @@ Result<JournalIntents> read_intents(const std::filesystem::path& path, bool* syn
 
 namespace {
 
-/// The history as the intents meant it, so that an undo of an edit that couldn't be applied doesn't take back another one, and
-/// that what acts on a selection doesn't act on one that was left over because the right one couldn't be made.
-class MeantHistory {
+/// The history as it would be if every edit had been applied. With it an undo of an edit that couldn't be applied doesn't take back another
+/// edit, and no edit acts on an old selection where the intended one couldn't be made.
+class IntendedHistory {
  public:
-  /// Whether the selection here is another one than was meant.
+  /// Whether the selection isn't the intended one.
   bool selection_lost() const { return cursor_ > 0 && steps_[cursor_ - 1].selection_lost; }
 
   void push(bool applied, SelectionUse use) {
@@ -73,7 +73,7 @@ class MeantHistory {
     steps_.push_back({applied, lost});
     ++cursor_;
   }
-  /// Whether the undo (or redo) stands for an edit that wasn't applied; moves past it.
+  /// Moves over an edit by undo (or redo); returns whether that edit wasn't applied.
   bool skips(bool back) {
     if (back ? cursor_ == 0 : cursor_ == steps_.size()) return false;
     const std::size_t edit = back ? --cursor_ : cursor_++;
@@ -93,7 +93,7 @@ class MeantHistory {
 
 std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents, const Progress& progress, Clock* clock) {
   std::vector<ReplayStep> steps;
-  MeantHistory meant;
+  IntendedHistory intended;
   for (std::size_t i = 0; i < intents.edits.size(); ++i) {
     if (progress && !progress(static_cast<double>(i) / static_cast<double>(intents.edits.size()))) break;
     const Edit& edit = intents.edits[i];
@@ -102,29 +102,29 @@ std::vector<ReplayStep> replay(Document& document, const JournalIntents& intents
     step.edit = name(edit);
     const bool back = std::holds_alternative<Undo>(edit);
     const bool is_step = kind_of(edit).group == EditGroup::step;
-    if (is_step && meant.skips(back)) {
+    if (is_step && intended.skips(back)) {
       step.message = "the edit that it stands for wasn't applied";
       steps.push_back(std::move(step));
       continue;
     }
     const SelectionUse use = selection_use(edit);
-    if (use.reads && meant.selection_lost()) {
+    if (use.reads && intended.selection_lost()) {
       step.message = "the selection it acts on couldn't be made";
       steps.push_back(std::move(step));
-      meant.push(false, use);
+      intended.push(false, use);
       continue;
     }
     const auto within = [&](double fraction) {
       return progress((static_cast<double>(i) + fraction) / static_cast<double>(intents.edits.size()));
     };
     Result<EditReport> report = apply(document, edit, progress ? Progress(within) : Progress(), clock);
-    if (!report && report.error().message == cancelled().message) break;
+    if (!report && is_cancelled(report.error())) break;
     step.applied = report.has_value();
     if (report)
       step.report = std::move(*report);
     else
       step.message = report.error().text();
-    if (!is_step) meant.push(step.applied, use);
+    if (!is_step) intended.push(step.applied, use);
     steps.push_back(std::move(step));
   }
   return steps;

@@ -16,7 +16,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-/// Corners of the shells, before and after, that are still there: what part states say of them may be otherwise now.
+/// The existing corners of the shells, before and after: their marks by part states may have changed.
 NodeSet corners_of_changed(const Model& before, const Model& after, const Changes& changes) {
   NodeSet nodes;
   const auto add = [&](const Model& model, const ShellSet& shells) {
@@ -34,7 +34,7 @@ NodeSet corners_of_changed(const Model& before, const Model& after, const Change
   return nodes;
 }
 
-/// A new node is selected if all it comes from are, a new shell if its parent is; what is gone isn't.
+/// A new node is selected if all it comes from are, a new shell if its parent is; a removed one isn't.
 void carry_selection(const Changes& changes, Generation& next) {
   const auto node_selected = [&](NodeIndex node) { return (next.node_marks[node.value] & kSelected) != 0; };
   for (const NodeIndex node : changes.added_nodes) {
@@ -67,8 +67,8 @@ std::size_t& count_of(quality::Counts& counts, quality::Grade grade) {
   return grade == quality::Grade::warn ? counts.warn : counts.ok;
 }
 
-/// States and counts of what came, changed and went; `touched`: live shells of `next` that differ.
-void judge_again(const Settings& settings, const Changes& changes, const ShellSet& touched, Generation& next) {
+/// Updates states and counts for added, changed and removed shells. `touched`: existing shells of `next` that differ.
+void judge_again(const DocumentSettings& settings, const Changes& changes, const ShellSet& touched, Generation& next) {
   next.counts.ok += next.model.shell_count() - next.quality.size();
   next.quality.resize(next.model.shell_count());
   for (const ShellIndex shell : changes.removed_shells) {
@@ -78,7 +78,7 @@ void judge_again(const Settings& settings, const Changes& changes, const ShellSe
   quality::rejudge(next.model, settings.criteria, settings.target_size, touched, next.quality, next.counts);
 }
 
-/// Live shells of `after` whose corners or places differ.
+/// Existing shells of `after` whose corners or positions differ.
 ShellSet touched_shells(const Model& after, const Changes& changes, const NodeSet& moved) {
   ShellSet touched = shells_touching(after, moved);
   touched.insert(touched.end(), changes.added_shells.begin(), changes.added_shells.end());
@@ -97,7 +97,7 @@ void weigh_again(const Generation& before, const Changes& changes, const ShellSe
   next.weight += quality::weigh_shells(next.model, touched);
 }
 
-/// Of the nodes that a change moves those whose cards it changes.
+/// Those moved nodes of a change whose cards change.
 NodeSet moved_of_deck(const Model& opened, const Model& model, const repair::Restructuring& change) {
   NodeSet moved;
   for (const auto& [node, position] : change.moved)
@@ -126,7 +126,7 @@ Result<void> carry_out(const Document& document, const repair::Restructuring& ch
   return deck::can_restructure(*document.deck, document.opened->model, model, moved_of_deck(document.opened->model, model, change));
 }
 
-void settle_growth(const Settings& settings, const Generation& before, const NodeSet& moved, Generation& next) {
+void settle_growth(const DocumentSettings& settings, const Generation& before, const NodeSet& moved, Generation& next) {
   const Changes changes = changes_between(before.model, next.model);
   if (!changes.empty() && !next.model.adjacency)
     next.model.adjacency = std::make_shared<const Adjacency>(update_adjacency(before.model, next.model));

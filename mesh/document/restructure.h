@@ -1,4 +1,5 @@
-// Carrying out what a repair wants: ids, cards, adjacency and judgements of what came and went. Private to mesh/document.
+// Applies a change of the structure to a generation: ids, adjacency, marks and quality of added and removed entities. Private to
+// mesh/document.
 #pragma once
 
 #include "mesh/document/document.h"
@@ -8,20 +9,20 @@
 
 namespace prismesh::mesh::document {
 
-/// What the deck and the document forbid around each node and shell: locked parts, held nodes, cards and elements that name them, mid-side
-/// nodes, formats that can't write it. The document must outlive it.
+/// What the deck and the document forbid to change, for each node and shell: locked parts, held nodes, entities that cards and elements
+/// name, mid-side nodes, changes that the format can't write. The document must outlive the rules.
 repair::Rules rules_for(const Document& document, const Generation& generation);
 
-/// Carries it out on `next`, a copy of the current generation: model, adjacency, marks (a new node is selected if all it comes from are),
-/// judgement, weight, and the report's figures. Costs what the structure has changed since the deck was opened. Errors: no ids are left,
-/// or the deck can't be written so (deck::can_restructure): where and why.
+/// Applies the change to `next`, a copy of the current generation: model, adjacency, marks (a new node is selected if all it comes from
+/// are), quality, weight, and the report's figures. Costs all changes of the structure since the deck was opened. Errors: no ids are left,
+/// or the deck can't be written (deck::can_restructure), with place and reason.
 Result<void> restructure(const Document& document, const repair::Restructuring& change, Generation& next, EditReport& report);
 
-/// The second half of it, for who has changed the model of `next` otherwise: brings adjacency, judgements and weight up to date, and gives
-/// the marks their size. `moved`: nodes in both with other positions, ascending.
-void settle_growth(const Settings& settings, const Generation& before, const NodeSet& moved, Generation& next);
+/// The second half of `restructure`, for a `next` whose model was changed otherwise: updates adjacency, quality and weight, and resizes the
+/// marks. `moved`: nodes of both whose positions differ, ascending.
+void settle_growth(const DocumentSettings& settings, const Generation& before, const NodeSet& moved, Generation& next);
 
-/// The first half of it: the model alone. Errors: as restructure.
+/// The first half of `restructure`: changes the model alone. Errors: as restructure.
 Result<void> carry_out(const Document& document, const repair::Restructuring& change, Model& model);
 
 }  // namespace prismesh::mesh::document

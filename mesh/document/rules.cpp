@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint8_t kAllNodeRules = repair::kStays | repair::kNeeded;
 constexpr std::uint8_t kAllShellRules = repair::kKeepsNodes | repair::kIndivisible | repair::kLasting | repair::kNoTriangle;
 
-/// Answers one question after the other, from any thread; each is worked out once.
+/// Answers the rules' questions, on any thread; each is computed once.
 class Rulebook {
  public:
   Rulebook(const Document& document, const Generation& generation)

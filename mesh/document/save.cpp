@@ -11,7 +11,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-/// What rounded places make of the judgement of the shells about them; empty: nothing.
+/// A note on how rounded positions change the quality of their shells; empty if they don't.
 std::string rounding_note(const Document& document, const deck::Rounding& rounding) {
   if (rounding.nodes.empty()) return "";
   const Generation& current = document.current();

@@ -1,4 +1,4 @@
-// Saving a document's current generation.
+// Saves a document's current generation.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace prismesh::mesh::document {
 
 /// Saves the current generation (deck::save).
 Result<deck::SaveReport> save(const Document& document, const std::filesystem::path& target, const Progress& progress = {});
-/// The same up to the point where files are replaced; its report is complete. The document's deck must outlive it.
+/// Saves, but doesn't replace the files yet; the report is complete. The document's deck must outlive the result.
 Result<deck::StagedSave> stage_save(const Document& document, const std::filesystem::path& target, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::document

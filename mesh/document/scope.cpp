@@ -10,7 +10,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-constexpr int kRingsAboutScope = 4;  ///< about the scope: its neighbours may change with it
+constexpr int kRingsAboutScope = 4;  ///< around the scope: its neighbours may change with it
 
 ShellSet failing(const Generation& generation) {
   ShellSet shells;
@@ -40,7 +40,7 @@ ShellSet selected(const Generation& generation) {
   return shells_touching(generation.model, selected_nodes(generation));
 }
 
-/// The shell of an earlier model from which one descends, or itself.
+/// The shell of an earlier model that a shell descends from, or the shell itself.
 ShellIndex ancestor_in(const Model& earlier, const Model& model, ShellIndex shell) {
   while (shell.value >= earlier.shell_count())
     shell = model.topology_change->shell_parents[shell.value - model.topology_change->deck_shells];

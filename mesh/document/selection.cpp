@@ -15,7 +15,7 @@ std::vector<IndexType> marked(const ChunkedArray<std::uint8_t>& marks, std::uint
   std::vector<IndexType> set;
   if (expected == 0) return set;
   set.reserve(expected);
-  const void* empty = nullptr;  // a chunk known to hold none: untouched chunks of marks all are one chunk
+  const void* empty = nullptr;  // a chunk without marks: all untouched chunks are the same one
   for (std::size_t c = 0; c < marks.chunk_count(); ++c) {
     if (marks.chunk_owner(c).get() == empty) continue;
     const std::span<const std::uint8_t> chunk = marks.chunk(c);

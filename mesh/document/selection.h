@@ -1,4 +1,4 @@
-// What is selected in a generation: as sets, and as marks.
+// The selection of a generation, as sets and as marks.
 #pragma once
 
 #include "mesh/document/generation.h"
@@ -17,7 +17,7 @@ NodeSet selected_nodes(const Generation& generation);
 /// Costs the chunks that hold a selected shell, and a pointer comparison a chunk.
 ShellSet selected_shells(const Generation& generation);
 
-/// Makes `after` the selection of `next`, whose marks still are those of `before`: only what differs is written.
+/// Makes `after` the selection of `next`, whose marks are still those of `before`. Writes only the differences.
 void put_selection(Generation& next, const Selection& before, const Selection& after);
 
 }  // namespace prismesh::mesh::document

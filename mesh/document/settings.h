@@ -1,4 +1,4 @@
-// What a document's elements are judged by.
+// The settings of a document: the unit, and what its elements are judged by.
 #pragma once
 
 #include "base/units.h"
@@ -6,7 +6,7 @@
 
 namespace prismesh::mesh::document {
 
-struct Settings {
+struct DocumentSettings {
   LengthUnit length_unit = LengthUnit::mm;
   bool length_unit_guessed = true;
   double target_size = 1;

@@ -7,7 +7,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-/// The own weight of a node; 0 where it isn't acted on.
+/// The node's own weight; 0 if it isn't acted on.
 double weight_of(const shape::Weights& weights, NodeIndex node) {
   const auto at = std::lower_bound(weights.nodes.begin(), weights.nodes.end(), node);
   return at != weights.nodes.end() && *at == node ? weights.weight[static_cast<std::size_t>(at - weights.nodes.begin())] : 0.0;
@@ -62,7 +62,7 @@ shape::Weights with_images(const shape::Weights& weights, const Mirroring& mirro
   return all;
 }
 
-void link_images(const shape::Weights& weights, const Mirroring& mirroring, Motion& motion) {
+void link_images(const Mirroring& mirroring, Motion& motion) {
   motion.plane = mirroring.plane;
   motion.without_image = mirroring.without_image;
   motion.mirrored.assign(motion.nodes.size(), {});
@@ -70,7 +70,6 @@ void link_images(const shape::Weights& weights, const Mirroring& mirroring, Moti
   for (const Motion::Follower& follower : motion.followers) follows[follower.node] = 1;
   for (std::size_t i = 0; i < motion.nodes.size(); ++i) {
     if (follows[i] != 0) continue;
-    motion.weight[i] = weight_of(weights, motion.nodes[i]);
     const NodeIndex image = mirroring.image_of(motion.nodes[i]);
     const std::uint32_t place = image.valid() ? motion.place_of(image) : Motion::Follower::kStays;
     if (place != Motion::Follower::kStays && follows[place] == 0) motion.mirrored[i].image = place;

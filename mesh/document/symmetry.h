@@ -1,4 +1,4 @@
-// Symmetric editing within a motion: the images join what moves. Private to mesh/document.
+// Symmetric editing: finds the images of the nodes acted on and adds them to a motion. Private to mesh/document.
 #pragma once
 
 #include <cstddef>
@@ -22,14 +22,14 @@ struct Mirroring {
 
   NodeIndex image_of(NodeIndex node) const;  ///< invalid without one
 };
-/// Nothing without a symmetry. Errors: no direction, numbers that aren't finite.
+/// Empty without a symmetry. Errors: no direction, numbers that aren't finite.
 Result<std::optional<Mirroring>> find_mirroring(const Model& model, const shape::Weights& weights, const std::optional<Symmetry>& symmetry);
 
-/// The weights with the images among the nodes: an image that isn't acted on itself gets the weight of what it mirrors, so that it counts
+/// The weights of the nodes and their images. An image that isn't acted on itself gets the weight of the node it mirrors, so that it counts
 /// as moving.
 shape::Weights with_images(const shape::Weights& weights, const Mirroring& mirroring);
 
-/// Once motion.nodes and motion.followers are known: enters the nodes' own weights, and how each node's move and its image's become one.
-void link_images(const shape::Weights& weights, const Mirroring& mirroring, Motion& motion);
+/// Enters the plane, and for each node its image and how the moves of both are added. Needs motion.nodes, weight, start and followers.
+void link_images(const Mirroring& mirroring, Motion& motion);
 
 }  // namespace prismesh::mesh::document

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMaxTrials = 400;
 
-/// Numbers the groups of a change: what shares a node belongs together.
+/// Numbers the groups of a change: entities that share a node belong to one group.
 class Groups {
  public:
   Groups(const Model& model, const repair::Restructuring& change) : model_(model), change_(change) {
@@ -69,7 +69,7 @@ class Groups {
   std::unordered_map<std::uint32_t, std::uint32_t> up_;
 };
 
-/// The part of a change that belongs to some groups, without what only moves.
+/// The part of a change that belongs to some groups, without nodes that only move.
 repair::Restructuring part_of(const Model& model, const repair::Restructuring& change, Groups& groups,
                               std::span<const std::uint32_t> wanted) {
   const auto is_wanted = [&](std::uint32_t group) { return std::binary_search(wanted.begin(), wanted.end(), group); };

@@ -1,4 +1,4 @@
-// Which of many changes a deck's format can't write. Private to mesh/document.
+// Finds the changes that a deck's format can't write. Private to mesh/document.
 #pragma once
 
 #include <map>
@@ -10,19 +10,19 @@
 
 namespace prismesh::mesh::document {
 
-/// What must be left as it is, and why.
+/// Entities that must not be changed, with the reasons.
 struct Frozen {
   std::map<ShellIndex, std::string> shells;
   std::map<NodeIndex, std::string> nodes;  ///< that can't be removed
 };
 
-/// Of a change that can't be saved as a whole: the groups of shells and nodes, each connected by common nodes, that can't be saved on their
-/// own either. Costs a few trials for each, and each trial what the structure has changed since the deck was opened. Adds them to `frozen`;
-/// returns how many groups it found. Errors: cancelled.
+/// Splits a change that can't be saved into groups of shells and nodes that are connected by common nodes, and adds the groups that can't
+/// be saved on their own to `frozen`; returns their number. Costs a few trials for each, and each trial all changes of the structure since
+/// the deck was opened. Errors: cancelled.
 Result<std::size_t> find_unwritable(const Document& document, const Model& model, const repair::Restructuring& change, Frozen& frozen,
                                     const Progress& progress = {});
 
-/// The rules, and that what is frozen stays. `frozen` must outlive them.
+/// The rules, with the frozen entities added. `frozen` must outlive them.
 repair::Rules with_frozen(const repair::Rules& rules, const Frozen& frozen);
 
 }  // namespace prismesh::mesh::document

@@ -11,6 +11,7 @@ namespace prismesh::architecture {
 const std::vector<Module>& modules() {
   static const std::vector<Module> kModules{
       {"base", {}},
+      {"base/json", {"base"}},
 
       {"mesh/model", {"base"}},
       {"mesh/deck/text", {"base"}},
@@ -31,7 +32,7 @@ const std::vector<Module>& modules() {
       {"mesh/shape", {"mesh/spatial"}},
       {"mesh/relax", {"mesh/quality", "mesh/spatial"}},
       {"mesh/repair", {"mesh/relax"}},
-      {"mesh/document", {"mesh/deck", "mesh/repair", "mesh/select", "mesh/shape"}},
+      {"mesh/document", {"base/json", "mesh/deck", "mesh/repair", "mesh/select", "mesh/shape"}},
 
       {"drivers/settings", {"base"}},
       {"drivers/port", {"base"}},

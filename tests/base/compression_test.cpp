@@ -190,9 +190,9 @@ TEST_F(Packed, refuses_bombs) {
   const std::string zeros(std::size_t{2} << 20, '0');
   for (const std::string& like : {kGzip, kZstd}) {
     const std::string bomb = packed_as(zeros, like);
-    ASSERT_GT(zeros.size(), most_unpacked(bomb.size()));
+    ASSERT_GT(zeros.size(), max_unpacked(bomb.size()));
     EXPECT_NE(error_of(write("bomb", bomb))
-                  .find("unpacks to far more than any deck would (more than " + std::to_string(most_unpacked(bomb.size()) / 1024) + " KB)"),
+                  .find("unpacks to far more than any deck would (more than " + std::to_string(max_unpacked(bomb.size()) / 1024) + " KB)"),
               std::string::npos);
   }
 }
@@ -214,7 +214,7 @@ TEST_F(Packed, tells_how_far_it_is_and_stops) {
     EXPECT_LE(last, 1);
     const auto stopped = read(path, [](double) { return false; });
     ASSERT_FALSE(stopped);
-    EXPECT_EQ(stopped.error().message, "cancelled");
+    EXPECT_TRUE(is_cancelled(stopped.error()));
   }
 }
 
@@ -237,7 +237,7 @@ TEST_F(Packed, packing_tells_how_far_it_is_and_stops) {
     told.clear();
     const Result<std::string> stopped = watch(2);
     ASSERT_FALSE(stopped);
-    EXPECT_EQ(stopped.error().message, cancelled().message);
+    EXPECT_TRUE(is_cancelled(stopped.error()));
     EXPECT_EQ(told.size(), 2u);
   }
 }

@@ -30,6 +30,15 @@ TEST(Error, text_leaves_out_what_is_absent) {
   EXPECT_EQ(failed.error().text(), "expression:7: what is this");
 }
 
+TEST(Error, of_stopped_work_is_told_apart_by_its_kind_whatever_it_says) {
+  EXPECT_TRUE(is_cancelled(cancelled()));
+  Error named = cancelled();
+  named.file = "a.k";
+  named.message = "stopped";
+  EXPECT_TRUE(is_cancelled(named));
+  EXPECT_FALSE(is_cancelled(Error{"", 0, "cancelled"}));
+}
+
 TEST(Hash, is_the_same_in_pieces_and_tells_texts_apart) {
   const std::string text(100000, 'q');
   const std::string_view whole = text;

@@ -15,7 +15,7 @@ namespace {
 /// Welcomes everybody, has one state before the first edit and one after it, and writes down what it is asked for.
 class PlayedDaemon final : public ipc::ServerHandler {
  public:
-  PlayedDaemon(const std::filesystem::path& socket, ipc::State before, ipc::State after)
+  PlayedDaemon(const std::filesystem::path& socket, ipc::DocumentState before, ipc::DocumentState after)
       : page_(ipc::StatePage::create().value()),
         state_(std::move(before)),
         after_(std::move(after)),
@@ -61,14 +61,14 @@ class PlayedDaemon final : public ipc::ServerHandler {
  private:
   ipc::StatePage page_;
   std::mutex mutex_;
-  ipc::State state_, after_;
+  ipc::DocumentState state_, after_;
   std::vector<ipc::Request> asked_;
   ipc::Server server_;
   std::thread thread_;
 };
 
-ipc::State played_state(const std::string& path, std::uint64_t journalled_edits) {
-  ipc::State state;
+ipc::DocumentState played_state(const std::string& path, std::uint64_t journalled_edits) {
+  ipc::DocumentState state;
   state.open = true;
   state.path = path;
   state.journalled_edits = journalled_edits;

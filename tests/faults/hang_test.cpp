@@ -53,7 +53,7 @@ class Hang : public ::testing::Test {
   }
   static std::uint64_t journalled(ipc::Client& client) {
     const Result<ipc::Answer> state = client.call(ipc::GetState{}, kPatience);
-    return state ? std::get<ipc::State>(*state).journalled_edits : 0;
+    return state ? std::get<ipc::DocumentState>(*state).journalled_edits : 0;
   }
 
   test::Folder folder_;

@@ -33,8 +33,8 @@ TEST(Memory, where_there_is_none_the_client_is_told_and_the_document_is_whole) {
     ASSERT_TRUE(client->call(open, 60s));
     const auto parsed = [](const char* json) { return mesh::document::parse_edit(json).value(); };
     ASSERT_TRUE(client->call(ipc::ApplyEdit{parsed(R"({"edit":"translate","by":[0,0,0.5],"on":"all"})")}, 60s));
-    const auto state = [&] { return std::get<ipc::State>(client->call(ipc::GetState{}, 60s).value()); };
-    const ipc::State before = state();
+    const auto state = [&] { return std::get<ipc::DocumentState>(client->call(ipc::GetState{}, 60s).value()); };
+    const ipc::DocumentState before = state();
     const ipc::Request requests[] = {ipc::GetQuality{"", false},
                                      ipc::GetField{},
                                      ipc::PreviewEdit{parsed(R"({"edit":"relax","scope":"all"})")},
@@ -51,7 +51,7 @@ TEST(Memory, where_there_is_none_the_client_is_told_and_the_document_is_whole) {
       if (answer) continue;  // it did with little
       ++refused;
       EXPECT_NE(answer.error().message.find("memory"), std::string::npos) << answer.error().text();
-      const ipc::State after = state();
+      const ipc::DocumentState after = state();
       EXPECT_EQ(after.generation, before.generation);
       EXPECT_EQ(after.journalled_edits, before.journalled_edits);
       EXPECT_EQ(after.changed, before.changed);
@@ -87,7 +87,7 @@ TEST(Memory, where_the_loop_has_none_clients_are_told_or_cut_off_and_the_daemon_
     const auto parsed = [](const std::string& json) { return mesh::document::parse_edit(json).value(); };
     const auto lift = parsed(R"({"edit":"lift","distance":1,"on":"all"})");
     ASSERT_TRUE(client->call(ipc::ApplyEdit{lift}, 60s));
-    const auto journalled = [&] { return std::get<ipc::State>(client->call(ipc::GetState{}, 60s).value()).journalled_edits; };
+    const auto journalled = [&] { return std::get<ipc::DocumentState>(client->call(ipc::GetState{}, 60s).value()).journalled_edits; };
     std::uint64_t edits = journalled();
     const ipc::Request requests[] = {ipc::GetQuality{"warpage", false},
                                      ipc::Count{"1" + std::string(5'000, ' '), mesh::select::Kind::node},

@@ -105,8 +105,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz_delta(std::as_bytes(std::span(text.substr(0, half))), generation);
   fuzz_delta(std::as_bytes(std::span(text.substr(half))), generation);
   fuzz_text(text);
-  const std::string header = header_text({"0", "fuzz.k", "0", 16, 9, 1, LengthUnit::mm, 1.0, "default"});
-  const std::string record = record_text(1, text.substr(0, half), Prepared::Step::push, 0, text.substr(half), check_in(header));
+  const std::string header = header_text({"0", {"fuzz.k", "0", 16, 9, 1}, {LengthUnit::mm, 1.0, "default"}});
+  const std::string record = record_text({1, text.substr(0, half), Prepared::Step::push, 0, text.substr(half)}, check_in(header));
   fuzz_text(header + record);
   fuzz_text(header + std::string(text));
   return 0;

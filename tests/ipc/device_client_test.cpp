@@ -139,7 +139,7 @@ TEST_F(DeviceClients, a_false_page_is_refused) {
             std::string::npos);
   EXPECT_NE(refused([](FakeDeviced& self, ClientId client, std::uint64_t number) {
               self.welcome(client, number, fail("", "none"));
-            }).find("lacks the state page"),
+            }).find("the state page is missing"),
             std::string::npos);
   EXPECT_NE(
       refused([](FakeDeviced& self, ClientId client, std::uint64_t number) { self.refuse(client, number, "too old"); }).find("too old"),

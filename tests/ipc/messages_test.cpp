@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ipc/failure.h"
 #include "ipc/messages_json.h"
 
 namespace prismesh::ipc {
@@ -43,7 +44,7 @@ TEST(Messages, requests_survive_a_round_trip) {
 }
 
 TEST(Messages, answers_and_events_survive_a_round_trip) {
-  State state;
+  DocumentState state;
   state.open = true;
   state.generation = ~std::uint64_t{0};
   state.counts = {1, 2, 3};
@@ -54,7 +55,7 @@ TEST(Messages, answers_and_events_survive_a_round_trip) {
   ASSERT_TRUE(answer) << answer.error().text();
   EXPECT_EQ(answer->to, 9u);
   EXPECT_EQ(answer->descriptors, 1u);
-  const State& back = std::get<State>(std::get<Answer>(answer->message));
+  const DocumentState& back = std::get<DocumentState>(std::get<Answer>(answer->message));
   EXPECT_EQ(back.generation, state.generation);
   EXPECT_EQ(back.counts, state.counts);
   ASSERT_EQ(back.warnings.size(), 1u);
@@ -67,6 +68,17 @@ TEST(Messages, answers_and_events_survive_a_round_trip) {
   const Result<FromDaemon> event = decode_from_daemon(encode_event(DragEnded{4, true, "why"}));
   ASSERT_TRUE(event) << event.error().text();
   EXPECT_EQ(std::get<DragEnded>(std::get<Event>(event->message)).drag, 4u);
+}
+
+TEST(Messages, an_error_survives_the_way_as_an_answer) {
+  const auto sent = [](const Error& error) {
+    const Result<FromDaemon> message = decode_from_daemon(encode_answer(1, failed_from(error)));
+    return error_from(std::get<Failed>(std::get<Answer>(message.value().message)));
+  };
+  EXPECT_EQ(sent({"a.k", 7, "is wrong"}).text(), "a.k:7: is wrong");
+  EXPECT_FALSE(is_cancelled(sent({"a.k", 7, "is wrong"})));
+  EXPECT_EQ(encode_answer(1, failed_from(cancelled())), R"({"answer":"failed","file":"","line":0,"message":"cancelled","to":1})");
+  EXPECT_TRUE(is_cancelled(sent(cancelled())));
 }
 
 TEST(Messages, errors_name_the_field_and_the_nearest_known_one) {
@@ -123,7 +135,7 @@ TEST(Messages, text_that_is_not_utf8_is_refused_one_way_and_replaced_the_other) 
   Open open;
   open.path = "/decks/caf\xe9.k";
   EXPECT_FALSE(encode_request(1, open));
-  State state;
+  DocumentState state;
   state.path = open.path;
   EXPECT_TRUE(decode_from_daemon(encode_answer(1, state)));
 }

@@ -64,7 +64,7 @@ class SlowServer final : public ipc::ServerHandler {
       descriptors.push_back(page_.descriptor().duplicate().value());
       answer(client, request->number, ipc::Welcome{ipc::kProtocolVersion, "test", client}, std::move(descriptors));
     } else if (std::holds_alternative<ipc::GetState>(request->request)) {
-      ipc::State state;
+      ipc::DocumentState state;
       state.open = true;
       state.path = document_.path;
       state.generation = document_.current().number;

@@ -33,7 +33,7 @@ struct Shown {
 
 Shown shown_by(ipc::Client& client) {
   Shown shown;
-  ipc::State state = std::get<ipc::State>(client.call(ipc::GetState{}, kPatience).value());
+  ipc::DocumentState state = std::get<ipc::DocumentState>(client.call(ipc::GetState{}, kPatience).value());
   state.recovered_edits = 0;
   shown.state = ipc::answer_fields(state);
   const auto view = client.snapshot().value();

@@ -41,10 +41,10 @@ class Serving : public ::testing::Test {
   }
   Client client(const std::string& name = "test") { return Client::connect(ipc::model_socket_path(folder_.path() / "run"), name).value(); }
 
-  ipc::State open(Client& client, const fs::path& deck) {
+  ipc::DocumentState open(Client& client, const fs::path& deck) {
     ipc::Open request;
     request.path = deck.string();
-    return std::get<ipc::State>(client.call(request, kServingPatience).value());
+    return std::get<ipc::DocumentState>(client.call(request, kServingPatience).value());
   }
 
   Folder folder_;
@@ -130,7 +130,7 @@ TEST_F(Serving, a_drag_is_previewed_and_committed) {
 
 TEST_F(Serving, an_expression_is_counted_and_selects_nothing) {
   Client client = this->client();
-  const ipc::State before = open(client, folder_.sheet());
+  const ipc::DocumentState before = open(client, folder_.sheet());
   const auto ask = [&](const std::string& expr, mesh::select::Kind kind) {
     return client.call(ipc::Count{expr, kind}, kServingPatience).value();
   };
@@ -142,7 +142,7 @@ TEST_F(Serving, an_expression_is_counted_and_selects_nothing) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().file, "expression");
   EXPECT_EQ(refused.error().line, 6) << "the column";
-  const auto after = std::get<ipc::State>(client.call(ipc::GetState{}, kServingPatience).value());
+  const auto after = std::get<ipc::DocumentState>(client.call(ipc::GetState{}, kServingPatience).value());
   EXPECT_EQ(after.generation, before.generation);
   EXPECT_EQ(after.selected_nodes, 0u);
 }
@@ -183,7 +183,7 @@ TEST_F(Serving, only_the_owner_steps_and_ends_a_drag) {
   ipc::PreviewFrame frame;
   EXPECT_FALSE(preview.latest(frame)) << "a stranger's step was taken";
   EXPECT_FALSE(next<ipc::DragEnded>(other)->committed);
-  EXPECT_FALSE(std::get<ipc::State>(owner.call(ipc::GetState{}, kServingPatience).value()).changed);
+  EXPECT_FALSE(std::get<ipc::DocumentState>(owner.call(ipc::GetState{}, kServingPatience).value()).changed);
 }
 
 TEST_F(Serving, edits_wait_until_the_drag_ends) {
@@ -215,7 +215,7 @@ TEST_F(Serving, the_owners_death_cancels_its_drag) {
   ASSERT_TRUE(ended);
   EXPECT_FALSE(ended->committed);
   EXPECT_EQ(ended->why, "its client has gone");
-  EXPECT_FALSE(std::get<ipc::State>(watcher.call(ipc::GetState{}, kServingPatience).value()).changed);
+  EXPECT_FALSE(std::get<ipc::DocumentState>(watcher.call(ipc::GetState{}, kServingPatience).value()).changed);
   EXPECT_TRUE(watcher.call(ipc::BeginDrag{patch()}, kServingPatience)) << "others may drag again";
 }
 
@@ -272,7 +272,7 @@ TEST_F(Serving, everyone_is_told_which_deck_a_save_goes_on_as) {
   save.path.reset();
   const auto saved = editor.call(save, kServingPatience);
   ASSERT_TRUE(saved) << saved.error().text();
-  EXPECT_EQ(std::get<ipc::State>(editor.call(ipc::GetState{}, kServingPatience).value()).path, other.string());
+  EXPECT_EQ(std::get<ipc::DocumentState>(editor.call(ipc::GetState{}, kServingPatience).value()).path, other.string());
 }
 
 TEST_F(Serving, a_client_must_greet_in_the_same_protocol) {
@@ -364,9 +364,9 @@ TEST_F(Serving, a_restart_is_seen_and_the_document_is_back) {
   EXPECT_FALSE(one.call(ipc::GetState{}, kServingPatience));
   start();
   Client again = client();
-  ipc::State state;
+  ipc::DocumentState state;
   for (int i = 0; i < 6000 && !state.open; ++i) {
-    state = std::get<ipc::State>(again.call(ipc::GetState{}, kServingPatience).value());
+    state = std::get<ipc::DocumentState>(again.call(ipc::GetState{}, kServingPatience).value());
     std::this_thread::sleep_for(10ms);
   }
   EXPECT_EQ(state.path, deck.string());

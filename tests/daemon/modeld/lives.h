@@ -34,7 +34,7 @@ class Lives {
   }
 
   /// Connects and waits until the document is open: by itself, or by hand if the daemon was killed while it opened it too often.
-  ipc::State wait_until_open() {
+  ipc::DocumentState wait_until_open() {
     using namespace std::chrono_literals;
     const auto until = std::chrono::steady_clock::now() + kPatience;
     while (std::chrono::steady_clock::now() < until) {
@@ -45,7 +45,7 @@ class Lives {
         client_.lost(answer.error());
         continue;
       }
-      const auto& state = std::get<ipc::State>(*answer);
+      const auto& state = std::get<ipc::DocumentState>(*answer);
       if (state.open && !state.busy) return state;
       if (!state.busy) {
         ipc::Open open;

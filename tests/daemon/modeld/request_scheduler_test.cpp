@@ -93,7 +93,7 @@ class DeskTest : public ::testing::Test {
     scheduler_.arrived(kOther);
     ipc::Open open;
     open.path = folder_.sheet().string();
-    ask<ipc::State>(kOne, open);
+    ask<ipc::DocumentState>(kOne, open);
   }
   /// Asks and waits for the answer.
   template <class A>
@@ -292,7 +292,7 @@ TEST_F(DeskTest, what_waits_is_done_in_the_order_in_which_it_came) {
 TEST_F(DeskTest, a_drag_begins_with_what_is_grabbed_and_which_way_is_out) {
   const ipc::DragBegun begun = ask<ipc::DragBegun>(kOne, drag());
   EXPECT_EQ(begun.grab, 1313);
-  EXPECT_EQ(begun.base_generation, ask<ipc::State>(kOther, ipc::GetState{}).generation);
+  EXPECT_EQ(begun.base_generation, ask<ipc::DocumentState>(kOther, ipc::GetState{}).generation);
   EXPECT_EQ(begun.nodes, 1u);
   const test::Point out = test::sheet_normal(begun.grab_position);
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(begun.normal[axis], out[axis], 0.02);
@@ -321,7 +321,7 @@ TEST_F(DeskTest, views_see_the_state_that_is_told) {
       ask<ipc::Saved>(kOther, ipc::Save{});
     else
       ask<ipc::Edited>(kOther, ipc::ApplyEdit{parse_edit(step.edit).value()});
-    const auto state = ask<ipc::State>(kOne, ipc::GetState{});
+    const auto state = ask<ipc::DocumentState>(kOne, ipc::GetState{});
     const std::shared_ptr<const ipc::SnapshotView> seen = view();
     const ipc::SnapshotInfo& info = seen->info();
     EXPECT_EQ(info.generation, state.generation);
@@ -344,7 +344,7 @@ TEST_F(DeskTest, views_see_the_state_that_is_told) {
 
 TEST_F(DeskTest, an_earlier_state_is_shown_as_it_was_and_what_the_client_has_isnt_sent_again) {
   const double before = height();
-  const std::uint64_t first = ask<ipc::State>(kOne, ipc::GetState{}).generation;
+  const std::uint64_t first = ask<ipc::DocumentState>(kOne, ipc::GetState{}).generation;
   Translate up;
   up.shaping.on = "1313";
   up.by = {0, 0, 0.5};
@@ -408,14 +408,14 @@ TEST_F(DeskTest, what_a_client_held_is_returned_when_it_goes) {
 TEST_F(DeskTest, what_cannot_be_asked_yet_or_at_all_is_said) {
   ask<ipc::Done>(kOne, ipc::Close{});
   EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "no document is open");
-  EXPECT_FALSE(ask<ipc::State>(kOne, ipc::GetState{}).busy);
+  EXPECT_FALSE(ask<ipc::DocumentState>(kOne, ipc::GetState{}).busy);
   ipc::Open open;
   open.path = folder_.sheet().string();
   const std::uint64_t opening = begin(kOther, open);
   EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "the document is still being opened");
-  EXPECT_TRUE(ask<ipc::State>(kOne, ipc::GetState{}).busy);
+  EXPECT_TRUE(ask<ipc::DocumentState>(kOne, ipc::GetState{}).busy);
   loop_.until_answered(kOther, opening);
-  EXPECT_FALSE(ask<ipc::State>(kOne, ipc::GetState{}).busy);
+  EXPECT_FALSE(ask<ipc::DocumentState>(kOne, ipc::GetState{}).busy);
   EXPECT_EQ(refusal(kOne, ipc::Hello{}), "this can't be asked now") << "a second greeting";
 }
 

@@ -110,7 +110,7 @@ TEST_F(SaveAs, says_what_it_would_replace_and_make_and_touches_nothing) {
   RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30, clock);
   ipc::Open request;
   request.path = deck.string();
-  ASSERT_TRUE(std::holds_alternative<ipc::State>(handler.open(request, {}).answer));
+  ASSERT_TRUE(std::holds_alternative<ipc::DocumentState>(handler.open(request, {}).answer));
   const auto ask = [&](const fs::path& target, bool asks) { return handler.save({target.string(), true, asks}).answer; };
 
   const fs::path made = folder_.path() / "new";
@@ -142,7 +142,7 @@ TEST_F(SaveAs, a_copy_leaves_the_document_as_it_was) {
   RequestHandler handler(StateFolder(folder_.state()), publisher, std::size_t{1} << 30, clock);
   ipc::Open request;
   request.path = deck.string();
-  ASSERT_TRUE(std::holds_alternative<ipc::State>(handler.open(request, {}).answer));
+  ASSERT_TRUE(std::holds_alternative<ipc::DocumentState>(handler.open(request, {}).answer));
   ASSERT_TRUE(std::holds_alternative<ipc::Edited>(handler.edit(mesh::document::parse_edit(kLift).value()).answer));
   ipc::Save copy{other.string(), false, false, true};
   const Outcome copied = handler.save(copy);

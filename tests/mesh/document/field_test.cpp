@@ -155,7 +155,7 @@ TEST(FieldTest, added_and_removed_nodes) {
   EXPECT_FLOAT_EQ(off->values[added.value], 1) << "an added node lies off the old surface";
   const std::size_t lone = now.node_count() - 2;  // the sheet's last corner: its only shell is gone
   EXPECT_TRUE(std::isnan(off->values[lone]));
-  const auto warpage = metric_field(now, quality::Metric::warpage, Settings{});
+  const auto warpage = metric_field(now, quality::Metric::warpage, DocumentSettings{});
   ASSERT_TRUE(warpage);
   EXPECT_TRUE(std::isnan(warpage->values[15])) << "a removed shell";
   EXPECT_TRUE(std::isnan(warpage->values[0])) << "a triangle has no warpage";
@@ -191,7 +191,7 @@ TEST(FieldTest, what_is_no_number_counts_for_nothing) {
     EXPECT_DOUBLE_EQ(field->figures.max, 2);
     EXPECT_EQ(shells_without_value(now, *field), 4u) << "the shells at the node";
   }
-  const auto warpage = metric_field(now, quality::Metric::warpage, Settings{});
+  const auto warpage = metric_field(now, quality::Metric::warpage, DocumentSettings{});
   ASSERT_TRUE(warpage);
   EXPECT_TRUE(std::isfinite(warpage->figures.mean));
 }
@@ -200,12 +200,12 @@ TEST(FieldTest, what_is_no_shell_has_no_metric) {
   Model model = flat_sheet(4, 4, 0);
   model.positions.set(6, model.position(NodeIndex(std::size_t{7})));  // two shells have an edge without length
   for (const quality::Metric metric : {quality::Metric::aspect, quality::Metric::min_length, quality::Metric::jacobian}) {
-    const auto field = metric_field(model, metric, Settings{});
+    const auto field = metric_field(model, metric, DocumentSettings{});
     ASSERT_TRUE(field);
     EXPECT_EQ(field->figures.measured, 14u);
     EXPECT_EQ(shells_without_value(model, *field), 2u);
   }
-  EXPECT_LT(metric_field(model, quality::Metric::aspect, Settings{})->figures.max, 5);
+  EXPECT_LT(metric_field(model, quality::Metric::aspect, DocumentSettings{})->figures.max, 5);
 }
 
 TEST(FieldTest, nothing_to_measure_is_a_sentence) {
@@ -215,7 +215,7 @@ TEST(FieldTest, nothing_to_measure_is_a_sentence) {
   EXPECT_FALSE(surface_distance_field(empty, sheet, mm));
   EXPECT_FALSE(surface_distance_field(sheet, empty, mm));
   EXPECT_FALSE(gap_field(sheet, {}, {}, mm));
-  EXPECT_FALSE(metric_field(sheet, quality::Metric::min_angle_tri, Settings{})) << "there are no triangles";
+  EXPECT_FALSE(metric_field(sheet, quality::Metric::min_angle_tri, DocumentSettings{})) << "there are no triangles";
   const auto step = time_step_field(sheet, {});
   ASSERT_FALSE(step);
   EXPECT_NE(step.error().message.find("no time step"), std::string::npos);
@@ -250,7 +250,7 @@ TEST(FieldTest, a_measurement_stops_when_told_and_needs_what_it_compares_with) {
 }
 
 TEST(FieldTest, metrics_are_those_of_the_shells) {
-  Settings settings;
+  DocumentSettings settings;
   settings.criteria = quality::default_criteria();
   settings.target_size = 5;
   Model model = flat_sheet(3, 3, 0);

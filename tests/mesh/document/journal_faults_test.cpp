@@ -327,15 +327,16 @@ TEST_F(JournalFaultTest, a_file_that_cannot_be_written_anew_takes_no_edit_until_
 
 JournalHeader header_for(const Document& document) {
   const Model& model = document.opened->model;
-  return {"0.1-old", "model.k", document.deck->content.hex(), model.node_count(), model.shell_count(), model.parts->size(), LengthUnit::mm,
-          5.0,       ""};
+  return {"0.1-old",
+          {"model.k", document.deck->content.hex(), model.node_count(), model.shell_count(), model.parts->size()},
+          {LengthUnit::mm, 5.0, ""}};
 }
 
 TEST(JournalOfAnother, the_same_deck_read_differently_is_refused) {
   const Folder folder;
   const JournalHeader same = header_for(small());
   std::vector<JournalHeader> others(3, same);
-  ++others[0].nodes, ++others[1].shells, ++others[2].parts;
+  ++others[0].deck.nodes, ++others[1].deck.shells, ++others[2].deck.parts;
   for (const JournalHeader& other : others) {
     put_content(folder / "a.journal", header_text(other));
     Document document = small();
@@ -368,8 +369,8 @@ TEST(JournalOfAnother, a_record_that_does_not_fit_names_its_edit_and_its_line) {
     // An undo has something to take back after the first record, so it comes first.
     const bool first = step == Prepared::Step::undo;
     const std::string head = header_text(header_for(small()));
-    const std::string text = first ? head + record_text(1, R"({"edit":"undo"})", step, 0, delta, check_in(head))
-                                   : good + record_text(2, R"({"edit":"redo"})", step, 0, delta, check);
+    const std::string text = first ? head + record_text({1, R"({"edit":"undo"})", step, 0, delta}, check_in(head))
+                                   : good + record_text({2, R"({"edit":"redo"})", step, 0, delta}, check);
     put_content(session.path, text);
     Document document = small();
     const Result<Journal> journal = Journal::recover(session.path, document);
@@ -398,7 +399,7 @@ TEST(JournalOfAnother, intents_that_are_no_edits_name_their_line) {
   const Session session({kSession[0]});
   const std::string good = content_of(session.path);
   put_content(session.path,
-              good + record_text(2, R"({"edit":"unod"})", Prepared::Step::push, 0, "", check_in(good.substr(session.bytes[0]))));
+              good + record_text({2, R"({"edit":"unod"})", Prepared::Step::push, 0, ""}, check_in(good.substr(session.bytes[0]))));
   const Result<JournalIntents> intents = read_intents(session.path);
   ASSERT_FALSE(intents);
   EXPECT_THAT(intents.error().message, HasSubstr("there is no edit \"unod\"; the nearest is \"undo\""));

@@ -21,19 +21,19 @@ std::vector<Edit> session_for(const Document& document) {
   const NodeIndex node = model.shell_nodes[model.shell_count() / 2].node[0];
   const Vec3& at = model.position(node);
   const double size = document.settings.target_size;
-  SelectRegion region{.at = Place(model.node_ids[node.value]), .angle = 30};
+  SelectRegion region{.at = NodeReference(model.node_ids[node.value]), .angle = 30};
   Lift lift;
   lift.distance = 0.4 * size;
   lift.shaping.grab = std::array<double, 3>{at.x(), at.y(), at.z()};
   Translate pull;
   pull.by = Vec3(0.1, 0.2, -0.3) * size;
-  pull.shaping.on = Where(region);
+  pull.shaping.on = TargetNodes(region);
   pull.shaping.max_move = 0.2 * size;
   Slide slide;
   slide.by = Vec3(2.1, 1.3, 0.7) * size;
-  slide.shaping.on = Where(region);
+  slide.shaping.on = TargetNodes(region);
   Rotate rotate{at - Vec3(0, 0, 5) * size, Vec3(1, 0.2, 0), 2, {}};
-  rotate.shaping.on = Where(region);
+  rotate.shaping.on = TargetNodes(region);
   rotate.shaping.symmetry = Symmetry{Vec3::Zero(), Vec3::UnitY()};
   return {Edit(region), Edit(lift),    Edit(Undo{}),
           Edit(Redo{}), Edit(Grow{2}), Edit(pull),

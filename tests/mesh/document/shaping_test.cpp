@@ -330,7 +330,7 @@ TEST(Shaping, what_makes_no_sense_is_refused_in_a_sentence) {
   EXPECT_THAT(refuse(changed(rotate, [&](Rotate& r) { r.shaping.max_move = nothing; })), HasSubstr("max_move"));
   EXPECT_THAT(refuse(changed(rotate,
                              [&](Rotate& r) {
-                               r.shaping.grab = Place(std::array<double, 3>{0, nothing, 0});
+                               r.shaping.grab = NodeReference(std::array<double, 3>{0, nothing, 0});
                              })),
               HasSubstr("the grab's place"));
   EXPECT_THAT(refuse(changed(rotate,
@@ -363,7 +363,7 @@ TEST(Shaping, what_makes_no_sense_is_refused_in_a_sentence) {
               HasSubstr("symmetry: the plane's point"));
   EXPECT_THAT(refuse(changed(rotate, [](Rotate& r) { r.shaping.on = "4711"; })), HasSubstr("no node 4711"));
   EXPECT_THAT(refuse(changed(rotate, [](Rotate& r) { r.shaping.on.reset(); })), HasSubstr("nothing is selected"));
-  EXPECT_THAT(refuse(changed(rotate, [](Rotate& r) { r.shaping.grab = Place(std::int64_t{900}); })),
+  EXPECT_THAT(refuse(changed(rotate, [](Rotate& r) { r.shaping.grab = NodeReference(std::int64_t{900}); })),
               HasSubstr("the grabbed node 900 isn't among"));
   Slide slide{Vec3(1, 0, 0), {}};
   slide.shaping.on = "900";
