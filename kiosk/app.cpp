@@ -58,7 +58,7 @@ Result<void> run_headless(const AppOptions& options, const StationOptions& what)
 }
 
 Result<void> run(const AppOptions& options) {
-  const Result<drivers::settings::Settings> settings = drivers::settings::read_settings(options.config);
+  const Result<drivers::settings::StationSettings> settings = drivers::settings::read_settings(options.config);
   if (!settings) return fail(settings.error());
   // A machine that no settings say anything of has an ordinary screen.
   const std::string profile_name = options.profile.value_or(settings->files.empty() ? "mono" : settings->display.profile);

@@ -28,7 +28,7 @@ using Time = std::chrono::steady_clock;
 /// How often the main thread reads the loop's events.
 constexpr std::chrono::milliseconds kPollPeriod{20};
 /// Min. time between two messages and log lines about a device that keeps changing; the state page shows every change.
-constexpr std::chrono::milliseconds kTellPause{500};
+constexpr std::chrono::milliseconds kReportPause{500};
 
 ipc::ServerLimits limits() {
   ipc::ServerLimits limits;
@@ -59,7 +59,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
   Impl(DaemonOptions wanted, StationPlan sound, ipc::DevicePage device_page)
       : options(std::move(wanted)), plan(std::move(sound)), page(std::move(device_page)) {}
 
-  struct Told {
+  struct Reported {
     ipc::DeviceInfo device;
     Time::time_point at;
   };
@@ -74,55 +74,55 @@ struct Daemon::Impl final : ipc::ServerHandler {
   bool picture_mono = true;  ///< as last sent to the loop
   std::optional<ipc::ClientId> holder;
   ipc::HoldMask hold;
-  std::deque<LoopCommand> untaken;  ///< commands that didn't fit into the loop's ring
+  std::deque<LoopCommand> pending_commands;  ///< commands that didn't fit into the loop's ring
   std::vector<ipc::DeviceInfo> devices;
-  std::map<std::string, Told> told;  ///< by role
-  std::string no_station;            ///< why no station runs; empty: one does
-  std::unique_ptr<Station> station;  // last: it ends before the page that it writes to
+  std::map<std::string, Reported> reported;  ///< by role
+  std::string no_station;                    ///< why no station runs; empty: one does
+  std::unique_ptr<Station> station;          // last: it ends before the page that it writes to
 
   // --- the station ---
 
   Result<void> start_station() {
     station.reset();
-    untaken.clear();
+    pending_commands.clear();
     Result<std::unique_ptr<Station>> started = Station::start(plan, page, memory_locked, end_stuck);
     if (!started) return fail(std::move(started.error()));
     station = std::move(*started);
     if (!station->refused().empty()) logging::warn("{}", station->refused());
-    if (!picture_mono) tell_loop(SetPictureMono{false});
-    if (holder) tell_loop(SetHold{hold.position_mm});
+    if (!picture_mono) send_to_loop(SetPictureMono{false});
+    if (holder) send_to_loop(SetHold{hold.position_mm});
     return {};
   }
 
-  void tell_loop(const LoopCommand& command) {
+  void send_to_loop(const LoopCommand& command) {
     // Only the newest command of each kind is kept, so that a client can't fill the memory.
-    std::erase_if(untaken, [&](const LoopCommand& older) { return older.index() == command.index(); });
-    untaken.push_back(command);
-    while (station && !untaken.empty() && station->tell(untaken.front())) untaken.pop_front();
+    std::erase_if(pending_commands, [&](const LoopCommand& older) { return older.index() == command.index(); });
+    pending_commands.push_back(command);
+    while (station && !pending_commands.empty() && station->send(pending_commands.front())) pending_commands.pop_front();
   }
 
   void poll_station() {
     if (!station) return;
-    while (!untaken.empty() && station->tell(untaken.front())) untaken.pop_front();
+    while (!pending_commands.empty() && station->send(pending_commands.front())) pending_commands.pop_front();
     devices = station->poll();
     for (const ipc::DeviceInfo& device : devices) {
       const Time::time_point now = Time::now();
       // Changes while a station starts aren't reported.
-      Told& last = told.try_emplace(device.role, Told{{}, now}).first->second;
-      if (last.device == device || now - last.at < kTellPause) continue;
+      Reported& last = reported.try_emplace(device.role, Reported{{}, now}).first->second;
+      if (last.device == device || now - last.at < kReportPause) continue;
       last = {device, now};
       log(device);
-      tell_all(ipc::DeviceChanged{device});
+      send_to_all(ipc::DeviceChanged{device});
     }
   }
 
   void picture_shown() {
-    if (std::exchange(picture_mono, showing_stereo.empty()) != picture_mono) tell_loop(SetPictureMono{picture_mono});
+    if (std::exchange(picture_mono, showing_stereo.empty()) != picture_mono) send_to_loop(SetPictureMono{picture_mono});
   }
 
   void end_hold() {
     holder.reset();
-    tell_loop(EndHold{});
+    send_to_loop(EndHold{});
   }
 
   // --- from the socket ---
@@ -203,7 +203,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
       return ipc::Failed{"", 0, "the mask is held by " + greeted[*holder] + " already: end that program's calibration first"};
     holder = client;
     hold = wanted;
-    tell_loop(SetHold{wanted.position_mm});
+    send_to_loop(SetHold{wanted.position_mm});
     return ipc::Done{};
   }
 
@@ -216,7 +216,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
   ipc::DeviceAnswer done(ipc::ClientId client, const ipc::Rearm&) {
     if (const auto failed = no_servo()) return *failed;
     logging::info("{} (client {}) rearms the prism servo", greeted[client], client);
-    tell_loop(AskRearm{});
+    send_to_loop(RequestRearm{});
     return ipc::Done{};
   }
 
@@ -227,7 +227,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
     plan = std::move(*fresh);
     logging::info("settings and the profile \"{}\" were read again{}", plan.profile.name, go_on ? "" : "; the devices are started anew");
     if (go_on) {
-      tell_loop(SetDisplay{plan.profile.optics, plan.eye_separation_mm()});
+      send_to_loop(SetDisplay{plan.profile.optics, plan.eye_separation_mm()});
       return ipc::Done{};
     }
     if (holder && no_servo()) holder.reset();
@@ -246,7 +246,7 @@ struct Daemon::Impl final : ipc::ServerHandler {
     server->send(client, ipc::encode_device_answer(number, answer));
   }
 
-  void tell_all(const ipc::DeviceEvent& event) {
+  void send_to_all(const ipc::DeviceEvent& event) {
     const std::string line = ipc::encode_device_event(event);
     // A copy: a send that cuts its client off changes the map.
     const std::map<ipc::ClientId, std::string> all = greeted;

@@ -31,7 +31,9 @@ std::string trouble_of(const PrismServoSettings& settings, const ServoStatus& st
     return (of_servo.empty() ? std::string("the motor has switched itself off: find out why") : of_servo) + ", " + kRearm;
   if (!of_servo.empty()) return of_servo;
   if (status.mask == MaskPhase::stuck)
-    return std::string("the mask doesn't go where it is told, so the motor was let go: look what blocks it or has come loose, ") + kRearm;
+    return std::string(
+               "the mask doesn't go where it is told, so the motor's torque was switched off: look what blocks it or has come loose, ") +
+           kRearm;
   return {};
 }
 

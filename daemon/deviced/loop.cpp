@@ -59,7 +59,7 @@ void DeviceLoop::tick(std::int64_t now_ns) {
   input.rearm = std::exchange(rearm_, false);
   mask_ = control_.step(input);
   page_.set_prism(mask_.state);
-  tell_changes(now_ns);
+  report_changes(now_ns);
 }
 
 void DeviceLoop::wind_down(std::int64_t now_ns) {
@@ -74,15 +74,15 @@ void DeviceLoop::wind_down(std::int64_t now_ns) {
 }
 
 void DeviceLoop::take_commands() {
-  while (const std::optional<LoopCommand> command = commands_.pop()) obey(*command);
+  while (const std::optional<LoopCommand> command = commands_.pop()) execute(*command);
 }
 
-void DeviceLoop::obey(const LoopCommand& command) {
+void DeviceLoop::execute(const LoopCommand& command) {
   std::visit(Overloaded{
                  [&](const SetPictureMono& shown) { picture_mono_ = shown.mono; },
                  [&](const SetHold& hold) { hold_mm_ = hold.position_mm; },
                  [&](const EndHold&) { hold_mm_.reset(); },
-                 [&](const AskRearm&) { rearm_ = true; },
+                 [&](const RequestRearm&) { rearm_ = true; },
                  [&](const SetDisplay& display) {
                    control_.set_optics(display.optics);
                    eyes_.eye_separation_mm = display.eye_separation_mm;
@@ -120,7 +120,7 @@ void DeviceLoop::poll_tracker(std::int64_t now_ns) {
   if (polled.status == PortStatus::gone) release_tracker();
 }
 
-EyesPhase DeviceLoop::judge_eyes(std::int64_t now_ns) {
+EyesPhase DeviceLoop::eyes_phase(std::int64_t now_ns) {
   if (ports_.tracker_line == nullptr && ports_.tracker_datagrams == nullptr) return EyesPhase::none;
   const Tracker* tracker = tracker_.tracker();
   if (tracker == nullptr) return EyesPhase::absent;
@@ -131,7 +131,7 @@ EyesPhase DeviceLoop::judge_eyes(std::int64_t now_ns) {
 }
 
 void DeviceLoop::publish_eyes(std::int64_t now_ns) {
-  const EyesPhase phase = judge_eyes(now_ns);
+  const EyesPhase phase = eyes_phase(now_ns);
   if (eyes_.phase == EyesPhase::tracking && phase != EyesPhase::tracking) ++eyes_.times_lost;
   const drivers::eye_tracker::HeadState& head = filter_.state();
   eyes_.time_ns = now_ns;
@@ -157,13 +157,13 @@ void DeviceLoop::tick_servo(std::int64_t now_ns, double goal_mm, bool powered) {
   servo_tick_ = PrismServo::Tick{};
 }
 
-void DeviceLoop::tell_changes(std::int64_t now_ns) {
+void DeviceLoop::report_changes(std::int64_t now_ns) {
   // An event that doesn't fit into the ring is sent by a later tick, because the state still differs from the reported one.
-  if (eyes_.phase != told_eyes_ && events_.push(EyesChanged{now_ns, eyes_.phase})) told_eyes_ = eyes_.phase;
+  if (eyes_.phase != reported_eyes_ && events_.push(EyesChanged{now_ns, eyes_.phase})) reported_eyes_ = eyes_.phase;
   const MaskPhase mask = mask_.state.phase;
-  if (mask != told_mask_ && events_.push(MaskChanged{now_ns, mask})) told_mask_ = mask;
+  if (mask != reported_mask_ && events_.push(MaskChanged{now_ns, mask})) reported_mask_ = mask;
   const ServoChanged servo{now_ns, servo_.has_value(), servo_tick_};
-  if (!same_servo(servo, told_servo_) && events_.push(servo)) told_servo_ = servo;
+  if (!same_servo(servo, reported_servo_) && events_.push(servo)) reported_servo_ = servo;
 }
 
 }  // namespace prismesh::deviced

@@ -44,12 +44,12 @@ struct SetHold {
   double position_mm = 0;
 };
 struct EndHold {};
-struct AskRearm {};
+struct RequestRearm {};
 struct SetDisplay {
   drivers::display::MaskOptics optics;
   double eye_separation_mm = drivers::display::kMeanEyeSeparationMm;
 };
-using LoopCommand = std::variant<SetPictureMono, SetHold, EndHold, AskRearm, SetDisplay>;
+using LoopCommand = std::variant<SetPictureMono, SetHold, EndHold, RequestRearm, SetDisplay>;
 
 // Events from the loop to the main thread: changes only, so that a fault is reported once.
 struct EyesChanged {
@@ -79,7 +79,7 @@ class DeviceLoop {
 
   // Called from one other thread.
   /// Returns false if the ring is full.
-  bool tell(const LoopCommand& command) { return commands_.push(command); }
+  bool send(const LoopCommand& command) { return commands_.push(command); }
   std::optional<LoopEvent> next_event() { return events_.pop(); }
 
  private:
@@ -87,15 +87,15 @@ class DeviceLoop {
   using Servo = drivers::prism_servo::dynamixel::Servo;
 
   void take_commands();
-  void obey(const LoopCommand& command);
+  void execute(const LoopCommand& command);
   Tracker* attached_tracker();
   void release_tracker();
   void poll_tracker(std::int64_t now_ns);
-  ipc::EyesPhase judge_eyes(std::int64_t now_ns);
+  ipc::EyesPhase eyes_phase(std::int64_t now_ns);
   void publish_eyes(std::int64_t now_ns);
   void tick_servo(std::int64_t now_ns, double goal_mm, bool powered);
   void publish_mask(std::int64_t now_ns);
-  void tell_changes(std::int64_t now_ns);
+  void report_changes(std::int64_t now_ns);
 
   LoopSettings settings_;
   LoopPorts ports_;
@@ -114,9 +114,9 @@ class DeviceLoop {
   std::optional<double> hold_mm_;
   bool rearm_ = false;
 
-  ipc::EyesPhase told_eyes_ = ipc::EyesPhase::none;
-  drivers::prism_servo::MaskPhase told_mask_ = drivers::prism_servo::MaskPhase::absent;
-  ServoChanged told_servo_;
+  ipc::EyesPhase reported_eyes_ = ipc::EyesPhase::none;
+  drivers::prism_servo::MaskPhase reported_mask_ = drivers::prism_servo::MaskPhase::absent;
+  ServoChanged reported_servo_;
 };
 
 }  // namespace prismesh::deviced

@@ -71,7 +71,7 @@ Result<std::unique_ptr<LoopThread>> LoopThread::start(DeviceLoop& loop, ipc::Dev
         "rtprio in /etc/security/limits.conf";
     status = made->create(false);
   }
-  if (status != 0) return fail("device loop", std::string("the system gives no thread: ") + std::strerror(status));
+  if (status != 0) return fail("device loop", std::string("no thread can be created: ") + std::strerror(status));
   return made;
 }
 
@@ -114,7 +114,7 @@ void LoopThread::run() {
     const std::int64_t began_ns = clock_.now_ns();
     const std::int64_t cpu_ns = thread_cpu_ns();
     loop_.tick(began_ns);
-    keep_account(due_ns, began_ns, thread_cpu_ns() - cpu_ns);
+    record_timing(due_ns, began_ns, thread_cpu_ns() - cpu_ns);
     ticks_.fetch_add(1, std::memory_order_relaxed);
     due_ns = next_due_ns(due_ns, clock_.now_ns());
   }
@@ -124,7 +124,7 @@ void LoopThread::run() {
   }
 }
 
-void LoopThread::keep_account(std::int64_t due_ns, std::int64_t began_ns, std::int64_t cpu_ns) {
+void LoopThread::record_timing(std::int64_t due_ns, std::int64_t began_ns, std::int64_t cpu_ns) {
   const std::int64_t late_ns = began_ns - due_ns;
   if (late_ns > kTickPeriodNs) ++health_.ticks_late;
   health_.worst_late_ns = std::max(health_.worst_late_ns, late_ns);

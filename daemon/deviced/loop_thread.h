@@ -43,7 +43,7 @@ class LoopThread {
   int create(bool realtime);
   static void* enter(void* self);
   void run();
-  void keep_account(std::int64_t due_ns, std::int64_t began_ns, std::int64_t cpu_ns);
+  void record_timing(std::int64_t due_ns, std::int64_t began_ns, std::int64_t cpu_ns);
 
   DeviceLoop& loop_;
   ipc::DevicePage& page_;

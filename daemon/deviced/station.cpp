@@ -49,7 +49,7 @@ bool StationPlan::same_devices(const StationPlan& other) const {
 }
 
 Result<StationPlan> read_plan(const std::optional<std::filesystem::path>& config) {
-  Result<drivers::settings::Settings> settings = drivers::settings::read_settings(config);
+  Result<drivers::settings::StationSettings> settings = drivers::settings::read_settings(config);
   if (!settings) return fail(std::move(settings.error()));
   Result<drivers::display::Profile> profile = drivers::display::find_profile(settings->display.profile);
   if (!profile) return fail(std::move(profile.error()));
@@ -141,7 +141,7 @@ struct Station::Impl {
     return {};
   }
 
-  void take_in(const LoopEvent& event) {
+  void apply(const LoopEvent& event) {
     if (const auto* changed = std::get_if<EyesChanged>(&event)) eyes = *changed;
     if (const auto* changed = std::get_if<MaskChanged>(&event)) servo.mask = changed->phase;
     if (const auto* changed = std::get_if<ServoChanged>(&event)) {
@@ -166,10 +166,10 @@ Result<std::unique_ptr<Station>> Station::start(const StationPlan& plan, ipc::De
   return std::unique_ptr<Station>(new Station(std::move(state)));
 }
 
-bool Station::tell(const LoopCommand& command) { return impl_->loop->tell(command); }
+bool Station::send(const LoopCommand& command) { return impl_->loop->send(command); }
 
 std::vector<ipc::DeviceInfo> Station::poll() {
-  while (const std::optional<LoopEvent> event = impl_->loop->next_event()) impl_->take_in(*event);
+  while (const std::optional<LoopEvent> event = impl_->loop->next_event()) impl_->apply(*event);
   const auto& settings = impl_->plan.settings;
   std::vector<ipc::DeviceInfo> all;
   if (impl_->plan.has_tracker()) all.push_back(tracker_info(settings.eye_tracker, impl_->tracker_status(), impl_->tracker_report()));

@@ -18,7 +18,7 @@ namespace prismesh::deviced {
 
 /// The checked settings of a station.
 struct StationPlan {
-  drivers::settings::Settings settings;
+  drivers::settings::StationSettings settings;
   drivers::display::Profile profile;
   drivers::prism_servo::dynamixel::ServoSettings servo;
 
@@ -48,7 +48,7 @@ class Station {
   Station& operator=(const Station&) = delete;
 
   // This and all that follows: called from one thread.
-  bool tell(const LoopCommand& command);
+  bool send(const LoopCommand& command);
   /// Reads the loop's events and returns the status of each device.
   std::vector<ipc::DeviceInfo> poll();
   const std::string& refused() const;  ///< as LoopThread::refused

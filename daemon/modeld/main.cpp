@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   prismesh::logging::start("modeld");
 
   const std::optional<std::filesystem::path> config = given.path("--config");
-  prismesh::Result<prismesh::drivers::settings::Settings> settings = prismesh::drivers::settings::read_settings(config);
+  prismesh::Result<prismesh::drivers::settings::StationSettings> settings = prismesh::drivers::settings::read_settings(config);
   if (!settings && config) {
     std::fprintf(stderr, "%s\n", settings.error().text().c_str());
     return 1;
@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   // An error in a device's settings must not prevent opening a deck.
   if (!settings) {
     prismesh::logging::warn("the settings are left aside: {}", settings.error().text());
-    settings = prismesh::drivers::settings::Settings{};
+    settings = prismesh::drivers::settings::StationSettings{};
   }
   prismesh::modeld::DaemonOptions options;
   options.runtime_directory = prismesh::ipc::runtime_directory(given.path("--runtime-dir"));

@@ -44,7 +44,8 @@ std::string serial_number_of(Block block) {
   return number == 0 ? std::string() : std::to_string(number);
 }
 
-/// Up to 13 characters, ended by a line feed, filled with blanks. What can't be printed is left out: the text goes onto panels.
+/// Decodes up to 13 characters, ended by a line feed and padded with blanks. Skips unprintable characters, because the kiosk's panels show
+/// this text.
 std::string text_of(Block block, std::size_t start) {
   std::string text;
   for (std::size_t i = start; i < start + 13 && at(block, i) != '\n'; ++i)
@@ -59,7 +60,7 @@ void read_timing(Block block, std::size_t start, Edid& edid) {
   edid.native_height = static_cast<int>(at(block, start + 5) | (at(block, start + 7) & 0xF0) << 4);
   const unsigned width = at(block, start + 12) | (at(block, start + 14) & 0xF0) << 4;
   const unsigned height = at(block, start + 13) | (at(block, start + 14) & 0x0F) << 8;
-  // Some monitors put an aspect ratio here; a picture isn't 16 x 9 mm small.
+  // Some monitors store an aspect ratio here; no picture is as small as 16 x 9 mm.
   if (width > 50 && height > 50) {
     edid.width_mm = width;
     edid.height_mm = height;
@@ -70,7 +71,7 @@ void read_descriptors(Block block, Edid& edid) {
   constexpr std::size_t kFirst = 54, kLast = 108, kBytes = 18;
   for (std::size_t start = kFirst; start <= kLast; start += kBytes) {
     const bool timing = at(block, start) != 0 || at(block, start + 1) != 0;
-    if (timing && start == kFirst) read_timing(block, start, edid);  // the preferred one
+    if (timing && start == kFirst) read_timing(block, start, edid);  // the preferred timing
     if (timing) continue;
     if (at(block, start + 3) == kNameDescriptor)
       if (std::string name = text_of(block, start + 5); !name.empty()) edid.identity.model = std::move(name);
@@ -82,7 +83,7 @@ void read_descriptors(Block block, Edid& edid) {
 void read_features(Block block, Edid& edid) {
   edid.digital = (at(block, 20) & 0x80) != 0;
   const unsigned version = at(block, 18) * 256 + at(block, 19);
-  if (edid.digital && version >= 0x0104) {  // before 1.4 these bits meant something else
+  if (edid.digital && version >= 0x0104) {  // before version 1.4 these bits had a different meaning
     edid.takes_ycbcr_444 = (at(block, 24) & 0x08) != 0;
     edid.takes_ycbcr_422 = (at(block, 24) & 0x10) != 0;
   }
@@ -108,7 +109,7 @@ Result<Edid> decode_edid(std::span<const std::byte> bytes) {
   edid.identity = {maker_of(first), product_of(first), serial_number_of(first)};
   edid.width_mm = 10.0 * at(first, 21);
   edid.height_mm = 10.0 * at(first, 22);
-  if (edid.width_mm == 0 || edid.height_mm == 0) edid.width_mm = edid.height_mm = 0;  // then it is an aspect ratio
+  if (edid.width_mm == 0 || edid.height_mm == 0) edid.width_mm = edid.height_mm = 0;  // an aspect ratio is stored instead of a size
   read_features(first, edid);
   read_descriptors(first, edid);
   for (std::size_t start = kBlockBytes; start + kBlockBytes <= bytes.size(); start += kBlockBytes) {

@@ -1,4 +1,5 @@
-// The two eyes before the screen. Millimetres; the origin is the screen's centre, x to the right, y up, z toward the viewer.
+// Positions of the two eyes before the screen, in millimetres. The origin is the screen's centre; x to the right, y up, z toward the
+// viewer.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,7 @@ struct EyePair {
 
 inline constexpr double kMeanEyeSeparationMm = 63;
 
-/// The eyes from the point between them. `toward_right`: unit vector from the left eye to the right one.
+/// Returns the eyes for the point between them. `toward_right`: unit vector from the left eye to the right one.
 inline EyePair eyes_from(const Eigen::Vector3d& between_mm, double separation_mm,
                          const Eigen::Vector3d& toward_right = Eigen::Vector3d::UnitX()) {
   const Eigen::Vector3d half = 0.5 * separation_mm * toward_right;

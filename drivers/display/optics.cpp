@@ -8,23 +8,23 @@ namespace prismesh::drivers::display {
 
 namespace {
 
-constexpr double kNearestEyeMm = 20;
-constexpr double kFarthestMm = 1e5;
+constexpr double kMinEyeDistanceMm = 20;
+constexpr double kMaxCoordinateMm = 1e5;
 
-/// An eye that the formulas can stand.
-Eigen::Vector3d tame(const Eigen::Vector3d& eye_mm) {
-  return {std::clamp(eye_mm.x(), -kFarthestMm, kFarthestMm), std::clamp(eye_mm.y(), -kFarthestMm, kFarthestMm),
-          std::clamp(eye_mm.z(), kNearestEyeMm, kFarthestMm)};
+/// Limits an eye position to the range in which the formulas are finite.
+Eigen::Vector3d clamped_eye(const Eigen::Vector3d& eye_mm) {
+  return {std::clamp(eye_mm.x(), -kMaxCoordinateMm, kMaxCoordinateMm), std::clamp(eye_mm.y(), -kMaxCoordinateMm, kMaxCoordinateMm),
+          std::clamp(eye_mm.z(), kMinEyeDistanceMm, kMaxCoordinateMm)};
 }
 
 double designed_gap_mm(const MaskOptics& optics) { return optics.pixel_pitch_mm * optics.design_distance_mm / optics.design_separation_mm; }
 
-/// Where the ray from an eye at distance D over the mask to a place on the panel `reach` aside of it crosses the mask: `r` aside. Snell's
-/// law: r + g tan(asin(sin / n)) = reach, with glass of thickness g = n g' under the mask.
+/// Returns where the ray from an eye at `distance` from the mask to a panel position at lateral offset `reach` crosses the mask, as lateral
+/// offset r. Snell's law: r + g tan(asin(sin / n)) = reach, with glass of thickness g = n g' under the mask.
 double crossing_mm(double distance, double reach, double air_gap, double index) {
   const double glass = air_gap * index, bending = index * index - 1, straight = index * index * distance * distance;
-  double r = reach / (1 + air_gap / distance);  // exact without refraction; else on the near side of the root
-  // The left side rises and bends down, so that Newton's steps come nearer from one side only.
+  double r = reach / (1 + air_gap / distance);  // exact without refraction; otherwise on the near side of the root
+  // The left side is increasing and concave, so Newton's steps approach the root from one side.
   constexpr int kSteps = 12;
   for (int step = 0; step < kSteps; ++step) {
     const double square = straight + bending * r * r;
@@ -36,7 +36,7 @@ double crossing_mm(double distance, double reach, double air_gap, double index) 
   return r;
 }
 
-/// What is subtracted from a place on the mask to count its elements from.
+/// Returns the mask coordinate of element 0.
 double element_zero_mm(const MaskOptics& optics, double mask_mm) {
   const double reference = optics.reference_mm() * optics.design_distance_mm / (optics.design_distance_mm + designed_gap_mm(optics));
   return mask_mm + optics.zero_mm + reference;
@@ -56,15 +56,16 @@ double MaskOptics::reference_mm() const {
 }
 
 double mask_position_mm(const MaskOptics& optics, const Eigen::Vector3d& between_mm) {
-  const Eigen::Vector3d head = tame(between_mm);
+  const Eigen::Vector3d head = clamped_eye(between_mm);
   const double gap = optics.air_gap_mm();
   return (head.x() - optics.lean * head.y()) * gap / (head.z() + gap) - optics.zero_mm;
 }
 
 double window_number(const MaskOptics& optics, const Eigen::Vector3d& eye_mm, double mask_mm, double u_mm, double v_mm) {
-  const Eigen::Vector3d eye = tame(eye_mm);
-  const double du = std::clamp(u_mm, -kFarthestMm, kFarthestMm) - eye.x(), dv = std::clamp(v_mm, -kFarthestMm, kFarthestMm) - eye.y();
-  const double reach = std::hypot(du, dv);  // eye, element and place lie in one upright plane
+  const Eigen::Vector3d eye = clamped_eye(eye_mm);
+  const double du = std::clamp(u_mm, -kMaxCoordinateMm, kMaxCoordinateMm) - eye.x(),
+               dv = std::clamp(v_mm, -kMaxCoordinateMm, kMaxCoordinateMm) - eye.y();
+  const double reach = std::hypot(du, dv);  // eye, element and panel position lie in one plane perpendicular to the panel
   const double share = reach > 0 ? crossing_mm(eye.z(), reach, optics.air_gap_mm(), optics.refractive_index) / reach : 0;
   const double across = eye.x() + share * du - optics.lean * (eye.y() + share * dv);
   return (across - element_zero_mm(optics, mask_mm)) / optics.mask_pitch_mm();

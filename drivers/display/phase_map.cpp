@@ -7,7 +7,7 @@ namespace prismesh::drivers::display {
 
 namespace {
 
-/// Fills a map from `number(eye, x, y)`, pixels from the upper left corner.
+/// Fills a map from `number(eye, x, y)`, with x and y in pixels from the upper left corner.
 template <class Number>
 PhaseMap fill(int width, int height, const Number& number) {
   PhaseMap map;
@@ -15,19 +15,19 @@ PhaseMap fill(int width, int height, const Number& number) {
   map.rows = (height + PhaseMap::kStep - 1) / PhaseMap::kStep + 1;
   const std::size_t nodes = static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.rows);
   std::vector<std::array<double, 2>> exact(nodes);
-  std::array<double, 2> least{}, most{};
+  std::array<double, 2> min_number{}, max_number{};
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto column = static_cast<int>(i) % map.columns, row = static_cast<int>(i) / map.columns;
     for (std::size_t eye = 0; eye < 2; ++eye) {
       const double value = exact[i][eye] = number(eye, column * PhaseMap::kStep, height - row * PhaseMap::kStep);
-      least[eye] = i == 0 ? value : std::min(least[eye], value);
-      most[eye] = i == 0 ? value : std::max(most[eye], value);
+      min_number[eye] = i == 0 ? value : std::min(min_number[eye], value);
+      max_number[eye] = i == 0 ? value : std::max(max_number[eye], value);
     }
   }
-  // Small numbers, so that single precision keeps their fractions.
+  // Keeps the numbers small, so that single precision preserves their fractions.
   for (std::size_t eye = 0; eye < 2; ++eye) {
-    map.first[eye] = static_cast<int>(std::floor(least[eye]));
-    map.windows[eye] = static_cast<int>(std::ceil(most[eye])) - map.first[eye] + 1;
+    map.first[eye] = static_cast<int>(std::floor(min_number[eye]));
+    map.windows[eye] = static_cast<int>(std::ceil(max_number[eye])) - map.first[eye] + 1;
   }
   map.numbers.resize(nodes);
   for (std::size_t i = 0; i < nodes; ++i)

@@ -15,7 +15,7 @@ std::string known_profiles() {
 }  // namespace
 
 std::span<const Profile> built_in_profiles() {
-  // The lenticular's elements lean by one pixel in six, which is usual: it spreads the black grid between the pixels over both eyes.
+  // The lenticular's elements lean by one pixel in six, as usual: this spreads the black grid between the pixels over both eyes.
   static const std::array<Profile, 11> kProfiles{
       {{.name = "prism-mask", .weave = Weave::mask, .subpixels = Subpixels::rgb, .mask_moves = true},
        {.name = "prism-mask-columns", .weave = Weave::columns, .mask_moves = true},
@@ -44,7 +44,7 @@ Result<Profile> find_profile(const std::string& name_or_path) {
 
 Result<void> write_profile(const std::filesystem::path& path, const Profile& profile) {
   const std::string text = profile_text(profile);
-  // What can't be read again mustn't be written.
+  // A profile that can't be read again must not be written.
   const Result<Profile> again = parse_profile(text, path.string());
   if (!again) return fail(again.error());
   const PendingFile file{path, {text}};

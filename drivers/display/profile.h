@@ -1,5 +1,5 @@
-// Display profiles: how two eyes' pictures become one picture for a kind of display, and what was calibrated of one display. Plain data,
-// kept as TOML files (docs/display.md lists the keys).
+// Display profiles: how a kind of display combines two eyes' pictures into one, and the calibration of one display. Plain data, stored as
+// TOML files (docs/display.md lists the keys).
 #pragma once
 
 #include <array>
@@ -18,64 +18,66 @@
 namespace prismesh::drivers::display {
 
 enum class Weave : unsigned char {
-  mask,          ///< each (sub)pixel shows the eye that the mask sends it to, wherever the eyes are: prisms, lenses, slits; may lean
-  columns,       ///< half-width images dealt out to alternate columns that never change: the mask's shift alone
-  stencil,       ///< full-size images of which each eye gets every other column, the rest dropped: for comparison, it tears thin lines
-  rows,          ///< half-height images dealt out to alternate rows: monitors for polarised glasses
-  side_by_side,  ///< half-width images beside each other
-  top_bottom,    ///< half-height images, the left one on top
-  anaglyph,      ///< red from the left, green and blue from the right
+  mask,     ///< each (sub)pixel shows the eye that the mask sends it to, for any eye positions: prisms, lenses, slits; the mask may lean
+  columns,  ///< half-width images in alternate columns that never change; only the mask moves
+  stencil,  ///< full-size images; each eye keeps every second column of its own: for comparison, thin lines break up
+  rows,     ///< half-height images in alternate rows, for monitors with polarised glasses
+  side_by_side,  ///< half-width images next to each other
+  top_bottom,    ///< half-height images, the left eye's on top
+  anaglyph,      ///< red from the left eye, green and blue from the right one
   one_eye,       ///< the picture of one eye, full size
-  centre,        ///< the picture from between the eyes, full size: an ordinary screen
+  centre,        ///< the picture from the point between the eyes, full size, for an ordinary screen
 };
 
-/// Order of a pixel's colours from left to right, where a mask is fine enough to tell them apart.
+/// Order of a pixel's colours from left to right, for a mask that is fine enough to separate them.
 enum class Subpixels : unsigned char { none, rgb, bgr };
 
-/// The monitor that a profile was calibrated for; empty texts and zeros: any.
+/// The monitor that a profile was calibrated for; empty texts and zeros match any monitor.
 struct Monitor {
-  std::string name;                ///< as the monitor says it itself (EDID)
-  std::string serial;              ///< likewise
-  std::array<int, 2> pixels{0, 0}; /**< columns and rows of the panel */
+  std::string name;                 ///< as in the monitor's EDID
+  std::string serial;               ///< as in the monitor's EDID
+  std::array<int, 2> pixels{0, 0};  ///< columns and rows of the panel
   bool operator==(const Monitor&) const = default;
 };
 
 struct Profile {
   std::string name;
   Weave weave = Weave::mask;
-  Eye eye = Eye::left;  ///< for one_eye: which; else the eye that the pointer aims with
-  bool swap_eyes =
-      false;  ///< exchanges the eyes' places on the panel: even columns or rows (0, 2, ..), left or upper half, red are the right's
-  Subpixels subpixels = Subpixels::none;  ///< weave mask only
-  bool mask_moves = false;                ///< a servo shifts the mask; false: it stands at its zero
+  Eye eye = Eye::left;  ///< the eye that one_eye shows; for other weaves, the eye that the pointer aims with
+  /// Exchanges the eyes' parts of the panel: the right eye gets even columns or rows (0, 2, ..), the left or upper half, red.
+  bool swap_eyes = false;
+  Subpixels subpixels = Subpixels::none;  ///< for weave mask only
+  bool mask_moves = false;                ///< a servo shifts the mask; false: the mask stays at its zero
   double gamma = 2.2;                     ///< of the panel: light = value ^ gamma
-  std::array<double, 2> crosstalk{0, 0};  ///< share of the other eye's light that the left, the right eye sees; weaves that share the panel
-  std::optional<double> eye_separation_mm{};  ///< measured with this viewer; goes before the tracker's
+  /// Share of the other eye's light that the left and the right eye see; for weaves in which both eyes share the panel.
+  std::array<double, 2> crosstalk{0, 0};
+  std::optional<double> eye_separation_mm{};  ///< measured for this viewer; overrides the tracker's value
   Monitor monitor{};
-  MaskOptics optics{};  ///< pixel_pitch_mm counts for every weave, the rest for masks
+  MaskOptics optics{};  ///< all weaves use pixel_pitch_mm; the other values are for masks
 
   bool operator==(const Profile&) const = default;
   bool stereo() const { return weave != Weave::one_eye && weave != Weave::centre; }
-  /// Neighbouring pixels belong to different eyes: such a picture is right only pixel by pixel.
+  /// Returns whether neighbouring pixels belong to different eyes, so that the picture must be shown pixel by pixel, without scaling.
   bool interlaced() const { return has_mask() || weave == Weave::rows; }
   bool has_mask() const { return weave == Weave::mask || weave == Weave::columns || weave == Weave::stencil; }
 };
 
-/// prism-mask, prism-mask-columns, prism-mask-stencil, lenticular, row-interlaced, side-by-side, top-bottom, anaglyph, mono, mono-left,
-/// mono-right.
+/// Returns prism-mask, prism-mask-columns, prism-mask-stencil, lenticular, row-interlaced, side-by-side, top-bottom, anaglyph, mono,
+/// mono-left and mono-right.
 std::span<const Profile> built_in_profiles();
-/// A built-in profile by name, or else a profile file. Errors: neither (lists the names), not readable, see parse_profile.
+/// Returns a built-in profile by name, or else reads a profile file. Errors: neither exists (lists the built-in names); the file can't be
+/// read; see parse_profile.
 Result<Profile> find_profile(const std::string& name_or_path);
 
-/// A profile from TOML text; keys that lack keep their defaults, the name is then the file's. `file` stands in errors: text that isn't
-/// TOML, an unknown key (names the nearest known one), a value of the wrong kind or out of its range: each with its line.
+/// Parses a profile from TOML text. Missing keys keep their defaults; a missing name becomes the file's. `file` is named in errors. Errors,
+/// each with its line: text that isn't TOML, an unknown key (with the nearest known one), a value of the wrong type or out of range.
 Result<Profile> parse_profile(std::string_view text, const std::string& file);
-/// TOML text that parse_profile turns into the same profile, with all keys.
+/// Returns TOML text with all keys, which parse_profile turns into the same profile.
 std::string profile_text(const Profile& profile);
-/// Writes a profile file, whole or not at all. Errors: a value that reading would refuse (says which), the disk's.
+/// Writes a profile file atomically. Errors: a value that parse_profile would refuse (says which one); the disk's errors.
 Result<void> write_profile(const std::filesystem::path& path, const Profile& profile);
 
-/// The screen's size in mm for a display of so many pixels.
+/// Returns the size in mm of a screen of `width` x `height` pixels.
 Eigen::Vector2d screen_size_mm(const Profile& profile, int width, int height);
 
 }  // namespace prismesh::drivers::display

@@ -1,4 +1,4 @@
-// Profiles as TOML: one table of keys that reading and writing both go by.
+// Reads and writes profiles as TOML, from one table of keys for both directions.
 #include <algorithm>
 #include <charconv>
 #include <functional>
@@ -37,21 +37,27 @@ std::string number_text(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// One key of the file. `read` returns what the value must be if it isn't; `write` the value's text, empty to leave the key out.
+/// One key of the file. `read` returns a description of the required value, or nothing if the value is valid. `write` returns the value's
+/// text; empty: the key is left out.
 struct Key {
-  std::string_view section;  ///< empty: the file's own
+  std::string_view section;  ///< empty: before the first section
   std::string_view name;
   std::string_view comment;
   std::function<std::string(const toml::node&, Profile&)> read;
   std::function<std::string(const Profile&)> write;
 };
 
+struct Range {
+  double min, max;
+};
+
 template <class Field>
-Key number(std::string_view section, std::string_view name, double low, double high, std::string_view comment, Field field) {
+Key number(std::string_view section, std::string_view name, Range range, std::string_view comment, Field field) {
   return {section, name, comment,
           [=](const toml::node& node, Profile& profile) -> std::string {
             const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-            if (!value || !(*value >= low && *value <= high)) return "a number from " + number_text(low) + " to " + number_text(high);
+            if (!value || !(*value >= range.min && *value <= range.max))
+              return "a number from " + number_text(range.min) + " to " + number_text(range.max);
             field(profile) = *value;
             return {};
           },
@@ -142,32 +148,32 @@ const std::vector<Key>& keys() {
           "subpixels", "order of a pixel's colours, where the mask tells them apart", subpixel_names(),
           [](auto& p) -> auto& { return p.subpixels; }),
       number(
-          "", "pixel_pitch_mm", 0.01, 10, "", [](auto& p) -> auto& { return p.optics.pixel_pitch_mm; }),
+          "", "pixel_pitch_mm", {0.01, 10}, "", [](auto& p) -> auto& { return p.optics.pixel_pitch_mm; }),
       number(
-          "", "gamma", 1, 4, "light = value ^ gamma", [](auto& p) -> auto& { return p.gamma; }),
+          "", "gamma", {1, 4}, "light = value ^ gamma", [](auto& p) -> auto& { return p.gamma; }),
       eye_separation(),
       flag(
           "mask", "moves", "a servo shifts it", [](auto& p) -> auto& { return p.mask_moves; }),
       number(
-          "mask", "design_distance_mm", 100, 20000, "", [](auto& p) -> auto& { return p.optics.design_distance_mm; }),
+          "mask", "design_distance_mm", {100, 20000}, "", [](auto& p) -> auto& { return p.optics.design_distance_mm; }),
       number(
-          "mask", "design_separation_mm", 40, 90, "of the eyes", [](auto& p) -> auto& { return p.optics.design_separation_mm; }),
+          "mask", "design_separation_mm", {40, 90}, "of the eyes", [](auto& p) -> auto& { return p.optics.design_separation_mm; }),
       number(
-          "mask", "refractive_index", 1, 3, "of what lies between panel and mask",
+          "mask", "refractive_index", {1, 3}, "of what lies between panel and mask",
           [](auto& p) -> auto& { return p.optics.refractive_index; }),
       number(
-          "mask", "lean", -2, 2, "dx/dy of the elements", [](auto& p) -> auto& { return p.optics.lean; }),
+          "mask", "lean", {-2, 2}, "dx/dy of the elements", [](auto& p) -> auto& { return p.optics.lean; }),
       number(
-          "mask", "zero_mm", -100, 100, "where it stands when the servo says 0", [](auto& p) -> auto& { return p.optics.zero_mm; }),
+          "mask", "zero_mm", {-100, 100}, "where it stands when the servo says 0", [](auto& p) -> auto& { return p.optics.zero_mm; }),
       number(
-          "mask", "pitch_scale", 0.2, 10, "real pitch over the computed one", [](auto& p) -> auto& { return p.optics.pitch_scale; }),
+          "mask", "pitch_scale", {0.2, 10}, "real pitch over the computed one", [](auto& p) -> auto& { return p.optics.pitch_scale; }),
       number(
-          "mask", "gap_scale", 0.1, 10, "real gap over the computed one", [](auto& p) -> auto& { return p.optics.gap_scale; }),
+          "mask", "gap_scale", {0.1, 10}, "real gap over the computed one", [](auto& p) -> auto& { return p.optics.gap_scale; }),
       number(
-          "crosstalk", "left", 0, 0.5, "share of the right eye's light that the left one sees",
+          "crosstalk", "left", {0, 0.5}, "share of the right eye's light that the left one sees",
           [](auto& p) -> auto& { return p.crosstalk[0]; }),
       number(
-          "crosstalk", "right", 0, 0.5, "and the other way round", [](auto& p) -> auto& { return p.crosstalk[1]; }),
+          "crosstalk", "right", {0, 0.5}, "and the other way round", [](auto& p) -> auto& { return p.crosstalk[1]; }),
       text(
           "monitor", "name", "as the monitor says it; empty: any", [](auto& p) -> auto& { return p.monitor.name; }),
       text(

@@ -9,17 +9,17 @@ namespace prismesh::drivers::display {
 
 namespace {
 
-/// What a unit (a pixel, or a third of one) shows: an eye and the number of its window.
+/// The window that a unit (a pixel, or a third of one) shows: its eye and number.
 struct Owner {
   int eye = 0;
   int window = 0;
   bool operator==(const Owner&) const = default;
 };
 
-/// One line of units across the panel, at a height.
-struct Line {
-  double per_pixel = 1;                        ///< units
-  std::vector<std::array<double, 2>> numbers;  ///< of each eye in a unit's middle
+/// One line of units across the panel, at one height.
+struct PanelLine {
+  double per_pixel = 1;                        ///< number of units
+  std::vector<std::array<double, 2>> numbers;  ///< each eye's number in the middle of a unit
   std::vector<Owner> owners;
 };
 
@@ -29,14 +29,14 @@ Owner nearest_owner(const std::array<double, 2>& numbers) {
   return {eye, static_cast<int>(std::lround(numbers[static_cast<std::size_t>(eye)]))};
 }
 
-/// The window that a column shows for good: left even, right odd, counted as at the design place.
+/// Returns the window that a column always shows: even columns left, odd columns right, numbered as at the design position.
 Owner fixed_owner(int column, int panel_columns) {
   const int from_reference = column - 2 * ((panel_columns + 1) / 4);
   return column % 2 == 0 ? Owner{0, from_reference / 2} : Owner{1, (from_reference + 1) / 2};
 }
 
-Line read_line(const PhaseMap& map, const PanelArea& panel, double y, Composing composing) {
-  Line line;
+PanelLine read_line(const PhaseMap& map, const PanelArea& panel, double y, Composing composing) {
+  PanelLine line;
   line.per_pixel = composing == Composing::subpixels ? 3 : 1;
   const auto units = static_cast<std::size_t>(panel.width * line.per_pixel);
   line.numbers.resize(units);
@@ -50,10 +50,10 @@ Line read_line(const PhaseMap& map, const PanelArea& panel, double y, Composing 
   return line;
 }
 
-/// Units from the window's middle (where its number is `window`, between units i and i + 1) to the nearest light that isn't its own; less
-/// than zero: the middle itself shows other light, its own is so far away.
-double clearance(const Line& line, std::size_t i, double between, const Owner& own) {
-  const double middle = static_cast<double>(i) + 0.5 + between;  // counted in units from the left edge
+/// Returns the distance, in units, from the window's middle (where its number is `window`, between units i and i + 1) to the nearest light
+/// that isn't its own. Negative: the middle itself shows other light, and this is the distance to the window's own light.
+double clearance(const PanelLine& line, std::size_t i, double between, const Owner& own) {
+  const double middle = static_cast<double>(i) + 0.5 + between;  // in units from the left edge
   const auto units = static_cast<std::int64_t>(line.owners.size());
   const auto is_own = [&](std::int64_t unit) { return unit >= 0 && unit < units && line.owners[static_cast<std::size_t>(unit)] == own; };
   const auto at = static_cast<std::int64_t>(std::floor(middle));
@@ -64,7 +64,7 @@ double clearance(const Line& line, std::size_t i, double between, const Owner& o
     while (is_own(right + 1)) ++right;
     return std::min(middle - static_cast<double>(left), static_cast<double>(right + 1) - middle);
   }
-  double away = 0.5 * line.per_pixel;  // if its own light is nowhere
+  double away = 0.5 * line.per_pixel;  // value if the window has no light at all
   bool found = false;
   for (std::int64_t unit = at - reach; unit <= at + reach; ++unit)
     if (is_own(unit)) {
@@ -75,9 +75,9 @@ double clearance(const Line& line, std::size_t i, double between, const Owner& o
   return -away;
 }
 
-double worst_on(const Line& line) {
+double worst_on(const PanelLine& line) {
   double worst = 0;
-  const auto margin = static_cast<std::size_t>(2 * line.per_pixel);  // windows that the panel cuts off
+  const auto margin = static_cast<std::size_t>(2 * line.per_pixel);  // skips the windows that the panel's edge cuts off
   for (std::size_t eye = 0; eye < 2; ++eye)
     for (std::size_t i = margin; i + 1 + margin < line.numbers.size(); ++i) {
       const double here = line.numbers[i][eye], next = line.numbers[i + 1][eye];
@@ -91,27 +91,24 @@ double worst_on(const Line& line) {
 
 }  // namespace
 
-double worst_phase_error(const MaskOptics& optics, const Eigen::Vector3d& head_mm, double separation_mm, const PanelArea& panel,
-                         Composing composing) {
-  MaskOptics placed = optics;
-  placed.panel_columns = panel.panel_columns;
-  const PhaseMap map = phase_map(placed, eyes_from(head_mm, separation_mm), mask_position_mm(placed, head_mm), panel);
+double worst_phase_error(const MaskDisplay& display, const Eigen::Vector3d& head_mm) {
+  const PanelArea& panel = display.panel;
+  MaskOptics optics = display.optics;
+  optics.panel_columns = panel.panel_columns;
+  const PhaseMap map = phase_map(optics, eyes_from(head_mm, display.eye_separation_mm), mask_position_mm(optics, head_mm), panel);
   double worst = 0;
   for (const double y : {0.0, 0.5 * panel.height, 1.0 * panel.height})
-    worst = std::max(worst, worst_on(read_line(map, panel, y, composing)));
+    worst = std::max(worst, worst_on(read_line(map, panel, y, display.composing)));
   return worst;
 }
 
-std::optional<DepthSpan> working_depths(const MaskOptics& optics, double head_x_mm, double separation_mm, const PanelArea& panel,
-                                        Composing composing, double limit) {
-  constexpr double kStepMm = 1, kNearestMm = 200, kFarthestHeadMm = 2000;
-  const auto good = [&](double distance) {
-    return worst_phase_error(optics, {head_x_mm, 0, distance}, separation_mm, panel, composing) <= limit;
-  };
-  DepthSpan span{optics.design_distance_mm, optics.design_distance_mm};
-  if (!good(span.nearest_mm)) return std::nullopt;
-  while (span.nearest_mm - kStepMm >= kNearestMm && good(span.nearest_mm - kStepMm)) span.nearest_mm -= kStepMm;
-  while (span.farthest_mm + kStepMm <= kFarthestHeadMm && good(span.farthest_mm + kStepMm)) span.farthest_mm += kStepMm;
+std::optional<DepthSpan> working_depths(const MaskDisplay& display, double head_x_mm, double limit_px) {
+  constexpr double kStepMm = 1, kMinHeadMm = 200, kMaxHeadMm = 2000;
+  const auto good = [&](double distance) { return worst_phase_error(display, {head_x_mm, 0, distance}) <= limit_px; };
+  DepthSpan span{display.optics.design_distance_mm, display.optics.design_distance_mm};
+  if (!good(span.min_mm)) return std::nullopt;
+  while (span.min_mm - kStepMm >= kMinHeadMm && good(span.min_mm - kStepMm)) span.min_mm -= kStepMm;
+  while (span.max_mm + kStepMm <= kMaxHeadMm && good(span.max_mm + kStepMm)) span.max_mm += kStepMm;
   return span;
 }
 

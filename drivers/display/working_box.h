@@ -1,4 +1,5 @@
-// Where a head may be so that each eye sees its own picture all over the panel: what a mask, and a way of composing for it, can do.
+// Computes the head positions from which each eye sees its own picture on the whole panel, for a mask display and a way of composing
+// pictures.
 #pragma once
 
 #include <optional>
@@ -8,24 +9,30 @@
 namespace prismesh::drivers::display {
 
 enum class Composing : unsigned char {
-  fixed_columns,  ///< alternate columns never change, the mask's shift alone follows the head
-  pixels,         ///< each pixel shows the eye whose window it is nearest to
-  subpixels,      ///< each third of a pixel does
+  fixed_columns,  ///< alternate columns never change; only the mask follows the head
+  pixels,         ///< each pixel shows the eye with the nearest window
+  subpixels,      ///< each third of a pixel shows the eye with the nearest window
 };
 
-/// Worst phase error of both eyes' windows over the panel, in pixels: by how much the light nearest to a window's middle that isn't the
-/// window's own comes nearer than half a pixel. For a pixel that shows one window that is its distance from the window's middle; at 0.5
-/// an eye looks at the border between its own light and another's, beyond it at the wrong light; a window that got no light counts as 1.
-/// The mask stands where the law for its shift puts it. `head_mm`: between the eyes, from the panel's centre.
-double worst_phase_error(const MaskOptics& optics, const Eigen::Vector3d& head_mm, double separation_mm, const PanelArea& panel,
-                         Composing composing);
+/// A mask display and how pictures are composed for it.
+struct MaskDisplay {
+  MaskOptics optics{};  ///< `panel_columns` is taken from `panel`
+  PanelArea panel{};
+  Composing composing = Composing::subpixels;
+  double eye_separation_mm = kMeanEyeSeparationMm;  ///< of the viewer
+};
 
-/// Nearest and farthest distance around the design distance at which the worst phase error stays within `limit` pixels, to 1 mm, 2000 mm
-/// at most; empty if it doesn't even there.
+/// Returns the worst phase error of both eyes' windows on the panel, in pixels: half a pixel minus the distance from a window's middle to
+/// the nearest light of another window. For a pixel that shows one window this is the pixel's distance from the window's middle. At 0.5 an
+/// eye sees the border between its own light and another's, above 0.5 the wrong light. A window without light counts as 1. The mask is at
+/// its ideal position (mask_position_mm). `head_mm`: the point between the eyes, from the panel's centre.
+double worst_phase_error(const MaskDisplay& display, const Eigen::Vector3d& head_mm);
+
+/// Min. and max. distance around the design distance at which the worst phase error is within `limit_px`, in steps of 1 mm, up to 2000 mm.
+/// Empty if the error exceeds the limit at the design distance.
 struct DepthSpan {
-  double nearest_mm = 0, farthest_mm = 0;
+  double min_mm = 0, max_mm = 0;
 };
-std::optional<DepthSpan> working_depths(const MaskOptics& optics, double head_x_mm, double separation_mm, const PanelArea& panel,
-                                        Composing composing, double limit);
+std::optional<DepthSpan> working_depths(const MaskDisplay& display, double head_x_mm, double limit_px);
 
 }  // namespace prismesh::drivers::display

@@ -1,4 +1,4 @@
-// Motion like a head's, for simulated trackers, tests and benchmarks: smooth, repeatable for a seed, known exactly at any time.
+// Simulates head motions for simulated trackers, tests and benchmarks: smooth, repeatable for a seed, and exactly known at any time.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@ enum class MotionKind : std::uint8_t {
   still,  ///< sitting: tremor of a fraction of a millimetre
   sway,   ///< standing: slow, some centimetres
   lean,   ///< toward the screen and back
-  turn,   ///< fast steps to the side, up to some 412 mm/s
-  tour,   ///< all of them in turn, for demonstrations
+  turn,   ///< fast steps to the side, up to about 412 mm/s
+  tour,   ///< all of these one after the other, for demonstrations
 };
 Result<MotionKind> motion_kind_from(std::string_view name);
 
 class HeadMotion {
  public:
-  /// `middle_mm`: around where it moves. `speed`: factor on time.
+  /// `middle_mm`: the centre of the motion. `speed`: factor on time.
   HeadMotion(MotionKind kind, std::uint64_t seed, const Eigen::Vector3d& middle_mm = {0, 0, 650}, double speed = 1);
-  /// The true place between the eyes at a time since the start; any order of calls.
+  /// Returns the true point between the eyes at a time since the start. Calls may come in any order.
   Eigen::Vector3d between_eyes_mm(double seconds) const;
   Eigen::Vector3d velocity_mm_s(double seconds) const;
 

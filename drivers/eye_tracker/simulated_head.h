@@ -1,4 +1,4 @@
-// What simulated trackers look at, and what plays them.
+// The input and the interface of simulated trackers.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +8,21 @@
 
 namespace prismesh::drivers::eye_tracker {
 
-/// The true head at some time.
+/// The true state of the head at a time.
 struct SimulatedHead {
   Eigen::Vector3d between_eyes_mm{0, 0, 650};
   Eigen::Vector3d toward_right = Eigen::Vector3d::UnitX();
-  bool visible = true;  ///< false: nobody is there
+  bool visible = true;  ///< false: no head is there
 };
 
-/// The head at a time in seconds since the simulator's start; any order of calls.
+/// Returns the head at a time in seconds since the simulator's start. Calls may come in any order.
 using HeadSource = std::function<SimulatedHead(double seconds)>;
 
-/// The device's side of a tracker, driven by whoever owns the time.
+/// The device's side of a tracker; the caller passes the time.
 class TrackerSimulator {
  public:
   virtual ~TrackerSimulator() = default;
-  /// Listens to what came and sends what is due until `now_ns`. The first call starts the simulator's own time.
+  /// Executes received commands and sends what is due until `now_ns`. The first call is the start of the simulator's time.
   virtual void run_until(std::int64_t now_ns) = 0;
 };
 

@@ -1,6 +1,7 @@
-// A device's bytes, whatever carries them: a serial line (libserialport), a pseudo-terminal, or memory in tests. Calls never block
-// and never allocate, so that they may stand in a real-time tick; opening and closing may do both and belong outside. The one exception is
-// `set_baud`: an adapter takes a millisecond for it and libserialport allocates, so it's for looking for a device, not for its work.
+// Reads and writes a device's bytes over any carrier: a serial line (libserialport), a pseudo-terminal, or memory in tests. Calls neither
+// block nor allocate, so they may be made in a real-time tick. Opening and closing may do both and must happen outside the tick. `set_baud`
+// is the one exception: a USB adapter needs a millisecond for it, and libserialport allocates. Call it while searching for a device, not
+// during operation.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,8 @@ namespace prismesh::drivers::port {
 
 enum class PortStatus : std::uint8_t {
   ok,
-  full,  ///< not all bytes were taken; the device or the line is slower than the writer
-  gone,  ///< unplugged, hung up, or an I/O error: the port is of no more use and has to be opened again
+  full,  ///< not all bytes were accepted: the device or the line is slower than the writer
+  gone,  ///< unplugged, hung up, or an I/O error: the port can't be used again and has to be reopened
 };
 
 struct PortCount {
@@ -23,15 +24,15 @@ struct PortCount {
 class BytePort {
  public:
   virtual ~BytePort() = default;
-  /// What has arrived, as much as fits; 0 bytes with `ok` when there is nothing.
+  /// Reads the bytes that have arrived, up to the size of `to`. Returns 0 bytes and `ok` if there are none.
   virtual PortCount read(std::span<std::byte> to) = 0;
-  /// Hands bytes to the line; with `full` only the first `bytes` were taken.
+  /// Passes bytes to the line. With `full`, only the first `bytes` were accepted.
   virtual PortCount write(std::span<const std::byte> from) = 0;
-  /// Throws away what arrived before now: backlog that queued while nobody listened.
+  /// Discards all bytes received so far, for example a backlog from before the port was opened.
   virtual void discard_input() = 0;
-  /// Changes the line's speed; meaningless (and true) where there is no line. False: the port can't.
+  /// Changes the line's baud rate. A port without a line ignores it and returns true. Returns false if the port can't use this rate.
   virtual bool set_baud(int baud) = 0;
-  /// The errno of what made it `gone`, 0 for a plain end.
+  /// Returns the errno that made the port `gone`, 0 after a plain end of file.
   virtual int last_error() const = 0;
 };
 

@@ -10,11 +10,11 @@
 namespace prismesh::drivers::port {
 
 bool hung_up(int descriptor) {
-  pollfd watched{descriptor, 0, 0};  // hang-ups and errors are reported unasked
+  pollfd watched{descriptor, 0, 0};  // poll always reports hang-ups and errors
   return ::poll(&watched, 1, 0) > 0 && (watched.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
 }
 
-bool surely_nothing_there(int descriptor) {
+bool input_is_empty(int descriptor) {
   int waiting = 0;
   return ::ioctl(descriptor, FIONREAD, &waiting) == 0 && waiting == 0;
 }
@@ -42,7 +42,7 @@ PortCount DescriptorPort::failed(std::size_t bytes, int error) {
 
 PortCount DescriptorPort::read(std::span<std::byte> to) {
   if (gone_) return {0, PortStatus::gone};
-  if (to.empty() || surely_nothing_there(descriptor_)) return {};
+  if (to.empty() || input_is_empty(descriptor_)) return {};
   ssize_t got = 0;
   do got = ::read(descriptor_, to.data(), to.size());
   while (got < 0 && errno == EINTR);

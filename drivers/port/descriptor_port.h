@@ -1,4 +1,4 @@
-// A port over a file descriptor in non-blocking mode: what pseudo-terminals, both ends, are. Private to drivers/port.
+// A port over a file descriptor in non-blocking mode, used for both ends of pseudo-terminals. Private to drivers/port.
 #pragma once
 
 #include <memory>
@@ -9,21 +9,21 @@
 
 namespace prismesh::drivers::port {
 
-/// Whether the other end of `descriptor` has hung up. A raw terminal that waits for no byte (VMIN 0) reads nothing and reads the end
-/// alike, so reading alone can't tell.
+/// Returns whether the other end of `descriptor` has hung up. A raw terminal with VMIN 0 returns 0 bytes both without input and at the end,
+/// so `read` alone can't tell the two apart.
 bool hung_up(int descriptor);
 
-/// Whether nothing can be read from a terminal now. Reading and polling one that has nothing both wait until a thread of the kernel's, of
-/// ordinary priority, has handed over what is on its way (flush_work); on a busy machine that took a real-time loop many milliseconds. This
-/// question doesn't wait. False as well where it isn't known: on an end, an error, no terminal.
-bool surely_nothing_there(int descriptor);
-/// Raw mode without echo on a terminal, whatever it was before. False with errno set.
+/// Returns whether a terminal surely has no input now. `read` and `poll` on an empty terminal both wait until a kernel thread of ordinary
+/// priority has delivered pending input (flush_work); on a busy machine that delayed a real-time loop by many milliseconds. This call
+/// doesn't wait. Returns false as well if the answer isn't known: at the end, on an error, or if it isn't a terminal.
+bool input_is_empty(int descriptor);
+/// Sets a terminal to raw mode without echo. Returns false and sets errno on failure.
 bool make_raw(int descriptor);
 
 class DescriptorPort final : public BytePort {
  public:
-  /// Owns `descriptor`, which must be non-blocking. A master's end outlives its slaves (`survives_hang_up`): it isn't gone when nobody has
-  /// the slave open.
+  /// Takes ownership of `descriptor`, which must be non-blocking. A pseudo-terminal's master must be given `survives_hang_up`: it stays
+  /// usable while no process has the slave open.
   explicit DescriptorPort(int descriptor, bool survives_hang_up = false);
   ~DescriptorPort() override;
   DescriptorPort(const DescriptorPort&) = delete;

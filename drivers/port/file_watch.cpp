@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The nearest folder above `path` that exists, and what is to appear in it next.
+/// Returns the nearest existing folder above `path`, and the name of the next path component in it.
 std::pair<fs::path, fs::path> nearest_folder(const fs::path& path) {
   std::error_code ignored;
   fs::path folder = path.parent_path(), next = path.filename();
@@ -42,7 +42,7 @@ FileWatch::~FileWatch() {
 void FileWatch::watch_nearest(Watched& watched) {
   if (descriptor_ < 0 || watched.path.empty()) return;
   const int before = watched.watch;
-  // A folder may appear between looking for it and watching the one above: look again until nothing has changed.
+  // A folder may appear between the search and the start of the watch, so repeat until the result is stable.
   for (int attempt = 0; attempt < 16; ++attempt) {
     const auto [folder, name] = nearest_folder(watched.path);
     if (attempt > 0 && folder == watched.folder && watched.watch >= 0) break;
@@ -62,14 +62,14 @@ void FileWatch::mark_touched(int watch, std::string_view name) {
     if (watched.watch == watch && (name.empty() || name == watched.name)) watched.touched = true;
 }
 
-std::vector<std::size_t> FileWatch::news() {
+std::vector<std::size_t> FileWatch::changed_paths() {
   alignas(inotify_event) std::array<char, 4096> buffer{};
   ssize_t length = 0;
   while (descriptor_ >= 0 && (length = ::read(descriptor_, buffer.data(), buffer.size())) > 0) {
     for (const char* at = buffer.data(); at < buffer.data() + length;) {
       inotify_event event{};
       std::memcpy(&event, at, sizeof event);
-      const std::string_view name(event.len > 0 ? at + sizeof event : "");  // NUL-padded by the kernel
+      const std::string_view name(event.len > 0 ? at + sizeof event : "");  // the kernel pads with NUL
       at += sizeof event + event.len;
       const bool lost_some = (event.mask & IN_Q_OVERFLOW) != 0;
       for (Watched& watched : watched_) watched.touched |= lost_some;

@@ -1,4 +1,4 @@
-// Tells when a device's file may have appeared or changed its permissions.
+// Reports when a device's file may have appeared or changed its permissions.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,9 @@
 
 namespace prismesh::drivers::port {
 
-/// Watches paths that may not exist, nor their folders (/dev/serial/by-id goes away with the last device): always the nearest folder that
-/// does. Without inotify (its instances are used up) `descriptor` is -1, nothing is ever told, and callers live by their timeouts.
+/// Watches paths that may not exist, and whose folders may not exist (/dev/serial/by-id disappears with the last device): watches the
+/// nearest existing folder above. If inotify isn't available (its instances are used up), `descriptor` is -1 and nothing is reported, so
+/// callers must also use a timeout.
 class FileWatch {
  public:
   explicit FileWatch(std::vector<std::string> paths);
@@ -17,16 +18,16 @@ class FileWatch {
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
-  /// Readable (poll) when there may be news.
+  /// Becomes readable (poll) when `changed_paths` may have something to report.
   int descriptor() const { return descriptor_; }
-  /// Reads the news and watches anew. Indices of the paths that were touched and exist.
-  std::vector<std::size_t> news();
+  /// Reads the pending inotify events and renews the watches. Returns the indices of the paths that changed and exist.
+  std::vector<std::size_t> changed_paths();
 
  private:
   struct Watched {
     std::string path;
-    std::string folder;  // the nearest that exists
-    std::string name;    // the path's next component inside it
+    std::string folder;  // the nearest existing folder
+    std::string name;    // the path's next component in that folder
     int watch = -1;
     bool touched = false;
   };

@@ -13,7 +13,7 @@ namespace prismesh::drivers::port {
 
 namespace {
 
-// Without inotify or an eventfd the thread still looks this often.
+// Polling period if inotify or the eventfd isn't available.
 constexpr std::int64_t kMaxSleepNs = 1'000'000'000;
 
 std::vector<std::string> paths_of(const std::vector<KeeperWork>& keepers) {
@@ -41,7 +41,7 @@ KeeperThread::~KeeperThread() {
 
 void KeeperThread::wake() const {
   const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t ignored = ::write(event_, &one, sizeof one);  // full means that it is awake already
+  [[maybe_unused]] const ssize_t ignored = ::write(event_, &one, sizeof one);  // a full counter means that the thread is awake already
 }
 
 void KeeperThread::run(const std::stop_token& stop) {
@@ -49,7 +49,7 @@ void KeeperThread::run(const std::stop_token& stop) {
     std::int64_t due = std::numeric_limits<std::int64_t>::max();
     for (const KeeperWork& keeper : keepers_) due = std::min(due, keeper.work());
     wait_until(due);
-    for (const std::size_t touched : watch_.news()) keepers_[touched].hurry();
+    for (const std::size_t touched : watch_.changed_paths()) keepers_[touched].retry_now();
   }
 }
 

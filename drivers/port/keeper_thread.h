@@ -1,4 +1,4 @@
-// The thread beside the real-time loop that opens and closes its devices' ports.
+// Runs the thread that opens and closes the devices' ports, outside the real-time loop.
 #pragma once
 
 #include <functional>
@@ -13,24 +13,25 @@
 
 namespace prismesh::drivers::port {
 
-/// What the thread needs of a keeper, whichever port it keeps. `work` and `hurry` are as in BasicKeeper; `on_give_back` may be called
-/// before the real-time side starts only.
+/// The calls of a keeper that the thread needs, for any type of port. `work` and `retry_now` are as in BasicKeeper; `on_give_back` may only
+/// be called before the real-time side starts.
 struct KeeperWork {
   std::function<std::int64_t()> work;
-  std::function<void()> hurry;
+  std::function<void()> retry_now;
   std::function<void(void (*)(void*), void*)> on_give_back;
   std::string path;
 };
 
 template <class Port>
 KeeperWork work_of(BasicKeeper<Port>& keeper) {
-  return {[&keeper] { return keeper.work(); }, [&keeper] { keeper.hurry(); },
+  return {[&keeper] { return keeper.work(); }, [&keeper] { keeper.retry_now(); },
           [&keeper](void (*call)(void*), void* with) { keeper.on_give_back(call, with); }, keeper.path()};
 }
 
-/// Drives keepers on a thread of its own until it's destroyed: at their times, at once when a port comes back, and at once when a device's
-/// file appears or changes (inotify on its folder, or on the nearest folder above that exists). Start it before the real-time loop and
-/// destroy it after the loop has ended; the keepers outlive both. `clock` is the keepers' own and runs by itself (CLOCK_MONOTONIC).
+/// Runs keepers on a thread of its own until destroyed: when their `work` is due, when a port is given back, and when a device's file
+/// appears or changes (inotify on its folder, or on the nearest existing folder above). Create it before the real-time loop starts and
+/// destroy it after the loop has ended; the keepers must outlive both. `clock` must be the keepers' clock and advance by itself
+/// (CLOCK_MONOTONIC).
 class KeeperThread {
  public:
   KeeperThread(Clock& clock, std::vector<KeeperWork> keepers);
@@ -46,7 +47,7 @@ class KeeperThread {
   Clock& clock_;
   std::vector<KeeperWork> keepers_;
   FileWatch watch_;
-  int event_ = -1;  // an eventfd: writing to it never blocks, so the real-time side may
+  int event_ = -1;  // an eventfd: writing to it never blocks, so the real-time side may write
   std::jthread thread_;
 };
 

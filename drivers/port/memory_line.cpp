@@ -8,9 +8,9 @@ namespace prismesh::drivers::port {
 
 namespace {
 
-constexpr std::int64_t kBitsPerByte = 10;  // start, 8, stop
+constexpr std::int64_t kBitsPerByte = 10;  // start bit, 8 data bits, stop bit
 
-/// What a receiver at the wrong speed makes of a byte: something else, always the same.
+/// A receiver at the wrong baud rate gets a different byte, always the same one for the same input.
 std::byte scrambled(std::byte byte) { return (byte << 3 | byte >> 5) ^ std::byte{0xA5}; }
 
 template <class T>
@@ -35,11 +35,11 @@ class Ring {
 
 }  // namespace
 
-/// One direction: bytes on their way, each with the time of its arrival, then those that wait to be read.
+/// One direction of the cable: bytes in transit with their arrival times, and bytes that have arrived and aren't read yet.
 class MemoryLine::Lane {
  public:
   explicit Lane(const MemoryLineSettings& settings)
-      : latency_ns_(settings.latency_ns), under_way_(settings.queue_bytes), arrived_(settings.input_bytes) {}
+      : latency_ns_(settings.latency_ns), in_transit_(settings.queue_bytes), arrived_(settings.input_bytes) {}
 
   void set_noise(double flip, double loss, std::uint64_t seed) {
     flip_ = flip;
@@ -47,11 +47,11 @@ class MemoryLine::Lane {
     random_.seed(seed);
   }
 
-  /// How many bytes were taken.
+  /// Returns the number of bytes accepted.
   std::size_t send(std::span<const std::byte> bytes, std::int64_t now, int baud) {
     settle(now);
     std::size_t taken = 0;
-    while (taken < bytes.size() && !under_way_.full()) put(bytes[taken++], now, baud);
+    while (taken < bytes.size() && !in_transit_.full()) put(bytes[taken++], now, baud);
     return taken;
   }
 
@@ -70,15 +70,15 @@ class MemoryLine::Lane {
     arrived_.clear();
   }
   void clear() {
-    under_way_.clear();
+    in_transit_.clear();
     arrived_.clear();
     line_free_ns_ = 0;
   }
   std::uint64_t overrun() const { return overrun_; }
   std::optional<std::int64_t> next_arrival_ns(std::int64_t now) const {
     if (!arrived_.empty()) return now;
-    if (under_way_.empty()) return std::nullopt;
-    return std::max(now, under_way_.front().arrives_ns);
+    if (in_transit_.empty()) return std::nullopt;
+    return std::max(now, in_transit_.front().arrives_ns);
   }
 
  private:
@@ -89,20 +89,20 @@ class MemoryLine::Lane {
   };
 
   void put(std::byte byte, std::int64_t now, int baud) {
-    line_free_ns_ = std::max(line_free_ns_, now) + kBitsPerByte * 1'000'000'000 / baud;  // after the byte's last bit
+    line_free_ns_ = std::max(line_free_ns_, now) + kBitsPerByte * 1'000'000'000 / baud;  // end of the byte's last bit
     std::uniform_real_distribution<double> chance(0, 1);
     if (loss_ > 0 && chance(random_) < loss_) return;
     if (flip_ > 0 && chance(random_) < flip_) byte ^= std::byte{1} << (random_() % 8);
-    under_way_.push({byte, baud, line_free_ns_ + latency_ns_});
+    in_transit_.push({byte, baud, line_free_ns_ + latency_ns_});
   }
 
   void settle(std::int64_t now) {
-    for (; !under_way_.empty() && under_way_.front().arrives_ns <= now; under_way_.pop())
-      arrived_.full() ? void(++overrun_) : arrived_.push(under_way_.front());
+    for (; !in_transit_.empty() && in_transit_.front().arrives_ns <= now; in_transit_.pop())
+      arrived_.full() ? void(++overrun_) : arrived_.push(in_transit_.front());
   }
 
   std::int64_t latency_ns_;
-  Ring<Slot> under_way_, arrived_;
+  Ring<Slot> in_transit_, arrived_;
   std::int64_t line_free_ns_ = 0;
   std::uint64_t overrun_ = 0;
   double flip_ = 0, loss_ = 0;
@@ -111,7 +111,7 @@ class MemoryLine::Lane {
 
 class MemoryLine::HostEnd final : public BytePort {
  public:
-  explicit HostEnd(MemoryLine& line) : line_(line), incarnation_(line.incarnation_) {}
+  explicit HostEnd(MemoryLine& line) : line_(line), generation_(line.generation_) {}
 
   PortCount read(std::span<std::byte> to) override {
     if (gone()) return {0, PortStatus::gone};
@@ -139,10 +139,10 @@ class MemoryLine::HostEnd final : public BytePort {
   int last_error() const override { return gone() ? EIO : 0; }
 
  private:
-  bool gone() const { return incarnation_ != line_.incarnation_; }
+  bool gone() const { return generation_ != line_.generation_; }
 
   MemoryLine& line_;
-  std::uint64_t incarnation_;
+  std::uint64_t generation_;
 };
 
 class MemoryLine::DeviceEnd final : public BytePort {
@@ -182,7 +182,7 @@ MemoryLine::~MemoryLine() = default;
 
 Result<std::unique_ptr<BytePort>> MemoryLine::open_host(std::optional<int> baud) {
   if (!plugged_in_) return fail("memory line", "there is no such device; is it plugged in and switched on?");
-  ++incarnation_;
+  ++generation_;
   host_baud_ = baud.value_or(settings_.host_baud);
   to_host_->discard_arrived(clock_.now_ns());
   return std::make_unique<HostEnd>(*this);
@@ -192,29 +192,29 @@ BytePort& MemoryLine::device() { return *device_; }
 
 void MemoryLine::unplug() {
   plugged_in_ = false;
-  ++incarnation_;
-  left_to_host_.reset();
-  left_to_device_.reset();
+  ++generation_;
+  remaining_to_host_.reset();
+  remaining_to_device_.reset();
   to_host_->clear();
 }
 
 void MemoryLine::unplug_after(Direction direction, std::size_t bytes) {
-  (direction == Direction::to_host ? left_to_host_ : left_to_device_) = bytes;
+  (direction == Direction::to_host ? remaining_to_host_ : remaining_to_device_) = bytes;
   count(direction, 0);
 }
 
 void MemoryLine::plug_in() { plugged_in_ = true; }
 
 std::size_t MemoryLine::allowed(Direction direction, std::size_t wanted) const {
-  const std::optional<std::size_t>& left = direction == Direction::to_host ? left_to_host_ : left_to_device_;
-  return left ? std::min(*left, wanted) : wanted;
+  const std::optional<std::size_t>& remaining = direction == Direction::to_host ? remaining_to_host_ : remaining_to_device_;
+  return remaining ? std::min(*remaining, wanted) : wanted;
 }
 
 void MemoryLine::count(Direction direction, std::size_t bytes) {
-  std::optional<std::size_t>& left = direction == Direction::to_host ? left_to_host_ : left_to_device_;
-  if (!left) return;
-  *left -= bytes;
-  if (*left == 0) unplug();
+  std::optional<std::size_t>& remaining = direction == Direction::to_host ? remaining_to_host_ : remaining_to_device_;
+  if (!remaining) return;
+  *remaining -= bytes;
+  if (*remaining == 0) unplug();
 }
 
 void MemoryLine::inject(Direction direction, std::span<const std::byte> bytes) {

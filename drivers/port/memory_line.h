@@ -1,5 +1,5 @@
-// A serial cable in memory, for tests in virtual time: bytes arrive when a line of that speed would have delivered them, and the cable can
-// be pulled at any byte. Reading and writing never allocate. For one thread.
+// Simulates a serial cable in memory, for tests in virtual time: bytes arrive when a line of that baud rate would have delivered them, and
+// the cable can be unplugged after any byte. Reading and writing don't allocate. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@
 
 namespace prismesh::drivers::port {
 
-/// Defaults are a line at 9600 baud behind a driver that hands bytes over at once.
+/// The defaults describe a line at 9600 baud whose driver delivers bytes without delay.
 struct MemoryLineSettings {
-  int host_baud = 9600;            ///< what the host's end is opened with
-  int device_baud = 9600;          ///< what the device speaks; where the two differ, bytes arrive scrambled
-  std::int64_t latency_ns = 0;     ///< on top of the bytes' own time, per direction: an FTDI chip's timer, a USB frame
-  std::size_t queue_bytes = 4096;  ///< a writer may be this far ahead of the line; beyond it its write is `full`
-  std::size_t input_bytes = 4096;  ///< what arrived and isn't read; newer bytes are lost, as in the kernel's own buffer
+  int host_baud = 9600;            ///< initial baud rate of the host's end
+  int device_baud = 9600;          ///< baud rate of the device; if it differs from the host's, bytes arrive scrambled
+  std::int64_t latency_ns = 0;     ///< added to the transmission time in each direction, for example an FTDI chip's timer or a USB frame
+  std::size_t queue_bytes = 4096;  ///< max. bytes in transit; further writes return `full`
+  std::size_t input_bytes = 4096;  ///< max. bytes received and not yet read; further bytes are lost, as in the kernel's buffer
 };
 
 enum class Direction : std::uint8_t { to_host, to_device };
@@ -33,28 +33,30 @@ class MemoryLine {
   MemoryLine(const MemoryLine&) = delete;
   MemoryLine& operator=(const MemoryLine&) = delete;
 
-  /// The host's end, as opening a device file gives it: refused while unplugged (ENOENT's sentence), `gone` for good after an unplug or
-  /// when a later one was opened. Opening throws away what had queued. Must not outlive the line. Without `baud`: the settings' host_baud.
+  /// Opens the host's end, as opening a device file does. The end becomes `gone` for good after an unplug or after a later open. Opening
+  /// discards queued input. The end must not outlive the line. `baud` defaults to the settings' host_baud. Errors: unplugged (the same
+  /// sentence as for ENOENT).
   Result<std::unique_ptr<BytePort>> open_host(std::optional<int> baud = std::nullopt);
-  /// The device's end. A device doesn't notice a pulled cable: what it writes is lost, and nothing comes.
+  /// Returns the device's end. It doesn't report an unplug: then its writes are lost, and nothing arrives.
   BytePort& device();
 
-  /// At once. Bytes for the host are lost, read or not; those it had handed over still reach the device, so that a device may be left with
-  /// half a message.
+  /// Unplugs now. Bytes for the host are lost, read or not. Bytes that the host has written still reach the device, so the device may
+  /// receive half a message.
   void unplug();
-  /// When `count` more bytes have been read by the host (to_host) or accepted from it (to_device); 0 is at once.
+  /// Unplugs after the host has read (to_host) or written (to_device) `count` more bytes; 0 unplugs now.
   void unplug_after(Direction direction, std::size_t count);
   void plug_in();
   bool plugged_in() const { return plugged_in_; }
 
-  /// Noise: bytes that nobody sent, on the line behind those under way; they take its time like others.
+  /// Inserts noise bytes behind the bytes in transit. They take their transmission time like other bytes.
   void inject(Direction direction, std::span<const std::byte> bytes);
-  /// From now on each byte is, with these chances, hit in one bit or lost; 0 and 0 is a quiet line. Same seed, same noise.
+  /// From now on inverts one bit of each byte with probability `flip_chance`, and loses each byte with probability `loss_chance`; 0 and 0
+  /// switches noise off. The same seed gives the same noise.
   void set_noise(double flip_chance, double loss_chance, std::uint64_t seed);
 
-  /// Bytes lost for want of input space, since the beginning.
+  /// Returns the number of bytes lost so far because the input buffer was full.
   std::uint64_t overrun(Direction direction) const;
-  /// When the next byte will be there to read, if any is under way.
+  /// Returns when the next byte in transit can be read; nothing if no byte is in transit.
   std::optional<std::int64_t> next_arrival_ns(Direction direction) const;
 
  private:
@@ -71,8 +73,8 @@ class MemoryLine {
   int host_baud_, device_baud_;
   std::unique_ptr<Lane> to_host_, to_device_;
   std::unique_ptr<DeviceEnd> device_;
-  std::optional<std::size_t> left_to_host_, left_to_device_;  // until the cable is pulled
-  std::uint64_t incarnation_ = 0;                             // of the host's end: an older one is gone
+  std::optional<std::size_t> remaining_to_host_, remaining_to_device_;  // bytes until the cable is unplugged
+  std::uint64_t generation_ = 0;                                        // of the host's end; an end of an older generation is gone
   bool plugged_in_ = true;
 };
 

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "Plugged in are a, b", from the folder of stable names; empty where there is none.
-std::string what_is_plugged_in() {
+/// Lists the serial devices in the folder of stable names, as the end of a sentence.
+std::string plugged_in_devices() {
   std::error_code ignored;
   std::vector<std::string> names;
   for (fs::directory_iterator entry("/dev/serial/by-id", ignored), end; !ignored && entry != end; entry.increment(ignored))
@@ -45,7 +45,7 @@ std::string program_name(const fs::path& process) {
   return name;
 }
 
-/// "prog (process 12)" for each process of ours that has the file open; those of other users can't be looked into.
+/// Returns "prog (process 12)" for each process that has the file open. Processes of other users can't be inspected.
 std::string holders(const std::string& path) {
   struct stat wanted {};
   if (::stat(path.c_str(), &wanted) != 0) return {};
@@ -69,7 +69,7 @@ std::string advice(const std::string& path, int error) {
   switch (error) {
     case ENOENT:
     case ENODEV:
-    case ENXIO: return "there is no such device; is it plugged in and switched on? " + what_is_plugged_in();
+    case ENXIO: return "there is no such device; is it plugged in and switched on? " + plugged_in_devices();
     case EACCES:
     case EPERM: {
       const std::string group = group_of(path);

@@ -1,4 +1,4 @@
-// Why a device's file couldn't be opened, in words that tell the user what to do. Private to drivers/port.
+// Explains why a device's file couldn't be opened and what the user can do about it. Private to drivers/port.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace prismesh::drivers::port {
 
-/// `error` is errno after opening or claiming `path`.
+/// Returns the error for `path`. `error` is the errno after opening or locking it.
 Error open_error(const std::string& path, int error);
 
-/// Takes the terminal for this opener alone, with an advisory lock that every opener here asks for. 0, or errno: EBUSY when somebody else
-/// has it.
+/// Locks the terminal for this opener with an advisory lock (flock), which every opener in this project asks for. Returns 0 or an errno:
+/// EBUSY if another opener holds the lock.
 int lock(int descriptor);
 
-/// Refuses programs that don't ask for the lock (TIOCEXCL, which the superuser passes). Not for pseudo-terminals: theirs outlives the close
-/// until the master goes too.
+/// Excludes programs that don't ask for the lock (TIOCEXCL; the superuser can still open the terminal). Don't use it for pseudo-terminals:
+/// there the flag stays after closing until the master is closed too. Returns 0 or an errno.
 int refuse_others(int descriptor);
 
 }  // namespace prismesh::drivers::port

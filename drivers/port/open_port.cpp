@@ -16,7 +16,7 @@ bool is_pseudo_terminal(const std::string& path) {
   struct stat what {};
   if (::stat(path.c_str(), &what) != 0 || !S_ISCHR(what.st_mode)) return false;
   const unsigned number = major(what.st_rdev);
-  return number >= 136 && number <= 143;  // the kernel's list of devices: slaves of Unix98 pseudo-terminals
+  return number >= 136 && number <= 143;  // major numbers of Unix98 pseudo-terminal slaves (the kernel's list of devices)
 }
 
 Result<std::unique_ptr<BytePort>> open_terminal_port(const std::string& path) {

@@ -21,7 +21,7 @@ BasicKeeper<Port>::~BasicKeeper() {
 
 template <class Port>
 Port* BasicKeeper<Port>::port() {
-  // The plain load first: an exchange each tick would take the cache line from the other side for nothing.
+  // Loads before exchanging: an exchange in each tick would take the cache line from the other side.
   if (held_ == nullptr && offered_.load(std::memory_order_relaxed) != nullptr)
     held_ = offered_.exchange(nullptr, std::memory_order_acquire);
   return held_;
@@ -30,7 +30,7 @@ Port* BasicKeeper<Port>::port() {
 template <class Port>
 void BasicKeeper<Port>::give_back() {
   if (held_ == nullptr) return;
-  // Nobody offers another one before this has been collected, so the place is free.
+  // No other port is offered until this one has been collected, so the slot is free.
   returned_.store(held_, std::memory_order_release);
   held_ = nullptr;
   if (notify_ != nullptr) notify_(notify_with_);
@@ -40,16 +40,16 @@ template <class Port>
 std::int64_t BasicKeeper<Port>::work() {
   const std::int64_t now = clock_.now_ns();
   close_returned(now);
-  if (!out_ && now >= next_try_ns_) try_to_open(now);
-  return out_ ? std::numeric_limits<std::int64_t>::max() : next_try_ns_;
+  if (!handed_out_ && now >= next_try_ns_) try_to_open(now);
+  return handed_out_ ? std::numeric_limits<std::int64_t>::max() : next_try_ns_;
 }
 
 template <class Port>
 void BasicKeeper<Port>::close_returned(std::int64_t now) {
   std::unique_ptr<Port> dead(returned_.exchange(nullptr, std::memory_order_acquire));
   if (!dead) return;
-  out_ = false;
-  // A port that opens and dies at once would otherwise be opened without pause.
+  handed_out_ = false;
+  // Without the back-off, a port that fails right after opening would be reopened without pause.
   if (now - opened_ns_ >= back_off_.proven_after_ns) wait_ns_ = 0;
   next_try_ns_ = now + wait_ns_;
   const std::scoped_lock lock(report_mutex_);
@@ -60,26 +60,26 @@ void BasicKeeper<Port>::close_returned(std::int64_t now) {
 template <class Port>
 void BasicKeeper<Port>::try_to_open(std::int64_t now) {
   Result<std::unique_ptr<Port>> opened = maker_();
-  wait_ns_ = wait_ns_ == 0 ? back_off_.first_wait_ns : std::min(2 * wait_ns_, back_off_.longest_wait_ns);
+  wait_ns_ = wait_ns_ == 0 ? back_off_.first_wait_ns : std::min(2 * wait_ns_, back_off_.max_wait_ns);
   next_try_ns_ = now + wait_ns_;
   opened_ns_ = now;
-  out_ = opened.has_value();
+  handed_out_ = opened.has_value();
   {
     const std::scoped_lock lock(report_mutex_);
     ++report_.attempts;
-    report_.open = out_;
-    if (out_) {
+    report_.open = handed_out_;
+    if (handed_out_) {
       ++report_.openings;
       report_.reason.reset();
     } else {
       report_.reason = opened.error();
     }
   }
-  if (out_) offered_.store(opened->release(), std::memory_order_release);
+  if (handed_out_) offered_.store(opened->release(), std::memory_order_release);
 }
 
 template <class Port>
-void BasicKeeper<Port>::hurry() {
+void BasicKeeper<Port>::retry_now() {
   wait_ns_ = 0;
   next_try_ns_ = clock_.now_ns();
 }

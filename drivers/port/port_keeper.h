@@ -1,8 +1,8 @@
-// Keeps a device's port open: opens it, tries again when that fails, and closes what died, all outside the real-time loop, which takes the
-// open port and gives the dead one back without locks.
+// Keeps a device's port open: opens it, retries after a failure, and closes a port that is gone. All of this happens outside the real-time
+// loop, which takes the open port and gives a dead one back without locks.
 //
-// Two sides. The real-time side calls `port` each tick and `give_back` when a read or write said `gone`. The other side calls `work`,
-// either from a test that owns the clock, or through `KeeperThread`. One thread on each side.
+// A keeper has two sides, with one thread each. The real-time side calls `port` in each tick, and `give_back` after a read or write
+// returned `gone`. The other side calls `work`, either from a test that controls the clock or through `KeeperThread`.
 #pragma once
 
 #include <atomic>
@@ -19,19 +19,20 @@
 
 namespace prismesh::drivers::port {
 
-/// Waits between attempts: `first_wait_ns`, doubled up to `longest_wait_ns`. A port that lived for `proven_after_ns` starts over.
+/// Waiting times between attempts: `first_wait_ns`, doubled each time up to `max_wait_ns`. After a port has been open for
+/// `proven_after_ns`, the waiting time starts again at `first_wait_ns`.
 struct BackOff {
   std::int64_t first_wait_ns = 50'000'000;
-  std::int64_t longest_wait_ns = 1'000'000'000;
+  std::int64_t max_wait_ns = 1'000'000'000;
   std::int64_t proven_after_ns = 1'000'000'000;
 };
 
-/// For a person or a status page; not for the tick.
+/// Status for users and status pages; not for the real-time side.
 struct KeeperReport {
-  bool open = false;            ///< a port is out with the real-time side, or waits there to be taken
+  bool open = false;            ///< the real-time side has a port, or can take one
   std::uint64_t attempts = 0;   ///< calls of the maker
-  std::uint64_t openings = 0;   ///< those that succeeded
-  std::optional<Error> reason;  ///< why it isn't open: as the last attempt said it, or that it went away
+  std::uint64_t openings = 0;   ///< successful calls of the maker
+  std::optional<Error> reason;  ///< why no port is open: the last attempt's error, or that the port went away
 };
 
 /// `Port` is BytePort or DatagramPort.
@@ -40,28 +41,29 @@ class BasicKeeper {
  public:
   using Maker = std::function<Result<std::unique_ptr<Port>>()>;
 
-  /// `maker` opens the port; only `work` calls it. `path` is the device's file, for `KeeperThread` to watch; may be empty.
+  /// `maker` opens the port; only `work` calls it. `path` is the device's file, which `KeeperThread` watches; it may be empty.
   BasicKeeper(Clock& clock, Maker maker, std::string path = {}, BackOff back_off = {});
   ~BasicKeeper();
   BasicKeeper(const BasicKeeper&) = delete;
   BasicKeeper& operator=(const BasicKeeper&) = delete;
 
-  // --- the real-time side: no locks, no allocation ---
+  // --- called by the real-time side: no locks, no allocation ---
 
-  /// The open port, or null while there is none. The pointer stays good until `give_back`.
+  /// Returns the open port, or null if there is none. The pointer is valid until `give_back`.
   Port* port();
-  /// The port is gone; it'll be closed by the other side. Nothing if there is none.
+  /// Gives back a port that is gone; the other side closes it. Does nothing without a port.
   void give_back();
 
-  // --- the other side ---
+  // --- called by the other side ---
 
-  /// Closes what came back, and opens when it's time. Returns when to call again at the latest (the clock's ns).
+  /// Closes a port that was given back, and opens a new one when an attempt is due. Returns when to call again at the latest (ns of the
+  /// clock).
   std::int64_t work();
-  /// The device has just appeared or changed: the next `work` tries at once, whatever the back-off says.
-  void hurry();
+  /// Makes the next `work` attempt at once, without waiting for the back-off, because the device has just appeared or changed.
+  void retry_now();
   KeeperReport report() const;
   const std::string& path() const { return path_; }
-  /// Called from `give_back`, so it must neither block nor allocate; `KeeperThread` wakes itself with it.
+  /// Sets a callback for `give_back`. It must neither block nor allocate. `KeeperThread` uses it to wake itself.
   void on_give_back(void (*call)(void*), void* with);
 
  private:
@@ -73,13 +75,13 @@ class BasicKeeper {
   std::string path_;
   BackOff back_off_;
 
-  std::atomic<Port*> offered_{nullptr};   // other side -> real-time side
-  std::atomic<Port*> returned_{nullptr};  // real-time side -> other side
-  Port* held_ = nullptr;                  // the real-time side's own
+  std::atomic<Port*> offered_{nullptr};   // from the other side to the real-time side
+  std::atomic<Port*> returned_{nullptr};  // from the real-time side to the other side
+  Port* held_ = nullptr;                  // owned by the real-time side
   void (*notify_)(void*) = nullptr;
   void* notify_with_ = nullptr;
 
-  bool out_ = false;
+  bool handed_out_ = false;
   std::int64_t opened_ns_ = 0;
   std::int64_t next_try_ns_ = 0;
   std::int64_t wait_ns_ = 0;

@@ -29,7 +29,7 @@ Result<PtyPair> open_pty_pair() {
   std::array<char, 64> name{};
   if (const int error = ::ptsname_r(master, name.data(), name.size()); error != 0) return no_pair("ptsname", error);
   pair.slave_path = name.data();
-  // Echo is on until somebody turns it off: what the simulator says before the driver opens would come back to it as commands.
+  // Echo is on by default: it would return the simulator's output to the simulator as commands until the driver opens the slave.
   if (!make_raw(master)) return no_pair("tcsetattr", errno);
   return pair;
 }

@@ -1,4 +1,4 @@
-// A pseudo-terminal for a simulated device: the simulator holds the master, the driver opens the slave by its path as it would a serial
+// Opens a pseudo-terminal for a simulated device: the simulator holds the master, and the driver opens the slave by its path like a serial
 // line.
 #pragma once
 
@@ -11,12 +11,12 @@
 namespace prismesh::drivers::port {
 
 struct PtyPair {
-  std::unique_ptr<BytePort>
-      master;              ///< never `gone`: while no one has the slave open, reads are empty and written bytes wait or are refused
-  std::string slave_path;  ///< /dev/pts/N; gone with the master, which is how a simulated device is unplugged
+  /// Never `gone`: while no process has the slave open, reads return nothing, and written bytes are queued or refused.
+  std::unique_ptr<BytePort> master;
+  std::string slave_path;  ///< /dev/pts/N; exists as long as the master, so closing the master simulates an unplug
 };
 
-/// Raw, without echo. Errors: the system has no pseudo-terminal left (the error says which call failed and why).
+/// Opens a pair in raw mode without echo. Errors: the system has no pseudo-terminal left (with the failed call and its reason).
 Result<PtyPair> open_pty_pair();
 
 }  // namespace prismesh::drivers::port

@@ -1,4 +1,4 @@
-// The only place that knows libserialport.
+// The only source that uses libserialport.
 #include <libserialport.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
@@ -26,10 +26,10 @@ class SerialPort final : public BytePort {
 
   PortCount read(std::span<std::byte> to) override {
     if (gone_) return {0, PortStatus::gone};
-    if (to.empty() || surely_nothing_there(descriptor_)) return {};
+    if (to.empty() || input_is_empty(descriptor_)) return {};
     const int got = sp_nonblocking_read(line_, to.data(), to.size());
     if (got < 0) return failed(errno);
-    if (got == 0 && hung_up(descriptor_)) return failed(0);  // libserialport reports the end as "nothing yet"
+    if (got == 0 && hung_up(descriptor_)) return failed(0);  // libserialport reports the end of file as 0 bytes
     return {static_cast<std::size_t>(got), PortStatus::ok};
   }
 
@@ -61,19 +61,19 @@ class SerialPort final : public BytePort {
   int last_error_ = 0;
 };
 
-/// The kernel's own name for the device behind `path`, as a file in /dev. libserialport knows ports by these only, not by links such as
+/// Returns the kernel's own name for the device behind `path`, as a file in /dev. libserialport accepts only these names, not links such as
 /// /dev/serial/by-id/...
 Result<std::string> own_file(const std::string& path) {
   struct stat what {};
   if (::stat(path.c_str(), &what) != 0) return fail(open_error(path, errno));
   const std::string number = std::to_string(major(what.st_rdev)) + ":" + std::to_string(minor(what.st_rdev));
   std::error_code error;
-  const std::filesystem::path place = std::filesystem::read_symlink("/sys/dev/char/" + number, error);
+  const std::filesystem::path device = std::filesystem::read_symlink("/sys/dev/char/" + number, error);
   if (!S_ISCHR(what.st_mode) || error) return fail(open_error(path, ENOTTY));
-  return "/dev/" + place.filename().string();
+  return "/dev/" + device.filename().string();
 }
 
-/// The first step that the line refuses, as a sentence; null when all were taken.
+/// Returns a phrase that says which setting the line refused; null if it accepted all.
 const char* set_up(sp_port* line, const SerialSettings& settings) {
   if (sp_set_baudrate(line, settings.baud) != SP_OK) return "can't do this speed";
   if (sp_set_bits(line, 8) != SP_OK || sp_set_parity(line, SP_PARITY_NONE) != SP_OK || sp_set_stopbits(line, 1) != SP_OK)
@@ -88,7 +88,8 @@ Result<std::unique_ptr<BytePort>> open_serial_port(const std::string& path, cons
   const Result<std::string> file = own_file(path);
   if (!file) return fail(file.error());
   sp_port* line = nullptr;
-  if (sp_get_port_by_name(file->c_str(), &line) != SP_OK) return fail(open_error(path, ENOTTY));  // the file is there, but no such line
+  if (sp_get_port_by_name(file->c_str(), &line) != SP_OK)
+    return fail(open_error(path, ENOTTY));  // the file exists, but it isn't a serial line
   errno = 0;
   if (const sp_return opened = sp_open(line, SP_MODE_READ_WRITE); opened != SP_OK) {
     const int error = opened == SP_ERR_FAIL && errno != 0 ? errno : ENOTTY;

@@ -62,9 +62,9 @@ Datagram UdpPort::receive(std::span<std::byte> to) {
 }
 
 void UdpPort::discard_input() {
-  std::array<std::byte, 1> thrown_away{};
-  // Bounded, so that a flood can't hold the caller here: a full socket buffer holds fewer.
-  for (int i = 0; i < 4096 && receive(thrown_away).arrived; ++i) {
+  std::array<std::byte, 1> discarded{};
+  // Bounded, so that a flood of datagrams can't block the caller: a full socket buffer holds fewer.
+  for (int i = 0; i < 4096 && receive(discarded).arrived; ++i) {
   }
 }
 
@@ -80,7 +80,7 @@ Result<std::unique_ptr<UdpSender>> UdpSender::open(std::uint16_t udp_port) {
 UdpSender::~UdpSender() { ::close(descriptor_); }
 
 bool UdpSender::send(std::span<const std::byte> datagram) {
-  // A connected socket tells of an earlier datagram that nobody heard by refusing this one, once; this one still deserves its try.
+  // A connected socket reports an earlier undelivered datagram by refusing the current one once, so this one is sent again.
   for (int attempt = 0; attempt < 2; ++attempt) {
     if (::send(descriptor_, datagram.data(), datagram.size(), MSG_NOSIGNAL) >= 0) return true;
     if (errno != ECONNREFUSED) return false;

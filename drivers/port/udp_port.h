@@ -1,4 +1,4 @@
-// Datagrams from this machine: trackers that are programs (opentrack) send their records to a port on the loopback interface.
+// Receives and sends datagrams on the loopback interface. Trackers that are programs (opentrack) send their poses that way.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,27 @@
 
 namespace prismesh::drivers::port {
 
-/// One datagram. `arrived` without bytes is an empty datagram; a datagram longer than the buffer is cut and says its full length.
+/// One datagram. `arrived` with 0 bytes is an empty datagram. A datagram longer than the buffer is truncated; `full_length` is its original
+/// length.
 struct Datagram {
   bool arrived = false;
   std::size_t bytes = 0;        ///< in the buffer
-  std::size_t full_length = 0;  ///< as it was sent
+  std::size_t full_length = 0;  ///< as sent
   PortStatus status = PortStatus::ok;
 };
 
 class DatagramPort {
  public:
   virtual ~DatagramPort() = default;
-  /// The oldest datagram that waits; never blocks, never allocates.
+  /// Returns the oldest waiting datagram. Neither blocks nor allocates.
   virtual Datagram receive(std::span<std::byte> to) = 0;
-  /// Throws away what waits.
+  /// Discards all waiting datagrams.
   virtual void discard_input() = 0;
   virtual int last_error() const = 0;
 };
 
-/// Receives on 127.0.0.1:`udp_port` only, so that nothing from the network reaches the driver; 0 lets the system choose
-/// (`UdpPort::udp_port` tells). Errors: the port number is taken by another program, or isn't allowed to this user.
+/// Receives on 127.0.0.1:`udp_port` only, so that no datagram from the network reaches the driver. With 0 the system chooses the port
+/// number (see `udp_port()`). Errors: another program uses the port number, or this user may not use it.
 class UdpPort final : public DatagramPort {
  public:
   static Result<std::unique_ptr<UdpPort>> open(std::uint16_t udp_port);
@@ -50,7 +51,7 @@ class UdpPort final : public DatagramPort {
   int last_error_ = 0;
 };
 
-/// Sends to 127.0.0.1:`udp_port`: what a simulated tracker does.
+/// Sends to 127.0.0.1:`udp_port`, for simulated trackers. Errors: as UdpPort.
 class UdpSender {
  public:
   static Result<std::unique_ptr<UdpSender>> open(std::uint16_t udp_port);
@@ -58,7 +59,7 @@ class UdpSender {
   UdpSender(const UdpSender&) = delete;
   UdpSender& operator=(const UdpSender&) = delete;
 
-  /// False: the system didn't take it. Nobody listening isn't an error, as in life.
+  /// Returns false if the system refused the datagram. A missing receiver isn't an error.
   bool send(std::span<const std::byte> datagram);
 
  private:

@@ -7,23 +7,23 @@ namespace prismesh::drivers::prism_servo {
 namespace {
 
 constexpr std::int64_t kMaxAheadNs = 100'000'000;
-/// After a stall the goal goes on as if only so long had passed.
+/// After a stall the command advances as if only so long had passed.
 constexpr std::int64_t kMaxStepNs = 20'000'000;
 constexpr std::int64_t kMaxLagNs = 200'000'000;
-/// Of a move back: time to come to rest, besides the way itself.
+/// Part of a move back's duration: time to come to rest, in addition to the travel time.
 constexpr std::int64_t kRestNs = 30'000'000;
 constexpr std::int64_t kLagsToRest = 4;
-/// The envelope that a healthy motor stays in: as quick as its command, or with three times the lag at 70 % of the speed.
+/// Envelope of a healthy motor: between the command itself and a motor with three times the lag at 70 % of the speed.
 constexpr double kSlowLags = 3;
 constexpr double kSlowSpeed = 0.7;
-/// Over this the goal's velocity is taken.
+/// Time difference for the numerical derivative of the target.
 constexpr std::int64_t kSlopeNs = 20'000'000;
 
 bool finite(const eye_tracker::HeadState& head) {
   return head.between_eyes_mm.allFinite() && head.velocity_mm_s.allFinite() && head.toward_right.allFinite();
 }
 
-double toward(double from, double to, double most) { return from + std::clamp(to - from, -most, most); }
+double step_toward(double from, double to, double max_step) { return from + std::clamp(to - from, -max_step, max_step); }
 
 std::int64_t ns_of(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
@@ -33,7 +33,8 @@ double mask_position_at(const MaskState& state, std::int64_t time_ns) {
   if (state.measured_ns == 0) return state.position_mm;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(std::clamp<std::int64_t>(ns, -kMaxAheadNs, kMaxAheadNs)) * 1e-9; };
   const double lag = std::max(1e-3, seconds(state.lag_ns));
-  // A motor that is pulled toward its goal ends up as far behind it as the goal gets in its lag, and what it is off by now fades away.
+  // A motor with first-order lag follows a moving goal at a distance of velocity times lag; the present deviation from that decays
+  // exponentially.
   const auto behind_goal = [&](std::int64_t ns) { return state.goal_mm + state.goal_velocity_mm_s * (seconds(ns - state.time_ns) - lag); };
   const double off = state.position_mm - behind_goal(state.measured_ns);
   const std::int64_t until_ns = std::max(time_ns, state.measured_ns);
@@ -52,21 +53,22 @@ MaskControl::Output MaskControl::step(const Input& input) {
   started_ = true;
   state_.time_ns = input.now_ns;
   state_.lag_ns = lag_ns_ = std::clamp<std::int64_t>(input.servo_lag_ns, 0, kMaxLagNs);
-  const bool there = look(input);
-  wish_velocity_mm_s_ = 0;
-  decide(input, there);
+  const bool servo_ready = read_sensors(input);
+  target_velocity_mm_s_ = 0;
+  decide(input, servo_ready);
   move_command(static_cast<double>(passed) * 1e-9);
-  if (powered_ && there) watch_motor(input);
+  if (powered_ && servo_ready) watch_motor(input);
   state_.goal_mm = command_mm_;
   state_.stereo_allowed = state_.phase == MaskPhase::following && caught_up_;
   if (state_.phase == MaskPhase::held) state_.stereo_allowed = arrived_;
   return {command_mm_, powered_, state_};
 }
 
-/// Takes in what the sensors say. Whether the motor is there and answers.
-bool MaskControl::look(const Input& input) {
+/// Reads the head's and the servo's measurements. Returns whether the servo is ready and answers.
+bool MaskControl::read_sensors(const Input& input) {
   const std::int64_t age = input.now_ns - input.head.time_ns;
-  seen_ = input.head_seen && input.head.time_ns != 0 && finite(input.head) && age <= limits_.eyes_lost_ns && age >= -limits_.eyes_lost_ns;
+  head_seen_ =
+      input.head_seen && input.head.time_ns != 0 && finite(input.head) && age <= limits_.eyes_lost_ns && age >= -limits_.eyes_lost_ns;
   const MaskReading& reading = input.servo.reading;
   if (reading.measured_ns != 0 && std::isfinite(reading.position_mm) && std::isfinite(reading.velocity_mm_s)) {
     state_.measured_ns = reading.measured_ns;
@@ -77,20 +79,20 @@ bool MaskControl::look(const Input& input) {
          input.now_ns - state_.measured_ns <= limits_.reading_old_ns;
 }
 
-void MaskControl::decide(const Input& input, bool there) {
+void MaskControl::decide(const Input& input, bool servo_ready) {
   if (input.rearm) rearm(input);
   if (rearming_until_ns_ != 0) {
-    if (there || input.now_ns > rearming_until_ns_) {
+    if (servo_ready || input.now_ns > rearming_until_ns_) {
       rearming_until_ns_ = 0;
       enter(MaskPhase::absent);
     } else {
-      // The motor has been let go before; being asked again is what it starts anew for.
+      // Torque was off before; requesting it again makes the servo restart.
       return set_powered(input.servo.phase == ServoPhase::alarm);
     }
   }
   if (input.servo.phase == ServoPhase::alarm && fault_ == MaskPhase::absent) latch(MaskPhase::alarm);
   if (fault_ != MaskPhase::absent) return set_powered(false);
-  if (!there) {
+  if (!servo_ready) {
     if (state_.phase != MaskPhase::absent) enter(MaskPhase::absent);
     return set_powered(false);
   }
@@ -104,7 +106,7 @@ void MaskControl::decide(const Input& input, bool there) {
     case MaskPhase::frozen: return freeze(input);
     case MaskPhase::parking:
     case MaskPhase::parked:
-      if (seen_) return start_following(middle_periods(ideal_mm(input, lag_ns_)));
+      if (head_seen_) return start_following(middle_periods(ideal_mm(input, lag_ns_)));
       return park();
     case MaskPhase::held: return hold(input);
     case MaskPhase::absent:
@@ -118,7 +120,7 @@ void MaskControl::enter(MaskPhase phase) {
   state_.mono_from_ns = state_.mono_until_ns = 0;
   phase_since_ns_ = state_.time_ns;
   caught_up_ = arrived_ = false;
-  on_wish_since_ns_ = 0;
+  on_target_since_ns_ = 0;
   if (phase != MaskPhase::following && phase != MaskPhase::frozen) state_.half_periods = 0;
 }
 
@@ -136,9 +138,9 @@ void MaskControl::latch(MaskPhase fault) {
 }
 
 void MaskControl::home(const Input& input) {
-  wish_mm_ = 0;
+  target_mm_ = 0;
   if (!arrived_) return;
-  if (seen_) return start_following(middle_periods(ideal_mm(input, lag_ns_)));
+  if (head_seen_) return start_following(middle_periods(ideal_mm(input, lag_ns_)));
   enter(MaskPhase::parking);
 }
 
@@ -148,32 +150,32 @@ void MaskControl::start_following(std::int32_t half_periods) {
 }
 
 void MaskControl::follow(const Input& input) {
-  if (!seen_) return enter(MaskPhase::frozen);
+  if (!head_seen_) return enter(MaskPhase::frozen);
   const double ideal = ideal_mm(input, lag_ns_);
-  // Nobody sees stereo before the mask has caught up, so no move has to be announced.
+  // No stereo is visible before the mask has caught up, so a move needs no announcement.
   if (!caught_up_ && std::abs(ideal - state_.half_periods * half_period_mm()) > return_mm()) state_.half_periods = middle_periods(ideal);
-  wish_to_follow(input);
+  update_target(input);
   caught_up_ = caught_up_ || arrived_;
   if (caught_up_) plan_return(input);
 }
 
-/// A move back is announced, and made when the last picture in stereo has gone.
+/// Announces a move back, and starts it when the last stereo picture is no longer visible.
 void MaskControl::plan_return(const Input& input) {
   if (state_.mono_from_ns == 0) {
     const double then = ideal_mm(input, lag_ns_ + limits_.return_notice_ns);
     const std::int32_t next = periods_back(then, state_.half_periods);
     if (std::abs(then - state_.half_periods * half_period_mm()) <= return_mm() || next == state_.half_periods) return;
     state_.mono_from_ns = input.now_ns + limits_.return_notice_ns;
-    const double way = std::abs(next - state_.half_periods) * half_period_mm();
-    state_.mono_until_ns = state_.mono_from_ns + limits_.picture_ns + flight_ns(way);
+    const double distance = std::abs(next - state_.half_periods) * half_period_mm();
+    state_.mono_until_ns = state_.mono_from_ns + limits_.picture_ns + flight_ns(distance);
     return;
   }
   if (input.now_ns < state_.mono_from_ns + limits_.picture_ns) return;
   const double ideal = ideal_mm(input, lag_ns_);
   const std::int32_t next = periods_back(ideal, state_.half_periods);
-  const double way = std::abs(next - state_.half_periods) * half_period_mm();
-  if (next == state_.half_periods || input.now_ns + flight_ns(way) > state_.mono_until_ns + limits_.return_notice_ns / 4) {
-    // The head has turned round meanwhile: nothing is done without an announcement of its own.
+  const double distance = std::abs(next - state_.half_periods) * half_period_mm();
+  if (next == state_.half_periods || input.now_ns + flight_ns(distance) > state_.mono_until_ns + limits_.return_notice_ns / 4) {
+    // The head has turned back meanwhile: drop this move; another one needs its own announcement.
     if (input.now_ns >= state_.mono_until_ns) state_.mono_from_ns = state_.mono_until_ns = 0;
     return;
   }
@@ -181,17 +183,17 @@ void MaskControl::plan_return(const Input& input) {
   state_.half_periods = next;
   phase_since_ns_ = input.now_ns;
   caught_up_ = arrived_ = false;
-  on_wish_since_ns_ = 0;
+  on_target_since_ns_ = 0;
   fly_back(input);
 }
 
 void MaskControl::fly_back(const Input& input) {
-  if (!seen_) return enter(MaskPhase::frozen);
-  wish_to_follow(input);
+  if (!head_seen_) return enter(MaskPhase::frozen);
+  update_target(input);
   caught_up_ = caught_up_ || arrived_;
   if (!caught_up_) {
-    // Later than planned is said as soon as it is known, and never on shorter notice than the move itself.
-    const std::int64_t needed = flight_ns(std::abs(state_.position_mm - wish_mm_) - limits_.settle_mm);
+    // Publishes a delay as soon as it is known, with at least the notice of a move.
+    const std::int64_t needed = flight_ns(std::abs(state_.position_mm - target_mm_) - limits_.settle_mm);
     state_.mono_until_ns = std::max(state_.mono_until_ns, input.now_ns + std::max(needed, limits_.return_notice_ns));
     return;
   }
@@ -202,9 +204,9 @@ void MaskControl::fly_back(const Input& input) {
 }
 
 void MaskControl::freeze(const Input& input) {
-  wish_mm_ = command_mm_;
+  target_mm_ = command_mm_;
   const bool may_move = input.picture_mono || input.now_ns - phase_since_ns_ >= limits_.park_after_ns;
-  if (!seen_) {
+  if (!head_seen_) {
     if (may_move) enter(MaskPhase::parking);
     return;
   }
@@ -215,7 +217,7 @@ void MaskControl::freeze(const Input& input) {
 }
 
 void MaskControl::park() {
-  wish_mm_ = 0;
+  target_mm_ = 0;
   if (state_.phase == MaskPhase::parked) return set_powered(false);
   if (!arrived_) return;
   enter(MaskPhase::parked);
@@ -224,31 +226,31 @@ void MaskControl::park() {
 
 void MaskControl::hold(const Input& input) {
   if (input.hold_mm == nullptr) {
-    if (!seen_) return enter(MaskPhase::frozen);
+    if (!head_seen_) return enter(MaskPhase::frozen);
     return start_following(middle_periods(ideal_mm(input, lag_ns_)));
   }
-  if (std::isfinite(*input.hold_mm)) wish_mm_ = in_travel(*input.hold_mm);
+  if (std::isfinite(*input.hold_mm)) target_mm_ = in_travel(*input.hold_mm);
 }
 
-// --- where to ---
+// --- target position ---
 
 double MaskControl::ideal_mm(const Input& input, std::int64_t ahead_ns) const {
   const double place = display::mask_position_mm(optics_, eye_tracker::predict(input.head, input.now_ns + ahead_ns));
   return std::isfinite(place) ? place : 0;
 }
 
-void MaskControl::wish_to_follow(const Input& input) {
+void MaskControl::update_target(const Input& input) {
   const double back = state_.half_periods * half_period_mm();
-  wish_mm_ = in_travel(ideal_mm(input, lag_ns_) - back);
+  target_mm_ = in_travel(ideal_mm(input, lag_ns_) - back);
   const double later = in_travel(ideal_mm(input, lag_ns_ + kSlopeNs) - back);
-  wish_velocity_mm_s_ = (later - wish_mm_) / (static_cast<double>(kSlopeNs) * 1e-9);
+  target_velocity_mm_s_ = (later - target_mm_) / (static_cast<double>(kSlopeNs) * 1e-9);
 }
 
 double MaskControl::half_period_mm() const { return optics_.mask_pitch_mm() / 2; }
 
 double MaskControl::in_travel(double mm) const { return std::clamp(mm, -limits_.travel_mm, limits_.travel_mm); }
 
-/// The fewest half (or whole) periods back that leave half a step of room before the next move.
+/// Returns the min. number of half (or whole) periods back that leaves half a step of travel before the next move.
 std::int32_t MaskControl::periods_back(double ideal_mm, std::int32_t now) const {
   const std::int32_t unit = limits_.half_period_returns ? 1 : 2;
   const double step = unit * half_period_mm();
@@ -257,7 +259,7 @@ std::int32_t MaskControl::periods_back(double ideal_mm, std::int32_t now) const 
   const auto steps = static_cast<std::int32_t>(std::ceil((std::abs(place) - return_mm()) / step + 0.5));
   if (steps <= 0) return now;
   const std::int32_t back = now + (place > 0 ? 1 : -1) * steps * unit;
-  // Where travel is scarce this may be too far on the other side.
+  // With a short travel this may be too far on the other side.
   return std::abs(ideal_mm - back * half_period_mm()) <= return_mm() ? back : middle_periods(ideal_mm);
 }
 
@@ -271,70 +273,70 @@ std::int64_t MaskControl::flight_ns(double distance_mm) const {
   return ns_of(std::max(distance_mm, 0.0) / (0.9 * limits_.speed_mm_s)) + kLagsToRest * lag_ns_ + kRestNs;
 }
 
-// --- the motor ---
+// --- motor ---
 
-/// Power comes on where the motor stands.
+/// Switches the torque; the command starts at the motor's present position.
 void MaskControl::set_powered(bool powered) {
-  if (powered && !powered_) forget();
+  if (powered && !powered_) reset_command();
   powered_ = powered;
-  if (!powered) forget();
+  if (!powered) reset_command();
 }
 
-void MaskControl::forget() {
+void MaskControl::reset_command() {
   command_mm_ = quick_mm_ = slow_mm_ = slow_profile_mm_ = in_travel(state_.position_mm);
-  wish_mm_ = command_mm_;
+  target_mm_ = command_mm_;
   arrived_ = false;
-  on_wish_since_ns_ = astray_since_ns_ = 0;
-  remembered_ = 0;
-  remember();
+  on_target_since_ns_ = deviating_since_ns_ = 0;
+  trace_count_ = 0;
+  record_trace();
 }
 
 void MaskControl::move_command(double seconds) {
   const double before = command_mm_;
   if (powered_) {
-    command_mm_ = toward(command_mm_, wish_mm_, limits_.speed_mm_s * seconds);
+    command_mm_ = step_toward(command_mm_, target_mm_, limits_.speed_mm_s * seconds);
     const double lag_s = std::max(1e-3, static_cast<double>(lag_ns_) * 1e-9);
-    quick_mm_ = toward(quick_mm_, command_mm_, limits_.speed_mm_s * seconds);
-    slow_profile_mm_ = toward(slow_profile_mm_, command_mm_, kSlowSpeed * limits_.speed_mm_s * seconds);
+    quick_mm_ = step_toward(quick_mm_, command_mm_, limits_.speed_mm_s * seconds);
+    slow_profile_mm_ = step_toward(slow_profile_mm_, command_mm_, kSlowSpeed * limits_.speed_mm_s * seconds);
     slow_mm_ += (slow_profile_mm_ - slow_mm_) * (1 - std::exp(-seconds / (kSlowLags * lag_s)));
-    remember();
+    record_trace();
   }
-  const bool on_wish = powered_ && std::abs(command_mm_ - wish_mm_) < 1e-9;
-  if (!on_wish)
-    on_wish_since_ns_ = 0;
-  else if (on_wish_since_ns_ == 0)
-    on_wish_since_ns_ = state_.time_ns;
-  const bool with_the_head = on_wish || state_.phase == MaskPhase::following;
-  state_.goal_velocity_mm_s = with_the_head ? wish_velocity_mm_s_ : seconds > 0 ? (command_mm_ - before) / seconds : 0;
+  const bool on_target = powered_ && std::abs(command_mm_ - target_mm_) < 1e-9;
+  if (!on_target)
+    on_target_since_ns_ = 0;
+  else if (on_target_since_ns_ == 0)
+    on_target_since_ns_ = state_.time_ns;
+  const bool follows_head = on_target || state_.phase == MaskPhase::following;
+  state_.goal_velocity_mm_s = follows_head ? target_velocity_mm_s_ : seconds > 0 ? (command_mm_ - before) / seconds : 0;
 }
 
-void MaskControl::remember() {
-  newest_ = (newest_ + 1) % traces_.size();
-  traces_[newest_] = {state_.time_ns, command_mm_, quick_mm_, slow_mm_};
-  remembered_ = std::min(remembered_ + 1, traces_.size());
+void MaskControl::record_trace() {
+  newest_trace_ = (newest_trace_ + 1) % traces_.size();
+  traces_[newest_trace_] = {state_.time_ns, command_mm_, quick_mm_, slow_mm_};
+  trace_count_ = std::min(trace_count_ + 1, traces_.size());
 }
 
-/// What was at a time, or the oldest that is remembered.
+/// Returns the trace at a time, or the oldest one.
 const MaskControl::Trace& MaskControl::trace_at(std::int64_t time_ns) const {
-  std::size_t at = newest_;
-  for (std::size_t i = 1; i < remembered_ && traces_[at].time_ns > time_ns; ++i) at = (at + traces_.size() - 1) % traces_.size();
+  std::size_t at = newest_trace_;
+  for (std::size_t i = 1; i < trace_count_ && traces_[at].time_ns > time_ns; ++i) at = (at + traces_.size() - 1) % traces_.size();
   return traces_[at];
 }
 
-/// Compares what was measured with what a healthy motor would have done by then.
+/// Compares the measurement with the envelope of a healthy motor.
 void MaskControl::watch_motor(const Input& input) {
   if (!input.servo.fresh) return;
   const Trace& then = trace_at(state_.measured_ns);
-  const Trace& told = trace_at(state_.measured_ns - lag_ns_);
-  const bool told_the_wish = on_wish_since_ns_ != 0 && told.time_ns >= on_wish_since_ns_;
-  arrived_ = told_the_wish && std::abs(state_.position_mm - told.command_mm) <= limits_.settle_mm;
+  const Trace& commanded = trace_at(state_.measured_ns - lag_ns_);
+  const bool target_was_commanded = on_target_since_ns_ != 0 && commanded.time_ns >= on_target_since_ns_;
+  arrived_ = target_was_commanded && std::abs(state_.position_mm - commanded.command_mm) <= limits_.settle_mm;
   const double low = std::min(then.quick_mm, then.slow_mm), high = std::max(then.quick_mm, then.slow_mm);
   if (state_.position_mm >= low - limits_.stuck_mm && state_.position_mm <= high + limits_.stuck_mm) {
-    astray_since_ns_ = 0;
+    deviating_since_ns_ = 0;
     return;
   }
-  if (astray_since_ns_ == 0) astray_since_ns_ = state_.measured_ns;
-  if (state_.measured_ns - astray_since_ns_ >= limits_.stuck_after_ns) latch(MaskPhase::stuck);
+  if (deviating_since_ns_ == 0) deviating_since_ns_ = state_.measured_ns;
+  if (state_.measured_ns - deviating_since_ns_ >= limits_.stuck_after_ns) latch(MaskPhase::stuck);
 }
 
 }  // namespace prismesh::drivers::prism_servo

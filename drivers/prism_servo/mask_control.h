@@ -1,5 +1,6 @@
-// Where the mask should go and what the picture may rely on: follows the eyes within the mask's travel, goes back by whole or half
-// periods, stops safely when eyes or motor are lost, finds a stuck mask. Pure and on a clock that is passed in: no ports, no allocation.
+// Controls the mask's position and decides when stereo may be shown: follows the eyes within the mask's travel, moves back by
+// whole or half periods, stops safely when eyes or motor are lost, and detects a stuck mask. Pure: the time is passed in, no ports, no
+// allocation.
 #pragma once
 
 #include <array>
@@ -16,70 +17,71 @@ namespace prismesh::drivers::prism_servo {
 
 enum class MaskPhase : std::uint8_t {
   absent,       ///< no motor
-  homing,       ///< finding its zero
-  following,    ///< moves with the eyes: stereo may be shown
-  flying_back,  ///< on the way to an equivalent place: mono meanwhile
+  homing,       ///< finds its zero
+  following,    ///< follows the eyes: stereo may be shown
+  flying_back,  ///< moves to an equivalent position: mono meanwhile
   frozen,       ///< eyes lost: stands still until the picture is mono
-  parking,      ///< on the way to the middle
-  parked,       ///< in the middle, motor at rest; goes on when eyes come
-  held,         ///< where calibration asked for
-  stuck,        ///< doesn't go where it is told: motor let go; latched until rearmed
+  parking,      ///< moves to the middle
+  parked,       ///< in the middle with torque off; continues when eyes are seen
+  held,         ///< at the position that the calibration requests
+  stuck,        ///< doesn't follow its command: torque off; latched until rearmed
   alarm,        ///< the motor's own fault: latched until rearmed
 };
 
-/// What the picture needs to know of the mask; published each tick.
+/// The mask's state for the picture; published in each tick.
 struct MaskState {
-  std::int64_t time_ns = 0;      ///< of this state
+  std::int64_t time_ns = 0;      ///< time of this state
   std::int64_t measured_ns = 0;  ///< when `position_mm` was measured; 0: never
   double position_mm = 0;
   double velocity_mm_s = 0;
   double goal_mm = 0;
-  double goal_velocity_mm_s = 0;   ///< how fast the goal goes: as the head is expected to, however it is being caught up with
-  std::int64_t lag_ns = 0;         ///< by which the mask follows its goal
-  std::int32_t half_periods = 0;   ///< goal = ideal position - half_periods * P / 2; odd: a weave of fixed columns swaps the eyes
-  std::int64_t mono_from_ns = 0;   ///< a scheduled move back: pictures that light up from here ...
-  std::int64_t mono_until_ns = 0;  ///< ... to here must be mono; both 0: none is scheduled
+  double goal_velocity_mm_s = 0;   ///< expected velocity of the goal from the head's motion, also while the command is still catching up
+  std::int64_t lag_ns = 0;         ///< time by which the mask lags behind its goal
+  std::int32_t half_periods = 0;   ///< goal = ideal position - half_periods * P / 2; if odd, a weave of fixed columns swaps the eyes
+  std::int64_t mono_from_ns = 0;   ///< a scheduled move back: pictures that light up from here
+  std::int64_t mono_until_ns = 0;  ///< to here must be mono; both are 0 if none is scheduled
   MaskPhase phase = MaskPhase::absent;
-  bool stereo_allowed = false;  ///< now, but for a scheduled move back
+  bool stereo_allowed = false;  ///< at present, apart from a scheduled move back
 };
 
-/// Where the mask will be: from the measured place it falls in behind the goal (which itself goes on), by its lag. Not further than
-/// 100 ms ahead. A velocity that was measured isn't asked: each new measurement of the head changes it, and that soon passes.
+/// Returns the mask's position at a time: from the measured position it approaches the moving goal with its lag. Extrapolates by max. 100
+/// ms. Doesn't use the measured velocity, because each new head measurement changes it for a short time only.
 double mask_position_at(const MaskState& state, std::int64_t time_ns);
 
-/// Thresholds in one place; starting values.
+/// Thresholds; initial values.
 struct MaskLimits {
-  double travel_mm = 2.0;                      ///< the mask may go so far to either side
-  double return_share = 0.9;                   ///< of the travel: where a move back is planned
-  bool half_period_returns = true;             ///< by the smallest number of half periods; false: whole periods only
-  std::int64_t return_notice_ns = 60'000'000;  ///< a move back is announced so long before, so that the picture can be mono by then
-  std::int64_t eyes_lost_ns = 100'000'000;     ///< no measurement for so long: frozen
-  std::int64_t park_after_ns = 250'000'000;    ///< frozen so long without the picture saying that it is mono: park all the same
-  double stuck_mm = 0.05;                      ///< command and feedback apart by more ...
-  std::int64_t stuck_after_ns = 300'000'000;   ///< ... for so long, while the motor should have been there: stuck
-  double speed_mm_s = 5.0;                     ///< what the motor can do; the goal goes no faster
-  double settle_mm = 0.03;                     ///< so near to where it should be, a mask has arrived
-  std::int64_t picture_ns = 17'000'000;        ///< a picture that lit up before a move back stays on so long
-  std::int64_t rearm_ns = 3'000'000'000;       ///< a motor may take so long to come back after rearming
-  std::int64_t reading_old_ns = 100'000'000;   ///< no answer for so long: absent
+  double travel_mm = 2.0;                      ///< max. travel to either side
+  double return_share = 0.9;                   ///< share of the travel at which a move back is planned
+  bool half_period_returns = true;             ///< moves back by the min. number of half periods; false: whole periods only
+  std::int64_t return_notice_ns = 60'000'000;  ///< a move back is announced so long before, so that the picture can change to mono
+  std::int64_t eyes_lost_ns = 100'000'000;     ///< time without a measurement until `frozen`
+  std::int64_t park_after_ns = 250'000'000;    ///< max. time in `frozen` if the picture doesn't report mono
+  double stuck_mm = 0.05;                      ///< a difference between command and feedback of more than this
+  std::int64_t stuck_after_ns = 300'000'000;   ///< for so long, although the motor should have arrived, means stuck
+  double speed_mm_s = 5.0;                     ///< max. speed of the motor; limits the goal's speed too
+  double settle_mm = 0.03;                     ///< max. distance at which the mask counts as arrived
+  std::int64_t picture_ns = 17'000'000;        ///< a picture that lit up before a move back stays visible for so long
+  std::int64_t rearm_ns = 3'000'000'000;       ///< max. time for a motor to answer again after rearming
+  std::int64_t reading_old_ns = 100'000'000;   ///< time without an answer until `absent`
 };
 
-/// Called once a tick, at any rate up to 1 kHz; holds back what isn't finite before anything else.
+/// Call `step` once per tick, at any rate up to 1 kHz. Ignores values that aren't finite.
 ///
-/// An absolute encoder knows where the mask stands, so homing is a short drive to the middle that shows that the motor obeys.
+/// An absolute encoder measures the mask's position, so homing is only a short move to the middle that verifies that the motor follows
+/// commands.
 class MaskControl {
  public:
   MaskControl(const display::MaskOptics& optics, const MaskLimits& limits);
 
   struct Input {
     std::int64_t now_ns = 0;
-    eye_tracker::HeadState head;  ///< extrapolated inside by the motor's lag
+    eye_tracker::HeadState head;  ///< extrapolated here by the motor's lag
     bool head_seen = false;       ///< measurements arrive
     PrismServo::Tick servo;
     std::int64_t servo_lag_ns = 0;
-    bool picture_mono = false;        ///< the kiosk has said that what it shows is mono
-    const double* hold_mm = nullptr;  ///< calibration asks for this place
-    bool rearm = false;               ///< the user has asked to try again after `stuck` or `alarm`; also homes
+    bool picture_mono = false;        ///< the kiosk has reported that it shows a mono picture
+    const double* hold_mm = nullptr;  ///< the position that the calibration requests; null: none
+    bool rearm = false;               ///< the user asks for another attempt after `stuck` or `alarm`; also homes
   };
   struct Output {
     double goal_mm = 0;
@@ -87,18 +89,18 @@ class MaskControl {
     MaskState state;
   };
   Output step(const Input& input);
-  /// The mask goes to where these optics want it; mono until it's there.
+  /// Moves the mask to the position for these optics; mono until it has arrived.
   void set_optics(const display::MaskOptics& optics);
 
  private:
-  /// Where the mask was told to be, and where a quick and a slow motor would have been: the real one is between.
+  /// The command, and the positions of a quick and a slow motor; a healthy motor is between these.
   struct Trace {
     std::int64_t time_ns = 0;
     double command_mm = 0, quick_mm = 0, slow_mm = 0;
   };
 
-  bool look(const Input& input);
-  void decide(const Input& input, bool there);
+  bool read_sensors(const Input& input);
+  void decide(const Input& input, bool servo_ready);
   void rearm(const Input& input);
   void home(const Input& input);
   void follow(const Input& input);
@@ -112,7 +114,7 @@ class MaskControl {
   void latch(MaskPhase fault);
 
   double ideal_mm(const Input& input, std::int64_t ahead_ns) const;
-  void wish_to_follow(const Input& input);
+  void update_target(const Input& input);
   double half_period_mm() const;
   double return_mm() const { return limits_.return_share * limits_.travel_mm; }
   std::int32_t periods_back(double ideal_mm, std::int32_t now) const;
@@ -124,8 +126,8 @@ class MaskControl {
   void move_command(double seconds);
   void watch_motor(const Input& input);
   const Trace& trace_at(std::int64_t time_ns) const;
-  void remember();
-  void forget();
+  void record_trace();
+  void reset_command();
 
   display::MaskOptics optics_;
   MaskLimits limits_;
@@ -134,17 +136,17 @@ class MaskControl {
   std::int64_t phase_since_ns_ = 0;
   MaskPhase fault_ = MaskPhase::absent;  ///< `stuck` or `alarm` while latched
   std::int64_t rearming_until_ns_ = 0;
-  bool powered_ = false, seen_ = false, caught_up_ = false, started_ = false;
+  bool powered_ = false, head_seen_ = false, caught_up_ = false, started_ = false;
 
-  double wish_mm_ = 0;     ///< where the mask should be
-  double command_mm_ = 0;  ///< where it is told to be: no faster than the motor
+  double target_mm_ = 0;   ///< where the mask should be
+  double command_mm_ = 0;  ///< the commanded position: limited to the motor's speed
   double quick_mm_ = 0, slow_mm_ = 0, slow_profile_mm_ = 0;
-  double wish_velocity_mm_s_ = 0;
-  bool arrived_ = false;  ///< measured where the command has led it, and the command is at the wish
-  std::int64_t on_wish_since_ns_ = 0;
-  std::int64_t astray_since_ns_ = 0;
+  double target_velocity_mm_s_ = 0;
+  bool arrived_ = false;  ///< the measurement agrees with the command, and the command has reached the target
+  std::int64_t on_target_since_ns_ = 0;
+  std::int64_t deviating_since_ns_ = 0;
   std::array<Trace, 256> traces_{};
-  std::size_t newest_ = 0, remembered_ = 0;
+  std::size_t newest_trace_ = 0, trace_count_ = 0;
 };
 
 }  // namespace prismesh::drivers::prism_servo

@@ -1,4 +1,4 @@
-// The motor that moves the prism mask, whatever its bytes. Called from the device loop once a tick: nothing blocks, allocates or logs.
+// The interface of the motor that moves the prism mask. The device loop calls it once per tick; it doesn't block, allocate or log.
 #pragma once
 
 #include <cstdint>
@@ -7,27 +7,27 @@
 
 namespace prismesh::drivers::prism_servo {
 
-/// Where the mask was measured to be.
+/// A measurement of the mask's position.
 struct MaskReading {
   std::int64_t measured_ns = 0;  ///< 0: never
-  double position_mm = 0;        ///< mask travel from the homed zero, to the right
+  double position_mm = 0;        ///< mask travel to the right from the homed zero
   double velocity_mm_s = 0;
 };
 
 enum class ServoPhase : std::uint8_t {
-  absent,      ///< nothing answers
-  setting_up,  ///< registers are read and written, one a tick
-  ready,       ///< takes goals
-  alarm,       ///< the servo reports a hardware error (named by `alarm_bits`): torque is off until `powered` was false and is true again
+  absent,      ///< no answer
+  setting_up,  ///< reads and writes registers, one per tick
+  ready,       ///< accepts goals
+  alarm,       ///< the servo reports a hardware error (in `alarm_bits`): torque is off until `powered` was false and is true again
 };
 
-/// Why a servo that should be `ready` isn't.
+/// Why a servo isn't `ready`.
 enum class ServoTrouble : std::uint8_t {
   none,
-  no_answer,    ///< at none of the line's speeds
-  other_model,  ///< one whose registers aren't known: nothing is written to it
-  refused,      ///< a register doesn't take what it is given
-  too_slow,     ///< the servo's own limit is below the speed that is asked for
+  no_answer,    ///< at any baud rate
+  other_model,  ///< a model with unknown registers; nothing is written to it
+  refused,      ///< the servo refuses a register's value
+  too_slow,     ///< the servo's own limit is below the required speed
 };
 
 class PrismServo {
@@ -40,16 +40,16 @@ class PrismServo {
     std::uint8_t alarm_bits = 0;
     ServoTrouble trouble = ServoTrouble::none;
     std::uint16_t trouble_number = 0;                ///< the model, or the register's address
-    port::PortStatus status = port::PortStatus::ok;  ///< gone: a new servo needs a new port
+    port::PortStatus status = port::PortStatus::ok;  ///< gone: a new port needs a new servo
   };
-  /// Takes in answers, sends this tick's goal (mask millimetres; ignored unless `ready`) and the question for the position.
-  /// `powered` false lets the motor go.
+  /// Reads answers, then sends this tick's goal (mask millimetres; ignored unless `ready`) and the request for the position. `powered`
+  /// false switches the torque off.
   virtual Tick tick(std::int64_t now_ns, double goal_mm, bool powered) = 0;
   struct Counts {
     std::uint64_t answers = 0, bad_packets = 0, timeouts = 0, watchdog_trips = 0;
   };
   virtual const Counts& counts() const = 0;
-  /// How the motor follows: what the goal has to lead by.
+  /// Returns the time by which the motor lags behind its goal; the goal has to lead by it.
   virtual std::int64_t lag_ns() const = 0;
 };
 

@@ -17,7 +17,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// The end of a value that begins the text: a string in single or double quotes. Nothing for any other kind.
+/// Returns the end of the string, in single or double quotes, at the start of `text`; nothing for any other value.
 std::optional<std::size_t> end_of_string(std::string_view text) {
   if (text.empty() || (text[0] != '"' && text[0] != '\'') || text.substr(0, 3) == std::string(3, text[0])) return std::nullopt;
   for (std::size_t i = 1; i < text.size(); ++i) {
@@ -35,7 +35,7 @@ bool is_display_section(std::string_view line) {
   return end != std::string_view::npos && trimmed(line.substr(1, end - 1)) == "display";
 }
 
-/// Where the value of `profile = ..` begins in a line; nothing for every other line.
+/// Returns where the value of `profile = ..` begins in a line; nothing for every other line.
 std::optional<std::size_t> profile_value(std::string_view line) {
   const std::size_t equals = line.find('=');
   if (equals == std::string_view::npos || trimmed(line.substr(0, equals)) != "profile") return std::nullopt;
@@ -43,13 +43,13 @@ std::optional<std::size_t> profile_value(std::string_view line) {
   return value == std::string_view::npos ? line.size() : value;
 }
 
-struct Found {
-  std::optional<std::size_t> section_end;  ///< just after the line [display]
-  std::optional<std::size_t> value;        ///< of its key `profile`
+struct ProfileKeyPosition {
+  std::optional<std::size_t> section_end;  ///< just behind the line [display]
+  std::optional<std::size_t> value;        ///< start of the value of the key `profile`
 };
 
-Found find(std::string_view text) {
-  Found found;
+ProfileKeyPosition find(std::string_view text) {
+  ProfileKeyPosition found;
   bool inside = false;
   for (std::size_t start = 0; start < text.size();) {
     std::size_t end = text.find('\n', start);
@@ -71,7 +71,7 @@ Found find(std::string_view text) {
 Result<std::string> with_profile(std::string_view text, const std::string& file, const std::filesystem::path& profile) {
   const std::string value = toml_quoted(profile.string());
   const std::string line_end = text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
-  const Found found = find(text);
+  const ProfileKeyPosition found = find(text);
   std::string changed(text);
   if (found.value) {
     const std::optional<std::size_t> length = end_of_string(text.substr(*found.value));
@@ -84,8 +84,8 @@ Result<std::string> with_profile(std::string_view text, const std::string& file,
     if (!changed.empty() && !changed.ends_with('\n')) changed += line_end;
     changed += (changed.empty() ? "" : line_end) + "[display]" + line_end + "profile = " + value + line_end;
   }
-  // Only a text that says what was meant goes to the disk: a section may also be written in other ways.
-  const Result<Settings> read = parse_part(changed, file);
+  // Verify the result before writing, because TOML has other ways to write a section.
+  const Result<StationSettings> read = parse_settings_part(changed, file);
   if (!read) return fail(read.error());
   const std::string beside = (std::filesystem::path(file).parent_path() / profile).lexically_normal().string();
   if (read->display.profile != beside && read->display.profile != profile.string())
@@ -100,7 +100,7 @@ Result<void> choose_profile(const std::filesystem::path& file, const std::filesy
     Result<FileBytes> read = read_file(file);
     if (!read) return fail(read.error());
     bytes = std::move(*read);
-    if (Result<Settings> valid = parse_part(bytes.text(), file); !valid) return fail(valid.error());
+    if (Result<StationSettings> valid = parse_settings_part(bytes.text(), file); !valid) return fail(valid.error());
   }
   const Result<std::string> changed = with_profile(bytes.text(), file.string(), profile);
   if (!changed) return fail(changed.error());

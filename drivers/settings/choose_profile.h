@@ -1,4 +1,4 @@
-// Makes a display profile the station's own: changes that one line of a settings file and leaves everything else as the user wrote it.
+// Sets the station's display profile in a settings file: changes that one line and leaves the rest as the user wrote it.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,13 @@
 
 namespace prismesh::drivers::settings {
 
-/// The text of a settings file with `profile` (a built-in one's name, or a file; one that isn't absolute is beside the settings) under
-/// [display]: replaced where it stands, else added to the section, else the section is
-/// added at the end. Comments, order and line ends stay. Errors: the text can't be changed safely, so that somebody has to (says how).
+/// Returns the text of a settings file with `profile` set under [display]: replaces the value, or else adds the key to the section, or else
+/// appends the section. `profile`: a built-in profile's name or a file, relative to the settings file. Keeps comments, order and line ends.
+/// Errors: the text can't be changed safely, so the user has to change it (says how).
 Result<std::string> with_profile(std::string_view text, const std::string& file, const std::filesystem::path& profile);
 
-/// Changes the file, whole or not at all; a file that isn't there is made, and its folders. Errors: those of with_profile, the disk's, and
-/// text that is no settings file (nothing is written then).
+/// Changes the file atomically; creates it and its folders if missing. Errors: those of with_profile; the disk's errors; an existing file
+/// that isn't a settings file (then nothing is written).
 Result<void> choose_profile(const std::filesystem::path& file, const std::filesystem::path& profile);
 
 }  // namespace prismesh::drivers::settings

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is wrong with a value, as the rest of a sentence that begins with the key's name; empty: nothing.
+/// What is wrong with a value, as the rest of a sentence that begins with the key's name; empty if the value is valid.
 using Problem = std::string;
 
 struct Key {
@@ -39,14 +39,14 @@ const Named* find(std::span<const Named> all, std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
-struct Place {
+struct SourceLine {
   std::string file;
   long line = 0;
 };
 
-/// Where each device was last asked for, to say so when a part of it is missing.
-struct Places {
-  Place tracker_driver, tracker_port, servo_driver, servo_port;
+/// Where each device's driver and port were last set, for errors about missing or conflicting ports.
+struct DeviceLines {
+  SourceLine tracker_driver, tracker_port, servo_driver, servo_port;
 };
 
 std::string number_text(double value) {
@@ -80,7 +80,7 @@ Key whole(std::string_view name, Whole& to, std::int64_t low, std::int64_t high,
           }};
 }
 
-/// The number of a node that is one, whole or not.
+/// Returns the number of an integer or floating-point node; nothing for other nodes and for numbers that aren't finite.
 std::optional<double> number_of(const toml::node& node) {
   const std::optional<double> value = node.is_number() ? node.value<double>() : std::nullopt;
   return value && std::isfinite(*value) ? value : std::nullopt;
@@ -96,15 +96,15 @@ Key number(std::string_view name, double& to, double low, double high, std::stri
           }};
 }
 
-Key place(std::string_view name, Eigen::Vector3d& to, double furthest) {
-  return {name, [&to, furthest](const toml::node& node) -> Problem {
+Key vector(std::string_view name, Eigen::Vector3d& to, double max_mm) {
+  return {name, [&to, max_mm](const toml::node& node) -> Problem {
             const toml::array* values = node.as_array();
             if (values == nullptr || values->size() != 3) return "must be three numbers, like [0, 210, -15]";
             Eigen::Vector3d read;
             for (std::size_t i = 0; i < 3; ++i) {
               const std::optional<double> value = number_of(*values->get(i));
               if (!value) return "must be three numbers, like [0, 210, -15]";
-              if (std::abs(*value) > furthest) return "holds " + outside(*value, -furthest, furthest, " mm").substr(3);
+              if (std::abs(*value) > max_mm) return "holds " + outside(*value, -max_mm, max_mm, " mm").substr(3);
               read[static_cast<Eigen::Index>(i)] = *value;
             }
             to = read;
@@ -112,7 +112,7 @@ Key place(std::string_view name, Eigen::Vector3d& to, double furthest) {
           }};
 }
 
-/// One of some names; `to` takes the index.
+/// One of `names`; `to` receives the index.
 Key choice(std::string_view name, std::vector<std::string_view> names, std::function<void(std::size_t)> to) {
   return {name, [names = std::move(names), to = std::move(to)](const toml::node& node) -> Problem {
             const auto* value = node.as_string();
@@ -127,7 +127,7 @@ Key choice(std::string_view name, std::vector<std::string_view> names, std::func
           }};
 }
 
-/// A device's file, or "" for none.
+/// The path of a device's file, or "" for none.
 Key device_file(std::string_view name, std::string& to) {
   return {name, [&to](const toml::node& node) -> Problem {
             const auto* value = node.as_string();
@@ -140,8 +140,8 @@ Key device_file(std::string_view name, std::string& to) {
           }};
 }
 
-/// Something built in by its name, or a file of one's own: a text with a slash, or one that ends in .toml. `what`: "a profile's name or
-/// file in quotes, like ..".
+/// The name of a built-in item, or a file (a text with a slash, or one that ends in .toml). `what`: for the error, for example "a profile's
+/// name or file in quotes, like ..".
 Key name_or_file(std::string_view name, std::string& to, const fs::path& folder, std::string what) {
   return {name, [&to, &folder, what = std::move(what)](const toml::node& node) -> Problem {
             const auto* value = node.as_string();
@@ -153,14 +153,14 @@ Key name_or_file(std::string_view name, std::string& to, const fs::path& folder,
           }};
 }
 
-Key remember(Key key, Place& place, const std::string& file) {
+Key remember(Key key, SourceLine& place, const std::string& file) {
   return {key.name, [read = std::move(key.read), &place, &file](const toml::node& node) {
             place = {file, static_cast<long>(node.source().begin.line)};
             return read(node);
           }};
 }
 
-Section tracker_section(EyeTrackerSettings& tracker, Places& places, const std::string& file) {
+Section tracker_section(EyeTrackerSettings& tracker, DeviceLines& places, const std::string& file) {
   return {"eye_tracker",
           {remember(choice("driver", {"none", "dynasight", "opentrack"}, [&](std::size_t i) { tracker.driver = TrackerDriver(i); }),
                     places.tracker_driver, file),
@@ -169,14 +169,14 @@ Section tracker_section(EyeTrackerSettings& tracker, Places& places, const std::
            choice("dialect", {"dynasight", "d4d"}, [&](std::size_t i) { tracker.dialect = TrackerDialect(i); }),
            flag("polled", tracker.polled), whole("udp_port", tracker.udp_port, 1, 65535),
            number("latency_ms", tracker.latency_ms, 0, 500, " ms"), number("noise_mm", tracker.noise_mm, 0, 50, " mm"),
-           place("offset_mm", tracker.offset_mm, 2000), number("eye_separation_mm", tracker.eye_separation_mm, 50, 75, " mm"),
+           vector("offset_mm", tracker.offset_mm, 2000), number("eye_separation_mm", tracker.eye_separation_mm, 50, 75, " mm"),
            choice("motion", {"still", "sway", "lean", "turn", "tour"}, [&tracker](std::size_t i) {
              constexpr std::array kMotions{"still", "sway", "lean", "turn", "tour"};
              tracker.motion = kMotions[i];
            })}};
 }
 
-Section servo_section(PrismServoSettings& servo, Places& places, const std::string& file) {
+Section servo_section(PrismServoSettings& servo, DeviceLines& places, const std::string& file) {
   return {
       "prism_servo",
       {remember(choice("driver", {"none", "dynamixel"}, [&](std::size_t i) { servo.driver = ServoDriver(i); }), places.servo_driver, file),
@@ -189,7 +189,7 @@ Section servo_section(PrismServoSettings& servo, Places& places, const std::stri
 
 class Reader {
  public:
-  Reader(std::string file, Settings& settings, Places& places)
+  Reader(std::string file, StationSettings& settings, DeviceLines& places)
       : file_(std::move(file)), folder_(fs::path(file_).parent_path()), settings_(settings), places_(places) {}
 
   Result<void> read(const toml::table& root) const {
@@ -238,11 +238,11 @@ class Reader {
 
   std::string file_;
   fs::path folder_;
-  Settings& settings_;
-  Places& places_;
+  StationSettings& settings_;
+  DeviceLines& places_;
 };
 
-Result<void> apply(std::string_view text, const fs::path& file, Settings& settings, Places& places) {
+Result<void> apply(std::string_view text, const fs::path& file, StationSettings& settings, DeviceLines& places) {
   try {
     const toml::table table = toml::parse(text, file.string());
     if (auto read = Reader(file.string(), settings, places).read(table); !read) return read;
@@ -253,13 +253,13 @@ Result<void> apply(std::string_view text, const fs::path& file, Settings& settin
   return {};
 }
 
-tl::unexpected<Error> missing_port(const Place& driver, const std::string& device) {
+tl::unexpected<Error> missing_port(const SourceLine& driver, const std::string& device) {
   return fail(driver.file, driver.line,
               device + " has a driver but no port; say port = \"/dev/serial/by-id/..\" (ls that folder), or simulated = true");
 }
 
-/// What no single value can tell.
-Result<Settings> checked(Settings settings, const Places& places) {
+/// Checks conditions that involve several values.
+Result<StationSettings> checked(StationSettings settings, const DeviceLines& places) {
   const EyeTrackerSettings& tracker = settings.eye_tracker;
   const PrismServoSettings& servo = settings.prism_servo;
   const bool tracker_has_line = tracker.driver == TrackerDriver::dynasight && !tracker.simulated;
@@ -274,16 +274,16 @@ Result<Settings> checked(Settings settings, const Places& places) {
 
 }  // namespace
 
-Result<Settings> parse_settings(std::string_view text, const fs::path& file) {
-  Settings settings;
-  Places places;
+Result<StationSettings> parse_settings(std::string_view text, const fs::path& file) {
+  StationSettings settings;
+  DeviceLines places;
   if (auto applied = apply(text, file, settings, places); !applied) return fail(applied.error());
   return checked(std::move(settings), places);
 }
 
-Result<Settings> parse_part(std::string_view text, const fs::path& file) {
-  Settings settings;
-  Places places;
+Result<StationSettings> parse_settings_part(std::string_view text, const fs::path& file) {
+  StationSettings settings;
+  DeviceLines places;
   if (auto applied = apply(text, file, settings, places); !applied) return fail(applied.error());
   return settings;
 }
@@ -301,11 +301,11 @@ std::vector<fs::path> usual_files() {
   return files;
 }
 
-Result<Settings> read_settings(const std::optional<fs::path>& named_file) { return read_settings(usual_files(), named_file); }
+Result<StationSettings> read_settings(const std::optional<fs::path>& named_file) { return read_settings(usual_files(), named_file); }
 
-Result<Settings> read_settings(const std::vector<fs::path>& usual, const std::optional<fs::path>& named_file) {
-  Settings settings;
-  Places places;
+Result<StationSettings> read_settings(const std::vector<fs::path>& usual, const std::optional<fs::path>& named_file) {
+  StationSettings settings;
+  DeviceLines places;
   std::vector<fs::path> files;
   for (const fs::path& file : usual) {
     std::error_code error;

@@ -1,5 +1,6 @@
-// prismesh.toml: what a station is made of. Read from /etc/prismesh/prismesh.toml, then the user's ($XDG_CONFIG_HOME or
-// ~/.config)/prismesh/prismesh.toml, then --config FILE; a later file changes only the keys it has. docs/settings.md lists them.
+// Reads prismesh.toml, the settings of a station: first /etc/prismesh/prismesh.toml, then the user's ($XDG_CONFIG_HOME or
+// ~/.config)/prismesh/prismesh.toml, then --config FILE. A later file overrides only the keys that it contains. docs/settings.md lists the
+// keys.
 #pragma once
 
 #include <cstdint>
@@ -16,22 +17,22 @@
 namespace prismesh::drivers::settings {
 
 enum class TrackerDriver : std::uint8_t { none, dynasight, opentrack };
-enum class TrackerDialect : std::uint8_t { dynasight, d4d };  ///< which command asks for a stream: `V` or `0`
+enum class TrackerDialect : std::uint8_t { dynasight, d4d };  ///< the command that starts streaming: `V` or `0`
 enum class ServoDriver : std::uint8_t { none, dynamixel };
 
 struct EyeTrackerSettings {
   TrackerDriver driver = TrackerDriver::none;
-  bool simulated = false;  ///< the device's side is played by deviced, over a pseudo-terminal or loopback UDP
-  std::string port;        ///< /dev/serial/by-id/..; a pseudo-terminal works too
+  bool simulated = false;  ///< deviced simulates the device over a pseudo-terminal or loopback UDP
+  std::string port;        ///< for example /dev/serial/by-id/..; a pseudo-terminal works too
   int baud = 19200;
   TrackerDialect dialect = TrackerDialect::d4d;
   bool polled = false;
-  std::uint16_t udp_port = 4242;  ///< opentrack
-  double latency_ms = 20;         ///< from the head being there to the record's last byte
+  std::uint16_t udp_port = 4242;  ///< for opentrack
+  double latency_ms = 20;         ///< from the head's position to the last byte of its record
   double noise_mm = 1;
   Eigen::Vector3d offset_mm{0, 0, 0};  ///< the tracker's origin in screen coordinates
-  double eye_separation_mm = 63;       ///< 50..75; the calibration's value in the profile goes before it
-  std::string motion = "tour";         ///< simulated: still, sway, lean, turn, tour
+  double eye_separation_mm = 63;       ///< 50..75; the calibrated value in the profile overrides it
+  std::string motion = "tour";         ///< of a simulated tracker: still, sway, lean, turn, tour
   bool operator==(const EyeTrackerSettings&) const = default;
 };
 
@@ -43,7 +44,7 @@ struct PrismServoSettings {
   int id = 1;
   double travel_mm_per_turn = 5.0;
   bool reversed = false;
-  int zero_ticks = 2048;   ///< of the position register when the mask stands in its middle
+  int zero_ticks = 2048;   ///< position register when the mask is in its middle
   double travel_mm = 2.0;  ///< to either side of the middle
   double speed_mm_s = 5.0;
   double lag_ms = 15;
@@ -52,42 +53,43 @@ struct PrismServoSettings {
 
 struct DisplaySettings {
   std::string profile = "prism-mask";  ///< a built-in name, or a profile file (relative to the settings file)
-  double latency_ms = 10;              ///< from a row's scan-out to its light: what the panel's electronics and pixels take
+  double latency_ms = 10;              ///< from a row's scan-out to its light, in the panel's electronics and pixels
 };
 
-/// What the kiosk's hand works with.
+/// How the user works with the kiosk.
 struct HandSettings {
-  std::string mouse = "default";  ///< a built-in layout's name, or a file (relative to the settings file)
+  std::string mouse = "default";  ///< a built-in mouse layout's name, or a file (relative to the settings file)
 };
 
-/// What the model server keeps.
+/// Limits of the model server.
 struct DocumentSettings {
-  std::int64_t history_mb = 2048;  ///< of states kept for undo and redo
-  std::int64_t hang_s = 60;        ///< without a sign of life for so long the server ends itself, to be started anew; 0: never
+  std::int64_t history_mb = 2048;  ///< max. memory for the states kept for undo and redo
+  std::int64_t hang_s = 60;        ///< the server ends itself, to be restarted, after so long without a heartbeat; 0: never
 };
 
-struct Settings {
+struct StationSettings {
   DisplaySettings display;
   HandSettings hand;
   DocumentSettings document;
   EyeTrackerSettings eye_tracker;
   PrismServoSettings prism_servo;
-  std::vector<std::filesystem::path> files;  ///< those that were read, in order
+  std::vector<std::filesystem::path> files;  ///< the files that were read, in order
 };
 
-/// Errors: a named file that isn't there, text that isn't TOML, an unknown key or section (with the nearest known one), a value out of its
-/// range, a real device without its port, one port for two devices: each with file and line.
-Result<Settings> read_settings(const std::optional<std::filesystem::path>& named_file);
+/// Reads the usual files and `named_file`. Errors, with file and line: a missing named file, text that isn't TOML, an unknown key or
+/// section (with the nearest known one), a value out of range, a real device without a port, one port for two devices.
+Result<StationSettings> read_settings(const std::optional<std::filesystem::path>& named_file);
 
-/// The files that every station looks for, in order: the system's and the user's. Without $XDG_CONFIG_HOME and $HOME the system's only.
+/// Returns the files that every station reads, in order: the system's and the user's. Without $XDG_CONFIG_HOME and $HOME only the system's.
 std::vector<std::filesystem::path> usual_files();
 
-/// As read_settings, with the usual files given: those that aren't there are passed over.
-Result<Settings> read_settings(const std::vector<std::filesystem::path>& usual, const std::optional<std::filesystem::path>& named_file);
+/// As read_settings, with `usual` as the usual files; skips those that don't exist.
+Result<StationSettings> read_settings(const std::vector<std::filesystem::path>& usual,
+                                      const std::optional<std::filesystem::path>& named_file);
 
-/// One file's text on its own, on top of the defaults; `file` stands in errors, and profile files are sought beside it.
-Result<Settings> parse_settings(std::string_view text, const std::filesystem::path& file);
-/// As parse_settings, of one file among several: a port that is missing in it may stand in another one.
-Result<Settings> parse_part(std::string_view text, const std::filesystem::path& file);
+/// Parses one file's text on top of the defaults. `file` is named in errors, and profile files are relative to its folder.
+Result<StationSettings> parse_settings(std::string_view text, const std::filesystem::path& file);
+/// As parse_settings, for one of several files: a port that is missing here may be set in another file, so this isn't an error.
+Result<StationSettings> parse_settings_part(std::string_view text, const std::filesystem::path& file);
 
 }  // namespace prismesh::drivers::settings

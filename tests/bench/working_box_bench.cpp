@@ -12,10 +12,10 @@ constexpr PanelArea kPanel{0, 0, 1280, 1024, 1280, 1024};
 
 void depths(benchmark::State& state, Composing composing, double limit) {
   std::optional<DepthSpan> span;
-  for (auto _ : state) span = working_depths({}, static_cast<double>(state.range(0)), kMeanEyeSeparationMm, kPanel, composing, limit);
+  for (auto _ : state) span = working_depths({.panel = kPanel, .composing = composing}, static_cast<double>(state.range(0)), limit);
   state.counters["x_mm"] = static_cast<double>(state.range(0));
-  state.counters["nearest_mm"] = span ? span->nearest_mm : 0;
-  state.counters["farthest_mm"] = span ? span->farthest_mm : 0;
+  state.counters["nearest_mm"] = span ? span->min_mm : 0;
+  state.counters["farthest_mm"] = span ? span->max_mm : 0;
 }
 const auto at_places = [](benchmark::internal::Benchmark* bench) {
   for (const int x : {0, 50, 100, 150, 200, 300}) bench->Arg(x);
@@ -31,7 +31,7 @@ BENCHMARK_CAPTURE(depths, own_light_subpixels, Composing::subpixels, 0.5)->Apply
 /// Worst phase errors with the head straight before the panel.
 void errors_at(benchmark::State& state) {
   const Eigen::Vector3d head(0, 0, static_cast<double>(state.range(0)));
-  const auto error = [&](Composing composing) { return worst_phase_error({}, head, kMeanEyeSeparationMm, kPanel, composing); };
+  const auto error = [&](Composing composing) { return worst_phase_error({.panel = kPanel, .composing = composing}, head); };
   for (auto _ : state) {
     state.counters["fixed_columns"] = error(Composing::fixed_columns);
     state.counters["pixels"] = error(Composing::pixels);
@@ -44,7 +44,7 @@ BENCHMARK(errors_at)->DenseRange(450, 1000, 50)->Iterations(1);
 void sideways(benchmark::State& state, Composing composing, double limit) {
   double x = 0;
   for (auto _ : state)
-    while (x < 600 && worst_phase_error({}, {x, 0, 650}, kMeanEyeSeparationMm, kPanel, composing) <= limit) x += 2;
+    while (x < 600 && worst_phase_error({.panel = kPanel, .composing = composing}, {x, 0, 650}) <= limit) x += 2;
   state.counters["x_mm"] = x - 2;
 }
 BENCHMARK_CAPTURE(sideways, quarter_pixel_fixed_columns, Composing::fixed_columns, 0.25)->Iterations(1);

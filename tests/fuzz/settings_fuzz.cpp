@@ -17,7 +17,7 @@ void demand(bool holds) {
 
 bool is_port(const std::string& port) { return port.empty() || port.front() == '/'; }
 
-void check(const Settings& settings) {
+void check(const StationSettings& settings) {
   const EyeTrackerSettings& tracker = settings.eye_tracker;
   demand(tracker.driver <= TrackerDriver::opentrack && tracker.dialect <= TrackerDialect::d4d);
   demand(is_port(tracker.port) && tracker.baud >= 300 && tracker.udp_port >= 1);

@@ -50,7 +50,7 @@ TEST(CalibrationPlace, without_a_home_is_beside_the_settings_where_they_find_it_
     const fs::path profile = place.folder / "wall.toml";
     EXPECT_EQ(fs::weakly_canonical(profile), fs::weakly_canonical(fs::absolute(settings).parent_path() / "displays" / "wall.toml"));
     const std::string text = drivers::settings::with_profile("", settings.string(), profile).value_or("");
-    const Result<drivers::settings::Settings> read = drivers::settings::parse_settings(text, settings);
+    const Result<drivers::settings::StationSettings> read = drivers::settings::parse_settings(text, settings);
     ASSERT_TRUE(read);
     EXPECT_EQ(fs::weakly_canonical(read->display.profile), fs::weakly_canonical(profile)) << settings;
   }

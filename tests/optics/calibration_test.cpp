@@ -1,6 +1,6 @@
-// The calibration led by a viewer who can't read the display's data sheet: the wizard's pages are drawn by the kiosk's renderer, the
-// simulated viewer looks at them through a mask that isn't what the profile says, and turns as the pages tell, with eyes that notice only
-// so much and a hand that isn't sure. What comes out has to fit the display.
+// The calibration done by a simulated viewer who doesn't know the display's data: the kiosk's renderer draws the wizard's pages, the viewer
+// looks at them through a mask that differs from the profile, and follows the instructions with limited perception and random errors. The
+// result has to fit the display.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,12 +25,12 @@ using kiosk::calibration::Wizard;
 
 constexpr kiosk::display::PixelSize kSize{1280, 96};
 
-// What a viewer notices; generous to no one: a trained observer sees half of it.
-constexpr double kTiltNoticed = 0.012;     ///< of the picture's height, by which a band lies lower on one side
+// What a viewer notices; conservative: a trained observer sees half of it.
+constexpr double kTiltNoticed = 0.012;     ///< share of the picture's height by which a band is lower on one side
 constexpr double kRelativeNoticed = 0.03;  ///< of light
-constexpr double kDarkNoticed = 0.004;     ///< of a white panel's light, against black
+constexpr double kDarkNoticed = 0.004;     ///< relative to a white panel's light
 
-/// A display out of its box, and the person before it.
+/// A display with unknown errors, and the viewer before it.
 struct Situation {
   viewer::MaskDisplay display;
   viewer::Sharpness sharpness;
@@ -70,9 +70,9 @@ class CalibrationTest : public OpticsTest {
   double any(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   double about(double spread) { return std::normal_distribution<double>(0, spread)(random_); }
 
-  /// Near where one is told to, and at some height.
+  /// Near the requested position, at some height.
   void sit(double aside, double back) { head_ = {aside + any(-20, 20), any(-30, 30), 650 + back + any(-20, 20)}; }
-  /// What tracker and servo say: the mask is held where the page wants it, or follows the head by the profile that it began with.
+  /// The state of tracker and servo: the mask is at the position that the page requests, or follows the head by the initial profile.
   Now now() {
     Now now;
     now.eyes_seen = true;
@@ -85,7 +85,7 @@ class CalibrationTest : public OpticsTest {
     return page.hold_mask_mm.value_or(std::remainder(mask_position_mm(start_.optics, head_), pitch));
   }
 
-  /// What an eye sees of the page that is open.
+  /// What an eye sees of the open page.
   viewer::Seen look(bool left) {
     const Page page = wizard_->page(now());
     Picture picture;
@@ -101,7 +101,7 @@ class CalibrationTest : public OpticsTest {
     EXPECT_TRUE(seen) << seen.error().text();
     return *seen;
   }
-  /// Mean light of a part of what is seen; shares of elements and rows.
+  /// Mean light of a part of the seen picture; x and y as shares of elements and rows.
   static double light_in(const viewer::Seen& seen, double x0, double x1, double y0, double y1) {
     double sum = 0, count = 0;
     for (int y = static_cast<int>(y0 * seen.rows); y < static_cast<int>(y1 * seen.rows); ++y)
@@ -112,8 +112,8 @@ class CalibrationTest : public OpticsTest {
     return sum / count;
   }
 
-  /// By how many picture heights the band lies lower at the right than at the left, by its middle part: at the ends the panel's stripes,
-  /// which aren't quite where the windows are, bend its edges.
+  /// By how many picture heights the band is lower at the right than at the left. Uses its middle part: at the ends its edges are bent,
+  /// because the panel's stripes aren't exactly where the windows are.
   double tilt() {
     const viewer::Seen seen = look(true);
     constexpr int kSections = 12;
@@ -148,7 +148,8 @@ class CalibrationTest : public OpticsTest {
     const double light = light_in(look(false), 0.02, 0.98, 0, 0.6);
     return light * (1 + about(kRelativeNoticed / 3));
   }
-  /// Looks over a whole turn of the mask for the darkest place, then goes on to both sides until it has become brighter, and to the middle.
+  /// Searches a whole mask period for the darkest position, then the positions on both sides where it becomes brighter, and takes the
+  /// middle.
   void find_the_darkest() {
     wizard_->adjust(-6, true);
     double darkest = 2;
@@ -185,7 +186,7 @@ class CalibrationTest : public OpticsTest {
     sit(0, 0);
   }
 
-  /// What the right half of the field is brighter than the left one, relative.
+  /// Relative difference in light between the right and the left half of the field.
   double imbalance(bool left) {
     const viewer::Seen seen = look(left);
     const double first = light_in(seen, 0.2, 0.45, 0.15, 0.45), second = light_in(seen, 0.55, 0.8, 0.15, 0.45);
@@ -224,7 +225,7 @@ class CalibrationTest : public OpticsTest {
     return wizard_->result();
   }
 
-  /// Largest distance between where the profile's optics and the display itself have a window, over panel and both eyes; pixels.
+  /// Max. distance between the windows of the profile's optics and those of the display, over the panel and both eyes, in pixels.
   struct Fit {
     double worst_px = 0, mean_px = 0;
   };
@@ -250,7 +251,7 @@ class CalibrationTest : public OpticsTest {
     fit.mean_px /= count;
     return fit;
   }
-  /// What the woven picture itself gives, rounding to subpixels included.
+  /// The error of the woven picture, including the rounding to subpixels.
   double woven_worst_px(const Profile& profile, const Vec3& head) {
     Picture picture;
     picture.profile = profile;
@@ -262,7 +263,7 @@ class CalibrationTest : public OpticsTest {
         .worst_pixels;
   }
 
-  /// How much of the other eye's light an eye really gets, relative to its own, the mask where the profile wants it.
+  /// Share of the other eye's light that an eye really gets, relative to its own, with the mask at the profile's position.
   double other_share(const Profile& profile, bool left) {
     Picture picture;
     picture.profile = profile;
@@ -308,7 +309,7 @@ class CalibrationTest : public OpticsTest {
   std::mt19937 random_{1};
 };
 
-TEST_F(CalibrationTest, finds_a_mask_that_stands_elsewhere) { calibrate_and_judge(situation(0.19, 1, 1)); }
+TEST_F(CalibrationTest, finds_a_mask_at_another_position) { calibrate_and_judge(situation(0.19, 1, 1)); }
 
 TEST_F(CalibrationTest, finds_a_mask_of_another_pitch) {
   calibrate_and_judge(situation(-0.1, 1.0011, 1));
@@ -320,14 +321,14 @@ TEST_F(CalibrationTest, finds_a_mask_at_another_distance) {
   calibrate_and_judge(situation(-0.2, 1, 1.06));
 }
 
-TEST_F(CalibrationTest, finds_all_of_it_through_a_mask_that_leaks) {
+TEST_F(CalibrationTest, finds_all_errors_through_a_mask_with_crosstalk) {
   Situation all = situation(-0.171, 1.0006, 0.972);
   all.display.panel.pitch_mm = 0.2816;
   all.sharpness = {1.1, 0.06};
   for (all.seed = 1; all.seed <= 2; ++all.seed) calibrate_and_judge(all);
 }
 
-TEST_F(CalibrationTest, finds_it_where_the_windows_are_narrow) {
+TEST_F(CalibrationTest, finds_all_errors_with_narrow_windows) {
   Situation narrow = situation(0.11, 1.0004, 0.98);
   narrow.sharpness.window_pixels = 0.5;
   calibrate_and_judge(narrow);

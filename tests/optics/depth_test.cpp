@@ -1,4 +1,4 @@
-// Depth: a known point is drawn, woven and seen by both eyes; where their directions meet is where it seems to be.
+// Depth: a known point is drawn, woven and seen by both eyes; it appears where their directions meet.
 #include <array>
 #include <cmath>
 #include <iostream>
@@ -9,7 +9,7 @@ namespace prismesh::optics {
 namespace {
 
 constexpr double kToleranceMm = 3;            ///< at 100 mm
-constexpr double kToleranceOnScreenMm = 1.5;  ///< a pixel of false parallax would be 2.9 mm at 650 mm
+constexpr double kToleranceOnScreenMm = 1.5;  ///< a false parallax of one pixel would be 2.9 mm at 650 mm
 
 class Depth : public OpticsTest {
  protected:
@@ -18,7 +18,7 @@ class Depth : public OpticsTest {
     if (!IsSkipped()) make_renderer({});
   }
 
-  /// A square of 5 mm that faces the viewer, turned a little: sides along the rows would hide where between two of them they are.
+  /// A square of 5 mm that faces the viewer, slightly rotated: sides parallel to the rows would hide their position between two rows.
   void show_square(const Vec3& middle) {
     test::TestSource source;
     for (const auto& [x, y] : {std::array{-3.2, -1.5}, {1.5, -3.2}, {3.2, 1.5}, {-1.5, 3.2}}) source.add_node(middle + Vec3(x, y, 0));
@@ -31,12 +31,12 @@ class Depth : public OpticsTest {
     Picture picture = at_head("prism-mask", head);
     picture.toward_right = toward_right;
     picture.element_edges = picture.outlines = false;
-    picture.view.bounds.radius = 75;  // so that planes at 100 mm are inside what is drawn, and depth is not compressed
+    picture.view.bounds.radius = 75;  // includes planes at 100 mm in the drawn range, so that depth isn't compressed
     return picture;
   }
 
-  /// Where the square seems to be, in mm from the middle of the screen's seen surface: the panel appears nearer than it is, as the bottom
-  /// of a pool does, an air gap behind the mask.
+  /// Where the square appears, in mm from the middle of the screen's apparent surface: behind the glass the panel appears nearer than it
+  /// is, an air gap behind the mask.
   Vec3 seen_at(const viewer::MaskDisplay& display, const Picture& picture, const viewer::Sharpness& sharpness = {}) {
     const viewer::LightImage drawn = woven(picture, display.panel);
     renderer_->set_model(nullptr);
@@ -62,7 +62,7 @@ class Depth : public OpticsTest {
 
 const std::array kHeads{Vec3(0, 0, 650), Vec3(0, 0, 500), Vec3(0, 0, 800), Vec3(120, 50, 650), Vec3(-140, -60, 560)};
 
-TEST_F(Depth, a_known_point_is_where_it_should_be) {
+TEST_F(Depth, a_known_point_appears_at_its_position) {
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   double worst = 0, worst_aside = 0;
   for (const Vec3& head : kHeads)
@@ -89,7 +89,7 @@ TEST_F(Depth, a_tilted_head_sees_the_same_depth) {
   }
 }
 
-TEST_F(Depth, without_depth_the_square_lies_on_the_screen) {
+TEST_F(Depth, without_depth_the_square_appears_on_the_screen) {
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   show_square({0, 0, 80});
   Picture picture = picture_for({0, 0, 650});

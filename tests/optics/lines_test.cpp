@@ -12,8 +12,9 @@ namespace prismesh::optics {
 namespace {
 
 constexpr int kLines = 900;
-constexpr double kInkLevels = 60;  ///< far below a white line, far above what a window at the edge of its column takes of the next one
-constexpr std::array<double, 7> kSlopes{0, 15, 45, 60, 75, 85, 90};  ///< degrees: borders of the table's columns
+constexpr double kInkLevels =
+    60;  ///< far below a white line, far above the light that a window at the edge of its column gets from the next one
+constexpr std::array<double, 7> kSlopes{0, 15, 45, 60, 75, 85, 90};  ///< degrees: limits of the table's columns
 
 class ThinLines : public OpticsTest {
  protected:
@@ -33,7 +34,7 @@ class ThinLines : public OpticsTest {
     double worst = 0;
     double mean(std::size_t column) const { return pieces[column] / lines[column]; }
   };
-  /// How many pieces each of the 900 lines is seen in, by slope; both eyes count.
+  /// The number of pieces in which each of the 900 lines is seen, by slope; both eyes count.
   Table look_at_lines(const std::string& profile) {
     const ThinLine line;
     const std::array<int, 2> size{display_.panel.columns, display_.panel.rows};
@@ -79,7 +80,7 @@ TEST_F(ThinLines, stay_whole_at_half_width) {
 
 TEST_F(ThinLines, break_under_a_stencil) {
   const Table table = look_at_lines("prism-mask-stencil");
-  // Known from lines of this length: 1, 23, 61, 38, 18 and 4.9 pieces.
+  // Known for lines of this length: 1, 23, 61, 38, 18 and 4.9 pieces.
   EXPECT_NEAR(table.mean(1), 23, 8);
   EXPECT_NEAR(table.mean(2), 61, 15);
   EXPECT_NEAR(table.mean(3), 38, 10);

@@ -1,5 +1,5 @@
-// What the proofs share: the kiosk's renderer weaves, the simulated viewer looks. What the display is, the viewer is told in its own
-// words here, from the profile's documented meaning, not through the renderer's optics.
+// Shared by the optics tests: the kiosk's renderer weaves, the simulated viewer looks. The viewer's display is defined here from the
+// profile's documented meaning, independently of the renderer's optics.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ inline viewer::Point point(const Vec3& at) { return {at.x(), at.y(), at.z()}; }
 
 class OpticsTest : public kiosk::render::RenderTest {
  protected:
-  /// The station's display as its data sheet has it, with a panel of so many pixels.
+  /// The station's display according to its data sheet, with a panel of so many pixels.
   static viewer::MaskDisplay display(int columns, int rows) {
     viewer::MaskDisplay made;
     made.panel.columns = columns;
@@ -32,7 +32,7 @@ class OpticsTest : public kiosk::render::RenderTest {
   }
   static viewer::LightImage light(const Image& image) { return viewer::light_of(image.rgb, image.width, image.height); }
 
-  /// What the panel shows.
+  /// The picture on the panel.
   viewer::LightImage woven(const Picture& picture, const viewer::Panel& panel) { return light(draw(picture, panel.columns, panel.rows)); }
   /// The same scene and eyes on an ordinary screen.
   viewer::LightImage ordinary(const Picture& picture, const char* profile, const viewer::Panel& panel) {
@@ -65,7 +65,7 @@ class OpticsTest : public kiosk::render::RenderTest {
     picture.between_eyes_mm = between_mm;
     return picture;
   }
-  /// Fills the screen with the model, as seen from where the eyes are.
+  /// Fills the screen with the model, as seen from the eyes' position.
   void fit(Picture& picture, const viewer::Panel& panel) const {
     const Picture framed = fitted("mono", "iso", panel.columns, panel.rows);
     picture.view = framed.view;

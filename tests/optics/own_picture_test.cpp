@@ -1,4 +1,4 @@
-// Each eye sees its own picture, wherever the eyes are in the working volume and whatever the mask does that is known.
+// Each eye sees its own picture, anywhere in the working volume and for every known mask position.
 #include <cmath>
 #include <iostream>
 #include <string>
@@ -12,7 +12,7 @@ constexpr double kOwnPhaseLimit = 0.25;  ///< pixels
 
 class OwnPicture : public OpticsTest {
  protected:
-  /// How an eye's sight compares with what it should see and with what the other eye should.
+  /// Differences between what an eye sees and its own and the other eye's picture.
   struct Sight {
     double to_own = 0, to_other = 0, other_share = 0;
   };
@@ -27,7 +27,7 @@ class OwnPicture : public OpticsTest {
   static std::string where(const Vec3& at) {
     return std::to_string(std::lround(at.x())) + ", " + std::to_string(std::lround(at.y())) + ", " + std::to_string(std::lround(at.z()));
   }
-  /// `likeness`: how many times nearer what an eye sees is to its own picture than to the other's.
+  /// `likeness`: min. ratio of the differences from the other eye's picture and from the eye's own.
   void expect_own_pictures(const viewer::MaskDisplay& display, const Picture& picture, double true_mask_mm, const std::string& where,
                            double likeness = 3) {
     for (const bool left : {true, false}) {
@@ -39,7 +39,7 @@ class OwnPicture : public OpticsTest {
   }
 };
 
-TEST_F(OwnPicture, anywhere_in_the_working_volume) {
+TEST_F(OwnPicture, seen_anywhere_in_the_working_volume) {
   make_renderer({});
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   show(test::make_crash_box());
@@ -56,7 +56,7 @@ TEST_F(OwnPicture, anywhere_in_the_working_volume) {
       }
 }
 
-TEST_F(OwnPicture, wherever_the_mask_is_known_to_stand) {
+TEST_F(OwnPicture, seen_at_any_known_mask_position) {
   make_renderer({});
   const viewer::MaskDisplay display = OpticsTest::display(1280, 120);
   show(test::make_crash_box());
@@ -66,7 +66,7 @@ TEST_F(OwnPicture, wherever_the_mask_is_known_to_stand) {
       Picture picture = at_head("prism-mask", head);
       fit(picture, display.panel);
       picture.mask_mm = display.ideal_mask_mm(point(head)) + periods * pitch;
-      // Borders that fall into a pixel's stripes cost some of the likeness.
+      // Borders inside a pixel's stripes reduce the likeness.
       expect_own_pictures(display, picture, *picture.mask_mm, where(head) + ", mask off by " + std::to_string(periods) + " periods", 2.5);
       const viewer::PhaseSummary phase =
           viewer::phase_summary(display, owners(picture, display.panel), eyes_of(picture), *picture.mask_mm, some_rows(display.panel));
@@ -74,8 +74,8 @@ TEST_F(OwnPicture, wherever_the_mask_is_known_to_stand) {
     }
 }
 
-TEST_F(OwnPicture, on_any_panel) {
-  // Widths that leave every remainder when divided by four: the even columns begin elsewhere.
+TEST_F(OwnPicture, seen_on_any_panel) {
+  // Widths with every remainder modulo four: the even columns begin at different positions.
   for (const int columns : {1024, 1366, 1279, 1281})
     for (const Vec3& head : {Vec3(0, 0, 650), Vec3(-85, 40, 700)}) {
       const viewer::MaskDisplay display = OpticsTest::display(columns, 401);
@@ -88,7 +88,7 @@ TEST_F(OwnPicture, on_any_panel) {
     }
 }
 
-TEST_F(OwnPicture, with_the_head_tilted) {
+TEST_F(OwnPicture, seen_with_the_head_tilted) {
   const viewer::MaskDisplay display = OpticsTest::display(1280, 200);
   Picture picture = at_head("prism-mask", {-40, 30, 610});
   picture.toward_right = Vec3(0.96, 0.22, -0.17).normalized();
@@ -98,7 +98,7 @@ TEST_F(OwnPicture, with_the_head_tilted) {
   EXPECT_LE(phase.worst_pixels, kOwnPhaseLimit);
 }
 
-TEST_F(OwnPicture, on_a_leaning_lenticular_that_stands_still) {
+TEST_F(OwnPicture, seen_on_a_fixed_leaning_lenticular) {
   make_renderer({});
   viewer::MaskDisplay display = OpticsTest::display(1280, 160);
   display.lean = 1.0 / 6;
@@ -113,7 +113,7 @@ TEST_F(OwnPicture, on_a_leaning_lenticular_that_stands_still) {
   }
 }
 
-TEST_F(OwnPicture, swapped_eyes_are_noticed) {
+TEST_F(OwnPicture, swapped_eyes_are_detected) {
   make_renderer({});
   const viewer::MaskDisplay display = OpticsTest::display(1280, 120);
   show(test::make_crash_box());
@@ -127,7 +127,7 @@ TEST_F(OwnPicture, swapped_eyes_are_noticed) {
   }
 }
 
-TEST_F(OwnPicture, though_the_mask_leaks) {
+TEST_F(OwnPicture, seen_with_crosstalk) {
   make_renderer({});
   const viewer::MaskDisplay display = OpticsTest::display(1280, 160);
   show(test::make_crash_box());

@@ -36,7 +36,7 @@ TEST_P(PlainDisplays, each_eye_sees_its_own_picture) {
   }
 }
 
-TEST_P(PlainDisplays, nothing_of_the_other_eyes_light_comes_through) {
+TEST_P(PlainDisplays, no_light_of_the_other_eye_is_seen) {
   const auto [profile, kind] = GetParam();
   const Picture picture = at_head(profile, {0, 0, 650});
   for (const bool left : {true, false}) {

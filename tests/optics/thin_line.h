@@ -1,4 +1,5 @@
-// A line one pixel wide, not smoothed, drawn into an eye's image as an overlay: the hardest thing to show through every other column.
+// A line one pixel wide without antialiasing, drawn into an eye's image as an overlay: the hardest thing to show through every second
+// column.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 
 namespace prismesh::optics {
 
-/// Needs a current context of OpenGL ES 3.1, for all of its life.
+/// Needs a current context of OpenGL ES 3.1 for its whole life.
 class ThinLine {
  public:
   ThinLine() {
@@ -39,8 +40,8 @@ class ThinLine {
   ThinLine(const ThinLine&) = delete;
   ThinLine& operator=(const ThinLine&) = delete;
 
-  /// 200 pixels of a picture of `size` pixels, `degrees` from its rows, through `middle` (pixels from the centre, up), white on a
-  /// grey of 0..1.
+  /// 200 pixels of a picture of `size` pixels, `degrees` from its rows, through `middle` (pixels from the centre, up), white on a grey of
+  /// 0..1.
   void draw(double degrees, std::array<double, 2> middle, std::array<int, 2> size, float grey = 0) const {
     const double angle = degrees * std::numbers::pi / 180;
     const std::array<double, 2> half{100 * std::cos(angle), 100 * std::sin(angle)};

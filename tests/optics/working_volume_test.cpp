@@ -1,5 +1,5 @@
-// Where the eyes may be: the box in which the phase error stays within a quarter of a pixel, with a phase map and with the mask's shift
-// alone, as the viewer measures it over the whole width of a 359 mm panel.
+// The working volume: the head positions with a phase error of max. a quarter of a pixel, with a phase map and with moving the mask alone,
+// as the viewer measures it over the whole width of a 359 mm panel.
 #include <array>
 #include <cmath>
 #include <iostream>
@@ -26,7 +26,7 @@ class WorkingVolume : public OpticsTest {
   viewer::Owners fixed_columns() { return owners(at_head("prism-mask-columns", {0, 0, 650}), display_.panel); }
 };
 
-/// Nearest and farthest distance, from 650 mm on, at which all is well.
+/// Min. and max. distance, from 650 mm on, without larger errors.
 template <class Worst>
 std::array<double, 2> depths(const Worst& worst) {
   std::array<double, 2> ends{650, 650};
@@ -37,11 +37,11 @@ std::array<double, 2> depths(const Worst& worst) {
   return ends;
 }
 
-TEST_F(WorkingVolume, a_shift_alone_serves_a_thin_slice) {
+TEST_F(WorkingVolume, moving_the_mask_alone_gives_a_thin_slice) {
   const viewer::Owners columns = fixed_columns();
   const auto ends = depths([&](double distance) { return with_shift_alone(columns, {0, 0, distance}).worst_pixels; });
   std::cout << "mask's shift alone, head in the middle: " << ends[0] << " to " << ends[1] << " mm\n";
-  // A single eye in the middle would have 582 to 699 mm; each of two stands 31 mm aside.
+  // A single eye in the middle would have 582 to 699 mm; each of two is 31 mm to the side.
   EXPECT_NEAR(ends[0], 584, 3);
   EXPECT_NEAR(ends[1], 684, 3);
 }
@@ -67,21 +67,20 @@ TEST_F(WorkingVolume, a_phase_map_doubles_the_depth_and_the_width) {
   EXPECT_GT(both, 3 * shift_alone);
 }
 
-TEST_F(WorkingVolume, the_drivers_own_report_agrees) {
+TEST_F(WorkingVolume, agrees_with_the_drivers_figures) {
   using drivers::display::Composing;
-  const drivers::display::MaskOptics optics;
   const drivers::display::PanelArea area{0, 0, display_.panel.columns, display_.panel.rows, display_.panel.columns, display_.panel.rows};
+  const auto worst = [&](Composing composing, const Vec3& head) {
+    return drivers::display::worst_phase_error({.panel = area, .composing = composing, .eye_separation_mm = 63}, head);
+  };
   const viewer::Owners columns = fixed_columns();
   for (const Vec3& head : {Vec3(0, 0, 650), Vec3(0, 0, 580), Vec3(0, 0, 730), Vec3(110, 0, 640), Vec3(-60, 0, 700)}) {
-    EXPECT_NEAR(drivers::display::worst_phase_error(optics, head, 63, area, Composing::subpixels), with_phase_map(head).worst_pixels, 0.03)
-        << head.transpose();
-    EXPECT_NEAR(drivers::display::worst_phase_error(optics, head, 63, area, Composing::fixed_columns),
-                with_shift_alone(columns, head).worst_pixels, 0.03)
-        << head.transpose();
+    EXPECT_NEAR(worst(Composing::subpixels, head), with_phase_map(head).worst_pixels, 0.03) << head.transpose();
+    EXPECT_NEAR(worst(Composing::fixed_columns, head), with_shift_alone(columns, head).worst_pixels, 0.03) << head.transpose();
   }
 }
 
-TEST_F(WorkingVolume, what_the_servo_does_not_say_shows_as_phase_error) {
+TEST_F(WorkingVolume, an_unknown_mask_error_appears_as_phase_error) {
   const Vec3 head(0, 0, 650);
   const Picture picture = at_head("prism-mask", head);
   const viewer::Owners found = owners(picture, display_.panel);

@@ -1,5 +1,5 @@
-// The figures and the picture of docs/prediction.md: `prismesh-phase-error` prints tables, `prismesh-phase-error FILE.svg` draws the phase
-// error over time as well.
+// The figures and the picture of docs/prediction.md: `prismesh-phase-error` prints tables; `prismesh-phase-error FILE.svg` also plots the
+// phase error over time.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -11,8 +11,8 @@
 namespace prismesh::phase_error {
 namespace {
 
-StationSettings sweeping(const Sweep& sweep, bool predicts, const std::string& profile) {
-  StationSettings settings;
+VirtualStationSettings sweeping(const Sweep& sweep, bool predicts, const std::string& profile) {
+  VirtualStationSettings settings;
   settings.head = to_and_fro(sweep);
   settings.predicts = predicts;
   settings.profile = on_panel(profile);
@@ -48,7 +48,7 @@ void print_row(const Sweep& sweep, double shown) {
 Curve curve(bool predicts, const char* name, const char* colour) {
   constexpr double kFrom = 4, kUntil = 8.05;
   Curve drawn{name, colour, {}};
-  const StationSettings settings = sweeping({}, predicts, "prism-mask");
+  const VirtualStationSettings settings = sweeping({}, predicts, "prism-mask");
   run(settings, kUntil, [&](const Moment& moment) {
     const double seconds = static_cast<double>(moment.time_ns) * 1e-9;
     if (seconds >= kFrom && moment.drawn.depth_share == 1)

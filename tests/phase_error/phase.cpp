@@ -19,10 +19,10 @@ using drivers::display::Weave;
 using viewer::Owner;
 using viewer::Owners;
 
-/// As the composition does it: a stripe is that eye's whose number there is nearer to an integer.
+/// As in the composition: a stripe belongs to the eye whose number there is nearer to an integer.
 Owners mapped(const Profile& profile, const EyePair& eyes, double mask_mm) {
   const MaskOptics& optics = profile.optics;
-  // One row, in the middle of the panel's height.
+  // One row, at half of the panel's height.
   const PanelArea area{.width = optics.panel_columns, .height = 1, .panel_columns = optics.panel_columns, .panel_rows = 1};
   const PhaseMap map = phase_map(optics, eyes, mask_mm, area);
   Owners owners{area.width, 1, {}};
@@ -37,7 +37,7 @@ Owners mapped(const Profile& profile, const EyePair& eyes, double mask_mm) {
   return owners;
 }
 
-/// Alternate columns that never change, but for an exchange of the eyes when the mask has gone back by half a period.
+/// Alternate columns that never change, except that the eyes are exchanged after a move back by half a period.
 Owners alternating(const Profile& profile, const Eigen::Vector3d& between_mm, double mask_mm) {
   const MaskOptics& optics = profile.optics;
   const double halves = 2 * (mask_position_mm(optics, between_mm) - mask_mm) / optics.mask_pitch_mm();

@@ -1,4 +1,5 @@
-// From the head to the light, in virtual time: how far the picture's windows are from where the eyes look through the mask.
+// From the head to the light, in virtual time: the distance between the picture's windows and the positions that the eyes see through the
+// mask.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -12,8 +13,8 @@ namespace {
 using drivers::eye_tracker::HeadMotion;
 using drivers::eye_tracker::MotionKind;
 
-StationSettings sweeping(const Sweep& sweep, bool predicts = true, const std::string& profile = "prism-mask") {
-  StationSettings settings;
+VirtualStationSettings sweeping(const Sweep& sweep, bool predicts = true, const std::string& profile = "prism-mask") {
+  VirtualStationSettings settings;
   settings.head = to_and_fro(sweep);
   settings.predicts = predicts;
   settings.profile = on_panel(profile);
@@ -33,16 +34,16 @@ TEST(PhaseError, stays_within_a_seventh_of_a_pixel_at_250_mm_s) {
   print("250 mm/s, predicted", with);
   print("250 mm/s, as measured", without);
   EXPECT_EQ(with.stereo_share(), 1);
-  // The goal, for what a head's motion does to the picture and for all that is seen at the screen's middle.
+  // The requirement for the effect of the head's motion, and for everything seen at the screen's middle.
   EXPECT_LE(quantile(with.moved, 0.99), 0.15);
   EXPECT_LE(quantile(with.middle, 0.99), 0.15);
-  // What it does, with some air.
+  // The achieved figures, with a margin.
   EXPECT_LE(quantile(with.moved, 0.99), 0.11);
   EXPECT_LE(quantile(with.middle, 0.99), 0.11);
   EXPECT_GE(quantile(without.middle, 0.99), 2 * quantile(with.middle, 0.99));
 }
 
-TEST(PhaseError, is_small_for_columns_that_never_change_too) {
+TEST(PhaseError, is_small_for_fixed_columns_too) {
   const Figures with = figures_of(sweeping({}, true, "prism-mask-columns"), 1),
                 without = figures_of(sweeping({}, false, "prism-mask-columns"), 1);
   print("fixed columns, 250 mm/s, predicted", with);
@@ -51,7 +52,7 @@ TEST(PhaseError, is_small_for_columns_that_never_change_too) {
   EXPECT_GE(quantile(without.middle, 0.99), 2 * quantile(with.middle, 0.99));
 }
 
-TEST(PhaseError, grows_gently_up_to_500_mm_s) {
+TEST(PhaseError, grows_slowly_up_to_500_mm_s) {
   const Figures slow = figures_of(sweeping({.peak_mm_s = 100}), 1), fast = figures_of(sweeping({.peak_mm_s = 500}), 1);
   print("100 mm/s", slow);
   print("500 mm/s", fast);
@@ -61,8 +62,8 @@ TEST(PhaseError, grows_gently_up_to_500_mm_s) {
   EXPECT_EQ(fast.stereo_share(), 1);
 }
 
-TEST(PhaseError, a_head_that_turns_like_a_head) {
-  StationSettings settings;
+TEST(PhaseError, is_small_for_a_turning_head) {
+  VirtualStationSettings settings;
   const HeadMotion motion(MotionKind::turn, 3);
   settings.head = [motion](double seconds) {
     drivers::eye_tracker::SimulatedHead head;
@@ -74,15 +75,15 @@ TEST(PhaseError, a_head_that_turns_like_a_head) {
   EXPECT_LE(quantile(turning.moved, 0.99), 0.15);
 }
 
-TEST(PhaseError, a_still_head_leaves_the_picture_where_it_belongs) {
+TEST(PhaseError, is_small_for_a_still_head) {
   const Figures still = figures_of(sweeping({.peak_mm_s = 0}), 1);
   print("still", still);
   EXPECT_LE(quantile(still.moved, 0.99), 0.05);
   EXPECT_LE(quantile(still.middle, 0.99), 0.03);
 }
 
-// The mask's travel doesn't suffice: it goes back by half periods, the eyes change places on the panel, and the picture is mono meanwhile.
-TEST(PhaseError, moves_back_are_never_seen_in_stereo) {
+// The mask's travel is too short, so it moves back by half periods; the eyes change places on the panel, and the picture is mono meanwhile.
+TEST(PhaseError, moves_back_are_never_visible_in_stereo) {
   const Figures wide = figures_of(sweeping({.peak_mm_s = 250, .reach_mm = 380, .distance_mm = 500}), 1, 40);
   print("380 mm to either side, 500 mm away", wide);
   std::printf("in stereo for %.1f %% of the time\n", 100 * wide.stereo_share());

@@ -1,4 +1,4 @@
-// A small line chart as an SVG file.
+// Draws a small line chart as an SVG file.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@ namespace prismesh::phase_error {
 
 struct Curve {
   std::string name;
-  std::string colour;  ///< as SVG has it: "#0072b2"
+  std::string colour;  ///< in SVG's notation: "#0072b2"
   std::vector<std::array<double, 2>> points;
 };
 
-/// From 0 to `right` and from 0 to `top`.
+/// Axes from 0 to `right` and from 0 to `top`.
 struct Plot {
   std::string title, across, up;
   double right = 1, top = 1;

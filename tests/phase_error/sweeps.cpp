@@ -15,7 +15,7 @@ drivers::eye_tracker::HeadSource to_and_fro(const Sweep& sweep) {
   };
 }
 
-Figures figures_of(StationSettings settings, int seeds, double seconds) {
+Figures figures_of(VirtualStationSettings settings, int seeds, double seconds) {
   Figures figures;
   for (int seed = 1; seed <= seeds; ++seed) {
     settings.seed = static_cast<std::uint64_t>(seed);

@@ -26,11 +26,11 @@ namespace dynamixel = drivers::prism_servo::dynamixel;
 namespace dynasight = drivers::eye_tracker::dynasight;
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kStartNs = 1'000 * kMs;  // no clock of a real machine is at 0 either
+constexpr std::int64_t kStartNs = 1'000 * kMs;  // not 0, as with a real machine's clock
 constexpr std::int64_t kSettleNs = 2'000 * kMs;
 constexpr std::int64_t kDeviceStepNs = kMs / 2;
 
-deviced::LoopSettings loop_settings(const StationSettings& settings) {
+deviced::LoopSettings loop_settings(const VirtualStationSettings& settings) {
   deviced::LoopSettings loop;
   loop.tracker.driver = drivers::settings::TrackerDriver::dynasight;
   loop.tracker.latency_ms = settings.tracker_latency_s * 1e3;
@@ -39,7 +39,7 @@ deviced::LoopSettings loop_settings(const StationSettings& settings) {
   return loop;
 }
 
-/// What stands in place of deviced's loop where nothing is predicted: the newest measurement is where the head is.
+/// Replaces deviced's loop for runs without prediction: takes the newest measurement as the head's present position.
 class PlainLoop {
  public:
   PlainLoop(const deviced::LoopSettings& settings, drivers::port::BytePort& tracker, drivers::port::BytePort& servo, ipc::DevicePage& page)
@@ -75,7 +75,7 @@ class PlainLoop {
   ipc::DevicePage& page_;
 };
 
-/// The kiosk's part: looks at the page at each refresh, draws, and hands over; the display shows it from the next refresh on.
+/// The kiosk's part: reads the page at each refresh, draws, and passes the picture on; the display shows it from the next refresh on.
 class Display {
  public:
   Display(const ipc::DevicePageReader& page, std::int64_t draw_ns) : page_(page), eyes_({}), timing_(kTiming), draw_ns_(draw_ns) {}
@@ -99,7 +99,7 @@ class Display {
     std::int64_t from_ns = 0;
     kiosk::stereo::SeenFrom drawn;
   };
-  /// What is lit, if anything is.
+  /// The picture that is lit, if any.
   const Lit* lit(std::int64_t now_ns) {
     while (waiting_.size() > 1 && waiting_[1].from_ns <= now_ns) waiting_.pop_front();
     return !waiting_.empty() && waiting_.front().from_ns <= now_ns ? &waiting_.front() : nullptr;
@@ -119,7 +119,7 @@ class Display {
 
 /// Both devices on their lines.
 struct Devices {
-  Devices(Clock& clock, const StationSettings& settings)
+  Devices(Clock& clock, const VirtualStationSettings& settings)
       : tracker_line(clock, {.host_baud = 19200, .device_baud = 19200, .latency_ns = settings.line_latency_ns}),
         servo_line(clock, {.host_baud = 57'600, .device_baud = 57'600, .latency_ns = settings.line_latency_ns}),
         tracker(tracker_line.device(), settings.head,
@@ -140,7 +140,7 @@ drivers::display::Profile on_panel(const std::string& profile) {
   return found;
 }
 
-void run(const StationSettings& settings, double seconds, const std::function<void(const Moment&)>& see) {
+void run(const VirtualStationSettings& settings, double seconds, const std::function<void(const Moment&)>& see) {
   ManualClock clock;
   clock.advance_ns(kStartNs);
   Devices devices(clock, settings);
@@ -162,7 +162,7 @@ void run(const StationSettings& settings, double seconds, const std::function<vo
 
   const std::int64_t end_ns = kStartNs + static_cast<std::int64_t>(seconds * 1e9);
   std::int64_t next_tick = kStartNs + kMs / 3, next_step = kStartNs + kDeviceStepNs;
-  // A quarter and three quarters of a picture's time after it lights up.
+  // A quarter and three quarters of a refresh period after the picture lights up.
   const std::int64_t look_period = Display::kTiming.period_ns / 2;
   std::int64_t next_look = kStartNs + kSettleNs;
   bool aligned = false;

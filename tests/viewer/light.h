@@ -1,4 +1,4 @@
-// Pictures as light: what a panel emits is linear, what a PNG holds is not.
+// Pictures as light: a panel's light is linear, a PNG's values aren't.
 #pragma once
 
 #include <array>
@@ -26,19 +26,19 @@ struct LightImage {
   const Colour& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// sRGB (IEC 61966-2-1): 0..1 to linear light and back. What is below 0 or above 1 is cut off when encoding.
+/// sRGB (IEC 61966-2-1): 0..1 to linear light and back. Encoding clips values below 0 and above 1.
 float linear_from_srgb(float value);
 float srgb_from_linear(float light);
-/// 0..255, not rounded: where differences are to be as an eye weighs them.
+/// 0..255, not rounded, for differences as an eye weighs them.
 float level(float light);
 
-/// From rows of 8 bits, three bytes a pixel. `gamma`: of the panel, light = value ^ gamma; 0: sRGB.
+/// From rows of 8-bit values, three bytes per pixel. `gamma`: of the panel, light = value ^ gamma; 0: sRGB.
 LightImage light_of(std::span<const std::uint8_t> rgb, int width, int height, double gamma = 0);
 std::vector<std::uint8_t> srgb_bytes(const LightImage& image);
 
-/// Errors: not readable, no picture (each names the file).
+/// Errors, each with the file: can't be read, isn't a picture.
 Result<LightImage> read_picture(const std::filesystem::path& path, double gamma = 0);
-/// A PNG; replaces the file whole or not at all. Errors: not writable.
+/// Writes a PNG; replaces the file atomically. Errors: can't be written.
 Result<void> write_picture(const std::filesystem::path& path, const LightImage& image);
 
 }  // namespace prismesh::viewer

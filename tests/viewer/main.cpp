@@ -1,4 +1,4 @@
-// prismesh-viewer: from a woven picture, a display and where the eyes truly are, what each eye sees.
+// prismesh-viewer: computes what each eye sees, from a woven picture, a display and the eyes' true positions.
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -86,7 +86,7 @@ void add_options(CLI::App& app, Options& options) {
       "expected, in levels of 255 (with --expected-left and --expected-right). docs/display/optics.md explains the model.");
 }
 
-/// Errors: what can't be understood, with what to write instead.
+/// Errors: invalid values, with the expected form.
 Result<void> understand(Options& options) {
   Point between, toward_right;
   if (!read_point(options.eye, between) || between.z < 50)
@@ -105,13 +105,13 @@ Result<void> understand(Options& options) {
     return fail("--stripes " + options.stripes, "stripes are rgb, bgr or none");
   if (!options.mask_mm) {
     MaskDisplay believed = options.display;
-    believed.offset_mm = 0;  // nobody knows of it
+    believed.offset_mm = 0;  // the software doesn't know it
     options.mask_mm = believed.ideal_mask_mm(between);
   }
   return {};
 }
 
-/// What is found about one eye.
+/// The results for one eye.
 struct Verdict {
   std::optional<double> difference;        ///< levels, from what it should see
   std::optional<double> other_difference;  ///< levels, from what the other eye should see

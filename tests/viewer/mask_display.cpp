@@ -15,7 +15,7 @@ Point along(const Point& from, double t, const Point& direction) {
 }
 double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// How far the refracted ray goes sideways in the glass, per millimetre that the ray goes sideways between eye and mask.
+/// Lateral distance of the refracted ray in the glass, per millimetre of lateral distance between eye and mask.
 double magnification(const MaskDisplay& display, double dx, double dy, double distance) {
   const double aside = dx * dx + dy * dy;
   return display.glass_mm() / std::sqrt(display.index * display.index * (aside + distance * distance) - aside);
@@ -39,7 +39,7 @@ double MaskDisplay::element_pitch_mm() const {
 double MaskDisplay::reference_mm() const {
   // Column c begins at (c - columns / 2) pitches; c is the even number nearest to columns / 2.
   const double middle = 0.5 * panel.columns, edge_mm = (2 * std::floor(0.5 * middle + 0.5) - middle) * panel.pitch_mm;
-  return edge_mm * element_pitch_mm() / pitch_scale / (2 * panel.pitch_mm);  // the pitch is as much smaller than two pixels
+  return edge_mm * element_pitch_mm() / pitch_scale / (2 * panel.pitch_mm);  // the pitch is smaller than two pixels by this factor
 }
 
 double MaskDisplay::element_x_mm(double element, double mask_mm, double y_mm) const {
@@ -80,7 +80,7 @@ PanelPlace seen_through(const MaskDisplay& display, const Point& eye, double x_m
 }
 
 Window window_of(const MaskDisplay& display, const Point& eye, double mask_mm, double element, double v_mm) {
-  // The height of the mask's point isn't known, only that of the panel's: each step shrinks the error by about gap / distance.
+  // The height of the mask's point isn't known, only the panel's: each step reduces the error by a factor of about gap / distance.
   Window window{0, 0, v_mm};
   for (int step = 0; step < 8; ++step) {
     window.x_mm = display.element_x_mm(element, mask_mm, window.y_mm);

@@ -1,4 +1,4 @@
-// The traced display against what can be worked out by hand.
+// The traced display compared with values computed by hand.
 #include "tests/viewer/mask_display.h"
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace prismesh::viewer {
 namespace {
 
-TEST(MaskDisplay, has_the_examples_measures) {
+TEST(MaskDisplay, has_the_examples_dimensions) {
   const MaskDisplay display;
   EXPECT_NEAR(display.air_gap_mm(), 2.894, 5e-4);
   EXPECT_NEAR(display.glass_mm(), 4.40, 5e-3);
@@ -67,7 +67,7 @@ TEST(MaskDisplay, the_mask_follows_the_head) {
   }
 }
 
-TEST(MaskDisplay, window_and_element_are_each_others_inverse) {
+TEST(MaskDisplay, window_and_element_are_inverse_functions) {
   MaskDisplay display;
   display.lean = -0.21;
   const Point eye{-75, 42, 560};
@@ -81,7 +81,7 @@ TEST(MaskDisplay, window_and_element_are_each_others_inverse) {
   }
 }
 
-TEST(MaskDisplay, two_directions_give_the_place_they_came_from) {
+TEST(MaskDisplay, two_directions_give_their_point) {
   const Eyes eyes = eyes_around({30, -15, 640}, 61, {1, 0.05, 0.1});
   const Point at{-40, 25, 90};
   const auto aim = [&](const Point& eye) {
@@ -94,7 +94,7 @@ TEST(MaskDisplay, two_directions_give_the_place_they_came_from) {
   EXPECT_NEAR(found.z, at.z, 1e-9);
 }
 
-TEST(MaskDisplay, nonsense_is_named) {
+TEST(MaskDisplay, invalid_values_are_named) {
   MaskDisplay display;
   EXPECT_TRUE(display.check());
   display.index = 0.5;

@@ -19,7 +19,7 @@ LightImage through_glass(const LightImage& picture, bool red) {
   LightImage seen(picture.width, picture.height);
   for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
     const Colour& light = picture.pixels[i];
-    // Green is what the eye weighs most behind a cyan glass (Rec. 709: 0.7152 to 0.0722).
+    // Behind a cyan glass the eye weighs green most (Rec. 709: 0.7152 to 0.0722).
     const float grey = red ? light[0] : (0.7152F * light[1] + 0.0722F * light[2]) / 0.7874F;
     seen.pixels[i] = {grey, grey, grey};
   }
@@ -38,7 +38,7 @@ LightImage alone(PlainKind kind, const LightImage& picture, bool first) {
   return picture;
 }
 
-/// One side of `resized`, along x.
+/// One direction of `resized`, along x.
 LightImage resized_across(const LightImage& image, int width) {
   LightImage result(width, image.height);
   const double step = static_cast<double>(image.width) / width;

@@ -8,7 +8,7 @@ namespace prismesh::viewer {
 
 namespace {
 
-/// A stretch of stripes of one owner; ends in pixels from the panel's left border.
+/// A run of stripes of one owner; ends in pixels from the panel's left border.
 struct Run {
   double begin = 0, end = 0;
   double middle() const { return 0.5 * (begin + end); }
@@ -26,7 +26,7 @@ std::vector<Run> runs_of(const Owners& owners, int row, Owner eye) {
   return runs;
 }
 
-/// The run whose middle is nearest; `runs` isn't empty.
+/// The run with the nearest middle; `runs` isn't empty.
 const Run& nearest(const std::vector<Run>& runs, double at) {
   const auto after = std::lower_bound(runs.begin(), runs.end(), at, [](const Run& run, double place) { return run.middle() < place; });
   if (after == runs.begin()) return *after;

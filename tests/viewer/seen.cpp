@@ -8,7 +8,7 @@ namespace prismesh::viewer {
 
 namespace {
 
-/// Light of one row of the panel as a function of place that can be integrated in constant time.
+/// Light of one row of the panel as a function of position; integrates in constant time.
 class RowLight {
  public:
   RowLight(const Panel& panel, const Colour* row) : panel_(panel), row_(row) {
@@ -24,7 +24,7 @@ class RowLight {
         sums_[static_cast<std::size_t>(i) + 1][channel] = sums_[static_cast<std::size_t>(i)][channel] + row[i][channel];
   }
 
-  /// Mean light between two places, in pixels from the panel's left border. Beyond the borders it is dark.
+  /// Mean light between two positions, in pixels from the panel's left border. Beyond the borders it is dark.
   Colour between(double from, double to) const {
     Colour mean{};
     for (int channel = 0; channel < 3; ++channel)
@@ -48,7 +48,7 @@ class RowLight {
 
 double pixels_from_left(const Panel& panel, double u_mm) { return u_mm / panel.pitch_mm + 0.5 * panel.columns; }
 
-/// Elements whose windows lie on the panel, `margin_mm` from its border, in every row.
+/// The elements whose windows are on the panel, `margin_mm` from its border, in every row.
 void find_elements(const MaskDisplay& display, const Point& eye, double mask_mm, double margin_mm, Seen& seen) {
   const double side = 0.5 * display.panel.width_mm() - margin_mm;
   double low = -1e9, high = 1e9;

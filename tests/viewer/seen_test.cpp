@@ -1,4 +1,4 @@
-// What is seen of panels painted by hand: columns, ramps, single stripes.
+// What is seen of panels with known content: columns, ramps, single stripes.
 #include "tests/viewer/seen.h"
 
 #include <cmath>
@@ -18,7 +18,7 @@ MaskDisplay small_display() {
   return display;
 }
 
-/// Even columns one colour, odd ones another.
+/// Even columns in one colour, odd ones in another.
 LightImage columns(const Panel& panel, Colour even, Colour odd) {
   LightImage picture(panel.columns, panel.rows);
   for (int y = 0; y < panel.rows; ++y)
@@ -50,11 +50,11 @@ TEST(Seen, half_a_period_of_the_mask_swaps_the_eyes) {
   EXPECT_NEAR(seen.at(50, 4)[2], 1, 0.03);
 }
 
-TEST(Seen, a_mask_off_by_a_quarter_mixes_half_of_each) {
+TEST(Seen, a_quarter_period_of_the_mask_mixes_half_of_each) {
   const MaskDisplay display = small_display();
   const Seen seen =
       *look(display, columns(display.panel, kWhite, kBlack), eyes_around({0, 0, 650}).left, 0.25 * display.element_pitch_mm());
-  // A window that straddles two columns has the stripes of one side from one, of the other from the other.
+  // A window across two columns has the stripes of one side from the one, of the other side from the other.
   const Colour light = seen.at(50, 4);
   EXPECT_NEAR(light[0] + light[1] + light[2], 1.5, 0.03);
   EXPECT_NEAR(light[1], 0.5, 0.03) << "the middle stripe is cut";
@@ -68,7 +68,7 @@ TEST(Seen, whole_pixels_mix_all_colours_alike) {
   for (const float light : seen.at(50, 4)) EXPECT_NEAR(light, 0.8, 0.03);
 }
 
-TEST(Seen, stripes_lie_where_the_panel_has_them) {
+TEST(Seen, stripes_are_at_the_panels_positions) {
   MaskDisplay display = small_display();
   LightImage picture(display.panel.columns, display.panel.rows);
   for (int y = 0; y < display.panel.rows; ++y) picture.at(100, y) = kWhite;
@@ -76,7 +76,7 @@ TEST(Seen, stripes_lie_where_the_panel_has_them) {
   for (const Stripes stripes : {Stripes::rgb, Stripes::bgr}) {
     display.panel.stripes = stripes;
     for (int stripe = 0; stripe < 3; ++stripe) {
-      // An eye straight above: the mask is put so that element 0's window is in the middle of this stripe.
+      // An eye straight above: the mask is placed so that element 0's window is in the middle of this stripe.
       const double wanted = (stripe + 0.5) / 3 * display.panel.pitch_mm;
       const Point eye{0, 0, 650};
       const double mask = wanted * eye.z / (eye.z + display.air_gap_mm());
@@ -94,11 +94,11 @@ TEST(Seen, leak_is_the_other_eyes_light) {
   EXPECT_NEAR(seen.at(50, 4)[2], 0.07, 0.01);
 }
 
-TEST(Seen, black_between_stripes_darkens_nothing_of_a_whole_pixel) {
+TEST(Seen, black_between_stripes_does_not_darken_a_whole_pixel) {
   MaskDisplay display = small_display();
   display.panel.black_share = 0.3;
   const Seen seen = *look(display, LightImage(200, 8, kWhite), eyes_around({0, 0, 650}).left, 0);
-  for (const float light : seen.at(50, 4)) EXPECT_NEAR(light, 1, 1e-4) << "a pixel's light is given, however it is spread";
+  for (const float light : seen.at(50, 4)) EXPECT_NEAR(light, 1, 1e-4) << "a pixel's light doesn't depend on its distribution";
 }
 
 TEST(Seen, the_grid_shows_a_ramp_where_it_is) {
@@ -114,7 +114,7 @@ TEST(Seen, the_grid_shows_a_ramp_where_it_is) {
   }
 }
 
-TEST(Seen, the_others_share_is_found) {
+TEST(Seen, finds_the_share_of_the_other_picture) {
   const MaskDisplay display = small_display();
   LightImage own(200, 8), other(200, 8), mixed(200, 8);
   for (int y = 0; y < 8; ++y)
@@ -129,7 +129,7 @@ TEST(Seen, the_others_share_is_found) {
   EXPECT_EQ(share_of_other(places, places, places), 0);
 }
 
-TEST(Seen, pieces_are_counted) {
+TEST(Seen, counts_pieces) {
   const MaskDisplay display = small_display();
   const LightImage dark(200, 8);
   LightImage lines = dark;
@@ -140,7 +140,7 @@ TEST(Seen, pieces_are_counted) {
   EXPECT_EQ(pieces_in(*look(display, dark, eye, 0), *look(display, dark, eye, 0)), 0);
 }
 
-TEST(Seen, what_cannot_be_is_refused) {
+TEST(Seen, refuses_impossible_values) {
   const MaskDisplay display = small_display();
   EXPECT_FALSE(look(display, LightImage(199, 8), {0, 0, 650}, 0));
   EXPECT_FALSE(look(display, LightImage(200, 8), {0, 0, -650}, 0));
@@ -174,7 +174,7 @@ TEST(PhaseErrors, are_the_distance_from_the_window_to_the_middle_of_the_run) {
   const PhaseSummary third = phase_summary(display, alternating(display.panel, 1), eyes, 0, {4});
   EXPECT_NEAR(third.mean_pixels, 1.0 / 3, 0.02);
   EXPECT_NEAR(third.mean_wrong_share, 1.0 / 3, 0.02);
-  // The mask's own error, given as a true place beyond what the servo says, works like a wrong picture.
+  // The mask's own error, given as its true position relative to the servo's, acts like a wrong picture.
   MaskDisplay off = display;
   off.offset_mm = 0.05;
   EXPECT_NEAR(phase_summary(off, alternating(display.panel), eyes, 0, {4}).mean_pixels, 0.05 / 0.2805, 0.02);

@@ -1,5 +1,5 @@
-// A simulated eye tracker for stations without one: a thread plays the device's side over a pseudo-terminal (DynaSight, D4D) or loopback
-// datagrams (opentrack), and the daemon opens and reads it like the real device.
+// Simulates an eye tracker for stations without one: a thread acts as the device over a pseudo-terminal (DynaSight, D4D) or loopback
+// datagrams (opentrack). The daemon opens and reads it like the real device.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace prismesh::drivers::eye_tracker::configured {
 
 class SimulatedTrackerThread {
  public:
-  /// Plays the tracker that `settings` describe (driver, dialect, baud, latency, noise, offset, motion). Errors: an unknown motion, no
-  /// pseudo-terminal to be had, a driver that is `none`. `clock` must be CLOCK_MONOTONIC and outlive this.
+  /// Starts the simulation of the tracker that `settings` describe (driver, dialect, baud, latency, noise, offset, motion). `clock` must be
+  /// CLOCK_MONOTONIC and outlive this. Errors: unknown motion; no pseudo-terminal available; driver `none`.
   static Result<std::unique_ptr<SimulatedTrackerThread>> start(const settings::EyeTrackerSettings& settings, Clock& clock,
                                                                std::uint64_t seed = 1);
   ~SimulatedTrackerThread();
   SimulatedTrackerThread(const SimulatedTrackerThread&) = delete;
   SimulatedTrackerThread& operator=(const SimulatedTrackerThread&) = delete;
 
-  /// The pseudo-terminal to open in place of the settings' port; empty for opentrack, which sends to the settings' udp_port.
+  /// Returns the pseudo-terminal to open instead of the settings' port; empty for opentrack, which sends to the settings' udp_port.
   const std::string& port_path() const { return port_path_; }
 
  private:

@@ -1,5 +1,5 @@
-// The eye tracker that a station's settings name, while its port is there. Ports come and go in the real-time loop
-// (port/port_keeper.h), so attaching to a port and detaching from it doesn't allocate.
+// The eye tracker that a station's settings name, while its port is open. The real-time loop attaches and detaches ports
+// (port/port_keeper.h), so neither allocates.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace prismesh::drivers::eye_tracker::configured {
 
-/// Milliseconds to nanoseconds and the like: a driver's options from the settings.
+/// Convert the settings to a driver's options.
 dynasight::DynasightTracker::Options dynasight_options(const settings::EyeTrackerSettings& settings);
 opentrack::OpentrackTracker::Options opentrack_options(const settings::EyeTrackerSettings& settings);
 
@@ -21,12 +21,12 @@ class ConfiguredTracker {
  public:
   explicit ConfiguredTracker(const settings::EyeTrackerSettings& settings);
 
-  /// A new tracker on that port, its counts at zero. The port must outlive it: `detach` before giving the port back. The settings' driver
-  /// must be of the port's kind: dynasight reads bytes, opentrack datagrams.
+  /// Creates a new tracker on the port, with its counts at zero. The port must outlive it: call `detach` before you give the port back. The
+  /// port's type must match the settings' driver: dynasight reads bytes, opentrack datagrams.
   EyeTracker& attach(port::BytePort& port);
   EyeTracker& attach(port::DatagramPort& port);
   void detach();
-  /// Null while there is no port.
+  /// Returns null while no port is attached.
   EyeTracker* tracker();
 
  private:

@@ -13,9 +13,9 @@ std::int16_t big_endian(std::byte high, std::byte low) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(std::to_integer<unsigned>(high) << 8 | std::to_integer<unsigned>(low)));
 }
 
-int exponent_for(double largest_units) {
+int exponent_for(double max_units) {
   int exponent = 0;
-  while (exponent < kMaxExponent && std::round(largest_units / (1 << exponent)) > kMax) ++exponent;
+  while (exponent < kMaxExponent && std::round(max_units / (1 << exponent)) > kMax) ++exponent;
   return exponent;
 }
 
@@ -45,8 +45,8 @@ RecordBytes encode(const Record& record) {
   return bytes;
 }
 
-Record record_for(const Eigen::Vector3d& place_mm, Status status, int target) {
-  const Eigen::Vector3d units = place_mm / kUnitMm;
+Record record_for(const Eigen::Vector3d& position_mm, Status status, int target) {
+  const Eigen::Vector3d units = position_mm / kUnitMm;
   Record record{.status = status, .target = target, .exponent = exponent_for(units.cwiseAbs().maxCoeff()), .numbers = {}};
   for (int axis = 0; axis < 3; ++axis) {
     const double number = std::round(units[axis] / (1 << record.exponent));

@@ -1,10 +1,10 @@
-// The 8-byte position record of DynaSight trackers and of the D4D display's own, bit by bit:
+// Codec for the 8-byte position record of DynaSight trackers and of the D4D display's built-in tracker, bit by bit:
 //
 //   1000TTEE 1000?tSS Xhi Xlo Yhi Ylo Zhi Zlo
 //
 // EE: exponent; a coordinate is its 16-bit number shifted left by EE, in units of 0.05 mm. tTT: target, t the high bit. SS: status. `?` has
-// no known meaning and is ignored. There is no checksum and no byte that only a header can be; dynasight/synchroniser.h finds the records.
-// docs/devices/eye-tracker.md describes the protocol.
+// no known meaning and is ignored. There is no checksum and no byte that only occurs as a header; dynasight/synchroniser.h finds the
+// records. docs/devices/eye-tracker.md describes the protocol.
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ inline constexpr double kUnitMm = 0.05;
 inline constexpr int kMaxExponent = 3;
 
 enum class Status : std::uint8_t {
-  search = 0,   ///< no target; the coordinates mean nothing
-  coast = 1,    ///< the target was lost a moment ago; the coordinates are the device's guess
-  caution = 2,  ///< a target, poorly seen
+  search = 0,   ///< no target; the coordinates are meaningless
+  coast = 1,    ///< the target was just lost; the coordinates are the device's extrapolation
+  caution = 2,  ///< a target with a weak signal
   track = 3,
 };
 
@@ -32,28 +32,28 @@ struct Record {
   Status status = Status::search;
   int target = 0;                         ///< 0..7
   int exponent = 0;                       ///< 0..3
-  std::array<std::int16_t, 3> numbers{};  ///< as sent, not yet shifted: x, y, z
+  std::array<std::int16_t, 3> numbers{};  ///< x, y, z as sent, not yet shifted
 
-  /// In units of 0.05 mm.
+  /// Returns a coordinate in units of 0.05 mm.
   std::int32_t units(std::size_t axis) const { return std::int32_t{numbers[axis]} * (std::int32_t{1} << exponent); }
-  /// The device's own coordinates: x right, y up, z toward the viewer.
-  Eigen::Vector3d place_mm() const { return {units(0) * kUnitMm, units(1) * kUnitMm, units(2) * kUnitMm}; }
+  /// Returns the position in the device's coordinates: x right, y up, z toward the viewer.
+  Eigen::Vector3d position_mm() const { return {units(0) * kUnitMm, units(1) * kUnitMm, units(2) * kUnitMm}; }
   bool sees_head() const { return status != Status::search; }
   bool operator==(const Record&) const = default;
 };
 
 using RecordBytes = std::array<std::byte, kRecordBytes>;
 
-/// A byte that may be one of the two a record begins with: 0x80..0x8F.
+/// Returns whether a byte may be one of the first two of a record: 0x80..0x8F.
 constexpr bool is_marker(std::byte byte) { return (byte & std::byte{0xF0}) == std::byte{0x80}; }
 
-/// Nothing if one of the first two bytes isn't a marker.
+/// Returns nothing if one of the first two bytes isn't a marker.
 std::optional<Record> decode(std::span<const std::byte, kRecordBytes> bytes);
 
 RecordBytes encode(const Record& record);
 
-/// The record for a place, with the smallest exponent that fits it, rounded to the nearest number that exponent can say. What is farther
-/// than 13.1 m is said as 13.1 m.
-Record record_for(const Eigen::Vector3d& place_mm, Status status = Status::track, int target = 0);
+/// Returns the record for a position, with the smallest exponent that can hold it, rounded to the nearest value of that exponent. Limits
+/// coordinates to 13.1 m.
+Record record_for(const Eigen::Vector3d& position_mm, Status status = Status::track, int target = 0);
 
 }  // namespace prismesh::drivers::eye_tracker::dynasight

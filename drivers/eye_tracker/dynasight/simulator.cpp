@@ -29,16 +29,16 @@ void DynasightSimulator::run_until(std::int64_t now_ns) {
     set_power(power_);
   }
   if (!power_ || now_ns < awake_ns_) {
-    std::array<std::byte, 64> unheard;
-    while (line_->read(unheard).bytes > 0) continue;
+    std::array<std::byte, 64> ignored;
+    while (line_->read(ignored).bytes > 0) continue;
     return;
   }
-  listen();
+  read_commands();
   send_due();
-  // A caller that was away for long finds the line as it would be now, not all that it missed.
+  // After a long pause of the caller, skips the records of that time.
   const std::int64_t period = std::llround(static_cast<double>(kSecondNs) / options_.rate_hz);
   if (mode_ == Mode::streaming && due_ns_ < now_ns - kSecondNs) due_ns_ += (now_ns - due_ns_) / period * period;
-  while (out_count_ == out_sent_ && due_ns_ <= now_ns && (mode_ == Mode::streaming || asked_)) {
+  while (out_count_ == out_sent_ && due_ns_ <= now_ns && (mode_ == Mode::streaming || requested_)) {
     begin_record();
     if (mode_ == Mode::streaming) due_ns_ += period;
     send_due();
@@ -49,27 +49,27 @@ void DynasightSimulator::set_power(bool on) {
   power_ = on;
   mode_ = on && options_.streams_at_power_up ? Mode::streaming : Mode::waiting;
   interrupts_ = 0;
-  asked_ = false;
+  requested_ = false;
   out_count_ = out_sent_ = 0;
   awake_ns_ = now_ns_ + options_.power_up_ns;
   due_ns_ = awake_ns_;
   lost_since_ns_ = lost_until_ns_ = 0;
 }
 
-void DynasightSimulator::listen() {
+void DynasightSimulator::read_commands() {
   std::array<std::byte, 64> commands;
   for (;;) {
     const port::PortCount got = line_->read(commands);
-    for (std::size_t i = 0; i < got.bytes; ++i) obey(commands[i]);
+    for (std::size_t i = 0; i < got.bytes; ++i) handle_command(commands[i]);
     if (got.bytes < commands.size()) return;
   }
 }
 
-void DynasightSimulator::obey(std::byte command) {
+void DynasightSimulator::handle_command(std::byte command) {
   if (command == kInterrupt) {
     if (++interrupts_ >= 3) {
       mode_ = Mode::waiting;
-      asked_ = false;
+      requested_ = false;
     }
     return;
   }
@@ -80,8 +80,8 @@ void DynasightSimulator::obey(std::byte command) {
     due_ns_ = now_ns_;
   } else if (command == kPolled && mode_ == Mode::waiting) {
     mode_ = Mode::polled;
-  } else if (command == kAsk && mode_ == Mode::polled) {
-    asked_ = true;
+  } else if (command == kRequestRecord && mode_ == Mode::polled) {
+    requested_ = true;
     due_ns_ = now_ns_;
   } else {
     ++unknown_commands_;
@@ -110,9 +110,9 @@ void DynasightSimulator::queue(std::byte byte) {
   if (out_count_ < out_.size()) out_[out_count_++] = byte;
 }
 
-// The record's bytes get through the line one after the other; the place is the head's when its last byte is through, less the latency.
+// The record's bytes are sent one after the other. The record holds the head's position at the end of its last byte, minus the latency.
 void DynasightSimulator::begin_record() {
-  asked_ = false;
+  requested_ = false;
   out_count_ = out_sent_ = 0;
   if (happens(options_.faults.garbage)) {
     const int count = std::uniform_int_distribution<int>(1, 7)(random_);
@@ -132,7 +132,7 @@ void DynasightSimulator::send_due() {
   std::size_t due = out_sent_;
   while (due < out_count_ && out_ns_ + static_cast<std::int64_t>(due - out_sent_) * byte_ns() <= now_ns_) ++due;
   if (due == out_sent_) return;
-  // What the line doesn't take is lost, as on a real one.
+  // Bytes that the line doesn't accept are lost, as on a real line.
   line_->write(std::span(out_).subspan(out_sent_, due - out_sent_));
   out_ns_ += static_cast<std::int64_t>(due - out_sent_) * byte_ns();
   out_sent_ = due;

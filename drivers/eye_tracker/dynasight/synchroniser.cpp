@@ -9,22 +9,22 @@ namespace prismesh::drivers::eye_tracker::dynasight {
 namespace {
 
 constexpr std::int32_t kMaxStepUnits = static_cast<std::int32_t>(kMaxStepMm / kUnitMm);
-// A coordinate whose high byte looks like a marker is at least this large, whatever the exponent: 1433.6 mm. Nobody who looks at the
-// display is there, and this is what tells a stream cut one byte early from the right one: there x begins with the second marker.
+// Min. magnitude of a coordinate whose high byte looks like a marker: 1433.6 mm, with any exponent. No viewer is that far aside. This
+// distinguishes a stream that is read one byte early, where x begins with the second marker.
 constexpr std::int32_t kMarkerUnits = 0x7000;
-constexpr std::int32_t kFarthestUnits = static_cast<std::int32_t>(5000 / kUnitMm);
+constexpr std::int32_t kMaxDepthUnits = static_cast<std::int32_t>(5000 / kUnitMm);
 
 bool in_range(const Record& record) {
   for (const std::int16_t number : record.numbers)
     if (is_marker(static_cast<std::byte>(static_cast<std::uint16_t>(number) >> 8))) return false;
   if (!record.sees_head()) return true;
   return std::abs(record.units(0)) < kMarkerUnits && std::abs(record.units(1)) < kMarkerUnits && record.units(2) > 0 &&
-         record.units(2) < kFarthestUnits;
+         record.units(2) < kMaxDepthUnits;
 }
 
 bool continues(const Record& before, const Record& after) {
   if (before.target != after.target) return false;
-  if (!before.sees_head() || !after.sees_head()) return true;  // a search's coordinates mean nothing
+  if (!before.sees_head() || !after.sees_head()) return true;  // in a search, the coordinates are meaningless
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (std::abs(after.units(axis) - before.units(axis)) > kMaxStepUnits) return false;
   return true;
@@ -38,75 +38,76 @@ RecordBytes Synchroniser::window() const {
   return bytes;
 }
 
-void Synchroniser::follow(Cut& cut, const std::optional<Record>& record) {
+void Synchroniser::update(Alignment& alignment, const std::optional<Record>& record) {
   if (!record) {
-    cut = {};
+    alignment = {};
     return;
   }
-  cut.markers = std::min(cut.markers + 1, kAgreeingRecordsRivalled);
+  alignment.markers = std::min(alignment.markers + 1, kAgreeingRecordsAmbiguous);
   if (!in_range(*record))
-    cut.agreeing = 0;
+    alignment.agreeing = 0;
   else
-    cut.agreeing = continues(cut.last, *record) ? std::min(cut.agreeing + 1, kAgreeingRecordsRivalled) : 1;
-  cut.last = *record;
+    alignment.agreeing = continues(alignment.last, *record) ? std::min(alignment.agreeing + 1, kAgreeingRecordsAmbiguous) : 1;
+  alignment.last = *record;
 }
 
-bool Synchroniser::convincing(std::size_t at) const {
-  const std::optional<Record>& head = locked_ ? trusted_ : remembered_;
-  if (head && cuts_[at].last.sees_head() && continues(*head, cuts_[at].last)) return cuts_[at].agreeing >= kAgreeingRecordsToRegain;
+bool Synchroniser::confirmed(std::size_t at) const {
+  const std::optional<Record>& head = locked_ ? last_plausible_ : remembered_;
+  if (head && alignments_[at].last.sees_head() && continues(*head, alignments_[at].last))
+    return alignments_[at].agreeing >= kAgreeingRecordsToResync;
   int needed = kAgreeingRecords;
   for (std::size_t other = 0; other < kRecordBytes; ++other)
-    if (other != at && cuts_[other].markers >= kAgreeingRecords - 1) needed = kAgreeingRecordsRivalled;
-  return cuts_[at].agreeing >= needed;
+    if (other != at && alignments_[other].markers >= kAgreeingRecords - 1) needed = kAgreeingRecordsAmbiguous;
+  return alignments_[at].agreeing >= needed;
 }
 
-std::optional<Heard> Synchroniser::take(std::byte byte) {
+std::optional<SynchronisedRecord> Synchroniser::take(std::byte byte) {
   ring_[at_] = byte;
   at_ = (at_ + 1) % kRecordBytes;
-  ++unclaimed_;
-  if (remembered_ && ++since_loss_ > kRegainBytes) remembered_.reset();
-  const std::size_t cut = at_;  // named by where in the ring its records end
+  ++pending_;
+  if (remembered_ && ++since_loss_ > kMaxResyncBytes) remembered_.reset();
+  const std::size_t alignment = at_;  // an alignment's index is the ring position where its records end
   const std::optional<Record> record = decode(window());
-  follow(cuts_[cut], record);
-  if (locked_ == cut) return take_record(record);
+  update(alignments_[alignment], record);
+  if (locked_ == alignment) return take_record(record);
 
-  if (locked_ && cuts_[*locked_].agreeing == 0 && convincing(cut)) lose();
+  if (locked_ && alignments_[*locked_].agreeing == 0 && confirmed(alignment)) lose_lock();
   if (locked_) return std::nullopt;
-  if (convincing(cut)) {
-    const bool whole = unclaimed_ >= kRecordBytes;
-    skipped_ += whole ? unclaimed_ - kRecordBytes : unclaimed_;
-    unclaimed_ = 0;
-    lock(cut, *record);
-    if (whole) return Heard{*record, false};
-  } else if (unclaimed_ > kRecordBytes) {
+  if (confirmed(alignment)) {
+    const bool whole = pending_ >= kRecordBytes;
+    skipped_ += whole ? pending_ - kRecordBytes : pending_;
+    pending_ = 0;
+    lock(alignment, *record);
+    if (whole) return SynchronisedRecord{*record, false};
+  } else if (pending_ > kRecordBytes) {
     ++skipped_;
-    --unclaimed_;
+    --pending_;
   }
   return std::nullopt;
 }
 
-std::optional<Heard> Synchroniser::take_record(const std::optional<Record>& record) {
+std::optional<SynchronisedRecord> Synchroniser::take_record(const std::optional<Record>& record) {
   if (record) {
     bad_ = 0;
-    unclaimed_ = 0;
-    return Heard{*record, believe(*record)};
+    pending_ = 0;
+    return SynchronisedRecord{*record, check_plausible(*record)};
   }
-  skipped_ += unclaimed_;
-  unclaimed_ = 0;
-  if (++bad_ >= kBadRecordsToLoss) lose();
+  skipped_ += pending_;
+  pending_ = 0;
+  if (++bad_ >= kMaxBadRecords) lose_lock();
   return std::nullopt;
 }
 
-bool Synchroniser::believe(const Record& record) {
+bool Synchroniser::check_plausible(const Record& record) {
   if (!record.sees_head()) {
-    trusted_.reset();
+    last_plausible_.reset();
     candidate_.reset();
     return false;
   }
   if (!in_range(record)) return false;
-  const bool follows = (trusted_ && continues(*trusted_, record)) || (candidate_ && continues(*candidate_, record));
+  const bool follows = (last_plausible_ && continues(*last_plausible_, record)) || (candidate_ && continues(*candidate_, record));
   if (follows) {
-    trusted_ = record;
+    last_plausible_ = record;
     candidate_.reset();
   } else {
     candidate_ = record;
@@ -117,26 +118,26 @@ bool Synchroniser::believe(const Record& record) {
 void Synchroniser::lock(std::size_t at, const Record& record) {
   locked_ = at;
   bad_ = 0;
-  trusted_ = std::exchange(remembered_, std::nullopt);
+  last_plausible_ = std::exchange(remembered_, std::nullopt);
   candidate_.reset();
   if (record.sees_head()) candidate_ = record;
 }
 
-void Synchroniser::lose() {
+void Synchroniser::lose_lock() {
   locked_.reset();
   bad_ = 0;
-  remembered_ = std::exchange(trusted_, std::nullopt);
+  remembered_ = std::exchange(last_plausible_, std::nullopt);
   since_loss_ = 0;
   candidate_.reset();
   ++losses_;
 }
 
 void Synchroniser::reset() {
-  skipped_ += unclaimed_;
-  unclaimed_ = 0;
-  if (locked_) lose();
+  skipped_ += pending_;
+  pending_ = 0;
+  if (locked_) lose_lock();
   remembered_.reset();
-  cuts_ = {};
+  alignments_ = {};
   ring_ = {};
 }
 

@@ -8,9 +8,9 @@ namespace prismesh::drivers::eye_tracker::dynasight {
 namespace {
 
 constexpr std::size_t kReadBytes = 256;
-constexpr int kReadsAPoll = 4;                        // a second's records at full rate; what is left waits for the next poll
-constexpr std::int64_t kBitsAByte = 10;               // start bit, eight, stop bit
-constexpr std::int64_t kRecordPeriodNs = 16'666'667;  // the device's own 60 Hz
+constexpr int kReadsAPoll = 4;                        // one second of records at full rate; the rest waits for the next poll
+constexpr std::int64_t kBitsAByte = 10;               // start bit, 8 data bits, stop bit
+constexpr std::int64_t kRecordPeriodNs = 16'666'667;  // the device's rate of 60 Hz
 
 }  // namespace
 
@@ -24,12 +24,12 @@ EyeTracker::Polled DynasightTracker::poll(std::int64_t now_ns) {
   if (reading.sampled) {
     polled.fresh = true;
     polled.sample.measured_ns = std::max(measured_ns(now_ns, reading), last_measured_ns_ + 1);
-    polled.sample.between_eyes_mm = reading.place_mm;
+    polled.sample.between_eyes_mm = reading.position_mm;
     polled.sample.doubtful = reading.doubtful;
     last_measured_ns_ = polled.sample.measured_ns;
   }
   if (polled.status == port::PortStatus::gone) return polled;
-  talk(now_ns);
+  run_dialogue(now_ns);
   polled.status = send();
   count();
   return polled;
@@ -48,29 +48,29 @@ port::PortStatus DynasightTracker::read(std::int64_t now_ns, Reading& reading) {
 
 void DynasightTracker::take(std::byte byte, std::int64_t now_ns, Reading& reading) {
   ++reading.bytes;
-  ++bytes_since_asked_;
-  const std::optional<Heard> heard = synchroniser_.take(byte);
-  if (!heard) return;
+  ++bytes_since_request_;
+  const std::optional<SynchronisedRecord> synchronised = synchroniser_.take(byte);
+  if (!synchronised) return;
   record_ns_ = now_ns;
   ++counts_.records;
-  if (!heard->record.sees_head()) {
+  if (!synchronised->record.sees_head()) {
     ++counts_.without_head;
     return;
   }
-  if (stage_ != Stage::listen) return;  // of an earlier life, and who knows how old
-  const Eigen::Vector3d place_mm = heard->record.place_mm() + options_.offset_mm;
-  if (!heard->believed || !plausible_head(place_mm)) {
+  if (stage_ != Stage::listen) return;  // a record from before the (re)start, of unknown age
+  const Eigen::Vector3d position_mm = synchronised->record.position_mm() + options_.offset_mm;
+  if (!synchronised->plausible || !plausible_head(position_mm)) {
     ++counts_.rejected;
     return;
   }
   reading.sampled = true;
   reading.sample_end = reading.bytes;
-  reading.place_mm = place_mm;
-  reading.doubtful = heard->record.status != Status::track;
+  reading.position_mm = position_mm;
+  reading.doubtful = synchronised->record.status != Status::track;
 }
 
-// Bytes that came after the record in the same read were on the line after it, so its last byte arrived at least that long ago; whole
-// records among them were a measuring period apart.
+// Bytes read after the record in the same poll followed it on the line, so its last byte arrived at least their transmission time earlier.
+// Complete records among them are one measuring period apart.
 std::int64_t DynasightTracker::measured_ns(std::int64_t now_ns, const Reading& reading) const {
   const std::int64_t byte_ns = kBitsAByte * 1'000'000'000 / std::max(options_.baud, 1);
   const auto after = static_cast<std::int64_t>(reading.bytes - reading.sample_end);
@@ -79,38 +79,38 @@ std::int64_t DynasightTracker::measured_ns(std::int64_t now_ns, const Reading& r
   return now_ns - waited_ns - options_.latency_ns;
 }
 
-void DynasightTracker::talk(std::int64_t now_ns) {
+void DynasightTracker::run_dialogue(std::int64_t now_ns) {
   if (stage_ == Stage::listen && now_ns - record_ns_ > options_.times.silence_ns) {
     ++counts_.restarts;
     stage_ = Stage::begin;
   }
   if (stage_ == Stage::begin) {
     unsent_count_ = 0;
-    for (int i = 0; i < 3; ++i) say(kInterrupt);
+    for (int i = 0; i < 3; ++i) queue_command(kInterrupt);
     stage_ = Stage::settle;
     stage_ns_ = now_ns;
   } else if (stage_ == Stage::settle && now_ns - stage_ns_ >= options_.times.settle_ns) {
-    port_->discard_input();  // the tail of what it said before
+    port_->discard_input();  // the rest of the previous output
     synchroniser_.reset();
     const bool d4d = options_.dialect == settings::TrackerDialect::d4d;
-    say(options_.polled ? kPolled : d4d ? kStreamD4d : kStreamDynasight);
-    if (options_.polled) ask(now_ns);
+    queue_command(options_.polled ? kPolled : d4d ? kStreamD4d : kStreamDynasight);
+    if (options_.polled) request_record(now_ns);
     stage_ = Stage::listen;
     record_ns_ = now_ns;
   } else if (stage_ == Stage::listen && options_.polled) {
-    const bool answered = bytes_since_asked_ >= kRecordBytes;
-    if (answered || now_ns - asked_ns_ > options_.times.answer_ns) ask(now_ns);
+    const bool answered = bytes_since_request_ >= kRecordBytes;
+    if (answered || now_ns - requested_ns_ > options_.times.answer_ns) request_record(now_ns);
   }
 }
 
-void DynasightTracker::ask(std::int64_t now_ns) {
-  say(kAsk);
-  asked_ns_ = now_ns;
-  bytes_since_asked_ = 0;
+void DynasightTracker::request_record(std::int64_t now_ns) {
+  queue_command(kRequestRecord);
+  requested_ns_ = now_ns;
+  bytes_since_request_ = 0;
 }
 
-// A line that takes nothing for so long that this is full has a silent device; the talk begins anew then.
-void DynasightTracker::say(std::byte command) {
+// The queue is full only if the line accepts nothing for long. Then the device is silent, and the dialogue restarts.
+void DynasightTracker::queue_command(std::byte command) {
   if (unsent_count_ < unsent_.size()) unsent_[unsent_count_++] = command;
 }
 

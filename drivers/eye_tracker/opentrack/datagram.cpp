@@ -34,8 +34,8 @@ std::optional<Pose> decode(std::span<const std::byte> datagram) {
 }
 
 std::array<std::byte, kDatagramBytes> encode(const Pose& pose) {
-  const std::array<double, kNumbers> numbers{pose.place_cm.x(), pose.place_cm.y(),  pose.place_cm.z(),
-                                             pose.yaw_degrees,  pose.pitch_degrees, pose.roll_degrees};
+  const std::array<double, kNumbers> numbers{pose.position_cm.x(), pose.position_cm.y(), pose.position_cm.z(),
+                                             pose.yaw_degrees,     pose.pitch_degrees,   pose.roll_degrees};
   std::array<std::byte, kDatagramBytes> bytes{};
   for (std::size_t i = 0; i < kNumbers; ++i) {
     const auto bits = std::bit_cast<std::uint64_t>(numbers[i]);
@@ -44,23 +44,23 @@ std::array<std::byte, kDatagramBytes> encode(const Pose& pose) {
   return bytes;
 }
 
-Eigen::Vector3d place_on_screen_mm(const Pose& pose) {
-  return {-kMmPerCm * pose.place_cm.x(), kMmPerCm * pose.place_cm.y(), kMmPerCm * pose.place_cm.z()};
+Eigen::Vector3d screen_position_mm(const Pose& pose) {
+  return {-kMmPerCm * pose.position_cm.x(), kMmPerCm * pose.position_cm.y(), kMmPerCm * pose.position_cm.z()};
 }
 
-// The right ear of a head that looks at the screen, leaned by the roll, then nodded by the pitch, then turned by the yaw.
+// The direction to the right ear of a head that faces the screen, after roll, then pitch, then yaw.
 Eigen::Vector3d toward_right(const Pose& pose) {
   const double yaw = pose.yaw_degrees * kRadiansPerDegree;
   const double pitch = pose.pitch_degrees * kRadiansPerDegree;
   const double roll = pose.roll_degrees * kRadiansPerDegree;
-  const double forward = -std::sin(pitch) * std::sin(roll), aside = std::cos(roll);  // before turning
+  const double forward = -std::sin(pitch) * std::sin(roll), aside = std::cos(roll);  // before the yaw
   return {forward * std::sin(yaw) + aside * std::cos(yaw), std::cos(pitch) * std::sin(roll),
           aside * std::sin(yaw) - forward * std::cos(yaw)};
 }
 
-Pose pose_for(const Eigen::Vector3d& place_mm, const Eigen::Vector3d& toward_right) {
+Pose pose_for(const Eigen::Vector3d& position_mm, const Eigen::Vector3d& toward_right) {
   Pose pose;
-  pose.place_cm = {-place_mm.x() / kMmPerCm, place_mm.y() / kMmPerCm, place_mm.z() / kMmPerCm};
+  pose.position_cm = {-position_mm.x() / kMmPerCm, position_mm.y() / kMmPerCm, position_mm.z() / kMmPerCm};
   pose.yaw_degrees = std::atan2(toward_right.z(), toward_right.x()) / kRadiansPerDegree;
   pose.roll_degrees = std::asin(std::clamp(toward_right.y(), -1.0, 1.0)) / kRadiansPerDegree;
   return pose;

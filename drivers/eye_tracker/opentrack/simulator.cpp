@@ -19,7 +19,7 @@ void OpentrackSimulator::run_until(std::int64_t now_ns) {
     start_ns_ = now_ns;
   }
   const double now_s = static_cast<double>(now_ns - start_ns_) / kSecondNs;
-  // A caller that was away for long finds what goes out now, not all that it missed.
+  // After a long pause of the caller, skips the datagrams of that time.
   const auto due = static_cast<std::uint64_t>(std::max(0.0, now_s) * options_.send_hz);
   if (due > next_datagram_ + static_cast<std::uint64_t>(options_.send_hz)) next_datagram_ = due;
   for (; next_datagram_ <= due; ++next_datagram_) {
@@ -41,9 +41,9 @@ void OpentrackSimulator::run_until(std::int64_t now_ns) {
 
 Pose OpentrackSimulator::measure(const SimulatedHead& head) {
   std::normal_distribution<double> noise(0, 1);
-  Eigen::Vector3d place_mm = head.between_eyes_mm - options_.offset_mm;
-  for (int axis = 0; axis < 3; ++axis) place_mm[axis] += options_.noise_mm * noise(random_);
-  Pose pose = pose_for(place_mm, head.toward_right);
+  Eigen::Vector3d position_mm = head.between_eyes_mm - options_.offset_mm;
+  for (int axis = 0; axis < 3; ++axis) position_mm[axis] += options_.noise_mm * noise(random_);
+  Pose pose = pose_for(position_mm, head.toward_right);
   pose.yaw_degrees += options_.noise_degrees * noise(random_);
   pose.pitch_degrees += options_.noise_degrees * noise(random_);
   pose.roll_degrees += options_.noise_degrees * noise(random_);

@@ -1,5 +1,5 @@
-// What opentrack does, as far as the wire shows it: poses of a moving head as datagrams to loopback, and the last pose again and again
-// while the head is out of sight.
+// Simulates opentrack as seen on the wire: sends poses of a moving head as loopback datagrams, and repeats the last pose while the head is
+// out of sight.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ namespace prismesh::drivers::eye_tracker::opentrack {
 class OpentrackSimulator final : public TrackerSimulator {
  public:
   struct Options {
-    double camera_hz = 30;  ///< new poses
-    double send_hz = 120;   ///< datagrams; between new poses the last one is repeated
+    double camera_hz = 30;  ///< rate of new poses
+    double send_hz = 120;   ///< rate of datagrams; repeats the last pose between new ones
     double noise_mm = 1;
     double noise_degrees = 0.3;
-    std::int64_t latency_ns = 20'000'000;  ///< from the head being there to the first datagram that says so
+    std::int64_t latency_ns = 20'000'000;  ///< from the head's position to the first datagram with it
     Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();
     std::uint64_t seed = 1;
   };
@@ -41,7 +41,7 @@ class OpentrackSimulator final : public TrackerSimulator {
   std::uint64_t next_datagram_ = 0;
   std::int64_t next_picture_ = 0;
   Pose pose_;
-  bool seen_ = false;  ///< a head was, at least once
+  bool seen_ = false;  ///< a head was seen at least once
   std::uint64_t sent_ = 0;
 };
 

@@ -8,7 +8,7 @@
 namespace prismesh::drivers::eye_tracker::opentrack {
 namespace {
 
-constexpr int kDatagramsAPoll = 64;  // a quarter of a second of opentrack's; what is left waits for the next poll
+constexpr int kDatagramsAPoll = 64;  // a quarter of a second of opentrack's datagrams; the rest waits for the next poll
 
 }  // namespace
 
@@ -16,7 +16,7 @@ OpentrackTracker::OpentrackTracker(port::DatagramPort& port, const Options& opti
 
 EyeTracker::Polled OpentrackTracker::poll(std::int64_t now_ns) {
   Polled polled;
-  std::array<std::byte, 2 * kDatagramBytes> buffer;  // longer than a pose, so that what is left of a longer datagram is none either
+  std::array<std::byte, 2 * kDatagramBytes> buffer;  // longer than a pose, so that a truncated longer datagram isn't taken for a pose
   const std::uint64_t before = counts_.records;
   for (int i = 0; i < kDatagramsAPoll; ++i) {
     const port::Datagram datagram = port_->receive(buffer);
@@ -25,10 +25,10 @@ EyeTracker::Polled OpentrackTracker::poll(std::int64_t now_ns) {
     take(std::span(buffer).first(datagram.bytes), datagram.full_length, polled);
   }
   if (counts_.records != before) {
-    heard_ = true;
-    heard_ns_ = now_ns;
-  } else if (heard_ && now_ns - heard_ns_ > options_.silence_ns) {
-    heard_ = false;
+    receiving_ = true;
+    received_ns_ = now_ns;
+  } else if (receiving_ && now_ns - received_ns_ > options_.silence_ns) {
+    receiving_ = false;
     last_.reset();
     ++counts_.resyncs;
   }
@@ -48,13 +48,13 @@ void OpentrackTracker::take(std::span<const std::byte> datagram, std::size_t ful
     return;
   }
   last_ = pose;
-  const Eigen::Vector3d place_mm = place_on_screen_mm(*pose) + options_.offset_mm;
-  if (!plausible_head(place_mm)) {
+  const Eigen::Vector3d position_mm = screen_position_mm(*pose) + options_.offset_mm;
+  if (!plausible_head(position_mm)) {
     ++counts_.rejected;
     return;
   }
   polled.fresh = true;
-  polled.sample.between_eyes_mm = place_mm;
+  polled.sample.between_eyes_mm = position_mm;
   polled.sample.toward_right = toward_right(*pose).normalized();
 }
 

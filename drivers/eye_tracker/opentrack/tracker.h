@@ -1,6 +1,6 @@
-// Reads head poses that opentrack sends to this machine's loopback interface, so that a webcam can serve as the eye tracker. Nothing is
-// sent back. opentrack knows no "lost": it repeats its last pose, some 250 times a second. A repeated pose is therefore no new sample, and
-// its age tells.
+// Reads the head poses that opentrack sends to the loopback interface, so that a webcam can serve as the eye tracker. Sends nothing back.
+// opentrack doesn't report a lost head: it repeats its last pose, about 250 times a second. A repeated pose is therefore not a new sample;
+// the sample's age shows the loss.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@ namespace prismesh::drivers::eye_tracker::opentrack {
 class OpentrackTracker final : public EyeTracker {
  public:
   struct Options {
-    std::int64_t latency_ns = 20'000'000;  ///< from the head being there to its datagram
+    std::int64_t latency_ns = 20'000'000;  ///< from the head's position to its datagram
     Eigen::Vector3d offset_mm = Eigen::Vector3d::Zero();
-    std::int64_t silence_ns = 500'000'000;  ///< no datagram for this long: nobody sends
+    std::int64_t silence_ns = 500'000'000;  ///< after so long without a datagram, the sender counts as silent
   };
   /// `port` must outlive this.
   OpentrackTracker(port::DatagramPort& port, const Options& options);
 
-  /// Of several datagrams the newest counts. `resyncs`: times that the sender fell silent; `without_head`: repeated poses; `bytes_skipped`:
-  /// of datagrams that are no pose.
+  /// Takes the newest of several datagrams. `resyncs`: how often the sender fell silent; `without_head`: repeated poses; `bytes_skipped`:
+  /// bytes of datagrams that aren't poses.
   Polled poll(std::int64_t now_ns) override;
-  bool synchronised() const override { return heard_; }
+  bool synchronised() const override { return receiving_; }
   const LineCounts& counts() const override { return counts_; }
 
  private:
@@ -36,8 +36,8 @@ class OpentrackTracker final : public EyeTracker {
   port::DatagramPort* port_;
   Options options_;
   LineCounts counts_;
-  bool heard_ = false;
-  std::int64_t heard_ns_ = 0;
+  bool receiving_ = false;
+  std::int64_t received_ns_ = 0;
   std::optional<Pose> last_;
 };
 

@@ -25,7 +25,7 @@ constexpr std::array<std::uint16_t, 256> kCrcTable = crc_table();
 
 constexpr std::uint8_t low(unsigned value) { return static_cast<std::uint8_t>(value & 0xFFU); }
 
-/// Writes a packet from front to back, stuffing as it goes.
+/// Writes a packet from front to back, with byte stuffing.
 class Writer {
  public:
   explicit Writer(std::span<std::byte> to) : to_(to.first(std::min(to.size(), kMaxPacketLength))) {}
@@ -120,21 +120,21 @@ std::size_t Parser::take(std::span<const std::byte> bytes) {
 
 const Packet* Parser::next() {
   while (true) {
-    switch (look()) {
-      case Found::packet: return &packet_;
-      case Found::noise: continue;
-      case Found::nothing:
-      case Found::more_is_needed: return nullptr;
+    switch (parse()) {
+      case ParseResult::packet: return &packet_;
+      case ParseResult::noise: continue;
+      case ParseResult::nothing:
+      case ParseResult::more_is_needed: return nullptr;
     }
   }
 }
 
-/// Looks at what the buffer begins with and takes away what it has understood.
-Parser::Found Parser::look() {
+/// Parses the start of the buffer and removes the bytes that it has processed.
+Parser::ParseResult Parser::parse() {
   const std::size_t header = next_header(0, size_);
   bytes_skipped_ += header;
   drop(header);
-  if (size_ < kInstructionAt) return size_ == 0 ? Found::nothing : Found::more_is_needed;
+  if (size_ < kInstructionAt) return size_ == 0 ? ParseResult::nothing : ParseResult::more_is_needed;
   const std::size_t length = number_at({buffer_.data(), size_}, kLengthAt, 2);
   const std::size_t total = kInstructionAt + length;
   const bool answer_is_short =
@@ -143,30 +143,30 @@ Parser::Found Parser::look() {
     ++bad_packets_;
     ++bytes_skipped_;
     drop(1);
-    return Found::noise;
+    return ParseResult::noise;
   }
-  // Stuffing keeps headers out of whole packets, so one that comes before the CRC says that this packet was cut off.
+  // Stuffing keeps headers out of complete packets, so a header before the CRC means that this packet is truncated.
   const std::size_t body_end = std::min(size_, total - kCrcSize);
-  const std::size_t cut = next_header(kInstructionAt, body_end);
-  if (cut + kHeader.size() <= body_end) {
+  const std::size_t next_packet = next_header(kInstructionAt, body_end);
+  if (next_packet + kHeader.size() <= body_end) {
     ++bad_packets_;
-    bytes_skipped_ += cut;
-    drop(cut);
-    return Found::noise;
+    bytes_skipped_ += next_packet;
+    drop(next_packet);
+    return ParseResult::noise;
   }
-  if (size_ < total) return Found::more_is_needed;
+  if (size_ < total) return ParseResult::more_is_needed;
   const std::span<const std::uint8_t> whole(buffer_.data(), total);
   if (crc16(whole.first(total - kCrcSize)) != number_at(whole, total - kCrcSize, kCrcSize) || !unpack(total - kCrcSize)) {
     ++bad_packets_;
     ++bytes_skipped_;
     drop(1);
-    return Found::noise;
+    return ParseResult::noise;
   }
   drop(total);
-  return Found::packet;
+  return ParseResult::packet;
 }
 
-/// Takes the stuffing out. False: FF FF FD without its FD, or more parameters than anybody sends here.
+/// Removes the stuffing. Returns false for FF FF FD without its stuffed FD, or for more parameters than any packet of this dialogue has.
 bool Parser::unpack(std::size_t end) {
   packet_.id = buffer_[kIdAt];
   packet_.instruction = static_cast<Instruction>(buffer_[kInstructionAt]);
@@ -195,7 +195,7 @@ bool Parser::unpack(std::size_t end) {
   return last_three != 0xFFFFFDU && !error_is_next;
 }
 
-/// Where a header, or the beginning of one at the end, is; `end` if there is none.
+/// Returns the position of a header, or of a partial header at the end; `end` if there is none.
 std::size_t Parser::next_header(std::size_t from, std::size_t end) const {
   for (std::size_t at = from; at < end; ++at) {
     const std::size_t visible = std::min(kHeader.size(), end - at);

@@ -1,6 +1,6 @@
-// The registers of the Dynamixel X series (and of MX with firmware 2.0) that the prism mask needs, and what their values mean.
-// Source: ROBOTIS e-Manual, control tables of XM430-W210, XL430-W250, XL330-M288 (emanual.robotis.com/docs/en/dxl/x/..), which agree
-// in all of these.
+// The registers of the Dynamixel X series (and of MX with firmware 2.0) that the prism mask uses, and the meaning of their values. Source:
+// ROBOTIS e-Manual, control tables of XM430-W210, XL430-W250, XL330-M288 (emanual.robotis.com/docs/en/dxl/x/..), which agree on all of
+// these.
 #pragma once
 
 #include <array>
@@ -17,12 +17,12 @@ struct Register {
   bool operator==(const Register&) const = default;
 };
 
-// Kept without power; written only while torque is off.
+// EEPROM: kept without power, writable only while torque is off.
 inline constexpr Register kModelNumber{0, 2};
 inline constexpr Register kFirmwareVersion{6, 1};
 inline constexpr Register kId{7, 1};
 inline constexpr Register kBaudRate{8, 1};
-inline constexpr Register kReturnDelayTime{9, 1};  ///< 2 us
+inline constexpr Register kReturnDelayTime{9, 1};  ///< unit: 2 us
 inline constexpr Register kDriveMode{10, 1};       ///< 0: velocity profiles, counter-clockwise is positive
 inline constexpr Register kOperatingMode{11, 1};
 inline constexpr Register kHomingOffset{20, 4};  ///< added to the encoder's position
@@ -31,11 +31,11 @@ inline constexpr Register kMaxPositionLimit{48, 4};
 inline constexpr Register kMinPositionLimit{52, 4};
 inline constexpr Register kShutdown{63, 1};
 inline constexpr std::uint16_t kFirstVolatileAddress = 64;
-// Lost with power.
+// RAM: lost without power.
 inline constexpr Register kTorqueEnable{64, 1};
 inline constexpr Register kStatusReturnLevel{68, 1};
 inline constexpr Register kHardwareErrorStatus{70, 1};
-inline constexpr Register kBusWatchdog{98, 1};  ///< 20 ms; reads 0xFF once it has tripped
+inline constexpr Register kBusWatchdog{98, 1};  ///< unit: 20 ms; reads 0xFF after it has tripped
 inline constexpr Register kProfileAcceleration{108, 4};
 inline constexpr Register kProfileVelocity{112, 4};
 inline constexpr Register kGoalPosition{116, 4};
@@ -43,18 +43,18 @@ inline constexpr Register kMoving{122, 1};
 inline constexpr Register kPresentVelocity{128, 4};
 inline constexpr Register kPresentPosition{132, 4};
 
-inline constexpr std::uint8_t kPositionMode = 3;  ///< of kOperatingMode: within one turn, absolute
+inline constexpr std::uint8_t kPositionMode = 3;  ///< of kOperatingMode: absolute position within one turn
 inline constexpr std::uint8_t kAnswerReads = 1;   ///< of kStatusReturnLevel: pings and reads are answered, writes aren't
-inline constexpr std::uint8_t kAnswerAll = 2;     ///< every instruction
+inline constexpr std::uint8_t kAnswerAll = 2;     ///< of kStatusReturnLevel: every instruction is answered
 inline constexpr std::uint8_t kWatchdogTripped = 0xFF;
 inline constexpr double kTicksPerTurn = 4096;
-inline constexpr double kTurnsPerMinutePerUnit = 0.229;  ///< of velocities
+inline constexpr double kTurnsPerMinutePerUnit = 0.229;  ///< unit of velocities
 inline constexpr std::int64_t kWatchdogUnitNs = 20'000'000;
 inline constexpr std::int64_t kReturnDelayUnitNs = 2'000;
 
-/// Line speeds by the value of kBaudRate.
+/// Baud rates, indexed by the value of kBaudRate.
 inline constexpr std::array<int, 8> kBauds = {9'600, 57'600, 115'200, 1'000'000, 2'000'000, 3'000'000, 4'000'000, 4'500'000};
-/// The register's value for a speed; -1 if the servo doesn't have it.
+/// Returns the value of kBaudRate for a baud rate; -1 if the servo doesn't support it.
 constexpr int baud_code(int baud) {
   for (std::size_t i = 0; i < kBauds.size(); ++i)
     if (kBauds[i] == baud) return static_cast<int>(i);
@@ -67,10 +67,10 @@ struct Model {
   std::string_view name;
 };
 std::span<const Model> known_models();
-/// The model's name, empty for a number that isn't known.
+/// Returns the model's name; empty for an unknown number.
 std::string_view model_name(std::uint16_t number);
 
-/// What the set bits of kHardwareErrorStatus mean, lowest first, at most 6; one word group each ("overload").
+/// Returns the meaning of a bit of kHardwareErrorStatus, for example "overload"; bits 0 to 5 are known.
 std::string_view hardware_error_name(unsigned bit);
 
 }  // namespace prismesh::drivers::prism_servo::dynamixel

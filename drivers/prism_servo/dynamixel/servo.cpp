@@ -9,34 +9,34 @@
 namespace prismesh::drivers::prism_servo::dynamixel {
 namespace {
 
-constexpr int kPingsPerSpeed = 2;
-constexpr int kWriteTries = 3;
-constexpr int kSilentQuestionsToLose = 4;
+constexpr int kPingsPerBaud = 2;
+constexpr int kMaxWriteAttempts = 3;
+constexpr int kMaxUnansweredRequests = 4;
 constexpr int kTicksBetweenChecks = 16;
 constexpr std::size_t kPingAnswerData = 3;
 constexpr std::size_t kMotionData = 8;  // present velocity, then present position
 constexpr std::size_t kStatusFrame = kPacketFrame + 1;
 constexpr double kBitsPerByte = 10;  // 8N1
-/// What adapters and schedulers add to an answer's time: an FTDI chip in its default holds bytes back for 16 ms.
-constexpr std::int64_t kSlowestAdapterNs = 30'000'000;
-/// Line time kept free behind an exchange: the servo's turn-around, its return delay at most 0.5 ms.
+/// Max. delay that adapters and schedulers add to an answer: an FTDI chip buffers bytes for 16 ms by default.
+constexpr std::int64_t kMaxAdapterDelayNs = 30'000'000;
+/// Line time reserved after an exchange: the servo's turn-around, with a return delay of max. 0.5 ms.
 constexpr std::int64_t kTurnAroundNs = 700'000;
 constexpr std::int64_t kUsbFrameNs = 1'000'000;
 constexpr std::int64_t kRebootNs = 500'000'000;
 constexpr std::int64_t kSearchPauseNs = 150'000'000;
-constexpr std::int64_t kTryAgainNs = 1'000'000'000;
+constexpr std::int64_t kRetryPauseNs = 1'000'000'000;
 
-/// Torque and, beside it, the LED: of two bytes, so that a late answer can't be taken for the watchdog's.
+/// Torque and the LED register next to it: two bytes, so that a late answer can't be taken for the watchdog's.
 constexpr Register kTorqueCheck{kTorqueEnable.address, 2};
 
-/// What is set up, in this order: first so that the servo answers at all, then with torque off what is kept without power, then the rest.
+/// The registers to set up, in this order: first those that make the servo answer, then the EEPROM while torque is off, then the rest.
 constexpr std::array<Register, 15> kSetup = {
     kStatusReturnLevel, kBusWatchdog,   kTorqueEnable,        kHardwareErrorStatus, kBaudRate,
     kReturnDelayTime,   kDriveMode,     kOperatingMode,       kHomingOffset,        kMaxPositionLimit,
     kMinPositionLimit,  kVelocityLimit, kProfileAcceleration, kProfileVelocity,     kBusWatchdog};
 
-/// Speeds at which a servo may have been left, likeliest first.
-constexpr std::array<int, 8> kCandidates = {57'600, 1'000'000, 115'200, 2'000'000, 3'000'000, 4'000'000, 4'500'000, 9'600};
+/// Baud rates at which a servo may have been left, the most probable first.
+constexpr std::array<int, 8> kCandidateBauds = {57'600, 1'000'000, 115'200, 2'000'000, 3'000'000, 4'000'000, 4'500'000, 9'600};
 
 std::uint8_t watchdog_units(const ServoSettings& settings) {
   return static_cast<std::uint8_t>(std::clamp<std::int64_t>((settings.watchdog_ns + kWatchdogUnitNs - 1) / kWatchdogUnitNs, 1, 127));
@@ -48,7 +48,7 @@ double ticks_of(const ServoSettings& settings, double mm) { return mm / settings
 
 Result<ServoSettings> servo_settings(const settings::PrismServoSettings& from) {
   const auto bad = [&](std::string sentence) { return fail(from.port, std::move(sentence)); };
-  if (from.id < 0 || from.id > kLastId) return bad("prism_servo.id is " + std::to_string(from.id) + "; a servo's id is 0 to 252.");
+  if (from.id < 0 || from.id > kMaxId) return bad("prism_servo.id is " + std::to_string(from.id) + "; a servo's id is 0 to 252.");
   if (baud_code(from.baud) < 0)
     return bad("prism_servo.baud is " + std::to_string(from.baud) +
                "; a servo can do 9600, 57600, 115200, 1000000, 2000000, 3000000, 4000000 or 4500000.");
@@ -97,7 +97,7 @@ PrismServo::Tick Servo::tick(std::int64_t now_ns, double goal_mm, bool powered) 
   tick_.fresh = false;
   tick_.status = port::PortStatus::ok;
   out_size_ = 0;
-  hear(now_ns);
+  read_answers(now_ns);
   expire(now_ns);
   if (tick_.status != port::PortStatus::gone && now_ns >= line_free_ns_) {
     switch (stage_) {
@@ -120,11 +120,11 @@ std::int64_t Servo::line_ns(std::size_t bytes) const {
   return std::llround(static_cast<double>(bytes) * kBitsPerByte * 1e9 / std::max(line_baud_, 1));
 }
 
-// --- what comes in ---
+// --- reading answers ---
 
-void Servo::hear(std::int64_t now_ns) {
+void Servo::read_answers(std::int64_t now_ns) {
   std::array<std::byte, kMaxPacketLength> bytes;
-  // Bounded: a line that never falls silent must not hold the tick.
+  // Bounded, so that a continuous stream of bytes can't block the tick.
   for (int round = 0; round < 8; ++round) {
     const port::PortCount count = port_.read(bytes);
     parser_.take(std::span(bytes).first(count.bytes));
@@ -135,35 +135,35 @@ void Servo::hear(std::int64_t now_ns) {
 }
 
 void Servo::take(const Packet& packet, std::int64_t now_ns) {
-  // Instructions are the echo that some adapters give back.
+  // Some adapters echo the instructions.
   if (packet.instruction != Instruction::status || packet.id != settings_.id) return;
   ++counts_.answers;
   if (packet.alert) check_error_next_ = true;
-  const Question question = question_;
-  if (question.what == Asked::nothing) return;
-  if (packet.error != 0) return take_refusal(question, now_ns);
-  const std::size_t expected = question.what == Asked::ping     ? kPingAnswerData
-                               : question.what == Asked::motion ? kMotionData
-                                                                : question.which.size;
+  const Request request = request_;
+  if (request.kind == RequestKind::nothing) return;
+  if (packet.error != 0) return take_refusal(request, now_ns);
+  const std::size_t expected = request.kind == RequestKind::ping     ? kPingAnswerData
+                               : request.kind == RequestKind::motion ? kMotionData
+                                                                     : request.which.size;
   if (packet.count != expected) return;
-  question_.what = Asked::nothing;
-  silent_questions_ = 0;
+  request_.kind = RequestKind::nothing;
+  unanswered_requests_ = 0;
   line_free_ns_ = now_ns;
-  usual_answer_ns_ = std::max(now_ns - question.sent_ns, usual_answer_ns_ - usual_answer_ns_ / 64);
-  switch (question.what) {
-    case Asked::ping: return take_ping(packet, now_ns);
-    case Asked::motion: return take_motion(packet, question, now_ns);
-    case Asked::value: return take_value(question.which, number_at(packet.data(), 0, question.which.size), now_ns);
-    case Asked::nothing: return;
+  typical_answer_ns_ = std::max(now_ns - request.sent_ns, typical_answer_ns_ - typical_answer_ns_ / 64);
+  switch (request.kind) {
+    case RequestKind::ping: return take_ping(packet, now_ns);
+    case RequestKind::motion: return take_motion(packet, request, now_ns);
+    case RequestKind::value: return take_value(request.which, number_at(packet.data(), 0, request.which.size), now_ns);
+    case RequestKind::nothing: return;
   }
 }
 
-/// A question that the servo doesn't answer with data, now or ever.
-void Servo::take_refusal(const Question& question, std::int64_t now_ns) {
-  question_.what = Asked::nothing;
-  silent_questions_ = 0;
+/// Handles an error answer to a request: the servo won't send data for it.
+void Servo::take_refusal(const Request& request, std::int64_t now_ns) {
+  request_.kind = RequestKind::nothing;
+  unanswered_requests_ = 0;
   line_free_ns_ = now_ns;
-  if (stage_ == Stage::setting_up) refuse(ServoTrouble::refused, question.which.address, now_ns);
+  if (stage_ == Stage::setting_up) refuse(ServoTrouble::refused, request.which.address, now_ns);
 }
 
 void Servo::take_ping(const Packet& packet, std::int64_t now_ns) {
@@ -173,16 +173,16 @@ void Servo::take_ping(const Packet& packet, std::int64_t now_ns) {
   begin_setup();
 }
 
-void Servo::take_motion(const Packet& packet, const Question& question, std::int64_t now_ns) {
+void Servo::take_motion(const Packet& packet, const Request& request, std::int64_t now_ns) {
   const auto velocity = static_cast<std::int32_t>(number_at(packet.data(), 0, 4));
   const auto ticks = static_cast<std::int32_t>(number_at(packet.data(), 4, 4));
   const double sign = settings_.reversed ? -1 : 1;
-  // The servo looked when the question had arrived, before the answer left. What lies between is mostly waiting for this tick, so the first
-  // half millisecond of it is the best guess: questions aren't held back by more than a USB frame.
-  const std::int64_t latest = std::max(question.gone_ns, now_ns - line_ns(question.answer_bytes));
-  const std::int64_t looked = question.gone_ns + std::min((latest - question.gone_ns) / 2, kUsbFrameNs / 2);
-  // An answer sooner than its question is an older question's, come late.
-  tick_.reading.measured_ns = std::min(looked, now_ns);
+  // The servo sampled after the request had arrived and before the answer was sent. Most of the time between is waiting for this tick, so
+  // half of a USB frame after the request is the best estimate: requests aren't delayed by more than a USB frame.
+  const std::int64_t latest_ns = std::max(request.transmitted_ns, now_ns - line_ns(request.answer_bytes));
+  const std::int64_t sampled_ns = request.transmitted_ns + std::min((latest_ns - request.transmitted_ns) / 2, kUsbFrameNs / 2);
+  // An answer earlier than its request is a late answer to an older request.
+  tick_.reading.measured_ns = std::min(sampled_ns, now_ns);
   tick_.reading.position_mm = mm_from_ticks(settings_, ticks);
   tick_.reading.velocity_mm_s = sign * velocity * kTurnsPerMinutePerUnit / 60 * settings_.travel_mm_per_turn;
   tick_.fresh = true;
@@ -195,21 +195,21 @@ void Servo::take_value(Register which, std::uint32_t value, std::int64_t now_ns)
 
 void Servo::take_setup_value(std::uint32_t value, std::int64_t now_ns) {
   const Register which = kSetup[step_];
-  bool done = value == wanted(which);
+  bool done = value == required_value(which);
   if (which == kHardwareErrorStatus) {
-    if (value != 0) return give_alarm(static_cast<std::uint8_t>(value));
+    if (value != 0) return enter_alarm(static_cast<std::uint8_t>(value));
     done = true;
   }
   if (which == kVelocityLimit) {
-    if (value < wanted(kProfileVelocity)) return refuse(ServoTrouble::too_slow, which.address, now_ns);
+    if (value < required_value(kProfileVelocity)) return refuse(ServoTrouble::too_slow, which.address, now_ns);
     done = true;
   }
   if (!done) {
-    if (++tries_ > kWriteTries) return refuse(ServoTrouble::refused, which.address, now_ns);
+    if (++write_attempts_ > kMaxWriteAttempts) return refuse(ServoTrouble::refused, which.address, now_ns);
     write_next_ = true;
     return;
   }
-  tries_ = 0;
+  write_attempts_ = 0;
   if (++step_ < kSetup.size()) return;
   stage_ = Stage::running;
   tick_.phase = ServoPhase::ready;
@@ -225,35 +225,35 @@ void Servo::take_setup_value(std::uint32_t value, std::int64_t now_ns) {
 void Servo::take_check(Register which, std::uint32_t value) {
   if (which == kHardwareErrorStatus) {
     check_error_next_ = false;
-    if (value != 0) give_alarm(static_cast<std::uint8_t>(value));
+    if (value != 0) enter_alarm(static_cast<std::uint8_t>(value));
     return;
   }
   if (stage_ != Stage::running) return;
   if (which == kTorqueCheck) {
-    // Lost on the way, or the servo let go by itself.
+    // The write was lost, or the servo switched its torque off by itself.
     if (((value & 1U) != 0) != torque_sent_) torque_known_ = false;
     return;
   }
   if (which != kBusWatchdog || value == watchdog_units(settings_)) return;
-  // Tripped: goals are refused until it is cleared. Anything else: the servo has lost power meanwhile.
+  // Tripped: the servo refuses goals until this is cleared. Any other value: the servo has lost power meanwhile.
   if (value == kWatchdogTripped) ++counts_.watchdog_trips;
   begin_setup();
 }
 
 void Servo::expire(std::int64_t now_ns) {
-  if (question_.what == Asked::nothing || now_ns < question_.deadline_ns) return;
-  question_.what = Asked::nothing;
+  if (request_.kind == RequestKind::nothing || now_ns < request_.deadline_ns) return;
+  request_.kind = RequestKind::nothing;
   ++counts_.timeouts;
-  ++silent_questions_;
+  ++unanswered_requests_;
   check_watchdog_next_ = true;
-  usual_answer_ns_ = std::min(2 * usual_answer_ns_, kSlowestAdapterNs);
+  typical_answer_ns_ = std::min(2 * typical_answer_ns_, kMaxAdapterDelayNs);
   if (stage_ == Stage::searching || stage_ == Stage::changing_baud) return;
-  // A late answer must not be taken for that to another question.
-  if (stage_ == Stage::setting_up) line_free_ns_ = std::max(line_free_ns_, now_ns + kSlowestAdapterNs);
-  if (silent_questions_ >= kSilentQuestionsToLose) begin_search();
+  // Wait, so that a late answer isn't taken for the answer to another request.
+  if (stage_ == Stage::setting_up) line_free_ns_ = std::max(line_free_ns_, now_ns + kMaxAdapterDelayNs);
+  if (unanswered_requests_ >= kMaxUnansweredRequests) begin_search();
 }
 
-// --- what goes out ---
+// --- sending requests ---
 
 void Servo::flush(std::int64_t now_ns) {
   if (out_size_ == 0) return;
@@ -263,21 +263,21 @@ void Servo::flush(std::int64_t now_ns) {
   last_sent_ns_ = now_ns;
 }
 
-void Servo::ask(Asked what, Register which, std::size_t question_bytes, std::size_t answer_data, std::int64_t now_ns) {
-  add(question_bytes);
-  question_.what = what;
-  question_.which = which;
-  question_.sent_ns = now_ns;
-  question_.gone_ns = now_ns + line_ns(out_size_);
-  question_.answer_bytes = kStatusFrame + answer_data;
-  const std::int64_t exchange = line_ns(out_size_ + question_.answer_bytes) + kTurnAroundNs;
+void Servo::send_request(RequestKind kind, Register which, std::size_t request_bytes, std::size_t answer_data, std::int64_t now_ns) {
+  add(request_bytes);
+  request_.kind = kind;
+  request_.which = which;
+  request_.sent_ns = now_ns;
+  request_.transmitted_ns = now_ns + line_ns(out_size_);
+  request_.answer_bytes = kStatusFrame + answer_data;
+  const std::int64_t exchange = line_ns(out_size_ + request_.answer_bytes) + kTurnAroundNs;
   line_free_ns_ = now_ns + exchange;
-  question_.deadline_ns = now_ns + exchange + std::min(kSlowestAdapterNs, std::max<std::int64_t>(2 * usual_answer_ns_, 5'000'000));
+  request_.deadline_ns = now_ns + exchange + std::min(kMaxAdapterDelayNs, std::max<std::int64_t>(2 * typical_answer_ns_, 5'000'000));
 }
 
-/// A write of the set-up: whether the servo answers it depends on what it was set to before, so an answer's time is waited for.
+/// Writes a register during set-up. Whether the servo answers depends on its previous settings, so wait for the time of an answer.
 void Servo::write_and_wait(Register which, std::uint32_t value, std::int64_t now_ns) {
-  add(encode_write(settings_.id, which.address, value, which.size, room()));
+  add(encode_write(settings_.id, which.address, value, which.size, free_output()));
   line_free_ns_ = now_ns + line_ns(out_size_ + kStatusFrame) + kTurnAroundNs;
 }
 
@@ -288,11 +288,11 @@ void Servo::begin_search() {
   pings_left_ = 0;
 }
 
-/// Goes through the speeds; every other time the likeliest, at which the servo was or should be.
+/// Tries the candidate baud rates; every second attempt uses the expected one, at which the servo was found last or should be.
 void Servo::next_candidate(std::int64_t now_ns) {
-  const std::size_t all = 2 * kCandidates.size();
-  const int likeliest = found_baud_ != 0 ? found_baud_ : settings_.baud;
-  const int baud = candidate_ % 2 == 0 ? likeliest : kCandidates[candidate_ / 2];
+  const std::size_t all = 2 * kCandidateBauds.size();
+  const int expected = found_baud_ != 0 ? found_baud_ : settings_.baud;
+  const int baud = candidate_ % 2 == 0 ? expected : kCandidateBauds[candidate_ / 2];
   if (++candidate_ == all) {
     candidate_ = 0;
     found_baud_ = 0;
@@ -301,30 +301,30 @@ void Servo::next_candidate(std::int64_t now_ns) {
   if (baud != line_baud_ && !port_.set_baud(baud)) return;
   line_baud_ = baud;
   parser_.reset();
-  pings_left_ = kPingsPerSpeed;
-  // Changing an adapter's speed takes a millisecond of USB; where nobody has answered at any, it's done less often.
+  pings_left_ = kPingsPerBaud;
+  // Changing an adapter's baud rate takes one millisecond of USB time, so do it less often when no servo has answered at any rate.
   line_free_ns_ = tick_.trouble == ServoTrouble::no_answer ? now_ns + kSearchPauseNs : now_ns;
 }
 
 void Servo::search(std::int64_t now_ns) {
-  if (question_.what != Asked::nothing) return;
+  if (request_.kind != RequestKind::nothing) return;
   if (pings_left_ == 0) next_candidate(now_ns);
   if (pings_left_ == 0 || now_ns < line_free_ns_) return;
   --pings_left_;
-  usual_answer_ns_ = kSlowestAdapterNs;
-  ask(Asked::ping, {}, encode_ping(settings_.id, room()), kPingAnswerData, now_ns);
+  typical_answer_ns_ = kMaxAdapterDelayNs;
+  send_request(RequestKind::ping, {}, encode_ping(settings_.id, free_output()), kPingAnswerData, now_ns);
 }
 
 void Servo::begin_setup() {
   stage_ = Stage::setting_up;
   tick_.phase = ServoPhase::setting_up;
   step_ = 0;
-  tries_ = 0;
-  // The first register is the one that lets the servo answer: it's written before it is read.
+  write_attempts_ = 0;
+  // The first register makes the servo answer, so write it before reading it.
   write_next_ = true;
 }
 
-std::uint32_t Servo::wanted(Register which) const {
+std::uint32_t Servo::required_value(Register which) const {
   const auto end = [&](double mm) { return static_cast<std::uint32_t>(ticks_from_mm(settings_, mm)); };
   const double right = settings_.reversed ? -settings_.travel_mm : settings_.travel_mm;
   if (which == kStatusReturnLevel) return kAnswerReads;
@@ -338,19 +338,19 @@ std::uint32_t Servo::wanted(Register which) const {
 }
 
 void Servo::set_up(std::int64_t now_ns) {
-  if (question_.what != Asked::nothing) return;
+  if (request_.kind != RequestKind::nothing) return;
   const Register which = kSetup[step_];
   if (std::exchange(write_next_, false)) {
-    write_and_wait(which, wanted(which), now_ns);
+    write_and_wait(which, required_value(which), now_ns);
     if (which == kBaudRate) stage_ = Stage::changing_baud;
     return;
   }
-  ask_value(which, now_ns);
+  request_value(which, now_ns);
 }
 
-/// The new speed has been written and has had time to arrive: follow it, and look whether the servo is there.
+/// The new baud rate has been written and transmitted: switch the port to it, and search the servo again.
 void Servo::change_baud(std::int64_t now_ns) {
-  if (++baud_changes_ > kWriteTries || !port_.set_baud(settings_.baud)) {
+  if (++baud_changes_ > kMaxWriteAttempts || !port_.set_baud(settings_.baud)) {
     baud_changes_ = 0;
     return refuse(ServoTrouble::refused, kBaudRate.address, now_ns);
   }
@@ -362,39 +362,40 @@ void Servo::change_baud(std::int64_t now_ns) {
 void Servo::run(std::int64_t now_ns, double goal_mm, bool powered) {
   if (now_ns - last_sent_ns_ > settings_.watchdog_ns) check_watchdog_next_ = true;
   if (!torque_known_ || torque_sent_ != powered) {
-    add(encode_write(settings_.id, kTorqueEnable.address, powered ? 1 : 0, kTorqueEnable.size, room()));
+    add(encode_write(settings_.id, kTorqueEnable.address, powered ? 1 : 0, kTorqueEnable.size, free_output()));
     torque_sent_ = powered;
     torque_known_ = true;
   } else if (powered && std::isfinite(goal_mm)) {
     const auto ticks = static_cast<std::uint32_t>(ticks_from_mm(settings_, goal_mm));
-    add(encode_write(settings_.id, kGoalPosition.address, ticks, kGoalPosition.size, room()));
+    add(encode_write(settings_.id, kGoalPosition.address, ticks, kGoalPosition.size, free_output()));
   }
-  if (question_.what == Asked::nothing)
-    ask_motion_or_check(now_ns);
+  if (request_.kind == RequestKind::nothing)
+    request_motion_or_check(now_ns);
   else
     line_free_ns_ = now_ns + line_ns(out_size_);
 }
 
-void Servo::ask_motion_or_check(std::int64_t now_ns) {
-  if (check_error_next_) return ask_value(kHardwareErrorStatus, now_ns);
-  if (--ticks_to_check_ > 0 && !check_watchdog_next_) return ask_motion(now_ns);
+void Servo::request_motion_or_check(std::int64_t now_ns) {
+  if (check_error_next_) return request_value(kHardwareErrorStatus, now_ns);
+  if (--ticks_to_check_ > 0 && !check_watchdog_next_) return request_motion(now_ns);
   torque_is_next_ = !torque_is_next_ && !check_watchdog_next_;
   ticks_to_check_ = kTicksBetweenChecks;
   check_watchdog_next_ = false;
-  ask_value(torque_is_next_ ? kTorqueCheck : kBusWatchdog, now_ns);
+  request_value(torque_is_next_ ? kTorqueCheck : kBusWatchdog, now_ns);
 }
 
-void Servo::ask_motion(std::int64_t now_ns) {
-  ask(Asked::motion, kPresentVelocity, encode_read(settings_.id, kPresentVelocity.address, kMotionData, room()), kMotionData, now_ns);
+void Servo::request_motion(std::int64_t now_ns) {
+  send_request(RequestKind::motion, kPresentVelocity, encode_read(settings_.id, kPresentVelocity.address, kMotionData, free_output()),
+               kMotionData, now_ns);
 }
 
-void Servo::ask_value(Register which, std::int64_t now_ns) {
-  ask(Asked::value, which, encode_read(settings_.id, which.address, which.size, room()), which.size, now_ns);
+void Servo::request_value(Register which, std::int64_t now_ns) {
+  send_request(RequestKind::value, which, encode_read(settings_.id, which.address, which.size, free_output()), which.size, now_ns);
 }
 
-void Servo::give_alarm(std::uint8_t bits) {
+void Servo::enter_alarm(std::uint8_t bits) {
   if (stage_ != Stage::alarm) {
-    let_go_since_alarm_ = false;
+    torque_off_since_alarm_ = false;
     ticks_to_check_ = kTicksBetweenChecks;
   }
   stage_ = Stage::alarm;
@@ -402,23 +403,23 @@ void Servo::give_alarm(std::uint8_t bits) {
   tick_.alarm_bits = bits;
 }
 
-/// Only a reboot brings the torque back after an alarm; meanwhile the position is still looked at.
+/// After an alarm only a reboot enables torque again; until then, keep reading the position.
 void Servo::watch_alarm(std::int64_t now_ns, bool powered) {
-  if (!powered) let_go_since_alarm_ = true;
-  if (powered && let_go_since_alarm_) {
-    add(encode_reboot(settings_.id, room()));
-    question_.what = Asked::nothing;
+  if (!powered) torque_off_since_alarm_ = true;
+  if (powered && torque_off_since_alarm_) {
+    add(encode_reboot(settings_.id, free_output()));
+    request_.kind = RequestKind::nothing;
     stage_ = Stage::rebooting;
     tick_.phase = ServoPhase::absent;
     tick_.alarm_bits = 0;
     line_free_ns_ = now_ns + kRebootNs;
     return;
   }
-  if (question_.what != Asked::nothing) return;
-  if (--ticks_to_check_ > 0) return ask_motion(now_ns);
-  // Another fault may have joined the first.
+  if (request_.kind != RequestKind::nothing) return;
+  if (--ticks_to_check_ > 0) return request_motion(now_ns);
+  // Check for additional faults.
   ticks_to_check_ = kTicksBetweenChecks;
-  ask_value(kHardwareErrorStatus, now_ns);
+  request_value(kHardwareErrorStatus, now_ns);
 }
 
 std::string trouble_text(const PrismServo::Tick& tick, const settings::PrismServoSettings& settings) {
@@ -451,7 +452,7 @@ void Servo::refuse(ServoTrouble why, std::uint16_t number, std::int64_t now_ns) 
   tick_.phase = ServoPhase::absent;
   tick_.trouble = why;
   tick_.trouble_number = number;
-  line_free_ns_ = now_ns + kTryAgainNs;
+  line_free_ns_ = now_ns + kRetryPauseNs;
 }
 
 }  // namespace prismesh::drivers::prism_servo::dynamixel

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 constexpr std::uint8_t kOverloadBit = 1U << 5U;
-/// XM430-W210 as it leaves the factory.
+/// Factory defaults of the XM430-W210.
 struct Default {
   Register which;
   std::uint32_t value;
@@ -25,13 +25,13 @@ constexpr std::array<Default, 10> kKept = {{{kFirmwareVersion, 45},
                                             {kShutdown, 52},
                                             {{31, 1}, 80},
                                             {{13, 1}, 2}}};
-/// Those that a host may write here; others are refused, so that a driver that strays is noticed.
+/// Registers that a host may write. All others are refused, so that tests notice a faulty driver.
 constexpr std::array<Register, 16> kWritable = {
     kId,           kBaudRate,          kReturnDelayTime,  kDriveMode,           kOperatingMode,
     kHomingOffset, kVelocityLimit,     kMaxPositionLimit, kMinPositionLimit,    kShutdown,
     kTorqueEnable, kStatusReturnLevel, kBusWatchdog,      kProfileAcceleration, kProfileVelocity,
     kGoalPosition};
-/// Address ranges that exist (first, one past the last).
+/// Existing address ranges (first, one past the last).
 struct Range {
   std::uint16_t from, to;
 };
@@ -48,7 +48,7 @@ SimulatedServo::SimulatedServo(port::BytePort& port, const SimulatedServoSetting
   factory_registers();
   motor_mm_ = mask_mm_ = profile_mm_ = settings.start_mm;
   port_.set_baud(settings.baud);
-  show_motion();
+  update_motion_registers();
 }
 
 void SimulatedServo::factory_registers() {
@@ -57,10 +57,10 @@ void SimulatedServo::factory_registers() {
   set_value(kBaudRate, static_cast<std::uint32_t>(std::max(0, baud_code(settings_.baud))));
   set_value(kReturnDelayTime, settings_.return_delay);
   for (const Default& kept : kKept) set_value(kept.which, kept.value);
-  forget_volatile();
+  reset_volatile();
 }
 
-void SimulatedServo::forget_volatile() {
+void SimulatedServo::reset_volatile() {
   std::fill(table_.begin() + kFirstVolatileAddress, table_.end(), std::uint8_t{0});
   set_value(kStatusReturnLevel, kAnswerAll);
 }
@@ -78,7 +78,7 @@ void SimulatedServo::set_power(bool on) {
 }
 
 void SimulatedServo::boot(std::int64_t now_ns) {
-  forget_volatile();
+  reset_volatile();
   parser_.reset();
   answers_waiting_ = 0;
   boot_until_ns_ = now_ns + settings_.boot_ns;
@@ -95,14 +95,14 @@ void SimulatedServo::step(std::int64_t now_ns) {
     started_ = true;
     now_ns_ = last_instruction_ns_ = now_ns;
   }
-  hear(now_ns);
+  read_instructions(now_ns);
   send_due(now_ns);
-  watch(now_ns);
-  turn(now_ns);
+  check_watchdog(now_ns);
+  simulate_motor(now_ns);
   now_ns_ = now_ns;
 }
 
-void SimulatedServo::hear(std::int64_t now_ns) {
+void SimulatedServo::read_instructions(std::int64_t now_ns) {
   std::array<std::byte, kMaxPacketLength> bytes;
   while (true) {
     const port::PortCount count = port_.read(bytes);
@@ -110,12 +110,12 @@ void SimulatedServo::hear(std::int64_t now_ns) {
     if (!powered_ || now_ns < boot_until_ns_) continue;
     if (settings_.echoes) port_.write(std::span(bytes).first(count.bytes));
     parser_.take(std::span(bytes).first(count.bytes));
-    while (const Packet* packet = parser_.next()) carry_out(*packet, now_ns);
+    while (const Packet* packet = parser_.next()) execute(*packet, now_ns);
   }
   counts_.bad_packets = parser_.bad_packets();
 }
 
-void SimulatedServo::carry_out(const Packet& packet, std::int64_t now_ns) {
+void SimulatedServo::execute(const Packet& packet, std::int64_t now_ns) {
   if (packet.id != value(kId) && packet.id != kBroadcastId) return;
   if (packet.instruction == Instruction::status) return;
   ++counts_.instructions;
@@ -158,7 +158,7 @@ void SimulatedServo::write(const Packet& packet, std::int64_t now_ns) {
     if (packet.count == 2U + found->size) refusal = write_register(*found, number_at(packet.data(), 2, found->size));
   }
   if (refusal != Refusal::none) ++counts_.refused;
-  // The level that the write leaves decides; the manual doesn't say.
+  // The status level after the write decides; the manual doesn't specify this.
   if (value(kStatusReturnLevel) == kAnswerAll && packet.id != kBroadcastId) answer(now_ns, refusal, {});
 }
 
@@ -166,7 +166,7 @@ Refusal SimulatedServo::check(Register which, std::uint32_t value_to_write) cons
   const bool volatile_register = which.address >= kFirstVolatileAddress;
   if (!volatile_register && torque()) return Refusal::access;
   if (which == kBaudRate && value_to_write >= kBauds.size()) return Refusal::range;
-  if (which == kId && value_to_write > kLastId) return Refusal::range;
+  if (which == kId && value_to_write > kMaxId) return Refusal::range;
   if (which == kReturnDelayTime && value_to_write > 254) return Refusal::range;
   if (which == kStatusReturnLevel && value_to_write > kAnswerAll) return Refusal::range;
   if (which == kTorqueEnable && value_to_write > 1) return Refusal::range;
@@ -187,14 +187,14 @@ Refusal SimulatedServo::write_register(Register which, std::uint32_t value_to_wr
   if (which == kGoalPosition && refusal == Refusal::limit) ++counts_.goals_beyond_limits;
   if (refusal != Refusal::none) return refusal;
   if (which.address < kFirstVolatileAddress) ++counts_.eeprom_writes;
-  // After a shutdown only a reboot brings the torque back.
+  // After a shutdown only a reboot enables torque again.
   if (which == kTorqueEnable && value_to_write == 1 && (value(kHardwareErrorStatus) & value(kShutdown)) != 0) return Refusal::failed;
   if (which == kTorqueEnable && value_to_write == 1 && !torque()) {
     profile_mm_ = motor_mm_;
     set_value(kGoalPosition, value(kPresentPosition));
   }
   if (which == kGoalPosition) {
-    if (!torque()) return Refusal::none;  // the goal stays at the present position while torque is off
+    if (!torque()) return Refusal::none;  // while torque is off, the goal stays at the present position
     ++counts_.goals;
   }
   set_value(which, value_to_write);
@@ -224,14 +224,14 @@ void SimulatedServo::send_due(std::int64_t now_ns) {
             answers_.begin());
   answers_waiting_ -= sent;
   if (answers_waiting_ > 0) return;
-  // An answer to a new speed goes out at the old one; the manual doesn't say.
+  // The answer to a change of the baud rate is sent at the old rate; the manual doesn't specify this.
   if (baud_after_answer_ > 0) port_.set_baud(baud_after_answer_);
   baud_after_answer_ = 0;
   if (rebooting_) boot(now_ns);
   rebooting_ = false;
 }
 
-void SimulatedServo::watch(std::int64_t now_ns) {
+void SimulatedServo::check_watchdog(std::int64_t now_ns) {
   const std::uint32_t limit = value(kBusWatchdog);
   if (!powered_ || !torque() || limit == 0 || limit == kWatchdogTripped) return;
   if (now_ns - last_instruction_ns_ <= static_cast<std::int64_t>(limit) * kWatchdogUnitNs) return;
@@ -243,8 +243,8 @@ void SimulatedServo::watch(std::int64_t now_ns) {
   ++counts_.watchdog_trips;
 }
 
-void SimulatedServo::turn(std::int64_t now_ns) {
-  // In small steps, whatever the caller's.
+void SimulatedServo::simulate_motor(std::int64_t now_ns) {
+  // Integrates in small steps, whatever the caller's step.
   constexpr std::int64_t kStepNs = 250'000;
   std::int64_t at = now_ns_;
   while (at < now_ns) {
@@ -252,9 +252,9 @@ void SimulatedServo::turn(std::int64_t now_ns) {
     move_motor(static_cast<double>(next - at) * 1e-9);
     at = next;
   }
-  drag_mask();
-  watch_load(now_ns);
-  show_motion();
+  move_mask();
+  check_load(now_ns);
+  update_motion_registers();
 }
 
 double SimulatedServo::speed_limit_mm_s() const {
@@ -267,24 +267,24 @@ void SimulatedServo::move_motor(double seconds) {
   const double before = motor_mm_;
   if (powered_ && torque()) {
     const double goal = mm_from(static_cast<std::int32_t>(value(kGoalPosition)));
-    const double reach = speed_limit_mm_s() * seconds;
-    profile_mm_ += std::clamp(goal - profile_mm_, -reach, reach);
+    const double max_profile_step = speed_limit_mm_s() * seconds;
+    profile_mm_ += std::clamp(goal - profile_mm_, -max_profile_step, max_profile_step);
     const double lag_s = std::max(1e-4, settings_.lag_ms * 1e-3);
-    const double most = settings_.speed_mm_s * seconds;
-    const double wish = (profile_mm_ - motor_mm_) * (1 - std::exp(-seconds / lag_s));
-    if (!jammed_) motor_mm_ = std::clamp(motor_mm_ + std::clamp(wish, -most, most), -settings_.stop_mm, settings_.stop_mm);
+    const double max_step = settings_.speed_mm_s * seconds;
+    const double step = (profile_mm_ - motor_mm_) * (1 - std::exp(-seconds / lag_s));
+    if (!jammed_) motor_mm_ = std::clamp(motor_mm_ + std::clamp(step, -max_step, max_step), -settings_.stop_mm, settings_.stop_mm);
   } else {
     profile_mm_ = motor_mm_;
   }
   if (seconds > 0) velocity_mm_s_ = (motor_mm_ - before) / seconds;
 }
 
-void SimulatedServo::drag_mask() {
-  const double play = settings_.backlash_mm / 2;
-  mask_mm_ = std::clamp(mask_mm_, motor_mm_ - play, motor_mm_ + play);
+void SimulatedServo::move_mask() {
+  const double half_backlash = settings_.backlash_mm / 2;
+  mask_mm_ = std::clamp(mask_mm_, motor_mm_ - half_backlash, motor_mm_ + half_backlash);
 }
 
-void SimulatedServo::watch_load(std::int64_t now_ns) {
+void SimulatedServo::check_load(std::int64_t now_ns) {
   if (!torque() || std::abs(profile_mm_ - motor_mm_) < settings_.overload_mm) {
     overload_since_ns_ = kNever;
     return;
@@ -293,7 +293,7 @@ void SimulatedServo::watch_load(std::int64_t now_ns) {
   if (now_ns - overload_since_ns_ > settings_.overload_after_ns) raise_hardware_error(kOverloadBit);
 }
 
-void SimulatedServo::show_motion() {
+void SimulatedServo::update_motion_registers() {
   set_value(kPresentPosition, static_cast<std::uint32_t>(static_cast<std::int32_t>(std::lround(ticks_from(motor_mm_)))));
   const double sign = settings_.reversed ? -1 : 1;
   const double units = sign * velocity_mm_s_ / settings_.travel_mm_per_turn * 60 / kTurnsPerMinutePerUnit;

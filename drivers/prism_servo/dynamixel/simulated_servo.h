@@ -1,9 +1,7 @@
-// A Dynamixel X servo with a mask on its shaft, as seen from the other end of its cable: real bytes in and out, registers with the
-// factory's defaults, EEPROM locked while torque is on, a speed of the line that has to be right, return delay, status level, bus
-// watchdog, and a motor with limited speed, lag, backlash and stops. In virtual time on a MemoryLine, in real time through
-// SimulatedServoThread.
-// Source of the behaviour: ROBOTIS e-Manual, "DYNAMIXEL Protocol 2.0" and the control table of XM430-W210. What the manual leaves open is
-// marked in the code.
+// Simulates a Dynamixel X servo with a mask on its shaft, at byte level: registers with factory defaults, EEPROM locked while torque is on,
+// baud rate, return delay, status level, bus watchdog, and a motor with limited speed, lag, backlash and stops. Runs in virtual time on a
+// MemoryLine, or in real time in a SimulatedServoThread. Source of the behaviour: ROBOTIS e-Manual, "DYNAMIXEL Protocol 2.0" and the
+// control table of XM430-W210. The code marks what the manual leaves open.
 #pragma once
 
 #include <array>
@@ -19,43 +17,43 @@ namespace prismesh::drivers::prism_servo::dynamixel {
 struct SimulatedServoSettings {
   std::uint16_t model = 1030;  ///< XM430-W210
   std::uint8_t id = 1;
-  int baud = 57'600;  ///< the factory's
+  int baud = 57'600;  ///< factory default
   std::uint8_t return_delay = 250;
-  double travel_mm_per_turn = 5;  ///< how the mask hangs on the shaft; the three as in PrismServoSettings
+  double travel_mm_per_turn = 5;  ///< mounting of the mask on the shaft; the three values as in PrismServoSettings
   bool reversed = false;
   int zero_ticks = 2048;
-  double start_mm = 0.6;                           ///< where the mask stands at first
-  double stop_mm = 2.3;                            ///< the mask hits something there, on either side
-  double speed_mm_s = 6;                           ///< what the motor can do
+  double start_mm = 0.6;                           ///< initial mask position
+  double stop_mm = 2.3;                            ///< position of the mechanical stop on either side
+  double speed_mm_s = 6;                           ///< max. speed of the motor
   double lag_ms = 15;                              ///< time constant with which the motor follows its profile
-  double backlash_mm = 0.01;                       ///< between motor and mask; the encoder sits at the motor
-  double overload_mm = 0.1;                        ///< a motor that stays so far behind its profile ...
-  std::int64_t overload_after_ns = 1'500'000'000;  ///< ... for so long switches itself off
-  std::int64_t boot_ns = 300'000'000;              ///< after power comes or a reboot: silent so long
-  bool echoes = false;                             ///< the adapter gives the host its own bytes back
+  double backlash_mm = 0.01;                       ///< between motor and mask; the encoder is on the motor
+  double overload_mm = 0.1;                        ///< a motor that stays so far behind its profile
+  std::int64_t overload_after_ns = 1'500'000'000;  ///< for so long switches itself off
+  std::int64_t boot_ns = 300'000'000;              ///< no answers for so long after power-on or a reboot
+  bool echoes = false;                             ///< the adapter returns the host's own bytes
 };
 
 class SimulatedServo {
  public:
-  /// `port`: the device's end; must outlive this. Sets its speed as the registers say.
+  /// `port` is the device's end and must outlive this. Sets its baud rate from the registers.
   SimulatedServo(port::BytePort& port, const SimulatedServoSettings& settings);
 
-  /// Moves on to `now_ns`: takes in what has come, answers what is due, turns the motor. Steps of a millisecond or less.
+  /// Advances to `now_ns`: executes received instructions, sends due answers, moves the motor. Call it in steps of max. one millisecond.
   void step(std::int64_t now_ns);
 
-  // What befalls it.
-  void jam(bool jammed) { jammed_ = jammed; }    ///< the mask is held fast
-  void set_power(bool on);                       ///< off: silent, torque gone, volatile registers forgotten
-  void raise_hardware_error(std::uint8_t bits);  ///< as kHardwareErrorStatus
-  void mute(bool muted) { muted_ = muted; }      ///< hears and turns, but doesn't answer: a broken wire
+  // Faults.
+  void jam(bool jammed) { jammed_ = jammed; }    ///< blocks the mask
+  void set_power(bool on);                       ///< off: no answers, no torque, volatile registers reset
+  void raise_hardware_error(std::uint8_t bits);  ///< bits of kHardwareErrorStatus
+  void mute(bool muted) { muted_ = muted; }      ///< receives and moves, but doesn't answer: a broken wire
 
-  double mask_mm() const { return mask_mm_; }  ///< where the mask truly is
+  double mask_mm() const { return mask_mm_; }  ///< true position of the mask
   double motor_mm() const { return motor_mm_; }
   double motor_velocity_mm_s() const { return velocity_mm_s_; }
   bool torque() const { return powered_ && value(kTorqueEnable) != 0; }
   bool watchdog_tripped() const { return value(kBusWatchdog) == kWatchdogTripped; }
   std::uint32_t value(Register which) const;
-  void set_value(Register which, std::uint32_t value);  ///< as if set before the test began; no checks
+  void set_value(Register which, std::uint32_t value);  ///< sets an initial state, without checks
 
   struct Counts {
     std::uint64_t instructions = 0, answers = 0, bad_packets = 0, refused = 0, goals = 0, eeprom_writes = 0, watchdog_trips = 0;
@@ -70,10 +68,10 @@ class SimulatedServo {
     std::array<std::byte, kMaxPacketLength> bytes{};
   };
   void factory_registers();
-  void forget_volatile();
+  void reset_volatile();
   void boot(std::int64_t now_ns);
-  void hear(std::int64_t now_ns);
-  void carry_out(const Packet& packet, std::int64_t now_ns);
+  void read_instructions(std::int64_t now_ns);
+  void execute(const Packet& packet, std::int64_t now_ns);
   void ping(std::int64_t now_ns);
   void read(const Packet& packet, std::int64_t now_ns);
   void write(const Packet& packet, std::int64_t now_ns);
@@ -81,12 +79,12 @@ class SimulatedServo {
   Refusal check(Register which, std::uint32_t value) const;
   void answer(std::int64_t now_ns, Refusal refusal, std::span<const std::uint8_t> data);
   void send_due(std::int64_t now_ns);
-  void watch(std::int64_t now_ns);
-  void turn(std::int64_t now_ns);
+  void check_watchdog(std::int64_t now_ns);
+  void simulate_motor(std::int64_t now_ns);
   void move_motor(double seconds);
-  void drag_mask();
-  void watch_load(std::int64_t now_ns);
-  void show_motion();
+  void move_mask();
+  void check_load(std::int64_t now_ns);
+  void update_motion_registers();
   double ticks_from(double mm) const;
   double mm_from(double ticks) const;
   double speed_limit_mm_s() const;

@@ -1,5 +1,5 @@
-// The simulated servo in real time: a thread that plays the device's side of a pseudo-terminal (or of any port), for the demonstration and
-// for tests of whole processes. Destroying it with the port is how the cable is pulled.
+// Runs the simulated servo in real time: a thread acts as the device on a pseudo-terminal (or any port), for demonstrations and for tests
+// of whole processes. Destroying it together with the port simulates an unplug.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace prismesh::drivers::prism_servo::dynamixel {
 
-/// A simulated servo whose mask hangs as the settings say, with the factory's line speed.
+/// Returns a simulated servo with the settings' mounting of the mask and the factory baud rate.
 SimulatedServoSettings simulated_servo_settings(const settings::PrismServoSettings& settings);
 
 class SimulatedServoThread {
@@ -25,10 +25,10 @@ class SimulatedServoThread {
   SimulatedServoThread(const SimulatedServoThread&) = delete;
   SimulatedServoThread& operator=(const SimulatedServoThread&) = delete;
 
-  // From any thread; they take effect at the next step.
+  // May be called from any thread; take effect at the next step.
   void jam(bool jammed) { jammed_ = jammed; }
   void set_power(bool on) { powered_ = on; }
-  double mask_mm() const { return mask_mm_; }  ///< where the mask truly is
+  double mask_mm() const { return mask_mm_; }  ///< true position of the mask
 
  private:
   void run(const std::stop_token& stop);
@@ -38,7 +38,7 @@ class SimulatedServoThread {
   MonotonicClock clock_;
   std::atomic<bool> jammed_ = false, powered_ = true;
   std::atomic<double> mask_mm_ = 0;
-  std::jthread thread_;  ///< last: everything is there before it runs, and stays until it has ended
+  std::jthread thread_;  ///< last member: the others must exist as long as it runs
 };
 
 }  // namespace prismesh::drivers::prism_servo::dynamixel

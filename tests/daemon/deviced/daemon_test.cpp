@@ -1,4 +1,4 @@
-// deviced as a program, with simulated devices behind real pseudo-terminals and its clients at a real socket.
+// deviced as a program, with simulated devices behind real pseudo-terminals and clients on a real socket.
 #include <stdlib.h>
 
 #include <csignal>
@@ -46,7 +46,7 @@ class Deviced : public ::testing::Test {
   fs::path config() const { return folder_ / "prismesh.toml"; }
   fs::path socket() const { return folder_ / "run" / "deviced.sock"; }
   void configure(const std::string& text) const { std::ofstream(config()) << text; }
-  /// The user's own settings must not enter a test.
+  /// Keeps the user's own settings out of the tests.
   std::map<std::string, std::string> surroundings() const { return {{"XDG_CONFIG_HOME", folder_.string()}}; }
 
   void start() {
@@ -100,7 +100,7 @@ class Deviced : public ::testing::Test {
   std::unique_ptr<Process> daemon_;
 };
 
-TEST_F(Deviced, simulated_devices_are_read_through_real_pseudo_terminals) {
+TEST_F(Deviced, reads_simulated_devices_through_real_pseudo_terminals) {
   start();
   ipc::DeviceClient client = connect("test");
   ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
@@ -120,8 +120,8 @@ TEST_F(Deviced, simulated_devices_are_read_through_real_pseudo_terminals) {
   EXPECT_TRUE(devices.devices[1].simulated);
 }
 
-TEST_F(Deviced, a_webcams_poses_are_read_from_loopback) {
-  // A port that nobody else on this machine is likely to use.
+TEST_F(Deviced, reads_a_webcams_poses_from_loopback) {
+  // A port number that other programs on this machine probably don't use.
   const std::string port = std::to_string(20000 + ::getpid() % 20000);
   configure("[eye_tracker]\ndriver = \"opentrack\"\nsimulated = true\nudp_port = " + port + "\n");
   start();
@@ -133,7 +133,7 @@ TEST_F(Deviced, a_webcams_poses_are_read_from_loopback) {
   EXPECT_NE(refusal(client.call(ipc::HoldMask{0}, kPatience)).find("no prism servo is configured"), std::string::npos);
 }
 
-TEST_F(Deviced, one_client_holds_the_mask_until_its_end) {
+TEST_F(Deviced, one_client_holds_the_mask_until_it_ends) {
   start();
   auto first = std::make_unique<ipc::DeviceClient>(connect("wizard"));
   ipc::DeviceClient second = connect("other");
@@ -152,7 +152,7 @@ TEST_F(Deviced, one_client_holds_the_mask_until_its_end) {
   configure(std::string(kBoth) + "travel_mm = 1.5\n");
   EXPECT_EQ(refusal(second.call(ipc::Reload{}, kPatience)), "accepted");
   EXPECT_TRUE(wait_for([&] { return held_at(-0.5); })) << "a station that was started anew holds it too";
-  first.reset();  // its end
+  first.reset();  // ends it
   EXPECT_TRUE(wait_for([&] { return at_work(second.page()); })) << "the mask follows again";
   EXPECT_EQ(refusal(second.call(ipc::HoldMask{0.1}, kPatience)), "accepted");
   EXPECT_EQ(refusal(second.call(ipc::ReleaseMask{}, kPatience)), "accepted");
@@ -161,14 +161,14 @@ TEST_F(Deviced, one_client_holds_the_mask_until_its_end) {
   EXPECT_TRUE(wait_for([&] { return at_work(second.page()); }));
 }
 
-TEST_F(Deviced, settings_are_read_again_on_request) {
+TEST_F(Deviced, reads_the_settings_again_on_request) {
   start();
   ipc::DeviceClient client = connect("test");
   ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
 
   configure(std::string(kBoth) + "[display]\nprofile = \"no-such-profile\"\n");
   EXPECT_NE(refusal(client.call(ipc::Reload{}, kPatience)).find("no-such-profile"), std::string::npos);
-  EXPECT_TRUE(wait_for([&] { return at_work(client.page()); })) << "what worked goes on";
+  EXPECT_TRUE(wait_for([&] { return at_work(client.page()); })) << "the working settings stay";
 
   configure(std::string(kBoth) + "[display]\nprofile = \"prism-mask-columns\"\n");
   const std::uint64_t lost = client.page().eyes()->times_lost;
@@ -183,7 +183,7 @@ TEST_F(Deviced, settings_are_read_again_on_request) {
   EXPECT_TRUE(client.poll());
 }
 
-TEST_F(Deviced, changes_are_told_to_clients) {
+TEST_F(Deviced, reports_changes_to_clients) {
   configure("[eye_tracker]\ndriver = \"dynasight\"\nport = \"" + (folder_ / "not-there").string() + "\"\n");
   start();
   ipc::DeviceClient client = connect("test");
@@ -195,7 +195,7 @@ TEST_F(Deviced, changes_are_told_to_clients) {
   EXPECT_NE(device.trouble.find("not-there"), std::string::npos) << device.trouble;
 }
 
-TEST_F(Deviced, what_is_no_message_is_refused_in_words) {
+TEST_F(Deviced, refuses_invalid_messages_with_a_sentence) {
   start();
   const ipc::DeviceClient client = connect("test");
   ipc::LineSocket raw(ipc::connect_to(socket()).value(), {});
@@ -219,7 +219,7 @@ TEST_F(Deviced, what_is_no_message_is_refused_in_words) {
   EXPECT_NE(say(R"({"request": "hello", "number": 1, "protocol": 99, "program": "old"})").find("old protocol 99"), std::string::npos);
 }
 
-TEST_F(Deviced, a_killed_daemon_is_noticed_and_found_again_with_a_new_page) {
+TEST_F(Deviced, clients_notice_a_killed_daemon_and_find_its_successors_page) {
   start();
   ipc::ReconnectingDeviceClient connection(socket(), "test");
   ipc::DeviceClient* client = connection.wait(kPatience).value();
@@ -236,7 +236,7 @@ TEST_F(Deviced, a_killed_daemon_is_noticed_and_found_again_with_a_new_page) {
     }));
     EXPECT_NE(why.message.find("the device daemon is gone"), std::string::npos) << why.message;
     MonotonicClock clock;
-    EXPECT_EQ(client->page().health()->pid, pid) << "the old page can still be looked at";
+    EXPECT_EQ(client->page().health()->pid, pid) << "the old page can still be read";
     connection.lost(why);
     EXPECT_EQ(connection.client(), nullptr);
     const std::int64_t from = clock.now_ns();
@@ -247,13 +247,13 @@ TEST_F(Deviced, a_killed_daemon_is_noticed_and_found_again_with_a_new_page) {
     ASSERT_TRUE(wait_for([&] { return client->page().health().has_value(); }));
     EXPECT_NE(client->page().health()->pid, pid);
     ASSERT_TRUE(wait_for([&] { return at_work(client->page()); })) << daemon_->standard_error();
-    // Reported, not asserted: how long it takes is the machine's as well.
+    // Reported only, not checked, because the duration also depends on the machine.
     std::printf("connected and at work %lld ms after the start\n", static_cast<long long>((clock.now_ns() - from) / 1'000'000));
   }
   EXPECT_EQ(connection.connections(), 4u);
 }
 
-TEST_F(Deviced, a_tracker_that_takes_long_is_followed_too) {
+TEST_F(Deviced, follows_a_tracker_with_a_long_latency) {
   configure("[eye_tracker]\ndriver = \"dynasight\"\nsimulated = true\nmotion = \"still\"\nlatency_ms = 150\n");
   start();
   const ipc::DeviceClient client = connect("test");
@@ -262,7 +262,7 @@ TEST_F(Deviced, a_tracker_that_takes_long_is_followed_too) {
   EXPECT_GE(client.page().eyes()->time_ns - client.page().eyes()->measured_ns, 150'000'000);
 }
 
-TEST_F(Deviced, a_lost_mask_waits_for_the_picture_of_whoever_shows_stereo) {
+TEST_F(Deviced, a_frozen_mask_waits_for_the_clients_that_show_stereo) {
   const auto port = static_cast<std::uint16_t>(20000 + ::getpid() % 20000);
   const std::string both = "[eye_tracker]\ndriver = \"opentrack\"\nudp_port = " + std::to_string(port) +
                            "\n[prism_servo]\ndriver = \"dynamixel\"\nsimulated = true\n";
@@ -271,7 +271,7 @@ TEST_F(Deviced, a_lost_mask_waits_for_the_picture_of_whoever_shows_stereo) {
   ipc::DeviceClient client = connect("test");
   const auto head = drivers::port::UdpSender::open(port).value();
   int sent = 0;
-  /// How long the mask stood still when the head was lost, by the daemon's own clock.
+  /// Time for which the mask stood still after the head was lost, by the daemon's clock.
   const auto frozen_ns = [&]() -> std::int64_t {
     EXPECT_TRUE(wait_for([&] {
       const Eigen::Vector3d place(0, 0, 650 + 0.01 * (++sent % 7));
@@ -299,7 +299,7 @@ TEST_F(Deviced, a_lost_mask_waits_for_the_picture_of_whoever_shows_stereo) {
     ASSERT_TRUE(viewer.send(ipc::PictureShown{true}));
     listed(viewer);
   }
-  // A busy machine makes any of them long; a daemon that waits makes all of them so.
+  // A busy machine delays any one of them; a daemon that waits delays all of them.
   const auto at_once = [&] {
     for (int attempt = 0; attempt < 5; ++attempt)
       if (frozen_ns() < 200'000'000) return true;
@@ -314,7 +314,7 @@ TEST_F(Deviced, a_lost_mask_waits_for_the_picture_of_whoever_shows_stereo) {
   EXPECT_TRUE(at_once()) << "who showed it has gone";
 }
 
-TEST_F(Deviced, a_client_that_never_stops_asking_fills_no_memory) {
+TEST_F(Deviced, endless_requests_of_a_client_fill_no_memory) {
 #if defined(PRISMESH_ADDRESS_SANITIZER) || defined(PRISMESH_THREAD_SANITIZER)
   GTEST_SKIP() << "a sanitizer keeps what was freed";
 #endif
@@ -339,7 +339,7 @@ TEST_F(Deviced, a_client_that_never_stops_asking_fills_no_memory) {
   EXPECT_EQ(listed(flood).devices.size(), 2u);
 }
 
-TEST_F(Deviced, a_terminal_that_closes_ends_it_as_cleanly) {
+TEST_F(Deviced, a_closing_terminal_ends_it_cleanly) {
   start();
   const ipc::DeviceClient client = connect("test");
   ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
@@ -358,7 +358,7 @@ TEST_F(Deviced, started_with_nohup_it_outlives_its_terminal) {
   EXPECT_TRUE(daemon_->running());
 }
 
-TEST_F(Deviced, on_the_way_out_the_page_says_that_nothing_is_to_be_relied_on) {
+TEST_F(Deviced, when_it_ends_the_page_reports_unknown_eyes_and_mask) {
   start();
   const ipc::DeviceClient client = connect("test");
   ASSERT_TRUE(wait_for([&] { return at_work(client.page()); })) << daemon_->standard_error();
@@ -370,7 +370,7 @@ TEST_F(Deviced, on_the_way_out_the_page_says_that_nothing_is_to_be_relied_on) {
   EXPECT_FALSE(fs::exists(socket()));
 }
 
-TEST_F(Deviced, wrong_use_and_wrong_settings_are_said) {
+TEST_F(Deviced, reports_wrong_use_and_wrong_settings) {
   Process wrong({program("prismesh-deviced"), "--runtime"}, {});
   EXPECT_EQ(wrong.wait_for_exit(), 2);
   EXPECT_NE(wrong.standard_error().find("--runtime is no option of prismesh-deviced\nusage: prismesh-deviced"), std::string::npos);
@@ -389,13 +389,13 @@ TEST_F(Deviced, wrong_use_and_wrong_settings_are_said) {
   EXPECT_NE(second.standard_error().find("already runs here"), std::string::npos) << second.standard_error();
 }
 
-TEST_F(Deviced, the_command_line_shows_them) {
+TEST_F(Deviced, the_command_line_shows_the_devices) {
   Ran ran = devices();
   EXPECT_EQ(ran.status, 1);
   EXPECT_NE(ran.err.find("start the device daemon with"), std::string::npos) << ran.err;
   start();
   const ipc::DeviceClient client = connect("test");
-  // The simulated devices lose the time that a busy machine doesn't give them, so they are looked at until both are at work.
+  // On a busy machine the simulated devices are slow, so poll until both work.
   const auto shows = [&](std::string_view text) { return ran.out.find(text) != std::string::npos; };
   EXPECT_TRUE(wait_for([&] {
     ran = devices();
@@ -423,7 +423,7 @@ TEST_F(Deviced, the_command_line_shows_them) {
   EXPECT_EQ(watching.wait_for_exit(), 0);
 }
 
-TEST_F(Deviced, programs_that_never_greet_do_not_take_the_place_of_a_client) {
+TEST_F(Deviced, clients_that_never_greet_block_no_other_client) {
   start();
   ipc::DeviceClient first = connect("first");
   std::vector<ipc::Descriptor> silent;

@@ -1,5 +1,5 @@
-// A whole device station in virtual time: the real loop with its real drivers, their devices played at the other ends of two cables in
-// memory, and the port keepers that a thread would drive.
+// A complete device station in virtual time: the real loop with its real drivers, simulated devices at the other ends of two cables in
+// memory, and the port keepers that a thread would run.
 #pragma once
 
 #include <cmath>
@@ -50,7 +50,7 @@ class LoopRig {
     clock.advance_ns(1'000 * kMs);
   }
 
-  /// One period: the devices go on in steps of a millisecond, the keepers do their work, then the loop ticks.
+  /// One period: advances the devices in steps of a millisecond, runs the keepers, then ticks the loop.
   void tick() {
     for (std::int64_t step = 0; step < kTickPeriodNs; step += kMs) {
       clock.advance_ns(kMs);
@@ -66,30 +66,30 @@ class LoopRig {
   void run_for_ms(std::int64_t ms) {
     for (const std::int64_t end = clock.now_ns() + ms * kMs; clock.now_ns() < end;) tick();
   }
-  /// Milliseconds until it is so; -1: not in that time.
-  std::int64_t run_until(const std::function<bool()>& so, std::int64_t at_most_ms = 10'000) {
+  /// Milliseconds until the condition holds; -1 if it doesn't within `max_ms`.
+  std::int64_t run_until(const std::function<bool()>& so, std::int64_t max_ms = 10'000) {
     const std::int64_t start = clock.now_ns();
     while (!so()) {
-      if (clock.now_ns() - start >= at_most_ms * kMs) return -1;
+      if (clock.now_ns() - start >= max_ms * kMs) return -1;
       tick();
     }
     return (clock.now_ns() - start) / kMs;
   }
-  /// Both devices at work.
+  /// Runs until both devices work.
   void start() {
     ASSERT_GE(run_until([this] { return tracking() && following(); }), 0) << state();
   }
 
   void plug_in_tracker() {
     tracker_line.plug_in();
-    tracker_keeper.hurry();
+    tracker_keeper.retry_now();
   }
   void plug_in_servo() {
     servo_line.plug_in();
-    servo_keeper.hurry();
+    servo_keeper.retry_now();
   }
 
-  // What the page says.
+  // The state on the page.
   ipc::EyesState eyes() const { return reader.eyes().value_or(ipc::EyesState{}); }
   ipc::PrismState mask() const { return reader.prism().value_or(ipc::PrismState{}); }
   bool tracking() const { return eyes().phase == ipc::EyesPhase::tracking; }
@@ -115,7 +115,7 @@ class LoopRig {
   ipc::DevicePage page;
   ipc::DevicePageReader reader;
   DeviceLoop loop;
-  std::function<void()> before_tick, after_tick;  ///< around the loop's own tick
+  std::function<void()> before_tick, after_tick;  ///< called around the loop's own tick
 };
 
 }  // namespace prismesh::deviced

@@ -1,4 +1,4 @@
-// The device loop in virtual time: what the page says as devices start, work, are lost and come back.
+// The device loop in virtual time: the state page while devices start, work, are lost and return.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ std::vector<MaskPhase> mask_phases(const std::vector<LoopEvent>& events) {
   return phases;
 }
 
-TEST(DeviceLoop, starts_up_by_steps_that_the_page_shows) {
+TEST(DeviceLoop, publishes_the_phases_of_starting_up) {
   LoopRig rig;
   EXPECT_EQ(rig.eyes().phase, EyesPhase::none) << "before the first tick";
   rig.tick();
@@ -41,7 +41,7 @@ TEST(DeviceLoop, starts_up_by_steps_that_the_page_shows) {
   EXPECT_THAT(mask_phases(events), ElementsAre(MaskPhase::homing, MaskPhase::following));
 }
 
-TEST(DeviceLoop, publishes_where_the_head_is_and_the_mask_follows) {
+TEST(DeviceLoop, publishes_the_head_and_the_mask_that_follows) {
   RigOptions options;
   LoopRig rig(options);
   rig.start();
@@ -50,9 +50,9 @@ TEST(DeviceLoop, publishes_where_the_head_is_and_the_mask_follows) {
   rig.after_tick = [&] {
     youngest_ms = std::min(youngest_ms, rig.eyes_age_ms());
     oldest_ms = std::max(oldest_ms, rig.eyes_age_ms());
-    if (!rig.following()) return;  // on the way back by a period
+    if (!rig.following()) return;  // during a move back
     const std::int64_t now = rig.clock.now_ns();
-    // The simulator's time began with its first step.
+    // The simulator's time starts with its first step.
     const Eigen::Vector3d truth = options.head(static_cast<double>(now - 1'001 * kMs) * 1e-9).between_eyes_mm;
     const Eigen::Vector3d predicted = drivers::eye_tracker::predict(rig.eyes().head(), now);
     worst_eyes_mm = std::max(worst_eyes_mm, (predicted - truth).head<2>().norm());
@@ -70,7 +70,7 @@ TEST(DeviceLoop, publishes_where_the_head_is_and_the_mask_follows) {
   EXPECT_EQ(rig.eyes().times_lost, 0u);
 }
 
-TEST(DeviceLoop, a_head_that_leaves_is_searched_and_the_mask_freezes_and_parks) {
+TEST(DeviceLoop, when_the_head_leaves_the_mask_freezes_and_parks) {
   bool there = true;
   RigOptions options;
   options.head = [&](double) {
@@ -104,11 +104,11 @@ TEST(DeviceLoop, a_frozen_mask_parks_at_once_when_the_picture_is_mono) {
     RigOptions options;
     options.head = [&](double) { return SimulatedHead{.visible = there}; };
     LoopRig rig(options);
-    rig.loop.tell(SetPictureMono{false});
+    rig.loop.send(SetPictureMono{false});
     rig.start();
     there = false;
     EXPECT_GE(rig.run_until([&] { return rig.mask().phase == MaskPhase::frozen; }), 0);
-    if (mono) rig.loop.tell(SetPictureMono{true});
+    if (mono) rig.loop.send(SetPictureMono{true});
     return rig.run_until([&] { return rig.mask().phase != MaskPhase::frozen; });
   };
   EXPECT_LE(parking_after(true), 12);
@@ -125,7 +125,7 @@ TEST(DeviceLoop, an_unplugged_tracker_is_absent_with_the_next_tick) {
   EXPECT_EQ(rig.eyes().times_lost, 1u);
   rig.run_for_ms(1500);
   EXPECT_EQ(rig.eyes().phase, EyesPhase::absent);
-  EXPECT_THAT(eyes_phases(rig.events()), ElementsAre(EyesPhase::absent)) << "told once";
+  EXPECT_THAT(eyes_phases(rig.events()), ElementsAre(EyesPhase::absent)) << "reported once";
   rig.plug_in_tracker();
   const std::int64_t back = rig.run_until([&] { return rig.tracking() && rig.following(); });
   EXPECT_GE(back, 0);
@@ -149,7 +149,7 @@ TEST(DeviceLoop, an_unplugged_servo_allows_no_stereo) {
   EXPECT_LE(back, 2000);
 }
 
-TEST(DeviceLoop, devices_that_fall_silent_on_an_open_port_are_lost_by_the_age_of_their_data) {
+TEST(DeviceLoop, silent_devices_on_open_ports_are_lost_when_their_data_are_old) {
   LoopRig rig;
   rig.start();
   rig.tracker.set_power(false);
@@ -171,20 +171,20 @@ TEST(DeviceLoop, devices_that_fall_silent_on_an_open_port_are_lost_by_the_age_of
   EXPECT_LE(back, 2000);
 }
 
-TEST(DeviceLoop, calibration_holds_the_mask_and_lets_it_go) {
+TEST(DeviceLoop, calibration_holds_and_releases_the_mask) {
   LoopRig rig;
   rig.start();
-  ASSERT_TRUE(rig.loop.tell(SetHold{-0.8}));
+  ASSERT_TRUE(rig.loop.send(SetHold{-0.8}));
   ASSERT_GE(rig.run_until([&] { return rig.mask().phase == MaskPhase::held && std::abs(rig.mask().position_mm + 0.8) < 0.02; }), 0)
       << rig.state();
   EXPECT_NEAR(rig.servo.mask_mm(), -0.8, 0.03);
   rig.run_for_ms(1000);
   EXPECT_NEAR(rig.servo.mask_mm(), -0.8, 0.03) << "whatever the eyes do";
-  ASSERT_TRUE(rig.loop.tell(EndHold{}));
+  ASSERT_TRUE(rig.loop.send(EndHold{}));
   EXPECT_GE(rig.run_until([&] { return rig.following(); }), 0);
 }
 
-TEST(DeviceLoop, a_jammed_mask_is_said_and_let_go_until_it_is_rearmed) {
+TEST(DeviceLoop, reports_a_jammed_mask_and_keeps_torque_off_until_rearmed) {
   RigOptions options;
   options.head = [](double seconds) {
     SimulatedHead head;
@@ -203,12 +203,12 @@ TEST(DeviceLoop, a_jammed_mask_is_said_and_let_go_until_it_is_rearmed) {
   rig.servo.jam(false);
   rig.run_for_ms(2000);
   EXPECT_FALSE(rig.following()) << "latched until somebody has looked";
-  ASSERT_TRUE(rig.loop.tell(AskRearm{}));
+  ASSERT_TRUE(rig.loop.send(RequestRearm{}));
   const std::int64_t back = rig.run_until([&] { return rig.following(); });
   EXPECT_GE(back, 0) << rig.state();
 }
 
-TEST(DeviceLoop, a_fault_that_joins_the_motors_alarm_is_told) {
+TEST(DeviceLoop, reports_a_second_fault_during_an_alarm) {
   LoopRig rig;
   rig.start();
   rig.servo.raise_hardware_error(0x20);
@@ -217,26 +217,26 @@ TEST(DeviceLoop, a_fault_that_joins_the_motors_alarm_is_told) {
   rig.events();
   rig.servo.raise_hardware_error(0x04);
   rig.run_for_ms(400);
-  std::vector<int> told;
+  std::vector<int> reported;
   for (const LoopEvent& event : rig.events())
-    if (const auto* changed = std::get_if<ServoChanged>(&event)) told.push_back(changed->tick.alarm_bits);
-  EXPECT_THAT(told, ElementsAre(0x24));
+    if (const auto* changed = std::get_if<ServoChanged>(&event)) reported.push_back(changed->tick.alarm_bits);
+  EXPECT_THAT(reported, ElementsAre(0x24));
 }
 
-TEST(DeviceLoop, a_new_display_is_taken_without_a_pause) {
+TEST(DeviceLoop, changes_the_display_without_a_pause) {
   LoopRig rig;
   rig.start();
   SetDisplay display;
   display.optics.zero_mm = 0.1;
   display.eye_separation_mm = 58;
-  ASSERT_TRUE(rig.loop.tell(display));
+  ASSERT_TRUE(rig.loop.send(display));
   rig.tick();
   EXPECT_EQ(rig.eyes().eye_separation_mm, 58);
   EXPECT_TRUE(rig.tracking());
   EXPECT_GE(rig.run_until([&] { return rig.following(); }, 1000), 0);
 }
 
-TEST(DeviceLoop, on_the_way_out_the_motor_is_let_go_and_the_page_says_so) {
+TEST(DeviceLoop, winding_down_switches_torque_off_and_publishes_it) {
   LoopRig rig;
   rig.start();
   EXPECT_TRUE(rig.servo.torque());
@@ -253,7 +253,7 @@ TEST(DeviceLoop, on_the_way_out_the_motor_is_let_go_and_the_page_says_so) {
   EXPECT_FALSE(rig.mask().stereo_allowed);
 }
 
-TEST(DeviceLoop, without_devices_there_are_none) {
+TEST(DeviceLoop, publishes_that_no_devices_are_configured) {
   ManualClock clock;
   ipc::DevicePage page = ipc::DevicePage::create().value();
   const ipc::DevicePageReader reader = ipc::DevicePageReader::map(page.descriptor()).value();
@@ -268,24 +268,24 @@ TEST(DeviceLoop, without_devices_there_are_none) {
   EXPECT_FALSE(loop.next_event()) << "nothing has changed";
 }
 
-TEST(DeviceLoop, commands_that_find_no_place_are_refused_not_lost) {
+TEST(DeviceLoop, refuses_commands_when_the_ring_is_full) {
   ipc::DevicePage page = ipc::DevicePage::create().value();
   DeviceLoop loop({}, {}, page);
   int taken = 0;
-  while (loop.tell(SetHold{0.1})) ++taken;
+  while (loop.send(SetHold{0.1})) ++taken;
   EXPECT_GE(taken, 16);
-  EXPECT_FALSE(loop.tell(EndHold{}));
+  EXPECT_FALSE(loop.send(EndHold{}));
   loop.tick(kTickPeriodNs);
-  EXPECT_TRUE(loop.tell(EndHold{}));
+  EXPECT_TRUE(loop.send(EndHold{}));
 }
 
-TEST(DeviceLoop, changes_that_find_no_place_are_told_later) {
+TEST(DeviceLoop, reports_changes_later_when_the_ring_is_full) {
   LoopRig rig;
   rig.start();
   rig.events();
-  // Nobody listens while the mask is held and let go again and again.
+  // Nobody reads the events while the mask is held and released repeatedly.
   for (int i = 0; i < 400; ++i) {
-    ASSERT_TRUE(rig.loop.tell(i % 2 == 0 ? LoopCommand(SetHold{0.1}) : LoopCommand(EndHold{})));
+    ASSERT_TRUE(rig.loop.send(i % 2 == 0 ? LoopCommand(SetHold{0.1}) : LoopCommand(EndHold{})));
     rig.tick();
   }
   rig.tracker_line.unplug();
@@ -310,18 +310,18 @@ TEST(DeviceLoop, changes_that_find_no_place_are_told_later) {
   EXPECT_EQ(mask, MaskPhase::alarm);
   EXPECT_EQ(alarm_bits, 0x20);
   rig.tick();
-  EXPECT_TRUE(rig.events().empty()) << "each is told once";
+  EXPECT_TRUE(rig.events().empty()) << "each is reported once";
 }
 
 TEST(DeviceLoop, a_tick_allocates_nothing_whatever_happens) {
   RigOptions options;
   options.tracker.faults = {.drop_out = 0.005, .caution = 0.05, .garbage = 0.01, .damaged_byte = 0.001, .lost_byte = 0.001};
   LoopRig rig(options);
-  std::uint64_t before = 0, most = 0;
+  std::uint64_t before = 0, max_allocations = 0;
   rig.before_tick = [&] { before = drivers::port::allocations_of_this_thread(); };
-  rig.after_tick = [&] { most = std::max(most, drivers::port::allocations_of_this_thread() - before); };
+  rig.after_tick = [&] { max_allocations = std::max(max_allocations, drivers::port::allocations_of_this_thread() - before); };
   rig.run_for_ms(4000);
-  EXPECT_EQ(most, 0u) << "starting up and following";
+  EXPECT_EQ(max_allocations, 0u) << "starting up and following";
   for (int i = 0; i < 20; ++i) {
     rig.tracker_line.unplug();
     rig.run_for_ms(120);
@@ -331,16 +331,16 @@ TEST(DeviceLoop, a_tick_allocates_nothing_whatever_happens) {
     rig.run_for_ms(120);
     rig.plug_in_servo();
     rig.run_for_ms(700);
-    rig.loop.tell(SetHold{0.3});
+    rig.loop.send(SetHold{0.3});
     rig.run_for_ms(100);
-    rig.loop.tell(EndHold{});
-    rig.loop.tell(AskRearm{});
+    rig.loop.send(EndHold{});
+    rig.loop.send(RequestRearm{});
     rig.run_for_ms(300);
-    rig.loop.tell(SetDisplay{});
+    rig.loop.send(SetDisplay{});
   }
   rig.servo.raise_hardware_error(0x20);
   rig.run_for_ms(1000);
-  EXPECT_EQ(most, 0u);
+  EXPECT_EQ(max_allocations, 0u);
   const std::uint64_t start = drivers::port::allocations_of_this_thread();
   ::operator delete(::operator new(8));
   EXPECT_EQ(drivers::port::allocations_of_this_thread(), start + 1) << "the counter counts";

@@ -1,13 +1,13 @@
-// The ring between loop and main thread, the thread that drives the loop, the watchdog, and the words.
+// The ring between loop and main thread, the loop's thread, the watchdog, and the device status.
 #include <atomic>
 #include <thread>
 
 #include <gtest/gtest.h>
 
+#include "daemon/deviced/device_status.h"
 #include "daemon/deviced/loop_thread.h"
 #include "daemon/deviced/ring.h"
 #include "daemon/deviced/watchdog.h"
-#include "daemon/deviced/device_status.h"
 
 namespace prismesh::deviced {
 namespace {
@@ -19,7 +19,7 @@ using drivers::settings::TrackerDriver;
 using ipc::EyesPhase;
 using namespace std::chrono_literals;
 
-TEST(Ring, gives_back_in_order_and_refuses_when_full) {
+TEST(Ring, returns_values_in_order_and_refuses_when_full) {
   Ring<int, 4> ring;
   EXPECT_FALSE(ring.pop());
   for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.push(i));
@@ -30,7 +30,7 @@ TEST(Ring, gives_back_in_order_and_refuses_when_full) {
   EXPECT_FALSE(ring.pop());
 }
 
-TEST(Ring, carries_everything_from_one_thread_to_another) {
+TEST(Ring, transfers_everything_from_one_thread_to_another) {
   struct Pair {
     std::uint64_t a = 0, b = 0;
   };
@@ -49,19 +49,19 @@ TEST(Ring, carries_everything_from_one_thread_to_another) {
   }
 }
 
-TEST(LoopThread, ticks_that_were_slept_through_are_left_out) {
+TEST(LoopThread, skips_missed_ticks) {
   constexpr std::int64_t kDue = 1'000'000'000'000, kShort = kTickPeriodNs / 10;
   EXPECT_EQ(next_due_ns(kDue, kDue), kDue + kTickPeriodNs);
   EXPECT_EQ(next_due_ns(kDue, kDue + kShort), kDue + kTickPeriodNs);
   EXPECT_EQ(next_due_ns(kDue, kDue - kShort), kDue + kTickPeriodNs) << "a clock that is read on another processor";
   EXPECT_EQ(next_due_ns(kDue, kDue + kTickPeriodNs + kShort), kDue + kTickPeriodNs) << "a little late: at once, and then in step again";
-  // A second's stall: one tick at once, and none of the other 249.
+  // A stall of one second: one tick at once, and none of the other 249.
   const std::int64_t ended = kDue + 250 * kTickPeriodNs + kShort;
   EXPECT_EQ(next_due_ns(kDue, ended), kDue + 250 * kTickPeriodNs);
   EXPECT_EQ(next_due_ns(next_due_ns(kDue, ended), ended), kDue + 251 * kTickPeriodNs) << "in step with the time before";
 }
 
-TEST(LoopThread, ticks_and_keeps_an_account_that_readers_see) {
+TEST(LoopThread, ticks_and_publishes_its_timing) {
   ipc::DevicePage page = ipc::DevicePage::create().value();
   const ipc::DevicePageReader reader = ipc::DevicePageReader::map(page.descriptor()).value();
   DeviceLoop loop({}, {}, page);
@@ -79,7 +79,7 @@ TEST(LoopThread, ticks_and_keeps_an_account_that_readers_see) {
     EXPECT_FALSE(health.memory_locked);
     EXPECT_EQ(health.realtime, thread->refused().empty());
   }
-  // A servo that answers late still has the time to hear that it is let go.
+  // A servo that answers late still has the time to receive the torque-off command.
   EXPECT_GE(reader.prism()->time_ns, ticked_ns + 24 * kTickPeriodNs) << "it winds down for 25 ticks";
 }
 
@@ -92,7 +92,7 @@ TEST(StallCounter, reports_a_stall_once) {
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(counter.stalled(9)) << "already reported";
 }
 
-TEST(Watchdog, notices_a_loop_that_stops_ticking) {
+TEST(Watchdog, reports_a_loop_that_stops_ticking) {
   std::atomic<std::uint64_t> ticks{0};
   std::atomic<int> stuck{0};
   std::atomic<bool> hangs{false};
@@ -114,7 +114,7 @@ TEST(Watchdog, notices_a_loop_that_stops_ticking) {
   EXPECT_EQ(stuck, 1);
 }
 
-TEST(Words, a_tracker_says_what_to_do) {
+TEST(DeviceStatus, says_what_to_do_about_a_tracker) {
   drivers::settings::EyeTrackerSettings settings;
   settings.driver = TrackerDriver::dynasight;
   settings.port = "/dev/serial/by-id/tracker";
@@ -133,7 +133,7 @@ TEST(Words, a_tracker_says_what_to_do) {
   EXPECT_NE(info.trouble.find("19200 baud"), std::string::npos) << info.trouble;
   info = tracker_info(settings, {EyesPhase::searching, 2 * kMaxFirstSilenceNs}, {});
   EXPECT_EQ(info.state, "searching");
-  EXPECT_EQ(info.trouble, "") << "nobody sits there: no fault";
+  EXPECT_EQ(info.trouble, "") << "no viewer: no fault";
 
   settings.driver = TrackerDriver::opentrack;
   settings.simulated = true;
@@ -143,7 +143,7 @@ TEST(Words, a_tracker_says_what_to_do) {
   EXPECT_NE(info.trouble.find("start opentrack"), std::string::npos) << info.trouble;
 }
 
-TEST(Words, a_servo_says_what_to_do) {
+TEST(DeviceStatus, says_what_to_do_about_a_servo) {
   drivers::settings::PrismServoSettings settings;
   settings.port = "/dev/ttyUSB1";
   ServoStatus status;
@@ -174,7 +174,7 @@ TEST(Words, a_servo_says_what_to_do) {
   EXPECT_NE(servo_info(settings, status, {}).trouble, "");
 }
 
-TEST(Words, every_phase_has_a_name) {
+TEST(DeviceStatus, every_phase_has_a_name) {
   for (int phase = 0; phase <= static_cast<int>(EyesPhase::tracking); ++phase) EXPECT_NE(name(static_cast<EyesPhase>(phase)), "unknown");
   for (int phase = 0; phase <= static_cast<int>(MaskPhase::alarm); ++phase) EXPECT_NE(name(static_cast<MaskPhase>(phase)), "unknown");
 }

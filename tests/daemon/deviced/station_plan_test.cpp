@@ -1,4 +1,4 @@
-// What a station's settings and profile mean for its devices and its loop.
+// How a station's settings and profile configure its devices and its loop.
 #include "daemon/deviced/station.h"
 
 #include <unistd.h>
@@ -21,7 +21,7 @@ StationPlan plan_with_both() {
   return plan;
 }
 
-TEST(StationPlan, tells_the_loop_what_the_servo_and_the_display_can_do) {
+TEST(StationPlan, passes_the_limits_of_servo_and_display_to_the_loop) {
   StationPlan plan = plan_with_both();
   plan.settings.prism_servo.travel_mm = 1.25;
   plan.settings.prism_servo.speed_mm_s = 3;
@@ -50,7 +50,7 @@ TEST(StationPlan, waits_longer_for_the_eyes_of_a_slow_tracker) {
   EXPECT_EQ(lost_after_ms(150), 230);
 }
 
-TEST(StationPlan, the_separation_that_was_measured_goes_before_the_trackers) {
+TEST(StationPlan, the_measured_eye_separation_overrides_the_trackers) {
   StationPlan plan = plan_with_both();
   plan.settings.eye_tracker.eye_separation_mm = 61;
   EXPECT_EQ(loop_settings(plan).eye_separation_mm, 61);
@@ -58,7 +58,7 @@ TEST(StationPlan, the_separation_that_was_measured_goes_before_the_trackers) {
   EXPECT_EQ(loop_settings(plan).eye_separation_mm, 58);
 }
 
-TEST(StationPlan, has_the_devices_that_are_named_and_of_use) {
+TEST(StationPlan, has_the_devices_that_are_configured_and_used) {
   StationPlan plan = plan_with_both();
   EXPECT_TRUE(plan.has_tracker() && plan.has_servo());
   plan.profile.mask_moves = false;
@@ -71,12 +71,12 @@ TEST(StationPlan, has_the_devices_that_are_named_and_of_use) {
   EXPECT_FALSE(plan.has_tracker());
 }
 
-TEST(StationPlan, another_tracker_servo_or_mask_that_moves_is_another_station) {
+TEST(StationPlan, another_tracker_servo_or_moving_mask_needs_another_station) {
   const StationPlan plan = plan_with_both();
   StationPlan other = plan;
   other.profile.optics.zero_mm = 0.3;
   other.profile.name = "other";
-  EXPECT_TRUE(plan.same_devices(other)) << "it goes on, with another display";
+  EXPECT_TRUE(plan.same_devices(other)) << "it continues, with another display";
   other = plan;
   other.settings.eye_tracker.latency_ms = 35;
   EXPECT_FALSE(plan.same_devices(other));
@@ -105,7 +105,7 @@ class PlanFiles : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(PlanFiles, are_read_with_the_servos_own_numbers) {
+TEST_F(PlanFiles, read_the_servos_settings) {
   const Result<StationPlan> plan =
       read("[display]\nprofile = 'prism-mask'\n[prism_servo]\ndriver = 'dynamixel'\nsimulated = true\nid = 7\ntravel_mm = 1.5\n");
   ASSERT_TRUE(plan) << plan.error().text();
@@ -115,7 +115,7 @@ TEST_F(PlanFiles, are_read_with_the_servos_own_numbers) {
   EXPECT_EQ(plan->servo.travel_mm, 1.5);
 }
 
-TEST_F(PlanFiles, with_a_travel_that_no_servo_has_are_refused_where_a_servo_moves) {
+TEST_F(PlanFiles, are_refused_with_an_impossible_travel_only_if_a_servo_is_used) {
   const std::string servo = "[prism_servo]\ndriver = 'dynamixel'\nsimulated = true\ntravel_mm = 3\n";
   const Result<StationPlan> plan = read("[display]\nprofile = 'prism-mask'\n" + servo);
   ASSERT_FALSE(plan);

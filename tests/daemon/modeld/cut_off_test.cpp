@@ -1,5 +1,5 @@
-// Long edits that are cut off in the middle, by a kill of modeld, by a cancel or by their client's death: the document is as it was, and
-// the same edit gives the same afterwards. Being in the middle is known by the progress that is told, never by waiting.
+// Long edits that are interrupted by a kill of modeld, by a cancel or by their client's death: the document is unchanged, and the same edit
+// gives the same result afterwards. The tests detect the middle of an edit by its progress messages, never by waiting.
 #include <filesystem>
 #include <functional>
 
@@ -7,7 +7,7 @@
 
 #include "ipc/messages_json.h"
 #include "mesh/document/edit_json.h"
-#include "tests/daemon/modeld/lives.h"
+#include "tests/daemon/modeld/restartable_daemon.h"
 #include "tests/support/places.h"
 
 namespace prismesh::modeld {
@@ -17,11 +17,11 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using test::Folder;
 using test::kPatience;
-using test::Lives;
+using test::RestartableDaemon;
 
 mesh::document::Edit edit_of(const std::string& json) { return mesh::document::parse_edit(json).value(); }
 
-/// All that clients can ask of a document but how it came to be open.
+/// All that clients can query of a document, apart from how it was opened.
 struct Shown {
   std::string state;
   std::vector<mesh::Vec3> positions;
@@ -49,7 +49,7 @@ Shown shown_by(ipc::Client& client) {
   return shown;
 }
 
-/// What is on record of the document's edits, byte for byte.
+/// The journal of the document's edits, byte for byte.
 std::string journal_in(const fs::path& folder) {
   std::string all;
   for (const auto& file : fs::directory_iterator(folder))
@@ -57,7 +57,7 @@ std::string journal_in(const fs::path& folder) {
   return all;
 }
 
-/// A deck, what is done to it, and the long edit that is then cut off.
+/// A deck, the edits before, and the long edit that is interrupted.
 struct Long {
   const char* name;
   int uneven_side;  ///< of the sheet; 0: the even one
@@ -66,7 +66,7 @@ struct Long {
 };
 void PrintTo(const Long& what, std::ostream* out) { *out << what.name; }
 
-/// Nodes here and there over the even sheet.
+/// Nodes scattered over the even sheet.
 std::string scattered_nodes() {
   std::string ids;
   for (int row = 2; row < test::kSheetSide - 2; row += 7)
@@ -89,17 +89,17 @@ Long long_relax() { return {"relax", 240, {R"({"edit":"translate","by":[0.5,0,0.
 class CutOff : public ::testing::TestWithParam<Long> {
  protected:
   struct Station {
-    explicit Station(const Long& what) : lives(folder, what.uneven_side > 0 ? folder.uneven_sheet(what.uneven_side) : folder.sheet()) {}
+    explicit Station(const Long& what) : runs(folder, what.uneven_side > 0 ? folder.uneven_sheet(what.uneven_side) : folder.sheet()) {}
     Folder folder;
-    Lives lives;
+    RestartableDaemon runs;
   };
 
-  /// A station whose document has been edited by what comes first.
+  /// A station whose document has had the edits before the long one.
   static std::unique_ptr<Station> edited() {
     auto station = std::make_unique<Station>(GetParam());
-    station->lives.start();
-    station->lives.wait_until_open();
-    for (const std::string& json : GetParam().first) apply(station->lives.client(), json);
+    station->runs.start();
+    station->runs.wait_until_open();
+    for (const std::string& json : GetParam().first) apply(station->runs.client(), json);
     return station;
   }
 
@@ -113,12 +113,12 @@ class CutOff : public ::testing::TestWithParam<Long> {
   /// The deck as it would be saved.
   static std::string saved(Station& station) {
     const fs::path target = station.folder.path() / "saved.k";
-    const Result<ipc::Answer> answer = station.lives.client().call(ipc::Save{target.string()}, kPatience);
+    const Result<ipc::Answer> answer = station.runs.client().call(ipc::Save{target.string()}, kPatience);
     EXPECT_TRUE(answer) << answer.error().text();
     return test::whole_file(target);
   }
 
-  /// Sends the long edit and returns its number when `messages` times was told how far it is, or 0 when it was over before.
+  /// Sends the long edit. Returns its number after `messages` progress messages, or 0 if it ended before.
   static std::uint64_t reach_the_middle(ipc::Client& client, int messages) {
     while (client.next_event()) {
     }
@@ -135,7 +135,7 @@ class CutOff : public ::testing::TestWithParam<Long> {
     return 0;
   }
 
-  /// The answer to a request that was sent.
+  /// Waits for the answer to a request.
   static ipc::Answer answer_to(ipc::Client& client, std::uint64_t number) {
     const auto until = std::chrono::steady_clock::now() + kPatience;
     while (std::chrono::steady_clock::now() < until) {
@@ -148,50 +148,50 @@ class CutOff : public ::testing::TestWithParam<Long> {
   }
 };
 
-/// How often to try until a stroke was early enough: only a machine that stands still for as long as the edit takes makes it miss.
+/// Max. number of attempts until an interruption is early enough; one misses only if the machine stalls for as long as the edit takes.
 constexpr int kMaxTries = 10;
 
 TEST_P(CutOff, a_kill_leaves_the_document_as_it_was) {
   std::string undisturbed;
   {
     const std::unique_ptr<Station> whole = edited();
-    const ipc::Edited done = apply(whole->lives.client(), GetParam().edit);
+    const ipc::Edited done = apply(whole->runs.client(), GetParam().edit);
     ASSERT_GT(done.report.nodes_moved, 10u) << "the edit does nothing";
     undisturbed = saved(*whole);
-    whole->lives.end_in_order();
+    whole->runs.end_in_order();
   }
   const std::unique_ptr<Station> station = edited();
-  Lives& lives = station->lives;
+  RestartableDaemon& runs = station->runs;
   int hits = 0;
   for (int attempt = 0; attempt < kMaxTries && hits < 3 && !HasFailure(); ++attempt) {
-    const Shown before = shown_by(lives.client());
+    const Shown before = shown_by(runs.client());
     const std::string record = journal_in(station->folder.state());
-    const bool in_the_middle = reach_the_middle(lives.client(), 1 + hits) != 0;
-    lives.shoot();
-    lives.bury();
-    lives.start();
-    lives.wait_until_open();
+    const bool in_the_middle = reach_the_middle(runs.client(), 1 + hits) != 0;
+    runs.send_kill();
+    runs.wait_for_end();
+    runs.start();
+    runs.wait_until_open();
     const bool was_done = journal_in(station->folder.state()) != record;
     EXPECT_TRUE(in_the_middle || was_done) << "an acknowledged edit was lost";
-    if (was_done) {  // too late, so it is there whole
-      apply(lives.client(), R"({"edit":"undo"})");
-      EXPECT_TRUE(shown_by(lives.client()).positions == before.positions);
+    if (was_done) {  // too late: the edit is complete
+      apply(runs.client(), R"({"edit":"undo"})");
+      EXPECT_TRUE(shown_by(runs.client()).positions == before.positions);
       continue;
     }
     ++hits;
-    const Shown after = shown_by(lives.client());
+    const Shown after = shown_by(runs.client());
     EXPECT_EQ(after.state, before.state);
     EXPECT_TRUE(after == before) << "a half of the edit is in the document";
   }
   EXPECT_GE(hits, 1) << "no kill came in the middle";
-  apply(lives.client(), GetParam().edit);
-  EXPECT_TRUE(saved(*station) == undisturbed) << "the edit gives something else after a kill";
-  lives.end_in_order();
+  apply(runs.client(), GetParam().edit);
+  EXPECT_TRUE(saved(*station) == undisturbed) << "the edit has another result after a kill";
+  runs.end_in_order();
 }
 
 TEST_P(CutOff, a_cancel_leaves_the_document_as_it_was) {
   const std::unique_ptr<Station> station = edited();
-  ipc::Client& client = station->lives.client();
+  ipc::Client& client = station->runs.client();
   ipc::Client view = ipc::Client::connect(ipc::model_socket_path(station->folder.path() / "run"), "view").value();
   bool hit = false;
   for (int attempt = 0; attempt < kMaxTries && !hit && !HasFailure(); ++attempt) {
@@ -213,7 +213,7 @@ TEST_P(CutOff, a_cancel_leaves_the_document_as_it_was) {
     if (!hit) apply(client, R"({"edit":"undo"})");
   }
   ASSERT_TRUE(hit) << "no cancel came in the middle";
-  // What others were told goes on no longer, and the next edit is done at once.
+  // Progress messages stop, and the next edit is executed at once.
   double last = 0;
   view.call(ipc::GetState{}, kPatience).value();
   while (const auto event = view.next_event())
@@ -224,7 +224,7 @@ TEST_P(CutOff, a_cancel_leaves_the_document_as_it_was) {
   apply(client, GetParam().edit);
 }
 
-/// Tries a stroke until it comes in the middle; false: none did.
+/// Repeats an interruption until it comes during the edit; returns false if none did.
 bool tried_until_it_hits(const std::function<bool()>& stroke) {
   for (int attempt = 0; attempt < kMaxTries && !::testing::Test::HasFailure(); ++attempt)
     if (stroke()) return true;
@@ -233,7 +233,7 @@ bool tried_until_it_hits(const std::function<bool()>& stroke) {
 
 TEST_P(CutOff, the_clients_death_leaves_the_document_as_it_was) {
   const std::unique_ptr<Station> station = edited();
-  ipc::Client& watcher = station->lives.client();
+  ipc::Client& watcher = station->runs.client();
   EXPECT_TRUE(tried_until_it_hits([&] {
     const Shown before = shown_by(watcher);
     const std::string record = journal_in(station->folder.state());
@@ -241,20 +241,20 @@ TEST_P(CutOff, the_clients_death_leaves_the_document_as_it_was) {
       ipc::Client dying = ipc::Client::connect(ipc::model_socket_path(station->folder.path() / "run"), "dying").value();
       reach_the_middle(dying, 1);
     }
-    station->lives.wait_until_open();  // it isn't busy any more
+    station->runs.wait_until_open();  // the daemon isn't busy any more
     const bool hit = journal_in(station->folder.state()) == record;
     if (hit)
       EXPECT_TRUE(shown_by(watcher) == before);
     else
       apply(watcher, R"({"edit":"undo"})");
     return hit;
-  })) << "the edit of a client that had gone was done all the same";
+  })) << "the edit of a client that had left was applied";
   EXPECT_EQ(apply(watcher, R"({"edit":"translate","by":[0,0,0.25],"on":"1313"})").report.nodes_moved, 1u);
 }
 
 TEST_P(CutOff, an_interrupted_command_leaves_the_document_as_it_was) {
   const std::unique_ptr<Station> station = edited();
-  ipc::Client& watcher = station->lives.client();
+  ipc::Client& watcher = station->runs.client();
   EXPECT_TRUE(tried_until_it_hits([&] {
     const Shown before = shown_by(watcher);
     const std::string record = journal_in(station->folder.state());

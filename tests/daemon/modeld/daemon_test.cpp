@@ -1,4 +1,4 @@
-// The daemon as its clients see it, in this process: so that ThreadSanitizer sees both sides.
+// The daemon as its clients see it, in this process, so that ThreadSanitizer sees both sides.
 #include "daemon/modeld/daemon.h"
 
 #include <algorithm>
@@ -64,7 +64,7 @@ Translate patch() {
   return translate;
 }
 
-/// The next event of a kind; fails the test when none comes.
+/// Returns the next event of a type; fails the test if none comes.
 template <class E>
 std::optional<E> next(Client& client) {
   const auto until = std::chrono::steady_clock::now() + kServingPatience;
@@ -116,7 +116,7 @@ TEST_F(Serving, a_drag_is_previewed_and_committed) {
   ASSERT_EQ(preview.nodes().size(), begun.nodes);
   ASSERT_GT(begun.nodes, 0u);
 
-  // Hundreds of steps without a pause: only the newest count, and the last one arrives.
+  // Hundreds of steps without a pause: intermediate ones may be skipped, the last one arrives.
   for (std::uint64_t i = 1; i <= 500; ++i) ASSERT_TRUE(owner.send(ipc::DragStep{begun.drag, i, {0, 0, 0.001 * static_cast<double>(i)}, 0}));
   const auto committed = owner.call(ipc::CommitDrag{begun.drag}, kServingPatience);
   ASSERT_TRUE(committed) << committed.error().text();
@@ -147,7 +147,7 @@ TEST_F(Serving, an_expression_is_counted_and_selects_nothing) {
   EXPECT_EQ(after.selected_nodes, 0u);
 }
 
-TEST_F(Serving, counting_a_long_expression_stops_when_told) {
+TEST_F(Serving, counting_a_long_expression_can_be_cancelled) {
   Client asker = client();
   open(asker, folder_.sheet());
   std::string expression = "1001";
@@ -192,8 +192,8 @@ TEST_F(Serving, edits_wait_until_the_drag_ends) {
   open(owner, folder_.sheet());
   const auto begun = std::get<ipc::DragBegun>(owner.call(ipc::BeginDrag{patch()}, kServingPatience).value());
   const std::uint64_t edit = other.send(ipc::ApplyEdit{move_node(1313, 0.25)}).value();
-  ASSERT_TRUE(other.call(ipc::GetState{}, kServingPatience)) << "states are told during a drag";
-  ASSERT_TRUE(other.snapshot()) << "and snapshots given";
+  ASSERT_TRUE(other.call(ipc::GetState{}, kServingPatience)) << "states are reported during a drag";
+  ASSERT_TRUE(other.snapshot()) << "and snapshots are sent";
   EXPECT_FALSE(other.next_reply()) << "the edit didn't wait";
   ASSERT_TRUE(owner.send(ipc::DragStep{begun.drag, 1, {0, 0, 1}, 0}));
   ASSERT_TRUE(owner.call(ipc::CommitDrag{begun.drag}, kServingPatience));
@@ -255,7 +255,7 @@ TEST_F(Serving, refusals_are_sentences) {
   EXPECT_TRUE(next<ipc::DocumentClosed>(one));
 }
 
-TEST_F(Serving, everyone_is_told_which_deck_a_save_goes_on_as) {
+TEST_F(Serving, every_client_learns_which_deck_a_save_continues_as) {
   Client editor = client("editor"), watcher = client("watcher");
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k", copy = folder_.path() / "copy.k";
   open(editor, deck);
@@ -267,7 +267,7 @@ TEST_F(Serving, everyone_is_told_which_deck_a_save_goes_on_as) {
   save.becomes = true;
   ASSERT_TRUE(editor.call(save, kServingPatience));
   EXPECT_EQ(next<ipc::DocumentOpened>(watcher)->path, other.string()) << "and not of the copy";
-  // Nowhere to go on as: it is saved where it is.
+  // Without a new journal to continue with, it is saved in place.
   ASSERT_TRUE(editor.call(ipc::ApplyEdit{move_node(1313, 0.25)}, kServingPatience));
   save.path.reset();
   const auto saved = editor.call(save, kServingPatience);
@@ -295,7 +295,7 @@ TEST_F(Serving, a_client_must_greet_in_the_same_protocol) {
   EXPECT_NE(first_answer("rubbish").find("it isn't JSON"), std::string::npos);
 }
 
-TEST_F(Serving, programs_that_never_greet_do_not_take_the_place_of_a_client) {
+TEST_F(Serving, clients_that_never_greet_block_no_other_client) {
   const fs::path path = ipc::model_socket_path(folder_.path() / "run");
   Client first = client("first");
   std::vector<ipc::Descriptor> silent;
@@ -306,7 +306,7 @@ TEST_F(Serving, programs_that_never_greet_do_not_take_the_place_of_a_client) {
   EXPECT_TRUE(state) << state.error().text();
 }
 
-TEST_F(Serving, two_snapshots_are_under_way_together) {
+TEST_F(Serving, two_snapshots_are_transferred_together) {
   Client client = this->client();
   open(client, folder_.sheet());
   std::vector<std::shared_ptr<const ipc::SnapshotView>> held{client.snapshot().value()};
@@ -316,7 +316,7 @@ TEST_F(Serving, two_snapshots_are_under_way_together) {
       if (reply->request == request) return client.take_snapshot(std::get<ipc::Snapshot>(reply->answer));
     return Result<std::shared_ptr<const ipc::SnapshotView>>(fail("", "no answer"));
   };
-  // Each state's own memory is held, so that sooner or later a state lies in other segments than the one it was made from.
+  // Holds the memory of each state, so that sooner or later a state uses other segments than its predecessor.
   bool left_a_segment = false;
   for (int i = 1; i <= 8; ++i) {
     SCOPED_TRACE(i);
@@ -341,7 +341,7 @@ TEST_F(Serving, two_snapshots_are_under_way_together) {
   EXPECT_TRUE(left_a_segment) << "this looks at nothing";
 }
 
-TEST_F(Serving, health_is_there_without_asking) {
+TEST_F(Serving, health_is_published_without_a_request) {
   Client one = client();
   const auto first = one.health();
   ASSERT_TRUE(first);
@@ -351,7 +351,7 @@ TEST_F(Serving, health_is_there_without_asking) {
   EXPECT_TRUE(one.health()->open);
   const std::int64_t heartbeat = one.health()->heartbeat_ns;
   for (int i = 0; i < 600 && one.health()->heartbeat_ns == heartbeat; ++i) std::this_thread::sleep_for(10ms);
-  EXPECT_GT(one.health()->heartbeat_ns, heartbeat) << "the heart beats by itself";
+  EXPECT_GT(one.health()->heartbeat_ns, heartbeat) << "the heartbeat continues by itself";
 }
 
 TEST_F(Serving, a_restart_is_seen_and_the_document_is_back) {
@@ -394,7 +394,7 @@ TEST_F(Serving, snapshots_of_a_client_that_dies_are_returned) {
       ASSERT_TRUE(view) << view.error().text();
     }
   }
-  // The segments' number tells whether memory was used again: 400 generations would need dozens.
+  // The segment number shows that memory is reused: 400 generations would need dozens of segments.
   const auto last = editor.call(ipc::GetSnapshot{}, kServingPatience);
   EXPECT_LE(std::get<ipc::Snapshot>(*last).segments.size(), 12u);
 }

@@ -50,7 +50,7 @@ class Keeping : public ::testing::Test {
   Folder folder_;
 };
 
-TEST_F(Keeping, the_history_keeps_to_its_bytes_and_says_what_goes) {
+TEST_F(Keeping, the_history_keeps_its_size_limit_and_reports_what_it_drops) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper all = keeper();
   ASSERT_TRUE(all.open(request(deck), {}));
@@ -71,7 +71,7 @@ TEST_F(Keeping, the_history_keeps_to_its_bytes_and_says_what_goes) {
     for (const std::string& note : report->notes) said = said || note.find("can't be undone any more") != std::string::npos;
     EXPECT_LE(few.state().history_bytes, cap) << "after edit " << i;
   }
-  EXPECT_TRUE(said) << "what goes is said";
+  EXPECT_TRUE(said) << "dropped history is reported";
   EXPECT_EQ(few.state().history_cap, cap);
   int undone = 0;
   while (few.state().can_undo && undone < 12) {
@@ -205,7 +205,7 @@ TEST_F(Keeping, selection_and_locked_parts_survive_a_save_and_a_restart) {
   EXPECT_FALSE(second.changed());
 }
 
-/// What is carried over a save besides the nodes: one of it each time, so that it can't come along with another.
+/// One item at a time that is carried over a save besides the nodes, so that it can't be carried along with another one.
 class CarriedAlone : public ::testing::TestWithParam<const char*> {
  protected:
   Folder folder_;
@@ -270,13 +270,13 @@ TEST_F(Keeping, the_users_unit_and_criteria_are_those_of_the_document) {
   EXPECT_EQ(refused.error().message, "unknown length unit \"feet\": mm, m or in");
 }
 
-TEST_F(Keeping, a_save_takes_the_record_of_an_earlier_one_away) {
+TEST_F(Keeping, a_save_removes_the_record_of_an_earlier_one) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
   ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
   ASSERT_TRUE(first.save(std::nullopt));
-  // As where the journal of before couldn't be renamed after a save: the next opening has to see to it.
+  // As if the previous journal couldn't be renamed after a save: the next opening has to do it.
   const std::vector<std::string> retired = state_files(".saved");
   ASSERT_EQ(retired.size(), 1u);
   const std::string left = retired.front().substr(0, retired.front().find(".saved")) + ".saving";
@@ -296,7 +296,7 @@ TEST_F(Keeping, a_save_that_was_taken_back_leaves_nothing_behind_and_can_be_made
   const auto save_without_main_file = [&] {
     return first.save(std::nullopt, [&](double fraction) {
       if (fraction < 0.999) return true;
-      // All has been written and read again; the include is the first to be put in place.
+      // All files have been written and verified; the include is the first to be replaced.
       for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path()))
         if (entry.path().filename().string().starts_with(".main.k.")) return fs::remove(entry.path());
       return true;
@@ -355,7 +355,7 @@ TEST_F(Keeping, saving_in_place_is_refused_when_the_deck_changed_on_disk) {
   EXPECT_TRUE(first.edit(move_edit(1313, 0.25))) << "and edited";
 }
 
-TEST_F(Keeping, unsaved_edits_are_not_given_up_by_accident) {
+TEST_F(Keeping, unsaved_edits_are_not_discarded_without_request) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
@@ -371,14 +371,14 @@ TEST_F(Keeping, unsaved_edits_are_not_given_up_by_accident) {
   EXPECT_EQ(first.state().recovered_edits, 0u);
 }
 
-TEST_F(Keeping, an_edit_that_cant_be_journalled_is_not_done) {
+TEST_F(Keeping, an_edit_that_cant_be_journalled_is_not_applied) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   ASSERT_TRUE(first.open(request(deck), {}));
   ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
   const double before = height(first, 1313);
 
-  // The disk is full, as far as this process can tell.
+  // Simulates a full disk for this process.
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit{};
   ::getrlimit(RLIMIT_FSIZE, &limit);
@@ -395,8 +395,8 @@ TEST_F(Keeping, an_edit_that_cant_be_journalled_is_not_done) {
 }
 
 #if !defined(PRISMESH_ADDRESS_SANITIZER) && !defined(PRISMESH_THREAD_SANITIZER)
-/// In a process of its own, since what other tests have given back to the heap is memory as well.
-TEST_F(Keeping, a_deck_too_large_for_the_memory_leaves_what_is_open) {
+/// In a process of its own, because memory that other tests have returned to the heap counts too.
+TEST_F(Keeping, a_deck_too_large_for_the_memory_keeps_the_open_document) {
   const auto in_little_memory = [this] {
     const fs::path large = folder_.path() / "large.k";
     std::ofstream out(large);
@@ -411,7 +411,7 @@ TEST_F(Keeping, a_deck_too_large_for_the_memory_leaves_what_is_open) {
     std::ifstream("/proc/self/statm") >> pages;
     rlimit limit{};
     ::getrlimit(RLIMIT_AS, &limit);
-    // room for the text, not for the model
+    // enough for the text, not for the model
     const std::size_t room = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + fs::file_size(large) + 20'000'000;
     const rlimit tight{room, limit.rlim_max};
     ::setrlimit(RLIMIT_AS, &tight);
@@ -423,7 +423,7 @@ TEST_F(Keeping, a_deck_too_large_for_the_memory_leaves_what_is_open) {
     return 0;
   };
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
-  // That process runs this test from its beginning, with a folder of its own.
+  // That process runs this test from the start, with a folder of its own.
   const auto and_clean_up = [&] {
     const int outcome = in_little_memory();
     fs::remove_all(folder_.path());
@@ -433,7 +433,7 @@ TEST_F(Keeping, a_deck_too_large_for_the_memory_leaves_what_is_open) {
 }
 #endif
 
-TEST_F(Keeping, a_deck_that_ends_the_daemon_every_time_is_left) {
+TEST_F(Keeping, a_deck_that_ends_the_daemon_every_time_is_not_opened_again) {
   const fs::path deck = folder_.sheet();
   const StateFolder state(folder_.state());
   ASSERT_TRUE(state.write_session({request(deck), 3}));
@@ -474,7 +474,7 @@ TEST_F(Keeping, of_a_damaged_journal_what_is_before_the_damage_is_shown_until_th
     const auto refused = again.edit(move_edit(1313, 0.25));
     EXPECT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("save the deck to go on"), std::string::npos) << refused.error().message;
-    EXPECT_EQ(test::whole_file(journal), text) << "nobody has decided yet";
+    EXPECT_EQ(test::whole_file(journal), text) << "the user hasn't decided yet";
     return again;
   };
   const std::string untouched = test::whole_file(deck);
@@ -499,7 +499,7 @@ TEST_F(Keeping, of_a_damaged_journal_what_is_before_the_damage_is_shown_until_th
   EXPECT_EQ(height(after, 1313), last);
 }
 
-TEST_F(Keeping, a_damaged_journal_without_a_good_edit_makes_room_when_the_deck_is_saved) {
+TEST_F(Keeping, a_damaged_journal_without_a_valid_edit_is_moved_aside_by_a_save) {
   const fs::path deck = folder_.sheet();
   fs::path journal;
   {
@@ -552,19 +552,19 @@ TEST_F(Keeping, a_folder_that_may_be_written_but_not_read_is_saved_into) {
   EXPECT_EQ(height(second, 1313), last);
 }
 
-TEST_F(Keeping, numbers_never_begin_again_though_the_clock_is_set_back) {
+TEST_F(Keeping, generation_numbers_increase_though_the_clock_is_set_back) {
   const StateFolder state(folder_.state());
   std::uint64_t last = state.first_number();
-  for (int life = 0; life < 5; ++life) {  // within a second: for what was noted the clock has been set back by hours
+  for (int life = 0; life < 5; ++life) {  // within a second: for the journal's numbers, the clock has been set back by hours
     const std::uint64_t first = state.first_number();
     EXPECT_GE(first, last + 1'000'000'000);
     last = first;
   }
   std::ofstream(folder_.state() / "numbers") << "99999999999999999\ncheck 0\n";
-  EXPECT_LT(state.first_number(), 99'999'999'999'999'999u) << "it isn't as it was written";
+  EXPECT_LT(state.first_number(), 99'999'999'999'999'999u) << "it differs from what was written";
 }
 
-TEST_F(Keeping, nothing_open_is_said) {
+TEST_F(Keeping, reports_that_no_document_is_open) {
   DocumentKeeper first = keeper();
   EXPECT_EQ(first.edit(Undo{}).error().message, "no document is open");
   EXPECT_EQ(first.save(std::nullopt).error().message, "no document is open");

@@ -1,4 +1,4 @@
-// Fields as clients get them, against figures that the test works out itself from the decks' text: every node, every triangle.
+// Fields as clients get them, compared with values that the test computes from the decks' text: every node, every triangle.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -24,7 +24,7 @@ constexpr auto kFieldPatience = 60s;
 constexpr int kSide = 14;
 constexpr double kNear = 2e-6;  ///< decks hold six decimals, values are floats
 
-/// The closest point of a triangle by its plane and its three sides.
+/// The distance to a triangle, from its plane and its three sides.
 double distance_to_triangle(const Vec& p, const Vec& a, const Vec& b, const Vec& c) {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
@@ -39,7 +39,7 @@ double distance_to_triangle(const Vec& p, const Vec& a, const Vec& b, const Vec&
   return inside ? std::min(least, (p - foot).norm()) : least;
 }
 
-/// A deck of a grid, and what is in it: written by the test, so that nothing of the readers is believed.
+/// A deck of a grid and its content, written by the test without the project's readers.
 struct Grid {
   fs::path path;
   std::vector<Vec> nodes;  ///< row by row
@@ -128,14 +128,14 @@ class Fields : public ::testing::Test {
     EXPECT_FALSE(answer);
     return answer ? "" : answer.error().text();
   }
-  /// Where the nodes are now, as every view sees them.
+  /// The nodes' present positions, as every view sees them.
   std::vector<Vec> places() {
     const auto view = client_->snapshot().value();
     std::vector<Vec> all;
     for (std::size_t n = 0; n < view->node_count(); ++n) all.push_back(view->position(n));
     return all;
   }
-  /// Values by node, and the figures that go with them.
+  /// Checks values by node, and the figures that belong to them.
   void expect_field(const Got& got, const std::vector<double>& expected) {
     ASSERT_EQ(got.values.size(), expected.size());
     double sum = 0;
@@ -174,19 +174,19 @@ TEST_F(Fields, displacement_is_how_far_each_node_is_from_the_decks_text) {
   EXPECT_EQ(got.made.clear, 1);
   EXPECT_EQ(got.made.full, 5);
   EXPECT_EQ(got.made.against, "the deck as it was opened");
-  // Against the state in between only the second edit counts.
+  // From the state in between, only the second edit counts.
   ipc::GetField between;
   between.against_generation = first;
   for (std::size_t n = 0; n < now.size(); ++n) expected[n] = (now[n] - after_first[n]).norm();
   expect_field(get(between), expected);
-  // And an older state against the deck only the first.
+  // From the deck to an older state, only the first edit counts.
   ipc::GetField older;
   older.generation = first;
   for (std::size_t n = 0; n < now.size(); ++n) expected[n] = (after_first[n] - wavy_.nodes[n]).norm();
   expect_field(get(older), expected);
 }
 
-TEST_F(Fields, distance_from_another_decks_surface_is_the_least_over_all_its_triangles) {
+TEST_F(Fields, distance_from_another_decks_surface_is_the_min_over_all_its_triangles) {
   const Grid other = write_grid(folder_.path() / "other.k", 5001, kSide, flatter);
   open();
   edit(R"({"edit":"translate","by":[0,0,1.5],"on":"60-75"})");
@@ -200,12 +200,12 @@ TEST_F(Fields, distance_from_another_decks_surface_is_the_least_over_all_its_tri
   expect_field(got, expected);
   EXPECT_EQ(got.made.against, "other.k");
   EXPECT_EQ(got.made.clear, 0.05);
-  // The deck is read again when it has changed.
+  // The deck is read again after it has changed.
   const Grid moved = write_grid(other.path, 5001, kSide, [](int column, int row) { return Vec(flatter(column, row) + Vec(0, 0, 7)); });
   fs::last_write_time(other.path, fs::last_write_time(other.path) + 2s);
   for (std::size_t n = 0; n < now.size(); ++n) expected[n] = distance_to(moved, now[n]);
   expect_field(get(request), expected);
-  // So it is when only an include of it has.
+  // It is also read again if only an include has changed.
   const Grid included = write_grid(folder_.path() / "included.k", 5001, kSide, flatter);
   std::ofstream(other.path) << "*KEYWORD\n*INCLUDE\nincluded.k\n*END\n";
   for (std::size_t n = 0; n < now.size(); ++n) expected[n] = distance_to(included, now[n]);
@@ -213,7 +213,7 @@ TEST_F(Fields, distance_from_another_decks_surface_is_the_least_over_all_its_tri
   const Grid again = write_grid(included.path, 5001, kSide, [](int column, int row) { return Vec(flatter(column, row) + Vec(0, 0, 3)); });
   for (std::size_t n = 0; n < now.size(); ++n) expected[n] = distance_to(again, now[n]);
   expect_field(get(request), expected);
-  // The same ids at other places: displacement goes by id.
+  // The same ids at other positions: displacement is matched by id.
   const Grid same_ids = write_grid(folder_.path() / "same_ids.k", 1, kSide, flatter);
   request.field = "displacement";
   request.against = same_ids.path.string();
@@ -221,7 +221,7 @@ TEST_F(Fields, distance_from_another_decks_surface_is_the_least_over_all_its_tri
   expect_field(get(request), expected);
 }
 
-TEST_F(Fields, distance_from_the_opened_surface_is_the_least_over_all_its_triangles) {
+TEST_F(Fields, distance_from_the_opened_surface_is_the_min_over_all_its_triangles) {
   open();
   edit(R"({"edit":"lift","distance":2.5,"on":"80-120"})");
   edit(R"({"edit":"translate","by":[1,0.5,0],"on":"30-40"})");
@@ -257,7 +257,7 @@ TEST_F(Fields, distance_of_two_expressions_is_from_nodes_to_shells) {
   EXPECT_EQ(got.made.shells_without, 0u) << "the others aren't meant to have a value";
 }
 
-TEST_F(Fields, new_nodes_are_measured_from_between_those_they_were_made_of) {
+TEST_F(Fields, new_nodes_are_measured_from_between_their_source_nodes) {
   open();
   edit(R"({"edit":"translate","by":[0,0,2],"on":"1-196","falloff":{"profile":"constant"}})");
   edit(R"({"edit":"split","at":["shell:64","shell:65"]})");
@@ -269,7 +269,7 @@ TEST_F(Fields, new_nodes_are_measured_from_between_those_they_were_made_of) {
   EXPECT_EQ(got.made.shells_without, 0u);
   for (std::size_t n = 0; n < wavy_.nodes.size(); ++n) EXPECT_NEAR(got.values[n], (now[n] - wavy_.nodes[n]).norm(), kNear);
   double farthest = 0;
-  // A new node in the middle of an edge was made of its ends: whose middle is where, the test finds out by itself.
+  // A new node in the middle of an edge was made from its ends; the test finds the edge by itself.
   for (std::size_t n = wavy_.nodes.size(); n < now.size(); ++n) {
     double least = std::numeric_limits<double>::infinity(), expected = -1;
     for (std::size_t a = 0; a < wavy_.nodes.size(); ++a)
@@ -287,7 +287,7 @@ TEST_F(Fields, new_nodes_are_measured_from_between_those_they_were_made_of) {
   EXPECT_GT(farthest, 0.9) << "the ends of one at least were moved";
 }
 
-TEST_F(Fields, shells_that_should_have_a_value_and_have_none_are_counted) {
+TEST_F(Fields, counts_shells_with_a_missing_value) {
   open();
   edit(R"({"edit":"split","at":["shell:64"]})");
   ipc::GetField warpage;
@@ -312,7 +312,7 @@ TEST_F(Fields, limits_are_the_same_lengths_in_a_deck_in_metres) {
   EXPECT_DOUBLE_EQ(distance.made.full, 0.001);
 }
 
-TEST_F(Fields, what_cannot_be_made_is_a_sentence) {
+TEST_F(Fields, refuses_impossible_fields_with_a_sentence) {
   EXPECT_NE(refusal({}).find("no document"), std::string::npos);
   open();
   ipc::GetField request;

@@ -1,4 +1,4 @@
-// A folder that goes with the test, and decks in it.
+// A temporary folder that is removed with the test, and decks in it.
 #pragma once
 
 #include <stdlib.h>
@@ -37,7 +37,7 @@ class Folder {
     write_uneven_sheet(path_ / "uneven.k", side);
     return path_ / "uneven.k";
   }
-  /// Two quads over two files: nodes 1 to 3 in the main file, 4 to 6 in the include.
+  /// Two quads in two files: nodes 1 to 3 in the main file, 4 to 6 in the include.
   std::filesystem::path two_files() const {
     std::ofstream(path_ / "main.k") << "*KEYWORD\n*NODE\n"
                                        "       1             0.0             0.0             0.0\n"

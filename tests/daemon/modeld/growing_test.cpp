@@ -1,4 +1,4 @@
-// The keeper of documents whose shells come and go: restarts, saves in place, saves that are cut off, steps back beyond a save.
+// The document keeper with edits that add and remove shells: restarts, saves in place, interrupted saves, undo beyond a save.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -66,7 +66,7 @@ TEST_F(Growing, comes_back_after_a_restart_and_can_be_undone) {
   edit(first, kMove);
   {
     const Generation before = first.document().current();
-    first = keeper();  // ends without a word
+    first = keeper();  // ends without closing, as if killed
     DocumentKeeper second = keeper();
     open(second, deck);
     expect_same(before, second.document().current());
@@ -77,7 +77,7 @@ TEST_F(Growing, comes_back_after_a_restart_and_can_be_undone) {
   }
 }
 
-TEST_F(Growing, a_save_in_place_begins_anew_with_what_is_selected) {
+TEST_F(Growing, a_save_in_place_keeps_the_selection) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -102,7 +102,7 @@ TEST_F(Growing, a_save_in_place_begins_anew_with_what_is_selected) {
   EXPECT_EQ(second.state().shells, 3u);
 }
 
-TEST_F(Growing, steps_back_beyond_a_save_and_forth_again_are_brought_back) {
+TEST_F(Growing, undo_and_redo_beyond_a_save_are_restored) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -118,11 +118,11 @@ TEST_F(Growing, steps_back_beyond_a_save_and_forth_again_are_brought_back) {
     open(first, deck);
     expect_same(before, first.document().current());
     if (HasFailure()) return;
-    if (!first.state().can_undo && can_undo) break;  // the history beyond the save isn't kept over a restart
+    if (!first.state().can_undo && can_undo) break;  // the history before the save isn't kept over a restart
   }
 }
 
-TEST_F(Growing, steps_back_beyond_a_save_in_one_life) {
+TEST_F(Growing, undo_beyond_a_save_without_a_restart) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -137,7 +137,7 @@ TEST_F(Growing, steps_back_beyond_a_save_in_one_life) {
   expect_same(before, first.document().current());
 }
 
-TEST_F(Growing, what_is_carried_over_a_save_takes_no_step_back_away) {
+TEST_F(Growing, what_is_carried_over_a_save_removes_no_undo_step) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -162,14 +162,14 @@ TEST_F(Growing, what_is_carried_over_a_save_takes_no_step_back_away) {
   expect_same(shown, first.document().current());
 }
 
-TEST_F(Growing, a_step_back_that_the_journal_cant_hold_is_refused_and_what_is_shown_is_on_record) {
+TEST_F(Growing, an_undo_that_the_journal_cant_hold_is_refused_and_the_journal_matches_the_document) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
   edit(first, kMove);
   edit(first, kSplit);
   edit(first, R"({"edit":"undo"})");
-  // Started again with no room for a history: the document still has its steps, the journal that begins with the save keeps none.
+  // Restarted without memory for a history: the document still has its undo steps, the journal that begins with the save keeps none.
   first = DocumentKeeper(StateFolder(folder_.state()), 1);
   open(first, deck);
   ASSERT_TRUE(first.save(std::nullopt));
@@ -185,7 +185,7 @@ TEST_F(Growing, a_step_back_that_the_journal_cant_hold_is_refused_and_what_is_sh
   expect_same(shown, first.document().current());
 }
 
-TEST_F(Growing, an_edit_that_is_told_to_stop_leaves_everything_as_it_was) {
+TEST_F(Growing, a_cancelled_edit_changes_nothing) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -207,7 +207,7 @@ std::map<std::string, std::string> everything_in(const fs::path& folder) {
   return all;
 }
 
-TEST_F(Growing, a_save_that_is_told_to_stop_leaves_every_file_until_it_puts_the_first_in_place) {
+TEST_F(Growing, a_cancelled_save_changes_no_file_before_the_first_is_replaced) {
   const fs::path deck = folder_.two_files();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -231,7 +231,7 @@ TEST_F(Growing, a_save_that_is_told_to_stop_leaves_every_file_until_it_puts_the_
       }
       ++stops;
       EXPECT_EQ(saved.error().message, "cancelled");
-      ASSERT_EQ(everything_in(folder_.path()), before) << "told to stop at call " << wanted;
+      ASSERT_EQ(everything_in(folder_.path()), before) << "cancelled at call " << wanted;
       EXPECT_EQ(first.changed(), elsewhere) << "what is saved elsewhere counts as saved";
     }
     if (elsewhere) fs::remove_all(folder_.path() / "other");

@@ -1,12 +1,12 @@
-// modeld is killed at random moments while it edits and saves: no edit that it acknowledged may be lost, and at most the one under
-// way may have been done. PRISMESH_KILL_CYCLES raises the number of kills.
+// Kills modeld at random moments while it edits and saves: no acknowledged edit may be lost, and at most the edit in progress may have been
+// applied. PRISMESH_KILL_CYCLES raises the number of kills.
 #include <cstdlib>
 #include <random>
 #include <thread>
 
 #include <gtest/gtest.h>
 
-#include "tests/daemon/modeld/lives.h"
+#include "tests/daemon/modeld/restartable_daemon.h"
 #include "tests/support/seed.h"
 
 namespace prismesh::modeld {
@@ -21,16 +21,16 @@ constexpr std::int64_t kNodes = test::kSheetSide * test::kSheetSide;
 
 using Heights = std::vector<double>;
 
-/// What the document must look like: the heights of its nodes now and, to check an undo, before the last edit.
+/// The expected document: the heights of its nodes now and, to check an undo, before the last edit.
 struct Expected {
   Heights now;
-  std::optional<Heights> before;  ///< nothing: what an undo gives isn't known (after a save, a restart may forget)
+  std::optional<Heights> before;  ///< nothing: the result of an undo isn't known (a restart after a save may discard the history)
 };
 
 class Killing : public ::testing::Test {
  protected:
   Heights heights() {
-    const auto view = lives_.client().snapshot();
+    const auto view = runs_.client().snapshot();
     if (!view) {
       ADD_FAILURE() << view.error().text();
       return {};
@@ -40,7 +40,7 @@ class Killing : public ::testing::Test {
     return all;
   }
 
-  /// Equal but for the digits that the deck's columns can't hold after a save.
+  /// Compares up to the digits that the deck's columns can't hold after a save.
   static bool same(const Heights& a, const Heights& b) {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -49,7 +49,7 @@ class Killing : public ::testing::Test {
   }
 
   struct Step {
-    std::vector<ipc::Request> requests;  ///< all to be acknowledged
+    std::vector<ipc::Request> requests;  ///< all must be acknowledged
     bool drag = false;
     Expected after;
   };
@@ -78,7 +78,7 @@ class Killing : public ::testing::Test {
     return step;
   }
 
-  /// False: the daemon has gone before it acknowledged the step.
+  /// Returns false if the daemon has ended before it acknowledged the step.
   bool take(ipc::Client& client, const Step& step) {
     const auto answer = client.call(step.requests.front(), kKillPatience);
     if (!answer) {
@@ -94,7 +94,7 @@ class Killing : public ::testing::Test {
   }
 
   Folder folder_;
-  test::Lives lives_{folder_, folder_.sheet()};
+  test::RestartableDaemon runs_{folder_, folder_.sheet()};
   std::mt19937 random_{test::seed(20040601)};
 };
 
@@ -104,35 +104,35 @@ int cycles() {
 }
 
 TEST_F(Killing, no_acknowledged_edit_is_lost) {
-  const std::string original = test::whole_file(lives_.deck());
-  lives_.start();
-  lives_.wait_until_open();
+  const std::string original = test::whole_file(runs_.deck());
+  runs_.start();
+  runs_.wait_until_open();
   Expected expected{heights(), std::nullopt};
   std::size_t acknowledged = 0, done_unacknowledged = 0, lost_under_way = 0;
   for (int cycle = 0; cycle < cycles() && !HasFailure(); ++cycle) {
     const auto life = std::chrono::microseconds(random_() % (cycle % 4 == 0 ? 10'000 : 120'000));
     std::thread killer([&] {
       std::this_thread::sleep_for(life);
-      lives_.shoot();
+      runs_.send_kill();
     });
     Step step;
     for (;;) {
       step = random_step(expected);
-      if (!take(lives_.client(), step)) break;
+      if (!take(runs_.client(), step)) break;
       expected = step.after;
       ++acknowledged;
     }
     killer.join();
-    lives_.bury();
+    runs_.wait_for_end();
 
-    lives_.start();
+    runs_.start();
     if (cycle % 10 == 9) {  // once more while it opens the deck again
       std::this_thread::sleep_for(std::chrono::microseconds(random_() % 60'000));
-      lives_.shoot();
-      lives_.bury();
-      lives_.start();
+      runs_.send_kill();
+      runs_.wait_for_end();
+      runs_.start();
     }
-    lives_.wait_until_open();
+    runs_.wait_until_open();
     const Heights found = heights();
     if (same(found, expected.now)) {
       ++lost_under_way;
@@ -149,10 +149,10 @@ TEST_F(Killing, no_acknowledged_edit_is_lost) {
               done_unacknowledged, lost_under_way);
   EXPECT_GT(acknowledged, static_cast<std::size_t>(cycles())) << "too few edits to mean anything";
 
-  // The deck then differs in the moved nodes' lines alone.
-  const auto saved = lives_.client().call(ipc::Save{}, kKillPatience);
+  // The deck then differs only in the lines of the moved nodes.
+  const auto saved = runs_.client().call(ipc::Save{}, kKillPatience);
   ASSERT_TRUE(saved) << saved.error().text();
-  const std::string edited = test::whole_file(lives_.deck());
+  const std::string edited = test::whole_file(runs_.deck());
   const auto before = test::nodes_of_deck(original);
   const auto after = test::nodes_of_deck(edited);
   std::vector<std::int64_t> moved;
@@ -165,7 +165,7 @@ TEST_F(Killing, no_acknowledged_edit_is_lost) {
   EXPECT_TRUE(difference.same_line_count);
   EXPECT_TRUE(difference.other_changes.empty());
   EXPECT_EQ(difference.nodes, moved);
-  lives_.end_in_order();
+  runs_.end_in_order();
 }
 
 }  // namespace

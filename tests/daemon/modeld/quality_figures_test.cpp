@@ -1,4 +1,4 @@
-// Quality in figures and what an edit would do, against counts of the test's own.
+// Quality figures and previews of edits, compared with the test's own counts.
 #include "daemon/modeld/quality_figures.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 using namespace mesh::document;
 using mesh::quality::Metric;
 
-constexpr std::int64_t kMiddle = 1313;  ///< a node with four shells about it
+constexpr std::int64_t kMiddle = 1313;  ///< a node with four shells around it
 
 class Figures : public ::testing::Test {
  protected:
@@ -70,7 +70,7 @@ class Figures : public ::testing::Test {
   Document document_;
 };
 
-TEST_F(Figures, count_by_metric_what_the_states_say) {
+TEST_F(Figures, count_the_states_by_metric) {
   lift(kMiddle, 3);
   lift(kMiddle + 60, 1.1);
   const ipc::Quality quality = figures();
@@ -91,7 +91,7 @@ TEST_F(Figures, count_by_metric_what_the_states_say) {
   EXPECT_GT(quality.parts[0].composite, quality.parts[0].least_composite);
 }
 
-TEST_F(Figures, the_worst_error_comes_first_with_its_value_and_place) {
+TEST_F(Figures, the_worst_error_comes_first_with_its_value_and_position) {
   lift(kMiddle + 120, 1.2);
   lift(kMiddle, 4);
   const ipc::Quality quality = figures("warpage");
@@ -132,7 +132,7 @@ TEST_F(Figures, every_bar_selects_as_many_shells_as_it_shows) {
   }
 }
 
-TEST_F(Figures, bars_are_as_wide_as_each_other_reach_the_limit_and_tell_how_their_shells_are_judged) {
+TEST_F(Figures, bars_have_equal_width_end_at_the_limit_and_show_their_shells_states) {
   lift(kMiddle, 3);
   lift(kMiddle + 60, 1.1);
   const Metric metric = Metric::warpage;
@@ -140,20 +140,20 @@ TEST_F(Figures, bars_are_as_wide_as_each_other_reach_the_limit_and_tell_how_thei
   const std::vector<ipc::QualityBar>& bars = quality.bars;
   ASSERT_GT(bars.size(), 10u);
   const double width = bars[0].to - bars[0].from;
-  const double least_that_fails =
+  const double min_failing =
       mesh::quality::threshold_of(document_.settings.criteria, metric, false, document_.settings.target_size, {}).fail_high;
-  EXPECT_GT(bars.back().to, least_that_fails) << "what fails can be seen";
+  EXPECT_GT(bars.back().to, min_failing) << "what fails can be seen";
   std::uint64_t ok = 0, warn = 0, fail = 0;
   for (std::size_t b = 0; b < bars.size(); ++b) {
     EXPECT_NEAR(bars[b].to - bars[b].from, width, width * 1e-9);
     if (b > 0) {
       EXPECT_EQ(bars[b].from, bars[b - 1].to);
     }
-    // All of a bar that ends below the limit pass, all of one that begins above it fail.
-    if (b + 1 < bars.size() && bars[b].to <= least_that_fails) {
+    // All shells of a bar below the limit pass, all of a bar above it fail.
+    if (b + 1 < bars.size() && bars[b].to <= min_failing) {
       EXPECT_EQ(bars[b].fail, 0u) << b;
     }
-    if (bars[b].from > least_that_fails) {
+    if (bars[b].from > min_failing) {
       EXPECT_EQ(bars[b].ok + bars[b].warn, 0u) << b;
     }
     ok += bars[b].ok, warn += bars[b].warn, fail += bars[b].fail;
@@ -165,14 +165,14 @@ TEST_F(Figures, bars_are_as_wide_as_each_other_reach_the_limit_and_tell_how_thei
   EXPECT_EQ(ok + warn + fail, document_.current().model.shell_count());
 }
 
-TEST_F(Figures, a_shell_that_is_none_counts_as_a_defect_only) {
+TEST_F(Figures, a_degenerate_shell_counts_as_a_defect_only) {
   lift(kMiddle + 60, 3);
   move_towards(kMiddle, kMiddle + 1, 1);  // two shells lose an edge
   const std::uint64_t shells = document_.current().model.shell_count();
   std::uint64_t failing = 0;
   const auto& states = document_.current().quality;
   for (std::size_t s = 0; s < states.size(); ++s) failing += !states[s].has_defect() && (states[s].fail >> int(Metric::aspect) & 1) != 0;
-  EXPECT_EQ(count(Metric::aspect, true), failing + 2) << "the states say both";
+  EXPECT_EQ(count(Metric::aspect, true), failing + 2) << "the states show both";
 
   const ipc::Quality quality = figures("aspect");
   EXPECT_EQ(quality.metrics.at(std::size_t(Metric::aspect)).fail, failing);
@@ -200,7 +200,7 @@ TEST_F(Figures, a_shell_that_is_none_counts_as_a_defect_only) {
   }
 }
 
-/// Criteria may look at thickness and material: then each shell has a limit of its own.
+/// Criteria may depend on thickness and material: then each shell has its own limit.
 TEST_F(Figures, the_worst_is_worst_by_its_own_limit) {
   const std::filesystem::path file = folder_.path() / "thick.toml";
   std::ofstream(file) << "[metrics.min_length]\nfail_below_thicknesses = 5\n";  // of 0.8: below 4
@@ -244,7 +244,7 @@ TEST_F(Figures, an_unknown_metric_is_refused_with_the_nearest) {
   EXPECT_EQ(not_found.error().text(), refused.error().text());
 }
 
-TEST_F(Figures, what_only_warns_is_worse_than_nothing_and_then_in_the_decks_order) {
+TEST_F(Figures, warnings_come_after_errors_in_the_decks_order) {
   const std::filesystem::path file = folder_.path() / "own.toml";
   std::ofstream(file) << "[metrics.warpage]\nwarn_above = 2\n";
   OpenOptions options;
@@ -261,7 +261,7 @@ TEST_F(Figures, what_only_warns_is_worse_than_nothing_and_then_in_the_decks_orde
                              [](const auto& one, const auto& other) { return one.shell < other.shell; }));
 }
 
-TEST_F(Figures, the_worst_comes_first_also_where_what_warns_fails_at_once) {
+TEST_F(Figures, the_worst_comes_first_if_warn_and_fail_limits_are_equal) {
   for (const char* text : {"[metrics.warpage]\nwarn_above = 2\nfail_above = 2\n", "[metrics.warpage]\nwarn_above = 2\nfail_above = 9\n"}) {
     const std::filesystem::path file = folder_.path() / "own.toml";
     std::ofstream(file, std::ios::trunc) << text;
@@ -270,7 +270,7 @@ TEST_F(Figures, the_worst_comes_first_also_where_what_warns_fails_at_once) {
     Result<Document> opened = mesh::document::open(folder_.sheet(), options);
     ASSERT_TRUE(opened) << text << opened.error().text();
     document_ = std::move(*opened);
-    lift(kMiddle - 120, 3);  // the smaller first in the deck
+    lift(kMiddle - 120, 3);  // the smaller deviation comes first in the deck
     lift(kMiddle, 6);
     const ipc::Quality quality = figures("warpage");
     ASSERT_GE(quality.errors.size(), 8u) << text;
@@ -280,7 +280,7 @@ TEST_F(Figures, the_worst_comes_first_also_where_what_warns_fails_at_once) {
   }
 }
 
-TEST_F(Figures, a_preview_says_what_an_edit_would_do_and_does_nothing) {
+TEST_F(Figures, a_preview_reports_an_edits_effect_and_changes_nothing) {
   const std::uint64_t number = document_.current().number;
   const std::set<std::int64_t> touched = ids_at(kMiddle);
   Translate edit;
@@ -323,8 +323,8 @@ TEST_F(Figures, a_preview_of_a_split_shows_the_shells_that_it_makes) {
   EXPECT_TRUE(shown.contains(64));
 }
 
-TEST_F(Figures, a_preview_leaves_shells_out_whose_corners_stand_nowhere) {
-  // A corner of two of the shells about the node has no place.
+TEST_F(Figures, a_preview_skips_shells_whose_corners_have_no_position) {
+  // A corner of two of the node's shells has no position.
   auto broken = std::make_shared<Generation>(document_.current());
   const std::set<std::int64_t> touched = ids_at(kMiddle), nowhere = ids_at(kMiddle + 1);
   broken->model.positions.set(broken->model.find_node(kMiddle + 1).value, mesh::Vec3::Constant(std::nan("")));
@@ -350,7 +350,7 @@ TEST_F(Figures, a_preview_leaves_shells_out_whose_corners_stand_nowhere) {
   EXPECT_EQ(shown, expected);
 }
 
-TEST_F(Figures, an_edit_that_cant_be_done_is_refused_in_its_own_words) {
+TEST_F(Figures, an_impossible_edit_is_refused_with_its_own_message) {
   Translate edit;
   edit.by = {0, 0, 3};
   edit.shaping.on = "99999999";

@@ -1,4 +1,4 @@
-// What the keeper and the handler can't do: a sentence, and everything is as it was.
+// Refusals of keeper and handler: each gives a sentence and changes nothing.
 #include <algorithm>
 #include <fstream>
 #include <functional>
@@ -33,7 +33,7 @@ ipc::Open open_request(const fs::path& deck) {
   open.path = deck.string();
   return open;
 }
-/// Why there is no answer; "done" if there is one.
+/// Returns the refusal's sentence; "done" if it is an answer.
 std::string words(const ipc::Answer& answer) {
   const auto* failed = std::get_if<ipc::Failed>(&answer);
   return failed == nullptr ? "done" : Error{failed->file, failed->line, failed->message}.text();
@@ -50,7 +50,7 @@ class Refusals : public ::testing::Test {
     ASSERT_TRUE(opened) << opened.error().text();
   }
   fs::path journal() const { return StateFolder(folder_.state()).journal(keeper_.document().path, keeper_.document().deck->content); }
-  /// Puts the state folder away while the work is done: nothing can be made or renamed in it.
+  /// Removes the state folder during the work, so that nothing can be created or renamed in it.
   template <class Work>
   auto without_state_folder(const Work& work) {
     const fs::path away = folder_.path() / "away";
@@ -76,7 +76,7 @@ TEST_F(Refusals, without_a_document_there_is_nothing_to_save_or_close) {
   EXPECT_FALSE(fs::exists(other));
 }
 
-TEST_F(Refusals, a_deck_is_saved_under_a_whole_path_only) {
+TEST_F(Refusals, a_deck_is_saved_under_an_absolute_path_only) {
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
   const std::string why = "the path must be absolute: the daemon has its own working folder";
@@ -99,7 +99,7 @@ TEST_F(Refusals, a_deck_that_cannot_be_opened_as_asked_leaves_no_journal_and_is_
   EXPECT_TRUE(fs::is_empty(folder_.state()));
 }
 
-TEST_F(Refusals, a_deck_that_is_gone_after_a_restart_is_an_honest_refusal_each_time) {
+TEST_F(Refusals, a_deck_that_is_missing_after_a_restart_is_refused_each_time) {
   open_sheet();
   keeper_ = DocumentKeeper(StateFolder(folder_.state()));
   fs::remove(folder_.path() / "sheet.k");
@@ -117,7 +117,7 @@ TEST_F(Refusals, a_deck_that_is_gone_after_a_restart_is_an_honest_refusal_each_t
   EXPECT_TRUE(*keeper_.reopen({})) << "it is there again";
 }
 
-TEST_F(Refusals, a_session_file_that_is_none_is_said) {
+TEST_F(Refusals, reports_an_invalid_session_file) {
   const fs::path file = folder_.state() / "session.json";
   const auto with_check = [](const std::string& line) { return line + "\ncheck " + hash128(std::as_bytes(std::span(line))).hex() + "\n"; };
   const std::string get_state = ipc::encode_request(0, ipc::GetState{}).value();
@@ -146,7 +146,7 @@ TEST_F(Refusals, a_session_file_that_is_none_is_said) {
   EXPECT_EQ(keeper_.state().warnings.back().kind, "session-not-noted");
 }
 
-TEST_F(Refusals, a_record_of_a_save_that_cannot_be_read_is_put_aside_and_said) {
+TEST_F(Refusals, an_unreadable_record_of_a_save_is_moved_aside_and_reported) {
   open_sheet();
   const fs::path deck = keeper_.document().path, record = StateFolder::save_intent(journal());
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
@@ -172,7 +172,7 @@ TEST_F(Refusals, a_record_of_a_save_that_cannot_be_read_is_put_aside_and_said) {
   }
 }
 
-TEST_F(Refusals, without_its_journal_a_document_can_still_be_given_up_or_saved) {
+TEST_F(Refusals, without_its_journal_a_document_can_still_be_closed_or_saved) {
   const fs::path deck = folder_.sheet();
   const std::string before = test::whole_file(deck);
   for (const char* way : {"close", "another", "save"}) {
@@ -192,7 +192,7 @@ TEST_F(Refusals, without_its_journal_a_document_can_still_be_given_up_or_saved) 
       EXPECT_EQ(keeper_.state().path, other.path);
       ASSERT_TRUE(keeper_.close(false));
     } else {
-      EXPECT_EQ(test::whole_file(deck), before) << "what was given up isn't in the deck";
+      EXPECT_EQ(test::whole_file(deck), before) << "discarded edits aren't in the deck";
       const Result<ipc::Saved> saved = keeper_.save(std::nullopt);
       ASSERT_TRUE(saved) << saved.error().text();
       EXPECT_EQ(test::compare_decks(before, test::whole_file(deck)).nodes.size(), 1u);
@@ -201,7 +201,7 @@ TEST_F(Refusals, without_its_journal_a_document_can_still_be_given_up_or_saved) 
   }
 }
 
-TEST_F(Refusals, a_damaged_journal_makes_room_or_stays_where_it_is) {
+TEST_F(Refusals, a_damaged_journal_is_moved_aside_or_stays) {
   const fs::path deck = folder_.sheet();
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
@@ -270,7 +270,7 @@ TEST_F(Refusals, saving_as_another_deck_told_to_stop_when_it_is_written_leaves_a
   EXPECT_EQ(keeper_.state().path, other.string());
 }
 
-TEST_F(Refusals, what_a_save_elsewhere_could_not_write_is_said_before_it_is_tried) {
+TEST_F(Refusals, reports_what_a_save_elsewhere_cannot_write_before_it_starts) {
   fs::create_directory(folder_.path() / "deck");
   const fs::path outside = folder_.path() / "outside.k", deck = folder_.path() / "deck/main.k";
   fs::copy_file(folder_.sheet(), outside);
@@ -283,7 +283,7 @@ TEST_F(Refusals, what_a_save_elsewhere_could_not_write_is_said_before_it_is_trie
   EXPECT_FALSE(fs::exists(folder_.path() / "new"));
 }
 
-TEST_F(Refusals, what_was_closed_is_not_opened_by_the_next_life) {
+TEST_F(Refusals, a_closed_document_is_not_opened_after_a_restart) {
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
   ASSERT_TRUE(keeper_.close(true));
@@ -293,7 +293,7 @@ TEST_F(Refusals, what_was_closed_is_not_opened_by_the_next_life) {
   EXPECT_FALSE(*opened);
 }
 
-TEST_F(Refusals, what_was_said_of_the_old_deck_is_not_said_of_the_one_that_a_save_as_goes_on_as) {
+TEST_F(Refusals, warnings_about_the_old_deck_end_with_save_as) {
   const fs::path deck = folder_.sheet();
   open_sheet();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
@@ -322,14 +322,14 @@ TEST_F(Refusals, a_journal_of_an_earlier_time_is_kept_beside_the_one_of_a_save_a
   save_as_other();
   const fs::path file = journal();
   ASSERT_TRUE(keeper_.edit(json_edit(kRaise)));
-  keeper_ = DocumentKeeper(StateFolder(folder_.state()));  // as if killed: the edit is in that journal only
+  keeper_ = DocumentKeeper(StateFolder(folder_.state()));  // as if killed: the edit is only in that journal
   const std::string earlier = test::whole_file(file);
   save_as_other();
   EXPECT_EQ(journal(), file) << "the same deck as then";
   bool kept = false;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_.state()))
     kept |= entry.path().string().starts_with(file.string() + ".") && test::whole_file(entry.path()) == earlier;
-  EXPECT_TRUE(kept) << "edits that nobody gave up";
+  EXPECT_TRUE(kept) << "edits that weren't discarded";
   EXPECT_EQ(keeper_.state().journalled_edits, 0u);
 }
 
@@ -346,7 +346,7 @@ class BenchRefusals : public ::testing::Test {
   RequestHandler handler_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30, clock_};
 };
 
-TEST_F(BenchRefusals, questions_that_have_no_answer_are_sentences) {
+TEST_F(BenchRefusals, refuses_requests_without_an_answer_with_a_sentence) {
   EXPECT_THAT(words(handler_.quality({"warpege", false}).answer), HasSubstr("\"warpage\""));
   EXPECT_THAT(words(handler_.find({"warpege", std::nullopt, std::nullopt, false}).answer), HasSubstr("\"warpage\""));
   EXPECT_THAT(words(handler_.preview({json_edit(R"({"edit":"translate","by":[0,0,1],"on":"9"})")}).answer), HasSubstr("no node 9"));
@@ -383,7 +383,7 @@ TEST_F(BenchRefusals, an_edit_counts_though_views_cannot_be_given_it) {
   for (const std::string& note : std::get<ipc::Edited>(next.answer).report.notes) EXPECT_EQ(note.find("views"), std::string::npos);
 }
 
-TEST_F(BenchRefusals, what_needs_shared_memory_is_refused_without_it_and_done_once_there_is_some) {
+TEST_F(BenchRefusals, requests_for_shared_memory_are_refused_until_there_is_some) {
 #ifdef PRISMESH_ADDRESS_SANITIZER
   GTEST_SKIP() << "UndefinedBehaviorSanitizer needs descriptors of its own to look at an object's type";
 #endif
@@ -409,7 +409,7 @@ TEST_F(BenchRefusals, what_needs_shared_memory_is_refused_without_it_and_done_on
   }
 }
 
-TEST_F(BenchRefusals, a_drag_whose_edit_cannot_be_kept_says_why_to_everyone) {
+TEST_F(BenchRefusals, a_drag_whose_edit_fails_tells_every_client_why) {
   ASSERT_EQ(words(handler_.begin_drag(7, dragged()).answer), "done");
   handler_.step_drag({7, 1, {0, 0, 0.5}, 0, 0});
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_.state()))
@@ -424,7 +424,7 @@ TEST_F(BenchRefusals, a_drag_whose_edit_cannot_be_kept_says_why_to_everyone) {
   EXPECT_FALSE(outcome.published) << "nothing changed";
 }
 
-TEST(DaemonStart, is_a_sentence_where_it_cannot_be_and_leaves_nothing_in_the_way) {
+TEST(DaemonStart, fails_with_a_sentence_and_leaves_nothing_behind) {
   const test::Folder folder;
   std::ofstream(folder.path() / "file") << "no folder";
   const auto why_not = [](const DaemonOptions& options) {

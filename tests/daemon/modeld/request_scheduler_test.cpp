@@ -1,4 +1,5 @@
-// Who may do what when: the scheduler with a loop that the test turns by hand, so that each order of events can be had.
+// Which client may do what, and when: the scheduler with a loop that the test runs step by step, so that it can produce any order of
+// events.
 #include "daemon/modeld/request_scheduler.h"
 #include "base/clock.h"
 
@@ -21,19 +22,19 @@ namespace {
 
 using namespace mesh::document;
 
-/// Remembers what clients are told. What the worker posts waits until the test lets it run.
-class HandTurnedLoop final : public ClientChannel {
+/// Records the messages to clients. Work posted by the worker waits until the test runs it.
+class ManualLoop final : public ClientChannel {
  public:
-  struct Told {
+  struct Received {
     ipc::Answer answer;
     std::vector<ipc::Descriptor> descriptors;
   };
   void answer(ipc::ClientId client, std::uint64_t number, const ipc::Answer& answer, std::vector<ipc::Descriptor> descriptors) override {
-    answers_[{client, number}] = Told{answer, std::move(descriptors)};
+    answers_[{client, number}] = Received{answer, std::move(descriptors)};
   }
   void tell(ipc::ClientId client, const ipc::Event& event) override {
     events_.push_back(event);
-    told_.push_back(client);
+    received_.push_back(client);
   }
   void tell_all(const ipc::Event& event) override { events_.push_back(event); }
   void post(std::function<void()> work) override {
@@ -47,12 +48,12 @@ class HandTurnedLoop final : public ClientChannel {
     std::unique_lock lock(mutex_);
     ASSERT_TRUE(changed_.wait_for(lock, std::chrono::seconds(60), [&] { return !posted_.empty(); })) << "the worker posted nothing";
   }
-  /// Lets what is posted run until the client has its answer.
-  Told& until_answered(ipc::ClientId client, std::uint64_t number) {
+  /// Runs posted work until the client has its answer.
+  Received& wait_for_answer(ipc::ClientId client, std::uint64_t number) {
     while (!answers_.contains({client, number})) {
       await();
       if (::testing::Test::HasFatalFailure()) break;
-      turn();
+      run_one();
     }
     return answers_[{client, number}];
   }
@@ -62,10 +63,10 @@ class HandTurnedLoop final : public ClientChannel {
       if (const auto* drag = std::get_if<ipc::DragEnded>(&event)) ended.push_back(*drag);
     return ended;
   }
-  /// Who was told something that isn't for all.
-  const std::vector<ipc::ClientId>& told() const { return told_; }
-  /// One piece of what is posted.
-  void turn() {
+  /// The clients that received messages not meant for all.
+  const std::vector<ipc::ClientId>& received() const { return received_; }
+  /// Runs one posted item.
+  void run_one() {
     std::function<void()> work;
     {
       const std::lock_guard lock(mutex_);
@@ -79,14 +80,14 @@ class HandTurnedLoop final : public ClientChannel {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> posted_;
-  std::map<std::pair<ipc::ClientId, std::uint64_t>, Told> answers_;
+  std::map<std::pair<ipc::ClientId, std::uint64_t>, Received> answers_;
   std::vector<ipc::Event> events_;
-  std::vector<ipc::ClientId> told_;
+  std::vector<ipc::ClientId> received_;
 };
 
 constexpr ipc::ClientId kOne = 1, kOther = 2;
 
-class DeskTest : public ::testing::Test {
+class RequestSchedulerTest : public ::testing::Test {
  protected:
   void SetUp() override {
     scheduler_.arrived(kOne);
@@ -95,22 +96,22 @@ class DeskTest : public ::testing::Test {
     open.path = folder_.sheet().string();
     ask<ipc::DocumentState>(kOne, open);
   }
-  /// Asks and waits for the answer.
+  /// Sends a request and waits for its answer.
   template <class A>
   A ask(ipc::ClientId client, ipc::Request request) {
     const std::uint64_t number = begin(client, std::move(request));
-    HandTurnedLoop::Told& told = loop_.until_answered(client, number);
-    if (const auto* failed = std::get_if<ipc::Failed>(&told.answer)) ADD_FAILURE() << failed->message;
-    return std::get<A>(told.answer);
+    ManualLoop::Received& received = loop_.wait_for_answer(client, number);
+    if (const auto* failed = std::get_if<ipc::Failed>(&received.answer)) ADD_FAILURE() << failed->message;
+    return std::get<A>(received.answer);
   }
   std::uint64_t begin(ipc::ClientId client, ipc::Request request, std::size_t bytes = 100) {
     scheduler_.request(client, ++number_, std::move(request), bytes);
     return number_;
   }
-  /// What a request is refused with.
+  /// Returns the sentence with which a request is refused.
   std::string refusal(ipc::ClientId client, ipc::Request request, std::size_t bytes = 100) {
     const std::uint64_t number = begin(client, std::move(request), bytes);
-    const auto* failed = std::get_if<ipc::Failed>(&loop_.until_answered(client, number).answer);
+    const auto* failed = std::get_if<ipc::Failed>(&loop_.wait_for_answer(client, number).answer);
     return failed != nullptr ? failed->message : "accepted";
   }
   static ipc::BeginDrag drag() {
@@ -119,17 +120,17 @@ class DeskTest : public ::testing::Test {
     return {translate};
   }
   static ipc::DragStep step(std::uint64_t drag, std::uint64_t sequence, double up) { return {drag, sequence, {0, 0, up}, 0, 0}; }
-  /// What views see.
+  /// The snapshot that views see.
   std::shared_ptr<const ipc::SnapshotView> view(const ipc::GetSnapshot& request = {}) {
-    HandTurnedLoop::Told& told = loop_.until_answered(kOne, begin(kOne, request));
-    const auto& snapshot = std::get<ipc::Snapshot>(told.answer);
+    ManualLoop::Received& received = loop_.wait_for_answer(kOne, begin(kOne, request));
+    const auto& snapshot = std::get<ipc::Snapshot>(received.answer);
     std::vector<std::shared_ptr<const ipc::Mapping>> segments;
     for (std::size_t i = 0; i < snapshot.segments.size(); ++i)
-      segments.push_back(std::make_shared<const ipc::Mapping>(ipc::Mapping::map(told.descriptors[i + 1], false).value()));
+      segments.push_back(std::make_shared<const ipc::Mapping>(ipc::Mapping::map(received.descriptors[i + 1], false).value()));
     scheduler_.request(kOne, 0, ipc::ReturnSnapshot{snapshot.lease}, 0);
-    return ipc::SnapshotView::map(told.descriptors[0], segments).value();
+    return ipc::SnapshotView::map(received.descriptors[0], segments).value();
   }
-  /// Where views see the node that is dragged.
+  /// The height at which views see the dragged node.
   double height(const ipc::GetSnapshot& request = {}) {
     const std::shared_ptr<const ipc::SnapshotView> seen = view(request);
     for (std::size_t n = 0; n < seen->node_count(); ++n)
@@ -142,20 +143,20 @@ class DeskTest : public ::testing::Test {
   ipc::SnapshotPublisher publisher_{1};
   ManualClock clock_;
   RequestHandler handler_{StateFolder(folder_.state()), publisher_, std::size_t{1} << 30, clock_};
-  HandTurnedLoop loop_;
+  ManualLoop loop_;
   Worker worker_;
   RequestScheduler scheduler_{loop_, worker_, handler_, publisher_};
   std::uint64_t number_ = 0;
 };
 
-TEST_F(DeskTest, a_client_that_goes_while_its_drag_begins_leaves_no_drag_behind) {
+TEST_F(RequestSchedulerTest, a_client_that_leaves_while_its_drag_begins_leaves_no_drag) {
   begin(kOne, drag());
   loop_.await();
   scheduler_.left(kOne);
   const auto until_ended = [&] {
     while (loop_.ended_drags().empty()) {
       loop_.await();
-      loop_.turn();
+      loop_.run_one();
     }
   };
   until_ended();
@@ -163,7 +164,7 @@ TEST_F(DeskTest, a_client_that_goes_while_its_drag_begins_leaves_no_drag_behind)
   EXPECT_GT(ask<ipc::DragBegun>(kOther, drag()).drag, 0u) << "others may drag";
 }
 
-TEST_F(DeskTest, a_step_that_comes_after_a_newer_one_is_left_out) {
+TEST_F(RequestSchedulerTest, skips_a_step_that_comes_after_a_newer_one) {
   const double before = height();
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
   begin(kOne, step(held, 2, 0.5));
@@ -172,7 +173,7 @@ TEST_F(DeskTest, a_step_that_comes_after_a_newer_one_is_left_out) {
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, a_step_of_an_earlier_drag_does_not_move_the_next_one) {
+TEST_F(RequestSchedulerTest, a_step_of_an_earlier_drag_does_not_move_the_next_one) {
   const double before = height();
   const std::uint64_t first = ask<ipc::DragBegun>(kOne, drag()).drag;
   ask<ipc::Done>(kOne, ipc::CancelDrag{first});
@@ -183,17 +184,17 @@ TEST_F(DeskTest, a_step_of_an_earlier_drag_does_not_move_the_next_one) {
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, what_comes_after_the_commit_does_not_move_it) {
+TEST_F(RequestSchedulerTest, steps_after_the_commit_have_no_effect) {
   const double before = height();
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
   begin(kOne, step(held, 1, 0.5));
   const std::uint64_t commit = begin(kOne, ipc::CommitDrag{held});
   begin(kOne, step(held, 2, 0.25));
-  loop_.until_answered(kOne, commit);
+  loop_.wait_for_answer(kOne, commit);
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, only_its_holder_returns_a_snapshot) {
+TEST_F(RequestSchedulerTest, only_its_holder_can_return_a_snapshot) {
   const std::uint64_t lease = ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{}).lease;
   begin(kOther, ipc::ReturnSnapshot{lease});
   ask<ipc::Done>(kOne, ipc::Close{});
@@ -202,14 +203,14 @@ TEST_F(DeskTest, only_its_holder_returns_a_snapshot) {
   EXPECT_EQ(publisher_.bytes_held(), 0u);
 }
 
-TEST_F(DeskTest, one_drag_at_a_time_and_only_by_its_own_number_is_ended) {
-  // One that still waits for something else to end holds the place as well.
+TEST_F(RequestSchedulerTest, one_drag_at_a_time_ended_only_by_its_own_number) {
+  // A drag that still waits for another request also counts.
   Translate translate;
   translate.shaping.on = "1314";
   begin(kOne, ipc::ApplyEdit{translate});
   const std::uint64_t beginning = begin(kOne, drag());
   EXPECT_EQ(refusal(kOther, drag()), "another view is dragging; try again when it has let go");
-  const std::uint64_t held = std::get<ipc::DragBegun>(loop_.until_answered(kOne, beginning).answer).drag;
+  const std::uint64_t held = std::get<ipc::DragBegun>(loop_.wait_for_answer(kOne, beginning).answer).drag;
   EXPECT_EQ(refusal(kOne, drag()), "you are dragging already; commit or cancel that drag first");
   EXPECT_EQ(refusal(kOther, drag()), "another view is dragging; try again when it has let go");
   const std::string other = std::to_string(held + 1), own = std::to_string(held);
@@ -217,11 +218,11 @@ TEST_F(DeskTest, one_drag_at_a_time_and_only_by_its_own_number_is_ended) {
   EXPECT_EQ(refusal(kOther, ipc::CancelDrag{held}), "you hold no drag " + own);
   const std::uint64_t commit = begin(kOne, ipc::CommitDrag{held});
   EXPECT_EQ(refusal(kOne, ipc::CancelDrag{held}), "you hold no drag " + own) << "it is being committed";
-  loop_.until_answered(kOne, commit);
+  loop_.wait_for_answer(kOne, commit);
   EXPECT_GT(ask<ipc::DragBegun>(kOther, drag()).drag, held) << "now it is the other's turn";
 }
 
-TEST_F(DeskTest, a_client_that_only_watches_goes_without_ending_anothers_drag) {
+TEST_F(RequestSchedulerTest, a_watching_client_that_leaves_does_not_end_anothers_drag) {
   const double before = height();
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
   scheduler_.left(kOther);
@@ -231,7 +232,7 @@ TEST_F(DeskTest, a_client_that_only_watches_goes_without_ending_anothers_drag) {
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, requests_wait_up_to_a_number_and_a_size) {
+TEST_F(RequestSchedulerTest, waiting_requests_are_limited_in_number_and_size) {
   const ipc::GetQuality any;
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;  // edits wait until it ends
   Translate translate;
@@ -243,16 +244,16 @@ TEST_F(DeskTest, requests_wait_up_to_a_number_and_a_size) {
   EXPECT_EQ(refusal(kOther, any), full);
   EXPECT_EQ(refusal(kOne, ipc::CommitDrag{held + 1}), "you hold no drag " + std::to_string(held + 1)) << "what needn't wait is answered";
   ask<ipc::Done>(kOne, ipc::CancelDrag{held});
-  loop_.until_answered(kOther, newest);
+  loop_.wait_for_answer(kOther, newest);
   const std::uint64_t again = ask<ipc::DragBegun>(kOne, drag()).drag;
   edit(std::size_t{20} << 20);
   EXPECT_EQ(refusal(kOther, ipc::ApplyEdit{translate}, std::size_t{13} << 20), full);
   const std::uint64_t last = edit(std::size_t{12} << 20);
   ask<ipc::Done>(kOne, ipc::CancelDrag{again});
-  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(loop_.until_answered(kOther, last).answer)) << "what was answered no longer counts";
+  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(loop_.wait_for_answer(kOther, last).answer)) << "what was answered no longer counts";
 }
 
-TEST_F(DeskTest, snapshots_are_held_up_to_a_number_and_of_states_that_are_there) {
+TEST_F(RequestSchedulerTest, snapshots_are_limited_in_number_and_to_existing_states) {
   ipc::GetSnapshot gone;
   gone.generation = 4711;
   EXPECT_EQ(refusal(kOne, gone), "the history has no state 4711 any more");
@@ -264,17 +265,17 @@ TEST_F(DeskTest, snapshots_are_held_up_to_a_number_and_of_states_that_are_there)
   ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{});
 }
 
-TEST_F(DeskTest, only_who_asked_for_something_long_stops_it) {
+TEST_F(RequestSchedulerTest, only_the_requesting_client_can_cancel) {
   EXPECT_EQ(refusal(kOne, ipc::Cancel{}), "nothing of yours is under way that can be stopped");
   Translate translate;
   translate.shaping.on = "1313";
   const std::uint64_t edit = begin(kOne, ipc::ApplyEdit{translate});
   EXPECT_EQ(refusal(kOther, ipc::Cancel{}), "nothing of yours is under way that can be stopped");
-  loop_.until_answered(kOne, edit);
+  loop_.wait_for_answer(kOne, edit);
   EXPECT_EQ(refusal(kOne, ipc::Cancel{}), "nothing of yours is under way that can be stopped") << "it is done";
 }
 
-TEST_F(DeskTest, what_waits_is_done_in_the_order_in_which_it_came) {
+TEST_F(RequestSchedulerTest, waiting_requests_are_executed_in_order) {
   Translate up;
   up.shaping.on = "1313";
   up.by = {0, 0, 0.5};
@@ -284,12 +285,12 @@ TEST_F(DeskTest, what_waits_is_done_in_the_order_in_which_it_came) {
   begin(kOne, ipc::ApplyEdit{Undo{}});
   const std::uint64_t last = begin(kOne, ipc::ApplyEdit{up});
   ask<ipc::Done>(kOther, ipc::CancelDrag{held});
-  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(loop_.until_answered(kOne, last).answer));
-  EXPECT_TRUE(std::holds_alternative<ipc::Edited>(loop_.until_answered(kOne, first).answer));
+  ASSERT_TRUE(std::holds_alternative<ipc::Edited>(loop_.wait_for_answer(kOne, last).answer));
+  EXPECT_TRUE(std::holds_alternative<ipc::Edited>(loop_.wait_for_answer(kOne, first).answer));
   EXPECT_EQ(height(), before + 0.5);
 }
 
-TEST_F(DeskTest, a_drag_begins_with_what_is_grabbed_and_which_way_is_out) {
+TEST_F(RequestSchedulerTest, a_drag_begins_with_the_grabbed_node_and_the_outward_direction) {
   const ipc::DragBegun begun = ask<ipc::DragBegun>(kOne, drag());
   EXPECT_EQ(begun.grab, 1313);
   EXPECT_EQ(begun.base_generation, ask<ipc::DocumentState>(kOther, ipc::GetState{}).generation);
@@ -298,7 +299,7 @@ TEST_F(DeskTest, a_drag_begins_with_what_is_grabbed_and_which_way_is_out) {
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(begun.normal[axis], out[axis], 0.02);
 }
 
-TEST_F(DeskTest, views_see_the_state_that_is_told) {
+TEST_F(RequestSchedulerTest, views_see_the_reported_state) {
   struct Step {
     const char* edit;  ///< null: a save in place
     bool changed, hidden, locked, can_undo, can_redo;
@@ -342,7 +343,7 @@ TEST_F(DeskTest, views_see_the_state_that_is_told) {
   EXPECT_EQ(refusal(kOther, ipc::ApplyEdit{Undo{}}), "there is nothing to undo");
 }
 
-TEST_F(DeskTest, an_earlier_state_is_shown_as_it_was_and_what_the_client_has_isnt_sent_again) {
+TEST_F(RequestSchedulerTest, shows_an_earlier_state_and_does_not_resend_what_the_client_has) {
   const double before = height();
   const std::uint64_t first = ask<ipc::DocumentState>(kOne, ipc::GetState{}).generation;
   Translate up;
@@ -358,13 +359,13 @@ TEST_F(DeskTest, an_earlier_state_is_shown_as_it_was_and_what_the_client_has_isn
   EXPECT_EQ(whole.new_segments, whole.segments);
   ipc::GetSnapshot known;
   known.have_segments = whole.segments;
-  HandTurnedLoop::Told& again = loop_.until_answered(kOne, begin(kOne, known));
+  ManualLoop::Received& again = loop_.wait_for_answer(kOne, begin(kOne, known));
   EXPECT_EQ(std::get<ipc::Snapshot>(again.answer).segments, whole.segments);
   EXPECT_TRUE(std::get<ipc::Snapshot>(again.answer).new_segments.empty());
   EXPECT_EQ(again.descriptors.size(), 1u) << "the table alone";
 }
 
-TEST_F(DeskTest, a_snapshot_for_which_there_are_no_descriptors_is_refused_and_holds_nothing) {
+TEST_F(RequestSchedulerTest, a_snapshot_for_which_there_are_no_descriptors_is_refused_and_holds_nothing) {
   int free = 0;
   std::string why;
   for (; free < 20; ++free) {
@@ -378,12 +379,12 @@ TEST_F(DeskTest, a_snapshot_for_which_there_are_no_descriptors_is_refused_and_ho
   EXPECT_GT(free, 1) << "the table and each segment take one";
   EXPECT_LT(free, 20);
   ask<ipc::Done>(kOther, ipc::Close{});
-  EXPECT_GT(publisher_.bytes_held(), 0u) << "the one that was given";
+  EXPECT_GT(publisher_.bytes_held(), 0u) << "the snapshot that was sent";
   scheduler_.left(kOne);
   EXPECT_EQ(publisher_.bytes_held(), 0u) << "those that were refused hold nothing";
 }
 
-TEST_F(DeskTest, what_a_client_waited_for_is_not_done_once_it_has_gone) {
+TEST_F(RequestSchedulerTest, waiting_requests_of_a_client_that_left_are_dropped) {
   const double before = height();
   const std::uint64_t held = ask<ipc::DragBegun>(kOne, drag()).drag;
   Translate up;
@@ -396,7 +397,7 @@ TEST_F(DeskTest, what_a_client_waited_for_is_not_done_once_it_has_gone) {
   EXPECT_EQ(refusal(kOne, ipc::ApplyEdit{Undo{}}), "there is nothing to undo");
 }
 
-TEST_F(DeskTest, what_a_client_held_is_returned_when_it_goes) {
+TEST_F(RequestSchedulerTest, snapshots_of_a_client_that_left_are_returned) {
   ask<ipc::Snapshot>(kOne, ipc::GetSnapshot{});
   ask<ipc::Done>(kOther, ipc::Close{});
   EXPECT_GT(publisher_.bytes_held(), 0u);
@@ -405,7 +406,7 @@ TEST_F(DeskTest, what_a_client_held_is_returned_when_it_goes) {
   EXPECT_EQ(scheduler_.health().clients, 1u);
 }
 
-TEST_F(DeskTest, what_cannot_be_asked_yet_or_at_all_is_said) {
+TEST_F(RequestSchedulerTest, refuses_requests_that_are_invalid_or_too_early) {
   ask<ipc::Done>(kOne, ipc::Close{});
   EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "no document is open");
   EXPECT_FALSE(ask<ipc::DocumentState>(kOne, ipc::GetState{}).busy);
@@ -414,14 +415,14 @@ TEST_F(DeskTest, what_cannot_be_asked_yet_or_at_all_is_said) {
   const std::uint64_t opening = begin(kOther, open);
   EXPECT_EQ(refusal(kOne, ipc::GetSnapshot{}), "the document is still being opened");
   EXPECT_TRUE(ask<ipc::DocumentState>(kOne, ipc::GetState{}).busy);
-  loop_.until_answered(kOther, opening);
+  loop_.wait_for_answer(kOther, opening);
   EXPECT_FALSE(ask<ipc::DocumentState>(kOne, ipc::GetState{}).busy);
   EXPECT_EQ(refusal(kOne, ipc::Hello{}), "this can't be asked now") << "a second greeting";
 }
 
-TEST_F(DeskTest, a_camera_is_shared_with_the_others) {
+TEST_F(RequestSchedulerTest, a_camera_is_shared_with_the_others) {
   begin(kOne, ipc::ShareCamera{});
-  EXPECT_EQ(loop_.told(), (std::vector<ipc::ClientId>{kOther}));
+  EXPECT_EQ(loop_.received(), (std::vector<ipc::ClientId>{kOther}));
 }
 
 }  // namespace

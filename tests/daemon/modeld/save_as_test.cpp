@@ -1,4 +1,4 @@
-// Saving as another deck: what the document is then, what the deck it was keeps, and what is said before anything is replaced.
+// Saving as another deck: the document afterwards, the previous deck, and the warnings before files are replaced.
 #include <memory>
 
 #include <gmock/gmock.h>
@@ -72,7 +72,7 @@ TEST_F(SaveAs, goes_on_under_the_new_name_with_its_history) {
   EXPECT_EQ(second.state().path, other.string());
   EXPECT_NEAR(height(second, 1313), start + 0.75, 1e-9);
   ASSERT_TRUE(second.close(true));
-  // The deck that it was: as on disk, without edits that were saved under the other name.
+  // The previous deck: as on disk, without the edits that were saved under the new name.
   open(second, deck);
   EXPECT_EQ(height(second, 1313), start);
   EXPECT_EQ(second.state().recovered_edits, 0u);
@@ -103,7 +103,7 @@ TEST_F(SaveAs, takes_includes_and_structure_along) {
   EXPECT_EQ(height(second, 5), 0.5);
 }
 
-TEST_F(SaveAs, says_what_it_would_replace_and_make_and_touches_nothing) {
+TEST_F(SaveAs, reports_what_it_would_replace_and_create_and_changes_nothing) {
   const fs::path deck = folder_.two_files();
   ipc::SnapshotPublisher publisher(1);
   ManualClock clock;
@@ -155,7 +155,7 @@ TEST_F(SaveAs, a_copy_leaves_the_document_as_it_was) {
   EXPECT_FALSE(handler.save(copy).published->state.changed);
 }
 
-TEST_F(SaveAs, where_it_cant_go_on_the_document_is_the_one_it_was) {
+TEST_F(SaveAs, keeps_the_document_if_it_cannot_continue_as_the_new_deck) {
   const fs::path deck = folder_.sheet(), other = folder_.path() / "other.k";
   auto killed = std::make_unique<DocumentKeeper>(keeper());
   DocumentKeeper& first = *killed;
@@ -164,7 +164,7 @@ TEST_F(SaveAs, where_it_cant_go_on_the_document_is_the_one_it_was) {
   const double lifted = height(first, 1313);
   const fs::path away = folder_.path() / "away";
   fs::rename(folder_.state(), away);
-  std::ofstream(folder_.state()) << "no folder";  // so no new journal can be made
+  std::ofstream(folder_.state()) << "no folder";  // so that no new journal can be created
   const Result<ipc::Saved> saved = first.save_as(other.string());
   fs::remove(folder_.state());
   fs::rename(away, folder_.state());
@@ -181,7 +181,7 @@ TEST_F(SaveAs, where_it_cant_go_on_the_document_is_the_one_it_was) {
 }
 
 TEST_F(SaveAs, does_not_go_on_as_a_deck_that_is_read_as_another_model) {
-  // Beside the old deck the new one shares its include, which something else has written anew since: with a node or a shell more.
+  // The new deck shares its include with the old one; another program has meanwhile added a node or a shell to it.
   const std::pair<std::string, std::string> additions[] = {
       {"*NODE\n", "       7             9.0             9.0             0.0\n"},
       {"*ELEMENT_SHELL\n", "       3       1       1       2       3\n"},
@@ -203,7 +203,7 @@ TEST_F(SaveAs, does_not_go_on_as_a_deck_that_is_read_as_another_model) {
   }
 }
 
-TEST_F(SaveAs, another_deck_is_opened_without_the_edits_only_once_it_is_read) {
+TEST_F(SaveAs, opens_another_deck_without_the_edits_only_after_reading_it) {
   const fs::path deck = folder_.sheet();
   DocumentKeeper first = keeper();
   open(first, deck);
@@ -213,7 +213,7 @@ TEST_F(SaveAs, another_deck_is_opened_without_the_edits_only_once_it_is_read) {
   request.path = (folder_.path() / "missing.k").string();
   request.discard = true;
   EXPECT_FALSE(first.open(request, {}));
-  EXPECT_EQ(height(first, 1313), lifted) << "nothing was given up for a deck that can't be opened";
+  EXPECT_EQ(height(first, 1313), lifted) << "no edit was discarded for a deck that can't be opened";
   request.path = folder_.two_files().string();
   request.discard = false;
   EXPECT_FALSE(first.open(request, {}));

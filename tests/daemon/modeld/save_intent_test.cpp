@@ -1,4 +1,4 @@
-// What becomes of a save that was cut off: of the deck's files, and of the journals that belong to the deck before and after it.
+// Recovery from an interrupted save: the deck's files, and the journals of the deck before and after it.
 #include "daemon/modeld/save_intent.h"
 
 #include <string>
@@ -22,7 +22,7 @@ void leave(const fs::path& file, const std::string& text) {
   if (!text.empty()) std::ofstream(file, std::ios::binary) << text;
 }
 
-/// A file of the deck as the next opening finds it; empty: it isn't there.
+/// A file of the deck as the next opening finds it; empty: missing.
 struct LeftByACut {
   std::string target, temporary, settled;
 };
@@ -70,7 +70,7 @@ TEST(SaveIntents, are_settled_without_overwriting_what_others_wrote) {
   }
 }
 
-/// A sheet that was saved after two edits and then edited once more; the record of that save is still there.
+/// A sheet that was saved after two edits and then edited once more; the record of that save still exists.
 class RecordOfASave : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -98,7 +98,7 @@ class RecordOfASave : public ::testing::Test {
     EXPECT_TRUE(opened) << opened.error().text();
     return keeper;
   }
-  /// How many edits come back with the deck as it is now.
+  /// Number of edits that are restored with the deck as it is now.
   std::uint64_t edits_brought_back() const { return open().state().recovered_edits; }
   static void edit(DocumentKeeper& keeper) {
     EXPECT_TRUE(keeper.edit(mesh::document::parse_edit(R"({"edit":"translate","by":[0,0,0.25],"on":"1313"})").value()));
@@ -113,7 +113,7 @@ class RecordOfASave : public ::testing::Test {
   test::Folder folder_;
   StateFolder state_{folder_.state()};
   fs::path deck_ = folder_.sheet();
-  std::string unsaved_, saved_;  ///< the deck before the save and after it
+  std::string unsaved_, saved_;  ///< the deck before and after the save
   fs::path first_journal_, next_journal_;
   std::string first_edits_;
   SaveIntent intent_;
@@ -136,7 +136,7 @@ TEST_F(RecordOfASave, retires_the_journal_of_a_saved_deck_that_holds_nothing_els
 
 TEST_F(RecordOfASave, leaves_the_journal_of_before_where_it_got_edits_afterwards) {
   leave(first_journal_, first_edits_);
-  find_at_the_next_opening(saved_, 1, 0);  // the save had one of its two edits
+  find_at_the_next_opening(saved_, 1, 0);  // the save contained one of its two edits
   EXPECT_EQ(edits_brought_back(), 1u);
   EXPECT_EQ(test::whole_file(first_journal_), first_edits_);
   leave(deck_, unsaved_);

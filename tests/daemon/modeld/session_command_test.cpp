@@ -1,4 +1,4 @@
-// `prismesh session` and modeld as two programs, with the daemon dying in between.
+// `prismesh session` and modeld as two programs, with the daemon killed in between.
 #include <csignal>
 #include <future>
 #include <thread>
@@ -41,7 +41,7 @@ class SessionCommand : public ::testing::Test {
     ran.err = process.standard_error();
     return ran;
   }
-  /// The daemon's socket may not be there yet: state is asked until it is.
+  /// Requests the state until the daemon's socket exists.
   void wait_until_there() {
     for (int i = 0; i < 500 && session({"state"}).status != 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -80,7 +80,7 @@ TEST_F(SessionCommand, edits_and_saves_the_open_document) {
   EXPECT_EQ(daemon_->wait_for_exit(), 0);
 }
 
-TEST_F(SessionCommand, says_the_warnings_of_the_open_deck) {
+TEST_F(SessionCommand, prints_the_warnings_of_the_open_deck) {
   const auto deck = folder_.two_files();
   std::filesystem::remove(folder_.path() / "rest.k");
   start();
@@ -94,8 +94,8 @@ TEST_F(SessionCommand, says_the_warnings_of_the_open_deck) {
   EXPECT_EQ(json.err, "");
 }
 
-/// A limit on the size of files ends a program by a signal unless the program wants it otherwise.
-TEST_F(SessionCommand, a_file_that_may_not_grow_is_an_error_and_no_end) {
+/// Exceeding the limit on file sizes ends a program by a signal unless the program ignores it.
+TEST_F(SessionCommand, a_file_that_may_not_grow_is_an_error_and_does_not_end_it) {
   const auto deck = folder_.sheet();
   const std::string limited = "ulimit -f 8; exec \"$@\"";
   daemon_ = std::make_unique<Process>(std::vector<std::string>{"/bin/sh", "-c", limited, "sh", program("prismesh-modeld"), "--runtime-dir",
@@ -117,7 +117,7 @@ TEST_F(SessionCommand, a_file_that_may_not_grow_is_an_error_and_no_end) {
   EXPECT_TRUE(std::filesystem::is_empty(target.parent_path()));
 }
 
-TEST_F(SessionCommand, goes_on_when_the_daemon_is_restarted) {
+TEST_F(SessionCommand, continues_when_the_daemon_is_restarted) {
   const auto deck = folder_.sheet();
   start();
   wait_until_there();
@@ -125,7 +125,7 @@ TEST_F(SessionCommand, goes_on_when_the_daemon_is_restarted) {
   ASSERT_EQ(session({"edit", kMoveCorner}).status, 0);
   daemon_->kill(SIGKILL);
   daemon_->wait_for_exit();
-  // The daemon is started by the test's own thread: it is to end with the thread that started it (see Process).
+  // The test's own thread starts the daemon, because it ends with the thread that started it (see Process).
   std::future<Ran> editing = std::async(std::launch::async, [this] { return session({"edit", kMoveCorner}); });
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   start();

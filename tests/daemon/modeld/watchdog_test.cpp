@@ -28,7 +28,7 @@ TEST(Watchdog, each_beat_restarts_the_count) {
   }
   heartbeat.end();
   for (int i = 0; i < 30; ++i) EXPECT_FALSE(monitor.is_hung()) << "it is over";
-  // Work that begins and ends between two periods doesn't hang.
+  // Work that begins and ends between two periods isn't a hang.
   for (int i = 0; i < 30; ++i) {
     heartbeat.begin();
     EXPECT_FALSE(monitor.is_hung());

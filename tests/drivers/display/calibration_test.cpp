@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A display as it left the workshop: nobody knows these two numbers yet.
+/// A display with unknown zero and gap, as after assembly.
 MaskOptics real_display() {
   MaskOptics optics;
   optics.zero_mm = 0.137;
@@ -23,7 +23,7 @@ MaskOptics real_display() {
 
 const std::vector<Eigen::Vector3d> kHeads{{0, 0, 650}, {-80, 10, 640}, {90, -20, 660}, {5, 0, 540}, {60, 0, 760}};
 
-/// What a viewer with an unsure hand chooses, from place to place whole pitches off.
+/// Choices of a viewer with random errors, each shifted by a number of whole pitches.
 std::vector<MaskChoice> choices_on(const MaskOptics& optics, const std::vector<Eigen::Vector3d>& heads, double hand_mm, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> hand(0, hand_mm);
@@ -43,7 +43,7 @@ TEST(Calibration, finds_zero_and_gap_of_a_display) {
   EXPECT_LT(fit->scatter_px, 1e-5);
 }
 
-TEST(Calibration, averages_an_unsure_hand) {
+TEST(Calibration, averages_random_errors) {
   std::vector<Eigen::Vector3d> heads;
   for (int i = 0; i < 5; ++i) heads.insert(heads.end(), kHeads.begin(), kHeads.end());
   double worst_px = 0;
@@ -58,10 +58,10 @@ TEST(Calibration, averages_an_unsure_hand) {
           std::max(worst_px, std::abs(mask_position_mm(found, head) - mask_position_mm(real_display(), head)) * 2 / found.mask_pitch_mm());
     EXPECT_NEAR(fit->scatter_mm, 0.03, 0.02);
   }
-  EXPECT_LT(worst_px, 0.15);  // a hand that misses by 0.1 px each time
+  EXPECT_LT(worst_px, 0.15);  // the random error of one choice is 0.1 px
 }
 
-TEST(Calibration, leaves_the_gap_alone_when_the_head_stayed) {
+TEST(Calibration, keeps_the_gap_if_the_head_did_not_move) {
   MaskOptics start;
   start.gap_scale = 1.01;
   MaskOptics real = real_display();
@@ -92,7 +92,7 @@ TEST(Calibration, names_the_choice_that_contradicts_the_others) {
   EXPECT_THAT(fit.error().message, HasSubstr("choice 3"));
 }
 
-TEST(Calibration, refuses_what_it_cannot_use) {
+TEST(Calibration, refuses_missing_and_invalid_choices) {
   EXPECT_FALSE(fit_mask(MaskOptics(), {}));
   for (const MaskChoice& bad : {MaskChoice{{0, 0, -5}, 0}, MaskChoice{{0, 0, 650}, std::nan("")},
                                 MaskChoice{{std::numeric_limits<double>::infinity(), 0, 650}, 0}}) {

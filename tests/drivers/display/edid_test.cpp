@@ -7,16 +7,16 @@
 namespace prismesh::drivers::display {
 namespace {
 
-/// A description put together byte by byte as VESA E-EDID 1.4 lays it out.
+/// Builds an EDID byte by byte, as VESA E-EDID 1.4 defines it.
 class EdidBytes {
  public:
   EdidBytes() : bytes_(128) {
     set(0, {0x00, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x00});
 
     set(10, {0x34, 0x12});              // product 0x1234
-    set(12, {0x39, 0x30, 0x00, 0x00});  // serial 12345
+    set(12, {0x39, 0x30, 0x00, 0x00});  // serial number 12345
     set(18, {1, 4});
-    set(20, {0xA5});  // digital, 8 bits a colour, DisplayPort
+    set(20, {0xA5});  // digital, 8 bits per colour, DisplayPort
     set(21, {52, 33});
     maker("EIZ");
   }
@@ -57,7 +57,7 @@ class EdidBytes {
   std::vector<std::byte> bytes_;
 };
 
-TEST(Edid, says_who_and_how_large_the_monitor_is) {
+TEST(Edid, decodes_identity_and_size) {
   EdidBytes bytes;
   bytes.preferred_timing();
   bytes.text(72, 0xFC, "CG2420");
@@ -74,7 +74,7 @@ TEST(Edid, says_who_and_how_large_the_monitor_is) {
   EXPECT_FALSE(edid->takes_ycbcr_422);
 }
 
-TEST(Edid, falls_back_to_numbers_where_there_is_no_text) {
+TEST(Edid, falls_back_to_numbers_without_texts) {
   EdidBytes bytes;
   const Result<Edid> edid = decode_edid(bytes.done());
   ASSERT_TRUE(edid);
@@ -83,11 +83,11 @@ TEST(Edid, falls_back_to_numbers_where_there_is_no_text) {
   EXPECT_EQ(edid->native_width, 0);
 }
 
-TEST(Edid, tells_a_monitor_that_takes_halved_colours) {
+TEST(Edid, detects_a_monitor_that_accepts_halved_colours) {
   EdidBytes first_block;
   first_block.set(24, {0x10});
   EXPECT_TRUE(decode_edid(first_block.done())->takes_ycbcr_422);
-  EdidBytes older;  // before 1.4 the bit says what kind of analogue display it is
+  EdidBytes older;  // before 1.4 this bit encodes the type of an analogue display
   older.set(19, {3});
   older.set(24, {0x10});
   EXPECT_FALSE(decode_edid(older.done())->takes_ycbcr_422);
@@ -111,10 +111,10 @@ TEST(Edid, the_first_timing_is_the_preferred_one) {
   EXPECT_EQ(decode_edid(name_first.done())->width_mm, 520);
 }
 
-TEST(Edid, a_name_ends_with_its_descriptor_and_holds_what_can_be_printed) {
+TEST(Edid, a_name_ends_with_its_descriptor_and_is_printable) {
   EdidBytes bytes;
   bytes.text(54, 0xFC, "THIRTEEN LONG");
-  bytes.set(72, {0x41, 0x42, 0x43});  // a timing follows at once
+  bytes.set(72, {0x41, 0x42, 0x43});  // followed at once by a timing
   bytes.text(90, 0xFF,
              " a\x7F\x1B\x80"
              "b~ ");
@@ -124,7 +124,7 @@ TEST(Edid, a_name_ends_with_its_descriptor_and_holds_what_can_be_printed) {
   EXPECT_EQ(edid->identity.serial, "ab~");
 }
 
-TEST(Edid, an_analogue_monitor_takes_no_colour_format) {
+TEST(Edid, an_analogue_monitor_accepts_no_colour_format) {
   EdidBytes bytes;
   bytes.set(20, {0x25});
   bytes.set(24, {0x18});
@@ -135,7 +135,7 @@ TEST(Edid, an_analogue_monitor_takes_no_colour_format) {
   EXPECT_FALSE(edid->takes_ycbcr_444);
 }
 
-TEST(Edid, leaves_a_damaged_extension_out) {
+TEST(Edid, skips_a_damaged_extension) {
   EdidBytes bytes;
   bytes.cta(0x30);
   std::vector<std::byte> damaged = bytes.done();
@@ -145,9 +145,9 @@ TEST(Edid, leaves_a_damaged_extension_out) {
   EXPECT_FALSE(edid->takes_ycbcr_422);
 }
 
-TEST(Edid, takes_sizes_that_are_ratios_for_unknown) {
+TEST(Edid, sizes_that_are_ratios_are_unknown) {
   EdidBytes bytes;
-  bytes.set(21, {0x4F, 0});  // landscape 16:9 in EDID 1.4's way
+  bytes.set(21, {0x4F, 0});  // landscape 16:9, as EDID 1.4 encodes it
   bytes.preferred_timing();
   bytes.set(66, {16, 9, 0});
   const Result<Edid> edid = decode_edid(bytes.done());
@@ -156,13 +156,13 @@ TEST(Edid, takes_sizes_that_are_ratios_for_unknown) {
   EXPECT_EQ(edid->height_mm, 0);
 }
 
-TEST(Edid, refuses_what_is_none) {
+TEST(Edid, refuses_what_is_no_edid) {
   EXPECT_FALSE(decode_edid({}));
   std::vector<std::byte> bytes = EdidBytes().done();
   EXPECT_FALSE(decode_edid(std::span(bytes).first(127)));
   bytes[3] = std::byte{0};
   EXPECT_FALSE(decode_edid(bytes));
-  for (std::size_t i = 8; i < 128; ++i) {  // every byte counts
+  for (std::size_t i = 8; i < 128; ++i) {  // the checksum covers every byte
     std::vector<std::byte> damaged = EdidBytes().done();
     damaged[i] ^= std::byte{0x40};
     EXPECT_FALSE(decode_edid(damaged)) << i;

@@ -1,4 +1,4 @@
-// What an eye sees through the mask: the known figures of the example display, and what must hold for any eye.
+// What an eye sees through the mask: the known figures of the example display, and properties that hold for any eye.
 #include "drivers/display/optics.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kPitch = 0.2805, kWidth = 359;
 
-/// Snell's law in two dimensions, forward: from the element to the place on the panel.
+/// Snell's law in two dimensions, forward: from the element to the position on the panel.
 double seen_through(const MaskOptics& optics, double eye_x, double distance, double m) {
   const double angle = std::atan2(m - eye_x, distance);
   return m + optics.air_gap_mm() * optics.refractive_index * std::tan(std::asin(std::sin(angle) / optics.refractive_index));
@@ -44,7 +44,7 @@ TEST(Optics, a_windows_number_is_that_of_its_element) {
   EXPECT_NEAR(window_number(optics, {20, 5, 600}, 0, m + (m - 20) * optics.air_gap_mm() / 600, 80), 55, 1e-9);
 }
 
-TEST(Optics, at_the_design_place_each_eye_has_its_columns_on_a_panel_of_any_width) {
+TEST(Optics, at_the_design_position_each_eye_has_its_columns_on_a_panel_of_any_width) {
   for (int columns = 1; columns < 2000; columns += columns < 40 ? 1 : 61) {
     MaskOptics optics;
     optics.refractive_index = 1;
@@ -59,7 +59,8 @@ TEST(Optics, at_the_design_place_each_eye_has_its_columns_on_a_panel_of_any_widt
   }
 }
 
-/// Farthest that an observer's windows lie from their own pixels on the panel of the example, in pixels; the mask by the linear law.
+/// Max. distance, in pixels, between an observer's windows and their own pixels on the example's panel, with the mask at its linear
+/// position.
 double worst_with_shift_alone(double x, double distance) {
   const MaskOptics optics;
   const Vector3d head(x, 0, distance);
@@ -73,7 +74,7 @@ double worst_with_shift_alone(double x, double distance) {
   return worst;
 }
 
-TEST(Optics, the_linear_law_is_as_good_as_it_is_known_to_be) {
+TEST(Optics, the_linear_law_has_its_known_error) {
   EXPECT_LT(worst_with_shift_alone(0, 650), 0.08);
   EXPECT_NEAR(worst_with_shift_alone(63, 650), 0.14, 0.01);
   EXPECT_NEAR(worst_with_shift_alone(126, 650), 0.27, 0.01);
@@ -81,7 +82,7 @@ TEST(Optics, the_linear_law_is_as_good_as_it_is_known_to_be) {
   EXPECT_NEAR(worst_with_shift_alone(0, 699), 0.25, 0.01) << "and the farthest";
 }
 
-TEST(Optics, moving_head_and_mask_together_changes_nothing_in_the_middle) {
+TEST(Optics, the_mask_keeps_the_windows_in_the_middle_when_the_head_moves) {
   for (const double lean : {0.0, 0.3333, -0.18})
     for (const Vector3d& head : {Vector3d(0, 0, 650), Vector3d(240, -130, 480), Vector3d(-90, 60, 1200)}) {
       MaskOptics optics;
@@ -92,7 +93,7 @@ TEST(Optics, moving_head_and_mask_together_changes_nothing_in_the_middle) {
     }
 }
 
-TEST(Optics, a_leaning_mask_is_the_same_pattern_moved_aside_with_height) {
+TEST(Optics, a_leaning_mask_shifts_the_pattern_with_height) {
   MaskOptics optics;
   optics.lean = 1.0 / 3;
   optics.refractive_index = 1;  // the relation is exact without refraction
@@ -101,7 +102,7 @@ TEST(Optics, a_leaning_mask_is_the_same_pattern_moved_aside_with_height) {
     EXPECT_NEAR(window_number(optics, eye, 0.1, 20 + optics.lean * v, v), window_number(optics, eye, 0.1, 20, 0), 1e-9);
 }
 
-TEST(Optics, skew_rays_bend_as_snell_says) {
+TEST(Optics, skew_rays_obey_snells_law) {
   const MaskOptics optics;
   const Vector3d eye(50, 80, 500);
   const double m = 31 * optics.mask_pitch_mm(), w = -90;
@@ -113,7 +114,7 @@ TEST(Optics, skew_rays_bend_as_snell_says) {
   EXPECT_NEAR(window_number(optics, eye, 0, on_panel.x(), on_panel.y()), 31, 1e-8);
 }
 
-TEST(Optics, evenly_spaced_windows_are_near_the_real_ones) {
+TEST(Optics, evenly_spaced_windows_are_near_the_exact_ones) {
   MaskOptics optics;
   for (const Vector3d& eye : {Vector3d(-31.5, 0, 650), Vector3d(150, 40, 500), Vector3d(-200, 0, 900)}) {
     const WindowRow row = window_row(optics, eye, 0.2, kWidth);
@@ -128,7 +129,7 @@ TEST(Optics, evenly_spaced_windows_are_near_the_real_ones) {
   EXPECT_NEAR(exact.spacing_mm, 2 * kPitch, 1e-12) << "two pixels at the design distance";
 }
 
-TEST(Optics, calibrated_scales_dont_disturb_each_other) {
+TEST(Optics, calibrated_scales_are_independent) {
   MaskOptics optics;
   const double pitch = optics.mask_pitch_mm(), gap = optics.air_gap_mm();
   optics.gap_scale = 1.1;

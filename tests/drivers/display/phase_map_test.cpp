@@ -1,4 +1,4 @@
-// The coarse map of phases against the exact numbers, and against single columns that are linear anyway.
+// Compares the coarse phase map with the exact numbers, and with linear numbers.
 #include "drivers/display/phase_map.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ double worst_error(const MaskOptics& optics, const EyePair& eyes, double mask, c
   return worst;
 }
 
-TEST(PhaseMap, is_the_exact_numbers_to_a_thousandth_of_a_window) {
+TEST(PhaseMap, is_accurate_to_a_thousandth_of_a_window) {
   MaskOptics optics;
   optics.panel_columns = 1920;
   EXPECT_LT(worst_error(optics, eyes_from({0, 0, 650}, 63), 0, kPanel), 2e-4);

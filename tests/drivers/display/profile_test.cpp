@@ -1,4 +1,4 @@
-// Display profiles by name, from files and back; a wrong file is refused with its line.
+// Display profiles by name, from files and back; a faulty file is refused with its line.
 #include "drivers/display/profile.h"
 
 #include <filesystem>
@@ -20,7 +20,7 @@ class ProfileFile : public testing::Test {
   std::string path_ = testing::TempDir() + "prismesh_profile_" + testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml";
 };
 
-TEST_F(ProfileFile, says_all_that_a_display_is) {
+TEST_F(ProfileFile, sets_every_value) {
   const auto profile = read(
       "name = \"lab 2\"\nweave = \"mask\"\neye = \"right\"\nswap_eyes = true\nsubpixels = \"bgr\"\npixel_pitch_mm = 0.31\ngamma = 2.4\n"
       "eye_separation_mm = 61.5\n[mask]\nmoves = true\ndesign_distance_mm = 700\ndesign_separation_mm = 64\nrefractive_index = 1.49\n"
@@ -46,7 +46,7 @@ TEST_F(ProfileFile, says_all_that_a_display_is) {
   EXPECT_DOUBLE_EQ(screen_size_mm(*profile, 1000, 500).x(), 310);
 }
 
-TEST_F(ProfileFile, leaves_what_it_doesnt_say_as_it_is) {
+TEST_F(ProfileFile, keeps_the_defaults_of_missing_keys) {
   const auto profile = read("pixel_pitch_mm = 1\n");
   ASSERT_TRUE(profile) << profile.error().text();
   Profile wanted;
@@ -55,7 +55,7 @@ TEST_F(ProfileFile, leaves_what_it_doesnt_say_as_it_is) {
   EXPECT_EQ(*profile, wanted);
 }
 
-TEST_F(ProfileFile, is_refused_with_its_line) {
+TEST_F(ProfileFile, refuses_errors_with_their_line) {
   struct Case {
     const char* text;
     long line;
@@ -88,7 +88,7 @@ TEST_F(ProfileFile, is_refused_with_its_line) {
   }
 }
 
-TEST_F(ProfileFile, comes_back_as_it_was_written) {
+TEST_F(ProfileFile, reads_what_was_written) {
   Profile odd = built_in_profiles().front();
   odd.name = "quotes \" and \\ and\ttabs\x01 and B\xc3\xbcro";
   odd.swap_eyes = true;
@@ -108,7 +108,7 @@ TEST_F(ProfileFile, comes_back_as_it_was_written) {
   }
 }
 
-TEST_F(ProfileFile, is_not_written_when_it_couldnt_be_read) {
+TEST_F(ProfileFile, is_not_written_if_it_could_not_be_read) {
   Profile broken = built_in_profiles().front();
   ASSERT_TRUE(write_profile(path_, broken));
   broken.optics.lean = 5;
@@ -121,7 +121,7 @@ TEST_F(ProfileFile, is_not_written_when_it_couldnt_be_read) {
   EXPECT_EQ(*find_profile(path_), built_in_profiles().front()) << "what was there stays";
 }
 
-TEST(Profile, names_are_listed_when_one_is_wrong) {
+TEST(Profile, an_unknown_name_is_refused_with_the_known_ones) {
   const auto profile = find_profile("prism");
   ASSERT_FALSE(profile);
   for (const Profile& known : built_in_profiles()) {

@@ -1,5 +1,5 @@
-// The simulated trackers as a station without hardware has them: over a real pseudo-terminal and real loopback datagrams, in real time.
-// What is asserted are places, never how fast the machine was.
+// Simulated trackers as in a station without hardware: over a real pseudo-terminal and real loopback datagrams, in real time. Checks
+// positions only, not the machine's speed.
 #include "drivers/eye_tracker/configured/simulator.h"
 
 #include <thread>
@@ -24,14 +24,14 @@ settings::EyeTrackerSettings simulated(settings::TrackerDriver driver) {
   return settings;
 }
 
-/// Polls until `count` samples came; false after ten seconds.
-bool hear(EyeTracker& tracker, int count) {
+/// Polls until `count` samples have arrived. Returns false after ten seconds.
+bool receive_samples(EyeTracker& tracker, int count) {
   MonotonicClock clock;
   for (int i = 0; i < 5'000 && count > 0; ++i) {
     const auto polled = tracker.poll(clock.now_ns());
     if (polled.fresh) {
       --count;
-      // A head that sits still does so half a metre to a metre before the screen.
+      // A sitting head is between half a metre and a metre before the screen.
       EXPECT_TRUE(plausible_head(polled.sample.between_eyes_mm));
       EXPECT_NEAR(polled.sample.between_eyes_mm.z(), 650, 50);
       EXPECT_LE(polled.sample.measured_ns, clock.now_ns());
@@ -53,11 +53,11 @@ TEST(SimulatedTracker, a_dynasight_streams_over_a_pseudo_terminal_in_both_dialec
       const auto port = port::open_port((*device)->port_path(), settings.baud);
       ASSERT_TRUE(port) << port.error().text();
       ConfiguredTracker configured(settings);
-      EXPECT_TRUE(hear(configured.attach(**port), 10));
+      EXPECT_TRUE(receive_samples(configured.attach(**port), 10));
     }
 }
 
-TEST(SimulatedTracker, a_port_that_is_opened_again_finds_the_device_still_there) {
+TEST(SimulatedTracker, a_reopened_port_finds_the_same_device) {
   MonotonicClock clock;
   const auto settings = simulated(settings::TrackerDriver::dynasight);
   const auto device = SimulatedTrackerThread::start(settings, clock);
@@ -66,12 +66,12 @@ TEST(SimulatedTracker, a_port_that_is_opened_again_finds_the_device_still_there)
   for (int i = 0; i < 3; ++i) {
     const auto port = port::open_port((*device)->port_path(), settings.baud);
     ASSERT_TRUE(port) << port.error().text();
-    EXPECT_TRUE(hear(configured.attach(**port), 3));
+    EXPECT_TRUE(receive_samples(configured.attach(**port), 3));
     configured.detach();
   }
 }
 
-TEST(SimulatedTracker, when_the_device_ends_its_port_is_gone) {
+TEST(SimulatedTracker, the_port_is_gone_after_the_device_ends) {
   MonotonicClock clock;
   const auto settings = simulated(settings::TrackerDriver::dynasight);
   auto device = SimulatedTrackerThread::start(settings, clock);
@@ -80,7 +80,7 @@ TEST(SimulatedTracker, when_the_device_ends_its_port_is_gone) {
   ASSERT_TRUE(port);
   ConfiguredTracker configured(settings);
   EyeTracker& tracker = configured.attach(**port);
-  EXPECT_TRUE(hear(tracker, 3));
+  EXPECT_TRUE(receive_samples(tracker, 3));
   device->reset();
   auto status = port::PortStatus::ok;
   for (int i = 0; i < 2'000 && status == port::PortStatus::ok; ++i) {
@@ -100,10 +100,10 @@ TEST(SimulatedTracker, opentrack_sends_to_loopback) {
   ASSERT_TRUE(device) << device.error().text();
   EXPECT_EQ((*device)->port_path(), "");
   ConfiguredTracker configured(settings);
-  EXPECT_TRUE(hear(configured.attach(**port), 10));
+  EXPECT_TRUE(receive_samples(configured.attach(**port), 10));
 }
 
-TEST(SimulatedTracker, what_cannot_be_played_is_refused_with_a_reason) {
+TEST(SimulatedTracker, refuses_what_it_cannot_simulate_with_a_reason) {
   MonotonicClock clock;
   auto settings = simulated(settings::TrackerDriver::dynasight);
   settings.motion = "swy";

@@ -18,10 +18,10 @@ struct Row {
   Status status;
   int target;
   int exponent;
-  std::array<std::int32_t, 3> units;  ///< of 0.05 mm, after shifting
+  std::array<std::int32_t, 3> units;  ///< in units of 0.05 mm, after shifting
 };
 
-// Worked out by hand from the bit layout; the first four are the same numbers sent with each exponent.
+// Computed by hand from the bit layout. The first four are the same coordinates sent with each exponent.
 constexpr Row kRows[] = {
     {{0x80, 0x83, 0x04, 0xB0, 0xFC, 0xE0, 0x36, 0xB0}, Status::track, 0, 0, {1200, -800, 14000}},
     {{0x81, 0x83, 0x04, 0xB0, 0xFC, 0xE0, 0x36, 0xB0}, Status::track, 0, 1, {2400, -1600, 28000}},
@@ -32,7 +32,7 @@ constexpr Row kRows[] = {
     {{0x8D, 0x86, 0x80, 0x00, 0x00, 0x00, 0x00, 0x80}, Status::caution, 7, 1, {-65536, 0, 256}},
 };
 
-TEST(DynasightRecord, bytes_mean_what_the_layout_says) {
+TEST(DynasightRecord, decodes_the_documented_layout) {
   for (const Row& row : kRows) {
     const auto record = decode(bytes_of(row.bytes));
     ASSERT_TRUE(record);
@@ -41,13 +41,13 @@ TEST(DynasightRecord, bytes_mean_what_the_layout_says) {
     EXPECT_EQ(record->exponent, row.exponent);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       EXPECT_EQ(record->units(axis), row.units[axis]);
-      EXPECT_DOUBLE_EQ(record->place_mm()[static_cast<Eigen::Index>(axis)], row.units[axis] * 0.05);
+      EXPECT_DOUBLE_EQ(record->position_mm()[static_cast<Eigen::Index>(axis)], row.units[axis] * 0.05);
     }
     EXPECT_EQ(encode(*record), bytes_of(row.bytes));
   }
 }
 
-TEST(DynasightRecord, the_bit_without_a_meaning_is_ignored) {
+TEST(DynasightRecord, ignores_the_bit_without_a_meaning) {
   auto bytes = bytes_of(kRows[0].bytes);
   const auto without = decode(bytes);
   bytes[1] |= std::byte{0x08};
@@ -62,7 +62,7 @@ TEST(DynasightRecord, a_record_begins_with_two_markers) {
     }
 }
 
-TEST(DynasightRecord, a_place_is_said_with_the_smallest_exponent_that_fits_it) {
+TEST(DynasightRecord, encodes_a_position_with_the_min_exponent_that_holds_it) {
   EXPECT_EQ(record_for({0, 0, 650}).exponent, 0);
   EXPECT_EQ(record_for({0, 0, 32767 * 0.05}).exponent, 0);
   EXPECT_EQ(record_for({0, 0, 32768 * 0.05}).exponent, 1);
@@ -70,18 +70,18 @@ TEST(DynasightRecord, a_place_is_said_with_the_smallest_exponent_that_fits_it) {
   EXPECT_EQ(record_for({0, 9000, 650}).exponent, 3);
 }
 
-TEST(DynasightRecord, a_place_survives_to_half_a_step_of_its_exponent) {
+TEST(DynasightRecord, a_position_survives_to_half_a_step_of_its_exponent) {
   for (double scale = 1; scale < 13'000; scale *= 1.37) {
     const Eigen::Vector3d place(-scale, 0.61803 * scale, 0.31831 * scale);
     const Record record = record_for(place, Status::track, 5);
     const auto again = decode(encode(record));
     ASSERT_TRUE(again);
     EXPECT_EQ(*again, record);
-    EXPECT_LE((again->place_mm() - place).cwiseAbs().maxCoeff(), 0.5 * kUnitMm * (1 << record.exponent) + 1e-9);
+    EXPECT_LE((again->position_mm() - place).cwiseAbs().maxCoeff(), 0.5 * kUnitMm * (1 << record.exponent) + 1e-9);
   }
 }
 
-TEST(DynasightRecord, what_is_too_far_is_said_as_far_as_can_be) {
+TEST(DynasightRecord, limits_a_position_that_is_too_far) {
   const Record record = record_for({1e9, -1e9, 20'000});
   EXPECT_EQ(record.numbers, (std::array<std::int16_t, 3>{32767, -32767, 32767}));
   EXPECT_EQ(record.exponent, kMaxExponent);

@@ -1,4 +1,4 @@
-// Driver and simulated device against each other, in virtual time over a cable that can be pulled.
+// Driver and simulated device together, in virtual time, over a cable that can be unplugged.
 #include <algorithm>
 #include <random>
 
@@ -13,10 +13,10 @@ namespace {
 using Device = TrackerStation::Device;
 using Driver = TrackerStation::Driver;
 
-// A poll comes up to 5 ms after the record's last byte: 1.25 mm at 250 mm/s, and the record's own rounding.
+// A poll comes up to 5 ms after the record's last byte: 1.25 mm at 250 mm/s, plus the record's own rounding.
 constexpr double kExactMm = 1.4;
 
-TEST(DynasightStation, each_dialect_streams_sixty_true_places_a_second) {
+TEST(DynasightStation, each_dialect_streams_sixty_correct_positions_a_second) {
   for (const auto dialect : {settings::TrackerDialect::dynasight, settings::TrackerDialect::d4d}) {
     TrackerStation station({.dialect = dialect, .noise_mm = 0}, {.dialect = dialect});
     station.run(1);
@@ -34,7 +34,7 @@ TEST(DynasightStation, the_first_sample_comes_within_200_ms) {
   EXPECT_FALSE(station.run(0.2).empty());
 }
 
-TEST(DynasightStation, polled_is_as_true_and_not_slower_than_the_line_and_the_loop) {
+TEST(DynasightStation, polled_mode_is_as_accurate_and_limited_only_by_line_and_loop) {
   TrackerStation station({.noise_mm = 0}, {.polled = true});
   station.run(1);
   const auto samples = station.run(5);
@@ -42,7 +42,7 @@ TEST(DynasightStation, polled_is_as_true_and_not_slower_than_the_line_and_the_lo
   EXPECT_LE(station.worst_error_mm(samples), kExactMm);
 }
 
-TEST(DynasightStation, the_wrong_dialect_is_silence_that_counts) {
+TEST(DynasightStation, the_wrong_dialect_counts_as_silence) {
   TrackerStation station({.dialect = settings::TrackerDialect::dynasight}, {.dialect = settings::TrackerDialect::d4d});
   EXPECT_TRUE(station.run(3).empty());
   EXPECT_FALSE(station.tracker()->synchronised());
@@ -50,7 +50,7 @@ TEST(DynasightStation, the_wrong_dialect_is_silence_that_counts) {
   EXPECT_GT(station.device().unknown_commands(), 4u);
 }
 
-TEST(DynasightStation, the_wrong_speed_is_never_a_head) {
+TEST(DynasightStation, the_wrong_baud_rate_never_gives_a_head) {
   TrackerStation station;
   port::MemoryLineSettings settings = line_of(19200);
   settings.device_baud = 9600;
@@ -68,13 +68,13 @@ TEST(DynasightStation, the_wrong_speed_is_never_a_head) {
   EXPECT_GT(tracker.counts().bytes_skipped, 0u);
 }
 
-TEST(DynasightStation, a_device_that_takes_seconds_to_wake_is_waited_for) {
+TEST(DynasightStation, waits_for_a_device_that_starts_slowly) {
   TrackerStation station({.power_up_ns = 3'000 * kMs});
   EXPECT_TRUE(station.run(3).empty());
   EXPECT_FALSE(station.run(1).empty());
 }
 
-TEST(DynasightStation, a_device_that_reboots_is_told_again_what_to_do) {
+TEST(DynasightStation, restarts_the_dialogue_with_a_rebooted_device) {
   for (const bool polled : {false, true}) {
     TrackerStation station({.power_up_ns = 200 * kMs}, {.polled = polled});
     EXPECT_FALSE(station.run(2).empty());
@@ -88,12 +88,12 @@ TEST(DynasightStation, a_device_that_reboots_is_told_again_what_to_do) {
   }
 }
 
-TEST(DynasightStation, a_tracker_that_streams_already_is_taken_over) {
+TEST(DynasightStation, takes_over_a_tracker_that_streams_already) {
   TrackerStation station({.streams_at_power_up = true});
   EXPECT_FALSE(station.run(0.25).empty());
 }
 
-TEST(DynasightStation, a_head_out_of_sight_gives_no_samples_while_the_device_stays_synchronised) {
+TEST(DynasightStation, a_head_out_of_sight_gives_no_samples_and_keeps_synchronisation) {
   HeadSource there_and_away = [](double seconds) {
     SimulatedHead head = swaying_head(seconds);
     head.visible = seconds < 2 || seconds > 4;
@@ -121,7 +121,7 @@ TEST(DynasightStation, drop_outs_coast_first_and_cautious_records_are_doubtful) 
   }
 }
 
-TEST(DynasightStation, noise_on_the_line_costs_samples_but_no_sample_is_wild) {
+TEST(DynasightStation, noise_on_the_line_loses_samples_but_gives_no_outlier) {
   TrackerStation station({.noise_mm = 0.3, .faults = {.garbage = 0.05, .damaged_byte = 0.01, .lost_byte = 0.003}, .seed = 4});
   const auto samples = station.run(120);
   EXPECT_GT(samples.size(), 120u * 60 / 2);
@@ -137,7 +137,7 @@ TEST(DynasightStation, noise_on_the_line_costs_samples_but_no_sample_is_wild) {
               static_cast<unsigned long long>(counts.resyncs));
 }
 
-TEST(DynasightStation, a_loop_that_stood_still_takes_the_newest_place_with_its_time) {
+TEST(DynasightStation, after_a_stall_takes_the_newest_position_with_its_time) {
   TrackerStation station({.noise_mm = 0});
   station.run(1);
   station.stall(0.7);
@@ -148,7 +148,7 @@ TEST(DynasightStation, a_loop_that_stood_still_takes_the_newest_place_with_its_t
   EXPECT_LE(station.worst_error_mm(samples), kExactMm);
 }
 
-TEST(DynasightStation, times_never_go_back) {
+TEST(DynasightStation, sample_times_increase) {
   TrackerStation station({.faults = {.garbage = 0.3}});
   std::int64_t last = -1'000'000'000;
   for (int i = 0; i < 40; ++i) {
@@ -160,9 +160,9 @@ TEST(DynasightStation, times_never_go_back) {
   }
 }
 
-TEST(DynasightStation, unplugged_at_any_byte_it_is_gone_at_once_and_back_within_200_ms) {
+TEST(DynasightStation, after_an_unplug_at_any_byte_is_gone_at_once_and_back_within_200_ms) {
   TrackerStation station;
-  double slowest_ms = 0;
+  double max_ms = 0;
   for (std::size_t byte = 0; byte < 200; ++byte) {
     station.line().unplug_after(port::Direction::to_host, byte);
     const std::int64_t armed_ns = station.clock().now_ns();
@@ -174,14 +174,14 @@ TEST(DynasightStation, unplugged_at_any_byte_it_is_gone_at_once_and_back_within_
     station.plug_in();
     const std::int64_t plugged_ns = station.clock().now_ns();
     while (station.run(0.005).empty()) ASSERT_LT(station.clock().now_ns() - plugged_ns, 1'000 * kMs) << "after byte " << byte;
-    slowest_ms = std::max(slowest_ms, static_cast<double>(station.clock().now_ns() - plugged_ns) / kMs);
+    max_ms = std::max(max_ms, static_cast<double>(station.clock().now_ns() - plugged_ns) / kMs);
   }
-  // Settling (50), five records (83), the line and the poll (10); sixteen records where z's low byte looks like a marker.
-  EXPECT_LE(slowest_ms, 350);
-  std::printf("  200 unplugs, one at each byte: first sample after plugging in within %.0f ms\n", slowest_ms);
+  // Settling (50), five records (83), the line and the poll (10); sixteen records if z's low byte looks like a marker.
+  EXPECT_LE(max_ms, 350);
+  std::printf("  200 unplugs, one at each byte: first sample after plugging in within %.0f ms\n", max_ms);
 }
 
-TEST(DynasightStation, unplugged_while_commands_go_out_it_comes_back_too) {
+TEST(DynasightStation, comes_back_after_an_unplug_during_commands) {
   for (std::size_t byte = 0; byte < 8; ++byte)
     for (const bool polled : {false, true}) {
       TrackerStation station({}, {.polled = polled});

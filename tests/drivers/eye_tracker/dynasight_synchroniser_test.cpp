@@ -1,4 +1,5 @@
-// The stream is joined anywhere, damaged anywhere, and made of numbers that look like headers; no record may come out that wasn't sent.
+// The stream is joined at any byte, damaged at any byte, and contains numbers that look like headers. No record may be reported that wasn't
+// sent.
 #include "drivers/eye_tracker/dynasight/synchroniser.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ using Random = std::mt19937_64;
 int integer(Random& random, int from, int to) { return std::uniform_int_distribution<int>(from, to)(random); }
 double real(Random& random, double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); }
 
-/// What a device sends, record after record.
+/// The records that a device sends.
 struct Sent {
   std::vector<std::byte> bytes;
   std::vector<Record> records;
@@ -26,21 +27,21 @@ struct Sent {
   }
 };
 
-/// A low byte of z that reads as a marker.
+/// Returns a z near `z_mm` whose low byte looks like a marker.
 double with_marker_low_byte(Random& random, double z_mm) {
   const int units = static_cast<int>(z_mm / kUnitMm);
   return ((units & ~0xFF) | 0x80 | integer(random, 0, 15)) * kUnitMm;
 }
 
-/// A head somewhere in the working volume: nailed down, with tremor, or moving; its z often says 0x8x in its low byte.
-Sent nasty_stream(Random& random, int records) {
+/// A head in the working volume that is still, has tremor, or moves; the low byte of its z often looks like a marker.
+Sent ambiguous_stream(Random& random, int records) {
   Sent sent;
   Eigen::Vector3d place(real(random, -600, 600), real(random, -400, 400), real(random, 300, 1500));
   const bool marker_like = integer(random, 0, 1) == 1;
   if (marker_like) place.z() = with_marker_low_byte(random, place.z());
   constexpr std::array<double, 4> kNoise{0, 0.05, 0.3, 1};
   const double noise_mm = kNoise[static_cast<std::size_t>(integer(random, 0, 3))];
-  const double speed_mm = integer(random, 0, 3) == 0 ? 8 : 0;  // per record: half a metre a second
+  const double speed_mm = integer(random, 0, 3) == 0 ? 8 : 0;  // per record: half a metre per second
   const Eigen::Vector3d direction(real(random, -1, 1), real(random, -1, 1), real(random, -1, 1));
   const int target = integer(random, 0, 7);
   std::normal_distribution<double> noise(0, noise_mm > 0 ? noise_mm : 1);
@@ -51,7 +52,7 @@ Sent nasty_stream(Random& random, int records) {
     const int dice = integer(random, 0, 99);
     const Status status = dice < 3 ? Status::search : dice < 5 ? Status::coast : dice < 8 ? Status::caution : Status::track;
     Record record = record_for(seen, status, target);
-    if (integer(random, 0, 9) == 0) {  // a device may use a larger exponent than it has to
+    if (integer(random, 0, 9) == 0) {  // a device may use a larger exponent than necessary
       record.exponent = 1;
       for (std::int16_t& number : record.numbers) number = static_cast<std::int16_t>(number / 2);
     }
@@ -70,17 +71,17 @@ Joined join(const Sent& sent, std::size_t from) {
   Joined joined;
   Synchroniser synchroniser;
   for (std::size_t at = from; at < sent.bytes.size(); ++at) {
-    const auto heard = synchroniser.take(sent.bytes[at]);
+    const auto records_out = synchroniser.take(sent.bytes[at]);
     if (synchroniser.synchronised() && joined.bytes_to_lock == 0) joined.bytes_to_lock = at + 1 - from;
-    if (!heard) continue;
+    if (!records_out) continue;
     ++joined.records;
     const std::size_t number = (at + 1) / kRecordBytes;
-    if ((at + 1) % kRecordBytes != 0 || heard->record != sent.records[number - 1]) ++joined.false_records;
+    if ((at + 1) % kRecordBytes != 0 || records_out->record != sent.records[number - 1]) ++joined.false_records;
   }
   return joined;
 }
 
-/// Where a reader lands that takes the first two markers it meets.
+/// Whether a reader that takes the first two markers would be at the wrong alignment.
 bool naive_reader_is_early(const Sent& sent, std::size_t from) {
   for (std::size_t at = from; at + 1 < sent.bytes.size(); ++at)
     if (is_marker(sent.bytes[at]) && is_marker(sent.bytes[at + 1])) return at % kRecordBytes != 0;
@@ -93,7 +94,7 @@ TEST(DynasightSynchroniser, no_false_record_in_120000_joins) {
   int false_records = 0, never = 0, naive_early = 0;
   std::vector<double> records_to_lock;
   for (int i = 0; i < kJoins; ++i) {
-    const Sent sent = nasty_stream(random, kRecords);
+    const Sent sent = ambiguous_stream(random, kRecords);
     const auto from = static_cast<std::size_t>(integer(random, 0, static_cast<int>(kRecordBytes) - 1));
     const Joined joined = join(sent, from);
     false_records += joined.false_records;
@@ -105,28 +106,28 @@ TEST(DynasightSynchroniser, no_false_record_in_120000_joins) {
   }
   EXPECT_EQ(false_records, 0);
   EXPECT_EQ(never, 0);
-  EXPECT_GT(naive_early, kJoins / 50) << "these streams mislead nobody and prove nothing";
+  EXPECT_GT(naive_early, kJoins / 50) << "these streams mislead no reader, so they prove nothing";
   std::sort(records_to_lock.begin(), records_to_lock.end());
   const auto at = [&](double share) { return records_to_lock[static_cast<std::size_t>(share * static_cast<double>(kJoins - 1))]; };
   EXPECT_LE(at(0.5), 5);
-  EXPECT_LE(at(1), kAgreeingRecordsRivalled + 6);
+  EXPECT_LE(at(1), kAgreeingRecordsAmbiguous + 6);
   std::printf("  %d joins, %d where the first two markers mislead; records to lock: median %.1f, p90 %.1f, p99 %.1f, most %.1f\n", kJoins,
               naive_early, at(0.5), at(0.9), at(0.99), at(1));
 }
 
-TEST(DynasightSynchroniser, a_head_nailed_down_with_a_marker_for_a_low_byte_is_found_too) {
+TEST(DynasightSynchroniser, finds_a_still_head_whose_low_byte_looks_like_a_marker) {
   for (int low = 0x80; low < 0x90; ++low)
     for (std::size_t from = 0; from < kRecordBytes; ++from) {
       Sent sent;
       for (int i = 0; i < 40; ++i) sent.add(record_for({-30, 20, (0x3200 | low) * kUnitMm}));
       const Joined joined = join(sent, from);
       EXPECT_EQ(joined.false_records, 0);
-      EXPECT_GT(joined.bytes_to_lock, kAgreeingRecordsRivalled * kRecordBytes - 8) << "too few to tell the two ways apart";
-      EXPECT_LE(joined.bytes_to_lock, (kAgreeingRecordsRivalled + 1) * kRecordBytes);
+      EXPECT_GT(joined.bytes_to_lock, kAgreeingRecordsAmbiguous * kRecordBytes - 8) << "too few to distinguish the two alignments";
+      EXPECT_LE(joined.bytes_to_lock, (kAgreeingRecordsAmbiguous + 1) * kRecordBytes);
     }
 }
 
-TEST(DynasightSynchroniser, an_ordinary_head_is_found_with_the_fourth_whole_record) {
+TEST(DynasightSynchroniser, finds_an_ordinary_head_with_the_fourth_complete_record) {
   for (std::size_t from = 0; from < kRecordBytes; ++from) {
     Sent sent;
     for (int i = 0; i < 12; ++i) sent.add(record_for({-30, 20, 640 + 0.35 * i}));
@@ -136,21 +137,21 @@ TEST(DynasightSynchroniser, an_ordinary_head_is_found_with_the_fourth_whole_reco
   }
 }
 
-/// A long stream with tremor, heard from its beginning, and what the reader made of it.
+/// A long stream with tremor, read from its start, and the reader's results.
 struct Damaged {
   Synchroniser synchroniser;
   std::uint64_t bytes = 0, records = 0;
-  std::vector<Heard> heard;
+  std::vector<SynchronisedRecord> records_out;
   void feed(std::span<const std::byte> more) {
     for (const std::byte byte : more) {
       ++bytes;
       const auto found = synchroniser.take(byte);
       if (!found) continue;
       ++records;
-      heard.push_back(*found);
+      records_out.push_back(*found);
     }
   }
-  /// Every byte is a record's or skipped, but for those that may still become a record.
+  /// Every byte is part of a record or skipped, apart from those that may still become a record.
   void expect_balance() const {
     const std::uint64_t accounted = records * kRecordBytes + synchroniser.bytes_skipped();
     EXPECT_LE(accounted, bytes);
@@ -165,7 +166,7 @@ Sent trembling(int records, std::uint64_t seed = 5) {
   return sent;
 }
 
-TEST(DynasightSynchroniser, one_damaged_byte_costs_at_most_its_record_and_never_the_lock) {
+TEST(DynasightSynchroniser, a_damaged_byte_loses_its_record_only_and_never_the_lock) {
   const Sent sent = trembling(30);
   for (std::size_t where = 0; where < kRecordBytes; ++where)
     for (int bit = 0; bit < 8; ++bit) {
@@ -177,15 +178,15 @@ TEST(DynasightSynchroniser, one_damaged_byte_costs_at_most_its_record_and_never_
       EXPECT_TRUE(run.synchroniser.synchronised());
       EXPECT_EQ(run.synchroniser.losses(), 0u);
       EXPECT_GE(run.records, 26u);  // of the 27 since the lock
-      for (const Heard& heard : run.heard) {
-        if (!heard.believed) continue;
-        // There is no checksum: an error below the step that a head could make can't be seen.
-        EXPECT_LE((heard.record.place_mm() - Eigen::Vector3d(-30.5, 20.5, 651)).cwiseAbs().maxCoeff(), kMaxStepMm + 2);
+      for (const SynchronisedRecord& records_out : run.records_out) {
+        if (!records_out.plausible) continue;
+        // There is no checksum: an error smaller than a possible step of the head can't be detected.
+        EXPECT_LE((records_out.record.position_mm() - Eigen::Vector3d(-30.5, 20.5, 651)).cwiseAbs().maxCoeff(), kMaxStepMm + 2);
       }
     }
 }
 
-TEST(DynasightSynchroniser, a_lost_or_an_extra_byte_costs_a_few_records) {
+TEST(DynasightSynchroniser, a_lost_or_extra_byte_loses_a_few_records) {
   const Sent sent = trembling(40);
   for (std::size_t where = 0; where < kRecordBytes; ++where)
     for (int extra = -1; extra < 256; ++extra) {
@@ -201,23 +202,24 @@ TEST(DynasightSynchroniser, a_lost_or_an_extra_byte_costs_a_few_records) {
       EXPECT_TRUE(run.synchroniser.synchronised());
       EXPECT_GE(run.records, 40u - 3 - 3);
       EXPECT_LE(run.synchroniser.losses(), 1u);
-      for (const Heard& heard : run.heard) {
-        // An extra byte near the end leaves a record of wrong numbers, and below a step that a head could make nothing tells.
-        if (!heard.believed) continue;
-        EXPECT_LE((heard.record.place_mm() - Eigen::Vector3d(-30.5, 20.5, 651)).cwiseAbs().maxCoeff(), kMaxStepMm + 2)
+      for (const SynchronisedRecord& records_out : run.records_out) {
+        // An extra byte near the end leaves a record with wrong numbers; if they are within a possible step of the head, this can't be
+        // detected.
+        if (!records_out.plausible) continue;
+        EXPECT_LE((records_out.record.position_mm() - Eigen::Vector3d(-30.5, 20.5, 651)).cwiseAbs().maxCoeff(), kMaxStepMm + 2)
             << where << " " << extra;
       }
-      EXPECT_EQ(run.heard.back().record, sent.records.back());
+      EXPECT_EQ(run.records_out.back().record, sent.records.back());
     }
 }
 
-TEST(DynasightSynchroniser, in_20000_slips_no_place_is_believed_that_was_not_sent) {
+TEST(DynasightSynchroniser, in_20000_slips_every_plausible_position_was_sent) {
   Random random(99);
   constexpr int kSlips = 20'000;
   constexpr std::size_t kRecordsBefore = 30, kRecords = 60;
   std::vector<std::size_t> records_to_regain;
   for (int i = 0; i < kSlips; ++i) {
-    const Sent sent = nasty_stream(random, kRecords);
+    const Sent sent = ambiguous_stream(random, kRecords);
     const bool lost = integer(random, 0, 1) == 1;
     const std::size_t at = kRecordsBefore * kRecordBytes + static_cast<std::size_t>(integer(random, 0, 7));
     auto bytes = sent.bytes;
@@ -229,11 +231,11 @@ TEST(DynasightSynchroniser, in_20000_slips_no_place_is_believed_that_was_not_sen
     Synchroniser synchroniser;
     std::size_t regained = 0;
     for (std::size_t k = 0; k < bytes.size(); ++k) {
-      const auto heard = synchroniser.take(bytes[k]);
-      if (!heard || !heard->believed || k < at + kRecordBytes) continue;
-      const std::size_t end = lost ? k + 2 : k;  // of the same bytes in what was sent
+      const auto records_out = synchroniser.take(bytes[k]);
+      if (!records_out || !records_out->plausible || k < at + kRecordBytes) continue;
+      const std::size_t end = lost ? k + 2 : k;  // index of the same bytes in the sent stream
       ASSERT_EQ(end % kRecordBytes, 0u);
-      ASSERT_EQ(heard->record, sent.records[end / kRecordBytes - 1]);
+      ASSERT_EQ(records_out->record, sent.records[end / kRecordBytes - 1]);
       if (regained == 0) regained = end / kRecordBytes - kRecordsBefore;
     }
     ASSERT_NE(regained, 0u);
@@ -255,11 +257,11 @@ TEST(DynasightSynchroniser, noise_alone_is_never_a_record) {
   EXPECT_EQ(run.records, 0u);
 }
 
-TEST(DynasightSynchroniser, when_the_records_end_it_notices) {
+TEST(DynasightSynchroniser, detects_the_end_of_the_records) {
   Damaged run;
   run.feed(trembling(10).bytes);
   ASSERT_TRUE(run.synchroniser.synchronised());
-  run.feed(std::vector<std::byte>(kBadRecordsToLoss * kRecordBytes, std::byte{'x'}));
+  run.feed(std::vector<std::byte>(kMaxBadRecords * kRecordBytes, std::byte{'x'}));
   EXPECT_FALSE(run.synchroniser.synchronised());
   EXPECT_EQ(run.synchroniser.losses(), 1u);
   run.expect_balance();
@@ -267,44 +269,44 @@ TEST(DynasightSynchroniser, when_the_records_end_it_notices) {
   EXPECT_TRUE(run.synchroniser.synchronised());
 }
 
-TEST(DynasightSynchroniser, a_jump_is_believed_from_its_second_record) {
+TEST(DynasightSynchroniser, a_jump_is_plausible_from_its_second_record) {
   Damaged run;
   Sent sent = trembling(10);
-  sent.add(record_for({300, 20, 651}));  // alone: damage
+  sent.add(record_for({300, 20, 651}));  // a single record: damage
   sent.add(record_for({-30, 20, 651}));
-  sent.add(record_for({300, 20, 651}));  // stays: somebody else
+  sent.add(record_for({300, 20, 651}));  // repeated: another person
   sent.add(record_for({301, 20, 651}));
   run.feed(sent.bytes);
-  ASSERT_GE(run.heard.size(), 4u);
-  std::vector<bool> believed;
-  for (std::size_t i = run.heard.size() - 4; i < run.heard.size(); ++i) believed.push_back(run.heard[i].believed);
-  EXPECT_EQ(believed, (std::vector<bool>{false, true, false, true}));
+  ASSERT_GE(run.records_out.size(), 4u);
+  std::vector<bool> plausible;
+  for (std::size_t i = run.records_out.size() - 4; i < run.records_out.size(); ++i) plausible.push_back(run.records_out[i].plausible);
+  EXPECT_EQ(plausible, (std::vector<bool>{false, true, false, true}));
 }
 
-TEST(DynasightSynchroniser, a_head_that_comes_back_is_believed_from_its_second_record) {
+TEST(DynasightSynchroniser, a_returning_head_is_plausible_from_its_second_record) {
   Damaged run;
   Sent sent = trembling(10);
   sent.add(record_for({0, 0, 0}, Status::search));
   sent.add(record_for({-200, 20, 651}));
   sent.add(record_for({-200, 21, 651}));
   run.feed(sent.bytes);
-  const std::size_t count = run.heard.size();
-  EXPECT_FALSE(run.heard[count - 3].believed);
-  EXPECT_FALSE(run.heard[count - 2].believed);
-  EXPECT_TRUE(run.heard[count - 1].believed);
+  const std::size_t count = run.records_out.size();
+  EXPECT_FALSE(run.records_out[count - 3].plausible);
+  EXPECT_FALSE(run.records_out[count - 2].plausible);
+  EXPECT_TRUE(run.records_out[count - 1].plausible);
 }
 
-TEST(DynasightSynchroniser, somebody_far_aside_is_no_viewer_but_the_stream_stays_known) {
+TEST(DynasightSynchroniser, a_person_far_aside_is_not_plausible_but_the_stream_stays_synchronised) {
   Damaged run;
   Sent sent = trembling(10);
   for (int i = 0; i < 20; ++i) sent.add(record_for({1500.0 + i, 20, 900}));
   run.feed(sent.bytes);
   EXPECT_TRUE(run.synchroniser.synchronised());
   EXPECT_EQ(run.records, 10u - 3 + 20);
-  for (std::size_t i = run.heard.size() - 20; i < run.heard.size(); ++i) EXPECT_FALSE(run.heard[i].believed);
+  for (std::size_t i = run.records_out.size() - 20; i < run.records_out.size(); ++i) EXPECT_FALSE(run.records_out[i].plausible);
 }
 
-TEST(DynasightSynchroniser, a_new_beginning_forgets_the_stream_and_keeps_the_counts) {
+TEST(DynasightSynchroniser, reset_discards_the_stream_and_keeps_the_counts) {
   Damaged run;
   run.feed(trembling(10).bytes);
   const Sent half = trembling(1);

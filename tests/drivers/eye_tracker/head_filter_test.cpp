@@ -1,4 +1,4 @@
-// The filter's promises: how well it foretells heads that move like heads, and what it makes of samples that are late, lost or wrong.
+// Accuracy of the filter's predictions for head-like motion, and its reaction to late, missing and wrong samples.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -20,7 +20,7 @@ using trials::Trial;
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kPeriod = 16'666'667;
 
-/// The filter as the station uses it.
+/// The filter with the station's options.
 struct Station {
   HeadFilter filter{HeadFilter::Options{}};
   void take(const HeadSample& sample) { filter.take(sample); }
@@ -28,17 +28,17 @@ struct Station {
     return predict(filter.state(), filter.state().time_ns + static_cast<std::int64_t>(seconds * 1e9));
   }
 };
-/// What the tracker says, as it is.
+/// The tracker's samples without a filter.
 struct Raw {
   Vector3d place = Vector3d::Zero();
   void take(const HeadSample& sample) { place = sample.between_eyes_mm; }
   Vector3d ahead(double) const { return place; }
 };
 
-constexpr int kSeeds = 120;    // for the goals
-constexpr int kFewSeeds = 25;  // for the rest
+constexpr int kSeeds = 120;    // for the required figures
+constexpr int kFewSeeds = 25;  // for the other tests
 
-/// The median over the seeds of a figure of each.
+/// The median over the seeds of a figure.
 template <class Filter, class Figure>
 double median(Trial trial, int seeds, Figure figure) {
   std::vector<double> figures;
@@ -64,7 +64,7 @@ HeadSample sample_at(std::int64_t time_ns, const Vector3d& place) {
   return sample;
 }
 
-/// A filter that has watched a head go at a constant velocity for two seconds, without noise.
+/// A filter after two seconds of a head at constant velocity, without noise.
 HeadFilter after_constant_velocity(const Vector3d& velocity_mm_s, std::int64_t* now_ns) {
   HeadFilter filter(HeadFilter::Options{});
   for (int i = 0; i <= 120; ++i) {
@@ -74,12 +74,12 @@ HeadFilter after_constant_velocity(const Vector3d& velocity_mm_s, std::int64_t* 
   return filter;
 }
 
-TEST(HeadFilter, foretells_a_turning_head_within_8_mm_at_50_ms) {
+TEST(HeadFilter, predicts_a_turning_head_within_8_mm_at_50_ms) {
   const double p99 = p99_mm({.kind = MotionKind::turn}, kSeeds);
   RecordProperty("p99_mm", std::to_string(p99));
   std::printf("turn at 412 mm/s, 50 ms ahead, 60 Hz, 1 mm: median of %d seeds' p99 = %.2f mm\n", kSeeds, p99);
-  EXPECT_LE(p99, 8.0);  // the goal
-  EXPECT_LE(p99, 6.9);  // what it does, with a little air
+  EXPECT_LE(p99, 8.0);  // the requirement
+  EXPECT_LE(p99, 6.9);  // the achieved figure, with a small margin
 }
 
 TEST(HeadFilter, other_motions_are_easier) {
@@ -89,16 +89,16 @@ TEST(HeadFilter, other_motions_are_easier) {
   EXPECT_LE(p99_mm({.kind = MotionKind::tour}), 8.0);
 }
 
-TEST(HeadFilter, is_calmer_at_rest_than_the_tracker) {
+TEST(HeadFilter, is_steadier_at_rest_than_the_tracker) {
   const Trial trial{.kind = MotionKind::still};
   const double raw = jitter_mm<Raw>(trial, kSeeds), ours = jitter_mm<Station>(trial, kSeeds);
   std::printf("change from sample to sample at rest, 50 ms ahead, rms an axis: raw %.2f mm, filtered %.2f mm\n", raw, ours);
-  EXPECT_LT(ours, raw);         // the goal
-  EXPECT_LT(ours, 0.25 * raw);  // what it does
+  EXPECT_LT(ours, raw);         // the requirement
+  EXPECT_LT(ours, 0.25 * raw);  // the achieved figure
   EXPECT_LT(jitter_mm<Station>({.kind = MotionKind::still, .ahead_s = 0.08}), raw);
 }
 
-TEST(HeadFilter, notices_a_tracker_that_is_noisier_than_it_was_told) {
+TEST(HeadFilter, adapts_to_a_tracker_that_is_noisier_than_its_option) {
   const Trial trial{.kind = MotionKind::still, .noise_mm = 2.5};
   const double raw = jitter_mm<Raw>(trial), ours = jitter_mm<Station>(trial);
   std::printf("2.5 mm of noise where 1 mm was expected: jitter %.2f mm of %.2f mm\n", ours, raw);
@@ -112,14 +112,14 @@ TEST(HeadFilter, notices_a_tracker_that_is_noisier_than_it_was_told) {
   EXPECT_EQ(quiet.filter.noise_mm(), 1) << "as set: a tracker that smooths by itself may hide its noise";
 }
 
-TEST(HeadFilter, stands_lost_samples_and_uneven_times) {
+TEST(HeadFilter, tolerates_lost_samples_and_uneven_times) {
   EXPECT_LE(p99_mm({.kind = MotionKind::turn, .lost_share = 0.2}), 8.5);
   EXPECT_LE(p99_mm({.kind = MotionKind::turn, .time_jitter_s = 0.003}), 7.0);
   EXPECT_LE(p99_mm({.kind = MotionKind::turn, .rate_hz = 30}), 10.5);
   EXPECT_LE(p99_mm({.kind = MotionKind::turn, .rate_hz = 120}), 6.0);
 }
 
-TEST(HeadFilter, rather_stays_behind_a_steady_head_than_gets_beyond_it) {
+TEST(HeadFilter, stays_behind_a_steady_head_and_does_not_overshoot) {
   std::int64_t now = 0;
   const Vector3d velocity(400, 0, 0);
   const HeadFilter filter = after_constant_velocity(velocity, &now);
@@ -132,9 +132,9 @@ TEST(HeadFilter, rather_stays_behind_a_steady_head_than_gets_beyond_it) {
   EXPECT_NEAR(predict(filter.state(), now + 50 * kMs).x(), there + 20, 1.2);
 }
 
-TEST(HeadFilter, predicts_no_further_than_200_ms_and_without_jumps) {
+TEST(HeadFilter, predicts_up_to_200_ms_and_without_jumps) {
   HeadState state;
-  EXPECT_EQ(predict(state, 5'000 * kMs), Vector3d::Zero());  // nothing is known
+  EXPECT_EQ(predict(state, 5'000 * kMs), Vector3d::Zero());  // no head is known
   state = {1'000 * kMs, {10, 0, 650}, {100, 0, 0}, Vector3d::UnitX()};
   EXPECT_NEAR(predict(state, 1'050 * kMs).x(), 15, 1e-9);
   EXPECT_NEAR(predict(state, 950 * kMs).x(), 5, 1e-9);
@@ -149,7 +149,7 @@ TEST(HeadFilter, predicts_no_further_than_200_ms_and_without_jumps) {
   }
 }
 
-TEST(HeadFilter, a_single_wild_sample_moves_nothing) {
+TEST(HeadFilter, ignores_a_single_outlier) {
   std::int64_t now = 0;
   const Vector3d velocity(100, 0, 0);
   HeadFilter filter = after_constant_velocity(velocity, &now);
@@ -165,7 +165,7 @@ TEST(HeadFilter, a_single_wild_sample_moves_nothing) {
   }
 }
 
-TEST(HeadFilter, several_that_agree_are_another_place_to_begin_from) {
+TEST(HeadFilter, restarts_at_several_agreeing_outliers) {
   std::int64_t now = 0;
   HeadFilter filter = after_constant_velocity({0, 0, 0}, &now);
   const Vector3d elsewhere(180, 20, 700);
@@ -178,7 +178,7 @@ TEST(HeadFilter, several_that_agree_are_another_place_to_begin_from) {
   EXPECT_EQ(filter.state().velocity_mm_s, Vector3d::Zero());
 }
 
-TEST(HeadFilter, two_heads_by_turns_are_not_one_that_flies) {
+TEST(HeadFilter, two_alternating_heads_do_not_become_one_fast_head) {
   std::int64_t now = 0;
   HeadFilter filter = after_constant_velocity({0, 0, 0}, &now);
   for (int i = 1; i < 60; ++i) {
@@ -187,7 +187,7 @@ TEST(HeadFilter, two_heads_by_turns_are_not_one_that_flies) {
   }
 }
 
-TEST(HeadFilter, begins_anew_after_a_long_gap_but_not_after_a_short_one) {
+TEST(HeadFilter, restarts_after_a_long_gap_but_not_after_a_short_one) {
   std::int64_t now = 0;
   const HeadFilter filter = after_constant_velocity({100, 0, 0}, &now);
   HeadFilter shortly = filter, late = filter;
@@ -199,7 +199,7 @@ TEST(HeadFilter, begins_anew_after_a_long_gap_but_not_after_a_short_one) {
   EXPECT_EQ(late.state().between_eyes_mm, truly(400));
 }
 
-TEST(HeadFilter, ignores_old_samples_and_numbers_that_are_none) {
+TEST(HeadFilter, ignores_old_samples_and_numbers_that_arent_finite) {
   std::int64_t now = 0;
   HeadFilter filter = after_constant_velocity({50, 0, 0}, &now);
   const HeadState before = filter.state();
@@ -215,7 +215,7 @@ TEST(HeadFilter, ignores_old_samples_and_numbers_that_are_none) {
   EXPECT_EQ(filter.state().between_eyes_mm, before.between_eyes_mm);
 }
 
-TEST(HeadFilter, doubtful_samples_count_less) {
+TEST(HeadFilter, doubtful_samples_have_less_weight) {
   std::int64_t now = 0;
   const HeadFilter filter = after_constant_velocity({0, 0, 0}, &now);
   HeadFilter sure = filter, unsure = filter;
@@ -227,7 +227,7 @@ TEST(HeadFilter, doubtful_samples_count_less) {
   EXPECT_LT(unsure.state().between_eyes_mm.x(), 0.5 * sure.state().between_eyes_mm.x());
 }
 
-TEST(HeadFilter, turns_the_line_between_the_eyes_smoothly) {
+TEST(HeadFilter, smooths_the_direction_between_the_eyes) {
   HeadFilter filter(HeadFilter::Options{});
   HeadSample sample = sample_at(1'000 * kMs, {0, 0, 650});
   sample.toward_right = Vector3d(2, 0, 0);
@@ -251,7 +251,7 @@ TEST(HeadFilter, turns_the_line_between_the_eyes_smoothly) {
   EXPECT_NEAR(filter.state().toward_right.norm(), 1, 1e-12);
 }
 
-TEST(HeadFilter, stays_sane_whatever_it_is_given) {
+TEST(HeadFilter, stays_finite_for_any_input) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> place(-5000, 5000), share(0, 1);
   HeadFilter filter(HeadFilter::Options{});
@@ -264,8 +264,8 @@ TEST(HeadFilter, stays_sane_whatever_it_is_given) {
     filter.take(sample);
     ASSERT_TRUE(filter.state().between_eyes_mm.allFinite());
     ASSERT_TRUE(filter.state().velocity_mm_s.allFinite());
-    ASSERT_GE(filter.moving(), 0);
-    ASSERT_LE(filter.moving(), 1);
+    ASSERT_GE(filter.moving_probability(), 0);
+    ASSERT_LE(filter.moving_probability(), 1);
   }
 }
 
@@ -287,8 +287,8 @@ TEST(HeadFilter, reset_forgets_everything) {
   HeadFilter filter = after_constant_velocity({50, 0, 0}, &now);
   filter.reset();
   EXPECT_EQ(filter.state().time_ns, 0);
-  EXPECT_EQ(filter.moving(), 0);
-  filter.take(sample_at(5 * kMs, {1, 2, 600}));  // an earlier time is as good as any
+  EXPECT_EQ(filter.moving_probability(), 0);
+  filter.take(sample_at(5 * kMs, {1, 2, 600}));  // an earlier time is accepted after a reset
   EXPECT_EQ(filter.state().between_eyes_mm, Vector3d(1, 2, 600));
 }
 

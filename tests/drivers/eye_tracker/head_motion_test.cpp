@@ -1,4 +1,4 @@
-// The simulated head: smooth, repeatable, its velocity exact, its kinds what they are called.
+// The simulated head: smooth, repeatable, with exact velocity and the documented kinds of motion.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr MotionKind kKinds[] = {MotionKind::still, MotionKind::sway, MotionKind::lean, MotionKind::turn, MotionKind::tour};
 
-TEST(HeadMotion, velocity_is_the_derivative_of_the_place) {
+TEST(HeadMotion, velocity_is_the_derivative_of_the_position) {
   for (const MotionKind kind : kKinds)
     for (const double speed : {1.0, 0.4}) {
       const HeadMotion motion(kind, 5, {10, 20, 600}, speed);
@@ -29,7 +29,7 @@ TEST(HeadMotion, is_repeatable_for_a_seed_and_differs_between_seeds) {
   for (const MotionKind kind : kKinds) {
     const HeadMotion one(kind, 7), same(kind, 7), other(kind, 8);
     EXPECT_EQ(one.between_eyes_mm(30.5), same.between_eyes_mm(30.5));
-    EXPECT_EQ(one.between_eyes_mm(2.25), same.between_eyes_mm(2.25));  // whatever was asked before
+    EXPECT_EQ(one.between_eyes_mm(2.25), same.between_eyes_mm(2.25));  // independent of earlier calls
     EXPECT_GT((one.between_eyes_mm(2.25) - other.between_eyes_mm(2.25)).norm(), 1e-3);
   }
 }
@@ -48,7 +48,7 @@ Measured measure(MotionKind kind, std::uint64_t seed) {
   return measured;
 }
 
-TEST(HeadMotion, kinds_are_what_they_are_called) {
+TEST(HeadMotion, each_kind_has_its_documented_amplitude_and_speed) {
   double sum_of_peaks = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Measured still = measure(MotionKind::still, seed);

@@ -1,4 +1,4 @@
-// Whatever bytes come, no sample lies outside the range, nothing is allocated in a poll, and once clean records come they are heard.
+// For any input bytes no sample is out of range and no poll allocates; after the noise, clean records give samples again.
 #include <cmath>
 #include <deque>
 #include <random>
@@ -25,7 +25,7 @@ void expect_sound(const EyeTracker::Polled& polled) {
   EXPECT_NEAR(polled.sample.toward_right.norm(), 1, 1e-9);
 }
 
-/// Noise of several kinds: any byte, markers mostly, pieces of records, one byte for ever.
+/// Noise of several kinds: random bytes, mostly markers, parts of records, one byte repeated.
 std::vector<std::byte> hostile(Random& random, std::size_t count) {
   std::vector<std::byte> bytes;
   const auto any = [&] { return static_cast<std::byte>(random() & 0xFF); };
@@ -48,7 +48,7 @@ std::vector<std::byte> hostile(Random& random, std::size_t count) {
   return bytes;
 }
 
-TEST(PlausibleHead, stands_from_ten_centimetres_to_four_metres_before_the_screen_and_not_far_aside) {
+TEST(PlausibleHead, is_10_cm_to_4_m_before_the_screen_and_not_far_aside) {
   const double nan = std::nan("");
   EXPECT_TRUE(plausible_head({0, 0, 650}));
   EXPECT_TRUE(plausible_head({0, 0, 100}));
@@ -69,7 +69,7 @@ TEST(PlausibleHead, stands_from_ten_centimetres_to_four_metres_before_the_screen
   }
 }
 
-TEST(HostileBytes, no_sample_is_out_of_range_and_clean_records_are_heard_again) {
+TEST(HostileBytes, no_sample_is_out_of_range_and_clean_records_give_samples_again) {
   Random random(1);
   for (int round = 0; round < 300; ++round) {
     ManualClock clock;
@@ -90,22 +90,22 @@ TEST(HostileBytes, no_sample_is_out_of_range_and_clean_records_are_heard_again) 
       poll();
     }
     int needed = 0;
-    bool heard = false;
-    for (; needed < 60 && !heard; ++needed) {
+    bool sampled = false;
+    for (; needed < 60 && !sampled; ++needed) {
       line.device().write(dynasight::encode(dynasight::record_for({10, 20, 650 + 0.3 * needed})));
-      heard = poll();
+      sampled = poll();
     }
-    // Four agreeing records, one to believe; when the talk is begun anew in between, 50 ms are thrown away.
+    // Four agreeing records and one to confirm; if the dialogue restarts in between, 50 ms are discarded.
     EXPECT_LE(needed, 5 + 1 + 11) << "round " << round;
   }
 }
 
-TEST(HostileBytes, opentrack_gives_no_sample_out_of_range) {
+TEST(HostileBytes, opentrack_reports_no_sample_out_of_range) {
   Random random(2);
   for (int i = 0; i < 200'000; ++i) {
     std::array<std::byte, opentrack::kDatagramBytes> datagram{};
     for (std::byte& byte : datagram) byte = static_cast<std::byte>(random() & 0xFF);
-    // Exponents of numbers that a pose may have: else hardly any gets past the first check.
+    // Set exponents in the range of a pose's numbers; otherwise almost no datagram passes the first check.
     for (std::size_t k = 0; k < 6; ++k) datagram[8 * k + 7] = random() % 2 == 0 ? std::byte{0x40} : std::byte{0xC0};
     class OnePort final : public port::DatagramPort {
      public:
@@ -127,13 +127,13 @@ TEST(HostileBytes, opentrack_gives_no_sample_out_of_range) {
   }
 }
 
-TEST(HostileBytes, polling_sitting_and_leaving_allocate_nothing) {
+TEST(HostileBytes, polling_attaching_and_detaching_allocate_nothing) {
   dynasight::TrackerStation station({.faults = {.drop_out = 0.01, .garbage = 0.2, .damaged_byte = 0.01, .lost_byte = 0.01}});
   settings::EyeTrackerSettings settings;
   settings.driver = settings::TrackerDriver::dynasight;
   ConfiguredTracker configured(settings);
   const auto port = *station.line().open_host();
-  bool heard = false;
+  bool sampled = false;
   std::uint64_t allocated = 0;
   for (int life = 0; life < 5; ++life) {
     const std::uint64_t before_sitting = port::allocations_of_this_thread();
@@ -146,7 +146,7 @@ TEST(HostileBytes, polling_sitting_and_leaving_allocate_nothing) {
         station.device().run_until(station.clock().now_ns());
       }
       const std::uint64_t before = port::allocations_of_this_thread();
-      heard |= tracker.poll(station.clock().now_ns()).fresh;
+      sampled |= tracker.poll(station.clock().now_ns()).fresh;
       allocated += port::allocations_of_this_thread() - before;
     }
     const std::uint64_t before_leaving = port::allocations_of_this_thread();
@@ -154,7 +154,7 @@ TEST(HostileBytes, polling_sitting_and_leaving_allocate_nothing) {
     allocated += port::allocations_of_this_thread() - before_leaving;
     EXPECT_EQ(configured.tracker(), nullptr);
   }
-  EXPECT_TRUE(heard);
+  EXPECT_TRUE(sampled);
   EXPECT_EQ(allocated, 0u);
 }
 

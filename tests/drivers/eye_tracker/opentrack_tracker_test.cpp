@@ -49,7 +49,7 @@ TEST(OpentrackTracker, the_newest_datagram_wins) {
   EXPECT_FALSE(tracker.poll(105 * kMs).fresh);
 }
 
-TEST(OpentrackTracker, a_pose_that_is_repeated_is_no_news) {
+TEST(OpentrackTracker, a_repeated_pose_is_no_sample) {
   QueuedPort port;
   OpentrackTracker tracker(port, {});
   port.add(at(1));
@@ -64,7 +64,7 @@ TEST(OpentrackTracker, a_pose_that_is_repeated_is_no_news) {
   EXPECT_TRUE(tracker.poll(900 * kMs).fresh);
 }
 
-TEST(OpentrackTracker, what_is_no_pose_or_no_viewer_is_dropped_and_counted) {
+TEST(OpentrackTracker, drops_and_counts_what_is_no_pose_or_no_viewer) {
   QueuedPort port;
   OpentrackTracker tracker(port, {});
   port.add(std::vector<std::byte>(47));
@@ -80,7 +80,7 @@ TEST(OpentrackTracker, what_is_no_pose_or_no_viewer_is_dropped_and_counted) {
   EXPECT_EQ(tracker.counts().rejected, 2u);
 }
 
-TEST(OpentrackTracker, silence_is_noticed_once) {
+TEST(OpentrackTracker, counts_silence_once) {
   QueuedPort port;
   OpentrackTracker tracker(port, {});
   port.add(at(1));
@@ -105,14 +105,14 @@ TEST(OpentrackTracker, a_flood_takes_more_than_one_poll) {
   EXPECT_TRUE(port.waiting.empty());
 }
 
-TEST(OpentrackTracker, a_port_that_is_gone_says_so) {
+TEST(OpentrackTracker, reports_a_port_that_is_gone) {
   QueuedPort port;
   OpentrackTracker tracker(port, {});
   port.gone = true;
   EXPECT_EQ(tracker.poll(0).status, port::PortStatus::gone);
 }
 
-TEST(OpentrackStation, the_simulated_webcam_is_followed_and_its_loss_shows_as_age) {
+TEST(OpentrackStation, follows_the_simulated_webcam_and_shows_its_loss_as_age) {
   QueuedPort port;
   const HeadSource head = [](double seconds) {
     SimulatedHead there;

@@ -1,4 +1,4 @@
-// A tracker on a cable in memory, its device played at the other end, and a loop that polls it 200 times a second of virtual time.
+// A tracker on a cable in memory with a simulated device at the other end, and a loop that polls it 200 times per second of virtual time.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ inline port::MemoryLineSettings line_of(int baud) {
   return settings;
 }
 
-/// Left and right by 20 cm every 5 seconds, some lean; 250 mm/s at most.
+/// Moves 20 cm to either side every 5 seconds, with some lean; max. 250 mm/s.
 inline SimulatedHead swaying_head(double seconds) {
   SimulatedHead head;
   head.between_eyes_mm = {200 * std::sin(2 * 3.14159265 * seconds / 5), 30, 650 + 50 * std::cos(2 * 3.14159265 * seconds / 7)};
@@ -38,7 +38,7 @@ class TrackerStation {
     plug_in();
   }
 
-  /// The samples that the loop gets in that time.
+  /// Returns the samples that the loop receives in that time.
   std::vector<HeadSample> run(double seconds) {
     std::vector<HeadSample> samples;
     for (const std::int64_t end = clock_.now_ns() + static_cast<std::int64_t>(seconds * 1e9); clock_.now_ns() < end;) {
@@ -50,7 +50,7 @@ class TrackerStation {
     }
     return samples;
   }
-  /// Time passes for the device alone: the loop stands still.
+  /// Advances the device's time while the loop doesn't poll.
   void stall(double seconds) {
     for (int i = 0; i < static_cast<int>(seconds * 4000); ++i) {
       clock_.advance_ns(kMs / 4);
@@ -73,7 +73,7 @@ class TrackerStation {
   }
 
   Eigen::Vector3d truth_mm(std::int64_t time_ns) const { return head_(static_cast<double>(time_ns) * 1e-9).between_eyes_mm; }
-  /// Largest distance between samples and where the head was at their times.
+  /// Max. distance between the samples and the head's true positions at their times.
   double worst_error_mm(const std::vector<HeadSample>& samples) const {
     double worst = 0;
     for (const HeadSample& sample : samples) worst = std::max(worst, (sample.between_eyes_mm - truth_mm(sample.measured_ns)).norm());
@@ -83,7 +83,7 @@ class TrackerStation {
   ManualClock& clock() { return clock_; }
   port::MemoryLine& line() { return line_; }
   DynasightSimulator& device() { return device_; }
-  DynasightTracker* tracker() { return tracker_.get(); }  ///< null once its port is gone
+  DynasightTracker* tracker() { return tracker_.get(); }  ///< null after its port is gone
   std::int64_t gone_ns() const { return gone_ns_; }
 
  private:

@@ -7,7 +7,7 @@ namespace {
 thread_local std::uint64_t allocations = 0;
 }
 
-// Replaces the library's own for the whole test program.
+// Replaces the library's operator for the whole test program.
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size == 0 ? 1 : size); memory != nullptr) return memory;

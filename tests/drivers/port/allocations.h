@@ -1,4 +1,4 @@
-// Counts this thread's allocations: what happens in a tick mustn't make any.
+// Counts this thread's allocations, to check that a tick makes none.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Text as bytes and back, for tests of ports.
+// Converts text to bytes and back, for tests of ports.
 #pragma once
 
 #include <array>
@@ -16,16 +16,16 @@ namespace prismesh::drivers::port {
 
 inline std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
 
-/// What is there to read now, at most `most` bytes.
-inline std::string read_text(BytePort& port, std::size_t most = 4096) {
-  std::string text(most, '\0');
+/// Reads what is available now, max. `max_bytes` bytes.
+inline std::string read_text(BytePort& port, std::size_t max_bytes = 4096) {
+  std::string text(max_bytes, '\0');
   const PortCount got = port.read(std::as_writable_bytes(std::span(text)));
   text.resize(got.bytes);
   return text;
 }
 
-/// The kernel passes a terminal's bytes on from a worker of its own, so what was written isn't there at once. False after ten seconds.
-inline bool soon(const std::function<bool()>& is_so) {
+/// Waits until the condition holds, because a kernel worker delivers a terminal's bytes with a delay. Returns false after ten seconds.
+inline bool eventually(const std::function<bool()>& is_so) {
   for (int i = 0; i < 10'000; ++i) {
     if (is_so()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -35,7 +35,7 @@ inline bool soon(const std::function<bool()>& is_so) {
 
 inline std::string read_soon(BytePort& port, std::size_t length) {
   std::string text;
-  soon([&] {
+  eventually([&] {
     text += read_text(port, length - text.size());
     return text.size() >= length;
   });

@@ -1,4 +1,4 @@
-// Watching for files where folders come and go between two system calls, or more happens than the kernel remembers.
+// Watching files whose folders appear and disappear between two system calls, and with more events than the kernel queues.
 #include "drivers/port/file_watch.h"
 
 #include <sys/inotify.h>
@@ -16,14 +16,14 @@
 
 namespace {
 
-/// Done once, just before this thread's next folder is watched.
-thread_local std::function<void()> just_before_watching;
+/// Called once, just before this thread watches its next folder.
+thread_local std::function<void()> before_next_watch;
 
 }  // namespace
 
-/// In place of the C library's.
+/// Replaces the C library's function.
 extern "C" int inotify_add_watch(int descriptor, const char* path, std::uint32_t mask) noexcept {
-  if (const auto act = std::exchange(just_before_watching, nullptr)) act();
+  if (const auto act = std::exchange(before_next_watch, nullptr)) act();
   return static_cast<int>(::syscall(SYS_inotify_add_watch, descriptor, path, mask));
 }
 
@@ -31,7 +31,7 @@ namespace prismesh::drivers::port {
 namespace {
 
 namespace fs = std::filesystem;
-using FoundPaths = std::vector<std::size_t>;
+using ChangedPaths = std::vector<std::size_t>;
 
 class FileWatchTest : public ::testing::Test {
  protected:
@@ -48,59 +48,59 @@ class FileWatchTest : public ::testing::Test {
   fs::path folder_, device_;
 };
 
-TEST_F(FileWatchTest, folders_that_come_while_the_one_above_is_about_to_be_watched_are_found) {
-  just_before_watching = [this] { fs::create_directories(device_.parent_path()); };
+TEST_F(FileWatchTest, finds_folders_created_just_before_the_watch_above_starts) {
+  before_next_watch = [this] { fs::create_directories(device_.parent_path()); };
   FileWatch watch({device_.string()});
-  EXPECT_EQ(watch.news(), FoundPaths{});
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{});
   make(device_);
-  EXPECT_EQ(watch.news(), FoundPaths{0});
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{0});
 }
 
-TEST_F(FileWatchTest, and_so_are_those_that_come_later) {
+TEST_F(FileWatchTest, finds_folders_created_later) {
   FileWatch watch({device_.string()});
   fs::create_directory(folder_ / "a");
-  just_before_watching = [this] { fs::create_directory(device_.parent_path()); };
-  EXPECT_EQ(watch.news(), FoundPaths{});
+  before_next_watch = [this] { fs::create_directory(device_.parent_path()); };
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{});
   make(device_);
-  EXPECT_EQ(watch.news(), FoundPaths{0});
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{0});
 }
 
-TEST_F(FileWatchTest, a_folder_that_goes_while_it_is_about_to_be_watched_is_awaited_again) {
+TEST_F(FileWatchTest, waits_for_a_folder_removed_just_before_its_watch_starts) {
   FileWatch watch({device_.string()});
   fs::create_directory(folder_ / "a");
-  just_before_watching = [this] { fs::remove(folder_ / "a"); };
-  EXPECT_EQ(watch.news(), FoundPaths{});
-  for (int i = 0; i < 3; ++i) watch.news();
+  before_next_watch = [this] { fs::remove(folder_ / "a"); };
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{});
+  for (int i = 0; i < 3; ++i) watch.changed_paths();
   fs::create_directories(device_.parent_path());
-  EXPECT_EQ(watch.news(), FoundPaths{});
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{});
   make(device_);
-  EXPECT_EQ(watch.news(), FoundPaths{0});
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{0});
 }
 
-TEST_F(FileWatchTest, a_device_whose_permissions_change_is_news) {
+TEST_F(FileWatchTest, reports_a_device_whose_permissions_change) {
   fs::create_directories(device_.parent_path());
   make(device_);
   FileWatch watch({device_.string()});
-  EXPECT_EQ(watch.news(), FoundPaths{});
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{});
   make(device_.parent_path() / "other");
-  EXPECT_EQ(watch.news(), FoundPaths{}) << "a neighbour's news";
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{}) << "a change of another file";
   ASSERT_EQ(::chmod(device_.c_str(), 0600), 0);
-  EXPECT_EQ(watch.news(), FoundPaths{0});
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{0});
 }
 
-TEST_F(FileWatchTest, what_the_kernel_could_not_remember_is_looked_at) {
-  std::size_t remembered = 0;
-  std::ifstream("/proc/sys/fs/inotify/max_queued_events") >> remembered;
-  if (remembered == 0 || remembered > 100'000) GTEST_SKIP() << "this kernel remembers " << remembered << " events";
+TEST_F(FileWatchTest, checks_all_paths_after_the_kernels_queue_overflowed) {
+  std::size_t queue_length = 0;
+  std::ifstream("/proc/sys/fs/inotify/max_queued_events") >> queue_length;
+  if (queue_length == 0 || queue_length > 100'000) GTEST_SKIP() << "this kernel remembers " << queue_length << " events";
   fs::create_directories(device_.parent_path());
   const fs::path one = device_.parent_path() / "one", other = device_.parent_path() / "other";
   for (const fs::path& file : {one, other, device_}) make(file);
   FileWatch watch({device_.string(), (folder_ / "absent").string()});
-  // Two of the same kind in a row are told as one.
-  for (std::size_t i = 0; i <= remembered; ++i) ::chmod((i % 2 == 0 ? one : other).c_str(), 0600);
+  // The kernel merges two consecutive events of the same kind.
+  for (std::size_t i = 0; i <= queue_length; ++i) ::chmod((i % 2 == 0 ? one : other).c_str(), 0600);
   ::chmod(device_.c_str(), 0600);
-  EXPECT_EQ(watch.news(), FoundPaths{0});
-  EXPECT_EQ(watch.news(), FoundPaths{}) << "said once";
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{0});
+  EXPECT_EQ(watch.changed_paths(), ChangedPaths{}) << "reported once";
 }
 
 }  // namespace

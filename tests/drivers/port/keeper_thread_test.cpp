@@ -30,7 +30,7 @@ class KeeperThreadTest : public ::testing::Test {
   MonotonicClock clock_;
 };
 
-/// A device behind a link that appears and goes with it, as udev does it.
+/// A device behind a link that appears and disappears with it, as with udev.
 struct Device {
   explicit Device(fs::path where) : link(std::move(where)) {}
   void plug_in() {
@@ -39,14 +39,14 @@ struct Device {
     fs::create_symlink(pty.slave_path, link);
   }
   void unplug() {
-    fs::remove_all(link.parent_path());  // udev takes the empty folder away
+    fs::remove_all(link.parent_path());  // udev removes the empty folder
     pty = {};
   }
   fs::path link;
   PtyPair pty;
 };
 
-TEST_F(KeeperThreadTest, a_device_that_comes_and_goes_is_opened_each_time) {
+TEST_F(KeeperThreadTest, opens_a_device_each_time_it_appears) {
   Device device(folder_ / "serial" / "by-id" / "usb-tracker");
   PortKeeper keeper(
       clock_, [&] { return open_port(device.link.string(), 9600); }, device.link.string());
@@ -54,18 +54,18 @@ TEST_F(KeeperThreadTest, a_device_that_comes_and_goes_is_opened_each_time) {
   for (int round = 0; round < 5; ++round) {
     ASSERT_EQ(keeper.port(), nullptr);
     device.plug_in();
-    ASSERT_TRUE(soon([&] { return keeper.port() != nullptr; }));
+    ASSERT_TRUE(eventually([&] { return keeper.port() != nullptr; }));
     device.pty.master->write(bytes_of("hello"));
     EXPECT_EQ(read_soon(*keeper.port(), 5), "hello");
     device.unplug();
     std::array<std::byte, 8> buffer{};
-    ASSERT_TRUE(soon([&] { return keeper.port()->read(buffer).status == PortStatus::gone; }));
+    ASSERT_TRUE(eventually([&] { return keeper.port()->read(buffer).status == PortStatus::gone; }));
     keeper.give_back();
   }
   EXPECT_EQ(keeper.report().openings, 5u);
 }
 
-TEST_F(KeeperThreadTest, an_arrival_is_noticed_without_waiting_for_the_next_try) {
+TEST_F(KeeperThreadTest, opens_an_appearing_device_before_the_next_attempt_is_due) {
   const fs::path path = folder_ / "by-id" / "usb-servo";
   std::atomic<int> attempts = 0;
   PortKeeper keeper(clock_,
@@ -73,15 +73,15 @@ TEST_F(KeeperThreadTest, an_arrival_is_noticed_without_waiting_for_the_next_try)
                       ++attempts;
                       return fail(path.string(), "not yet");
                     },
-                    path.string(), {3'600'000'000'000, 3'600'000'000'000, 0});  // the next try would come in an hour
+                    path.string(), {3'600'000'000'000, 3'600'000'000'000, 0});  // the next attempt would be in an hour
   const KeeperThread thread(clock_, {work_of(keeper)});
-  ASSERT_TRUE(soon([&] { return attempts == 1; }));
+  ASSERT_TRUE(eventually([&] { return attempts == 1; }));
   fs::create_directories(path.parent_path());
   std::ofstream(path) << "x";
-  ASSERT_TRUE(soon([&] { return attempts >= 2; }));
+  ASSERT_TRUE(eventually([&] { return attempts >= 2; }));
   const int before = attempts;
-  fs::permissions(path, fs::perms::owner_read);  // as when udev sets the rights a moment after the file came
-  EXPECT_TRUE(soon([&] { return attempts > before; }));
+  fs::permissions(path, fs::perms::owner_read);  // as when udev sets the permissions a moment after the file has appeared
+  EXPECT_TRUE(eventually([&] { return attempts > before; }));
 }
 
 TEST_F(KeeperThreadTest, several_devices_share_the_thread) {
@@ -92,10 +92,10 @@ TEST_F(KeeperThreadTest, several_devices_share_the_thread) {
       clock_, [&] { return open_port(device.pty.slave_path, 9600); }, device.pty.slave_path);
   DatagramKeeper udp(clock_, [&]() -> Result<std::unique_ptr<DatagramPort>> { return UdpPort::open(number); });
   const KeeperThread thread(clock_, {work_of(serial), work_of(udp)});
-  EXPECT_TRUE(soon([&] { return serial.port() != nullptr && udp.port() != nullptr; }));
+  EXPECT_TRUE(eventually([&] { return serial.port() != nullptr && udp.port() != nullptr; }));
 }
 
-TEST_F(KeeperThreadTest, handing_over_is_safe_between_two_threads) {
+TEST_F(KeeperThreadTest, hands_ports_over_safely_between_two_threads) {
   std::atomic<int> openings = 0;
   PtyPair pty = std::move(*open_pty_pair());
   const BackOff quick{1000, 1000, 0};
@@ -107,9 +107,9 @@ TEST_F(KeeperThreadTest, handing_over_is_safe_between_two_threads) {
       },
       {}, quick);
   const KeeperThread thread(clock_, {work_of(keeper)});
-  // This thread plays the real-time loop that finds each port dead.
+  // This thread acts as the real-time loop and finds each port dead.
   int taken = 0;
-  ASSERT_TRUE(soon([&] {
+  ASSERT_TRUE(eventually([&] {
     for (int i = 0; i < 100 && taken < 500; ++i)
       if (keeper.port() != nullptr) {
         ++taken;
@@ -120,28 +120,28 @@ TEST_F(KeeperThreadTest, handing_over_is_safe_between_two_threads) {
   EXPECT_GE(openings, taken);
 }
 
-TEST(FileWatch, watches_what_isnt_there_yet_and_again_after_it_went) {
+TEST(FileWatch, watches_missing_paths_before_and_after_they_existed) {
   std::string name = (fs::temp_directory_path() / "prismesh-watch-XXXXXX").string();
   const fs::path folder = ::mkdtemp(name.data());
   const fs::path path = folder / "a" / "b" / "device", neighbour = folder / "here";
   FileWatch watch({path.string(), neighbour.string(), ""});
-  using Found = std::vector<std::size_t>;
-  EXPECT_EQ(watch.news(), Found{});
+  using Changed = std::vector<std::size_t>;
+  EXPECT_EQ(watch.changed_paths(), Changed{});
   for (int round = 0; round < 3; ++round) {
     fs::create_directory(folder / "a");
-    EXPECT_EQ(watch.news(), Found{}) << "a folder on the way is not the device";
+    EXPECT_EQ(watch.changed_paths(), Changed{}) << "a folder on the way is not the device";
     fs::create_directory(folder / "a" / "b");
     std::ofstream(path) << "x";
-    EXPECT_EQ(watch.news(), Found{0});
-    EXPECT_EQ(watch.news(), Found{}) << "said once";
+    EXPECT_EQ(watch.changed_paths(), Changed{0});
+    EXPECT_EQ(watch.changed_paths(), Changed{}) << "reported once";
     std::ofstream(folder / "other") << "x";
     fs::remove(folder / "other");
-    EXPECT_EQ(watch.news(), Found{}) << "a neighbour's news";
+    EXPECT_EQ(watch.changed_paths(), Changed{}) << "a change of another file";
     std::ofstream(neighbour) << "x";
-    EXPECT_EQ(watch.news(), Found{1});
+    EXPECT_EQ(watch.changed_paths(), Changed{1});
     fs::remove(neighbour);
     fs::remove_all(folder / "a");
-    EXPECT_EQ(watch.news(), Found{});
+    EXPECT_EQ(watch.changed_paths(), Changed{});
   }
   fs::remove_all(folder);
 }

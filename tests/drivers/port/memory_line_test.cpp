@@ -18,7 +18,7 @@ MemoryLineSettings easy_line() {
   return settings;
 }
 
-TEST(MemoryLine, a_byte_arrives_when_its_last_bit_has_passed) {
+TEST(MemoryLine, a_byte_arrives_after_its_last_bit) {
   ManualClock clock;
   MemoryLine line(clock, easy_line());
   const auto host = *line.open_host();
@@ -59,7 +59,7 @@ TEST(MemoryLine, both_directions_run_at_once) {
   EXPECT_EQ(read_text(line.device()), "ping");
 }
 
-TEST(MemoryLine, a_writer_ahead_of_the_line_is_told_to_wait) {
+TEST(MemoryLine, a_writer_ahead_of_the_line_gets_full) {
   ManualClock clock;
   MemoryLineSettings settings = easy_line();
   settings.queue_bytes = 4;
@@ -74,7 +74,7 @@ TEST(MemoryLine, a_writer_ahead_of_the_line_is_told_to_wait) {
   EXPECT_EQ(read_text(line.device()), "abcdef");
 }
 
-TEST(MemoryLine, an_unread_input_loses_the_newest_and_counts_them) {
+TEST(MemoryLine, a_full_input_buffer_loses_and_counts_the_newest_bytes) {
   ManualClock clock;
   MemoryLineSettings settings = easy_line();
   settings.input_bytes = 3;
@@ -86,7 +86,7 @@ TEST(MemoryLine, an_unread_input_loses_the_newest_and_counts_them) {
   EXPECT_EQ(line.overrun(Direction::to_host), 2u);
 }
 
-TEST(MemoryLine, ends_that_disagree_about_speed_understand_nothing) {
+TEST(MemoryLine, different_baud_rates_scramble_bytes) {
   ManualClock clock;
   MemoryLineSettings settings = easy_line();
   settings.device_baud = 57'600;
@@ -102,7 +102,7 @@ TEST(MemoryLine, ends_that_disagree_about_speed_understand_nothing) {
   EXPECT_EQ(read_text(line.device()), "hello");
 }
 
-TEST(MemoryLine, opening_throws_backlog_away_and_retires_the_end_before) {
+TEST(MemoryLine, opening_discards_input_and_ends_the_previous_port) {
   ManualClock clock;
   MemoryLine line(clock, easy_line());
   const auto first = *line.open_host();
@@ -113,7 +113,7 @@ TEST(MemoryLine, opening_throws_backlog_away_and_retires_the_end_before) {
   EXPECT_EQ(read_text(*second), "");
 }
 
-TEST(MemoryLine, a_pulled_plug_ends_the_port_for_good) {
+TEST(MemoryLine, an_unplug_ends_the_port_for_good) {
   ManualClock clock;
   MemoryLine line(clock, easy_line());
   const auto before = *line.open_host();
@@ -134,7 +134,7 @@ TEST(MemoryLine, a_pulled_plug_ends_the_port_for_good) {
   EXPECT_EQ(read_text(*after), "c");
 }
 
-TEST(MemoryLine, the_plug_can_be_pulled_at_any_byte_that_the_host_reads) {
+TEST(MemoryLine, unplugs_at_any_byte_that_the_host_reads) {
   for (std::size_t count = 0; count <= 8; ++count) {
     ManualClock clock;
     MemoryLine line(clock, easy_line());
@@ -155,7 +155,7 @@ TEST(MemoryLine, the_plug_can_be_pulled_at_any_byte_that_the_host_reads) {
   }
 }
 
-TEST(MemoryLine, the_plug_can_be_pulled_at_any_byte_that_the_host_writes) {
+TEST(MemoryLine, unplugs_at_any_byte_that_the_host_writes) {
   for (std::size_t count = 0; count <= 8; ++count) {
     ManualClock clock;
     MemoryLine line(clock, easy_line());
@@ -170,7 +170,7 @@ TEST(MemoryLine, the_plug_can_be_pulled_at_any_byte_that_the_host_writes) {
   }
 }
 
-TEST(MemoryLine, injected_noise_stands_behind_what_was_sent) {
+TEST(MemoryLine, injected_noise_follows_the_bytes_in_transit) {
   ManualClock clock;
   MemoryLine line(clock, easy_line());
   const auto host = *line.open_host();
@@ -202,7 +202,7 @@ TEST(MemoryLine, noise_has_its_rate_and_repeats_with_its_seed) {
   EXPECT_NE(text, received(8));
 }
 
-TEST(MemoryLine, talking_allocates_nothing) {
+TEST(MemoryLine, reading_and_writing_allocate_nothing) {
   ManualClock clock;
   MemoryLine line(clock, easy_line());
   const auto host = *line.open_host();

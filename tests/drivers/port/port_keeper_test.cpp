@@ -14,14 +14,14 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
-/// A line in memory, its keeper, and what both sides of the keeper do.
+/// A line in memory, its keeper, and both sides' calls of the keeper.
 struct KeeperFixture {
   ManualClock clock;
   MemoryLine line{clock, {}};
   PortKeeper keeper{clock, [this] { return line.open_host(); }, "/dev/a"};
 
   void advance_to_ms(std::int64_t ms) { clock.advance_ns(ms * kMs - clock.now_ns()); }
-  /// Works at each due time until `ms`; when the attempts were made.
+  /// Calls `work` at each due time until `ms`; returns the times of the attempts.
   std::vector<std::int64_t> attempts_until_ms(std::int64_t ms) {
     std::vector<std::int64_t> at;
     for (std::int64_t due = keeper.work(); due <= ms * kMs; due = keeper.work()) {
@@ -44,7 +44,7 @@ struct KeeperFixture {
   }
 };
 
-TEST(PortKeeper, opens_at_once_and_hands_over) {
+TEST(PortKeeper, opens_at_once_and_offers_the_port) {
   KeeperFixture fixture;
   EXPECT_EQ(fixture.keeper.port(), nullptr);
   EXPECT_EQ(fixture.keeper.work(), kNever);
@@ -54,7 +54,7 @@ TEST(PortKeeper, opens_at_once_and_hands_over) {
   EXPECT_TRUE(fixture.keeper.report().open);
 }
 
-TEST(PortKeeper, waits_double_up_to_a_second) {
+TEST(PortKeeper, waiting_times_double_up_to_a_second) {
   KeeperFixture fixture;
   fixture.line.unplug();
   fixture.keeper.work();
@@ -67,7 +67,7 @@ TEST(PortKeeper, waits_double_up_to_a_second) {
   EXPECT_NE(report.reason->message.find("is it plugged in"), std::string::npos);
 }
 
-TEST(PortKeeper, work_before_the_time_does_nothing) {
+TEST(PortKeeper, work_before_the_due_time_does_nothing) {
   KeeperFixture fixture;
   fixture.line.unplug();
   fixture.keeper.work();
@@ -78,21 +78,21 @@ TEST(PortKeeper, work_before_the_time_does_nothing) {
   EXPECT_EQ(fixture.keeper.report().attempts, 1u);
 }
 
-TEST(PortKeeper, an_arrival_cuts_the_wait_short_and_starts_it_over) {
+TEST(PortKeeper, retry_now_ends_the_wait_and_resets_the_back_off) {
   KeeperFixture fixture;
   fixture.line.unplug();
   fixture.attempts_until_ms(3000);
-  fixture.keeper.hurry();
-  // there, but not ready yet: tries come close together again
+  fixture.keeper.retry_now();
+  // the file exists, but the device isn't ready yet: the attempts are close together again
   EXPECT_EQ(fixture.keeper.work(), 3050 * kMs);
   EXPECT_EQ(fixture.attempts_until_ms(3400), (std::vector<std::int64_t>{3050, 3150, 3350}));
   fixture.line.plug_in();
-  fixture.keeper.hurry();
+  fixture.keeper.retry_now();
   fixture.keeper.work();
   EXPECT_NE(fixture.keeper.port(), nullptr);
 }
 
-TEST(PortKeeper, a_proven_port_that_dies_is_tried_again_at_once) {
+TEST(PortKeeper, a_proven_port_that_is_gone_is_reopened_at_once) {
   KeeperFixture fixture;
   fixture.keeper.work();
   ASSERT_TRUE(fixture.tick());
@@ -107,7 +107,7 @@ TEST(PortKeeper, a_proven_port_that_dies_is_tried_again_at_once) {
   EXPECT_EQ(fixture.keeper.report().openings, 2u);
 }
 
-TEST(PortKeeper, a_port_that_opens_and_dies_at_once_is_not_opened_without_pause) {
+TEST(PortKeeper, a_port_that_fails_right_after_opening_is_reopened_with_pauses) {
   KeeperFixture fixture;
   int openings = 0;
   for (std::int64_t ms = 0; ms < 10'000; ++ms) {
@@ -121,11 +121,11 @@ TEST(PortKeeper, a_port_that_opens_and_dies_at_once_is_not_opened_without_pause)
   EXPECT_EQ(openings, 14) << "50, 100, 200, 400, 800 ms, then each second";
 }
 
-TEST(PortKeeper, a_port_that_went_away_is_reported_as_that) {
+TEST(PortKeeper, reports_a_port_that_went_away) {
   KeeperFixture fixture;
   fixture.keeper.work();
   ASSERT_TRUE(fixture.tick());
-  fixture.clock.advance_ns(100 * kMs);  // not proven yet, so the next try waits
+  fixture.clock.advance_ns(100 * kMs);  // not proven yet, so the next attempt waits
   fixture.line.unplug();
   EXPECT_FALSE(fixture.tick());
   fixture.keeper.work();
@@ -135,14 +135,14 @@ TEST(PortKeeper, a_port_that_went_away_is_reported_as_that) {
   EXPECT_EQ(report.reason->text(), "/dev/a: went away: Input/output error");
 }
 
-TEST(PortKeeper, giving_nothing_back_is_nothing) {
+TEST(PortKeeper, give_back_without_a_port_does_nothing) {
   KeeperFixture fixture;
   fixture.keeper.give_back();
   fixture.keeper.work();
   EXPECT_NE(fixture.keeper.port(), nullptr);
 }
 
-TEST(PortKeeper, giving_back_wakes_the_other_side) {
+TEST(PortKeeper, give_back_wakes_the_other_side) {
   KeeperFixture fixture;
   int woken = 0;
   fixture.keeper.on_give_back([](void* count) { ++*static_cast<int*>(count); }, &woken);
@@ -152,7 +152,7 @@ TEST(PortKeeper, giving_back_wakes_the_other_side) {
   EXPECT_EQ(woken, 1);
 }
 
-/// Says when it's closed.
+/// Reports when it's closed.
 class MortalPort final : public BytePort {
  public:
   explicit MortalPort(int& alive) : alive_(alive) { ++alive_; }
@@ -167,7 +167,7 @@ class MortalPort final : public BytePort {
   int& alive_;
 };
 
-TEST(PortKeeper, closes_outside_the_tick_and_never_holds_two) {
+TEST(PortKeeper, closes_outside_the_tick_and_never_has_two_ports) {
   ManualClock clock;
   int alive = 0;
   const auto make = [&]() -> Result<std::unique_ptr<BytePort>> { return std::make_unique<MortalPort>(alive); };
@@ -182,7 +182,7 @@ TEST(PortKeeper, closes_outside_the_tick_and_never_holds_two) {
       EXPECT_EQ(alive, 1) << "the real-time side closes nothing";
     }
     clock.advance_ns(2000 * kMs);
-    keeper.work();  // an offered port that nobody takes
+    keeper.work();  // an offered port that is never taken
     EXPECT_EQ(alive, 1);
   }
   EXPECT_EQ(alive, 0);

@@ -20,7 +20,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr char kEveryByte[] = "\x03\x04\x11\x13\x1a\x1c\x7f\r\n\xff\xff plain";  // those that a cooked terminal would act on
+constexpr char kEveryByte[] =
+    "\x03\x04\x11\x13\x1a\x1c\x7f\r\n\xff\xff plain";  // includes the bytes that a terminal in cooked mode interprets
 
 PtyPair pair() {
   Result<PtyPair> opened = open_pty_pair();
@@ -28,7 +29,7 @@ PtyPair pair() {
   return std::move(*opened);
 }
 
-TEST(TerminalPort, carries_every_byte_both_ways_and_echoes_none) {
+TEST(TerminalPort, transfers_every_byte_both_ways_without_echo) {
   const PtyPair pty = pair();
   ASSERT_TRUE(is_pseudo_terminal(pty.slave_path));
   const auto port = open_port(pty.slave_path, 19200);
@@ -42,7 +43,7 @@ TEST(TerminalPort, carries_every_byte_both_ways_and_echoes_none) {
   EXPECT_TRUE((*port)->set_baud(1'000'000));
 }
 
-TEST(TerminalPort, reads_nothing_where_nothing_is) {
+TEST(TerminalPort, reads_nothing_without_input) {
   const PtyPair pty = pair();
   const auto port = *open_terminal_port(pty.slave_path);
   std::array<std::byte, 8> buffer{};
@@ -51,7 +52,7 @@ TEST(TerminalPort, reads_nothing_where_nothing_is) {
   EXPECT_EQ(got.status, PortStatus::ok);
 }
 
-/// The driver's end of a pseudo-terminal, beside whoever else has it open.
+/// The driver's end of a pseudo-terminal, in addition to other openers.
 class DriversEnd {
  public:
   explicit DriversEnd(const std::string& path) : descriptor_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {}
@@ -59,18 +60,18 @@ class DriversEnd {
   DriversEnd(const DriversEnd&) = delete;
   DriversEnd& operator=(const DriversEnd&) = delete;
 
-  /// Bytes that the kernel has handed over, and nobody has read.
+  /// Number of bytes that the kernel has delivered and nobody has read.
   int waiting() const {
     int bytes = 0;
     return ::ioctl(descriptor_, FIONREAD, &bytes) == 0 ? bytes : -1;
   }
-  void say(std::string_view text) const { EXPECT_EQ(::write(descriptor_, text.data(), text.size()), std::ssize(text)); }
+  void send(std::string_view text) const { EXPECT_EQ(::write(descriptor_, text.data(), text.size()), std::ssize(text)); }
 
  private:
   int descriptor_;
 };
 
-TEST(TerminalPort, stale_backlog_is_thrown_away_on_opening_and_on_request) {
+TEST(TerminalPort, discards_queued_input_on_opening_and_on_request) {
   const PtyPair pty = pair();
   pty.master->write(bytes_of("said before anyone listened"));
   const auto port = *open_terminal_port(pty.slave_path);
@@ -78,19 +79,19 @@ TEST(TerminalPort, stale_backlog_is_thrown_away_on_opening_and_on_request) {
   EXPECT_EQ(read_soon(*port, 3), "new");
   pty.master->write(bytes_of("old"));
   const DriversEnd line(pty.slave_path);
-  ASSERT_TRUE(soon([&] { return line.waiting() == 3; }));
+  ASSERT_TRUE(eventually([&] { return line.waiting() == 3; }));
   port->discard_input();
   pty.master->write(bytes_of("newer"));
   EXPECT_EQ(read_soon(*port, 5), "newer");
 }
 
-TEST(TerminalPort, what_the_simulator_said_before_doesnt_echo_back_to_it) {
+TEST(TerminalPort, does_not_echo_the_simulators_earlier_output) {
   const PtyPair pty = pair();
   pty.master->write(bytes_of("records\r\n"));
   const DriversEnd line(pty.slave_path);
-  ASSERT_TRUE(soon([&] { return line.waiting() == 9; }));
-  line.say(".");
-  EXPECT_EQ(read_soon(*pty.master, 1), ".") << "the first that it hears";
+  ASSERT_TRUE(eventually([&] { return line.waiting() == 9; }));
+  line.send(".");
+  EXPECT_EQ(read_soon(*pty.master, 1), ".") << "the first byte that it receives";
 }
 
 TEST(TerminalPort, a_vanished_device_is_gone_for_reads_and_writes) {
@@ -107,7 +108,7 @@ TEST(TerminalPort, a_vanished_device_is_gone_for_reads_and_writes) {
   }
 }
 
-TEST(TerminalPort, the_master_outlives_its_listeners) {
+TEST(TerminalPort, the_master_survives_its_slaves) {
   const PtyPair pty = pair();
   std::array<std::byte, 8> buffer{};
   for (int i = 0; i < 3; ++i) {
@@ -120,7 +121,7 @@ TEST(TerminalPort, the_master_outlives_its_listeners) {
   EXPECT_EQ(pty.master->read(buffer).status, PortStatus::ok);
 }
 
-TEST(TerminalPort, a_full_line_takes_what_it_can_and_says_so) {
+TEST(TerminalPort, a_full_line_accepts_a_part_and_reports_full) {
   const PtyPair pty = pair();
   const auto port = *open_terminal_port(pty.slave_path);
   const std::string much(1 << 20, 'x');
@@ -130,7 +131,7 @@ TEST(TerminalPort, a_full_line_takes_what_it_can_and_says_so) {
   EXPECT_LT(put.bytes, much.size());
 }
 
-TEST(TerminalPort, a_second_opener_is_refused_and_told_by_whom) {
+TEST(TerminalPort, refuses_a_second_opener_and_names_the_first) {
   const PtyPair pty = pair();
   auto first = open_terminal_port(pty.slave_path);
   const auto second = open_port(pty.slave_path, 9600);
@@ -142,7 +143,7 @@ TEST(TerminalPort, a_second_opener_is_refused_and_told_by_whom) {
   EXPECT_TRUE(open_port(pty.slave_path, 9600)) << "closing sets it free";
 }
 
-TEST(TerminalPort, talking_allocates_nothing) {
+TEST(TerminalPort, reading_and_writing_allocate_nothing) {
   const PtyPair pty = pair();
   const auto port = *open_terminal_port(pty.slave_path);
   std::array<std::byte, 64> buffer{};
@@ -156,7 +157,7 @@ TEST(TerminalPort, talking_allocates_nothing) {
   EXPECT_EQ(allocations_of_this_thread(), before);
 }
 
-TEST(OpenPort, a_missing_device_asks_for_its_plug) {
+TEST(OpenPort, a_missing_device_is_reported) {
   const auto port = open_port("/dev/serial/by-id/usb-Nobody-if00-port0", 9600);
   ASSERT_FALSE(port);
   EXPECT_EQ(port.error().file, "/dev/serial/by-id/usb-Nobody-if00-port0");
@@ -165,7 +166,7 @@ TEST(OpenPort, a_missing_device_asks_for_its_plug) {
               testing::AnyOf(HasSubstr("plugged in now: /dev/serial/by-id/"), HasSubstr("no serial device is plugged in")));
 }
 
-TEST(OpenPort, what_is_no_serial_line_is_said_to_be_none) {
+TEST(OpenPort, reports_what_is_no_serial_line) {
   for (const char* path : {"/dev/null", "/etc/passwd", "/tmp"}) {
     const auto port = open_port(path, 9600);
     ASSERT_FALSE(port) << path;
@@ -175,20 +176,20 @@ TEST(OpenPort, what_is_no_serial_line_is_said_to_be_none) {
   EXPECT_FALSE(is_pseudo_terminal("/dev/pts"));
 }
 
-TEST(OpenPort, without_permission_the_way_to_get_it_is_told) {
+TEST(OpenPort, without_permission_says_how_to_get_it) {
   const PtyPair pty = pair();
   std::filesystem::permissions(pty.slave_path, std::filesystem::perms::none);
   if (::getuid() == 0) {
-    // The superuser may everything: let a child try as nobody.
+    // The superuser has all permissions, so a child process tries as nobody.
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
       if (::setgid(65534) != 0 || ::setuid(65534) != 0) ::_exit(2);
       const auto refused = open_port(pty.slave_path, 9600);
-      const bool told = !refused &&
-                        refused.error().message.find("this user may not open it: install systemd/udev/60-prismesh.rules") == 0 &&
-                        refused.error().message.find("(sudo usermod -aG ") != std::string::npos;
-      ::_exit(told ? 0 : 1);
+      const bool refused_correctly =
+          !refused && refused.error().message.find("this user may not open it: install systemd/udev/60-prismesh.rules") == 0 &&
+          refused.error().message.find("(sudo usermod -aG ") != std::string::npos;
+      ::_exit(refused_correctly ? 0 : 1);
     }
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);

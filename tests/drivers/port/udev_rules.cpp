@@ -10,11 +10,11 @@ namespace prismesh::drivers::port {
 
 namespace {
 
-/// What a key may stand with.
+/// Operators and attributes that a key accepts.
 struct Grammar {
   bool has_attribute = false;
   std::set<std::string> operations;
-  bool is_parent_match = false;  ///< all such keys of a rule have to match one and the same device of the chain
+  bool is_parent_match = false;  ///< all such keys of a rule must match the same device of the chain
 };
 
 const std::map<std::string, Grammar>& grammar() {
@@ -40,7 +40,7 @@ const std::map<std::string, Grammar>& grammar() {
 
 bool is_match(const UdevToken& token) { return token.operation == "==" || token.operation == "!="; }
 
-/// Cuts the next token off the line; nothing where there is none, so that what remains is the problem.
+/// Removes the next token from the line and returns it. Returns nothing if there is none; then the rest is the problem.
 std::optional<UdevToken> next_token(std::string& line) {
   static const std::regex kToken(R"rx(^\s*([A-Z]+)(?:\{([^{}"]+)\})?(==|!=|\+=|-=|:=|=)"([^"\\]*)"\s*(,|$))rx");
   std::smatch found;
@@ -48,7 +48,7 @@ std::optional<UdevToken> next_token(std::string& line) {
   UdevToken token{found[1], found[2], found[3], found[4]};
   const bool more = found[5].length() > 0;
   line = found.suffix();
-  // a comma that nothing follows
+  // a trailing comma
   if (more && line.find_first_not_of(" \t") == std::string::npos) return std::nullopt;
   return token;
 }
@@ -85,7 +85,7 @@ bool holds(const UdevToken& token, const std::string& actual) {
   return any == (token.operation == "==");
 }
 
-/// A match on an attribute that isn't there fails, whichever operator.
+/// A match on a missing attribute fails with either operator.
 bool holds(const UdevToken& token, const std::map<std::string, std::string>& values) {
   const auto found = values.find(token.attribute);
   return found != values.end() && holds(token, found->second);
@@ -97,7 +97,7 @@ class Machine {
     result.properties = chain.front().properties;
   }
 
-  /// The label to go on at, if the rule says so.
+  /// Returns the label to continue at, if the rule has a GOTO.
   std::optional<std::string> apply(const UdevRule& rule) {
     const std::optional<std::size_t> parent = matched_device(rule);
     if (!parent) return std::nullopt;
@@ -138,7 +138,7 @@ class Machine {
     if (token.key == "DRIVERS") return holds(token, device.driver);
     return holds(token, device.attributes);
   }
-  /// $attr{x}: the device's own, else that of the parent which matched.
+  /// $attr{x}: the device's own attribute, or else that of the matching parent.
   std::string substituted(std::string value, std::size_t parent) const {
     const std::regex attribute(R"(\$attr\{([^{}]+)\})");
     for (std::smatch found; std::regex_search(value, found, attribute);) {

@@ -1,4 +1,4 @@
-// udev's rules language, as far as this project's rules use it: strict reading, and what rules do to a device. After udev(7).
+// Parses and applies udev's rules language as far as this project's rules use it. Strict. After udev(7).
 #pragma once
 
 #include <map>
@@ -20,11 +20,11 @@ struct UdevRule {
 };
 struct UdevRules {
   std::vector<UdevRule> rules;
-  std::vector<std::string> problems;  ///< "line: what"; empty where all is well
+  std::vector<std::string> problems;  ///< "line: problem"; empty if there is none
 };
 
-/// Problems are: what isn't a token, an unknown key, an operator or an attribute that the key doesn't have, a substitution that udev
-/// doesn't know, a jump without a label below it, a label twice, a mode that is none, a rule that does nothing.
+/// Problems: text that isn't a token, an unknown key, an operator or attribute that the key doesn't accept, an unknown substitution, a GOTO
+/// without a later label, a duplicate label, an invalid mode, a rule without effect.
 UdevRules read_udev_rules(std::string_view text);
 
 /// A device and its parents, nearest first; the first is the one that the event is about.

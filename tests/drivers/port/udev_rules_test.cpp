@@ -44,7 +44,7 @@ const Adapter kPrinter{"04b8", "0202", "P1", "usblp"};
 
 TEST(UdevRules, have_no_problems) { EXPECT_THAT(station_rules().problems, IsEmpty()); }
 
-TEST(UdevRules, every_serial_adapter_is_for_the_group_and_whoever_sits_there) {
+TEST(UdevRules, every_serial_adapter_is_for_the_group_and_the_local_user) {
   for (const Adapter& adapter : {kU2d2, kFt232, kFtX, kProlific, kCp210x}) {
     const UdevResult result = apply_udev_rules(station_rules().rules, "add", adapter.tty_chain());
     EXPECT_EQ(result.group, "prismesh") << adapter.product;
@@ -54,7 +54,7 @@ TEST(UdevRules, every_serial_adapter_is_for_the_group_and_whoever_sits_there) {
   }
 }
 
-TEST(UdevRules, links_carry_the_serial_number_where_there_is_one) {
+TEST(UdevRules, links_have_the_serial_number_if_there_is_one) {
   const auto links = [](const Adapter& adapter) { return apply_udev_rules(station_rules().rules, "add", adapter.tty_chain()).links; };
   EXPECT_THAT(links(kU2d2), ElementsAre("prismesh/u2d2-FT4THUGO"));
   EXPECT_THAT(links(kFt232), ElementsAre("prismesh/ftdi-A50285BI"));
@@ -63,7 +63,7 @@ TEST(UdevRules, links_carry_the_serial_number_where_there_is_one) {
   EXPECT_THAT(links(kProlific), IsEmpty()) << "most of them have none";
 }
 
-TEST(UdevRules, usb_devices_stay_awake_and_are_left_alone) {
+TEST(UdevRules, usb_devices_are_not_suspended_or_probed) {
   for (const Adapter& adapter : {kU2d2, kFt232, kFtX, kProlific, kCp210x}) {
     const UdevResult result = apply_udev_rules(station_rules().rules, "add", adapter.usb_chain());
     EXPECT_THAT(result.written, ElementsAre(Pair("power/control", "on"))) << adapter.product;
@@ -72,7 +72,7 @@ TEST(UdevRules, usb_devices_stay_awake_and_are_left_alone) {
   }
 }
 
-TEST(UdevRules, ftdi_chips_hand_over_after_a_millisecond) {
+TEST(UdevRules, ftdi_chips_have_a_latency_of_one_millisecond) {
   for (const Adapter& adapter : {kU2d2, kFt232, kFtX})
     for (const char* action : {"add", "bind"}) {
       const UdevResult result = apply_udev_rules(station_rules().rules, action, adapter.port_chain());
@@ -89,7 +89,7 @@ TEST(UdevRules, the_pen_may_be_opened_over_usb) {
   EXPECT_THAT(result.written, ElementsAre(Pair("power/control", "on")));
 }
 
-TEST(UdevRules, nothing_else_is_touched) {
+TEST(UdevRules, no_other_device_is_changed) {
   const std::vector<UdevDevice> on_board{{"tty", "", {}, {}}, {"pnp", "serial", {}, {}}};
   for (const std::vector<UdevDevice>& chain : {kPrinter.usb_chain(), kPrinter.tty_chain(), on_board}) {
     const UdevResult result = apply_udev_rules(station_rules().rules, "add", chain);
@@ -101,7 +101,7 @@ TEST(UdevRules, nothing_else_is_touched) {
   EXPECT_THAT(removed.written, IsEmpty());
 }
 
-TEST(UdevRulesReader, finds_what_udev_would_stumble_over) {
+TEST(UdevRulesReader, finds_what_udev_refuses) {
   const auto problem = [](const std::string& text) {
     const UdevRules read = read_udev_rules(text);
     return read.problems.empty() ? "none" : read.problems.front();

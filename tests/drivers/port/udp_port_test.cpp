@@ -20,7 +20,7 @@ struct Station {
   std::unique_ptr<UdpSender> sender = std::move(*UdpSender::open(port->udp_port()));
 };
 
-TEST(UdpPort, hands_datagrams_over_one_by_one) {
+TEST(UdpPort, returns_datagrams_one_by_one) {
   Station station;
   std::array<std::byte, 64> buffer{};
   EXPECT_FALSE(station.port->receive(buffer).arrived);
@@ -33,7 +33,7 @@ TEST(UdpPort, hands_datagrams_over_one_by_one) {
   EXPECT_FALSE(station.port->receive(buffer).arrived);
 }
 
-TEST(UdpPort, tells_a_cut_and_an_empty_datagram_from_none) {
+TEST(UdpPort, distinguishes_truncated_empty_and_no_datagrams) {
   Station station;
   std::array<std::byte, 4> buffer{};
   station.sender->send(bytes_of("too long"));
@@ -46,7 +46,7 @@ TEST(UdpPort, tells_a_cut_and_an_empty_datagram_from_none) {
   EXPECT_EQ(empty.bytes, 0u);
 }
 
-TEST(UdpPort, discarding_leaves_only_what_comes_later) {
+TEST(UdpPort, discard_keeps_only_later_datagrams) {
   Station station;
   for (int i = 0; i < 50; ++i) station.sender->send(bytes_of("old"));
   station.port->discard_input();
@@ -56,7 +56,7 @@ TEST(UdpPort, discarding_leaves_only_what_comes_later) {
   EXPECT_EQ(station.port->receive(buffer).bytes, 5u);
 }
 
-TEST(UdpPort, a_taken_port_number_is_told) {
+TEST(UdpPort, reports_a_port_number_in_use) {
   Station station;
   const auto second = UdpPort::open(station.port->udp_port());
   ASSERT_FALSE(second);
@@ -64,7 +64,7 @@ TEST(UdpPort, a_taken_port_number_is_told) {
   EXPECT_THAT(second.error().message, testing::HasSubstr("another program listens there already"));
 }
 
-TEST(UdpPort, a_sender_without_listener_goes_on) {
+TEST(UdpPort, a_sender_without_receiver_continues) {
   std::uint16_t number = 0;
   {
     const Station station;
@@ -79,7 +79,7 @@ TEST(UdpPort, a_sender_without_listener_goes_on) {
   EXPECT_EQ((*port)->receive(buffer).bytes, 3u);
 }
 
-/// An address of this machine that the network sees; 0 where it has none.
+/// Returns an address of this machine on the network; 0 if it has none.
 in_addr_t network_address() {
   ifaddrs* all = nullptr;
   if (::getifaddrs(&all) != 0) return 0;
@@ -93,7 +93,7 @@ in_addr_t network_address() {
   return found;
 }
 
-TEST(UdpPort, hears_this_machine_only) {
+TEST(UdpPort, receives_from_this_machine_only) {
   const in_addr_t outside = network_address();
   if (outside == 0) GTEST_SKIP() << "this machine has no address but the loopback's";
   Station station;

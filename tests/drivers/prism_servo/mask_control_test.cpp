@@ -18,12 +18,12 @@ namespace {
 using eye_tracker::HeadMotion;
 using eye_tracker::MotionKind;
 
-/// To the right and back, slowly, as far as that.
-std::function<Eigen::Vector3d(double)> to_and_fro(double reach_mm, double period_s) {
+/// Moves slowly to the right and back, up to `reach`.
+std::function<Eigen::Vector3d(double)> oscillating(double reach_mm, double period_s) {
   return [=](double seconds) { return Eigen::Vector3d(reach_mm * std::sin(2 * M_PI * seconds / period_s), 0, 650); };
 }
 
-/// Still until a time, then at an even pace to the right.
+/// Still until a time, then at constant speed to the right.
 std::function<Eigen::Vector3d(double)> walk_right(double from_s, double mm_s, double start_mm = 0, double end_mm = 1e9) {
   return [=](double seconds) { return Eigen::Vector3d(std::min(end_mm, start_mm + mm_s * std::max(0.0, seconds - from_s)), 0, 650); };
 }
@@ -51,9 +51,9 @@ TEST(mask_control, homes_then_follows_and_then_allows_stereo) {
   EXPECT_NEAR(rig.mask().mask_mm(), 0, 0.01);
 }
 
-TEST(mask_control, the_mask_is_where_the_head_needs_it) {
+TEST(mask_control, the_mask_follows_the_ideal_position) {
   MaskRig rig;
-  rig.head = to_and_fro(120, 3);  // up to 250 mm/s
+  rig.head = oscillating(120, 3);  // up to 250 mm/s
   ASSERT_GE(rig.run_until_stereo(), 0);
   double worst = 0;
   rig.each_tick = [&](const auto&, const auto&) { worst = std::max(worst, std::abs(rig.mask().motor_mm() - rig.ideal_mm())); };
@@ -61,9 +61,9 @@ TEST(mask_control, the_mask_is_where_the_head_needs_it) {
   EXPECT_LT(worst, 0.02) << "of 0.28 mm that are a pixel";
 }
 
-TEST(mask_control, its_lag_matters) {
+TEST(mask_control, compensates_the_lag) {
   MaskRig rig;
-  rig.head = to_and_fro(120, 3);
+  rig.head = oscillating(120, 3);
   ASSERT_GE(rig.run_until_stereo(), 0);
   double lead = 0;
   int ticks = 0;
@@ -79,25 +79,25 @@ TEST(mask_control, its_lag_matters) {
   EXPECT_NEAR(lead / ticks, 0.020, 0.001) << "seconds: the servo's lag and a tick";
 }
 
-TEST(mask_control, the_published_state_foretells_the_mask) {
+TEST(mask_control, the_published_state_predicts_the_mask) {
   MaskRig rig;
-  rig.head = to_and_fro(120, 3);
+  rig.head = oscillating(120, 3);
   ASSERT_GE(rig.run_until_stereo(), 0);
-  std::deque<std::pair<std::int64_t, double>> foretold;
+  std::deque<std::pair<std::int64_t, double>> predicted;
   double worst = 0;
   rig.each_tick = [&](const MaskControl::Input& input, const MaskControl::Output& out) {
-    foretold.emplace_back(input.now_ns + 40 * kMs, mask_position_at(out.state, input.now_ns + 40 * kMs));
-    while (!foretold.empty() && foretold.front().first < rig.servo().clock().now_ns()) foretold.pop_front();
-    // The rig has moved on by a tick.
-    if (!foretold.empty() && foretold.front().first == rig.servo().clock().now_ns())
-      worst = std::max(worst, std::abs(foretold.front().second - rig.mask().motor_mm()));
+    predicted.emplace_back(input.now_ns + 40 * kMs, mask_position_at(out.state, input.now_ns + 40 * kMs));
+    while (!predicted.empty() && predicted.front().first < rig.servo().clock().now_ns()) predicted.pop_front();
+    // The rig has advanced by one tick.
+    if (!predicted.empty() && predicted.front().first == rig.servo().clock().now_ns())
+      worst = std::max(worst, std::abs(predicted.front().second - rig.mask().motor_mm()));
   };
   rig.run_for(6'000 * kMs);
   EXPECT_GT(worst, 0);
   EXPECT_LT(worst, 0.015);
 }
 
-TEST(mask_control, a_position_in_the_future_falls_in_behind_the_goal) {
+TEST(mask_control, a_predicted_position_approaches_the_goal_with_the_lag) {
   MaskState state;
   state.time_ns = state.measured_ns = 1'000 * kMs;
   state.lag_ns = 20 * kMs;
@@ -109,7 +109,7 @@ TEST(mask_control, a_position_in_the_future_falls_in_behind_the_goal) {
   EXPECT_NEAR(mask_position_at(state, 1'100 * kMs), 1, 0.001);
   EXPECT_LE(mask_position_at(state, 1'100 * kMs), 1);
   state.goal_velocity_mm_s = 1;
-  state.position_mm = 0.98;  // a lag behind the goal: goes on beside it
+  state.position_mm = 0.98;  // one lag behind the goal: moves parallel to it
   EXPECT_NEAR(mask_position_at(state, 1'050 * kMs), 1.03, 1e-9);
   EXPECT_NEAR(mask_position_at(state, 9'000 * kMs), 1.08, 1e-9) << "no further than 100 ms ahead";
   EXPECT_NEAR(mask_position_at(state, 0), 0.98, 1e-9);
@@ -119,7 +119,7 @@ TEST(mask_control, a_position_in_the_future_falls_in_behind_the_goal) {
 
 // --- moves back ---
 
-TEST(mask_control, goes_back_by_half_a_period_where_travel_ends) {
+TEST(mask_control, moves_back_by_half_a_period_at_the_end_of_the_travel) {
   MaskRig rig(little_travel(0.6));
   rig.head = walk_right(3.0, 100);
   ASSERT_GE(rig.run_until_stereo(), 0);
@@ -128,11 +128,11 @@ TEST(mask_control, goes_back_by_half_a_period_where_travel_ends) {
     if (halves.empty() || halves.back() != out.state.half_periods) halves.push_back(out.state.half_periods);
   };
   rig.run_for(5'000 * kMs);
-  // 3.7 s at 100 mm/s: 370 mm, 1.64 mm of mask; a move each 0.28 mm from 0.54 on.
+  // 3.7 s at 100 mm/s: 370 mm, 1.64 mm of mask travel; a move every 0.28 mm from 0.54 mm on.
   EXPECT_THAT(halves, testing::ElementsAre(0, 1, 2, 3, 4));
 }
 
-TEST(mask_control, or_by_whole_periods_only) {
+TEST(mask_control, moves_back_by_whole_periods_only_if_set_so) {
   MaskRigSettings settings = little_travel(0.6);
   settings.limits.half_period_returns = false;
   MaskRig rig(settings);
@@ -143,7 +143,7 @@ TEST(mask_control, or_by_whole_periods_only) {
   EXPECT_EQ(rig.state().half_periods, 4);
 }
 
-TEST(mask_control, a_head_at_the_border_does_not_make_it_go_to_and_fro) {
+TEST(mask_control, a_head_at_the_border_does_not_cause_repeated_moves) {
   MaskRig rig(little_travel(0.6));
   const double border_mm = 0.9 * 0.6 / 0.004433;
   rig.head = [&](double seconds) { return Eigen::Vector3d(border_mm + 15 * std::sin(seconds * 3), 0, 650); };
@@ -158,7 +158,7 @@ TEST(mask_control, a_head_at_the_border_does_not_make_it_go_to_and_fro) {
   EXPECT_LE(moves, 1);
 }
 
-TEST(mask_control, a_move_back_waits_until_the_last_picture_in_depth_has_gone) {
+TEST(mask_control, a_move_back_waits_for_the_end_of_the_last_stereo_picture) {
   const MaskRigSettings settings = little_travel(0.6);
   MaskRig rig(settings);
   rig.head = walk_right(3.0, 100);
@@ -168,7 +168,7 @@ TEST(mask_control, a_move_back_waits_until_the_last_picture_in_depth_has_gone) {
   rig.each_tick = [&](const MaskControl::Input& input, const MaskControl::Output& out) {
     const bool flies = out.state.phase == MaskPhase::flying_back;
     if (flies && !flew) {
-      // A picture that lit up just before the announced time stays on for a period of the display.
+      // A picture that lit up just before the announced time stays visible for one period of the display.
       const std::int64_t gone_ns = out.state.mono_from_ns + settings.limits.picture_ns;
       EXPECT_GE(input.now_ns, gone_ns);
       EXPECT_LT(input.now_ns, gone_ns + kTickNs) << "nor is it kept waiting";
@@ -180,9 +180,9 @@ TEST(mask_control, a_move_back_waits_until_the_last_picture_in_depth_has_gone) {
   EXPECT_GE(moves, 3);
 }
 
-TEST(mask_control, a_move_back_leaves_half_a_step_of_room) {
+TEST(mask_control, a_move_back_leaves_half_a_step_of_travel) {
   MaskRig rig(little_travel(0.6));
-  const double place_mm = 0.54 + 0.75 * rig.half_period_mm();  // so far beyond the border
+  const double place_mm = 0.54 + 0.75 * rig.half_period_mm();  // beyond the border by so much
   rig.head = walk_right(3.0, 2500, 0, place_mm / 0.004433);
   ASSERT_GE(rig.run_until_stereo(), 0);
   ASSERT_GE(rig.run_until(MaskPhase::flying_back), 0);
@@ -191,7 +191,7 @@ TEST(mask_control, a_move_back_leaves_half_a_step_of_room) {
   EXPECT_EQ(rig.state().half_periods, 2) << "one would only just be enough";
 }
 
-TEST(mask_control, where_travel_ends_the_goal_stands_still) {
+TEST(mask_control, the_goal_stops_at_the_end_of_the_travel) {
   MaskRigSettings settings = little_travel(0.6);
   settings.limits.return_notice_ns = 10'000 * kMs;  // no move back comes in time
   MaskRig rig(settings);
@@ -199,13 +199,13 @@ TEST(mask_control, where_travel_ends_the_goal_stands_still) {
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.run_for(4'000 * kMs);
   EXPECT_EQ(rig.state().goal_mm, 0.6);
-  EXPECT_EQ(rig.state().goal_velocity_mm_s, 0) << "however the head goes on";
+  EXPECT_EQ(rig.state().goal_velocity_mm_s, 0) << "however the head moves";
 }
 
-/// Watches everything that must hold at any time, whatever happens.
-class Promises {
+/// Checks the conditions that must hold at all times.
+class ConditionChecks {
  public:
-  explicit Promises(MaskRig& rig, const MaskRigSettings& settings) : rig_(rig), settings_(settings) {}
+  explicit ConditionChecks(MaskRig& rig, const MaskRigSettings& settings) : rig_(rig), settings_(settings) {}
 
   void check(const MaskControl::Input& input, const MaskControl::Output& out) {
     const MaskState& state = out.state;
@@ -230,19 +230,20 @@ class Promises {
       const double goal = std::clamp(ideal - state.half_periods * rig_.half_period_mm(), -limits.travel_mm, limits.travel_mm);
       ASSERT_NEAR(out.goal_mm, goal, 0.08) << "a new measurement may move the goal faster than the motor";
     }
-    // Announcement: what was published `notice` ago already said that pictures of now are mono.
+    // Announcement: the state published `notice` ago already said that pictures shown now must be mono.
     history_.push_back({input.now_ns, state});
     while (history_.front().first < input.now_ns - limits.return_notice_ns) history_.pop_front();
-    const MaskState& told = history_.front().second;
-    const bool told_mono = !told.stereo_allowed || (input.now_ns >= told.mono_from_ns && input.now_ns < told.mono_until_ns);
+    const MaskState& announced = history_.front().second;
+    const bool announced_mono =
+        !announced.stereo_allowed || (input.now_ns >= announced.mono_from_ns && input.now_ns < announced.mono_until_ns);
     if (flying && history_.front().first <= input.now_ns - limits.return_notice_ns + kTickNs) {
-      ASSERT_TRUE(told_mono) << "at " << input.now_ns / kMs << " ms the mask moves back without having said so in time";
+      ASSERT_TRUE(announced_mono) << "at " << input.now_ns / kMs << " ms the mask moves back without an announcement in time";
     }
   }
   int flying_ticks = 0;
 
  private:
-  /// Depth is given back when a move back was said to end: what has been said only grows, and in time.
+  /// Stereo returns at the announced end of a move back; announced ends only move later, and in time.
   void check_announced_end(std::int64_t now_ns, const MaskState& state) {
     const MaskState before = std::exchange(before_, state);
     const std::int64_t notice_ns = settings_.limits.return_notice_ns;
@@ -251,10 +252,10 @@ class Promises {
       ASSERT_LE(state.mono_until_ns, before.mono_until_ns + notice_ns / 4) << "a longer move than was announced";
     }
     if (flew && state.phase == MaskPhase::following) {
-      ASSERT_GE(now_ns, before.mono_until_ns) << "depth comes back sooner than was said";
+      ASSERT_GE(now_ns, before.mono_until_ns) << "stereo returns sooner than announced";
     }
     if (flew && flies && state.mono_until_ns > before.mono_until_ns) {
-      ASSERT_GE(before.mono_until_ns - now_ns, notice_ns - kTickNs) << "that it takes longer is said on too short notice";
+      ASSERT_GE(before.mono_until_ns - now_ns, notice_ns - kTickNs) << "a longer duration is announced too late";
     }
   }
 
@@ -266,7 +267,7 @@ class Promises {
   bool powered_ = false;
 };
 
-TEST(mask_control, keeps_its_promises_for_minutes_of_any_head) {
+TEST(mask_control, keeps_its_conditions_for_minutes_of_any_motion) {
   int flying = 0;
   for (const double travel : {0.35, 0.6, 2.0}) {
     for (const MotionKind kind : {MotionKind::sway, MotionKind::turn, MotionKind::tour}) {
@@ -275,14 +276,14 @@ TEST(mask_control, keeps_its_promises_for_minutes_of_any_head) {
         MaskRig rig(settings);
         const HeadMotion motion(kind, seed, {40.0 * static_cast<double>(seed), 0, 650}, 1.25);
         rig.head = [&](double seconds) { return motion.between_eyes_mm(seconds); };
-        Promises promises(rig, settings);
+        ConditionChecks conditions(rig, settings);
         bool stuck = false;
         rig.each_tick = [&](const auto& in, const auto& out) {
-          promises.check(in, out);
+          conditions.check(in, out);
           stuck = stuck || out.state.phase == MaskPhase::stuck;
         };
         rig.run_for(60'000 * kMs);
-        flying += promises.flying_ticks;
+        flying += conditions.flying_ticks;
         EXPECT_FALSE(stuck) << "travel " << travel << ", motion " << static_cast<int>(kind) << ", seed " << seed;
         if (testing::Test::HasFatalFailure()) return;
       }
@@ -291,11 +292,11 @@ TEST(mask_control, keeps_its_promises_for_minutes_of_any_head) {
   EXPECT_GT(flying, 200);
 }
 
-TEST(mask_control, keeps_them_with_a_head_that_goes_up_to_500_mm_s_at_random) {
+TEST(mask_control, keeps_its_conditions_for_random_motion_up_to_500_mm_s) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const MaskRigSettings settings = little_travel(0.5);
     MaskRig rig(settings);
-    // A point that is steered at random: sums of waves whose speeds add up to 500 mm/s at most.
+    // A point on a random path: a sum of waves with a total speed of max. 500 mm/s.
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> frequency(0.1, 0.8), phase(0, 6.28);
     std::vector<std::array<double, 3>> waves;
@@ -308,11 +309,11 @@ TEST(mask_control, keeps_them_with_a_head_that_goes_up_to_500_mm_s_at_random) {
       for (const auto& [reach, pulse, at] : waves) place.x() += reach * std::sin(pulse * seconds + at);
       return place;
     };
-    Promises promises(rig, settings);
+    ConditionChecks conditions(rig, settings);
     bool stuck = false;
     int stereo = 0, ticks = 0;
     rig.each_tick = [&](const auto& in, const MaskControl::Output& out) {
-      promises.check(in, out);
+      conditions.check(in, out);
       stuck = stuck || out.state.phase == MaskPhase::stuck;
       ++ticks;
       const bool mono = in.now_ns >= out.state.mono_from_ns && in.now_ns < out.state.mono_until_ns;
@@ -320,36 +321,36 @@ TEST(mask_control, keeps_them_with_a_head_that_goes_up_to_500_mm_s_at_random) {
     };
     rig.run_for(120'000 * kMs);
     EXPECT_FALSE(stuck);
-    EXPECT_GT(promises.flying_ticks, 50);
+    EXPECT_GT(conditions.flying_ticks, 50);
     EXPECT_GT(stereo, ticks / 2);
     if (testing::Test::HasFatalFailure()) return;
   }
 }
 
-TEST(mask_control, a_slow_motor_makes_mono_longer_and_says_so_in_time) {
+TEST(mask_control, a_slow_motor_extends_mono_and_announces_it_in_time) {
   for (const std::int64_t notice_ms : {60, 200}) {
     MaskRigSettings settings = little_travel(0.6);
     settings.limits.half_period_returns = false;
     settings.limits.return_notice_ns = notice_ms * kMs;
-    settings.servo.simulated.speed_mm_s = 3.6;  // of the 5 that were promised
-    settings.servo.simulated.lag_ms = 60;       // of 15
+    settings.servo.simulated.speed_mm_s = 3.6;  // the settings say 5
+    settings.servo.simulated.lag_ms = 60;       // the settings say 15
     MaskRig rig(settings);
-    rig.head = to_and_fro(300, 8);
-    Promises promises(rig, settings);
+    rig.head = oscillating(300, 8);
+    ConditionChecks conditions(rig, settings);
     bool stuck = false;
     rig.each_tick = [&](const auto& in, const MaskControl::Output& out) {
-      promises.check(in, out);
+      conditions.check(in, out);
       stuck = stuck || out.state.phase == MaskPhase::stuck;
     };
     rig.run_for(40'000 * kMs);
     EXPECT_FALSE(stuck);
-    EXPECT_GT(promises.flying_ticks, 100);
+    EXPECT_GT(conditions.flying_ticks, 100);
   }
 }
 
 // --- eyes and motor lost ---
 
-TEST(mask_control, freezes_parks_and_rests_without_eyes) {
+TEST(mask_control, freezes_and_parks_without_eyes) {
   MaskRig rig;
   rig.head = [](double) { return Eigen::Vector3d(100, 0, 650); };
   ASSERT_GE(rig.run_until_stereo(), 0);
@@ -393,7 +394,7 @@ TEST(mask_control, measurements_that_stop_count_as_lost_eyes) {
   EXPECT_THAT(rig.run_until(MaskPhase::frozen, 400), testing::AllOf(testing::Ge(0), testing::Le(300)));
 }
 
-TEST(mask_control, measurements_of_the_future_count_as_lost_eyes) {
+TEST(mask_control, measurements_in_the_future_count_as_lost_eyes) {
   for (const std::int64_t ahead_ms : {99, 101, 5'000}) {
     MaskRigSettings settings;
     settings.measure_every_ns = kTickNs;
@@ -403,25 +404,25 @@ TEST(mask_control, measurements_of_the_future_count_as_lost_eyes) {
   }
 }
 
-TEST(mask_control, places_that_are_no_numbers_count_as_lost_eyes) {
+TEST(mask_control, positions_that_arent_finite_count_as_lost_eyes) {
   MaskRig rig;
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.head = [](double) { return Eigen::Vector3d(std::nan(""), 0, 650); };
   EXPECT_THAT(rig.run_until(MaskPhase::frozen, 100), testing::AllOf(testing::Ge(0), testing::Le(30)));
 }
 
-TEST(mask_control, power_comes_on_where_the_motor_stands) {
+TEST(mask_control, torque_starts_at_the_motors_position) {
   for (const double place : {-1.9, -0.4, 1.5}) {
     MaskRigSettings settings;
     settings.servo.simulated.start_mm = place;
     MaskRig rig(settings);
     while (!rig.output().powered) rig.tick();
-    EXPECT_NEAR(rig.output().goal_mm, place, 5 * 0.005 + 0.002) << "and one tick's way to the middle";
+    EXPECT_NEAR(rig.output().goal_mm, place, 5 * 0.005 + 0.002) << "and one tick's travel to the middle";
     EXPECT_GE(rig.run_until_stereo(), 0) << place;
   }
 }
 
-TEST(mask_control, an_announced_move_back_ends_with_the_eyes) {
+TEST(mask_control, lost_eyes_cancel_an_announced_move_back) {
   MaskRig rig(little_travel(0.5));
   rig.head = walk_right(4.0, 100);
   ASSERT_GE(rig.run_until_stereo(), 0);
@@ -433,7 +434,7 @@ TEST(mask_control, an_announced_move_back_ends_with_the_eyes) {
   EXPECT_EQ(rig.state().mono_until_ns, 0);
 }
 
-TEST(mask_control, the_goals_velocity_is_how_fast_it_goes) {
+TEST(mask_control, publishes_the_goals_velocity) {
   MaskRigSettings settings;
   settings.servo.simulated.start_mm = -1.2;
   MaskRig rig(settings);
@@ -444,7 +445,7 @@ TEST(mask_control, the_goals_velocity_is_how_fast_it_goes) {
     const double velocity = (out.goal_mm - before.goal_mm) / 0.005;
     if (before.powered && out.powered && out.state.phase == before.state.phase && std::abs(velocity) > 4.999) {
       const bool following = out.state.phase == MaskPhase::following;
-      // A goal that catches up with a resting head will rest.
+      // A goal that catches up with a resting head will come to rest.
       EXPECT_NEAR(out.state.goal_velocity_mm_s, following ? 0 : velocity, 1e-6) << static_cast<int>(out.state.phase);
       ++moves[following ? 1 : 0];
     }
@@ -461,9 +462,9 @@ TEST(mask_control, the_goals_velocity_is_how_fast_it_goes) {
   EXPECT_GE(moves[1], 6);
 }
 
-TEST(mask_control, eyes_that_come_back_soon_are_followed_on) {
+TEST(mask_control, follows_again_when_the_eyes_return_soon) {
   MaskRig rig;
-  rig.head = to_and_fro(100, 6);
+  rig.head = oscillating(100, 6);
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.eyes = false;
   ASSERT_GE(rig.run_until(MaskPhase::frozen), 0);
@@ -475,7 +476,7 @@ TEST(mask_control, eyes_that_come_back_soon_are_followed_on) {
   EXPECT_THAT(rig.run_until_stereo(), testing::AllOf(testing::Ge(0), testing::Lt(150)));
 }
 
-TEST(mask_control, eyes_that_come_back_elsewhere_wait_for_a_mono_picture) {
+TEST(mask_control, waits_for_a_mono_picture_when_the_eyes_return_elsewhere) {
   MaskRig rig(little_travel(0.4));
   double x = 0;
   rig.head = [&](double) { return Eigen::Vector3d(x, 0, 650); };
@@ -507,7 +508,7 @@ TEST(mask_control, an_unplugged_motor_is_absent_at_once_and_homes_when_it_is_bac
   EXPECT_LT(ms, 1'000);
 }
 
-/// What was said to the mask's control last, to be said again with a change.
+/// The last input of the mask control, to be repeated with a change.
 class LastInput {
  public:
   explicit LastInput(MaskRig& rig) : rig_(rig) {
@@ -523,7 +524,7 @@ class LastInput {
   MaskRig& rig_;
 };
 
-TEST(mask_control, a_port_that_has_gone_takes_its_motor_along_whatever_that_said_last) {
+TEST(mask_control, the_motor_is_absent_when_its_port_is_gone) {
   MaskRig rig;
   LastInput last(rig);
   ASSERT_GE(rig.run_until_stereo(), 0);
@@ -534,7 +535,7 @@ TEST(mask_control, a_port_that_has_gone_takes_its_motor_along_whatever_that_said
   EXPECT_FALSE(out.powered);
 }
 
-TEST(mask_control, a_motor_that_falls_silent_is_absent_after_its_last_reading_is_old) {
+TEST(mask_control, a_silent_motor_is_absent_when_its_last_reading_is_old) {
   MaskRig rig;
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.mask().mute(true);
@@ -543,7 +544,7 @@ TEST(mask_control, a_motor_that_falls_silent_is_absent_after_its_last_reading_is
   EXPECT_LE(ms, 110);
 }
 
-TEST(mask_control, a_tripped_watchdog_is_got_over) {
+TEST(mask_control, recovers_from_a_tripped_watchdog) {
   MaskRig rig;
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.servo().stall(500 * kMs);
@@ -557,13 +558,13 @@ TEST(mask_control, a_tripped_watchdog_is_got_over) {
 
 // --- faults ---
 
-TEST(mask_control, a_jammed_mask_is_found_said_and_let_go) {
+TEST(mask_control, detects_and_reports_a_jammed_mask_and_switches_torque_off) {
   MaskRig rig;
   rig.head = walk_right(5.0, 100);
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.mask().jam(true);
   while (rig.seconds() < 5.0) rig.tick();
-  // At 0.44 mm/s the mask is 0.05 mm behind after 110 ms, past what a slow motor would be a little later.
+  // At 0.44 mm/s the mask is 0.05 mm behind after 110 ms, and outside of a slow motor's envelope a little later.
   const std::int64_t ms = rig.run_until(MaskPhase::stuck);
   EXPECT_GE(ms, 300);
   EXPECT_LE(ms, 300 + 113 + 90);
@@ -580,7 +581,7 @@ TEST(mask_control, a_jammed_mask_is_found_said_and_let_go) {
   EXPECT_GE(rig.run_until_stereo(), 0);
 }
 
-TEST(mask_control, the_first_fault_is_the_one_that_stays) {
+TEST(mask_control, the_first_fault_stays_latched) {
   MaskRig rig;
   LastInput last(rig);
   rig.mask().jam(true);
@@ -589,7 +590,7 @@ TEST(mask_control, the_first_fault_is_the_one_that_stays) {
   EXPECT_EQ(last.step().state.phase, MaskPhase::stuck) << "the alarm is of the jam";
 }
 
-TEST(mask_control, a_motor_that_is_rearmed_is_waited_for_three_seconds) {
+TEST(mask_control, waits_three_seconds_for_a_rearmed_motor) {
   MaskRig rig;
   LastInput last(rig);
   ASSERT_GE(rig.run_until_stereo(), 0);
@@ -609,7 +610,7 @@ TEST(mask_control, a_motor_that_is_rearmed_is_waited_for_three_seconds) {
   EXPECT_EQ(last.step().state.phase, MaskPhase::absent);
 }
 
-TEST(mask_control, a_mask_jammed_in_a_move_back_is_found) {
+TEST(mask_control, detects_a_mask_jammed_during_a_move_back) {
   MaskRig rig(little_travel(0.5));
   rig.head = walk_right(4.0, 100);
   ASSERT_GE(rig.run_until_stereo(), 0);
@@ -620,7 +621,7 @@ TEST(mask_control, a_mask_jammed_in_a_move_back_is_found) {
   EXPECT_GE(rig.state().half_periods, 0);
 }
 
-TEST(mask_control, a_mask_jammed_before_homing_is_found) {
+TEST(mask_control, detects_a_mask_jammed_before_homing) {
   MaskRig rig;
   rig.mask().jam(true);
   EXPECT_GE(rig.run_until(MaskPhase::stuck, 3'000), 0);
@@ -643,7 +644,7 @@ TEST(mask_control, fast_and_slow_motors_are_not_taken_for_stuck) {
   }
 }
 
-TEST(mask_control, the_motors_alarm_is_latched_until_the_user_arms_it_again) {
+TEST(mask_control, the_motors_alarm_is_latched_until_it_is_rearmed) {
   MaskRig rig;
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.mask().raise_hardware_error(1U << 2U);
@@ -659,7 +660,7 @@ TEST(mask_control, the_motors_alarm_is_latched_until_the_user_arms_it_again) {
   EXPECT_LT(ms, 3'000);
 }
 
-TEST(mask_control, a_lasting_fault_comes_back_after_arming) {
+TEST(mask_control, a_lasting_fault_returns_after_rearming) {
   MaskRig rig;
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.mask().raise_hardware_error(1U << 0U);
@@ -677,12 +678,12 @@ TEST(mask_control, a_lasting_fault_comes_back_after_arming) {
 
 // --- calibration ---
 
-TEST(mask_control, holds_where_calibration_asks_for_it) {
+TEST(mask_control, holds_the_position_that_calibration_requests) {
   MaskRig rig;
-  rig.head = to_and_fro(100, 4);
+  rig.head = oscillating(100, 4);
   ASSERT_GE(rig.run_until_stereo(), 0);
-  Promises promises(rig, {});
-  rig.each_tick = [&](const auto& in, const auto& out) { promises.check(in, out); };
+  ConditionChecks conditions(rig, {});
+  rig.each_tick = [&](const auto& in, const auto& out) { conditions.check(in, out); };
   for (const double place : {0.3, -1.2, 99.0}) {
     rig.hold_mm = place;
     rig.tick();
@@ -700,7 +701,7 @@ TEST(mask_control, holds_where_calibration_asks_for_it) {
   EXPECT_GE(rig.run_until_stereo(), 0);
 }
 
-TEST(mask_control, depth_waits_until_the_mask_is_where_calibration_holds_it) {
+TEST(mask_control, stereo_waits_until_the_mask_is_at_the_held_position) {
   MaskRig rig;
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.hold_mm = -1.5;
@@ -713,7 +714,7 @@ TEST(mask_control, depth_waits_until_the_mask_is_where_calibration_holds_it) {
   EXPECT_THAT(rig.run_until_stereo(), testing::AllOf(testing::Ge(300), testing::Lt(600))) << "1.5 mm at 5 mm/s";
 }
 
-TEST(mask_control, where_calibration_lets_go_without_eyes_it_freezes) {
+TEST(mask_control, freezes_after_a_hold_without_eyes) {
   MaskRig rig;
   ASSERT_GE(rig.run_until_stereo(), 0);
   rig.hold_mm = 0.7;
@@ -728,7 +729,7 @@ TEST(mask_control, where_calibration_lets_go_without_eyes_it_freezes) {
   EXPECT_NEAR(rig.mask().motor_mm(), 0.7, 0.01);
 }
 
-TEST(mask_control, new_optics_are_gone_to_in_mono) {
+TEST(mask_control, moves_to_new_optics_in_mono) {
   MaskRig rig;
   rig.head = [](double) { return Eigen::Vector3d(100, 0, 650); };
   ASSERT_GE(rig.run_until_stereo(), 0);
@@ -742,9 +743,9 @@ TEST(mask_control, new_optics_are_gone_to_in_mono) {
               1e-6);
 }
 
-// --- nonsense ---
+// --- invalid input ---
 
-TEST(mask_control, nonsense_in_never_gives_nonsense_out) {
+TEST(mask_control, invalid_input_never_gives_invalid_output) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const std::vector<double> numbers = {0, 1, -1, 650, -650, 1e-300, 1e9, -1e9, 1e300, nan, inf, -inf};
   std::mt19937 random(4);

@@ -19,7 +19,7 @@ struct MaskRigSettings {
   dynamixel::RigSettings servo;
   display::MaskOptics optics;
   MaskLimits limits;
-  std::int64_t measure_every_ns = 16'666'667;  ///< a tracker of 60 Hz
+  std::int64_t measure_every_ns = 16'666'667;  ///< a 60 Hz tracker
   std::int64_t tracker_latency_ns = 20 * kMs;
 };
 
@@ -28,7 +28,7 @@ class MaskRig {
   explicit MaskRig(const MaskRigSettings& settings = {})
       : settings_(settings), servo_(with_baud(settings.servo)), control_(settings.optics, settings.limits) {}
 
-  /// Where the head is at a time; replaced by tests.
+  /// The head's position at a time; replaced by tests.
   std::function<Eigen::Vector3d(double seconds)> head = [](double) { return Eigen::Vector3d(0, 0, 650); };
   bool eyes = true;
   bool picture_mono = false;
@@ -42,7 +42,7 @@ class MaskRig {
     servo_.goal_mm = output_.goal_mm;
     servo_.powered = output_.powered;
     input.servo = servo_.tick();
-    // The rig's tick ends with the time that passes; what was read belongs to its beginning.
+    // The rig's tick ends with the advance of time; the readings belong to its start.
     input.now_ns = now;
     input.head = head_state_;
     input.head_seen = eyes;
@@ -57,19 +57,19 @@ class MaskRig {
   void run_for(std::int64_t ns) {
     for (const std::int64_t end = servo_.clock().now_ns() + ns; servo_.clock().now_ns() < end;) tick();
   }
-  /// Milliseconds until the phase is that, or -1.
-  std::int64_t run_until(MaskPhase phase, std::int64_t at_most_ms = 10'000) {
+  /// Milliseconds until the given phase, or -1.
+  std::int64_t run_until(MaskPhase phase, std::int64_t max_ms = 10'000) {
     const std::int64_t start = servo_.clock().now_ns();
-    for (std::int64_t ms = 0; ms <= at_most_ms; ms = (servo_.clock().now_ns() - start) / kMs) {
+    for (std::int64_t ms = 0; ms <= max_ms; ms = (servo_.clock().now_ns() - start) / kMs) {
       if (output_.state.phase == phase) return ms;
       tick();
     }
     return -1;
   }
   /// Milliseconds until stereo may be shown, or -1.
-  std::int64_t run_until_stereo(std::int64_t at_most_ms = 10'000) {
+  std::int64_t run_until_stereo(std::int64_t max_ms = 10'000) {
     const std::int64_t start = servo_.clock().now_ns();
-    for (std::int64_t ms = 0; ms <= at_most_ms; ms = (servo_.clock().now_ns() - start) / kMs) {
+    for (std::int64_t ms = 0; ms <= max_ms; ms = (servo_.clock().now_ns() - start) / kMs) {
       if (output_.state.stereo_allowed) return ms;
       tick();
     }
@@ -85,7 +85,7 @@ class MaskRig {
   const MaskState& state() const { return output_.state; }
   const MaskControl::Output& output() const { return output_; }
   double half_period_mm() const { return settings_.optics.mask_pitch_mm() / 2; }
-  /// Where the mask should be now, were everything perfect.
+  /// The ideal position of the mask now.
   double ideal_mm() { return display::mask_position_mm(settings_.optics, head(seconds())) - output_.state.half_periods * half_period_mm(); }
 
  private:

@@ -1,4 +1,4 @@
-// A tick of servo and mask allocates nothing, in whatever state: this program counts its calls of operator new.
+// A tick of servo and mask allocates nothing in any state: this program counts its calls of operator new.
 #include <atomic>
 #include <cstdlib>
 #include <new>

@@ -33,7 +33,7 @@ struct Seen {
   bool operator==(const Seen&) const = default;
 };
 
-/// Everything that a parser finds, given the bytes in pieces of a size.
+/// Returns all packets that a parser finds, with the bytes given in pieces of `piece` bytes.
 std::vector<Seen> parsed(const Bytes& bytes, std::size_t piece = 16, Parser* parser = nullptr) {
   Parser own;
   Parser& used = parser != nullptr ? *parser : own;
@@ -47,8 +47,8 @@ std::vector<Seen> parsed(const Bytes& bytes, std::size_t piece = 16, Parser* par
   return seen;
 }
 
-// The examples of the e-Manual's page on Protocol 2.0, word for word.
-TEST(dynamixel_packet, writes_the_manuals_instructions) {
+// The examples on the e-Manual's page on Protocol 2.0, byte for byte.
+TEST(dynamixel_packet, encodes_the_manuals_instructions) {
   EXPECT_THAT(encoded([](auto to) { return encode_ping(1, to); }), ElementsAre(0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E));
   EXPECT_THAT(encoded([](auto to) { return encode_ping(kBroadcastId, to); }), ElementsAre(0xFF, 0xFF, 0xFD, 0, 0xFE, 3, 0, 1, 0x31, 0x42));
   EXPECT_THAT(encoded([](auto to) { return encode_reboot(1, to); }), ElementsAre(0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 8, 0x2F, 0x4E));
@@ -61,7 +61,7 @@ TEST(dynamixel_packet, writes_the_manuals_instructions) {
               ElementsAre(0xFF, 0xFF, 0xFD, 0, 0xFE, 9, 0, 0x82, 0x84, 0, 4, 0, 1, 2, 0xCE, 0xFA));
 }
 
-TEST(dynamixel_packet, reads_the_manuals_answers) {
+TEST(dynamixel_packet, decodes_the_manuals_answers) {
   const Bytes ping = {0xFF, 0xFF, 0xFD, 0, 1, 7, 0, 0x55, 0, 6, 4, 0x26, 0x65, 0x5D};
   const Bytes position = {0xFF, 0xFF, 0xFD, 0, 1, 8, 0, 0x55, 0, 0xA6, 0, 0, 0, 0x8C, 0xC0};
   const Bytes written = {0xFF, 0xFF, 0xFD, 0, 1, 4, 0, 0x55, 0, 0xA1, 0x0C};
@@ -82,7 +82,7 @@ TEST(dynamixel_packet, stuffs_what_looks_like_a_header) {
   EXPECT_THAT(parsed(bytes), ElementsAre(Seen{3, Instruction::write, 0, false, header}));
 }
 
-TEST(dynamixel_packet, stuffing_is_undone_wherever_it_falls) {
+TEST(dynamixel_packet, stuffing_is_removed_at_any_position) {
   std::mt19937 random(5);
   const Bytes alphabet = {0xFF, 0xFF, 0xFD, 0x00, 0x42};
   for (int round = 0; round < 20'000; ++round) {
@@ -95,7 +95,7 @@ TEST(dynamixel_packet, stuffing_is_undone_wherever_it_falls) {
   }
 }
 
-TEST(dynamixel_packet, fails_where_it_does_not_fit) {
+TEST(dynamixel_packet, fails_if_it_does_not_fit) {
   std::array<std::byte, 15> small{};
   EXPECT_EQ(encode_write(1, 116, 0, 4, small), 0U);
   EXPECT_EQ(encode_ping(1, small), 10U);
@@ -111,10 +111,10 @@ struct Stream {
   std::vector<std::size_t> starts;
 };
 
-Stream stream_of(int packets, std::mt19937& random, std::size_t most_noise) {
+Stream stream_of(int packets, std::mt19937& random, std::size_t max_noise) {
   Stream stream;
   for (int i = 0; i < packets; ++i) {
-    const std::size_t noise = most_noise == 0 ? 0 : random() % most_noise;
+    const std::size_t noise = max_noise == 0 ? 0 : random() % max_noise;
     for (std::size_t n = 0; n < noise; ++n) stream.bytes.push_back(static_cast<std::uint8_t>(random()));
     Bytes data(random() % 12);
     for (std::uint8_t& byte : data) byte = static_cast<std::uint8_t>(random());
@@ -138,7 +138,7 @@ TEST(dynamixel_parser, finds_every_packet_after_joining_at_any_byte) {
   }
 }
 
-TEST(dynamixel_parser, a_lost_byte_costs_one_packet) {
+TEST(dynamixel_parser, a_lost_byte_loses_one_packet) {
   std::mt19937 random(12);
   const Stream stream = stream_of(8, random, 0);
   for (std::size_t lost = 0; lost < stream.starts[6]; ++lost) {
@@ -162,13 +162,13 @@ TEST(dynamixel_parser, a_flipped_bit_never_gives_a_wrong_packet) {
   }
 }
 
-TEST(dynamixel_parser, noise_between_packets_costs_none) {
+TEST(dynamixel_parser, noise_between_packets_loses_none) {
   std::mt19937 random(14);
   int lost = 0, all = 0;
   for (int round = 0; round < 300; ++round) {
     const Stream stream = stream_of(20, random, 30);
     Bytes bytes = stream.bytes;
-    bytes.insert(bytes.end(), kMaxPacketLength, 0);  // what noise has announced ends here at the latest
+    bytes.insert(bytes.end(), kMaxPacketLength, 0);  // ends any packet that the noise seems to begin
     Parser parser;
     const std::vector<Seen> found = parsed(bytes, 1 + random() % 60, &parser);
     ASSERT_LE(found.size(), stream.packets.size());
@@ -179,14 +179,14 @@ TEST(dynamixel_parser, noise_between_packets_costs_none) {
   EXPECT_EQ(lost, 0) << "of " << all;
 }
 
-TEST(dynamixel_parser, a_packet_that_was_cut_off_does_not_swallow_the_next) {
+TEST(dynamixel_parser, a_truncated_packet_does_not_hide_the_next) {
   Bytes bytes = {0xFF, 0xFF, 0xFD, 0, 1, 100, 0, 0x55, 0, 1, 2};
   const Bytes whole = encoded([](auto to) { return encode_status(1, 0, Bytes{7}, to); });
   bytes.insert(bytes.end(), whole.begin(), whole.end());
   EXPECT_THAT(parsed(bytes), ElementsAre(Seen{1, Instruction::status, 0, false, {7}}));
 }
 
-TEST(dynamixel_parser, gives_an_echo_as_what_it_is) {
+TEST(dynamixel_parser, returns_an_echo_as_an_instruction) {
   Bytes line = encoded([](auto to) { return encode_read(1, 132, 4, to); });
   const Bytes answer = encoded([](auto to) { return encode_status(1, 0, Bytes{0xA6, 0, 0, 0}, to); });
   line.insert(line.end(), answer.begin(), answer.end());
@@ -194,7 +194,7 @@ TEST(dynamixel_parser, gives_an_echo_as_what_it_is) {
               ElementsAre(Seen{1, Instruction::read, 0, false, {132, 0, 4, 0}}, Seen{1, Instruction::status, 0, false, {0xA6, 0, 0, 0}}));
 }
 
-TEST(dynamixel_parser, garbage_only_is_counted_and_nothing_else) {
+TEST(dynamixel_parser, noise_alone_is_only_counted) {
   std::mt19937 random(15);
   Bytes garbage(100'000);
   for (std::uint8_t& byte : garbage) byte = static_cast<std::uint8_t>(random());

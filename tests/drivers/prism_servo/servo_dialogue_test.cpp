@@ -1,4 +1,4 @@
-// What the servo's driver makes of lines, servos and settings that aren't as they should be.
+// The servo driver with faulty lines, servos and settings.
 #include "drivers/prism_servo/dynamixel/servo.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Passes on to another port; tests override what goes wrong.
+/// Passes calls on to another port; tests override the faulty ones.
 class PassingPort : public port::BytePort {
  public:
   explicit PassingPort(port::BytePort& port) : port_(port) {}
@@ -33,7 +33,7 @@ class PassingPort : public port::BytePort {
   port::BytePort& port_;
 };
 
-/// Loses what is written to one register.
+/// Loses the writes to one register.
 class DeafRegister final : public PassingPort {
  public:
   DeafRegister(port::BytePort& port, Register which) : PassingPort(port), which_(which) {}
@@ -54,7 +54,7 @@ class DeafRegister final : public PassingPort {
   Parser parser_;
 };
 
-/// Gives bytes a few reads later.
+/// Returns bytes a few reads late.
 class SlowAdapterPort final : public PassingPort {
  public:
   using PassingPort::PassingPort;
@@ -75,7 +75,7 @@ class SlowAdapterPort final : public PassingPort {
   std::deque<std::vector<std::byte>> held_;
 };
 
-TEST(servo_set_up, a_register_that_does_not_keep_its_value_is_said_and_tried_again) {
+TEST(servo_set_up, reports_and_retries_a_register_that_does_not_keep_its_value) {
   struct Case {
     Register which;
     std::uint32_t value;
@@ -111,21 +111,21 @@ TEST(servo_set_up, a_register_that_does_not_keep_its_value_is_said_and_tried_aga
   }
 }
 
-TEST(servo_set_up, answers_that_come_late_are_not_taken_for_other_registers) {
+TEST(servo_set_up, late_answers_are_not_taken_for_other_registers) {
   for (int from = 4; from < 50; ++from)
     for (int ticks = 8; ticks < 14; ++ticks) {
       RigSettings settings;
       settings.simulated.baud = 1'000'000;
       settings.simulated.return_delay = 0;
       ServoRig rig(settings);
-      // Among registers that are right; taken for those, these would be left as they are.
+      // This register is among correct ones; if it were mistaken for one of those, it wouldn't be written.
       rig.simulated().set_value(kDriveMode, 1);
       rig.simulated().set_value(kHomingOffset, 1000);
       rig.simulated().set_value(kProfileAcceleration, 20);
       SlowAdapterPort port(rig.port());
       rig.put_between(port);
       rig.run_for(from * kTickNs);
-      port.reads_late = 7;  // a tick longer than answers are waited for
+      port.reads_late = 7;  // one tick longer than the driver waits for answers
       rig.run_for(ticks * kTickNs);
       port.reads_late = 0;
       ASSERT_GE(rig.run_until_ready(3'000), 0) << from << ' ' << ticks;
@@ -135,7 +135,7 @@ TEST(servo_set_up, answers_that_come_late_are_not_taken_for_other_registers) {
     }
 }
 
-TEST(servo_set_up, its_own_watchdog_waits_as_long_as_is_asked_for_or_longer) {
+TEST(servo_set_up, the_watchdog_time_is_rounded_up) {
   const std::pair<std::int64_t, std::uint32_t> cases[] = {{0, 1},         {1, 1},         {20 * kMs, 1},         {20 * kMs + 1, 2},
                                                           {100 * kMs, 5}, {101 * kMs, 6}, {3'600'000 * kMs, 127}};
   for (const auto& [watchdog_ns, units] : cases) {
@@ -147,7 +147,7 @@ TEST(servo_set_up, its_own_watchdog_waits_as_long_as_is_asked_for_or_longer) {
   }
 }
 
-TEST(servo_set_up, a_speed_that_the_adapter_can_not_do_is_left_out) {
+TEST(servo_set_up, skips_a_baud_rate_that_the_adapter_does_not_support) {
   struct SlowAdapter final : PassingPort {
     using PassingPort::PassingPort;
     bool set_baud(int baud) override { return baud <= 115'200 && PassingPort::set_baud(baud); }
@@ -166,7 +166,7 @@ TEST(servo_set_up, a_speed_that_the_adapter_can_not_do_is_left_out) {
   }
 }
 
-TEST(servo_dialogue, questions_that_are_lost_now_and_then_are_no_lost_servo) {
+TEST(servo_dialogue, occasional_lost_requests_do_not_lose_the_servo) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
   rig.powered = true;
@@ -181,13 +181,13 @@ TEST(servo_dialogue, questions_that_are_lost_now_and_then_are_no_lost_servo) {
   EXPECT_GE(fresh, 800);
 }
 
-TEST(servo_dialogue, an_adapter_that_becomes_slow_is_waited_for) {
+TEST(servo_dialogue, waits_for_an_adapter_that_becomes_slow) {
   ServoRig rig;
   SlowAdapterPort port(rig.port());
   rig.put_between(port);
   ASSERT_GT(rig.run_until_ready(), 0);
   rig.powered = true;
-  rig.run_for(4'000 * kMs);  // it has learnt how quick this adapter is
+  rig.run_for(4'000 * kMs);  // it has learnt this adapter's delay
   port.reads_late = 3;
   int fresh = 0;
   for (int i = 0; i < 400; ++i) {
@@ -197,7 +197,7 @@ TEST(servo_dialogue, an_adapter_that_becomes_slow_is_waited_for) {
   EXPECT_GE(fresh, 60);
 }
 
-TEST(servo_dialogue, answers_of_another_length_and_refusals_are_no_readings) {
+TEST(servo_dialogue, answers_of_another_length_and_errors_are_no_readings) {
   for (const bool refusals : {false, true}) {
     ServoRig rig;
     ASSERT_GT(rig.run_until_ready(), 0);
@@ -205,7 +205,7 @@ TEST(servo_dialogue, answers_of_another_length_and_refusals_are_no_readings) {
     rig.goal_mm = -1;
     int fresh = 0;
     for (int i = 0; i < 600; ++i) {
-      // On the line before the answer to what is asked at this tick.
+      // On the line before the answer to this tick's request.
       if (i % 5 == 0) {
         std::array<std::byte, kMaxPacketLength> stray;
         const std::array<std::uint8_t, 12> zeros{};
@@ -224,7 +224,7 @@ TEST(servo_dialogue, answers_of_another_length_and_refusals_are_no_readings) {
   }
 }
 
-TEST(servo_dialogue, a_line_that_never_falls_silent_does_not_hold_the_tick) {
+TEST(servo_dialogue, a_continuous_stream_does_not_block_the_tick) {
   struct Flood final : PassingPort {
     using PassingPort::PassingPort;
     port::PortCount read(std::span<std::byte> to) override {
@@ -241,9 +241,9 @@ TEST(servo_dialogue, a_line_that_never_falls_silent_does_not_hold_the_tick) {
   EXPECT_LE(port.reads, 20);
 }
 
-TEST(servo_places, stay_within_the_travel_and_come_back_the_same) {
+TEST(servo_positions, stay_within_the_travel_and_convert_back) {
   ServoSettings settings;
-  settings.travel_mm_per_turn = 8;  // 512 ticks a millimetre
+  settings.travel_mm_per_turn = 8;  // 512 ticks per millimetre
   settings.travel_mm = 1.5;
   settings.zero_ticks = 1'000;
   const double infinity = std::numeric_limits<double>::infinity();
@@ -264,10 +264,10 @@ TEST(servo_places, stay_within_the_travel_and_come_back_the_same) {
   }
 }
 
-TEST(servo_places, speeds_are_rounded_up_and_held_to_what_a_register_takes) {
+TEST(servo_positions, speeds_are_rounded_up_and_limited_to_the_registers_range) {
   ServoSettings settings;
   settings.travel_mm_per_turn = 5;
-  EXPECT_EQ(velocity_units(settings, 5), 263U);  // 60 turns a minute
+  EXPECT_EQ(velocity_units(settings, 5), 263U);  // 60 turns per minute
   EXPECT_EQ(velocity_units(settings, 2.5), 132U);
   EXPECT_EQ(velocity_units(settings, 1e-9), 1U) << "0 would be as fast as it can";
   EXPECT_EQ(velocity_units(settings, 1e9), 32'767U);
@@ -275,7 +275,7 @@ TEST(servo_places, speeds_are_rounded_up_and_held_to_what_a_register_takes) {
   EXPECT_EQ(velocity_units(settings, 5), 132U);
 }
 
-TEST(servo_settings, are_taken_over_each_in_its_own_unit) {
+TEST(servo_settings, are_converted_each_to_its_own_unit) {
   settings::PrismServoSettings from;
   from.id = 7;
   from.baud = 57'600;
@@ -296,7 +296,7 @@ TEST(servo_settings, are_taken_over_each_in_its_own_unit) {
   EXPECT_EQ(to.lag_ns, 12'500'000);
 }
 
-TEST(servo_settings, each_that_no_servo_can_have_is_refused) {
+TEST(servo_settings, refuses_each_value_that_no_servo_supports) {
   using Change = void (*)(settings::PrismServoSettings&);
   struct Case {
     Change change;
@@ -319,7 +319,7 @@ TEST(servo_settings, each_that_no_servo_can_have_is_refused) {
       {[](auto& s) { s.lag_ms = std::nan(""); }, "lag_ms at least zero"},
       {[](auto& s) { s.lag_ms = HUGE_VAL; }, "lag_ms at least zero"},
       {[](auto& s) { s.lag_ms = 0; }, ""},
-      // 2 mm of 8 mm a turn are 1024 ticks to either side.
+      // 2 mm at 8 mm per turn are 1024 ticks to either side.
       {[](auto& s) { s.travel_mm_per_turn = 8, s.zero_ticks = 1'024; }, ""},
       {[](auto& s) { s.travel_mm_per_turn = 8, s.zero_ticks = 1'023; }, "encoder's turn"},
       {[](auto& s) { s.travel_mm_per_turn = 8, s.zero_ticks = 3'071; }, ""},
@@ -337,7 +337,7 @@ TEST(servo_settings, each_that_no_servo_can_have_is_refused) {
   }
 }
 
-TEST(servo_trouble, every_fault_of_an_alarm_is_named_in_order) {
+TEST(servo_trouble, names_every_fault_of_an_alarm_in_order) {
   PrismServo::Tick tick;
   tick.phase = ServoPhase::alarm;
   tick.alarm_bits = 0xFF;
@@ -348,7 +348,7 @@ TEST(servo_trouble, every_fault_of_an_alarm_is_named_in_order) {
   EXPECT_THAT(trouble_text(tick, {}), HasSubstr("(input voltage)"));
 }
 
-TEST(servo_trouble, says_which_servo_does_not_answer_where) {
+TEST(servo_trouble, names_the_servo_and_port_that_do_not_answer) {
   settings::PrismServoSettings settings;
   settings.id = 7;
   settings.port = "/dev/ttyUSB3";

@@ -32,7 +32,7 @@ class ServoRig {
     plug();
   }
 
-  /// Opens the port and gives it to a new driver, as the daemon does when a device comes.
+  /// Opens the port and creates a driver on it, as the daemon does when a device appears.
   void plug() {
     driver_.reset();
     if (!line_.plugged_in()) line_.plug_in();
@@ -53,20 +53,20 @@ class ServoRig {
   void run_for(std::int64_t ns) {
     for (const std::int64_t end = clock_.now_ns() + ns; clock_.now_ns() < end;) tick();
   }
-  /// Milliseconds until it is so, or -1 after a while.
-  std::int64_t run_until(const std::function<bool()>& so, std::int64_t at_most_ms = 10'000) {
+  /// Milliseconds until the condition holds, or -1 after `max_ms`.
+  std::int64_t run_until(const std::function<bool()>& so, std::int64_t max_ms = 10'000) {
     const std::int64_t start = clock_.now_ns();
     while (!so()) {
-      if (clock_.now_ns() - start > at_most_ms * kMs) return -1;
+      if (clock_.now_ns() - start > max_ms * kMs) return -1;
       tick();
     }
     return (clock_.now_ns() - start) / kMs;
   }
   bool ready() const { return last_.phase == ServoPhase::ready; }
-  std::int64_t run_until_ready(std::int64_t at_most_ms = 10'000) {
-    return run_until([this] { return ready(); }, at_most_ms);
+  std::int64_t run_until_ready(std::int64_t max_ms = 10'000) {
+    return run_until([this] { return ready(); }, max_ms);
   }
-  /// Time passes, but the host does nothing: a stalled daemon.
+  /// Advances time without the host, as with a stalled daemon.
   void stall(std::int64_t ns) {
     for (const std::int64_t end = clock_.now_ns() + ns; clock_.now_ns() < end;) {
       clock_.advance_ns(kTickNs / 20);
@@ -83,7 +83,7 @@ class ServoRig {
   Servo& driver() { return *driver_; }
   const PrismServo::Tick& last() const { return last_; }
   port::BytePort& port() { return *port_; }
-  /// The driver talks through this port instead of the line's own from now on.
+  /// From now on the driver uses this port instead of the line's own.
   void put_between(port::BytePort& watched) {
     watched_ = &watched;
     driver_.emplace(watched, driver_settings_);

@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Lets bytes through and keeps account of them.
+/// Passes bytes on and records them.
 class WatchedPort final : public port::BytePort {
  public:
   explicit WatchedPort(port::BytePort& port) : port_(port) {}
@@ -58,7 +58,7 @@ class WatchedPort final : public port::BytePort {
   int speeds_set_ = 0;
 };
 
-TEST(dynamixel_servo, is_found_and_set_up_as_it_leaves_the_factory) {
+TEST(dynamixel_servo, is_found_and_set_up_from_factory_settings) {
   ServoRig rig;
   const std::int64_t ms = rig.run_until_ready();
   EXPECT_GT(ms, 0);
@@ -69,7 +69,7 @@ TEST(dynamixel_servo, is_found_and_set_up_as_it_leaves_the_factory) {
   EXPECT_EQ(servo.value(kOperatingMode), kPositionMode);
   EXPECT_EQ(servo.value(kStatusReturnLevel), kAnswerReads);
   EXPECT_EQ(servo.value(kBusWatchdog), 5U);
-  EXPECT_EQ(servo.value(kProfileVelocity), 263U);  // 5 mm/s at 5 mm a turn: 60 turns a minute
+  EXPECT_EQ(servo.value(kProfileVelocity), 263U);  // 5 mm/s at 5 mm per turn: 60 turns per minute
   EXPECT_EQ(servo.value(kMinPositionLimit), 2048U - 1638U);
   EXPECT_EQ(servo.value(kMaxPositionLimit), 2048U + 1638U);
   EXPECT_FALSE(servo.torque());
@@ -77,7 +77,7 @@ TEST(dynamixel_servo, is_found_and_set_up_as_it_leaves_the_factory) {
   EXPECT_EQ(rig.driver().found_baud(), 1'000'000);
 }
 
-TEST(dynamixel_servo, is_found_at_every_speed_it_may_have_been_left_at) {
+TEST(dynamixel_servo, is_found_at_every_baud_rate) {
   for (const int baud : kBauds) {
     RigSettings settings;
     settings.simulated.baud = baud;
@@ -87,18 +87,18 @@ TEST(dynamixel_servo, is_found_at_every_speed_it_may_have_been_left_at) {
   }
 }
 
-TEST(dynamixel_servo, eeprom_is_written_once_only) {
+TEST(dynamixel_servo, writes_eeprom_only_once) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
   const std::uint64_t first = rig.simulated().counts().eeprom_writes;
-  EXPECT_EQ(first, 4U);  // speed, return delay, both limits
+  EXPECT_EQ(first, 4U);  // baud rate, return delay, both limits
   rig.plug();
   rig.run_for(100 * kMs);
   ASSERT_GE(rig.run_until_ready(), 0);
   EXPECT_EQ(rig.simulated().counts().eeprom_writes, first);
 }
 
-TEST(dynamixel_servo, is_set_up_whatever_it_was_set_to) {
+TEST(dynamixel_servo, is_set_up_from_any_settings) {
   for (const unsigned level : {0U, 1U, 2U}) {
     RigSettings settings;
     settings.simulated.baud = 1'000'000;
@@ -117,7 +117,7 @@ TEST(dynamixel_servo, is_set_up_whatever_it_was_set_to) {
   }
 }
 
-TEST(dynamixel_servo, follows_goals_and_tells_where_it_is) {
+TEST(dynamixel_servo, follows_goals_and_reports_its_position) {
   for (const bool reversed : {false, true}) {
     RigSettings settings;
     settings.simulated.reversed = settings.driver.reversed = reversed;
@@ -152,7 +152,7 @@ TEST(dynamixel_servo, reads_at_nearly_every_tick) {
   EXPECT_NEAR(fastest_mm_s, 5.02, 0.05);
 }
 
-TEST(dynamixel_servo, a_readings_time_is_that_of_its_place) {
+TEST(dynamixel_servo, a_readings_time_matches_its_position) {
   for (const std::int64_t latency : {std::int64_t{0}, std::int64_t{300'000}}) {
     RigSettings settings;
     settings.latency_ns = latency;
@@ -178,7 +178,7 @@ TEST(dynamixel_servo, a_readings_time_is_that_of_its_place) {
   }
 }
 
-TEST(dynamixel_servo, no_reading_is_of_the_future) {
+TEST(dynamixel_servo, no_reading_is_in_the_future) {
   RigSettings settings;
   settings.driver.baud = 9'600;
   ServoRig rig(settings);
@@ -188,7 +188,7 @@ TEST(dynamixel_servo, no_reading_is_of_the_future) {
   const std::size_t size = encode_status(1, 0, std::array<std::uint8_t, 8>{}, stray);
   int fresh = 0;
   for (int i = 0; i < 400; ++i) {
-    // An answer that nobody expects yet, among the real ones.
+    // An unexpected answer among the real ones.
     if (i % 7 == 0) rig.line().inject(port::Direction::to_host, std::span(stray).first(size));
     const std::int64_t now = rig.clock().now_ns();
     const PrismServo::Tick tick = rig.tick();
@@ -198,7 +198,7 @@ TEST(dynamixel_servo, no_reading_is_of_the_future) {
   EXPECT_GT(fresh, 20);
 }
 
-TEST(dynamixel_servo, a_tick_fits_200_hz_with_room) {
+TEST(dynamixel_servo, a_tick_fits_into_200_hz) {
   ServoRig rig;
   WatchedPort port(rig.port());
   rig.put_between(port);
@@ -219,7 +219,7 @@ TEST(dynamixel_servo, a_tick_fits_200_hz_with_room) {
   EXPECT_EQ(rig.driver().counts().timeouts, timeouts);
 }
 
-TEST(dynamixel_servo, works_at_the_slow_default_speed_too) {
+TEST(dynamixel_servo, works_at_the_slow_default_baud_rate_too) {
   RigSettings settings;
   settings.driver.baud = 57'600;
   ServoRig rig(settings);
@@ -232,7 +232,7 @@ TEST(dynamixel_servo, works_at_the_slow_default_speed_too) {
   EXPECT_EQ(rig.driver().counts().bad_packets, 0U);
 }
 
-TEST(dynamixel_servo, works_behind_an_adapter_that_holds_bytes_back) {
+TEST(dynamixel_servo, works_with_an_adapter_that_delays_bytes) {
   RigSettings settings;
   settings.latency_ns = 8 * kMs;  // each way: FTDI's 16 ms
   ServoRig rig(settings);
@@ -258,13 +258,13 @@ TEST(dynamixel_servo, tolerates_its_own_echo) {
   EXPECT_EQ(rig.driver().counts().bad_packets, 0U);
 }
 
-TEST(dynamixel_servo, another_servos_answers_are_not_taken_for_its_own) {
+TEST(dynamixel_servo, ignores_another_servos_answers) {
   ServoRig rig;
   std::array<std::byte, kMaxPacketLength> pong, motion;
   const std::size_t pong_size = encode_status(2, 0, std::array<std::uint8_t, 3>{0x5E, 0x01, 1}, pong);  // model 350
   const std::size_t motion_size = encode_status(2, 0, std::array<std::uint8_t, 8>{}, motion);           // at tick 0: -2.5 mm
   for (int i = 0; i < 400; ++i) {
-    // On the line before the answer to what is asked at this tick.
+    // On the line before the answer to this tick's request.
     rig.line().inject(port::Direction::to_host, rig.ready() ? std::span(motion).first(motion_size) : std::span(pong).first(pong_size));
     rig.powered = rig.ready();
     const PrismServo::Tick tick = rig.tick();
@@ -277,7 +277,7 @@ TEST(dynamixel_servo, another_servos_answers_are_not_taken_for_its_own) {
   EXPECT_EQ(rig.driver().model(), 1030);
 }
 
-TEST(dynamixel_servo, impossible_goals_never_reach_the_wire) {
+TEST(dynamixel_servo, impossible_goals_are_never_sent) {
   ServoRig rig;
   WatchedPort port(rig.port());
   rig.put_between(port);
@@ -289,7 +289,7 @@ TEST(dynamixel_servo, impossible_goals_never_reach_the_wire) {
     rig.goal_mm = goal;
     rig.run_for(60 * kTickNs);
     if (!std::isfinite(goal)) {
-      EXPECT_NEAR(rig.simulated().motor_mm(), stands, 0.001) << "holds what it was told last";
+      EXPECT_NEAR(rig.simulated().motor_mm(), stands, 0.001) << "holds its last goal";
     }
   }
   int goals = 0;
@@ -324,8 +324,8 @@ TEST(dynamixel_servo, recovers_from_its_bus_watchdog) {
   EXPECT_NEAR(rig.simulated().motor_mm(), -1.9, 0.001);
 }
 
-TEST(dynamixel_servo, asks_for_its_watchdog_at_once_after_a_stall) {
-  for (int ticks = 5; ticks < 45; ++ticks) {  // wherever it is in its round of checks
+TEST(dynamixel_servo, reads_the_watchdog_at_once_after_a_stall) {
+  for (int ticks = 5; ticks < 45; ++ticks) {  // at any point of its cycle of checks
     ServoRig rig;
     ASSERT_GT(rig.run_until_ready(), 0);
     rig.powered = true;
@@ -338,7 +338,7 @@ TEST(dynamixel_servo, asks_for_its_watchdog_at_once_after_a_stall) {
   }
 }
 
-TEST(dynamixel_servo, lets_go_and_holds_again) {
+TEST(dynamixel_servo, switches_torque_off_and_on) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
   rig.powered = true;
@@ -353,7 +353,7 @@ TEST(dynamixel_servo, lets_go_and_holds_again) {
   EXPECT_TRUE(rig.simulated().torque());
 }
 
-TEST(dynamixel_servo, torque_that_was_lost_on_the_way_is_given_again) {
+TEST(dynamixel_servo, repeats_a_lost_torque_command) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
   rig.powered = true;
@@ -363,7 +363,7 @@ TEST(dynamixel_servo, torque_that_was_lost_on_the_way_is_given_again) {
   EXPECT_TRUE(rig.simulated().torque());
 }
 
-TEST(dynamixel_servo, an_alarm_is_named_and_ends_with_a_new_start) {
+TEST(dynamixel_servo, an_alarm_is_named_and_ends_with_a_reboot) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
   rig.powered = true;
@@ -386,7 +386,7 @@ TEST(dynamixel_servo, an_alarm_is_named_and_ends_with_a_new_start) {
   EXPECT_NEAR(rig.simulated().motor_mm(), 1, 0.001);
 }
 
-TEST(dynamixel_servo, a_fault_that_joins_an_alarm_is_named_too) {
+TEST(dynamixel_servo, names_a_second_fault_during_an_alarm) {
   for (const bool powered : {true, false}) {
     ServoRig rig;
     ASSERT_GT(rig.run_until_ready(), 0);
@@ -417,7 +417,7 @@ TEST(dynamixel_servo, a_jam_ends_in_an_overload_alarm) {
   EXPECT_EQ(rig.last().alarm_bits, 1U << 5U);
 }
 
-TEST(dynamixel_servo, a_power_cut_is_noticed_and_forgotten_settings_are_set_again) {
+TEST(dynamixel_servo, detects_a_power_cut_and_restores_the_settings) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
   rig.powered = true;
@@ -437,7 +437,7 @@ TEST(dynamixel_servo, a_power_cut_is_noticed_and_forgotten_settings_are_set_agai
   EXPECT_THAT(trouble_text(rig.last(), settings), "");
 }
 
-TEST(dynamixel_servo, even_a_cut_too_short_to_be_missed_is_noticed) {
+TEST(dynamixel_servo, detects_a_power_cut_shorter_than_the_timeouts) {
   RigSettings settings;
   settings.simulated.boot_ns = 8 * kMs;
   ServoRig rig(settings);
@@ -454,7 +454,7 @@ TEST(dynamixel_servo, even_a_cut_too_short_to_be_missed_is_noticed) {
   EXPECT_TRUE(rig.simulated().torque());
 }
 
-TEST(dynamixel_servo, unplugged_at_any_byte_it_is_gone_and_comes_back) {
+TEST(dynamixel_servo, after_an_unplug_at_any_byte_is_gone_and_comes_back) {
   RigSettings settings;
   settings.simulated.baud = 1'000'000;
   ServoRig rig(settings);
@@ -470,7 +470,7 @@ TEST(dynamixel_servo, unplugged_at_any_byte_it_is_gone_and_comes_back) {
   }
 }
 
-TEST(dynamixel_servo, noise_costs_readings_but_nothing_worse) {
+TEST(dynamixel_servo, noise_loses_readings_only) {
   ServoRig rig;
   ASSERT_GT(rig.run_until_ready(), 0);
   rig.powered = true;
@@ -485,7 +485,7 @@ TEST(dynamixel_servo, noise_costs_readings_but_nothing_worse) {
   EXPECT_EQ(rig.simulated().counts().goals_beyond_limits, 0U);
 }
 
-TEST(dynamixel_servo, searches_at_leisure_where_nobody_answers) {
+TEST(dynamixel_servo, searches_slowly_if_no_servo_answers) {
   ServoRig rig;
   WatchedPort port(rig.port());
   rig.put_between(port);
@@ -499,9 +499,9 @@ TEST(dynamixel_servo, searches_at_leisure_where_nobody_answers) {
   EXPECT_GE(rig.run_until_ready(6'000), 0) << "at the factory's speed, which it has yet";
 }
 
-TEST(dynamixel_servo, another_model_is_left_alone) {
+TEST(dynamixel_servo, another_model_is_not_written_to) {
   RigSettings settings;
-  settings.simulated.model = 350;  // XL-320: other registers
+  settings.simulated.model = 350;  // XL-320: different registers
   ServoRig rig(settings);
   rig.powered = true;
   rig.run_for(3'000 * kMs);
@@ -511,7 +511,7 @@ TEST(dynamixel_servo, another_model_is_left_alone) {
   EXPECT_EQ(rig.simulated().counts().eeprom_writes, 0U);
 }
 
-TEST(dynamixel_servo, what_it_refuses_is_tried_again_once_a_second) {
+TEST(dynamixel_servo, retries_once_a_second_after_a_refusal) {
   RigSettings settings;
   settings.simulated.model = 350;
   ServoRig rig(settings);
@@ -525,7 +525,7 @@ TEST(dynamixel_servo, what_it_refuses_is_tried_again_once_a_second) {
   EXPECT_GT(port.bytes_written(), written);
 }
 
-TEST(dynamixel_servo, a_register_that_it_refuses_to_tell_is_said) {
+TEST(dynamixel_servo, reports_a_register_that_cannot_be_read) {
   ServoRig rig;
   ASSERT_GE(rig.run_until([&] { return rig.last().phase == ServoPhase::setting_up; }), 0);
   std::array<std::byte, kMaxPacketLength> refusal;
@@ -547,11 +547,11 @@ TEST(dynamixel_servo, its_bus_watchdog_is_off_while_it_is_set_up) {
   std::vector<std::uint32_t> watchdog;
   for (const WatchedPort::Write& write : port.writes())
     if (write.address == kBusWatchdog.address) watchdog.push_back(write.value);
-  // A setting up takes longer than the watchdog waits, and one that has tripped is cleared by a zero only.
+  // A set-up takes longer than the watchdog's time, and only writing zero clears a tripped watchdog.
   EXPECT_THAT(watchdog, ElementsAre(0U, 5U));
 }
 
-TEST(dynamixel_servo, a_servo_that_may_not_be_that_fast_is_said) {
+TEST(dynamixel_servo, reports_a_velocity_limit_that_is_too_low) {
   ServoRig rig;
   rig.simulated().set_value(kVelocityLimit, 100);
   rig.run_for(2'000 * kMs);
@@ -561,7 +561,7 @@ TEST(dynamixel_servo, a_servo_that_may_not_be_that_fast_is_said) {
   EXPECT_GE(rig.run_until_ready(3'000), 0);
 }
 
-TEST(dynamixel_servo, settings_that_can_not_work_are_said) {
+TEST(dynamixel_servo, reports_settings_that_cannot_work) {
   settings::PrismServoSettings settings;
   settings.port = "/dev/ttyUSB3";
   EXPECT_TRUE(servo_settings(settings).has_value());

@@ -1,4 +1,4 @@
-// The simulated servo against the manual: what is sent, and what comes back, byte for byte.
+// Compares the simulated servo with the manual: requests and answers, byte for byte.
 #include "drivers/prism_servo/dynamixel/simulated_servo.h"
 
 #include <vector>
@@ -22,20 +22,20 @@ class ServoFixture {
     host_ = std::move(line_.open_host().value());
     wait_ms(1);
   }
-  /// What comes back within 20 ms.
-  Bytes say(const Bytes& bytes, int ms = 20) {
+  /// Sends bytes and returns the answers within `ms`.
+  Bytes send(const Bytes& bytes, int ms = 20) {
     host_->write(std::as_bytes(std::span(bytes)));
     wait_ms(ms);
-    return heard();
+    return received();
   }
   Bytes write(Register which, std::uint32_t value) {
     std::array<std::byte, kMaxPacketLength> packet;
     const std::size_t size = encode_write(1, which.address, value, which.size, packet);
     host_->write(std::span(packet).first(size));
     wait_ms(20);
-    return heard();
+    return received();
   }
-  Bytes heard() {
+  Bytes received() {
     std::array<std::byte, 512> buffer;
     const std::size_t count = host_->read(buffer).bytes;
     Bytes bytes;
@@ -70,28 +70,28 @@ constexpr auto kRange = static_cast<std::uint8_t>(Refusal::range);
 constexpr auto kLimit = static_cast<std::uint8_t>(Refusal::limit);
 constexpr auto kAccess = static_cast<std::uint8_t>(Refusal::access);
 
-TEST(simulated_servo, speaks_the_manuals_dialogue) {
+TEST(simulated_servo, follows_the_manuals_dialogue) {
   SimulatedServoSettings settings;
   settings.start_mm = (166 - 2048) / 4096.0 * 5;
   settings.stop_mm = 3;
   ServoFixture fixture(settings);
   fixture.servo().set_value(kFirmwareVersion, 38);
-  EXPECT_EQ(fixture.say({0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E}),
+  EXPECT_EQ(fixture.send({0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E}),
             (Bytes{0xFF, 0xFF, 0xFD, 0, 1, 7, 0, 0x55, 0, 6, 4, 0x26, 0x65, 0x5D}));
-  EXPECT_EQ(fixture.say({0xFF, 0xFF, 0xFD, 0, 1, 7, 0, 2, 0x84, 0, 4, 0, 0x1D, 0x15}),
+  EXPECT_EQ(fixture.send({0xFF, 0xFF, 0xFD, 0, 1, 7, 0, 2, 0x84, 0, 4, 0, 0x1D, 0x15}),
             (Bytes{0xFF, 0xFF, 0xFD, 0, 1, 8, 0, 0x55, 0, 0xA6, 0, 0, 0, 0x8C, 0xC0}));
-  EXPECT_EQ(fixture.say({0xFF, 0xFF, 0xFD, 0, 1, 9, 0, 3, 0x74, 0, 0, 2, 0, 0, 0xCA, 0x89}),
+  EXPECT_EQ(fixture.send({0xFF, 0xFF, 0xFD, 0, 1, 9, 0, 3, 0x74, 0, 0, 2, 0, 0, 0xCA, 0x89}),
             (Bytes{0xFF, 0xFF, 0xFD, 0, 1, 4, 0, 0x55, 0, 0xA1, 0x0C}));
 }
 
-TEST(simulated_servo, hears_nothing_at_another_speed) {
+TEST(simulated_servo, ignores_bytes_at_another_baud_rate) {
   ServoFixture fixture({}, 115'200);
-  EXPECT_THAT(fixture.say({0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E}), IsEmpty());
+  EXPECT_THAT(fixture.send({0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E}), IsEmpty());
   fixture.host().set_baud(57'600);
-  EXPECT_FALSE(fixture.say({0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E}).empty());
+  EXPECT_FALSE(fixture.send({0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E}).empty());
 }
 
-TEST(simulated_servo, keeps_its_memory_locked_while_torque_is_on) {
+TEST(simulated_servo, locks_its_eeprom_while_torque_is_on) {
   ServoFixture fixture;
   EXPECT_EQ(fixture.write(kTorqueEnable, 1), answer(0));
   EXPECT_EQ(fixture.write(kReturnDelayTime, 0), answer(kAccess));
@@ -106,20 +106,20 @@ TEST(simulated_servo, answers_after_its_return_delay) {
   fixture.host().write(std::span(packet).first(encode_ping(1, packet)));
   const double out_ms = 10 * 10 / 57.6, back_ms = 14 * 10 / 57.6;
   fixture.wait_ms(out_ms + 0.5 + back_ms - 0.3);
-  EXPECT_LT(fixture.heard().size(), 14U);
+  EXPECT_LT(fixture.received().size(), 14U);
   fixture.wait_ms(1);
-  EXPECT_FALSE(fixture.heard().empty());
+  EXPECT_FALSE(fixture.received().empty());
 }
 
-TEST(simulated_servo, answers_as_much_as_its_status_level_says) {
+TEST(simulated_servo, answers_according_to_its_status_level) {
   ServoFixture fixture;
   const Bytes ping = {0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E};
   const Bytes read = {0xFF, 0xFF, 0xFD, 0, 1, 7, 0, 2, 0x84, 0, 4, 0, 0x1D, 0x15};
   EXPECT_THAT(fixture.write(kStatusReturnLevel, 1), IsEmpty());
-  EXPECT_FALSE(fixture.say(read).empty());
+  EXPECT_FALSE(fixture.send(read).empty());
   EXPECT_THAT(fixture.write(kStatusReturnLevel, 0), IsEmpty());
-  EXPECT_THAT(fixture.say(read), IsEmpty());
-  EXPECT_FALSE(fixture.say(ping).empty());
+  EXPECT_THAT(fixture.send(read), IsEmpty());
+  EXPECT_FALSE(fixture.send(ping).empty());
 }
 
 TEST(simulated_servo, refuses_goals_beyond_limits_and_after_its_watchdog) {
@@ -138,26 +138,26 @@ TEST(simulated_servo, refuses_goals_beyond_limits_and_after_its_watchdog) {
   EXPECT_EQ(fixture.write(kGoalPosition, 2200), answer(0));
 }
 
-TEST(simulated_servo, shuts_down_and_comes_back_only_by_a_reboot) {
+TEST(simulated_servo, a_shutdown_ends_only_with_a_reboot) {
   ServoFixture fixture;
   fixture.write(kTorqueEnable, 1);
   fixture.servo().raise_hardware_error(1U << 4U);
   EXPECT_FALSE(fixture.servo().torque());
   EXPECT_EQ(fixture.write(kTorqueEnable, 1), answer(kAlertBit | static_cast<std::uint8_t>(Refusal::failed)));
-  fixture.say({0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 8, 0x2F, 0x4E}, 400);
+  fixture.send({0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 8, 0x2F, 0x4E}, 400);
   EXPECT_EQ(fixture.write(kTorqueEnable, 1), answer(0));
 }
 
-TEST(simulated_servo, changes_its_speed_after_the_answer) {
+TEST(simulated_servo, changes_its_baud_rate_after_the_answer) {
   ServoFixture fixture;
   EXPECT_EQ(fixture.write(kBaudRate, 3), answer(0));
   const Bytes ping = {0xFF, 0xFF, 0xFD, 0, 1, 3, 0, 1, 0x19, 0x4E};
-  EXPECT_THAT(fixture.say(ping), IsEmpty());
+  EXPECT_THAT(fixture.send(ping), IsEmpty());
   fixture.host().set_baud(1'000'000);
-  EXPECT_FALSE(fixture.say(ping).empty());
+  EXPECT_FALSE(fixture.send(ping).empty());
 }
 
-TEST(simulated_servo, moves_as_fast_as_its_profile_lags_and_has_play) {
+TEST(simulated_servo, moves_at_its_profile_speed_with_lag_and_backlash) {
   SimulatedServoSettings settings;
   settings.start_mm = 0;
   settings.backlash_mm = 0.04;
@@ -177,7 +177,7 @@ TEST(simulated_servo, moves_as_fast_as_its_profile_lags_and_has_play) {
   EXPECT_NEAR(fixture.servo().mask_mm() - fixture.servo().motor_mm(), 0.02, 1e-9);
 }
 
-TEST(simulated_servo, stops_at_its_ends_and_shuts_down_there) {
+TEST(simulated_servo, stops_at_its_ends_and_shuts_down) {
   SimulatedServoSettings settings;
   settings.stop_mm = 1;
   ServoFixture fixture(settings);

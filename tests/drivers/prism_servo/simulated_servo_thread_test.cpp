@@ -1,4 +1,4 @@
-// The simulated servo behind a real pseudo-terminal, in real time: only that it works is asserted, not how fast.
+// The simulated servo behind a real pseudo-terminal, in real time. Checks only that it works, not its speed.
 #include "drivers/prism_servo/dynamixel/simulated_servo_thread.h"
 
 #include <chrono>
@@ -37,7 +37,7 @@ TEST(simulated_servo_thread, a_driver_finds_and_moves_it_over_a_pseudo_terminal)
   run_until([](const PrismServo::Tick& tick) { return tick.phase == ServoPhase::ready; });
   run_until([&](const PrismServo::Tick& tick) { return tick.fresh && std::abs(tick.reading.position_mm + 1.0) < 0.003; });
   EXPECT_NEAR(servo->mask_mm(), -1.0, 0.02);
-  servo.reset();  // takes the pseudo-terminal with it
+  servo.reset();  // closes the pseudo-terminal too
   run_until([](const PrismServo::Tick& tick) { return tick.status == port::PortStatus::gone; });
 }
 

@@ -49,7 +49,7 @@ void exchange(UMockdevIoctlClient* client, T& value, bool in) {
 struct FakeLine::Testbed {
   UMockdevTestbed* bed = umockdev_testbed_new();
   UMockdevIoctlBase* handler = umockdev_ioctl_base_new();
-  std::string root;  // stands for / where umockdev doesn't redirect, as it doesn't when folders and links are made
+  std::string root;  // replaces / where umockdev doesn't redirect, as when folders and links are created
   int device = -1;
   mutable std::mutex mutex;
   int modem = TIOCM_CTS | TIOCM_DSR | TIOCM_CD;
@@ -75,7 +75,7 @@ struct FakeLine::Testbed {
     const std::scoped_lock lock(mutex);
     const unsigned long request = umockdev_ioctl_client_get_request(client);
     if (!play_modem(client, request) && !play_mode(client, request)) {
-      if (request == TCFLSH) return false;  // the pseudo-terminal beneath can do this itself
+      if (request == TCFLSH) return false;  // the pseudo-terminal itself handles this
       char text[32];
       std::snprintf(text, sizeof text, "0x%lx", request);
       unknown.emplace_back(text);
@@ -104,7 +104,7 @@ struct FakeLine::Testbed {
     }
   }
 
-  /// The pseudo-terminal beneath keeps the mode; its master's end may set it as well.
+  /// The underlying pseudo-terminal stores the mode; its master may set it as well.
   bool play_mode(UMockdevIoctlClient* client, unsigned long request) {
     termios2 mode{};
     switch (request) {
@@ -120,7 +120,7 @@ struct FakeLine::Testbed {
     }
   }
 
-  /// Past umockdev, which would ask this class again.
+  /// Bypasses umockdev, which would call this class again.
   void terminal(unsigned long request, termios2& mode) const {
     if (::syscall(SYS_ioctl, device, request, &mode) != 0) throw std::runtime_error("the pseudo-terminal refuses its mode");
   }
@@ -141,10 +141,10 @@ void FakeLine::plug_in() {
   if (error == nullptr) umockdev_testbed_attach_ioctl(testbed_->bed, path().c_str(), testbed_->handler, &error);
   if (error != nullptr) throw std::runtime_error(error->message);
   testbed_->device = umockdev_testbed_get_dev_fd(testbed_->bed, path().c_str());
-  // What udev's own rules do: a stable name, and the folder for it.
+  // What udev's own rules create: a stable name and its folder.
   fs::create_directories(testbed_->root + "/dev/serial/by-id");
   fs::create_symlink("../../" + name_, testbed_->root + by_id_path());
-  // umockdev knows a device's number by the path it's asked for, not through links.
+  // umockdev finds a device's number by the requested path, not through links.
   std::string node = by_id_path().substr(5);
   std::replace(node.begin(), node.end(), '/', '_');
   fs::remove(testbed_->root + "/dev/.node/" + node);
@@ -158,18 +158,18 @@ void FakeLine::unplug() {
   for (const std::string& part : {port + "/tty/" + name_, port, usb + "/1-1:1.0", usb})
     umockdev_testbed_remove_device(testbed_->bed, part.c_str());
   for (const fs::directory_entry& left_over : fs::directory_iterator(testbed_->root + "/dev/.ptymap")) fs::remove(left_over.path());
-  // The hang-up: the pseudo-terminal's master goes, while its descriptor stays umockdev's own.
+  // Simulates the hang-up: closes the pseudo-terminal's master, while its descriptor number stays reserved for umockdev.
   const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   ::dup2(nothing, testbed_->device);
   ::close(nothing);
 }
 
-void FakeLine::say(std::string_view text) {
+void FakeLine::send(std::string_view text) {
   if (::write(testbed_->device, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
     throw std::runtime_error("the line is full");
 }
 
-std::string FakeLine::hear(std::size_t length) {
+std::string FakeLine::receive(std::size_t length) {
   std::string text(length, '\0');
   std::size_t got = 0;
   for (int i = 0; i < 10'000 && got < length; ++i) {

@@ -1,5 +1,5 @@
-// A USB serial adapter that isn't there: umockdev gives it a place in /sys and /dev, and this class plays the driver's ioctls and the
-// device at the far end. Only in a program that runs under umockdev-wrapper.
+// A simulated USB serial adapter: umockdev adds it to /sys and /dev, and this class handles the driver's ioctls and acts as the device at
+// the other end. Works only in a program that runs under umockdev-wrapper.
 #pragma once
 
 #include <memory>
@@ -10,15 +10,15 @@
 
 namespace prismesh::drivers::port {
 
-/// What the host has set the line to.
+/// The line settings that the host has made.
 struct LineState {
   int baud = 0;
   bool raw = false;           ///< no echo, no line editing, no translation
   bool eight_n_one = false;   ///< 8 data bits, no parity, 1 stop bit
-  bool flow_control = false;  ///< of either kind
+  bool flow_control = false;  ///< hardware or software
   bool dtr = false, rts = false;
   bool exclusive = false;
-  std::vector<std::string> unknown_requests;  ///< ioctls that no one here plays
+  std::vector<std::string> unknown_requests;  ///< ioctls that this class doesn't handle
 };
 
 class FakeLine {
@@ -26,7 +26,8 @@ class FakeLine {
   /// Whether the program runs under umockdev-wrapper.
   static bool possible();
 
-  /// Not plugged in yet. Each time it is, it's a ttyUSB of the next number, as a kernel gives them that still holds the last one.
+  /// Not plugged in at first. Each time it is plugged in it gets the next ttyUSB number, as from a kernel that still holds the previous
+  /// one.
   explicit FakeLine(std::string serial);
   ~FakeLine();
   FakeLine(const FakeLine&) = delete;
@@ -37,9 +38,9 @@ class FakeLine {
   std::string path() const { return "/dev/" + name_; }
   std::string by_id_path() const { return "/dev/serial/by-id/usb-" + serial_ + "-if00-port0"; }
 
-  void say(std::string_view text);
-  /// What the host has written; waits up to ten seconds for `length` bytes.
-  std::string hear(std::size_t length);
+  void send(std::string_view text);
+  /// Returns what the host has written; waits up to ten seconds for `length` bytes.
+  std::string receive(std::size_t length);
   LineState state() const;
 
  private:

@@ -1,4 +1,4 @@
-// The real libserialport on a serial adapter that umockdev plays.
+// The real libserialport on a serial adapter simulated by umockdev.
 #include <unistd.h>
 
 #include <array>
@@ -20,7 +20,7 @@ class SerialPortTest : public ::testing::Test {
   FakeLine line_{"FTDI_USB__-__Serial_Converter_FT4THUGO"};
 };
 
-TEST_F(SerialPortTest, opens_raw_8n1_without_flow_control_at_the_speed_asked_for) {
+TEST_F(SerialPortTest, opens_raw_8n1_without_flow_control_at_the_given_baud_rate) {
   line_.plug_in();
   EXPECT_FALSE(is_pseudo_terminal(line_.path()));
   for (const int baud : {9600, 19'200, 57'600, 1'000'000, 140'000}) {
@@ -36,22 +36,22 @@ TEST_F(SerialPortTest, opens_raw_8n1_without_flow_control_at_the_speed_asked_for
   EXPECT_THAT(line_.state().unknown_requests, testing::IsEmpty());
 }
 
-TEST_F(SerialPortTest, changes_its_speed_while_open) {
+TEST_F(SerialPortTest, changes_its_baud_rate_while_open) {
   line_.plug_in();
   const auto port = *open_port(line_.path(), 57'600);
   EXPECT_TRUE(port->set_baud(1'000'000));
   EXPECT_EQ(line_.state().baud, 1'000'000);
 }
 
-TEST_F(SerialPortTest, talks_both_ways) {
+TEST_F(SerialPortTest, transfers_bytes_both_ways) {
   line_.plug_in();
   const auto port = *open_port(line_.path(), 19'200);
   const std::string text("\x03\x11\x13\x1a\r\n\0\xff plain", 14);
   const PortCount put = port->write(bytes_of(text));
   EXPECT_EQ(put.status, PortStatus::ok);
   EXPECT_EQ(put.bytes, text.size());
-  EXPECT_EQ(line_.hear(text.size()), text);
-  line_.say("record");
+  EXPECT_EQ(line_.receive(text.size()), text);
+  line_.send("record");
   EXPECT_EQ(read_soon(*port, 6), "record");
   std::array<std::byte, 8> buffer{};
   const PortCount nothing = port->read(buffer);
@@ -63,19 +63,19 @@ TEST_F(SerialPortTest, opens_by_its_stable_name) {
   line_.plug_in();
   const auto port = open_port(line_.by_id_path(), 19'200);
   ASSERT_TRUE(port) << port.error().text();
-  line_.say("hello");
+  line_.send("hello");
   EXPECT_EQ(read_soon(**port, 5), "hello");
 }
 
-TEST_F(SerialPortTest, throws_stale_backlog_away) {
+TEST_F(SerialPortTest, discards_queued_input) {
   line_.plug_in();
-  line_.say("stale");
+  line_.send("stale");
   const auto port = *open_port(line_.path(), 19'200);
-  line_.say("fresh");
+  line_.send("fresh");
   EXPECT_EQ(read_soon(*port, 5), "fresh");
 }
 
-TEST_F(SerialPortTest, a_second_opener_is_refused) {
+TEST_F(SerialPortTest, refuses_a_second_opener) {
   line_.plug_in();
   auto first = open_port(line_.path(), 19'200);
   ASSERT_TRUE(first) << first.error().text();
@@ -86,7 +86,7 @@ TEST_F(SerialPortTest, a_second_opener_is_refused) {
   EXPECT_TRUE(open_port(line_.path(), 19'200));
 }
 
-TEST_F(SerialPortTest, a_missing_device_asks_for_its_plug_and_names_what_is_there) {
+TEST_F(SerialPortTest, reports_a_missing_device_and_lists_the_connected_ones) {
   line_.plug_in();
   const auto port = open_port("/dev/ttyUSB9", 9600);
   ASSERT_FALSE(port);
@@ -106,19 +106,19 @@ TEST_F(SerialPortTest, an_unplugged_line_is_gone) {
   }
 }
 
-TEST_F(SerialPortTest, a_keeper_opens_it_again_each_time_it_comes_back) {
+TEST_F(SerialPortTest, a_keeper_reopens_it_each_time_it_returns) {
   MonotonicClock clock;
   PortKeeper keeper(
       clock, [&] { return open_port(line_.by_id_path(), 19'200); }, line_.by_id_path());
   const KeeperThread thread(clock, {work_of(keeper)});
   for (int round = 0; round < 5; ++round) {
     line_.plug_in();
-    ASSERT_TRUE(soon([&] { return keeper.port() != nullptr; })) << "round " << round;
-    line_.say("hello");
+    ASSERT_TRUE(eventually([&] { return keeper.port() != nullptr; })) << "round " << round;
+    line_.send("hello");
     EXPECT_EQ(read_soon(*keeper.port(), 5), "hello");
     line_.unplug();
     std::array<std::byte, 8> buffer{};
-    ASSERT_TRUE(soon([&] { return keeper.port()->read(buffer).status == PortStatus::gone; }));
+    ASSERT_TRUE(eventually([&] { return keeper.port()->read(buffer).status == PortStatus::gone; }));
     keeper.give_back();
   }
   EXPECT_EQ(keeper.report().openings, 5u);

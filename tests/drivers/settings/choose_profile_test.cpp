@@ -37,12 +37,12 @@ TEST(ChooseProfile, adds_the_key_or_the_section) {
             "[eye_tracker]\ndriver = \"none\"\n\n[display]\nprofile = \"/home/lab/wall.toml\"\n");
 }
 
-TEST(ChooseProfile, takes_every_way_to_name_a_profile) {
+TEST(ChooseProfile, accepts_every_way_to_write_a_profile) {
   for (const char* profile : {"anaglyph", "wall.toml", "lab/wall.toml", "../wall.toml", "/home/lab/../wall.toml"})
     EXPECT_EQ(changed("", profile), std::string("[display]\nprofile = \"") + profile + "\"\n");
 }
 
-TEST(ChooseProfile, changes_a_file_whose_device_has_its_port_in_another) {
+TEST(ChooseProfile, changes_a_file_whose_port_is_in_another_file) {
   const std::string driver = "[eye_tracker]\ndriver = \"dynasight\"\n";
   EXPECT_EQ(changed(driver), driver + "\n[display]\nprofile = \"/home/lab/wall.toml\"\n");
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "choose_profile_part";
@@ -57,12 +57,12 @@ TEST(ChooseProfile, changes_a_file_whose_device_has_its_port_in_another) {
 
 TEST(ChooseProfile, writes_names_that_need_quoting) {
   const std::string odd = "/home/lab/a \"b\"\\c\td.toml";
-  const Result<Settings> read = parse_settings(changed("", odd), "/etc/prismesh/prismesh.toml");
+  const Result<StationSettings> read = parse_settings(changed("", odd), "/etc/prismesh/prismesh.toml");
   ASSERT_TRUE(read);
   EXPECT_EQ(read->display.profile, odd);
 }
 
-TEST(ChooseProfile, asks_for_help_rather_than_guess) {
+TEST(ChooseProfile, refuses_a_text_that_it_cannot_change_safely) {
   for (const char* text : {"display = {profile = \"mono\"}\n", "display.profile = \"mono\"\n", "[display]\nprofile = \"\"\"\nmono\"\"\"\n",
                            "[\"display\"]\nprofile = \"mono\"\n"}) {
     const Result<std::string> result = with_profile(text, "/etc/prismesh/prismesh.toml", "/home/lab/wall.toml");
@@ -70,7 +70,7 @@ TEST(ChooseProfile, asks_for_help_rather_than_guess) {
   }
 }
 
-TEST(ChooseProfile, makes_the_file_and_leaves_a_broken_one_alone) {
+TEST(ChooseProfile, creates_the_file_and_keeps_a_faulty_one) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "choose_profile";
   std::filesystem::remove_all(folder);
   const std::filesystem::path file = folder / "prismesh" / "prismesh.toml";

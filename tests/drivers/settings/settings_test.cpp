@@ -19,18 +19,18 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 std::string error_of(std::string_view text) {
-  const Result<Settings> settings = parse_settings(text, "station.toml");
+  const Result<StationSettings> settings = parse_settings(text, "station.toml");
   return settings ? "accepted" : settings.error().text();
 }
 
-Settings parsed(std::string_view text) {
-  Result<Settings> settings = parse_settings(text, "station.toml");
+StationSettings parsed(std::string_view text) {
+  Result<StationSettings> settings = parse_settings(text, "station.toml");
   EXPECT_TRUE(settings) << settings.error().text();
-  return settings ? *settings : Settings{};
+  return settings ? *settings : StationSettings{};
 }
 
-/// All that a file can say, as text, so that two settings can be compared.
-std::string all_of(const Settings& settings) {
+/// All settings of a file as text, for comparison.
+std::string all_of(const StationSettings& settings) {
   const EyeTrackerSettings& t = settings.eye_tracker;
   const PrismServoSettings& s = settings.prism_servo;
   std::ostringstream text;
@@ -79,7 +79,7 @@ speed_mm_s = 6
 lag_ms = 20
 )";
 
-TEST(Settings, an_empty_file_leaves_every_default) { EXPECT_EQ(all_of(parsed("")), all_of(Settings{})); }
+TEST(Settings, an_empty_file_keeps_every_default) { EXPECT_EQ(all_of(parsed("")), all_of(StationSettings{})); }
 
 TEST(Settings, every_key_is_read) {
   EXPECT_EQ(all_of(parsed(kEveryKey)),
@@ -95,7 +95,7 @@ TEST(Settings, names_choose_drivers_and_dialects) {
     EXPECT_EQ(parsed("[eye_tracker]\nmotion = '" + std::string(motion) + "'").eye_tracker.motion, motion);
 }
 
-TEST(Settings, wrong_text_is_told_with_its_line_and_the_way_out) {
+TEST(Settings, refuses_errors_with_line_and_remedy) {
   const std::pair<const char*, const char*> cases[] = {
       {"[eye_traker]\n", "station.toml:1: settings have no section [eye_traker]; the nearest known is [eye_tracker]"},
       {"\nprofile = 'mono'\n", "station.toml:2: settings have no section [profile]"},
@@ -133,12 +133,12 @@ TEST(Settings, wrong_text_is_told_with_its_line_and_the_way_out) {
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text).substr(0, std::string_view(message).size()), message) << text;
 }
 
-TEST(Settings, limits_themselves_are_allowed) {
+TEST(Settings, accepts_the_limits_themselves) {
   parsed("[eye_tracker]\nudp_port = 65535\nlatency_ms = 500\nnoise_mm = 0\neye_separation_mm = 50\noffset_mm = [-2000, 2000, 0]");
   parsed("[prism_servo]\nid = 0\nbaud = 4500000\ntravel_mm_per_turn = 100");
 }
 
-TEST(Settings, numbers_are_taken_up_to_their_limits_and_no_further) {
+TEST(Settings, refuses_numbers_beyond_their_limits) {
   struct Limits {
     const char *section, *key, *below, *low, *high, *above;
   };
@@ -203,7 +203,7 @@ TEST_F(SettingsFiles, a_later_file_changes_only_the_keys_it_has) {
   const fs::path system = write("system.toml", "[eye_tracker]\nlatency_ms = 1\nnoise_mm = 2\n[prism_servo]\nid = 3\n");
   const fs::path user = write("user.toml", "[eye_tracker]\nnoise_mm = 4\n");
   const fs::path named = write("named.toml", "[prism_servo]\nid = 5\n");
-  const Result<Settings> settings = read_settings({system, folder_ / "absent.toml", user}, named);
+  const Result<StationSettings> settings = read_settings({system, folder_ / "absent.toml", user}, named);
   ASSERT_TRUE(settings) << settings.error().text();
   EXPECT_EQ(settings->eye_tracker.latency_ms, 1);
   EXPECT_EQ(settings->eye_tracker.noise_mm, 4);
@@ -215,34 +215,34 @@ TEST_F(SettingsFiles, a_port_may_come_from_another_file_than_its_driver) {
   const fs::path system = write("system.toml", "[eye_tracker]\ndriver = 'dynasight'\n");
   const fs::path user = write("user.toml", "[eye_tracker]\nport = '/dev/a'\n");
   EXPECT_TRUE(read_settings({system, user}, std::nullopt));
-  const Result<Settings> alone = read_settings({system}, std::nullopt);
+  const Result<StationSettings> alone = read_settings({system}, std::nullopt);
   ASSERT_FALSE(alone);
   EXPECT_EQ(alone.error().file, system.string());
   EXPECT_EQ(alone.error().line, 2);
 }
 
-TEST_F(SettingsFiles, no_files_at_all_are_the_defaults) {
-  const Result<Settings> settings = read_settings({folder_ / "a.toml"}, std::nullopt);
+TEST_F(SettingsFiles, without_files_every_default_is_kept) {
+  const Result<StationSettings> settings = read_settings({folder_ / "a.toml"}, std::nullopt);
   ASSERT_TRUE(settings);
-  EXPECT_EQ(all_of(*settings), all_of(Settings{}));
+  EXPECT_EQ(all_of(*settings), all_of(StationSettings{}));
   EXPECT_TRUE(settings->files.empty());
 }
 
-TEST_F(SettingsFiles, a_named_file_must_be_there) {
-  const Result<Settings> settings = read_settings({}, folder_ / "absent.toml");
+TEST_F(SettingsFiles, a_named_file_must_exist) {
+  const Result<StationSettings> settings = read_settings({}, folder_ / "absent.toml");
   ASSERT_FALSE(settings);
   EXPECT_EQ(settings.error().text(), (folder_ / "absent.toml").string() + ": can't be opened: No such file or directory");
 }
 
-TEST_F(SettingsFiles, an_error_names_the_file_it_is_in) {
+TEST_F(SettingsFiles, an_error_names_its_file) {
   const fs::path system = write("system.toml", "[eye_tracker]\n\nnoise = 2\n");
-  const Result<Settings> settings = read_settings({system}, write("named.toml", ""));
+  const Result<StationSettings> settings = read_settings({system}, write("named.toml", ""));
   ASSERT_FALSE(settings);
   EXPECT_EQ(settings.error().file, system.string());
   EXPECT_EQ(settings.error().line, 3);
 }
 
-TEST_F(SettingsFiles, a_profile_file_is_sought_beside_the_settings) {
+TEST_F(SettingsFiles, a_profile_file_is_relative_to_the_settings) {
   const auto profile = [&](const std::string& value) {
     return read_settings({}, write("etc/station.toml", "[display]\nprofile = '" + value + "'\n"))->display.profile;
   };
@@ -253,7 +253,7 @@ TEST_F(SettingsFiles, a_profile_file_is_sought_beside_the_settings) {
   EXPECT_EQ(profile("/srv/lab.toml"), "/srv/lab.toml");
 }
 
-TEST_F(SettingsFiles, the_users_folder_is_where_the_environment_says) {
+TEST_F(SettingsFiles, the_environment_sets_the_users_folder) {
   const auto with = [](const char* config, const char* home) {
     const auto set = [](const char* name, const char* value) { value != nullptr ? ::setenv(name, value, 1) : ::unsetenv(name); };
     const auto get = [](const char* name) {
@@ -282,18 +282,18 @@ std::string content(const fs::path& path) {
 
 const fs::path kExample = test::source_folder() / "systemd" / "prismesh.toml";
 
-TEST(SettingsExample, is_valid_and_changes_nothing) {
-  const Result<Settings> settings = read_settings({}, kExample);
+TEST(SettingsExample, is_valid_and_keeps_every_default) {
+  const Result<StationSettings> settings = read_settings({}, kExample);
   ASSERT_TRUE(settings) << settings.error().text();
-  EXPECT_EQ(all_of(*settings), all_of(Settings{}));
+  EXPECT_EQ(all_of(*settings), all_of(StationSettings{}));
 }
 
-TEST(SettingsExample, its_comments_hold_every_key_with_its_default) {
-  // "#key = value" becomes a key; "# A sentence" stays one.
+TEST(SettingsExample, its_comments_contain_every_key_with_its_default) {
+  // "#key = value" becomes a key; "# A sentence" stays a comment.
   const std::string text = std::regex_replace(content(kExample), std::regex("(^|\n)#(?=[a-z])"), "$1");
-  const Result<Settings> settings = parse_settings(text, kExample);
+  const Result<StationSettings> settings = parse_settings(text, kExample);
   ASSERT_TRUE(settings) << settings.error().text();
-  EXPECT_EQ(all_of(*settings), all_of(Settings{}));
+  EXPECT_EQ(all_of(*settings), all_of(StationSettings{}));
   const auto keys_of = [](const std::string& toml) {
     std::set<std::string> keys;
     const std::regex line("(^|\n)([a-z_]+) = ");

@@ -15,7 +15,7 @@ namespace prismesh::optics {
 
 namespace {
 
-/// The next character of UTF-8 text that is known to be whole; removes it.
+/// Removes and returns the next character of valid UTF-8 text.
 int next_character(std::string_view& text) {
   const auto lead = static_cast<unsigned char>(text[0]);
   const std::size_t length = lead < 0x80 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
@@ -69,7 +69,7 @@ void Canvas::ground(const Ink& above, const Ink& below) {
   }
 }
 
-/// Corners in samples; whatever is inside by the even-odd rule.
+/// Corners in samples; fills by the even-odd rule.
 void Canvas::fine_polygon(const std::vector<Spot2>& corners, const Ink& ink) {
   if (corners.empty()) return;
   const auto [low, high] = std::minmax_element(corners.begin(), corners.end(), [](const Spot2& a, const Spot2& b) { return a.y < b.y; });
@@ -187,7 +187,7 @@ void Canvas::pixels(Spot2 at, const viewer::LightImage& image, const std::array<
 }
 
 viewer::LightImage Canvas::picture() const {
-  // Averaged as sRGB values, as texts and thin lines on screens are.
+  // Averages sRGB values, as screens do for texts and thin lines.
   viewer::LightImage image(width_ / kFine, height_ / kFine);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)

@@ -1,4 +1,4 @@
-// A small rasteriser for the figures in the documentation: lines, polygons, text and magnified pixels, the same bytes every time.
+// A small rasteriser for the documentation's figures: lines, polygons, text and magnified pixels; it always gives the same bytes.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace prismesh::optics {
 
-/// sRGB, 0..1, and how much it covers.
+/// sRGB, 0..1, and coverage.
 struct Ink {
   float red = 0, green = 0, blue = 0, cover = 1;
 };
@@ -37,19 +37,19 @@ class Canvas {
   /// `font`: a TrueType file. Errors: the font can't be read.
   static Result<Canvas> create(int width, int height, const std::filesystem::path& font);
 
-  /// The whole picture, from one grey above to another below.
+  /// Fills the picture with a gradient from one grey at the top to another at the bottom.
   void ground(const Ink& above, const Ink& below);
   void polygon(const std::vector<Spot2>& corners, const Ink& ink);
   void box(const Frame& frame, const Ink& ink);
   void outline(const Frame& frame, double width, const Ink& ink);
-  /// `dash` > 0: strokes and gaps of that length.
+  /// `dash` > 0: length of strokes and gaps.
   void line(Spot2 from, Spot2 to, double width, const Ink& ink, double dash = 0);
   void arrow(Spot2 from, Spot2 to, double width, const Ink& ink);
   void disc(Spot2 middle, double radius, const Ink& ink);
   /// `at`: on the baseline. UTF-8. Returns the width.
   double text(Spot2 at, std::string_view words, double size, const Ink& ink, Align align = Align::left);
   double text_width(std::string_view words, double size) const;
-  /// A part of a picture, each of its pixels a box of `step` x `step_y` pixels, its upper left corner at `at`.
+  /// Draws a part of a picture with its upper left corner at `at`, each pixel as a box of `step` x `step_y` pixels.
   void pixels(Spot2 at, const viewer::LightImage& image, const std::array<int, 4>& x_y_width_height, double step, double step_y);
 
   viewer::LightImage picture() const;

@@ -1,4 +1,4 @@
-// The pictures of docs/display: what they show is computed, by tracing rays or by weaving and looking, never drawn by hand.
+// The figures of docs/display. All content is computed, by ray tracing or by weaving and viewing; nothing is drawn by hand.
 #pragma once
 
 #include "tests/optics/figures/canvas.h"
@@ -8,7 +8,7 @@ namespace prismesh::optics {
 
 inline constexpr const char* kFigureFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
-/// The manner that all figures share.
+/// The style that all figures share.
 namespace manner {
 inline constexpr Ink kAbove = ink(0xECEDEE), kBelow = ink(0xDDDFE1), kText = ink(0x2A2E33), kQuiet = ink(0x5F656B);
 inline constexpr Ink kLeft = ink(0x0072B2), kRight = ink(0xE08A00), kLeftPale = ink(0x7FBCE6), kRightPale = ink(0xF3C77A);
@@ -16,15 +16,15 @@ inline constexpr Ink kFail = ink(0xB5271D), kGlass = ink(0xBFD4DC, 0.55F), kMask
 inline constexpr double kTitle = 24, kLabel = 18, kSmall = 15;
 }  // namespace manner
 
-/// Panel, mask and two eyes: at the design distance, aside of the middle, nearer with fixed columns and with a phase map.
+/// Panel, mask and two eyes: at the design distance, to the side, and nearer with fixed columns and with a phase map.
 Result<viewer::LightImage> optics_figure();
-/// Two eyes' images and what is woven of them, down to the stripes of a pixel.
+/// Two eyes' images and the woven picture, down to the stripes of a pixel.
 Result<viewer::LightImage> interlacing_figure(Stage& stage);
 /// Thin lines as one eye sees them, with a stencil and drawn at half width.
 Result<viewer::LightImage> lines_figure(Stage& stage);
-/// What each eye sees through the mask, where it stands right and where it doesn't.
+/// What each eye sees through the mask, at the correct position and at wrong ones.
 Result<viewer::LightImage> seen_figure(Stage& stage);
-/// The worst phase error over places of the head, with the mask's shift alone and with a phase map.
+/// The worst phase error over head positions, with moving the mask alone and with a phase map.
 Result<viewer::LightImage> volume_figure(Stage& stage);
 
 }  // namespace prismesh::optics

@@ -14,13 +14,13 @@ using viewer::Owner;
 
 constexpr int kInterlacingWidth = 1280, kInterlacingHeight = 950;
 
-/// Where a magnified part lies in its picture.
+/// The position of a magnified part in its picture.
 struct Part {
   int x = 0, y = 0, columns = 0, rows = 0;
   std::array<int, 4> array() const { return {x, y, columns, rows}; }
 };
 
-/// A part of a picture of the panel, each pixel as its three stripes, with a bar above that says whose each stripe is.
+/// A part of a panel's picture, each pixel as its three stripes, with a bar above that shows the owner of each stripe.
 void draw_stripes(Canvas& canvas, Spot2 at, const LightImage& woven, const viewer::Owners& owners, const Part& part, double step) {
   const double stripe = step / 3, bar = 14;
   for (int x = 0; x < 3 * part.columns; ++x) {
@@ -65,7 +65,7 @@ Result<LightImage> interlacing_figure(Stage& stage) {
   const auto left = stage.draw_as("mono-left", *picture, panel), right = stage.draw_as("mono-right", *picture, panel);
   const auto woven = stage.draw(*picture, panel);
   const auto owners = stage.owners(*picture, panel);
-  // The windows have moved by a third of a pixel against the columns.
+  // The windows are shifted by a third of a pixel against the columns.
   kiosk::render::Picture moved = *picture;
   moved.mask_mm = 0.1;
   const auto moved_woven = stage.draw(moved, panel);

@@ -51,7 +51,7 @@ Result<LightImage> lines_figure(Stage& stage) {
       if (!seen || !ground) return fail(seen ? ground.error() : seen.error());
       const double x = 30 + 309.0 * i;
       const int pieces = viewer::pieces_in(*seen, *ground, 60);
-      // Both ways the tile's middle is the line's; a broken line's is the panel's.
+      // In both cases the tile is centred: on the line if it is whole, on the panel if the line is broken.
       const double element = pieces == 1 ? viewer::spot_in(*seen, *ground, 60).element : 0;
       const int middle = static_cast<int>(std::lround(element)) - seen->first_element;
       canvas->pixels({x, y + kTop}, seen->image(), {middle - kElements / 2, (display.panel.rows - kRows) / 2, kElements, kRows}, 2 * kStep,

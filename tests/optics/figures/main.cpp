@@ -1,4 +1,4 @@
-// prismesh-figures: draws the pictures of docs/display anew.
+// prismesh-figures: draws the figures of docs/display.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -14,14 +14,14 @@ namespace {
 
 using viewer::LightImage;
 
-constexpr int kSkipped = 77;  ///< nothing can be drawn here
+constexpr int kSkipped = 77;  ///< drawing isn't possible here
 
 int complain(const std::string& what, const Error& error) {
   std::fprintf(stderr, "%s: %s\n", what.c_str(), error.text().c_str());
   return 1;
 }
 
-/// Whether a kept picture is still what is drawn; another version of Mesa may round otherwise. Says what isn't.
+/// Whether a stored picture matches the drawn one; another version of Mesa may round differently. Prints the differences.
 bool is_current(const std::filesystem::path& kept, const LightImage& drawn) {
   const Result<LightImage> picture = viewer::read_picture(kept);
   if (!picture) return complain("prismesh-figures", picture.error()), false;
@@ -36,7 +36,7 @@ bool is_current(const std::filesystem::path& kept, const LightImage& drawn) {
   return same;
 }
 
-/// Draws all into the folder, or compares what is drawn with what lies there.
+/// Draws all figures into the folder, or compares them with the files there.
 int draw_all(const std::filesystem::path& folder, bool check) {
   const auto stage = Stage::create();
   if (!stage) return complain("prismesh-figures", stage.error()), check ? kSkipped : 1;

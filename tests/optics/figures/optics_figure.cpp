@@ -1,4 +1,4 @@
-// The optics from above, gap and pixels much enlarged; every ray is traced through the glass.
+// The optics from above, with gap and pixels much enlarged; every ray is traced through the glass.
 #include <cmath>
 #include <functional>
 #include <string>
@@ -17,7 +17,7 @@ using viewer::Point;
 constexpr int kOpticsWidth = 1280, kOpticsHeight = 970;
 constexpr double kScale = 1.1, kDepthScale = 0.58;  ///< picture pixels per mm, along the panel and away from it
 
-/// Pixels and gap a hundred times too large beside the distances, so that both can be seen.
+/// Pixels and gap are a hundred times too large relative to the distances, so that both are visible.
 MaskDisplay enlarged() {
   MaskDisplay display;
   display.panel.columns = 26;
@@ -36,7 +36,7 @@ struct Scene {
   bool phase_map = false;
 };
 
-/// One of the four drawings, in its own place of the picture.
+/// One of the four drawings, at its position in the picture.
 class Drawing {
  public:
   Drawing(Canvas& canvas, Spot2 corner, const Scene& scene)
@@ -61,7 +61,7 @@ class Drawing {
     return {corner_.x + 320 + kScale * x, corner_.y + 112 + kDepthScale * (z + display_.glass_mm())};
   }
 
-  /// Whose a third of a pixel is: the eye nearer to the middle of a window there.
+  /// Whether a third of a pixel belongs to the left eye: the eye nearer to the middle of a window there.
   bool is_left(int stripe) const {
     const double u = (stripe + 0.5) / 3 * display_.panel.pitch_mm - half_width();
     if (!scene_.phase_map) return stripe / 3 % 2 == 0;
@@ -117,7 +117,7 @@ class Drawing {
     canvas_.line(place(from, 0), place(half_width(), 0), 4, manner::kMask);
   }
 
-  /// Marks where the middle of a window is more than a quarter of a pixel from the middle of what is the eye's.
+  /// Marks windows whose middle is more than a quarter of a pixel from the middle of the eye's own stripes.
   void draw_misses(const Point& eye, bool left) {
     if (scene_.phase_map) return;
     for_each_window(eye, [&](double, double u) {

@@ -1,4 +1,4 @@
-// What each eye sees through the mask: where it stands right, a quarter and half a period off.
+// What each eye sees through the mask: at the correct position, and a quarter and half a period off.
 #include "tests/optics/figures/figures.h"
 
 namespace prismesh::optics {
@@ -25,7 +25,7 @@ Result<LightImage> seen_figure(Stage& stage) {
     const char* title;
     const char* words;
     bool left;
-    double periods;  ///< how far the mask is off without anybody knowing; NaN: the panel itself
+    double periods;  ///< unknown error of the mask's position; NaN: the panel itself
   } tiles[] = {{"1  On the panel", "both eyes' columns in turn", true, -1},
                {"2  The left eye", "sees its own columns only", true, 0},
                {"3  The right eye", "sees the others", false, 0},

@@ -24,7 +24,7 @@ Result<std::unique_ptr<Stage>> Stage::create() {
 
 void Stage::show(test::TestSource source) {
   source.key = ++key_;
-  // A model of a few hundred shells always finds room on the GPU.
+  // A model of a few hundred shells always fits on the GPU.
   [[maybe_unused]] const Result<void> shown = renderer_->set_model(std::make_shared<test::TestSource>(std::move(source)));
 }
 

@@ -1,4 +1,4 @@
-// Where the figures' pictures come from: the kiosk's renderer without a screen, and a viewer before it.
+// The source of the figures' pictures: the kiosk's renderer without a screen, and a simulated viewer.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ class Stage {
   /// The model from the front right, filling a panel of this size.
   Result<kiosk::render::Picture> fitted(const std::string& profile, const mesh::Vec3& between_mm, const viewer::Panel& panel) const;
   Result<viewer::LightImage> draw(const kiosk::render::Picture& picture, const viewer::Panel& panel);
-  /// The same with another profile: another way to show the same two eyes' scene.
+  /// The same scene and eyes with another profile.
   Result<viewer::LightImage> draw_as(const std::string& profile, kiosk::render::Picture picture, const viewer::Panel& panel);
   Result<viewer::Owners> owners(kiosk::render::Picture picture, const viewer::Panel& panel);
 

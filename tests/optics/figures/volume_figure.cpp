@@ -1,4 +1,4 @@
-// The worst phase error over places of the head.
+// The worst phase error over head positions.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -15,7 +15,7 @@ constexpr int kVolumeWidth = 1280, kVolumeHeight = 800;
 constexpr int kSide = 240, kNear = 420, kFar = 920, kStep = 20;  ///< mm
 constexpr double kLimit = 0.25;                                  ///< pixels
 
-/// Green where all is well, through sand to red; the limit is a step.
+/// Green for small errors, through sand to red, with a step at the limit.
 Ink colour_of(double pixels) {
   const auto mix = [](const Ink& a, const Ink& b, double t) {
     const auto f = static_cast<float>(std::clamp(t, 0.0, 1.0));

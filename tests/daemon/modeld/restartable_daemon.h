@@ -1,4 +1,4 @@
-// modeld as a program of its own that may be killed and started again, and a client that lives through it.
+// modeld as a separate program that may be killed and restarted, and a client that reconnects.
 #pragma once
 
 #include <chrono>
@@ -20,11 +20,12 @@
 
 namespace prismesh::test {
 
-/// All lives of a daemon with one deck. Its programs die with the thread that started them, so `start` belongs to the test's own.
-class Lives {
+/// The consecutive processes of a daemon with one deck. A process dies with the thread that started it, so call `start` from the test's own
+/// thread.
+class RestartableDaemon {
  public:
-  /// The sockets and journals lie in `folder`, which must outlive this.
-  Lives(const Folder& folder, std::filesystem::path deck)
+  /// The sockets and journals are in `folder`, which must outlive this.
+  RestartableDaemon(const Folder& folder, std::filesystem::path deck)
       : run_(folder.path() / "run"), state_(folder.state()), deck_(std::move(deck)), client_(ipc::model_socket_path(run_), "test") {}
 
   void start() {
@@ -33,7 +34,7 @@ class Lives {
                                         std::map<std::string, std::string>{});
   }
 
-  /// Connects and waits until the document is open: by itself, or by hand if the daemon was killed while it opened it too often.
+  /// Connects and waits until the document is open: by itself, or by a request if the daemon was killed too often while it opened it.
   ipc::DocumentState wait_until_open() {
     using namespace std::chrono_literals;
     const auto until = std::chrono::steady_clock::now() + kPatience;
@@ -58,10 +59,10 @@ class Lives {
     return {};
   }
 
-  /// The signal alone, from any thread.
-  void shoot() { daemon_->kill(SIGKILL); }
-  /// What is left to do after it.
-  void bury() {
+  /// Only sends the signal; may be called from any thread.
+  void send_kill() { daemon_->kill(SIGKILL); }
+  /// Waits for the killed process and cleans up.
+  void wait_for_end() {
     client_.lost({"", 0, "killed"});
     if (daemon_->wait_for_exit() != 128 + SIGKILL) ADD_FAILURE() << daemon_->standard_error();
   }

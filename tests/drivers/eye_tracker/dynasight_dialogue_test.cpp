@@ -1,4 +1,4 @@
-// What the station and the tracker say to each other, line by line.
+// The dialogue between station and tracker, byte by byte.
 #include <deque>
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// A port whose other side is the test.
+/// A port whose other end is the test.
 class ScriptedPort final : public port::BytePort {
  public:
   port::PortCount read(std::span<std::byte> to) override {
@@ -46,14 +46,14 @@ class ScriptedPort final : public port::BytePort {
 struct Line {
   std::int64_t at_ms;
   std::vector<RecordBytes> device = {};  ///< arrives before the poll at that time
-  std::string station = "";              ///< what the station says in that poll
-  std::optional<double> x_mm = {};       ///< of the fresh sample
+  std::string station = "";              ///< what the station sends in that poll
+  std::optional<double> x_mm = {};       ///< x of the fresh sample
   bool doubtful = false;
 };
 
 RecordBytes at(double x_mm, Status status = Status::track) { return encode(record_for({x_mm, 40, 650}, status)); }
 
-void hold(const std::vector<Line>& lines, const DynasightTracker::Options& options) {
+void expect_dialogue(const std::vector<Line>& lines, const DynasightTracker::Options& options) {
   ScriptedPort port;
   DynasightTracker tracker(port, options);
   for (const Line& line : lines) {
@@ -68,56 +68,57 @@ void hold(const std::vector<Line>& lines, const DynasightTracker::Options& optio
   }
 }
 
-TEST(DynasightTalk, a_d4d_is_interrupted_and_told_to_stream) {
-  hold({{0, {}, "\x03\x03\x03"},
-        {5, {at(9), at(9), at(9), at(9), at(9), at(8)}, ""},  // of an earlier life: no news, however well it agrees
-        {45, {}, ""},
-        {50, {}, "0"},
-        {70, {at(1)}},
-        {87, {at(2)}},
-        {103, {at(3)}},
-        {120, {at(4)}},  // four agree: synchronised, and the next is believed
-        {137, {at(5)}, "", 5},
-        {153, {at(6, Status::caution)}, "", 6, true},
-        {170, {at(6, Status::coast)}, "", 6, true},
-        {187, {at(0, Status::search)}},
-        {203, {at(7)}},  // the head is back; a second record has to say so
-        {220, {at(8)}, "", 8}},
-       {});
+TEST(DynasightDialogue, interrupts_a_d4d_and_starts_its_stream) {
+  expect_dialogue(
+      {{0, {}, "\x03\x03\x03"},
+       {5, {at(9), at(9), at(9), at(9), at(9), at(8)}, ""},  // from before the restart: not a sample, however well the records agree
+       {45, {}, ""},
+       {50, {}, "0"},
+       {70, {at(1)}},
+       {87, {at(2)}},
+       {103, {at(3)}},
+       {120, {at(4)}},  // four agree: synchronised, and the next one is plausible
+       {137, {at(5)}, "", 5},
+       {153, {at(6, Status::caution)}, "", 6, true},
+       {170, {at(6, Status::coast)}, "", 6, true},
+       {187, {at(0, Status::search)}},
+       {203, {at(7)}},  // the head is back; a second record has to confirm it
+       {220, {at(8)}, "", 8}},
+      {});
 }
 
-TEST(DynasightTalk, a_dynasight_streams_at_another_letter) {
-  hold({{0, {}, "\x03\x03\x03"}, {50, {}, "V"}}, {.dialect = settings::TrackerDialect::dynasight});
+TEST(DynasightDialogue, starts_a_dynasights_stream_with_its_own_command) {
+  expect_dialogue({{0, {}, "\x03\x03\x03"}, {50, {}, "V"}}, {.dialect = settings::TrackerDialect::dynasight});
 }
 
-TEST(DynasightTalk, polled_means_one_record_for_one_question) {
-  hold({{0, {}, "\x03\x03\x03"},
-        {50, {}, "4\x11"},
-        {55, {}, ""},
-        {60, {at(1)}, "\x11"},
-        {65, {at(2)}, "\x11"},
-        {70, {at(3)}, "\x11"},
-        {75, {at(4)}, "\x11"},
-        {80, {at(5)}, "\x11", 5},
-        {180, {}, ""},
-        {185, {}, "\x11"},  // no answer in 100 ms: the question or the answer was lost
-        {190, {at(6)}, "\x11", 6}},
-       {.polled = true});
+TEST(DynasightDialogue, polled_mode_requests_one_record_at_a_time) {
+  expect_dialogue({{0, {}, "\x03\x03\x03"},
+                   {50, {}, "4\x11"},
+                   {55, {}, ""},
+                   {60, {at(1)}, "\x11"},
+                   {65, {at(2)}, "\x11"},
+                   {70, {at(3)}, "\x11"},
+                   {75, {at(4)}, "\x11"},
+                   {80, {at(5)}, "\x11", 5},
+                   {180, {}, ""},
+                   {185, {}, "\x11"},  // no answer for 100 ms: request or answer was lost
+                   {190, {at(6)}, "\x11", 6}},
+                  {.polled = true});
 }
 
-TEST(DynasightTalk, a_silent_device_is_spoken_to_again_and_again) {
-  hold({{0, {}, "\x03\x03\x03"},
-        {50, {}, "0"},
-        {550, {}, ""},
-        {555, {}, "\x03\x03\x03"},
-        {600, {}, ""},
-        {605, {}, "0"},
-        {1105, {}, ""},
-        {1110, {}, "\x03\x03\x03"}},
-       {});
+TEST(DynasightDialogue, retries_a_silent_device) {
+  expect_dialogue({{0, {}, "\x03\x03\x03"},
+                   {50, {}, "0"},
+                   {550, {}, ""},
+                   {555, {}, "\x03\x03\x03"},
+                   {600, {}, ""},
+                   {605, {}, "0"},
+                   {1105, {}, ""},
+                   {1110, {}, "\x03\x03\x03"}},
+                  {});
 }
 
-TEST(DynasightTalk, a_device_that_falls_silent_or_talks_nonsense_is_started_again) {
+TEST(DynasightDialogue, restarts_a_device_that_falls_silent_or_sends_noise) {
   for (const bool nonsense : {false, true}) {
     ScriptedPort port;
     DynasightTracker tracker(port, {});
@@ -144,7 +145,7 @@ TEST(DynasightTalk, a_device_that_falls_silent_or_talks_nonsense_is_started_agai
   }
 }
 
-TEST(DynasightTalk, commands_wait_for_a_line_that_is_full) {
+TEST(DynasightDialogue, commands_wait_while_the_line_is_full) {
   ScriptedPort port;
   port.room = 2;
   DynasightTracker tracker(port, {});
@@ -155,7 +156,7 @@ TEST(DynasightTalk, commands_wait_for_a_line_that_is_full) {
   EXPECT_EQ(port.take_said(), "\x03");
 }
 
-TEST(DynasightTalk, a_port_that_is_gone_says_so) {
+TEST(DynasightDialogue, reports_a_port_that_is_gone) {
   ScriptedPort port;
   DynasightTracker tracker(port, {});
   EXPECT_EQ(tracker.poll(0).status, port::PortStatus::ok);
@@ -163,22 +164,22 @@ TEST(DynasightTalk, a_port_that_is_gone_says_so) {
   EXPECT_EQ(tracker.poll(kMs).status, port::PortStatus::gone);
 }
 
-TEST(DynasightTalk, of_several_records_in_one_read_the_newest_counts_and_its_time_allows_for_those_after_it) {
+TEST(DynasightDialogue, takes_the_newest_record_of_a_read_and_subtracts_the_time_of_the_bytes_after_it) {
   constexpr std::int64_t kByteNs = 520'833;  // at 19200 baud
   ScriptedPort port;
   DynasightTracker tracker(port, {.latency_ns = 20 * kMs});
   tracker.poll(0);
   tracker.poll(50 * kMs);
-  const auto say = [&](const RecordBytes& record, std::size_t bytes = kRecordBytes) {
+  const auto add_record = [&](const RecordBytes& record, std::size_t bytes = kRecordBytes) {
     port.arrived.insert(port.arrived.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(bytes));
   };
-  for (int i = 0; i < 6; ++i) say(at(i));
+  for (int i = 0; i < 6; ++i) add_record(at(i));
   auto polled = tracker.poll(200 * kMs);
   ASSERT_TRUE(polled.fresh);
   EXPECT_EQ(polled.sample.measured_ns, 180 * kMs);
 
-  say(at(7));
-  say(at(8), 3);  // three bytes of the next record: the one before ended three bytes ago
+  add_record(at(7));
+  add_record(at(8), 3);  // three bytes of the next record: the previous one ended three bytes earlier
   polled = tracker.poll(220 * kMs);
   ASSERT_TRUE(polled.fresh);
   EXPECT_NEAR(polled.sample.between_eyes_mm.x(), 7, 0.05);
@@ -186,14 +187,14 @@ TEST(DynasightTalk, of_several_records_in_one_read_the_newest_counts_and_its_tim
 
   const RecordBytes rest = at(8);
   port.arrived.insert(port.arrived.end(), rest.begin() + 3, rest.end());
-  say(at(0, Status::search));  // a whole record after it: that was a 60th of a second earlier
+  add_record(at(0, Status::search));  // a complete record after it: the previous one was sent a 60th of a second earlier
   polled = tracker.poll(240 * kMs);
   ASSERT_TRUE(polled.fresh);
   EXPECT_NEAR(polled.sample.between_eyes_mm.x(), 8, 0.05);
   EXPECT_EQ(polled.sample.measured_ns, 220 * kMs - 16'666'667);
 }
 
-TEST(DynasightTalk, a_record_in_one_read_with_the_next_ones_begin_is_still_newer_than_the_last) {
+TEST(DynasightDialogue, a_record_read_with_a_part_of_the_next_is_newer_than_the_previous) {
   ScriptedPort port;
   DynasightTracker tracker(port, {.latency_ns = 20 * kMs});
   tracker.poll(0);
@@ -210,7 +211,7 @@ TEST(DynasightTalk, a_record_in_one_read_with_the_next_ones_begin_is_still_newer
   EXPECT_EQ(polled.sample.measured_ns, 180 * kMs + 1);
 }
 
-TEST(DynasightTalk, what_waited_since_before_the_talk_is_no_news) {
+TEST(DynasightDialogue, ignores_records_from_before_the_dialogue) {
   ScriptedPort port;
   DynasightTracker tracker(port, {});
   for (int i = 0; i < 1'000; ++i)
@@ -218,24 +219,24 @@ TEST(DynasightTalk, what_waited_since_before_the_talk_is_no_news) {
   tracker.poll(0);
   tracker.poll(50 * kMs);
   EXPECT_TRUE(port.arrived.empty());
-  for (int i = 1; i < 8; ++i) EXPECT_FALSE(tracker.poll((50 + 5 * i) * kMs).fresh) << "a place of who knows when";
+  for (int i = 1; i < 8; ++i) EXPECT_FALSE(tracker.poll((50 + 5 * i) * kMs).fresh) << "a position of unknown age";
 }
 
-TEST(DynasightTalk, the_offset_moves_the_place_and_what_lands_outside_is_refused) {
+TEST(DynasightDialogue, adds_the_offset_and_rejects_positions_out_of_range) {
   ScriptedPort port;
   DynasightTracker tracker(port, {.offset_mm = {10, -200, -580}});
   tracker.poll(0);
   tracker.poll(50 * kMs);
-  const auto hear = [&](const Eigen::Vector3d& place, std::int64_t ms) {
+  const auto receive_at = [&](const Eigen::Vector3d& place, std::int64_t ms) {
     for (const std::byte byte : encode(record_for(place))) port.arrived.push_back(byte);
     return tracker.poll(ms * kMs);
   };
-  for (int i = 0; i < 5; ++i) hear({0, 100, 700}, 60 + i);
-  const auto inside = hear({1, 100, 700}, 80);
+  for (int i = 0; i < 5; ++i) receive_at({0, 100, 700}, 60 + i);
+  const auto inside = receive_at({1, 100, 700}, 80);
   ASSERT_TRUE(inside.fresh);
   EXPECT_TRUE(inside.sample.between_eyes_mm.isApprox(Eigen::Vector3d(11, -100, 120), 1e-3));
-  EXPECT_FALSE(hear({1, 100, 670}, 90).fresh) << "90 mm from the screen: nobody's eyes";
-  EXPECT_EQ(tracker.counts().rejected, 2u);  // and the record of the lock itself
+  EXPECT_FALSE(receive_at({1, 100, 670}, 90).fresh) << "90 mm from the screen: not a viewer's eyes";
+  EXPECT_EQ(tracker.counts().rejected, 2u);  // plus the record that completed the lock
 }
 
 }  // namespace
