@@ -59,7 +59,7 @@ struct CancelDrag {
 };
 struct Count {  ///< what an id expression names; selects nothing
   std::string expr;
-  mesh::select::Kind kind = mesh::select::Kind::node;
+  mesh::select::EntityKind kind = mesh::select::EntityKind::node;
 };
 /// What is wrong with the shells, in figures. Costs a pass over the shells: ask where they are looked at, once a generation.
 struct GetQuality {

@@ -21,13 +21,13 @@ struct Message<mesh::document::Edit> {
 };
 
 template <>
-struct Message<mesh::select::Kind> {
+struct Message<mesh::select::EntityKind> {
   static constexpr std::array<std::string_view, 3> kNames{"node", "element", "part"};
-  static void write(Json& json, mesh::select::Kind value) { json = kNames[static_cast<std::size_t>(value)]; }
-  static Problem read(const Json& json, mesh::select::Kind& value) {
+  static void write(Json& json, mesh::select::EntityKind value) { json = kNames[static_cast<std::size_t>(value)]; }
+  static Problem read(const Json& json, mesh::select::EntityKind& value) {
     const auto found = json.is_string() ? std::find(kNames.begin(), kNames.end(), json.get<std::string>()) : kNames.end();
     if (found == kNames.end()) return "must be \"node\", \"element\" or \"part\"";
-    value = static_cast<mesh::select::Kind>(found - kNames.begin());
+    value = static_cast<mesh::select::EntityKind>(found - kNames.begin());
     return std::nullopt;
   }
 };

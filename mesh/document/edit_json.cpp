@@ -26,8 +26,9 @@ constexpr int kMaxRings = 1'000'000;
 template <class E>
 using Names = std::vector<std::pair<std::string_view, E>>;
 
-const Names<select::Kind>& names(select::Kind) {
-  static const Names<select::Kind> table{{"node", select::Kind::node}, {"element", select::Kind::element}, {"part", select::Kind::part}};
+const Names<select::EntityKind>& names(select::EntityKind) {
+  static const Names<select::EntityKind> table{
+      {"node", select::EntityKind::node}, {"element", select::EntityKind::element}, {"part", select::EntityKind::part}};
   return table;
 }
 const Names<SelectMode>& names(SelectMode) {
