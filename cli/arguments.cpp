@@ -1,4 +1,4 @@
-// The only file that knows the argument parser, which is heavy to compile.
+// The only file with the argument parser, which is slow to compile.
 #include "cli/arguments.h"
 
 #include <array>
@@ -19,7 +19,7 @@ namespace prismesh::cli {
 
 namespace {
 
-/// The parser with what it fills; a command's options live as long as the action made of them.
+/// The parser and the values it fills. A command's options live as long as the action that uses them.
 struct Parser {
   CLI::App app{"Prismesh: edit finite-element shell models for crash simulation.", "prismesh"};
   Common common;
@@ -51,11 +51,11 @@ void add_common(Parser& parser) {
   Common& common = parser.common;
   app.add_option_function<std::string>(
          "--length-unit", [&common](const std::string& text) { common.length_unit = length_unit_from(text); },
-         "the deck's length unit: mm, m or in (default: guessed, and said)")
+         "the deck's length unit: mm, m or in (default: guessed; a note says so)")
       ->check(CLI::IsMember({"mm", "m", "in"}));
   app.add_option_function<double>(
          "--target-size", [&common](double size) { common.target_size = size; },
-         "the wanted element size, in the deck's length unit (default: guessed, and said)")
+         "the target element size, in the deck's length unit (default: guessed; a note says so)")
       ->check(CLI::Validator(
           [](const std::string& text) {
             double size = 0;
@@ -63,52 +63,64 @@ void add_common(Parser& parser) {
             return good ? std::string() : "must be a number greater than 0, not \"" + text + "\"";
           },
           "SIZE > 0"));
-  add_optional(&app, "--criteria", common.criteria, "a file of quality criteria (TOML), or one of ours: default, strict");
-  app.add_flag("--json", common.json, "print JSON and nothing else");
+  add_optional(&app, "--criteria", common.criteria, "a file of quality criteria (TOML), or a built-in one: default, strict");
+  app.add_flag("--json", common.json, "print only JSON");
 }
 
 void add_reading_commands(Parser& parser) {
-  const auto [info_app, info_options] = add_command<InfoOptions>(parser, "info", "say what a deck holds", info);
+  const auto [info_app, info_options] = add_command<InfoOptions>(parser, "info", "print what a deck contains", info);
   info_app->add_option("DECK", info_options->deck, "the deck's main file")->required();
 
-  const auto [check_app, check_options] = add_command<CheckOptions>(parser, "check", "measure and judge the shells of a deck", check);
+  const auto [check_app, check_options] = add_command<CheckOptions>(parser, "check", "measure the quality of a deck's shells", check);
   check_app->add_option("DECK", check_options->deck, "the deck's main file")->required();
   add_optional(check_app, "--select", check_options->select, "only these shells, e.g. part:3,shell:100-200");
-  check_app->add_flag("--chordal", check_options->chordal, "also how far edges are from the smooth surface through the mesh");
+  check_app->add_flag("--chordal", check_options->chordal, "also the distance of edges from the smooth surface through the mesh");
 
   const auto [diff_app, diff_options] = add_command<DiffOptions>(parser, "diff", "compare two decks by ids and by lines", diff);
   diff_app->add_option("A", diff_options->a, "a deck")->required();
   diff_app->add_option("B", diff_options->b, "another deck")->required();
 
   const auto [distance_app, distance_options] =
-      add_command<DistanceOptions>(parser, "distance", "shortest distance between two sets of nodes or shells", distance);
+      add_command<DistanceOptions>(parser, "distance", "measure the shortest distance between two sets of nodes or shells", distance);
   distance_app->add_option("DECK", distance_options->deck, "the deck's main file")->required();
   distance_app->add_option("--from", distance_options->from, "an expression: node ids, shell:ID, part:ID")->required();
   distance_app->add_option("--to", distance_options->to, "another expression")->required();
 }
 
+/// An option --elements of a command that makes the sample.
+void add_elements(CLI::App* app, std::optional<std::size_t>& elements, const std::string& what, std::size_t usual) {
+  app->add_option_function<std::size_t>(
+         "--elements", [&elements](std::size_t n) { elements = n; },
+         what + ", " + std::to_string(mesh::deck::kSampleShellsMin) + " to " + std::to_string(mesh::deck::kSampleShellsMax) + " (default " +
+             std::to_string(usual) + ")")
+      ->check(CLI::Range(mesh::deck::kSampleShellsMin, mesh::deck::kSampleShellsMax));
+}
+
 void add_writing_commands(Parser& parser) {
   const auto [edit_app, edit_options] = add_command<EditOptions>(parser, "edit", "edit a deck and write the result", edit);
   edit_app->add_option("DECK", edit_options->deck, "the deck's main file")->required();
-  edit_app->add_option("--edit", edit_options->edits, "an edit as JSON; may be given several times")->take_all()->allow_extra_args(false);
-  add_optional(edit_app, "--script", edit_options->script, "a file of edits, one JSON object a line, done after those of --edit");
+  edit_app->add_option("--edit", edit_options->edits, "an edit as JSON; may be repeated")->take_all()->allow_extra_args(false);
+  add_optional(edit_app, "--script", edit_options->script, "a file of edits, one JSON object per line; they follow those of --edit");
   edit_app->add_option("-o,--output", edit_options->output, "the main file to write")->required();
-  add_optional(edit_app, "--journal", edit_options->journal, "also write a journal of the edits here");
+  add_optional(edit_app, "--journal", edit_options->journal, "also write a journal of the edits to this file");
 
-  const auto [replay_app, replay_options] = add_command<ReplayOptions>(parser, "replay", "do a journal's edits again on a deck", replay);
+  const auto [replay_app, replay_options] = add_command<ReplayOptions>(parser, "replay", "apply a journal's edits to a deck again", replay);
   replay_app->add_option("JOURNAL", replay_options->journal, "a journal, or a file of edits")->required();
-  replay_app->add_option("DECK", replay_options->deck, "the deck it was made on, or a variant")->required();
+  replay_app->add_option("DECK", replay_options->deck, "the deck that the journal was made on, or a variant of it")->required();
   replay_app->add_option("-o,--output", replay_options->output, "the main file to write")->required();
 
   const auto [sample_app, sample_options] =
-      add_command<SampleOptions>(parser, "sample", "write a sheet-metal assembly to try things on", sample);
-  sample_app
-      ->add_option_function<std::size_t>(
-          "--elements", [o = sample_options](std::size_t n) { o->elements = n; },
-          "about how many shells, " + std::to_string(mesh::deck::kSampleShellsMin) + " to " + std::to_string(mesh::deck::kSampleShellsMax) +
-              " (default " + std::to_string(mesh::deck::kSampleShellsDefault) + ")")
-      ->check(CLI::Range(mesh::deck::kSampleShellsMin, mesh::deck::kSampleShellsMax));
+      add_command<SampleOptions>(parser, "sample", "write a generated sheet-metal assembly as an example deck", sample);
+  add_elements(sample_app, sample_options->elements, "about how many shells", mesh::deck::kSampleShellsDefault);
   sample_app->add_option("-o,--output", sample_options->output, "the deck to write")->required();
+}
+
+void add_bench(Parser& parser) {
+  const auto [app, options] = add_command<BenchOptions>(parser, "bench", "measure how long the core's work takes on this machine", bench);
+  add_optional(app, "DECK", options->deck, "the deck's main file (default: the generated sample)");
+  add_optional(app, "FILTER", options->filter,
+               "measure only figures in whose names this regular expression is found; without DECK it may stand alone");
+  add_elements(app, options->elements, "about how many shells the sample has", kBenchShellsDefault);
 }
 
 void add_render(Parser& parser) {
@@ -116,7 +128,7 @@ void add_render(Parser& parser) {
   app->add_option("DECK", options->deck, "the deck's main file")->required();
   app->add_option("-o,--output", options->output, "the PNG to write")->required();
   add_optional(app, "--select", options->select, "show these nodes as selected, e.g. 1-100,part:3");
-  // The kiosk knows what these may be.
+  // the kiosk checks the values of these
   const auto pass_on = [app = app, o = options](const std::string& name, const std::string& what) {
     app->add_option_function<std::string>(
         name,
@@ -130,22 +142,23 @@ void add_render(Parser& parser) {
           "display profile: prism-mask (default), prism-mask-columns, prism-mask-stencil, lenticular, row-interlaced, side-by-side, "
           "top-bottom, anaglyph, mono, mono-left, mono-right, or a file");
   pass_on("--eye", "X,Y,Z: the point between the eyes, mm from the screen's centre (default 0,0,650)");
-  pass_on("--mask", "where a movable mask stands, mm (default: where it should for these eyes)");
+  pass_on("--mask", "position of a movable mask, mm (default: the right one for these eyes)");
   pass_on("--view", "front, back, left, right, top, bottom or iso (default)");
   add_optional(
       app, "--colour", options->colour,
       "parts (default), quality, part-states, or a field: displacement, distance-to-original, distance, metric:NAME, composite, time-step");
   add_optional(app, "--against", options->against, "the deck that displacement and distance-to-original compare with");
-  app->add_option("--from", options->from, "of the field distance: the nodes that are coloured, an expression");
-  app->add_option("--to", options->to, "of the field distance: what their distance is measured to, an expression");
-  add_optional(app, "--limits", options->limits,
-               "CLEAR,FULL: values that keep the part's colour, and that have the map's last (default: the field's own)");
+  app->add_option("--from", options->from, "for the field distance: the nodes to colour, an expression");
+  app->add_option("--to", options->to, "for the field distance: the nodes or shells to measure to, an expression");
+  add_optional(
+      app, "--limits", options->limits,
+      "CLEAR,FULL: the value up to which the part's colour stays, and the value with the map's last colour (default: from the field)");
   pass_on("--map", "colour map of fields: crimson (default) or blues");
-  pass_on("--bands", "so many even colours instead of a gradient");
+  pass_on("--bands", "number of uniform colour bands (default: a gradient)");
 }
 
 void add_session(Parser& parser) {
-  const auto [app, options] = add_command<SessionOptions>(parser, "session", "edit the document that is open in a running modeld", session);
+  const auto [app, options] = add_command<SessionOptions>(parser, "session", "edit the document that a running modeld has open", session);
   app->require_subcommand(1);
   add_optional(app, "--runtime-dir", options->runtime_directory, "the folder of modeld's socket");
   using Action = SessionOptions::Action;
@@ -157,21 +170,21 @@ void add_session(Parser& parser) {
   };
   add("open", Action::open, "open a deck")->add_option("DECK", options->deck, "the deck's main file")->required();
   CLI::App* edit_app = add("edit", Action::edit, "edit the open document");
-  edit_app->add_option("EDIT", options->edits, "an edit as JSON; may be given several times");
-  add_optional(edit_app, "--script", options->script, "a file of edits, one JSON object a line, done after those");
-  add_optional(add("save", Action::save, "save the document"), "OUT", options->output, "where to (default: in place)");
-  add("state", Action::state, "say what is open");
-  add("undo", Action::undo, "take the last edit back");
-  add("redo", Action::redo, "do the edit that was taken back again");
-  add("close", Action::close, "close the document")->add_flag("--discard", options->discard, "give unsaved edits up");
+  edit_app->add_option("EDIT", options->edits, "an edit as JSON; may be repeated");
+  add_optional(edit_app, "--script", options->script, "a file of edits, one JSON object per line; they follow the others");
+  add_optional(add("save", Action::save, "save the document"), "OUT", options->output, "the main file to write (default: in place)");
+  add("state", Action::state, "print what is open");
+  add("undo", Action::undo, "undo the last edit");
+  add("redo", Action::redo, "apply the last undone edit again");
+  add("close", Action::close, "close the document")->add_flag("--discard", options->discard, "also with unsaved edits");
 }
 
 void add_devices(Parser& parser) {
-  const auto [app, options] =
-      add_command<DevicesOptions>(parser, "devices", "show eye tracker, prism servo and their loop in a running deviced", devices);
+  const auto [app, options] = add_command<DevicesOptions>(
+      parser, "devices", "show the eye tracker, the prism servo and the control loop of a running deviced", devices);
   add_optional(app, "--runtime-dir", options->runtime_directory, "the folder of deviced's socket");
-  app->add_flag("--watch", options->watch, "again each second, until Ctrl-C");
-  app->add_flag("--rearm", options->rearm, "first let a mask that was stuck or switched itself off try again");
+  app->add_flag("--watch", options->watch, "print again each second, until Ctrl-C");
+  app->add_flag("--rearm", options->rearm, "first enable a mask again that was stuck or switched itself off");
   app->add_flag("--reload", options->reload, "first read prismesh.toml and the display profile again");
 }
 
@@ -188,7 +201,7 @@ tl::unexpected<Error> usage_error(const Parser& parser, std::span<const std::str
     const std::vector<std::string_view> known(names.begin(), names.end());
     message = "there is no command \"" + args[0] + "\"; the nearest is \"" + std::string(nearest_name(args[0], known)) + "\"";
   }
-  return fail(command, message + " (" + command + " --help says how it is used)");
+  return fail(command, message + " (" + command + " --help shows the usage)");
 }
 
 }  // namespace
@@ -200,6 +213,7 @@ Result<Action> parse_arguments(std::span<const std::string> args) {
   add_common(*parser);
   add_reading_commands(*parser);
   add_writing_commands(*parser);
+  add_bench(*parser);
   add_render(*parser);
   add_session(*parser);
   add_devices(*parser);

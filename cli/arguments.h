@@ -1,4 +1,4 @@
-// Arguments to commands. Inner to cli.
+// Parses arguments into commands. Inner to cli.
 #pragma once
 
 #include <functional>
@@ -10,10 +10,10 @@
 
 namespace prismesh::cli {
 
-/// What the arguments ask for: a command ready to run, or text to print (--help, --version).
+/// A command with its options, ready to run, or one that prints a text (--help, --version).
 using Action = std::function<int(const Context&)>;
 
-/// Error: wrong usage, in a sentence; its file is the command ("prismesh edit").
+/// Parses the arguments. Errors: wrong usage, as a sentence; the error's file is the command ("prismesh edit").
 Result<Action> parse_arguments(std::span<const std::string> args);
 
 }  // namespace prismesh::cli

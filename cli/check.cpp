@@ -37,9 +37,9 @@ void print_metrics(std::ostream& out, const mesh::Model& model, const quality::R
   }
 }
 
-/// Shells that are no shells; nothing if there are none.
+/// Counts of degenerate shells, if there are any.
 void print_defects(std::ostream& out, const quality::Report& report) {
-  constexpr const char* kWhat[quality::kDefectCount] = {"with a coordinate that is no number", "with corners at one place",
+  constexpr const char* kWhat[quality::kDefectCount] = {"with a coordinate that isn't a number", "with corners at one place",
                                                         "without area or folded"};
   for (std::size_t d = 0; d < quality::kDefectCount; ++d)
     if (report.defects[d] > 0) out << counted(report.defects[d], "shell") << ' ' << kWhat[d] << " (fail)\n";
@@ -49,19 +49,20 @@ void print_structure(std::ostream& out, const mesh::Model& model, const quality:
   const auto say = [&](std::size_t count, const char* one, const char* more) {
     if (count > 0) out << count << ' ' << (count == 1 ? one : more) << '\n';
   };
-  say(found.duplicates.size(), "shell has the corners of another", "shells have the corners of another");
+  say(found.duplicates.size(), "shell duplicates another", "shells duplicate others");
   say(found.opposed.size(), "edge has shells with opposed normals", "edges have shells with opposed normals");
   say(found.multiple.size(), "edge has three shells or more", "edges have three shells or more");
-  say(found.unjoined.size(), "free edge lies on another that it isn't joined to", "free edges lie on another that they aren't joined to");
-  say(found.free_inside.size(), "free edge about a hole of one shell", "free edges about holes of one shell");
+  say(found.unjoined.size(), "free edge lies on another without being joined to it",
+      "free edges lie on others without being joined to them");
+  say(found.free_inside.size(), "free edge around a hole of one shell", "free edges around holes of one shell");
   say(found.clusters.size(), "node has a cluster of triangles", "nodes have a cluster of triangles");
   if (found.most_triangles > 0)
-    out << "most triangles about a node " << found.most_triangles << " at node:" << model.node_ids[found.most_triangles_at.value] << '\n';
+    out << "max triangles around a node " << found.most_triangles << " at node:" << model.node_ids[found.most_triangles_at.value] << '\n';
 }
 
 void print_parts(std::ostream& out, const mesh::Model& model, const std::vector<quality::PartReport>& parts) {
   if (parts.empty()) return;
-  out << "part          shells    warn    fail  tri %  composite least    mean  name\n";
+  out << "part          shells    warn    fail  tri %    composite min    mean  name\n";
   for (std::size_t i = 0; i < std::min(parts.size(), kPartsShown); ++i) {
     const quality::Report& report = parts[i].report;
     const mesh::Part& part = (*model.parts)[parts[i].part.value];
@@ -84,7 +85,7 @@ void print_text(std::ostream& out, const mesh::document::Document& document, con
   print_defects(out, report);
   if (report.elements > 0) {
     print_metrics(out, model, report);
-    out << "composite: least " << report.least_composite << ", mean " << report.mean_composite << '\n';
+    out << "composite: min " << report.least_composite << ", mean " << report.mean_composite << '\n';
   }
   print_structure(out, model, figures.structure);
   if (figures.chordal && figures.chordal->worst)
@@ -111,7 +112,7 @@ int check(const CheckOptions& options, const Common& common, const Context& cont
   mesh::ShellSet shells;
   if (options.select) {
     Result<mesh::select::Chosen> chosen =
-        mesh::select::evaluate(model, *options.select, mesh::select::Kind::element, document->current().relations->names);
+        mesh::select::evaluate(model, *options.select, mesh::select::EntityKind::element, document->current().relations->names);
     if (!chosen) return refuse(chosen.error());
     shells = std::move(chosen->shells);
   }

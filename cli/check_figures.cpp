@@ -12,8 +12,8 @@ namespace {
 
 namespace quality = mesh::quality;
 
-constexpr double kFeatureAngle = 30;     ///< degrees; as edits have it by default
-constexpr std::size_t kPartsNamed = 10;  ///< in a sentence
+constexpr double kFeatureAngle = 30;     ///< degrees; the default of edits
+constexpr std::size_t kPartsNamed = 10;  ///< max in a sentence
 
 ChordalFigures chordal_figures(const mesh::Model& model, const mesh::ShellSet* shells) {
   mesh::ShellSet listed;

@@ -1,4 +1,4 @@
-// What `check` has to say about a deck, gathered. Inner to cli.
+// Computes the figures of `check`. Inner to cli.
 #pragma once
 
 #include <optional>
@@ -21,12 +21,13 @@ struct CheckFigures {
   mesh::quality::Report report;
   std::vector<mesh::quality::PartReport> parts;
   mesh::quality::Structure structure;
-  std::optional<ChordalFigures> chordal;  ///< where it was asked for
+  std::optional<ChordalFigures> chordal;  ///< if it was asked for
   mesh::quality::Grade triangles = mesh::quality::Grade::ok;
-  std::vector<std::string> unknown;  ///< what can't be said, a sentence each
+  std::vector<std::string> unknown;  ///< a sentence for each figure that can't be computed
 };
 
-/// Of the shells given; of all: nullptr. `chordal`: also how far edges are from the smooth surface through the mesh, which takes longer.
+/// Computes the figures of the given shells; nullptr: of all. `chordal`: also the distance of edges from the smooth surface, which takes
+/// longer.
 CheckFigures check_figures(const mesh::document::Document& document, const mesh::ShellSet* shells, bool chordal);
 
 mesh::quality::Grade grade_of_triangles(double percent, const mesh::quality::Criteria& criteria);

@@ -1,7 +1,7 @@
-// The commands: what each takes, and the function that does it. cli/run.cpp turns arguments into these structs.
+// The commands: the options of each and the function that does it. cli/arguments.cpp parses arguments into these structs.
 //
-// A new command: declare its options and function here, write it in a file of its own, and register it in
-// cli/arguments.cpp (one function there, next to its kind; it is the only file that knows the argument parser).
+// To add a command: declare its options and function here, write it in a file of its own, and register it in
+// cli/arguments.cpp (the only file with the argument parser).
 #pragma once
 
 #include <cstddef>
@@ -31,8 +31,8 @@ int info(const InfoOptions& options, const Common& common, const Context& contex
 
 struct CheckOptions {
   std::filesystem::path deck;
-  std::optional<std::string> select;  ///< an expression: judge the shells it names
-  bool chordal = false;               ///< also how far edges are from the smooth surface
+  std::optional<std::string> select;  ///< an expression: check only the shells it names
+  bool chordal = false;               ///< also the distance of edges from the smooth surface
 };
 int check(const CheckOptions& options, const Common& common, const Context& context);
 
@@ -71,16 +71,24 @@ struct SampleOptions {
 };
 int sample(const SampleOptions& options, const Common& common, const Context& context);
 
+inline constexpr std::size_t kBenchShellsDefault = 100'000;
+struct BenchOptions {
+  std::optional<std::string> deck;      ///< a filter instead, where it is the only argument and no file has this name
+  std::optional<std::string> filter;    ///< a regular expression: only figures in whose names it is found
+  std::optional<std::size_t> elements;  ///< of the sample, without a deck
+};
+int bench(const BenchOptions& options, const Common& common, const Context& context);
+
 struct RenderOptions {
   std::filesystem::path deck;
   std::filesystem::path output;
   std::optional<std::string> select;             ///< an expression: these nodes are shown as selected
-  std::optional<std::string> colour;             ///< a mode that the kiosk knows, or a field (mesh/document/field.h)
+  std::optional<std::string> colour;             ///< a mode of the kiosk, or a field (mesh/document/field.h)
   std::optional<std::filesystem::path> against;  ///< the deck that a field compares with
   std::string from, to;                          ///< expressions, of the field "distance"
   std::optional<std::string> limits;             ///< CLEAR,FULL of the colour map
-  std::vector<std::string>
-      passed_on;  ///< options and values that the kiosk reads: --size, --profile, --eye, --mask, --view, --map, --bands
+  /// Options with values that are passed on to the kiosk: --size, --profile, --eye, --mask, --view, --map, --bands.
+  std::vector<std::string> passed_on;
 };
 int render(const RenderOptions& options, const Common& common, const Context& context);
 
@@ -92,17 +100,17 @@ struct SessionOptions {
   std::filesystem::path deck;                   ///< open
   std::vector<std::string> edits;               ///< edit: JSON, done first
   std::optional<std::filesystem::path> script;  ///< edit: JSON Lines, done after them
-  std::optional<std::filesystem::path> output;  ///< save: elsewhere than in place
-  bool discard = false;                         ///< close: unsaved edits too
+  std::optional<std::filesystem::path> output;  ///< save: the main file to write; absent: in place
+  bool discard = false;                         ///< close: also with unsaved edits
 };
 int session(const SessionOptions& options, const Common& common, const Context& context);
 
 /// Asks a running deviced.
 struct DevicesOptions {
   std::optional<std::filesystem::path> runtime_directory;
-  bool watch = false;   ///< again each second
-  bool rearm = false;   ///< first let a mask that was stuck or switched itself off try again
-  bool reload = false;  ///< first let the daemon read settings and profile again
+  bool watch = false;   ///< print again each second
+  bool rearm = false;   ///< first enable a mask again that was stuck or switched itself off
+  bool reload = false;  ///< first make the daemon read settings and profile again
 };
 int devices(const DevicesOptions& options, const Common& common, const Context& context);
 

@@ -1,4 +1,4 @@
-// What every command gets: where its output goes and who may stop it; the exit statuses.
+// Data for every command: output streams, the stop flag and the exit statuses.
 #pragma once
 
 #include <atomic>
@@ -11,12 +11,12 @@ inline constexpr int kDone = 0;        ///< done, warnings allowed
 inline constexpr int kFailed = 1;      ///< the deck or an edit could not be done as asked
 inline constexpr int kWrongUsage = 2;  ///< wrong arguments, unparsable JSON
 
-/// Where a command writes to, and who may stop it.
+/// The streams that a command writes to, and the flag that stops it.
 struct Context {
   std::ostream& out;                               ///< results: text, or JSON alone with --json
   std::ostream& err;                               ///< reasons, warnings and the progress bar
   bool terminal = false;                           ///< `err` is a terminal: long work shows a bar
-  const std::atomic<bool>* interrupted = nullptr;  ///< true: stop, leave nothing
+  const std::atomic<bool>* interrupted = nullptr;  ///< true: stop, and leave no files
 
   bool stop() const { return interrupted != nullptr && interrupted->load(std::memory_order_relaxed); }
 };

@@ -1,4 +1,4 @@
-// What deviced and its state page say at one moment. Inner to cli.
+// The state of deviced's devices at one moment. Inner to cli.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct DeviceFigures {
   ipc::PrismState mask;
   ipc::DeviceHealth loop;
 
-  /// Milliseconds since a time on the page; nothing for "never".
+  /// Milliseconds since a time on the page; nothing if it never happened.
   std::optional<double> age_ms(std::int64_t time_ns) const {
     if (time_ns == 0) return std::nullopt;
     return static_cast<double>(now_ns - time_ns) * 1e-6;

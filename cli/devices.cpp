@@ -1,4 +1,4 @@
-// The eye tracker, the prism servo and the loop that joins them, as deviced knows them.
+// Shows the eye tracker, the prism servo and the control loop of a running deviced.
 #include <cmath>
 #include <ostream>
 #include <thread>
@@ -23,10 +23,10 @@ constexpr std::chrono::seconds kWatchPeriod{1};
 Result<DeviceFigures> look(ipc::DeviceClient& client) {
   Result<ipc::DeviceAnswer> answer = client.call(ipc::GetDevices{});
   while (client.next_event()) {
-  }  // what they tell is in the answer
+  }  // the answer has the same information
   if (!answer) return fail(std::move(answer.error()));
   auto* devices = std::get_if<ipc::Devices>(&*answer);
-  if (devices == nullptr) return fail("", "the device daemon answered something else than its devices");
+  if (devices == nullptr) return fail("", "the device daemon's answer isn't a list of devices");
   DeviceFigures figures;
   figures.devices = std::move(*devices);
   figures.eyes = client.page().eyes().value_or(ipc::EyesState{});
@@ -40,7 +40,7 @@ Result<DeviceFigures> look(ipc::DeviceClient& client) {
 std::string eyes_text(const DeviceFigures& figures) {
   const ipc::EyesState& eyes = figures.eyes;
   const auto age_ms = figures.age_ms(eyes.measured_ns);
-  if (!age_ms) return "no head was seen yet";
+  if (!age_ms) return "no head has been seen yet";
   const auto mm = [&](std::size_t axis) { return std::round(eyes.between_eyes_mm[axis]) + 0.0; };  // no "-0"
   return fmt::format("head at ({:.0f}, {:.0f}, {:.0f}) mm, measured {:.0f} ms ago; lost {} since the daemon's start", mm(0), mm(1), mm(2),
                      *age_ms, counted(eyes.times_lost, "time"));
@@ -49,7 +49,7 @@ std::string eyes_text(const DeviceFigures& figures) {
 std::string mask_text(const DeviceFigures& figures) {
   const ipc::PrismState& mask = figures.mask;
   const auto age_ms = figures.age_ms(mask.measured_ns);
-  if (!age_ms) return "the mask's place isn't known";
+  if (!age_ms) return "the mask's position isn't known";
   return fmt::format("mask at {:.3f} mm (goal {:.3f}), measured {:.0f} ms ago; {}", mask.position_mm, mask.goal_mm, *age_ms,
                      mask.stereo_allowed ? "stereo" : "no stereo now");
 }
@@ -57,7 +57,7 @@ std::string mask_text(const DeviceFigures& figures) {
 std::string loop_text(const DeviceFigures& figures) {
   const ipc::DeviceHealth& loop = figures.loop;
   const auto beat_ms = figures.age_ms(loop.heartbeat_ns);
-  if (!beat_ms) return "it hasn't begun";
+  if (!beat_ms) return "it hasn't started";
   return fmt::format(
       "process {}: {}, last {:.0f} ms ago, {} late (worst {:.1f} ms), {:.1f} us of CPU a tick; real-time priority {}, memory {}", loop.pid,
       counted(loop.ticks, "tick"), *beat_ms, loop.ticks_late, static_cast<double>(loop.worst_late_ns) * 1e-6,
@@ -76,7 +76,7 @@ void print(std::ostream& out, const DeviceFigures& figures) {
   out << "loop: " << loop_text(figures) << '\n';
 }
 
-/// What the user wants done first; empty: only to look.
+/// Does what the options ask for before the state is printed.
 Result<void> act(ipc::DeviceClient& client, const DevicesOptions& options) {
   if (options.reload)
     if (Result<ipc::DeviceAnswer> done = client.call(ipc::Reload{}); !done) return fail(std::move(done.error()));
@@ -99,13 +99,13 @@ Result<void> act_and_print(ipc::DeviceClient& client, const DevicesOptions& opti
   return {};
 }
 
-/// Until the user stops it; a daemon that is started again is found again.
+/// Prints until the user stops it; connects again when the daemon was restarted.
 void watch(ipc::ReconnectingDeviceClient& connection, const DevicesOptions& options, const Common& common, const Context& context) {
   const auto pause = [&] {
     for (auto slept = std::chrono::milliseconds(0); slept < kWatchPeriod && !context.stop(); slept += std::chrono::milliseconds(50))
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
   };
-  // The first look was printed already.
+  // the first state was printed already
   for (pause(); !context.stop() && context.out.good(); pause()) {
     if (const Result<ipc::DeviceClient*> client = connection.wait(kDevicedPatience); !client)
       say(context, client.error());

@@ -18,9 +18,9 @@ namespace {
 using mesh::deck::OpenedDeck;
 using mesh::deck::SourceFile;
 
-/// Walks two id indices together: `both(index in a, index in b)`, `only_a`, `only_b`.
+/// Compares two id indices: calls `both(index in a, index in b)` for ids in both. Returns how many ids were added and removed.
 template <class Both>
-std::pair<std::size_t, std::size_t> walk(const mesh::IdIndex& a, const mesh::IdIndex& b, const Both& both) {
+std::pair<std::size_t, std::size_t> compare_ids(const mesh::IdIndex& a, const mesh::IdIndex& b, const Both& both) {
   std::size_t added = 0, removed = 0;
   for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
     if (j == b.size() || (i < a.size() && a.at(i).first < b.at(j).first)) {
@@ -38,11 +38,11 @@ std::pair<std::size_t, std::size_t> walk(const mesh::IdIndex& a, const mesh::IdI
 
 void compare_elements(const mesh::Model& a, const mesh::Model& b, Difference& difference) {
   const auto add = [&](const mesh::IdIndex& from, const mesh::IdIndex& to) {
-    const auto [added, removed] = walk(from, to, [](std::uint32_t, std::uint32_t) {});
+    const auto [added, removed] = compare_ids(from, to, [](std::uint32_t, std::uint32_t) {});
     difference.elements_added += added;
     difference.elements_removed += removed;
   };
-  const auto [added, removed] = walk(*a.shell_index, *b.shell_index, [&](std::uint32_t in_a, std::uint32_t in_b) {
+  const auto [added, removed] = compare_ids(*a.shell_index, *b.shell_index, [&](std::uint32_t in_a, std::uint32_t in_b) {
     const mesh::ShellNodes& from = a.shell_nodes[in_a];
     const mesh::ShellNodes& to = b.shell_nodes[in_b];
     bool same = true;
@@ -55,7 +55,7 @@ void compare_elements(const mesh::Model& a, const mesh::Model& b, Difference& di
     if (a.elements[c] && b.elements[c]) add(mesh::IdIndex(a.elements[c]->id), mesh::IdIndex(b.elements[c]->id));
 }
 
-/// Files are matched by their path in the deck; the main files by being that.
+/// Matches include files by their path in the deck, and the main files with each other.
 std::size_t compare_lines(const mesh::deck::Deck& a, const mesh::deck::Deck& b) {
   std::size_t changed = lines_changed(a.files[0].bytes.text(), b.files[0].bytes.text());
   std::vector<bool> seen(b.files.size(), false);
@@ -73,13 +73,13 @@ std::size_t compare_lines(const mesh::deck::Deck& a, const mesh::deck::Deck& b) 
 Difference compare(const OpenedDeck& a, const OpenedDeck& b) {
   Difference difference;
   std::tie(difference.nodes_added, difference.nodes_removed) =
-      walk(*a.model.node_index, *b.model.node_index, [&](std::uint32_t in_a, std::uint32_t in_b) {
+      compare_ids(*a.model.node_index, *b.model.node_index, [&](std::uint32_t in_a, std::uint32_t in_b) {
         const mesh::Vec3& from = a.model.positions[in_a];
         const mesh::Vec3& to = b.model.positions[in_b];
         if (from == to) return;
         ++difference.nodes_moved;
       });
-  // The same fields that views are coloured by. Without common nodes or shells there is no figure.
+  // the fields that also colour views; absent without common nodes or shells
   if (const auto field = mesh::document::displacement_field(a.model, b.model, LengthUnit::mm))
     difference.displacement = figures_of(*field, b.model);
   if (const auto field = mesh::document::surface_distance_field(a.model, b.model, LengthUnit::mm))
@@ -112,18 +112,18 @@ int diff(const DiffOptions& options, const Common& common, const Context& contex
     context.out << diff_json(d) << '\n';
     return kDone;
   }
-  context.out << "nodes: " << d.nodes_moved << " moved (at most " << rounded(d.max_displacement) << "), " << d.nodes_added << " added, "
+  context.out << "nodes: " << d.nodes_moved << " moved (max " << rounded(d.max_displacement) << "), " << d.nodes_added << " added, "
               << d.nodes_removed << " removed\n"
               << "elements: " << d.elements_added << " added, " << d.elements_removed << " removed, " << d.elements_changed << " changed\n"
               << "lines: " << d.lines_changed << " changed\n";
   const auto say_field = [&](const char* what, const std::optional<FieldFigures>& field) {
     if (field && field->max > 0)
-      context.out << what << ": at most " << rounded(field->max) << " (" << field->max_at << "), mean " << rounded(field->mean) << " over "
+      context.out << what << ": max " << rounded(field->max) << " (" << field->max_at << "), mean " << rounded(field->mean) << " over "
                   << field->measured << " nodes\n";
   };
   if (!d.displacement) context.out << "displacement: the two decks have no node in common\n";
   say_field("displacement", d.displacement);
-  say_field("distance of the second's shells from the first's", d.surface_distance);
+  say_field("distance of the second deck's shells from the first's", d.surface_distance);
   return kDone;
 }
 

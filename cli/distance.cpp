@@ -38,7 +38,7 @@ int distance(const DistanceOptions& options, const Common& common, const Context
   const Result<spatial::Shape> to = mesh::document::shape_named(document->current(), options.to);
   if (!to) return refuse(to.error());
   const std::optional<spatial::Closest> closest = spatial::shortest_distance(model, *from, *to);
-  if (!closest) return refuse({"expression", 1, "names nothing that has a place"});
+  if (!closest) return refuse({"expression", 1, "names no entity with coordinates"});
   Gap gap{closest->distance, end_of(model, closest->a), end_of(model, closest->b), {}};
   if (const auto field = mesh::document::gap_field(model, *from, *to, document->settings.length_unit))
     gap.nodes = figures_of(*field, model);

@@ -21,7 +21,7 @@ namespace {
 
 namespace document = mesh::document;
 
-/// A journal that doesn't outlive a failure.
+/// A journal that is removed when the command fails.
 class JournalGuard {
  public:
   Result<void> create(const std::filesystem::path& path, const document::Document& document) {
@@ -53,7 +53,7 @@ bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b)
   return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored);
 }
 
-/// Says why an edit wasn't done: the reason itself, and the edit's place where the reason has one of its own.
+/// Prints why an edit wasn't applied: the reason, and the edit's place if the reason has another one.
 void refuse_edit(const Context& context, const Common& common, const WantedEdit& wanted, Error reason) {
   const std::string edit(name(wanted.edit));
   if (common.json) context.out << failed_edit_json(edit, reason.text()) << '\n';
@@ -65,14 +65,14 @@ void refuse_edit(const Context& context, const Common& common, const WantedEdit&
   say(context, Error{wanted.file, wanted.line, "this " + edit + " was not done, and nothing is written"});
 }
 
-/// Edits that take long show how far they are, and stop when the user asks.
+/// Prepares an edit with a progress bar; the user can cancel it.
 Result<document::Prepared> prepare_shown(const document::Document& document, const document::Edit& edit, const Context& context) {
   MonotonicClock clock;
   ProgressBar bar(context, std::string(name(edit)), clock);
   return document::prepare(document, edit, bar.progress(), &clock);
 }
 
-/// Does the edits one after the other. False: one was refused, and said.
+/// Applies the edits in order. False: one was refused; the reason was printed.
 bool apply_all(const std::vector<WantedEdit>& wanted, document::Document& document, JournalGuard& journal, const Common& common,
                const Context& context) {
   for (const WantedEdit& one : wanted) {

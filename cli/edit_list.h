@@ -1,4 +1,4 @@
-// Edits as a user gives them: JSON arguments and a script, read before the first one is done. Inner to cli.
+// Reads the edits that a user gives as arguments and as a script, before the first one is applied. Inner to cli.
 #pragma once
 
 #include <filesystem>
@@ -19,14 +19,14 @@ struct WantedEdit {
   long line = 0;
 };
 
-/// A reason and the exit status it leads to.
+/// A reason and the exit status for it.
 struct Refusal {
   Error error;
   int status = kFailed;
 };
 
-/// Parses the arguments (named `argument` in errors), then the script's lines, onto `wanted`; empty lines are passed over.
-/// Nothing: all were read.
+/// Parses the arguments (named `argument` in errors), then the script's lines, and appends them to `wanted`; skips empty lines.
+/// Returns nothing if all were read.
 std::optional<Refusal> read_edits(const std::vector<std::string>& edits, const std::string& argument,
                                   const std::optional<std::filesystem::path>& script, std::vector<WantedEdit>& wanted);
 

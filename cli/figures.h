@@ -1,4 +1,4 @@
-// Figures that commands work out, for text and JSON alike. Inner to cli.
+// Figures that commands compute, for text and JSON output. Inner to cli.
 #pragma once
 
 #include <cstddef>
@@ -20,10 +20,10 @@ struct PartFigures {
   std::optional<double> thickness;
 };
 
-/// Parts ascending by id, with their shells counted.
+/// Counts the shells of each part; ascending by id.
 std::vector<PartFigures> part_figures(const mesh::Model& model);
 
-/// A field's values in short.
+/// Statistics of a field's values.
 struct FieldFigures {
   std::size_t measured = 0;
   double min = 0, mean = 0, max = 0;
@@ -41,10 +41,10 @@ struct Difference {
   std::size_t elements_changed = 0;  ///< shells in both with other corners
   std::size_t lines_changed = 0;
   std::optional<FieldFigures> displacement;      ///< of nodes in both; absent if there are none
-  std::optional<FieldFigures> surface_distance;  ///< of the shells' corners of the second from the shells of the first
+  std::optional<FieldFigures> surface_distance;  ///< of the second deck's shell corners from the first deck's shells
 };
 
-/// The shortest way between two sets.
+/// The shortest distance between two sets.
 struct Gap {
   double distance = 0;
   struct End {
@@ -53,7 +53,7 @@ struct Gap {
   };
   End from;
   End to;
-  std::optional<FieldFigures> nodes;  ///< of the first: each one's distance from the second
+  std::optional<FieldFigures> nodes;  ///< of the first set: their distances from the second
 };
 
 }  // namespace prismesh::cli

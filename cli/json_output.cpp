@@ -133,6 +133,44 @@ std::string distance_json(const Gap& gap) {
       .dump();
 }
 
+namespace {
+
+/// Units stand in the fields' names: the size is "bytes", "nodes" or "shells", its rate "bytes_per_s" and so on.
+Json bench_figure_json(const BenchFigure& figure) {
+  Json object{{"name", figure.name}, {"runs", figure.timing ? figure.timing->runs : 0}};
+  const auto milliseconds = [&](double Timing::*field) { return figure.timing ? Json((*figure.timing).*field) : Json(nullptr); };
+  object["median_ms"] = milliseconds(&Timing::median_ms);
+  object["min_ms"] = milliseconds(&Timing::min_ms);
+  object["cpu_ms"] = milliseconds(&Timing::cpu_ms);
+  const std::string unit(name(figure.unit));
+  object[unit] = figure.timing ? Json(figure.size) : Json(nullptr);
+  object[unit + "_per_s"] = figure.timing ? Json(rate_per_s(figure)) : Json(nullptr);
+  object["note"] = figure.note.empty() ? Json(nullptr) : Json(printable(figure.note));
+  return object;
+}
+
+}  // namespace
+
+std::string bench_json(const BenchReport& report) {
+  Json figures = Json::array();
+  for (const BenchFigure& figure : report.figures) figures.push_back(bench_figure_json(figure));
+  const std::string& processor = report.machine.processor;
+  Json json{{"version", PRISMESH_VERSION},
+            {"threads", report.machine.threads},
+            {"processor", processor.empty() ? Json(nullptr) : Json(printable(processor))},
+            {"deck", report.is_sample ? Json(nullptr) : Json(printable(report.deck))},
+            {"format", report.format},
+            {"bytes", report.bytes},
+            {"nodes", report.nodes},
+            {"shells", report.shells},
+            {"patch", nullptr},
+            {"figures", std::move(figures)}};
+  if (report.patch_nodes > 0)
+    json["patch"] = {
+        {"centre", "node:" + std::to_string(report.patch_centre)}, {"nodes", report.patch_nodes}, {"shells", report.patch_shells}};
+  return json.dump();
+}
+
 std::string devices_json(const DeviceFigures& figures) {
   const ipc::EyesState& eyes = figures.eyes;
   const ipc::PrismState& mask = figures.mask;

@@ -1,11 +1,11 @@
-// The JSON that --json prints, field for field as scripts rely on it. The only files with the JSON library in
-// them are json_output.cpp and check_json.cpp. Inner to cli.
+// Writes the JSON of --json; scripts rely on its fields. Only json_output.cpp and check_json.cpp include the JSON library. Inner to cli.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/bench_figures.h"
 #include "cli/check_figures.h"
 #include "cli/device_figures.h"
 #include "cli/figures.h"
@@ -15,7 +15,7 @@
 
 namespace prismesh::cli {
 
-// Each returns one line without its end.
+// Each returns one line without a line break.
 std::string info_json(const mesh::document::Document& document, const std::vector<PartFigures>& parts);
 std::string check_json(const mesh::document::Document& document, const CheckFigures& figures);
 std::string edit_json(const mesh::document::EditReport& report);
@@ -23,6 +23,7 @@ std::string failed_edit_json(const std::string& edit, const std::string& reason)
 std::string replay_json(const std::vector<mesh::document::ReplayStep>& steps, const std::string& deck_hash, bool other_deck);
 std::string diff_json(const Difference& difference);
 std::string distance_json(const Gap& gap);
+std::string bench_json(const BenchReport& report);
 std::string devices_json(const DeviceFigures& figures);
 
 }  // namespace prismesh::cli

@@ -1,4 +1,4 @@
-// JSON values that several of the printed objects hold. Inner to cli: only the two sources that print JSON include it.
+// JSON values in several of the printed objects. Inner to cli: only the two sources that write JSON include it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 
 namespace prismesh::cli {
 
-/// null where there is no value.
+/// The value, or null without one.
 template <class T>
 nlohmann::ordered_json or_null(const std::optional<T>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);

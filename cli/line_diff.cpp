@@ -46,8 +46,8 @@ std::vector<Match> unique_matches(std::span<const std::string_view> a, std::span
   return matches;
 }
 
-/// The longest part of the matches that ascends in b too.
-std::vector<Match> longest_ascending(const std::vector<Match>& matches) {
+/// The longest subsequence of the matches whose lines ascend in b too.
+std::vector<Match> longest_increasing_subsequence(const std::vector<Match>& matches) {
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::vector<std::size_t> pile_top, before(matches.size(), kNone);
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -59,17 +59,17 @@ std::vector<Match> longest_ascending(const std::vector<Match>& matches) {
     else
       *pile = i;
   }
-  std::vector<Match> longest;
-  for (std::size_t i = pile_top.empty() ? kNone : pile_top.back(); i != kNone; i = before[i]) longest.push_back(matches[i]);
-  std::reverse(longest.begin(), longest.end());
-  return longest;
+  std::vector<Match> subsequence;
+  for (std::size_t i = pile_top.empty() ? kNone : pile_top.back(); i != kNone; i = before[i]) subsequence.push_back(matches[i]);
+  std::reverse(subsequence.begin(), subsequence.end());
+  return subsequence;
 }
 
 std::size_t changes(std::span<const std::string_view> a, std::span<const std::string_view> b) {
   while (!a.empty() && !b.empty() && a.front() == b.front()) a = a.subspan(1), b = b.subspan(1);
   while (!a.empty() && !b.empty() && a.back() == b.back()) a = a.first(a.size() - 1), b = b.first(b.size() - 1);
   if (a.empty() || b.empty()) return a.size() + b.size();
-  const std::vector<Match> anchors = longest_ascending(unique_matches(a, b));
+  const std::vector<Match> anchors = longest_increasing_subsequence(unique_matches(a, b));
   if (anchors.empty()) {
     std::size_t count = std::max(a.size(), b.size()) - std::min(a.size(), b.size());
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) count += a[i] != b[i];

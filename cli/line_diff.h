@@ -1,4 +1,4 @@
-// How many lines differ between two texts. Inner to cli.
+// Counts the lines that differ between two texts. Inner to cli.
 #pragma once
 
 #include <cstddef>
@@ -6,9 +6,9 @@
 
 namespace prismesh::cli {
 
-/// Lines changed, added or removed. Lines that occur once in each text are matched first, in the longest run that keeps their
-/// order (patience diff); between matches a line for a line counts as one change, surplus lines one each.
-/// Lines end with LF; a last line without one differs from the same line with it.
+/// Counts the lines that were changed, added or removed. Method: patience diff. Lines that occur once in each text are matched first, by
+/// the longest subsequence that keeps their order; between matches a changed line and a surplus line count as one each. Lines end with LF;
+/// a last line without it differs from the same line with it.
 std::size_t lines_changed(std::string_view a, std::string_view b);
 
 }  // namespace prismesh::cli

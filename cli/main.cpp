@@ -22,9 +22,9 @@ int main(int argc, char** argv) {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // a reader that went away is an error of writing, said in words
+  // a closed pipe becomes an error of writing, with a message
   std::signal(SIGPIPE, SIG_IGN);
-  // as is a file that grows beyond what it may
+  // so does a file above the size limit
   std::signal(SIGXFSZ, SIG_IGN);
   const std::vector<std::string> args(argv + 1, argv + argc);
   return prismesh::cli::run(args, {std::cout, std::cerr, isatty(STDERR_FILENO) == 1, &interrupted});

@@ -2,18 +2,22 @@
 
 #include "cli/progress_bar.h"
 #include "mesh/deck/save.h"
-#include "mesh/document/open.h"
 #include "mesh/document/save.h"
 
 namespace prismesh::cli {
 
-Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, const Common& common, const Context& context) {
-  MonotonicClock clock;
-  ProgressBar bar(context, "reading " + deck.filename().string(), clock);
+mesh::document::OpenOptions open_options(const Common& common) {
   mesh::document::OpenOptions options;
   options.length_unit = common.length_unit;
   options.target_size = common.target_size;
   options.criteria = common.criteria;
+  return options;
+}
+
+Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, const Common& common, const Context& context) {
+  MonotonicClock clock;
+  ProgressBar bar(context, "reading " + deck.filename().string(), clock);
+  mesh::document::OpenOptions options = open_options(common);
   options.progress = bar.progress();
   Result<mesh::document::Document> document = mesh::document::open(deck, options);
   if (!document && document.error().file.empty()) document.error().file = deck.string();

@@ -1,4 +1,4 @@
-// A bar on the terminal for work that takes a while.
+// Shows a progress bar on the terminal during long work.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,7 @@
 
 namespace prismesh::cli {
 
-/// Draws on `context.err` if that is a terminal, not before the work has taken 0.3 s, and at most ten times a second.
-/// Goes away without a trace when it dies.
+/// Draws on `context.err` if that is a terminal: after 0.3 s of work, and at most ten times a second. The destructor erases the bar.
 class ProgressBar {
  public:
   ProgressBar(const Context& context, std::string what, Clock& clock);
@@ -19,13 +18,13 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// To hand to the work; it stops the work when the user asks for it. Must not outlive the bar.
+  /// The progress function for the work: it tells the work to stop when the user wants that. Must not outlive the bar.
   Progress progress();
 
  private:
   void draw(double fraction);
 
-  const Context& surroundings_;
+  const Context& context_;
   std::string what_;
   Clock& clock_;
   std::int64_t next_draw_ns_;

@@ -1,4 +1,4 @@
-// A picture without a daemon: seals a snapshot in shared memory and lets the headless kiosk, which stands beside this program, draw it.
+// Draws a picture without a daemon: seals a snapshot in shared memory and starts the headless kiosk, which is beside this program.
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -38,11 +38,11 @@ Result<std::filesystem::path> find_kiosk() {
   const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", error);
   const std::filesystem::path kiosk = own.parent_path() / kKiosk;
   if (error || access(kiosk.c_str(), X_OK) != 0)
-    return fail(kiosk.string(), "pictures are drawn by prismesh-kiosk, which isn't beside this program");
+    return fail(kiosk.string(), "prismesh-kiosk, which draws pictures, isn't beside this program");
   return kiosk;
 }
 
-/// The snapshot's descriptors as the kiosk takes them, kept open until it has ended.
+/// The snapshot's descriptors for the kiosk, open until it has ended.
 struct SealedSnapshot {
   ipc::SnapshotPublisher publisher;
   ipc::PublishedSnapshot published;
@@ -68,19 +68,19 @@ Result<std::unique_ptr<SealedSnapshot>> seal(const mesh::document::Document& doc
   return sealed;
 }
 
-/// A field on its way to the kiosk.
+/// A field for the kiosk: its values in shared memory, and the arguments that describe it.
 struct SealedField {
   ipc::Descriptor values;
   std::vector<std::string> arguments;
 };
 
-/// The legend's words for what a field compares with.
+/// The legend's text for what a field is compared with.
 std::string compared_with(const FieldWish& wish, const RenderOptions& options) {
   if (wish.of == FieldWish::Of::gap) return "of " + wish.from + " from " + wish.to;
   return options.against ? "against " + options.against->filename().string() : "";
 }
 
-/// The field that the options name; nothing where they name other colours. Errors: options that don't go with it.
+/// The field that the options name; nothing if they name another colour mode. Errors: options that don't fit the mode.
 Result<std::optional<FieldWish>> wished_field(const RenderOptions& options) {
   const std::string colour = options.colour.value_or("parts");
   Result<FieldWish> wish = mesh::document::field_wish(colour);
@@ -92,7 +92,7 @@ Result<std::optional<FieldWish>> wished_field(const RenderOptions& options) {
                               : options.limits        ? "--limits"
                                                       : nullptr;
     if (given != nullptr) return fail(given, "is for the colours of a field; " + wish.error().message);
-    return std::optional<FieldWish>();  // the kiosk knows the others
+    return std::optional<FieldWish>();  // other modes are the kiosk's
   }
   wish->from = options.from;
   wish->to = options.to;
@@ -122,7 +122,7 @@ Result<SealedField> seal_field(const mesh::document::Document& document, const F
   Result<ipc::Descriptor> values = ipc::seal_field(current.number, field->on_nodes, field->values);
   if (!values) return fail(std::move(values.error()));
   const FieldFigures figures = figures_of(*field, current.model);
-  // Of a distance between two expressions only what the one names is meant to have values.
+  // for a distance between two expressions only the first one's nodes are meant to have values
   const std::size_t without = wish.of == FieldWish::Of::gap ? 0 : shells_without_value(current.model, *field);
   const std::string limits = options.limits.value_or(shortest(field->limits.clear) + "," + shortest(field->limits.full));
   SealedField sealed{std::move(*values), {}};
@@ -153,7 +153,7 @@ Result<pid_t> start(const std::filesystem::path& program, const std::vector<std:
   return child;
 }
 
-/// Waits for a child, ending it when the user wants to stop. Returns its wait status.
+/// Waits for a child, and ends it when the user wants to stop. Returns its wait status.
 int wait_for(pid_t child, const Context& context) {
   int status = 0;
   bool told = false;

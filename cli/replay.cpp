@@ -37,7 +37,7 @@ std::vector<document::ReplayStep> replay_watched(document::Document& document, c
 
 }  // namespace
 
-// An edit that doesn't fit a variant is a warning: the others still count. Only when none fits is nothing written.
+// An edit that doesn't fit a variant is a warning; the others are applied. If none fits, nothing is written.
 int replay(const ReplayOptions& options, const Common& common, const Context& context) {
   const auto refuse = [&](const Error& error) {
     say(context, error);
@@ -55,8 +55,8 @@ int replay(const ReplayOptions& options, const Common& common, const Context& co
   say_guesses(context, *document);
   const std::string journal = options.journal.string();
   if (intents->damage)
-    say(context,
-        Error{intents->damage->file, intents->damage->line, "warning: " + intents->damage->message + "; the edits before it are replayed"});
+    say(context, Error{intents->damage->file, intents->damage->line,
+                       "warning: " + intents->damage->message + "; only the edits before it are replayed"});
   if (intents->torn_tail) say(context, Error{journal, 0, "warning: the last record is incomplete and left out"});
   const bool other_deck = !intents->deck_hash.empty() && intents->deck_hash != document->deck->content.hex();
   if (other_deck) say(context, Error{journal, 0, "note: made on another deck, " + intents->deck_path});

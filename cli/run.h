@@ -1,4 +1,4 @@
-// The command line as a function, so that tests can call it.
+// Runs the command line; a function, so that tests can call it.
 #pragma once
 
 #include <iosfwd>
@@ -9,7 +9,7 @@
 
 namespace prismesh::cli {
 
-/// Runs `prismesh ARGS..`; `args` without the program's name. Returns the exit status.
+/// Runs `prismesh ARGS..`, `args` without the program's name. Returns the exit status.
 int run(std::span<const std::string> args, const Context& context);
 int run(std::span<const std::string> args, std::ostream& out, std::ostream& err);
 

@@ -1,4 +1,4 @@
-// A thin client of modeld: what is open there, edited from scripts and by hand. Goes on when the daemon is restarted meanwhile.
+// A client of modeld: shows and edits the open document, from scripts or by hand. Continues when the daemon was restarted meanwhile.
 #include <filesystem>
 #include <ostream>
 #include <system_error>
@@ -22,28 +22,27 @@ namespace {
 namespace document = mesh::document;
 using SessionAction = SessionOptions::Action;
 
-/// How long a daemon may take to come back. systemd restarts it in well under a second; reading a large deck again takes longer,
-/// but then it answers already.
+/// How long a daemon may take to restart. systemd restarts it in well under a second; it answers while it still reads a large deck.
 constexpr std::chrono::seconds kPatience{15};
 constexpr std::chrono::seconds kFirstPatience{5};
 constexpr std::chrono::milliseconds kTurn{100};
-/// How long work may take to stop when it was asked to: in a large model on a busy machine it asks every few seconds only.
+/// How long work may take to stop: in a large model on a busy machine it checks every few seconds only.
 constexpr std::int64_t kPatienceWithCancel_ns = 30'000'000'000;
 
 class Session {
  public:
   Session(const SessionOptions& options, const Context& context)
-      : socket_(ipc::model_socket_path(options.runtime_directory)), client_(socket_, "prismesh session"), surroundings_(context) {}
+      : socket_(ipc::model_socket_path(options.runtime_directory)), client_(socket_, "prismesh session"), context_(context) {}
 
-  /// Connects. A daemon that was never there is an error at once; one that has gone is waited for. A daemon that ends in order
-  /// takes its socket away, so a socket that nobody listens to belongs to one that may be on its way back.
+  /// Connects. Without a socket it fails at once; else it waits for the daemon. A daemon that ends in order removes its socket, so a socket
+  /// without a listener belongs to one that may be restarting.
   Result<ipc::Client*> connected() {
     std::error_code problem;
     if (client_.connections() > 0) return client_.wait(kPatience);
     return client_.wait(std::filesystem::exists(socket_, problem) ? kFirstPatience : std::chrono::seconds(0));
   }
 
-  /// Sends and waits for the answer, showing progress, until the user stops. An error with `lost` set: the daemon has gone.
+  /// Sends a request and waits for its answer with a progress bar, until the user stops it. Sets `lost` if the daemon ended.
   Result<ipc::Answer> ask(const ipc::Request& request, const std::string& what, bool* lost = nullptr) {
     const Result<ipc::Client*> client = connected();
     if (!client) return fail(client.error());
@@ -55,7 +54,7 @@ class Session {
     const Result<std::uint64_t> number = (*client)->send(request);
     if (!number) return gone(number.error());
     MonotonicClock clock;
-    ProgressBar bar(surroundings_, what, clock);
+    ProgressBar bar(context_, what, clock);
     const Progress progress = bar.progress();
     std::optional<std::int64_t> stopped_ns;
     for (;;) {
@@ -63,38 +62,38 @@ class Session {
         if (reply->request == *number) return unfailed(std::move(reply->answer));
       while (const auto event = (*client)->next_event())
         if (const auto* made = std::get_if<ipc::ProgressMade>(&*event); made != nullptr) progress(made->fraction);
-      if (surroundings_.stop()) {
+      if (context_.stop()) {
         if (!stopped_ns) {
           stopped_ns = clock.now_ns();
           if (const Result<std::uint64_t> sent = (*client)->send(ipc::Cancel{}); !sent) return gone(sent.error());
         }
-        if (clock.now_ns() - *stopped_ns > kPatienceWithCancel_ns) return fail("", "stopped waiting; what was asked for may still be done");
+        if (clock.now_ns() - *stopped_ns > kPatienceWithCancel_ns) return fail("", "stopped waiting; the request may still be carried out");
       }
       if (const Result<void> polled = (*client)->poll(kTurn); !polled) return gone(polled.error());
     }
   }
 
-  /// As `ask`, for requests that may be asked twice.
+  /// As `ask`, for requests that may be sent twice.
   Result<ipc::Answer> ask_again(const ipc::Request& request, const std::string& what) {
     bool lost = false;
     Result<ipc::Answer> answer = ask(request, what, &lost);
     return !answer && lost ? ask(request, what) : answer;
   }
 
-  /// The state, once what was open is open again.
+  /// The state, after a restarted daemon has opened its document again.
   Result<ipc::DocumentState> state() {
     for (;;) {
       const Result<ipc::Answer> answer = ask_again(ipc::GetState{}, "waiting");
       if (!answer) return fail(answer.error());
       const auto* state = std::get_if<ipc::DocumentState>(&*answer);
-      if (state == nullptr) return fail("", "the daemon answered something else than its state");
+      if (state == nullptr) return fail("", "the daemon's answer isn't a state");
       if (state->open || !state->busy) return *state;
-      if (surroundings_.stop()) return fail("", "stopped");
+      if (context_.stop()) return fail("", "stopped");
       (void)(*connected())->poll(kTurn);
     }
   }
 
-  /// Does an edit once, even if the daemon goes in the middle: its journal then tells whether the edit counts.
+  /// Applies an edit exactly once, even if the daemon ends in between: the journal then shows whether the edit was done.
   Result<document::EditReport> edit(const document::Edit& edit) {
     const Result<ipc::DocumentState> before = state();
     if (!before) return fail(before.error());
@@ -110,16 +109,16 @@ class Session {
         report.before = before->counts;
         report.after = after->counts;
         report.notes.push_back(
-            "the daemon ended after this edit and was started again; the edit counts, how many nodes it moved isn't known");
+            "the daemon ended after this edit and was restarted; the edit is done, but how many nodes it moved isn't known");
         return report;
       }
       if (after->journalled_edits != before->journalled_edits)
-        return fail(after->path, "the daemon ended while others were editing too: look whether the edit was done");
+        return fail(after->path, "the daemon ended while others were editing too: check whether the edit was done");
       answer = ask(ipc::ApplyEdit{edit}, std::string(name(edit)));
     }
     if (!answer) return fail(std::move(answer.error()));
     auto* edited = std::get_if<ipc::Edited>(&*answer);
-    if (edited == nullptr) return fail("", "the daemon answered something else than a report");
+    if (edited == nullptr) return fail("", "the daemon's answer isn't a report");
     return std::move(edited->report);
   }
 
@@ -131,7 +130,7 @@ class Session {
 
   std::filesystem::path socket_;
   ipc::ReconnectingClient client_;
-  const Context& surroundings_;
+  const Context& context_;
 };
 
 void print_state(std::ostream& out, const Context& context, const ipc::DocumentState& state) {
@@ -145,7 +144,7 @@ void print_state(std::ostream& out, const Context& context, const ipc::DocumentS
       << state.length_unit << (state.length_unit_guessed ? " (guessed)" : "") << ", target size " << shortest(state.target_size)
       << (state.target_size_guessed ? " (guessed)" : "") << '\n'
       << (state.changed ? "unsaved edits" : "no unsaved edits") << (state.can_undo ? ", undo" : "") << (state.can_redo ? ", redo" : "")
-      << "; " << state.recovered_edits << " edits came back from the journal when it was opened\n";
+      << "; " << state.recovered_edits << " edits were recovered from the journal at opening\n";
   say_warnings(context, state.warnings);
 }
 

@@ -59,7 +59,7 @@ struct CancelDrag {
 };
 struct Count {  ///< counts what an expression names; selects nothing
   std::string expr;
-  mesh::select::Kind kind = mesh::select::Kind::node;
+  mesh::select::EntityKind kind = mesh::select::EntityKind::node;
 };
 /// Asks for statistics of the shells' quality. Costs a pass over the shells: ask only where they are shown, once for a generation.
 struct GetQuality {

@@ -383,7 +383,7 @@ void ModelLink::pull(const mesh::document::Displacement& displacement) {
   drag_->moved_ = true;
 }
 
-void ModelLink::count(const std::string& expr, mesh::select::Kind kind) {
+void ModelLink::count(const std::string& expr, mesh::select::EntityKind kind) {
   to_count_ = Count{expr, kind, std::nullopt, std::nullopt};
   ask_count();
 }

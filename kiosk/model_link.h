@@ -118,12 +118,12 @@ class ModelLink {
   /// How many entities an expression names, as far as the server has answered: `expr` is what it was asked last.
   struct Count {
     std::string expr;
-    mesh::select::Kind kind = mesh::select::Kind::node;
+    mesh::select::EntityKind kind = mesh::select::EntityKind::node;
     std::optional<ipc::Counted> counted;
     std::optional<ipc::Failed> failed;
   };
   /// Asks, one question at a time: while one is on its way only the newest of the others is kept.
-  void count(const std::string& expr, mesh::select::Kind kind);
+  void count(const std::string& expr, mesh::select::EntityKind kind);
   const std::optional<Count>& counted() const { return counted_; }
 
   /// What the states kept for undo and redo take and may take, bytes; 0: not known.

@@ -31,7 +31,7 @@ void QualityLink::select(const ipc::QualityBar& bar, const Wish& wish, mesh::doc
     if (found == nullptr || found->expr.empty()) return;
     mesh::document::Select edit;
     edit.expr = found->expr;
-    edit.kind = mesh::select::Kind::element;
+    edit.kind = mesh::select::EntityKind::element;
     edit.mode = mode;
     link_.edit(std::move(edit));
   });

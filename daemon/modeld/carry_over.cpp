@@ -22,7 +22,7 @@ std::string part_expression(const Generation& generation, bool PartState::*state
 
 std::string selected_expression(const Generation& generation) {
   std::vector<std::int64_t> ids;
-  const bool nodes = generation.selection_kind == mesh::select::Kind::node;
+  const bool nodes = generation.selection_kind == mesh::select::EntityKind::node;
   const auto& marks = nodes ? generation.node_marks : generation.shell_marks;
   const auto& names = nodes ? generation.model.node_ids : generation.model.shell_ids;
   for (std::size_t i = 0; i < marks.size(); ++i)
@@ -39,7 +39,8 @@ std::vector<Edit> steps_to(const Generation& generation) {
   if (generation.selected_nodes > 0 || generation.selected_shells > 0) {
     Select select;
     select.expr = selected_expression(generation);
-    select.kind = generation.selection_kind == mesh::select::Kind::node ? mesh::select::Kind::node : mesh::select::Kind::element;
+    select.kind =
+        generation.selection_kind == mesh::select::EntityKind::node ? mesh::select::EntityKind::node : mesh::select::EntityKind::element;
     if (!select.expr.empty()) steps.emplace_back(std::move(select));
   }
   return steps;

@@ -14,7 +14,7 @@ namespace prismesh::kiosk::panels {
 namespace {
 
 using mesh::document::SelectMode;
-using mesh::select::Kind;
+using mesh::select::EntityKind;
 
 struct Recall {
   EntryState& entry;
@@ -94,8 +94,8 @@ void count_lines(const ExpressionFacts& facts, const EntryState& entry, float fi
   }
   if (!facts.count) return;
   std::string text = grouped(facts.count->nodes) + " nodes";
-  if (entry.kind != Kind::node) text += ", " + grouped(facts.count->shells) + " shells";
-  if (entry.kind == Kind::part) text += ", " + grouped(facts.count->parts) + " parts";
+  if (entry.kind != EntityKind::node) text += ", " + grouped(facts.count->shells) + " shells";
+  if (entry.kind == EntityKind::part) text += ", " + grouped(facts.count->parts) + " parts";
   small_line(text, kInk);
 }
 
@@ -112,11 +112,12 @@ void expression_box(const PanelData& data, display::PixelSize picture, bool open
   const bool entered = ImGui::InputText(
       "##expression", &entry.text,
       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways, edited, &with);
-  constexpr std::array<std::pair<Kind, const char*>, 3> kKinds{{{Kind::node, "nodes"}, {Kind::element, "shells"}, {Kind::part, "parts"}}};
+  constexpr std::array<std::pair<EntityKind, const char*>, 3> kKinds{
+      {{EntityKind::node, "nodes"}, {EntityKind::element, "shells"}, {EntityKind::part, "parts"}}};
   count_lines(*data.expression, entry, field_x);
-  const Kind kind_before = entry.kind;
+  const EntityKind kind_before = entry.kind;
   for (const auto& [kind, label] : kKinds) {
-    if (kind != Kind::node) ImGui::SameLine();
+    if (kind != EntityKind::node) ImGui::SameLine();
     if (ImGui::RadioButton(label, entry.kind == kind)) entry.kind = kind;
   }
   small_line("Enter selects, Shift adds, Ctrl takes away, both keep; Esc closes", kFaintInk);

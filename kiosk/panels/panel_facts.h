@@ -164,11 +164,11 @@ struct AskSave {
 };
 struct ExpressionTyped {
   std::string text;
-  mesh::select::Kind kind = mesh::select::Kind::node;
+  mesh::select::EntityKind kind = mesh::select::EntityKind::node;
 };
 struct ExpressionEntered {
   std::string text;
-  mesh::select::Kind kind = mesh::select::Kind::node;
+  mesh::select::EntityKind kind = mesh::select::EntityKind::node;
   mesh::document::SelectMode mode = mesh::document::SelectMode::set;
 };
 struct NumberEntered {
@@ -192,7 +192,7 @@ using PanelAction =
 struct EntryState {
   std::string text;
   std::string told;  ///< what was last said of it
-  mesh::select::Kind kind = mesh::select::Kind::node;
+  mesh::select::EntityKind kind = mesh::select::EntityKind::node;
   std::optional<std::size_t> recalled;  ///< which of the earlier entries stands in the field
   std::string own;                      ///< what stood there before
   bool caret_to_end = false;

@@ -26,7 +26,7 @@ PartFlags parts_of_selection(const Document& document) {
   const Model& model = current.model;
   PartFlags flags(model.parts->size(), 0);
   const Selection selected = selection_of(current);
-  if (selected.kind != select::Kind::node) {
+  if (selected.kind != select::EntityKind::node) {
     flag_parts_of(model, selected.shells, flags);
     return flags;
   }
@@ -45,7 +45,7 @@ PartFlags parts_of_selection(const Document& document) {
 Result<PartFlags> parts_named(const Document& document, const SetParts& edit) {
   const Model& model = document.current().model;
   if (edit.on) {
-    const Result<select::Chosen> chosen = select::evaluate(model, *edit.on, select::Kind::part, document.current().relations->names);
+    const Result<select::Chosen> chosen = select::evaluate(model, *edit.on, select::EntityKind::part, document.current().relations->names);
     if (!chosen) return fail(chosen.error());
     PartFlags flags(model.parts->size(), 0);
     for (const PartIndex part : chosen->parts) flags[part.value] = 1;
@@ -79,7 +79,7 @@ void deselect_hidden(const Document& document, Generation& next, EditReport& rep
     const PartIndex part = next.model.shell_parts[shell.value];
     return part.valid() && (*next.parts)[part.value].hidden;
   });
-  if (before.kind == select::Kind::node)
+  if (before.kind == select::EntityKind::node)
     std::erase_if(after.nodes, [&](NodeIndex node) { return (next.node_marks[node.value] & kHidden) != 0; });
   else if (after.shells.size() != before.shells.size())
     after.nodes = nodes_of(next.model, after.shells);

@@ -12,7 +12,7 @@ namespace prismesh::mesh::document {
 
 namespace {
 
-using select::Kind;
+using select::EntityKind;
 
 template <class IndexType>
 std::vector<IndexType> combined(const std::vector<IndexType>& a, const std::vector<IndexType>& b, SelectMode mode) {
@@ -30,13 +30,13 @@ std::vector<IndexType> combined(const std::vector<IndexType>& a, const std::vect
 Selection combine(const Model& model, const Selection& old, Selection added, SelectMode mode) {
   if (mode == SelectMode::set) return added;
   const bool nothing_yet = old.nodes.empty();
-  const bool as_nodes = added.kind == Kind::node || (old.kind == Kind::node && !nothing_yet);
-  if (as_nodes) return {combined(old.nodes, added.nodes, mode), {}, Kind::node};
+  const bool as_nodes = added.kind == EntityKind::node || (old.kind == EntityKind::node && !nothing_yet);
+  if (as_nodes) return {combined(old.nodes, added.nodes, mode), {}, EntityKind::node};
   // Nodes of a selected part's beams and solids belong to no selected shell; they are combined separately, since a shell that stays
   // keeps all its nodes.
   const auto beyond_shells = [&](const Selection& set) { return combined(set.nodes, nodes_of(model, set.shells), SelectMode::subtract); };
   Selection out;
-  out.kind = nothing_yet || old.kind == added.kind ? added.kind : Kind::element;
+  out.kind = nothing_yet || old.kind == added.kind ? added.kind : EntityKind::element;
   out.shells = combined(old.shells, added.shells, mode);
   out.nodes = combined(nodes_of(model, out.shells), combined(beyond_shells(old), beyond_shells(added), mode), SelectMode::add);
   return out;
@@ -52,7 +52,7 @@ void select_into(const Document& document, Selection added, SelectMode mode, Gen
 /// The selection with other shells. Nodes of a selected part's beams and solids, which belong to no shell, stay.
 Selection with_shells(const Model& model, const Selection& before, ShellSet shells) {
   const NodeSet beyond = combined(before.nodes, nodes_of(model, before.shells), SelectMode::subtract);
-  Selection after{combined(nodes_of(model, shells), beyond, SelectMode::add), {}, Kind::element};
+  Selection after{combined(nodes_of(model, shells), beyond, SelectMode::add), {}, EntityKind::element};
   after.shells = std::move(shells);
   return after;
 }
@@ -70,7 +70,7 @@ Result<void> apply_edit(const Document& document, const Select& edit, Generation
   Result<select::Chosen> chosen = select::evaluate(next.model, edit.expr, edit.kind, next.relations->names, progress);
   if (!chosen) return fail(chosen.error());
   Selection added{std::move(chosen->nodes), {}, edit.kind};
-  if (edit.kind != Kind::node) added.shells = std::move(chosen->shells);
+  if (edit.kind != EntityKind::node) added.shells = std::move(chosen->shells);
   select_into(document, std::move(added), edit.mode, next, report);
   return {};
 }
@@ -85,7 +85,7 @@ Result<void> apply_edit(const Document& document, const SelectRegion& edit, Gene
 Result<void> apply_edit(const Document& document, const SelectLasso& edit, Generation& next, EditReport& report) {
   Result<NodeSet> nodes = nodes_in_outline(next, edit);
   if (!nodes) return fail(nodes.error());
-  select_into(document, {std::move(*nodes), {}, Kind::node}, edit.mode, next, report);
+  select_into(document, {std::move(*nodes), {}, EntityKind::node}, edit.mode, next, report);
   return {};
 }
 
@@ -93,8 +93,8 @@ Result<void> apply_edit(const Document& document, const Grow& edit, Generation& 
   if (const Result<void> some = need_selection(next, "grow"); !some) return some;
   const Selection before = selection_of(document.current());
   const std::vector<std::uint8_t> out_of_sight = hidden_parts(next);
-  Selection after{{}, {}, Kind::node};
-  if (before.kind == Kind::node)
+  Selection after{{}, {}, EntityKind::node};
+  if (before.kind == EntityKind::node)
     after.nodes = select::grow(next.model, before.nodes, edit.rings, out_of_sight);
   else
     after = with_shells(next.model, before, select::grow_shells(next.model, before.shells, edit.rings, out_of_sight));
@@ -106,8 +106,8 @@ Result<void> apply_edit(const Document& document, const Shrink& edit, Generation
   if (const Result<void> some = need_selection(next, "shrink"); !some) return some;
   const Selection before = selection_of(document.current());
   const std::vector<std::uint8_t> out_of_sight = hidden_parts(next);
-  Selection after{{}, {}, Kind::node};
-  if (before.kind == Kind::node)
+  Selection after{{}, {}, EntityKind::node};
+  if (before.kind == EntityKind::node)
     after.nodes = select::shrink(next.model, before.nodes, edit.rings, out_of_sight);
   else
     after = with_shells(next.model, before, select::shrink_shells(next.model, before.shells, edit.rings, out_of_sight));
@@ -118,8 +118,8 @@ Result<void> apply_edit(const Document& document, const Shrink& edit, Generation
 
 Result<void> apply_edit(const Document& document, const Invert&, Generation& next, EditReport& report) {
   const Selection before = selection_of(document.current());
-  Selection after{{}, {}, before.kind == Kind::node ? Kind::node : Kind::element};
-  if (before.kind == Kind::node) {
+  Selection after{{}, {}, before.kind == EntityKind::node ? EntityKind::node : EntityKind::element};
+  if (before.kind == EntityKind::node) {
     after.nodes = select::invert(next.model, before.nodes);
     std::erase_if(after.nodes, [&](NodeIndex node) { return hidden(next, node); });
   } else {

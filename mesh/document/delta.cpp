@@ -357,8 +357,8 @@ Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& genera
   generation.selected_nodes = grown(generation.selected_nodes, read_runs(in, kSelected | kLocked | kHidden, generation.node_marks));
   generation.selected_shells = grown(generation.selected_shells, read_runs(in, kSelected, generation.shell_marks));
   const std::uint8_t kind = in.byte();
-  if (kind > static_cast<std::uint8_t>(select::Kind::part)) in.refuse();
-  generation.selection_kind = static_cast<select::Kind>(kind);
+  if (kind > static_cast<std::uint8_t>(select::EntityKind::part)) in.refuse();
+  generation.selection_kind = static_cast<select::EntityKind>(kind);
   read_parts(in, generation);
   if (!in.at_end()) return fail("", "its delta doesn't fit the model");
   return moved;

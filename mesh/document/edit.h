@@ -23,7 +23,7 @@ using NodeReference = std::variant<std::int64_t, std::array<double, 3>>;
 
 struct Select {
   std::string expr;
-  select::Kind kind = select::Kind::node;
+  select::EntityKind kind = select::EntityKind::node;
   SelectMode mode = SelectMode::set;
 };
 /// What bounds a region: feature edges (sharper than `angle`, free edges, junctions); the part at the place; everything connected by

@@ -10,8 +10,9 @@ namespace prismesh::json {
 
 // --- enumerations ---
 
-PRISMESH_JSON_NAMES(mesh::select::Kind,
-                    {{"node", mesh::select::Kind::node}, {"element", mesh::select::Kind::element}, {"part", mesh::select::Kind::part}});
+PRISMESH_JSON_NAMES(mesh::select::EntityKind, {{"node", mesh::select::EntityKind::node},
+                                               {"element", mesh::select::EntityKind::element},
+                                               {"part", mesh::select::EntityKind::part}});
 PRISMESH_JSON_NAMES(mesh::document::SelectMode, {{"set", mesh::document::SelectMode::set},
                                                  {"add", mesh::document::SelectMode::add},
                                                  {"subtract", mesh::document::SelectMode::subtract},

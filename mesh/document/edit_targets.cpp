@@ -59,7 +59,7 @@ Result<Selection> loop_at(const Generation& generation, const SelectRegion& reci
     place = Vec3((*point)[0], (*point)[1], (*point)[2]);
   else
     place = model.position(model.find_node(std::get<std::int64_t>(recipe.at)));
-  Selection loop{select::free_edge_loop(model, start, place, hidden), {}, select::Kind::node};
+  Selection loop{select::free_edge_loop(model, start, place, hidden), {}, select::EntityKind::node};
   if (loop.nodes.empty())
     return fail("", "the sheet at shell " + std::to_string(model.shell_ids[start.front().value]) + " has no free edge in sight");
   return loop;
@@ -84,7 +84,7 @@ Result<Selection> region_at(const Generation& generation, const SelectRegion& re
   }
   ShellSet shells = select::region(model, *start, options);
   NodeSet nodes = nodes_of(model, shells);
-  return Selection{std::move(nodes), std::move(shells), select::Kind::element};
+  return Selection{std::move(nodes), std::move(shells), select::EntityKind::element};
 }
 
 Result<NodeSet> nodes_in_outline(const Generation& generation, const SelectLasso& recipe) {
@@ -98,12 +98,12 @@ Result<NodeSet> nodes_in_outline(const Generation& generation, const SelectLasso
 
 Result<NodeSet> nodes_at(const Generation& generation, const TargetNodes& target) {
   const Model& model = generation.model;
-  const auto expression_nodes = [&](std::string_view expression, select::Kind kind) -> Result<NodeSet> {
+  const auto expression_nodes = [&](std::string_view expression, select::EntityKind kind) -> Result<NodeSet> {
     Result<select::Chosen> chosen = select::evaluate(model, expression, kind, generation.relations->names);
     if (!chosen) return fail(chosen.error());
     return std::move(chosen->nodes);
   };
-  if (const auto* expression = std::get_if<std::string>(&target)) return expression_nodes(*expression, select::Kind::node);
+  if (const auto* expression = std::get_if<std::string>(&target)) return expression_nodes(*expression, select::EntityKind::node);
   if (const auto* recipe = std::get_if<Select>(&target)) return expression_nodes(recipe->expr, recipe->kind);
   if (const auto* lasso = std::get_if<SelectLasso>(&target)) return nodes_in_outline(generation, *lasso);
   Result<Selection> region = region_at(generation, std::get<SelectRegion>(target));

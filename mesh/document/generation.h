@@ -35,7 +35,7 @@ struct Generation {
   Model model;
   ChunkedArray<std::uint8_t> node_marks;   ///< NodeMark bits
   ChunkedArray<std::uint8_t> shell_marks;  ///< selected shells, when elements or parts were selected
-  select::Kind selection_kind = select::Kind::node;
+  select::EntityKind selection_kind = select::EntityKind::node;
   std::size_t selected_nodes = 0;
   std::size_t selected_shells = 0;
   std::shared_ptr<const std::vector<PartState>> parts;  ///< by PartIndex

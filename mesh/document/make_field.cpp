@@ -14,10 +14,10 @@ namespace prismesh::mesh::document {
 Result<spatial::Shape> shape_named(const Generation& generation, const std::string& expression) {
   const Model& model = generation.model;
   const select::Names names = generation.relations ? generation.relations->names : select::Names{};
-  Result<select::Chosen> nodes = select::evaluate(model, expression, select::Kind::node, names);
+  Result<select::Chosen> nodes = select::evaluate(model, expression, select::EntityKind::node, names);
   if (!nodes) return fail(nodes.error());
   if (!nodes->of_surfaces) return spatial::Shape{std::move(nodes->nodes), {}};
-  Result<select::Chosen> shells = select::evaluate(model, expression, select::Kind::element, names);
+  Result<select::Chosen> shells = select::evaluate(model, expression, select::EntityKind::element, names);
   if (!shells) return spatial::Shape{std::move(nodes->nodes), {}};  // a file without shells
   spatial::Shape shape;
   shape.shells = std::move(shells->shells);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/shape/move.h"
+#include "mesh/shape/rotate.h"
 
 namespace prismesh::mesh::document {
 
@@ -61,7 +62,7 @@ std::size_t positions_at(const Motion& motion, const Displacement& displacement,
     case ShapingKind::translate: shape::translate(motion.start, motion.weight, displacement.by, out); break;
     case ShapingKind::lift: shape::lift(motion.start, motion.weight, motion.normals, displacement.distance, out); break;
     case ShapingKind::rotate:
-      held_back = shape::rotate(motion.start, motion.weight, motion.axis, displacement.degrees, motion.max_move, out);
+      held_back = shape::rotate(motion.start, motion.weight, {motion.axis, displacement.degrees, motion.max_move}, out);
       break;
     case ShapingKind::slide: held_back = slide_to(motion, displacement.by, out); break;
   }

@@ -11,8 +11,8 @@
 
 #include "mesh/document/edit.h"
 #include "mesh/model/node_set.h"
+#include "mesh/shape/axis.h"
 #include "mesh/shape/mirror.h"
-#include "mesh/shape/rotate.h"
 #include "mesh/shape/surface_tracer.h"
 
 namespace prismesh::mesh::document {

@@ -36,7 +36,7 @@ ShellSet of_parts(const Model& model, const ShellSet& of) {
 }
 
 ShellSet selected(const Generation& generation) {
-  if (generation.selection_kind != select::Kind::node) return selected_shells(generation);
+  if (generation.selection_kind != select::EntityKind::node) return selected_shells(generation);
   return shells_touching(generation.model, selected_nodes(generation));
 }
 

@@ -9,7 +9,7 @@ namespace prismesh::mesh::document {
 struct Selection {
   NodeSet nodes;
   ShellSet shells;  ///< empty when nodes were selected
-  select::Kind kind = select::Kind::node;
+  select::EntityKind kind = select::EntityKind::node;
 };
 
 Selection selection_of(const Generation& generation);

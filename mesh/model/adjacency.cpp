@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kNodeGrain = 32768;
 
-/// Counting sort: the shells are walked in order, so each node's list comes out ascending.
+/// Counting sort: the shells come in order, so each node's list ascends.
 void fill_node_shells(const Model& model, Adjacency& adjacency) {
   // Counts start two places late: after the running sum first[n + 1] is where node n begins, and once it is filled where it
   // ends, which is where node n + 1 begins.

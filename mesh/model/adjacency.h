@@ -1,5 +1,5 @@
-// Who is next to whom among the shells: CSR node -> shells, and a sorted edge table with any number of shells an edge.
-// Half-edge structures refuse the third sheet at a T-junction; real shell models branch everywhere.
+// Adjacency of shells: CSR node -> shells, and a sorted edge table with any number of shells at an edge. Half-edge structures can't hold
+// the third sheet at a T-junction, and real shell models have many of them.
 #pragma once
 
 #include <cstdint>
@@ -42,14 +42,14 @@ struct Adjacency {
   Edge edge(EdgeIndex edge) const;  ///< O(log nodes)
 };
 
-/// Adjacency of all shells. Degenerate shells contribute no edge from a node to itself.
+/// Builds the adjacency of all shells. Degenerate shells contribute no edge from a node to itself.
 Adjacency build_adjacency(const Model& model);
 
-/// Adjacency of `after`, which was made from `before` (with its adjacency) by any number of edits: the same as building it anew, at the
-/// cost of copying what didn't change.
+/// Returns the adjacency of `after`, which was made from `before` (with its adjacency) by any number of edits. The result is that of
+/// build_adjacency, at the cost of copying what didn't change.
 Adjacency update_adjacency(const Model& before, const Model& after);
 
-/// Whether each node lies on a free edge (an edge of exactly one shell).
+/// For each node 1 if it lies on a free edge (an edge of exactly one shell), else 0.
 std::vector<std::uint8_t> free_edge_nodes(const Adjacency& adjacency, std::size_t node_count);
 
 }  // namespace prismesh::mesh

@@ -15,10 +15,10 @@ namespace prismesh::mesh {
 namespace {
 
 constexpr std::size_t kUpdateGrain = 65536;
-/// With more than one of so many nodes touched, building anew costs no more.
+/// If more than one in so many nodes is touched, building anew is as fast.
 constexpr std::size_t kFewNodes = 8;
 
-/// Everything about the nodes whose rows differ, and how far they shift the rows that follow.
+/// The rows of the nodes whose rows differ ("dirty"), and how far they shift the rows after them.
 struct DirtyRows {
   std::vector<NodeIndex> nodes;  ///< ascending
   // of each: where its row begins in the arrays below, one more at the end
@@ -42,7 +42,7 @@ void sort_unique(auto& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/// Shells that came, went or have other corners, ascending.
+/// Shells that were added or removed or have other corners, ascending.
 ShellSet changed_shells(const Changes& changes) {
   ShellSet shells = changes.removed_shells;
   shells.insert(shells.end(), changes.added_shells.begin(), changes.added_shells.end());
@@ -113,30 +113,38 @@ DirtyRows dirty_rows(const Model& before, const Model& after, const ShellSet& ch
   return rows;
 }
 
+/// The entries [begin, end) of an array.
+struct Run {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
 template <class T>
-void copy_run(const std::vector<T>& from, std::size_t begin, std::size_t end, std::vector<T>& to, std::size_t at) {
-  std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin), from.begin() + static_cast<std::ptrdiff_t>(end),
+void copy_run(const std::vector<T>& from, Run run, std::vector<T>& to, std::size_t at) {
+  std::copy(from.begin() + static_cast<std::ptrdiff_t>(run.begin), from.begin() + static_cast<std::ptrdiff_t>(run.end),
             to.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
 /// The same with a number added to each.
-void copy_shifted(const std::vector<std::uint32_t>& from, std::size_t begin, std::size_t end, std::int64_t shift,
-                  std::vector<std::uint32_t>& to, std::size_t at) {
-  const auto by = static_cast<std::uint32_t>(shift);  // wraps around, as it should for less
-  for (std::size_t i = begin; i < end; ++i) to[at + (i - begin)] = from[i] + by;
+void copy_shifted(const std::vector<std::uint32_t>& from, Run run, std::int64_t shift, std::vector<std::uint32_t>& to, std::size_t at) {
+  const auto by = static_cast<std::uint32_t>(shift);  // a negative shift wraps around
+  for (std::size_t i = run.begin; i < run.end; ++i) to[at + (i - run.begin)] = from[i] + by;
 }
 
-/// Rows of nodes [begin, end), none of them dirty, behind `d` dirty ones.
-void copy_clean(const Adjacency& old, const DirtyRows& rows, std::size_t d, std::size_t begin, std::size_t end, Adjacency& out) {
-  if (begin >= end) return;
-  const std::size_t shells = old.node_first[begin], edges = old.edge_first[begin], uses = old.edge_shell_first[edges];
+/// Rows of nodes of which none is dirty; `d` dirty ones are before them.
+void copy_clean(const Adjacency& old, const DirtyRows& rows, std::size_t d, Run nodes, Adjacency& out) {
+  if (nodes.begin >= nodes.end) return;
+  const Run shells{old.node_first[nodes.begin], old.node_first[nodes.end]};
+  const Run edges{old.edge_first[nodes.begin], old.edge_first[nodes.end]};
+  const Run uses{old.edge_shell_first[edges.begin], old.edge_shell_first[edges.end]};
   const auto moved = [](std::size_t at, std::int64_t shift) { return static_cast<std::size_t>(static_cast<std::int64_t>(at) + shift); };
-  copy_shifted(old.node_first, begin, end, rows.shell_shift[d], out.node_first, begin);
-  copy_run(old.node_shells, shells, old.node_first[end], out.node_shells, moved(shells, rows.shell_shift[d]));
-  copy_shifted(old.edge_first, begin, end, rows.edge_shift[d], out.edge_first, begin);
-  copy_run(old.edge_high, edges, old.edge_first[end], out.edge_high, moved(edges, rows.edge_shift[d]));
-  copy_shifted(old.edge_shell_first, edges, old.edge_first[end], rows.use_shift[d], out.edge_shell_first, moved(edges, rows.edge_shift[d]));
-  copy_run(old.edge_shells, uses, old.edge_shell_first[old.edge_first[end]], out.edge_shells, moved(uses, rows.use_shift[d]));
+  const std::size_t edges_at = moved(edges.begin, rows.edge_shift[d]);
+  copy_shifted(old.node_first, nodes, rows.shell_shift[d], out.node_first, nodes.begin);
+  copy_run(old.node_shells, shells, out.node_shells, moved(shells.begin, rows.shell_shift[d]));
+  copy_shifted(old.edge_first, nodes, rows.edge_shift[d], out.edge_first, nodes.begin);
+  copy_run(old.edge_high, edges, out.edge_high, edges_at);
+  copy_shifted(old.edge_shell_first, edges, rows.use_shift[d], out.edge_shell_first, edges_at);
+  copy_run(old.edge_shells, uses, out.edge_shells, moved(uses.begin, rows.use_shift[d]));
 }
 
 void put_dirty(const Adjacency& old, const DirtyRows& rows, std::size_t d, Adjacency& out) {
@@ -148,12 +156,13 @@ void put_dirty(const Adjacency& old, const DirtyRows& rows, std::size_t d, Adjac
   const std::size_t uses = moved(old.edge_shell_first[old.edge_first[row]], rows.use_shift[d]);
   out.node_first[node] = static_cast<std::uint32_t>(shells);
   out.edge_first[node] = static_cast<std::uint32_t>(edges);
-  copy_run(rows.shells, rows.shell_first[d], rows.shell_first[d + 1], out.node_shells, shells);
-  copy_run(rows.edge_high, rows.edge_first[d], rows.edge_first[d + 1], out.edge_high, edges);
-  const std::size_t first_use = rows.use_first[rows.edge_first[d]];
-  copy_shifted(rows.use_first, rows.edge_first[d], rows.edge_first[d + 1],
-               static_cast<std::int64_t>(uses) - static_cast<std::int64_t>(first_use), out.edge_shell_first, edges);
-  copy_run(rows.edge_shells, first_use, rows.use_first[rows.edge_first[d + 1]], out.edge_shells, uses);
+  const Run edge_run{rows.edge_first[d], rows.edge_first[d + 1]};
+  const Run use_run{rows.use_first[edge_run.begin], rows.use_first[edge_run.end]};
+  copy_run(rows.shells, {rows.shell_first[d], rows.shell_first[d + 1]}, out.node_shells, shells);
+  copy_run(rows.edge_high, edge_run, out.edge_high, edges);
+  copy_shifted(rows.use_first, edge_run, static_cast<std::int64_t>(uses) - static_cast<std::int64_t>(use_run.begin), out.edge_shell_first,
+               edges);
+  copy_run(rows.edge_shells, use_run, out.edge_shells, uses);
 }
 
 template <class T>
@@ -185,7 +194,7 @@ Adjacency update_adjacency(const Model& before, const Model& after) {
     std::size_t d = static_cast<std::size_t>(std::lower_bound(rows.nodes.begin(), rows.nodes.end(), NodeIndex(begin)) - rows.nodes.begin());
     for (std::size_t node = begin; node < end; ++d) {
       const std::size_t stop = d < rows.nodes.size() ? std::min<std::size_t>(rows.nodes[d].value, end) : end;
-      copy_clean(old, rows, d, node, stop, out);
+      copy_clean(old, rows, d, {node, stop}, out);
       node = stop;
       if (node >= end) break;
       put_dirty(old, rows, d, out);

@@ -26,8 +26,8 @@ class ChunkedArray {
   ChunkedArray() = default;
   explicit ChunkedArray(std::size_t size, const T& value = T()) { resize(size, value); }
 
-  /// All chunks shared with each other: costs one chunk and a pointer for each, until they are written to (then as any
-  /// shared chunk). For arrays that are mostly one value.
+  /// An array whose chunks are all the same one: costs one chunk and a pointer for each, until a chunk is written to (which
+  /// copies it first). For arrays that are mostly one value.
   static ChunkedArray filled(std::size_t size, const T& value = T()) {
     ChunkedArray array;
     if (size == 0) return array;
@@ -46,7 +46,7 @@ class ChunkedArray {
 
   /// The used elements of a chunk.
   std::span<const T> chunk(std::size_t c) const { return {chunks_[c]->data(), std::min(kChunkSize, size_ - c * kChunkSize)}; }
-  /// What stands for a chunk's content; keep it alive to keep that meaning.
+  /// The owner of a chunk. While it lives, the chunk's address stands for its content.
   const std::shared_ptr<Chunk>& chunk_owner(std::size_t c) const { return chunks_[c]; }
   bool shares_chunk(const ChunkedArray& other, std::size_t c) const {
     return c < other.chunks_.size() && chunks_[c] == other.chunks_[c] && size_ == other.size_;
@@ -57,12 +57,12 @@ class ChunkedArray {
     if (chunks_[c].use_count() > 1) chunks_[c] = std::make_shared<Chunk>(*chunks_[c]);
     return {chunks_[c]->data(), std::min(kChunkSize, size_ - c * kChunkSize)};
   }
-  /// A size without content: before anything else every chunk has to be put there by `put_chunk`, distinct ones from any thread.
+  /// Sets the size without content: every chunk must be set by `put_chunk` before any other call, distinct chunks from any thread.
   void reset(std::size_t size) {
     chunks_.assign((size + kChunkSize - 1) / kChunkSize, nullptr);
     size_ = size;
   }
-  /// The chunk, for writing.
+  /// Sets a chunk, and returns it for writing.
   std::span<T> put_chunk(std::size_t c, std::shared_ptr<Chunk> chunk) {
     chunks_[c] = std::move(chunk);
     return own_chunk(c);

@@ -1,4 +1,4 @@
-// The shells about one node as the edge table has them. Private to mesh/model.
+// Collects the edges and shells at one node for the edge table. Private to mesh/model.
 #pragma once
 
 #include <algorithm>
@@ -28,14 +28,14 @@ inline Corners distinct_corners(const ShellNodes& shell) {
   return corners;
 }
 
-/// A shell at an edge of the node in hand, which is the edge's low end.
+/// A shell at an edge whose low end is the current node.
 struct EdgeUse {
   NodeIndex high;
   ShellIndex shell;
   auto operator<=>(const EdgeUse&) const = default;
 };
 
-/// Those of the node's edges whose low end it is, ascending, each once; `shells` are the node's.
+/// Collects the uses of the node's edges whose low end it is, ascending, each once; `shells` are the node's.
 inline void collect_uses(const Model& model, std::span<const ShellIndex> shells, NodeIndex low, std::vector<EdgeUse>& uses) {
   uses.clear();
   for (const ShellIndex shell : shells) {

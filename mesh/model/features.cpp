@@ -9,8 +9,8 @@ namespace prismesh::mesh {
 
 namespace {
 
-/// The direction in which a shell leaves an edge, square to it. It depends on where the shell lies, not on the order of its
-/// nodes, so two shells of one sheet leave in opposite directions whatever their normals say.
+/// The direction from an edge into a shell, at right angles to the edge. It depends on the shell's place, not on the order of its nodes:
+/// two shells of a plane sheet have opposite directions, however their normals are oriented.
 Vec3 away_from_edge(const Model& model, ShellIndex shell, const Vec3& middle, const Vec3& along) {
   const ShellNodes& nodes = model.shell(shell);
   Vec3 centre = Vec3::Zero();
@@ -36,7 +36,7 @@ bool is_crease(const Model& model, ShellIndex first, ShellIndex second, Edge end
   const Vec3 along = b - a;
   const Vec3 one = away_from_edge(model, first, middle, along);
   const Vec3 other = away_from_edge(model, second, middle, along);
-  // a shell without width says nothing about a plane
+  // a shell without width has no plane
   const double size = std::sqrt(one.squaredNorm() * other.squaredNorm());
   return size > 1e-12 * along.squaredNorm() && -one.dot(other) < cos_limit * size;
 }

@@ -1,4 +1,4 @@
-// Feature edges: where a sheet has a crease, an end, or meets another sheet.
+// Finds feature edges: creases, free edges and junctions of three or more shells.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,14 @@ namespace prismesh::mesh {
 
 enum class EdgeKind : std::uint8_t { smooth, crease, free, junction };  ///< junction: three or more shells
 
-/// The kind of one edge: with two shells it is a crease if their planes differ by more than `angle_degrees`, measured without
-/// regard to the normals' signs (neighbours of one sheet often disagree), from how the shells lie about the edge.
+/// Classifies one edge. With two shells it is a crease if their planes differ by more than `angle_degrees`. The angle is measured between
+/// the shells' directions away from the edge, so the orientation of their normals doesn't matter.
 EdgeKind classify_edge(const Model& model, EdgeIndex edge, Edge ends, double angle_degrees);
 
-/// The same question of two shells at one edge; `cos_limit` is the angle's cosine.
+/// The same for two shells at one edge; `cos_limit` is the cosine of the angle.
 bool is_crease(const Model& model, ShellIndex first, ShellIndex second, Edge ends, double cos_limit);
 
-/// The kind of every edge.
+/// Classifies every edge.
 std::vector<EdgeKind> classify_edges(const Model& model, double angle_degrees);
 
 }  // namespace prismesh::mesh

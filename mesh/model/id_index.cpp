@@ -8,7 +8,7 @@
 namespace prismesh::mesh {
 namespace {
 
-/// A direct table may have this many slots an id: beyond, a binary search is cheaper than the memory.
+/// Max slots of a direct table for each id: with more, a binary search is cheaper than the memory.
 constexpr std::uint64_t kSlotsPerId = 8;
 
 }  // namespace
@@ -21,7 +21,7 @@ IdIndex::IdIndex(std::span<const std::int64_t> ids) {
     return std::pair(*a, *b);
   }();
   first_ = low;
-  // Unsigned, because ids from hostile decks may lie further apart than the largest signed number.
+  // unsigned: ids in a hostile deck may differ by more than the largest signed number
   const std::uint64_t range = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low);
   const bool dense = range / kSlotsPerId < ids.size();
   if (ascending) {
@@ -95,7 +95,7 @@ IdIndex& IdIndex::own(std::shared_ptr<const IdIndex>& index) {
       changed->base_ = index;
     index = std::move(changed);
   }
-  // Nobody else holds it, and it was made above, not as a constant.
+  // the only owner, and the object wasn't created as a constant
   return const_cast<IdIndex&>(*index);
 }
 
@@ -144,7 +144,7 @@ std::size_t IdIndex::rank_of(const Change& change) const {
 }
 
 std::pair<std::int64_t, std::uint32_t> IdIndex::at_changed(std::size_t rank) const {
-  // Ranks ascend with the changes. The last one that stands at or before the wanted rank decides by how much the base is shifted there.
+  // Ranks ascend with the changes. The last change at or before the wanted rank gives the shift of the base there.
   const auto after = std::partition_point(changes_.begin(), changes_.end(), [&](const Change& change) { return rank_of(change) <= rank; });
   if (after == changes_.begin()) return base_->at(rank);
   const Change& change = *std::prev(after);

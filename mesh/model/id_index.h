@@ -1,4 +1,4 @@
-// From a deck's id to an index. Ids are sparse, up to 19 digits, and mostly ascending.
+// Finds the index of a deck's id. Ids are sparse, have up to 19 digits, and mostly ascend.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace prismesh::mesh {
 
-/// Costs nothing for ids that count up by one, 8 bytes an id for other ascending ids, and 12 for ids in any order, plus a
-/// direct table where the ids lie densely enough for it.
+/// Costs no memory for ids that count up by one, 8 bytes an id for other ascending ids, and 12 for ids in any order, plus a
+/// direct table where the ids are dense enough.
 class IdIndex {
  public:
   static constexpr std::uint32_t kNotFound = 0xffffffffu;
@@ -38,13 +38,13 @@ class IdIndex {
   /// Ids that occur more than once, ascending, each once.
   const std::vector<std::int64_t>& duplicates() const { return base_ ? base_->duplicates() : duplicates_; }
 
-  /// One id more, which must not be there, or one less. The large index is shared, what has changed since is listed beside it: that list is
-  /// copied where another index holds it as well, and an entry costs a move of those after it (ids mostly come in ascending order).
+  /// Adds an id, which must not exist, or removes one. The large index is shared; changes are listed beside it. The list is copied if
+  /// another index holds it too. A new entry costs a move of those after it (ids mostly come in ascending order).
   static void add(std::shared_ptr<const IdIndex>& index, std::int64_t id, std::uint32_t at);
   static void remove(std::shared_ptr<const IdIndex>& index, std::int64_t id);
 
  private:
-  /// An id that the base lacks, or has too many.
+  /// An id that is missing in the base, or was removed.
   struct Change {
     std::int64_t id = 0;
     std::uint32_t index = kNotFound;  ///< kNotFound: the base has it, and it is gone
@@ -71,7 +71,7 @@ class IdIndex {
   std::vector<std::uint32_t> order_;  ///< rank -> index; empty where both are the same
   std::vector<std::uint32_t> dense_;  ///< id - first_ -> index, where the ids are dense enough
   std::vector<std::int64_t> duplicates_;
-  std::shared_ptr<const IdIndex> base_;  ///< if set, only what follows counts besides it
+  std::shared_ptr<const IdIndex> base_;  ///< if set, only it and the members below count
   std::vector<Change> changes_;          ///< ascending by id
   std::int64_t shift_ = 0;               ///< of all changes
 };

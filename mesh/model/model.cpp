@@ -29,7 +29,7 @@ std::vector<NodeIndex> moved_nodes(const Model& a, const Model& b) {
   std::vector<NodeIndex> moved;
   const std::size_t chunks = std::min(a.positions.chunk_count(), b.positions.chunk_count());
   for (std::size_t c = 0; c < chunks; ++c) {
-    // Equal addresses mean equal content, also where one array goes on further than the other.
+    // equal addresses mean equal content, also where one array is longer than the other
     if (a.positions.chunk_owner(c) == b.positions.chunk_owner(c)) continue;
     const std::span<const Vec3> from = a.positions.chunk(c);
     const std::span<const Vec3> to = b.positions.chunk(c);

@@ -31,13 +31,13 @@ struct ShellNodes {
   bool operator==(const ShellNodes&) const = default;
 };
 
-/// Mid-side nodes of an 8-node (or 6-node) shell; they are kept and shown, metrics use the corners.
+/// Mid-side nodes of an 8-node (or 6-node) shell. They are kept and shown; metrics use the corners.
 struct MidsideNodes {
   ShellIndex shell;
   std::array<NodeIndex, 4> node;  ///< between corner i and i+1; invalid where the element has none
 };
 
-/// Elements that are shown and whose nodes count, but that aren't edited themselves.
+/// Classes of elements. Elements other than shells are shown and their nodes count, but they aren't edited themselves.
 enum class ElementClass : std::uint8_t { shell, beam, solid, tshell, discrete, mass, sph, other };
 inline constexpr int kElementClassCount = 8;
 std::string_view name(ElementClass element_class);
@@ -52,7 +52,7 @@ struct ElementBlock {
   std::size_t size() const { return id.size(); }
 };
 
-/// A part with what its section and material say; absent values are unknown, not zero.
+/// A part with values of its section and material; absent values are unknown, not zero.
 struct Part {
   std::int64_t id = 0;
   std::string name;
@@ -66,7 +66,7 @@ struct Part {
   bool limits_time_step = true;  ///< false for rigid and null materials
 };
 
-/// How the deck wants its time step: *CONTROL_TIMESTEP.
+/// The deck's time step control: *CONTROL_TIMESTEP.
 struct TimeStepControl {
   double scale = 0.9;      ///< TSSFAC
   int shell_option = 0;    ///< ISDO
@@ -76,18 +76,18 @@ struct TimeStepControl {
 /// Why a node must not be moved; bits of Model::node_holds.
 enum NodeHold : std::uint8_t {
   kHeldByParameter = 1,  ///< its coordinates are given by &parameters
-  kHeldByInclude = 2,    ///< it stands in an include that is transformed or used twice
+  kHeldByInclude = 2,    ///< it is in an include that is transformed or used twice
   kHeldByMissing = 4,    ///< an element at it is left out, since another of the element's nodes isn't defined
-  kHeldByFrame = 8,      ///< it spans a coordinate system that other nodes stand in, or its own system can't be worked out
-  kHeldByMaking = 16,    ///< no card of its own: a card that makes many nodes at once made it (replication, generation)
-  kRemoved = 128,        ///< it is gone; its entry stays so that indices never change
+  kHeldByFrame = 8,      ///< it defines a coordinate system that other nodes use, or its own system can't be computed
+  kHeldByMaking = 16,    ///< it has no card: a card that generates many nodes made it (replication, generation)
+  kRemoved = 128,        ///< it was removed; its entry stays so that indices never change
 };
-/// Why a node with one of these bits can't be moved, as the end of a sentence about it: "has coordinates given by a parameter".
+/// Why a node with one of these bits can't be moved, as a predicate: "has coordinates given by a parameter".
 std::string_view why_held(std::uint8_t hold);
 
-/// Nodes, shells, everything else, parts; in the deck's order. Nodes that elements name but nobody defines are not in
-/// the arrays; an element with such a node is left out of the arrays and counted in `skipped`. Nodes and shells that were removed keep
-/// their entries, but no id leads to them (mesh/model/topology_change.h).
+/// Nodes, shells, other elements and parts, in the deck's order. Nodes that elements name but no card defines are not in the
+/// arrays; an element with such a node is left out of the arrays. Removed nodes and shells keep their entries, but their ids are no longer
+/// in the index (mesh/model/topology_change.h).
 struct Model {
   ChunkedArray<std::int64_t> node_ids;
   ChunkedArray<Vec3> positions;           ///< deck's length unit
@@ -117,8 +117,8 @@ struct Model {
   PartIndex find_part(std::int64_t id) const;
 };
 
-/// Nodes that are in both, with different positions, ascending: nodes added or removed since haven't moved. Costs what differs: shared
-/// chunks are passed over.
+/// Returns the nodes of both models whose positions differ, ascending; added and removed nodes don't count. Cost: what differs, since
+/// shared chunks are skipped.
 std::vector<NodeIndex> moved_nodes(const Model& a, const Model& b);
 
 }  // namespace prismesh::mesh

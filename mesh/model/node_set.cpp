@@ -25,7 +25,7 @@ std::vector<Index> marked(const std::vector<std::uint8_t>& marks, std::size_t ex
   return set;
 }
 
-/// Above this share of all entries, marking in an array the model's size beats sorting what was gathered.
+/// Above this share of all entries, marks in an array of the model's size are faster than sorting a list.
 bool is_large(std::size_t gathered, std::size_t all) { return gathered > all / 16; }
 
 /// The mid-side nodes of a shell, or nullptr.

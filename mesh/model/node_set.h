@@ -1,4 +1,4 @@
-// A set of nodes or shells as ascending indices: small, cheap to send, the same whatever made it.
+// Sets of nodes or shells as ascending indices: small, cheap to send, the same whatever made them.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@ using ShellSet = std::vector<ShellIndex>;  ///< ascending, each once
 
 struct Model;
 
-/// Shells with at least one node of the set / with all their nodes in the set.
+/// Returns the shells with at least one node in the set / with all nodes in the set.
 ShellSet shells_touching(const Model& model, const NodeSet& nodes);
 ShellSet shells_inside(const Model& model, const NodeSet& nodes);
-/// Corner and mid-side nodes of the shells.
+/// Returns the corner and mid-side nodes of the shells.
 NodeSet nodes_of(const Model& model, const ShellSet& shells);
 
 }  // namespace prismesh::mesh

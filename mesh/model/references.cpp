@@ -90,7 +90,7 @@ std::vector<Reference> References::naming(Referred referred, std::int64_t id) co
   for (const Referred kind : {referred, Referred::any_element}) {
     if (kind != referred && !is_element(referred)) break;
     const std::span<const Reference> of_kind = all(kind);
-    // Backwards from the last that may begin at or before the id, as long as an earlier one still reaches it.
+    // backwards from the last reference that begins at or before the id, as long as an earlier one may reach it
     auto i = static_cast<std::size_t>(
         std::partition_point(of_kind.begin(), of_kind.end(), [&](const Reference& r) { return r.first <= id; }) - of_kind.begin());
     const std::size_t start = static_cast<std::size_t>(of_kind.data() - references_.data());

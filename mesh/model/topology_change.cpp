@@ -6,7 +6,7 @@ namespace prismesh::mesh {
 
 namespace {
 
-/// The model's topology change, for writing: copied where another model holds it as well.
+/// The model's topology change for writing: copied first if another model shares it.
 TopologyChange& own_topology_change(Model& model) {
   if (!model.topology_change || model.topology_change.use_count() > 1) {
     auto topology_change =
@@ -17,7 +17,7 @@ TopologyChange& own_topology_change(Model& model) {
     }
     model.topology_change = std::move(topology_change);
   }
-  // Nobody else holds it, and it was made above, not as a constant.
+  // the only owner, and the object wasn't created as a constant
   return const_cast<TopologyChange&>(*model.topology_change);
 }
 
@@ -28,7 +28,7 @@ void push_back(ChunkedArray<T>& array, const T& value) {
 
 constexpr ShellNodes kNoNodes{};
 
-/// Of those listed: in one of the models and not in the other.
+/// Those of the list that are in one of the models but not in the other.
 template <class IndexType>
 std::vector<IndexType> sorted_unique(std::vector<IndexType> list) {
   std::sort(list.begin(), list.end());
@@ -44,7 +44,7 @@ std::vector<IndexType> added_between(std::size_t before, std::size_t after, cons
   return added;
 }
 
-/// Removed since `before`: those that were there.
+/// Those removed since `before` that existed there.
 template <class IndexType>
 std::vector<IndexType> removed_since(std::vector<IndexType> removed, std::size_t count_before, const Model& before) {
   std::erase_if(removed, [&](IndexType i) { return i.value >= count_before || before.is_removed(i); });
@@ -96,7 +96,7 @@ ShellIndex add_shell(Model& model, std::int64_t id, const ShellNodes& nodes, She
 void set_shell_nodes(Model& model, ShellIndex shell, const ShellNodes& nodes) {
   if (model.shell(shell) == nodes) return;
   TopologyChange& topology_change = own_topology_change(model);
-  // An added shell is written anew whatever happened to it.
+  // an added shell is written as a whole anyway
   if (shell.value < topology_change.deck_shells) topology_change.reshaped_shells.push_back(shell);
   model.shell_nodes.set(shell.value, nodes);
   model.adjacency.reset();
@@ -131,7 +131,7 @@ const NodeOrigin& origin_of(const Model& model, NodeIndex node) {
 }
 
 ShellIndex deck_ancestor(const Model& model, ShellIndex shell) {
-  // A parent was there before its child, so this ends.
+  // ends, since a parent is older than its child
   while (is_added(model, shell)) shell = model.topology_change->shell_parents[shell.value - model.topology_change->deck_shells];
   return shell;
 }
@@ -143,7 +143,7 @@ Changes changes_between(const Model& before, const Model& after) {
   changes.added_shells = added_between<ShellIndex>(before.shell_count(), after.shell_count(), after);
   changes.removed_nodes = removed_since(after.topology_change->removed_nodes, before.node_count(), before);
   changes.removed_shells = removed_since(after.topology_change->removed_shells, before.shell_count(), before);
-  // Shells that `before` has as added ones may have been given other nodes since without being listed.
+  // shells that were added before `before` may have got other nodes since without being listed
   std::vector<ShellIndex> reshaped = after.topology_change->reshaped_shells;
   for (std::size_t s = after.topology_change->deck_shells; s < before.shell_count(); ++s) reshaped.push_back(ShellIndex(s));
   std::erase_if(reshaped, [&](ShellIndex s) {

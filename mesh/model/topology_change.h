@@ -1,5 +1,5 @@
-// Adding and removing nodes and shells. Everything costs what changes, not what the model has: arrays in chunks are appended to, and what
-// is removed keeps its entry, so that no index ever means something else.
+// Adds and removes nodes and shells. The cost follows the change, not the model: arrays in chunks are appended to, and a removed entity
+// keeps its entry, so that indices never change their meaning.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace prismesh::mesh {
 
-/// Where an added node comes from: between one and four other nodes (the ends of an edge, the corners of a face), which may have been added
-/// themselves, with weights above 0 that sum to 1.
+/// The origin of an added node: one to four other nodes (the ends of an edge, the corners of a face), which may have been added themselves,
+/// with weights above 0 whose sum is 1.
 struct NodeOrigin {
-  std::array<NodeIndex, 4> parent;  ///< those in use first, then invalid ones
+  std::array<NodeIndex, 4> parent;  ///< the used ones first, then invalid ones
   std::array<double, 4> weight{};
 
   int count() const {
@@ -25,10 +25,10 @@ struct NodeOrigin {
   bool operator==(const NodeOrigin&) const = default;
 };
 NodeOrigin edge_origin(NodeIndex a, NodeIndex b, double weight_of_b = 0.5);
-/// The centre of a shell, each corner counting the same.
+/// The centre of a shell: all corners have the same weight.
 NodeOrigin centre_origin(const ShellNodes& shell);
 
-/// What a model has more and less than the deck it was opened from.
+/// What was added to and removed from a model since its deck was opened.
 struct TopologyChange {
   std::size_t deck_nodes = 0;  ///< nodes from this index on were added
   std::size_t deck_shells = 0;
@@ -39,22 +39,22 @@ struct TopologyChange {
   std::vector<ShellIndex> reshaped_shells;  ///< of the deck, whose nodes were set; each may be listed more than once
 };
 
-/// Every function drops the adjacency: whoever has finished an edit builds it again or brings it up to date.
-/// Preconditions, here and below: indices are those of nodes and shells that aren't removed; an id was never one of the model's, and
-/// fits the deck (mesh/deck/editing/new_ids.h).
+/// This function and those below drop the adjacency: build or update it after the last change.
+/// Preconditions, here and below: the indices are those of nodes and shells that exist; a new id was never used in the model, and fits
+/// the deck (mesh/deck/editing/new_ids.h).
 NodeIndex add_node(Model& model, std::int64_t id, const Vec3& position, const NodeOrigin& origin);
 
-/// `nodes`: a triangle repeats its third. Part and thickness are the parent's.
+/// `nodes`: a triangle repeats its third node. Part and thickness are the parent's.
 ShellIndex add_shell(Model& model, std::int64_t id, const ShellNodes& nodes, ShellIndex parent);
 
 void set_shell_nodes(Model& model, ShellIndex shell, const ShellNodes& nodes);
 
 void remove_shell(Model& model, ShellIndex shell);
 
-/// Whether something still uses the node is for the edit to know and for saving to refuse (deck::can_save).
+/// Doesn't check whether something still uses the node: the edit must know, and saving refuses it (deck::can_save).
 void remove_node(Model& model, NodeIndex node);
 
-/// Nodes and shells that are there.
+/// Counts the nodes and shells that exist.
 std::size_t live_nodes(const Model& model);
 std::size_t live_shells(const Model& model);
 
@@ -62,11 +62,11 @@ bool is_added(const Model& model, NodeIndex node);
 bool is_added(const Model& model, ShellIndex shell);
 /// Of an added node.
 const NodeOrigin& origin_of(const Model& model, NodeIndex node);
-/// The shell of the deck from which a shell descends; itself if it is one of the deck's.
+/// The deck's shell that a shell descends from; itself if it is one of the deck's.
 ShellIndex deck_ancestor(const Model& model, ShellIndex shell);
 
-/// What `after` has that `before` hasn't, the other way, and shells in both with different corners; each ascending. `after` is made from
-/// `before` by any number of edits.
+/// The differences between two models, of which `after` was made from `before` by any number of edits. Reshaped shells are in both, with
+/// different corners. Each list ascends.
 struct Changes {
   std::vector<NodeIndex> added_nodes;
   std::vector<NodeIndex> removed_nodes;

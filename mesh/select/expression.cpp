@@ -14,26 +14,26 @@ namespace prismesh::mesh::select {
 
 namespace {
 
-/// Sets may be made of sets; decks may be hostile.
+/// Limits, since sets may contain sets and decks may be hostile.
 constexpr int kMaxSetDepth = 32;
-constexpr int kMaxSets = 10'000;  ///< looked into by one expression
-constexpr std::size_t kStepsBetweenTellings = 64;
-constexpr std::uint64_t kFewIds = 10'000;  ///< a model of fewer counts as one of so many
+constexpr int kMaxSets = 10'000;  ///< that one expression evaluates
+constexpr std::size_t kStepsBetweenReports = 64;
+constexpr std::uint64_t kFewIds = 10'000;  ///< a smaller model counts as one of this size
 
-ItemClass class_of(Kind kind) {
+ItemClass class_of(EntityKind kind) {
   switch (kind) {
-    case Kind::node: return ItemClass::node;
-    case Kind::element: return ItemClass::shell;
-    case Kind::part: return ItemClass::part;
+    case EntityKind::node: return ItemClass::node;
+    case EntityKind::element: return ItemClass::shell;
+    case EntityKind::part: return ItemClass::part;
   }
   return ItemClass::node;
 }
 
-Referred set_of(Kind kind) {
-  return kind == Kind::node ? Referred::node_set : kind == Kind::element ? Referred::shell_set : Referred::part_set;
+Referred set_of(EntityKind kind) {
+  return kind == EntityKind::node ? Referred::node_set : kind == EntityKind::element ? Referred::shell_set : Referred::part_set;
 }
 
-/// What a card's number is the id of, as items call it; in_hand for elements of any class and for sets.
+/// The class of a card's number as items call it; in_hand for elements of any class and for sets.
 ItemClass class_of(Referred referred) {
   switch (referred) {
     case Referred::node: return ItemClass::node;
@@ -50,7 +50,7 @@ ItemClass class_of(Referred referred) {
   }
 }
 
-/// The kind of set that an item's class asks for; nothing where it leaves that open.
+/// The kind of set that an item's class names; nothing where it can be any kind.
 std::optional<Referred> wanted_kind(ItemClass item_class) {
   switch (item_class) {
     case ItemClass::node_set: return Referred::node_set;
@@ -78,15 +78,15 @@ void combine(Marks& into, const Marks& other, Step::Action action) {
     for (std::size_t i = 0; i < count; ++i) a[i] = static_cast<std::uint8_t>(a[i] & b[i]);
 }
 
-/// Does an expression's steps on marks.
+/// Executes an expression's steps on marks.
 class Evaluator {
  public:
-  Evaluator(const Model& model, Kind kind, const Names& names, const Progress& progress)
+  Evaluator(const Model& model, EntityKind kind, const Names& names, const Progress& progress)
       : model_(model), names_(names), progress_(progress), marking_(model, kind) {}
 
   Result<Chosen> run(const Parsed& parsed) {
     for (std::size_t i = 0; i < parsed.steps.size(); ++i) {
-      if (i > 0 && i % kStepsBetweenTellings == 0 && progress_ &&
+      if (i > 0 && i % kStepsBetweenReports == 0 && progress_ &&
           !progress_(static_cast<double>(i) / static_cast<double>(parsed.steps.size())))
         return fail(cancelled());
       if (const Result<void> done = take(parsed.steps[i], parsed); !done) return fail(done.error());
@@ -131,32 +131,32 @@ class Evaluator {
     if (item_class != ItemClass::file) of_surfaces_ = of_surfaces_ && (item_class == ItemClass::shell || item_class == ItemClass::part);
     if (item_class == ItemClass::file) return mark_file(item, marks, value);
     if (item.by == Item::By::name) return mark_parts_called(item, marks, value);
-    if (block_class(item_class) && marking_.kind() == Kind::element)
+    if (block_class(item_class) && marking_.kind() == EntityKind::element)
       return error(item, "only shells can be selected as elements; select " + std::string(name(item_class)) + " nodes with kind node");
     const IdIndex& ids = marking_.ids_of(item_class);
     if (ids.size() == 0) return error(item, "there is no " + std::string(name(item_class)) + " in the model");
-    const auto [least, greatest] = std::pair(ids.at(0).first, ids.at(ids.size() - 1).first);
+    const auto [min_id, max_id] = std::pair(ids.at(0).first, ids.at(ids.size() - 1).first);
     if (Result<void> counted = count_named(item, ids); !counted) return counted;
     bool found = false;
     if (item.by == Item::By::all) {
-      found = marking_.mark_ids(marks, item_class, least, greatest, 1, value);
+      found = marking_.mark_ids(marks, item_class, {min_id, max_id}, value);
     } else if (item.by == Item::By::other_ids) {
-      if (item.first > least) found = marking_.mark_ids(marks, item_class, least, item.first - 1, 1, value);
-      if (item.first < greatest) found = marking_.mark_ids(marks, item_class, item.first + 1, greatest, 1, value) || found;
+      if (item.first > min_id) found = marking_.mark_ids(marks, item_class, {min_id, item.first - 1}, value);
+      if (item.first < max_id) found = marking_.mark_ids(marks, item_class, {item.first + 1, max_id}, value) || found;
     } else {
-      found = marking_.mark_ids(marks, item_class, item.first, item.last, item.step, value);
+      found = marking_.mark_ids(marks, item_class, {item.first, item.last, item.step}, value);
     }
     if (!found) return names_nothing(item, item_class, ids);
     return {};
   }
 
-  /// What an item costs is what it names: a range over everything is cheap to write a million times.
+  /// Limits the cost, which follows what an item names: a range over everything is short to write, also a million times.
   Result<void> count_named(const Item& item, const IdIndex& ids) {
     const bool some = item.by == Item::By::ids || item.by == Item::By::comparison;
     named_ += some ? ids.lower_bound(std::max(item.first, item.last)) - ids.lower_bound(item.first) + 1 : ids.size();
     if (named_ <= kMaxTimesNamed * std::max<std::uint64_t>(ids.size(), kFewIds)) return {};
     return error(item,
-                 "the items up to here name everything more than " + std::to_string(kMaxTimesNamed) + " times over; name each thing once");
+                 "the items up to here name the whole model more than " + std::to_string(kMaxTimesNamed) + " times; name each entity once");
   }
 
   static tl::unexpected<Error> names_nothing(const Item& item, ItemClass item_class, const IdIndex& ids) {
@@ -178,14 +178,14 @@ class Evaluator {
     return error(item, std::move(message));
   }
 
-  /// The existing id at the least distance from the item's ids; of two the lower.
+  /// The existing id nearest to the item's ids; of two the lower.
   static std::int64_t nearest_id(const IdIndex& ids, const Item& item) {
     const std::size_t above = ids.lower_bound(item.first);
     if (above == ids.size()) return ids.at(above - 1).first;
     const std::int64_t high = ids.at(above).first;
     if (above == 0 || high <= item.last) return high;
     const std::int64_t low = ids.at(above - 1).first;
-    // ids of a deck may be negative where a reader lets them: unsigned differences can't overflow
+    // ids may be negative in some decks: unsigned differences can't overflow
     const auto below = static_cast<std::uint64_t>(item.first) - static_cast<std::uint64_t>(low);
     const auto over = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(item.last);
     return below <= over ? low : high;
@@ -216,7 +216,7 @@ class Evaluator {
       if (!*marked) return error(item, find_set(sets(), wanted).set->label() + " holds nothing that can be selected here");
       return {};
     }
-    // several: each id once, of several kinds under one id the preferred one
+    // several sets: each id once; of several kinds with one id the preferred one
     std::int64_t before = 0;
     bool found = false;
     std::vector<std::int64_t> ids;
@@ -255,18 +255,18 @@ class Evaluator {
   }
 
   Result<Marks> marks_of(const Item& item, const NamedSet& set, int depth) {
-    if (depth > kMaxSetDepth) return error(item, set.label() + " is made of itself, or of sets within sets deeper than 32");
-    if (++sets_seen_ > kMaxSets) return error(item, set.label() + " is made of too many sets");
+    if (depth > kMaxSetDepth) return error(item, set.label() + " contains itself, or contains sets nested deeper than 32 levels");
+    if (++sets_seen_ > kMaxSets) return error(item, set.label() + " contains too many sets");
     of_surfaces_ = of_surfaces_ && (set.kind == Referred::shell_set || set.kind == Referred::part_set);
     Marks marks = marking_.nothing();
     bool first = true;
-    // a set that names nodes and elements alike means the one or the other: who uses it decides
+    // a set that names both nodes and elements means one of them: the wanted kind decides
     const auto named = [&](Referred referred) {
       return std::any_of(set.members.begin(), set.members.end(), [&](const Reference& m) { return m.referred == referred; });
     };
     const bool both = set.kind == Referred::node_set && named(Referred::node) && named(Referred::any_element);
     for (const Reference& member : set.members) {
-      if (both && (member.referred == Referred::any_element) != (marking_.kind() == Kind::element)) continue;
+      if (both && (member.referred == Referred::any_element) != (marking_.kind() == EntityKind::element)) continue;
       if (!mesh::is_set(member.referred)) {
         mark_member(member, marks);
         continue;
@@ -298,12 +298,12 @@ class Evaluator {
     const std::uint8_t value = member.takes_away ? 0 : 1;
     const ItemClass entity = class_of(member.referred);
     if (entity != ItemClass::in_hand) {
-      marking_.mark_ids(marks, entity, member.first, member.last, member.step, value);
+      marking_.mark_ids(marks, entity, {member.first, member.last, member.step}, value);
       return;
     }
     for (const ItemClass each : {ItemClass::shell, ItemClass::beam, ItemClass::solid, ItemClass::tshell, ItemClass::discrete,
                                  ItemClass::mass, ItemClass::sph, ItemClass::other})
-      marking_.mark_ids(marks, each, member.first, member.last, member.step, value);
+      marking_.mark_ids(marks, each, {member.first, member.last, member.step}, value);
   }
 
   // --- files ---------------------------------------------------------------------------------------------------------
@@ -321,13 +321,15 @@ class Evaluator {
       for (std::size_t s = 0; s < model_.shell_count(); ++s)
         if (names_.file_of_shell(deck_ancestor(model_, ShellIndex(s))) == *file && !model_.is_removed(ShellIndex(s)))
           mark(ItemClass::shell, s);
-    if (marking_.kind() == Kind::node && names_.file_of_node)
+    if (marking_.kind() == EntityKind::node && names_.file_of_node)
       for (std::size_t n = 0; n < model_.node_count(); ++n)
         if (names_.file_of_node(first_ancestor(NodeIndex(n))) == *file && !model_.is_removed(NodeIndex(n))) mark(ItemClass::node, n);
-    if (marking_.kind() == Kind::part) mark_lone_parts(*file, mark);
+    if (marking_.kind() == EntityKind::part) mark_lone_parts(*file, mark);
     if (found) return {};
-    const std::string_view what = marking_.kind() == Kind::node ? "node" : marking_.kind() == Kind::element ? "shell" : "part's mesh";
-    return error(item, "no " + std::string(what) + " stands in the file \"" + names_.files[*file] + "\"");
+    const std::string_view what = marking_.kind() == EntityKind::node      ? "node"
+                                  : marking_.kind() == EntityKind::element ? "shell"
+                                                                           : "part's mesh";
+    return error(item, "no " + std::string(what) + " is in the file \"" + names_.files[*file] + "\"");
   }
 
   /// The first node of the deck that a node comes from.
@@ -336,7 +338,7 @@ class Evaluator {
     return node;
   }
 
-  /// Parts without shells are where the nodes of an element of theirs stand.
+  /// A part without shells is in the file that holds all nodes of one of its elements.
   template <class Mark>
   void mark_lone_parts(std::uint32_t file, const Mark& mark) {
     if (!names_.file_of_node) return;
@@ -358,7 +360,7 @@ class Evaluator {
   const Model& model_;
   const Names& names_;
   const Progress& progress_;
-  std::uint64_t named_ = 0;  ///< ids, each as often as it was
+  std::uint64_t named_ = 0;  ///< ids that the items so far named, repeated ones too
   Marking marking_;
   std::vector<Marks> stack_;
   std::optional<std::vector<NamedSet>> sets_;
@@ -368,7 +370,7 @@ class Evaluator {
 
 }  // namespace
 
-Result<Chosen> evaluate(const Model& model, std::string_view expression, Kind kind, const Names& names, const Progress& progress) {
+Result<Chosen> evaluate(const Model& model, std::string_view expression, EntityKind kind, const Names& names, const Progress& progress) {
   const Result<Parsed> parsed = parse(expression);
   if (!parsed) return fail(parsed.error());
   return Evaluator(model, kind, names, progress).run(*parsed);

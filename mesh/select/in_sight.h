@@ -1,4 +1,4 @@
-// Parts that are out of sight, as selections ask for them.
+// Which shells selections may use: those of parts that aren't hidden.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace prismesh::mesh::select {
 
-/// An entry for each part, not 0 where it is hidden; empty: all are in sight.
+/// One entry for each part, not 0 where it is hidden; empty: no part is hidden.
 using OutOfSight = std::span<const std::uint8_t>;
 
-/// Whether a shell is there and in sight.
+/// Whether a shell exists and its part isn't hidden.
 inline bool in_sight(const Model& model, ShellIndex shell, OutOfSight out_of_sight) {
   if (model.is_removed(shell)) return false;
   if (out_of_sight.empty()) return true;

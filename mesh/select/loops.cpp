@@ -18,7 +18,7 @@ namespace prismesh::mesh::select {
 
 namespace {
 
-/// A free edge with its shell, and the end to go on from.
+/// A free edge with its shell; the loop runs from `from` to `to`.
 struct FreeEdge {
   EdgeIndex edge;
   ShellIndex shell;
@@ -30,13 +30,13 @@ class Sheet {
  public:
   Sheet(const Model& model, OutOfSight out_of_sight) : model_(model), adjacency_(*model.adjacency), out_of_sight_(out_of_sight) {}
 
-  bool there(ShellIndex shell) const { return in_sight(model_, shell, out_of_sight_); }
+  bool has(ShellIndex shell) const { return in_sight(model_, shell, out_of_sight_); }
 
-  /// Free edges at a node whose shell is in sight.
+  /// Free edges at a node whose shell isn't hidden.
   std::vector<FreeEdge> free_edges_at(NodeIndex node) const {
     std::vector<FreeEdge> edges;
     for (const ShellIndex shell : adjacency_.shells_of(node)) {
-      if (!there(shell)) continue;
+      if (!has(shell)) continue;
       for (const NodeIndex other : neighbours(shell, node)) {
         const EdgeIndex edge = adjacency_.find_edge(node, other);
         if (edge.valid() && adjacency_.shells_of(edge).size() == 1) edges.push_back({edge, shell, node, other});
@@ -45,7 +45,7 @@ class Sheet {
     return edges;
   }
 
-  /// The free edge that follows at `to`, around the shells there.
+  /// The next free edge of the loop at `to`, around the shells there.
   std::optional<FreeEdge> next(const FreeEdge& last) const {
     const NodeIndex at = last.to;
     NodeIndex came_over = last.from;
@@ -56,7 +56,7 @@ class Sheet {
       const EdgeIndex edge = ahead.valid() && ahead != came_over ? adjacency_.find_edge(at, ahead) : EdgeIndex();
       if (!edge.valid()) return std::nullopt;
       if (adjacency_.shells_of(edge).size() == 1) return FreeEdge{edge, shell, at, ahead};
-      shell = straight_on(shell, edge, at, ahead);
+      shell = smallest_turn(shell, edge, at, ahead);
       if (!shell.valid()) return std::nullopt;
       came_over = ahead;
     }
@@ -80,22 +80,23 @@ class Sheet {
     return (out - along * (out.dot(along) / along.squaredNorm())).normalized();
   }
 
-  ShellIndex straight_on(ShellIndex shell, EdgeIndex edge, NodeIndex from, NodeIndex to) const {
+  /// The shell beyond the edge with the smallest turn, below 45 degrees.
+  ShellIndex smallest_turn(ShellIndex shell, EdgeIndex edge, NodeIndex from, NodeIndex to) const {
     const auto shells = adjacency_.shells_of(edge);
     if (shells.size() == 2) {
       const ShellIndex other = shells[0] == shell ? shells[1] : shells[0];
-      return there(other) ? other : ShellIndex();
+      return has(other) ? other : ShellIndex();
     }
     const Vec3 along = model_.position(to) - model_.position(from);
     if (!(along.squaredNorm() > 0)) return {};
     const Vec3 middle = 0.5 * (model_.position(to) + model_.position(from));
     const Vec3 here = away(shell, middle, along);
     ShellIndex best;
-    double straightest = deterministic_cos_degrees(45);
+    double max_cosine = deterministic_cos_degrees(45);
     for (const ShellIndex other : shells) {
-      if (other == shell || !there(other)) continue;
-      const double straight = -here.dot(away(other, middle, along));
-      if (straight > straightest) straightest = straight, best = other;
+      if (other == shell || !has(other)) continue;
+      const double cosine = -here.dot(away(other, middle, along));
+      if (cosine > max_cosine) max_cosine = cosine, best = other;
     }
     return best;
   }
@@ -112,7 +113,7 @@ double distance2_to_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
   return (a + share * along - point).squaredNorm();
 }
 
-/// Of the free edges at the free node nearest along the surface, the one nearest to the place.
+/// Of the free edges at the free-edge node nearest along the surface, the one nearest to the place.
 std::optional<FreeEdge> nearest_free_edge(const Model& model, const Sheet& sheet, const ShellSet& start, const Vec3& place) {
   using Reached = std::pair<double, NodeIndex>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> open;
@@ -130,14 +131,14 @@ std::optional<FreeEdge> nearest_free_edge(const Model& model, const Sheet& sheet
     open.pop();
     if (to > distance[node.value]) continue;
     std::optional<FreeEdge> best;
-    double least2 = std::numeric_limits<double>::infinity();
+    double min_distance2 = std::numeric_limits<double>::infinity();
     for (const FreeEdge& edge : sheet.free_edges_at(node)) {
       const double distance2 = distance2_to_segment(place, model.position(edge.from), model.position(edge.to));
-      if (distance2 < least2) least2 = distance2, best = edge;
+      if (distance2 < min_distance2) min_distance2 = distance2, best = edge;
     }
     if (best) return best;
     for (const ShellIndex shell : model.adjacency->shells_of(node)) {
-      if (!sheet.there(shell)) continue;
+      if (!sheet.has(shell)) continue;
       for (const NodeIndex other : model.shell(shell).node)
         if (other != node) reach(other, to + (model.position(other) - model.position(node)).norm());
     }

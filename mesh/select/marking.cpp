@@ -34,7 +34,7 @@ std::optional<ElementClass> block_class(ItemClass item_class) {
   }
 }
 
-/// Those that are there, with their parts.
+/// Visits the shells that exist, with their parts.
 template <class Body>
 void Marking::each_shell(const Body& body) const {
   std::size_t shell = 0;
@@ -46,19 +46,22 @@ void Marking::each_shell(const Body& body) const {
 }
 
 Marks Marking::nothing() const {
-  return Marks(kind_ == Kind::node ? model_.node_count() : kind_ == Kind::element ? model_.shell_count() : model_.parts->size(), 0);
+  return Marks(kind_ == EntityKind::node      ? model_.node_count()
+               : kind_ == EntityKind::element ? model_.shell_count()
+                                              : model_.parts->size(),
+               0);
 }
 
 Marks Marking::everything() const {
   Marks marks = nothing();
   std::fill(marks.begin(), marks.end(), std::uint8_t{1});
-  if (!model_.topology_change || kind_ == Kind::part) return marks;
+  if (!model_.topology_change || kind_ == EntityKind::part) return marks;
   for (std::size_t i = 0; i < marks.size(); ++i)
-    if (kind_ == Kind::node ? model_.is_removed(NodeIndex(i)) : model_.is_removed(ShellIndex(i))) marks[i] = 0;
+    if (kind_ == EntityKind::node ? model_.is_removed(NodeIndex(i)) : model_.is_removed(ShellIndex(i))) marks[i] = 0;
   return marks;
 }
 
-/// Those without an index in the model get one here, once.
+/// Classes without an index in the model get one here, once.
 const IdIndex& Marking::ids_of(ItemClass entity) {
   if (entity == ItemClass::node) return *model_.node_index;
   if (entity == ItemClass::shell) return *model_.shell_index;
@@ -74,13 +77,13 @@ const IdIndex& Marking::ids_of(ItemClass entity) {
   return *index;
 }
 
-bool Marking::mark_ids(Marks& marks, ItemClass entity, std::int64_t first, std::int64_t last, std::int64_t step, std::uint8_t value) {
+bool Marking::mark_ids(Marks& marks, ItemClass entity, const SteppedIdRange& range, std::uint8_t value) {
   const IdIndex& ids = ids_of(entity);
   bool found = false;
-  for (std::size_t rank = ids.lower_bound(first); rank < ids.size(); ++rank) {
+  for (std::size_t rank = ids.lower_bound(range.first); rank < ids.size(); ++rank) {
     const auto [id, index] = ids.at(rank);
-    if (id > last) break;
-    if (step > 1 && (id - first) % step != 0) continue;
+    if (id > range.last) break;
+    if (range.step > 1 && (id - range.first) % range.step != 0) continue;
     found = true;
     mark(marks, entity, index, value);
   }
@@ -89,9 +92,9 @@ bool Marking::mark_ids(Marks& marks, ItemClass entity, std::int64_t first, std::
 
 void Marking::mark(Marks& marks, ItemClass entity, std::uint32_t index, std::uint8_t value) {
   switch (kind_) {
-    case Kind::node: mark_nodes(marks, entity, index, value); break;
-    case Kind::element: mark_shells(marks, entity, index, value); break;
-    case Kind::part: mark_parts(marks, entity, index, value); break;
+    case EntityKind::node: mark_nodes(marks, entity, index, value); break;
+    case EntityKind::element: mark_shells(marks, entity, index, value); break;
+    case EntityKind::part: mark_parts(marks, entity, index, value); break;
   }
 }
 
@@ -155,7 +158,7 @@ void Marking::mark_parts(Marks& marks, ItemClass entity, std::uint32_t index, st
   }
 }
 
-/// Shells of a part; the lists of all parts are made at the first call, so that `part:1-1000` costs one pass.
+/// Shells of a part. The first call makes the lists of all parts, so that `part:1-1000` costs one pass.
 std::span<const std::uint32_t> Marking::shells_of(PartIndex part) {
   if (part_first_.empty()) {
     part_first_.assign(model_.parts->size() + 2, 0);
@@ -175,12 +178,12 @@ std::span<const std::uint32_t> Marking::shells_of(PartIndex part) {
 Chosen Marking::chosen(const Marks& marks) const {
   Chosen chosen;
   switch (kind_) {
-    case Kind::node: chosen.nodes = marked<NodeIndex>(marks); break;
-    case Kind::element:
+    case EntityKind::node: chosen.nodes = marked<NodeIndex>(marks); break;
+    case EntityKind::element:
       chosen.shells = marked<ShellIndex>(marks);
       chosen.nodes = nodes_of(model_, chosen.shells);
       break;
-    case Kind::part: {
+    case EntityKind::part: {
       chosen.parts = marked<PartIndex>(marks);
       Marks nodes(model_.node_count(), 0);
       each_shell([&](std::size_t shell, PartIndex part) {

@@ -1,4 +1,4 @@
-// Entities of one kind as marks, and what an entity of any class means among them. Private to mesh/select.
+// Sets of entities of one kind as marks, and the translation of entities of other classes into this kind. Private to mesh/select.
 #pragma once
 
 #include <array>
@@ -16,22 +16,29 @@ namespace prismesh::mesh::select {
 
 using Marks = std::vector<std::uint8_t>;  ///< by index of the kind's entities: 1 if it is in the set
 
+/// The ids first, first + step, ... up to last.
+struct SteppedIdRange {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+  std::int64_t step = 1;
+};
+
 /// The class of elements kept in Model::elements, or nothing for nodes, parts and shells.
 std::optional<ElementClass> block_class(ItemClass item_class);
 
 class Marking {
  public:
-  Marking(const Model& model, Kind kind) : model_(model), kind_(kind) {}
+  Marking(const Model& model, EntityKind kind) : model_(model), kind_(kind) {}
 
-  Kind kind() const { return kind_; }
+  EntityKind kind() const { return kind_; }
   Marks nothing() const;
-  Marks everything() const;  ///< but what was removed from the model
+  Marks everything() const;  ///< that exists: without what was removed from the model
   /// The ids of a class of entities.
   const IdIndex& ids_of(ItemClass entity);
-  /// Marks what an entity means among those of the kind: a shell its nodes, a node the parts around it, ...
+  /// Marks the entities of the kind that belong to an entity of any class: of a shell its nodes, of a node the parts around it, ...
   void mark(Marks& marks, ItemClass entity, std::uint32_t index, std::uint8_t value);
-  /// Marks the entities with the ids first, first + step, ... last. False: there are none.
-  bool mark_ids(Marks& marks, ItemClass entity, std::int64_t first, std::int64_t last, std::int64_t step, std::uint8_t value);
+  /// Marks the entities with ids of the range. False: there are none.
+  bool mark_ids(Marks& marks, ItemClass entity, const SteppedIdRange& range, std::uint8_t value);
   Chosen chosen(const Marks& marks) const;
 
  private:
@@ -45,7 +52,7 @@ class Marking {
   std::span<const std::uint32_t> shells_of(PartIndex part);
 
   const Model& model_;
-  Kind kind_;
+  EntityKind kind_;
   std::array<std::unique_ptr<IdIndex>, kItemClassCount> indices_;
   std::vector<std::uint32_t> part_first_;
   std::vector<std::uint32_t> part_shells_;

@@ -27,7 +27,7 @@ std::optional<Referred> group_kind(std::string_view keyword) {
   return std::nullopt;
 }
 
-/// Nastran's sets say by their users what their numbers are.
+/// The cards that use a set of Nastran decide what its numbers mean.
 Referred kind_of_members(std::span<const Reference> members) {
   for (const Reference& member : members)
     if (member.referred == Referred::node) return Referred::node_set;
@@ -44,7 +44,7 @@ std::optional<Referred> set_kind(const Referrer& card, std::span<const Reference
   return group_kind(card.keyword);
 }
 
-/// References by referrer, each's in the order of the lines; what is taken away behind the rest of its line.
+/// References by referrer, in the order of the lines; members that are removed come after the others of their line.
 struct ByReferrer {
   explicit ByReferrer(const References& references) : first(references.referrers().size() + 1, 0) {
     for (const Reference& reference : references.all()) ++first[reference.referrer + 1];
@@ -80,7 +80,7 @@ std::string list_of(const std::vector<const NamedSet*>& sets) {
   return list;
 }
 
-/// Of sets of one name those of the kind preferred, if there are any.
+/// Of sets with one name those of the preferred kind, if there are any.
 std::vector<const NamedSet*> preferred_of(const std::vector<const NamedSet*>& found, const WantedSet& wanted) {
   std::vector<const NamedSet*> out;
   for (const NamedSet* set : found)
@@ -170,7 +170,7 @@ std::optional<std::uint32_t> find_file(std::span<const std::string> files, std::
     problem = "several files are called \"" + std::string(name) + "\": write \"" + files[found[0]] + "\" or \"" + files[found[1]] + "\"";
     return std::nullopt;
   }
-  // names of folders would outweigh a mistyped letter, so bare names are compared as such
+  // a name without folders is compared with names without folders: folders would count more than a mistyped letter
   std::vector<std::string_view> ends;
   for (const std::string_view file : known) ends.push_back(file.substr(file.rfind('/') + 1));
   const std::string_view end = name.substr(name.rfind('/') + 1);

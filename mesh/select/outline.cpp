@@ -1,4 +1,4 @@
-// Crossings counted in bands of height, so that a node meets a few edges of the outline however many it has.
+// Counts crossings of a horizontal ray with the outline's edges, which are sorted into bands of height: a node is tested against few edges.
 #include "mesh/select/outline.h"
 
 #include <algorithm>
@@ -22,11 +22,11 @@ struct OutlineEdge {
   double height = 0;  ///< high_y - low_y, > 0
   int sense = 0;      ///< +1 drawn upwards, -1 downwards
 
-  /// Whether a point at one of its heights lies to its left. No division: what is representable is decided exactly.
+  /// Whether a point at one of its heights lies to its left. Without a division, so that no rounding of a quotient decides.
   bool is_right_of(double x, double y) const { return (x - low_x) * height < (y - low_y) * width; }
 };
 
-/// A point is inside where the outline winds around it: a lasso that crosses its own line keeps what it went round twice.
+/// A point is inside if its winding number isn't 0: a lasso that crosses itself also contains what it encircles twice.
 class Outline {
  public:
   explicit Outline(const std::vector<std::array<double, 2>>& points) {
@@ -54,7 +54,7 @@ class Outline {
 
  private:
   void add(const std::array<double, 2>& from, const std::array<double, 2>& to) {
-    if (from[1] == to[1]) return;  // level edges are crossed by no height
+    if (from[1] == to[1]) return;  // no ray crosses a horizontal edge
     const bool up = from[1] < to[1];
     const auto& low = up ? from : to;
     const auto& high = up ? to : from;
@@ -69,7 +69,7 @@ class Outline {
   void fill_bands() {
     std::size_t bands = std::min<std::size_t>(4 * edges_.size(), 4096);
     bands_per_height_ = static_cast<double>(bands) / (high_y_ - low_y_);
-    if (!std::isfinite(bands_per_height_)) bands_per_height_ = 0, bands = 1;  // a height of next to nothing
+    if (!std::isfinite(bands_per_height_)) bands_per_height_ = 0, bands = 1;  // the height is almost 0
     band_first_.assign(bands + 1, 0);
     const auto each = [&](const auto& body) {
       for (const OutlineEdge& edge : edges_)

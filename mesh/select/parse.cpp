@@ -49,7 +49,7 @@ bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-/// A character as it can be shown in a message.
+/// A character for a message.
 std::string shown(char c) {
   if (std::isprint(static_cast<unsigned char>(c)) != 0) return std::string("'") + c + "'";
   constexpr std::string_view kDigits = "0123456789abcdef";
@@ -57,7 +57,7 @@ std::string shown(char c) {
   return std::string("the byte \\x") + kDigits[byte >> 4] + kDigits[byte & 15];
 }
 
-/// Ends a name that isn't quoted.
+/// Whether a character ends a name without quotes.
 bool ends_name(char c) {
   return is_space(c) || c == ',' || c == '&' || c == '|' || c == '!' || c == '~' || c == '(' || c == ')' || c == '"' || c == '\'';
 }
@@ -88,7 +88,7 @@ class Parser {
   }
   tl::unexpected<Error> error(std::string message) const { return error_at(at_, std::move(message)); }
 
-  /// Takes `c` and the spaces around it.
+  /// Skips `c` and the spaces around it.
   bool take(char c) {
     skip_spaces();
     if (!at(c)) return false;
@@ -104,8 +104,8 @@ class Parser {
     return error_at(place, "there are more than " + std::to_string(kMaxOperators) + " of & | ~ ( in the expression");
   }
 
-  /// Items by commas, each added to what those before it left or taken from it. Within parentheses a list that begins by taking away
-  /// takes from everything.
+  /// Items divided by commas: each is added to the set of those before it, or removed from it. In parentheses a list that begins with a
+  /// removal starts from everything.
   Result<void> read_list(bool nested) {
     for (bool first = true;; first = false) {
       skip_spaces();
@@ -145,7 +145,7 @@ class Parser {
     }
   }
 
-  /// `~` is the complement anywhere, `!` behind an operator only: at the beginning of an item it takes the whole item away.
+  /// `~` is the complement anywhere; `!` only behind an operator: at the beginning of an item it removes the whole item.
   Result<void> read_factor(bool behind_operator) {
     bool complement = false;
     for (skip_spaces(); at('~') || (behind_operator && at('!')); skip_spaces()) {
@@ -165,7 +165,7 @@ class Parser {
     if (++depth_ > kMaxParenthesisDepth) return error("parentheses go deeper than " + std::to_string(kMaxParenthesisDepth));
     ++at_;
     if (const auto read = read_list(true); !read) return read;
-    if (at_end()) return error("the expression ends where a ) should stand: the ( at column " + std::to_string(open + 1) + " is open");
+    if (at_end()) return error("the expression ends where a ) is expected: the ( at column " + std::to_string(open + 1) + " is open");
     if (!at(')')) return error("unexpected " + shown(text_[at_]) + " within parentheses: items are separated by commas");
     ++at_;
     --depth_;
@@ -186,7 +186,7 @@ class Parser {
     return {};
   }
 
-  /// `all`, a comparison, or a class and its colon, which both or a name may follow.
+  /// `all`, a comparison, or a class with a colon and then `all`, a comparison or a name.
   Result<void> read_word(Item& item) {
     const std::size_t begin = at_;
     const std::string word = take_word();
@@ -239,7 +239,7 @@ class Parser {
     while (!at_end() && !ends_name(text_[at_])) ++at_;
     item.by = Item::By::name;
     item.name = text_.substr(begin, at_ - begin);
-    if (item.name.empty()) return error(at_end() ? "the expression ends where a name should stand" : "a name should stand here");
+    if (item.name.empty()) return error(at_end() ? "the expression ends where a name is expected" : "a name is expected here");
     return {};
   }
 
@@ -257,7 +257,7 @@ class Parser {
     return error_at(place, "unknown word \"" + word.substr(0, 40) + "\"; did you mean \"" + std::string(nearest_name(word, known)) + "\"?");
   }
 
-  /// "> 5000" and so on, behind `id`.
+  /// "> 5000" and the like, after `id`.
   Result<void> read_comparison(Item& item) {
     skip_spaces();
     const std::size_t place = at_;
@@ -305,8 +305,8 @@ class Parser {
   }
 
   Result<void> read_number(std::int64_t& out, std::string_view what) {
-    if (at_end()) return error("the expression ends where " + std::string(what) + " should stand");
-    if (!is_digit(text_[at_])) return error("unexpected " + shown(text_[at_]) + " where " + std::string(what) + " should stand");
+    if (at_end()) return error("the expression ends where " + std::string(what) + " is expected");
+    if (!is_digit(text_[at_])) return error("unexpected " + shown(text_[at_]) + " where " + std::string(what) + " is expected");
     const std::size_t begin = at_;
     while (!at_end() && is_digit(text_[at_])) ++at_;
     const auto read = std::from_chars(text_.data() + begin, text_.data() + at_, out);

@@ -1,4 +1,4 @@
-// The grammar of id expressions, apart from what a model makes of them.
+// Parses id expressions, without a model.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace prismesh::mesh::select {
 
-/// What an item's numbers are ids of; `set` leaves open of which kind the set is.
+/// The class of an item's numbers. in_hand: the wanted kind; set: a set of any kind.
 enum class ItemClass : std::uint8_t {
   in_hand,
   node,
@@ -45,7 +45,7 @@ struct Item {
   enum class By : std::uint8_t {
     all,         ///< everything of the class
     ids,         ///< first, first + step, ... up to last
-    comparison,  ///< every id from first to last, as a comparison says
+    comparison,  ///< every id from first to last, written as a comparison
     other_ids,   ///< every id but `first`
     name,        ///< a set or a file by its name
   } by = By::ids;
@@ -57,18 +57,18 @@ struct Item {
   std::string_view text;   ///< the item as written, into the expression
 };
 
-/// What to do with sets on a stack, in order. At the end one set is left.
+/// One step of a stack machine for sets. After the last step one set is left.
 struct Step {
   enum class Action : std::uint8_t {
     nothing,     ///< push the empty set
     everything,  ///< push all
     push,        ///< push the item's set
     add_item,    ///< the item is added to the topmost set
-    take_item,   ///< the item is taken from the topmost set
-    add,         ///< take the topmost set off and add it to the one below
-    take,        ///< ... take it away from the one below
-    meet,        ///< ... leave below what is in both
-    complement,  ///< the topmost set becomes all but itself
+    take_item,   ///< the item is removed from the topmost set
+    add,         ///< pop the topmost set and unite the one below with it
+    take,        ///< pop the topmost set and subtract it from the one below
+    meet,        ///< pop the topmost set and intersect the one below with it
+    complement,  ///< the topmost set becomes its complement
   } action = Action::nothing;
   std::uint32_t item = 0;
 };
@@ -79,9 +79,9 @@ struct Parsed {
 };
 
 inline constexpr int kMaxParenthesisDepth = 32;
-inline constexpr int kMaxOperators = 1000;  ///< & | ~ ( together; commas are free
+inline constexpr int kMaxOperators = 1000;  ///< & | ~ ( together; commas don't count
 
-/// Errors: file "expression", line the column (from 1).
+/// Parses an expression. Errors: bad syntax, with file "expression" and the column (from 1) as line.
 Result<Parsed> parse(std::string_view expression);
 
 }  // namespace prismesh::mesh::select

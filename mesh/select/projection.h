@@ -1,4 +1,4 @@
-// Where a view puts a point. Private to mesh/select.
+// Projects points into a view. Private to mesh/select.
 #pragma once
 
 #include <array>

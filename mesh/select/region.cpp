@@ -20,7 +20,7 @@ namespace prismesh::mesh::select {
 
 namespace {
 
-/// Narrower than this share of its length a shell has no plane to speak of: rounded coordinates would decide.
+/// With a width below this share of its length a shell has no reliable plane: rounding of coordinates would decide.
 constexpr double kThin = 1.0 / 200;
 
 Vec3 twice_area(const Model& model, ShellIndex shell) {
@@ -32,13 +32,13 @@ Vec3 twice_area(const Model& model, ShellIndex shell) {
 
 bool is_thin(const Model& model, ShellIndex shell) {
   const ShellNodes& nodes = model.shell(shell);
-  double longest2 = 0;
+  double max_edge2 = 0;
   for (std::size_t i = 0; i < 4; ++i)
-    longest2 = std::max(longest2, (model.position(nodes.node[(i + 1) % 4]) - model.position(nodes.node[i])).squaredNorm());
-  return twice_area(model, shell).norm() <= kThin * longest2 * (nodes.is_triangle() ? 1 : 2);
+    max_edge2 = std::max(max_edge2, (model.position(nodes.node[(i + 1) % 4]) - model.position(nodes.node[i])).squaredNorm());
+  return twice_area(model, shell).norm() <= kThin * max_edge2 * (nodes.is_triangle() ? 1 : 2);
 }
 
-/// The direction in which a shell leaves an edge, square to it. It depends on where the shell lies, not on the order of its nodes.
+/// The direction from an edge into a shell, at right angles to the edge. It depends on the shell's place, not on the order of its nodes.
 Vec3 away_from(const Model& model, ShellIndex shell, const Vec3& middle, const Vec3& along) {
   const ShellNodes& nodes = model.shell(shell);
   Vec3 centre = Vec3::Zero();
@@ -47,7 +47,7 @@ Vec3 away_from(const Model& model, ShellIndex shell, const Vec3& middle, const V
   return out - along * (out.dot(along) / along.squaredNorm());
 }
 
-/// Whether the shell runs through the edge from `from` to `to`, not the other way.
+/// Whether the shell's nodes run from `from` to `to`, not the other way.
 bool runs_along(const ShellNodes& nodes, NodeIndex from, NodeIndex to) {
   const auto corners = static_cast<std::size_t>(nodes.corners());
   for (std::size_t i = 0; i < corners; ++i)
@@ -55,40 +55,41 @@ bool runs_along(const ShellNodes& nodes, NodeIndex from, NodeIndex to) {
   return false;
 }
 
-/// A region while it grows.
-class Growing {
+/// Grows a region over edges, breadth first.
+class RegionGrowth {
  public:
-  Growing(const Model& model, const RegionOptions& options)
+  RegionGrowth(const Model& model, const RegionOptions& options)
       : model_(model),
         adjacency_(*model.adjacency),
         options_(options),
         cos_limit_(deterministic_cos_degrees(options.angle_degrees)),
-        state_(model.shell_count(), 0) {
+        marks_(model.shell_count(), 0) {
     if (options.across != nullptr) node_done_.assign(model.node_count(), 0);
   }
 
   ShellSet from(const ShellSet& start) {
     for (const ShellIndex shell : start) reach(shell);
-    for (std::size_t at = 0; at < found_.size(); ++at) go_on_from(found_[at]);
+    for (std::size_t at = 0; at < found_.size(); ++at) cross_edges_of(found_[at]);
     std::sort(found_.begin(), found_.end());
     return std::move(found_);
   }
 
  private:
-  enum State : std::uint8_t { kFound = 1, kTurned = 2, kThinShell = 4 };
+  /// Bits of a shell's entry in marks_. kTurned: its nodes run the other way round than those of the shell at which the region began.
+  enum Mark : std::uint8_t { kFound = 1, kTurned = 2, kThinShell = 4 };
 
-  /// As a beginning of its own: nothing says how it lies to the shells before.
+  /// Takes a shell as a new start: its orientation relative to the shells before is unknown.
   void reach(ShellIndex shell) {
     if (is_found(shell) || !in_sight(model_, shell, options_.out_of_sight)) return;
     take(shell, kFound | (is_thin(model_, shell) ? kThinShell : 0));
   }
-  void take(ShellIndex shell, int state) {
-    state_[shell.value] = static_cast<std::uint8_t>(state);
+  void take(ShellIndex shell, int marks) {
+    marks_[shell.value] = static_cast<std::uint8_t>(marks);
     found_.push_back(shell);
   }
-  bool is_found(ShellIndex shell) const { return state_[shell.value] != 0; }
+  bool is_found(ShellIndex shell) const { return marks_[shell.value] != 0; }
 
-  void go_on_from(ShellIndex shell) {
+  void cross_edges_of(ShellIndex shell) {
     const ShellNodes& nodes = model_.shell(shell);
     const auto corners = static_cast<std::size_t>(nodes.corners());
     for (std::size_t i = 0; i < corners; ++i) {
@@ -118,8 +119,8 @@ class Growing {
   }
 
   void cross_smoothly(ShellIndex shell, ShellIndex beyond, NodeIndex from, NodeIndex to) {
-    const bool before_thin = (state_[shell.value] & kThinShell) != 0, beyond_thin = is_thin(model_, beyond);
-    const bool turned = ((state_[shell.value] & kTurned) != 0) != runs_along(model_.shell(beyond), from, to);
+    const bool before_thin = (marks_[shell.value] & kThinShell) != 0, beyond_thin = is_thin(model_, beyond);
+    const bool turned = ((marks_[shell.value] & kTurned) != 0) != runs_along(model_.shell(beyond), from, to);
     if (before_thin || beyond_thin) {
       const ShellIndex plane = before_thin ? plane_before(shell) : shell;
       if (beyond_thin) {
@@ -133,7 +134,7 @@ class Growing {
     take(beyond, kFound | (turned ? kTurned : 0) | (beyond_thin ? kThinShell : 0));
   }
 
-  /// The last shell before a thin one that had a plane; invalid if there was none.
+  /// The last shell with a plane before a thin one; invalid if there was none.
   ShellIndex plane_before(ShellIndex thin) const {
     const auto found = plane_before_.find(thin.value);
     return found == plane_before_.end() ? ShellIndex() : found->second;
@@ -147,15 +148,15 @@ class Growing {
     return -out_a.dot(out_b) < cos_limit_ * std::sqrt(out_a.squaredNorm() * out_b.squaredNorm());
   }
 
-  /// The thin shells between have no plane, but their nodes' order still says which way up the one beyond lies.
+  /// Compares the shells before and behind thin ones. The thin shells have no plane, but the order of their nodes carries the orientation.
   bool folded_beyond_thin(ShellIndex plane, ShellIndex beyond, bool turned) const {
-    const bool plane_turned = (state_[plane.value] & kTurned) != 0;
+    const bool plane_turned = (marks_[plane.value] & kTurned) != 0;
     const Vec3 before = twice_area(model_, plane), after = twice_area(model_, beyond);
     const double same = before.dot(after) * (plane_turned == turned ? 1 : -1);
     return same < cos_limit_ * std::sqrt(before.squaredNorm() * after.squaredNorm());
   }
 
-  /// Sheets that share the node but no edge there.
+  /// Takes the shells of other sheets that share the node but no edge at it.
   void cross_node(NodeIndex node) {
     if (node_done_[node.value] != 0) return;
     node_done_[node.value] = 1;
@@ -171,7 +172,7 @@ class Growing {
       }
     if (rest.empty()) return;
     for (const ShellIndex shell : adjacency_.shells_of(node)) {
-      // As at a start on a crease, all sides of the other sheet at the node.
+      // all shells of the other sheet at the node, as at a start on a crease
       const bool other_sheet = std::find(rest.begin(), rest.end(), shell) != rest.end();
       const bool came_from_rest = std::any_of(rest.begin(), rest.end(), [&](ShellIndex s) { return is_found(s); });
       if (other_sheet != came_from_rest) reach(shell);
@@ -182,13 +183,13 @@ class Growing {
   const Adjacency& adjacency_;
   const RegionOptions& options_;
   double cos_limit_;
-  std::vector<std::uint8_t> state_;
+  std::vector<std::uint8_t> marks_;
   std::vector<std::uint8_t> node_done_;
   std::unordered_map<std::uint32_t, ShellIndex> plane_before_;  ///< only looked up
   ShellSet found_;
 };
 
-/// Shells of the parts of `start`; with welds, also of all parts that are joined to them, one by one.
+/// Shells of the parts of `start`; with welds also those of all parts that are joined to them, directly or through others.
 ShellSet region_of_parts(const Model& model, const ShellSet& start, const RegionOptions& options) {
   std::vector<std::uint8_t> taken(model.parts->size() + 1, 0);  // the last: shells without a part
   const auto place = [&](ShellIndex shell) {
@@ -225,7 +226,7 @@ ShellSet region_of_parts(const Model& model, const ShellSet& start, const Region
   return shells;
 }
 
-/// Least distance of a point from the box around a shell's corners, and from its nearest corner.
+/// Squares of a point's distances from the box around a shell's corners and from its nearest corner.
 std::pair<double, double> distances2(const Model& model, ShellIndex shell, const Vec3& point) {
   const ShellNodes& nodes = model.shell(shell);
   Vec3 low = model.position(nodes.node[0]), high = low;
@@ -263,7 +264,7 @@ ShellSet touching(const Model& model, const NodeSet& nodes, OutOfSight out_of_si
 
 ShellSet region(const Model& model, const ShellSet& start, const RegionOptions& options) {
   if (options.bound == RegionBound::part) return region_of_parts(model, start, options);
-  return Growing(model, options).from(start);
+  return RegionGrowth(model, options).from(start);
 }
 
 ShellSet shells_at(const Model& model, NodeIndex node, OutOfSight out_of_sight) {
@@ -277,7 +278,7 @@ ShellSet shells_at(const Model& model, NodeIndex node, OutOfSight out_of_sight) 
 ShellSet shells_near(const Model& model, const Vec3& point, OutOfSight out_of_sight) {
   constexpr std::size_t kGrain = 16384;
   const std::size_t ranges = (model.shell_count() + kGrain - 1) / kGrain;
-  // The closest shell isn't farther than the nearest corner; what could be is sorted out by its box.
+  // the closest shell isn't farther than the nearest corner: only shells whose boxes come as near are candidates
   std::vector<double> nearest2(ranges, std::numeric_limits<double>::infinity());
   parallel_for(model.shell_count(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s)
@@ -298,10 +299,10 @@ ShellSet shells_near(const Model& model, const Vec3& point, OutOfSight out_of_si
   ShellSet shells;
   if (!closest) return shells;
   const ShellNodes& nodes = model.shell(closest->shell);
-  double longest2 = 0;
+  double max_edge2 = 0;
   for (std::size_t i = 0; i < 4; ++i)
-    longest2 = std::max(longest2, (model.position(nodes.node[(i + 1) % 4]) - model.position(nodes.node[i])).squaredNorm());
-  for (const spatial::SurfacePoint& found : tree.within(point, closest->distance + 1e-3 * std::sqrt(longest2)))
+    max_edge2 = std::max(max_edge2, (model.position(nodes.node[(i + 1) % 4]) - model.position(nodes.node[i])).squaredNorm());
+  for (const spatial::SurfacePoint& found : tree.within(point, closest->distance + 1e-3 * std::sqrt(max_edge2)))
     shells.push_back(found.shell);
   return shells;
 }

@@ -1,6 +1,6 @@
-// First an item buffer: a coarse picture of which shell is in front where. Nearly every hidden node is hidden by the shell at its pixel,
-// which an exact look at that one shell proves. The others are looked at by every shell that passes before them. The picture only says
-// where to look first: what it misses costs time, not correctness.
+// Method: first an item buffer, a coarse picture with the number of the front shell in each square. Nearly every hidden node is hidden by
+// the shell at its square, which an exact test of this one shell proves. The other nodes are tested against every shell whose box covers
+// them. The item buffer only chooses the first test: its errors cost time, not correctness.
 #include "mesh/select/visible.h"
 
 #include <atomic>
@@ -34,7 +34,7 @@ class Squares {
   }
   std::size_t side() const { return side_; }
   std::size_t count() const { return side_ * side_; }
-  /// In squares, not rounded.
+  /// The coordinate in squares, not rounded.
   double place(const Seen& at, int axis) const { return (at[axis] - low_[axis]) * scale_[axis]; }
   std::size_t along(const Seen& at, int axis) const { return within(place(at, axis)); }
   std::size_t within(double place) const {
@@ -48,7 +48,7 @@ class Squares {
   std::array<double, 2> scale_{};
 };
 
-/// For each square the shell that is nearest at its middle, if one is.
+/// For each square the shell that is nearest at its centre, if there is one.
 class ItemBuffer {
  public:
   ItemBuffer(const Scene& scene, std::size_t side) : squares_(scene, side), items_(new std::atomic<std::uint64_t>[squares_.count()]) {
@@ -56,7 +56,7 @@ class ItemBuffer {
       for (std::size_t i = begin; i < end; ++i) items_[i].store(kEmpty, std::memory_order_relaxed);
     });
   }
-  /// A shell of less than a few squares counts as its box; where it matters an exact look follows.
+  /// A shell of a few squares is drawn as its box; an exact test follows where it matters.
   void draw(const SeenShell& shell) {
     const Area area = area_of(shell.low, shell.high);
     if (area.squares() == 0) return;
@@ -77,7 +77,7 @@ class ItemBuffer {
  private:
   static constexpr std::uint64_t kEmpty = std::numeric_limits<std::uint64_t>::max();
 
-  /// Squares whose middles lie in a box: columns x_from to before x_end.
+  /// Squares whose centres lie in a box: columns x_from to before x_end.
   struct Area {
     std::size_t x_from, x_end, y_from, y_end;
     std::size_t squares() const { return x_from < x_end && y_from < y_end ? (x_end - x_from) * (y_end - y_from) : 0; }
@@ -85,7 +85,7 @@ class ItemBuffer {
   Area area_of(const Seen& low, const Seen& high) const {
     return {first_middle(low, 0), first_middle(high, 0), first_middle(low, 1), first_middle(high, 1)};
   }
-  /// The first square whose middle lies beyond.
+  /// The first square whose centre lies beyond.
   std::size_t first_middle(const Seen& at, int axis) const {
     const double place = squares_.place(at, axis) + 0.5;
     return place > 0 ? static_cast<std::size_t>(std::min(place, static_cast<double>(squares_.side()))) : 0;
@@ -97,7 +97,7 @@ class ItemBuffer {
   }
 
   void draw(ShellIndex shell, const Seen& a, const Seen& b, const Seen& c) {
-    const auto place = [&](const Seen& at, int axis) { return squares_.place(at, axis) - 0.5; };  // whole numbers: middles
+    const auto place = [&](const Seen& at, int axis) { return squares_.place(at, axis) - 0.5; };  // whole numbers are centres
     const std::array<double, 3> x{place(a, 0), place(b, 0), place(c, 0)};
     const std::array<double, 3> y{place(a, 1), place(b, 1), place(c, 1)};
     const double twice_area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
@@ -124,7 +124,7 @@ class ItemBuffer {
   std::unique_ptr<std::atomic<std::uint64_t>[]> items_;
 };
 
-/// The shell beyond the side of `shell` that the place lies farthest beyond; invalid if there is none.
+/// The neighbour of `shell` over the side that the place is farthest beyond; invalid if there is none.
 ShellIndex next_towards(const Scene& scene, const SeenShell& shell, const Seen& place) {
   const std::size_t corners = shell.triangles == 2 ? 4 : 3;
   const auto cross = [](const Seen& a, const Seen& b, const Seen& p) {
@@ -132,10 +132,10 @@ ShellIndex next_towards(const Scene& scene, const SeenShell& shell, const Seen& 
   };
   const double turn = cross(shell.point[0], shell.point[1], shell.point[2]) + cross(shell.point[0], shell.point[2], shell.point[3]);
   std::size_t side = corners;
-  double farthest = 0;
+  double max_beyond = 0;
   for (std::size_t i = 0; i < corners; ++i) {
     const double beyond = cross(shell.point[i], shell.point[(i + 1) % corners], place) * (turn > 0 ? -1 : 1);
-    if (beyond > farthest) farthest = beyond, side = i;
+    if (beyond > max_beyond) max_beyond = beyond, side = i;
   }
   if (side == corners) return {};
   const Adjacency& adjacency = *scene.model().adjacency;
@@ -146,7 +146,7 @@ ShellIndex next_towards(const Scene& scene, const SeenShell& shell, const Seen& 
   return {};
 }
 
-/// Whether the sheet that is in front at the node's square hides the node: the shell found there or one a few steps towards the node.
+/// Whether the sheet in front at the node's square hides the node: tests the shell found there and a few neighbours towards the node.
 bool hidden_by_item(const Scene& scene, const ItemBuffer& items, const SeenNode& node) {
   ShellIndex item = items.at(node.at);
   for (int step = 0; step < 4 && item.valid(); ++step) {
@@ -159,7 +159,7 @@ bool hidden_by_item(const Scene& scene, const ItemBuffer& items, const SeenNode&
   return false;
 }
 
-/// How many shells lie one behind the other, roughly: the area of some of them against the picture's.
+/// Estimates how many shells lie behind each other: the area of a sample of them, divided by the picture's.
 double layers(const Scene& scene) {
   constexpr std::size_t kEvery = 16;
   const Squares unit(scene, 1);
@@ -175,10 +175,10 @@ double layers(const Scene& scene) {
   return kEvery * area;
 }
 
-/// The nodes that what is in front at their squares doesn't hide, in order.
+/// The nodes that the sheet in front at their square doesn't hide, in order.
 std::vector<SeenNode> doubtful_nodes(const Scene& scene) {
   const std::vector<SeenNode>& nodes = scene.nodes();
-  if (layers(scene) < 2) return nodes;  // a single sheet: nothing to gain
+  if (layers(scene) < 2) return nodes;  // a single sheet: the item buffer would save nothing
   const std::size_t side = std::clamp<std::size_t>(static_cast<std::size_t>(0.25 * std::sqrt(static_cast<double>(nodes.size()))), 16, 512);
   ItemBuffer items(scene, side);
   parallel_for(scene.model().shell_count(), kShellGrain, [&](std::size_t begin, std::size_t end) {
@@ -196,13 +196,13 @@ std::vector<SeenNode> doubtful_nodes(const Scene& scene) {
   return doubtful;
 }
 
-/// Nodes sorted by squares, and which of them have turned out hidden.
+/// Nodes sorted by squares, with a mark at those that are hidden.
 class Sorted {
  public:
   Sorted(const Scene& scene, const std::vector<SeenNode>& nodes)
       : squares_(scene, std::clamp<std::size_t>(static_cast<std::size_t>(std::sqrt(0.5 * static_cast<double>(nodes.size()))), 1, 1024)),
         first_(squares_.count() + 1, 0),
-        farthest_(squares_.count(), -std::numeric_limits<double>::infinity()),
+        max_depth_(squares_.count(), -std::numeric_limits<double>::infinity()),
         nodes_(nodes.size()),
         place_(nodes.size()),
         hidden_(nodes.size(), 0) {
@@ -212,7 +212,7 @@ class Sorted {
     });
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       ++first_[square[i] + 1];
-      farthest_[square[i]] = std::max(farthest_[square[i]], nodes[i].at.z());
+      max_depth_[square[i]] = std::max(max_depth_[square[i]], nodes[i].at.z());
     }
     for (std::size_t s = 0; s < squares_.count(); ++s) first_[s + 1] += first_[s];
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
@@ -222,14 +222,14 @@ class Sorted {
     }
   }
 
-  /// Marks the nodes that the shell hides. From any thread.
+  /// Marks the nodes that the shell hides. May be called from any thread.
   void pass(const Scene& scene, const SeenShell& shell) {
     const std::size_t x_from = squares_.along(shell.low, 0), x_to = squares_.along(shell.high, 0);
     const std::size_t y_from = squares_.along(shell.low, 1), y_to = squares_.along(shell.high, 1);
     for (std::size_t y = y_from; y <= y_to; ++y)
       for (std::size_t x = x_from; x <= x_to; ++x) {
         const std::size_t square = y * squares_.side() + x;
-        if (!(shell.low.z() < farthest_[square])) continue;
+        if (!(shell.low.z() < max_depth_[square])) continue;
         for (std::uint32_t i = first_[square]; i < first_[square + 1]; ++i) pass(scene, shell, i);
       }
   }
@@ -253,13 +253,13 @@ class Sorted {
 
   Squares squares_;
   std::vector<std::uint32_t> first_;
-  std::vector<double> farthest_;      ///< depth of a square's farthest node
+  std::vector<double> max_depth_;     ///< of a square's nodes
   std::vector<SeenNode> nodes_;       ///< by square
-  std::vector<std::uint32_t> place_;  ///< of the nodes as they came
+  std::vector<std::uint32_t> place_;  ///< position in nodes_, by the order of the input
   std::vector<std::uint8_t> hidden_;
 };
 
-/// Whether depths differ where the candidates are: the matrix can be inverted, seen from their middle and in their size.
+/// Whether the view keeps depth where the candidates are: its matrix can be inverted in coordinates relative to their centre and size.
 bool keeps_depth(const Model& model, const ViewMatrix& view, const NodeSet& nodes) {
   Vec3 low = model.position(nodes.front());
   Vec3 high = low;
@@ -285,7 +285,9 @@ Result<NodeSet> visible_nodes(const Model& model, const ViewMatrix& view, const 
                               std::span<const std::uint8_t> out_of_sight) {
   if (candidates.empty()) return NodeSet();
   if (!keeps_depth(model, view, candidates))
-    return fail("", "the view keeps no depth, so nothing tells what hides what: give the matrix that the picture is drawn with");
+    return fail(
+        "",
+        "the view keeps no depth, so it can't be decided which shells hide which nodes: give the matrix that the picture is drawn with");
   const Scene scene(model, view, candidates, out_of_sight);
   if (scene.nodes().empty()) return NodeSet();
   Sorted doubtful(scene, doubtful_nodes(scene));

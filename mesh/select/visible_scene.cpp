@@ -12,7 +12,7 @@ namespace prismesh::mesh::select {
 
 namespace {
 
-/// Planes a node can be beyond. A shell all of whose corners are beyond one hides nothing.
+/// Planes that a node can be beyond. A shell with all corners beyond one of them hides nothing.
 enum Beyond : std::uint8_t {
   kLeft = 1,
   kRight = 2,
@@ -38,7 +38,7 @@ struct Polygon {
   std::size_t count = 0;
 };
 
-/// What of it lies where `height` isn't negative (Sutherland and Hodgman 1974).
+/// Clips a polygon to where `height` isn't negative [Sutherland 1974].
 template <class Height>
 Polygon cut(const Polygon& polygon, Height&& height) {
   Polygon rest;
@@ -52,8 +52,8 @@ Polygon cut(const Polygon& polygon, Height&& height) {
   return rest;
 }
 
-/// Twice the signed area of a, b, p. The same bits, but for the sign, whichever end comes first: a point beside the side that two
-/// triangles share is on the one or on the other.
+/// Twice the signed area of a, b, p. Exchanging a and b changes the sign only: so a point near the side that two triangles share lies in
+/// one of them.
 double side_of(const Seen& a, const Seen& b, const Seen& p) {
   const bool ordered = a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
   const Seen& first = ordered ? a : b;
@@ -62,7 +62,7 @@ double side_of(const Seen& a, const Seen& b, const Seen& p) {
   return ordered ? area : -area;
 }
 
-/// Depth of a projected triangle at the node's place, infinity beside it.
+/// Depth of a projected triangle at the place p; infinity outside it.
 double depth_at(const Seen& corner_a, const Seen& corner_b, const Seen& corner_c, const Seen& p) {
   constexpr double kBeside = std::numeric_limits<double>::infinity();
   const double a = side_of(corner_b, corner_c, p), b = side_of(corner_c, corner_a, p), c = side_of(corner_a, corner_b, p);
@@ -115,7 +115,7 @@ void Scene::find_nodes(const NodeSet& candidates) {
 }
 
 void Scene::project() {
-  // A little wider than the nodes, for rounding.
+  // slightly larger than the box of the nodes, for rounding
   const Seen slack = 1e-9 * (high_ - low_) + Seen::Constant(1e-12);
   const Seen low = low_ - slack, high = high_ + slack;
   seen_bytes_ = LargeBlock(model_.node_count() * sizeof(Seen));
@@ -208,13 +208,13 @@ bool Scene::lies_on(NodeIndex node, const SeenShell& shell) const {
   const Vec3& point = model_.position(node);
   std::array<Vec3, 4> at;
   for (std::size_t i = 0; i < 4; ++i) at[i] = model_.position(shell.corner[i]);
-  double longest2 = 0;
-  for (std::size_t i = 0; i < 4; ++i) longest2 = std::max(longest2, (at[(i + 1) % 4] - at[i]).squaredNorm());
-  const double near2 = kLiesOnShell * kLiesOnShell * longest2;
+  double max_edge2 = 0;
+  for (std::size_t i = 0; i < 4; ++i) max_edge2 = std::max(max_edge2, (at[(i + 1) % 4] - at[i]).squaredNorm());
+  const double near2 = kLiesOnShell * kLiesOnShell * max_edge2;
   for (const std::size_t third : {std::size_t{2}, std::size_t{3}}) {
     const Vec3 normal = (at[third - 1] - at[0]).cross(at[third] - at[0]);
     const double height = normal.dot(point - at[0]);
-    if (height * height > near2 * normal.squaredNorm()) continue;  // off its plane, as nearly always
+    if (height * height > near2 * normal.squaredNorm()) continue;  // not in its plane: the usual case
     if (spatial::nearest_of_triangles({point, point, point}, {at[0], at[third - 1], at[third]}).distance2 <= near2) return true;
   }
   return false;

@@ -1,4 +1,4 @@
-// A model as a view sees it, and the exact answer to whether a shell hides a node. Private to mesh/select.
+// A model projected into a view, with an exact test whether a shell hides a node. Private to mesh/select.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@
 
 namespace prismesh::mesh::select {
 
-/// A shell that passes this close to a node lies on it and doesn't hide it; a share of the shell's longest edge.
+/// A shell this close to a node lies on it and doesn't hide it; a share of the shell's longest edge.
 inline constexpr double kLiesOnShell = 1e-3;
 
-/// A place in the picture: normalised device coordinates, z the depth.
+/// A point in the picture: normalised device coordinates, z is the depth.
 using Seen = Vec3;
 
 struct SeenNode {
@@ -26,12 +26,12 @@ struct SeenNode {
   NodeIndex node;
 };
 
-/// What of a shell is in front of the near plane, as triangles: none for what is wholly before it, two for a quad, more where the near
-/// plane cuts it.
+/// The visible part of a shell behind the near plane, as triangles: none if the near plane clips the whole shell, two for a quad, more
+/// where the near plane cuts it.
 struct SeenShell {
   ShellIndex shell;
   std::array<NodeIndex, 4> corner;                      ///< of the shell
-  std::array<Seen, 10> point;                           ///< its corners, or those of the two polygons that are left of it
+  std::array<Seen, 10> point;                           ///< its corners, or those of the two polygons left after clipping
   std::array<std::array<std::uint8_t, 3>, 6> triangle;  ///< into `point`
   std::size_t triangles = 0;
   bool is_cut = false;  ///< by the near plane; else `point` are its corners
@@ -42,7 +42,7 @@ struct SeenShell {
 
 class Scene {
  public:
-  /// The candidates in the picture become `nodes`. Costs a pass over the model's nodes.
+  /// `nodes` are the candidates that lie in the picture. Cost: a pass over the model's nodes.
   Scene(const Model& model, const ViewMatrix& view, const NodeSet& candidates, std::span<const std::uint8_t> out_of_sight);
 
   const std::vector<SeenNode>& nodes() const { return nodes_; }
@@ -50,7 +50,7 @@ class Scene {
   const Seen& high() const { return high_; }
   const Model& model() const { return model_; }
 
-  /// Whether the shell can hide any of the nodes: cheap, errs on the safe side.
+  /// Whether the shell may hide any of the nodes. Cheap and conservative: true where it isn't sure.
   bool may_hide(std::size_t shell) const {
     const ShellNodes& corners = model_.shell_nodes[shell];
     if (!corners.node[0].valid()) return false;
@@ -60,8 +60,8 @@ class Scene {
   }
   SeenShell seen(ShellIndex shell) const;
 
-  /// Whether the shell hides the node. Exact: the node's place in the projected triangles and their depths, in double. Both triangles at
-  /// a side compute it alike, so no ray slips through between them.
+  /// Whether the shell hides the node: compares depths at the node's place in the projected triangles, in double precision. The two
+  /// triangles at a side give the same bits there, so no ray passes between them.
   bool hides(const SeenShell& shell, const SeenNode& node) const;
 
  private:
@@ -82,8 +82,8 @@ class Scene {
   std::vector<SeenNode> nodes_;
   Seen low_, high_;
   LargeBlock seen_bytes_;
-  std::span<Seen> seen_;                                          ///< of each node of the model; meaningless before the near plane
-  std::vector<std::uint8_t> beyond_;                              ///< of each node of the model: which planes around `nodes_` it is beyond
+  std::span<Seen> seen_;              ///< of each node of the model; undefined before the near plane
+  std::vector<std::uint8_t> beyond_;  ///< of each node of the model: the planes around `nodes_` that it is beyond
   std::vector<std::pair<NodeIndex, ShellIndex>> midside_owners_;  ///< ascending; of nodes in nodes_
 };
 

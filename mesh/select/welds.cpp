@@ -33,7 +33,7 @@ void add_elements(const Model& model, std::vector<Ends>& welds) {
     if (!block) continue;
     for (std::size_t e = 0; e < block->size(); ++e) {
       std::size_t end = block->first_node[e + 1];
-      if (kind == ElementClass::beam) end = std::min<std::size_t>(end, block->first_node[e] + 2);  // the third only orients it
+      if (kind == ElementClass::beam) end = std::min<std::size_t>(end, block->first_node[e] + 2);  // the third node only orients it
       Ends ends(block->nodes.begin() + block->first_node[e], block->nodes.begin() + static_cast<std::ptrdiff_t>(end));
       std::erase_if(ends, [](NodeIndex node) { return !node.valid(); });
       std::sort(ends.begin(), ends.end());
@@ -46,7 +46,7 @@ void add_elements(const Model& model, std::vector<Ends>& welds) {
 void add_ids(const Model& model, const Reference& reference, Ends& ends) {
   for (std::int64_t id = reference.first; id <= reference.last; id += reference.step) {
     if (const NodeIndex node = model.find_node(id); node.valid()) ends.push_back(node);
-    if (ends.size() > 64) return;  // no weld: a range
+    if (ends.size() > 64) return;  // a range, no weld
   }
 }
 
@@ -72,15 +72,15 @@ void add_constraints(const Model& model, const References& references, std::vect
   }
 }
 
-double longest_edge(const Model& model, ShellIndex shell) {
+double max_edge_length(const Model& model, ShellIndex shell) {
   const ShellNodes& nodes = model.shell(shell);
-  double longest2 = 0;
+  double max_edge2 = 0;
   for (std::size_t i = 0; i < 4; ++i)
-    longest2 = std::max(longest2, (model.position(nodes.node[(i + 1) % 4]) - model.position(nodes.node[i])).squaredNorm());
-  return std::sqrt(longest2);
+    max_edge2 = std::max(max_edge2, (model.position(nodes.node[(i + 1) % 4]) - model.position(nodes.node[i])).squaredNorm());
+  return std::sqrt(max_edge2);
 }
 
-/// Cubes of space near some points.
+/// A grid of cubes in space; those around some points are marked.
 class Cubes {
  public:
   explicit Cubes(double size) : size_(size) {}
@@ -93,7 +93,7 @@ class Cubes {
 
  private:
   std::int64_t along(double place) const { return static_cast<std::int64_t>(std::floor(place / size_)); }
-  /// Distant cubes may share a key: then too many shells are looked at.
+  /// Distant cubes may share a key; that costs time only.
   static std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
     return static_cast<std::uint64_t>(x) * 73856093u ^ static_cast<std::uint64_t>(y) * 19349663u << 20 ^
            static_cast<std::uint64_t>(z) * 83492791u << 40;
@@ -102,19 +102,19 @@ class Cubes {
   std::unordered_set<std::uint64_t> marked_;
 };
 
-/// The shells each end lies on.
-class Landings {
+/// Finds the shells that a weld's end lies on.
+class ShellsAtEnds {
  public:
-  Landings(const Model& model, OutOfSight out_of_sight, const std::vector<Ends>& welds)
+  ShellsAtEnds(const Model& model, OutOfSight out_of_sight, const std::vector<Ends>& welds)
       : model_(model), out_of_sight_(out_of_sight), tree_(model, shells_near_loose_ends(welds)) {}
 
   ShellSet of(NodeIndex node) const {
     ShellSet at = at_node(node);
     if (!at.empty() || tree_.empty()) return at;
-    const auto closest = tree_.closest(model_.position(node), kWeldReach * longest_);
-    if (!closest || closest->distance > kWeldReach * longest_edge(model_, closest->shell)) return {};
+    const auto closest = tree_.closest(model_.position(node), kWeldReach * max_edge_length_);
+    if (!closest || closest->distance > kWeldReach * max_edge_length(model_, closest->shell)) return {};
     for (const spatial::SurfacePoint& point :
-         tree_.within(model_.position(node), closest->distance + 1e-3 * longest_edge(model_, closest->shell)))
+         tree_.within(model_.position(node), closest->distance + 1e-3 * max_edge_length(model_, closest->shell)))
       at.push_back(point.shell);
     return at;
   }
@@ -126,7 +126,7 @@ class Landings {
       if (in_sight(model_, shell, out_of_sight_)) shells.push_back(shell);
     return shells;
   }
-  /// Costs a pass over the shells, if there are loose ends at all.
+  /// Costs a pass over the shells if any end has no shell at its node.
   ShellSet shells_near_loose_ends(const std::vector<Ends>& welds) {
     NodeSet loose;
     for (const Ends& ends : welds)
@@ -140,7 +140,7 @@ class Landings {
     const std::size_t every = model_.shell_count() / 1000 + 1;
     std::size_t count = 0;
     for (std::size_t s = 0; s < model_.shell_count(); s += every)
-      if (!model_.is_removed(ShellIndex(s))) sum += longest_edge(model_, ShellIndex(s)), ++count;
+      if (!model_.is_removed(ShellIndex(s))) sum += max_edge_length(model_, ShellIndex(s)), ++count;
     const double usual = count > 0 ? sum / static_cast<double>(count) : 0;
     if (!(usual > 0)) return shells;
     Cubes cubes(2 * usual);
@@ -149,21 +149,21 @@ class Landings {
       const ShellIndex shell(s);
       if (!in_sight(model_, shell, out_of_sight_)) continue;
       const ShellNodes& nodes = model_.shell(shell);
-      const double longest = longest_edge(model_, shell);
-      // A shell not larger than a cube that reaches an end has a corner in a cube beside the end's.
-      const bool near = longest * (1 + kWeldReach) > 2 * usual || std::any_of(nodes.node.begin(), nodes.node.end(), [&](NodeIndex node) {
+      const double max_edge = max_edge_length(model_, shell);
+      // a shell not larger than a cube that reaches an end has a corner in this end's cube or one next to it
+      const bool near = max_edge * (1 + kWeldReach) > 2 * usual || std::any_of(nodes.node.begin(), nodes.node.end(), [&](NodeIndex node) {
                           return cubes.marked(model_.position(node));
                         });
       if (!near) continue;
       shells.push_back(shell);
-      longest_ = std::max(longest_, longest);
+      max_edge_length_ = std::max(max_edge_length_, max_edge);
     }
     return shells;
   }
 
   const Model& model_;
   OutOfSight out_of_sight_;
-  double longest_ = 0;
+  double max_edge_length_ = 0;
   spatial::ShellTree tree_;
 };
 
@@ -175,16 +175,16 @@ bool touch(const Model& model, const ShellSet& a, const ShellSet& b) {
   return false;
 }
 
-void join(const Model& model, const Ends& ends, const Landings& landings, std::vector<Pair>& pairs) {
+void join(const Model& model, const Ends& ends, const ShellsAtEnds& shells_at_ends, std::vector<Pair>& pairs) {
   std::vector<ShellSet> on;
-  for (const NodeIndex node : ends) on.push_back(landings.of(node));
+  for (const NodeIndex node : ends) on.push_back(shells_at_ends.of(node));
   for (std::size_t i = 0; i < ends.size(); ++i)
     for (std::size_t j = i + 1; j < ends.size(); ++j) {
       if (on[i].empty() || on[j].empty() || touch(model, on[i], on[j])) continue;
-      double longest = 0;
-      for (const ShellIndex shell : on[i]) longest = std::max(longest, longest_edge(model, shell));
-      for (const ShellIndex shell : on[j]) longest = std::max(longest, longest_edge(model, shell));
-      if ((model.position(ends[i]) - model.position(ends[j])).norm() > kWeldLength * longest) continue;
+      double max_edge = 0;
+      for (const ShellIndex shell : on[i]) max_edge = std::max(max_edge, max_edge_length(model, shell));
+      for (const ShellIndex shell : on[j]) max_edge = std::max(max_edge, max_edge_length(model, shell));
+      if ((model.position(ends[i]) - model.position(ends[j])).norm() > kWeldLength * max_edge) continue;
       for (const ShellIndex a : on[i])
         for (const ShellIndex b : on[j]) {
           pairs.emplace_back(a, b);
@@ -211,9 +211,9 @@ WeldedShells find_welds(const Model& model, const References* references, OutOfS
   std::vector<Ends> welds;
   add_elements(model, welds);
   if (references != nullptr) add_constraints(model, *references, welds);
-  const Landings landings(model, out_of_sight, welds);
+  const ShellsAtEnds shells_at_ends(model, out_of_sight, welds);
   std::vector<Pair> pairs;
-  for (const Ends& ends : welds) join(model, ends, landings, pairs);
+  for (const Ends& ends : welds) join(model, ends, shells_at_ends, pairs);
   return WeldedShells(std::move(pairs));
 }
 

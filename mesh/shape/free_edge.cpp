@@ -13,9 +13,9 @@ namespace prismesh::mesh::shape {
 namespace {
 
 constexpr double kConvexCorner = 135 / kDegreesPerRadian;
-constexpr double kReflexCorner = 250 / kDegreesPerRadian;  // a node of a six-node hole has 240 degrees and is none
+constexpr double kReflexCorner = 250 / kDegreesPerRadian;  // above the 240 degrees at a node of a six-node hole, which is no corner
 
-/// How much of the surface surrounds a node: a straight boundary has 180 degrees, however the sheet is bent in space.
+/// Sum of the shells' angles at a node: 180 degrees at a straight boundary, however the sheet is bent in space.
 double surrounding_angle(const Model& model, NodeIndex node) {
   double angle = 0;
   for (const ShellIndex index : model.adjacency->shells_of(node)) {
@@ -91,12 +91,12 @@ std::vector<std::uint32_t> FreeEdges::walk(std::uint32_t from, std::uint32_t to,
 }
 
 std::vector<std::uint32_t> FreeEdges::through(std::uint32_t node, std::span<const std::uint8_t> border) const {
-  std::vector<std::vector<std::uint32_t>> ways;
-  for (const std::uint32_t next : neighbours(node)) ways.push_back(walk(node, next, border));
-  const auto reaches_border = [&](const auto& way) { return border[way.back()] != 0; };
-  if (is_corner(node) && !std::all_of(ways.begin(), ways.end(), reaches_border)) std::erase_if(ways, reaches_border);
+  std::vector<std::vector<std::uint32_t>> lines;
+  for (const std::uint32_t next : neighbours(node)) lines.push_back(walk(node, next, border));
+  const auto reaches_border = [&](const auto& line) { return border[line.back()] != 0; };
+  if (is_corner(node) && !std::all_of(lines.begin(), lines.end(), reaches_border)) std::erase_if(lines, reaches_border);
   std::vector<std::uint32_t> nodes{node};
-  for (const auto& way : ways) nodes.insert(nodes.end(), way.begin(), way.end());
+  for (const auto& line : lines) nodes.insert(nodes.end(), line.begin(), line.end());
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;

@@ -1,4 +1,4 @@
-// The part's own boundary within a selection, and the piece of it that belongs to one node.
+// Finds the free edges of a part within a selection, and the line of them that runs through a node.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace prismesh::mesh::shape {
 
-/// How many free edges end at a node; `ends` gets the other ends of the first two.
+/// Counts the free edges at a node; `ends` gets the other ends of the first two.
 int free_edges_at(const Model& model, NodeIndex node, std::array<NodeIndex, 2>& ends);
-/// Whether the surface around a node of the boundary spans less than 135 or more than 250 degrees.
+/// Whether the angle of the surface around a boundary node is less than 135 or more than 250 degrees.
 bool is_boundary_corner(const Model& model, NodeIndex node);
 
 /// The free edges (edges of exactly one shell) with both ends in a selection. Nodes are positions in the selection.
@@ -23,9 +23,9 @@ class FreeEdges {
 
   bool touches(std::uint32_t node) const { return first_[node] != first_[node + 1]; }
 
-  /// The nodes of the free edge through `node`, ascending: along the boundary both ways up to its corners (where the surface
-  /// around a node spans less than 135 or more than 250 degrees), its forks, and the nodes marked in `border`, all of which
-  /// belong to it. A node that is a corner itself has several; those that reach the border are left out if another doesn't.
+  /// Returns the nodes of the line of free edges through `node`, ascending: along the boundary in both directions up to and including its
+  /// corners (is_boundary_corner), its forks and the nodes marked in `border`. A node that is a corner itself has several such lines; those
+  /// that reach the border are left out if another doesn't.
   std::vector<std::uint32_t> through(std::uint32_t node, std::span<const std::uint8_t> border) const;
 
  private:

@@ -12,29 +12,29 @@ namespace prismesh::mesh::shape {
 
 namespace {
 
-constexpr double kShareOfSide = 0.25;       // how far from its mirrored place an image may be
-constexpr double kEquallyClose = 1.0 / 64;  // of that
+constexpr double kShareOfSide = 0.25;       // of the shortest side: how far an image may be from the mirrored position
+constexpr double kEquallyClose = 1.0 / 64;  // of that distance
 
 /// The shortest side of the shells at a node; 0 without any.
-double shortest_side(const Model& model, NodeIndex node) {
-  double shortest2 = std::numeric_limits<double>::infinity();
+double min_side(const Model& model, NodeIndex node) {
+  double min_side2 = std::numeric_limits<double>::infinity();
   for (const ShellIndex index : model.adjacency->shells_of(node)) {
     const ShellNodes& shell = model.shell(index);
     const int corners = shell.corners();
     const int at = static_cast<int>(std::find(shell.node.begin(), shell.node.begin() + corners, node) - shell.node.begin());
     for (const NodeIndex other : {shell.node[(at + 1) % corners], shell.node[(at + corners - 1) % corners]}) {
       const double side2 = (model.position(other) - model.position(node)).squaredNorm();
-      if (side2 > 0) shortest2 = std::min(shortest2, side2);
+      if (side2 > 0) min_side2 = std::min(min_side2, side2);
     }
   }
-  return std::isfinite(shortest2) ? std::sqrt(shortest2) : 0;
+  return std::isfinite(min_side2) ? std::sqrt(min_side2) : 0;
 }
 
 std::vector<double> tolerances(const Model& model, const NodeSet& nodes) {
   std::vector<double> tolerance;
   std::vector<double> known;
   for (const NodeIndex node : nodes) {
-    tolerance.push_back(kShareOfSide * shortest_side(model, node));
+    tolerance.push_back(kShareOfSide * min_side(model, node));
     if (tolerance.back() > 0) known.push_back(tolerance.back());
   }
   if (known.empty()) return tolerance;
@@ -45,20 +45,20 @@ std::vector<double> tolerances(const Model& model, const NodeSet& nodes) {
   return tolerance;
 }
 
-/// Balls to be asked which of them hold a point: a table of cells, each at least as wide as the widest ball.
+/// Finds the balls that contain a point: a hash table of cells, each at least as wide as the largest ball.
 class Balls {
  public:
   Balls(std::vector<Vec3> centres, std::vector<double> radii) : centres_(std::move(centres)), radii_(std::move(radii)) {
-    const double widest = *std::max_element(radii_.begin(), radii_.end());
+    const double max_radius = *std::max_element(radii_.begin(), radii_.end());
     low_ = high_ = centres_.front();
     for (const Vec3& centre : centres_) {
       low_ = low_.cwiseMin(centre);
       high_ = high_.cwiseMax(centre);
     }
-    low_.array() -= widest;
-    high_.array() += widest;
-    // never so narrow that a cell's number overflows
-    cell_ = std::max(2 * widest, (high_ - low_).maxCoeff() / (1 << 20));
+    low_.array() -= max_radius;
+    high_.array() += max_radius;
+    // wide enough that a cell's number can't overflow
+    cell_ = std::max(2 * max_radius, (high_ - low_).maxCoeff() / (1 << 20));
     if (!(cell_ > 0)) cell_ = 1;
     heads_.assign(std::bit_ceil(8 * centres_.size()), kEnd);
     for (std::uint32_t ball = 0; ball < centres_.size(); ++ball) put(ball);
@@ -89,7 +89,7 @@ class Balls {
                                 static_cast<std::uint64_t>(cell.z()) * 0x165667b19e3779f9u;
     return (mixed ^ mixed >> 29) & (heads_.size() - 1);
   }
-  /// Into each slot that a point in the ball can lead to, once.
+  /// Enters the ball once into each slot that a point in it can hash to.
   void put(std::uint32_t ball) {
     const Vec3 reach = Vec3::Constant(radii_[ball]);
     const Cell from = cell_of(centres_[ball] - reach);
@@ -112,7 +112,7 @@ class Balls {
   std::vector<Entry> entries_;
 };
 
-/// A node and one that lies near its mirrored place.
+/// A node and another one near its mirrored position.
 struct Pair {
   std::uint32_t closeness = 0;  ///< in steps of what counts as equally close
   bool other_part = false;
@@ -127,9 +127,9 @@ PartIndex part_at(const Model& model, NodeIndex node) {
 
 std::vector<Pair> close_pairs(const Model& model, const NodeSet& nodes, const Plane& plane) {
   const std::vector<double> tolerance = tolerances(model, nodes);
-  std::vector<Vec3> places;
-  for (const NodeIndex node : nodes) places.push_back(plane.mirrored_place(model.position(node)));
-  const Balls balls(std::move(places), tolerance);
+  std::vector<Vec3> positions;
+  for (const NodeIndex node : nodes) positions.push_back(plane.mirrored_position(model.position(node)));
+  const Balls balls(std::move(positions), tolerance);
   std::vector<Pair> pairs;
   std::size_t at = 0;
   for (std::size_t c = 0; c < model.positions.chunk_count(); ++c)
@@ -179,7 +179,7 @@ void find_shares(const Plane& plane, std::span<const Vec3> start, std::span<cons
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const std::uint32_t image = nodes[i].image;
     if (image == Mirrored::kNone) continue;
-    // -1 on the far side of the plane to 1 on the grab's; exactly the negative for the image
+    // -1 on the far side of the plane to 1 on the grab's side; exactly the opposite number for the image
     const double height = (plane.height(start[i]) - plane.height(start[image])) / 2;
     const double side = std::clamp(std::abs(grab_height) > 0 ? height / grab_height : 0.0, -1.0, 1.0);
     const double own = weight[i] * (1 + side);

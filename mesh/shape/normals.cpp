@@ -38,10 +38,10 @@ int sense_along(const Patch& patch, std::uint32_t shell, std::uint32_t a, std::u
   return 0;
 }
 
-/// Turns each shell's normal to agree with the shells it hangs together with: two neighbours agree when they run through
-/// their common side in opposite directions. Where more than two shells meet, the pair that goes on most straight hangs together first,
-/// and the others follow when nothing else is left: so a sheet with ribs is one sheet, whichever rib the spreading begins on. On a
-/// Moebius strip what is reached first stands; the seam lies on the far side.
+/// Orients each shell's normal like those of the shells connected to it: two neighbours agree when they run through their common side in
+/// opposite directions. Where more than two shells meet, the pair with the smallest turn is connected first, and the others follow when
+/// nothing else is left: so a sheet with ribs is one sheet, whichever rib the spreading begins on. On a Moebius strip the orientation that
+/// reaches a shell first stays; the seam lies on the far side from the start.
 class Orientation {
  public:
   explicit Orientation(const Patch& patch) : patch_(patch), sign_(patch.shells.size(), 0) {}
@@ -73,15 +73,15 @@ class Orientation {
       if (others_.size() == 1) {
         orient(side, others_.front());
       } else if (others_.size() > 1) {
-        const std::uint32_t on = straightest(side, others_);
+        const std::uint32_t on = smallest_turn(side, others_);
         find_others({on, side.from, side.to}, back_);
-        if (straightest({on, side.from, side.to}, back_) == shell) orient(side, on);
+        if (smallest_turn({on, side.from, side.to}, back_) == shell) orient(side, on);
         junctions_.push_back(side);
       }
     }
   }
 
-  /// Only one goes on from here: the others at the edge hang together with it first, and are looked at again from there.
+  /// Orients one shell only: the others at the edge may be connected to it without the junction, and are looked at again from there.
   void cross_junction(const Side& side) {
     find_others(side, others_);
     for (const std::uint32_t other : others_)
@@ -103,14 +103,14 @@ class Orientation {
     reached_.push_back(other);
   }
 
-  /// Which of the others leads on from the shell over its side with the least bend; of equals the first.
-  std::uint32_t straightest(const Side& side, const std::vector<std::uint32_t>& others) const {
+  /// The one of the others that continues the shell over its side with the smallest turn; of equals the first.
+  std::uint32_t smallest_turn(const Side& side, const std::vector<std::uint32_t>& others) const {
     const Vec3 inward = away_from(side, side.shell);
     std::uint32_t best = others.front();
-    double least = 2;
+    double min_cosine = 2;
     for (const std::uint32_t other : others)
-      if (const double turned = inward.dot(away_from(side, other)); turned < least) {
-        least = turned;
+      if (const double turned = inward.dot(away_from(side, other)); turned < min_cosine) {
+        min_cosine = turned;
         best = other;
       }
     return best;
@@ -133,8 +133,8 @@ class Orientation {
   std::vector<std::uint32_t> back_;
 };
 
-/// The mean of the normals of the shells at a local node. Where they cancel out (a sheet folded onto itself, the seam of a Moebius strip),
-/// what rounding leaves is no direction: then the first shell's that has one.
+/// The mean of the normals of the shells at a local node. Where they cancel out (a sheet folded onto itself, the seam of a Moebius strip)
+/// only rounding errors are left: then the normal of the first shell that has one.
 Vec3 normal_at(const Patch& patch, const Orientation& orientation, std::size_t local) {
   constexpr double kCancelled = 1e-9;
   Vec3 sum = Vec3::Zero();

@@ -1,4 +1,4 @@
-// Surface normals, oriented consistently across a selection: neighbours in real decks often disagree.
+// Computes surface normals with one orientation across a selection: in real decks neighbours are often oriented differently.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace prismesh::mesh::shape {
 
-/// Unit normal at each node of `nodes` (area-weighted over the shells touching the selection, oriented by spreading from the
-/// shells at `reference`, whose first shell keeps its own sense); zero where no shell with an area touches the node. Never NaN.
+/// Returns the unit normal at each of `nodes`: area-weighted over the shells that touch the selection. The orientation spreads from the
+/// first shell at `reference`, which keeps its own. Zero where no shell with an area touches the node. Never NaN.
 std::vector<Vec3> oriented_normals(const Model& model, const NodeSet& nodes, NodeIndex reference);
 
 }  // namespace prismesh::mesh::shape

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<std::string_view, 8> kNames{"constant", "linear", "smooth", "sharp", "root", "sphere", "inverse_square", "gaussian"};
 
-/// A Gaussian of three standard deviations from the origin to the border, lowered and stretched to end at exactly 0.
+/// A Gaussian with three standard deviations between origin and border, shifted and scaled so that it is exactly 0 at the border.
 double gaussian(double d) {
   constexpr double kExponentAtBorder = -4.5;
   const double from_origin = 1 - d;

@@ -15,12 +15,12 @@ namespace prismesh::mesh::shape {
 namespace {
 
 constexpr std::size_t kRotateGrain = 1024;
-constexpr double kMaxDegrees = 1e9;  // what the deterministic sine is good for
+constexpr double kMaxDegrees = 1e9;  // beyond it the deterministic sine isn't accurate
 
-/// By how many degrees a node at this distance from the axis may turn at most, so that it doesn't go farther than `most`.
-double degrees_within(double most, double radius) {
-  if (!(most < 2 * radius)) return std::numeric_limits<double>::infinity();
-  const double half = most / (2 * radius);  // the sine of half the angle
+/// The largest angle by which a node at this distance from the axis may turn without going farther than `max_move`, in degrees.
+double max_degrees(double max_move, double radius) {
+  if (!(max_move < 2 * radius)) return std::numeric_limits<double>::infinity();
+  const double half = max_move / (2 * radius);  // the sine of half the angle
   return 2 * deterministic_atan2(half, std::sqrt((1 - half) * (1 + half))) * kDegreesPerRadian;
 }
 
@@ -33,9 +33,9 @@ std::optional<Vec3> unit_of(const Vec3& direction) {
   return Vec3(scaled / scaled.norm());
 }
 
-std::size_t rotate(std::span<const Vec3> start, std::span<const double> weight, const Axis& axis, double degrees,
-                   std::optional<double> max_move, std::span<Vec3> out) {
-  if (!(std::abs(degrees) < kMaxDegrees)) {
+std::size_t rotate(std::span<const Vec3> start, std::span<const double> weight, const Rotation& rotation, std::span<Vec3> out) {
+  const Axis& axis = rotation.axis;
+  if (!(std::abs(rotation.degrees) < kMaxDegrees)) {
     std::fill(out.begin(), out.end(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
     return 0;
   }
@@ -45,16 +45,16 @@ std::size_t rotate(std::span<const Vec3> start, std::span<const double> weight, 
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 from_point = start[i] - axis.point;
       const Vec3 radial = from_point - from_point.dot(axis.direction) * axis.direction;
-      double angle = weight[i] * degrees;
-      if (max_move) {
-        const double most = degrees_within(*max_move, radial.norm());
-        if (std::abs(angle) > most) {
-          angle = std::copysign(most, angle);
+      double angle = weight[i] * rotation.degrees;
+      if (rotation.max_move) {
+        const double limit = max_degrees(*rotation.max_move, radial.norm());
+        if (std::abs(angle) > limit) {
+          angle = std::copysign(limit, angle);
           ++stopped_here;
         }
       }
       const double cosine = deterministic_cos_degrees(angle);
-      // a turn by nothing leaves every bit
+      // a turn by 0 keeps every bit of the position
       out[i] = cosine == 1
                    ? start[i]
                    : Vec3((start[i] - radial) + (cosine * radial + deterministic_sin_degrees(angle) * axis.direction.cross(radial)));

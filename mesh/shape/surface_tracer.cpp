@@ -17,11 +17,11 @@ namespace prismesh::mesh::shape {
 namespace {
 
 constexpr std::size_t kSlideGrain = 128;
-constexpr double kOnTheSpot = 1e-9;     // shares of a face, and sines of angles: nearer counts as the same
-constexpr double kAlongside = 1e-6;     // sine of the angle of a line that counts as lying in a plane
-constexpr std::size_t kMaxAround = 24;  // shells at a node that its normal is taken of
-constexpr int kMaxFaces = 10'000;       // of one way
-constexpr int kMaxFacesOnTheSpot = 64;  // without getting on: round a needle's point there is no straight on
+constexpr double kSame = 1e-9;                // shares of a face and sines of angles below this count as 0
+constexpr double kInPlane = 1e-6;             // sine of the angle below which a line counts as lying in a plane
+constexpr std::size_t kMaxShellsAround = 24;  // of a node, for its normal
+constexpr int kMaxFaces = 10'000;             // of one path
+constexpr int kMaxFacesAtOnePoint = 64;       // without progress: at the tip of a very sharp cone no straight path exists
 
 /// One triangle of a shell. Its side i runs from corner i to the next and lies opposite corner (i + 2) % 3.
 struct Face {
@@ -42,55 +42,55 @@ Face face_of(const Model& model, ShellIndex index, bool second) {
 
 Vec3 area_normal(const Face& face) { return (face.at[1] - face.at[0]).cross(face.at[2] - face.at[0]); }
 
-/// From the middle of the side from a to b towards the third corner, within the face and at right angles to the side; of length 1. Zero
-/// where the face has no area.
+/// The unit vector in the face at right angles to the side that begins at `a` in direction `along`, towards the third corner. Zero where
+/// the face has no area.
 Vec3 inward(const Vec3& a, const Vec3& along, const Vec3& third) {
   const Vec3 to_third = third - a;
   const Vec3 across = to_third - to_third.dot(along) * along;
   const double height = across.norm();
-  return height > kOnTheSpot * to_third.norm() ? Vec3(across / height) : Vec3::Zero();
+  return height > kSame * to_third.norm() ? Vec3(across / height) : Vec3::Zero();
 }
 
-/// The smallest turn from one unit vector to another; none where they are opposite.
+/// The smallest rotation from one unit vector to another; the identity where they are opposite.
 Eigen::Quaterniond turn_between(const Vec3& from, const Vec3& to) {
   const double cosine = from.dot(to);
-  if (!(1 + cosine > kOnTheSpot)) return Eigen::Quaterniond::Identity();
+  if (!(1 + cosine > kSame)) return Eigen::Quaterniond::Identity();
   const Vec3 axis = from.cross(to);
   return Eigen::Quaterniond(1 + cosine, axis.x(), axis.y(), axis.z()).normalized();
 }
 
-/// One node's way.
-class Walk {
+/// The path of one node.
+class SurfacePath {
  public:
-  /// `plane`: the normal of a plane that it doesn't leave; null: none.
-  Walk(const Model& model, NodeIndex node, double max_move, const Vec3* plane)
-      : model_(model), start_(model.position(node)), here_(start_), most_(max_move), plane_(plane) {}
+  /// `plane`: the normal of a plane that the path stays in; null: none.
+  SurfacePath(const Model& model, NodeIndex node, double max_move, const Vec3* plane)
+      : model_(model), start_(model.position(node)), here_(start_), max_move_(max_move), plane_(plane) {}
 
   const Vec3& here() const { return here_; }
   bool stopped() const { return stopped_; }
 
-  /// Over the faces, from a node, by the part of a displacement that lies at right angles to the normal there.
+  /// Follows the faces from a node by the component of a displacement at right angles to the normal there.
   void over_faces(NodeIndex node, const Vec3& normal, const Vec3& by) {
     const Vec3 flat = by - by.dot(normal) * normal;
     left_ = flat.norm();
-    if (!(left_ > 0) || !set_out(node, normal, flat / left_)) return;
-    int on_the_spot = 0;
+    if (!(left_ > 0) || !enter_face_at(node, normal, flat / left_)) return;
+    int at_one_point = 0;
     for (int faces = 0; faces < kMaxFaces && left_ > 0 && !stopped_; ++faces) {
       const double before = left_;
       if (!cross_face()) return;
-      on_the_spot = left_ < before ? 0 : on_the_spot + 1;
-      if (on_the_spot > kMaxFacesOnTheSpot) return;
+      at_one_point = left_ < before ? 0 : at_one_point + 1;
+      if (at_one_point > kMaxFacesAtOnePoint) return;
     }
   }
 
-  /// Along the line of free edges.
+  /// Follows the line of free edges.
   void along_free_edge(NodeIndex node, const Vec3& by) {
     std::array<NodeIndex, 2> both{};
     if (!free_neighbours(node, both)) return;
     const auto towards = [&](NodeIndex other) -> Vec3 { return (model_.position(other) - model_.position(node)).normalized(); };
     const Vec3 line = towards(both[0]) - towards(both[1]);
     const double length = line.norm();
-    if (plane_ != nullptr && std::abs(line.dot(*plane_)) > kAlongside * length) return;
+    if (plane_ != nullptr && std::abs(line.dot(*plane_)) > kInPlane * length) return;
     left_ = length > 0 ? by.dot(line) / length : 0;
     NodeIndex to = left_ >= 0 ? both[0] : both[1];
     left_ = std::abs(left_);
@@ -108,15 +108,15 @@ class Walk {
   }
 
  private:
-  /// Straight to a point, or as far as the limit allows.
+  /// Goes straight to a point, or to where the distance from the start reaches the limit.
   void go_to(const Vec3& point) {
-    if ((point - start_).norm() > most_) {
-      // |here + s (point - here) - start| = most
+    if ((point - start_).norm() > max_move_) {
+      // |here + s (point - here) - start| = max_move
       const Vec3 step = point - here_;
       const Vec3 gone = here_ - start_;
       const double a = step.squaredNorm();
       const double b = step.dot(gone);
-      const double c = gone.squaredNorm() - most_ * most_;
+      const double c = gone.squaredNorm() - max_move_ * max_move_;
       const double s = std::clamp((-b + std::sqrt(std::max(0.0, b * b - a * c))) / a, 0.0, 1.0);
       here_ += s * step;
       stopped_ = true;
@@ -125,10 +125,10 @@ class Walk {
     here_ = point;
   }
 
-  /// The face at a node over which a direction leads away: the one whose picture in the node's plane holds it.
-  bool set_out(NodeIndex node, const Vec3& normal, const Vec3& direction) {
+  /// Finds the face at a node that a direction leads into: the one whose projection into the node's tangent plane contains the direction.
+  bool enter_face_at(NodeIndex node, const Vec3& normal, const Vec3& direction) {
     const Vec3 aside = normal.cross(direction);
-    double best = 0;  // how squarely the best face looks along the normal
+    double best = 0;  // cosine between the best face's normal and the node's
     const auto consider = [&](ShellIndex shell, bool second) {
       const Face face = face_of(model_, shell, second);
       const auto at = static_cast<std::size_t>(std::find(face.node.begin(), face.node.end(), node) - face.node.begin());
@@ -139,20 +139,20 @@ class Walk {
       const Vec3 across = side_b.cross(side_c);
       const double sense = across.dot(normal) < 0 ? -1 : 1;
       const double area = sense * across.dot(normal);
-      // in the picture: whether the direction leads over this face
+      // in the projection: whether the direction leads into this face
       const double share_b = sense * side_c.dot(aside);
       const double share_c = -sense * side_b.dot(aside);
       const double along_b2 = share_b * share_b * side_b.squaredNorm();
       const double along_c2 = share_c * share_c * side_c.squaredNorm();
-      const double on_the_spot2 = kOnTheSpot * kOnTheSpot * area * area;
-      if ((share_b < 0 && along_b2 > on_the_spot2) || (share_c < 0 && along_c2 > on_the_spot2)) return;
+      const double same2 = kSame * kSame * area * area;
+      if ((share_b < 0 && along_b2 > same2) || (share_c < 0 && along_c2 > same2)) return;
       const double facing = area / across.norm();
-      if (!(facing > std::max(kOnTheSpot, best))) return;
+      if (!(facing > std::max(kSame, best))) return;
       best = facing;
-      // in the face, where it turns about the line in which face and plane meet: that keeps angles at a crease
+      // the direction in the face: rotated about the line in which face and tangent plane intersect, which keeps angles at a crease
       const Vec3 in_face = turn_between(normal, across * (sense / across.norm())) * direction;
-      const double in_face_b = along_b2 < on_the_spot2 ? 0 : std::max(0.0, in_face.cross(side_c).dot(across));
-      const double in_face_c = along_c2 < on_the_spot2 ? 0 : std::max(0.0, side_b.cross(in_face).dot(across));
+      const double in_face_b = along_b2 < same2 ? 0 : std::max(0.0, in_face.cross(side_c).dot(across));
+      const double in_face_c = along_c2 < same2 ? 0 : std::max(0.0, side_b.cross(in_face).dot(across));
       face_ = face;
       entered_by_ = 3;
       share_ = {0, 0, 0};
@@ -167,7 +167,7 @@ class Walk {
     return best > 0;
   }
 
-  /// Turns the direction within the face into the plane that the way keeps to.
+  /// Rotates the direction within the face into the plane that the path stays in.
   void keep_in_plane() {
     if (plane_ == nullptr) return;
     const Vec3 cut = area_normal(face_).cross(*plane_);
@@ -175,19 +175,19 @@ class Walk {
     if (std::abs(sense) > 0) direction_ = cut.normalized() * (sense < 0 ? -1.0 : 1.0);
   }
 
-  /// To the end of the way or over the face's side. False where the surface ends.
+  /// Goes to the end of the path or over a side of the face. False where the surface ends.
   bool cross_face() {
     const Vec3 normal = area_normal(face_);
     const double area2 = normal.squaredNorm();
     if (!(area2 > 0)) return false;
-    // how each corner's share changes with the length of the way, and where one first comes to nothing
+    // how each corner's barycentric share changes along the path, and which one first becomes 0
     std::array<double, 3> rate{};
     std::size_t leaves = 3;
     double length = left_;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3 gradient = normal.cross(face_.at[next(next(i))] - face_.at[next(i)]) / area2;
       rate[i] = gradient.dot(direction_);
-      if (rate[i] * rate[i] < kOnTheSpot * kOnTheSpot * gradient.squaredNorm()) rate[i] = 0;
+      if (rate[i] * rate[i] < kSame * kSame * gradient.squaredNorm()) rate[i] = 0;
       if (rate[i] < 0 && next(i) != entered_by_ && share_[i] < -rate[i] * length) {
         length = share_[i] / -rate[i];
         leaves = i;
@@ -202,12 +202,12 @@ class Walk {
     if (leaves == 3) left_ = 0;
     if (stopped_ || !(left_ > 0)) return true;
     const std::size_t a = next(leaves), b = next(a);
-    if (share_[a] < kOnTheSpot) return pass_node(b, normal / std::sqrt(area2));
-    if (share_[b] < kOnTheSpot) return pass_node(a, normal / std::sqrt(area2));
+    if (share_[a] < kSame) return pass_node(b, normal / std::sqrt(area2));
+    if (share_[b] < kSame) return pass_node(a, normal / std::sqrt(area2));
     return cross_side(a, b);
   }
 
-  /// Over the side into the face beyond that leads straightest on.
+  /// Crosses a side into the face beyond it with the smallest turn.
   bool cross_side(std::size_t a, std::size_t b) {
     const Vec3 along = (face_.at[b] - face_.at[a]).normalized();
     const Vec3 back = inward(face_.at[a], along, face_.at[next(b)]);
@@ -221,7 +221,7 @@ class Walk {
                                (face.node[i] == face_.node[b] && face.node[next(i)] == face_.node[a]);
         if (!same_side) continue;
         const Vec3 into = inward(face_.at[a], along, face.at[next(next(i))]);
-        // a shell on the same corners lies beneath, not beyond
+        // a duplicate of the shell lies on it, not beyond the side
         if (!(into.squaredNorm() > 0) || into.dot(back) > 1 - 1e-12 || (beyond && into.dot(back) >= on.dot(back))) return;
         beyond = face;
         on = into;
@@ -230,7 +230,7 @@ class Walk {
     };
     const ShellNodes& shell = model_.shell(face_.shell);
     if (!shell.is_triangle() && is_diagonal(a, b)) consider(face_.shell, !face_.second);
-    // a quad that names a corner twice has a half without area, and a side where its diagonal would be
+    // a quad that names a corner twice has one triangle without area, and a side in place of its diagonal
     if (const EdgeIndex edge = model_.adjacency->find_edge(face_.node[a], face_.node[b]); !beyond && edge.valid())
       for (const ShellIndex other : model_.adjacency->shells_of(edge))
         if (other != face_.shell) {
@@ -255,7 +255,8 @@ class Walk {
     return face_.second ? side == 0 : side == 2;
   }
 
-  /// The area-weighted normal of the shells at a node, oriented as the face in hand and from shell to shell over the sides at the node.
+  /// The area-weighted normal of the shells at a node. The current face gives the orientation, which spreads from shell to shell over the
+  /// sides at the node.
   Vec3 normal_at(NodeIndex node, const Vec3& face_normal) const {
     const auto shells = model_.adjacency->shells_of(node);
     struct Around {
@@ -263,7 +264,7 @@ class Walk {
       NodeIndex after, before;
       int sense = 0;  ///< 0: not known yet
     };
-    std::array<Around, kMaxAround> around;
+    std::array<Around, kMaxShellsAround> around;
     const std::size_t count = std::min(shells.size(), around.size());
     for (std::size_t i = 0; i < count; ++i) {
       const ShellNodes& shell = model_.shell(shells[i]);
@@ -290,7 +291,7 @@ class Walk {
     return sum;
   }
 
-  /// Straight on over a node: as over its own plane, of which all faces at it are pictures.
+  /// Continues straight over a node: in its tangent plane, into which all its faces are projected.
   bool pass_node(std::size_t corner, const Vec3& face_normal) {
     const NodeIndex node = face_.node[corner];
     const Vec3 sum = normal_at(node, face_normal);
@@ -300,10 +301,10 @@ class Walk {
     const Vec3 normal = sum / length;
     const Vec3 turned = turn_between(face_normal, normal) * direction_;
     const Vec3 flat = turned - turned.dot(normal) * normal;
-    return flat.squaredNorm() > 0 && set_out(node, normal, flat.normalized());
+    return flat.squaredNorm() > 0 && enter_face_at(node, normal, flat.normalized());
   }
 
-  /// The two ends of the line of free edges next to a node; false at its corners and forks, and off it.
+  /// Finds the neighbours of a node on its line of free edges. False at corners and forks of the line, and away from it.
   bool free_neighbours(NodeIndex node, std::array<NodeIndex, 2>& both) const {
     return free_edges_at(model_, node, both) == 2 && !is_boundary_corner(model_, node);
   }
@@ -311,12 +312,12 @@ class Walk {
   const Model& model_;
   Vec3 start_;
   Vec3 here_;
-  double most_;
+  double max_move_;
   const Vec3* plane_;
   bool stopped_ = false;
   double left_ = 0;
   Face face_;
-  std::array<double, 3> share_{};  ///< of the face's corners: where it is
+  std::array<double, 3> share_{};  ///< barycentric coordinates of the point in the face
   std::size_t entered_by_ = 3;     ///< side of the face; 3: none
   Vec3 direction_ = Vec3::Zero();  ///< of length 1, in the face
 };
@@ -341,14 +342,14 @@ std::size_t SurfaceTracer::positions(std::span<const Vec3> by, std::optional<dou
   parallel_for(nodes_.size(), kSlideGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t stopped_here = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      Walk walk(surface_, nodes_[i], max_move.value_or(std::numeric_limits<double>::infinity()),
-                !in_plane_.empty() && in_plane_[i] != 0 ? &plane_ : nullptr);
+      SurfacePath path(surface_, nodes_[i], max_move.value_or(std::numeric_limits<double>::infinity()),
+                       !in_plane_.empty() && in_plane_[i] != 0 ? &plane_ : nullptr);
       if (on_free_edge_[i] != 0)
-        walk.along_free_edge(nodes_[i], by[i]);
+        path.along_free_edge(nodes_[i], by[i]);
       else
-        walk.over_faces(nodes_[i], normals_[i], by[i]);
-      out[i] = walk.here();
-      if (walk.stopped()) ++stopped_here;
+        path.over_faces(nodes_[i], normals_[i], by[i]);
+      out[i] = path.here();
+      if (path.stopped()) ++stopped_here;
     }
     stopped += stopped_here;
   });
@@ -357,7 +358,7 @@ std::size_t SurfaceTracer::positions(std::span<const Vec3> by, std::optional<dou
 
 namespace {
 
-/// Where nodes stand in a set, by a table as long as the set's span where that isn't out of proportion.
+/// Finds the positions of nodes in a set: by a table over the span of their indices where it isn't too long, else by binary search.
 class NodePlaces {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;

@@ -31,7 +31,7 @@ std::vector<std::uint32_t> marked(const std::vector<std::uint8_t>& marks) {
   return nodes;
 }
 
-/// The weights of one selection in the making; nodes are positions in the selection.
+/// Computes the weights of one selection. Nodes are positions in the selection.
 class Weighing {
  public:
   Weighing(const Model& model, const NodeSet& selection, const WeightOptions& options)
@@ -69,13 +69,13 @@ class Weighing {
   }
 
  private:
-  /// Distances from the border as it is now; kept, since the default grab and the shares often want the same.
+  /// Distances from the current border. They are kept, since the default grab and the shares often need the same.
   const std::vector<double>& from_border() {
     if (from_border_.empty()) from_border_ = spatial::geodesic_distance(patch_, marked(border_));
     return from_border_;
   }
 
-  /// Both at once where both are wanted: neither needs the other.
+  /// Computes both in parallel where both are needed: they are independent.
   void find_distances() {
     const bool border_too = !options_.falloff.along && options_.falloff.profile != Profile::constant && from_border_.empty();
     parallel_for(border_too ? 2 : 1, 1, [&](std::size_t begin, std::size_t end) {
@@ -90,13 +90,13 @@ class Weighing {
 
   std::uint32_t farthest_from_border() {
     const std::vector<double>& distance = from_border();
-    double farthest = -1;
+    double max_distance = -1;
     for (const double d : distance)
-      if (d < kUnreached) farthest = std::max(farthest, d);
-    if (farthest < 0) return lowest_on_a_shell();
-    // rows that only rounding tells apart count as equally far
+      if (d < kUnreached) max_distance = std::max(max_distance, d);
+    if (max_distance < 0) return lowest_on_a_shell();
+    // distances that differ by rounding only count as equal
     for (std::uint32_t i = 0; i < distance.size(); ++i)
-      if (distance[i] < kUnreached && distance[i] >= farthest * (1 - 1e-9)) return i;
+      if (distance[i] < kUnreached && distance[i] >= max_distance * (1 - 1e-9)) return i;
     return 0;
   }
 
@@ -106,7 +106,7 @@ class Weighing {
     return 0;
   }
 
-  /// Fills origin_ and takes it out of the border.
+  /// Finds origin_ and removes it from the border.
   Result<void> find_origin() {
     std::uint32_t on_edge = grab_;
     bool whole_edge = options_.free_ends && free_.touches(grab_);
@@ -121,7 +121,7 @@ class Weighing {
     }
     origin_ = {grab_};
     if (whole_edge) {
-      // without free ends the whole boundary is border; what stops the free edge is the rim alone
+      // without free ends the whole boundary is border, but only the rim ends the free edge
       const bool grab_held = patch_.rim[on_edge] != 0;
       const std::vector<std::uint8_t> nothing(selection_.size(), 0);
       origin_ = free_.through(on_edge, grab_held ? nothing : patch_.rim);
@@ -157,7 +157,7 @@ class Weighing {
     return share;
   }
 
-  /// The same along one direction only, from the origin's extent to the border that faces that way.
+  /// The same with distances along one direction, from the origin's extent to the border that faces this direction.
   std::vector<double> shares_along(const Vec3& direction) const {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const auto place = [&](std::uint32_t i) { return direction.dot(patch_.positions[i]); };
@@ -186,8 +186,8 @@ class Weighing {
 
   static double fraction(double to_border, double from_origin) { return to_border > 0 ? to_border / (from_origin + to_border) : 0; }
 
-  /// +1 or -1 where the surface goes on outside the selection with or against the direction, within 45 degrees; NaN where it
-  /// goes on sideways; 0 on the part's own boundary, which may face either way.
+  /// Where the surface continues outside the selection: +1 in the direction, -1 against it, both within 45 degrees; NaN: sideways; 0: at
+  /// the part's own boundary, which counts for both.
   double facing(std::uint32_t i, const Vec3& direction) const {
     if (patch_.rim[i] == 0) return 0;
     Vec3 outward = Vec3::Zero();

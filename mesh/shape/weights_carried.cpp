@@ -30,13 +30,13 @@ class Carrying {
     while (!source.empty() && !waiting_.empty()) {
       const ShellSet shells = shells_at(source);
       trees_.emplace_back(model_, shells);
-      mark_near(farthest_reach(shells));
+      mark_near(max_reach(shells));
       source = carry_near_pieces();
     }
   }
 
  private:
-  /// Numbers the connected pieces among the nodes that aren't reached; a node without a shell is one of its own.
+  /// Numbers the connected pieces among the nodes without a weight; a node without a shell is a piece by itself.
   void find_pieces() {
     piece_.assign(reached_.size(), 0);
     for (std::uint32_t first = 0; first < reached_.size(); ++first) {
@@ -71,18 +71,18 @@ class Carrying {
     return shells;
   }
 
-  double farthest_reach(const ShellSet& shells) const {
-    double farthest = 0;
-    for (const ShellIndex shell : shells) farthest = std::max(farthest, reach_of(shell));
-    return farthest;
+  double max_reach(const ShellSet& shells) const {
+    double reach = 0;
+    for (const ShellIndex shell : shells) reach = std::max(reach, reach_of(shell));
+    return reach;
   }
 
-  /// Marks the waiting nodes that are near what was reached last.
-  void mark_near(double farthest) {
+  /// Marks the waiting nodes that are near the surface of the last round.
+  void mark_near(double radius) {
     parallel_for(waiting_.size(), kCarryGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         auto& found = last_[waiting_[i]];
-        found = trees_.back().closest(patch_.positions[waiting_[i]], farthest);
+        found = trees_.back().closest(patch_.positions[waiting_[i]], radius);
         near_[waiting_[i]] = found && found->distance <= reach_of(found->shell) ? 1 : 0;
       }
     });
@@ -107,7 +107,7 @@ class Carrying {
     return std::clamp(weight, 0.0, 1.0);
   }
 
-  /// The weight at the closest point of all that was reached before.
+  /// The weight at the closest point of the surfaces of all rounds so far.
   double carried_weight(std::uint32_t node) const {
     std::optional<spatial::SurfacePoint> closest = last_[node];
     const std::size_t unasked = closest ? trees_.size() - 1 : trees_.size();
@@ -118,7 +118,7 @@ class Carrying {
     return closest ? weight_at(*closest) : 0.0;
   }
 
-  /// Returns the nodes of the pieces that are near, which now have their weight.
+  /// Gives the pieces that are near their weights, and returns their nodes.
   std::vector<std::uint32_t> carry_near_pieces() {
     std::vector<std::uint8_t> near(pieces_ + std::size_t{1}, 0);
     for (const std::uint32_t node : waiting_)
@@ -143,11 +143,11 @@ class Carrying {
   std::vector<std::uint8_t>& reached_;
   std::vector<double>& weight_;
   std::uint32_t pieces_ = 0;
-  std::vector<std::uint32_t> piece_;                        ///< of each node, from 1; 0: reached from the grab
+  std::vector<std::uint32_t> piece_;                        ///< of each node, from 1; 0: connected to the grab
   std::vector<std::uint32_t> waiting_;                      ///< nodes without a weight yet, ascending
   std::vector<std::uint8_t> near_;                          ///< of each node
-  std::vector<std::optional<spatial::SurfacePoint>> last_;  ///< of each node, the closest point in the last of the trees, if not too far
-  std::vector<spatial::ShellTree> trees_;                   ///< of what was reached, round by round
+  std::vector<std::optional<spatial::SurfacePoint>> last_;  ///< of each node: the closest point in the last tree, if near enough
+  std::vector<spatial::ShellTree> trees_;                   ///< one for each round: the shells whose nodes got weights
 };
 
 }  // namespace

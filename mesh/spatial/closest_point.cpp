@@ -20,10 +20,11 @@ constexpr double kSliver2 = 1e-16;  ///< square of the height, as a share of the
 struct OnTriangle {
   Vec3 point;
   std::array<double, 3> share;
-  double distance2 = 0;  ///< from what was asked for
+  double distance2 = 0;  ///< from the query point
 };
 
-/// Ericson, "Real-Time Collision Detection", 5.1.5: by the regions of corners, sides and face. Degenerate triangles end in a side.
+/// By the Voronoi regions of corners, sides and face: [Ericson 2005], "Real-Time Collision Detection", 5.1.5. Of a degenerate triangle the
+/// result lies on a side.
 OnTriangle closest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
   const Vec3 ab = t[1] - t[0];
   const Vec3 ac = t[2] - t[0];
@@ -56,7 +57,7 @@ OnTriangle closest_on(const std::array<Vec3, 3>& t, const Vec3& p) {
   return best;
 }
 
-/// A little more than the square, so that a distance that was given is within itself; nothing is within less than 0.
+/// The square and a little more, so that a distance is within itself in spite of rounding; -1 for a negative radius.
 double square(double radius) { return radius >= 0 ? radius * radius * (1 + 1e-15) : -1.0; }
 
 double distance2_to_box(const Vec3& low, const Vec3& high, const Vec3& point) {
@@ -68,7 +69,7 @@ double distance2_to_box(const Vec3& low, const Vec3& high, const Vec3& point) {
 ShellTree::ShellTree(const Model& model, const ShellSet& shells, const NodeSet& nodes) {
   triangles_.reserve(2 * shells.size() + nodes.size());
   const auto add = [&](const std::array<Vec3, 3>& corners, ShellIndex shell, bool second) {
-    // what has no place would leave the order undefined, and is close to nothing
+    // coordinates that aren't finite would leave the sorting order undefined
     for (const Vec3& corner : corners)
       if (!corner.allFinite()) return;
     triangles_.push_back({corners, shell, second});
@@ -87,7 +88,7 @@ ShellTree::ShellTree(const Model& model, const ShellSet& shells, const NodeSet& 
   if (!triangles_.empty()) divide();
 }
 
-/// What is sorted is this of each triangle; the triangles follow at the end.
+/// One for each triangle: these are sorted, and the triangles are put into their order at the end.
 struct ShellTree::Entry {
   Vec3 middle;
   std::uint32_t triangle;  ///< ascending by shell and half: ties by it make the tree the same wherever it is built
@@ -98,7 +99,7 @@ struct ShellTree::Range {
 
 namespace {
 
-/// Halves entries by their middles along the longest axis. Returns where the second half begins.
+/// Divides entries into halves at the median along the longest axis. Returns where the second half begins.
 template <class Entry>
 std::uint32_t halve(std::vector<Entry>& entries, std::uint32_t begin, std::uint32_t end) {
   Vec3 low = entries[begin].middle;
@@ -118,14 +119,14 @@ std::uint32_t halve(std::vector<Entry>& entries, std::uint32_t begin, std::uint3
 
 }  // namespace
 
-/// Halves ranges of triangles until few are left: the first ranges one after the other, the trees under them side by side. Where each
-/// stands among the nodes doesn't depend on who has built it.
+/// Divides ranges of triangles into halves until few triangles are left in each: the first ranges one after the other, the subtrees under
+/// them in parallel. The order of the nodes doesn't depend on the threads.
 void ShellTree::divide() {
   std::vector<Entry> entries;
   entries.reserve(triangles_.size());
   for (const Triangle& t : triangles_)
     entries.push_back({t.corner[0] / 3 + t.corner[1] / 3 + t.corner[2] / 3, static_cast<std::uint32_t>(entries.size())});
-  // Takes ranges apart from the front until `enough` are open or all are leaves.
+  // divides ranges from the front until `enough` are open or all are leaves
   const auto split = [&entries](std::vector<Node>& nodes, std::vector<Range>& open, std::size_t enough) {
     while (!open.empty() && open.size() < enough) {
       const std::vector<Range> level = std::exchange(open, {});
@@ -156,7 +157,7 @@ void ShellTree::divide() {
     }
   });
   for (std::size_t i = 0; i < open.size(); ++i) {
-    const auto shift = static_cast<std::uint32_t>(nodes_.size()) - 1;  // the root stands in its parent's place
+    const auto shift = static_cast<std::uint32_t>(nodes_.size()) - 1;  // the subtree's root takes its parent's entry
     for (Node& node : below[i])
       if (node.count == 0) node.first += shift;
     nodes_[open[i].node] = below[i].front();
@@ -170,7 +171,7 @@ void ShellTree::divide() {
   fit_boxes();
 }
 
-/// Children come after their parents, so that going backwards each box finds those it holds.
+/// Children come after their parents: in reverse order each box is made of finished boxes.
 void ShellTree::fit_boxes() {
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     Node& node = nodes_[i];
@@ -195,7 +196,7 @@ void ShellTree::walk(const Vec3& point, double& radius2, Visit&& visit) const {
     std::uint32_t node;
     double distance2;
   };
-  std::array<Waiting, 40> stack;  // the tree halves 32-bit numbers of triangles, and each level leaves one waiting
+  std::array<Waiting, 40> stack;  // the depth is at most 32, since the number of triangles has 32 bits, and each level adds one entry
   std::size_t waiting = 0;
   stack[waiting++] = {0, distance2_to_box(nodes_[0].low, nodes_[0].high, point)};
   while (waiting > 0) {
@@ -228,12 +229,12 @@ SurfacePoint surface_point(ShellIndex shell, bool second, const OnTriangle& on) 
 
 std::optional<SurfacePoint> ShellTree::closest(const Vec3& point, double radius) const {
   std::optional<SurfacePoint> best;
-  double least2 = square(radius);
-  walk(point, least2, [&](const Triangle& triangle) {
+  double min_distance2 = square(radius);
+  walk(point, min_distance2, [&](const Triangle& triangle) {
     const OnTriangle on = closest_on(triangle.corner, point);
-    const bool nearer = on.distance2 < least2 || (on.distance2 == least2 && (!best || triangle.shell < best->shell));
+    const bool nearer = on.distance2 < min_distance2 || (on.distance2 == min_distance2 && (!best || triangle.shell < best->shell));
     if (!nearer) return;
-    least2 = on.distance2;
+    min_distance2 = on.distance2;
     best = surface_point(triangle.shell, triangle.second, on);
   });
   return best;
@@ -241,16 +242,16 @@ std::optional<SurfacePoint> ShellTree::closest(const Vec3& point, double radius)
 
 double ShellTree::distance(const Vec3& point, Vec3& near) const {
   const double from_near2 = (near - point).squaredNorm();
-  double least2 = from_near2 * (1 + 1e-12);  // so that the triangle under `near` is asked as well, and the answer is its own
+  double min_distance2 = from_near2 * (1 + 1e-12);  // so that the triangle of `near` is tested as well
   bool found = false;
-  walk(point, least2, [&](const Triangle& triangle) {
+  walk(point, min_distance2, [&](const Triangle& triangle) {
     const OnTriangle on = closest_on(triangle.corner, point);
-    if (!(on.distance2 < least2)) return;
-    least2 = on.distance2;
+    if (!(on.distance2 < min_distance2)) return;
+    min_distance2 = on.distance2;
     near = on.point;
     found = true;
   });
-  return std::sqrt(found ? least2 : from_near2);
+  return std::sqrt(found ? min_distance2 : from_near2);
 }
 
 std::vector<SurfacePoint> ShellTree::within(const Vec3& point, double radius) const {

@@ -1,4 +1,4 @@
-// The closest point of a surface: a tree of boxes over shells, built once, asked often. The same bits on every processor.
+// Finds the closest point of a surface: a bounding volume hierarchy over shells, for many queries. The same bits on every processor.
 #pragma once
 
 #include <array>
@@ -19,22 +19,22 @@ struct SurfacePoint {
   std::array<double, 4> share{};  ///< of the shell's corners, 0..1, sum 1: point = sum of share * corner; a triangle's last is 0
 };
 
-/// A quad counts as the two triangles at its diagonal from the first corner to the third. Positions are those at building time; a
-/// triangle with a corner that isn't finite is left out. Of equally close shells the first. Some 220 bytes a quad. Built on all cores; the
-/// tree is the same whatever their number.
+/// A tree of axis-aligned boxes. A quad counts as the two triangles at its diagonal from the first corner to the third. Positions are those
+/// at construction; a triangle with a corner that isn't finite is left out. Of equally close shells the first counts. Some 220 bytes a
+/// quad. Built on all cores; the tree is the same whatever their number.
 class ShellTree {
  public:
-  /// `nodes` are points of the surface too; they have no shell.
+  /// `nodes` are points of the surface too, without a shell.
   ShellTree(const Model& model, const ShellSet& shells, const NodeSet& nodes = {});
 
-  /// Nothing if no shell is within `radius` (reckoned as within), nor for a point that isn't finite or a radius that is no number >= 0.
+  /// Returns the closest point; nothing if no shell is within `radius` (inclusive), if the point isn't finite, or if the radius isn't >= 0.
   std::optional<SurfacePoint> closest(const Vec3& point, double radius = std::numeric_limits<double>::infinity()) const;
-  /// The distance alone. `near` is any point of the surface: the closer it is, the sooner the answer, which doesn't depend on it but for
-  /// rounding; it becomes the closest point. Precondition: not empty, `point` is finite.
+  /// Returns the distance alone. `near` is any point of the surface and becomes the closest one; the closer it is at the call, the faster
+  /// the search. The result doesn't depend on it but for rounding. Precondition: not empty, `point` is finite.
   double distance(const Vec3& point, Vec3& near) const;
   /// Any point of the surface. Precondition: not empty.
   const Vec3& some_point() const { return triangles_.front().corner[0]; }
-  /// One for each shell within `radius` of the point, ascending by shell; of nodes without a shell the nearest one.
+  /// Returns one point for each shell within `radius`, ascending by shell; of nodes without a shell only the nearest one.
   std::vector<SurfacePoint> within(const Vec3& point, double radius) const;
   bool empty() const { return triangles_.empty(); }
 

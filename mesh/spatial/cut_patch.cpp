@@ -93,8 +93,8 @@ void fill_lengths(Patch& patch) {
   }
 }
 
-/// Marks the ends of the patch's free edges, and the ends of lines: the only places where a shortest way is taken to turn.
-/// (It also turns at sharp saddles inside a sheet; what that costs is the length around one node.)
+/// Marks the ends of the patch's free edges and of lines where a shortest path may turn. (A shortest path also turns at sharp saddle points
+/// inside a sheet. That is neglected; the error is local to one node.)
 std::vector<std::uint8_t> boundary_nodes(const Patch& patch) {
   std::vector<std::uint8_t> boundary(patch.nodes.size(), 0);
   std::vector<std::pair<std::uint32_t, int>> neighbours;
@@ -119,7 +119,8 @@ std::vector<std::uint8_t> boundary_nodes(const Patch& patch) {
 }
 
 void fill_bends(Patch& patch) {
-  constexpr double kReflex = kPi * (1 + 0.5 / 180);  // half a degree: a jittered straight boundary is not one long bend
+  constexpr double kReflex =
+      kPi * (1 + 0.5 / 180);  // with half a degree of tolerance: nodes of a straight boundary may be slightly out of line
   patch.bends = boundary_nodes(patch);
   for (std::uint32_t node = 0; node < patch.nodes.size(); ++node) {
     if (patch.bends[node] == 0) continue;

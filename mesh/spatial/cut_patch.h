@@ -1,4 +1,4 @@
-// Cuts patches out of a model, with what marching needs of their shape.
+// Cuts patches out of a model, with the geometry that fast marching uses.
 #pragma once
 
 #include "mesh/model/model.h"
@@ -7,11 +7,11 @@
 
 namespace prismesh::mesh::spatial {
 
-/// The patch of all given shells.
+/// Cuts out the given shells.
 Patch cut_patch(const Model& model, const ShellSet& shells);
 
-/// The patch between the given nodes: its local nodes are exactly those, also the ones no shell touches. Of a shell with only
-/// some corners among them, the triangle or the line between those remains, so that a chain of nodes is still a way.
+/// Cuts out what lies between the given nodes. The local nodes are exactly those, also the ones that no shell touches. Of a shell with only
+/// some corners among them, the triangle or the line between those remains, so that distances also follow a chain of nodes.
 Patch cut_patch_between(const Model& model, const NodeSet& nodes);
 
 }  // namespace prismesh::mesh::spatial

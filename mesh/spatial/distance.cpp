@@ -44,13 +44,13 @@ std::vector<Primitive> primitives_of(const Model& model, const Shape& shape) {
   return primitives;
 }
 
-/// Boxes around ever smaller groups of primitives; a group is a range of `primitives`.
+/// A binary tree of boxes around groups of primitives; a group is a range of `primitives`.
 class Tree {
  public:
   struct Node {
     Box box;
     std::uint32_t begin = 0, end = 0;
-    std::uint32_t left = 0, right = 0;  ///< 0: a leaf (the root is nobody's child)
+    std::uint32_t left = 0, right = 0;  ///< 0: a leaf (0 is the root, which is no child)
     bool is_leaf() const { return left == 0; }
   };
 
@@ -86,7 +86,7 @@ class Tree {
   }
 };
 
-/// Walks both trees, the nearer pair of boxes first, passing over pairs that can't beat the best so far.
+/// Traverses both trees at once, the nearer pair of boxes first. Skips pairs that can't be closer than the best so far.
 class Search {
  public:
   Search(const Tree& a, const Tree& b) : a_(a), b_(b) { visit(0, 0); }
@@ -133,7 +133,7 @@ std::optional<Closest> shortest_distance(const Model& model, const Shape& a, con
   const Tree tree_b(primitives_of(model, b));
   if (tree_a.primitives.empty() || tree_b.primitives.empty()) return std::nullopt;
   const Search search(tree_a, tree_b);
-  if (search.of_a == nullptr) return std::nullopt;  // coordinates that aren't numbers
+  if (search.of_a == nullptr) return std::nullopt;  // no finite coordinates
   Closest closest;
   closest.distance = std::sqrt(search.best.distance2);
   closest.a = {search.best.on_a, search.of_a->node, search.of_a->shell};

@@ -1,4 +1,4 @@
-// The shortest way between two sets of nodes and shells.
+// Computes the shortest distance between two sets of nodes and shells.
 #pragma once
 
 #include <array>
@@ -26,15 +26,15 @@ struct Closest {
   End b;
 };
 
-/// Exact over nodes and shells, a quad taken as the two triangles at its diagonal from the first corner to the third. Absent
-/// if a shape is empty. Two bounding volume trees walked together: Larsen et al., "Fast proximity queries with swept sphere
-/// volumes", 1999, with boxes for volumes.
+/// Returns the shortest distance and its end points; absent if a shape is empty. Exact for nodes and shells; a quad counts as the two
+/// triangles at its diagonal from the first corner to the third. Method: a simultaneous traversal of two bounding volume hierarchies
+/// [Larsen 1999], "Fast proximity queries with swept sphere volumes", here with boxes.
 std::optional<Closest> shortest_distance(const Model& model, const Shape& a, const Shape& b);
 
 /// Corners; segments and points count as triangles too.
 using Triangle = std::array<Vec3, 3>;
 
-/// The nearest points of two triangles.
+/// The nearest points of two triangles, and the square of their distance.
 struct Nearest {
   double distance2 = 0;
   Vec3 on_a = Vec3::Zero();

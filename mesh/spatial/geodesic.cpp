@@ -11,17 +11,17 @@ namespace prismesh::mesh::spatial {
 namespace {
 
 constexpr std::uint32_t kNowhere = 0xffffffffu;
-constexpr double kWorthwhile = 1e-9;     ///< share of its distance that takes up a done node again
-constexpr std::uint8_t kMaxTimes = 200;  ///< a node is taken up again; a bound on the work, far above what meshes need
+constexpr double kMinGain = 1e-9;           ///< share of its distance that a finished node must gain to be queued again
+constexpr std::uint8_t kMaxRequeues = 200;  ///< of one node; bounds the work, far above what meshes need
 
-/// Nodes by distance, the nearest on top; of equals the lower number, so that the order never depends on history.
+/// A heap of nodes by distance, the nearest on top; of equals the lower number, so that the order never depends on history.
 class NearestFirst {
  public:
   explicit NearestFirst(const std::vector<double>& distance) : distance_(distance), place_(distance.size(), kNowhere) {}
 
   bool empty() const { return heap_.empty(); }
 
-  /// Puts a node in, or moves it up after its distance fell.
+  /// Adds a node, or moves it up after its distance decreased.
   void raise(std::uint32_t node) {
     if (place_[node] == kNowhere) {
       place_[node] = static_cast<std::uint32_t>(heap_.size());
@@ -76,7 +76,7 @@ class March {
         centre_(patch.nodes.size(), kNowhere),
         source_(patch.nodes.size(), kNowhere),
         done_(patch.nodes.size(), 0),
-        again_(patch.nodes.size(), 0),
+        requeues_(patch.nodes.size(), 0),
         queue_(distance_) {}
 
   std::vector<double> run(std::span<const std::uint32_t> sources, double radius) {
@@ -107,6 +107,17 @@ class March {
     double a_tip;
     double b_tip;
   };
+  /// The tip in the triangle's plane: the base lies on the x axis from a at 0 to b at Triangle::base, the tip above it.
+  struct FlatTip {
+    double x;
+    double y;
+  };
+  /// A wave that spreads in circles from a centre, and its radii at the ends of a base.
+  struct Wave {
+    std::uint32_t centre;
+    double radius_a;
+    double radius_b;
+  };
 
   void spread_from(std::uint32_t node) {
     for (std::uint32_t k = patch_.node_first[node]; k < patch_.node_first[node + 1]; ++k) {
@@ -126,7 +137,7 @@ class March {
     }
   }
 
-  /// Each corner is reached over the two triangles at its own diagonal, so the quad is seen split both ways.
+  /// Each corner is reached over the two triangles at its own diagonal, so both ways to split the quad count.
   void spread_over_quad(std::uint32_t node, const std::array<std::uint32_t, 4>& corner, const std::array<double, 6>& length) {
     std::size_t k = 0;
     while (corner[k] != node) ++k;
@@ -170,72 +181,69 @@ class March {
   void cross(const Triangle& t) {
     if (done_[t.a] == 0 || done_[t.b] == 0 || !(t.base > 0)) return;
     if (done_[t.tip] != 0 && distance_[t.tip] <= std::min(distance_[t.a], distance_[t.b])) return;
-    // the base lies on the x axis from 0 to t.base, the tip above it
     const double x = (t.a_tip * t.a_tip + t.base * t.base - t.b_tip * t.b_tip) / (2 * t.base);
-    const double y = std::sqrt(std::max(0.0, t.a_tip * t.a_tip - x * x));
-    if (centre_[t.a] == centre_[t.b])
-      cross_from_centre(t, x, y, centre_[t.a]);
+    const FlatTip tip{x, std::sqrt(std::max(0.0, t.a_tip * t.a_tip - x * x))};
+    const std::uint32_t centre = centre_[t.a];
+    if (centre == centre_[t.b])
+      cross_from_centre(t, tip, {centre, distance_[t.a] - distance_[centre], distance_[t.b] - distance_[centre]});
     else
-      cross_between_waves(t, x, y);
+      cross_between_waves(t, tip);
   }
 
-  void cross_from_centre(const Triangle& t, double x, double y, std::uint32_t centre) {
-    cross_from_centre(t, x, y, centre, distance_[t.a] - distance_[centre], distance_[t.b] - distance_[centre]);
-  }
-
-  /// The wave's centre lies below the base, as far from its ends as the wave's radii there. False if no straight way leads
-  /// from it between the ends to the tip; such a way goes over another triangle.
-  bool cross_from_centre(const Triangle& t, double x, double y, std::uint32_t centre, double radius_a, double radius_b) {
-    const double centre_x = (radius_a * radius_a - radius_b * radius_b + t.base * t.base) / (2 * t.base);
-    const double depth2 = radius_a * radius_a - centre_x * centre_x;
-    if (depth2 < 0) return false;  // the wave runs along the base: its ends go straight
+  /// Reaches the tip from the wave's centre, which lies below the base, at the wave's radii from its ends. False if the straight line from
+  /// the centre to the tip doesn't cross the base; it then crosses another triangle.
+  bool cross_from_centre(const Triangle& t, const FlatTip& tip, const Wave& wave) {
+    const double centre_x = (wave.radius_a * wave.radius_a - wave.radius_b * wave.radius_b + t.base * t.base) / (2 * t.base);
+    const double depth2 = wave.radius_a * wave.radius_a - centre_x * centre_x;
+    if (depth2 < 0) return false;  // the wave runs along the base: go_straight covers it
     const double depth = std::sqrt(depth2);
-    const double crossing = centre_x * y + x * depth;
-    if (crossing < 0 || crossing > t.base * (depth + y)) return false;
-    const double dx = x - centre_x;
-    const double dy = y + depth;
-    const double distance = distance_[centre] + std::sqrt(dx * dx + dy * dy);
-    // no way along the surface is shorter than the straight one
-    if (distance < distance_[t.tip]) offer(t.tip, std::max(distance, straight(centre, t.tip)), centre, source_[t.a]);
+    const double crossing = centre_x * tip.y + tip.x * depth;
+    if (crossing < 0 || crossing > t.base * (depth + tip.y)) return false;
+    const double dx = tip.x - centre_x;
+    const double dy = tip.y + depth;
+    const double distance = distance_[wave.centre] + std::sqrt(dx * dx + dy * dy);
+    // no path along the surface is shorter than the straight line
+    if (distance < distance_[t.tip]) offer(t.tip, std::max(distance, straight(wave.centre, t.tip)), wave.centre, source_[t.a]);
     return true;
   }
 
-  /// Length of a way that goes straight from a centre, whatever is in between.
+  /// Distance at a node by the straight line in space from a centre: a lower bound.
   double straight(std::uint32_t centre, std::uint32_t node) const {
     return distance_[centre] + (patch_.positions[node] - patch_.positions[centre]).norm();
   }
 
-  /// Waves of different sources count as plane. Waves of one source with different centres meet behind a turn: one end of the
-  /// base was reached past the turn, the other, which the former centre still sees, wasn't.
-  void cross_between_waves(const Triangle& t, double x, double y) {
+  /// Between waves of different sources the front counts as straight. Waves of one source with different centres meet behind a turn: the
+  /// path to one end of the base passed the turn, the path to the other end, which the earlier centre still sees, didn't.
+  void cross_between_waves(const Triangle& t, const FlatTip& tip) {
     const double slope_x = (distance_[t.b] - distance_[t.a]) / t.base;
     if (!(std::abs(slope_x) < 1)) return;
     const double slope_y = std::sqrt(1 - slope_x * slope_x);
-    const double crossing = x * slope_y - y * slope_x;
+    const double crossing = tip.x * slope_y - tip.y * slope_x;
     const std::uint32_t nearer = crossing < 0.5 * t.base * slope_y ? t.a : t.b;
-    if (source_[t.a] == source_[t.b] && cross_behind_turn(t, x, y)) return;
+    if (source_[t.a] == source_[t.b] && cross_behind_turn(t, tip)) return;
     if (crossing < 0 || crossing > t.base * slope_y) return;
-    offer(t.tip, distance_[t.a] + x * slope_x + y * slope_y, centre_[nearer], source_[nearer]);
+    offer(t.tip, distance_[t.a] + tip.x * slope_x + tip.y * slope_y, centre_[nearer], source_[nearer]);
   }
 
-  /// Both centres' waves are tried. An end that a centre doesn't see is no nearer to it than the way by which it was reached, nor than
-  /// straight.
-  bool cross_behind_turn(const Triangle& t, double x, double y) {
+  /// Tries the waves of both centres. At an end that a centre doesn't see, the radius of its wave is at least the distance found there, and
+  /// at least the straight line in space.
+  bool cross_behind_turn(const Triangle& t, const FlatTip& tip) {
     const auto over = [&](std::uint32_t centre) {
-      return cross_from_centre(t, x, y, centre, std::max(distance_[t.a], straight(centre, t.a)) - distance_[centre],
-                               std::max(distance_[t.b], straight(centre, t.b)) - distance_[centre]);
+      return cross_from_centre(t, tip,
+                               {centre, std::max(distance_[t.a], straight(centre, t.a)) - distance_[centre],
+                                std::max(distance_[t.b], straight(centre, t.b)) - distance_[centre]});
     };
     const bool from_a = over(centre_[t.a]);
     const bool from_b = over(centre_[t.b]);
     return from_a || from_b;
   }
 
-  /// A node that was done is taken up again when its support came late: a base may reach farther than its tip where corners
-  /// are obtuse or the source is near.
+  /// Lowers a node's distance. A finished node is queued again if its distance gets lower: where corners are obtuse or the source is near,
+  /// the ends of a base may be finished after the tip.
   void offer(std::uint32_t node, double distance, std::uint32_t centre, std::uint32_t source) {
     if (done_[node] != 0) {
-      if (!(distance < distance_[node] * (1 - kWorthwhile)) || again_[node] == kMaxTimes) return;
-      ++again_[node];
+      if (!(distance < distance_[node] * (1 - kMinGain)) || requeues_[node] == kMaxRequeues) return;
+      ++requeues_[node];
     } else if (!(distance < distance_[node])) {
       return;
     }
@@ -248,10 +256,10 @@ class March {
 
   const Patch& patch_;
   std::vector<double> distance_;
-  std::vector<std::uint32_t> centre_;  ///< node the wave spreads from in circles: a source, or where the way turned last
+  std::vector<std::uint32_t> centre_;  ///< node that the wave spreads from in circles: a source, or the last turn of the path
   std::vector<std::uint32_t> source_;
   std::vector<std::uint8_t> done_;
-  std::vector<std::uint8_t> again_;  ///< how often each node was taken up again
+  std::vector<std::uint8_t> requeues_;  ///< how often each node was queued again
   NearestFirst queue_;
 };
 

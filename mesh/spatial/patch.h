@@ -10,10 +10,10 @@
 
 namespace prismesh::mesh::spatial {
 
-/// A triangle that isn't in the mesh: the far side of an obtuse corner, unfolded until a node lies in front of the corner.
+/// A triangle that isn't in the mesh: it makes up for an obtuse corner (mesh/spatial/unfold.h).
 struct UnfoldedTriangle {
-  std::array<std::uint32_t, 2> support;  ///< local nodes the distance comes from
-  std::uint32_t target = 0;              ///< local node it goes to
+  std::array<std::uint32_t, 2> support;  ///< local nodes from which a distance is computed
+  std::uint32_t target = 0;              ///< local node at which it is computed: the obtuse corner
   double base = 0;                       ///< between the supports
   std::array<double, 2> side{};          ///< from each support to the target
 };
@@ -28,9 +28,9 @@ struct Patch {
   std::vector<std::uint32_t> node_shells;
   std::vector<std::uint8_t> rim;  ///< cut_patch_between: 1 where a shell of the model reaches outside the patch's nodes
 
-  // What marching needs of the patch's shape, whatever the sources.
+  // geometry that fast marching uses, independent of the sources
   std::vector<std::array<double, 6>> lengths;  ///< of each shell's sides 01 12 23 30 and diagonals 02 13
-  std::vector<std::uint8_t> bends;             ///< 1 where a shortest way can turn: a boundary's reflex corner
+  std::vector<std::uint8_t> bends;             ///< 1 where a shortest path can turn: at a reflex corner of the boundary
   std::vector<UnfoldedTriangle> unfolded;      ///< of obtuse corners
   std::vector<std::uint32_t> unfolded_first;   ///< CSR local node -> unfolded triangles it supports
   std::vector<std::uint32_t> unfolded_of;

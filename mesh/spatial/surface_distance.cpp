@@ -12,10 +12,10 @@ namespace prismesh::mesh::spatial {
 
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 512;          ///< that begin with each other's answers
-constexpr std::size_t kPointsBetweenWords = 65536;  ///< after which the progress is told
+constexpr std::size_t kPointsAtOnce = 512;            ///< in one range, in which each search starts at the result before it
+constexpr std::size_t kPointsBetweenReports = 65536;  ///< after which the progress is told
 
-/// The lowest 21 bits with two zeros between neighbours.
+/// Spreads the lowest 21 bits: two zeros between neighbours.
 std::uint64_t spread(std::uint64_t bits) {
   bits = (bits | bits << 32) & 0x001f00000000ffff;
   bits = (bits | bits << 16) & 0x001f0000ff0000ff;
@@ -24,7 +24,7 @@ std::uint64_t spread(std::uint64_t bits) {
   return (bits | bits << 2) & 0x1249249249249249;
 }
 
-/// The finite points one after the other along a curve that fills space (G. M. Morton, 1966), so that neighbours in the list are near.
+/// Sorts the finite points along a space-filling curve [Morton 1966], so that neighbours in the list are near each other.
 std::vector<std::uint32_t> along_curve(std::span<const Vec3> points) {
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Vec3& point : points)
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> along_curve(std::span<const Vec3> points) {
       high = high.cwiseMax(point);
     }
   const double widest = (high - low).maxCoeff();
-  // no cells where the points are too close together or too far apart for numbers: in the given order then
+  // where the extent is 0 or too large for a double, the points keep their order
   const double per_length = 2097151.0 / widest;
   const double cells = widest > 0 && std::isfinite(widest) && std::isfinite(per_length) ? per_length : 0;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
@@ -60,9 +60,9 @@ Result<std::vector<double>> distances_to(const ShellTree& tree, std::span<const 
   std::vector<double> distances(points.size(), std::numeric_limits<double>::quiet_NaN());
   if (tree.empty()) return distances;
   const std::vector<std::uint32_t> order = along_curve(points);
-  for (std::size_t slice = 0; slice < order.size(); slice += kPointsBetweenWords) {
+  for (std::size_t slice = 0; slice < order.size(); slice += kPointsBetweenReports) {
     if (progress && !progress(static_cast<double>(slice) / static_cast<double>(order.size()))) return fail(cancelled());
-    parallel_for(std::min(kPointsBetweenWords, order.size() - slice), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallel_for(std::min(kPointsBetweenReports, order.size() - slice), kPointsAtOnce, [&](std::size_t begin, std::size_t end) {
       Vec3 near = tree.some_point();
       for (std::size_t i = slice + begin; i < slice + end; ++i) distances[order[i]] = tree.distance(points[order[i]], near);
     });

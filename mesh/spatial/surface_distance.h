@@ -1,4 +1,4 @@
-// How far many points lie from a surface.
+// Computes the distances of many points from a surface.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace prismesh::mesh::spatial {
 
-/// Distance of each point from the tree's surface, deck's length unit; NaN for a point that isn't finite, and for all if the tree is empty.
-/// On all cores, along a curve through space on which each point begins where the one before it ended. The same bits whatever the number of
-/// cores. Errors: cancelled.
+/// Returns the distance of each point from the tree's surface, in the deck's length unit; NaN for a point that isn't finite, and for all
+/// points if the tree is empty. Works on all cores. The points are visited along a space-filling curve, and each search starts at the
+/// result of the one before it. The same bits whatever the number of cores. Errors: cancelled.
 Result<std::vector<double>> distances_to(const ShellTree& tree, std::span<const Vec3> points, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::spatial

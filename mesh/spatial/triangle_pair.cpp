@@ -16,22 +16,22 @@ void keep_nearer(Nearest& best, const Nearest& candidate) {
   if (candidate.distance2 < best.distance2) best = candidate;
 }
 
-/// Nearest points of the segments p0-p1 and q0-q1: the unconstrained minimum along both lines, clamped to one segment and then,
-/// for that point, to the other.
+/// Computes the nearest points of the segments p0-p1 and q0-q1: the minimum along both lines, clamped to one segment, then for that point
+/// to the other.
 Nearest nearest_of_segments(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
   const Vec3 u = p1 - p0, v = q1 - q0, w = p0 - q0;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
   const auto ratio = [](double numerator, double denominator) {
     return denominator > 0 ? std::clamp(numerator / denominator, 0.0, 1.0) : 0.0;
   };
-  // parallel lines have no single minimum; any start does, as the second clamp finds its partner
+  // parallel lines have no single minimum; any point will do, since the second clamp finds the nearest point to it
   double s = ratio(uv * vw - uw * vv, uu * vv - uv * uv);
   const double t = ratio(uv * s + vw, vv);
   s = ratio(uv * t - uw, uu);
   return pair_of(p0 + s * u, q0 + t * v);
 }
 
-/// Where `point` lies over the inside of the triangle, if it does.
+/// The projection of `point` onto the triangle, if it lies inside.
 bool foot_inside(const Vec3& point, const Triangle& t, Vec3& foot) {
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
   const double nn = normal.squaredNorm();
@@ -42,7 +42,7 @@ bool foot_inside(const Vec3& point, const Triangle& t, Vec3& foot) {
   return true;
 }
 
-/// Where the segment p-q goes through the triangle, if it does.
+/// The point where the segment p-q crosses the triangle, if it does.
 bool pierces(const Vec3& p, const Vec3& q, const Triangle& t, Vec3& at) {
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
   const double before = (p - t[0]).dot(normal), after = (q - t[0]).dot(normal);
@@ -53,7 +53,7 @@ bool pierces(const Vec3& p, const Vec3& q, const Triangle& t, Vec3& at) {
 
 }  // namespace
 
-// Two triangles that don't cross are nearest at a corner of one over the inside of the other, or at an edge of each.
+// Of two triangles that don't cross, the nearest points are a corner of one and its projection onto the other, or lie on an edge of each.
 Nearest nearest_of_triangles(const Triangle& a, const Triangle& b) {
   Nearest best;
   best.distance2 = std::numeric_limits<double>::infinity();

@@ -9,7 +9,7 @@ namespace prismesh::mesh::spatial {
 
 namespace {
 
-constexpr int kFarthest = 20;  ///< shells laid flat before a corner is given up; it then relies on its sides alone
+constexpr int kMaxUnfoldedShells = 20;  ///< then the corner is given up: distance reaches it over its own sides only
 
 struct FlatPoint {
   double x = 0;
@@ -27,8 +27,8 @@ struct FlatNode {
   FlatPoint at;
 };
 
-/// The place of a node on the far side of the edge from `p` to `q` (seen from the corner, which is at the origin).
-FlatPoint lay_flat(const Patch& patch, const FlatNode& p, const FlatNode& q, std::uint32_t node) {
+/// Unfolds a node on the far side of the edge from `p` to `q`, seen from the corner, which is at the origin. Returns its position.
+FlatPoint unfold_node(const Patch& patch, const FlatNode& p, const FlatNode& q, std::uint32_t node) {
   const Vec3& position = patch.positions[node];
   const double to_p2 = (position - patch.positions[p.node]).squaredNorm();
   const double to_q2 = (position - patch.positions[q.node]).squaredNorm();
@@ -59,7 +59,7 @@ std::optional<std::uint32_t> shell_beyond(const Patch& patch, std::uint32_t but,
   return std::nullopt;
 }
 
-/// The shell's other corners in order from the neighbour of `p` to the neighbour of `q`, laid flat; returns how many.
+/// Unfolds the shell's other corners, in order from the neighbour of `p` to the neighbour of `q`; returns how many.
 int far_corners(const Patch& patch, std::uint32_t shell, const FlatNode& p, const FlatNode& q, std::array<FlatNode, 2>& out) {
   const auto& corner = patch.shells[shell];
   const int count = corner_count(corner);
@@ -67,16 +67,16 @@ int far_corners(const Patch& patch, std::uint32_t shell, const FlatNode& p, cons
   const int step = corner[(at + 1) % count] == q.node ? count - 1 : 1;
   for (int i = 0; i + 2 < count; ++i) {
     const std::uint32_t node = corner[(at + step * (i + 1)) % count];
-    out[i] = {node, lay_flat(patch, p, q, node)};
+    out[i] = {node, unfold_node(patch, p, q, node)};
   }
   return count - 2;
 }
 
-/// A node in front of the corner at the origin between `a` and `b`: at less than a right angle from both.
+/// Finds a node in front of the corner at the origin between `a` and `b`: at less than a right angle from both.
 std::optional<FlatNode> node_in_front(const Patch& patch, std::uint32_t shell, const FlatNode& a, const FlatNode& b) {
   FlatNode p = a;
   FlatNode q = b;
-  for (int step = 0; step < kFarthest; ++step) {
+  for (int step = 0; step < kMaxUnfoldedShells; ++step) {
     const auto beyond = shell_beyond(patch, shell, p.node, q.node);
     if (!beyond) return std::nullopt;
     shell = *beyond;
@@ -96,7 +96,7 @@ std::optional<FlatNode> node_in_front(const Patch& patch, std::uint32_t shell, c
   return std::nullopt;
 }
 
-/// Unfolds in front of the corner `c` between the corners a and b of a local shell, if it is obtuse.
+/// Unfolds the mesh in front of the corner `c` between the corners a and b of a local shell, if `c` is obtuse.
 void unfold_corner(Patch& patch, std::uint32_t shell, std::uint32_t c, std::uint32_t a, std::uint32_t b) {
   const Vec3 to_a = patch.positions[a] - patch.positions[c];
   const Vec3 to_b = patch.positions[b] - patch.positions[c];

@@ -1,4 +1,4 @@
-// What lies in front of an obtuse corner, laid flat.
+// Unfolds the mesh in front of obtuse corners, for fast marching.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace prismesh::mesh::spatial {
 
-/// Angle in radians between a local shell's two sides at one of its local nodes; 0 for a line.
+/// Returns the angle between a local shell's two sides at one of its local nodes, in radians; 0 for a line.
 double corner_angle(const Patch& patch, std::uint32_t shell, std::uint32_t node);
 
-/// Fills `patch.unfolded` and its CSR. An obtuse corner may be passed by a front whose support beyond the opposite side comes
-/// later; laying the shells beyond that side flat until a node lies in front of the corner gives two triangles that aren't
-/// obtuse (Kimmel & Sethian, "Computing geodesic paths on manifolds", 1998).
+/// Fills `patch.unfolded` and its CSR. At an obtuse corner a front may arrive before the distances beyond the opposite side are known. So
+/// the shells beyond this side are unfolded into the corner's plane until a node lies in front of the corner: this node and the corner's
+/// sides make two triangles that aren't obtuse [Kimmel 1998]: "Computing geodesic paths on manifolds".
 void unfold_obtuse_corners(Patch& patch);
 
 }  // namespace prismesh::mesh::spatial

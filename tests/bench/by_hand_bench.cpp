@@ -1,4 +1,5 @@
-// Operations by hand in a deck of a million shells: they cost what the structure has changed, however many nodes have moved before.
+// Measures operations by hand in a deck of a million shells: their cost follows what has changed in the structure, however many nodes moved
+// before.
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -14,7 +15,7 @@
 namespace prismesh::mesh::document {
 namespace {
 
-/// The sample, with all its nodes moved if so wished.
+/// The sample; if asked for, with all its nodes moved.
 Document million(bool moved) {
   std::string folder = (std::filesystem::temp_directory_path() / "prismesh-by-hand-XXXXXX").string();
   if (::mkdtemp(folder.data()) == nullptr) std::abort();

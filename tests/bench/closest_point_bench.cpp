@@ -1,4 +1,5 @@
-// How far 100,000 points lie from a surface: the tree built and asked. Run with --benchmark_repetitions for medians.
+// Measures the distances of 100,000 points from a surface: building the tree and searching it. Run with --benchmark_repetitions for
+// medians.
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -18,7 +19,7 @@ ShellSet first_shells(std::size_t count) {
   return shells;
 }
 
-/// Some 2 mm off the surface, in the order of the mesh or in one without any.
+/// Points some 2 mm off the surface, in the order of the mesh or out of order.
 std::vector<Vec3> points_over(std::size_t shells, bool in_order) {
   const Model& model = bench::million_quads();
   std::vector<Vec3> points;

@@ -1,4 +1,4 @@
-// Opening and saving a deck of a million shells: the sample's, or the one PRISMESH_BENCH_DECK names; and its Nastran twin, which
+// Measures opening and saving a deck of a million shells: the sample's, or the one PRISMESH_BENCH_DECK names; and its Nastran twin, which
 // PRISMESH_BENCH_TWIN keeps at the path it gives. With PRISMESH_BENCH_LARGE also the sample of two and of five million shells.
 #include <sys/resource.h>
 #include <unistd.h>
@@ -67,14 +67,14 @@ struct Moment {
   }
 };
 
-/// The most memory that this process has had, in MB.
+/// Peak memory of this process, in MB.
 double peak_mb() {
   struct rusage usage {};
   ::getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) * 1024e-6;
 }
 
-/// Adds up how long opening took to each of its phases' ends.
+/// Sums up the time from the start of opening to the end of each phase.
 class Phases {
  public:
   Phases() : start_(Moment::now()) {}
@@ -151,7 +151,7 @@ void open_the_nastran_twin(benchmark::State& state) {
 }
 BENCHMARK(open_the_nastran_twin)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// Whether opening stays linear: the counter shells_per_cpu_s should hardly fall.
+/// Checks that opening is linear: the counter shells_per_cpu_s should hardly decrease with the size.
 void open_millions(benchmark::State& state) {
   const fs::path deck = place().folder() / "millions.k";
   if (const Result<void> written = write_sample(deck, static_cast<std::size_t>(state.range(0))); !written)

@@ -1,4 +1,4 @@
-// What welds that lie on a million-shell sheet cost: once when it is opened, at the beginning of a drag, and with each edit.
+// Measures what welds on a sheet of a million shells cost: at opening, at the beginning of a drag, and with each edit.
 #include <memory>
 #include <vector>
 
@@ -109,8 +109,8 @@ BENCHMARK(translate_10k_with_welds)->Unit(benchmark::kMillisecond);
 void algebra_on_a_million(benchmark::State& state) {
   const Generation& current = welded_million().current();
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        select::evaluate(current.model, "(part:1 & id>5000 | beam:all) & ~1-900000:10", select::Kind::node, current.relations->names));
+    benchmark::DoNotOptimize(select::evaluate(current.model, "(part:1 & id>5000 | beam:all) & ~1-900000:10", select::EntityKind::node,
+                                              current.relations->names));
 }
 BENCHMARK(algebra_on_a_million)->Unit(benchmark::kMillisecond);
 

@@ -1,4 +1,4 @@
-// What a tick of the device loop costs: the real loop with its real drivers, filter, mask control and page, its devices played at the
+// Measures a tick of the device loop: the real loop with its drivers, filter, mask control and page; the devices are simulated at the
 // other ends of cables in memory. CPU time of the loop alone. Goal: at most 20 us at 200 Hz or more.
 #include <algorithm>
 #include <ctime>

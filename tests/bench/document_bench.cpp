@@ -1,4 +1,4 @@
-// What editing a million-shell document costs: everything here must follow the change, not the model.
+// Measures edits of a document of a million shells: each cost must follow the change, not the model.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>

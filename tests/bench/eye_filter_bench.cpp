@@ -1,5 +1,5 @@
-// Which filter foretells a head best: errors, not times. Each filter on the same seeds: fast turns, sway, leaning, sitting still, each
-// a minute at 60 Hz with 1 mm of noise in each axis; medians over the seeds. `eye_filter_bench 200` takes 200 seeds.
+// Compares how well filters predict the head: errors, not times. Each filter on the same seeds: fast turns, sway, leaning, sitting still,
+// each a minute at 60 Hz with 1 mm of noise in each axis; medians over the seeds. `eye_filter_bench 200` takes 200 seeds.
 // docs/prediction.md holds the table.
 #include <time.h>
 #include <cstdio>

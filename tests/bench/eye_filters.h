@@ -1,4 +1,4 @@
-// Filters that the shipped one was compared with: each as its authors or common use have it, with the values that did best here.
+// Filters that the shipped one is compared with: each as published or in common use, with the parameters that gave the best results here.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What the model server works out of a million shells when a view asks for it: the quality panel's figures, a bar's shells, fields.
+// Measures what the model server computes of a million shells for a view: the quality panel's figures, a bar's shells, fields.
 #include <benchmark/benchmark.h>
 
 #include "daemon/modeld/quality_figures.h"

@@ -1,4 +1,5 @@
-// What a tick of the prism costs: where the mask goes, and the servo's bytes in and out; and the same while it is set up and flies back.
+// Measures a tick of the prism control: where the mask goes, and the servo's bytes in and out; and the same while it is set up and flies
+// back.
 #include <benchmark/benchmark.h>
 
 #include <array>

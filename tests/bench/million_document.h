@@ -1,4 +1,4 @@
-// The document that benchmarks edit: the million quads, complete, and a patch of 10,000 nodes to act on.
+// The document that benchmarks edit: the million quads, complete, and a patch of 10,000 nodes.
 #pragma once
 
 #include <memory>

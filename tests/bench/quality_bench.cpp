@@ -1,5 +1,5 @@
-// All metrics of a million quads in one pass on one thread, beside the Verdict library in the same run where the machine has it; judging
-// the whole model, and again what an edit touched.
+// Measures all metrics of a million quads in one pass on one thread, beside the Verdict library in the same run where the machine has it;
+// judging the whole model, and again what an edit touched.
 #include <algorithm>
 #include <array>
 #include <ctime>
@@ -36,7 +36,7 @@ double cpu_ms() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// The corners of a quad as Verdict wants them.
+/// The corners of a quad in the form that Verdict takes.
 void corners_of(const Model& model, std::size_t shell, double (&coordinates)[4][3]) {
   const ShellNodes& nodes = model.shell_nodes[shell];
   for (std::size_t c = 0; c < 4; ++c) {
@@ -103,7 +103,7 @@ void report_of_a_million(benchmark::State& state) {
 }
 BENCHMARK(report_of_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// What an edit of 10,000 shells costs: those shells only.
+/// An edit of 10,000 shells: only those are measured.
 void rejudge_ten_thousand_of_a_million(benchmark::State& state) {
   const Model& model = bench::million_quads();
   const ChunkedArray<ShellState> judged = judge_model(model, default_criteria(), 5.0);

@@ -1,4 +1,4 @@
-// Relaxing: 1,000 elements in full and from a node, and a million shells.
+// Measures relaxing: 1,000 elements in full and from a node, and a million shells.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

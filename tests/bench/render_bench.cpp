@@ -1,5 +1,5 @@
-// What a picture costs with many selected nodes, and what selecting them costs; on whatever draws (say which: llvmpipe draws on the
-// processor, so that its figures hold the graphics card's work as well).
+// Measures drawing a picture with many selected nodes, and selecting them. Say which renderer drew: llvmpipe draws on the processor, so its
+// times contain the work of a graphics card as well.
 #include <ctime>
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-// Repairing a bump in a model of a million shells: it costs the bump, not the model.
+// Measures repairing a bump in a model of a million shells: the cost follows the bump, not the model.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Selecting on a million shells: outlines, what a view shows, regions.
+// Measures selections on a million shells: outlines, visible nodes, regions.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -63,7 +63,7 @@ const Model& stacked() {
   return model;
 }
 
-/// A wild lasso of 256 corners.
+/// A lasso of 256 corners with an irregular border.
 Outline wild_outline() {
   Outline outline;
   for (int k = 0; k < 256; ++k) {
@@ -88,7 +88,7 @@ void outline_of_256_corners(benchmark::State& state) {
 }
 BENCHMARK(outline_of_256_corners)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// What it would cost without bands: every node against every side, on one core.
+/// The same without bands, for comparison: every node against every side, on one core.
 void outline_of_256_corners_naively(benchmark::State& state) {
   const Outline outline = wild_outline();
   const Model& model = whole();

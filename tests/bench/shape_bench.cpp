@@ -1,4 +1,4 @@
-// Selecting and weighing on a million quads.
+// Measures selections and weights on a million quads.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -135,7 +135,7 @@ BENCHMARK(nearest_node_of_a_million)->Unit(benchmark::kMillisecond)->MeasureProc
 void expression_over_a_million(benchmark::State& state) {
   const Model& model = whole_sheet();
   for (auto _ : state)
-    benchmark::DoNotOptimize(select::evaluate(model, "1-9223372036854775807:10,!1-5000000:20,17-900000", select::Kind::node));
+    benchmark::DoNotOptimize(select::evaluate(model, "1-9223372036854775807:10,!1-5000000:20,17-900000", select::EntityKind::node));
 }
 BENCHMARK(expression_over_a_million)->Unit(benchmark::kMillisecond);
 

@@ -1,4 +1,4 @@
-// What it costs to hand a generation of a million shells to the views: the first time everything, afterwards what changed.
+// Measures publishing a generation of a million shells to the views: first everything, afterwards what changed.
 #include <cstdlib>
 #include <iostream>
 

@@ -1,5 +1,5 @@
-// The working box of the example display: from where each eye sees its own picture all over the panel, as counters; and what it costs
-// to map the phases of a picture.
+// Computes the working box of the example display, as counters: from where each eye sees its own picture all over the panel. Measures
+// mapping the phases of a picture.
 #include <benchmark/benchmark.h>
 
 #include "drivers/display/working_box.h"

@@ -136,5 +136,18 @@ TEST_F(Interrupt, ctrl_c_in_the_middle_of_a_repair_leaves_nothing) {
   for (const std::string& line : screen) EXPECT_EQ(line.find("repair ["), std::string::npos) << line;
 }
 
+TEST_F(Interrupt, ctrl_c_in_the_middle_of_measuring_removes_the_temporary_folder) {
+  std::filesystem::create_directories(folder / "tmp");
+  OnTerminal bench({"/usr/bin/env", "TMPDIR=" + path("tmp"), program(), "bench", "--elements", "20000"});
+  ASSERT_TRUE(bench.shows("measuring [")) << bench.shown();
+  EXPECT_FALSE(std::filesystem::is_empty(folder / "tmp")) << "the sample stands there";
+  bench.press('\x03');
+  EXPECT_EQ(bench.wait_for_exit(), kFailed);
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "tmp"));
+  const std::vector<std::string> screen = screen_after(bench.shown());
+  ASSERT_GE(screen.size(), 2u);
+  EXPECT_EQ(screen[screen.size() - 2], "prismesh bench: cancelled");
+}
+
 }  // namespace
 }  // namespace prismesh::cli

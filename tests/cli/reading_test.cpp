@@ -26,7 +26,7 @@ TEST_F(Cli, info_has_every_field) {
   EXPECT_THAT(text.out, HasSubstr("part:7  plate  24 quads, 0 triangles, 1.2 mm thick"));
 }
 
-TEST_F(Cli, what_lacks_is_a_warning_with_its_place) {
+TEST_F(Cli, what_is_missing_is_a_warning_with_its_place) {
   std::string text = plate_text();
   text.insert(text.find("*PART"), "*INCLUDE\nnowhere.k\n*ELEMENT_SHELL\n" + shell_card(2000, 7, 101, 102, 109, 999));
   const std::string deck = write("plate.k", text);

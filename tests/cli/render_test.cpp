@@ -98,7 +98,7 @@ TEST_F(Render, nothing_is_written_on_failure) {
   ::testing::internal::CaptureStderr();
   const int status = prismesh({"render", deck_, "-o", path("no/folder/here.txt/a.png")}).status;
   ::testing::internal::GetCapturedStderr();
-  EXPECT_EQ(status, kDone) << "folders that lack are made, as for decks";
+  EXPECT_EQ(status, kDone) << "missing folders are made, as for decks";
 }
 
 }  // namespace

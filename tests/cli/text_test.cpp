@@ -29,13 +29,13 @@ TEST_F(Cli, diff_says_its_figures_in_words) {
   text.insert(text.find("*ELEMENT_SHELL"), node_card(999, 50, 50, 50));
   const Outcome outcome = prismesh({"diff", a, write("b.k", text)});
   ASSERT_EQ(outcome.status, kDone) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("nodes: 1 moved (at most 3), 1 added, 0 removed\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("nodes: 1 moved (max 3), 1 added, 0 removed\n"));
   EXPECT_THAT(outcome.out, HasSubstr("elements: 0 added, 1 removed, 0 changed\n"));
   EXPECT_THAT(outcome.out, HasSubstr("lines: 3 changed\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("displacement: at most 3 (node:101), mean 0.0857143 over 35 nodes\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("distance of the second's shells from the first's: at most 3 (node:101)"));
+  EXPECT_THAT(outcome.out, HasSubstr("displacement: max 3 (node:101), mean 0.0857143 over 35 nodes\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("distance of the second deck's shells from the first's: max 3 (node:101)"));
   const Outcome same = prismesh({"diff", a, a});
-  EXPECT_EQ(same.out, "nodes: 0 moved (at most 0), 0 added, 0 removed\nelements: 0 added, 0 removed, 0 changed\nlines: 0 changed\n");
+  EXPECT_EQ(same.out, "nodes: 0 moved (max 0), 0 added, 0 removed\nelements: 0 added, 0 removed, 0 changed\nlines: 0 changed\n");
 }
 
 TEST_F(Cli, diff_counts_the_lines_of_files_that_only_one_deck_has) {

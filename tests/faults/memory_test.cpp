@@ -40,7 +40,7 @@ TEST(Memory, where_there_is_none_the_client_is_told_and_the_document_is_whole) {
                                      ipc::PreviewEdit{parsed(R"({"edit":"relax","scope":"all"})")},
                                      ipc::ApplyEdit{parsed(R"({"edit":"lift","distance":2,"on":"all"})")},
                                      ipc::ApplyEdit{parsed(R"({"edit":"select","expr":"all"})")},
-                                     ipc::Count{"1-20000", mesh::select::Kind::node},
+                                     ipc::Count{"1-20000", mesh::select::EntityKind::node},
                                      ipc::Save{}};
     std::size_t refused = 0;
     for (const ipc::Request& request : requests) {
@@ -90,7 +90,7 @@ TEST(Memory, where_the_loop_has_none_clients_are_told_or_cut_off_and_the_daemon_
     const auto journalled = [&] { return std::get<ipc::DocumentState>(client->call(ipc::GetState{}, 60s).value()).journalled_edits; };
     std::uint64_t edits = journalled();
     const ipc::Request requests[] = {ipc::GetQuality{"warpage", false},
-                                     ipc::Count{"1" + std::string(5'000, ' '), mesh::select::Kind::node},
+                                     ipc::Count{"1" + std::string(5'000, ' '), mesh::select::EntityKind::node},
                                      ipc::GetState{},
                                      ipc::ApplyEdit{lift},
                                      ipc::GetSnapshot{},

@@ -73,7 +73,7 @@ const mesh::select::Names& names() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const auto kind = static_cast<mesh::select::Kind>(data[0] % 3);
+  const auto kind = static_cast<mesh::select::EntityKind>(data[0] % 3);
   const std::string_view text(reinterpret_cast<const char*>(data + 1), size - 1);
   const auto chosen = mesh::select::evaluate(sample(), text, kind, names());
   if (!chosen) {
@@ -88,7 +88,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (chosen->nodes.empty()) return 0;
   std::vector<std::int64_t> ids;
   for (const mesh::NodeIndex node : chosen->nodes) ids.push_back(sample().node_ids[node.value]);
-  const auto again = mesh::select::evaluate(sample(), mesh::select::to_expression(ids), mesh::select::Kind::node);
+  const auto again = mesh::select::evaluate(sample(), mesh::select::to_expression(ids), mesh::select::EntityKind::node);
   require(again.has_value() && again->nodes == chosen->nodes);
   return 0;
 }

@@ -29,10 +29,10 @@ TEST(Messages, requests_survive_a_round_trip) {
   EXPECT_EQ(std::get<DragStep>(step->request).by[0], 1.0 / 3);
   EXPECT_EQ(std::get<DragStep>(step->request).by[2], 1e-300);
 
-  const auto count = decode_request(encode_request(2, Count{"part:3", mesh::select::Kind::part}).value());
+  const auto count = decode_request(encode_request(2, Count{"part:3", mesh::select::EntityKind::part}).value());
   ASSERT_TRUE(count) << count.error().message;
   EXPECT_EQ(std::get<Count>(count->request).expr, "part:3");
-  EXPECT_EQ(std::get<Count>(count->request).kind, mesh::select::Kind::part);
+  EXPECT_EQ(std::get<Count>(count->request).kind, mesh::select::EntityKind::part);
   EXPECT_NE(refusal(R"({"request": "count", "number": 1, "kind": "nodes"})").find("must be \"node\", \"element\" or \"part\""),
             std::string::npos);
 

@@ -131,14 +131,14 @@ TEST_F(Serving, a_drag_is_previewed_and_committed) {
 TEST_F(Serving, an_expression_is_counted_and_selects_nothing) {
   Client client = this->client();
   const ipc::DocumentState before = open(client, folder_.sheet());
-  const auto ask = [&](const std::string& expr, mesh::select::Kind kind) {
+  const auto ask = [&](const std::string& expr, mesh::select::EntityKind kind) {
     return client.call(ipc::Count{expr, kind}, kServingPatience).value();
   };
-  EXPECT_EQ(std::get<ipc::Counted>(ask("1001-1025", mesh::select::Kind::node)).nodes, 25u);
-  const auto parts = std::get<ipc::Counted>(ask("all", mesh::select::Kind::part));
+  EXPECT_EQ(std::get<ipc::Counted>(ask("1001-1025", mesh::select::EntityKind::node)).nodes, 25u);
+  const auto parts = std::get<ipc::Counted>(ask("all", mesh::select::EntityKind::part));
   EXPECT_EQ(parts.parts, before.parts);
   EXPECT_EQ(parts.shells, before.shells);
-  const auto refused = client.call(ipc::Count{"1001,9", mesh::select::Kind::node}, kServingPatience);
+  const auto refused = client.call(ipc::Count{"1001,9", mesh::select::EntityKind::node}, kServingPatience);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().file, "expression");
   EXPECT_EQ(refused.error().line, 6) << "the column";
@@ -152,7 +152,7 @@ TEST_F(Serving, counting_a_long_expression_can_be_cancelled) {
   open(asker, folder_.sheet());
   std::string expression = "1001";
   while (expression.size() < std::size_t{7} << 20) expression += ",1002,!1003";
-  const std::uint64_t number = asker.send(ipc::Count{expression, mesh::select::Kind::node}).value();
+  const std::uint64_t number = asker.send(ipc::Count{expression, mesh::select::EntityKind::node}).value();
   EXPECT_TRUE(asker.call(ipc::Cancel{}, kServingPatience)) << "it is under way";
   for (const auto until = std::chrono::steady_clock::now() + kServingPatience; std::chrono::steady_clock::now() < until;) {
     const auto reply = asker.next_reply();

@@ -350,7 +350,7 @@ TEST_F(BenchRefusals, refuses_requests_without_an_answer_with_a_sentence) {
   EXPECT_THAT(words(handler_.quality({"warpege", false}).answer), HasSubstr("\"warpage\""));
   EXPECT_THAT(words(handler_.find({"warpege", std::nullopt, std::nullopt, false}).answer), HasSubstr("\"warpage\""));
   EXPECT_THAT(words(handler_.preview({json_edit(R"({"edit":"translate","by":[0,0,1],"on":"9"})")}).answer), HasSubstr("no node 9"));
-  EXPECT_THAT(words(handler_.count({"9", mesh::select::Kind::node}).answer), HasSubstr("no node 9"));
+  EXPECT_THAT(words(handler_.count({"9", mesh::select::EntityKind::node}).answer), HasSubstr("no node 9"));
   EXPECT_THAT(words(handler_.begin_drag(1, json_edit(R"({"edit":"grow"})")).answer), HasSubstr("only shaping edits can be dragged"));
   EXPECT_THAT(words(handler_.begin_drag(1, json_edit(R"({"edit":"translate","by":[0,0,1],"on":"9"})")).answer), HasSubstr("no node 9"));
   const auto go_on = [](double) { return true; };

@@ -157,7 +157,7 @@ std::size_t expect_sets_inherited(const Document& document, const Document& agai
   for (const select::NamedSet& set : select::find_sets(*opened.relations->names.references)) {
     const bool of_nodes = set.kind == Referred::node_set;
     if (!of_nodes && set.kind != Referred::shell_set && set.kind != Referred::element_set) continue;
-    const select::Kind kind = of_nodes ? select::Kind::node : select::Kind::element;
+    const select::EntityKind kind = of_nodes ? select::EntityKind::node : select::EntityKind::element;
     const auto before = select::evaluate(opened.model, set.label(), kind, opened.relations->names);
     if (!before) continue;  // of things that aren't in the model
     const auto after = select::evaluate(again.current().model, set.label(), kind, again.current().relations->names);

@@ -170,7 +170,7 @@ TEST(Delta, says_in_its_bytes_what_changes) {
   EXPECT_EQ(marks, "1100030000000000");
   EXPECT_EQ(next.selected_nodes, 3u);
   EXPECT_EQ(next.selected_shells, 3u);
-  EXPECT_EQ(next.selection_kind, select::Kind::element);
+  EXPECT_EQ(next.selection_kind, select::EntityKind::element);
   EXPECT_EQ(next.parts->front(), (PartState{false, true}));
 }
 

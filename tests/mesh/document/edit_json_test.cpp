@@ -68,7 +68,7 @@ TEST(EditJson, defaults_are_those_of_the_contract) {
   EXPECT_FALSE(translate.shaping.grab);
   EXPECT_FALSE(translate.shaping.max_move);
   const auto select = std::get<Select>(parse_edit(R"({"edit":"select","expr":"1"})").value());
-  EXPECT_EQ(select.kind, select::Kind::node);
+  EXPECT_EQ(select.kind, select::EntityKind::node);
   EXPECT_EQ(select.mode, SelectMode::set);
   EXPECT_EQ(std::get<SelectRegion>(parse_edit(R"({"edit":"select_region","at":1})").value()).angle, 30);
   EXPECT_EQ(std::get<Grow>(parse_edit(R"({"edit":"grow"})").value()).rings, 1);

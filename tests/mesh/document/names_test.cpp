@@ -126,7 +126,7 @@ TEST_F(NamesTest, real_decks_sets_have_their_members) {
     const Result<Document> document = open(std::filesystem::path(models) / each.deck, OpenOptions{});
     ASSERT_TRUE(document) << document.error().text();
     const auto chosen =
-        select::evaluate(document->current().model, each.expression, select::Kind::node, document->current().relations->names);
+        select::evaluate(document->current().model, each.expression, select::EntityKind::node, document->current().relations->names);
     ASSERT_TRUE(chosen) << each.deck << ": " << chosen.error().text();
     EXPECT_EQ(chosen->nodes.size(), each.nodes) << each.deck << " " << each.expression;
   }

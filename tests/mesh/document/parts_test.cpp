@@ -44,7 +44,7 @@ TEST(Parts, hiding_deselects_of_elements_the_hidden_ones_and_their_nodes_only) {
   const EditReport report = must_apply(document, R"({"edit":"hide","on":"2"})");
   EXPECT_EQ(document.current().selected_shells, 1u);
   EXPECT_EQ(document.current().selected_nodes, 4u);
-  EXPECT_EQ(document.current().selection_kind, select::Kind::element);
+  EXPECT_EQ(document.current().selection_kind, select::EntityKind::element);
   EXPECT_THAT(report.notes, ElementsAre("2 hidden nodes deselected"));
   EXPECT_THAT(must_apply(document, R"({"edit":"hide","on":"4"})").notes, IsEmpty()) << "nothing of it was selected";
   EXPECT_THAT(must_apply(document, R"({"edit":"lock","on":"1"})").notes, IsEmpty()) << "it can still be seen";

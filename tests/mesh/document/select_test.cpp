@@ -81,7 +81,7 @@ TEST(Select, elements_stay_elements_until_nodes_come) {
   must_apply(document, R"({"edit":"select","expr":"2","kind":"element","mode":"subtract"})");
   EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 6, 7));
   must_apply(document, R"({"edit":"select","expr":"25","mode":"add"})");
-  EXPECT_EQ(document.current().selection_kind, select::Kind::node);
+  EXPECT_EQ(document.current().selection_kind, select::EntityKind::node);
   EXPECT_EQ(document.current().selected_shells, 0u);
   EXPECT_THAT(selected_ids(document), ElementsAre(1, 2, 6, 7, 25));
 }
@@ -102,7 +102,7 @@ TEST(Select, region_stops_at_a_crease) {
       test::make_grid(8, 2, [](int i, int j) { return i <= 4 ? Vec3(5.0 * i, 5.0 * j, 0) : Vec3(20, 5.0 * j, 5.0 * (i - 4)); }));
   must_apply(document, R"({"edit":"select_region","at":[0,0,1]})");
   EXPECT_EQ(document.current().selected_shells, 8u);
-  EXPECT_EQ(document.current().selection_kind, select::Kind::element);
+  EXPECT_EQ(document.current().selection_kind, select::EntityKind::element);
   must_apply(document, R"({"edit":"select_region","at":9,"mode":"add"})");
   EXPECT_EQ(document.current().selected_shells, 16u);
   must_apply(document, R"({"edit":"select_region","at":1,"angle":91})");
@@ -119,7 +119,7 @@ TEST(Select, region_by_part_piece_and_free_edge) {
   must_apply(document, R"({"edit":"select_region","at":122,"by":"piece"})");
   EXPECT_EQ(document.current().selected_shells, 32u);
   must_apply(document, R"({"edit":"select_region","at":122,"by":"free_edge"})");
-  EXPECT_EQ(document.current().selection_kind, select::Kind::node);
+  EXPECT_EQ(document.current().selection_kind, select::EntityKind::node);
   EXPECT_EQ(selected_ids(document).size(), 24u);
   must_apply(document, R"({"edit":"hide","on":"2"})");
   must_apply(document, R"({"edit":"select_region","at":122,"by":"piece"})");

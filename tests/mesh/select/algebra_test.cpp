@@ -103,20 +103,20 @@ class Algebra : public ::testing::Test {
     names_.file_of_shell = [](ShellIndex shell) { return shell.value < 2 ? 1u : 0u; };
   }
 
-  Ids of(std::string_view expression, Kind kind = Kind::node) {
+  Ids of(std::string_view expression, EntityKind kind = EntityKind::node) {
     const auto chosen = evaluate(model_, expression, kind, names_);
     EXPECT_TRUE(chosen.has_value()) << expression << ": " << chosen.error().text();
     Ids ids;
     if (!chosen) return ids;
-    if (kind == Kind::node)
+    if (kind == EntityKind::node)
       for (const NodeIndex node : chosen->nodes) ids.push_back(model_.node_ids[node.value]);
-    if (kind == Kind::element)
+    if (kind == EntityKind::element)
       for (const ShellIndex shell : chosen->shells) ids.push_back(model_.shell_ids[shell.value]);
-    if (kind == Kind::part)
+    if (kind == EntityKind::part)
       for (const PartIndex part : chosen->parts) ids.push_back((*model_.parts)[part.value].id);
     return ids;
   }
-  std::string error_of(std::string_view expression, Kind kind = Kind::node) {
+  std::string error_of(std::string_view expression, EntityKind kind = EntityKind::node) {
     const auto chosen = evaluate(model_, expression, kind, names_);
     return chosen ? "no error" : chosen.error().text();
   }
@@ -134,10 +134,10 @@ TEST_F(Algebra, joins_meets_and_turns_over) {
   EXPECT_EQ(of("~part:3 & ~node:1000-9223372036854775807"), (Ids{70, 80, 90}));
   EXPECT_EQ(of("~~10"), (Ids{10}));
   EXPECT_EQ(of("part:3 & part:7"), (Ids{40, 50, 60}));
-  EXPECT_EQ(of("part:3 & part:7", Kind::element), Ids());
-  EXPECT_EQ(of("~part:3", Kind::element), (Ids{205, 206}));
-  EXPECT_EQ(of("~3", Kind::part), (Ids{7, 8}));
-  EXPECT_EQ(of("!3", Kind::part), Ids());  // as ever: takes away from nothing
+  EXPECT_EQ(of("part:3 & part:7", EntityKind::element), Ids());
+  EXPECT_EQ(of("~part:3", EntityKind::element), (Ids{205, 206}));
+  EXPECT_EQ(of("~3", EntityKind::part), (Ids{7, 8}));
+  EXPECT_EQ(of("!3", EntityKind::part), Ids());  // as ever: takes away from nothing
 }
 
 TEST_F(Algebra, binds_meeting_before_joining_before_commas) {
@@ -176,9 +176,9 @@ TEST_F(Algebra, compares_ids) {
   EXPECT_EQ(of("id!=10").size(), 10u);
   EXPECT_EQ(of("id>=9223372036854775807"), (Ids{9223372036854775807}));
   EXPECT_EQ(of("shell:id>205"), (Ids{50, 60, 90}));
-  EXPECT_EQ(of("shell:id!=100", Kind::element), (Ids{101, 205, 206}));
-  EXPECT_EQ(of("part:id<=3", Kind::element), (Ids{100, 101}));
-  EXPECT_EQ(of("id>3", Kind::part), (Ids{7, 8}));
+  EXPECT_EQ(of("shell:id!=100", EntityKind::element), (Ids{101, 205, 206}));
+  EXPECT_EQ(of("part:id<=3", EntityKind::element), (Ids{100, 101}));
+  EXPECT_EQ(of("id>3", EntityKind::part), (Ids{7, 8}));
   EXPECT_EQ(error_of("id<10"), "expression:1: no node has such an id; the nearest is node:10");
   EXPECT_EQ(error_of("beam:id!=9"), "expression:1: no beam has such an id; the nearest is beam:9");
   EXPECT_EQ(error_of("id>9223372036854775807"), "expression:3: no id is greater than 9223372036854775807");
@@ -191,10 +191,10 @@ TEST_F(Algebra, names_sets_by_id_and_by_name) {
   EXPECT_EQ(of("set:17-18"), (Ids{10, 20, 30, 90}));
   EXPECT_EQ(of("set:30"), (Ids{10, 50, 90}));
   EXPECT_EQ(of("set:skin"), (Ids{20, 30, 50, 60, 90}));
-  EXPECT_EQ(of("set:21", Kind::element), (Ids{101, 206}));
+  EXPECT_EQ(of("set:21", EntityKind::element), (Ids{101, 206}));
   EXPECT_EQ(of("part_set:17"), (Ids{40, 50, 60, 70, 80, 90}));
-  EXPECT_EQ(of("set:17", Kind::part), (Ids{7}));
-  EXPECT_EQ(of("node_set:17", Kind::element), (Ids{100, 101, 206}));
+  EXPECT_EQ(of("set:17", EntityKind::part), (Ids{7}));
+  EXPECT_EQ(of("node_set:17", EntityKind::element), (Ids{100, 101, 206}));
   EXPECT_EQ(of("beam_set:50"), (Ids{90, 1000}));
   EXPECT_EQ(of("set:id<19"), (Ids{10, 20, 30, 90}));
   EXPECT_EQ(of("set:18-60:12"), (Ids{10, 30, 50, 90}));  // 18 and 30; 60 holds nothing
@@ -204,7 +204,7 @@ TEST_F(Algebra, follows_sets_made_of_sets) {
   EXPECT_EQ(of("set:31"), (Ids{10, 20, 30, 90}));
   EXPECT_EQ(of("set:32"), (Ids{10, 90}));
   EXPECT_EQ(of("set:33"), (Ids{10, 20, 30, 40, 60}));  // part 3 without node 50
-  EXPECT_EQ(error_of("10,set:34"), "expression:4: node_set:34 is made of itself, or of sets within sets deeper than 32");
+  EXPECT_EQ(error_of("10,set:34"), "expression:4: node_set:34 contains itself, or contains sets nested deeper than 32 levels");
 }
 
 TEST(SetsOfSets, take_away_what_inner_sets_hold) {
@@ -215,7 +215,7 @@ TEST(SetsOfSets, take_away_what_inner_sets_hold) {
   sets.name(added, Referred::node_set, Role::list, 1).name(added, Referred::node_set, Role::single, 2, 2, 1, true);
   const Names names{&sets.finish(), {}, {}, {}};
   const Model model = sample();
-  const auto chosen = evaluate(model, "set:3", Kind::node, names);
+  const auto chosen = evaluate(model, "set:3", EntityKind::node, names);
   ASSERT_TRUE(chosen.has_value()) << chosen.error().text();
   ASSERT_EQ(chosen->nodes.size(), 1u);
   EXPECT_EQ(model.node_ids[chosen->nodes[0].value], 10);
@@ -230,18 +230,18 @@ std::string error_of_chain(std::int64_t last, int times) {
   }
   sets.name(sets.card("SET_NODE_LIST", last, "", Referred::node_set), Referred::node, Role::list, 10);
   const Names names{&sets.finish(), {}, {}, {}};
-  const auto chosen = evaluate(sample(), "set:1", Kind::node, names);
+  const auto chosen = evaluate(sample(), "set:1", EntityKind::node, names);
   return chosen ? "" : chosen.error().text();
 }
 
 TEST(SetsOfSets, go_32_deep_and_no_deeper) {
   EXPECT_EQ(error_of_chain(33, 1), "");
-  EXPECT_EQ(error_of_chain(34, 1), "expression:1: node_set:34 is made of itself, or of sets within sets deeper than 32");
+  EXPECT_EQ(error_of_chain(34, 1), "expression:1: node_set:34 contains itself, or contains sets nested deeper than 32 levels");
 }
 
 TEST(SetsOfSets, that_multiply_are_refused) {
   EXPECT_EQ(error_of_chain(10, 2), "");
-  EXPECT_NE(error_of_chain(20, 2).find("is made of too many sets"), std::string::npos);
+  EXPECT_NE(error_of_chain(20, 2).find("contains too many sets"), std::string::npos);
 }
 
 TEST_F(Algebra, takes_any_number_of_parentheses_beside_each_other) {
@@ -252,15 +252,15 @@ TEST_F(Algebra, takes_any_number_of_parentheses_beside_each_other) {
 
 TEST_F(Algebra, names_the_sets_of_the_other_formats) {
   EXPECT_EQ(of("set:70"), (Ids{10}));
-  EXPECT_EQ(of("set:70", Kind::element), (Ids{100}));
+  EXPECT_EQ(of("set:70", EntityKind::element), (Ids{100}));
   EXPECT_EQ(of("set:ntop"), (Ids{70, 80}));
-  EXPECT_EQ(of("set:rail-mesh", Kind::element), (Ids{205, 206}));
+  EXPECT_EQ(of("set:rail-mesh", EntityKind::element), (Ids{205, 206}));
   EXPECT_EQ(of("element_set:\"RAIL-MESH\" & ~part:3"), (Ids{70, 80, 90}));
   EXPECT_EQ(of("set:80"), (Ids{60}));
   EXPECT_EQ(of("set:gruppe"), (Ids{60}));
   // Nastran's are of what their numbers name
-  EXPECT_EQ(of("part_set:71", Kind::element), (Ids{205, 206}));
-  EXPECT_EQ(of("element_set:72", Kind::element), (Ids{101}));
+  EXPECT_EQ(of("part_set:71", EntityKind::element), (Ids{205, 206}));
+  EXPECT_EQ(of("element_set:72", EntityKind::element), (Ids{101}));
   EXPECT_EQ(error_of("node_set:71"), "expression:1: there is no node set 71; the nearest is node_set:70");
 }
 
@@ -281,11 +281,11 @@ TEST_F(Algebra, says_which_set_is_near) {
 
 TEST_F(Algebra, names_what_stands_in_a_file) {
   EXPECT_EQ(of("file:sub/bumper.k"), (Ids{10, 20, 30, 40, 50, 60}));
-  EXPECT_EQ(of("file:bumper.k", Kind::element), (Ids{100, 101}));
-  EXPECT_EQ(of("file:BUMPER.K", Kind::part), (Ids{3}));
+  EXPECT_EQ(of("file:bumper.k", EntityKind::element), (Ids{100, 101}));
+  EXPECT_EQ(of("file:BUMPER.K", EntityKind::part), (Ids{3}));
   EXPECT_EQ(of("file:\"roof/welds.k\""), (Ids{90, 1000}));
-  EXPECT_EQ(of("file:roof/welds.k", Kind::part), (Ids{8}));
-  EXPECT_EQ(error_of("file:roof/welds.k", Kind::element), "expression:1: no shell stands in the file \"roof/welds.k\"");
+  EXPECT_EQ(of("file:roof/welds.k", EntityKind::part), (Ids{8}));
+  EXPECT_EQ(error_of("file:roof/welds.k", EntityKind::element), "expression:1: no shell is in the file \"roof/welds.k\"");
   EXPECT_EQ(error_of("file:welds.k"), "expression:1: several files are called \"welds.k\": write \"roof/welds.k\" or \"floor/welds.k\"");
   EXPECT_EQ(error_of("10,file:bumpr.k"), "expression:4: there is no file \"bumpr.k\" in the deck; did you mean \"bumper.k\"?");
   EXPECT_EQ(error_of("file:umper.k"), "expression:1: there is no file \"umper.k\" in the deck; did you mean \"bumper.k\"?");
@@ -302,13 +302,13 @@ TEST_F(Algebra, says_when_a_range_of_sets_holds_nothing) {
 }
 
 TEST_F(Algebra, names_parts_by_their_names) {
-  EXPECT_EQ(of("part:\"Part 7\"", Kind::element), (Ids{205, 206}));
+  EXPECT_EQ(of("part:\"Part 7\"", EntityKind::element), (Ids{205, 206}));
   EXPECT_EQ(error_of("part:'part 5'"), "expression:1: there is no part \"part 5\"; did you mean \"part 3\"?");
 }
 
 TEST_F(Algebra, tells_surfaces_from_nodes) {
   const auto of_surfaces = [&](std::string_view expression) {
-    return evaluate(model_, expression, Kind::node, names_).value().of_surfaces;
+    return evaluate(model_, expression, EntityKind::node, names_).value().of_surfaces;
   };
   for (const char* expression : {"part:3", "shell:100 & part:3", "set:skin", "part_set:17", "file:bumper.k"})
     EXPECT_TRUE(of_surfaces(expression)) << expression;
@@ -320,25 +320,25 @@ TEST_F(Algebra, tells_surfaces_from_nodes) {
 TEST_F(Algebra, points_at_what_it_cannot_read) {
   const std::string deep(40, '(');
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"(10", "expression:4: the expression ends where a ) should stand: the ( at column 1 is open"},
+      {"(10", "expression:4: the expression ends where a ) is expected: the ( at column 1 is open"},
       {"10)", "expression:3: this ) closes no ("},
       {"(10 20)", "expression:5: unexpected '2' within parentheses: items are separated by commas"},
-      {"()", "expression:2: unexpected ')' where an id should stand"},
-      {"10&", "expression:4: the expression ends where an id should stand"},
-      {"10|,20", "expression:4: unexpected ',' where an id should stand"},
-      {"10,!!20", "expression:5: unexpected '!' where an id should stand"},
+      {"()", "expression:2: unexpected ')' where an id is expected"},
+      {"10&", "expression:4: the expression ends where an id is expected"},
+      {"10|,20", "expression:4: unexpected ',' where an id is expected"},
+      {"10,!!20", "expression:5: unexpected '!' where an id is expected"},
       {"id", "expression:3: a comparison must follow \"id\", as in id>5000"},
       {"id~5", "expression:3: a comparison must follow \"id\", as in id>5000"},
-      {"id>", "expression:4: the expression ends where an id should stand"},
-      {"id>x", "expression:4: unexpected 'x' where an id should stand"},
+      {"id>", "expression:4: the expression ends where an id is expected"},
+      {"id>x", "expression:4: unexpected 'x' where an id is expected"},
       {"it>5", "expression:1: unknown word \"it\"; did you mean \"id\"?"},
       {"shel:3", "expression:1: unknown word \"shel\"; did you mean \"shell\"?"},
       {"sett:3", "expression:1: unknown word \"sett\"; did you mean \"set\"?"},
       {"set:\"open", "expression:5: the name that begins here has no closing '\"'"},
       {"set:\"\"", "expression:5: there is no name between the quotes"},
-      {"set:", "expression:5: the expression ends where an id should stand"},
-      {"file:", "expression:6: the expression ends where a name should stand"},
-      {"file: ,", "expression:7: a name should stand here"},
+      {"set:", "expression:5: the expression ends where an id is expected"},
+      {"file:", "expression:6: the expression ends where a name is expected"},
+      {"file: ,", "expression:7: a name is expected here"},
       {"file", "expression:5: a colon and a name must follow \"file\", as in file:bumper.k"},
       {"10,part:x", "expression:9: an id or all must follow \"part:\", not \"x\""},
       {deep, "expression:33: parentheses go deeper than 32"},

@@ -39,18 +39,18 @@ Ids shell_ids(const Model& model, const Chosen& chosen) {
 }
 
 Ids nodes_named(const Model& model, std::string_view expression) {
-  const auto chosen = evaluate(model, expression, Kind::node);
+  const auto chosen = evaluate(model, expression, EntityKind::node);
   EXPECT_TRUE(chosen.has_value()) << expression << ": " << chosen.error().text();
   if (!chosen) return {};
   EXPECT_TRUE(chosen->shells.empty());
   return node_ids(model, *chosen);
 }
-Ids shells_named(const Model& model, std::string_view expression, Kind kind = Kind::element) {
+Ids shells_named(const Model& model, std::string_view expression, EntityKind kind = EntityKind::element) {
   const auto chosen = evaluate(model, expression, kind);
   EXPECT_TRUE(chosen.has_value()) << expression << ": " << chosen.error().text();
   return chosen ? shell_ids(model, *chosen) : Ids();
 }
-std::string error_of(const Model& model, std::string_view expression, Kind kind = Kind::node) {
+std::string error_of(const Model& model, std::string_view expression, EntityKind kind = EntityKind::node) {
   const auto chosen = evaluate(model, expression, kind);
   return chosen ? "no error" : chosen.error().text();
 }
@@ -90,14 +90,14 @@ TEST(Expression, names_all) {
   EXPECT_EQ(nodes_named(model, "shell:all").size(), 9u);
   EXPECT_EQ(nodes_named(model, "all,!all"), Ids());
   EXPECT_EQ(shells_named(model, "all"), (Ids{100, 101, 205, 206}));
-  EXPECT_EQ(shells_named(model, "all", Kind::part), (Ids{100, 101, 205, 206}));
+  EXPECT_EQ(shells_named(model, "all", EntityKind::part), (Ids{100, 101, 205, 206}));
 }
 
 TEST(Expression, names_nothing_that_was_removed) {
   Model model = two_part_model();
   remove_shell(model, model.find_shell(206));
   remove_node(model, model.find_node(90));
-  const auto count = [&](std::string_view expression, Kind kind) {
+  const auto count = [&](std::string_view expression, EntityKind kind) {
     const auto chosen = evaluate(model, expression, kind);
     EXPECT_TRUE(chosen.has_value()) << chosen.error().text();
     return chosen ? std::pair(chosen->nodes.size(), chosen->shells.size()) : std::pair<std::size_t, std::size_t>();
@@ -106,8 +106,8 @@ TEST(Expression, names_nothing_that_was_removed) {
   EXPECT_EQ(shells_named(model, "all"), shells);
   EXPECT_EQ(shells_named(model, "~shell:100"), (Ids{101, 205}));
   EXPECT_EQ(shells_named(model, "part:7"), Ids{205});
-  EXPECT_EQ(shells_named(model, "part:7", Kind::part), Ids{205});
-  EXPECT_EQ(count("~node:10", Kind::node).first, model.node_count() - 2);
+  EXPECT_EQ(shells_named(model, "part:7", EntityKind::part), Ids{205});
+  EXPECT_EQ(count("~node:10", EntityKind::node).first, model.node_count() - 2);
 }
 
 TEST(Expression, takes_the_mid_side_nodes_of_shells) {
@@ -132,17 +132,17 @@ TEST(Expression, takes_the_class_of_each_item) {
   EXPECT_EQ(shells_named(model, "205"), (Ids{205}));
   EXPECT_EQ(shells_named(model, "part:3,!100"), (Ids{101}));
   EXPECT_EQ(shells_named(model, "node:60"), (Ids{101, 206}));
-  EXPECT_EQ(shells_named(model, "3", Kind::part), (Ids{100, 101}));
-  EXPECT_EQ(shells_named(model, "shell:101,node:70", Kind::part), (Ids{100, 101, 205, 206}));
+  EXPECT_EQ(shells_named(model, "3", EntityKind::part), (Ids{100, 101}));
+  EXPECT_EQ(shells_named(model, "shell:101,node:70", EntityKind::part), (Ids{100, 101, 205, 206}));
 }
 
 TEST(Expression, gives_the_nodes_of_elements_and_the_parts) {
   const Model model = two_part_model();
-  const auto shells = evaluate(model, "100,206", Kind::element);
+  const auto shells = evaluate(model, "100,206", EntityKind::element);
   ASSERT_TRUE(shells);
   EXPECT_EQ(node_ids(model, *shells), (Ids{10, 20, 40, 50, 60, 90}));
   EXPECT_TRUE(shells->parts.empty());
-  const auto parts = evaluate(model, "3,8,55", Kind::part);
+  const auto parts = evaluate(model, "3,8,55", EntityKind::part);
   ASSERT_TRUE(parts);
   EXPECT_EQ(parts->parts, (std::vector{PartIndex(std::size_t{0}), PartIndex(std::size_t{2}), PartIndex(std::size_t{3})}));
   EXPECT_EQ(shell_ids(model, *parts), (Ids{100, 101}));
@@ -168,10 +168,10 @@ TEST(Expression, says_what_names_nothing_and_what_is_near) {
   EXPECT_EQ(error_of(model, "33-39"), "expression:1: no node lies in 33-39; the nearest is node:40");
   EXPECT_EQ(error_of(model, "11-59:10"), "expression:1: no node lies in 11-59:10; the nearest is node:20");
   EXPECT_EQ(error_of(model, "part:4"), "expression:1: there is no part 4; the nearest is part:3");
-  EXPECT_EQ(error_of(model, "99", Kind::element), "expression:1: there is no shell 99; the nearest is shell:100");
-  EXPECT_EQ(error_of(model, "1", Kind::part), "expression:1: there is no part 1; the nearest is part:3");
+  EXPECT_EQ(error_of(model, "99", EntityKind::element), "expression:1: there is no shell 99; the nearest is shell:100");
+  EXPECT_EQ(error_of(model, "1", EntityKind::part), "expression:1: there is no part 1; the nearest is part:3");
   EXPECT_EQ(error_of(model, "sph:1"), "expression:1: there is no sph in the model");
-  EXPECT_EQ(error_of(model, "100,beam:9", Kind::element),
+  EXPECT_EQ(error_of(model, "100,beam:9", EntityKind::element),
             "expression:5: only shells can be selected as elements; select beam nodes with kind node");
 }
 
@@ -180,26 +180,26 @@ TEST(Expression, points_at_what_it_cannot_read) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "expression:1: the expression is empty: write ids such as 1-100,205 or all"},
       {"   ", "expression:1: the expression is empty: write ids such as 1-100,205 or all"},
-      {"10,", "expression:4: the expression ends where an id should stand"},
-      {"10,,20", "expression:4: unexpected ',' where an id should stand"},
+      {"10,", "expression:4: the expression ends where an id is expected"},
+      {"10,,20", "expression:4: unexpected ',' where an id is expected"},
       {"10 20", "expression:4: unexpected '2': items are separated by commas"},
-      {"10-", "expression:4: the expression ends where the range's last id should stand"},
-      {"10-x", "expression:4: unexpected 'x' where the range's last id should stand"},
-      {"-5", "expression:1: unexpected '-' where an id should stand"},
+      {"10-", "expression:4: the expression ends where the range's last id is expected"},
+      {"10-x", "expression:4: unexpected 'x' where the range's last id is expected"},
+      {"-5", "expression:1: unexpected '-' where an id is expected"},
       {"50-10", "expression:1: the range runs backwards: write 10-50"},
       {"10-50:0", "expression:7: a range's step must be at least 1"},
-      {"10-50:", "expression:7: the expression ends where the range's step should stand"},
+      {"10-50:", "expression:7: the expression ends where the range's step is expected"},
       {"10:5", "expression:3: a step needs a range, as in 1-1000:10"},
       {"prt:3", "expression:1: unknown word \"prt\"; did you mean \"part\"?"},
       {"10,al", "expression:4: unknown word \"al\"; did you mean \"all\"?"},
       {"part", "expression:5: a colon and an id must follow \"part\", as in part:3"},
-      {"part:", "expression:6: the expression ends where an id should stand"},
+      {"part:", "expression:6: the expression ends where an id is expected"},
       {"part:node:3", "expression:6: an id or all must follow \"part:\", not \"node\""},
       {"10;20", "expression:3: unexpected ';': items are separated by commas"},
-      {"10,!!20", "expression:5: unexpected '!' where an id should stand"},
+      {"10,!!20", "expression:5: unexpected '!' where an id is expected"},
       {"99999999999999999999", "expression:1: the number is too large: ids end at 9223372036854775807"},
       {"10-9223372036854775808", "expression:4: the number is too large: ids end at 9223372036854775807"},
-      {"10,\xc3\xa9", "expression:4: unexpected the byte \\xc3 where an id should stand"},
+      {"10,\xc3\xa9", "expression:4: unexpected the byte \\xc3 where an id is expected"},
       {std::string("10\0", 3), "expression:3: unexpected the byte \\x00: items are separated by commas"},
   };
   for (const auto& [expression, message] : cases) EXPECT_EQ(error_of(model, expression), message) << expression;

@@ -18,7 +18,7 @@ Model sheet() {
   return test::make_grid(10, 4, [](int i, int j) { return Vec3(5.0 * (i - 5), 5.0 * j, 0); });
 }
 
-TEST(Mirror, finds_the_node_at_the_mirrored_place) {
+TEST(Mirror, finds_the_node_at_the_mirrored_position) {
   const Model model = sheet();
   NodeSet nodes;
   for (int j = 0; j <= 4; ++j)
@@ -149,7 +149,7 @@ TEST(Mirror, images_move_as_mirror_images_to_the_bit) {
   std::vector<std::uint32_t> images;
   for (int i = 0; i < 200; ++i) {
     const Vec3 place(std::abs(std::sin(i / 2)) * 9, i / 2, std::cos(i / 2));
-    start.push_back(i % 2 == 0 ? place : kAcrossX.mirrored_place(place));
+    start.push_back(i % 2 == 0 ? place : kAcrossX.mirrored_position(place));
     moves.emplace_back(std::sin(3 * i), std::cos(7 * i), std::sin(11 * i));
     weight.push_back(i % 7 == 0 ? 0 : std::abs(std::sin(5 * i)));
     if (weight.back() == 0) moves.back().setZero();
@@ -166,7 +166,7 @@ TEST(Mirror, finds_images_in_a_plane_anywhere) {
   for (int side = 0; side < 2; ++side)
     for (int k = 0; k < 9; ++k) {
       const Vec3 place(5 + 4 * (k % 3), 20 + 3 * (k / 3), 0.5 * k);
-      points.push_back(side == 0 ? place : plane.mirrored_place(place));
+      points.push_back(side == 0 ? place : plane.mirrored_position(place));
     }
   for (const int first : {0, 9})
     for (const int a : {0, 1, 3, 4}) shells.push_back({first + a, first + a + 1, first + a + 4, first + a + 3});

@@ -15,7 +15,7 @@ const Axis kAboutZ{Vec3::Zero(), Vec3::UnitZ()};
 std::vector<Vec3> rotated(const std::vector<Vec3>& start, const std::vector<double>& weight, const Axis& axis, double degrees,
                           std::optional<double> max_move = std::nullopt) {
   std::vector<Vec3> out(start.size());
-  rotate(start, weight, axis, degrees, max_move, out);
+  rotate(start, weight, {axis, degrees, max_move}, out);
   return out;
 }
 
@@ -79,7 +79,7 @@ TEST(Rotate, a_bent_strip_keeps_its_length_where_it_moves_as_one) {
 TEST(Rotate, a_limit_stops_on_the_circle) {
   std::vector<Vec3> out(3);
   const std::vector<Vec3> start{{1, 0, 0}, {10, 0, 0}, {100, 0, 7}};
-  EXPECT_EQ(rotate(start, std::vector<double>{1, 1, 1}, kAboutZ, -170, 3.0, out), 2u);
+  EXPECT_EQ(rotate(start, std::vector<double>{1, 1, 1}, {kAboutZ, -170, 3.0}, out), 2u);
   EXPECT_NEAR((out[0] - start[0]).norm(), 2 * std::sin(85 * M_PI / 180), 1e-14);
   for (const std::size_t i : {1u, 2u}) {
     EXPECT_NEAR((out[i] - start[i]).norm(), 3, 1e-12);
@@ -106,14 +106,14 @@ TEST(Rotate, the_limit_counts_from_the_axis_wherever_it_is) {
   const Axis axis{Vec3(100, 0, -4), Vec3::UnitZ()};
   const std::vector<Vec3> start{{110, 0, 5}, {110, 0, 5}};
   std::vector<Vec3> out(2);
-  EXPECT_EQ(rotate(start, std::vector<double>{1, 0.1}, axis, 170, 3.0, out), 1u) << "a tenth of the turn goes 2.96";
+  EXPECT_EQ(rotate(start, std::vector<double>{1, 0.1}, {axis, 170, 3.0}, out), 1u) << "a tenth of the turn goes 2.96";
   EXPECT_NEAR((out[0] - start[0]).norm(), 3, 1e-12);
   EXPECT_NEAR((out[0] - Vec3(100, 0, 5)).norm(), 10, 1e-12);
   EXPECT_GT(out[0].y(), 0);
   EXPECT_NEAR((out[1] - start[1]).norm(), 2 * 10 * std::sin(8.5 * M_PI / 180), 1e-12);
-  EXPECT_EQ(rotate(start, std::vector<double>{1, 0.1}, axis, 180, 15.0, out), 1u);
+  EXPECT_EQ(rotate(start, std::vector<double>{1, 0.1}, {axis, 180, 15.0}, out), 1u);
   EXPECT_NEAR((out[0] - start[0]).norm(), 15, 1e-12) << "farther than the axis, less far than the circle is wide";
-  EXPECT_EQ(rotate(start, std::vector<double>{1, 1}, axis, 180, 20.0, out), 0u) << "no node can be farther than the circle is wide";
+  EXPECT_EQ(rotate(start, std::vector<double>{1, 1}, {axis, 180, 20.0}, out), 0u) << "no node can be farther than the circle is wide";
   EXPECT_LT((out[0] - Vec3(90, 0, 5)).norm(), 1e-12);
 }
 

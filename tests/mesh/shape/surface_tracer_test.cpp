@@ -103,7 +103,7 @@ TEST(Slide, on_a_cylinder_it_turns_the_sheet_about_its_axis) {
 }
 
 TEST(Slide, on_a_cone_it_goes_straight) {
-  // in the unrolled cone a way at right angles to the generator ends at sqrt(r^2 + l^2) from the apex, one along it at r - l
+  // in the unrolled cone a path at right angles to the generator ends at sqrt(r^2 + l^2) from the apex, one along it at r - l
   constexpr int kAround = 30;
   const double angle = M_PI / kAround;
   const auto place = [&](int i, int j) {
@@ -182,7 +182,7 @@ TEST(Slide, the_border_keeps_its_line_and_its_corners) {
   EXPECT_EQ(at(10, 9), Vec3(50, 50, 0));  // as far as the corner
   for (const int i : {0, 10})
     for (const int j : {0, 10}) EXPECT_EQ(at(i, j), Vec3(5.0 * i, 5.0 * j, 0));
-  EXPECT_LT((at(9, 5) - Vec3(50, 25 + 12 * 5 / 7.0, 0)).norm(), 1e-9);  // a way from within ends at the border
+  EXPECT_LT((at(9, 5) - Vec3(50, 25 + 12 * 5 / 7.0, 0)).norm(), 1e-9);  // a path from within ends at the border
 }
 
 TEST(Slide, the_border_goes_round_a_crease_too) {

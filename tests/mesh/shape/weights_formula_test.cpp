@@ -192,7 +192,7 @@ TEST(WeightsOfSections, leave_a_hole_before_the_end_free) {
   for (int k = 0; k < kAround; ++k) EXPECT_EQ(w(rail_node(k, kLength)), 1) << k;
   for (const int k : {2, 4, 9, 15, 21})
     for (int i = 9; i <= kLength; ++i) EXPECT_NEAR(w(rail_node(k, i)), (i - 9) / 15.0, 1e-9) << k << ", " << i;
-  // in the hole's shadow ways are longer on one side of it than on the other; nothing turns back
+  // in the hole's shadow paths are longer on one side of it than on the other; nothing turns back
   for (int i = 9; i < kLength - 4; ++i) EXPECT_LT(w(rail_node(3, i)), w(rail_node(3, i + 1)));
 }
 

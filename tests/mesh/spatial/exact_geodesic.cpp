@@ -15,7 +15,7 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kTie = 1e-12;  ///< share of a distance below which two ways are equally long
+constexpr double kTie = 1e-12;  ///< share of a distance below which two paths are equally long
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -27,12 +27,12 @@ struct Side {
   std::vector<std::uint32_t> beyond;  ///< the sides of other triangles at the same edge
 };
 
-/// Straight ways from one source that enter a triangle through part of a side.
+/// Straight paths from one source that enter a triangle through part of a side.
 struct Window {
   std::uint32_t side = 0;      ///< 3 * triangle + which of its sides
   double begin = 0, end = 0;   ///< of the part, along the side
   Vec2 source = Vec2::Zero();  ///< unfolded into the triangle's plane, below the x axis
-  double before = 0;           ///< length of the way to that source
+  double before = 0;           ///< length of the path to that source
 
   double nearest() const { return before + Vec2(std::clamp(source.x(), begin, end) - source.x(), source.y()).norm(); }
   double to(const Vec2& point) const { return before + (point - source).norm(); }
@@ -104,7 +104,7 @@ class Windows {
       }
   }
 
-  /// A shortest way has a bend only where the surface around it is a saddle, ends or branches.
+  /// A shortest path has a bend only where the surface around it is a saddle, ends or branches.
   void find_turns() {
     for (std::uint32_t p = 0; p < surface_.point.size(); ++p) {
       double sum = 0;
@@ -132,7 +132,7 @@ class Windows {
     queue_.push({window.nearest(), place, 0});
   }
 
-  /// Xin and Wang's filter: the way over an end of the side to the window's other end is shorter, and so it is to all between.
+  /// Xin and Wang's filter: the path over an end of the side to the window's other end is shorter, and so it is to all between.
   bool is_beaten(const Window& w) const {
     const Side& side = sides_[w.side];
     return distance_[side.from] + w.end < w.to({w.end, 0}) * (1 - kTie) ||
@@ -169,7 +169,7 @@ class Windows {
   void pass(const Window& w) {
     const Vec2 tip = sides_[w.side].tip_at;
     const double scale = (tip - w.source).norm() * sides_[w.side].length;
-    const double beside_begin = cross(Vec2(w.begin, 0) - w.source, tip - w.source);  // > 0: the tip is left of all ways
+    const double beside_begin = cross(Vec2(w.begin, 0) - w.source, tip - w.source);  // > 0: the tip is left of all paths
     const double beside_end = cross(Vec2(w.end, 0) - w.source, tip - w.source);      // < 0: right of all
     if (beside_begin > 1e-12 * scale) return leave_right(w, w.begin, w.end);
     if (beside_end < -1e-12 * scale) return leave_left(w, w.begin, w.end);
@@ -177,7 +177,7 @@ class Windows {
     improve(sides_[w.side].tip, at_tip);
     const double share = -w.source.y() / (tip.y() - w.source.y());
     const double through = std::clamp(w.source.x() + share * (tip.x() - w.source.x()), w.begin, w.end);
-    // another window that reaches the tip by a shorter way beats this one wherever this one's ways cross that way
+    // another window that reaches the tip by a shorter path beats this one wherever this one's paths cross that path
     auto& [best, best_through] = nearest_over_[w.side];
     if (at_tip < best) {
       best = at_tip;
@@ -188,7 +188,7 @@ class Windows {
     leave_right(w, beaten ? std::max(through, best_through) : through, w.end);
   }
 
-  /// Where the way that enters at x leaves over the line from the origin along `direction` (a unit vector), as a length from the origin.
+  /// Where the path that enters at x leaves over the line from the origin along `direction` (a unit vector), as a length from the origin.
   static double leaves_at(const Window& w, double x, const Vec2& origin, const Vec2& direction) {
     const Vec2 way = Vec2(x, 0) - w.source;
     return cross(w.source - origin, way) / cross(direction, way);
@@ -218,7 +218,7 @@ class Windows {
   std::vector<std::uint8_t> turns_;
   std::vector<Side> sides_;                              ///< 3 of each triangle, one after the other
   std::vector<std::vector<std::uint32_t>> at_point_;     ///< the sides that begin there
-  std::vector<std::pair<double, double>> nearest_over_;  ///< by side entered: least distance of its tip, and where that way entered
+  std::vector<std::pair<double, double>> nearest_over_;  ///< by side entered: least distance of its tip, and where that path entered
   std::vector<Window> windows_;
   std::vector<std::uint32_t> unused_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> queue_;

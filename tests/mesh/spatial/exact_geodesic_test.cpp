@@ -130,7 +130,7 @@ void expect_on_pyramid(int around, double facet_angle, const std::function<Vec3(
     double angle = std::abs(polar[p][0] - polar[source][0]);
     angle = std::min(angle, around * facet_angle - angle);
     const double a = polar[p][1], b = polar[source][1];
-    // the rim's sides cut across the sector: only ways that stay inside them count
+    // the rim's sides cut across the sector: only paths that stay inside them count
     if (angle < pi && std::min(a, b) * std::cos(angle / 2) > 14) continue;
     EXPECT_NEAR(exact[p], angle < pi ? std::sqrt(std::max(0.0, a * a + b * b - 2 * a * b * std::cos(angle))) : a + b, 1e-9);
   }
@@ -146,7 +146,7 @@ TEST(ExactGeodesic, unrolls_a_pyramid) {
 }
 
 TEST(ExactGeodesic, goes_over_the_middle_of_a_saddle) {
-  // ridges at heights that alternate: 12 equal facets of 40 degrees, 480 in all, so that ways between far sides turn at the apex
+  // ridges at heights that alternate: 12 equal facets of 40 degrees, 480 in all, so that paths between far sides turn at the apex
   constexpr int kAround = 12;
   // cos 40 = cos(30) c^2 - s^2 for the elevation with cosine c and sine s, one up, the next down
   const double c2 = (std::cos(40 * pi / 180) + 1) / (std::cos(pi / 6) + 1);
@@ -238,7 +238,7 @@ void expect_just_below_added_points(const TriangleSurface& surface, std::uint32_
   const std::vector<double> bound = along_added_points(surface, source, 40);
   for (std::size_t p = 0; p < exact.size(); ++p) {
     EXPECT_LE(exact[p], bound[p] * (1 + 1e-12));
-    EXPECT_GE(exact[p], bound[p] * 0.997) << p;  // over 40 points an edge a way is less than 0.3 % longer
+    EXPECT_GE(exact[p], bound[p] * 0.997) << p;  // over 40 points an edge a path is less than 0.3 % longer
   }
 }
 

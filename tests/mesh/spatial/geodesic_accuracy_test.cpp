@@ -108,7 +108,7 @@ TEST(GeodesicAccuracy, of_slender_and_obtuse_triangles) {
   expect_within_aim_on_panel("aspect 1/5, sheared", test::slender_panel(0.2, 0.4), {{50, 50}});
 }
 
-/// The worst that is known: along a boundary with teeth, from one of them, ways graze tooth after tooth.
+/// The worst that is known: along a boundary with teeth, from one of them, paths graze tooth after tooth.
 TEST(GeodesicAccuracy, of_slender_triangles_along_a_serrated_boundary) {
   for (const double aspect : {5.0, 0.2}) {
     const Model model = test::slender_panel(aspect, 0.4);

@@ -30,7 +30,7 @@ using test::noise;
 
 constexpr double kPiValue = 3.14159265358979323846;
 
-/// Where node (i, j) of a grid of unit squares stands in the plane, moved by up to `jitter` both ways.
+/// Where node (i, j) of a grid of unit squares stands in the plane, moved by up to `jitter` in each direction.
 std::array<double, 2> jittered(int i, int j, double jitter) { return {i + jitter * noise(i, j, 1), j + jitter * noise(i, j, 2)}; }
 
 struct Errors {
@@ -257,7 +257,7 @@ TEST(Geodesic, crosses_a_beaded_panel) {
 
 using Point = Eigen::Vector2d;
 
-/// Whether the straight way between two points keeps out of a convex polygon (counter-clockwise).
+/// Whether the straight path between two points keeps out of a convex polygon (counter-clockwise).
 bool keeps_out(const std::vector<Point>& polygon, const Point& a, const Point& b) {
   double enter = 0;
   double leave = 1;
@@ -273,7 +273,7 @@ bool keeps_out(const std::vector<Point>& polygon, const Point& a, const Point& b
   return enter >= leave;
 }
 
-/// The shortest way around a convex hole: straight pieces between its corners.
+/// The shortest path around a convex hole: straight pieces between its corners.
 double around_hole(const std::vector<Point>& hole, const Point& from, const Point& to) {
   if (keeps_out(hole, from, to)) return (to - from).norm();
   std::vector<double> reached(hole.size(), kUnreached);
