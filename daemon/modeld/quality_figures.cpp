@@ -175,7 +175,7 @@ class Gathering {
     const mesh::ShellSet shells = shells_.range(begin, end);
     std::vector<Values> values(shells.size());
     std::vector<float> composites(shells.size());
-    mesh::quality::composites(generation_.model, shells, document_.settings.criteria, document_.settings.target_size, composites, values);
+    mesh::quality::composites(generation_.model, shells, {document_.settings.criteria, document_.settings.target_size}, composites, values);
     Figures figures;
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t shell = shells[i - begin].value;
@@ -291,7 +291,7 @@ class Gathering {
 
   /// For this target size; without a sheet as if nothing were known of thickness and material.
   Threshold threshold_of(int metric, bool triangle, const Sheet& sheet = {}) const {
-    return mesh::quality::threshold_of(document_.settings.criteria, static_cast<Metric>(metric), triangle, document_.settings.target_size,
+    return mesh::quality::threshold_of({document_.settings.criteria, document_.settings.target_size}, static_cast<Metric>(metric), triangle,
                                        sheet);
   }
 

@@ -26,7 +26,7 @@ repair::Options options_of(double angle, const MoveLimits& limits) {
   return options;
 }
 
-relax::Judge judge_of(const Document& document) { return {document.settings.criteria, document.settings.target_size}; }
+quality::SizedCriteria criteria_of(const Document& document) { return {document.settings.criteria, document.settings.target_size}; }
 
 std::string shell_name(const Model& model, ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 
@@ -60,7 +60,7 @@ Result<repair::Repaired> repair_writable(const Document& document, const ShellSe
   double furthest = 0;  // an attempt more doesn't take the progress back
   const Progress forward = [&](double fraction) { return !progress || progress(furthest = std::max(furthest, fraction)); };
   for (int attempt = 1;; ++attempt) {
-    Result<repair::Repaired> repaired = repair::repair(current.model, surface, scope, rules, judge_of(document), options, forward);
+    Result<repair::Repaired> repaired = repair::repair({current.model, surface, rules, criteria_of(document), options}, scope, forward);
     if (!repaired || repaired->change.empty()) return repaired;
     Generation trial = current;
     const Result<void> done = restructure(document, repaired->change, trial, report);
@@ -148,9 +148,8 @@ Result<void> apply_edit(const Document& document, const Restructure& edit, Gener
   ShellSet about = shells_touching(current.model, nodes);
   about.insert(about.end(), hand->shells.begin(), hand->shells.end());
   const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
-  const Result<repair::Restructuring> change =
-      repair::by_hand(current.model, surface, edit.operation, hand->shells, hand->nodes, rules_for(document, current),
-                      {document.settings.criteria, document.settings.target_size}, options);
+  const Result<repair::Restructuring> change = repair::by_hand(
+      {current.model, surface, rules_for(document, current), criteria_of(document), options}, {edit.operation, hand->shells, hand->nodes});
   if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
   return restructure(document, *change, next, report);
 }

@@ -102,8 +102,8 @@ void Drag::step(const Displacement& displacement) {
   std::vector<quality::Counts> counts((corners_.size() + kDragGrain - 1) / kDragGrain);
   parallel_for(corners_.size(), kDragGrain, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
-    quality::judge_points(positions_, fixed_, std::span(corners_).subspan(begin, count), std::span(sheets_).subspan(begin, count),
-                          settings_.criteria, settings_.target_size, std::span(states_).subspan(begin, count));
+    quality::judge_points({positions_, fixed_, std::span(corners_).subspan(begin, count), std::span(sheets_).subspan(begin, count)},
+                          {settings_.criteria, settings_.target_size}, std::span(states_).subspan(begin, count));
     quality::Counts sum;
     for (std::size_t s = begin; s < end; ++s) add(sum, states_[s], 1);
     counts[begin / kDragGrain] = sum;

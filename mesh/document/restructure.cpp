@@ -75,7 +75,7 @@ void judge_again(const Settings& settings, const Changes& changes, const ShellSe
     --count_of(next.counts, next.quality[shell.value].grade());
     next.quality.set(shell.value, {});
   }
-  quality::rejudge(next.model, settings.criteria, settings.target_size, touched, next.quality, next.counts);
+  quality::rejudge(next.model, {settings.criteria, settings.target_size}, touched, next.quality, next.counts);
 }
 
 /// Live shells of `after` whose corners or places differ.

@@ -8,17 +8,17 @@
 
 namespace prismesh::mesh::quality {
 
-float composite(const Values& values, const Criteria& criteria, double target_size, const Sheet& sheet) {
+float composite(const Values& values, const SizedCriteria& criteria, const Sheet& sheet) {
   const BatchValues batch = batch_of(values);
-  const Limits limits = limits_for(criteria, target_size);
+  const Limits limits = limits_for(criteria);
   float rated = 0;
   rate_lanes(batch, 1, limits, limits.need_sheets() ? &sheet : nullptr, &rated);
   return rated;
 }
 
-void composites(const Model& model, std::span<const ShellIndex> shells, const Criteria& criteria, double target_size, std::span<float> out,
+void composites(const Model& model, std::span<const ShellIndex> shells, const SizedCriteria& criteria, std::span<float> out,
                 std::span<Values> values) {
-  const Limits limits = limits_for(criteria, target_size);
+  const Limits limits = limits_for(criteria);
   const auto shell_of = [&](std::size_t i) { return shells[i].value; };
   std::fill(out.begin(), out.end(), 1.0F);
   for (Values& none : values) none.fill(std::numeric_limits<float>::quiet_NaN());

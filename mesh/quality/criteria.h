@@ -38,6 +38,12 @@ struct Criteria {
   double warn_triangles_at_node = 4;  ///< more about one node are a cluster (mesh/quality/structure.h)
 };
 
+/// Criteria with the target size that their lengths are fractions of.
+struct SizedCriteria {
+  const Criteria& criteria;
+  double target_size = 1;  ///< deck's length unit
+};
+
 /// Reads a TOML criteria file, or takes the built-in criteria of that name ("default", "strict"; a file of such a name is ./strict). Errors
 /// name the line and, for an unknown metric, the nearest known one.
 Result<Criteria> load_criteria(const std::filesystem::path& path);

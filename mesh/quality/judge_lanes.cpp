@@ -10,17 +10,21 @@ namespace {
 
 constexpr float kWorstWithoutDefect = -0.99999994F;  ///< the float above -1
 
-/// Bit `metric` of each lane that lies outside.
-void mark_outside(const float* value, std::size_t lanes, float lowest, float highest, int metric, std::uint16_t* bits) {
+struct Range {
+  float min, max;
+};
+
+/// Sets bit `metric` of each lane whose value lies outside.
+void mark_outside(const float* value, std::size_t lanes, Range range, int metric, std::uint16_t* bits) {
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const unsigned outside = unsigned(value[lane] < lowest) | unsigned(value[lane] > highest);
+    const unsigned outside = unsigned(value[lane] < range.min) | unsigned(value[lane] > range.max);
     bits[lane] = static_cast<std::uint16_t>(bits[lane] | (outside << metric));
   }
 }
 
-void mark_short(const float* value, std::size_t lanes, const float* least, std::uint16_t* bits) {
+void mark_short(const float* value, std::size_t lanes, const float* min, std::uint16_t* bits) {
   for (std::size_t lane = 0; lane < lanes; ++lane)
-    bits[lane] = static_cast<std::uint16_t>(bits[lane] | (unsigned(value[lane] < least[lane]) << kMinLength));
+    bits[lane] = static_cast<std::uint16_t>(bits[lane] | (unsigned(value[lane] < min[lane]) << kMinLength));
 }
 
 /// Defects show in the values (shell_batch.h).
@@ -43,14 +47,14 @@ void judge_lanes(const BatchValues& values, std::size_t count, const Limits& lim
   for (int m = 0; m < kMetricCount; ++m) {
     Threshold t = shape.threshold[m];
     if (m == kMinLength && sheets != nullptr) {
-      float least_warn[kLanes], least_fail[kLanes];
-      least_lengths(shape, limits, sheets, count, least_warn, least_fail);
-      mark_short(values.value[m], count, least_warn, warn);
-      mark_short(values.value[m], count, least_fail, failed);
+      MinLengths min;
+      min_lengths(shape, limits, {sheets, count}, min);
+      mark_short(values.value[m], count, min.warn, warn);
+      mark_short(values.value[m], count, min.fail, failed);
       t.warn_low = t.fail_low = -std::numeric_limits<float>::infinity();
     }
-    mark_outside(values.value[m], count, t.warn_low, t.warn_high, m, warn);
-    mark_outside(values.value[m], count, t.fail_low, t.fail_high, m, failed);
+    mark_outside(values.value[m], count, {t.warn_low, t.warn_high}, m, warn);
+    mark_outside(values.value[m], count, {t.fail_low, t.fail_high}, m, failed);
   }
   mark_defects(values, count, failed);
   for (std::size_t lane = 0; lane < count; ++lane) out[lane] = {static_cast<std::uint16_t>(warn[lane] | failed[lane]), failed[lane]};
@@ -68,12 +72,12 @@ void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limi
   };
   for (int m = 0; m < kMetricCount; ++m) {
     if (m == kMinLength && sheets != nullptr) {
-      float warn[kLanes], least[kLanes];
-      least_lengths(shape, limits, sheets, count, warn, least);
+      MinLengths min;
+      min_lengths(shape, limits, {sheets, count}, min);
       for (std::size_t lane = 0; lane < count; ++lane) {
-        if (!std::isfinite(least[lane])) continue;
-        const float best = std::max(shape.ideal_min_length, least[lane]);
-        const float score = (values.value[m][lane] - least[lane]) / span_of(least[lane], best);
+        if (!std::isfinite(min.fail[lane])) continue;
+        const float best = std::max(shape.ideal_min_length, min.fail[lane]);
+        const float score = (values.value[m][lane] - min.fail[lane]) / span_of(min.fail[lane], best);
         out[lane] = score < out[lane] ? score : out[lane];
       }
     } else if (shape.side[m][0].per != 0) {

@@ -51,7 +51,7 @@ ShapeLimits shape_limits(const std::array<Threshold, kMetricCount>& thresholds, 
 
 /// The least min_length: of a wanted time step, where there is one and the material is known, else a fraction of the target size; no less
 /// than the multiple of the thickness.
-float least_length(float fraction, float step, float thicknesses, const Sheet& sheet) {
+float min_length(float fraction, float step, float thicknesses, const Sheet& sheet) {
   const float length = step > 0 && sheet.wave_speed > 0 ? std::min(step * sheet.wave_speed, kMax) : fraction;
   return thicknesses > 0 && sheet.thickness > 0 ? std::max(length, std::min(thicknesses * sheet.thickness, kMax)) : length;
 }
@@ -61,7 +61,8 @@ float length_of_step(double time_step, const Criteria& criteria) { return static
 
 }  // namespace
 
-Limits limits_for(const Criteria& criteria, double target_size) {
+Limits limits_for(const SizedCriteria& sized) {
+  const auto& [criteria, target_size] = sized;
   Limits limits;
   limits.quad = shape_limits(criteria.quad, false, target_size);
   limits.triangle = shape_limits(criteria.triangle, true, target_size);
@@ -72,23 +73,24 @@ Limits limits_for(const Criteria& criteria, double target_size) {
   return limits;
 }
 
-Threshold threshold_of(const Criteria& criteria, Metric metric, bool of_triangle, double target_size, const Sheet& sheet) {
+Threshold threshold_of(const SizedCriteria& sized, Metric metric, bool of_triangle, const Sheet& sheet) {
+  const auto& [criteria, target_size] = sized;
   const int m = int(metric);
   const Threshold& given = (of_triangle ? criteria.triangle : criteria.quad)[static_cast<std::size_t>(m)];
   if (!is_length(m)) return given;
   Threshold limits = scaled(given, target_size);
   if (m != kMinLength) return limits;
   const float warn_step = length_of_step(criteria.warn_time_step, criteria), fail_step = length_of_step(criteria.fail_time_step, criteria);
-  limits.warn_low = least_length(limits.warn_low, warn_step, criteria.warn_min_length_thicknesses, sheet);
-  limits.fail_low = least_length(limits.fail_low, fail_step, criteria.fail_min_length_thicknesses, sheet);
+  limits.warn_low = min_length(limits.warn_low, warn_step, criteria.warn_min_length_thicknesses, sheet);
+  limits.fail_low = min_length(limits.fail_low, fail_step, criteria.fail_min_length_thicknesses, sheet);
   return limits;
 }
 
-void least_lengths(const ShapeLimits& shape, const Limits& limits, const Sheet* sheets, std::size_t count, float* warn, float* fail) {
+void min_lengths(const ShapeLimits& shape, const Limits& limits, std::span<const Sheet> sheets, MinLengths& out) {
   const Threshold& t = shape.threshold[kMinLength];
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    warn[lane] = least_length(t.warn_low, limits.warn_step, limits.warn_thicknesses, sheets[lane]);
-    fail[lane] = least_length(t.fail_low, limits.fail_step, limits.fail_thicknesses, sheets[lane]);
+  for (std::size_t lane = 0; lane < sheets.size(); ++lane) {
+    out.warn[lane] = min_length(t.warn_low, limits.warn_step, limits.warn_thicknesses, sheets[lane]);
+    out.fail[lane] = min_length(t.fail_low, limits.fail_step, limits.fail_thicknesses, sheets[lane]);
   }
 }
 

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "mesh/quality/criteria.h"
 #include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_lanes.h"
 
 namespace prismesh::mesh::quality {
 
@@ -37,14 +39,18 @@ struct Limits {
   bool need_sheets() const { return warn_thicknesses > 0 || fail_thicknesses > 0 || warn_step > 0 || fail_step > 0; }
 };
 /// Lengths in the unit of `target_size`.
-Limits limits_for(const Criteria& criteria, double target_size);
+Limits limits_for(const SizedCriteria& criteria);
 
 /// The least min_length a lane may have, where the criteria look at sheets.
-void least_lengths(const ShapeLimits& shape, const Limits& limits, const Sheet* sheets, std::size_t count, float* warn, float* fail);
+struct MinLengths {
+  float warn[kLanes];
+  float fail[kLanes];
+};
+void min_lengths(const ShapeLimits& shape, const Limits& limits, std::span<const Sheet> sheets, MinLengths& out);
 
 /// What judge() compares a value of the metric with, in the metric's unit: lengths follow the target size, the least min_length also what
 /// the criteria ask for by the shell's thickness and by a wanted time step. `sheet` as in judge().
-Threshold threshold_of(const Criteria& criteria, Metric metric, bool of_triangle, double target_size, const Sheet& sheet = {});
+Threshold threshold_of(const SizedCriteria& criteria, Metric metric, bool of_triangle, const Sheet& sheet = {});
 
 /// How far it is from a limit to the ideal; where a file's limit leaves no way, a twentieth of it.
 inline float span_of(float limit, float best) { return std::max(std::abs(best - limit), std::max(0.05F * std::abs(limit), 1e-30F)); }

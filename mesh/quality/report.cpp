@@ -234,9 +234,9 @@ double rounded_to_two_digits(double value) {
 
 }  // namespace
 
-ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteria, double target_size) {
+ChunkedArray<ShellState> judge_model(const Model& model, const SizedCriteria& criteria) {
   ChunkedArray<ShellState> states(model.shell_count(), ShellState::removed());
-  const Limits limits = limits_for(criteria, target_size);
+  const Limits limits = limits_for(criteria);
   parallel_for(model.shell_count(), kReportGrain, [&](std::size_t begin, std::size_t end) {
     const std::span<ShellState> out = states.own_chunk(begin / kReportGrain);
     judge_shells(
@@ -245,13 +245,12 @@ ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteri
   return states;
 }
 
-void rejudge(const Model& model, const Criteria& criteria, double target_size, const ShellSet& shells, ChunkedArray<ShellState>& states,
-             Counts& counts) {
+void rejudge(const Model& model, const SizedCriteria& criteria, const ShellSet& shells, ChunkedArray<ShellState>& states, Counts& counts) {
   const std::size_t known = fit(states, model.shell_count(), counts);
   ShellSet dirty(shells.begin(), std::lower_bound(shells.begin(), shells.end(), ShellIndex(known)));
   for (std::size_t s = known; s < model.shell_count(); ++s) dirty.emplace_back(s);
 
-  const Limits limits = limits_for(criteria, target_size);
+  const Limits limits = limits_for(criteria);
   std::vector<ShellState> fresh(dirty.size(), ShellState::removed());
   parallel_for(dirty.size(), kReportGrain, [&](std::size_t begin, std::size_t end) {
     judge_shells(
@@ -273,8 +272,8 @@ Counts count(const ChunkedArray<ShellState>& states) {
   return counts;
 }
 
-Report report(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control, const ShellSet* shells) {
-  const Limits limits = limits_for(criteria, target_size);
+Report report(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control, const ShellSet* shells) {
+  const Limits limits = limits_for(criteria);
   const std::size_t elements = shells != nullptr ? shells->size() : model.shell_count();
   const std::vector<PartFactors> parts = factors_of(model, control.shell_option);
   std::vector<Partial> partials((elements + kReportGrain - 1) / kReportGrain);
@@ -295,7 +294,7 @@ Report report(const Model& model, const Criteria& criteria, double target_size, 
   return report;
 }
 
-std::vector<PartReport> report_by_part(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
+std::vector<PartReport> report_by_part(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control,
                                        const ShellSet* shells) {
   std::vector<ShellSet> of_part(model.parts->size());
   const auto add = [&](ShellIndex shell) {
@@ -308,7 +307,7 @@ std::vector<PartReport> report_by_part(const Model& model, const Criteria& crite
     for (std::size_t s = 0; s < model.shell_count(); ++s) add(ShellIndex(s));
   std::vector<PartReport> reports;
   for (std::size_t p = 0; p < of_part.size(); ++p)
-    if (!of_part[p].empty()) reports.push_back({PartIndex(p), report(model, criteria, target_size, control, &of_part[p])});
+    if (!of_part[p].empty()) reports.push_back({PartIndex(p), report(model, criteria, control, &of_part[p])});
   return reports;
 }
 

@@ -18,10 +18,9 @@ struct Counts {
 };
 
 /// State of every shell; a removed one has ShellState::removed().
-ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteria, double target_size);
+ChunkedArray<ShellState> judge_model(const Model& model, const SizedCriteria& criteria);
 /// Re-judges only the given shells, and those that were added since `states` was made; `counts` follows. Removed shells count no more.
-void rejudge(const Model& model, const Criteria& criteria, double target_size, const ShellSet& shells, ChunkedArray<ShellState>& states,
-             Counts& counts);
+void rejudge(const Model& model, const SizedCriteria& criteria, const ShellSet& shells, ChunkedArray<ShellState>& states, Counts& counts);
 Counts count(const ChunkedArray<ShellState>& states);  ///< without removed shells
 
 struct MetricSummary {
@@ -49,15 +48,14 @@ struct Report {
 };
 
 /// Figures of the given shells (all shells: pass nullptr).
-Report report(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
-              const ShellSet* shells = nullptr);
+Report report(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control, const ShellSet* shells = nullptr);
 
 struct PartReport {
   PartIndex part;
   Report report;
 };
 /// The same by part: of those that have some of the shells, ascending.
-std::vector<PartReport> report_by_part(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
+std::vector<PartReport> report_by_part(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control,
                                        const ShellSet* shells = nullptr);
 
 /// A target size for a model that states none: the median edge length, rounded to two digits; 1 for a model without shells.

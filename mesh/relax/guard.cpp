@@ -70,8 +70,8 @@ bool Guard::is_bad(std::uint32_t shell, const Verdict& verdict, const PlaceOf& p
   return normal_of(net_.corners[shell], place_of).dot(normal_of(net_.corners[shell], in(net_.start))) < 0;  // turned over
 }
 
-Guard::Guard(const Model& model, const Net& net, const Judge& judge)
-    : net_(net), limits_(quality::limits_for(judge.criteria, judge.target_size)) {
+Guard::Guard(const Model& model, const Net& net, const quality::SizedCriteria& criteria)
+    : net_(net), limits_(quality::limits_for(criteria)) {
   const std::size_t count = net.shells.size();
   if (limits_.need_sheets()) {
     sheets_.resize(count);

@@ -12,14 +12,13 @@
 #include "mesh/quality/sheet.h"
 #include "mesh/quality/shell_state.h"
 #include "mesh/relax/net.h"
-#include "mesh/relax/options.h"
 
 namespace prismesh::mesh::relax {
 
 /// Shells and nodes by their local numbers; `places` are those of all nodes of the net.
 class Guard {
  public:
-  Guard(const Model& model, const Net& net, const Judge& judge);
+  Guard(const Model& model, const Net& net, const quality::SizedCriteria& criteria);
 
   /// Whether the shells of a movable node may be as they are with it at `place`.
   bool allows(std::uint32_t node, const Vec3& place, const std::vector<Vec3>& places) const;

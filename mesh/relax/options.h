@@ -1,11 +1,10 @@
-// What a relaxing keeps to: distances, rounds, and the criteria that elements are judged by.
+// Options of relaxing: distances and rounds.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "mesh/model/model.h"
-#include "mesh/quality/criteria.h"
 
 namespace prismesh::mesh::relax {
 
@@ -20,12 +19,6 @@ struct Options {
   /// Look on the way whether elements got worse, and let their nodes go on with care: rests sooner in rough meshes. Without, only at rest:
   /// what stretches a long way shares its length with elements that are too long for a while.
   bool checks_on_the_way = true;
-};
-
-/// What elements are judged by: nothing that passes may fail afterwards.
-struct Judge {
-  const quality::Criteria& criteria;
-  double target_size = 1;
 };
 
 }  // namespace prismesh::mesh::relax

@@ -53,18 +53,16 @@ class Watch {
 };
 
 /// Of the first share of the progress.
-Result<Net> find_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Options& options,
-                     const Progress& progress) {
-  return make_net(model, surface, movable, options.feature_angle,
+Result<Net> find_net(const RelaxInput& input, const NodeSet& movable, const Progress& progress) {
+  return make_net(input.model, input.surface, movable, input.options.feature_angle,
                   [&](double fraction) { return goes_on(progress, kShareOfNet * fraction); });
 }
 
 /// Settles, within what the guard allows.
-Result<Relaxed> settle(const Model& model, const ReferenceSurface& surface, const Net& net, const Judge& judge, const Options& options,
-                       const Progress& progress, Spreading* spreading) {
+Result<Relaxed> settle(const RelaxInput& input, const Net& net, Spreading* spreading, const Progress& progress) {
   if (!goes_on(progress, kShareOfNet)) return fail(cancelled());
-  const Guard guard(model, net, judge);
-  Settling settling(net, surface, guard, options);
+  const Guard guard(input.model, net, input.criteria);
+  Settling settling(net, input.surface, guard, input.options);
   Watch watch(progress);
   if (!watch.still_goes_on()) return fail(cancelled());
   const Settled settled =
@@ -119,26 +117,24 @@ bool reaches_rim(const Net& net, const Spreading& spreading, const NodeSet& rim)
 
 }  // namespace
 
-Result<Relaxed> relax(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Judge& judge,
-                      const Options& options, const Progress& progress) {
+Result<Relaxed> relax(const RelaxInput& input, const NodeSet& movable, const Progress& progress) {
   if (!goes_on(progress, 0)) return fail(cancelled());
-  const Result<Net> net = find_net(model, surface, movable, options, progress);
+  const Result<Net> net = find_net(input, movable, progress);
   if (!net) return fail(net.error());
-  return settle(model, surface, *net, judge, options, progress, nullptr);
+  return settle(input, *net, nullptr, progress);
 }
 
-Result<Relaxed> relax_from(const Model& model, const ReferenceSurface& surface, NodeIndex at, double threshold, const NodeSet& movable,
-                           const Judge& judge, const Options& options, const Progress& progress) {
+Result<Relaxed> relax_from(const RelaxInput& input, const SpreadFrom& start, const NodeSet& movable, const Progress& progress) {
   if (!goes_on(progress, 0)) return fail(cancelled());
   double furthest = 0;  // beginning again in a wider block isn't less done, and the end of one isn't the end
   const Progress forward = [&](double fraction) { return goes_on(progress, furthest = std::max(furthest, kShareOfBlocks * fraction)); };
   // In a block about the node; where it turns out too small, again in one twice as wide.
   for (int rings = kFirstRings;; rings *= 2) {
-    const Block block = block_about(model, at, rings, movable);
-    const Result<Net> net = find_net(model, surface, block.nodes, options, forward);
+    const Block block = block_about(input.model, start.node, rings, movable);
+    const Result<Net> net = find_net(input, block.nodes, forward);
     if (!net) return fail(net.error());
-    Spreading spreading{threshold, allowed_at_first(model, *net, at)};
-    Result<Relaxed> relaxed = settle(model, surface, *net, judge, options, forward, &spreading);
+    Spreading spreading{start.threshold, allowed_at_first(input.model, *net, start.node)};
+    Result<Relaxed> relaxed = settle(input, *net, &spreading, forward);
     if (!relaxed) return relaxed;
     if (!block.rim.empty() && reaches_rim(*net, spreading, block.rim)) continue;
     if (!goes_on(progress, 1)) return fail(cancelled());

@@ -7,8 +7,7 @@
 #include "base/progress.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
-#include "mesh/relax/options.h"
-#include "mesh/relax/reference_surface.h"
+#include "mesh/relax/relax_input.h"
 
 namespace prismesh::mesh::relax {
 
@@ -26,12 +25,10 @@ struct Relaxed {
 /// warns that didn't, and the least composite (mesh/quality/composite.h) isn't lower. Errors: cancelled.
 /// Preconditions: the model has its adjacency; nodes whose coordinates mustn't change aren't in `movable`; `surface` covers the shells
 /// that touch it.
-Result<Relaxed> relax(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Judge& judge,
-                      const Options& options, const Progress& progress = {});
+Result<Relaxed> relax(const RelaxInput& input, const NodeSet& movable, const Progress& progress = {});
 
-/// Hierarchical: begins with `at` and the nodes around it; the neighbours of a node join while it is displaced by more than `threshold`
-/// (deck's length unit). Otherwise as relax.
-Result<Relaxed> relax_from(const Model& model, const ReferenceSurface& surface, NodeIndex at, double threshold, const NodeSet& movable,
-                           const Judge& judge, const Options& options, const Progress& progress = {});
+/// Hierarchical: begins with the start's node and the nodes around it; the neighbours of a node join while it is displaced by more than the
+/// threshold. Otherwise as relax.
+Result<Relaxed> relax_from(const RelaxInput& input, const SpreadFrom& start, const NodeSet& movable, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::relax

@@ -105,7 +105,7 @@ bool edge_conforms(const Patch& patch, LocalNode a, LocalNode b) {
 template <class PositionOf>
 double farthest_off(const RepairContext& context, const std::vector<Corners>& list, int parts, const PositionOf& at) {
   double farthest = 0;
-  const double size = 2 * context.judge.target_size;
+  const double size = 2 * context.criteria.target_size;
   const auto look = [&](const Vec3& point, const Vec3& normal) {
     const auto place = context.surface.project(point, size, normal);
     farthest = std::max(farthest, place ? place->distance : size);
@@ -203,7 +203,7 @@ bool keeps_to_surface(const RepairContext& context) {
   const Patch& patch = context.patch;
   std::vector<Corners> now, before;
   for (const LocalShell shell : patch.changed_shells()) now.push_back(patch.shell(shell).corners);
-  const double allowed = context.options.most_off_surface * context.judge.target_size;
+  const double allowed = context.options.most_off_surface * context.criteria.target_size;
   const double off = farthest_off(context, now, 2, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
   if (off <= allowed) return true;
   for (const auto& [shell, was] : patch.old_shells()) before.push_back(was.corners);

@@ -204,19 +204,17 @@ Result<void> carry_out(const Hand& hand, Operation operation) {
 
 }  // namespace
 
-Result<Restructuring> by_hand(const Model& model, const relax::ReferenceSurface& surface, Operation operation,
-                              std::span<const ShellIndex> shells, std::span<const NodeIndex> nodes, const Rules& rules,
-                              const relax::Judge& judge, const Options& options) {
-  ShellSet scope(shells.begin(), shells.end());
-  for (const NodeIndex node : nodes)
-    for (const ShellIndex shell : model.adjacency->shells_of(node)) scope.push_back(shell);
+Result<Restructuring> by_hand(const RepairInput& input, const ManualOperation& manual) {
+  ShellSet scope(manual.shells.begin(), manual.shells.end());
+  for (const NodeIndex node : manual.nodes)
+    for (const ShellIndex shell : input.model.adjacency->shells_of(node)) scope.push_back(shell);
   std::sort(scope.begin(), scope.end());
   scope.erase(std::unique(scope.begin(), scope.end()), scope.end());
   if (scope.empty()) return fail("", "there is no shell");
-  Patch patch(model, scope, kRingsByHand, rules, options.relax.feature_angle);
-  const RepairContext context{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)};
+  Patch patch(input.model, scope, kRingsByHand, input.rules, input.options.relax.feature_angle);
+  const RepairContext context{patch, input.surface, input.criteria, input.options, quality::limits_for(input.criteria)};
   patch.begin();
-  const Result<void> done = carry_out({context, model, shells, nodes}, operation);
+  const Result<void> done = carry_out({context, input.model, manual.shells, manual.nodes}, manual.operation);
   if (!done) return fail(done.error());
   patch.keep();
   return patch.result();

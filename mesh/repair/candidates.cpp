@@ -71,7 +71,7 @@ void add_unions(const RepairContext& context, LocalShell shell, std::vector<Cand
   for (int e = 0; e < count; ++e) {
     const EdgeOf edge = edge_of(corners, e);
     // Only what is short: the others only move trouble elsewhere.
-    if (length_of(context.patch, edge) <= std::max(1.5 * shortest, 0.5 * context.judge.target_size))
+    if (length_of(context.patch, edge) <= std::max(1.5 * shortest, 0.5 * context.criteria.target_size))
       add_union(context, edge.a, edge.b, found);
   }
   if (count != 4) return;
@@ -132,9 +132,9 @@ void add_rows(const RepairContext& context, LocalShell shell, std::vector<Candid
   for (int direction = 0; direction < 2; ++direction) {
     const double across = width_of(patch, corners, direction);
     // Halves of what is short already are no use.
-    if (across < 0.6 * context.judge.target_size) continue;
+    if (across < 0.6 * context.criteria.target_size) continue;
     Row row{shell, direction};
-    const double long_edge = std::max(kLong * context.judge.target_size, 0.8 * across);
+    const double long_edge = std::max(kLong * context.criteria.target_size, 0.8 * across);
     const int forward = run_of(patch, row, true, long_edge), back = run_of(patch, row, false, long_edge);
     std::vector<std::pair<int, int>> lengths_tried = {
         {forward, back}, {forward + 1, back + 1}, {forward + 1, back}, {forward, back + 1}, {0, 0}};
@@ -190,7 +190,7 @@ std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell s
     if (patch.node(node).lines.empty()) found.push_back({Operation::split, [&context, node] { return divide_about(context, node); }});
   }
   if (count == 4) {
-    const double most = context.options.most_off_surface * context.judge.target_size;
+    const double most = context.options.most_off_surface * context.criteria.target_size;
     const auto warped = 1U << static_cast<unsigned>(quality::Metric::warpage);
     if ((patch.shell(shell).state.warn & warped) != 0)
       for (std::size_t c = 0; c < 4; ++c)
@@ -206,7 +206,7 @@ std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell
   std::vector<Candidate> found;
   const Corners& corners = context.patch.shell(shell).corners;
   if (corner_count(corners) != 4) return found;
-  const double width = width_of(context.patch, corners, edge), size = context.judge.target_size;
+  const double width = width_of(context.patch, corners, edge), size = context.criteria.target_size;
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   std::vector<StripCourse> courses;
   // Where a strip ends by itself its limits make no difference.

@@ -25,6 +25,7 @@ class EdgeCuts {
   /// The first of them.
   LocalNode middle(LocalNode a, LocalNode b) { return cut(a, b).front(); }
   const Refusal& refusal() const { return refusal_; }
+  int pieces() const { return pieces_; }
 
  private:
   /// All of them from the lower to the higher node.

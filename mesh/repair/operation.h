@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
+
+#include "mesh/model/index.h"
 
 namespace prismesh::mesh::repair {
 
@@ -15,5 +18,12 @@ enum class Operation : std::uint8_t {
 };
 inline constexpr int kOperationCount = 5;
 std::string_view name(Operation operation);  ///< as in an edit's JSON
+
+/// An operation and the elements to carry it out on.
+struct ManualOperation {
+  Operation operation = Operation::split;
+  std::span<const ShellIndex> shells;
+  std::span<const NodeIndex> nodes;
+};
 
 }  // namespace prismesh::mesh::repair

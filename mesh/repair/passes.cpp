@@ -127,8 +127,9 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   relax::Options options = context.options.relax;
   options.checks_on_the_way = false;
   options.limits_from = &at_first;
-  const Result<relax::Relaxed> relaxed = relax::relax(small, context.surface, movable_nodes(patch, state.history), context.judge, options,
-                                                      [&](double) { return goes_on(state.progress, 0); });
+  const Result<relax::Relaxed> relaxed =
+      relax::relax({small, context.surface, context.criteria, options}, movable_nodes(patch, state.history),
+                   [&](double) { return goes_on(state.progress, 0); });
   if (!relaxed) {
     state.progress.stopped = relaxed.error();
     return;

@@ -111,12 +111,11 @@ std::vector<Unrepaired> unrepaired_shells(const Patch& patch, const RepairState&
 
 }  // namespace
 
-Result<Repaired> repair(const Model& model, const relax::ReferenceSurface& surface, const ShellSet& scope, const Rules& rules,
-                        const relax::Judge& judge, const Options& options, const Progress& progress) {
-  Patch patch(model, scope, kRingsOfPatch, rules, options.relax.feature_angle);
-  const RepairContext exact{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)};
-  const RepairContext strict{patch, surface, judge, options, with_margin(exact.limits)};
-  RepairState state{history_of(patch, model, scope, options.most_triangles_percent), {}, {progress}};
+Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const Progress& progress) {
+  Patch patch(input.model, scope, kRingsOfPatch, input.rules, input.options.relax.feature_angle);
+  const RepairContext exact{patch, input.surface, input.criteria, input.options, quality::limits_for(input.criteria)};
+  const RepairContext strict{patch, input.surface, input.criteria, input.options, with_margin(exact.limits)};
+  RepairState state{history_of(patch, input.model, scope, input.options.most_triangles_percent), {}, {progress}};
   Repaired repaired;
   judge_all(exact);
   repaired.bad_before = bad_shells(patch, state.history, quality::Grade::warn).size();

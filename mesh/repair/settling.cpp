@@ -87,7 +87,7 @@ Surroundings around(const Patch& patch, LocalNode node) {
 /// Whether a line's two edges at a node, were it elsewhere, follow the line as closely as they have to, or as they did.
 bool follows_line(const RepairContext& context, LocalNode node, const Vec3& place) {
   const Patch& patch = context.patch;
-  const double allowed = context.options.most_off_surface * context.judge.target_size;
+  const double allowed = context.options.most_off_surface * context.criteria.target_size;
   const auto off = [&](const Vec3& at, const Vec3& end) {
     const Vec3 middle = 0.5 * (at + end);
     const auto on_line = context.surface.project_on_line(middle, 0.5 * (at - end).norm());

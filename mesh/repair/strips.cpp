@@ -135,14 +135,14 @@ Refusal narrow(const RepairContext& context, const EdgeAt& at, const std::vector
 }
 
 /// What becomes of a shell that isn't divided across as a quad.
-Refusal end_strip(const RepairContext& context, LocalShell shell, unsigned edges, EdgeCuts& cuts, int pieces, bool absorbs) {
+Refusal end_strip(const RepairContext& context, LocalShell shell, unsigned edges, EdgeCuts& cuts, bool absorbs) {
   const Corners c = context.patch.shell(shell).corners;
   const int count = corner_count(c);
-  if (pieces > (count == 4 ? 3 : 2)) return "a strip there would have to end in more pieces than there is a way for";
+  if (cuts.pieces() > (count == 4 ? 3 : 2)) return "a strip there would have to end in more pieces than there is a way for";
   if (std::popcount(edges) == 2) return turn_about(context, shell, edges, cuts);
   const EdgeAt at{shell, static_cast<std::size_t>(std::countr_zero(edges))};
   const std::vector<LocalNode> nodes = cuts.cut(c[at.edge], c[(at.edge + 1) % static_cast<std::size_t>(count)]);
-  if (pieces == 3) return narrow(context, at, nodes);
+  if (cuts.pieces() == 3) return narrow(context, at, nodes);
   const RowEnd end = count == 4 ? better_end(context.patch, at, nodes[0]) : absorbs ? RowEnd::absorb : RowEnd::two_triangles;
   return end_row(context, at, nodes[0], end);
 }
@@ -172,7 +172,7 @@ Refusal divide_strip(const RepairContext& context, const Strip& strip, int piece
   for (const auto& [shell, edges] : plan.edges()) {
     const bool divides = corner_count(patch.shell(shell).corners) == 4 && Plan::divides(edges);
     const Refusal refusal =
-        divides ? divide_quad(context, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(context, shell, edges, cuts, pieces, absorbs);
+        divides ? divide_quad(context, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(context, shell, edges, cuts, absorbs);
     if (refusal) return refusal;
   }
   return std::nullopt;

@@ -29,7 +29,7 @@ Refusal refuse_union(const RepairContext& context, const Union& pair, LocalNode&
   if (one.is_rim || two.is_rim || one.shells != two.shells) return "that would bend an edge of the part";
   other_end = one.node == pair.stays ? two.node : one.node;
   const double off = distance_to_segment(gone.position, patch.position(pair.stays), patch.position(other_end));
-  if (off > context.options.most_off_surface * context.judge.target_size) return "that would bend an edge of the part";
+  if (off > context.options.most_off_surface * context.criteria.target_size) return "that would bend an edge of the part";
   return std::nullopt;
 }
 
@@ -101,7 +101,7 @@ Refusal unite(const RepairContext& context, const std::vector<Union>& unions) {
         const Vec3 own = area_normal(patch, patch.shell(shell).corners);
         normal += normal.dot(own) < 0 ? Vec3(-own) : own;
       }
-      const auto place = on_surface(context, middle, normal, context.judge.target_size);
+      const auto place = on_surface(context, middle, normal, context.criteria.target_size);
       if (place && within_limit(context, unions[i].stays, *place)) patch.move(unions[i].stays, *place);
     }
     patch.remove_node(unions[i].gone);

@@ -141,7 +141,7 @@ TEST_F(Figures, bars_are_as_wide_as_each_other_reach_the_limit_and_tell_how_thei
   ASSERT_GT(bars.size(), 10u);
   const double width = bars[0].to - bars[0].from;
   const double least_that_fails =
-      mesh::quality::threshold_of(document_.settings.criteria, metric, false, document_.settings.target_size, {}).fail_high;
+      mesh::quality::threshold_of({document_.settings.criteria, document_.settings.target_size}, metric, false, {}).fail_high;
   EXPECT_GT(bars.back().to, least_that_fails) << "what fails can be seen";
   std::uint64_t ok = 0, warn = 0, fail = 0;
   for (std::size_t b = 0; b < bars.size(); ++b) {

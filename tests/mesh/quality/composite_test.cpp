@@ -18,7 +18,7 @@ Criteria criteria_of(const std::string& text) { return parse_criteria(text, "min
 
 float rated(const std::vector<Vec3>& corners, const Criteria& criteria = default_criteria(), double target_size = 1,
             const Sheet& sheet = {}) {
-  return composite(measure(corners), criteria, target_size, sheet);
+  return composite(measure(corners), {criteria, target_size}, sheet);
 }
 
 std::vector<Vec3> rectangle(double width, double height) { return {{0, 0, 0}, {width, 0, 0}, {width, height, 0}, {0, height, 0}}; }
@@ -82,7 +82,7 @@ TEST(Composite, falls_over_a_twentieth_of_a_limit_that_is_the_ideal) {
   values.fill(std::numeric_limits<float>::quiet_NaN());
   values[int(Metric::aspect)] = 1;
   values[int(Metric::max_length)] = 10.5F;
-  EXPECT_NEAR(composite(values, criteria, 10, {}), -0.5, 1e-5);
+  EXPECT_NEAR(composite(values, {criteria, 10}, {}), -0.5, 1e-5);
 }
 
 TEST(Composite, is_a_number_whatever_the_limits) {
@@ -92,9 +92,9 @@ TEST(Composite, is_a_number_whatever_the_limits) {
       const Criteria criteria = criteria_of("[metrics." + std::string(metric) + "]\n" + limit);
       for (const double size : {1.0, 1e20, 1e-20}) {
         const Values values = measure(rectangle(3, 1));
-        const float figure = composite(values, criteria, size);
+        const float figure = composite(values, {criteria, size});
         EXPECT_TRUE(figure > -1 && figure <= 1) << metric << ' ' << limit;
-        EXPECT_EQ(figure < 0, judge(values, criteria, size).grade() == Grade::fail) << metric << ' ' << limit << ' ' << size;
+        EXPECT_EQ(figure < 0, judge(values, {criteria, size}).grade() == Grade::fail) << metric << ' ' << limit << ' ' << size;
       }
     }
 }
@@ -102,11 +102,11 @@ TEST(Composite, is_a_number_whatever_the_limits) {
 TEST(Composite, is_negative_exactly_where_a_shell_fails) {
   const Model model = test::mixed_grid(30, 0.6, true, 21);
   for (const double size : {0.4, 1.0, 3.0}) {
-    const ChunkedArray<ShellState> states = judge_model(model, default_criteria(), size);
+    const ChunkedArray<ShellState> states = judge_model(model, {default_criteria(), size});
     std::vector<ShellIndex> shells;
     for (std::size_t s = 0; s < model.shell_count(); ++s) shells.emplace_back(s);
     std::vector<float> figures(shells.size());
-    composites(model, shells, default_criteria(), size, figures);
+    composites(model, shells, {default_criteria(), size}, figures);
     std::size_t failing = 0;
     double sum = 0, least = 1;
     for (std::size_t s = 0; s < shells.size(); ++s) {
@@ -117,7 +117,7 @@ TEST(Composite, is_negative_exactly_where_a_shell_fails) {
       least = std::min<double>(least, figures[s]);
     }
     EXPECT_GT(failing, 0u);
-    const Report r = report(model, default_criteria(), size, {});
+    const Report r = report(model, {default_criteria(), size}, {});
     EXPECT_EQ(r.least_composite, least);
     EXPECT_NEAR(r.mean_composite, sum / static_cast<double>(shells.size()), 1e-9);
   }
@@ -130,8 +130,8 @@ TEST(Composite, comes_with_the_metrics_it_is_made_of) {
   std::vector<float> alone(shells.size()), figures(shells.size());
   std::vector<Values> measured(shells.size()), values(shells.size());
   measure_shells(model, shells, measured);
-  composites(model, shells, default_criteria(), 1.0, alone);
-  composites(model, shells, default_criteria(), 1.0, figures, values);
+  composites(model, shells, {default_criteria(), 1.0}, alone);
+  composites(model, shells, {default_criteria(), 1.0}, figures, values);
   EXPECT_EQ(figures, alone);
   for (std::size_t i = 0; i < shells.size(); ++i)
     for (std::size_t m = 0; m < kMetricCount; ++m) {
@@ -162,8 +162,8 @@ TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
   }
   std::vector<float> batch(shells.size()), by_points(shells.size());
   std::vector<ShellState> states(shells.size());
-  composites(model, shells, criteria, 1.0, batch);
-  judge_points(points, {}, corners, sheets, criteria, 1.0, states, by_points);
+  composites(model, shells, {criteria, 1.0}, batch);
+  judge_points({points, {}, corners, sheets}, {criteria, 1.0}, states, by_points);
   for (std::size_t i = 0; i < shells.size(); ++i) {
     std::vector<Vec3> p;
     for (int c = 0; c < model.shell(shells[i]).corners(); ++c) p.push_back(points[static_cast<std::size_t>(corners[i][c])]);
@@ -173,7 +173,7 @@ TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
   const std::vector<ShellIndex> gone = {ShellIndex(std::size_t{17})};
   float figure = 0;
   Values of_gone{};
-  composites(model, gone, criteria, 1.0, std::span(&figure, 1), std::span(&of_gone, 1));
+  composites(model, gone, {criteria, 1.0}, std::span(&figure, 1), std::span(&of_gone, 1));
   EXPECT_EQ(figure, 1);
   for (const float value : of_gone) EXPECT_TRUE(std::isnan(value));
 }

@@ -68,7 +68,7 @@ TEST(Criteria, the_default_has_the_thresholds_it_documents) {
     const auto grade = [&](float value) {
       Values values = triangle ? good_triangle() : good_quad();
       values[int(one.metric)] = value;
-      return judge(values, default_criteria(), 10.0);
+      return judge(values, {default_criteria(), 10.0});
     };
     const auto bit = static_cast<std::uint16_t>(1u << int(one.metric));
     EXPECT_EQ(grade(one.ok), ShellState()) << name(one.metric);
@@ -85,13 +85,13 @@ TEST(Criteria, a_metric_that_is_not_named_is_not_judged) {
   Values values = good_quad();
   values[int(Metric::warpage)] = 170;
   values[int(Metric::aspect)] = 1e8f;
-  EXPECT_EQ(judge(values, parsed("[metrics.skew]\nfail_above = 40"), 10.0), ShellState());
+  EXPECT_EQ(judge(values, {parsed("[metrics.skew]\nfail_above = 40"), 10.0}), ShellState());
 }
 
 TEST(Criteria, what_fails_also_warns) {
   Values values = good_quad();
   values[int(Metric::skew)] = 41;
-  const ShellState state = judge(values, parsed("[metrics.skew]\nfail_above = 40"), 10.0);
+  const ShellState state = judge(values, {parsed("[metrics.skew]\nfail_above = 40"), 10.0});
   EXPECT_EQ(state.warn, state.fail);
   EXPECT_EQ(state.grade(), Grade::fail);
 }
@@ -103,22 +103,22 @@ TEST(Criteria, quads_and_triangles_apart_and_lengths_by_thickness) {
   EXPECT_EQ(criteria.name, "published");
   Values quad = good_quad(), triangle = good_triangle();
   quad[int(Metric::skew)] = triangle[int(Metric::skew)] = 50;
-  EXPECT_EQ(judge(quad, criteria, 10.0).grade(), Grade::fail);
-  EXPECT_EQ(judge(triangle, criteria, 10.0).grade(), Grade::ok);
+  EXPECT_EQ(judge(quad, {criteria, 10.0}).grade(), Grade::fail);
+  EXPECT_EQ(judge(triangle, {criteria, 10.0}).grade(), Grade::ok);
   triangle[int(Metric::skew)] = 61;
-  EXPECT_EQ(judge(triangle, criteria, 10.0).grade(), Grade::fail);
-  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 9.0).grade(), Grade::ok);
-  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 9.2).grade(), Grade::fail);
-  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 0.0).grade(), Grade::ok);  // unknown
+  EXPECT_EQ(judge(triangle, {criteria, 10.0}).grade(), Grade::fail);
+  EXPECT_EQ(judge(good_quad(), {criteria, 10.0}, 9.0).grade(), Grade::ok);
+  EXPECT_EQ(judge(good_quad(), {criteria, 10.0}, 9.2).grade(), Grade::fail);
+  EXPECT_EQ(judge(good_quad(), {criteria, 10.0}, 0.0).grade(), Grade::ok);  // unknown
 }
 
 TEST(Criteria, a_thin_sheet_keeps_the_least_length_of_the_target_size) {
   const Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 1.1\n");
   Values quad = good_quad();
   quad[int(Metric::min_length)] = 1.9F;
-  EXPECT_EQ(judge(quad, criteria, 10.0, 0.5).grade(), Grade::fail);
+  EXPECT_EQ(judge(quad, {criteria, 10.0}, 0.5).grade(), Grade::fail);
   quad[int(Metric::min_length)] = 2.1F;
-  EXPECT_EQ(judge(quad, criteria, 10.0, 0.5).grade(), Grade::ok);
+  EXPECT_EQ(judge(quad, {criteria, 10.0}, 0.5).grade(), Grade::ok);
 }
 
 TEST(Criteria, a_wanted_time_step_sets_the_least_length_by_the_material) {
@@ -127,7 +127,7 @@ TEST(Criteria, a_wanted_time_step_sets_the_least_length_by_the_material) {
   const auto grade = [&](float length, const Sheet& sheet) {
     Values values = good_quad();
     values[int(Metric::min_length)] = length;
-    return judge(values, criteria, 10.0, sheet).grade();
+    return judge(values, {criteria, 10.0}, sheet).grade();
   };
   // 0.5 microseconds of a step that is 0.9 of what the length takes: 3.01 mm
   EXPECT_EQ(grade(3.0f, Sheet(0, steel)), Grade::fail);
@@ -149,11 +149,11 @@ TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
   for (const Sheet& sheet : {Sheet(), Sheet(1.0), Sheet(3.0), Sheet(0, 1.5), Sheet(0, 9.0), Sheet(7.0, 9.0)})
     for (const bool of_triangle : {false, true})
       for (const Metric metric : {Metric::min_length, Metric::max_length, Metric::skew, Metric::aspect}) {
-        const Threshold limits = threshold_of(criteria, metric, of_triangle, 10, sheet);
+        const Threshold limits = threshold_of({criteria, 10}, metric, of_triangle, sheet);
         const auto judged = [&](float value) {
           Values values = of_triangle ? good_triangle() : good_quad();
           values[int(metric)] = value;
-          const ShellState state = judge(values, criteria, 10, sheet);
+          const ShellState state = judge(values, {criteria, 10}, sheet);
           return std::pair((state.warn >> int(metric) & 1) != 0, (state.fail >> int(metric) & 1) != 0);
         };
         for (const float limit : {limits.warn_low, limits.warn_high, limits.fail_low, limits.fail_high}) {
@@ -165,8 +165,8 @@ TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
           }
         }
       }
-  EXPECT_NEAR(threshold_of(criteria, Metric::min_length, false, 10, Sheet(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
-  EXPECT_NEAR(threshold_of(criteria, Metric::min_length, false, 10, Sheet(7.0, 9.0)).fail_low, 7.7, 1e-5);
+  EXPECT_NEAR(threshold_of({criteria, 10}, Metric::min_length, false, Sheet(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
+  EXPECT_NEAR(threshold_of({criteria, 10}, Metric::min_length, false, Sheet(7.0, 9.0)).fail_low, 7.7, 1e-5);
 }
 
 TEST(Criteria, of_our_own_are_known_by_name) {
@@ -248,14 +248,14 @@ TEST(Criteria, points_are_judged_as_shells_are) {
   }
   const Criteria criteria = parsed("[metrics.min_length]\nfail_below_thicknesses = 0.5\n[metrics.aspect]\nwarn_above = 2\n");
   std::vector<ShellState> states(corners.size());
-  judge_points(moving, fixed, corners, thickness, criteria, 1.0, states);
+  judge_points({moving, fixed, corners, thickness}, {criteria, 1.0}, states);
   for (std::size_t s = 0; s < corners.size(); ++s) {
     std::vector<Vec3> p;
     for (std::size_t i = 0; i < (corners[s][3] == corners[s][2] ? 3u : 4u); ++i) {
       const std::int32_t at = corners[s][i];
       p.push_back(at >= 0 ? moving[static_cast<std::size_t>(at)] : fixed[static_cast<std::size_t>(~at)]);
     }
-    EXPECT_EQ(states[s], judge(measure(p), criteria, 1.0, thickness[s])) << s;
+    EXPECT_EQ(states[s], judge(measure(p), {criteria, 1.0}, thickness[s])) << s;
   }
 }
 

@@ -32,7 +32,7 @@ Model steel_grid(int columns, int rows, double size) {
 }
 
 Report report_of(const Model& model, const TimeStepControl& control = {}, const ShellSet* shells = nullptr) {
-  return report(model, default_criteria(), 5.0, control, shells);
+  return report(model, {default_criteria(), 5.0}, control, shells);
 }
 
 TEST(Report, mass_and_centre_of_a_plate) {
@@ -263,7 +263,7 @@ TEST(Report, by_part_adds_up_to_the_whole) {
   for (std::size_t s = 0; s < model.shell_count(); ++s)
     if (s % 3 == 0) model.shell_parts.set(s, PartIndex(std::size_t{2}));
   model.positions.set(100, model.positions[100] + Vec3(3, 3, 3));
-  const std::vector<PartReport> parts = report_by_part(model, default_criteria(), 5.0, {});
+  const std::vector<PartReport> parts = report_by_part(model, {default_criteria(), 5.0}, {});
   ASSERT_EQ(parts.size(), 2u);  // nothing is of the middle one
   EXPECT_EQ(parts[0].part, PartIndex(std::size_t{0}));
   EXPECT_EQ(parts[1].part, PartIndex(std::size_t{2}));
@@ -277,14 +277,14 @@ TEST(Report, by_part_adds_up_to_the_whole) {
   EXPECT_FALSE(parts[1].report.mass);
   EXPECT_FALSE(parts[1].report.time_step);
   const ShellSet first = {ShellIndex(std::size_t{0})};
-  EXPECT_EQ(report_by_part(model, default_criteria(), 5.0, {}, &first).size(), 1u);
+  EXPECT_EQ(report_by_part(model, {default_criteria(), 5.0}, {}, &first).size(), 1u);
 }
 
 TEST(Report, judging_again_what_changed_equals_judging_everything) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> away(-3, 3);
   Model model = steel_grid(120, 90, 5);  // several chunks
-  ChunkedArray<ShellState> states = judge_model(model, default_criteria(), 5.0);
+  ChunkedArray<ShellState> states = judge_model(model, {default_criteria(), 5.0});
   Counts counts = count(states);
   EXPECT_EQ(counts.ok, model.shell_count());
   for (int round = 0; round < 5; ++round) {
@@ -293,8 +293,8 @@ TEST(Report, judging_again_what_changed_equals_judging_everything) {
       model.positions.set(n, model.positions[n] + Vec3(away(random), away(random), away(random)));
       moved.emplace_back(n);
     }
-    rejudge(model, default_criteria(), 5.0, shells_touching(model, moved), states, counts);
-    const ChunkedArray<ShellState> fresh = judge_model(model, default_criteria(), 5.0);
+    rejudge(model, {default_criteria(), 5.0}, shells_touching(model, moved), states, counts);
+    const ChunkedArray<ShellState> fresh = judge_model(model, {default_criteria(), 5.0});
     for (std::size_t s = 0; s < model.shell_count(); ++s) ASSERT_EQ(states[s], fresh[s]) << s;
     EXPECT_EQ(counts, count(fresh));
     EXPECT_EQ(counts, report_of(model).counts);
@@ -304,10 +304,10 @@ TEST(Report, judging_again_what_changed_equals_judging_everything) {
 
 TEST(Report, judging_again_keeps_what_is_shared) {
   const Model model = steel_grid(120, 90, 5);
-  const ChunkedArray<ShellState> states = judge_model(model, default_criteria(), 5.0);
+  const ChunkedArray<ShellState> states = judge_model(model, {default_criteria(), 5.0});
   ChunkedArray<ShellState> again = states;
   Counts counts = count(states);
-  rejudge(model, default_criteria(), 5.0, {ShellIndex(std::size_t{5000})}, again, counts);
+  rejudge(model, {default_criteria(), 5.0}, {ShellIndex(std::size_t{5000})}, again, counts);
   for (std::size_t c = 0; c < states.chunk_count(); ++c) EXPECT_TRUE(again.shares_chunk(states, c));
 }
 

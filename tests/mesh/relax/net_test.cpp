@@ -182,7 +182,7 @@ TEST(relax, takes_nodes_that_alone_may_move_back_to_the_middle) {
   pulled.positions.set(inside.value, Vec3(16.7, 13.9, 0));
   pulled.positions.set(edge.value, Vec3(13.4, 0, 0));
   const relax::ReferenceSurface surface(regular, all_shells(regular), 30);
-  const relax::Relaxed relaxed = relax::relax(pulled, surface, {edge, inside}, judge_of(), {}).value();
+  const relax::Relaxed relaxed = relax::relax({pulled, surface, criteria_of(), {}}, {edge, inside}).value();
   ASSERT_EQ(relaxed.nodes, (NodeSet{edge, inside}));
   EXPECT_LT((relaxed.positions[0] - Vec3(15, 0, 0)).norm(), 0.2);
   EXPECT_LT((relaxed.positions[1] - Vec3(15, 15, 0)).norm(), 0.2);

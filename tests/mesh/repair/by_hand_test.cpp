@@ -19,7 +19,7 @@ struct Hand {
     NodeSet n;
     for (const std::size_t shell : shells) s.push_back(shell_at(shell));
     for (const std::size_t node : nodes) n.push_back(at(node));
-    return by_hand(model, surface, operation, s, n, rules, {quality::default_criteria(), 1}, {});
+    return by_hand({model, surface, rules, {quality::default_criteria(), 1}, {}}, {operation, s, n});
   }
   /// The model afterwards, sound and with the same shape.
   Model after(const Result<Restructuring>& change) const {

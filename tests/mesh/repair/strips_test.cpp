@@ -209,7 +209,7 @@ TEST(Repairs, cure_a_squeezed_sheet_by_taking_strips_out) {
                   {}};
   const Model model = model_of(grid.positions(), grid.shells());
   const relax::ReferenceSurface surface(model, all_shells(model), Options{}.relax.feature_angle);
-  const auto repaired = repair(model, surface, all_shells(model), {}, {quality::default_criteria(), 1}, {});
+  const auto repaired = repair({model, surface, {}, {quality::default_criteria(), 1}, {}}, all_shells(model));
   ASSERT_TRUE(repaired) << repaired.error().message;
   EXPECT_EQ(repaired->bad_before, 18U);
   const Model after = carried_out(model, repaired->change);
@@ -229,8 +229,8 @@ TEST(Repairs, cure_a_stretched_sheet_by_whole_strips) {
                   {}};
   const Model model = model_of(grid.positions(), grid.shells());
   const relax::ReferenceSurface surface(model, all_shells(model), Options{}.relax.feature_angle);
-  const relax::Judge judge{quality::default_criteria(), 1};
-  const auto repaired = repair(model, surface, all_shells(model), {}, judge, {});
+  const quality::SizedCriteria criteria{quality::default_criteria(), 1};
+  const auto repaired = repair({model, surface, {}, criteria, {}}, all_shells(model));
   ASSERT_TRUE(repaired) << repaired.error().message;
   EXPECT_EQ(repaired->bad_before, 36U);
   const Model after = carried_out(model, repaired->change);
