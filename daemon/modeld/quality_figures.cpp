@@ -13,7 +13,7 @@
 #include "mesh/quality/composite.h"
 #include "mesh/quality/limits.h"
 #include "mesh/quality/measure.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 
 namespace prismesh::modeld {
 
@@ -25,7 +25,7 @@ using mesh::document::Generation;
 using mesh::quality::Defect;
 using mesh::quality::kMetricCount;
 using mesh::quality::Metric;
-using mesh::quality::Sheet;
+using mesh::quality::ShellProperties;
 using mesh::quality::ShellState;
 using mesh::quality::Threshold;
 using mesh::quality::Values;
@@ -205,7 +205,8 @@ class Gathering {
     for (int m = 0; m < kMetricCount; ++m) {
       if (!has(state.warn, m) || (metric_ >= 0 && m != metric_)) continue;
       const auto at = static_cast<std::size_t>(m);
-      const Sheet sheet = m == int(Metric::min_length) ? mesh::quality::sheet_of(generation_.model, ShellIndex(shell)) : Sheet();
+      const ShellProperties sheet =
+          m == int(Metric::min_length) ? mesh::quality::properties_of(generation_.model, ShellIndex(shell)) : ShellProperties();
       const Wrong candidate{shell, m, values[at], severity(values[at], threshold_of(m, triangle, sheet)), has(state.fail, m)};
       if (worst.metric < 0 || worse(candidate, worst)) worst = candidate;
     }
@@ -290,7 +291,7 @@ class Gathering {
   }
 
   /// For this target size; without a sheet as if nothing were known of thickness and material.
-  Threshold threshold_of(int metric, bool triangle, const Sheet& sheet = {}) const {
+  Threshold threshold_of(int metric, bool triangle, const ShellProperties& sheet = {}) const {
     return mesh::quality::threshold_of({document_.settings.criteria, document_.settings.target_size}, static_cast<Metric>(metric), triangle,
                                        sheet);
   }

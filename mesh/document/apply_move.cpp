@@ -83,8 +83,8 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
 }  // namespace
 
 void update_weight(const Generation& before, const ShellSet& shells, Generation& next) {
-  next.weight -= quality::weigh_shells(before.model, shells);
-  next.weight += quality::weigh_shells(next.model, shells);
+  next.weight -= quality::mass_properties(before.model, shells);
+  next.weight += quality::mass_properties(next.model, shells);
 }
 
 Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report) {

@@ -180,8 +180,8 @@ Result<void> apply_edit(const Document& document, const Relax& edit, Generation&
   }
   relax::Options options;
   options.feature_angle = edit.angle;
-  options.most_on_surface = edit.max_move.free;
-  options.most_on_line = edit.max_move.line;
+  options.max_move_on_surface = edit.max_move.free;
+  options.max_move_on_line = edit.max_move.line;
   const quality::SizedCriteria criteria{document.settings.criteria, document.settings.target_size};
   const relax::ReferenceSurface surface = surface_about(current, reach->shells, edit.angle);
   const double threshold = edit.threshold.value_or(kThreshold * document.settings.target_size);

@@ -8,7 +8,7 @@
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
 #include "mesh/model/topology_change.h"
-#include "mesh/repair/by_hand.h"
+#include "mesh/repair/manual_operation.h"
 #include "mesh/repair/repair.h"
 
 namespace prismesh::mesh::document {
@@ -21,8 +21,8 @@ constexpr std::size_t kMaxNamedInRepair = 10;  ///< elements that a note names
 repair::Options options_of(double angle, const MoveLimits& limits) {
   repair::Options options;
   options.relax.feature_angle = angle;
-  options.relax.most_on_surface = limits.free;
-  options.relax.most_on_line = limits.line;
+  options.relax.max_move_on_surface = limits.free;
+  options.relax.max_move_on_line = limits.line;
   return options;
 }
 
@@ -148,7 +148,7 @@ Result<void> apply_edit(const Document& document, const Restructure& edit, Gener
   ShellSet about = shells_touching(current.model, nodes);
   about.insert(about.end(), hand->shells.begin(), hand->shells.end());
   const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
-  const Result<repair::Restructuring> change = repair::by_hand(
+  const Result<repair::Restructuring> change = repair::apply_manual_operation(
       {current.model, surface, rules_for(document, current), criteria_of(document), options}, {edit.operation, hand->shells, hand->nodes});
   if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
   return restructure(document, *change, next, report);

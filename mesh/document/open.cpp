@@ -39,7 +39,7 @@ std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const d
   first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
   first->quality = quality::judge_model(model, {settings.criteria, settings.target_size});
   first->counts = quality::count(first->quality);
-  first->weight = quality::weigh_model(model);
+  first->weight = quality::mass_properties(model);
   first->surface = std::make_shared<const Model>(model);
   first->model = std::move(model);
   first->made_by = "open";

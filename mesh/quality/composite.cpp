@@ -8,11 +8,11 @@
 
 namespace prismesh::mesh::quality {
 
-float composite(const Values& values, const SizedCriteria& criteria, const Sheet& sheet) {
+float composite(const Values& values, const SizedCriteria& criteria, const ShellProperties& properties) {
   const BatchValues batch = batch_of(values);
   const Limits limits = limits_for(criteria);
   float rated = 0;
-  rate_lanes(batch, 1, limits, limits.need_sheets() ? &sheet : nullptr, &rated);
+  rate_lanes(batch, 1, limits, limits.need_properties() ? &properties : nullptr, &rated);
   return rated;
 }
 
@@ -25,9 +25,9 @@ void composites(const Model& model, std::span<const ShellIndex> shells, const Si
   measure_in_batches(
       shells.size(), [&](std::size_t i, const Vec3*(&corner)[4]) { return corners_of(model, shell_of(i), corner); },
       [&](const ShellBatch& batch, const BatchValues& measured) {
-        Sheet room[kLanes];
+        ShellProperties buffer[kLanes];
         float rated[kLanes];
-        rate_lanes(measured, batch.count, limits, sheets_of(model, limits, batch, shell_of, room), rated);
+        rate_lanes(measured, batch.count, limits, batch_properties(model, limits, batch, shell_of, buffer), rated);
         for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = rated[lane];
         if (values.empty()) return;
         for (std::size_t lane = 0; lane < batch.count; ++lane) values[batch.slot[lane]] = measured.at(lane);

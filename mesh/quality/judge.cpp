@@ -5,17 +5,17 @@
 
 namespace prismesh::mesh::quality {
 
-ShellState judge(const Values& values, const SizedCriteria& criteria, const Sheet& sheet) {
+ShellState judge(const Values& values, const SizedCriteria& criteria, const ShellProperties& properties) {
   const BatchValues batch = batch_of(values);
   const Limits limits = limits_for(criteria);
   ShellState state;
-  judge_lanes(batch, 1, limits, limits.need_sheets() ? &sheet : nullptr, &state);
+  judge_lanes(batch, 1, limits, limits.need_properties() ? &properties : nullptr, &state);
   return state;
 }
 
 void judge_points(const PointShells& shells, const SizedCriteria& criteria, std::span<ShellState> out, std::span<float> composites) {
   const Limits limits = limits_for(criteria);
-  const bool by_sheet = limits.need_sheets() && !shells.sheets.empty();
+  const bool by_properties = limits.need_properties() && !shells.properties.empty();
   measure_in_batches(
       shells.corners.size(),
       [&](std::size_t i, const Vec3*(&corner)[4]) {
@@ -27,15 +27,15 @@ void judge_points(const PointShells& shells, const SizedCriteria& criteria, std:
       },
       [&](const ShellBatch& batch, const BatchValues& values) {
         ShellState states[kLanes];
-        Sheet room[kLanes];
-        if (by_sheet)
-          for (std::size_t lane = 0; lane < batch.count; ++lane) room[lane] = shells.sheets[batch.slot[lane]];
-        const Sheet* lane_sheets = by_sheet ? room : nullptr;
-        judge_lanes(values, batch.count, limits, lane_sheets, states);
+        ShellProperties buffer[kLanes];
+        if (by_properties)
+          for (std::size_t lane = 0; lane < batch.count; ++lane) buffer[lane] = shells.properties[batch.slot[lane]];
+        const ShellProperties* lane_properties = by_properties ? buffer : nullptr;
+        judge_lanes(values, batch.count, limits, lane_properties, states);
         for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = states[lane];
         if (composites.empty()) return;
         float rated[kLanes];
-        rate_lanes(values, batch.count, limits, lane_sheets, rated);
+        rate_lanes(values, batch.count, limits, lane_properties, rated);
         for (std::size_t lane = 0; lane < batch.count; ++lane) composites[batch.slot[lane]] = rated[lane];
       });
 }

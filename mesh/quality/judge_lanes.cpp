@@ -27,7 +27,7 @@ void mark_short(const float* value, std::size_t lanes, const float* min, std::ui
     bits[lane] = static_cast<std::uint16_t>(bits[lane] | (unsigned(value[lane] < min[lane]) << kMinLength));
 }
 
-/// Defects show in the values (shell_batch.h).
+/// Defects are told from the values (shell_lanes.h).
 void mark_defects(const BatchValues& values, std::size_t lanes, std::uint16_t* bits) {
   const float* aspect = values.value[int(Metric::aspect)];
   const float* skew = values.value[int(Metric::skew)];
@@ -41,14 +41,14 @@ void mark_defects(const BatchValues& values, std::size_t lanes, std::uint16_t* b
 
 }  // namespace
 
-void judge_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const Sheet* sheets, ShellState* out) {
+void judge_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const ShellProperties* properties, ShellState* out) {
   std::uint16_t warn[kLanes] = {}, failed[kLanes] = {};
   const ShapeLimits& shape = limits.of(values.of_triangles);
   for (int m = 0; m < kMetricCount; ++m) {
     Threshold t = shape.threshold[m];
-    if (m == kMinLength && sheets != nullptr) {
+    if (m == kMinLength && properties != nullptr) {
       MinLengths min;
-      min_lengths(shape, limits, {sheets, count}, min);
+      min_lengths(shape, limits, {properties, count}, min);
       mark_short(values.value[m], count, min.warn, warn);
       mark_short(values.value[m], count, min.fail, failed);
       t.warn_low = t.fail_low = -std::numeric_limits<float>::infinity();
@@ -60,35 +60,35 @@ void judge_lanes(const BatchValues& values, std::size_t count, const Limits& lim
   for (std::size_t lane = 0; lane < count; ++lane) out[lane] = {static_cast<std::uint16_t>(warn[lane] | failed[lane]), failed[lane]};
 }
 
-void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const Sheet* sheets, float* out) {
+void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const ShellProperties* properties, float* out) {
   const ShapeLimits& shape = limits.of(values.of_triangles);
   for (std::size_t lane = 0; lane < count; ++lane) out[lane] = 1;
-  // a metric that doesn't apply is NaN, and so is its score: no less than anything
-  const auto take = [&](const float* value, const Side& side) {
+  // A metric that doesn't apply is NaN, and so is its score: it never is the min.
+  const auto take = [&](const float* value, const ScoreSide& side) {
     for (std::size_t lane = 0; lane < count; ++lane) {
-      const float score = (value[lane] - side.limit) * side.per;
+      const float score = (value[lane] - side.limit) * side.slope;
       out[lane] = score < out[lane] ? score : out[lane];
     }
   };
   for (int m = 0; m < kMetricCount; ++m) {
-    if (m == kMinLength && sheets != nullptr) {
+    if (m == kMinLength && properties != nullptr) {
       MinLengths min;
-      min_lengths(shape, limits, {sheets, count}, min);
+      min_lengths(shape, limits, {properties, count}, min);
       for (std::size_t lane = 0; lane < count; ++lane) {
         if (!std::isfinite(min.fail[lane])) continue;
         const float best = std::max(shape.ideal_min_length, min.fail[lane]);
         const float score = (values.value[m][lane] - min.fail[lane]) / span_of(min.fail[lane], best);
         out[lane] = score < out[lane] ? score : out[lane];
       }
-    } else if (shape.side[m][0].per != 0) {
+    } else if (shape.side[m][0].slope != 0) {
       take(values.value[m], shape.side[m][0]);
     }
-    if (shape.side[m][1].per != 0) take(values.value[m], shape.side[m][1]);
+    if (shape.side[m][1].slope != 0) take(values.value[m], shape.side[m][1]);
   }
   std::uint16_t defect[kLanes] = {};
   mark_defects(values, count, defect);
   for (std::size_t lane = 0; lane < count; ++lane) {
-    // what fails goes towards -1 without reaching it, so that of two bad shells the better one is known
+    // Below the fail limit the score approaches -1 without reaching it, so that two failing shells can be compared.
     const float bad = std::max(out[lane], -1e30F);
     const float score = bad < 0 ? bad / (1 - bad) : bad;
     out[lane] = defect[lane] != 0 ? -1.0F : std::max(score, kWorstWithoutDefect);

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "mesh/model/model.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 
 namespace prismesh::mesh::quality {
 
@@ -15,7 +15,7 @@ struct PointShells {
   std::span<const Vec3> fixed;
   /// Of each shell: corner >= 0 is moving[corner], < 0 is fixed[~corner]; a triangle repeats its third.
   std::span<const std::array<std::int32_t, 4>> corners;
-  std::span<const Sheet> sheets;  ///< of each shell, or empty if unknown
+  std::span<const ShellProperties> properties;  ///< of each shell, or empty if unknown
 };
 
 }  // namespace prismesh::mesh::quality

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
 
 namespace prismesh::mesh::repair {
 

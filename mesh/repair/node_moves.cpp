@@ -7,7 +7,7 @@
 
 namespace prismesh::mesh::repair {
 
-Refusal stir(const RepairContext& context, LocalShell shell) {
+Refusal mark_neighbourhood_changed(const RepairContext& context, LocalShell shell) {
   Patch& patch = context.patch;
   std::vector<LocalNode> nodes;
   for (const LocalNode corner : patch.shell(shell).corners)

@@ -1,4 +1,4 @@
-// The names of what can be done to a mesh's structure.
+// Operations on the shells of a mesh.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 namespace prismesh::mesh::repair {
 
 enum class Operation : std::uint8_t {
-  split,     ///< a quad into two triangles; a stretched shell (and its neighbour) across
+  split,     ///< a quad into two triangles; shells across, with their neighbours
   collapse,  ///< an edge to a point
   merge,     ///< two triangles into a quad
-  swap,      ///< the edge that two shells share turns
-  move,      ///< a warped quad's corner along the normal; not by hand
+  swap,      ///< two shells are divided along another edge
+  move,      ///< a warped quad's corner along the normal; not for a manual operation
 };
 inline constexpr int kOperationCount = 5;
 std::string_view name(Operation operation);  ///< as in an edit's JSON

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "mesh/relax/relax.h"
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
 #include "mesh/repair/candidates.h"
 #include "mesh/repair/change_history.h"
 #include "mesh/repair/strips.h"
@@ -42,7 +42,7 @@ bool divide_strips_once(const RepairContext& context, RepairState& state) {
       if (improve(context, state, found, shell, TrialGoal::cure))
         better = true;
       else
-        for (const StripQuad& quad : course_of(patch, {shell, edge}).quads) refused.emplace(quad.shell, quad.edge);
+        for (const StripQuad& quad : path_of(patch, {shell, edge}).quads) refused.emplace(quad.shell, quad.edge);
     }
   return better;
 }
@@ -125,8 +125,8 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   const Model small = patch.as_model(shells);
   const std::vector<Vec3> at_first = positions_in_model(patch);
   relax::Options options = context.options.relax;
-  options.checks_on_the_way = false;
-  options.limits_from = &at_first;
+  options.checks_before_rest = false;
+  options.move_origins = &at_first;
   const Result<relax::Relaxed> relaxed =
       relax::relax({small, context.surface, context.criteria, options}, movable_nodes(patch, state.history),
                    [&](double) { return goes_on(state.progress, 0); });
@@ -137,7 +137,7 @@ void relax_neighbourhood(const RepairContext& context, RepairState& state) {
   patch.begin();
   for (std::size_t i = 0; i < relaxed->nodes.size(); ++i) patch.move(LocalNode(relaxed->nodes[i].value), relaxed->positions[i]);
   judge_shells(context, patch.changed_shells());
-  if (harms(patch) || !conforms(patch))
+  if (adds_failures(patch) || !conforms(patch))
     patch.take_back();
   else
     keep_change(patch, state.history);

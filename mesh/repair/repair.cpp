@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
 #include "mesh/repair/change_history.h"
 #include "mesh/repair/passes.h"
 
@@ -80,7 +80,7 @@ bool run_round(const RepairContext& context, RepairState& state) {
 int run_rounds(const RepairContext& context, RepairState& state) {
   int rounds = 0;
   relax_neighbourhood(context, state);
-  for (int& round = state.progress.round; round < context.options.most_rounds && !state.progress.stopped; ++round) {
+  for (int& round = state.progress.round; round < context.options.max_rounds && !state.progress.stopped; ++round) {
     rounds = round + 1;
     const bool better = run_round(context, state);
     if (!better && state.effort.along_lines) break;
@@ -115,7 +115,7 @@ Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const P
   Patch patch(input.model, scope, kRingsOfPatch, input.rules, input.options.relax.feature_angle);
   const RepairContext exact{patch, input.surface, input.criteria, input.options, quality::limits_for(input.criteria)};
   const RepairContext strict{patch, input.surface, input.criteria, input.options, with_margin(exact.limits)};
-  RepairState state{history_of(patch, input.model, scope, input.options.most_triangles_percent), {}, {progress}};
+  RepairState state{history_of(patch, input.model, scope, input.options.max_triangles_percent), {}, {progress}};
   Repaired repaired;
   judge_all(exact);
   repaired.bad_before = bad_shells(patch, state.history, quality::Grade::warn).size();

@@ -1,5 +1,5 @@
-// Repairing: local changes to the shells' structure, worst first, until they are valid or nothing gets better. Operations, order and
-// sources: docs/repairing.md.
+// Repairs shells that fail or warn by local changes of the mesh, worst first, until none is left or nothing gets better. Operations, order
+// and sources: docs/repairing.md.
 #pragma once
 
 #include "base/error.h"
@@ -10,8 +10,8 @@
 
 namespace prismesh::mesh::repair {
 
-/// Repairs the shells of `scope` that fail or warn; their neighbours may change with them, nothing that passes fails afterwards.
-/// Deterministic. Errors: cancelled. Preconditions: as of relax.
+/// Repairs the shells of `scope` (ascending) that fail or warn. Their neighbours may change with them; no shell that passes fails
+/// afterwards. Returns the change of the model and what was done. Deterministic, whatever the number of threads. Errors: cancelled.
 Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::repair

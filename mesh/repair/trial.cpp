@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
 #include "mesh/repair/change_history.h"
-#include "mesh/repair/settling.h"
+#include "mesh/repair/node_smoothing.h"
 
 namespace prismesh::mesh::repair {
 
@@ -31,9 +31,9 @@ std::optional<double> preview(const RepairContext& context, const RepairState& s
   if (const Refusal refusal = candidate.apply()) {
     if (reason.rank < 0) reason = {0, *refusal, 0};
   } else {
-    settle(context, kPreviewSweeps, state.along_lines);
+    smooth_nodes(context, kPreviewSweeps, state.along_lines);
     judge_shells(context, patch.changed_shells());
-    gain = cost_before(patch).weight - cost_now(patch).weight;
+    gain = cost_before(patch).total - cost_now(patch).total;
   }
   patch.take_back();
   return gain;
@@ -51,19 +51,19 @@ Outcome try_out(const RepairContext& context, const RepairState& state, const Ca
   const Patch& patch = context.patch;
   const ChangeHistory& history = state.history;
   if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
-  settle(context, state.effort.sweeps, state.along_lines);
+  smooth_nodes(context, state.effort.sweeps, state.along_lines);
   judge_shells(context, patch.changed_shells());
   const Cost before = cost_before(patch), now = cost_now(patch);
-  const double gain = before.weight - now.weight;
+  const double gain = before.total - now.total;
   if (gain < kMinGain) return {0, "no operation makes it better", 4};
   if (!reaches(goal, before, now)) return goal == TrialGoal::tidy ? Outcome{} : Outcome{0, "no operation makes it better", 4};
-  if (harms(patch)) return {0, "every operation makes a neighbour fail", 2};
+  if (adds_failures(patch)) return {0, "every operation makes a neighbour fail", 2};
   if (!conforms(patch)) return {0, "every operation would tear or fold the mesh", 1};
   if (now.triangles > before.triangles && history.triangles + now.triangles - before.triangles > history.max_triangles)
     return {0, "there would be too many triangles", 5};
   if (now.triangle_pairs > before.triangle_pairs && history.added_triangle_pairs + now.triangle_pairs - before.triangle_pairs > 0)
     return {0, "there would be two triangles side by side", 5};
-  if (!keeps_to_surface(context)) return {0, "every operation leaves the surface", 3};
+  if (!stays_on_surface(context)) return {0, "every operation leaves the surface", 3};
   return {gain, {}, 0};
 }
 

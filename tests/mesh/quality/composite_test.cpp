@@ -8,7 +8,7 @@
 #include "mesh/quality/judge.h"
 #include "mesh/quality/measure.h"
 #include "mesh/quality/report.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 #include "tests/mesh/quality/mixed_grid.h"
 
 namespace prismesh::mesh::quality {
@@ -17,8 +17,8 @@ namespace {
 Criteria criteria_of(const std::string& text) { return parse_criteria(text, "mine.toml").value(); }
 
 float rated(const std::vector<Vec3>& corners, const Criteria& criteria = default_criteria(), double target_size = 1,
-            const Sheet& sheet = {}) {
-  return composite(measure(corners), {criteria, target_size}, sheet);
+            const ShellProperties& properties = {}) {
+  return composite(measure(corners), {criteria, target_size}, properties);
 }
 
 std::vector<Vec3> rectangle(double width, double height) { return {{0, 0, 0}, {width, 0, 0}, {width, height, 0}, {0, height, 0}}; }
@@ -65,12 +65,12 @@ TEST(Composite, defects_have_minus_1_and_nothing_else_has) {
 
 TEST(Composite, thickness_and_wanted_time_step_set_the_least_length) {
   const Criteria thick = criteria_of("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 2");
-  EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, Sheet(0.1)), 0.5, 1e-6);
-  EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, Sheet(0.2)), 0.2 / 0.6, 1e-6);
-  EXPECT_LT(rated(rectangle(0.6, 1), thick, 1, Sheet(0.4)), 0);
+  EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, ShellProperties(0.1)), 0.5, 1e-6);
+  EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, ShellProperties(0.2)), 0.2 / 0.6, 1e-6);
+  EXPECT_LT(rated(rectangle(0.6, 1), thick, 1, ShellProperties(0.4)), 0);
   // 0.5 of a time step (the deck takes 0.9 of what the length gives) at 1.08 a time unit: 0.6
   const Criteria step = criteria_of("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 0.5");
-  EXPECT_NEAR(rated(rectangle(0.8, 1), step, 1, Sheet(0, 1.08)), 0.5, 1e-6);
+  EXPECT_NEAR(rated(rectangle(0.8, 1), step, 1, ShellProperties(0, 1.08)), 0.5, 1e-6);
   EXPECT_NEAR(rated(rectangle(0.6, 1), step, 1), 0.5, 1e-6);
   // where nothing is known nothing is judged
   EXPECT_EQ(rated(rectangle(0.6, 1), criteria_of("[metrics.min_length]\nfail_below_thicknesses = 2"), 1), 1);
@@ -118,7 +118,7 @@ TEST(Composite, is_negative_exactly_where_a_shell_fails) {
     }
     EXPECT_GT(failing, 0u);
     const Report r = report(model, {default_criteria(), size}, {});
-    EXPECT_EQ(r.least_composite, least);
+    EXPECT_EQ(r.min_composite, least);
     EXPECT_NEAR(r.mean_composite, sum / static_cast<double>(shells.size()), 1e-9);
   }
 }
@@ -151,23 +151,23 @@ TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
   std::vector<ShellIndex> shells;
   std::vector<std::array<std::int32_t, 4>> corners;
   std::vector<Vec3> points;
-  std::vector<Sheet> sheets;
+  std::vector<ShellProperties> properties;
   for (std::size_t n = 0; n < model.node_count(); ++n) points.push_back(model.positions[n]);
   for (std::size_t s = 0; s < model.shell_count(); s += 3) {
     if (model.is_removed(ShellIndex(s))) continue;
     shells.emplace_back(s);
     const auto node = [&](std::size_t c) { return static_cast<std::int32_t>(model.shell_nodes[s].node[c].value); };
     corners.push_back({node(0), node(1), node(2), node(3)});
-    sheets.push_back(sheet_of(model, ShellIndex(s)));
+    properties.push_back(properties_of(model, ShellIndex(s)));
   }
   std::vector<float> batch(shells.size()), by_points(shells.size());
   std::vector<ShellState> states(shells.size());
   composites(model, shells, {criteria, 1.0}, batch);
-  judge_points({points, {}, corners, sheets}, {criteria, 1.0}, states, by_points);
+  judge_points({points, {}, corners, properties}, {criteria, 1.0}, states, by_points);
   for (std::size_t i = 0; i < shells.size(); ++i) {
     std::vector<Vec3> p;
     for (int c = 0; c < model.shell(shells[i]).corners(); ++c) p.push_back(points[static_cast<std::size_t>(corners[i][c])]);
-    EXPECT_EQ(batch[i], rated(p, criteria, 1.0, sheets[i])) << i;
+    EXPECT_EQ(batch[i], rated(p, criteria, 1.0, properties[i])) << i;
     EXPECT_EQ(batch[i], by_points[i]) << i;
   }
   const std::vector<ShellIndex> gone = {ShellIndex(std::size_t{17})};

@@ -124,36 +124,37 @@ TEST(Criteria, a_thin_sheet_keeps_the_least_length_of_the_target_size) {
 TEST(Criteria, a_wanted_time_step_sets_the_least_length_by_the_material) {
   Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 5e-7\nwarn_below = 6e-7");
   const double steel = 5.4219e6;  // mm/s
-  const auto grade = [&](float length, const Sheet& sheet) {
+  const auto grade = [&](float length, const ShellProperties& properties) {
     Values values = good_quad();
     values[int(Metric::min_length)] = length;
-    return judge(values, {criteria, 10.0}, sheet).grade();
+    return judge(values, {criteria, 10.0}, properties).grade();
   };
   // 0.5 microseconds of a step that is 0.9 of what the length takes: 3.01 mm
-  EXPECT_EQ(grade(3.0f, Sheet(0, steel)), Grade::fail);
-  EXPECT_EQ(grade(3.02f, Sheet(0, steel)), Grade::warn);
-  EXPECT_EQ(grade(3.60f, Sheet(0, steel)), Grade::warn);
-  EXPECT_EQ(grade(3.62f, Sheet(0, steel)), Grade::ok);
+  EXPECT_EQ(grade(3.0f, ShellProperties(0, steel)), Grade::fail);
+  EXPECT_EQ(grade(3.02f, ShellProperties(0, steel)), Grade::warn);
+  EXPECT_EQ(grade(3.60f, ShellProperties(0, steel)), Grade::warn);
+  EXPECT_EQ(grade(3.62f, ShellProperties(0, steel)), Grade::ok);
   // where the material isn't known the fraction of the target size counts
-  EXPECT_EQ(grade(2.1f, Sheet()), Grade::ok);
-  EXPECT_EQ(grade(1.9f, Sheet()), Grade::fail);
+  EXPECT_EQ(grade(2.1f, ShellProperties()), Grade::ok);
+  EXPECT_EQ(grade(1.9f, ShellProperties()), Grade::fail);
   criteria.time_step_scale = 0.45;
-  EXPECT_EQ(grade(6.0f, Sheet(0, steel)), Grade::fail);
-  EXPECT_EQ(grade(6.04f, Sheet(0, steel)), Grade::warn);
+  EXPECT_EQ(grade(6.0f, ShellProperties(0, steel)), Grade::fail);
+  EXPECT_EQ(grade(6.04f, ShellProperties(0, steel)), Grade::warn);
 }
 
 TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
   const Criteria criteria = parsed(
       "[metrics.min_length]\nwarn_below = 0.4\nfail_below = 0.2\nfail_below_thicknesses = 1.1\n[metrics.max_length]\nfail_above = 2\n"
       "[metrics.skew.quad]\nwarn_above = 34\n[metrics.skew.triangle]\nfail_above = 60\n[time_step]\nwanted = 0.5\nwarn_below = 0.7");
-  for (const Sheet& sheet : {Sheet(), Sheet(1.0), Sheet(3.0), Sheet(0, 1.5), Sheet(0, 9.0), Sheet(7.0, 9.0)})
+  for (const ShellProperties& properties : {ShellProperties(), ShellProperties(1.0), ShellProperties(3.0), ShellProperties(0, 1.5),
+                                            ShellProperties(0, 9.0), ShellProperties(7.0, 9.0)})
     for (const bool of_triangle : {false, true})
       for (const Metric metric : {Metric::min_length, Metric::max_length, Metric::skew, Metric::aspect}) {
-        const Threshold limits = threshold_of({criteria, 10}, metric, of_triangle, sheet);
+        const Threshold limits = threshold_of({criteria, 10}, metric, of_triangle, properties);
         const auto judged = [&](float value) {
           Values values = of_triangle ? good_triangle() : good_quad();
           values[int(metric)] = value;
-          const ShellState state = judge(values, {criteria, 10}, sheet);
+          const ShellState state = judge(values, {criteria, 10}, properties);
           return std::pair((state.warn >> int(metric) & 1) != 0, (state.fail >> int(metric) & 1) != 0);
         };
         for (const float limit : {limits.warn_low, limits.warn_high, limits.fail_low, limits.fail_high}) {
@@ -161,12 +162,12 @@ TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
           for (const float value : {std::nextafter(limit, -1e9F), limit, std::nextafter(limit, 1e9F)}) {
             const bool fails = value < limits.fail_low || value > limits.fail_high;
             EXPECT_EQ(judged(value), std::pair(fails || value < limits.warn_low || value > limits.warn_high, fails))
-                << name(metric) << ' ' << value << " of " << sheet.thickness << ' ' << sheet.wave_speed;
+                << name(metric) << ' ' << value << " of " << properties.thickness << ' ' << properties.wave_speed;
           }
         }
       }
-  EXPECT_NEAR(threshold_of({criteria, 10}, Metric::min_length, false, Sheet(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
-  EXPECT_NEAR(threshold_of({criteria, 10}, Metric::min_length, false, Sheet(7.0, 9.0)).fail_low, 7.7, 1e-5);
+  EXPECT_NEAR(threshold_of({criteria, 10}, Metric::min_length, false, ShellProperties(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
+  EXPECT_NEAR(threshold_of({criteria, 10}, Metric::min_length, false, ShellProperties(7.0, 9.0)).fail_low, 7.7, 1e-5);
 }
 
 TEST(Criteria, of_our_own_are_known_by_name) {
@@ -238,7 +239,7 @@ TEST(Criteria, points_are_judged_as_shells_are) {
     fixed.emplace_back(anywhere(random), anywhere(random), 0.2 * anywhere(random));
   }
   std::vector<std::array<std::int32_t, 4>> corners;
-  std::vector<Sheet> thickness;
+  std::vector<ShellProperties> thickness;
   std::uniform_int_distribution<std::int32_t> pick(-60, 59);
   for (int s = 0; s < 500; ++s) {
     std::array<std::int32_t, 4> c = {pick(random), pick(random), pick(random), pick(random)};

@@ -107,7 +107,7 @@ TEST(Defects, enter_no_minimum_and_no_mean) {
   }
   EXPECT_EQ(r.metrics[int(Metric::aspect)].max, 1);
   EXPECT_EQ(r.metrics[int(Metric::aspect)].mean, 1);
-  EXPECT_EQ(r.least_composite, -1);
+  EXPECT_EQ(r.min_composite, -1);
   EXPECT_NEAR(r.mean_composite, (4.0 - 5.0) / 9, 1e-6);
   // 4 good ones, and the triangle that repeats a node has its half; crossed corners still have two triangles
   EXPECT_TRUE(std::isfinite(*r.mass));
@@ -115,7 +115,7 @@ TEST(Defects, enter_no_minimum_and_no_mean) {
   EXPECT_TRUE(std::isfinite(r.time_step->seconds));
   EXPECT_GT(r.time_step->seconds, 0);
   EXPECT_TRUE(std::isfinite(guess_target_size(model)));
-  EXPECT_TRUE(std::isfinite(weigh_model(model).mass));
+  EXPECT_TRUE(std::isfinite(mass_properties(model).mass));
 }
 
 Model grid(int columns, int rows) {
@@ -155,9 +155,9 @@ TEST(Removed, shells_weigh_nothing) {
   (*parts)[0].thickness = 3.0;
   model.parts = parts;
   remove_shell(model, ShellIndex(std::size_t{1}));
-  EXPECT_EQ(weigh_model(model).mass, 6);
-  EXPECT_EQ(weigh_model(model).shells, 1u);
-  EXPECT_EQ(weigh_shell(model, ShellIndex(std::size_t{1})).mass, 0);
+  EXPECT_EQ(mass_properties(model).mass, 6);
+  EXPECT_EQ(mass_properties(model).shells, 1u);
+  EXPECT_EQ(mass_properties(model, ShellIndex(std::size_t{1})).mass, 0);
 }
 
 TEST(Removed, added_shells_are_judged_though_nobody_named_them) {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-#include "mesh/relax/guard.h"
+#include "mesh/relax/quality_guard.h"
 #include "tests/mesh/relax/relaxing.h"
 
 namespace prismesh::test {
@@ -195,8 +195,8 @@ TEST(relax, makes_nothing_fail_that_passed) {
 TEST(relax, counts_as_held_back_what_is_taken_back_at_the_end) {
   const Model before = mixed_panel(0.45, 0.3);
   relax::Options options;
-  options.checks_on_the_way = false;  // and none has been careful before the last round
-  options.most_rounds = 1;
+  options.checks_before_rest = false;  // and none has been careful before the last round
+  options.max_rounds = 1;
   const relax::ReferenceSurface surface(before, all_shells(before), 30);
   const relax::Relaxed relaxed = relax::relax({before, surface, criteria_of(1), options}, all_nodes(before)).value();
   EXPECT_GT(relaxed.held_back, 0u);
@@ -206,7 +206,7 @@ TEST(relax, counts_as_held_back_what_is_taken_back_at_the_end) {
 TEST(relax_guard, lets_no_shell_be_turned_over_whatever_its_shape_is_then) {
   // an equilateral triangle: with its tip mirrored in its base it has the same shape, upside down
   const Model model = make_shells({{0, 2.6, 0}, {-1.5, 0, 0}, {1.5, 0, 0}}, {{0, 1, 2, 2}});
-  relax::Net net;
+  relax::SpringNet net;
   net.movable = 1;
   for (std::size_t n = 0; n < 3; ++n) {
     net.nodes.emplace_back(n);
@@ -214,7 +214,7 @@ TEST(relax_guard, lets_no_shell_be_turned_over_whatever_its_shape_is_then) {
   }
   net.shells = {ShellIndex(0)};
   net.corners = {{0, 1, 2, 2}};
-  const relax::Guard guard(model, net, criteria_of(3));
+  const relax::QualityGuard guard(model, net, criteria_of(3));
   const Vec3 mirrored(0, -2.6, 0);
   EXPECT_TRUE(guard.allows(0, net.start[0], net.start));
   EXPECT_FALSE(guard.allows(0, mirrored, net.start));
@@ -252,10 +252,10 @@ struct Tents {
     }
   }
   bool allows(std::uint32_t tip, const Vec3& place, const quality::SizedCriteria& criteria) const {
-    return relax::Guard(model, net, criteria).allows(tip, place + Vec3(10 * tip, 0, 0), net.start);
+    return relax::QualityGuard(model, net, criteria).allows(tip, place + Vec3(10 * tip, 0, 0), net.start);
   }
   Model model;
-  relax::Net net;
+  relax::SpringNet net;
 };
 
 TEST(relax_guard, lets_none_become_the_new_worst_without_a_mark) {
@@ -297,8 +297,8 @@ TEST(relax, gives_the_same_bits_with_any_number_of_threads) {
 TEST(relax, moves_no_node_beyond_its_limit) {
   const Model before = sheet_on(torus(), 20, 16, 0.4);
   relax::Options options;
-  options.most_on_surface = 0.5;
-  options.most_on_line = 0.2;
+  options.max_move_on_surface = 0.5;
+  options.max_move_on_line = 0.2;
   const relax::Relaxed relaxed = relax_all(before, options);
   EXPECT_GT(relaxed.limited, 50u);
   EXPECT_LE(relaxed.farthest, 0.5);
@@ -317,9 +317,9 @@ TEST(relax, counts_limits_from_where_it_is_told_to) {
   constexpr std::size_t kFree = 6 + 13 * 5;
   home[kFree] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   relax::Options options;
-  options.most_on_surface = 0.3;
-  options.most_on_line = 0.1;
-  options.limits_from = &home;
+  options.max_move_on_surface = 0.3;
+  options.max_move_on_line = 0.1;
+  options.move_origins = &home;
   Model now = before;
   for (int time = 0; time < 3; ++time) now = moved(now, relax::relax({now, surface, criteria_of(), options}, all_nodes(now)).value());
   double farthest = 0;
@@ -392,7 +392,7 @@ TEST(relax, asks_between_stretches_of_a_large_model) {
   const Model before = sheet_on(cylinder(), 60, 640, 0.3);
   const relax::ReferenceSurface surface(before, all_shells(before), 30);
   relax::Options options;
-  options.most_rounds = 2;
+  options.max_rounds = 2;
   int while_preparing = 0, while_settling = 0;
   const auto heard = [&](double fraction) {
     ++(fraction < 0.25 ? while_preparing : while_settling);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mesh/quality/criteria.h"
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
 #include "mesh/repair/strips.h"
 #include "tests/mesh/repair/sheets.h"
 

@@ -43,7 +43,7 @@ Mended mend(const Model& bad, const Model& good, const Rules& rules = {}) {
   const relax::ReferenceSurface surface(good, all_shells(good), 30);
   const quality::SizedCriteria criteria{quality::default_criteria(), 1.0};
   Options options;
-  options.most_triangles_percent = 25;  // of a hundred shells
+  options.max_triangles_percent = 25;  // of a hundred shells
   Result<Repaired> repaired = repair({bad, surface, rules, criteria, options}, bad_shells(bad, quality::Grade::warn));
   EXPECT_TRUE(repaired.has_value());
   return {carried_out(bad, repaired->change), std::move(*repaired)};
@@ -192,9 +192,9 @@ TEST(PlantedOnATube, a_narrow_strip_stays_where_longer_edges_would_leave_the_sur
   const quality::SizedCriteria criteria{quality::default_criteria(), 1.0};
   Rules rules;
   rules.node = [](NodeIndex) { return static_cast<std::uint8_t>(kStays); };
-  const auto left_with = [&](double most_off_surface) {
+  const auto left_with = [&](double max_off_surface) {
     Options options;
-    options.most_off_surface = most_off_surface;
+    options.max_off_surface = max_off_surface;
     const Result<Repaired> repaired = repair({model, surface, rules, criteria, options}, bad_shells(model, quality::Grade::fail));
     EXPECT_TRUE(repaired.has_value());
     return repaired ? repaired->unrepaired.size() : 999;
@@ -282,10 +282,10 @@ TEST(Scope, what_is_left_is_told_by_the_models_numbers) {
 }
 
 /// Why what fails can't be repaired.
-std::set<std::string> reasons(const Model& model, const Rules& rules, double most_triangles_percent = 5) {
+std::set<std::string> reasons(const Model& model, const Rules& rules, double max_triangles_percent = 5) {
   const relax::ReferenceSurface surface(model, all_shells(model), 30);
   Options options;
-  options.most_triangles_percent = most_triangles_percent;
+  options.max_triangles_percent = max_triangles_percent;
   const auto repaired = repair({model, surface, rules, {quality::default_criteria(), 1.0}, options}, all_shells(model));
   EXPECT_TRUE(repaired.has_value());
   std::set<std::string> why;
@@ -294,8 +294,8 @@ std::set<std::string> reasons(const Model& model, const Rules& rules, double mos
 }
 
 TEST(Reasons, are_told_for_what_is_left) {
-  const Grid narrow{8, 1, [](double x, double y) { return Vec3(x, 0.1 * y, 0); }, {}};
-  EXPECT_EQ(reasons(model_of(narrow.positions(), narrow.shells()), {}),
+  const Grid divide_in_three{8, 1, [](double x, double y) { return Vec3(x, 0.1 * y, 0); }, {}};
+  EXPECT_EQ(reasons(model_of(divide_in_three.positions(), divide_in_three.shells()), {}),
             std::set<std::string>{"it lies between edges of the part that have to stay"});
   Rules rules;
   rules.node = [](NodeIndex) { return static_cast<std::uint8_t>(kStays | kNeeded); };

@@ -171,9 +171,9 @@ TEST(Limits, no_node_goes_farther_than_it_may_however_often_it_moves) {
     const relax::ReferenceSurface surface(good, all_shells(good), 30);
     const quality::SizedCriteria criteria{quality::default_criteria(), 1.0};
     Options options;
-    options.relax.most_on_surface = 0.1;
-    options.relax.most_on_line = 0.02;
-    options.most_rounds = 3;
+    options.relax.max_move_on_surface = 0.1;
+    options.relax.max_move_on_line = 0.02;
+    options.max_rounds = 3;
     const auto repaired = repair({sheet.model, surface, {}, criteria, options}, all_shells(sheet.model));
     ASSERT_TRUE(repaired.has_value());
     EXPECT_FALSE(repaired->change.moved.empty());
@@ -205,7 +205,7 @@ TEST(Limits, no_more_triangles_than_their_share_or_than_there_were) {
   std::map<double, std::size_t> triangles;
   for (const double percent : {0.0, 2.0, 50.0}) {
     Options options;
-    options.most_triangles_percent = percent;
+    options.max_triangles_percent = percent;
     const auto repaired = repair({bad, surface, {}, {quality::default_criteria(), 1.0}, options}, all_shells(bad));
     ASSERT_TRUE(repaired.has_value());
     triangles[percent] = triangles_of(carried_out(bad, repaired->change));
