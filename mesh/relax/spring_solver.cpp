@@ -235,32 +235,32 @@ std::optional<std::size_t> SpringSolver::round(Spreading* spreading, const Solve
 }
 
 SolverResult SpringSolver::run(Spreading* spreading, const SolverCallbacks& callbacks) {
-  SolverResult settled;
-  const auto stopped = [&settled] {
-    settled.was_stopped = true;
-    return settled;
+  SolverResult result;
+  const auto stopped = [&result] {
+    result.was_stopped = true;
+    return result;
   };
   int next_check = kFirstCheck;
-  while (settled.rounds < options_.max_rounds) {
-    if (settled.rounds == kGainRecoveryRounds) gain_recovery_ = 1;
+  while (result.rounds < options_.max_rounds) {
+    if (result.rounds == kGainRecoveryRounds) gain_recovery_ = 1;
     const std::optional<std::size_t> stepped = round(spreading, callbacks);
     if (!stepped) return stopped();
     if (*stepped == 0) {
       const CheckResult found = check(true, callbacks);
       if (found == CheckResult::stopped) return stopped();
-      settled.converged = found == CheckResult::ok;
-      if (settled.converged) return settled;
+      result.converged = found == CheckResult::ok;
+      if (result.converged) return result;
       continue;
     }
-    ++settled.rounds;
+    ++result.rounds;
     if (!callbacks.round_done(1 - static_cast<double>(*stepped) / static_cast<double>(net_.movable))) return stopped();
-    if (options_.checks_before_rest && settled.rounds == next_check) {
+    if (options_.checks_before_rest && result.rounds == next_check) {
       if (check(false, callbacks) == CheckResult::stopped) return stopped();
       next_check *= kChecksApart;
     }
   }
-  settled.was_stopped = check(true, callbacks) == CheckResult::stopped;
-  return settled;
+  result.was_stopped = check(true, callbacks) == CheckResult::stopped;
+  return result;
 }
 
 }  // namespace prismesh::mesh::relax
