@@ -56,8 +56,8 @@ void print_structure(std::ostream& out, const mesh::Model& model, const quality:
       "free edges lie on others without being joined to them");
   say(found.free_inside.size(), "free edge around a hole of one shell", "free edges around holes of one shell");
   say(found.clusters.size(), "node has a cluster of triangles", "nodes have a cluster of triangles");
-  if (found.most_triangles > 0)
-    out << "max triangles around a node " << found.most_triangles << " at node:" << model.node_ids[found.most_triangles_at.value] << '\n';
+  if (found.max_triangles > 0)
+    out << "max triangles around a node " << found.max_triangles << " at node:" << model.node_ids[found.max_triangles_at.value] << '\n';
 }
 
 void print_parts(std::ostream& out, const mesh::Model& model, const std::vector<quality::PartReport>& parts) {
@@ -68,7 +68,7 @@ void print_parts(std::ostream& out, const mesh::Model& model, const std::vector<
     const mesh::Part& part = (*model.parts)[parts[i].part.value];
     out << std::left << std::setw(10) << part.id << std::right << std::setw(10) << report.elements << std::setw(8) << report.counts.warn
         << std::setw(8) << report.counts.fail << std::setw(7) << std::setprecision(3) << report.triangles_percent << std::setw(17)
-        << report.least_composite << std::setw(8) << report.mean_composite << std::setprecision(6) << "  " << printable(part.name) << '\n';
+        << report.min_composite << std::setw(8) << report.mean_composite << std::setprecision(6) << "  " << printable(part.name) << '\n';
   }
   if (parts.size() > kPartsShown) out << "and " << parts.size() - kPartsShown << " more parts; all are in the JSON\n";
 }
@@ -85,7 +85,7 @@ void print_text(std::ostream& out, const mesh::document::Document& document, con
   print_defects(out, report);
   if (report.elements > 0) {
     print_metrics(out, model, report);
-    out << "composite: min " << report.least_composite << ", mean " << report.mean_composite << '\n';
+    out << "composite: min " << report.min_composite << ", mean " << report.mean_composite << '\n';
   }
   print_structure(out, model, figures.structure);
   if (figures.chordal && figures.chordal->worst)

@@ -70,8 +70,8 @@ CheckFigures check_figures(const mesh::document::Document& document, const mesh:
   const double size = document.settings.target_size;
   const mesh::TimeStepControl& control = document.deck->time_step;
   CheckFigures figures;
-  figures.report = quality::report(model, criteria, size, control, shells);
-  figures.parts = quality::report_by_part(model, criteria, size, control, shells);
+  figures.report = quality::report(model, {criteria, size}, control, shells);
+  figures.parts = quality::report_by_part(model, {criteria, size}, control, shells);
   quality::StructureOptions options;
   options.triangles_at_node = static_cast<std::size_t>(criteria.warn_triangles_at_node);
   figures.structure = quality::check_structure(model, options, shells);

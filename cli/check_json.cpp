@@ -47,7 +47,7 @@ Json time_step(const mesh::Model& model, const quality::Report& report) {
 
 Json composite(const quality::Report& report) {
   if (report.elements == 0) return {{"min", nullptr}, {"mean", nullptr}};
-  return {{"min", as_written(static_cast<float>(report.least_composite))}, {"mean", report.mean_composite}};
+  return {{"min", as_written(static_cast<float>(report.min_composite))}, {"mean", report.mean_composite}};
 }
 
 Json defects(const quality::Report& report) {
@@ -77,8 +77,8 @@ Json structure(const mesh::Model& model, const quality::Structure& found) {
           {"unjoined_edges", named(found.unjoined, edge)},
           {"free_edges_inside", named(found.free_inside, edge)},
           {"triangle_clusters", named(found.clusters, node)},
-          {"most_triangles_at_node", found.most_triangles},
-          {"most_triangles_at", found.most_triangles > 0 ? node(found.most_triangles_at) : Json(nullptr)}};
+          {"most_triangles_at_node", found.max_triangles},
+          {"most_triangles_at", found.max_triangles > 0 ? node(found.max_triangles_at) : Json(nullptr)}};
 }
 
 Json part(const mesh::Model& model, const quality::PartReport& each, const quality::Criteria& criteria) {

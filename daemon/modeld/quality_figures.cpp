@@ -13,7 +13,7 @@
 #include "mesh/quality/composite.h"
 #include "mesh/quality/limits.h"
 #include "mesh/quality/measure.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 
 namespace prismesh::modeld {
 
@@ -25,7 +25,7 @@ using mesh::document::Generation;
 using mesh::quality::Defect;
 using mesh::quality::kMetricCount;
 using mesh::quality::Metric;
-using mesh::quality::Sheet;
+using mesh::quality::ShellProperties;
 using mesh::quality::ShellState;
 using mesh::quality::Threshold;
 using mesh::quality::Values;
@@ -175,7 +175,7 @@ class Gathering {
     const mesh::ShellSet shells = shells_.range(begin, end);
     std::vector<Values> values(shells.size());
     std::vector<float> composites(shells.size());
-    mesh::quality::composites(generation_.model, shells, document_.settings.criteria, document_.settings.target_size, composites, values);
+    mesh::quality::composites(generation_.model, shells, {document_.settings.criteria, document_.settings.target_size}, composites, values);
     Figures figures;
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t shell = shells[i - begin].value;
@@ -205,7 +205,8 @@ class Gathering {
     for (int m = 0; m < kMetricCount; ++m) {
       if (!has(state.warn, m) || (metric_ >= 0 && m != metric_)) continue;
       const auto at = static_cast<std::size_t>(m);
-      const Sheet sheet = m == int(Metric::min_length) ? mesh::quality::sheet_of(generation_.model, ShellIndex(shell)) : Sheet();
+      const ShellProperties sheet =
+          m == int(Metric::min_length) ? mesh::quality::properties_of(generation_.model, ShellIndex(shell)) : ShellProperties();
       const Wrong candidate{shell, m, values[at], severity(values[at], threshold_of(m, triangle, sheet)), has(state.fail, m)};
       if (worst.metric < 0 || worse(candidate, worst)) worst = candidate;
     }
@@ -290,8 +291,8 @@ class Gathering {
   }
 
   /// Limits for this target size; without a sheet, thickness and material count as unknown.
-  Threshold threshold_of(int metric, bool triangle, const Sheet& sheet = {}) const {
-    return mesh::quality::threshold_of(document_.settings.criteria, static_cast<Metric>(metric), triangle, document_.settings.target_size,
+  Threshold threshold_of(int metric, bool triangle, const ShellProperties& sheet = {}) const {
+    return mesh::quality::threshold_of({document_.settings.criteria, document_.settings.target_size}, static_cast<Metric>(metric), triangle,
                                        sheet);
   }
 

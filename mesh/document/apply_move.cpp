@@ -66,7 +66,7 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
   report.nodes_moved = moved.size();
   next.surface = std::make_shared<const Model>(next.model);
   const ShellSet touched = shells_touching(next.model, moved);
-  quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, touched, next.quality, next.counts);
+  quality::rejudge(next.model, {document.settings.criteria, document.settings.target_size}, touched, next.quality, next.counts);
   update_weight(document.current(), touched, next);
   if (motion->unreached > 0)
     report.notes.push_back(counted(motion->unreached, "node") + " can't be reached from the grab along what is moved; left in place");
@@ -83,8 +83,8 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
 }  // namespace
 
 void update_weight(const Generation& before, const ShellSet& shells, Generation& next) {
-  next.weight -= quality::weigh_shells(before.model, shells);
-  next.weight += quality::weigh_shells(next.model, shells);
+  next.weight -= quality::mass_properties(before.model, shells);
+  next.weight += quality::mass_properties(next.model, shells);
 }
 
 Result<void> apply_edit(const Document& document, const Translate& edit, Generation& next, EditReport& report) {

@@ -153,7 +153,7 @@ void put_positions(const Document& document, const relax::Relaxed& relaxed, Gene
   std::set_union(relaxed.nodes.begin(), relaxed.nodes.end(), followed.begin(), followed.end(), std::back_inserter(moved));
   report.nodes_moved = moved.size();
   const ShellSet touched = shells_touching(next.model, relaxed.nodes);
-  quality::rejudge(next.model, document.settings.criteria, document.settings.target_size, touched, next.quality, next.counts);
+  quality::rejudge(next.model, {document.settings.criteria, document.settings.target_size}, touched, next.quality, next.counts);
   update_weight(document.current(), touched, next);
   report_dependents(document.current(), next, moved, report);
 }
@@ -180,14 +180,14 @@ Result<void> apply_edit(const Document& document, const Relax& edit, Generation&
   }
   relax::Options options;
   options.feature_angle = edit.angle;
-  options.most_on_surface = edit.max_move.free;
-  options.most_on_line = edit.max_move.line;
-  const relax::Judge judge{document.settings.criteria, document.settings.target_size};
+  options.max_move_on_surface = edit.max_move.free;
+  options.max_move_on_line = edit.max_move.line;
+  const quality::SizedCriteria criteria{document.settings.criteria, document.settings.target_size};
   const relax::ReferenceSurface surface = surface_about(current, reach->shells, edit.angle);
   const double threshold = edit.threshold.value_or(kThreshold * document.settings.target_size);
-  const Result<relax::Relaxed> relaxed = edit.mode == RelaxMode::from
-                                             ? relax::relax_from(current.model, surface, at, threshold, movable, judge, options, progress)
-                                             : relax::relax(current.model, surface, movable, judge, options, progress);
+  const relax::RelaxInput input{current.model, surface, criteria, options};
+  const Result<relax::Relaxed> relaxed =
+      edit.mode == RelaxMode::from ? relax::relax_from(input, {at, threshold}, movable, progress) : relax::relax(input, movable, progress);
   if (!relaxed) return fail(relaxed.error());
   say_how(*relaxed, report);
   put_positions(document, *relaxed, next, report);

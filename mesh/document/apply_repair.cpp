@@ -8,7 +8,7 @@
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
 #include "mesh/model/topology_change.h"
-#include "mesh/repair/by_hand.h"
+#include "mesh/repair/manual_operation.h"
 #include "mesh/repair/repair.h"
 
 namespace prismesh::mesh::document {
@@ -21,12 +21,12 @@ constexpr std::size_t kMaxNamedInRepair = 10;  ///< elements that a note names
 repair::Options options_of(double angle, const MoveLimits& limits) {
   repair::Options options;
   options.relax.feature_angle = angle;
-  options.relax.most_on_surface = limits.free;
-  options.relax.most_on_line = limits.line;
+  options.relax.max_move_on_surface = limits.free;
+  options.relax.max_move_on_line = limits.line;
   return options;
 }
 
-relax::Judge judge_of(const Document& document) { return {document.settings.criteria, document.settings.target_size}; }
+quality::SizedCriteria criteria_of(const Document& document) { return {document.settings.criteria, document.settings.target_size}; }
 
 std::string shell_name(const Model& model, ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 
@@ -69,7 +69,7 @@ Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope
   double furthest = 0;  // the progress doesn't go back when another attempt begins
   const Progress forward = [&](double fraction) { return !progress || progress(furthest = std::max(furthest, fraction)); };
   for (int attempt = 1;; ++attempt) {
-    Result<repair::Repaired> repaired = repair::repair(current.model, surface, scope, rules, judge_of(document), options, forward);
+    Result<repair::Repaired> repaired = repair::repair({current.model, surface, rules, criteria_of(document), options}, scope, forward);
     if (!repaired || repaired->change.empty()) return repaired;
     Generation trial = current;
     const Result<void> done = restructure(document, repaired->change, trial, report);
@@ -158,8 +158,8 @@ Result<void> apply_edit(const Document& document, const Restructure& edit, Gener
   about.insert(about.end(), targets->shells.begin(), targets->shells.end());
   const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
   const Result<repair::Restructuring> change =
-      repair::by_hand(current.model, surface, edit.operation, targets->shells, targets->nodes, rules_for(document, current),
-                      {document.settings.criteria, document.settings.target_size}, options);
+      repair::apply_manual_operation({current.model, surface, rules_for(document, current), criteria_of(document), options},
+                                     {edit.operation, targets->shells, targets->nodes});
   if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
   return restructure(document, *change, next, report);
 }

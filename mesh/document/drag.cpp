@@ -7,7 +7,7 @@
 #include "mesh/document/motion.h"
 #include "mesh/document/plan_motion.h"
 #include "mesh/quality/judge.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 
 namespace prismesh::mesh::document {
 
@@ -79,7 +79,7 @@ Result<Drag> Drag::begin(std::shared_ptr<const Generation> base, const DocumentS
     const ShellNodes& nodes = model.shell(shell);
     for (std::size_t i = 0; i < 4; ++i) from[i] = i == 3 && nodes.is_triangle() ? from[2] : corners(nodes.node[i], drag.fixed_);
     drag.corners_.push_back(from);
-    drag.sheets_.push_back(quality::sheet_of(model, shell));
+    drag.properties_.push_back(quality::properties_of(model, shell));
     drag.states_.push_back(base->quality[shell.value]);
     add(drag.counts_elsewhere_, drag.states_.back(), static_cast<std::size_t>(-1));
   }
@@ -102,8 +102,8 @@ void Drag::step(const Displacement& displacement) {
   std::vector<quality::Counts> counts((corners_.size() + kDragGrain - 1) / kDragGrain);
   parallel_for(corners_.size(), kDragGrain, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
-    quality::judge_points(positions_, fixed_, std::span(corners_).subspan(begin, count), std::span(sheets_).subspan(begin, count),
-                          settings_.criteria, settings_.target_size, std::span(states_).subspan(begin, count));
+    quality::judge_points({positions_, fixed_, std::span(corners_).subspan(begin, count), std::span(properties_).subspan(begin, count)},
+                          {settings_.criteria, settings_.target_size}, std::span(states_).subspan(begin, count));
     quality::Counts sum;
     for (std::size_t s = begin; s < end; ++s) add(sum, states_[s], 1);
     counts[begin / kDragGrain] = sum;

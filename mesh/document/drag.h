@@ -13,7 +13,7 @@
 #include "mesh/document/settings.h"
 #include "mesh/model/node_set.h"
 #include "mesh/quality/report.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 #include "mesh/quality/shell_state.h"
 
 namespace prismesh::mesh::document {
@@ -52,7 +52,7 @@ class Drag {
   std::vector<Vec3> positions_;
   std::vector<std::array<std::int32_t, 4>> corners_;  ///< of shells_: >= 0 index into nodes(), < 0: ~index into fixed_
   std::vector<Vec3> fixed_;
-  std::vector<quality::Sheet> sheets_;  ///< of shells_
+  std::vector<quality::ShellProperties> properties_;  ///< of shells_
   std::vector<quality::ShellState> states_;
   quality::Counts counts_elsewhere_;  ///< of the shells that don't change
   quality::Counts counts_;

@@ -43,11 +43,11 @@ struct Generation {
   std::shared_ptr<const Model> surface;
   std::shared_ptr<const DeckRelations> relations;  ///< never null once opened
   ChunkedArray<quality::ShellState> quality;
-  quality::Counts counts;     ///< all shells
-  quality::Weight weight;     ///< of all shells; updated with each edit, so its last digits depend on the edits before
-  std::uint64_t number = 0;   ///< counts up over the document's life, never reused
-  std::string made_by;        ///< the edit's name; "open" for the first
-  std::size_t own_bytes = 0;  ///< of chunks that the generation before doesn't share: what keeping that one costs
+  quality::Counts counts;          ///< all shells
+  quality::MassProperties weight;  ///< of all shells; updated with each edit, so its last digits depend on the edits before
+  std::uint64_t number = 0;        ///< counts up over the document's life, never reused
+  std::string made_by;             ///< the edit's name; "open" for the first
+  std::size_t own_bytes = 0;       ///< of chunks that the generation before doesn't share: what keeping that one costs
 };
 
 }  // namespace prismesh::mesh::document

@@ -55,7 +55,7 @@ void take_settings(const JournalHeader& header, Document& document) {
   if (!settings.target_size_guessed || settings.target_size == header.settings.target_size || !(header.settings.target_size > 0)) return;
   settings.target_size = header.settings.target_size;
   auto judged = std::make_shared<Generation>(*document.opened);
-  judged->quality = quality::judge_model(judged->model, settings.criteria, settings.target_size);
+  judged->quality = quality::judge_model(judged->model, {settings.criteria, settings.target_size});
   judged->counts = quality::count(judged->quality);
   document.opened = judged;
   document.generations = {document.opened};

@@ -9,7 +9,7 @@
 
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 #include "mesh/spatial/closest_point.h"
 
 namespace prismesh::mesh::document {

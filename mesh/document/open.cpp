@@ -38,9 +38,9 @@ std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const d
   first->node_marks = ChunkedArray<std::uint8_t>::filled(model.node_count());
   first->shell_marks = ChunkedArray<std::uint8_t>::filled(model.shell_count());
   first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
-  first->quality = quality::judge_model(model, settings.criteria, settings.target_size);
+  first->quality = quality::judge_model(model, {settings.criteria, settings.target_size});
   first->counts = quality::count(first->quality);
-  first->weight = quality::weigh_model(model);
+  first->weight = quality::mass_properties(model);
   first->surface = std::make_shared<const Model>(model);
   first->model = std::move(model);
   first->made_by = "open";

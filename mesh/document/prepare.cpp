@@ -54,8 +54,8 @@ Result<Prepared> prepare_push(const Document& document, const E& edit, std::stri
   return prepared;
 }
 
-void say_weights(const quality::Weight& before, const quality::Weight& after, EditReport& report) {
-  const auto point = [](const quality::Weight& weight) {
+void say_weights(const quality::MassProperties& before, const quality::MassProperties& after, EditReport& report) {
+  const auto point = [](const quality::MassProperties& weight) {
     const std::optional<Vec3> at = weight.centre();
     return at ? std::optional<std::array<double, 3>>({at->x(), at->y(), at->z()}) : std::nullopt;
   };

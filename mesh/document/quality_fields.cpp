@@ -28,7 +28,7 @@ std::string title_of(Metric metric) {
 /// From warning to failing if the criteria have both on one side; otherwise from the better end of the values to the worse one.
 FieldLimits colours_of(Metric metric, const DocumentSettings& settings, const FieldFigures& figures) {
   const quality::Threshold limits =
-      quality::threshold_of(settings.criteria, metric, quality::is_of_triangles(metric), settings.target_size);
+      quality::threshold_of({settings.criteria, settings.target_size}, metric, quality::is_of_triangles(metric));
   if (std::isfinite(limits.warn_high) && std::isfinite(limits.fail_high)) return apart(limits.warn_high, limits.fail_high);
   if (std::isfinite(limits.warn_low) && std::isfinite(limits.fail_low)) return apart(limits.warn_low, limits.fail_low);
   return apart(figures.min, figures.max);
@@ -57,7 +57,7 @@ Result<Field> metric_field(const Model& model, Metric metric, const DocumentSett
     quality::measure_shells(model, shells, values);
     for (std::size_t i = 0; i < shells.size(); ++i)
       // A defective shell has no value; its defect is reported instead.
-      if (!quality::judge(values[i], settings.criteria, settings.target_size).has_defect())
+      if (!quality::judge(values[i], {settings.criteria, settings.target_size}).has_defect())
         out[shells[i].value - begin] = values[i][static_cast<std::size_t>(metric)];
   });
   field.limits = colours_of(metric, settings, field.figures);
@@ -69,7 +69,7 @@ Result<Field> composite_field(const Model& model, const DocumentSettings& settin
   fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
     std::vector<float> values(shells.size());
-    quality::composites(model, shells, settings.criteria, settings.target_size, values);
+    quality::composites(model, shells, {settings.criteria, settings.target_size}, values);
     for (std::size_t i = 0; i < shells.size(); ++i) out[shells[i].value - begin] = values[i];
   });
   return unless_empty(std::move(field), "there are no shells");

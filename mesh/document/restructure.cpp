@@ -75,7 +75,7 @@ void judge_again(const DocumentSettings& settings, const Changes& changes, const
     --count_of(next.counts, next.quality[shell.value].grade());
     next.quality.set(shell.value, {});
   }
-  quality::rejudge(next.model, settings.criteria, settings.target_size, touched, next.quality, next.counts);
+  quality::rejudge(next.model, {settings.criteria, settings.target_size}, touched, next.quality, next.counts);
 }
 
 /// Existing shells of `after` whose corners or positions differ.
@@ -93,8 +93,8 @@ void weigh_again(const Generation& before, const Changes& changes, const ShellSe
   std::erase_if(old, [&](ShellIndex shell) { return shell.value >= before.model.shell_count() || before.model.is_removed(shell); });
   old.insert(old.end(), changes.removed_shells.begin(), changes.removed_shells.end());
   std::sort(old.begin(), old.end());
-  next.weight -= quality::weigh_shells(before.model, old);
-  next.weight += quality::weigh_shells(next.model, touched);
+  next.weight -= quality::mass_properties(before.model, old);
+  next.weight += quality::mass_properties(next.model, touched);
 }
 
 /// Those moved nodes of a change whose cards change.

@@ -24,7 +24,7 @@ std::string rounding_note(const Document& document, const deck::Rounding& roundi
   std::sort(nodes.begin(), nodes.end());
   ChunkedArray<quality::ShellState> states = current.quality;
   quality::Counts counts = current.counts;
-  quality::rejudge(as_read, document.settings.criteria, document.settings.target_size, shells_touching(as_read, nodes), states, counts);
+  quality::rejudge(as_read, {document.settings.criteria, document.settings.target_size}, shells_touching(as_read, nodes), states, counts);
   if (counts == current.counts) return "";
   const auto said = [](const quality::Counts& c) { return counted(c.warn, "element") + " warn and " + std::to_string(c.fail) + " fail"; };
   return "with the rounded numbers, as the deck is read again, " + said(counts) + "; before, " + said(current.counts);

@@ -1,4 +1,4 @@
-// The criteria compiled in: the texts of mesh/quality/criteria/*.toml. Inner to quality.
+// The built-in criteria: the texts of mesh/quality/criteria/*.toml, compiled into the program. Private to mesh/quality.
 #pragma once
 
 #include <array>
@@ -6,10 +6,10 @@
 
 namespace prismesh::mesh::quality {
 
-struct BuiltIn {
-  std::string_view name;  ///< of the file, without its ending
+struct BuiltInCriteria {
+  std::string_view name;  ///< the file's name without its ending
   std::string_view text;
 };
-extern const std::array<BuiltIn, 3> kBuiltIn;  ///< the default first
+extern const std::array<BuiltInCriteria, 3> kBuiltInCriteria;  ///< the default first
 
 }  // namespace prismesh::mesh::quality

@@ -9,7 +9,7 @@
 namespace prismesh::mesh::quality {
 
 Result<Criteria> load_criteria(const std::filesystem::path& path) {
-  for (const BuiltIn& built_in : kBuiltIn)
+  for (const BuiltInCriteria& built_in : kBuiltInCriteria)
     if (path.native() == built_in.name) return parse_criteria(built_in.text, std::string(built_in.name));
   const Result<FileBytes> bytes = read_file(path);
   if (!bytes) return fail(bytes.error());
@@ -17,12 +17,13 @@ Result<Criteria> load_criteria(const std::filesystem::path& path) {
 }
 
 bool is_built_in_criteria(const std::filesystem::path& name) {
-  return std::any_of(kBuiltIn.begin(), kBuiltIn.end(), [&](const BuiltIn& ours) { return name.native() == ours.name; });
+  return std::any_of(kBuiltInCriteria.begin(), kBuiltInCriteria.end(),
+                     [&](const BuiltInCriteria& ours) { return name.native() == ours.name; });
 }
 
 const Criteria& default_criteria() {
   static const Criteria kCriteria = [] {
-    const Result<Criteria> parsed = parse_criteria(kBuiltIn[0].text, "mesh/quality/criteria/default.toml");
+    const Result<Criteria> parsed = parse_criteria(kBuiltInCriteria[0].text, "mesh/quality/criteria/default.toml");
     if (!parsed) std::abort();  // the text is compiled in and tested
     return *parsed;
   }();

@@ -1,4 +1,4 @@
-// What counts as a bad element: thresholds from a data file, lengths relative to the target size.
+// Criteria: what makes an element warn or fail. Thresholds come from a data file; lengths are relative to the target size.
 #pragma once
 
 #include <array>
@@ -24,22 +24,28 @@ struct Threshold {
 struct Criteria {
   std::string name;
   std::array<Threshold, kMetricCount> quad;      ///< indexed by Metric
-  std::array<Threshold, kMetricCount> triangle;  ///< the same, where a file sets triangles apart
-  /// Least min_length as a multiple of the shell's thickness, where that is more than the fraction of the target size says.
+  std::array<Threshold, kMetricCount> triangle;  ///< indexed by Metric; as `quad` unless the file sets triangles apart
+  /// Limit of min_length as a multiple of the shell's thickness; the larger of it and the fraction of the target size counts.
   float warn_min_length_thicknesses = 0;
   float fail_min_length_thicknesses = 0;
-  /// The time step wanted, in the deck's time unit; 0: none. The length that it takes in a shell's material is the least min_length
-  /// of that shell, in place of the fraction of the target size, where the material is known.
+  /// The time step wanted, in the deck's time unit; 0: none. Where a shell's material is known, the length that the step needs in it is the
+  /// limit of min_length, in place of the fraction of the target size.
   double warn_time_step = 0;
   double fail_time_step = 0;
-  double time_step_scale = 0.9;         ///< TSSFAC of the deck: not from the file, set by whoever knows the deck
+  double time_step_scale = 0.9;         ///< TSSFAC of the deck; not from the criteria file
   double warn_triangles_percent = 100;  ///< of the elements of a model or part
   double fail_triangles_percent = 100;
-  double warn_triangles_at_node = 4;  ///< more about one node are a cluster (mesh/quality/structure.h)
+  double warn_triangles_at_node = 4;  ///< max triangles about a node; more are a cluster (mesh/quality/structure.h)
 };
 
-/// Reads a TOML criteria file, or takes the built-in criteria of that name ("default", "strict"; a file of such a name is ./strict). Errors
-/// name the line and, for an unknown metric, the nearest known one.
+/// Criteria with the target size that their lengths are fractions of.
+struct SizedCriteria {
+  const Criteria& criteria;
+  double target_size = 1;  ///< deck's length unit
+};
+
+/// Reads a TOML criteria file, or takes the built-in criteria of that name ("default", "strict"; a file of such a name is ./strict).
+/// Errors: file, line and, for an unknown metric, the nearest known one.
 Result<Criteria> load_criteria(const std::filesystem::path& path);
 /// The same from text; `file` names it in errors.
 Result<Criteria> parse_criteria(std::string_view text, const std::string& file);

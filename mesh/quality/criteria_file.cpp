@@ -1,4 +1,4 @@
-// The TOML form of criteria. The only place that knows toml++, which is heavy to compile.
+// Reads criteria from TOML. Only this source includes toml++, which is slow to compile.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -18,15 +18,15 @@ using Names = std::vector<std::string_view>;
 constexpr double kMaxNumber = 1e30;
 constexpr float kMaxTriangles = 1e6F;  ///< about a node
 
-/// Where a limit of a file goes.
-struct Target {
+/// A limit's key in the file, and where its value is stored.
+struct LimitTarget {
   std::string_view key;
   float* limit;
 };
 
-class Reader {
+class CriteriaReader {
  public:
-  Reader(std::string file, Criteria& criteria) : file_(std::move(file)), criteria_(criteria) {}
+  CriteriaReader(std::string file, Criteria& criteria) : file_(std::move(file)), criteria_(criteria) {}
 
   Result<void> read(const toml::table& root) {
     if (auto known = check_keys(root, {"name", "metrics", "triangles", "time_step"}, "a criteria file"); !known) return known;
@@ -63,8 +63,8 @@ class Reader {
     return error(node, what + " must be a table, like [" + what + "]");
   }
 
-  Result<void> read_limits(const toml::table& table, const std::vector<Target>& targets, const std::string& what) const {
-    for (const Target& target : targets) {
+  Result<void> read_limits(const toml::table& table, const std::vector<LimitTarget>& targets, const std::string& what) const {
+    for (const LimitTarget& target : targets) {
       const toml::node* node = table.get(target.key);
       if (node == nullptr) continue;
       const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
@@ -99,8 +99,8 @@ class Reader {
     if (auto done = read_threshold(**table, both, what); !done) return done;
     criteria_.quad[metric] = criteria_.triangle[metric] = both;
     if (by_thickness) {
-      const std::vector<Target> targets = {{"warn_below_thicknesses", &criteria_.warn_min_length_thicknesses},
-                                           {"fail_below_thicknesses", &criteria_.fail_min_length_thicknesses}};
+      const std::vector<LimitTarget> targets = {{"warn_below_thicknesses", &criteria_.warn_min_length_thicknesses},
+                                                {"fail_below_thicknesses", &criteria_.fail_min_length_thicknesses}};
       if (auto done = read_limits(**table, targets, what); !done) return done;
     }
     if (auto done = read_shape(**table, "quad", criteria_.quad[metric], what); !done) return done;
@@ -118,10 +118,10 @@ class Reader {
   }
 
   Result<void> read_threshold(const toml::table& table, Threshold& threshold, const std::string& what) const {
-    const std::vector<Target> targets = {{"warn_below", &threshold.warn_low},
-                                         {"warn_above", &threshold.warn_high},
-                                         {"fail_below", &threshold.fail_low},
-                                         {"fail_above", &threshold.fail_high}};
+    const std::vector<LimitTarget> targets = {{"warn_below", &threshold.warn_low},
+                                              {"warn_above", &threshold.warn_high},
+                                              {"fail_below", &threshold.fail_low},
+                                              {"fail_above", &threshold.fail_high}};
     if (auto done = read_limits(table, targets, what); !done) return done;
     if (const toml::node* warn = table.get("warn_below"); warn != nullptr && threshold.warn_low < threshold.fail_low)
       return error(*warn, what + ": warn_below lies beyond fail_below: a shell would fail before it warns");
@@ -176,7 +176,7 @@ class Reader {
 Result<Criteria> parse_criteria(std::string_view text, const std::string& file) {
   Criteria criteria;
   try {
-    if (auto done = Reader(file, criteria).read(toml::parse(text, file)); !done) return fail(done.error());
+    if (auto done = CriteriaReader(file, criteria).read(toml::parse(text, file)); !done) return fail(done.error());
   } catch (const toml::parse_error& error) {
     return fail(file, static_cast<long>(error.source().begin.line), "not TOML: " + std::string(error.description()));
   }

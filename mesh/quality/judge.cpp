@@ -5,39 +5,37 @@
 
 namespace prismesh::mesh::quality {
 
-ShellState judge(const Values& values, const Criteria& criteria, double target_size, const Sheet& sheet) {
+ShellState judge(const Values& values, const SizedCriteria& criteria, const ShellProperties& properties) {
   const BatchValues batch = batch_of(values);
-  const Limits limits = limits_for(criteria, target_size);
+  const Limits limits = limits_for(criteria);
   ShellState state;
-  judge_lanes(batch, 1, limits, limits.need_sheets() ? &sheet : nullptr, &state);
+  judge_lanes(batch, 1, limits, limits.need_properties() ? &properties : nullptr, &state);
   return state;
 }
 
-void judge_points(std::span<const Vec3> moving, std::span<const Vec3> fixed, std::span<const std::array<std::int32_t, 4>> corners,
-                  std::span<const Sheet> sheets, const Criteria& criteria, double target_size, std::span<ShellState> out,
-                  std::span<float> composites) {
-  const Limits limits = limits_for(criteria, target_size);
-  const bool by_sheet = limits.need_sheets() && !sheets.empty();
+void judge_points(const PointShells& shells, const SizedCriteria& criteria, std::span<ShellState> out, std::span<float> composites) {
+  const Limits limits = limits_for(criteria);
+  const bool by_properties = limits.need_properties() && !shells.properties.empty();
   measure_in_batches(
-      corners.size(),
+      shells.corners.size(),
       [&](std::size_t i, const Vec3*(&corner)[4]) {
         for (std::size_t c = 0; c < 4; ++c) {
-          const std::int32_t at = corners[i][c];
-          corner[c] = at >= 0 ? &moving[static_cast<std::size_t>(at)] : &fixed[static_cast<std::uint32_t>(~at)];
+          const std::int32_t at = shells.corners[i][c];
+          corner[c] = at >= 0 ? &shells.moving[static_cast<std::size_t>(at)] : &shells.fixed[static_cast<std::uint32_t>(~at)];
         }
-        return corners[i][3] == corners[i][2] ? Shape::triangle : Shape::quad;
+        return shells.corners[i][3] == shells.corners[i][2] ? Shape::triangle : Shape::quad;
       },
       [&](const ShellBatch& batch, const BatchValues& values) {
         ShellState states[kLanes];
-        Sheet room[kLanes];
-        if (by_sheet)
-          for (std::size_t lane = 0; lane < batch.count; ++lane) room[lane] = sheets[batch.slot[lane]];
-        const Sheet* lane_sheets = by_sheet ? room : nullptr;
-        judge_lanes(values, batch.count, limits, lane_sheets, states);
+        ShellProperties buffer[kLanes];
+        if (by_properties)
+          for (std::size_t lane = 0; lane < batch.count; ++lane) buffer[lane] = shells.properties[batch.slot[lane]];
+        const ShellProperties* lane_properties = by_properties ? buffer : nullptr;
+        judge_lanes(values, batch.count, limits, lane_properties, states);
         for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = states[lane];
         if (composites.empty()) return;
         float rated[kLanes];
-        rate_lanes(values, batch.count, limits, lane_sheets, rated);
+        rate_lanes(values, batch.count, limits, lane_properties, rated);
         for (std::size_t lane = 0; lane < batch.count; ++lane) composites[batch.slot[lane]] = rated[lane];
       });
 }

@@ -10,20 +10,24 @@ namespace {
 
 constexpr float kWorstWithoutDefect = -0.99999994F;  ///< the float above -1
 
-/// Bit `metric` of each lane that lies outside.
-void mark_outside(const float* value, std::size_t lanes, float lowest, float highest, int metric, std::uint16_t* bits) {
+struct Range {
+  float min, max;
+};
+
+/// Sets bit `metric` of each lane whose value lies outside.
+void mark_outside(const float* value, std::size_t lanes, Range range, int metric, std::uint16_t* bits) {
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const unsigned outside = unsigned(value[lane] < lowest) | unsigned(value[lane] > highest);
+    const unsigned outside = unsigned(value[lane] < range.min) | unsigned(value[lane] > range.max);
     bits[lane] = static_cast<std::uint16_t>(bits[lane] | (outside << metric));
   }
 }
 
-void mark_short(const float* value, std::size_t lanes, const float* least, std::uint16_t* bits) {
+void mark_short(const float* value, std::size_t lanes, const float* min, std::uint16_t* bits) {
   for (std::size_t lane = 0; lane < lanes; ++lane)
-    bits[lane] = static_cast<std::uint16_t>(bits[lane] | (unsigned(value[lane] < least[lane]) << kMinLength));
+    bits[lane] = static_cast<std::uint16_t>(bits[lane] | (unsigned(value[lane] < min[lane]) << kMinLength));
 }
 
-/// Defects show in the values (shell_batch.h).
+/// Defects are told from the values (shell_lanes.h).
 void mark_defects(const BatchValues& values, std::size_t lanes, std::uint16_t* bits) {
   const float* aspect = values.value[int(Metric::aspect)];
   const float* skew = values.value[int(Metric::skew)];
@@ -37,54 +41,54 @@ void mark_defects(const BatchValues& values, std::size_t lanes, std::uint16_t* b
 
 }  // namespace
 
-void judge_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const Sheet* sheets, ShellState* out) {
+void judge_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const ShellProperties* properties, ShellState* out) {
   std::uint16_t warn[kLanes] = {}, failed[kLanes] = {};
   const ShapeLimits& shape = limits.of(values.of_triangles);
   for (int m = 0; m < kMetricCount; ++m) {
     Threshold t = shape.threshold[m];
-    if (m == kMinLength && sheets != nullptr) {
-      float least_warn[kLanes], least_fail[kLanes];
-      least_lengths(shape, limits, sheets, count, least_warn, least_fail);
-      mark_short(values.value[m], count, least_warn, warn);
-      mark_short(values.value[m], count, least_fail, failed);
+    if (m == kMinLength && properties != nullptr) {
+      MinLengths min;
+      min_lengths(shape, limits, {properties, count}, min);
+      mark_short(values.value[m], count, min.warn, warn);
+      mark_short(values.value[m], count, min.fail, failed);
       t.warn_low = t.fail_low = -std::numeric_limits<float>::infinity();
     }
-    mark_outside(values.value[m], count, t.warn_low, t.warn_high, m, warn);
-    mark_outside(values.value[m], count, t.fail_low, t.fail_high, m, failed);
+    mark_outside(values.value[m], count, {t.warn_low, t.warn_high}, m, warn);
+    mark_outside(values.value[m], count, {t.fail_low, t.fail_high}, m, failed);
   }
   mark_defects(values, count, failed);
   for (std::size_t lane = 0; lane < count; ++lane) out[lane] = {static_cast<std::uint16_t>(warn[lane] | failed[lane]), failed[lane]};
 }
 
-void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const Sheet* sheets, float* out) {
+void rate_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const ShellProperties* properties, float* out) {
   const ShapeLimits& shape = limits.of(values.of_triangles);
   for (std::size_t lane = 0; lane < count; ++lane) out[lane] = 1;
-  // a metric that doesn't apply is NaN, and so is its score: no less than anything
-  const auto take = [&](const float* value, const Side& side) {
+  // A metric that doesn't apply is NaN, and so is its score: it never is the min.
+  const auto take = [&](const float* value, const ScoreSide& side) {
     for (std::size_t lane = 0; lane < count; ++lane) {
-      const float score = (value[lane] - side.limit) * side.per;
+      const float score = (value[lane] - side.limit) * side.slope;
       out[lane] = score < out[lane] ? score : out[lane];
     }
   };
   for (int m = 0; m < kMetricCount; ++m) {
-    if (m == kMinLength && sheets != nullptr) {
-      float warn[kLanes], least[kLanes];
-      least_lengths(shape, limits, sheets, count, warn, least);
+    if (m == kMinLength && properties != nullptr) {
+      MinLengths min;
+      min_lengths(shape, limits, {properties, count}, min);
       for (std::size_t lane = 0; lane < count; ++lane) {
-        if (!std::isfinite(least[lane])) continue;
-        const float best = std::max(shape.ideal_min_length, least[lane]);
-        const float score = (values.value[m][lane] - least[lane]) / span_of(least[lane], best);
+        if (!std::isfinite(min.fail[lane])) continue;
+        const float best = std::max(shape.ideal_min_length, min.fail[lane]);
+        const float score = (values.value[m][lane] - min.fail[lane]) / span_of(min.fail[lane], best);
         out[lane] = score < out[lane] ? score : out[lane];
       }
-    } else if (shape.side[m][0].per != 0) {
+    } else if (shape.side[m][0].slope != 0) {
       take(values.value[m], shape.side[m][0]);
     }
-    if (shape.side[m][1].per != 0) take(values.value[m], shape.side[m][1]);
+    if (shape.side[m][1].slope != 0) take(values.value[m], shape.side[m][1]);
   }
   std::uint16_t defect[kLanes] = {};
   mark_defects(values, count, defect);
   for (std::size_t lane = 0; lane < count; ++lane) {
-    // what fails goes towards -1 without reaching it, so that of two bad shells the better one is known
+    // Below the fail limit the score approaches -1 without reaching it, so that two failing shells can be compared.
     const float bad = std::max(out[lane], -1e30F);
     const float score = bad < 0 ? bad / (1 - bad) : bad;
     out[lane] = defect[lane] != 0 ? -1.0F : std::max(score, kWorstWithoutDefect);

@@ -4,7 +4,7 @@ namespace prismesh::mesh::quality {
 
 namespace {
 
-constexpr float kMax = 3e38F;  ///< of a limit: what is beyond a float is still a limit
+constexpr float kMax = 3e38F;  ///< of a limit: keeps one beyond a float's range finite
 
 float in_float(double limit) {
   return std::isfinite(limit) ? static_cast<float>(std::clamp<double>(limit, -kMax, kMax)) : static_cast<float>(limit);
@@ -17,7 +17,7 @@ Threshold scaled(const Threshold& threshold, double by) {
 
 bool is_length(int metric) { return metric == kMinLength || metric == int(Metric::max_length); }
 
-/// What an element of the target size has that is a square or an equilateral triangle.
+/// The value of a metric for a square or an equilateral triangle of the target size.
 float ideal(Metric metric, bool of_triangle, double target_size) {
   switch (metric) {
     case Metric::warpage:
@@ -49,19 +49,20 @@ ShapeLimits shape_limits(const std::array<Threshold, kMetricCount>& thresholds, 
   return shape;
 }
 
-/// The least min_length: of a wanted time step, where there is one and the material is known, else a fraction of the target size; no less
-/// than the multiple of the thickness.
-float least_length(float fraction, float step, float thicknesses, const Sheet& sheet) {
-  const float length = step > 0 && sheet.wave_speed > 0 ? std::min(step * sheet.wave_speed, kMax) : fraction;
-  return thicknesses > 0 && sheet.thickness > 0 ? std::max(length, std::min(thicknesses * sheet.thickness, kMax)) : length;
+/// The limit of min_length: by the wanted time step, if there is one and the material is known, else the fraction of the target size; at
+/// least the multiple of the thickness.
+float min_length(float fraction, float step, float thicknesses, const ShellProperties& properties) {
+  const float length = step > 0 && properties.wave_speed > 0 ? std::min(step * properties.wave_speed, kMax) : fraction;
+  return thicknesses > 0 && properties.thickness > 0 ? std::max(length, std::min(thicknesses * properties.thickness, kMax)) : length;
 }
 
-/// For a wave speed of 1; the deck takes only a share of what the length gives.
+/// The length for a wave speed of 1; the deck scales the step by time_step_scale.
 float length_of_step(double time_step, const Criteria& criteria) { return static_cast<float>(time_step / criteria.time_step_scale); }
 
 }  // namespace
 
-Limits limits_for(const Criteria& criteria, double target_size) {
+Limits limits_for(const SizedCriteria& sized) {
+  const auto& [criteria, target_size] = sized;
   Limits limits;
   limits.quad = shape_limits(criteria.quad, false, target_size);
   limits.triangle = shape_limits(criteria.triangle, true, target_size);
@@ -72,23 +73,24 @@ Limits limits_for(const Criteria& criteria, double target_size) {
   return limits;
 }
 
-Threshold threshold_of(const Criteria& criteria, Metric metric, bool of_triangle, double target_size, const Sheet& sheet) {
+Threshold threshold_of(const SizedCriteria& sized, Metric metric, bool of_triangle, const ShellProperties& properties) {
+  const auto& [criteria, target_size] = sized;
   const int m = int(metric);
   const Threshold& given = (of_triangle ? criteria.triangle : criteria.quad)[static_cast<std::size_t>(m)];
   if (!is_length(m)) return given;
   Threshold limits = scaled(given, target_size);
   if (m != kMinLength) return limits;
   const float warn_step = length_of_step(criteria.warn_time_step, criteria), fail_step = length_of_step(criteria.fail_time_step, criteria);
-  limits.warn_low = least_length(limits.warn_low, warn_step, criteria.warn_min_length_thicknesses, sheet);
-  limits.fail_low = least_length(limits.fail_low, fail_step, criteria.fail_min_length_thicknesses, sheet);
+  limits.warn_low = min_length(limits.warn_low, warn_step, criteria.warn_min_length_thicknesses, properties);
+  limits.fail_low = min_length(limits.fail_low, fail_step, criteria.fail_min_length_thicknesses, properties);
   return limits;
 }
 
-void least_lengths(const ShapeLimits& shape, const Limits& limits, const Sheet* sheets, std::size_t count, float* warn, float* fail) {
+void min_lengths(const ShapeLimits& shape, const Limits& limits, std::span<const ShellProperties> properties, MinLengths& out) {
   const Threshold& t = shape.threshold[kMinLength];
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    warn[lane] = least_length(t.warn_low, limits.warn_step, limits.warn_thicknesses, sheets[lane]);
-    fail[lane] = least_length(t.fail_low, limits.fail_step, limits.fail_thicknesses, sheets[lane]);
+  for (std::size_t lane = 0; lane < properties.size(); ++lane) {
+    out.warn[lane] = min_length(t.warn_low, limits.warn_step, limits.warn_thicknesses, properties[lane]);
+    out.fail[lane] = min_length(t.fail_low, limits.fail_step, limits.fail_thicknesses, properties[lane]);
   }
 }
 

@@ -1,4 +1,4 @@
-// Criteria for one target size, as plain limits.
+// Criteria for one target size, as limits ready to compare with.
 #pragma once
 
 #include <algorithm>
@@ -6,47 +6,53 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "mesh/quality/criteria.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_lanes.h"
+#include "mesh/quality/shell_properties.h"
 
 namespace prismesh::mesh::quality {
 
 inline constexpr int kMinLength = int(Metric::min_length);
 
-/// One end of a metric's range on the scale of the composite: (value - limit) * per is 0 at the fail limit and 1 where it is ideal.
-struct Side {
+/// One end of a metric's range on the scale of the composite: (value - limit) * slope is 0 at the fail limit and 1 at the ideal value.
+struct ScoreSide {
   float limit = std::numeric_limits<float>::quiet_NaN();  ///< NaN: no fail limit
-  float per = 0;
+  float slope = 0;
 };
 
-/// Criteria for one target size, as plain limits of one shape's metrics.
+/// Limits of one shape's metrics, indexed by Metric; lengths in the unit of the target size.
 struct ShapeLimits {
   std::array<Threshold, kMetricCount> threshold;
-  std::array<std::array<Side, 2>, kMetricCount> side;
+  std::array<std::array<ScoreSide, 2>, kMetricCount> side;
   float ideal_min_length = 0;
 };
 struct Limits {
   ShapeLimits quad, triangle;
   float warn_thicknesses = 0;
   float fail_thicknesses = 0;
-  float warn_step = 0;  ///< least min_length for a wave speed of 1
+  float warn_step = 0;  ///< limit of min_length for a wave speed of 1
   float fail_step = 0;
 
   const ShapeLimits& of(bool of_triangles) const { return of_triangles ? triangle : quad; }
-  bool need_sheets() const { return warn_thicknesses > 0 || fail_thicknesses > 0 || warn_step > 0 || fail_step > 0; }
+  bool need_properties() const { return warn_thicknesses > 0 || fail_thicknesses > 0 || warn_step > 0 || fail_step > 0; }
 };
-/// Lengths in the unit of `target_size`.
-Limits limits_for(const Criteria& criteria, double target_size);
+/// The criteria as limits; lengths in the unit of the target size.
+Limits limits_for(const SizedCriteria& criteria);
 
-/// The least min_length a lane may have, where the criteria look at sheets.
-void least_lengths(const ShapeLimits& shape, const Limits& limits, const Sheet* sheets, std::size_t count, float* warn, float* fail);
+/// The limits of min_length of each lane, where they depend on the shell's thickness or material.
+struct MinLengths {
+  float warn[kLanes];
+  float fail[kLanes];
+};
+void min_lengths(const ShapeLimits& shape, const Limits& limits, std::span<const ShellProperties> properties, MinLengths& out);
 
-/// What judge() compares a value of the metric with, in the metric's unit: lengths follow the target size, the least min_length also what
-/// the criteria ask for by the shell's thickness and by a wanted time step. `sheet` as in judge().
-Threshold threshold_of(const Criteria& criteria, Metric metric, bool of_triangle, double target_size, const Sheet& sheet = {});
+/// The limits that judge() compares a value of the metric with, in the metric's unit: lengths follow the target size; those of min_length
+/// also follow the shell's thickness and a wanted time step. `properties`: as in judge().
+Threshold threshold_of(const SizedCriteria& criteria, Metric metric, bool of_triangle, const ShellProperties& properties = {});
 
-/// How far it is from a limit to the ideal; where a file's limit leaves no way, a twentieth of it.
+/// The distance from a limit to the ideal value; at least a twentieth of the limit.
 inline float span_of(float limit, float best) { return std::max(std::abs(best - limit), std::max(0.05F * std::abs(limit), 1e-30F)); }
 
 }  // namespace prismesh::mesh::quality

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
-#include "mesh/quality/sheet.h"
 #include "mesh/quality/shell_batch.h"
+#include "mesh/quality/shell_properties.h"
 
 namespace prismesh::mesh::quality {
 
@@ -18,26 +18,26 @@ constexpr std::size_t kMassGrain = 16384;
 
 }  // namespace
 
-Weight& Weight::operator+=(const Weight& more) {
+MassProperties& MassProperties::operator+=(const MassProperties& more) {
   mass += more.mass;
   moment += more.moment;
   shells += more.shells;
   return *this;
 }
 
-Weight& Weight::operator-=(const Weight& less) {
+MassProperties& MassProperties::operator-=(const MassProperties& less) {
   mass -= less.mass;
   moment -= less.moment;
   shells -= less.shells;
   return *this;
 }
 
-std::optional<Vec3> Weight::centre() const {
+std::optional<Vec3> MassProperties::centre() const {
   if (!(mass > 0)) return std::nullopt;
   return Vec3(moment / mass);
 }
 
-Weight weigh_shell(const Model& model, ShellIndex shell) {
+MassProperties mass_properties(const Model& model, ShellIndex shell) {
   const PartIndex part = model.shell_parts[shell.value];
   if (!part.valid() || model.is_removed(shell)) return {};
   const std::optional<double>& density = (*model.parts)[part.value].density;
@@ -53,19 +53,19 @@ Weight weigh_shell(const Model& model, ShellIndex shell) {
   return {surface_density * (first + second), surface_density / 3.0 * (first * (p[0] + p[1] + p[2]) + second * (p[0] + p[2] + p[3])), 1};
 }
 
-Weight weigh_model(const Model& model) {
-  std::vector<Weight> parts((model.shell_count() + kMassGrain - 1) / kMassGrain);
+MassProperties mass_properties(const Model& model) {
+  std::vector<MassProperties> parts((model.shell_count() + kMassGrain - 1) / kMassGrain);
   parallel_for(model.shell_count(), kMassGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) parts[begin / kMassGrain] += weigh_shell(model, ShellIndex(s));
+    for (std::size_t s = begin; s < end; ++s) parts[begin / kMassGrain] += mass_properties(model, ShellIndex(s));
   });
-  Weight sum;
-  for (const Weight& part : parts) sum += part;
+  MassProperties sum;
+  for (const MassProperties& part : parts) sum += part;
   return sum;
 }
 
-Weight weigh_shells(const Model& model, const ShellSet& shells) {
-  Weight sum;
-  for (const ShellIndex shell : shells) sum += weigh_shell(model, shell);
+MassProperties mass_properties(const Model& model, const ShellSet& shells) {
+  MassProperties sum;
+  for (const ShellIndex shell : shells) sum += mass_properties(model, shell);
   return sum;
 }
 

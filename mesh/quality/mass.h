@@ -1,4 +1,4 @@
-// The mass of shells and where its centre lies.
+// Mass and centre of gravity of shells.
 #pragma once
 
 #include <optional>
@@ -8,21 +8,21 @@
 
 namespace prismesh::mesh::quality {
 
-/// A sum over shells; those whose thickness or density isn't known count for nothing.
-struct Weight {
+/// A sum over shells; those whose thickness or density isn't known are left out.
+struct MassProperties {
   double mass = 0;             ///< deck's units
-  Vec3 moment = Vec3::Zero();  ///< mass times place
-  std::size_t shells = 0;      ///< whose mass is known
+  Vec3 moment = Vec3::Zero();  ///< first moment of mass: mass times position
+  std::size_t shells = 0;      ///< number of shells in the sum
 
-  Weight& operator+=(const Weight& more);
-  Weight& operator-=(const Weight& less);
-  std::optional<Vec3> centre() const;  ///< nothing without mass
+  MassProperties& operator+=(const MassProperties& more);
+  MassProperties& operator-=(const MassProperties& less);
+  std::optional<Vec3> centre() const;  ///< centre of gravity; nothing without mass
 };
 
-/// A quad as two triangles, so that the centre of a slanted one is right.
-Weight weigh_shell(const Model& model, ShellIndex shell);
-/// All shells; the sum doesn't depend on the number of threads.
-Weight weigh_model(const Model& model);
-Weight weigh_shells(const Model& model, const ShellSet& shells);
+/// Of one shell. A quad counts as two triangles, so that its centre is right where it isn't a parallelogram.
+MassProperties mass_properties(const Model& model, ShellIndex shell);
+/// Of all shells; the sum doesn't depend on the number of threads.
+MassProperties mass_properties(const Model& model);
+MassProperties mass_properties(const Model& model, const ShellSet& shells);
 
 }  // namespace prismesh::mesh::quality

@@ -9,11 +9,11 @@
 
 namespace prismesh::mesh::quality {
 
-/// Metrics of one shell from its corner coordinates (3 or 4 points). Degenerate shapes give the worst value; where a coordinate is no
-/// finite number all values are NaN.
+/// Measures one shell from its corners (3 or 4 points). Degenerate shapes give the worst value; all values are NaN if a coordinate isn't
+/// finite.
 Values measure(std::span<const Vec3> corners);
 
-/// Metrics of shells [begin, end) or of the listed shells; `out` has one entry each, NaN throughout for a removed shell.
+/// Measures shells [begin, end) or the listed shells; `out` has an entry for each, all NaN for a removed shell.
 void measure_range(const Model& model, std::size_t begin, std::size_t end, std::span<Values> out);
 void measure_shells(const Model& model, std::span<const ShellIndex> shells, std::span<Values> out);
 

@@ -31,37 +31,38 @@ bool low_is_worse(int metric) {
   }
 }
 
-void tally(Counts& counts, ShellState state, std::ptrdiff_t by) {
+void add_state(Counts& counts, ShellState state, std::ptrdiff_t by) {
   if (state.is_removed()) return;
   const Grade grade = state.grade();
   std::size_t& count = grade == Grade::fail ? counts.fail : grade == Grade::warn ? counts.warn : counts.ok;
   count += static_cast<std::size_t>(by);
 }
 
-/// Measures and judges shells `shell_of(i)`, i in [0, count), without removed ones; `sink(batch, values, states, sheets)`.
+/// Measures and judges shells `shell_of(i)`, i in [0, count), without removed ones; `sink(batch, values, states, properties)`.
 template <class ShellOf, class Sink>
 void judge_batches(const Model& model, const Limits& limits, std::size_t count, const ShellOf& shell_of, const Sink& sink) {
   measure_in_batches(
       count, [&](std::size_t i, const Vec3*(&corner)[4]) { return corners_of(model, shell_of(i), corner); },
       [&](const ShellBatch& batch, const BatchValues& values) {
         ShellState states[kLanes];
-        Sheet room[kLanes];
-        const Sheet* sheets = sheets_of(model, limits, batch, shell_of, room);
-        judge_lanes(values, batch.count, limits, sheets, states);
-        sink(batch, values, states, sheets);
+        ShellProperties buffer[kLanes];
+        const ShellProperties* properties = batch_properties(model, limits, batch, shell_of, buffer);
+        judge_lanes(values, batch.count, limits, properties, states);
+        sink(batch, values, states, properties);
       });
 }
 
 /// Only the states, into out[i].
 template <class ShellOf>
 void judge_shells(const Model& model, const Limits& limits, std::size_t count, const ShellOf& shell_of, std::span<ShellState> out) {
-  judge_batches(model, limits, count, shell_of, [&](const ShellBatch& batch, const BatchValues&, const ShellState* states, const Sheet*) {
-    for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = states[lane];
-  });
+  judge_batches(model, limits, count, shell_of,
+                [&](const ShellBatch& batch, const BatchValues&, const ShellState* states, const ShellProperties*) {
+                  for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = states[lane];
+                });
 }
 
-/// Figures of one range of shells; ranges are added in order, so sums don't depend on the number of threads.
-struct Partial {
+/// Figures of one range of shells. Ranges are added in order, so that sums don't depend on the number of threads.
+struct RangeFigures {
   Report report;
   std::array<double, kMetricCount> sum{};
   std::size_t triangles = 0;
@@ -74,8 +75,8 @@ struct Partial {
   void add_shell(const Model& model, std::size_t shell, const Values& values, ShellState state, float composite) {
     ++report.elements;
     triangles += model.shell_nodes[shell].is_triangle();
-    tally(report.counts, state, 1);
-    report.least_composite = std::min<double>(report.least_composite, composite);
+    add_state(report.counts, state, 1);
+    report.min_composite = std::min<double>(report.min_composite, composite);
     composite_sum += composite;
     for (std::size_t d = 0; d < kDefectCount; ++d) report.defects[d] += state.has(kDefects[d]);
     if (state.has_defect()) return;
@@ -96,13 +97,13 @@ struct Partial {
     s.warn += !failed && (state.warn >> m & 1) != 0;
   }
 
-  void add(const Partial& next) {
+  void add(const RangeFigures& next) {
     report.elements += next.report.elements;
     report.counts.ok += next.report.counts.ok;
     report.counts.warn += next.report.counts.warn;
     report.counts.fail += next.report.counts.fail;
     triangles += next.triangles;
-    report.least_composite = std::min(report.least_composite, next.report.least_composite);
+    report.min_composite = std::min(report.min_composite, next.report.min_composite);
     composite_sum += next.composite_sum;
     for (std::size_t d = 0; d < kDefectCount; ++d) report.defects[d] += next.report.defects[d];
     for (int m = 0; m < kMetricCount; ++m) add_summary(m, next);
@@ -115,7 +116,7 @@ struct Partial {
   }
 
  private:
-  void add_summary(int m, const Partial& next) {
+  void add_summary(int m, const RangeFigures& next) {
     MetricSummary& s = report.metrics[m];
     const MetricSummary& n = next.report.metrics[m];
     sum[m] += next.sum[m];
@@ -133,10 +134,10 @@ struct Partial {
   }
 };
 
-/// What a part's shells have in common.
+/// Material data of a part's shells.
 struct PartFactors {
   double density = 0;
-  double wave_speed = 0;  ///< 0: it doesn't limit the time step, or isn't known
+  double wave_speed = 0;  ///< 0: not known, or the part doesn't limit the time step
 };
 
 std::vector<PartFactors> factors_of(const Model& model, int shell_option) {
@@ -145,8 +146,8 @@ std::vector<PartFactors> factors_of(const Model& model, int shell_option) {
   return factors;
 }
 
-/// What the measuring of a range leaves behind for the gathering.
-struct Measured {
+/// Measured data of one shell.
+struct ShellFigures {
   Values values;
   ShellState state = ShellState::removed();
   float composite = 1;
@@ -155,50 +156,49 @@ struct Measured {
   double step_length = 0;
 };
 
-/// How a report is made.
-struct Making {
+/// What the figures of a range depend on.
+struct RangeInput {
   const Model& model;
   const Limits& limits;
   const TimeStepControl& control;
   const std::vector<PartFactors>& parts;
 };
 
-/// What mass scaling adds to a shell: DT2MS < 0 brings those up to |DT2MS| that would step below it, DT2MS > 0 every shell to just that, so
-/// that long ones lose mass.
+/// The mass that mass scaling adds to a shell. DT2MS < 0: only shells with a step below |DT2MS| get mass; DT2MS > 0: every shell gets
+/// exactly that step, so that long ones lose mass.
 double mass_added(double mass, double step, double mass_scaled) {
   if (mass_scaled == 0 || (mass_scaled < 0 && step >= -mass_scaled)) return 0;
   return mass * ((mass_scaled / step) * (mass_scaled / step) - 1.0);
 }
 
-/// Mass and time step of one shell.
-void weigh(const Making& making, std::size_t shell, const Measured& measured, Partial& partial) {
-  const PartIndex part = making.model.shell_parts[shell];
+/// Adds mass and time step of one shell.
+void add_mass(const RangeInput& input, std::size_t shell, const ShellFigures& measured, RangeFigures& partial) {
+  const PartIndex part = input.model.shell_parts[shell];
   if (!part.valid()) return;
-  const PartFactors& factors = making.parts[part.value];
-  const double thickness = thickness_of(making.model, shell);
-  const bool has_mass = thickness > 0 && (*making.model.parts)[part.value].density.has_value();
+  const PartFactors& factors = input.parts[part.value];
+  const double thickness = thickness_of(input.model, shell);
+  const bool has_mass = thickness > 0 && (*input.model.parts)[part.value].density.has_value();
   const double surface_density = has_mass ? factors.density * thickness : 0.0;
   partial.mass += surface_density * measured.area;
   partial.moment += surface_density * measured.moment;
   partial.has_mass = partial.has_mass || has_mass;
   if (!(factors.wave_speed > 0) || !(measured.step_length > 0) || measured.state.has(Defect::no_area)) return;
   const double step = measured.step_length / factors.wave_speed;
-  if (has_mass) partial.added_mass += mass_added(surface_density * measured.area, step, making.control.mass_scaled);
-  const double seconds = making.control.scale * step;
+  if (has_mass) partial.added_mass += mass_added(surface_density * measured.area, step, input.control.mass_scaled);
+  const double seconds = input.control.scale * step;
   if (!partial.report.time_step || seconds < partial.report.time_step->seconds) partial.report.time_step = {seconds, ShellIndex(shell)};
 }
 
-/// The measuring order inside a range is by shape; of equal extremes the one that comes first in the model shall count, so the
-/// figures are gathered in the shells' order.
-Partial figures_of_range(const Making& making, std::size_t begin, std::size_t end, const ShellSet* shells) {
+/// Shells are measured by shape, but of equal extremes the first in the model counts: so the figures are added in the shells' order.
+RangeFigures figures_of_range(const RangeInput& input, std::size_t begin, std::size_t end, const ShellSet* shells) {
   const auto shell_of = [&](std::size_t i) { return shells != nullptr ? (*shells)[begin + i].value : begin + i; };
-  std::vector<Measured> all(end - begin);
-  judge_batches(making.model, making.limits, end - begin, shell_of,
-                [&](const ShellBatch& batch, const BatchValues& values, const ShellState* states, const Sheet* sheets) {
+  std::vector<ShellFigures> all(end - begin);
+  judge_batches(input.model, input.limits, end - begin, shell_of,
+                [&](const ShellBatch& batch, const BatchValues& values, const ShellState* states, const ShellProperties* properties) {
                   float rated[kLanes];
-                  rate_lanes(values, batch.count, making.limits, sheets, rated);
+                  rate_lanes(values, batch.count, input.limits, properties, rated);
                   BatchExtents extents;
-                  (values.of_triangles ? extend_triangles : extend_quads)(batch, making.control.shell_option, extents);
+                  (values.of_triangles ? extend_triangles : extend_quads)(batch, input.control.shell_option, extents);
                   for (std::size_t lane = 0; lane < batch.count; ++lane)
                     all[batch.slot[lane]] = {values.at(lane),
                                              states[lane],
@@ -207,24 +207,24 @@ Partial figures_of_range(const Making& making, std::size_t begin, std::size_t en
                                              {extents.moment[0][lane], extents.moment[1][lane], extents.moment[2][lane]},
                                              extents.step_length[lane]};
                 });
-  Partial partial;
+  RangeFigures partial;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].state.is_removed()) continue;
-    partial.add_shell(making.model, shell_of(i), all[i].values, all[i].state, all[i].composite);
-    if (!all[i].state.has(Defect::not_finite)) weigh(making, shell_of(i), all[i], partial);
+    partial.add_shell(input.model, shell_of(i), all[i].values, all[i].state, all[i].composite);
+    if (!all[i].state.has(Defect::not_finite)) add_mass(input, shell_of(i), all[i], partial);
   }
   return partial;
 }
 
-/// Gives the states the model's size; returns how many shells they have told of before. New ones count as removed until they are judged.
-std::size_t fit(ChunkedArray<ShellState>& states, std::size_t shells, Counts& counts) {
+/// Resizes the states to the model's number of shells. Returns how many of them had a state before. New ones are removed until judged.
+std::size_t resize_states(ChunkedArray<ShellState>& states, std::size_t shells, Counts& counts) {
   const std::size_t known = std::min(states.size(), shells);
-  for (std::size_t s = shells; s < states.size(); ++s) tally(counts, states[s], -1);
+  for (std::size_t s = shells; s < states.size(); ++s) add_state(counts, states[s], -1);
   if (states.size() != shells) states.resize(shells, ShellState::removed());
   return known;
 }
 
-/// Length with two significant digits.
+/// A value with two significant digits.
 double rounded_to_two_digits(double value) {
   // through text: powers of ten are exact there
   char text[32];
@@ -234,9 +234,9 @@ double rounded_to_two_digits(double value) {
 
 }  // namespace
 
-ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteria, double target_size) {
+ChunkedArray<ShellState> judge_model(const Model& model, const SizedCriteria& criteria) {
   ChunkedArray<ShellState> states(model.shell_count(), ShellState::removed());
-  const Limits limits = limits_for(criteria, target_size);
+  const Limits limits = limits_for(criteria);
   parallel_for(model.shell_count(), kReportGrain, [&](std::size_t begin, std::size_t end) {
     const std::span<ShellState> out = states.own_chunk(begin / kReportGrain);
     judge_shells(
@@ -245,13 +245,12 @@ ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteri
   return states;
 }
 
-void rejudge(const Model& model, const Criteria& criteria, double target_size, const ShellSet& shells, ChunkedArray<ShellState>& states,
-             Counts& counts) {
-  const std::size_t known = fit(states, model.shell_count(), counts);
+void rejudge(const Model& model, const SizedCriteria& criteria, const ShellSet& shells, ChunkedArray<ShellState>& states, Counts& counts) {
+  const std::size_t known = resize_states(states, model.shell_count(), counts);
   ShellSet dirty(shells.begin(), std::lower_bound(shells.begin(), shells.end(), ShellIndex(known)));
   for (std::size_t s = known; s < model.shell_count(); ++s) dirty.emplace_back(s);
 
-  const Limits limits = limits_for(criteria, target_size);
+  const Limits limits = limits_for(criteria);
   std::vector<ShellState> fresh(dirty.size(), ShellState::removed());
   parallel_for(dirty.size(), kReportGrain, [&](std::size_t begin, std::size_t end) {
     judge_shells(
@@ -260,8 +259,8 @@ void rejudge(const Model& model, const Criteria& criteria, double target_size, c
   for (std::size_t i = 0; i < dirty.size(); ++i) {
     const ShellState old = states[dirty[i].value];
     if (old == fresh[i]) continue;  // an unchanged chunk stays shared
-    tally(counts, old, -1);
-    tally(counts, fresh[i], 1);
+    add_state(counts, old, -1);
+    add_state(counts, fresh[i], 1);
     states.set(dirty[i].value, fresh[i]);
   }
 }
@@ -269,20 +268,20 @@ void rejudge(const Model& model, const Criteria& criteria, double target_size, c
 Counts count(const ChunkedArray<ShellState>& states) {
   Counts counts;
   for (std::size_t c = 0; c < states.chunk_count(); ++c)
-    for (const ShellState state : states.chunk(c)) tally(counts, state, 1);
+    for (const ShellState state : states.chunk(c)) add_state(counts, state, 1);
   return counts;
 }
 
-Report report(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control, const ShellSet* shells) {
-  const Limits limits = limits_for(criteria, target_size);
+Report report(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control, const ShellSet* shells) {
+  const Limits limits = limits_for(criteria);
   const std::size_t elements = shells != nullptr ? shells->size() : model.shell_count();
   const std::vector<PartFactors> parts = factors_of(model, control.shell_option);
-  std::vector<Partial> partials((elements + kReportGrain - 1) / kReportGrain);
+  std::vector<RangeFigures> partials((elements + kReportGrain - 1) / kReportGrain);
   parallel_for(elements, kReportGrain, [&](std::size_t begin, std::size_t end) {
     partials[begin / kReportGrain] = figures_of_range({model, limits, control, parts}, begin, end, shells);
   });
-  Partial all;
-  for (const Partial& partial : partials) all.add(partial);
+  RangeFigures all;
+  for (const RangeFigures& partial : partials) all.add(partial);
 
   Report& report = all.report;
   for (int m = 0; m < kMetricCount; ++m)
@@ -295,7 +294,7 @@ Report report(const Model& model, const Criteria& criteria, double target_size, 
   return report;
 }
 
-std::vector<PartReport> report_by_part(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
+std::vector<PartReport> report_by_part(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control,
                                        const ShellSet* shells) {
   std::vector<ShellSet> of_part(model.parts->size());
   const auto add = [&](ShellIndex shell) {
@@ -308,7 +307,7 @@ std::vector<PartReport> report_by_part(const Model& model, const Criteria& crite
     for (std::size_t s = 0; s < model.shell_count(); ++s) add(ShellIndex(s));
   std::vector<PartReport> reports;
   for (std::size_t p = 0; p < of_part.size(); ++p)
-    if (!of_part[p].empty()) reports.push_back({PartIndex(p), report(model, criteria, target_size, control, &of_part[p])});
+    if (!of_part[p].empty()) reports.push_back({PartIndex(p), report(model, criteria, control, &of_part[p])});
   return reports;
 }
 

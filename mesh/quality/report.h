@@ -1,4 +1,4 @@
-// Quality of a whole model or a part of it: states kept per shell, figures for people.
+// Quality of a model, of a part or of some shells: the state of each shell, and figures for a report.
 #pragma once
 
 #include <optional>
@@ -18,16 +18,16 @@ struct Counts {
 };
 
 /// State of every shell; a removed one has ShellState::removed().
-ChunkedArray<ShellState> judge_model(const Model& model, const Criteria& criteria, double target_size);
-/// Re-judges only the given shells, and those that were added since `states` was made; `counts` follows. Removed shells count no more.
-void rejudge(const Model& model, const Criteria& criteria, double target_size, const ShellSet& shells, ChunkedArray<ShellState>& states,
-             Counts& counts);
+ChunkedArray<ShellState> judge_model(const Model& model, const SizedCriteria& criteria);
+/// Updates `states` and `counts` for the given shells (ascending) and those that were added since `states` was made. Removed shells don't
+/// count any more.
+void rejudge(const Model& model, const SizedCriteria& criteria, const ShellSet& shells, ChunkedArray<ShellState>& states, Counts& counts);
 Counts count(const ChunkedArray<ShellState>& states);  ///< without removed shells
 
 struct MetricSummary {
   double min = 0, mean = 0, max = 0;
   std::size_t measured = 0;        ///< shells the metric applies to, without those that have a defect
-  std::size_t warn = 0, fail = 0;  ///< a shell counts in one of them
+  std::size_t warn = 0, fail = 0;  ///< a shell counts in one of the two
   std::optional<ShellIndex> worst;
 };
 struct TimeStep {
@@ -40,7 +40,7 @@ struct Report {
   double triangles_percent = 0;
   std::array<MetricSummary, kMetricCount> metrics;
   std::array<std::size_t, kDefectCount> defects{};  ///< by kDefects; a shell may have several
-  double least_composite = 1;                       ///< mesh/quality/composite.h; 1 without shells
+  double min_composite = 1;                         ///< mesh/quality/composite.h; 1 without shells
   double mean_composite = 1;
   std::optional<double> mass;             ///< of the shells whose thickness and density are known; absent if none is
   std::optional<Vec3> centre_of_gravity;  ///< of that mass
@@ -48,19 +48,19 @@ struct Report {
   std::optional<double> added_mass;       ///< what DT2MS adds to these shells at the start; absent without mass scaling
 };
 
-/// Figures of the given shells (all shells: pass nullptr).
-Report report(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
-              const ShellSet* shells = nullptr);
+/// Figures of the given shells; nullptr: of all. Deterministic, whatever the number of threads.
+Report report(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control, const ShellSet* shells = nullptr);
 
 struct PartReport {
   PartIndex part;
   Report report;
 };
-/// The same by part: of those that have some of the shells, ascending.
-std::vector<PartReport> report_by_part(const Model& model, const Criteria& criteria, double target_size, const TimeStepControl& control,
+/// The same by part, ascending, for parts with at least one of the shells.
+std::vector<PartReport> report_by_part(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control,
                                        const ShellSet* shells = nullptr);
 
-/// A target size for a model that states none: the median edge length, rounded to two digits; 1 for a model without shells.
+/// A target size for a model that states none: the median edge length, rounded to two digits; 1 for a model without shells. Precondition:
+/// the model has its adjacency.
 double guess_target_size(const Model& model);
 
 }  // namespace prismesh::mesh::quality

@@ -1,5 +1,5 @@
-// The fused pass: shells are gathered into batches of one shape, coordinates lane by lane, and all metrics of a batch are
-// computed in loops that the compiler turns into vector code. Inner to quality.
+// Measures shells in batches of one shape: coordinates are gathered lane by lane, and all metrics of a batch are computed in loops that the
+// compiler vectorises. For mesh/quality, mesh/relax and mesh/repair.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,18 @@
 
 namespace prismesh::mesh::quality {
 
-/// All metrics of a batch. The same bits for a shell whatever its lane, its neighbours and the processor.
+/// Computes all metrics of a batch. Gives the same bits for a shell whatever its lane, its neighbours and the processor.
 void measure_quads(const ShellBatch& batch, BatchValues& values);
 void measure_triangles(const ShellBatch& batch, BatchValues& values);
 
 enum class Shape : std::uint8_t { quad, triangle, none };
 
+/// Computes areas, moments and characteristic lengths of a batch; `shell_option`: ISDO (mesh/quality/time_step.h).
 void extend_quads(const ShellBatch& batch, int shell_option, BatchExtents& extents);
 void extend_triangles(const ShellBatch& batch, int shell_option, BatchExtents& extents);
 
-/// Measures `count` shells: `corners(i, corner)` puts the four corner positions of shell i into `corner` as pointers and returns its
-/// shape; one without (it was removed) is passed over. `sink(batch, values)` gets every full batch and the rests.
+/// Measures `count` shells. `corners(i, corner)` puts pointers to the four corner positions of shell i into `corner` and returns its shape;
+/// shells of Shape::none (removed ones) are skipped. Calls `sink(batch, values)` for every batch, full or not.
 template <class CornersOf, class Sink>
 void measure_in_batches(std::size_t count, const CornersOf& corners, const Sink& sink) {
   ShellBatch quads, triangles;

@@ -1,5 +1,5 @@
-// The metric kernels: plain loops over lanes. They are inlined into whoever calls them, so that each caller compiles them for
-// its processor (shell_batch.cpp) or plainly (the tests, which compare the bits). Inner to quality.
+// The metric kernels: loops over lanes. They are inlined, so that each caller compiles them for its own target: shell_batch.cpp for several
+// processors, the tests without extensions to compare the bits. Private to mesh/quality.
 #pragma once
 
 #include <limits>
@@ -13,8 +13,8 @@ namespace prismesh::mesh::quality::kernels {
 inline constexpr float kNotApplicable = std::numeric_limits<float>::quiet_NaN();
 inline constexpr double kWorstAspect = 999999936.0;         ///< the float below kRepeatedAspect
 inline constexpr double kWorstSkew = 89.99999237060546875;  ///< the float below kNoAreaSkew
-inline constexpr double kMax2 = 1e76;                       ///< squared lengths beyond it aren't finite as figures
-/// Added to divisors that may be zero; far below any product of lengths that means something.
+inline constexpr double kMax2 = 1e76;                       ///< squared lengths beyond it count as not finite
+/// Added to divisors that may be zero; far below any product of real lengths.
 inline constexpr double kTiny = 1e-300;
 
 struct Vector {

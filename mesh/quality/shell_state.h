@@ -10,8 +10,8 @@ namespace prismesh::mesh::quality {
 
 enum class Grade : std::uint8_t { ok, warn, fail };
 
-/// What makes a shell no shell: always a failure, whatever the criteria. The bit in ShellState. Shells with a defect have states and a
-/// composite, but count in no metric's figures.
+/// Defects that make a shell invalid: always a failure, whatever the criteria. The value is the bit in ShellState. Shells with a defect
+/// have a state and a composite, but don't count in any metric's figures.
 enum class Defect : std::uint8_t {
   not_finite = 15,     ///< a coordinate is no finite number (or an edge is longer than 10^38)
   repeated_node = 14,  ///< one node at two corners (other than a triangle's last), or two corners at one place
@@ -29,7 +29,7 @@ struct ShellState {
   std::uint16_t warn = 0;
   std::uint16_t fail = 0;
   static ShellState removed() { return {kGone, 0}; }
-  bool is_removed() const { return (warn & kGone) != 0; }  ///< it counts for nothing
+  bool is_removed() const { return (warn & kGone) != 0; }  ///< it counts nowhere
   bool has(Defect defect) const { return (fail >> int(defect) & 1) != 0; }
   bool has_defect() const { return (fail & kDefectBits) != 0; }
   /// A removed shell is ok.

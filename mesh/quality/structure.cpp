@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kStructureGrain = 16384;
 constexpr std::size_t kSmallLoop = 4;  ///< edges: what one missing shell leaves
 
-/// Whether each shell is looked at.
+/// The shells to check.
 class Scope {
  public:
   Scope(const Model& model, const ShellSet* shells) : all_(shells == nullptr) {
@@ -35,7 +35,7 @@ class Scope {
   std::vector<std::uint8_t> in_;
 };
 
-/// Those of [0, count) for which `is`, in order; `is` is asked on all cores.
+/// The indices of [0, count) for which `is` returns true, ascending. Calls `is` in parallel.
 template <class IndexType, class Is>
 std::vector<IndexType> all_of(std::size_t count, const Is& is) {
   std::vector<std::vector<IndexType>> found((count + kStructureGrain - 1) / kStructureGrain);
@@ -48,7 +48,7 @@ std::vector<IndexType> all_of(std::size_t count, const Is& is) {
   return list;
 }
 
-/// The ends of every edge: Adjacency::edge() searches.
+/// The lower end of every edge: Adjacency::edge() would have to search.
 std::vector<NodeIndex> low_ends(const Adjacency& adjacency) {
   std::vector<NodeIndex> low(adjacency.edge_count());
   for (std::size_t n = 0; n + 1 < adjacency.edge_first.size(); ++n)
@@ -56,7 +56,7 @@ std::vector<NodeIndex> low_ends(const Adjacency& adjacency) {
   return low;
 }
 
-/// Each corner once, ascending; then invalid ones.
+/// The different corners, ascending; then invalid ones.
 std::array<NodeIndex, 4> corner_set(const ShellNodes& shell) {
   std::array<NodeIndex, 4> corners = shell.node;
   std::sort(corners.begin(), corners.end());
@@ -72,7 +72,7 @@ bool is_duplicate(const Model& model, ShellIndex shell) {
                      [&](ShellIndex other) { return other < shell && corner_set(model.shell(other)) == corners; });
 }
 
-/// How often a shell runs along an edge from low to high, and from high to low.
+/// How often a shell has an edge in the direction from low to high, and from high to low.
 std::array<int, 2> runs(const ShellNodes& shell, NodeIndex low, NodeIndex high) {
   std::array<int, 2> along{};
   const auto corners = static_cast<std::size_t>(shell.corners());
@@ -89,18 +89,18 @@ bool is_opposed(const Model& model, EdgeIndex edge, NodeIndex low) {
   if (shells.size() != 2) return false;
   const NodeIndex high = model.adjacency->edge_high[edge.value];
   const std::array<int, 2> a = runs(model.shell(shells[0]), low, high), b = runs(model.shell(shells[1]), low, high);
-  // a shell that runs along the edge twice has no side there
+  // a shell that has the edge twice has no direction there
   return a[0] + a[1] == 1 && b[0] + b[1] == 1 && a == b;
 }
 
-/// Free edges and where they are.
+/// The free edges, found by end or by position.
 class FreeEdges {
  public:
   FreeEdges(const Model& model, const std::vector<NodeIndex>& low, double tolerance) : model_(model), low_(low), tolerance_(tolerance) {
     const Adjacency& adjacency = *model.adjacency;
     const auto is_free = [&](EdgeIndex e) { return adjacency.shells_of(e).size() == 1; };
     for (const EdgeIndex edge : all_of<EdgeIndex>(adjacency.edge_count(), is_free)) {
-      Entry entry{edge, part_of(edge), point(low[edge.value]), point(adjacency.edge_high[edge.value])};
+      FreeEdge entry{edge, part_of(edge), point(low[edge.value]), point(adjacency.edge_high[edge.value])};
       entry.reach = tolerance * entry.length();
       if (!std::isfinite(entry.reach) || !(entry.reach > 0)) continue;
       edges_.push_back(entry);
@@ -108,8 +108,8 @@ class FreeEdges {
       ends_.push_back({adjacency.edge_high[edge.value], edges_.size() - 1});
     }
     std::sort(ends_.begin(), ends_.end());
-    for (std::size_t i = 0; i < edges_.size(); ++i) places_.push_back({place(i, level_of(edges_[i].length()), {0, 0, 0}), i});
-    std::sort(places_.begin(), places_.end());
+    for (std::size_t i = 0; i < edges_.size(); ++i) cells_.push_back({place(i, level_of(edges_[i].length()), {0, 0, 0}), i});
+    std::sort(cells_.begin(), cells_.end());
   }
 
   std::size_t size() const { return edges_.size(); }
@@ -127,15 +127,15 @@ class FreeEdges {
  private:
   /// Part, level, and the cell of the middle. Edges of about one length are on one level, so that a long one doesn't make the short ones'
   /// cells large.
-  using Place = std::tuple<std::uint32_t, int, std::int64_t, std::int64_t, std::int64_t>;
-  struct Entry {
+  using CellKey = std::tuple<std::uint32_t, int, std::int64_t, std::int64_t, std::int64_t>;
+  struct FreeEdge {
     EdgeIndex edge;
     PartIndex part;
     Vec3 a, b;
     double reach = 0;
     double length() const { return (b - a).norm(); }
   };
-  using End = std::pair<NodeIndex, std::size_t>;
+  using EdgeEnd = std::pair<NodeIndex, std::size_t>;
 
   const Vec3& point(NodeIndex node) const { return model_.position(node); }
   PartIndex part_of(EdgeIndex edge) const { return model_.shell_parts[model_.adjacency->shells_of(edge)[0].value]; }
@@ -147,8 +147,8 @@ class FreeEdges {
     return level;
   }
 
-  Place place(std::size_t i, int level, const std::array<int, 3>& shift) const {
-    const Entry& e = edges_[i];
+  CellKey place(std::size_t i, int level, const std::array<int, 3>& shift) const {
+    const FreeEdge& e = edges_[i];
     const double size = 2 * tolerance_ * std::ldexp(1.0, level);  // no less than twice what any edge of the level reaches
     std::array<std::int64_t, 3> at{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -167,16 +167,16 @@ class FreeEdges {
   }
 
   bool has_twin(std::size_t i, int level) const {
-    const Entry& e = edges_[i];
+    const FreeEdge& e = edges_[i];
     std::array<int, 3> shift{};
     for (shift[0] = -1; shift[0] <= 1; ++shift[0])
       for (shift[1] = -1; shift[1] <= 1; ++shift[1])
         for (shift[2] = -1; shift[2] <= 1; ++shift[2]) {
-          const Place at = place(i, level, shift);
-          for (auto it = std::lower_bound(places_.begin(), places_.end(), std::pair(at, std::size_t{0}));
-               it != places_.end() && it->first == at; ++it) {
+          const CellKey at = place(i, level, shift);
+          for (auto it = std::lower_bound(cells_.begin(), cells_.end(), std::pair(at, std::size_t{0}));
+               it != cells_.end() && it->first == at; ++it) {
             if (it->second == i) continue;
-            const Entry& o = edges_[it->second];
+            const FreeEdge& o = edges_[it->second];
             const double reach = std::min(e.reach, o.reach);
             const auto near = [reach](const Vec3& p, const Vec3& q) { return (p - q).norm() <= reach; };
             if ((near(e.a, o.a) && near(e.b, o.b)) || (near(e.a, o.b) && near(e.b, o.a))) return true;
@@ -185,8 +185,8 @@ class FreeEdges {
     return false;
   }
 
-  std::span<const End> at(NodeIndex node) const {
-    const auto first = std::lower_bound(ends_.begin(), ends_.end(), End{node, 0});
+  std::span<const EdgeEnd> at(NodeIndex node) const {
+    const auto first = std::lower_bound(ends_.begin(), ends_.end(), EdgeEnd{node, 0});
     auto last = first;
     while (last != ends_.end() && last->first == node) ++last;
     return {first, last};
@@ -197,7 +197,7 @@ class FreeEdges {
   }
 
   /// The node between lies on the long edge.
-  bool lies_on(NodeIndex between, const Entry& e) const {
+  bool lies_on(NodeIndex between, const FreeEdge& e) const {
     const Vec3 along = e.b - e.a, to = point(between) - e.a;
     const double share = to.dot(along) / along.squaredNorm();
     return share > 0 && share < 1 && (to - share * along).norm() <= e.reach;
@@ -205,10 +205,10 @@ class FreeEdges {
   /// Two free edges lead from end to end of edge i, over a node that lies on it.
   bool spans_two(std::size_t i) const {
     const NodeIndex a = low_[edge(i).value], b = other_end(i, a);
-    for (const End& first : at(a)) {
+    for (const EdgeEnd& first : at(a)) {
       if (first.second == i || edges_[first.second].part != edges_[i].part) continue;
       const NodeIndex between = other_end(first.second, a);
-      for (const End& second : at(between))
+      for (const EdgeEnd& second : at(between))
         if (second.second != first.second && edges_[second.second].part == edges_[i].part && other_end(second.second, between) == b &&
             lies_on(between, edges_[i]))
           return true;
@@ -220,10 +220,10 @@ class FreeEdges {
     const NodeIndex a = low_[edge(i).value], b = other_end(i, a);
     for (const NodeIndex between : {a, b}) {
       const NodeIndex end = between == a ? b : a;
-      for (const End& next : at(between)) {
+      for (const EdgeEnd& next : at(between)) {
         if (next.second == i || edges_[next.second].part != edges_[i].part) continue;
         const NodeIndex far = other_end(next.second, between);
-        for (const End& over : at(end))
+        for (const EdgeEnd& over : at(end))
           if (over.second != i && edges_[over.second].part == edges_[i].part && other_end(over.second, end) == far &&
               lies_on(between, edges_[over.second]))
             return true;
@@ -233,7 +233,7 @@ class FreeEdges {
   }
 
   bool closes(std::vector<std::size_t>& loop, NodeIndex at_node, NodeIndex goal) const {
-    for (const End& next : at(at_node)) {
+    for (const EdgeEnd& next : at(at_node)) {
       if (edges_[next.second].part != edges_[loop[0]].part || std::find(loop.begin(), loop.end(), next.second) != loop.end()) continue;
       const NodeIndex to = other_end(next.second, at_node);
       loop.push_back(next.second);
@@ -276,9 +276,9 @@ class FreeEdges {
 
   const Model& model_;
   const std::vector<NodeIndex>& low_;
-  std::vector<Entry> edges_;
-  std::vector<End> ends_;  ///< by node
-  std::vector<std::pair<Place, std::size_t>> places_;
+  std::vector<FreeEdge> edges_;
+  std::vector<EdgeEnd> ends_;  ///< by node
+  std::vector<std::pair<CellKey, std::size_t>> cells_;
   double tolerance_ = 0;
 };
 
@@ -305,9 +305,9 @@ void find_clusters(const Model& model, const Scope& scope, std::size_t allowed, 
   }
   for (std::size_t n = 0; n < triangles.size(); ++n) {
     if (triangles[n] > allowed) found.clusters.emplace_back(n);
-    if (triangles[n] <= found.most_triangles) continue;
-    found.most_triangles = triangles[n];
-    found.most_triangles_at = NodeIndex(n);
+    if (triangles[n] <= found.max_triangles) continue;
+    found.max_triangles = triangles[n];
+    found.max_triangles_at = NodeIndex(n);
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kByBarAndShortestSide = 2;
 
-/// Whether the shell is free of Defect::no_area; no where it isn't finite.
+/// Whether the shell has area, as by Defect::no_area; false where it isn't finite.
 bool has_area(std::span<const Vec3> p) {
   const std::size_t count = p.size();
   double longest2 = 0;

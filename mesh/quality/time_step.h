@@ -13,12 +13,12 @@ namespace prismesh::mesh::quality {
 /// Source: LS-DYNA theory manual, "Time step size control".
 double characteristic_length(std::span<const Vec3> corners, int shell_option);
 
-/// The speed of the waves in a part's material that the step goes by, deck's units: a plate's, sqrt(E / (rho (1 - nu^2))), with ISDO 2 a
-/// bar's, sqrt(E / rho). Absent if the material is unknown or doesn't limit the step (rigid, null). Source: LS-DYNA keyword manual,
+/// The wave speed in a part's material that limits the time step, deck's units: a plate's, sqrt(E / (rho (1 - nu^2))), or with ISDO 2 a
+/// bar's, sqrt(E / rho). Nothing if the material is unknown or doesn't limit the step (rigid, null). Source: LS-DYNA keyword manual,
 /// *CONTROL_TIMESTEP.
 std::optional<double> wave_speed(const Part& part, int shell_option = 0);
 
-/// Characteristic length over wave speed, without TSSFAC, in the deck's time unit. Absent if the part's material is unknown or doesn't
+/// Characteristic length over wave speed, without TSSFAC, in the deck's time unit. Nothing if the part's material is unknown or doesn't
 /// limit the step, the shell has no area (Defect::no_area) or its coordinates aren't finite.
 std::optional<double> shell_time_step(const Part& part, std::span<const Vec3> corners, int shell_option);
 

@@ -42,8 +42,9 @@ VerdictValues measure_verdict(std::span<const Vec3> p) {
   VerdictValues values{};
   values.verdict_aspect = 0.5 * longest * perimeter / (normal[1].norm() + normal[3].norm());
   values.verdict_skew = std::abs(first.normalized().dot(second.normalized()));
-  const double least = std::min(normal[0].normalized().dot(normal[2].normalized()), normal[1].normalized().dot(normal[3].normalized()));
-  values.verdict_warpage = least * least * least;
+  const double min_cosine =
+      std::min(normal[0].normalized().dot(normal[2].normalized()), normal[1].normalized().dot(normal[3].normalized()));
+  values.verdict_warpage = min_cosine * min_cosine * min_cosine;
   values.verdict_taper = (p[0] + p[2] - p[1] - p[3]).norm() / std::min(first.norm(), second.norm());
   values.verdict_scaled_jacobian = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 4; ++i)

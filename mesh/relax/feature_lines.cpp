@@ -24,9 +24,10 @@ Others others_at(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b)
   return others;
 }
 
-/// Whether the two shells at an edge make a crease; the lower shell first: the same rounding from either side.
-bool bends(const Model& model, ShellIndex one, ShellIndex other, NodeIndex a, NodeIndex b, double cos_limit) {
-  const Edge edge = a < b ? Edge{a, b} : Edge{b, a};
+Edge edge_between(NodeIndex a, NodeIndex b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
+/// Whether the edge between two shells is a crease. Takes the lower shell first, so that rounding is the same from either side.
+bool make_crease(const Model& model, ShellIndex one, ShellIndex other, const Edge& edge, double cos_limit) {
   return is_crease(model, std::min(one, other), std::max(one, other), edge, cos_limit);
 }
 
@@ -41,9 +42,9 @@ bool has_edge(const ShellNodes& shell, NodeIndex a, NodeIndex b) {
   return false;
 }
 
-ShellIndex across(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b, double cos_limit) {
+ShellIndex smooth_neighbour(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b, double cos_limit) {
   const Others others = others_at(model, shell, a, b);
-  return others.count == 1 && !bends(model, shell, others.shell, a, b, cos_limit) ? others.shell : ShellIndex();
+  return others.count == 1 && !make_crease(model, shell, others.shell, edge_between(a, b), cos_limit) ? others.shell : ShellIndex();
 }
 
 LineEnds line_ends(const Model& model, NodeIndex node, double cos_limit, bool part_borders) {
@@ -63,9 +64,9 @@ LineEnds line_ends(const Model& model, NodeIndex node, double cos_limit, bool pa
       const NodeIndex a = nodes.node[i], b = nodes.node[next_corner(i, corners)];
       if ((a != node && b != node) || a == b) continue;
       const Others others = others_at(model, shell, node, a == node ? b : a);
-      if (others.count == 1 && others.shell < shell) continue;  // asked from the other side already
+      if (others.count == 1 && others.shell < shell) continue;  // the other shell has answered already
       if (others.count != 1 || (part_borders && model.shell_parts[others.shell.value] != model.shell_parts[shell.value]) ||
-          bends(model, shell, others.shell, a, b, cos_limit))
+          make_crease(model, shell, others.shell, edge_between(a, b), cos_limit))
         add(a == node ? b : a);
     }
   }

@@ -1,4 +1,4 @@
-// Feature lines as relaxing sees them: free edges, creases, junctions and borders between parts. Private to mesh/relax.
+// Feature lines of a mesh: free edges, creases, junctions and borders between parts. Private to mesh/relax.
 #pragma once
 
 #include <array>
@@ -9,26 +9,26 @@
 
 namespace prismesh::mesh::relax {
 
-/// Around a shell's corners.
+/// The next and the previous corner around a shell.
 inline int next_corner(int corner, int corners) { return corner + 1 < corners ? corner + 1 : 0; }
 inline int previous_corner(int corner, int corners) { return corner > 0 ? corner - 1 : corners - 1; }
 
 bool has_edge(const ShellNodes& shell, NodeIndex a, NodeIndex b);
 
-/// The other shell at the edge between two corners of `shell`, where exactly one is there and the two make no crease: where one sheet goes
-/// on smoothly. Invalid otherwise.
-ShellIndex across(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b, double cos_limit);
+/// The other shell at the edge between two corners of `shell`, if there is exactly one and the edge is no crease; invalid otherwise.
+/// `cos_limit`: cosine of the feature angle.
+ShellIndex smooth_neighbour(const Model& model, ShellIndex shell, NodeIndex a, NodeIndex b, double cos_limit);
 
-/// Where feature lines go from a node.
+/// The feature edges at a node.
 struct LineEnds {
-  static constexpr std::size_t kMax = 3;  ///< more than two make a corner, however many
-  std::array<NodeIndex, kMax> other;      ///< ends of the feature edges at the node, ascending
+  static constexpr std::size_t kMax = 3;  ///< more aren't kept: three already make the node a corner
+  std::array<NodeIndex, kMax> other;      ///< the other ends, ascending
   std::size_t count = 0;
 };
-/// With `part_borders` an edge between shells of different parts counts as well.
+/// With `part_borders` an edge between shells of different parts is a feature edge as well.
 LineEnds line_ends(const Model& model, NodeIndex node, double cos_limit, bool part_borders);
 
-/// Whether a line goes through the node: two feature edges that bend by no more than the angle.
+/// Whether a feature line passes through the node: it has two feature edges, which turn by no more than the angle.
 bool passes_through(const Model& model, NodeIndex node, const LineEnds& ends, double cos_limit);
 
 }  // namespace prismesh::mesh::relax

@@ -11,10 +11,10 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr int kMaxPieces = 64;  ///< walked in one go
+constexpr int kMaxPieces = 64;  ///< that a walk passes
 constexpr double kAtEnd = 1e-9;
 
-/// The end of the line's next edge beyond `at`; invalid at a corner.
+/// The other end of the line's next edge after `at`, coming from `from`; invalid at a corner.
 NodeIndex next_on_line(const Model& model, NodeIndex at, NodeIndex from, double cos_limit) {
   const LineEnds ends = line_ends(model, at, cos_limit, true);
   if (!passes_through(model, at, ends, cos_limit)) return {};
@@ -24,11 +24,11 @@ NodeIndex next_on_line(const Model& model, NodeIndex at, NodeIndex from, double 
 /// Unit tangent at `b` of the circle through a, b, c, from a to c.
 Vec3 circle_tangent(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 in = b - a, out = c - b;
-  // weights that make it exact on circles, whatever the spacing
+  // These weights make it exact on circles, whatever the spacing.
   return (in / in.squaredNorm() + out / out.squaredNorm()).normalized();
 }
 
-/// Turns the other end's tangent about the chord's middle: an arc from an end without a tangent of its own.
+/// Mirrors the other end's tangent at the chord, for an end without a neighbour: the piece becomes an arc.
 Vec3 mirrored(const Vec3& tangent, const Vec3& chord) { return 2 * tangent.dot(chord) * chord - tangent; }
 
 struct Curve {
@@ -52,17 +52,17 @@ Curve curve_of(const Model& model, LinePiece piece, double cos_limit) {
   Vec3 last = after.valid() ? circle_tangent(a, b, model.position(after)) : Vec3::Zero();
   if (!before.valid()) first = after.valid() ? mirrored(last, chord) : chord;
   if (!after.valid()) last = before.valid() ? mirrored(first, chord) : chord;
-  // so long that an arc of a circle comes out as one, to the sixth order
+  // The length of the derivatives makes an arc of a circle exact to the sixth order.
   const auto derivative = [&](const Vec3& tangent) { return Vec3(tangent * (2 * length / (1 + std::max(tangent.dot(chord), 0.0)))); };
   return {a, b, derivative(first), derivative(last)};
 }
 
 }  // namespace
 
-LinePlace place_on_piece(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
+CurvePoint closest_on_piece(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
   const Vec3 chord = model.position(piece.to) - model.position(piece.from);
   const double length2 = chord.squaredNorm();
-  LinePlace place{piece, model.position(piece.from), Vec3::Zero(), 0};
+  CurvePoint place{piece, model.position(piece.from), Vec3::Zero(), 0};
   if (length2 > 0) {
     const Curve curve = curve_of(model, piece, cos_limit);
     double t = std::clamp((point - curve.a).dot(chord) / length2, 0.0, 1.0);
@@ -79,8 +79,8 @@ LinePlace place_on_piece(const Model& model, LinePiece piece, const Vec3& point,
   return place;
 }
 
-LinePlace follow_line(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
-  LinePlace best = place_on_piece(model, piece, point, cos_limit);
+CurvePoint follow_line(const Model& model, LinePiece piece, const Vec3& point, double cos_limit) {
+  CurvePoint best = closest_on_piece(model, piece, point, cos_limit);
   for (int i = 0; i < kMaxPieces; ++i) {
     const bool at_from = best.point == model.position(best.piece.from);
     const bool at_to = best.point == model.position(best.piece.to);
@@ -88,7 +88,7 @@ LinePlace follow_line(const Model& model, LinePiece piece, const Vec3& point, do
     const NodeIndex turn = at_from ? best.piece.from : best.piece.to;
     const NodeIndex next = next_on_line(model, turn, at_from ? best.piece.to : best.piece.from, cos_limit);
     if (!next.valid()) break;
-    const LinePlace beyond = place_on_piece(model, at_from ? LinePiece{next, turn} : LinePiece{turn, next}, point, cos_limit);
+    const CurvePoint beyond = closest_on_piece(model, at_from ? LinePiece{next, turn} : LinePiece{turn, next}, point, cos_limit);
     if (!(beyond.distance < best.distance)) break;
     best = beyond;
   }

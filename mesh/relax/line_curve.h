@@ -14,17 +14,17 @@ struct LinePiece {
   NodeIndex to;
 };
 
-struct LinePlace {
+struct CurvePoint {
   LinePiece piece;
   Vec3 point = Vec3::Zero();
   Vec3 tangent = Vec3::Zero();  ///< unit, from `from` to `to`
-  double distance = 0;          ///< from the point asked for
+  double distance = 0;          ///< from the given point
 };
 
-/// The nearest place on one piece.
-LinePlace place_on_piece(const Model& model, LinePiece piece, const Vec3& point, double cos_limit);
+/// The point of one piece that is nearest to `point`. `cos_limit`: cosine of the feature angle.
+CurvePoint closest_on_piece(const Model& model, LinePiece piece, const Vec3& point, double cos_limit);
 
-/// The nearest place on the line of `piece`, walking from it and not beyond corners.
-LinePlace follow_line(const Model& model, LinePiece piece, const Vec3& point, double cos_limit);
+/// The nearest point on the line of `piece`, found by walking from the piece, and not beyond corners.
+CurvePoint follow_line(const Model& model, LinePiece piece, const Vec3& point, double cos_limit);
 
 }  // namespace prismesh::mesh::relax

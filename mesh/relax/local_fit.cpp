@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t kPointsForCubic = 14;
 constexpr std::size_t kPointsForQuadric = 6;
-constexpr double kSteepest = 1;    ///< a fit whose tangent plane leans more than this over the normals isn't believed
-constexpr double kRoughest = 0.1;  ///< nor one that misses its points by more, as a share of the scale
-constexpr double kDamping = 1e-9;  ///< keeps what the points don't tell at zero
+constexpr double kSteepest = 1;    ///< slope: a fit whose tangent plane is steeper against the normal is rejected
+constexpr double kRoughest = 0.1;  ///< a fit whose RMS distance from its points is larger, as a share of the scale, is rejected
+constexpr double kDamping = 1e-9;  ///< regularisation: keeps terms that the points don't determine at zero
 
 std::array<double, 9> monomials(double u, double v) { return {u, v, u * u, u * v, v * v, u * u * u, u * u * v, u * v * v, v * v * v}; }
 
@@ -61,7 +61,7 @@ Solution solve(const LocalFit& fit, std::span<const Vec3> around) {
 
 }  // namespace
 
-LocalFit::Place LocalFit::over(const Vec3& point) const {
+LocalFit::FitPoint LocalFit::point_over(const Vec3& point) const {
   const Vec3 d = (point - origin) / scale;
   const double a = d.dot(u), b = d.dot(v);
   const auto& h = height;

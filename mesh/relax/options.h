@@ -1,31 +1,24 @@
-// What a relaxing keeps to: distances, rounds, and the criteria that elements are judged by.
+// Options of relaxing: distances and rounds.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "mesh/model/model.h"
-#include "mesh/quality/criteria.h"
 
 namespace prismesh::mesh::relax {
 
 struct Options {
-  double feature_angle = 30;              ///< degrees
-  std::optional<double> most_on_surface;  ///< no node inside a sheet moves farther; deck's length unit
-  std::optional<double> most_on_line;     ///< no node on a feature line moves farther
-  /// Of each of the model's nodes: the place that both count from, of which it is no farther now; one that isn't finite has no limit.
-  /// Null: where the node is.
-  const std::vector<Vec3>* limits_from = nullptr;
-  int most_rounds = 200;
-  /// Look on the way whether elements got worse, and let their nodes go on with care: rests sooner in rough meshes. Without, only at rest:
-  /// what stretches a long way shares its length with elements that are too long for a while.
-  bool checks_on_the_way = true;
-};
-
-/// What elements are judged by: nothing that passes may fail afterwards.
-struct Judge {
-  const quality::Criteria& criteria;
-  double target_size = 1;
+  double feature_angle = 30;                  ///< degrees
+  std::optional<double> max_move_on_surface;  ///< max move of a node inside a sheet; deck's length unit; empty: no limit
+  std::optional<double> max_move_on_line;     ///< max move of a node on a feature line
+  /// For each node of the model, the position that its max move counts from, at most so far from the node; one that isn't finite: no limit.
+  /// Null: the node's own position.
+  const std::vector<Vec3>* move_origins = nullptr;
+  int max_rounds = 200;
+  /// Check elements in between, not only when all nodes are at rest, and check each further step of nodes at bad ones. Converges sooner in
+  /// rough meshes. Without, elements may be too long for a while, so that a stretch over many elements is shared between them.
+  bool checks_before_rest = true;
 };
 
 }  // namespace prismesh::mesh::relax

@@ -11,7 +11,7 @@
 #include "base/deterministic_math.h"
 #include "mesh/relax/feature_lines.h"
 #include "mesh/relax/line_curve.h"
-#include "mesh/relax/sheets.h"
+#include "mesh/relax/sheet_fits.h"
 #include "mesh/spatial/closest_point.h"
 
 namespace prismesh::mesh::relax {
@@ -19,12 +19,12 @@ namespace prismesh::mesh::relax {
 namespace {
 
 constexpr double kMaxLean = 60;        ///< degrees
-constexpr double kNearFoot = 1e-3;     ///< of the size: so far beside the nearest place another one is good enough
-constexpr int kMaxFeet = 6;            ///< places tried on the way to the nearest one
-constexpr int kMaxSteps = 256;         ///< of a walk over shells
-constexpr double kFarthestOff = 0.25;  ///< of a shell's longest diagonal: farther from its facets the fits aren't believed
+constexpr double kNearFoot = 1e-3;     ///< of the size: tolerance for the foot of the perpendicular
+constexpr int kMaxFeet = 6;            ///< iterations for the foot
+constexpr int kMaxSteps = 256;         ///< of a descent over shells
+constexpr double kFarthestOff = 0.25;  ///< of a shell's longest diagonal: a fitted point farther from the facet is rejected
 
-/// A place in a shell by its corners' shares, which sum to 1.
+/// A point in a shell by its corners' shares, which sum to 1.
 struct OnFacet {
   std::array<double, 4> share{};
   Vec3 point = Vec3::Zero();
@@ -65,7 +65,7 @@ OnFacet on_triangle(const std::array<Vec3, 4>& p, int i, int j, int k, const Vec
   return best;
 }
 
-/// On a quad the nearest point of the bilinear patch, from the nearer half's: a few Gauss-Newton steps within the square.
+/// The nearest point of a quad's bilinear patch: a few Gauss-Newton steps from the nearest point of its two halves.
 OnFacet on_quad(const std::array<Vec3, 4>& p, const Vec3& point) {
   const OnFacet first = on_triangle(p, 0, 1, 2, point), second = on_triangle(p, 0, 2, 3, point);
   const OnFacet& half = first.distance2 <= second.distance2 ? first : second;
@@ -96,7 +96,7 @@ OnFacet on_facet(const Model& model, const ShellNodes& shell, const Vec3& point)
   return shell.is_triangle() ? on_triangle(p, 0, 1, 2, point) : on_quad(p, point);
 }
 
-OnLine on_line(const Model& model, const LinePlace& place) {
+OnLine on_line(const Model& model, const CurvePoint& place) {
   const auto [from, to] = place.piece;
   const double before = (place.point - model.position(from)).norm(), after = (place.point - model.position(to)).norm();
   const double share = before + after > 0 ? before / (before + after) : 0;
@@ -110,31 +110,30 @@ double longest_diagonal(const Model& model, const ShellNodes& shell) {
 
 }  // namespace
 
-struct ReferenceSurface::State {
-  State(const Model& of, const ShellSet& set, double feature_angle)
+struct ReferenceSurface::Impl {
+  Impl(const Model& of, const ShellSet& set, double feature_angle)
       : model(of), shells(set), cos_limit(deterministic_cos_degrees(feature_angle)), sheets(model, cos_limit) {}
 
   const spatial::ShellTree& tree() {
     std::call_once(tree_made, [this] { made_tree = std::make_unique<const spatial::ShellTree>(model, shells); });
     return *made_tree;
   }
-  /// The shell of the sheet of `from` that is nearest to the point, as far as going downhill finds it, and the place on its facet.
+  /// Descends from `from` over smooth edges to the shell nearest to the point. Returns it with the nearest point on its facet.
   std::pair<ShellIndex, OnFacet> walk(ShellIndex from, const Vec3& point) const;
-  /// The fits over a place on a shell, each by its corner's share: Jiao and Wang's weighted averaging.
+  /// The corners' fits over a point on a shell, averaged by the corners' shares. Source: Jiao and Wang, weighted averaging [Jiao 2012].
   OnSurface blend(ShellIndex shell, const OnFacet& facet) const;
 
   Model model;
   ShellSet shells;
   double cos_limit;
-  Sheets sheets;
+  SheetFits sheets;
   std::once_flag tree_made;
   std::unique_ptr<const spatial::ShellTree> made_tree;
 };
 
-std::pair<ShellIndex, OnFacet> ReferenceSurface::State::walk(ShellIndex from, const Vec3& point) const {
+std::pair<ShellIndex, OnFacet> ReferenceSurface::Impl::walk(ShellIndex from, const Vec3& point) const {
   ShellIndex at = from;
   OnFacet best = on_facet(model, model.shell(at), point);
-  // none is nearer than where the point is
   for (int step = 0; step < kMaxSteps && best.distance2 > 0; ++step) {
     const ShellNodes& nodes = model.shell(at);
     const int corners = nodes.corners();
@@ -148,9 +147,9 @@ std::pair<ShellIndex, OnFacet> ReferenceSurface::State::walk(ShellIndex from, co
     };
     const std::array<double, 4> share = best.share;
     for (int i = 0; i < corners; ++i) {
-      // all of the place's share is on this side's two ends
+      // the point lies on this side
       if (share[i] + share[next_corner(i, corners)] >= 1 - 1e-12)
-        look(sheets.beyond(at, nodes.node[i], nodes.node[next_corner(i, corners)]));
+        look(sheets.smooth_neighbour(at, nodes.node[i], nodes.node[next_corner(i, corners)]));
       if (share[i] >= 1 - 1e-12 && sheets.is_smooth(nodes.node[i]))
         for (const ShellIndex next : model.adjacency->shells_of(nodes.node[i])) look(next);
     }
@@ -160,7 +159,7 @@ std::pair<ShellIndex, OnFacet> ReferenceSurface::State::walk(ShellIndex from, co
   return {at, best};
 }
 
-OnSurface ReferenceSurface::State::blend(ShellIndex shell, const OnFacet& facet) const {
+OnSurface ReferenceSurface::Impl::blend(ShellIndex shell, const OnFacet& facet) const {
   const ShellNodes& nodes = model.shell(shell);
   OnSurface on;
   on.shell = shell;
@@ -168,7 +167,7 @@ OnSurface ReferenceSurface::State::blend(ShellIndex shell, const OnFacet& facet)
   for (int i = 0; i < nodes.corners(); ++i) {
     if (facet.share[i] == 0) continue;
     const LocalFit& fit = sheets.at(shell, i);
-    const LocalFit::Place place = fit.over(facet.point);
+    const LocalFit::FitPoint place = fit.point_over(facet.point);
     on.size += facet.share[i] * fit.edge;
     on.point += facet.share[i] * place.point;
     on.normal += facet.share[i] * (place.normal.dot(side) < 0 ? -1.0 : 1.0) / place.normal.norm() * place.normal;
@@ -180,24 +179,23 @@ OnSurface ReferenceSurface::State::blend(ShellIndex shell, const OnFacet& facet)
 }
 
 ReferenceSurface::ReferenceSurface(const Model& model, const ShellSet& shells, double feature_angle)
-    : state_(std::make_unique<State>(model, shells, feature_angle)) {}
+    : impl_(std::make_unique<Impl>(model, shells, feature_angle)) {}
 ReferenceSurface::~ReferenceSurface() = default;
 ReferenceSurface::ReferenceSurface(ReferenceSurface&&) noexcept = default;
 ReferenceSurface& ReferenceSurface::operator=(ReferenceSurface&&) noexcept = default;
 
-const Model& ReferenceSurface::model() const { return state_->model; }
+const Model& ReferenceSurface::model() const { return impl_->model; }
 
 OnSurface ReferenceSurface::follow(ShellIndex from, const Vec3& point) const {
-  auto [shell, facet] = state_->walk(from, point);
-  OnSurface on = state_->blend(shell, facet);
+  auto [shell, facet] = impl_->walk(from, point);
+  OnSurface on = impl_->blend(shell, facet);
   on.distance = (point - on.point).norm();
-  // The foot on the facets isn't quite the foot on the surface: along the facets by as much as the point is beside the place that it led
-  // to.
+  // The foot on the facets isn't quite the foot on the surface: move it along the facets by the tangential rest, and repeat.
   for (int i = 1; i < kMaxFeet; ++i) {
     const Vec3 off = point - on.point, beside = off - on.normal * off.dot(on.normal);
     if (!(beside.squaredNorm() > kNearFoot * kNearFoot * on.size * on.size)) break;
-    const auto [next_shell, next_facet] = state_->walk(shell, facet.point + beside);
-    OnSurface next = state_->blend(next_shell, next_facet);
+    const auto [next_shell, next_facet] = impl_->walk(shell, facet.point + beside);
+    OnSurface next = impl_->blend(next_shell, next_facet);
     next.distance = (point - next.point).norm();
     if (!(next.distance < on.distance)) break;
     on = next;
@@ -208,18 +206,18 @@ OnSurface ReferenceSurface::follow(ShellIndex from, const Vec3& point) const {
 }
 
 OnLine ReferenceSurface::follow_line(NodeIndex from, NodeIndex to, const Vec3& point) const {
-  return on_line(state_->model, relax::follow_line(state_->model, {from, to}, point, state_->cos_limit));
+  return on_line(impl_->model, relax::follow_line(impl_->model, {from, to}, point, impl_->cos_limit));
 }
 
 std::optional<OnSurface> ReferenceSurface::project(const Vec3& point, double radius, const std::optional<Vec3>& toward) const {
-  const double least_cos = deterministic_cos_degrees(kMaxLean);
+  const double min_cos = deterministic_cos_degrees(kMaxLean);
   const auto leans = [&](ShellIndex shell) {
-    return toward && std::abs(shell_normal(state_->model, state_->model.shell(shell)).dot(*toward)) < least_cos * toward->norm();
+    return toward && std::abs(shell_normal(impl_->model, impl_->model.shell(shell)).dot(*toward)) < min_cos * toward->norm();
   };
-  std::optional<spatial::SurfacePoint> best = state_->tree().closest(point, radius);
+  std::optional<spatial::SurfacePoint> best = impl_->tree().closest(point, radius);
   if (best && leans(best->shell)) {
     best.reset();
-    for (const spatial::SurfacePoint& near : state_->tree().within(point, radius))
+    for (const spatial::SurfacePoint& near : impl_->tree().within(point, radius))
       if (!leans(near.shell) && (!best || near.distance < best->distance)) best = near;
   }
   if (!best) return std::nullopt;
@@ -228,18 +226,18 @@ std::optional<OnSurface> ReferenceSurface::project(const Vec3& point, double rad
 }
 
 std::optional<OnLine> ReferenceSurface::find_line(const Vec3& point, double radius) const {
-  const Model& model = state_->model;
-  std::optional<LinePlace> best;
-  for (const spatial::SurfacePoint& near : state_->tree().within(point, radius)) {
+  const Model& model = impl_->model;
+  std::optional<CurvePoint> best;
+  for (const spatial::SurfacePoint& near : impl_->tree().within(point, radius)) {
     const ShellNodes& nodes = model.shell(near.shell);
     const int corners = nodes.corners();
     for (int i = 0; i < corners; ++i) {
       const NodeIndex a = std::min(nodes.node[i], nodes.node[next_corner(i, corners)]),
                       b = std::max(nodes.node[i], nodes.node[next_corner(i, corners)]);
       if (a == b) continue;
-      const ShellIndex beyond = across(model, near.shell, a, b, state_->cos_limit);
+      const ShellIndex beyond = smooth_neighbour(model, near.shell, a, b, impl_->cos_limit);
       if (beyond.valid() && model.shell_parts[beyond.value] == model.shell_parts[near.shell.value]) continue;
-      const LinePlace place = place_on_piece(model, {a, b}, point, state_->cos_limit);
+      const CurvePoint place = closest_on_piece(model, {a, b}, point, impl_->cos_limit);
       if (!best || place.distance < best->distance) best = place;
     }
   }
@@ -248,18 +246,18 @@ std::optional<OnLine> ReferenceSurface::find_line(const Vec3& point, double radi
 }
 
 std::vector<NodeIndex> ReferenceSurface::lines_at(NodeIndex node) const {
-  const LineEnds ends = line_ends(state_->model, node, state_->cos_limit, true);
+  const LineEnds ends = line_ends(impl_->model, node, impl_->cos_limit, true);
   return {ends.other.begin(), ends.other.begin() + static_cast<std::ptrdiff_t>(ends.count)};
 }
 
 Freedom ReferenceSurface::freedom_at(NodeIndex node) const {
-  const Model& model = state_->model;
+  const Model& model = impl_->model;
   const auto shells = model.adjacency->shells_of(node);
   const bool one_part = std::all_of(shells.begin(), shells.end(), [&](ShellIndex shell) {
     return model.shell_parts[shell.value] == model.shell_parts[shells.front().value];
   });
-  if (one_part && !shells.empty() && state_->sheets.is_smooth(node)) return Freedom::surface;
-  return freedom_of(model, node, state_->cos_limit);
+  if (one_part && !shells.empty() && impl_->sheets.is_smooth(node)) return Freedom::surface;
+  return freedom_of(model, node, impl_->cos_limit);
 }
 
 std::optional<Vec3> ReferenceSurface::project_on_line(const Vec3& point, double radius) const {

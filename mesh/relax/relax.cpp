@@ -5,75 +5,73 @@
 #include <utility>
 
 #include "mesh/model/adjacency.h"
-#include "mesh/relax/guard.h"
-#include "mesh/relax/net.h"
-#include "mesh/relax/settling.h"
+#include "mesh/relax/quality_guard.h"
+#include "mesh/relax/spring_net.h"
+#include "mesh/relax/spring_solver.h"
 
 namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr double kShareOfNet = 0.25;  ///< of the progress, for finding out what is where
-constexpr double kShareOfSettling = 0.7;
-constexpr double kShareOfBlocks = 0.95;  ///< for a hierarchical relaxation in all blocks but the last
-constexpr int kFirstRings = 6;           ///< about the node a hierarchical relaxation begins with
-constexpr double kMinMove = 1e-9;        ///< of the size: less is rounding, and the node stays as it is to the bit
+constexpr double kShareOfNet = 0.25;  ///< of the progress
+constexpr double kShareOfSolving = 0.7;
+constexpr double kShareOfBlocks = 0.95;  ///< of the progress of a hierarchical relaxation
+constexpr int kFirstRings = 6;           ///< of shells about the start's node, in the first block
+constexpr double kMinMove = 1e-9;        ///< of the size: a smaller move is rounding; the node keeps its exact coordinates
 
 bool goes_on(const Progress& progress, double fraction) { return !progress || progress(fraction); }
 
-Relaxed gather(const Net& net, const Settling& settling, const Settled& settled) {
+Relaxed gather(const SpringNet& net, const SpringSolver& solver, const SolverResult& result) {
   Relaxed relaxed;
-  relaxed.rounds = settled.rounds;
-  relaxed.converged = settled.converged;
+  relaxed.rounds = result.rounds;
+  relaxed.converged = result.converged;
   for (std::size_t i = 0; i < net.movable; ++i) {
-    relaxed.held_back += settling.held[i];
-    const double moved = (settling.at[i] - net.start[i]).norm();
+    relaxed.held_back += solver.held[i];
+    const double moved = (solver.at[i] - net.start[i]).norm();
     if (!(moved > kMinMove * net.size[i])) continue;
     relaxed.nodes.push_back(net.nodes[i]);
-    relaxed.positions.push_back(settling.at[i]);
-    relaxed.limited += settling.limited[i];
+    relaxed.positions.push_back(solver.at[i]);
+    relaxed.limited += solver.limited[i];
     relaxed.farthest = std::max(relaxed.farthest, moved);
   }
   return relaxed;
 }
 
-/// Progress that only grows, between the share that finding out took and that of the settling.
-class Watch {
+/// The solver's share of the progress, which never goes back.
+class SolverProgress {
  public:
-  explicit Watch(const Progress& progress) : progress_(progress) {}
+  explicit SolverProgress(const Progress& progress) : progress_(progress) {}
   bool round_done(double at_rest) {
     done_ = std::max(done_ + 0.02 * (1 - done_), at_rest);
-    return still_goes_on();
+    return goes_on_now();
   }
-  bool still_goes_on() const { return goes_on(progress_, kShareOfNet + kShareOfSettling * std::min(done_, 1.0)); }
+  bool goes_on_now() const { return goes_on(progress_, kShareOfNet + kShareOfSolving * std::min(done_, 1.0)); }
 
  private:
   const Progress& progress_;
   double done_ = 0;
 };
 
-/// Of the first share of the progress.
-Result<Net> find_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Options& options,
-                     const Progress& progress) {
-  return make_net(model, surface, movable, options.feature_angle,
-                  [&](double fraction) { return goes_on(progress, kShareOfNet * fraction); });
+/// The spring net, made within the first share of the progress.
+Result<SpringNet> net_with_progress(const RelaxInput& input, const NodeSet& movable, const Progress& progress) {
+  return make_spring_net(input.model, input.surface, movable, input.options.feature_angle,
+                         [&](double fraction) { return goes_on(progress, kShareOfNet * fraction); });
 }
 
-/// Settles, within what the guard allows.
-Result<Relaxed> settle(const Model& model, const ReferenceSurface& surface, const Net& net, const Judge& judge, const Options& options,
-                       const Progress& progress, Spreading* spreading) {
+/// Runs the solver with a guard. Errors: cancelled.
+Result<Relaxed> solve(const RelaxInput& input, const SpringNet& net, Spreading* spreading, const Progress& progress) {
   if (!goes_on(progress, kShareOfNet)) return fail(cancelled());
-  const Guard guard(model, net, judge);
-  Settling settling(net, surface, guard, options);
-  Watch watch(progress);
-  if (!watch.still_goes_on()) return fail(cancelled());
-  const Settled settled =
-      settling.run(spreading, {[&](double at_rest) { return watch.round_done(at_rest); }, [&] { return watch.still_goes_on(); }});
-  if (settled.was_stopped || !goes_on(progress, 1)) return fail(cancelled());
-  return gather(net, settling, settled);
+  const QualityGuard guard(input.model, net, input.criteria);
+  SpringSolver solver(net, input.surface, guard, input.options);
+  SolverProgress solver_progress(progress);
+  if (!solver_progress.goes_on_now()) return fail(cancelled());
+  const SolverResult result = solver.run(
+      spreading, {[&](double at_rest) { return solver_progress.round_done(at_rest); }, [&] { return solver_progress.goes_on_now(); }});
+  if (result.was_stopped || !goes_on(progress, 1)) return fail(cancelled());
+  return gather(net, solver, result);
 }
 
-/// Nodes of `movable` within so many shells of a node, ascending; `rim`: those of the last ring, ascending.
+/// Nodes of `movable` within some rings of shells about a node, ascending; `rim`: those of the last ring, ascending.
 struct Block {
   NodeSet nodes;
   NodeSet rim;
@@ -100,8 +98,8 @@ Block block_about(const Model& model, NodeIndex at, int rings, const NodeSet& mo
   return block;
 }
 
-/// The node and those around it.
-std::vector<std::uint8_t> allowed_at_first(const Model& model, const Net& net, NodeIndex at) {
+/// Allows the node and those about it.
+std::vector<std::uint8_t> allowed_at_first(const Model& model, const SpringNet& net, NodeIndex at) {
   NodeSet around{at};
   for (const ShellIndex shell : model.adjacency->shells_of(at))
     around.insert(around.end(), model.shell(shell).node.begin(), model.shell(shell).node.end());
@@ -111,7 +109,7 @@ std::vector<std::uint8_t> allowed_at_first(const Model& model, const Net& net, N
   return allowed;
 }
 
-bool reaches_rim(const Net& net, const Spreading& spreading, const NodeSet& rim) {
+bool reaches_rim(const SpringNet& net, const Spreading& spreading, const NodeSet& rim) {
   for (std::size_t i = 0; i < net.movable; ++i)
     if (spreading.allowed[i] != 0 && std::binary_search(rim.begin(), rim.end(), net.nodes[i])) return true;
   return false;
@@ -119,26 +117,24 @@ bool reaches_rim(const Net& net, const Spreading& spreading, const NodeSet& rim)
 
 }  // namespace
 
-Result<Relaxed> relax(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Judge& judge,
-                      const Options& options, const Progress& progress) {
+Result<Relaxed> relax(const RelaxInput& input, const NodeSet& movable, const Progress& progress) {
   if (!goes_on(progress, 0)) return fail(cancelled());
-  const Result<Net> net = find_net(model, surface, movable, options, progress);
+  const Result<SpringNet> net = net_with_progress(input, movable, progress);
   if (!net) return fail(net.error());
-  return settle(model, surface, *net, judge, options, progress, nullptr);
+  return solve(input, *net, nullptr, progress);
 }
 
-Result<Relaxed> relax_from(const Model& model, const ReferenceSurface& surface, NodeIndex at, double threshold, const NodeSet& movable,
-                           const Judge& judge, const Options& options, const Progress& progress) {
+Result<Relaxed> relax_from(const RelaxInput& input, const SpreadFrom& start, const NodeSet& movable, const Progress& progress) {
   if (!goes_on(progress, 0)) return fail(cancelled());
-  double furthest = 0;  // beginning again in a wider block isn't less done, and the end of one isn't the end
+  double furthest = 0;  // a new start in a wider block doesn't take the progress back, and the end of a block isn't 100 %
   const Progress forward = [&](double fraction) { return goes_on(progress, furthest = std::max(furthest, kShareOfBlocks * fraction)); };
-  // In a block about the node; where it turns out too small, again in one twice as wide.
+  // Relax a block about the node. When it turns out too small, start again with twice the rings.
   for (int rings = kFirstRings;; rings *= 2) {
-    const Block block = block_about(model, at, rings, movable);
-    const Result<Net> net = find_net(model, surface, block.nodes, options, forward);
+    const Block block = block_about(input.model, start.node, rings, movable);
+    const Result<SpringNet> net = net_with_progress(input, block.nodes, forward);
     if (!net) return fail(net.error());
-    Spreading spreading{threshold, allowed_at_first(model, *net, at)};
-    Result<Relaxed> relaxed = settle(model, surface, *net, judge, options, forward, &spreading);
+    Spreading spreading{start.threshold, allowed_at_first(input.model, *net, start.node)};
+    Result<Relaxed> relaxed = solve(input, *net, &spreading, forward);
     if (!relaxed) return relaxed;
     if (!block.rim.empty() && reaches_rim(*net, spreading, block.rim)) continue;
     if (!goes_on(progress, 1)) return fail(cancelled());

@@ -1,4 +1,4 @@
-// Relaxing: nodes find better places on the surface they are on. Method and source: docs/relaxing.md.
+// Relaxing: moves nodes over the surface until edge lengths vary smoothly. Method and source: docs/relaxing.md.
 #pragma once
 
 #include <vector>
@@ -7,31 +7,27 @@
 #include "base/progress.h"
 #include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
-#include "mesh/relax/options.h"
-#include "mesh/relax/reference_surface.h"
+#include "mesh/relax/relax_input.h"
 
 namespace prismesh::mesh::relax {
 
 struct Relaxed {
   NodeSet nodes;                ///< that moved
-  std::vector<Vec3> positions;  ///< of each
+  std::vector<Vec3> positions;  ///< of each of them; deck's length unit
   int rounds = 0;
   bool converged = false;
-  std::size_t held_back = 0;  ///< nodes that would have made an element worse than it may become
-  std::size_t limited = 0;    ///< nodes that stopped at most_on_surface or most_on_line
-  double farthest = 0;        ///< the greatest displacement
+  std::size_t held_back = 0;  ///< nodes that stopped because an element would have got too bad
+  std::size_t limited = 0;    ///< nodes that stopped at max_move_on_surface or max_move_on_line
+  double farthest = 0;        ///< max displacement; deck's length unit
 };
 
-/// Relaxes `movable` nodes; every other node stays. Deterministic, whatever the number of threads. Afterwards no metric of a shell fails or
-/// warns that didn't, and the least composite (mesh/quality/composite.h) isn't lower. Errors: cancelled.
-/// Preconditions: the model has its adjacency; nodes whose coordinates mustn't change aren't in `movable`; `surface` covers the shells
-/// that touch it.
-Result<Relaxed> relax(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, const Judge& judge,
-                      const Options& options, const Progress& progress = {});
+/// Relaxes the `movable` nodes (ascending); every other node stays. Afterwards no metric of a shell fails or warns that didn't before, and
+/// the min composite (mesh/quality/composite.h) isn't lower. Deterministic, whatever the number of threads. Errors: cancelled.
+/// Precondition: nodes whose coordinates must not change aren't in `movable`.
+Result<Relaxed> relax(const RelaxInput& input, const NodeSet& movable, const Progress& progress = {});
 
-/// Hierarchical: begins with `at` and the nodes around it; the neighbours of a node join while it is displaced by more than `threshold`
-/// (deck's length unit). Otherwise as relax.
-Result<Relaxed> relax_from(const Model& model, const ReferenceSurface& surface, NodeIndex at, double threshold, const NodeSet& movable,
-                           const Judge& judge, const Options& options, const Progress& progress = {});
+/// Relaxes hierarchically: first only the start's node and the nodes about it may move; the neighbours of a node join when it is displaced
+/// by more than the threshold. Otherwise as relax.
+Result<Relaxed> relax_from(const RelaxInput& input, const SpreadFrom& start, const NodeSet& movable, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::relax

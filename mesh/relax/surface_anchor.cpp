@@ -3,20 +3,20 @@
 #include <optional>
 
 #include "mesh/model/adjacency.h"
-#include "mesh/relax/sheets.h"
+#include "mesh/relax/sheet_fits.h"
 
 namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr double kOnSurface = 0.25;  ///< of the size: a node that is farther from the surface isn't of it
-constexpr double kReach = 8;         ///< sizes that a node may be from where it was on the reference
-constexpr double kOnFeature = 1e-3;  ///< of the size: a node that is nearer to a line or a corner is on it
-constexpr double kNoFeature = 1e-2;  ///< and one that is farther isn't
+constexpr double kOnSurface = 0.25;  ///< of the size: a node that is farther from the surface is not on it
+constexpr double kReach = 8;         ///< sizes that a node may be away from its position on the reference
+constexpr double kOnFeature = 1e-3;  ///< of the size: a node that is nearer to a line or corner is on it
+constexpr double kNoFeature = 1e-2;  ///< of the size: a node that is farther from every line is on none
 
-/// A node, and the reference's node of its number where that is the same one and isn't far off: in a document, but not in a piece cut out
-/// of it, which numbers its nodes anew.
-struct Standing {
+/// A node, and whether the reference's node of the same index is the same node and not far off. That is so within a document, but not for a
+/// patch cut out of it, which has node indices of its own.
+struct NodeOnReference {
   const Model& model;
   const ReferenceSurface& surface;
   NodeIndex node;
@@ -24,7 +24,7 @@ struct Standing {
   double size;
   bool is_known;
 
-  Standing(const Model& in, const ReferenceSurface& on, NodeIndex which)
+  NodeOnReference(const Model& in, const ReferenceSurface& on, NodeIndex which)
       : model(in), surface(on), node(which), point(in.position(which)), size(mean_edge(in, which)) {
     const Model& reference = on.model();
     const double reach = kReach * size;
@@ -34,8 +34,8 @@ struct Standing {
   }
 };
 
-/// The line through or from the reference's node that is nearest.
-std::optional<OnLine> line_at(const Standing& at) {
+/// The nearest point on the feature lines at the reference's node.
+std::optional<OnLine> line_at(const NodeOnReference& at) {
   std::optional<OnLine> best;
   for (const NodeIndex other : at.surface.lines_at(at.node)) {
     const OnLine line = at.surface.follow_line(at.node, other, at.point);
@@ -44,13 +44,13 @@ std::optional<OnLine> line_at(const Standing& at) {
   return best;
 }
 
-bool is_on_line(const Standing& at) {
+bool is_on_line(const NodeOnReference& at) {
   const std::optional<OnLine> line = line_at(at);
   return line && line->distance <= kOnFeature * at.size;
 }
 
-/// Creases of the mesh come and go as its nodes move over a bent surface; the surface's stay.
-Freedom freedom_there(const Standing& at, double feature_cos) {
+/// The freedom by the surface's creases: those of the mesh change as its nodes move over a curved surface.
+Freedom freedom_there(const NodeOnReference& at, double feature_cos) {
   const Freedom by_mesh = freedom_of(at.model, at.node, feature_cos);
   if (!at.is_known) return by_mesh;
   const Freedom on_surface = at.surface.freedom_at(at.node);
@@ -68,7 +68,7 @@ Freedom freedom_there(const Standing& at, double feature_cos) {
 
 SurfaceAnchor find_anchor(const Model& model, const ReferenceSurface& surface, NodeIndex node, double feature_cos) {
   if (model.adjacency->shells_of(node).empty() || !model.position(node).allFinite()) return {};
-  const Standing at(model, surface, node);
+  const NodeOnReference at(model, surface, node);
   const Freedom freedom = freedom_there(at, feature_cos);
   if (freedom == Freedom::fixed) return {};
   const double near = kOnSurface * at.size;
@@ -84,12 +84,11 @@ SurfaceAnchor find_anchor(const Model& model, const ReferenceSurface& surface, N
   return on ? SurfaceAnchor{freedom, on->shell, {}, {}, on->normal, on->size} : SurfaceAnchor();
 }
 
-Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, SurfaceAnchor& anchor) {
+Vec3 move_anchor(const ReferenceSurface& surface, const Vec3& point, SurfaceAnchor& anchor) {
   if (anchor.freedom == Freedom::line) {
     const OnLine on = surface.follow_line(anchor.from, anchor.to, point);
     anchor.from = on.from;
     anchor.to = on.to;
-    // the piece may run the other way
     if (on.tangent.squaredNorm() > 0) anchor.direction = on.tangent;
     return on.point;
   }

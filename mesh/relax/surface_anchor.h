@@ -1,4 +1,4 @@
-// Where a movable node is on the reference surface, and what it may do there. Private to mesh/relax.
+// Where a movable node lies on the reference surface, and how it may move there. Private to mesh/relax.
 #pragma once
 
 #include "mesh/model/model.h"
@@ -9,17 +9,18 @@ namespace prismesh::mesh::relax {
 
 struct SurfaceAnchor {
   Freedom freedom = Freedom::fixed;
-  ShellIndex shell;               ///< surface: of the reference
-  NodeIndex from, to;             ///< line: of the reference
-  Vec3 direction = Vec3::Zero();  ///< surface: unit normal; line: unit tangent
-  double size = 0;                ///< of the reference's elements there
+  ShellIndex shell;               ///< freedom surface: of the reference's model
+  NodeIndex from, to;             ///< freedom line: the feature edge's ends in the reference's model
+  Vec3 direction = Vec3::Zero();  ///< freedom surface: unit normal; freedom line: unit tangent
+  double size = 0;                ///< mean edge length of the reference there
 };
 
-/// Of a node of a mesh that lies on the surface. Free edges, junctions and borders between parts are the mesh's; creases and corners are
-/// the surface's, wherever the mesh's elements lean now. Fixed: a corner, in no shell, not finite, or not near the surface. By any thread.
+/// Finds the anchor of a node of a mesh on the surface. Free edges, junctions and borders between parts are those of the mesh; creases and
+/// corners are those of the surface, even where the mesh's elements make none now. Fixed: a corner, in no shell, not finite, or not near
+/// the surface. Thread-safe.
 SurfaceAnchor find_anchor(const Model& model, const ReferenceSurface& surface, NodeIndex node, double feature_cos);
 
-/// The place on the node's line or sheet that is nearest to a point; `anchor` follows.
-Vec3 put_back(const ReferenceSurface& surface, const Vec3& point, SurfaceAnchor& anchor);
+/// Moves an anchor along its line or sheet to the point nearest to `point`. Returns that point.
+Vec3 move_anchor(const ReferenceSurface& surface, const Vec3& point, SurfaceAnchor& anchor);
 
 }  // namespace prismesh::mesh::relax

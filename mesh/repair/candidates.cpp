@@ -6,11 +6,11 @@
 #include <limits>
 #include <set>
 
+#include "mesh/repair/collapse.h"
 #include "mesh/repair/divide.h"
 #include "mesh/repair/node_moves.h"
 #include "mesh/repair/redivide.h"
 #include "mesh/repair/strips.h"
-#include "mesh/repair/unite.h"
 
 namespace prismesh::mesh::repair {
 
@@ -25,9 +25,9 @@ EdgeOf edge_of(const Corners& corners, int edge) {
   return {corners[static_cast<std::size_t>(edge % count)], corners[static_cast<std::size_t>((edge + 1) % count)]};
 }
 
-// An edge so many target sizes long is worth dividing.
+// Target sizes: a longer edge is worth dividing.
 constexpr double kLong = 1.25;
-// A strip so many target sizes wide may go.
+// Target sizes: a narrower strip may be removed.
 constexpr double kShort = 0.6;
 
 double length_of(const Patch& patch, const EdgeOf& edge) { return (patch.position(edge.a) - patch.position(edge.b)).norm(); }
@@ -55,12 +55,12 @@ void add_redivisions(const RepairContext& context, LocalShell shell, std::vector
   }
 }
 
-void add_union(const RepairContext& context, LocalNode a, LocalNode b, std::vector<Candidate>& found) {
-  if (const auto pair = union_of(context, a, b))
-    found.push_back({Operation::collapse, [&context, pair = *pair] { return unite(context, {pair}); }});
+void add_collapse(const RepairContext& context, LocalNode a, LocalNode b, std::vector<Candidate>& found) {
+  if (const auto pair = collapse_of(context, a, b))
+    found.push_back({Operation::collapse, [&context, pair = *pair] { return collapse_nodes(context, {pair}); }});
 }
 
-void add_unions(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
+void add_collapses(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
   const Corners corners = context.patch.shell(shell).corners;
   const int count = corner_count(corners);
   double shortest = 1e300, longest = 0;
@@ -70,16 +70,16 @@ void add_unions(const RepairContext& context, LocalShell shell, std::vector<Cand
   }
   for (int e = 0; e < count; ++e) {
     const EdgeOf edge = edge_of(corners, e);
-    // Only what is short: the others only move trouble elsewhere.
-    if (length_of(context.patch, edge) <= std::max(1.5 * shortest, 0.5 * context.judge.target_size))
-      add_union(context, edge.a, edge.b, found);
+    // Only short edges: collapsing others makes long shells nearby.
+    if (length_of(context.patch, edge) <= std::max(1.5 * shortest, 0.5 * context.criteria.target_size))
+      add_collapse(context, edge.a, edge.b, found);
   }
   if (count != 4) return;
   for (std::size_t i = 0; i < 2; ++i)
-    if (length_of(context.patch, {corners[i], corners[i + 2]}) < 0.9 * longest) add_union(context, corners[i], corners[i + 2], found);
+    if (length_of(context.patch, {corners[i], corners[i + 2]}) < 0.9 * longest) add_collapse(context, corners[i], corners[i + 2], found);
 }
 
-/// How many quads from a shell's edge on are worth dividing in one row with it: bad ones, or with long edges across.
+/// The number of quads after a row's end that are worth dividing with it: bad ones, and those with a long edge across.
 int run_of(const Patch& patch, const Row& start, bool is_forward, double long_edge) {
   constexpr int kMax = 12;
   Row row = start;
@@ -131,10 +131,10 @@ void add_rows(const RepairContext& context, LocalShell shell, std::vector<Candid
   if (corner_count(corners) != 4) return;
   for (int direction = 0; direction < 2; ++direction) {
     const double across = width_of(patch, corners, direction);
-    // Halves of what is short already are no use.
-    if (across < 0.6 * context.judge.target_size) continue;
+    // Halves of a short shell would be too short.
+    if (across < 0.6 * context.criteria.target_size) continue;
     Row row{shell, direction};
-    const double long_edge = std::max(kLong * context.judge.target_size, 0.8 * across);
+    const double long_edge = std::max(kLong * context.criteria.target_size, 0.8 * across);
     const int forward = run_of(patch, row, true, long_edge), back = run_of(patch, row, false, long_edge);
     std::vector<std::pair<int, int>> lengths_tried = {
         {forward, back}, {forward + 1, back + 1}, {forward + 1, back}, {forward, back + 1}, {0, 0}};
@@ -147,7 +147,7 @@ void add_rows(const RepairContext& context, LocalShell shell, std::vector<Candid
   }
 }
 
-/// From a triangle over quads to another one: both become quads.
+/// Rows from a triangle over quads to another triangle: both triangles become quads.
 void add_rows_between_triangles(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
   constexpr int kFarthest = 8;
   const Patch& patch = context.patch;
@@ -180,21 +180,21 @@ std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell s
   const Patch& patch = context.patch;
   const Corners corners = patch.shell(shell).corners;
   const int count = corner_count(corners);
-  add_unions(context, shell, found);
+  add_collapses(context, shell, found);
   add_redivisions(context, shell, found);
   add_rows(context, shell, found);
   add_rows_between_triangles(context, shell, found);
-  found.push_back({std::nullopt, [&context, shell] { return stir(context, shell); }});
+  found.push_back({std::nullopt, [&context, shell] { return mark_neighbourhood_changed(context, shell); }});
   for (int e = 0; e < count; ++e) {
     const LocalNode node = corners[static_cast<std::size_t>(e)];
     if (patch.node(node).lines.empty()) found.push_back({Operation::split, [&context, node] { return divide_about(context, node); }});
   }
   if (count == 4) {
-    const double most = context.options.most_off_surface * context.judge.target_size;
+    const double max_off = context.options.max_off_surface * context.criteria.target_size;
     const auto warped = 1U << static_cast<unsigned>(quality::Metric::warpage);
     if ((patch.shell(shell).state.warn & warped) != 0)
       for (std::size_t c = 0; c < 4; ++c)
-        for (const double distance : {most, -most})
+        for (const double distance : {max_off, -max_off})
           found.push_back({Operation::move, [&context, node = corners[c], distance] { return lift_node(context, node, distance); }});
     for (int first = 0; first < 2; ++first)
       found.push_back({Operation::split, [&context, shell, first] { return split_quad(context, shell, first); }});
@@ -206,26 +206,26 @@ std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell
   std::vector<Candidate> found;
   const Corners& corners = context.patch.shell(shell).corners;
   if (corner_count(corners) != 4) return found;
-  const double width = width_of(context.patch, corners, edge), size = context.judge.target_size;
+  const double width = width_of(context.patch, corners, edge), size = context.criteria.target_size;
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  std::vector<StripCourse> courses;
-  // Where a strip ends by itself its limits make no difference.
+  std::vector<StripPath> courses;
+  // Different length limits may give the same strip: each is tried once.
   const auto is_another = [&](const Strip& strip) {
-    StripCourse course = course_of(context.patch, strip);
+    StripPath course = path_of(context.patch, strip);
     if (course.quads.empty() || std::find(courses.begin(), courses.end(), course) != courses.end()) return false;
     courses.push_back(std::move(course));
     return true;
   };
-  for (const double most : {kInfinite, 0.75 * size, kShort * size}) {
-    const Strip strip{shell, edge, 0, most};
+  for (const double max_length : {kInfinite, 0.75 * size, kShort * size}) {
+    const Strip strip{shell, edge, 0, max_length};
     if (width > kShort * size || !is_another(strip)) continue;
     found.push_back({Operation::collapse, [&context, strip] { return collapse_strip(context, strip); }});
   }
   if (width < kLong * size) return found;
   std::set<int> pieces = {2};
   for (int count = static_cast<int>(std::lround(width / size)); count > 2; count = count > 3 ? 3 : 2) pieces.insert(count);
-  for (const double least : {0.0, size, kLong * size}) {
-    const Strip strip{shell, edge, least, kInfinite};
+  for (const double min_length : {0.0, size, kLong * size}) {
+    const Strip strip{shell, edge, min_length, kInfinite};
     if (!is_another(strip)) continue;
     for (const int count : pieces)
       for (const bool absorbs : {true, false}) {

@@ -1,4 +1,4 @@
-// What could be done about a shell.
+// Candidate operations for a shell.
 #pragma once
 
 #include <functional>
@@ -12,18 +12,18 @@
 namespace prismesh::mesh::repair {
 
 struct Candidate {
-  std::optional<Operation> operation;  ///< none: nodes find better places only
-  std::function<Refusal()> apply;      ///< to the context it was found at
+  std::optional<Operation> operation;  ///< none: it only smooths nodes
+  std::function<Refusal()> apply;      ///< changes the patch of the context that it was found for
 };
 
-/// Operations on a shell and its neighbours that are worth a try, the simplest first.
+/// Candidates on a shell and its neighbours, the simplest first.
 std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell shell);
 
-/// What can be done with the strip across edge `edge` of a quad (0 or 1) and the one opposite: divided if it is wide there, or taken out if
-/// it is narrow.
+/// Candidates on the strip of quads across edge `edge` (0 or 1) of a quad and the opposite edge: to divide it if it is wide there, to
+/// remove it if it is narrow.
 std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell, int edge);
 
-/// Those that may rid a triangle's neighbourhood of triangles, or part it from another one.
+/// Candidates that may remove triangles near a triangle, or separate it from another one.
 std::vector<Candidate> tidying_for(const RepairContext& context, LocalShell shell);
 
 }  // namespace prismesh::mesh::repair

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "mesh/quality/limits.h"
-#include "mesh/relax/options.h"
 #include "mesh/relax/reference_surface.h"
 #include "mesh/repair/options.h"
 #include "mesh/repair/patch.h"
@@ -12,9 +11,9 @@ namespace prismesh::mesh::repair {
 struct RepairContext {
   Patch& patch;
   const relax::ReferenceSurface& surface;
-  const relax::Judge& judge;
+  const quality::SizedCriteria& criteria;
   const Options& options;
-  quality::Limits limits;  ///< the judge's
+  quality::Limits limits;  ///< that shells are judged by: the criteria's, or stricter ones
 };
 
 }  // namespace prismesh::mesh::repair

@@ -31,7 +31,7 @@ std::vector<LocalNode> EdgeCuts::make(LocalNode a, LocalNode b) {
       place = context_.surface.project_on_line(point, 0.5 * size);
     else if (!shells.empty())
       place = on_surface(context_, point, area_normal(patch, patch.shell(shells[0]).corners), size);
-    // A straight edge whose middle isn't near anything known is divided where it is.
+    // An edge whose middle isn't near the surface is divided on its straight line.
     const LocalNode parents[2] = {a, b};
     const double shares[2] = {1 - share, share};
     nodes.push_back(patch.add_node(place.value_or(point), parents, shares, is_line ? relax::Freedom::line : relax::Freedom::surface));
@@ -48,22 +48,22 @@ Refusal end_row(const RepairContext& context, const EdgeAt& at, LocalNode middle
   const LocalNode a = c[at.edge], b = c[(at.edge + 1) % count], d = c[(at.edge + 2) % count];
   if (count == 3 && end == RowEnd::absorb) {
     if (const Refusal refusal = refuse_reshaping(patch, at.shell, 4)) return refusal;
-    patch.set_corners(at.shell, turned_like(patch, {a, middle, b, d}, direction));
+    patch.set_corners(at.shell, corners_along(patch, {a, middle, b, d}, direction));
     return std::nullopt;
   }
   if (const Refusal refusal = refuse_dividing(patch, at.shell, count)) return refusal;
   if ((patch.shell(at.shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
   if (count == 3) {
-    patch.set_corners(at.shell, turned_like(patch, {a, middle, d}, direction));
-    patch.add_shell(turned_like(patch, {middle, b, d}, direction), at.shell);
+    patch.set_corners(at.shell, corners_along(patch, {a, middle, d}, direction));
+    patch.add_shell(corners_along(patch, {middle, b, d}, direction), at.shell);
     return std::nullopt;
   }
   const LocalNode e = c[(at.edge + 3) % count];
   const bool low = end == RowEnd::low_triangle;
   const Loop quad = low ? Loop{middle, b, d, e} : Loop{a, middle, d, e};
   const Loop small = low ? Loop{a, middle, e} : Loop{middle, b, d};
-  patch.set_corners(at.shell, turned_like(patch, quad, direction));
-  patch.add_shell(turned_like(patch, small, direction), at.shell);
+  patch.set_corners(at.shell, corners_along(patch, quad, direction));
+  patch.add_shell(corners_along(patch, small, direction), at.shell);
   return std::nullopt;
 }
 
@@ -77,9 +77,9 @@ Refusal divide_quad(const RepairContext& context, const EdgeAt& at, EdgeCuts& cu
   if (cuts.refusal()) return cuts.refusal();
   near.push_back(b);
   far.push_back(d);
-  patch.set_corners(at.shell, turned_like(patch, {a, near[0], far[0], e}, direction));
+  patch.set_corners(at.shell, corners_along(patch, {a, near[0], far[0], e}, direction));
   for (std::size_t i = 0; i + 1 < near.size(); ++i)
-    patch.add_shell(turned_like(patch, {near[i], near[i + 1], far[i + 1], far[i]}, direction), at.shell);
+    patch.add_shell(corners_along(patch, {near[i], near[i + 1], far[i + 1], far[i]}, direction), at.shell);
   return std::nullopt;
 }
 

@@ -1,4 +1,4 @@
-// Cuts through edges, and what they make of the shells there. Inner to repair.
+// Divides edges by new nodes, and the shells at them. Private to mesh/repair.
 #pragma once
 
 #include <algorithm>
@@ -15,19 +15,20 @@ namespace prismesh::mesh::repair {
 using EdgeKey = std::pair<LocalNode, LocalNode>;  ///< the lower one first
 inline EdgeKey edge_key(LocalNode a, LocalNode b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// New nodes on edges, each made once, so many to an edge that it has `pieces`.
+/// The new nodes on divided edges: pieces - 1 on each, made once.
 class EdgeCuts {
  public:
   explicit EdgeCuts(const RepairContext& context, int pieces = 2) : context_(context), pieces_(pieces) {}
 
-  /// The nodes on an edge on the way from `a` to `b`; a refusal is remembered.
+  /// The nodes on an edge in the order from `a` to `b`. Where the edge can't be divided, refusal() says why.
   std::vector<LocalNode> cut(LocalNode a, LocalNode b);
   /// The first of them.
   LocalNode middle(LocalNode a, LocalNode b) { return cut(a, b).front(); }
   const Refusal& refusal() const { return refusal_; }
+  int pieces() const { return pieces_; }
 
  private:
-  /// All of them from the lower to the higher node.
+  /// Makes them in the order from the lower to the higher node.
   std::vector<LocalNode> make(LocalNode a, LocalNode b);
 
   const RepairContext& context_;
@@ -41,9 +42,9 @@ struct EdgeAt {
   std::size_t edge = 0;  ///< from corner `edge` to the next
 };
 
-/// A quad into pieces side by side, across the edge and the one opposite.
+/// Divides a quad into pieces side by side, across the edge and the opposite one.
 Refusal divide_quad(const RepairContext& context, const EdgeAt& at, EdgeCuts& cuts);
-/// A shell of which only one edge is cut, at `middle`.
+/// Divides or reshapes a shell of which only one edge is divided, at `middle`.
 Refusal end_row(const RepairContext& context, const EdgeAt& at, LocalNode middle, RowEnd end);
 
 }  // namespace prismesh::mesh::repair

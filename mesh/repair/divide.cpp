@@ -26,7 +26,7 @@ std::optional<EdgeAt> across(const Patch& patch, const EdgeAt& at, bool& is_end)
   return std::nullopt;
 }
 
-/// The row's quads with the edge by which each is entered, from the start in one direction, and what is beyond.
+/// A row's quads from the start in one direction, each with the edge by which it is entered, and the shell beyond them.
 struct Walk {
   std::vector<EdgeAt> quads;
   std::optional<EdgeAt> beyond;
@@ -59,7 +59,7 @@ std::optional<RowWalk> walk_row(const Patch& patch, const Row& row) {
   const auto forward = walk(patch, {row.start, (edge + 2) % 4}, row.forward);
   const auto back = walk(patch, {row.start, edge}, row.back);
   if (!forward || !back) return std::nullopt;
-  // A row that runs into itself isn't one.
+  // A row must not cross itself.
   std::vector<LocalShell> all = {row.start};
   for (const Walk* side : {&*forward, &*back}) {
     for (const EdgeAt& at : side->quads) all.push_back(at.shell);
@@ -138,8 +138,8 @@ Refusal divide_about(const RepairContext& context, LocalNode node) {
     const LocalNode m = cuts.middle(node, next), n = cuts.middle(last, node);
     if (cuts.refusal()) return cuts.refusal();
     if (count == 3) {
-      patch.set_corners(shell, turned_like(patch, {node, m, n}, direction));
-      patch.add_shell(turned_like(patch, {m, next, last, n}, direction), shell);
+      patch.set_corners(shell, corners_along(patch, {node, m, n}, direction));
+      patch.add_shell(corners_along(patch, {m, next, last, n}, direction), shell);
       continue;
     }
     const LocalNode far = c[(at + 2) % 4];
@@ -149,9 +149,9 @@ Refusal divide_about(const RepairContext& context, LocalNode node) {
     const LocalNode parents[4] = {c[0], c[1], c[2], c[3]};
     const LocalNode p =
         patch.add_node(on_surface(context, middle, normal, size).value_or(middle), parents, kQuarters, relax::Freedom::surface);
-    patch.set_corners(shell, turned_like(patch, {node, m, p, n}, direction));
-    patch.add_shell(turned_like(patch, {m, next, far, p}, direction), shell);
-    patch.add_shell(turned_like(patch, {p, far, last, n}, direction), shell);
+    patch.set_corners(shell, corners_along(patch, {node, m, p, n}, direction));
+    patch.add_shell(corners_along(patch, {m, next, far, p}, direction), shell);
+    patch.add_shell(corners_along(patch, {p, far, last, n}, direction), shell);
   }
   return std::nullopt;
 }

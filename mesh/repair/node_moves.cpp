@@ -7,7 +7,7 @@
 
 namespace prismesh::mesh::repair {
 
-Refusal stir(const RepairContext& context, LocalShell shell) {
+Refusal mark_neighbourhood_changed(const RepairContext& context, LocalShell shell) {
   Patch& patch = context.patch;
   std::vector<LocalNode> nodes;
   for (const LocalNode corner : patch.shell(shell).corners)
@@ -29,7 +29,7 @@ Refusal lift_node(const RepairContext& context, LocalNode node, double distance)
   }
   const double length = normal.norm();
   if (!(length > 0)) return "the node can't be moved";
-  const auto place = context.surface.project(n.position, context.judge.target_size, Vec3(normal / length));
+  const auto place = context.surface.project(n.position, context.criteria.target_size, Vec3(normal / length));
   if (!place) return "the node isn't near the surface";
   const Vec3 lifted = place->point + distance * (normal / length);
   if (!within_limit(context, node, lifted)) return "a node would go farther than it may";

@@ -6,10 +6,10 @@
 
 namespace prismesh::mesh::repair {
 
-/// Changes nothing, but counts the shells about a shell's corners as changed, so that their nodes settle.
-Refusal stir(const RepairContext& context, LocalShell shell);
+/// Marks the shells about a shell's corners as changed, so that their nodes are smoothed. Moves nothing itself.
+Refusal mark_neighbourhood_changed(const RepairContext& context, LocalShell shell);
 
-/// Moves a node along the surface's normal.
+/// Moves a node to `distance` from the surface, along the normal; deck's length unit.
 Refusal lift_node(const RepairContext& context, LocalNode node, double distance);
 
 }  // namespace prismesh::mesh::repair

@@ -1,4 +1,4 @@
-// What a repair keeps to.
+// Options of a repair.
 #pragma once
 
 #include "mesh/relax/options.h"
@@ -7,9 +7,9 @@ namespace prismesh::mesh::repair {
 
 struct Options {
   relax::Options relax;
-  double most_off_surface = 0.02;     ///< no node or diagonal leaves the surface farther, as a fraction of the target size
-  double most_triangles_percent = 5;  ///< of the whole model, unless there are more already
-  int most_rounds = 20;
+  double max_off_surface = 0.02;     ///< max distance of nodes and diagonals from the surface, as a fraction of the target size
+  double max_triangles_percent = 5;  ///< of the whole model; triangles that are there already are allowed
+  int max_rounds = 20;
 };
 
 }  // namespace prismesh::mesh::repair

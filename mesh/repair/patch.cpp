@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint8_t kUntouchable = kKeepsNodes | kIndivisible | kLasting | kNoTriangle;
 
-/// Neither a quad with four corners nor a triangle with three.
+/// Whether the shell has a node at two corners.
 bool repeats_node(const ShellNodes& nodes) {
   for (int i = 0; i < nodes.corners(); ++i)
     for (int j = 0; j < i; ++j)
@@ -95,7 +95,7 @@ void Patch::load_shells(const ShellSet& shells, const Rules& rules) {
     for (std::size_t c = 0; c < 4; ++c) shell.corners[c] = find(nodes.node[c]);
     shell.model = shell.parent = shells[i];
     shell.part = model_->shell_parts[shells[i].value];
-    if (shell.part.valid() && model_->parts) shell.sheet = quality::sheet_of(*model_, shells[i]);
+    if (shell.part.valid() && model_->parts) shell.properties = quality::properties_of(*model_, shells[i]);
     shell.rules = rules.shell ? rules.shell(shells[i]) : std::uint8_t{0};
     link(LocalShell(i));
     if (!repeats_node(nodes)) continue;

@@ -1,4 +1,4 @@
-// Directions of the shells of a patch.
+// Normals of the shells of a patch.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 
 namespace prismesh::mesh::repair {
 
-/// Twice a shell's area as a vector; `at(node)` is where a corner lies.
+/// A shell's normal with twice its area as length; `at(node)` is a corner's position.
 template <class PositionOf>
 Vec3 area_normal_of(const Corners& corners, const PositionOf& at) {
   const bool is_triangle = corner_count(corners) == 3;

@@ -1,4 +1,4 @@
-// What became of a patch: as changes of its model, and as a small model of its own.
+// The result of a patch: as changes of its model, and as a small model.
 #include <algorithm>
 #include <map>
 
@@ -9,7 +9,7 @@ namespace prismesh::mesh::repair {
 
 namespace {
 
-/// Weights of what a new node comes from, followed back over new nodes that are gone.
+/// Adds the weights of the nodes that a new node comes from, followed back over removed new nodes.
 void gather_origin(const Patch& patch, LocalNode node, double weight, std::map<LocalNode, double>& weights) {
   const PatchNode& from = patch.node(node);
   for (std::size_t i = 0; i < 4 && from.parent[i].valid(); ++i) {
@@ -63,17 +63,17 @@ Restructuring Patch::result(std::vector<ShellIndex>* index_of_shell) const {
       change.new_nodes.push_back({node.position, origin_in_model(*this, LocalNode(i), index_of)});
     }
   }
-  // A shell that is gone lives on in the first that came from it.
-  std::map<ShellIndex, LocalShell> heirs;
+  // A removed shell's card goes to the first new shell that came from it.
+  std::map<ShellIndex, LocalShell> replacements;
   for (std::size_t i = 0; i < model_shells_.size(); ++i)
-    if (!shells_[i].is_alive) heirs[model_shells_[i]] = LocalShell();
+    if (!shells_[i].is_alive) replacements[model_shells_[i]] = LocalShell();
   for (std::size_t i = model_shells_.size(); i < shells_.size(); ++i) {
-    const auto gone = shells_[i].is_alive ? heirs.find(shells_[i].parent) : heirs.end();
-    if (gone != heirs.end() && !gone->second.valid()) gone->second = LocalShell(i);
+    const auto gone = shells_[i].is_alive ? replacements.find(shells_[i].parent) : replacements.end();
+    if (gone != replacements.end() && !gone->second.valid()) gone->second = LocalShell(i);
   }
   for (std::size_t i = 0; i < model_shells_.size(); ++i) {
     const ShellIndex index = model_shells_[i];
-    const LocalShell lives_as = shells_[i].is_alive ? LocalShell(i) : heirs.at(index);
+    const LocalShell lives_as = shells_[i].is_alive ? LocalShell(i) : replacements.at(index);
     if (!lives_as.valid()) {
       change.removed_shells.push_back(index);
       continue;
@@ -84,8 +84,8 @@ Restructuring Patch::result(std::vector<ShellIndex>* index_of_shell) const {
   }
   for (std::size_t i = model_shells_.size(); i < shells_.size(); ++i) {
     if (!shells_[i].is_alive) continue;
-    const auto gone = heirs.find(shells_[i].parent);
-    if (gone != heirs.end() && gone->second == LocalShell(i)) continue;
+    const auto gone = replacements.find(shells_[i].parent);
+    if (gone != replacements.end() && gone->second == LocalShell(i)) continue;
     shell_index[i] = ShellIndex(model_->shell_count() + change.new_shells.size());
     change.new_shells.push_back({nodes_in_model(shells_[i].corners, index_of), shells_[i].parent});
   }
@@ -98,7 +98,7 @@ Model Patch::as_model(std::vector<LocalShell>& shells_of_model) const {
   small.positions.resize(nodes_.size(), Vec3::Zero());
   small.node_ids.resize(nodes_.size());
   small.node_holds.resize(nodes_.size());
-  // No ids: the nodes are none of the model that a surface was made of, whatever their numbers.
+  // No ids: these nodes are not those of the surface's model, whatever their indices.
   for (std::size_t i = 0; i < nodes_.size(); ++i) small.positions.set(i, nodes_[i].position);
   shells_of_model.clear();
   for (std::size_t i = 0; i < shells_.size(); ++i)
@@ -115,7 +115,7 @@ Model Patch::as_model(std::vector<LocalShell>& shells_of_model) const {
     small.shell_ids.set(i, static_cast<std::int64_t>(i) + 1);
     small.shell_nodes.set(i, nodes_in_model(from.corners, index_of));
     small.shell_parts.set(i, from.part);
-    small.shell_thickness.set(i, from.sheet.thickness);
+    small.shell_thickness.set(i, from.properties.thickness);
   }
   small.midside = std::make_shared<const std::vector<MidsideNodes>>();
   small.parts = model_->parts;

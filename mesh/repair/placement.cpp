@@ -10,8 +10,9 @@ std::optional<Vec3> on_surface(const RepairContext& context, const Vec3& point, 
 
 bool within_limit(const RepairContext& context, LocalNode node, const Vec3& place) {
   const PatchNode& n = context.patch.node(node);
-  const std::optional<double>& most = n.lines.empty() ? context.options.relax.most_on_surface : context.options.relax.most_on_line;
-  return !n.model.valid() || !most || (place - context.patch.model().position(n.model)).norm() <= *most;
+  const std::optional<double>& max_move =
+      n.lines.empty() ? context.options.relax.max_move_on_surface : context.options.relax.max_move_on_line;
+  return !n.model.valid() || !max_move || (place - context.patch.model().position(n.model)).norm() <= *max_move;
 }
 
 }  // namespace prismesh::mesh::repair

@@ -1,4 +1,4 @@
-// Where a repair may place a node.
+// Where a repair may put a node.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,11 @@
 
 namespace prismesh::mesh::repair {
 
-/// The place on the surface for a point near it; nothing if there is none close by.
+/// The point of the surface nearest to `point` on a sheet with about the normal `toward` (any length; zero: any sheet); nothing if there is
+/// none within `radius`.
 std::optional<Vec3> on_surface(const RepairContext& context, const Vec3& point, const Vec3& toward, double radius);
 
-/// Whether a node may be at a place: one of the model no farther from where it was than the options allow.
+/// Whether a node may be put at `place`: a node of the model only within its max move.
 bool within_limit(const RepairContext& context, LocalNode node, const Vec3& place);
 
 }  // namespace prismesh::mesh::repair

@@ -8,7 +8,7 @@ namespace {
 
 std::size_t opposite(std::size_t corner) { return (corner + 2) % 4; }
 
-/// Where a loop's edge u-v is passed in a shell from u to v.
+/// Whether a shell has the edge u-v in the direction from u to v.
 bool passes(const Corners& corners, LocalNode u, LocalNode v) {
   const int count = corner_count(corners);
   for (int i = 0; i < count; ++i)
@@ -16,7 +16,7 @@ bool passes(const Corners& corners, LocalNode u, LocalNode v) {
   return false;
 }
 
-/// The edge two shells share, as the first passes it; false if they don't share exactly one.
+/// The common edge of two shells, in the first's direction; false if they don't have exactly one.
 bool shared_edge(const Patch& patch, LocalShell first, LocalShell second, LocalNode& u, LocalNode& v) {
   const Corners& corners = patch.shell(first).corners;
   const Corners& others = patch.shell(second).corners;
@@ -53,8 +53,8 @@ Refusal split_quad(const RepairContext& context, LocalShell quad, int first) {
   if (const Refusal refusal = refuse_dividing(patch, quad, 3)) return refusal;
   const Vec3 direction = first_edge(patch, quad);
   const auto i = static_cast<std::size_t>(first);
-  patch.set_corners(quad, turned_like(patch, {c[i], c[i + 1], c[opposite(i)]}, direction));
-  patch.add_shell(turned_like(patch, {c[i], c[opposite(i)], c[(i + 3) % 4]}, direction), quad);
+  patch.set_corners(quad, corners_along(patch, {c[i], c[i + 1], c[opposite(i)]}, direction));
+  patch.add_shell(corners_along(patch, {c[i], c[opposite(i)], c[(i + 3) % 4]}, direction), quad);
   return std::nullopt;
 }
 
@@ -80,9 +80,9 @@ Refusal redivide(const RepairContext& context, LocalShell first, LocalShell seco
   if (!shared_edge(patch, first, second, u, v)) return "they have no edge in common";
   if (patch.line(u, v) != nullptr) return "the edge between them has to stay";
   const PatchShell f = patch.shell(first), g = patch.shell(second);
-  if (f.part != g.part || f.sheet.thickness != g.sheet.thickness) return "they differ in part or thickness";
+  if (f.part != g.part || f.properties.thickness != g.properties.thickness) return "they differ in part or thickness";
   const bool same_sense = passes(g.corners, v, u);
-  // Of two that become one the first stays, unless the second has to.
+  // When two shells become one, the first stays, unless the second must not be removed.
   const bool swaps = (g.rules & kLasting) != 0;
   const LocalShell stays = swaps ? second : first, goes = swaps ? first : second;
   if (pieces.size() == 1 && (patch.shell(goes).rules & kLasting) != 0) return "neither of them can be removed";
@@ -98,37 +98,37 @@ Refusal redivide(const RepairContext& context, LocalShell first, LocalShell seco
   if (pieces.size() == 1) {
     patch.remove_shell(goes);
     const bool turn = swaps && !same_sense;
-    patch.set_corners(stays, turned_like(patch, turn ? reversed(pieces[0]) : pieces[0], swaps ? g_edge : f_edge));
+    patch.set_corners(stays, corners_along(patch, turn ? reversed(pieces[0]) : pieces[0], swaps ? g_edge : f_edge));
     return std::nullopt;
   }
-  patch.set_corners(first, turned_like(patch, pieces[0], f_edge));
-  patch.set_corners(second, turned_like(patch, same_sense ? pieces[1] : reversed(pieces[1]), g_edge));
-  for (std::size_t i = 2; i < pieces.size(); ++i) patch.add_shell(turned_like(patch, pieces[i], f_edge), first);
+  patch.set_corners(first, corners_along(patch, pieces[0], f_edge));
+  patch.set_corners(second, corners_along(patch, same_sense ? pieces[1] : reversed(pieces[1]), g_edge));
+  for (std::size_t i = 2; i < pieces.size(); ++i) patch.add_shell(corners_along(patch, pieces[i], f_edge), first);
   return std::nullopt;
 }
 
-std::vector<std::vector<Loop>> divisions(const Loop& loop, int most_triangles) {
+std::vector<std::vector<Loop>> divisions(const Loop& loop, int max_triangles) {
   std::vector<std::vector<Loop>> found;
   const std::size_t n = loop.size();
   const auto after = [n](std::size_t i, std::size_t by) { return (i + by) % n; };
   if (n == 4) {
     found.push_back({loop});
-    if (most_triangles >= 2)
+    if (max_triangles >= 2)
       for (std::size_t i = 0; i < 2; ++i) found.push_back({stretch(loop, i, i + 2), stretch(loop, i + 2, i)});
-  } else if (n == 5 && most_triangles >= 1) {
-    // An ear is cut off; the order decides which of the shells becomes the triangle.
+  } else if (n == 5 && max_triangles >= 1) {
+    // One corner is cut off as a triangle; the order decides which of the shells becomes it.
     for (std::size_t i = 0; i < 5; ++i) {
       found.push_back({stretch(loop, i, after(i, 2)), stretch(loop, after(i, 2), i)});
       found.push_back({stretch(loop, after(i, 2), i), stretch(loop, i, after(i, 2))});
     }
   } else if (n == 6) {
     for (std::size_t i = 0; i < 3; ++i) found.push_back({stretch(loop, i, i + 3), stretch(loop, i + 3, i)});
-    if (most_triangles >= 2)
+    if (max_triangles >= 2)
       for (std::size_t i = 0; i < 6; ++i)
         for (const std::size_t gap : {std::size_t{2}, std::size_t{3}}) {
           const std::size_t j = after(i, gap);
           if (gap == 3 && i >= 3) continue;
-          // Ears i..i+2 and j..j+2, and the quad of what is left.
+          // Triangles i..i+2 and j..j+2, and the quad that is left.
           Loop rest;
           for (std::size_t k = 0; k < 6; ++k)
             if (k != after(i, 1) && k != after(j, 1)) rest.push_back(loop[k]);

@@ -1,39 +1,17 @@
-// Repairing: local changes to the shells' structure, worst first, until they are valid or nothing gets better. Operations, order and
-// sources: docs/repairing.md.
+// Repairs shells that fail or warn by local changes of the mesh, worst first, until none is left or nothing gets better. Operations, order
+// and sources: docs/repairing.md.
 #pragma once
-
-#include <array>
-#include <string>
-#include <vector>
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
-#include "mesh/relax/reference_surface.h"
-#include "mesh/repair/operation.h"
-#include "mesh/repair/options.h"
-#include "mesh/repair/restructuring.h"
-#include "mesh/repair/rules.h"
+#include "mesh/repair/repair_input.h"
+#include "mesh/repair/repaired.h"
 
 namespace prismesh::mesh::repair {
 
-struct Unrepaired {
-  ShellIndex shell;  ///< of the model, or node_count()-style new ones: shell_count() + i
-  std::string why;   ///< "no operation makes it better", "a neighbour is locked", ...
-};
-struct Repaired {
-  Restructuring change;
-  std::array<std::size_t, kOperationCount> done{};  ///< operations that stayed, by Operation
-  std::size_t relaxed = 0;                          ///< nodes that moved
-  std::size_t bad_before = 0;                       ///< shells of the scope that failed or warned
-  std::vector<Unrepaired> unrepaired;               ///< still failing
-  int rounds = 0;
-};
-
-/// Repairs the shells of `scope` that fail or warn; their neighbours may change with them, nothing that passes fails afterwards.
-/// Deterministic. Errors: cancelled. Preconditions: as of relax; `surface` covers the scope and two rings about it.
-Result<Repaired> repair(const Model& model, const relax::ReferenceSurface& surface, const ShellSet& scope, const Rules& rules,
-                        const relax::Judge& judge, const Options& options, const Progress& progress = {});
+/// Repairs the shells of `scope` (ascending) that fail or warn. Their neighbours may change with them; no shell that passes fails
+/// afterwards. Returns the change of the model and what was done. Deterministic, whatever the number of threads. Errors: cancelled.
+Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const Progress& progress = {});
 
 }  // namespace prismesh::mesh::repair

@@ -19,15 +19,15 @@ Refusal refuse_dividing(const Patch& patch, LocalShell shell, std::size_t corner
   return refuse_reshaping(patch, shell, corners);
 }
 
-Corners turned_like(const Patch& patch, const Loop& loop, const Vec3& direction) {
+Corners corners_along(const Patch& patch, const Loop& loop, const Vec3& direction) {
   std::size_t best = 0;
-  double most = -2;
+  double max_along = -2;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Vec3 edge = patch.position(loop[(i + 1) % loop.size()]) - patch.position(loop[i]);
     const double length = edge.norm();
     const double along = length > 0 ? edge.dot(direction) / length : -1;
-    if (along > most + 1e-9) {
-      most = along;
+    if (along > max_along + 1e-9) {
+      max_along = along;
       best = i;
     }
   }

@@ -1,5 +1,4 @@
-// What a repair changes in a model's shells and nodes, as its net result: whoever owns the model carries it out (ids and cards aren't known
-// here).
+// The change that a repair makes to a model's shells and nodes. The model's owner applies it, since it gives ids and writes cards.
 #pragma once
 
 #include <utility>
@@ -13,20 +12,20 @@ namespace prismesh::mesh::repair {
 
 struct NewNode {
   Vec3 position = Vec3::Zero();
-  NodeOrigin origin;  ///< parents may be new nodes that stand before it
+  NodeOrigin origin;  ///< parents may be earlier new nodes
 };
 struct NewShell {
-  ShellNodes nodes;   ///< may be new nodes
-  ShellIndex parent;  ///< of the model: what it takes part, thickness and the rest of its card from
+  ShellNodes nodes;   ///< new nodes among them by the index that they get
+  ShellIndex parent;  ///< of the model: gives part, thickness and the rest of the card
 };
 
-/// Nothing is named twice; what comes and goes again isn't in it.
+/// Names each node and shell once; one that was made and removed again isn't in it.
 struct Restructuring {
   std::vector<NewNode> new_nodes;                           ///< number i gets the index node_count() + i
   std::vector<NewShell> new_shells;                         ///< number i gets the index shell_count() + i
   std::vector<std::pair<ShellIndex, ShellNodes>> reshaped;  ///< ascending
   ShellSet removed_shells;
-  NodeSet removed_nodes;                          ///< of no shell any more, and no other element or card has them
+  NodeSet removed_nodes;                          ///< that no shell, other element or card has any more
   std::vector<std::pair<NodeIndex, Vec3>> moved;  ///< ascending; nodes of the model that stay
 
   bool empty() const { return new_nodes.empty() && new_shells.empty() && reshaped.empty() && removed_shells.empty() && moved.empty(); }

@@ -1,4 +1,4 @@
-// A row of quads to be divided, and how it ends.
+// A row of quads to divide, and how it ends.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@ namespace prismesh::mesh::repair {
 
 /// How a row of divided shells ends in the shell beyond.
 enum class RowEnd : std::uint8_t {
-  low_triangle,   ///< a quad becomes a triangle, at the corner that its order has first, and a quad
-  high_triangle,  ///< the triangle at the other corner
+  low_triangle,   ///< a quad becomes a quad and a triangle, at the corner that comes first in its order
+  high_triangle,  ///< the same with the triangle at the other corner
   absorb,         ///< a triangle becomes a quad
   two_triangles,  ///< a triangle becomes two
 };
-/// A row of quads divided across: through edge `edge` of `start` and the one opposite, `forward` quads beyond the latter and `back` beyond
-/// the former.
+/// A row of quads to divide through edge `edge` of `start` and the opposite edge, with `forward` more quads after the opposite edge and
+/// `back` more before `edge`.
 struct Row {
   LocalShell start;
   int edge = 0;
@@ -24,7 +24,7 @@ struct Row {
   RowEnd forward_end = RowEnd::low_triangle;
   RowEnd back_end = RowEnd::low_triangle;
 };
-/// What is beyond a row's end: the number of corners of the shell there; 0: the sheet ends.
+/// Number of corners of the shell beyond each end of a row; 0: the sheet ends.
 struct RowEnds {
   int forward_corners = 0;
   int back_corners = 0;

@@ -1,4 +1,4 @@
-// What a repair must leave alone, as whoever knows the deck says. Asked only of what a repair comes near, so it costs what is touched.
+// What a repair must not change, by the deck. Only the nodes and shells near a repair are looked up.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +8,24 @@
 
 namespace prismesh::mesh::repair {
 
-/// Bits of what a node's surroundings forbid.
+/// Bits: what is forbidden at a node.
 enum NodeRule : std::uint8_t {
-  kStays = 1,   ///< it can't be moved: locked, held, or something besides shells hangs on it
-  kNeeded = 2,  ///< it can't be removed: a card or another element has it
+  kStays = 1,   ///< it must not move: locked, held, or used by more than shells
+  kNeeded = 2,  ///< it must not be removed: a card or another element has it
 };
-/// Bits of what a shell's surroundings forbid.
+/// Bits: what is forbidden at a shell.
 enum ShellRule : std::uint8_t {
-  kKeepsNodes = 1,   ///< it can't be given other corners
-  kIndivisible = 2,  ///< it can't be cut into several
-  kLasting = 4,      ///< it can't be removed
-  kNoTriangle = 8,   ///< a quad that can't become a triangle, or a triangle that can't become a quad
+  kKeepsNodes = 1,   ///< it must keep its corners
+  kIndivisible = 2,  ///< it must not be divided
+  kLasting = 4,      ///< it must not be removed
+  kNoTriangle = 8,   ///< a quad must stay a quad, and a triangle a triangle
 };
 
 /// An empty function forbids nothing.
 struct Rules {
   std::function<std::uint8_t(NodeIndex)> node;
   std::function<std::uint8_t(ShellIndex)> shell;
-  /// Whether a new node may come between two nodes (their constraints agree, no other element shares the edge).
+  /// Whether a new node may be put between two nodes: their constraints agree, and no other element has the edge.
   std::function<bool(NodeIndex, NodeIndex)> may_divide;
 };
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <set>
 
+#include "mesh/repair/collapse.h"
 #include "mesh/repair/cuts.h"
-#include "mesh/repair/unite.h"
 
 namespace prismesh::mesh::repair {
 
@@ -15,10 +15,10 @@ namespace {
 
 constexpr unsigned kAcross = 0b0101, kAlong = 0b1010;  ///< opposite edges of a quad
 
-/// Which edges of each shell a strip cuts.
-class Plan {
+/// The edges that a strip divides, and those of each shell.
+class StripPlan {
  public:
-  Plan(const Patch& patch, const Strip& strip) : patch_(patch), strip_(strip) {
+  StripPlan(const Patch& patch, const Strip& strip) : patch_(patch), strip_(strip) {
     if (corner_count(patch.shell(strip.start).corners) != 4) return;
     const unsigned edges = strip.edge % 2 == 0 ? kAcross : kAlong;
     for (std::size_t e = 0; e < 4; ++e)
@@ -56,7 +56,7 @@ class Plan {
     }
   }
 
-  /// Cuts on from every shell reached; false: the strip crosses itself.
+  /// Continues the strip from every shell reached; false: it crosses itself.
   bool follow() {
     for (std::size_t i = 0; i < reached_.size(); ++i) {
       const LocalShell shell = reached_[i];
@@ -79,8 +79,9 @@ class Plan {
   bool goes_on(LocalShell shell, std::size_t out) const {
     const auto [a, b] = nodes_of(shell, out);
     const double length = (patch_.position(a) - patch_.position(b)).norm();
-    if (length < strip_.least || length > strip_.most || !patch_.may_divide(a, b) || refuse_dividing(patch_, shell, 4)) return false;
-    // What is beyond has to be divided or ended in as well.
+    if (length < strip_.min_length || length > strip_.max_length || !patch_.may_divide(a, b) || refuse_dividing(patch_, shell, 4))
+      return false;
+    // The shells beyond must be divided as well, or be reshaped as the strip's end.
     const std::vector<LocalShell> shells = patch_.shells_at(a, b);
     return std::none_of(shells.begin(), shells.end(), [&](LocalShell other) {
       return other != shell && refuse_dividing(patch_, other, static_cast<std::size_t>(corner_count(patch_.shell(other).corners)));
@@ -95,7 +96,7 @@ class Plan {
   std::vector<LocalShell> reached_;
 };
 
-/// Where only one edge of a quad is cut: the triangle at the corner to which the diagonal is the shorter one.
+/// The end in a quad with one divided edge: the triangle lies at the corner with the shorter diagonal from `middle`.
 RowEnd better_end(const Patch& patch, const EdgeAt& at, LocalNode middle) {
   const Corners& c = patch.shell(at.shell).corners;
   const auto diagonal = [&](std::size_t corner) {
@@ -104,58 +105,58 @@ RowEnd better_end(const Patch& patch, const EdgeAt& at, LocalNode middle) {
   return diagonal(3) <= diagonal(2) * (1 + 1e-9) ? RowEnd::low_triangle : RowEnd::high_triangle;
 }
 
-/// A triangle whose edges at a corner are both cut: a triangle there, and a quad.
-Refusal turn_about(const RepairContext& context, LocalShell shell, unsigned edges, EdgeCuts& cuts) {
+/// Divides a triangle whose two edges at a corner are divided into a triangle at that corner and a quad.
+Refusal divide_at_corner(const RepairContext& context, LocalShell shell, unsigned edges, EdgeCuts& cuts) {
   Patch& patch = context.patch;
   if (const Refusal refusal = refuse_dividing(patch, shell, 3)) return refusal;
   if ((patch.shell(shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
-  const auto whole = static_cast<std::size_t>(std::countr_zero(~edges & 0b111));  // the edge that isn't cut
+  const auto whole = static_cast<std::size_t>(std::countr_zero(~edges & 0b111));  // the edge that isn't divided
   const Corners c = patch.shell(shell).corners;
   const Vec3 direction = first_edge(patch, shell);
   const LocalNode a = c[whole], b = c[(whole + 1) % 3], top = c[(whole + 2) % 3];
   const LocalNode m = cuts.middle(b, top), n = cuts.middle(top, a);
   if (cuts.refusal()) return cuts.refusal();
-  patch.set_corners(shell, turned_like(patch, {a, b, m, n}, direction));
-  patch.add_shell(turned_like(patch, {n, m, top}, direction), shell);
+  patch.set_corners(shell, corners_along(patch, {a, b, m, n}, direction));
+  patch.add_shell(corners_along(patch, {n, m, top}, direction), shell);
   return std::nullopt;
 }
 
-/// Where only one edge of a quad is cut into three: a quad between two triangles.
-Refusal narrow(const RepairContext& context, const EdgeAt& at, const std::vector<LocalNode>& nodes) {
+/// Divides a quad of which one edge is divided into three: a quad between two triangles.
+Refusal divide_in_three(const RepairContext& context, const EdgeAt& at, const std::vector<LocalNode>& nodes) {
   Patch& patch = context.patch;
   if (const Refusal refusal = refuse_dividing(patch, at.shell, 4)) return refusal;
   if ((patch.shell(at.shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
   const Corners c = patch.shell(at.shell).corners;
   const Vec3 direction = first_edge(patch, at.shell);
   const LocalNode a = c[at.edge], b = c[(at.edge + 1) % 4], d = c[(at.edge + 2) % 4], e = c[(at.edge + 3) % 4];
-  patch.set_corners(at.shell, turned_like(patch, {nodes[0], nodes[1], d, e}, direction));
-  patch.add_shell(turned_like(patch, {a, nodes[0], e}, direction), at.shell);
-  patch.add_shell(turned_like(patch, {nodes[1], b, d}, direction), at.shell);
+  patch.set_corners(at.shell, corners_along(patch, {nodes[0], nodes[1], d, e}, direction));
+  patch.add_shell(corners_along(patch, {a, nodes[0], e}, direction), at.shell);
+  patch.add_shell(corners_along(patch, {nodes[1], b, d}, direction), at.shell);
   return std::nullopt;
 }
 
-/// What becomes of a shell that isn't divided across as a quad.
-Refusal end_strip(const RepairContext& context, LocalShell shell, unsigned edges, EdgeCuts& cuts, int pieces, bool absorbs) {
+/// Divides or reshapes a shell at the end of a strip, or a triangle that the strip passes.
+Refusal end_strip(const RepairContext& context, LocalShell shell, unsigned edges, EdgeCuts& cuts, bool absorbs) {
   const Corners c = context.patch.shell(shell).corners;
   const int count = corner_count(c);
-  if (pieces > (count == 4 ? 3 : 2)) return "a strip there would have to end in more pieces than there is a way for";
-  if (std::popcount(edges) == 2) return turn_about(context, shell, edges, cuts);
+  if (cuts.pieces() > (count == 4 ? 3 : 2)) return "a strip there would have to end in more pieces than there is a way for";
+  if (std::popcount(edges) == 2) return divide_at_corner(context, shell, edges, cuts);
   const EdgeAt at{shell, static_cast<std::size_t>(std::countr_zero(edges))};
   const std::vector<LocalNode> nodes = cuts.cut(c[at.edge], c[(at.edge + 1) % static_cast<std::size_t>(count)]);
-  if (pieces == 3) return narrow(context, at, nodes);
+  if (cuts.pieces() == 3) return divide_in_three(context, at, nodes);
   const RowEnd end = count == 4 ? better_end(context.patch, at, nodes[0]) : absorbs ? RowEnd::absorb : RowEnd::two_triangles;
   return end_row(context, at, nodes[0], end);
 }
 
 }  // namespace
 
-StripCourse course_of(const Patch& patch, const Strip& strip) {
-  const Plan plan(patch, strip);
-  StripCourse course;
+StripPath path_of(const Patch& patch, const Strip& strip) {
+  const StripPlan plan(patch, strip);
+  StripPath course;
   if (!plan.is_possible()) return course;
   for (const auto& [shell, edges] : plan.edges()) {
     const bool is_triangle = corner_count(patch.shell(shell).corners) == 3;
-    if (!is_triangle && Plan::divides(edges)) course.quads.push_back({shell, edges == kAcross ? 0 : 1});
+    if (!is_triangle && StripPlan::divides(edges)) course.quads.push_back({shell, edges == kAcross ? 0 : 1});
     course.ends_in_triangle = course.ends_in_triangle || (is_triangle && std::popcount(edges) == 1);
   }
   return course;
@@ -163,31 +164,31 @@ StripCourse course_of(const Patch& patch, const Strip& strip) {
 
 Refusal divide_strip(const RepairContext& context, const Strip& strip, int pieces, bool absorbs) {
   const Patch& patch = context.patch;
-  const Plan plan(patch, strip);
+  const StripPlan plan(patch, strip);
   if (!plan.is_possible()) return "the strip of quads there crosses itself";
   EdgeCuts cuts(context, pieces);
-  // All cuts first: an edge is found by its nodes only as long as its shells are whole.
+  // Divide all edges first: an edge is found by its nodes only while its shells are unchanged.
   for (const auto& [a, b] : plan.cut_edges()) cuts.cut(a, b);
   if (cuts.refusal()) return cuts.refusal();
   for (const auto& [shell, edges] : plan.edges()) {
-    const bool divides = corner_count(patch.shell(shell).corners) == 4 && Plan::divides(edges);
+    const bool divides = corner_count(patch.shell(shell).corners) == 4 && StripPlan::divides(edges);
     const Refusal refusal =
-        divides ? divide_quad(context, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(context, shell, edges, cuts, pieces, absorbs);
+        divides ? divide_quad(context, {shell, edges == kAcross ? 0U : 1U}, cuts) : end_strip(context, shell, edges, cuts, absorbs);
     if (refusal) return refusal;
   }
   return std::nullopt;
 }
 
 Refusal collapse_strip(const RepairContext& context, const Strip& strip) {
-  const Plan plan(context.patch, strip);
+  const StripPlan plan(context.patch, strip);
   if (!plan.is_possible()) return "the strip of quads there crosses itself";
-  std::vector<Union> unions;
+  std::vector<Collapse> collapses;
   for (const auto& [a, b] : plan.cut_edges()) {
-    const auto pair = union_of(context, a, b);
+    const auto pair = collapse_of(context, a, b);
     if (!pair) return "both nodes hold the part's shape";
-    unions.push_back(*pair);
+    collapses.push_back(*pair);
   }
-  return unite(context, unions);
+  return collapse_nodes(context, collapses);
 }
 
 }  // namespace prismesh::mesh::repair

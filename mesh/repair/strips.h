@@ -1,4 +1,4 @@
-// Strips: what is divided, or goes, when an edge inside a sheet of quads does, from each quad to the next across its opposite edges.
+// Strips of quads: dividing or removing an edge inside a sheet of quads continues from quad to quad across opposite edges.
 #pragma once
 
 #include <limits>
@@ -9,34 +9,35 @@
 
 namespace prismesh::mesh::repair {
 
-/// Edge `edge` of `start` and all that follow from it in both directions, in each sheet at a junction. A strip ends where sheets end,
-/// closes upon itself, goes around a triangle, or ends before an edge shorter than `least`, longer than `most`, or one that can't be
-/// divided.
+/// Edge `edge` of `start` and all edges that follow from it in both directions, in each sheet at a junction. A strip ends where a sheet
+/// ends, in a triangle, or before an edge that is shorter than `min_length`, longer than `max_length` or can't be divided. It may close on
+/// itself or turn at a triangle.
 struct Strip {
   LocalShell start;
   int edge = 0;
-  double least = 0;
-  double most = std::numeric_limits<double>::infinity();
+  double min_length = 0;
+  double max_length = std::numeric_limits<double>::infinity();
 };
 
-/// Divides a strip lengthways. Where it ends a quad becomes a quad and a triangle (of three pieces: with one at each side), and a triangle
-/// a quad (`absorbs`) or two. Of more pieces it has to end by itself.
+/// Divides a strip lengthways into `pieces`. At its end a quad becomes a quad and a triangle (for three pieces: a triangle at each side),
+/// and a triangle becomes a quad (`absorbs`) or two triangles. With more pieces it must end at free edges or close on itself.
 Refusal divide_strip(const RepairContext& context, const Strip& strip, int pieces = 2, bool absorbs = true);
 
-/// Takes a strip out: the two ends of each of its edges become one node. Where it ends a quad becomes a triangle.
+/// Removes a strip: the two ends of each of its edges become one node. At its end a quad becomes a triangle.
 Refusal collapse_strip(const RepairContext& context, const Strip& strip);
 
-/// What a strip goes over: the quads that it divides, each with the edge by which it is entered (0 or 1, the one opposite is the same).
+/// The path of a strip: the quads that it divides, each with the edge by which it is entered (0 or 1; the opposite edge counts as the
+/// same).
 struct StripQuad {
   LocalShell shell;
   int edge = 0;
   bool operator==(const StripQuad&) const = default;
 };
-struct StripCourse {
+struct StripPath {
   std::vector<StripQuad> quads;  ///< ascending by shell; empty: there is no such strip
   bool ends_in_triangle = false;
-  bool operator==(const StripCourse&) const = default;
+  bool operator==(const StripPath&) const = default;
 };
-StripCourse course_of(const Patch& patch, const Strip& strip);
+StripPath path_of(const Patch& patch, const Strip& strip);
 
 }  // namespace prismesh::mesh::repair

@@ -93,20 +93,20 @@ BENCHMARK_CAPTURE(beside_verdict, all_in_one_call, true)->Unit(benchmark::kMilli
 
 void judge_a_million(benchmark::State& state) {
   const Model& model = bench::million_quads();
-  for (auto _ : state) benchmark::DoNotOptimize(judge_model(model, default_criteria(), 5.0));
+  for (auto _ : state) benchmark::DoNotOptimize(judge_model(model, {default_criteria(), 5.0}));
 }
 BENCHMARK(judge_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 void report_of_a_million(benchmark::State& state) {
   const Model& model = bench::million_quads();
-  for (auto _ : state) benchmark::DoNotOptimize(report(model, default_criteria(), 5.0, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(report(model, {default_criteria(), 5.0}, {}));
 }
 BENCHMARK(report_of_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// An edit of 10,000 shells: only those are measured.
 void rejudge_ten_thousand_of_a_million(benchmark::State& state) {
   const Model& model = bench::million_quads();
-  const ChunkedArray<ShellState> judged = judge_model(model, default_criteria(), 5.0);
+  const ChunkedArray<ShellState> judged = judge_model(model, {default_criteria(), 5.0});
   const Counts counts = count(judged);
   ShellSet shells;
   for (std::size_t j = 0; j < 100; ++j)
@@ -114,7 +114,7 @@ void rejudge_ten_thousand_of_a_million(benchmark::State& state) {
   for (auto _ : state) {
     ChunkedArray<ShellState> states = judged;
     Counts now = counts;
-    rejudge(model, default_criteria(), 5.0, shells, states, now);
+    rejudge(model, {default_criteria(), 5.0}, shells, states, now);
     benchmark::DoNotOptimize(now);
   }
 }
@@ -126,7 +126,7 @@ void composites_of_a_hundred(benchmark::State& state) {
   for (std::size_t s = 0; s < 100; ++s) shells.emplace_back(500'500 + s);
   std::vector<float> figures(shells.size());
   for (auto _ : state) {
-    composites(model, shells, default_criteria(), 5.0, figures);
+    composites(model, shells, {default_criteria(), 5.0}, figures);
     benchmark::DoNotOptimize(figures.data());
   }
 }
@@ -153,7 +153,7 @@ void judge_ten_thousand_points(benchmark::State& state) {
     }
   std::vector<ShellState> states(corners.size());
   for (auto _ : state) {
-    judge_points(moving, {}, corners, {}, default_criteria(), 5.0, states);
+    judge_points({moving, {}, corners, {}}, {default_criteria(), 5.0}, states);
     benchmark::DoNotOptimize(states.data());
   }
 }

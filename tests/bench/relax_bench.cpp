@@ -66,7 +66,7 @@ void relax_thousand(benchmark::State& state) {
   const ShellSet shells = all_shells(model);
   for (auto _ : state) {
     const relax::ReferenceSurface surface(model, shells, 30);
-    say(relax::relax(model, surface, nodes, {quality::default_criteria(), 10}, {}).value(), state);
+    say(relax::relax({model, surface, {quality::default_criteria(), 10}, {}}, nodes).value(), state);
   }
 }
 BENCHMARK(relax_thousand)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
@@ -81,7 +81,7 @@ void relax_thousand_from(benchmark::State& state) {
   const ShellSet shells = all_shells(model);
   for (auto _ : state) {
     const relax::ReferenceSurface surface(model, shells, 30);
-    say(relax::relax_from(model, surface, NodeIndex(pulled), 0.5, nodes, {quality::default_criteria(), 10}, {}).value(), state);
+    say(relax::relax_from({model, surface, {quality::default_criteria(), 10}, {}}, {NodeIndex(pulled), 0.5}, nodes).value(), state);
   }
 }
 BENCHMARK(relax_thousand_from)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
@@ -104,7 +104,7 @@ void relax_million(benchmark::State& state) {
       last = now;
       return ++heard > 0;
     };
-    say(relax::relax(model, surface, nodes, {quality::default_criteria(), 5}, {}, hear).value(), state);
+    say(relax::relax({model, surface, {quality::default_criteria(), 5}, {}}, nodes, hear).value(), state);
     state.counters["progress_calls"] = heard;
     state.counters["longest_between_ms"] = longest_ms;
   }

@@ -21,7 +21,7 @@ struct Bump {
 Bump bump_of(double radius, double height) {
   const Model& flat = bench::million_quads();
   Bump bump{flat, {}};
-  const auto before = quality::judge_model(flat, quality::default_criteria(), 5.0);
+  const auto before = quality::judge_model(flat, {quality::default_criteria(), 5.0});
   const Vec3 at = flat.position(NodeIndex(std::size_t{500 * 1001 + 500}));
   for (std::size_t n = 0; n < flat.node_count(); ++n) {
     const double d = 1 - (flat.positions[n] - at).norm() / (5 * radius);
@@ -31,7 +31,7 @@ Bump bump_of(double radius, double height) {
   bump.model.node_ids.resize(flat.node_count());
   bump.model.midside = std::make_shared<const std::vector<MidsideNodes>>();
   bump.model.adjacency = std::make_shared<const Adjacency>(build_adjacency(bump.model));
-  const auto after = quality::judge_model(bump.model, quality::default_criteria(), 5.0);
+  const auto after = quality::judge_model(bump.model, {quality::default_criteria(), 5.0});
   for (std::size_t s = 0; s < flat.shell_count(); ++s)
     if ((after[s].warn & ~before[s].warn) != 0) bump.scope.push_back(ShellIndex(s));
   return bump;
@@ -45,7 +45,7 @@ void repair_bump(benchmark::State& state) {
     ShellSet covered = bump.scope;
     for (int ring = 0; ring < 6; ++ring) covered = shells_touching(bump.model, nodes_of(bump.model, covered));
     const relax::ReferenceSurface surface(bump.model, covered, 30);
-    const auto repaired = repair::repair(bump.model, surface, bump.scope, {}, {quality::default_criteria(), 5.0}, {});
+    const auto repaired = repair::repair({bump.model, surface, {}, {quality::default_criteria(), 5.0}, {}}, bump.scope);
     left = repaired->unrepaired.size();
     benchmark::DoNotOptimize(repaired);
   }

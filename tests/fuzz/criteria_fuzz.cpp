@@ -24,10 +24,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                                        {{0, 0, 0}, {5, 0, 0}, {9, 0, 0}},
                                                        {{0, 0, 0}, {5, 0, nan}, {6, 4, 1}, {0, 5, 0}}};
   for (const auto& shell : shells)
-    for (const Sheet& sheet : {Sheet(), Sheet(1.5, 5.4e6)}) {
+    for (const ShellProperties& properties : {ShellProperties(), ShellProperties(1.5, 5.4e6)}) {
       const Values values = measure(shell);
-      const ShellState state = judge(values, *criteria, 5.0, sheet);
-      const float rated = composite(values, *criteria, 5.0, sheet);
+      const ShellState state = judge(values, {*criteria, 5.0}, properties);
+      const float rated = composite(values, {*criteria, 5.0}, properties);
       require((state.fail & ~state.warn) == 0);
       require(rated >= -1 && rated <= 1);
       require((rated < 0) == (state.grade() == Grade::fail));

@@ -195,7 +195,7 @@ TEST_F(HangingTest, relaxing_leaves_joined_nodes_in_place_and_weighs_anew) {
   EXPECT_EQ(at(document, 13), joined);
   EXPECT_NE(at(document, 17), free);
   EXPECT_THAT(report.notes, Contains("2 nodes that cards join stay"));
-  const double mass = quality::weigh_model(document.current().model).mass;
+  const double mass = quality::mass_properties(document.current().model).mass;
   EXPECT_NEAR(document.current().weight.mass, mass, 1e-12 * mass);
   EXPECT_GT(std::abs(mass - before), 1e-6 * mass) << "or this would show nothing";
   EXPECT_EQ(*report.mass_before, before);
@@ -320,7 +320,7 @@ TEST_F(HangingTest, tells_mass_and_centre_before_and_after) {
                              R"(","falloff":{"profile":"constant"}})");
   }
   EXPECT_NEAR(document.current().weight.mass, 3 * sheet, 1e-14);
-  EXPECT_NEAR(document.current().weight.mass, quality::weigh_model(document.current().model).mass, 1e-15);
+  EXPECT_NEAR(document.current().weight.mass, quality::mass_properties(document.current().model).mass, 1e-15);
 }
 
 TEST_F(HangingTest, counts_what_a_move_turns_over) {

@@ -81,7 +81,7 @@ TEST(Move, counts_follow) {
   EXPECT_EQ(report.after.fail, 4u);
   EXPECT_EQ(quality::count(document.current().quality), document.current().counts);
   EXPECT_TRUE(same_bytes(document.current().quality,
-                         quality::judge_model(document.current().model, document.settings.criteria, document.settings.target_size)));
+                         quality::judge_model(document.current().model, {document.settings.criteria, document.settings.target_size})));
 }
 
 TEST(Move, held_nodes_refuse) {

@@ -54,7 +54,7 @@ void expect_sound(const Document& document) {
     ++(grade == quality::Grade::fail ? counts.fail : grade == quality::Grade::warn ? counts.warn : counts.ok);
   }
   EXPECT_EQ(now.counts, counts);
-  const quality::Weight weight = quality::weigh_model(model);
+  const quality::MassProperties weight = quality::mass_properties(model);
   EXPECT_NEAR(now.weight.mass, weight.mass, 1e-9 * weight.mass);
   EXPECT_EQ(now.weight.shells, weight.shells);
   ASSERT_TRUE(now.weight.centre() && weight.centre());
@@ -115,7 +115,7 @@ TEST(Restructure, splitting_counts_marks_and_saves) {
   const Folder folder;
   Document document = open_text(folder / "a.k", sheet_deck(6, 4));
   must_apply(document, R"({"edit":"select","expr":"1,2","kind":"element"})");
-  const quality::Weight weight = document.current().weight;
+  const quality::MassProperties weight = document.current().weight;
   Change change{document.current().model, {}};
   change.split(shell(0));
   change.star(shell(3));

@@ -8,7 +8,7 @@
 #include "mesh/quality/judge.h"
 #include "mesh/quality/measure.h"
 #include "mesh/quality/report.h"
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 #include "tests/mesh/quality/mixed_grid.h"
 
 namespace prismesh::mesh::quality {
@@ -17,8 +17,8 @@ namespace {
 Criteria criteria_of(const std::string& text) { return parse_criteria(text, "mine.toml").value(); }
 
 float rated(const std::vector<Vec3>& corners, const Criteria& criteria = default_criteria(), double target_size = 1,
-            const Sheet& sheet = {}) {
-  return composite(measure(corners), criteria, target_size, sheet);
+            const ShellProperties& properties = {}) {
+  return composite(measure(corners), {criteria, target_size}, properties);
 }
 
 std::vector<Vec3> rectangle(double width, double height) { return {{0, 0, 0}, {width, 0, 0}, {width, height, 0}, {0, height, 0}}; }
@@ -65,12 +65,12 @@ TEST(Composite, defects_have_minus_1_and_nothing_else_has) {
 
 TEST(Composite, thickness_and_wanted_time_step_set_the_least_length) {
   const Criteria thick = criteria_of("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 2");
-  EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, Sheet(0.1)), 0.5, 1e-6);
-  EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, Sheet(0.2)), 0.2 / 0.6, 1e-6);
-  EXPECT_LT(rated(rectangle(0.6, 1), thick, 1, Sheet(0.4)), 0);
+  EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, ShellProperties(0.1)), 0.5, 1e-6);
+  EXPECT_NEAR(rated(rectangle(0.6, 1), thick, 1, ShellProperties(0.2)), 0.2 / 0.6, 1e-6);
+  EXPECT_LT(rated(rectangle(0.6, 1), thick, 1, ShellProperties(0.4)), 0);
   // 0.5 of a time step (the deck takes 0.9 of what the length gives) at 1.08 a time unit: 0.6
   const Criteria step = criteria_of("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 0.5");
-  EXPECT_NEAR(rated(rectangle(0.8, 1), step, 1, Sheet(0, 1.08)), 0.5, 1e-6);
+  EXPECT_NEAR(rated(rectangle(0.8, 1), step, 1, ShellProperties(0, 1.08)), 0.5, 1e-6);
   EXPECT_NEAR(rated(rectangle(0.6, 1), step, 1), 0.5, 1e-6);
   // where nothing is known nothing is judged
   EXPECT_EQ(rated(rectangle(0.6, 1), criteria_of("[metrics.min_length]\nfail_below_thicknesses = 2"), 1), 1);
@@ -82,7 +82,7 @@ TEST(Composite, falls_over_a_twentieth_of_a_limit_that_is_the_ideal) {
   values.fill(std::numeric_limits<float>::quiet_NaN());
   values[int(Metric::aspect)] = 1;
   values[int(Metric::max_length)] = 10.5F;
-  EXPECT_NEAR(composite(values, criteria, 10, {}), -0.5, 1e-5);
+  EXPECT_NEAR(composite(values, {criteria, 10}, {}), -0.5, 1e-5);
 }
 
 TEST(Composite, is_a_number_whatever_the_limits) {
@@ -92,9 +92,9 @@ TEST(Composite, is_a_number_whatever_the_limits) {
       const Criteria criteria = criteria_of("[metrics." + std::string(metric) + "]\n" + limit);
       for (const double size : {1.0, 1e20, 1e-20}) {
         const Values values = measure(rectangle(3, 1));
-        const float figure = composite(values, criteria, size);
+        const float figure = composite(values, {criteria, size});
         EXPECT_TRUE(figure > -1 && figure <= 1) << metric << ' ' << limit;
-        EXPECT_EQ(figure < 0, judge(values, criteria, size).grade() == Grade::fail) << metric << ' ' << limit << ' ' << size;
+        EXPECT_EQ(figure < 0, judge(values, {criteria, size}).grade() == Grade::fail) << metric << ' ' << limit << ' ' << size;
       }
     }
 }
@@ -102,11 +102,11 @@ TEST(Composite, is_a_number_whatever_the_limits) {
 TEST(Composite, is_negative_exactly_where_a_shell_fails) {
   const Model model = test::mixed_grid(30, 0.6, true, 21);
   for (const double size : {0.4, 1.0, 3.0}) {
-    const ChunkedArray<ShellState> states = judge_model(model, default_criteria(), size);
+    const ChunkedArray<ShellState> states = judge_model(model, {default_criteria(), size});
     std::vector<ShellIndex> shells;
     for (std::size_t s = 0; s < model.shell_count(); ++s) shells.emplace_back(s);
     std::vector<float> figures(shells.size());
-    composites(model, shells, default_criteria(), size, figures);
+    composites(model, shells, {default_criteria(), size}, figures);
     std::size_t failing = 0;
     double sum = 0, least = 1;
     for (std::size_t s = 0; s < shells.size(); ++s) {
@@ -117,8 +117,8 @@ TEST(Composite, is_negative_exactly_where_a_shell_fails) {
       least = std::min<double>(least, figures[s]);
     }
     EXPECT_GT(failing, 0u);
-    const Report r = report(model, default_criteria(), size, {});
-    EXPECT_EQ(r.least_composite, least);
+    const Report r = report(model, {default_criteria(), size}, {});
+    EXPECT_EQ(r.min_composite, least);
     EXPECT_NEAR(r.mean_composite, sum / static_cast<double>(shells.size()), 1e-9);
   }
 }
@@ -130,8 +130,8 @@ TEST(Composite, comes_with_the_metrics_it_is_made_of) {
   std::vector<float> alone(shells.size()), figures(shells.size());
   std::vector<Values> measured(shells.size()), values(shells.size());
   measure_shells(model, shells, measured);
-  composites(model, shells, default_criteria(), 1.0, alone);
-  composites(model, shells, default_criteria(), 1.0, figures, values);
+  composites(model, shells, {default_criteria(), 1.0}, alone);
+  composites(model, shells, {default_criteria(), 1.0}, figures, values);
   EXPECT_EQ(figures, alone);
   for (std::size_t i = 0; i < shells.size(); ++i)
     for (std::size_t m = 0; m < kMetricCount; ++m) {
@@ -151,29 +151,29 @@ TEST(Composite, alone_in_batches_and_by_points_is_the_same) {
   std::vector<ShellIndex> shells;
   std::vector<std::array<std::int32_t, 4>> corners;
   std::vector<Vec3> points;
-  std::vector<Sheet> sheets;
+  std::vector<ShellProperties> properties;
   for (std::size_t n = 0; n < model.node_count(); ++n) points.push_back(model.positions[n]);
   for (std::size_t s = 0; s < model.shell_count(); s += 3) {
     if (model.is_removed(ShellIndex(s))) continue;
     shells.emplace_back(s);
     const auto node = [&](std::size_t c) { return static_cast<std::int32_t>(model.shell_nodes[s].node[c].value); };
     corners.push_back({node(0), node(1), node(2), node(3)});
-    sheets.push_back(sheet_of(model, ShellIndex(s)));
+    properties.push_back(properties_of(model, ShellIndex(s)));
   }
   std::vector<float> batch(shells.size()), by_points(shells.size());
   std::vector<ShellState> states(shells.size());
-  composites(model, shells, criteria, 1.0, batch);
-  judge_points(points, {}, corners, sheets, criteria, 1.0, states, by_points);
+  composites(model, shells, {criteria, 1.0}, batch);
+  judge_points({points, {}, corners, properties}, {criteria, 1.0}, states, by_points);
   for (std::size_t i = 0; i < shells.size(); ++i) {
     std::vector<Vec3> p;
     for (int c = 0; c < model.shell(shells[i]).corners(); ++c) p.push_back(points[static_cast<std::size_t>(corners[i][c])]);
-    EXPECT_EQ(batch[i], rated(p, criteria, 1.0, sheets[i])) << i;
+    EXPECT_EQ(batch[i], rated(p, criteria, 1.0, properties[i])) << i;
     EXPECT_EQ(batch[i], by_points[i]) << i;
   }
   const std::vector<ShellIndex> gone = {ShellIndex(std::size_t{17})};
   float figure = 0;
   Values of_gone{};
-  composites(model, gone, criteria, 1.0, std::span(&figure, 1), std::span(&of_gone, 1));
+  composites(model, gone, {criteria, 1.0}, std::span(&figure, 1), std::span(&of_gone, 1));
   EXPECT_EQ(figure, 1);
   for (const float value : of_gone) EXPECT_TRUE(std::isnan(value));
 }

@@ -68,7 +68,7 @@ TEST(Criteria, the_default_has_the_thresholds_it_documents) {
     const auto grade = [&](float value) {
       Values values = triangle ? good_triangle() : good_quad();
       values[int(one.metric)] = value;
-      return judge(values, default_criteria(), 10.0);
+      return judge(values, {default_criteria(), 10.0});
     };
     const auto bit = static_cast<std::uint16_t>(1u << int(one.metric));
     EXPECT_EQ(grade(one.ok), ShellState()) << name(one.metric);
@@ -85,13 +85,13 @@ TEST(Criteria, a_metric_that_is_not_named_is_not_judged) {
   Values values = good_quad();
   values[int(Metric::warpage)] = 170;
   values[int(Metric::aspect)] = 1e8f;
-  EXPECT_EQ(judge(values, parsed("[metrics.skew]\nfail_above = 40"), 10.0), ShellState());
+  EXPECT_EQ(judge(values, {parsed("[metrics.skew]\nfail_above = 40"), 10.0}), ShellState());
 }
 
 TEST(Criteria, what_fails_also_warns) {
   Values values = good_quad();
   values[int(Metric::skew)] = 41;
-  const ShellState state = judge(values, parsed("[metrics.skew]\nfail_above = 40"), 10.0);
+  const ShellState state = judge(values, {parsed("[metrics.skew]\nfail_above = 40"), 10.0});
   EXPECT_EQ(state.warn, state.fail);
   EXPECT_EQ(state.grade(), Grade::fail);
 }
@@ -103,57 +103,58 @@ TEST(Criteria, quads_and_triangles_apart_and_lengths_by_thickness) {
   EXPECT_EQ(criteria.name, "published");
   Values quad = good_quad(), triangle = good_triangle();
   quad[int(Metric::skew)] = triangle[int(Metric::skew)] = 50;
-  EXPECT_EQ(judge(quad, criteria, 10.0).grade(), Grade::fail);
-  EXPECT_EQ(judge(triangle, criteria, 10.0).grade(), Grade::ok);
+  EXPECT_EQ(judge(quad, {criteria, 10.0}).grade(), Grade::fail);
+  EXPECT_EQ(judge(triangle, {criteria, 10.0}).grade(), Grade::ok);
   triangle[int(Metric::skew)] = 61;
-  EXPECT_EQ(judge(triangle, criteria, 10.0).grade(), Grade::fail);
-  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 9.0).grade(), Grade::ok);
-  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 9.2).grade(), Grade::fail);
-  EXPECT_EQ(judge(good_quad(), criteria, 10.0, 0.0).grade(), Grade::ok);  // unknown
+  EXPECT_EQ(judge(triangle, {criteria, 10.0}).grade(), Grade::fail);
+  EXPECT_EQ(judge(good_quad(), {criteria, 10.0}, 9.0).grade(), Grade::ok);
+  EXPECT_EQ(judge(good_quad(), {criteria, 10.0}, 9.2).grade(), Grade::fail);
+  EXPECT_EQ(judge(good_quad(), {criteria, 10.0}, 0.0).grade(), Grade::ok);  // unknown
 }
 
 TEST(Criteria, a_thin_sheet_keeps_the_least_length_of_the_target_size) {
   const Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\nfail_below_thicknesses = 1.1\n");
   Values quad = good_quad();
   quad[int(Metric::min_length)] = 1.9F;
-  EXPECT_EQ(judge(quad, criteria, 10.0, 0.5).grade(), Grade::fail);
+  EXPECT_EQ(judge(quad, {criteria, 10.0}, 0.5).grade(), Grade::fail);
   quad[int(Metric::min_length)] = 2.1F;
-  EXPECT_EQ(judge(quad, criteria, 10.0, 0.5).grade(), Grade::ok);
+  EXPECT_EQ(judge(quad, {criteria, 10.0}, 0.5).grade(), Grade::ok);
 }
 
 TEST(Criteria, a_wanted_time_step_sets_the_least_length_by_the_material) {
   Criteria criteria = parsed("[metrics.min_length]\nfail_below = 0.2\n[time_step]\nwanted = 5e-7\nwarn_below = 6e-7");
   const double steel = 5.4219e6;  // mm/s
-  const auto grade = [&](float length, const Sheet& sheet) {
+  const auto grade = [&](float length, const ShellProperties& properties) {
     Values values = good_quad();
     values[int(Metric::min_length)] = length;
-    return judge(values, criteria, 10.0, sheet).grade();
+    return judge(values, {criteria, 10.0}, properties).grade();
   };
   // 0.5 microseconds of a step that is 0.9 of what the length takes: 3.01 mm
-  EXPECT_EQ(grade(3.0f, Sheet(0, steel)), Grade::fail);
-  EXPECT_EQ(grade(3.02f, Sheet(0, steel)), Grade::warn);
-  EXPECT_EQ(grade(3.60f, Sheet(0, steel)), Grade::warn);
-  EXPECT_EQ(grade(3.62f, Sheet(0, steel)), Grade::ok);
+  EXPECT_EQ(grade(3.0f, ShellProperties(0, steel)), Grade::fail);
+  EXPECT_EQ(grade(3.02f, ShellProperties(0, steel)), Grade::warn);
+  EXPECT_EQ(grade(3.60f, ShellProperties(0, steel)), Grade::warn);
+  EXPECT_EQ(grade(3.62f, ShellProperties(0, steel)), Grade::ok);
   // where the material isn't known the fraction of the target size counts
-  EXPECT_EQ(grade(2.1f, Sheet()), Grade::ok);
-  EXPECT_EQ(grade(1.9f, Sheet()), Grade::fail);
+  EXPECT_EQ(grade(2.1f, ShellProperties()), Grade::ok);
+  EXPECT_EQ(grade(1.9f, ShellProperties()), Grade::fail);
   criteria.time_step_scale = 0.45;
-  EXPECT_EQ(grade(6.0f, Sheet(0, steel)), Grade::fail);
-  EXPECT_EQ(grade(6.04f, Sheet(0, steel)), Grade::warn);
+  EXPECT_EQ(grade(6.0f, ShellProperties(0, steel)), Grade::fail);
+  EXPECT_EQ(grade(6.04f, ShellProperties(0, steel)), Grade::warn);
 }
 
 TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
   const Criteria criteria = parsed(
       "[metrics.min_length]\nwarn_below = 0.4\nfail_below = 0.2\nfail_below_thicknesses = 1.1\n[metrics.max_length]\nfail_above = 2\n"
       "[metrics.skew.quad]\nwarn_above = 34\n[metrics.skew.triangle]\nfail_above = 60\n[time_step]\nwanted = 0.5\nwarn_below = 0.7");
-  for (const Sheet& sheet : {Sheet(), Sheet(1.0), Sheet(3.0), Sheet(0, 1.5), Sheet(0, 9.0), Sheet(7.0, 9.0)})
+  for (const ShellProperties& properties : {ShellProperties(), ShellProperties(1.0), ShellProperties(3.0), ShellProperties(0, 1.5),
+                                            ShellProperties(0, 9.0), ShellProperties(7.0, 9.0)})
     for (const bool of_triangle : {false, true})
       for (const Metric metric : {Metric::min_length, Metric::max_length, Metric::skew, Metric::aspect}) {
-        const Threshold limits = threshold_of(criteria, metric, of_triangle, 10, sheet);
+        const Threshold limits = threshold_of({criteria, 10}, metric, of_triangle, properties);
         const auto judged = [&](float value) {
           Values values = of_triangle ? good_triangle() : good_quad();
           values[int(metric)] = value;
-          const ShellState state = judge(values, criteria, 10, sheet);
+          const ShellState state = judge(values, {criteria, 10}, properties);
           return std::pair((state.warn >> int(metric) & 1) != 0, (state.fail >> int(metric) & 1) != 0);
         };
         for (const float limit : {limits.warn_low, limits.warn_high, limits.fail_low, limits.fail_high}) {
@@ -161,12 +162,12 @@ TEST(Criteria, limits_are_those_that_shells_are_judged_by) {
           for (const float value : {std::nextafter(limit, -1e9F), limit, std::nextafter(limit, 1e9F)}) {
             const bool fails = value < limits.fail_low || value > limits.fail_high;
             EXPECT_EQ(judged(value), std::pair(fails || value < limits.warn_low || value > limits.warn_high, fails))
-                << name(metric) << ' ' << value << " of " << sheet.thickness << ' ' << sheet.wave_speed;
+                << name(metric) << ' ' << value << " of " << properties.thickness << ' ' << properties.wave_speed;
           }
         }
       }
-  EXPECT_NEAR(threshold_of(criteria, Metric::min_length, false, 10, Sheet(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
-  EXPECT_NEAR(threshold_of(criteria, Metric::min_length, false, 10, Sheet(7.0, 9.0)).fail_low, 7.7, 1e-5);
+  EXPECT_NEAR(threshold_of({criteria, 10}, Metric::min_length, false, ShellProperties(0, 9.0)).fail_low, 0.5 * 9 / 0.9, 1e-5);
+  EXPECT_NEAR(threshold_of({criteria, 10}, Metric::min_length, false, ShellProperties(7.0, 9.0)).fail_low, 7.7, 1e-5);
 }
 
 TEST(Criteria, of_our_own_are_known_by_name) {
@@ -238,7 +239,7 @@ TEST(Criteria, points_are_judged_as_shells_are) {
     fixed.emplace_back(anywhere(random), anywhere(random), 0.2 * anywhere(random));
   }
   std::vector<std::array<std::int32_t, 4>> corners;
-  std::vector<Sheet> thickness;
+  std::vector<ShellProperties> thickness;
   std::uniform_int_distribution<std::int32_t> pick(-60, 59);
   for (int s = 0; s < 500; ++s) {
     std::array<std::int32_t, 4> c = {pick(random), pick(random), pick(random), pick(random)};
@@ -248,14 +249,14 @@ TEST(Criteria, points_are_judged_as_shells_are) {
   }
   const Criteria criteria = parsed("[metrics.min_length]\nfail_below_thicknesses = 0.5\n[metrics.aspect]\nwarn_above = 2\n");
   std::vector<ShellState> states(corners.size());
-  judge_points(moving, fixed, corners, thickness, criteria, 1.0, states);
+  judge_points({moving, fixed, corners, thickness}, {criteria, 1.0}, states);
   for (std::size_t s = 0; s < corners.size(); ++s) {
     std::vector<Vec3> p;
     for (std::size_t i = 0; i < (corners[s][3] == corners[s][2] ? 3u : 4u); ++i) {
       const std::int32_t at = corners[s][i];
       p.push_back(at >= 0 ? moving[static_cast<std::size_t>(at)] : fixed[static_cast<std::size_t>(~at)]);
     }
-    EXPECT_EQ(states[s], judge(measure(p), criteria, 1.0, thickness[s])) << s;
+    EXPECT_EQ(states[s], judge(measure(p), {criteria, 1.0}, thickness[s])) << s;
   }
 }
 

@@ -167,20 +167,20 @@ TEST(Oracle, mass_and_time_step_add_up_from_single_shells) {
       for (std::size_t c = 0; c < static_cast<std::size_t>(nodes.corners()); ++c) corners.push_back(model.position(nodes.node[c]));
       const Part& part = (*model.parts)[model.shell_parts[s].value];
       const auto step = shell_time_step(part, corners, option);
-      folded += judge(measure(corners), default_criteria(), 1.0).has(Defect::no_area);
+      folded += judge(measure(corners), {default_criteria(), 1.0}).has(Defect::no_area);
       without += !step;
       if (!step) continue;
       least = std::min(least, 0.9 * *step);
-      const double mass = weigh_shell(model, ShellIndex(s)).mass;
+      const double mass = mass_properties(model, ShellIndex(s)).mass;
       if (*step < 2e-7) added += mass * (4e-14 / (*step * *step) - 1);
     }
     EXPECT_EQ(without, folded) << option;
     EXPECT_GT(folded, 0u);
-    const Report r = report(model, default_criteria(), 1.0, control);
+    const Report r = report(model, {default_criteria(), 1.0}, control);
     EXPECT_NEAR(r.time_step->seconds, least, 1e-12 * least) << option;
     EXPECT_GT(added, 0);
     EXPECT_NEAR(*r.added_mass, added, 1e-9 * added) << option;
-    const Weight weight = weigh_model(model);
+    const MassProperties weight = mass_properties(model);
     EXPECT_NEAR(*r.mass, weight.mass, 1e-12 * weight.mass);
     EXPECT_NEAR((*r.centre_of_gravity - *weight.centre()).norm(), 0, 1e-9);
   }

@@ -32,7 +32,7 @@ Model steel_grid(int columns, int rows, double size) {
 }
 
 Report report_of(const Model& model, const TimeStepControl& control = {}, const ShellSet* shells = nullptr) {
-  return report(model, default_criteria(), 5.0, control, shells);
+  return report(model, {default_criteria(), 5.0}, control, shells);
 }
 
 TEST(Report, mass_and_centre_of_a_plate) {
@@ -44,11 +44,11 @@ TEST(Report, mass_and_centre_of_a_plate) {
   EXPECT_EQ(r.counts, (Counts{200, 0, 0}));
 }
 
-TEST(Weight, what_is_added_and_taken_off_again_leaves_mass_and_centre) {
+TEST(MassProperties, what_is_added_and_taken_off_again_leaves_mass_and_centre) {
   const Model model = steel_grid(3, 1, 5);
-  const Weight all = weigh_model(model);
-  Weight rest = all;
-  const Weight last = weigh_shell(model, ShellIndex(2));
+  const MassProperties all = mass_properties(model);
+  MassProperties rest = all;
+  const MassProperties last = mass_properties(model, ShellIndex(2));
   rest -= last;
   EXPECT_NEAR(rest.mass, 2 * last.mass, 1e-18);
   EXPECT_NEAR((*rest.centre() - Vec3(5, 2.5, 0)).norm(), 0, 1e-12);
@@ -210,7 +210,7 @@ TEST(Report, finds_what_is_worst_and_what_weighs_among_many_shells) {
   EXPECT_EQ(r.metrics[int(Metric::max_angle_quad)].worst, ShellIndex(last));
   EXPECT_GT(r.metrics[int(Metric::max_angle_quad)].max, 100) << "of all ranges, not of the first";
   EXPECT_LT(r.metrics[int(Metric::min_length)].min, 4.5);
-  EXPECT_LT(r.least_composite, report_of(steel_grid(2, 2, 5)).least_composite);
+  EXPECT_LT(r.min_composite, report_of(steel_grid(2, 2, 5)).min_composite);
   ASSERT_TRUE(r.time_step);
   EXPECT_EQ(r.time_step->shell, ShellIndex(last));
   Part unknown;
@@ -239,7 +239,7 @@ TEST(Report, counts_averages_and_bounds_each_metric_over_many_shells) {
   EXPECT_EQ(r.metrics[int(Metric::max_length)].warn, 0u);
   EXPECT_EQ(r.counts, (Counts{8820, 0, 180}));
   const ShellSet good{ShellIndex(std::size_t{0})}, bad{ShellIndex(std::size_t{20})}, longer{ShellIndex(std::size_t{10})};
-  EXPECT_EQ(r.least_composite, report_of(model, {}, &bad).least_composite);
+  EXPECT_EQ(r.min_composite, report_of(model, {}, &bad).min_composite);
   EXPECT_NEAR(r.mean_composite,
               0.98 * report_of(model, {}, &good).mean_composite + 0.01 * report_of(model, {}, &bad).mean_composite +
                   0.01 * report_of(model, {}, &longer).mean_composite,
@@ -263,7 +263,7 @@ TEST(Report, by_part_adds_up_to_the_whole) {
   for (std::size_t s = 0; s < model.shell_count(); ++s)
     if (s % 3 == 0) model.shell_parts.set(s, PartIndex(std::size_t{2}));
   model.positions.set(100, model.positions[100] + Vec3(3, 3, 3));
-  const std::vector<PartReport> parts = report_by_part(model, default_criteria(), 5.0, {});
+  const std::vector<PartReport> parts = report_by_part(model, {default_criteria(), 5.0}, {});
   ASSERT_EQ(parts.size(), 2u);  // nothing is of the middle one
   EXPECT_EQ(parts[0].part, PartIndex(std::size_t{0}));
   EXPECT_EQ(parts[1].part, PartIndex(std::size_t{2}));
@@ -271,20 +271,20 @@ TEST(Report, by_part_adds_up_to_the_whole) {
   EXPECT_EQ(parts[0].report.elements + parts[1].report.elements, 200u);
   EXPECT_EQ(parts[0].report.counts.fail + parts[1].report.counts.fail, whole.counts.fail);
   EXPECT_GT(whole.counts.fail, 0u);
-  EXPECT_EQ(std::min(parts[0].report.least_composite, parts[1].report.least_composite), whole.least_composite);
+  EXPECT_EQ(std::min(parts[0].report.min_composite, parts[1].report.min_composite), whole.min_composite);
   // one without material and thickness has neither
   EXPECT_EQ(parts[0].report.mass, whole.mass);
   EXPECT_FALSE(parts[1].report.mass);
   EXPECT_FALSE(parts[1].report.time_step);
   const ShellSet first = {ShellIndex(std::size_t{0})};
-  EXPECT_EQ(report_by_part(model, default_criteria(), 5.0, {}, &first).size(), 1u);
+  EXPECT_EQ(report_by_part(model, {default_criteria(), 5.0}, {}, &first).size(), 1u);
 }
 
 TEST(Report, judging_again_what_changed_equals_judging_everything) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> away(-3, 3);
   Model model = steel_grid(120, 90, 5);  // several chunks
-  ChunkedArray<ShellState> states = judge_model(model, default_criteria(), 5.0);
+  ChunkedArray<ShellState> states = judge_model(model, {default_criteria(), 5.0});
   Counts counts = count(states);
   EXPECT_EQ(counts.ok, model.shell_count());
   for (int round = 0; round < 5; ++round) {
@@ -293,8 +293,8 @@ TEST(Report, judging_again_what_changed_equals_judging_everything) {
       model.positions.set(n, model.positions[n] + Vec3(away(random), away(random), away(random)));
       moved.emplace_back(n);
     }
-    rejudge(model, default_criteria(), 5.0, shells_touching(model, moved), states, counts);
-    const ChunkedArray<ShellState> fresh = judge_model(model, default_criteria(), 5.0);
+    rejudge(model, {default_criteria(), 5.0}, shells_touching(model, moved), states, counts);
+    const ChunkedArray<ShellState> fresh = judge_model(model, {default_criteria(), 5.0});
     for (std::size_t s = 0; s < model.shell_count(); ++s) ASSERT_EQ(states[s], fresh[s]) << s;
     EXPECT_EQ(counts, count(fresh));
     EXPECT_EQ(counts, report_of(model).counts);
@@ -304,10 +304,10 @@ TEST(Report, judging_again_what_changed_equals_judging_everything) {
 
 TEST(Report, judging_again_keeps_what_is_shared) {
   const Model model = steel_grid(120, 90, 5);
-  const ChunkedArray<ShellState> states = judge_model(model, default_criteria(), 5.0);
+  const ChunkedArray<ShellState> states = judge_model(model, {default_criteria(), 5.0});
   ChunkedArray<ShellState> again = states;
   Counts counts = count(states);
-  rejudge(model, default_criteria(), 5.0, {ShellIndex(std::size_t{5000})}, again, counts);
+  rejudge(model, {default_criteria(), 5.0}, {ShellIndex(std::size_t{5000})}, again, counts);
   for (std::size_t c = 0; c < states.chunk_count(); ++c) EXPECT_TRUE(again.shares_chunk(states, c));
 }
 

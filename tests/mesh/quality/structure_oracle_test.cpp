@@ -135,7 +135,7 @@ TEST(StructureOracle, finds_what_a_look_at_all_pairs_finds) {
       most = std::max(most, count);
     }
     EXPECT_EQ(found.clusters, clusters) << seed;
-    EXPECT_EQ(found.most_triangles, most) << seed;
+    EXPECT_EQ(found.max_triangles, most) << seed;
     unjoined += expected.unjoined.size(), duplicates += copies.size(), opposed += found.opposed.size(), multiple += found.multiple.size();
   }
   EXPECT_GT(unjoined, 100u);

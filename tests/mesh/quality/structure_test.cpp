@@ -30,7 +30,7 @@ TEST(Structure, of_a_sound_sheet_is_clean) {
   EXPECT_TRUE(found.unjoined.empty());
   EXPECT_TRUE(found.free_inside.empty());
   EXPECT_TRUE(found.clusters.empty());
-  EXPECT_EQ(found.most_triangles, 0u);
+  EXPECT_EQ(found.max_triangles, 0u);
 }
 
 TEST(Structure, duplicates_have_the_same_corners_in_whatever_order) {
@@ -147,13 +147,13 @@ TEST(Structure, triangles_about_a_node) {
   for (int i = 0; i < 6; ++i) points.emplace_back(std::cos(i * 1.0471975511965976), std::sin(i * 1.0471975511965976), 0);
   for (int i = 0; i < 6; ++i) shells.push_back({0, 1 + i, 1 + (i + 1) % 6, 1 + (i + 1) % 6});
   const Structure found = check_structure(test::make_shells(points, shells));
-  EXPECT_EQ(found.most_triangles, 6u);
-  EXPECT_EQ(found.most_triangles_at, NodeIndex(std::size_t{0}));
+  EXPECT_EQ(found.max_triangles, 6u);
+  EXPECT_EQ(found.max_triangles_at, NodeIndex(std::size_t{0}));
   EXPECT_EQ(found.clusters, NodeSet{NodeIndex(std::size_t{0})});
   StructureOptions strict;
   strict.triangles_at_node = 1;
   const ShellSet three = {shell(0), shell(1), shell(2)};
-  EXPECT_EQ(check_structure(test::make_shells(points, shells), {}, &three).most_triangles, 3u) << "others don't count";
+  EXPECT_EQ(check_structure(test::make_shells(points, shells), {}, &three).max_triangles, 3u) << "others don't count";
   EXPECT_EQ(check_structure(test::make_shells(points, shells), strict).clusters.size(), 7u);
 }
 

@@ -41,7 +41,7 @@ TEST(relax_real_decks, makes_nothing_worse_and_slid_meshes_better) {
     const relax::ReferenceSurface surface(original, all_shells(original), 30);
     for (const bool by_sliding : {false, true}) {
       const Model before = by_sliding ? slid(original, surface) : original;
-      const relax::Relaxed relaxed = relax::relax(before, surface, all_nodes(before), judge_of(size), {}).value();
+      const relax::Relaxed relaxed = relax::relax({before, surface, criteria_of(size), {}}, all_nodes(before)).value();
       EXPECT_TRUE(relaxed.converged) << relaxed.rounds << " rounds";
       const Model after = moved(before, relaxed);
       expect_nothing_worse(before, after, size);
@@ -67,7 +67,8 @@ TEST(relax_real_decks, keeps_corners_and_lines_however_often) {
   const relax::ReferenceSurface surface(original, all_shells(original), 30);
   const std::vector<relax::Freedom> freedoms = relax::node_freedoms(original, all_nodes(original), 30);
   Model model = original;
-  for (int time = 0; time < 3; ++time) model = moved(model, relax::relax(model, surface, all_nodes(model), judge_of(size), {}).value());
+  for (int time = 0; time < 3; ++time)
+    model = moved(model, relax::relax({model, surface, criteria_of(size), {}}, all_nodes(model)).value());
   std::size_t changed_classes = 0, moved_corners = 0, off_lines = 0;
   const std::vector<relax::Freedom> by_mesh = relax::node_freedoms(model, all_nodes(model), 30);
   for (std::size_t n = 0; n < model.node_count(); ++n) {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numeric>
 
-#include "mesh/relax/guard.h"
+#include "mesh/relax/quality_guard.h"
 #include "tests/mesh/relax/relaxing.h"
 
 namespace prismesh::test {
@@ -40,7 +40,7 @@ TEST(relax, keeps_to_the_surface_where_nodes_have_slid_before) {
     const Model regular = sheet_on(known, 20, 16, 0.1);
     const Model slid = sheet_on(known, 20, 16, 0.35);
     const relax::ReferenceSurface surface(regular, all_shells(regular), 30);
-    const relax::Relaxed relaxed = relax::relax(slid, surface, all_nodes(slid), judge_of(), {}).value();
+    const relax::Relaxed relaxed = relax::relax({slid, surface, criteria_of(), {}}, all_nodes(slid)).value();
     double off = 0;
     for (const Vec3& position : relaxed.positions) off = std::max(off, known.off(position));
     EXPECT_LE(off, 0.1 * known.sagitta) << known.name;
@@ -52,12 +52,12 @@ TEST(relax, again_moves_little) {
   for (const KnownSurface& known : {cylinder(), cone(), torus()}) {
     const Model before = sheet_on(known, 20, 16, 0.3);
     const relax::ReferenceSurface surface(before, all_shells(before), 30);
-    const relax::Relaxed first = relax::relax(before, surface, all_nodes(before), judge_of(), {}).value();
+    const relax::Relaxed first = relax::relax({before, surface, criteria_of(), {}}, all_nodes(before)).value();
     const Model after = moved(before, first);
-    const relax::Relaxed second = relax::relax(after, surface, all_nodes(after), judge_of(), {}).value();
+    const relax::Relaxed second = relax::relax({after, surface, criteria_of(), {}}, all_nodes(after)).value();
     EXPECT_LT(second.farthest, 0.2 * first.farthest) << known.name;
     const Model last = moved(after, second);
-    const relax::Relaxed third = relax::relax(last, surface, all_nodes(last), judge_of(), {}).value();
+    const relax::Relaxed third = relax::relax({last, surface, criteria_of(), {}}, all_nodes(last)).value();
     EXPECT_LT(third.farthest, second.farthest) << known.name;
   }
 }
@@ -142,7 +142,7 @@ TEST(relax, takes_creases_of_a_coarse_mesh_on_a_round_surface_for_none) {
   for (const relax::Freedom freedom : by_mesh) inside += freedom == relax::Freedom::surface ? 1 : 0;
   ASSERT_LT(inside, 9u * 7u);  // or it was no trial
   const relax::ReferenceSurface surface(round, all_shells(round), 30);
-  const relax::Relaxed relaxed = relax::relax(slid, surface, all_nodes(slid), judge_of(8), {}).value();
+  const relax::Relaxed relaxed = relax::relax({slid, surface, criteria_of(8), {}}, all_nodes(slid)).value();
   const Model after = moved(slid, relaxed);
   for (int j = 1; j < 8; ++j)
     for (int i = 1; i < 10; ++i) {
@@ -185,7 +185,7 @@ TEST(relax, makes_nothing_fail_that_passed) {
   for (const double jitter : {0.2, 0.35, 0.45}) {
     const Model before = mixed_panel(jitter, 0.3);
     const relax::ReferenceSurface surface(before, all_shells(before), 30);
-    const relax::Relaxed relaxed = relax::relax(before, surface, all_nodes(before), judge_of(1), {}).value();
+    const relax::Relaxed relaxed = relax::relax({before, surface, criteria_of(1), {}}, all_nodes(before)).value();
     held_back += relaxed.held_back;
     expect_nothing_worse(before, moved(before, relaxed), 1);
   }
@@ -195,10 +195,10 @@ TEST(relax, makes_nothing_fail_that_passed) {
 TEST(relax, counts_as_held_back_what_is_taken_back_at_the_end) {
   const Model before = mixed_panel(0.45, 0.3);
   relax::Options options;
-  options.checks_on_the_way = false;  // and none has been careful before the last round
-  options.most_rounds = 1;
+  options.checks_before_rest = false;  // and none has been careful before the last round
+  options.max_rounds = 1;
   const relax::ReferenceSurface surface(before, all_shells(before), 30);
-  const relax::Relaxed relaxed = relax::relax(before, surface, all_nodes(before), judge_of(1), options).value();
+  const relax::Relaxed relaxed = relax::relax({before, surface, criteria_of(1), options}, all_nodes(before)).value();
   EXPECT_GT(relaxed.held_back, 0u);
   expect_nothing_worse(before, moved(before, relaxed), 1);
 }
@@ -206,7 +206,7 @@ TEST(relax, counts_as_held_back_what_is_taken_back_at_the_end) {
 TEST(relax_guard, lets_no_shell_be_turned_over_whatever_its_shape_is_then) {
   // an equilateral triangle: with its tip mirrored in its base it has the same shape, upside down
   const Model model = make_shells({{0, 2.6, 0}, {-1.5, 0, 0}, {1.5, 0, 0}}, {{0, 1, 2, 2}});
-  relax::Net net;
+  relax::SpringNet net;
   net.movable = 1;
   for (std::size_t n = 0; n < 3; ++n) {
     net.nodes.emplace_back(n);
@@ -214,7 +214,7 @@ TEST(relax_guard, lets_no_shell_be_turned_over_whatever_its_shape_is_then) {
   }
   net.shells = {ShellIndex(0)};
   net.corners = {{0, 1, 2, 2}};
-  const relax::Guard guard(model, net, judge_of(3));
+  const relax::QualityGuard guard(model, net, criteria_of(3));
   const Vec3 mirrored(0, -2.6, 0);
   EXPECT_TRUE(guard.allows(0, net.start[0], net.start));
   EXPECT_FALSE(guard.allows(0, mirrored, net.start));
@@ -251,26 +251,26 @@ struct Tents {
       net.corners.push_back({c[0], c[1], c[2], c[3]});
     }
   }
-  bool allows(std::uint32_t tip, const Vec3& place, const relax::Judge& judge) const {
-    return relax::Guard(model, net, judge).allows(tip, place + Vec3(10 * tip, 0, 0), net.start);
+  bool allows(std::uint32_t tip, const Vec3& place, const quality::SizedCriteria& criteria) const {
+    return relax::QualityGuard(model, net, criteria).allows(tip, place + Vec3(10 * tip, 0, 0), net.start);
   }
   Model model;
-  relax::Net net;
+  relax::SpringNet net;
 };
 
 TEST(relax_guard, lets_none_become_the_new_worst_without_a_mark) {
   const Tents one({{0, 2.6, 0}});
-  EXPECT_TRUE(one.allows(0, Vec3(0, 2.598, 0), judge_of(3))) << "nearer to equilateral";
-  EXPECT_FALSE(one.allows(0, Vec3(0.2, 2.6, 0), judge_of(3)));
+  EXPECT_TRUE(one.allows(0, Vec3(0, 2.598, 0), criteria_of(3))) << "nearer to equilateral";
+  EXPECT_FALSE(one.allows(0, Vec3(0.2, 2.6, 0), criteria_of(3)));
   const Tents two({{0, 2.6, 0}, {0.5, 2.6, 0}});
-  EXPECT_TRUE(two.allows(0, Vec3(0.2, 2.6, 0), judge_of(3))) << "the other one is worse";
-  EXPECT_FALSE(two.allows(0, Vec3(0.7, 2.6, 0), judge_of(3)));
+  EXPECT_TRUE(two.allows(0, Vec3(0.2, 2.6, 0), criteria_of(3))) << "the other one is worse";
+  EXPECT_FALSE(two.allows(0, Vec3(0.7, 2.6, 0), criteria_of(3)));
 }
 
 TEST(relax_guard, lets_what_fails_get_better_only) {
   const Tents failing({{4, 1.2, 0}, {0, 2.6, 0}});
-  EXPECT_TRUE(failing.allows(0, Vec3(3.9, 1.2, 0), judge_of(3)));
-  EXPECT_FALSE(failing.allows(0, Vec3(4.1, 1.2, 0), judge_of(3)));
+  EXPECT_TRUE(failing.allows(0, Vec3(3.9, 1.2, 0), criteria_of(3)));
+  EXPECT_FALSE(failing.allows(0, Vec3(4.1, 1.2, 0), criteria_of(3)));
 }
 
 TEST(relax_guard, judges_by_the_sheets_thickness) {
@@ -285,7 +285,7 @@ TEST(relax, gives_the_same_bits_with_any_number_of_threads) {
   for (const std::size_t threads : {1, 2, 8}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     const relax::ReferenceSurface surface(before, all_shells(before), 30);
-    results.push_back(relax::relax(before, surface, all_nodes(before), judge_of(1), {}).value());
+    results.push_back(relax::relax({before, surface, criteria_of(1), {}}, all_nodes(before)).value());
   }
   for (const relax::Relaxed& result : results) {
     EXPECT_EQ(result.nodes, results.front().nodes);
@@ -297,8 +297,8 @@ TEST(relax, gives_the_same_bits_with_any_number_of_threads) {
 TEST(relax, moves_no_node_beyond_its_limit) {
   const Model before = sheet_on(torus(), 20, 16, 0.4);
   relax::Options options;
-  options.most_on_surface = 0.5;
-  options.most_on_line = 0.2;
+  options.max_move_on_surface = 0.5;
+  options.max_move_on_line = 0.2;
   const relax::Relaxed relaxed = relax_all(before, options);
   EXPECT_GT(relaxed.limited, 50u);
   EXPECT_LE(relaxed.farthest, 0.5);
@@ -317,11 +317,11 @@ TEST(relax, counts_limits_from_where_it_is_told_to) {
   constexpr std::size_t kFree = 6 + 13 * 5;
   home[kFree] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   relax::Options options;
-  options.most_on_surface = 0.3;
-  options.most_on_line = 0.1;
-  options.limits_from = &home;
+  options.max_move_on_surface = 0.3;
+  options.max_move_on_line = 0.1;
+  options.move_origins = &home;
   Model now = before;
-  for (int time = 0; time < 3; ++time) now = moved(now, relax::relax(now, surface, all_nodes(now), judge_of(), options).value());
+  for (int time = 0; time < 3; ++time) now = moved(now, relax::relax({now, surface, criteria_of(), options}, all_nodes(now)).value());
   double farthest = 0;
   for (std::size_t n = 0; n < home.size(); ++n)
     if (n != kFree) farthest = std::max(farthest, (now.position(NodeIndex(n)) - home[n]).norm());
@@ -335,7 +335,7 @@ TEST(relax, moves_only_what_may_move) {
   NodeSet movable;
   for (std::size_t n = 0; n < before.node_count(); n += 2) movable.emplace_back(n);
   const relax::ReferenceSurface surface(before, all_shells(before), 30);
-  const relax::Relaxed relaxed = relax::relax(before, surface, movable, judge_of(), {}).value();
+  const relax::Relaxed relaxed = relax::relax({before, surface, criteria_of(), {}}, movable).value();
   EXPECT_FALSE(relaxed.nodes.empty());
   EXPECT_TRUE(std::is_sorted(relaxed.nodes.begin(), relaxed.nodes.end()));
   for (const NodeIndex node : relaxed.nodes) EXPECT_EQ(node.value % 2, 0u);
@@ -346,9 +346,9 @@ TEST(relax, from_a_node_goes_as_far_as_nodes_are_displaced) {
   const NodeIndex pulled(std::size_t{20 * 41 + 20});
   before.positions.set(pulled.value, cylinder().at(20.45, 20.3));
   const relax::ReferenceSurface surface(before, all_shells(before), 30);
-  const relax::Relaxed full = relax::relax(before, surface, all_nodes(before), judge_of(), {}).value();
+  const relax::Relaxed full = relax::relax({before, surface, criteria_of(), {}}, all_nodes(before)).value();
   const double threshold = 0.05 * kSize;
-  const relax::Relaxed from = relax::relax_from(before, surface, pulled, threshold, all_nodes(before), judge_of(), {}).value();
+  const relax::Relaxed from = relax::relax_from({before, surface, criteria_of(), {}}, {pulled, threshold}, all_nodes(before)).value();
   EXPECT_GT(from.nodes.size(), 1u);
   EXPECT_LT(from.nodes.size(), 100u);
   const Model is = moved(before, from), would_be = moved(before, full);
@@ -356,7 +356,7 @@ TEST(relax, from_a_node_goes_as_far_as_nodes_are_displaced) {
     EXPECT_LT((is.position(NodeIndex(n)) - would_be.position(NodeIndex(n))).norm(), 2 * threshold) << n;
   // with hardly a threshold it reaches beyond the block it begins with; it has ended once, and then
   std::vector<double> heard;
-  const auto far = relax::relax_from(before, surface, pulled, 1e-4, all_nodes(before), judge_of(), {}, [&](double fraction) {
+  const auto far = relax::relax_from({before, surface, criteria_of(), {}}, {pulled, 1e-4}, all_nodes(before), [&](double fraction) {
     heard.push_back(fraction);
     return true;
   });
@@ -371,7 +371,7 @@ TEST(relax, is_told_to_stop) {
   const relax::ReferenceSurface surface(before, all_shells(before), 30);
   double last = 0;
   int heard = 0;
-  const auto whole = relax::relax(before, surface, all_nodes(before), judge_of(), {}, [&](double fraction) {
+  const auto whole = relax::relax({before, surface, criteria_of(), {}}, all_nodes(before), [&](double fraction) {
     EXPECT_GE(fraction, last);
     EXPECT_LE(fraction, 1);
     last = fraction;
@@ -382,7 +382,7 @@ TEST(relax, is_told_to_stop) {
   for (int stop = 1; stop < heard; ++stop) {
     int calls = 0;
     const auto stopped =
-        relax::relax(before, surface, all_nodes(before), judge_of(), {}, [&](double) { return ++calls != stop; });  // says it once
+        relax::relax({before, surface, criteria_of(), {}}, all_nodes(before), [&](double) { return ++calls != stop; });  // says it once
     ASSERT_FALSE(stopped);
     EXPECT_EQ(stopped.error().message, "cancelled");
   }
@@ -392,13 +392,13 @@ TEST(relax, asks_between_stretches_of_a_large_model) {
   const Model before = sheet_on(cylinder(), 60, 640, 0.3);
   const relax::ReferenceSurface surface(before, all_shells(before), 30);
   relax::Options options;
-  options.most_rounds = 2;
+  options.max_rounds = 2;
   int while_preparing = 0, while_settling = 0;
   const auto heard = [&](double fraction) {
     ++(fraction < 0.25 ? while_preparing : while_settling);
     return true;
   };
-  ASSERT_TRUE(relax::relax(before, surface, all_nodes(before), judge_of(), options, heard));
+  ASSERT_TRUE(relax::relax({before, surface, criteria_of(), options}, all_nodes(before), heard));
   EXPECT_GT(while_preparing, 20);        // 39,000 nodes are looked at, and given springs
   EXPECT_GT(while_settling, 2 * 4 + 5);  // four colours a round, and what is put back and judged at the end
 }

@@ -17,7 +17,7 @@
 
 namespace prismesh::test {
 
-inline mesh::relax::Judge judge_of(double size = kSize) { return {mesh::quality::default_criteria(), size}; }
+inline mesh::quality::SizedCriteria criteria_of(double size = kSize) { return {mesh::quality::default_criteria(), size}; }
 
 inline mesh::Model moved(mesh::Model model, const mesh::relax::Relaxed& relaxed) {
   for (std::size_t i = 0; i < relaxed.nodes.size(); ++i) model.positions.set(relaxed.nodes[i].value, relaxed.positions[i]);
@@ -26,7 +26,7 @@ inline mesh::Model moved(mesh::Model model, const mesh::relax::Relaxed& relaxed)
 
 inline std::vector<float> composites(const mesh::Model& model, double size = kSize) {
   std::vector<float> rated(model.shell_count());
-  mesh::quality::composites(model, all_shells(model), mesh::quality::default_criteria(), size, rated);
+  mesh::quality::composites(model, all_shells(model), {mesh::quality::default_criteria(), size}, rated);
   return rated;
 }
 
@@ -38,13 +38,13 @@ inline double least(const std::vector<float>& values) { return *std::min_element
 
 inline mesh::relax::Relaxed relax_all(const mesh::Model& model, const mesh::relax::Options& options = {}) {
   const mesh::relax::ReferenceSurface surface(model, all_shells(model), options.feature_angle);
-  return mesh::relax::relax(model, surface, all_nodes(model), judge_of(), options).value();
+  return mesh::relax::relax({model, surface, criteria_of(), options}, all_nodes(model)).value();
 }
 
 /// By each metric, and by the composite's least.
 inline void expect_nothing_worse(const mesh::Model& before, const mesh::Model& after, double size) {
-  const auto was = mesh::quality::judge_model(before, mesh::quality::default_criteria(), size);
-  const auto is = mesh::quality::judge_model(after, mesh::quality::default_criteria(), size);
+  const auto was = mesh::quality::judge_model(before, {mesh::quality::default_criteria(), size});
+  const auto is = mesh::quality::judge_model(after, {mesh::quality::default_criteria(), size});
   std::size_t new_fails = 0, new_warnings = 0;
   for (std::size_t s = 0; s < was.size(); ++s) {
     new_fails += (is[s].fail & ~was[s].fail) != 0 ? 1 : 0;

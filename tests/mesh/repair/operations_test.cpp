@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "mesh/repair/candidates.h"
+#include "mesh/repair/collapse.h"
 #include "mesh/repair/divide.h"
 #include "mesh/repair/node_moves.h"
-#include "mesh/repair/unite.h"
 #include "tests/mesh/repair/patch_fixture.h"
 #include "tests/mesh/repair/validator.h"
 
@@ -39,11 +39,11 @@ TEST(Divisions, are_all_with_at_most_so_many_triangles) {
   const std::map<std::pair<std::size_t, int>, std::size_t> wanted{{{4, 0}, 1}, {{4, 1}, 1}, {{4, 2}, 3},  {{5, 0}, 0}, {{5, 1}, 10},
                                                                   {{6, 0}, 3}, {{6, 1}, 3}, {{6, 2}, 12}, {{7, 2}, 0}};
   for (const auto& [what, count] : wanted) {
-    const auto& [corners, most_triangles] = what;
+    const auto& [corners, max_triangles] = what;
     Loop loop;
     for (std::size_t i = 0; i < corners; ++i) loop.emplace_back(10 + i);
-    const std::vector<std::vector<Loop>> found = divisions(loop, most_triangles);
-    EXPECT_EQ(found.size(), count) << corners << " corners, " << most_triangles << " triangles";
+    const std::vector<std::vector<Loop>> found = divisions(loop, max_triangles);
+    EXPECT_EQ(found.size(), count) << corners << " corners, " << max_triangles << " triangles";
     EXPECT_EQ(std::set<std::vector<Loop>>(found.begin(), found.end()).size(), found.size()) << "one is there twice";
     for (const std::vector<Loop>& pieces : found) {
       int triangles = 0;
@@ -53,7 +53,7 @@ TEST(Divisions, are_all_with_at_most_so_many_triangles) {
         triangles += piece.size() == 3 ? 1 : 0;
         for (std::size_t k = 0; k < piece.size(); ++k) ++sides[{piece[k].value, piece[(k + 1) % piece.size()].value}];
       }
-      EXPECT_LE(triangles, most_triangles);
+      EXPECT_LE(triangles, max_triangles);
       // In the loop's sense: its own sides once, those between pieces once each way.
       for (std::size_t i = 0; i < corners; ++i) EXPECT_EQ(sides[std::pair(loop[i].value, loop[(i + 1) % corners].value)], 1);
       for (const auto& [side, times] : sides) {
@@ -70,12 +70,12 @@ TEST(UnionOf, takes_the_freer_node_away) {
   const Grid roof{4, 4, [](double x, double y) { return Vec3(x, y, 1 - std::abs(x - 2)); }, {}};
   const GridFixture fixture(roof);
   const auto goes = [&](LocalNode a, LocalNode b) {
-    const std::optional<Union> there = union_of(fixture.context, a, b), back = union_of(fixture.context, b, a);
+    const std::optional<Collapse> there = collapse_of(fixture.context, a, b), back = collapse_of(fixture.context, b, a);
     EXPECT_EQ(there.has_value(), back.has_value());
     if (!there || !back) return LocalNode();
-    EXPECT_EQ(there->gone, back->gone) << "whatever the order";
-    EXPECT_EQ(there->stays, there->gone == a ? b : a);
-    return there->gone;
+    EXPECT_EQ(there->removed, back->removed) << "whatever the order";
+    EXPECT_EQ(there->kept, there->removed == a ? b : a);
+    return there->removed;
   };
   EXPECT_EQ(goes(fixture.node(1, 1), fixture.node(1, 2)), fixture.node(1, 2)) << "of equals the one that was there before stays";
   EXPECT_EQ(goes(fixture.node(1, 1), fixture.node(2, 1)), fixture.node(1, 1)) << "one on the ridge stays";
@@ -91,9 +91,10 @@ TEST(UnionOf, keeps_what_is_needed_or_has_to_stay) {
   const GridFixture fixture(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
                               return node == needed ? std::uint8_t{kNeeded} : node == staying ? std::uint8_t{kStays} : std::uint8_t{0};
                             }));
-  EXPECT_EQ(union_of(fixture.context, fixture.node(1, 1), fixture.node(1, 2))->gone, fixture.node(1, 1));
-  EXPECT_EQ(union_of(fixture.context, fixture.node(2, 2), fixture.node(2, 3))->gone, fixture.node(2, 2));
-  EXPECT_EQ(union_of(fixture.context, fixture.node(0, 2), fixture.node(1, 2))->gone, fixture.node(0, 2)) << "even one of the border goes";
+  EXPECT_EQ(collapse_of(fixture.context, fixture.node(1, 1), fixture.node(1, 2))->removed, fixture.node(1, 1));
+  EXPECT_EQ(collapse_of(fixture.context, fixture.node(2, 2), fixture.node(2, 3))->removed, fixture.node(2, 2));
+  EXPECT_EQ(collapse_of(fixture.context, fixture.node(0, 2), fixture.node(1, 2))->removed, fixture.node(0, 2))
+      << "even one of the border goes";
 }
 
 TEST(Unite, puts_the_node_in_the_middle_unless_it_has_to_stay) {
@@ -103,7 +104,7 @@ TEST(Unite, puts_the_node_in_the_middle_unless_it_has_to_stay) {
     GridFixture fixture(grid, rules_of_nodes([&](NodeIndex node) -> std::uint8_t {
                           return stays && node == kept ? std::uint8_t{kStays} : std::uint8_t{0};
                         }));
-    ASSERT_EQ(fixture.refusal(unite(fixture.context, {{fixture.node(2, 1), fixture.node(1, 1)}})), "done");
+    ASSERT_EQ(fixture.refusal(collapse_nodes(fixture.context, {{fixture.node(2, 1), fixture.node(1, 1)}})), "done");
     EXPECT_NEAR((fixture.patch.position(fixture.node(1, 1)) - Vec3(stays ? 1 : 1.5, 1, 0)).norm(), 0, 1e-9);
     const Model after = fixture.after();
     EXPECT_EQ(what_is_wrong(after), "");
@@ -115,18 +116,18 @@ TEST(Unite, puts_the_node_in_the_middle_unless_it_has_to_stay) {
 
 TEST(Unite, shortens_a_straight_line_and_bends_none) {
   GridFixture fixture(flat(4, 4));
-  ASSERT_EQ(fixture.refusal(unite(fixture.context, {{fixture.node(2, 0), fixture.node(1, 0)}})), "done");
+  ASSERT_EQ(fixture.refusal(collapse_nodes(fixture.context, {{fixture.node(2, 0), fixture.node(1, 0)}})), "done");
   EXPECT_EQ(fixture.patch.position(fixture.node(1, 0)), Vec3(1, 0, 0)) << "on a line the node stays where it is";
   EXPECT_EQ(what_is_wrong(fixture.after()), "");
   GridFixture arc(Grid{4, 4, [](double x, double y) { return Vec3(x, y * (1 + 0.1 * x * (4 - x)) - 0.2 * x * (4 - x), 0); }, {}});
-  EXPECT_EQ(arc.refusal(unite(arc.context, {{arc.node(2, 0), arc.node(1, 0)}})), "that would bend an edge of the part");
+  EXPECT_EQ(arc.refusal(collapse_nodes(arc.context, {{arc.node(2, 0), arc.node(1, 0)}})), "that would bend an edge of the part");
   GridFixture corner(flat(4, 4));
-  EXPECT_EQ(corner.refusal(unite(corner.context, {{corner.node(0, 0), corner.node(1, 0)}})), "both nodes hold the part's shape");
+  EXPECT_EQ(corner.refusal(collapse_nodes(corner.context, {{corner.node(0, 0), corner.node(1, 0)}})), "both nodes hold the part's shape");
   GridFixture across(flat(4, 1));
-  EXPECT_EQ(across.refusal(unite(across.context, {{across.node(2, 0), across.node(2, 1)}})), "that would bend an edge of the part")
+  EXPECT_EQ(across.refusal(collapse_nodes(across.context, {{across.node(2, 0), across.node(2, 1)}})), "that would bend an edge of the part")
       << "the sheet would be pinched off";
   GridFixture twice(flat(4, 4));
-  EXPECT_EQ(twice.refusal(unite(twice.context, {{twice.node(2, 1), twice.node(1, 1)}, {twice.node(2, 2), twice.node(2, 1)}})),
+  EXPECT_EQ(twice.refusal(collapse_nodes(twice.context, {{twice.node(2, 1), twice.node(1, 1)}, {twice.node(2, 2), twice.node(2, 1)}})),
             "the nodes run into each other");
 }
 

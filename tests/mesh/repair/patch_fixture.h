@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mesh/quality/criteria.h"
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
 #include "mesh/repair/strips.h"
 #include "tests/mesh/repair/sheets.h"
 
@@ -15,7 +15,7 @@ struct PatchFixture {
         surface(model, all_shells(model), options.relax.feature_angle),
         rules(std::move(forbidden)),
         patch(model, all_shells(model), 1, rules, options.relax.feature_angle),
-        context{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)} {}
+        context{patch, surface, criteria, options, quality::limits_for(criteria)} {}
 
   Refusal divide(const Strip& strip, int pieces = 2, bool absorbs = true) {
     patch.begin();
@@ -30,7 +30,7 @@ struct PatchFixture {
 
   Model model;
   Options options;
-  relax::Judge judge{quality::default_criteria(), 1};
+  quality::SizedCriteria criteria{quality::default_criteria(), 1};
   relax::ReferenceSurface surface;
   Rules rules;
   Patch patch;

@@ -23,7 +23,7 @@ quality::Grade grade_of(const Model& model, ShellIndex shell) {
   std::vector<Vec3> corners;
   for (int i = 0; i < model.shell(shell).corners(); ++i)
     corners.push_back(model.position(model.shell(shell).node[static_cast<std::size_t>(i)]));
-  return quality::judge(quality::measure(corners), quality::default_criteria(), 1.0).grade();
+  return quality::judge(quality::measure(corners), {quality::default_criteria(), 1.0}).grade();
 }
 
 ShellSet bad_shells(const Model& model, quality::Grade least) {
@@ -41,10 +41,10 @@ struct Mended {
 /// Repairs all bad shells; the surface is that of `good`.
 Mended mend(const Model& bad, const Model& good, const Rules& rules = {}) {
   const relax::ReferenceSurface surface(good, all_shells(good), 30);
-  const relax::Judge judge{quality::default_criteria(), 1.0};
+  const quality::SizedCriteria criteria{quality::default_criteria(), 1.0};
   Options options;
-  options.most_triangles_percent = 25;  // of a hundred shells
-  Result<Repaired> repaired = repair(bad, surface, bad_shells(bad, quality::Grade::warn), rules, judge, options);
+  options.max_triangles_percent = 25;  // of a hundred shells
+  Result<Repaired> repaired = repair({bad, surface, rules, criteria, options}, bad_shells(bad, quality::Grade::warn));
   EXPECT_TRUE(repaired.has_value());
   return {carried_out(bad, repaired->change), std::move(*repaired)};
 }
@@ -189,13 +189,13 @@ TEST(PlantedOnATube, a_narrow_strip_stays_where_longer_edges_would_leave_the_sur
   const Grid grid{8, 8, place, {}};
   const Model model = model_of(grid.positions(), grid.shells());
   const relax::ReferenceSurface surface(model, all_shells(model), 30);
-  const relax::Judge judge{quality::default_criteria(), 1.0};
+  const quality::SizedCriteria criteria{quality::default_criteria(), 1.0};
   Rules rules;
   rules.node = [](NodeIndex) { return static_cast<std::uint8_t>(kStays); };
-  const auto left_with = [&](double most_off_surface) {
+  const auto left_with = [&](double max_off_surface) {
     Options options;
-    options.most_off_surface = most_off_surface;
-    const Result<Repaired> repaired = repair(model, surface, bad_shells(model, quality::Grade::fail), rules, judge, options);
+    options.max_off_surface = max_off_surface;
+    const Result<Repaired> repaired = repair({model, surface, rules, criteria, options}, bad_shells(model, quality::Grade::fail));
     EXPECT_TRUE(repaired.has_value());
     return repaired ? repaired->unrepaired.size() : 999;
   };
@@ -208,7 +208,7 @@ Mended mend_all_of_length(double length) {
   const Grid grid{6, 6, [=](double x, double y) { return Vec3(length * x, y, 0); }, {}};
   const Model model = model_of(grid.positions(), grid.shells());
   const relax::ReferenceSurface surface(model, all_shells(model), 30);
-  Result<Repaired> repaired = repair(model, surface, all_shells(model), {}, {quality::default_criteria(), 1.0}, {});
+  Result<Repaired> repaired = repair({model, surface, {}, {quality::default_criteria(), 1.0}, {}}, all_shells(model));
   EXPECT_TRUE(repaired.has_value());
   return {carried_out(model, repaired->change), std::move(*repaired)};
 }
@@ -232,7 +232,7 @@ TEST(Untouched, shells_far_from_the_scope_keep_their_nodes_and_places) {
   for (const ShellIndex shell : bad_shells(bad, quality::Grade::warn))
     if (bad.position(bad.shell(shell).node[0]).x() < 20) scope.push_back(shell);
   const relax::ReferenceSurface surface(good, all_shells(good), 30);
-  const auto repaired = repair(bad, surface, scope, {}, {quality::default_criteria(), 1.0}, {});
+  const auto repaired = repair({bad, surface, {}, {quality::default_criteria(), 1.0}, {}}, scope);
   ASSERT_TRUE(repaired.has_value());
   EXPECT_FALSE(repaired->change.empty());
   for (const auto& [shell, nodes] : repaired->change.reshaped) EXPECT_LT(bad.position(bad.shell(shell).node[0]).x(), 20);
@@ -254,7 +254,7 @@ TEST(Scope, what_fails_beside_it_is_left_as_it_is) {
   ASSERT_EQ(scope.size(), 2u);
   ASSERT_EQ(beside.size(), 2u);
   const relax::ReferenceSurface surface(good, all_shells(good), 30);
-  const auto repaired = repair(bad, surface, scope, {}, {quality::default_criteria(), 1.0}, {});
+  const auto repaired = repair({bad, surface, {}, {quality::default_criteria(), 1.0}, {}}, scope);
   ASSERT_TRUE(repaired.has_value());
   EXPECT_EQ(repaired->bad_before, 2u);
   EXPECT_TRUE(repaired->unrepaired.empty()) << "what isn't in scope isn't told";
@@ -282,11 +282,11 @@ TEST(Scope, what_is_left_is_told_by_the_models_numbers) {
 }
 
 /// Why what fails can't be repaired.
-std::set<std::string> reasons(const Model& model, const Rules& rules, double most_triangles_percent = 5) {
+std::set<std::string> reasons(const Model& model, const Rules& rules, double max_triangles_percent = 5) {
   const relax::ReferenceSurface surface(model, all_shells(model), 30);
   Options options;
-  options.most_triangles_percent = most_triangles_percent;
-  const auto repaired = repair(model, surface, all_shells(model), rules, {quality::default_criteria(), 1.0}, options);
+  options.max_triangles_percent = max_triangles_percent;
+  const auto repaired = repair({model, surface, rules, {quality::default_criteria(), 1.0}, options}, all_shells(model));
   EXPECT_TRUE(repaired.has_value());
   std::set<std::string> why;
   for (const Unrepaired& left : repaired->unrepaired) why.insert(left.why);
@@ -294,8 +294,8 @@ std::set<std::string> reasons(const Model& model, const Rules& rules, double mos
 }
 
 TEST(Reasons, are_told_for_what_is_left) {
-  const Grid narrow{8, 1, [](double x, double y) { return Vec3(x, 0.1 * y, 0); }, {}};
-  EXPECT_EQ(reasons(model_of(narrow.positions(), narrow.shells()), {}),
+  const Grid divide_in_three{8, 1, [](double x, double y) { return Vec3(x, 0.1 * y, 0); }, {}};
+  EXPECT_EQ(reasons(model_of(divide_in_three.positions(), divide_in_three.shells()), {}),
             std::set<std::string>{"it lies between edges of the part that have to stay"});
   Rules rules;
   rules.node = [](NodeIndex) { return static_cast<std::uint8_t>(kStays | kNeeded); };
@@ -316,8 +316,8 @@ TEST(Cancelled, a_repair_says_so) {
   plant_wrong_edge(mesh, grid, 8, 8);
   const Model bad = mesh.model();
   const relax::ReferenceSurface surface(bad, all_shells(bad), 30);
-  const auto repaired =
-      repair(bad, surface, bad_shells(bad, quality::Grade::warn), {}, {quality::default_criteria(), 1.0}, {}, [](double) { return false; });
+  const auto repaired = repair({bad, surface, {}, {quality::default_criteria(), 1.0}, {}}, bad_shells(bad, quality::Grade::warn),
+                               [](double) { return false; });
   ASSERT_FALSE(repaired.has_value());
   EXPECT_EQ(repaired.error().message, cancelled().message);
 }

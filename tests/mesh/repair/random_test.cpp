@@ -61,7 +61,7 @@ bool fails(const Model& model, ShellIndex shell) {
   std::vector<Vec3> corners;
   for (int i = 0; i < model.shell(shell).corners(); ++i)
     corners.push_back(model.position(model.shell(shell).node[static_cast<std::size_t>(i)]));
-  return quality::judge(quality::measure(corners), quality::default_criteria(), 1.0).fail != 0;
+  return quality::judge(quality::measure(corners), {quality::default_criteria(), 1.0}).fail != 0;
 }
 
 ShellSet failing_shells(const Model& model) {
@@ -95,7 +95,7 @@ TEST_P(Random, shaking_is_repaired_and_the_sheet_stays_whole) {
   const Shaken sheet = shaken(GetParam());
   const Model good = model_of(sheet.grid.positions(), sheet.grid.shells());
   const relax::ReferenceSurface surface(good, all_shells(good), 30);
-  const auto repaired = repair(sheet.model, surface, all_shells(sheet.model), {}, {quality::default_criteria(), 1.0}, {});
+  const auto repaired = repair({sheet.model, surface, {}, {quality::default_criteria(), 1.0}, {}}, all_shells(sheet.model));
   ASSERT_TRUE(repaired.has_value());
   const Model next = carried_out(sheet.model, repaired->change);
   const Shape a = shape_of(sheet.model), b = shape_of(next);
@@ -136,7 +136,7 @@ TEST_P(Random, nothing_forbidden_is_touched) {
   const Model good = model_of(sheet.grid.positions(), sheet.grid.shells());
   const relax::ReferenceSurface surface(good, all_shells(good), 30);
   const Forbidden forbidden(sheet.model, GetParam());
-  const auto repaired = repair(sheet.model, surface, all_shells(sheet.model), forbidden.rules(), {quality::default_criteria(), 1.0}, {});
+  const auto repaired = repair({sheet.model, surface, forbidden.rules(), {quality::default_criteria(), 1.0}, {}}, all_shells(sheet.model));
   ASSERT_TRUE(repaired.has_value());
   const Restructuring& change = repaired->change;
   EXPECT_FALSE(change.empty());
@@ -169,12 +169,12 @@ TEST(Limits, no_node_goes_farther_than_it_may_however_often_it_moves) {
     const Shaken sheet = shaken(seed);
     const Model good = model_of(sheet.grid.positions(), sheet.grid.shells());
     const relax::ReferenceSurface surface(good, all_shells(good), 30);
-    const relax::Judge judge{quality::default_criteria(), 1.0};
+    const quality::SizedCriteria criteria{quality::default_criteria(), 1.0};
     Options options;
-    options.relax.most_on_surface = 0.1;
-    options.relax.most_on_line = 0.02;
-    options.most_rounds = 3;
-    const auto repaired = repair(sheet.model, surface, all_shells(sheet.model), {}, judge, options);
+    options.relax.max_move_on_surface = 0.1;
+    options.relax.max_move_on_line = 0.02;
+    options.max_rounds = 3;
+    const auto repaired = repair({sheet.model, surface, {}, criteria, options}, all_shells(sheet.model));
     ASSERT_TRUE(repaired.has_value());
     EXPECT_FALSE(repaired->change.moved.empty());
     const std::vector<relax::Freedom> freedoms = relax::node_freedoms(good, every_node(good), 30);
@@ -205,8 +205,8 @@ TEST(Limits, no_more_triangles_than_their_share_or_than_there_were) {
   std::map<double, std::size_t> triangles;
   for (const double percent : {0.0, 2.0, 50.0}) {
     Options options;
-    options.most_triangles_percent = percent;
-    const auto repaired = repair(bad, surface, all_shells(bad), {}, {quality::default_criteria(), 1.0}, options);
+    options.max_triangles_percent = percent;
+    const auto repaired = repair({bad, surface, {}, {quality::default_criteria(), 1.0}, options}, all_shells(bad));
     ASSERT_TRUE(repaired.has_value());
     triangles[percent] = triangles_of(carried_out(bad, repaired->change));
   }
@@ -225,7 +225,7 @@ TEST(Bad, input_is_left_alone_and_said) {
   const Model model = model_of(positions, shells);
   const Model good = model_of(grid.positions(), grid.shells());
   const relax::ReferenceSurface surface(good, all_shells(good), 30);
-  const auto repaired = repair(model, surface, all_shells(model), {}, {quality::default_criteria(), 1.0}, {});
+  const auto repaired = repair({model, surface, {}, {quality::default_criteria(), 1.0}, {}}, all_shells(model));
   ASSERT_TRUE(repaired.has_value());
   EXPECT_FALSE(repaired->unrepaired.empty());
   for (const auto& [node, position] : repaired->change.moved) EXPECT_TRUE(position.allFinite());

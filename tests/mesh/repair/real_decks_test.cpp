@@ -133,12 +133,12 @@ TEST_P(RealDecks, are_repaired_where_a_bump_damaged_them) {
   Model model = opened->model;
   if (!model.adjacency) model.adjacency = std::make_shared<const Adjacency>(build_adjacency(model));
   const double size = quality::guess_target_size(model);
-  const auto was = quality::judge_model(model, quality::default_criteria(), size);
+  const auto was = quality::judge_model(model, {quality::default_criteria(), size});
   const NodeIndex centre = smoothest_place(model);
   const Model bad = bumped(model, centre, GetParam().radius * size, GetParam().height * GetParam().radius * size);
-  const auto is = quality::judge_model(bad, quality::default_criteria(), size);
+  const auto is = quality::judge_model(bad, {quality::default_criteria(), size});
   const ShellSet fails = damaged(was, bad, is, true), scope = damaged(was, bad, is, false);
-  const relax::Judge judge{quality::default_criteria(), size};
+  const quality::SizedCriteria criteria{quality::default_criteria(), size};
   const auto start = std::clock();
   NodeSet about;
   for (const ShellIndex s : scope)
@@ -149,11 +149,11 @@ TEST_P(RealDecks, are_repaired_where_a_bump_damaged_them) {
   for (int ring = 0; ring < 6; ++ring) covered = shells_touching(bad, nodes_of(bad, covered));
   const relax::ReferenceSurface surface(bad, covered, 30);
   const auto middle = std::clock();
-  const Result<Repaired> repaired = repair(bad, surface, scope, {}, judge, {});
+  const Result<Repaired> repaired = repair({bad, surface, {}, criteria, {}}, scope);
   ASSERT_TRUE(repaired.has_value());
   const auto end = std::clock();
   const Model good = carried_out(bad, repaired->change);
-  const auto after = quality::judge_model(good, quality::default_criteria(), size);
+  const auto after = quality::judge_model(good, {quality::default_criteria(), size});
   const ShellSet fails_left = damaged(was, good, after, true), left = damaged(was, good, after, false);
   std::cout << GetParam().deck << " L " << size << " R " << GetParam().radius << " h/R " << GetParam().height << ": shells "
             << live_shells(model) << ", damaged " << scope.size() << " (fail " << fails.size() << ") -> " << left.size() << " (fail "

@@ -19,7 +19,7 @@ TEST(Strips, go_from_one_end_of_the_sheet_to_the_other_without_a_triangle) {
   const Grid grid = flat(5, 4);
   PatchFixture fixture(model_of(grid.positions(), grid.shells()));
   const Strip strip{fixture.shell(grid.shell(2, 1)), 0};
-  EXPECT_EQ(course_of(fixture.patch, strip).quads.size(), 4U);
+  EXPECT_EQ(path_of(fixture.patch, strip).quads.size(), 4U);
   ASSERT_FALSE(fixture.divide(strip));
   const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
@@ -98,7 +98,7 @@ TEST(Strips, end_before_short_edges_in_a_triangle_that_has_the_shorter_diagonal)
   const Grid grid{3, 6, [](double x, double y) { return Vec3(x == 2 || x == 3 ? 1 + (x - 1) * (3 - 0.375 * y) : x, y, 0); }, {}};
   PatchFixture fixture(model_of(grid.positions(), grid.shells()));
   const Strip strip{fixture.shell(grid.shell(1, 0)), 0, 2.0};
-  const std::vector<StripQuad> quads = course_of(fixture.patch, strip).quads;
+  const std::vector<StripQuad> quads = path_of(fixture.patch, strip).quads;
   EXPECT_EQ(quads.size(), 2U) << "the edges are 3, 2.625, 2.25 and then 1.875 long";
   ASSERT_FALSE(fixture.divide(strip));
   const Model after = fixture.after();
@@ -148,7 +148,7 @@ TEST(Strips, stop_before_what_may_not_be_divided) {
   rules.shell = [&](ShellIndex shell) { return shell == shell_at(2 + 3 * 5) ? std::uint8_t{kIndivisible} : std::uint8_t{0}; };
   PatchFixture fixture(model_of(grid.positions(), grid.shells()), rules);
   const Strip strip{fixture.shell(2 + 0 * 5), 0};
-  EXPECT_EQ(course_of(fixture.patch, strip).quads.size(), 2U);
+  EXPECT_EQ(path_of(fixture.patch, strip).quads.size(), 2U);
   ASSERT_FALSE(fixture.divide(strip));
   const Model after = fixture.after();
   EXPECT_EQ(what_is_wrong(after), "");
@@ -164,7 +164,7 @@ TEST(Strips, that_cross_themselves_are_refused) {
   const Refusal refusal = fixture.divide(strip);
   ASSERT_TRUE(refusal);
   EXPECT_EQ(*refusal, "the strip of quads there crosses itself");
-  EXPECT_TRUE(course_of(fixture.patch, strip).quads.empty());
+  EXPECT_TRUE(path_of(fixture.patch, strip).quads.empty());
 }
 
 TEST(Strips, go_and_leave_the_sheet_whole) {
@@ -209,7 +209,7 @@ TEST(Repairs, cure_a_squeezed_sheet_by_taking_strips_out) {
                   {}};
   const Model model = model_of(grid.positions(), grid.shells());
   const relax::ReferenceSurface surface(model, all_shells(model), Options{}.relax.feature_angle);
-  const auto repaired = repair(model, surface, all_shells(model), {}, {quality::default_criteria(), 1}, {});
+  const auto repaired = repair({model, surface, {}, {quality::default_criteria(), 1}, {}}, all_shells(model));
   ASSERT_TRUE(repaired) << repaired.error().message;
   EXPECT_EQ(repaired->bad_before, 18U);
   const Model after = carried_out(model, repaired->change);
@@ -229,8 +229,8 @@ TEST(Repairs, cure_a_stretched_sheet_by_whole_strips) {
                   {}};
   const Model model = model_of(grid.positions(), grid.shells());
   const relax::ReferenceSurface surface(model, all_shells(model), Options{}.relax.feature_angle);
-  const relax::Judge judge{quality::default_criteria(), 1};
-  const auto repaired = repair(model, surface, all_shells(model), {}, judge, {});
+  const quality::SizedCriteria criteria{quality::default_criteria(), 1};
+  const auto repaired = repair({model, surface, {}, criteria, {}}, all_shells(model));
   ASSERT_TRUE(repaired) << repaired.error().message;
   EXPECT_EQ(repaired->bad_before, 36U);
   const Model after = carried_out(model, repaired->change);

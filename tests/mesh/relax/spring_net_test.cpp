@@ -1,5 +1,5 @@
 // Where nodes stand on the reference and what they are held by, in flat sheets whose answers are known.
-#include "mesh/relax/net.h"
+#include "mesh/relax/spring_net.h"
 
 #include <gtest/gtest.h>
 
@@ -21,13 +21,13 @@ Model squares(int columns, int rows, double size = kSize) {
   return make_grid(columns, rows, [=](int i, int j) { return Vec3(size * i, size * j, 0); });
 }
 
-relax::Net net_of(const Model& model, const Model& reference, const NodeSet& movable) {
+relax::SpringNet net_of(const Model& model, const Model& reference, const NodeSet& movable) {
   const relax::ReferenceSurface surface(reference, all_shells(reference), 30);
-  return relax::make_net(model, surface, movable, 30, {}).value();
+  return relax::make_spring_net(model, surface, movable, 30, {}).value();
 }
 
 /// The springs of a node by the node at their other end.
-std::map<NodeIndex, relax::Spring> springs_at(const relax::Net& net, NodeIndex node) {
+std::map<NodeIndex, relax::Spring> springs_at(const relax::SpringNet& net, NodeIndex node) {
   std::map<NodeIndex, relax::Spring> springs;
   const auto local = static_cast<std::size_t>(std::find(net.nodes.begin(), net.nodes.end(), node) - net.nodes.begin());
   if (local >= net.movable) return springs;
@@ -38,7 +38,7 @@ std::map<NodeIndex, relax::Spring> springs_at(const relax::Net& net, NodeIndex n
 
 TEST(relax_net, has_a_spring_for_each_edge_and_diagonal_as_strong_as_its_shells_are_many) {
   const Model model = squares(4, 4);
-  const relax::Net net = net_of(model, model, all_nodes(model));
+  const relax::SpringNet net = net_of(model, model, all_nodes(model));
   EXPECT_EQ(net.movable, 21u) << "all but the corners";
   EXPECT_EQ(net.nodes.size(), 25u);
   for (const auto& [at, around] : {std::pair(std::pair(2, 2), 8u), std::pair(std::pair(2, 0), 5u), std::pair(std::pair(1, 1), 8u)}) {
@@ -63,7 +63,7 @@ TEST(relax_net, has_no_diagonals_in_triangles) {
     shells.push_back({0, 1 + k, 1 + (k + 1) % 6, 1 + (k + 1) % 6});
   }
   const Model model = make_shells(points, shells);
-  const relax::Net net = net_of(model, model, {NodeIndex(0)});
+  const relax::SpringNet net = net_of(model, model, {NodeIndex(0)});
   const auto springs = springs_at(net, NodeIndex(0));
   EXPECT_EQ(springs.size(), 6u);
   for (const auto& [other, spring] : springs) {
@@ -74,7 +74,7 @@ TEST(relax_net, has_no_diagonals_in_triangles) {
 
 TEST(relax_net, has_springs_as_long_as_the_mesh_is_fine_not_the_reference) {
   const Model reference = squares(4, 4, 10), fine = squares(8, 8, 5);
-  const relax::Net net = net_of(fine, reference, all_nodes(fine));
+  const relax::SpringNet net = net_of(fine, reference, all_nodes(fine));
   for (const auto& [other, spring] : springs_at(net, grid_node(8, 4, 4))) {
     const bool is_diagonal = other.value / 9 != 4 && other.value % 9 != 4;
     // a little longer than in the corners, where nodes stay whose edges are short
@@ -84,7 +84,7 @@ TEST(relax_net, has_springs_as_long_as_the_mesh_is_fine_not_the_reference) {
 
 TEST(relax_net, has_no_colour_twice_in_a_shell) {
   const Model model = sheet_on(torus(), 12, 9, 0.3);
-  const relax::Net net = net_of(model, model, all_nodes(model));
+  const relax::SpringNet net = net_of(model, model, all_nodes(model));
   std::vector<int> colour_of(net.nodes.size(), -1);
   std::size_t coloured = 0;
   for (std::size_t c = 0; c < net.colours.size(); ++c)
@@ -167,12 +167,12 @@ TEST(relax_footing, leads_back_along_the_sheet_and_along_the_line_to_its_end) {
   const relax::ReferenceSurface surface(model, all_shells(model), 30);
   const double cosine = deterministic_cos_degrees(30);
   relax::SurfaceAnchor inside = relax::find_anchor(model, surface, grid_node(6, 1, 1), cosine);
-  EXPECT_LT((relax::put_back(surface, Vec3(22, 17, 3), inside) - Vec3(22, 17, 0)).norm(), 1e-9);
+  EXPECT_LT((relax::move_anchor(surface, Vec3(22, 17, 3), inside) - Vec3(22, 17, 0)).norm(), 1e-9);
   EXPECT_EQ(inside.shell, ShellIndex(std::size_t{4 + 6 * 3})) << "the anchor follows";
   relax::SurfaceAnchor edge = relax::find_anchor(model, surface, grid_node(6, 1, 0), cosine);
-  EXPECT_LT((relax::put_back(surface, Vec3(22, 2, 3), edge) - Vec3(22, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((relax::move_anchor(surface, Vec3(22, 2, 3), edge) - Vec3(22, 0, 0)).norm(), 1e-9);
   EXPECT_EQ(std::max(edge.from, edge.to), grid_node(6, 5, 0));
-  EXPECT_LT((relax::put_back(surface, Vec3(44, 8, 0), edge) - Vec3(30, 0, 0)).norm(), 1e-9) << "not round the corner";
+  EXPECT_LT((relax::move_anchor(surface, Vec3(44, 8, 0), edge) - Vec3(30, 0, 0)).norm(), 1e-9) << "not round the corner";
 }
 
 TEST(relax, takes_nodes_that_alone_may_move_back_to_the_middle) {
@@ -182,7 +182,7 @@ TEST(relax, takes_nodes_that_alone_may_move_back_to_the_middle) {
   pulled.positions.set(inside.value, Vec3(16.7, 13.9, 0));
   pulled.positions.set(edge.value, Vec3(13.4, 0, 0));
   const relax::ReferenceSurface surface(regular, all_shells(regular), 30);
-  const relax::Relaxed relaxed = relax::relax(pulled, surface, {edge, inside}, judge_of(), {}).value();
+  const relax::Relaxed relaxed = relax::relax({pulled, surface, criteria_of(), {}}, {edge, inside}).value();
   ASSERT_EQ(relaxed.nodes, (NodeSet{edge, inside}));
   EXPECT_LT((relaxed.positions[0] - Vec3(15, 0, 0)).norm(), 0.2);
   EXPECT_LT((relaxed.positions[1] - Vec3(15, 15, 0)).norm(), 0.2);

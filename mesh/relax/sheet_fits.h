@@ -1,4 +1,4 @@
-// The local fits of a model's sheets, one for each node and each sheet that meets there, made when they are first asked for. Private to
+// The local fits of a model's smooth sheets: one for each node and each sheet that meets there, computed when first used. Private to
 // mesh/relax.
 #pragma once
 
@@ -14,17 +14,17 @@
 
 namespace prismesh::mesh::relax {
 
-class Sheets {
+class SheetFits {
  public:
   /// `model` must outlive it.
-  Sheets(const Model& model, double cos_limit);
+  SheetFits(const Model& model, double cos_limit);
 
-  /// The fit at a shell's corner. By any thread.
+  /// The fit at a shell's corner. Thread-safe.
   const LocalFit& at(ShellIndex shell, int corner) const;
   /// Whether all edges at a node are smooth.
   bool is_smooth(NodeIndex node) const;
-  /// As relax::across, quicker where a node has been asked before.
-  ShellIndex beyond(ShellIndex shell, NodeIndex a, NodeIndex b) const;
+  /// As relax::smooth_neighbour, but it remembers which nodes are smooth.
+  ShellIndex smooth_neighbour(ShellIndex shell, NodeIndex a, NodeIndex b) const;
 
  private:
   using Slot = std::atomic<const LocalFit*>;
@@ -35,16 +35,16 @@ class Sheets {
 
   const Model& model_;
   double cos_limit_;
-  // zeroed by the system where they are touched, so that a large model costs nothing before
-  std::unique_ptr<Slot[], Free> slots_;                             ///< four a shell
-  std::unique_ptr<std::atomic<std::uint8_t>[], Free> node_states_;  ///< 0: not known
+  // The system zeroes this memory page by page on first use, so that a large model costs nothing before.
+  std::unique_ptr<Slot[], Free> slots_;                             ///< four for each shell
+  std::unique_ptr<std::atomic<std::uint8_t>[], Free> node_states_;  ///< by node; 0: not known
   mutable std::mutex mutex_;
   mutable std::deque<LocalFit> fits_;
 };
 
 /// Mean length of the edges of the shells at a node; 0 if there is none.
 double mean_edge(const Model& model, NodeIndex node);
-/// The unit normal by a shell's diagonals (a triangle's sides); zero if it has none.
+/// The unit normal by a shell's diagonals, or a triangle's sides; zero if the shell has no area.
 Vec3 shell_normal(const Model& model, const ShellNodes& shell);
 
 }  // namespace prismesh::mesh::relax

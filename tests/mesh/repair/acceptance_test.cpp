@@ -1,5 +1,5 @@
 // Whether a change of a patch may be: each reason against it alone.
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
 
 #include <cmath>
 
@@ -29,7 +29,7 @@ bool harms_after(PatchFixture& fixture, LocalNode node, const Vec3& place) {
   begin_judged(fixture);
   fixture.patch.move(node, place);
   judge_shells(fixture.context, fixture.patch.changed_shells());
-  return harms(fixture.patch);
+  return adds_failures(fixture.patch);
 }
 
 TEST(Harms, when_a_shell_that_passed_fails) {
@@ -58,7 +58,7 @@ TEST(Harms, when_a_new_shell_fails_and_none_is_cured) {
   begin_judged(slats.fixture);
   ASSERT_FALSE(split_quad(slats.fixture.context, slats.fixture.shell(1), 0));
   judge_shells(slats.fixture.context, slats.fixture.patch.changed_shells());
-  EXPECT_TRUE(harms(slats.fixture.patch));
+  EXPECT_TRUE(adds_failures(slats.fixture.patch));
 }
 
 TEST(Harms, not_when_a_new_shell_fails_and_more_are_cured) {
@@ -70,7 +70,7 @@ TEST(Harms, not_when_a_new_shell_fails_and_more_are_cured) {
   patch.remove_shell(slats.fixture.shell(1));
   patch.add_shell(corners, slats.fixture.shell(2));
   judge_shells(slats.fixture.context, patch.changed_shells());
-  EXPECT_FALSE(harms(patch));
+  EXPECT_FALSE(adds_failures(patch));
 }
 
 /// Whether a mesh conforms in which nothing has changed.
@@ -142,12 +142,12 @@ TEST(Conforms, not_a_sheet_folded_where_it_has_no_crease) {
 TEST(KeepsToSurface, within_what_is_allowed_or_was_there) {
   const Grid grid = flat(4, 4);
   PatchFixture fixture(model_of(grid.positions(), grid.shells()));
-  ASSERT_EQ(fixture.options.most_off_surface, 0.02);
+  ASSERT_EQ(fixture.options.max_off_surface, 0.02);
   const LocalNode node = node_at(fixture, grid, 2, 2);
   const auto keeps_at = [&](double height) {
     fixture.patch.begin();
     fixture.patch.move(node, Vec3(2, 2, height));
-    const bool keeps = keeps_to_surface(fixture.context);
+    const bool keeps = stays_on_surface(fixture.context);
     fixture.patch.take_back();
     return keeps;
   };

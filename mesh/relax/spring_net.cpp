@@ -1,4 +1,4 @@
-#include "mesh/relax/net.h"
+#include "mesh/relax/spring_net.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,28 +10,28 @@
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/relax/feature_lines.h"
-#include "mesh/relax/sheets.h"
-#include "mesh/relax/stretches.h"
+#include "mesh/relax/interruptible_loop.h"
+#include "mesh/relax/sheet_fits.h"
 
 namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr std::size_t kNetFootingGrain = 128;
+constexpr std::size_t kAnchorGrain = 128;
 constexpr std::size_t kNetNodeGrain = 1024;
-constexpr double kShareOfFootings = 0.8;  ///< of the progress
-constexpr int kSmoothings = 10;           ///< of the sizes: how many elements away what is longer lends its length
+constexpr double kShareOfAnchors = 0.8;  ///< of the progress
+constexpr int kSmoothings = 10;          ///< smoothing steps of the target lengths: how many elements far a long edge shares its length
 constexpr double kSqrt2 = 1.4142135623730951;
-constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoNumber = std::numeric_limits<std::uint32_t>::max();
 
-/// Local numbers by the model's; made for one net.
-class Numbers {
+/// Local numbers by node of the model.
+class LocalNumbers {
  public:
-  explicit Numbers(const Model& model) : number_(model.node_count(), kNobody) {}
+  explicit LocalNumbers(const Model& model) : number_(model.node_count(), kNoNumber) {}
   std::uint32_t of(NodeIndex node) const { return number_[node.value]; }
-  std::uint32_t add(NodeIndex node, Net& net) {
+  std::uint32_t add(NodeIndex node, SpringNet& net) {
     std::uint32_t& number = number_[node.value];
-    if (number == kNobody) {
+    if (number == kNoNumber) {
       number = static_cast<std::uint32_t>(net.nodes.size());
       net.nodes.push_back(node);
     }
@@ -42,14 +42,14 @@ class Numbers {
   std::vector<std::uint32_t> number_;
 };
 
-void add_shells(const Model& model, Numbers& numbers, Net& net) {
+void add_shells(const Model& model, LocalNumbers& numbers, SpringNet& net) {
   net.shells = shells_touching(model, NodeSet(net.nodes.begin(), net.nodes.end()));
   net.corners.resize(net.shells.size());
   for (std::size_t s = 0; s < net.shells.size(); ++s)
     for (std::size_t c = 0; c < 4; ++c) net.corners[s][c] = static_cast<std::int32_t>(numbers.add(model.shell(net.shells[s]).node[c], net));
 }
 
-/// A shell's springs at one of its corners go to `to`, each with its rest length as a multiple of an edge's.
+/// Calls `add(other end, whether it is a diagonal)` for each spring of a shell at one of its corners.
 template <class Add>
 void springs_in(const ShellNodes& shell, NodeIndex node, const Add& add) {
   const int corners = shell.corners();
@@ -62,12 +62,13 @@ void springs_in(const ShellNodes& shell, NodeIndex node, const Add& add) {
   }
 }
 
-/// Springs of each movable node; `rest` is 1 for edges and the root of 2 for diagonals until sizes are known. Returns whether it was let.
-bool add_springs(const Model& model, const Numbers& numbers, const std::function<bool()>& goes_on, Net& net) {
+/// Adds the springs of each movable node. Until sizes are known, `rest` is 1 for edges and the root of 2 for diagonals. Returns false if
+/// cancelled.
+bool add_springs(const Model& model, const LocalNumbers& numbers, const std::function<bool()>& goes_on, SpringNet& net) {
   net.first_spring.assign(1, 0);
   std::vector<Spring> own;
   for (std::size_t i = 0; i < net.movable; ++i) {
-    if (i % kStretch == kStretch - 1 && !goes_on()) return false;
+    if (i % kInterruptibleBlock == kInterruptibleBlock - 1 && !goes_on()) return false;
     own.clear();
     for (const ShellIndex shell : model.adjacency->shells_of(net.nodes[i]))
       springs_in(model.shell(shell), net.nodes[i], [&](NodeIndex other, bool is_diagonal) {
@@ -86,8 +87,8 @@ bool add_springs(const Model& model, const Numbers& numbers, const std::function
   return true;
 }
 
-/// One more averaging of each movable node's size with its neighbours'.
-void smooth_once(Net& net, std::vector<double>& next) {
+/// Replaces each movable node's size by the mean of it and its neighbours'.
+void smooth_once(SpringNet& net, std::vector<double>& next) {
   parallel_for(net.movable, kNetNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double sum = net.size[i];
@@ -98,8 +99,8 @@ void smooth_once(Net& net, std::vector<double>& next) {
   std::swap(net.size, next);
 }
 
-/// How long the springs are beside what they should be, summed over all.
-double length_share(const Net& net) {
+/// Total length of the springs over their total rest length, weighted.
+double length_share(const SpringNet& net) {
   double is = 0, should_be = 0;
   for (std::size_t i = 0; i < net.movable; ++i)
     for (const Spring& spring : net.springs_of(i)) {
@@ -109,9 +110,10 @@ double length_share(const Net& net) {
   return is > 0 && should_be > 0 ? is / should_be : 1;
 }
 
-/// Sizes that change slowly from node to node, so that what was stretched in one place shares it with its surroundings. They are the
-/// reference's at the node's place, not the mesh's own: relaxing again finds nearly the same, and a mesh that is finer in places stays so.
-bool set_lengths(const Model& model, const std::function<bool()>& goes_on, Net& net) {
+/// Sets sizes and rest lengths. Sizes change slowly from node to node, so that stretched elements share their length with those about them.
+/// They are the reference's at the node, not the mesh's own: relaxing again finds nearly the same, and a locally finer mesh stays so.
+/// Returns false if cancelled.
+bool set_lengths(const Model& model, const std::function<bool()>& goes_on, SpringNet& net) {
   net.size.resize(net.nodes.size());
   parallel_for(net.nodes.size(), kNetNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) net.size[i] = i < net.movable ? net.anchor[i].size : mean_edge(model, net.nodes[i]);
@@ -131,7 +133,7 @@ bool set_lengths(const Model& model, const std::function<bool()>& goes_on, Net& 
   return true;
 }
 
-void colour(Net& net) {
+void colour(SpringNet& net) {
   std::vector<std::uint8_t> colour_of(net.movable, 64);
   for (std::size_t i = 0; i < net.movable; ++i) {
     std::uint64_t taken = 0;
@@ -139,7 +141,7 @@ void colour(Net& net) {
       if (spring.to < net.movable && colour_of[spring.to] < 64) taken |= std::uint64_t{1} << colour_of[spring.to];
     const int free = std::countr_one(taken);
     if (free >= 64) {
-      net.anchor[i].freedom = Freedom::fixed;  // 64 neighbours that all differ: no mesh
+      net.anchor[i].freedom = Freedom::fixed;  // neighbours of 64 colours: no valid mesh
       continue;
     }
     colour_of[i] = static_cast<std::uint8_t>(free);
@@ -150,21 +152,21 @@ void colour(Net& net) {
 
 }  // namespace
 
-Result<Net> make_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle,
-                     const Progress& progress) {
+Result<SpringNet> make_spring_net(const Model& model, const ReferenceSurface& surface, const NodeSet& movable, double feature_angle,
+                                  const Progress& progress) {
   const double feature_cos = deterministic_cos_degrees(feature_angle);
   std::vector<SurfaceAnchor> anchors(movable.size());
   const auto find_some = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) anchors[i] = find_anchor(model, surface, movable[i], feature_cos);
   };
   const auto tell = [&](double fraction) { return !progress || progress(fraction); };
-  if (!parallel_in_stretches(
-          movable.size(), kNetFootingGrain, [&](double done) { return tell(kShareOfFootings * done); }, find_some))
+  if (!parallel_for_interruptible(
+          movable.size(), kAnchorGrain, [&](double done) { return tell(kShareOfAnchors * done); }, find_some))
     return fail(cancelled());
-  const auto goes_on = [&] { return tell(kShareOfFootings); };
+  const auto goes_on = [&] { return tell(kShareOfAnchors); };
   if (!goes_on()) return fail(cancelled());
-  Net net;
-  Numbers numbers(model);
+  SpringNet net;
+  LocalNumbers numbers(model);
   for (std::size_t i = 0; i < movable.size(); ++i)
     if (anchors[i].freedom != Freedom::fixed) {
       numbers.add(movable[i], net);

@@ -1,23 +1,23 @@
-// Thickness and wave speed of a shell, as criteria look at them.
+// Thickness and wave speed of a shell, which criteria may depend on.
 #pragma once
 
 #include "mesh/model/model.h"
 
 namespace prismesh::mesh::quality {
 
-/// What of a shell besides its corners the criteria may look at; 0 where unknown.
-struct Sheet {
+/// Properties of a shell besides its corners; 0 where unknown.
+struct ShellProperties {
   float thickness = 0;   ///< deck's length unit
   float wave_speed = 0;  ///< of the material, deck's units; 0 also where it doesn't limit the time step
 
-  Sheet() = default;
-  Sheet(double its_thickness, double its_wave_speed = 0)
+  ShellProperties() = default;
+  ShellProperties(double its_thickness, double its_wave_speed = 0)
       : thickness(static_cast<float>(its_thickness)), wave_speed(static_cast<float>(its_wave_speed)) {}
 };
-/// Of a model's shell: thickness of its own card, else of its section.
-Sheet sheet_of(const Model& model, ShellIndex shell);
+/// The properties of a model's shell; the thickness is that of thickness_of().
+ShellProperties properties_of(const Model& model, ShellIndex shell);
 
-/// A shell's thickness: its own card's, else its section's; 0 if neither says.
+/// A shell's thickness by its own card, else by its section; 0 if neither has one.
 inline float thickness_of(const Model& model, std::size_t shell) {
   if (const float own = model.shell_thickness[shell]; own > 0) return own;
   const PartIndex part = model.shell_parts[shell];

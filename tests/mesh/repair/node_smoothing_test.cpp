@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/repair/settling.h"
+#include "mesh/repair/node_smoothing.h"
 #include "tests/mesh/repair/patch_fixture.h"
 
 namespace prismesh::mesh::repair {
@@ -28,7 +28,7 @@ Settled settle_shifted(PatchFixture& fixture, const Grid& grid, std::size_t i, s
   const Vec3 shifted = grid.place(static_cast<double>(i) + by_x, static_cast<double>(j) + by_y);
   fixture.patch.begin();
   fixture.patch.move(node, shifted);
-  settle(fixture.context, 30, along_lines);
+  smooth_nodes(fixture.context, 30, along_lines);
   return {shifted, fixture.patch.position(node)};
 }
 
@@ -68,7 +68,7 @@ TEST(Settling, a_node_that_has_to_stay_stays_on_its_line) {
 TEST(Settling, no_farther_along_a_line_than_it_may) {
   const Grid grid = step();
   PatchFixture fixture(model_of(grid.positions(), grid.shells()));
-  fixture.options.relax.most_on_line = 0.05;
+  fixture.options.relax.max_move_on_line = 0.05;
   const LocalNode node = fixture.patch.find(at(grid.node(4, 5)));
   const Vec3 home = fixture.patch.position(node);
   // Its neighbours on the line went on, so it would like to follow.
@@ -76,7 +76,7 @@ TEST(Settling, no_farther_along_a_line_than_it_may) {
   for (const std::size_t j : {4, 6})
     fixture.patch.move(fixture.patch.find(at(grid.node(4, j))), grid.place(4, static_cast<double>(j) + 0.5));
   fixture.patch.move(node, home);
-  settle(fixture.context, 30, true);
+  smooth_nodes(fixture.context, 30, true);
   const double way = (fixture.patch.position(node) - home).norm();
   EXPECT_GT(way, 0.01);
   EXPECT_LE(way, 0.05);
@@ -94,16 +94,16 @@ TEST(Settling, an_end_of_a_tube_stays_round) {
 TEST(Settling, not_where_a_lines_edge_would_cut_a_bend) {
   // Edges of 1 on a radius of 2: the longer one of them gets, the farther it is from the end's circle.
   const Grid grid{11, 6, [](double x, double y) { return Vec3(2 * std::sin(x / 2), y, 2 * std::cos(x / 2)); }, {}};
-  const auto slid = [&](double most_off_surface) {
+  const auto slid = [&](double max_off_surface) {
     PatchFixture fixture(model_of(grid.positions(), grid.shells()));
-    fixture.options.most_off_surface = most_off_surface;
+    fixture.options.max_off_surface = max_off_surface;
     const LocalNode node = fixture.patch.find(at(grid.node(5, 0)));
     const Vec3 home = fixture.patch.position(node);
     fixture.patch.begin();
     for (const std::size_t i : {4, 5, 6})
       fixture.patch.move(fixture.patch.find(at(grid.node(i, 1))), grid.place(static_cast<double>(i) + 0.5, 1), true);
     fixture.patch.move(node, home);
-    settle(fixture.context, 30, true);
+    smooth_nodes(fixture.context, 30, true);
     return (fixture.patch.position(node) - home).norm();
   };
   EXPECT_GT(slid(1.0), 0.1);

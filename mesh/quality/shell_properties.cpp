@@ -1,10 +1,10 @@
-#include "mesh/quality/sheet.h"
+#include "mesh/quality/shell_properties.h"
 
 #include "mesh/quality/time_step.h"
 
 namespace prismesh::mesh::quality {
 
-Sheet sheet_of(const Model& model, ShellIndex shell) {
+ShellProperties properties_of(const Model& model, ShellIndex shell) {
   const PartIndex part = model.shell_parts[shell.value];
   const double speed = part.valid() ? wave_speed((*model.parts)[part.value]).value_or(0.0) : 0.0;
   return {thickness_of(model, shell.value), speed};

@@ -1,4 +1,4 @@
-#include "mesh/repair/by_hand.h"
+#include "mesh/repair/manual_operation.h"
 
 #include <algorithm>
 #include <functional>
@@ -7,17 +7,17 @@
 #include <tuple>
 
 #include "mesh/model/adjacency.h"
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
+#include "mesh/repair/collapse.h"
 #include "mesh/repair/divide.h"
 #include "mesh/repair/patch_geometry.h"
 #include "mesh/repair/redivide.h"
-#include "mesh/repair/unite.h"
 
 namespace prismesh::mesh::repair {
 
 namespace {
 
-constexpr int kRingsByHand = 2;
+constexpr int kRingsOfManualPatch = 2;
 
 std::string shell_text(const Model& model, ShellIndex shell) { return "shell " + std::to_string(model.shell_ids[shell.value]); }
 std::string node_text(const Model& model, NodeIndex node) { return "node " + std::to_string(model.node_ids[node.value]); }
@@ -28,7 +28,7 @@ std::string pair_text(const Model& model, std::span<const ShellIndex> shells) {
 
 Result<void> refused(const std::string& who, std::string_view why) { return fail("", who + ": " + std::string(why)); }
 
-struct Hand {
+struct ManualTask {
   const RepairContext& context;
   const Model& model;
   std::span<const ShellIndex> shells;
@@ -43,20 +43,20 @@ struct Hand {
   }
 };
 
-/// The edge two shells share; none with the reason why.
-Result<std::pair<LocalNode, LocalNode>> common_edge(const Hand& hand) {
-  const Patch& patch = hand.context.patch;
-  const Corners& corners = patch.shell(hand.shell(0)).corners;
+/// The common edge of two shells. Errors: they have none.
+Result<std::pair<LocalNode, LocalNode>> common_edge(const ManualTask& task) {
+  const Patch& patch = task.context.patch;
+  const Corners& corners = patch.shell(task.shell(0)).corners;
   const int count = corner_count(corners);
   for (int i = 0; i < count; ++i) {
     const LocalNode a = corners[static_cast<std::size_t>(i)], b = corners[static_cast<std::size_t>((i + 1) % count)];
     const std::vector<LocalShell> at = patch.shells_at(a, b);
-    if (std::find(at.begin(), at.end(), hand.shell(1)) != at.end()) return std::pair(a, b);
+    if (std::find(at.begin(), at.end(), task.shell(1)) != at.end()) return std::pair(a, b);
   }
-  return fail("", pair_text(hand.model, hand.shells) + " have no edge in common");
+  return fail("", pair_text(task.model, task.shells) + " have no edge in common");
 }
 
-/// How far the middle of a quad's diagonal is from the surface.
+/// The distance of the middle of a quad's diagonal from the surface.
 double off_surface(const RepairContext& context, LocalNode a, LocalNode b, const Vec3& normal) {
   const Vec3 middle = 0.5 * (context.patch.position(a) + context.patch.position(b));
   const double size = (context.patch.position(a) - context.patch.position(b)).norm();
@@ -64,37 +64,37 @@ double off_surface(const RepairContext& context, LocalNode a, LocalNode b, const
   return place ? place->distance : size;
 }
 
-Result<void> split_one(const Hand& hand) {
-  const Patch& patch = hand.context.patch;
-  const LocalShell quad = hand.shell(0);
+Result<void> split_one(const ManualTask& task) {
+  const Patch& patch = task.context.patch;
+  const LocalShell quad = task.shell(0);
   const Corners c = patch.shell(quad).corners;
-  const std::string who = shell_text(hand.model, hand.shells[0]);
+  const std::string who = shell_text(task.model, task.shells[0]);
   if (corner_count(c) != 4) return refused(who, "a triangle has no diagonal; name a neighbour to divide it with");
   const Vec3 normal = area_normal(patch, c).normalized();
-  const double off0 = off_surface(hand.context, c[0], c[2], normal), off1 = off_surface(hand.context, c[1], c[3], normal);
+  const double off0 = off_surface(task.context, c[0], c[2], normal), off1 = off_surface(task.context, c[1], c[3], normal);
   const double noise = 1e-3 * (patch.position(c[0]) - patch.position(c[2])).norm();
-  // The one nearer to the surface; of equals the shorter, whose triangles have the better angles.
+  // The diagonal nearer to the surface; of equals the shorter one, whose triangles have better angles.
   const bool second = std::abs(off0 - off1) > noise ? off1 < off0
                                                     : (patch.position(c[1]) - patch.position(c[3])).squaredNorm() <
                                                           (patch.position(c[0]) - patch.position(c[2])).squaredNorm();
-  return hand.done(split_quad(hand.context, quad, second ? 1 : 0), who);
+  return task.done(split_quad(task.context, quad, second ? 1 : 0), who);
 }
 
-/// The best of several ways that can be gone: the one whose worst shell is best by its angles.
+/// Takes the possible way whose worst shell has the highest composite. Errors: why none is possible.
 template <class Ways>
-Result<void> best_way(const Hand& hand, const std::string& who, const Ways& ways) {
-  Patch& patch = hand.context.patch;
+Result<void> best_way(const ManualTask& task, const std::string& who, const Ways& ways) {
+  Patch& patch = task.context.patch;
   std::optional<std::size_t> best;
-  double most = -1;
+  double max_worst = -1;
   Result<void> why = refused(who, "there is no other way");
   for (std::size_t i = 0; i < ways.size(); ++i) {
     patch.begin();
-    const Result<void> done = hand.done(ways[i](), who);
+    const Result<void> done = task.done(ways[i](), who);
     if (done) {
-      judge_shells(hand.context, patch.changed_shells());
+      judge_shells(task.context, patch.changed_shells());
       const double worst = static_cast<double>(cost_now(patch).worst) + 2;
-      if (worst > most) {
-        most = worst;
+      if (worst > max_worst) {
+        max_worst = worst;
         best = i;
       }
     } else {
@@ -108,30 +108,30 @@ Result<void> best_way(const Hand& hand, const std::string& who, const Ways& ways
   return {};
 }
 
-Result<void> split_two(const Hand& hand) {
-  const auto edge = common_edge(hand);
+Result<void> split_two(const ManualTask& task) {
+  const auto edge = common_edge(task);
   if (!edge) return fail(edge.error());
   std::vector<std::function<Refusal()>> ways;
   for (const RowEnd forward : {RowEnd::low_triangle, RowEnd::high_triangle})
     for (const RowEnd back : {RowEnd::low_triangle, RowEnd::high_triangle})
-      ways.push_back([&hand, edge = *edge, forward, back] { return divide_edge(hand.context, edge.first, edge.second, forward, back); });
-  return best_way(hand, pair_text(hand.model, hand.shells), ways);
+      ways.push_back([&task, edge = *edge, forward, back] { return divide_edge(task.context, edge.first, edge.second, forward, back); });
+  return best_way(task, pair_text(task.model, task.shells), ways);
 }
 
-Result<void> collapse(const Hand& hand) {
-  const Patch& patch = hand.context.patch;
+Result<void> collapse(const ManualTask& task) {
+  const Patch& patch = task.context.patch;
   LocalNode a, b;
-  if (hand.nodes.size() == 2) {
-    a = patch.find(hand.nodes[0]);
-    b = patch.find(hand.nodes[1]);
+  if (task.nodes.size() == 2) {
+    a = patch.find(task.nodes[0]);
+    b = patch.find(task.nodes[1]);
     if (patch.shells_at(a, b).empty())
-      return fail("", node_text(hand.model, hand.nodes[0]) + " and " + node_text(hand.model, hand.nodes[1]) + " have no edge between them");
-  } else if (hand.shells.size() == 2) {
-    const auto edge = common_edge(hand);
+      return fail("", node_text(task.model, task.nodes[0]) + " and " + node_text(task.model, task.nodes[1]) + " have no edge between them");
+  } else if (task.shells.size() == 2) {
+    const auto edge = common_edge(task);
     if (!edge) return fail(edge.error());
     std::tie(a, b) = *edge;
   } else {
-    const Corners& corners = patch.shell(hand.shell(0)).corners;
+    const Corners& corners = patch.shell(task.shell(0)).corners;
     const int count = corner_count(corners);
     double shortest = -1;
     for (int i = 0; i < count; ++i) {
@@ -144,58 +144,58 @@ Result<void> collapse(const Hand& hand) {
     }
   }
   const std::string who =
-      "the edge from " + node_text(hand.model, patch.node(a).model) + " to " + node_text(hand.model, patch.node(b).model);
-  const auto pair = union_of(hand.context, a, b);
+      "the edge from " + node_text(task.model, patch.node(a).model) + " to " + node_text(task.model, patch.node(b).model);
+  const auto pair = collapse_of(task.context, a, b);
   if (!pair) return refused(who, "both nodes hold the part's shape or are needed by something else");
-  return hand.done(unite(hand.context, {*pair}), who);
+  return task.done(collapse_nodes(task.context, {*pair}), who);
 }
 
-Result<void> merge(const Hand& hand) {
-  const Patch& patch = hand.context.patch;
-  const std::string who = pair_text(hand.model, hand.shells);
-  if (const auto edge = common_edge(hand); !edge) return fail(edge.error());
+Result<void> merge(const ManualTask& task) {
+  const Patch& patch = task.context.patch;
+  const std::string who = pair_text(task.model, task.shells);
+  if (const auto edge = common_edge(task); !edge) return fail(edge.error());
   for (std::size_t i = 0; i < 2; ++i)
-    if (corner_count(patch.shell(hand.shell(i)).corners) != 3)
-      return refused(shell_text(hand.model, hand.shells[i]), "it isn't a triangle");
-  const Loop loop = loop_of(patch, hand.shell(0), hand.shell(1));
+    if (corner_count(patch.shell(task.shell(i)).corners) != 3)
+      return refused(shell_text(task.model, task.shells[i]), "it isn't a triangle");
+  const Loop loop = loop_of(patch, task.shell(0), task.shell(1));
   if (loop.empty()) return refused(who, "they have more than an edge in common");
-  return hand.done(redivide(hand.context, hand.shell(0), hand.shell(1), {loop}), who);
+  return task.done(redivide(task.context, task.shell(0), task.shell(1), {loop}), who);
 }
 
-Result<void> swap(const Hand& hand) {
-  if (const auto edge = common_edge(hand); !edge) return fail(edge.error());
-  const Loop loop = loop_of(hand.context.patch, hand.shell(0), hand.shell(1));
-  if (loop.empty()) return refused(pair_text(hand.model, hand.shells), "they have more than an edge in common");
+Result<void> swap(const ManualTask& task) {
+  if (const auto edge = common_edge(task); !edge) return fail(edge.error());
+  const Loop loop = loop_of(task.context.patch, task.shell(0), task.shell(1));
+  if (loop.empty()) return refused(pair_text(task.model, task.shells), "they have more than an edge in common");
   std::vector<std::function<Refusal()>> ways;
-  const Corners corners = hand.context.patch.shell(hand.shell(0)).corners;
+  const Corners corners = task.context.patch.shell(task.shell(0)).corners;
   for (const std::vector<Loop>& pieces : divisions(loop, loop.size() == 6 ? 0 : 2)) {
     if (pieces.size() != 2) continue;
-    // As it is: both pieces are what is there.
+    // Skip the division that is there already.
     Loop first(corners.begin(), corners.begin() + corner_count(corners)), piece = pieces[0], other = pieces[1];
     std::sort(first.begin(), first.end());
     std::sort(piece.begin(), piece.end());
     std::sort(other.begin(), other.end());
     if (first == piece || first == other) continue;
-    ways.push_back([&hand, pieces] { return redivide(hand.context, hand.shell(0), hand.shell(1), pieces); });
+    ways.push_back([&task, pieces] { return redivide(task.context, task.shell(0), task.shell(1), pieces); });
   }
-  return best_way(hand, pair_text(hand.model, hand.shells), ways);
+  return best_way(task, pair_text(task.model, task.shells), ways);
 }
 
-Result<void> carry_out(const Hand& hand, Operation operation) {
-  const bool two = hand.shells.size() == 2;
+Result<void> carry_out(const ManualTask& task, Operation operation) {
+  const bool two = task.shells.size() == 2;
   switch (operation) {
     case Operation::split:
-      if (hand.shells.size() == 1) return split_one(hand);
-      if (two) return split_two(hand);
+      if (task.shells.size() == 1) return split_one(task);
+      if (two) return split_two(task);
       return fail("", "name one quad, or two shells with an edge in common");
     case Operation::collapse:
-      if (two || hand.shells.size() == 1 || hand.nodes.size() == 2) return collapse(hand);
+      if (two || task.shells.size() == 1 || task.nodes.size() == 2) return collapse(task);
       return fail("", "name a shell, two shells with an edge in common, or the two nodes of an edge");
     case Operation::merge:
-      if (two) return merge(hand);
+      if (two) return merge(task);
       return fail("", "name two triangles with an edge in common");
     case Operation::swap:
-      if (two) return swap(hand);
+      if (two) return swap(task);
       return fail("", "name two shells with an edge in common");
     case Operation::move: break;
   }
@@ -204,19 +204,17 @@ Result<void> carry_out(const Hand& hand, Operation operation) {
 
 }  // namespace
 
-Result<Restructuring> by_hand(const Model& model, const relax::ReferenceSurface& surface, Operation operation,
-                              std::span<const ShellIndex> shells, std::span<const NodeIndex> nodes, const Rules& rules,
-                              const relax::Judge& judge, const Options& options) {
-  ShellSet scope(shells.begin(), shells.end());
-  for (const NodeIndex node : nodes)
-    for (const ShellIndex shell : model.adjacency->shells_of(node)) scope.push_back(shell);
+Result<Restructuring> apply_manual_operation(const RepairInput& input, const ManualOperation& manual) {
+  ShellSet scope(manual.shells.begin(), manual.shells.end());
+  for (const NodeIndex node : manual.nodes)
+    for (const ShellIndex shell : input.model.adjacency->shells_of(node)) scope.push_back(shell);
   std::sort(scope.begin(), scope.end());
   scope.erase(std::unique(scope.begin(), scope.end()), scope.end());
   if (scope.empty()) return fail("", "there is no shell");
-  Patch patch(model, scope, kRingsByHand, rules, options.relax.feature_angle);
-  const RepairContext context{patch, surface, judge, options, quality::limits_for(judge.criteria, judge.target_size)};
+  Patch patch(input.model, scope, kRingsOfManualPatch, input.rules, input.options.relax.feature_angle);
+  const RepairContext context{patch, input.surface, input.criteria, input.options, quality::limits_for(input.criteria)};
   patch.begin();
-  const Result<void> done = carry_out({context, model, shells, nodes}, operation);
+  const Result<void> done = carry_out({context, input.model, manual.shells, manual.nodes}, manual.operation);
   if (!done) return fail(done.error());
   patch.keep();
   return patch.result();

@@ -1,4 +1,4 @@
-#include "mesh/relax/sheets.h"
+#include "mesh/relax/sheet_fits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +14,9 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr std::size_t kEnoughNodes = 8;  ///< about a node for a fit; at ends of sheets one looks farther for them
+constexpr std::size_t kEnoughNodes = 8;  ///< about a node for a fit; at ends of sheets more rings are needed for them
 constexpr int kMaxRings = 4;
-constexpr std::size_t kUsualNodes = 32;  ///< about a node of a mesh of quads and triangles, and shells
+constexpr std::size_t kUsualNodes = 32;  ///< about a node of an ordinary mesh: memory reserved
 constexpr std::size_t kUsualShells = 24;
 constexpr std::uint8_t kSmooth = 1;
 constexpr std::uint8_t kKinked = 2;
@@ -38,8 +38,8 @@ bool contains(const std::vector<ShellIndex>& shells, ShellIndex shell) {
   return std::find(shells.begin(), shells.end(), shell) != shells.end();
 }
 
-/// The shells at a node that hang together over smooth edges at it, ascending.
-std::vector<ShellIndex> shells_about(const Model& model, const Sheets& sheets, ShellIndex shell, NodeIndex node) {
+/// The shells at a node that are connected with `shell` over smooth edges at the node, ascending.
+std::vector<ShellIndex> shells_about(const Model& model, const SheetFits& sheets, ShellIndex shell, NodeIndex node) {
   std::vector<ShellIndex> found;
   if (sheets.is_smooth(node)) {
     const auto all = model.adjacency->shells_of(node);
@@ -51,7 +51,7 @@ std::vector<ShellIndex> shells_about(const Model& model, const Sheets& sheets, S
     const ShellNodes& nodes = model.shell(found[i]);
     const int corners = nodes.corners(), at = corner_of(nodes, node);
     for (const int side : {at, previous_corner(at, corners)}) {
-      const ShellIndex next = sheets.beyond(found[i], nodes.node[side], nodes.node[next_corner(side, corners)]);
+      const ShellIndex next = sheets.smooth_neighbour(found[i], nodes.node[side], nodes.node[next_corner(side, corners)]);
       if (next.valid() && !contains(found, next)) found.push_back(next);
     }
   }
@@ -59,14 +59,14 @@ std::vector<ShellIndex> shells_about(const Model& model, const Sheets& sheets, S
   return found;
 }
 
-/// Adds the shells across smooth edges of shells from `begin` on.
-void add_ring(const Model& model, const Sheets& sheets, std::size_t begin, std::vector<ShellIndex>& shells) {
+/// Adds the shells that share a smooth edge with one of the shells from `begin` on.
+void add_ring(const Model& model, const SheetFits& sheets, std::size_t begin, std::vector<ShellIndex>& shells) {
   const std::size_t end = shells.size();
   for (std::size_t s = begin; s < end; ++s) {
     const ShellNodes& nodes = model.shell(shells[s]);
     const int corners = nodes.corners();
     for (int i = 0; i < corners; ++i) {
-      const ShellIndex next = sheets.beyond(shells[s], nodes.node[i], nodes.node[next_corner(i, corners)]);
+      const ShellIndex next = sheets.smooth_neighbour(shells[s], nodes.node[i], nodes.node[next_corner(i, corners)]);
       if (next.valid() && !contains(shells, next)) shells.push_back(next);
     }
   }
@@ -89,7 +89,7 @@ Vec3 normal_about(const Model& model, const std::vector<ShellIndex>& shells) {
   return sum.squaredNorm() > 0 ? sum.normalized() : Vec3::UnitZ();
 }
 
-LocalFit fit_sheet(const Model& model, const Sheets& sheets, NodeIndex node, std::vector<ShellIndex> shells) {
+LocalFit fit_sheet(const Model& model, const SheetFits& sheets, NodeIndex node, std::vector<ShellIndex> shells) {
   const Vec3 normal = normal_about(model, shells);
   std::vector<NodeIndex> nodes;
   nodes.reserve(kUsualNodes);
@@ -113,15 +113,15 @@ LocalFit fit_sheet(const Model& model, const Sheets& sheets, NodeIndex node, std
 
 }  // namespace
 
-void Sheets::Free::operator()(void* memory) const { std::free(memory); }
+void SheetFits::Free::operator()(void* memory) const { std::free(memory); }
 
-Sheets::Sheets(const Model& model, double cos_limit)
+SheetFits::SheetFits(const Model& model, double cos_limit)
     : model_(model),
       cos_limit_(cos_limit),
       slots_(zeroed<Slot>(4 * model.shell_count())),
       node_states_(zeroed<std::atomic<std::uint8_t>>(model.node_count())) {}
 
-bool Sheets::is_smooth(NodeIndex node) const {
+bool SheetFits::is_smooth(NodeIndex node) const {
   std::atomic<std::uint8_t>& state = node_states_[node.value];
   std::uint8_t known = state.load(std::memory_order_relaxed);
   if (known == 0) {
@@ -131,21 +131,21 @@ bool Sheets::is_smooth(NodeIndex node) const {
   return known == kSmooth;
 }
 
-ShellIndex Sheets::beyond(ShellIndex shell, NodeIndex a, NodeIndex b) const {
+ShellIndex SheetFits::smooth_neighbour(ShellIndex shell, NodeIndex a, NodeIndex b) const {
   if (a == b) return {};
-  if (!is_smooth(a) && !is_smooth(b)) return across(model_, shell, a, b, cos_limit_);
+  if (!is_smooth(a) && !is_smooth(b)) return relax::smooth_neighbour(model_, shell, a, b, cos_limit_);
   for (const ShellIndex other : model_.adjacency->shells_of(a))
     if (other != shell && has_edge(model_.shell(other), a, b)) return other;
   return {};
 }
 
-const LocalFit& Sheets::at(ShellIndex shell, int corner) const {
+const LocalFit& SheetFits::at(ShellIndex shell, int corner) const {
   const LocalFit* fit =
       slots_[4 * static_cast<std::size_t>(shell.value) + static_cast<std::size_t>(corner)].load(std::memory_order_acquire);
   return fit != nullptr ? *fit : make(shell, corner);
 }
 
-const LocalFit& Sheets::make(ShellIndex shell, int corner) const {
+const LocalFit& SheetFits::make(ShellIndex shell, int corner) const {
   const NodeIndex node = model_.shell(shell).node[corner];
   const std::vector<ShellIndex> shells = shells_about(model_, *this, shell, node);
   const LocalFit made = fit_sheet(model_, *this, node, shells);

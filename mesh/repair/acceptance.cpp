@@ -1,4 +1,4 @@
-#include "mesh/repair/appraisal.h"
+#include "mesh/repair/acceptance.h"
 
 #include <algorithm>
 #include <array>
@@ -12,28 +12,28 @@ namespace prismesh::mesh::repair {
 
 namespace {
 
-// How things are weighed against each other. Pairs of triangles beyond those that were there are refused whatever they cure (repair.cpp).
+// Terms of the cost. A change that adds pairs of triangles is refused whatever its cost (trial.cpp).
 constexpr double kFailing = 3, kWarning = 1, kTriangle = 0.2, kTrianglePair = 0.8, kImperfect = 0.15;
 
-double weight_of(float composite, quality::ShellState state) {
+double cost_of(float composite, quality::ShellState state) {
   if (state.fail != 0) return kFailing * (1 - static_cast<double>(composite));
   return (state.warn != 0 ? kWarning : 0) + kImperfect * (1 - static_cast<double>(composite));
 }
 
-void weigh(Cost& cost, const PatchShell& shell) {
-  cost.weight += weight_of(shell.composite, shell.state);
+void add_shell(Cost& cost, const PatchShell& shell) {
+  cost.total += cost_of(shell.composite, shell.state);
   cost.worst = std::min(cost.worst, shell.composite);
   cost.failing += shell.state.fail != 0 ? 1 : 0;
   cost.warning += shell.state.fail == 0 && shell.state.warn != 0 ? 1 : 0;
   cost.triangles += corner_count(shell.corners) == 3 ? 1 : 0;
 }
 
-bool is_changed(const Patch& patch, const std::vector<LocalShell>& changed, LocalShell shell) {
+bool is_in_change(const Patch& patch, const std::vector<LocalShell>& changed, LocalShell shell) {
   if (patch.is_new_since_begin(shell)) return true;
   return std::find(changed.begin(), changed.end(), shell) != changed.end();
 }
 
-/// Edges between two triangles, one of which at least is in the list; `changed` names the list's shells in the patch.
+/// Number of edges between two triangles, at least one of which is in the list; `changed` are the list's shells in the patch.
 int triangle_pairs(const Patch& patch, const std::vector<Corners>& list, const std::vector<LocalShell>& changed) {
   std::vector<std::pair<LocalNode, LocalNode>> edges;
   int with_others = 0;
@@ -43,7 +43,7 @@ int triangle_pairs(const Patch& patch, const std::vector<Corners>& list, const s
       const auto [low, high] = std::minmax(corners[i], corners[(i + 1) % 3]);
       edges.emplace_back(low, high);
       for (const LocalShell other : patch.shells_at(low, high))
-        if (corner_count(patch.shell(other).corners) == 3 && !is_changed(patch, changed, other)) ++with_others;
+        if (corner_count(patch.shell(other).corners) == 3 && !is_in_change(patch, changed, other)) ++with_others;
     }
   }
   std::sort(edges.begin(), edges.end());
@@ -52,7 +52,7 @@ int triangle_pairs(const Patch& patch, const std::vector<Corners>& list, const s
   return among + with_others;
 }
 
-void finish(Cost& cost) { cost.weight += kTriangle * cost.triangles + kTrianglePair * cost.triangle_pairs; }
+void add_triangle_cost(Cost& cost) { cost.total += kTriangle * cost.triangles + kTrianglePair * cost.triangle_pairs; }
 
 std::vector<LocalShell> old_list(const Patch& patch) {
   std::vector<LocalShell> list;
@@ -60,13 +60,13 @@ std::vector<LocalShell> old_list(const Patch& patch) {
   return list;
 }
 
-bool is_sound(const Patch& patch, LocalShell shell) {
+bool is_valid_shell(const Patch& patch, LocalShell shell) {
   const Corners& corners = patch.shell(shell).corners;
   const int count = corner_count(corners);
   for (int i = 0; i < count; ++i)
     for (int j = 0; j < i; ++j)
       if (corners[static_cast<std::size_t>(i)] == corners[static_cast<std::size_t>(j)]) return false;
-  // A shell on the same nodes has three of them in common with this one's first.
+  // Another shell on the same nodes is at this one's first corner and has three nodes in common with it.
   for (const LocalShell other : patch.node(corners[0]).shells) {
     if (other == shell) continue;
     int common = 0;
@@ -78,8 +78,8 @@ bool is_sound(const Patch& patch, LocalShell shell) {
   return true;
 }
 
-/// The direction in which a shell leaves an edge, square to it.
-Vec3 leaving(const Patch& patch, LocalShell shell, const Vec3& a, const Vec3& b) {
+/// The direction from an edge a-b to a shell's centre, normal to the edge.
+Vec3 direction_from_edge(const Patch& patch, LocalShell shell, const Vec3& a, const Vec3& b) {
   const Corners& corners = patch.shell(shell).corners;
   const int count = corner_count(corners);
   Vec3 centre = Vec3::Zero();
@@ -94,18 +94,18 @@ bool edge_conforms(const Patch& patch, LocalNode a, LocalNode b) {
   const LineEnd* line = patch.line(a, b);
   if (shells.size() != (line != nullptr ? line->shells : 2U)) return false;
   if (shells.size() != 2) return true;
-  const Vec3 first = leaving(patch, shells[0], patch.position(a), patch.position(b));
-  const Vec3 second = leaving(patch, shells[1], patch.position(a), patch.position(b));
+  const Vec3 first = direction_from_edge(patch, shells[0], patch.position(a), patch.position(b));
+  const Vec3 second = direction_from_edge(patch, shells[1], patch.position(a), patch.position(b));
   const double size = std::sqrt(first.squaredNorm() * second.squaredNorm());
-  // A crease may be sharp, a sheet may not be folded onto itself.
+  // A crease may be sharp, but a sheet must not be folded onto itself.
   return first.dot(second) < (line != nullptr ? 0.9 : 0.3) * size;
 }
 
-/// How far shells are off the surface: at the points that divide edges, but those in lines, and quads into so many parts.
+/// Max distance of shells from the surface, at the points that divide edges inside sheets, and quads in both directions, into `parts`.
 template <class PositionOf>
-double farthest_off(const RepairContext& context, const std::vector<Corners>& list, int parts, const PositionOf& at) {
+double max_distance_to_surface(const RepairContext& context, const std::vector<Corners>& list, int parts, const PositionOf& at) {
   double farthest = 0;
-  const double size = 2 * context.judge.target_size;
+  const double size = 2 * context.criteria.target_size;
   const auto look = [&](const Vec3& point, const Vec3& normal) {
     const auto place = context.surface.project(point, size, normal);
     farthest = std::max(farthest, place ? place->distance : size);
@@ -139,12 +139,12 @@ void judge_shells(const RepairContext& context, std::span<const LocalShell> shel
         return corner_count(corners) == 3 ? quality::Shape::triangle : quality::Shape::quad;
       },
       [&](const quality::ShellBatch& batch, const quality::BatchValues& values) {
-        quality::Sheet sheets[quality::kLanes];
+        quality::ShellProperties properties[quality::kLanes];
         quality::ShellState states[quality::kLanes];
         float composites[quality::kLanes];
-        for (std::size_t lane = 0; lane < batch.count; ++lane) sheets[lane] = patch.shell(shells[batch.slot[lane]]).sheet;
-        quality::judge_lanes(values, batch.count, context.limits, sheets, states);
-        quality::rate_lanes(values, batch.count, context.limits, sheets, composites);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) properties[lane] = patch.shell(shells[batch.slot[lane]]).properties;
+        quality::judge_lanes(values, batch.count, context.limits, properties, states);
+        quality::rate_lanes(values, batch.count, context.limits, properties, composites);
         for (std::size_t lane = 0; lane < batch.count; ++lane) patch.set_judged(shells[batch.slot[lane]], composites[lane], states[lane]);
       });
 }
@@ -153,11 +153,11 @@ Cost cost_before(const Patch& patch) {
   Cost cost;
   std::vector<Corners> list;
   for (const auto& [shell, was] : patch.old_shells()) {
-    weigh(cost, was);
+    add_shell(cost, was);
     list.push_back(was.corners);
   }
   cost.triangle_pairs = triangle_pairs(patch, list, old_list(patch));
-  finish(cost);
+  add_triangle_cost(cost);
   return cost;
 }
 
@@ -165,17 +165,17 @@ Cost cost_now(const Patch& patch) {
   Cost cost;
   std::vector<Corners> list;
   for (const LocalShell shell : patch.changed_shells()) {
-    weigh(cost, patch.shell(shell));
+    add_shell(cost, patch.shell(shell));
     list.push_back(patch.shell(shell).corners);
   }
   cost.triangle_pairs = triangle_pairs(patch, list, old_list(patch));
-  finish(cost);
+  add_triangle_cost(cost);
   return cost;
 }
 
 bool conforms(const Patch& patch) {
   for (const LocalShell shell : patch.changed_shells()) {
-    if (!is_sound(patch, shell)) return false;
+    if (!is_valid_shell(patch, shell)) return false;
     const Corners& corners = patch.shell(shell).corners;
     const int count = corner_count(corners);
     for (int i = 0; i < count; ++i)
@@ -184,7 +184,7 @@ bool conforms(const Patch& patch) {
   return true;
 }
 
-bool harms(const Patch& patch) {
+bool adds_failures(const Patch& patch) {
   int failing_before = 0, failing_now = 0;
   bool new_one_fails = false;
   for (const auto& [shell, was] : patch.old_shells()) {
@@ -199,16 +199,16 @@ bool harms(const Patch& patch) {
   return new_one_fails && failing_now >= failing_before;
 }
 
-bool keeps_to_surface(const RepairContext& context) {
+bool stays_on_surface(const RepairContext& context) {
   const Patch& patch = context.patch;
   std::vector<Corners> now, before;
   for (const LocalShell shell : patch.changed_shells()) now.push_back(patch.shell(shell).corners);
-  const double allowed = context.options.most_off_surface * context.judge.target_size;
-  const double off = farthest_off(context, now, 2, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
+  const double allowed = context.options.max_off_surface * context.criteria.target_size;
+  const double off = max_distance_to_surface(context, now, 2, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
   if (off <= allowed) return true;
   for (const auto& [shell, was] : patch.old_shells()) before.push_back(was.corners);
-  // What was there is looked at in more places: its halves have their middles where it has its quarters.
-  return off <= 1.0001 * farthest_off(context, before, 4, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
+  // The shells before are sampled at quarters: the middles of their halves lie there.
+  return off <= 1.0001 * max_distance_to_surface(context, before, 4, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
 }
 
 }  // namespace prismesh::mesh::repair

@@ -1,4 +1,4 @@
-#include "mesh/repair/settling.h"
+#include "mesh/repair/node_smoothing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,24 +14,24 @@ namespace prismesh::mesh::repair {
 
 namespace {
 
-/// exp(-4 c) by squaring: how much a composite counts; the worst far more than the rest.
-double pressure(float composite) {
+/// The penalty of a shell, exp(-4 composite) by squaring: the worst shells count far more than the others.
+double penalty(float composite) {
   const double x = 1 - 4 * static_cast<double>(composite) / 64;
   double p = x;
   for (int i = 0; i < 6; ++i) p *= p;
   return p;
 }
 
-bool may_settle(const Patch& patch, LocalNode node) {
+bool may_move(const Patch& patch, LocalNode node) {
   const PatchNode& n = patch.node(node);
   if (!n.is_alive || !n.is_whole || (n.rules & kStays) != 0 || n.is_off_surface || n.shells.empty()) return false;
   if (n.freedom == relax::Freedom::surface) return n.lines.empty();
-  // Inside of one line; where lines meet or end they stay.
+  // Only inside of a line; nodes where lines meet or end stay.
   return n.freedom == relax::Freedom::line && n.lines.size() == 2 && !n.lines[0].is_rim && !n.lines[1].is_rim;
 }
 
-/// The sum of the pressures of a node's shells for each of several places of the node.
-void weigh_places(const RepairContext& context, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
+/// The sum of the penalties of a node's shells, for each of several positions of the node.
+void sum_penalties(const RepairContext& context, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
   const Patch& patch = context.patch;
   const std::vector<LocalShell>& shells = patch.node(node).shells;
   std::fill(sums.begin(), sums.end(), 0.0);
@@ -43,22 +43,23 @@ void weigh_places(const RepairContext& context, LocalNode node, std::span<const 
         return corner_count(corners) == 3 ? quality::Shape::triangle : quality::Shape::quad;
       },
       [&](const quality::ShellBatch& batch, const quality::BatchValues& values) {
-        quality::Sheet sheets[quality::kLanes];
+        quality::ShellProperties properties[quality::kLanes];
         float composites[quality::kLanes];
-        for (std::size_t lane = 0; lane < batch.count; ++lane) sheets[lane] = patch.shell(shells[batch.slot[lane] % shells.size()]).sheet;
-        quality::rate_lanes(values, batch.count, context.limits, sheets, composites);
-        for (std::size_t lane = 0; lane < batch.count; ++lane) sums[batch.slot[lane] / shells.size()] += pressure(composites[lane]);
+        for (std::size_t lane = 0; lane < batch.count; ++lane)
+          properties[lane] = patch.shell(shells[batch.slot[lane] % shells.size()]).properties;
+        quality::rate_lanes(values, batch.count, context.limits, properties, composites);
+        for (std::size_t lane = 0; lane < batch.count; ++lane) sums[batch.slot[lane] / shells.size()] += penalty(composites[lane]);
       });
 }
 
-struct Surroundings {
+struct NodeNeighbourhood {
   Vec3 normal = Vec3::Zero();  ///< unit
-  Vec3 centre = Vec3::Zero();  ///< of the neighbours along edges
-  double size = 0;             ///< mean distance of them
+  Vec3 centre = Vec3::Zero();  ///< mean position of the neighbours along edges
+  double size = 0;             ///< mean distance to them
 };
 
-Surroundings around(const Patch& patch, LocalNode node) {
-  Surroundings found;
+NodeNeighbourhood around(const Patch& patch, LocalNode node) {
+  NodeNeighbourhood found;
   int count = 0;
   for (const LocalShell shell : patch.node(node).shells) {
     const Corners& corners = patch.shell(shell).corners;
@@ -84,10 +85,10 @@ Surroundings around(const Patch& patch, LocalNode node) {
   return found;
 }
 
-/// Whether a line's two edges at a node, were it elsewhere, follow the line as closely as they have to, or as they did.
+/// Whether a line's two edges at a node would follow the line with the node at `place`: within the options' limit, or as closely as now.
 bool follows_line(const RepairContext& context, LocalNode node, const Vec3& place) {
   const Patch& patch = context.patch;
-  const double allowed = context.options.most_off_surface * context.judge.target_size;
+  const double allowed = context.options.max_off_surface * context.criteria.target_size;
   const auto off = [&](const Vec3& at, const Vec3& end) {
     const Vec3 middle = 0.5 * (at + end);
     const auto on_line = context.surface.project_on_line(middle, 0.5 * (at - end).norm());
@@ -101,21 +102,21 @@ bool follows_line(const RepairContext& context, LocalNode node, const Vec3& plac
   return now <= std::max(allowed, before * (1 + 1e-9));
 }
 
-/// The place of least pressure among several, the first of which is the node's own; nothing: its own.
+/// The position of min penalty among several, the first of which is the node's own; nothing: its own.
 std::optional<Vec3> best_of(const RepairContext& context, LocalNode node, std::span<const Vec3> places, std::span<double> sums) {
-  weigh_places(context, node, places, sums);
+  sum_penalties(context, node, places, sums);
   const auto best = static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin());
   return best == 0 ? std::nullopt : std::optional<Vec3>(places[best]);
 }
 
-bool is_better(const RepairContext& context, LocalNode node, const Vec3& place, double sum_now) {
+bool lowers_penalty(const RepairContext& context, LocalNode node, const Vec3& place, double sum_now) {
   double sum = 0;
-  weigh_places(context, node, std::span(&place, 1), std::span(&sum, 1));
+  sum_penalties(context, node, std::span(&place, 1), std::span(&sum, 1));
   return sum < sum_now;
 }
 
-/// A node on a line goes along that.
-void settle_on_line(const RepairContext& context, LocalNode node, double step) {
+/// Moves a node on a line along it.
+void smooth_on_line(const RepairContext& context, LocalNode node, double step) {
   const Patch& patch = context.patch;
   const PatchNode& n = patch.node(node);
   const Vec3 at = n.position, one = patch.position(n.lines[0].node), other = patch.position(n.lines[1].node);
@@ -127,11 +128,11 @@ void settle_on_line(const RepairContext& context, LocalNode node, double step) {
   const double radius = 0.5 * std::min((one - at).norm(), (other - at).norm());
   const auto place = context.surface.project_on_line(*best, radius);
   if (!place || !place->allFinite() || !within_limit(context, node, *place)) return;
-  if (is_better(context, node, *place, sums[0]) && follows_line(context, node, *place)) context.patch.move(node, *place);
+  if (lowers_penalty(context, node, *place, sums[0]) && follows_line(context, node, *place)) context.patch.move(node, *place);
 }
 
-void settle_in_sheet(const RepairContext& context, LocalNode node, double step) {
-  const Surroundings here = around(context.patch, node);
+void smooth_in_sheet(const RepairContext& context, LocalNode node, double step) {
+  const NodeNeighbourhood here = around(context.patch, node);
   if (!(here.size > 0) || here.normal.squaredNorm() < 0.5) return;
   const Vec3 at = context.patch.position(node);
   const Vec3 across = (here.normal.unitOrthogonal()), along = here.normal.cross(across);
@@ -147,22 +148,21 @@ void settle_in_sheet(const RepairContext& context, LocalNode node, double step) 
   const auto best = best_of(context, node, places, sums);
   if (!best) return;
   const auto place = on_surface(context, *best, here.normal, here.size);
-  if (place && within_limit(context, node, *place) && is_better(context, node, *place, sums[0])) context.patch.move(node, *place);
+  if (place && within_limit(context, node, *place) && lowers_penalty(context, node, *place, sums[0])) context.patch.move(node, *place);
 }
 
 }  // namespace
 
-void settle(const RepairContext& context, int sweeps, bool along_lines) {
+void smooth_nodes(const RepairContext& context, int sweeps, bool along_lines) {
   std::vector<LocalNode> nodes = context.patch.changed_nodes();
-  std::erase_if(nodes,
-                [&](LocalNode n) { return !may_settle(context.patch, n) || (!along_lines && !context.patch.node(n).lines.empty()); });
+  std::erase_if(nodes, [&](LocalNode n) { return !may_move(context.patch, n) || (!along_lines && !context.patch.node(n).lines.empty()); });
   double step = 0.2;
   for (int sweep = 0; sweep < sweeps; ++sweep, step *= 0.6)
     for (const LocalNode node : nodes) {
       if (context.patch.node(node).lines.empty())
-        settle_in_sheet(context, node, step);
+        smooth_in_sheet(context, node, step);
       else
-        settle_on_line(context, node, step);
+        smooth_on_line(context, node, step);
     }
 }
 

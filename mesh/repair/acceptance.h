@@ -1,0 +1,36 @@
+// Cost and acceptance tests for a patch change, measured on the shells that it changed, before and after.
+#pragma once
+
+#include <span>
+
+#include "mesh/repair/context.h"
+
+namespace prismesh::mesh::repair {
+
+/// Measures and judges shells by the context's limits, and stores the results in the patch.
+void judge_shells(const RepairContext& context, std::span<const LocalShell> shells);
+
+/// The cost of the changed shells. Failing shells cost most, then warnings, adjacent triangles, triangles, and the distance from ideal.
+struct Cost {
+  double total = 0;
+  float worst = 1;  ///< min composite
+  int failing = 0;
+  int warning = 0;  ///< shells that warn and don't fail
+  int triangles = 0;
+  int triangle_pairs = 0;  ///< edges between two triangles
+};
+Cost cost_before(const Patch& patch);  ///< of the shells as they were at Patch::begin
+Cost cost_now(const Patch& patch);
+
+/// Whether the changed mesh conforms: no shell twice or with a node twice, two shells at every edge inside a sheet, as many as before at
+/// every edge of a line, and no fold.
+bool conforms(const Patch& patch);
+
+/// Whether a shell that passed fails now, or a new one fails while not fewer shells fail than before.
+bool adds_failures(const Patch& patch);
+
+/// Whether the changed shells stay on the surface: no point of their edges and centres is farther off than the options allow, or than the
+/// shells before.
+bool stays_on_surface(const RepairContext& context);
+
+}  // namespace prismesh::mesh::repair

@@ -1,0 +1,27 @@
+// The passes of a repair: each goes over the patch once and keeps the changes that make it better.
+#pragma once
+
+#include "mesh/quality/shell_state.h"
+#include "mesh/repair/context.h"
+#include "mesh/repair/repair_state.h"
+
+namespace prismesh::mesh::repair {
+
+// What a pass takes of its round's progress, as a share.
+inline constexpr double kStripShare = 0.2, kSweepShare = 0.4;
+
+/// Divides or removes whole strips of quads where shells are long or short across, and relaxes after each pass that helped. Returns
+/// whether one did.
+bool divide_strips(const RepairContext& context, RepairState& state);
+
+/// Tries all candidates for each shell whose grade is `min_grade` or worse, worst first. `done`: share of the round done before. Returns
+/// whether a shell got better.
+bool cure_shells(const RepairContext& context, RepairState& state, quality::Grade min_grade, double done);
+
+/// Joins or separates triangles that the repair made, where nothing gets worse. `done`: share of the round done before.
+void tidy_triangles(const RepairContext& context, RepairState& state, double done);
+
+/// Relaxes the nodes of shells that are bad or were changed, and those about them.
+void relax_neighbourhood(const RepairContext& context, RepairState& state);
+
+}  // namespace prismesh::mesh::repair

@@ -1,0 +1,60 @@
+// The data that the passes of a repair work on.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "mesh/repair/operation.h"
+#include "mesh/repair/patch.h"
+
+namespace prismesh::mesh::repair {
+
+/// How much work a round spends on each shell.
+struct Effort {
+  int sweeps;                         ///< of node smoothing in a full trial
+  std::size_t max_trials;             ///< full trials while no candidate is acceptable
+  std::size_t max_trials_once_found;  ///< full trials once one is
+  bool along_lines;                   ///< a second strip pass and what follows also move nodes on feature lines
+};
+inline constexpr Effort kQuickEffort{4, 12, 4, false}, kThoroughEffort{10, 40, 12, true};
+
+/// The accepted changes so far.
+struct ChangeHistory {
+  std::vector<std::uint8_t> in_scope;      ///< by shell, for the shells that the patch began with; later ones are in scope
+  std::vector<std::uint32_t> last_change;  ///< by shell: the number of its last change, from 1; 0 or no entry: none
+  std::uint32_t changes = 0;
+  long triangles = 0;  ///< of the whole model
+  long max_triangles = 0;
+  int added_triangle_pairs = 0;  ///< edges between two triangles, now less those at the start
+};
+
+/// What the trials so far have shown.
+struct TrialRecord {
+  std::map<LocalShell, std::uint32_t> refused_at;       ///< ChangeHistory::changes when every candidate of the shell was refused
+  std::map<LocalShell, std::string_view> reason;        ///< the last reason for that
+  std::array<std::size_t, kOperationCount> accepted{};  ///< by Operation
+};
+
+/// Progress over the rounds, and why the repair stopped early.
+struct RoundProgress {
+  const Progress& progress;
+  int round = 0;  ///< from 0
+  std::optional<Error> stopped = std::nullopt;
+};
+
+struct RepairState {
+  ChangeHistory history;
+  TrialRecord record;
+  RoundProgress progress;
+  Effort effort = kQuickEffort;
+  bool along_lines = false;  ///< node smoothing also moves nodes on feature lines
+};
+
+}  // namespace prismesh::mesh::repair

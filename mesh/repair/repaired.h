@@ -1,0 +1,29 @@
+// The result of a repair.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "mesh/model/model.h"
+#include "mesh/repair/operation.h"
+#include "mesh/repair/restructuring.h"
+
+namespace prismesh::mesh::repair {
+
+struct Unrepaired {
+  ShellIndex shell;  ///< of the model, or a new one: shell_count() + i is Restructuring::new_shells[i]
+  std::string why;   ///< "no operation makes it better", "every operation makes a neighbour fail", ...
+};
+
+struct Repaired {
+  Restructuring change;
+  std::array<std::size_t, kOperationCount> done{};  ///< accepted operations, by Operation
+  std::size_t relaxed = 0;                          ///< nodes that moved
+  std::size_t bad_before = 0;                       ///< shells of the scope that failed or warned
+  std::vector<Unrepaired> unrepaired;               ///< still failing, ascending by shell
+  int rounds = 0;
+};
+
+}  // namespace prismesh::mesh::repair

@@ -1,0 +1,119 @@
+#include "mesh/repair/trial.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "mesh/repair/acceptance.h"
+#include "mesh/repair/change_history.h"
+#include "mesh/repair/node_smoothing.h"
+
+namespace prismesh::mesh::repair {
+
+namespace {
+
+constexpr double kMinGain = 0.05;
+constexpr int kPreviewSweeps = 1;
+constexpr double kMinPreviewGain = -2;  ///< candidates that gain less in the preview get no full trial
+
+struct Outcome {
+  double gain = 0;  ///< in cost; 0: not acceptable
+  std::string_view why;
+  int rank = 0;  ///< of several reasons the one of the highest rank is reported
+};
+
+/// The gain of a candidate after little smoothing; nothing if it can't be applied.
+std::optional<double> preview(const RepairContext& context, const RepairState& state, const Candidate& candidate, Outcome& reason) {
+  Patch& patch = context.patch;
+  patch.begin();
+  std::optional<double> gain;
+  if (const Refusal refusal = candidate.apply()) {
+    if (reason.rank < 0) reason = {0, *refusal, 0};
+  } else {
+    smooth_nodes(context, kPreviewSweeps, state.along_lines);
+    judge_shells(context, patch.changed_shells());
+    gain = cost_before(patch).total - cost_now(patch).total;
+  }
+  patch.take_back();
+  return gain;
+}
+
+/// Whether the shells that changed got better in the way that the goal asks for.
+bool reaches(TrialGoal goal, const Cost& before, const Cost& now) {
+  if (goal == TrialGoal::tidy) return now.failing <= before.failing && now.warning <= before.warning;
+  const bool cures = now.failing + now.warning < before.failing + before.warning;
+  return now.failing < before.failing || now.worst >= before.worst + (cures ? -1e-4F : 1e-3F);
+}
+
+/// Applies a candidate to the patch in full, and tells whether the change is acceptable.
+Outcome try_out(const RepairContext& context, const RepairState& state, const Candidate& candidate, TrialGoal goal) {
+  const Patch& patch = context.patch;
+  const ChangeHistory& history = state.history;
+  if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
+  smooth_nodes(context, state.effort.sweeps, state.along_lines);
+  judge_shells(context, patch.changed_shells());
+  const Cost before = cost_before(patch), now = cost_now(patch);
+  const double gain = before.total - now.total;
+  if (gain < kMinGain) return {0, "no operation makes it better", 4};
+  if (!reaches(goal, before, now)) return goal == TrialGoal::tidy ? Outcome{} : Outcome{0, "no operation makes it better", 4};
+  if (adds_failures(patch)) return {0, "every operation makes a neighbour fail", 2};
+  if (!conforms(patch)) return {0, "every operation would tear or fold the mesh", 1};
+  if (now.triangles > before.triangles && history.triangles + now.triangles - before.triangles > history.max_triangles)
+    return {0, "there would be too many triangles", 5};
+  if (now.triangle_pairs > before.triangle_pairs && history.added_triangle_pairs + now.triangle_pairs - before.triangle_pairs > 0)
+    return {0, "there would be two triangles side by side", 5};
+  if (!stays_on_surface(context)) return {0, "every operation leaves the surface", 3};
+  return {gain, {}, 0};
+}
+
+/// Candidates worth a full trial, by descending gain in the preview.
+std::vector<const Candidate*> promising_of(const RepairContext& context, const RepairState& state, const std::vector<Candidate>& candidates,
+                                           Outcome& reason) {
+  std::vector<std::pair<double, const Candidate*>> rated;
+  for (const Candidate& candidate : candidates)
+    if (const auto gain = preview(context, state, candidate, reason); gain && *gain > kMinPreviewGain)
+      rated.emplace_back(*gain, &candidate);
+  std::stable_sort(rated.begin(), rated.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<const Candidate*> promising;
+  for (const auto& [gain, candidate] : rated) promising.push_back(candidate);
+  return promising;
+}
+
+/// The acceptable candidate with the highest gain; null if there is none.
+const Candidate* best_candidate(const RepairContext& context, const RepairState& state, const std::vector<const Candidate*>& promising,
+                                TrialGoal goal, Outcome& reason) {
+  const Candidate* best = nullptr;
+  double max_gain = 0;
+  for (std::size_t i = 0; i < promising.size(); ++i) {
+    if (i >= (best != nullptr ? state.effort.max_trials_once_found : state.effort.max_trials)) break;
+    context.patch.begin();
+    const Outcome outcome = try_out(context, state, *promising[i], goal);
+    context.patch.take_back();
+    if (outcome.gain > max_gain * 1.0001) {
+      max_gain = outcome.gain;
+      best = promising[i];
+    }
+    if (outcome.rank > reason.rank) reason = outcome;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool improve(const RepairContext& context, RepairState& state, const std::vector<Candidate>& candidates, LocalShell shell, TrialGoal goal) {
+  Outcome reason{0, "no operation is possible", -1};
+  const std::vector<const Candidate*> promising = promising_of(context, state, candidates, reason);
+  const Candidate* best = best_candidate(context, state, promising, goal, reason);
+  if (best == nullptr) {
+    if (goal == TrialGoal::cure) state.record.reason[shell] = reason.why;
+    return false;
+  }
+  context.patch.begin();
+  try_out(context, state, *best, goal);
+  keep_change(context.patch, state.history);
+  if (best->operation) ++state.record.accepted[static_cast<std::size_t>(*best->operation)];
+  return true;
+}
+
+}  // namespace prismesh::mesh::repair

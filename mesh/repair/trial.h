@@ -1,0 +1,21 @@
+// Tries the candidates for a shell and keeps the best acceptable one.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesh/repair/candidates.h"
+#include "mesh/repair/repair_state.h"
+
+namespace prismesh::mesh::repair {
+
+enum class TrialGoal : std::uint8_t {
+  cure,  ///< a shell that fails or warns
+  tidy,  ///< triangles, where nothing fails or warns more than before
+};
+
+/// Tries the candidates in two stages: all of them with little smoothing, then the most promising in full. Applies the best acceptable one
+/// and records it, or records why there is none. Returns whether one was applied.
+bool improve(const RepairContext& context, RepairState& state, const std::vector<Candidate>& candidates, LocalShell shell, TrialGoal goal);
+
+}  // namespace prismesh::mesh::repair
