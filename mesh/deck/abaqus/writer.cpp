@@ -24,6 +24,11 @@ std::size_t end_of_line(std::string_view text, std::size_t offset) {
   return end > offset && text[end - 1] == '\r' ? end - 1 : end;
 }
 
+/// The card's first line, without its end.
+std::string_view first_line(const CardRef& card) {
+  return card.text.substr(card.offset, end_of_line(card.text, card.offset) - card.offset);
+}
+
 /// A field's place in a card's text: between its commas, blanks included.
 struct Place {
   std::size_t begin = 0;
@@ -125,107 +130,106 @@ std::string line_of(std::string_view line, const std::vector<Place>& places) {
 
 class Writer : public CardWriter {
  public:
-  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    return std::max(end_of_line(text, offset), offset);
-  }
+  std::size_t node_end(const CardRef& card) const override { return std::max(end_of_line(card.text, card.offset), card.offset); }
 
-  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t style) const override {
-    std::size_t end = offset;
-    cut(text, offset, nodes_of(style) + 1, end);
+  std::size_t shell_end(const CardRef& card) const override {
+    std::size_t end = card.offset;
+    cut(card, nodes_of(card.style) + 1, end);
     return end;
   }
 
-  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const auto fields = first_fields<4>(text.substr(offset, end_of_line(text, offset) - offset));
+  std::optional<Vec3> node_coordinates(const CardRef& card) const override {
+    const auto fields = first_fields<4>(first_line(card));
     Vec3 out;
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!parse_real(fields[axis + 1], out[static_cast<Eigen::Index>(axis)])) return std::nullopt;
     return out;
   }
 
-  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t, const Vec3& from, const Vec3& to) const override {
-    WrittenCard card;
-    card.text = std::string(text.substr(offset, end_of_line(text, offset) - offset));
+  WrittenCard move_node(const CardRef& card, const Vec3& from, const Vec3& to) const override {
+    WrittenCard written;
+    written.text = std::string(first_line(card));
     for (std::size_t axis = 3; axis-- > 0;) {
       const auto a = static_cast<Eigen::Index>(axis);
-      if (from[a] != to[a]) put_coordinate(card, axis, to[a]);
+      if (from[a] != to[a]) put_coordinate(written, axis, to[a]);
     }
-    return card;
+    return written;
   }
 
-  WrittenCard new_node(std::string_view text, std::size_t offset, std::uint16_t, std::int64_t id, const Vec3& at) const override {
-    WrittenCard card;
-    card.text = std::string(text.substr(offset, end_of_line(text, offset) - offset));
-    std::vector<Place> places = places_of_line(card.text, 0);
+  WrittenCard new_node(const CardRef& card, std::int64_t id, const Vec3& at) const override {
+    WrittenCard written;
+    written.text = std::string(first_line(card));
+    std::vector<Place> places = places_of_line(written.text, 0);
     // What follows the coordinates is the old node's normal.
-    if (places.size() > 4) card.text.resize(places[3].begin + places[3].length);
-    for (std::size_t axis = 3; axis-- > 0;) put_coordinate(card, axis, at[static_cast<Eigen::Index>(axis)]);
-    card.by_parameter = false;
-    const std::string_view old = std::string_view(card.text).substr(places[0].begin, places[0].length);
+    if (places.size() > 4) written.text.resize(places[3].begin + places[3].length);
+    for (std::size_t axis = 3; axis-- > 0;) put_coordinate(written, axis, at[static_cast<Eigen::Index>(axis)]);
+    written.by_parameter = false;
+    const std::string_view old = std::string_view(written.text).substr(places[0].begin, places[0].length);
     const std::string put = in_place_of(old, std::to_string(id), starts_with_blanks(old));
-    card.text.replace(places[0].begin, places[0].length, put);
-    return card;
+    written.text.replace(places[0].begin, places[0].length, put);
+    return written;
   }
 
-  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const override {
-    if ((style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
-    if ((style & kStyleShifted) != 0) return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
+  Result<WrittenCard> shell(const CardRef& card, const ShellCard& shell) const override {
+    if ((card.style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
+    if ((card.style & kStyleShifted) != 0)
+      return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
     const bool triangle = shell.nodes[3] == shell.nodes[2];
-    const std::size_t corners = nodes_of(style);
+    const std::size_t corners = nodes_of(card.style);
     if (triangle && corners == 4) return fail("", "is of a type with four corners, so a triangle can't be written like it");
     if (!triangle && corners == 3) return fail("", "is of a type with three corners, so a quad can't be written like it");
-    std::size_t end = offset;
-    const std::vector<Place> places = cut(text, offset, corners + 1, end);
+    std::size_t end = card.offset;
+    const std::vector<Place> places = cut(card, corners + 1, end);
     if (places.size() < corners + 1) return fail("", "has a card that can't be read");
-    WrittenCard card;
-    card.text = std::string(text.substr(offset, end - offset));
+    WrittenCard written;
+    written.text = std::string(card.text.substr(card.offset, end - card.offset));
     for (std::size_t f = corners + 1; f-- > 0;) {
-      const std::string_view old = text.substr(places[f].begin, places[f].length);
+      const std::string_view old = card.text.substr(places[f].begin, places[f].length);
       const std::int64_t id = f == 0 ? shell.id : shell.nodes[f - 1];
       std::int64_t now = 0;
       if (old.find('<') != std::string_view::npos) {
-        card.by_parameter = true;
+        written.by_parameter = true;
       } else if (!parse_integer(trim(old), now) || now != id) {
-        card.text.replace(places[f].begin - offset, places[f].length, in_place_of(old, std::to_string(id), starts_with_blanks(old)));
+        written.text.replace(places[f].begin - card.offset, places[f].length,
+                             in_place_of(old, std::to_string(id), starts_with_blanks(old)));
       }
     }
-    return card;
+    return written;
   }
 
-  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
+  bool holds_triangles_and_quads(const CardRef&) const override { return false; }
 
   /// The set that the keyword puts its nodes into: "*NODE, NSET=rim".
-  std::string node_constraints(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const BlockFinder::Found block = blocks_.at(text, offset);
-    Keywords keywords(text.substr(block.keyword));
+  std::string node_constraints(const CardRef& card) const override {
+    const BlockFinder::Found block = blocks_.at(card.text, card.offset);
+    Keywords keywords(card.text.substr(block.keyword));
     Keyword keyword;
     if (block.has_keyword && keywords.next(keyword) && keyword.name == "NODE")
-      return label(Parameters(text, block.keyword, block.keyword + keyword.end).value("NSET").value_or(""));
+      return label(Parameters(card.text, block.keyword, block.keyword + keyword.end).value("NSET").value_or(""));
     // The keyword stands in another file, or an include is between: whatever it says is true of all that is here.
-    return "as others at " + std::to_string(reinterpret_cast<std::uintptr_t>(text.data()) + block.keyword);
+    return "as others at " + std::to_string(reinterpret_cast<std::uintptr_t>(card.text.data()) + block.keyword);
   }
 
-  Result<WrittenCard> new_constrained_node(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id,
-                                           const Vec3& at) const override {
-    return new_node(text, offset, style, id, at);
+  Result<WrittenCard> new_constrained_node(const CardRef& card, std::int64_t id, const Vec3& at) const override {
+    return new_node(card, id, at);
   }
 
   bool constraints_must_agree() const override { return false; }
 
   /// A keyword like the one above the card, but for its NSET.
-  std::optional<NewBlock> block_without_constraints(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const BlockFinder::Found block = blocks_.at(text, offset);
-    const std::string header = block.has_keyword ? header_of(text, block) : "";
+  std::optional<NewBlock> block_without_constraints(const CardRef& card) const override {
+    const BlockFinder::Found block = blocks_.at(card.text, card.offset);
+    const std::string header = block.has_keyword ? header_of(card.text, block) : "";
     const std::string without = without_parameter(header, "NSET");
     if (header == without) return std::nullopt;
     return NewBlock{block.end, without};
   }
 
   /// A keyword like the one above the card, but for its TYPE.
-  Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t, bool triangles) const override {
-    const BlockFinder::Found found = blocks_.at(text, offset);
+  Result<NewBlock> block_of_kind(const CardRef& card, bool triangles) const override {
+    const BlockFinder::Found found = blocks_.at(card.text, card.offset);
     if (!found.has_keyword) return fail("", "has no keyword above it in its file");
-    NewBlock block{found.end, header_of(text, found)};
+    NewBlock block{found.end, header_of(card.text, found)};
     std::string upper = block.header;
     for (char& c : upper)
       if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
@@ -242,23 +246,23 @@ class Writer : public CardWriter {
     return block;
   }
 
-  Result<WrittenCard> shell_in_block(std::string_view text, std::size_t offset, std::uint16_t style,
-                                     const ShellCard& shell) const override {
-    if ((style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
-    if ((style & kStyleShifted) != 0) return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
-    const std::size_t corners = nodes_of(style), wanted = shell.nodes[3] == shell.nodes[2] ? 3 : 4;
-    std::size_t end = offset;
-    const std::vector<Place> places = cut(text, offset, corners + 1, end);
+  Result<WrittenCard> shell_in_block(const CardRef& card, const ShellCard& shell) const override {
+    if ((card.style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
+    if ((card.style & kStyleShifted) != 0)
+      return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
+    const std::size_t corners = nodes_of(card.style), wanted = shell.nodes[3] == shell.nodes[2] ? 3 : 4;
+    std::size_t end = card.offset;
+    const std::vector<Place> places = cut(card, corners + 1, end);
     if (places.size() < corners + 1) return fail("", "has a card that can't be read");
-    WrittenCard card;
+    WrittenCard written;
     for (std::size_t f = 0; f <= wanted; ++f) {
-      const std::string_view old = f <= corners ? text.substr(places[f].begin, places[f].length) : std::string_view(" ");
-      card.by_parameter |= old.find('<') != std::string_view::npos;
+      const std::string_view old = f <= corners ? card.text.substr(places[f].begin, places[f].length) : std::string_view(" ");
+      written.by_parameter |= old.find('<') != std::string_view::npos;
       const bool one_line = old.find('\n') == std::string_view::npos;
       const std::string id = std::to_string(f == 0 ? shell.id : shell.nodes[f - 1]);
-      card.text += (f > 0 ? "," : "") + (one_line && !trim(old).empty() ? in_place_of(old, id, starts_with_blanks(old)) : " " + id);
+      written.text += (f > 0 ? "," : "") + (one_line && !trim(old).empty() ? in_place_of(old, id, starts_with_blanks(old)) : " " + id);
     }
-    return card;
+    return written;
   }
 
   Result<std::vector<Replacement>> change_list(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
@@ -380,14 +384,14 @@ class Writer : public CardWriter {
   }
 
   /// The first `wanted` fields of a card that may go on in further lines; `end` gets where the line of the last of them ends.
-  static std::vector<Place> cut(std::string_view text, std::size_t offset, std::size_t wanted, std::size_t& end) {
+  static std::vector<Place> cut(const CardRef& card, std::size_t wanted, std::size_t& end) {
     std::vector<Place> out;
-    DataLines lines(text, offset, text.size());
+    DataLines lines(card.text, card.offset, card.text.size());
     DataLine line;
     while (out.size() < wanted && lines.next(line)) {
       for (const Place& place : places_of_line(line.text, line.offset))
         if (out.size() < wanted) out.push_back(place);
-      end = end_of_line(text, line.offset);
+      end = end_of_line(card.text, line.offset);
       if (line.text.back() != ',' && out.size() % kIdsOnALine != 0) break;
     }
     return out;

@@ -40,13 +40,13 @@ bool has_midside(const FieldLine& main) {
   return false;
 }
 
-ShellLines lines_of_shell(std::string_view text, std::size_t offset, std::uint16_t style) {
-  const CardForm form = shell_form_of(style);
-  const Columns columns = columns_of(style);
+ShellLines lines_of_shell(const CardRef& card) {
+  const CardForm form = shell_form_of(card.style);
+  const Columns columns = columns_of(card.style);
   ShellLines out;
-  out.main = {text.substr(offset, end_of_line(text, offset) - offset), offset};
+  out.main = {card.text.substr(card.offset, end_of_line(card.text, card.offset) - card.offset), card.offset};
   if (!form.thickness && form.extra_lines == 0 && !form.composite) return out;
-  Lines lines(text, offset, text.size());
+  Lines lines(card.text, card.offset, card.text.size());
   Line line;
   lines.next(line);
   if (form.thickness) {
@@ -147,31 +147,31 @@ Result<std::string> thickness_card(const Line& before, const CardForm& form, Col
 
 }  // namespace
 
-std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t style) { return lines_of_shell(text, offset, style).end(); }
+std::size_t shell_end(const CardRef& card) { return lines_of_shell(card).end(); }
 
-Result<WrittenCard> write_shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) {
-  const CardForm form = shell_form_of(style);
-  const Columns columns = columns_of(style);
-  const ShellLines lines = lines_of_shell(text, offset, style);
+Result<WrittenCard> write_shell(const CardRef& card, const ShellCard& shell) {
+  const CardForm form = shell_form_of(card.style);
+  const Columns columns = columns_of(card.style);
+  const ShellLines lines = lines_of_shell(card);
   const FieldLine main(lines.main.text, kShellWidths, columns);
   if (has_midside(main)) return fail("", "has mid-side nodes, which can't be divided or changed");
   if (form.scalar_nodes) return fail("", "has scalar nodes at its corners (_DOF), which can't be passed on");
   if (form.thickness && lines.thickness.empty()) return fail("", "lacks the card of thicknesses that its keyword asks for");
   const bool was_triangle = main.is_blank_or_zero(5) || main.text(5) == main.text(4);
 
-  WrittenCard card;
-  std::vector<std::string> written{main_card(main, shell, card)};
+  WrittenCard written;
+  std::vector<std::string> texts{main_card(main, shell, written)};
   for (const Line& line : lines.thickness) {
-    Result<std::string> mixed = thickness_card(line, form, columns, was_triangle, shell, card);
+    Result<std::string> mixed = thickness_card(line, form, columns, was_triangle, shell, written);
     if (!mixed) return fail(mixed.error());
-    written.push_back(std::move(*mixed));
+    texts.push_back(std::move(*mixed));
   }
-  for (const Line& line : lines.extra) written.emplace_back(line.text);
+  for (const Line& line : lines.extra) texts.emplace_back(line.text);
   for (const Line& layer : lines.layers) {
     FieldLine line(layer.text, kLayerWidths, columns);
-    turn_back(line, 2, shell.turn_degrees, card);
-    if (!form.composite_long) turn_back(line, 6, shell.turn_degrees, card);
-    written.push_back(card.turned ? line.str() : std::string(layer.text));
+    turn_back(line, 2, shell.turn_degrees, written);
+    if (!form.composite_long) turn_back(line, 6, shell.turn_degrees, written);
+    texts.push_back(written.turned ? line.str() : std::string(layer.text));
   }
 
   // Between the lines stands what stood there: line ends, and, for the shell itself, comments.
@@ -180,13 +180,13 @@ Result<WrittenCard> write_shell(std::string_view text, std::size_t offset, std::
   std::vector<Line> all{lines.main};
   for (const auto* more : {&lines.thickness, &lines.extra, &lines.layers}) all.insert(all.end(), more->begin(), more->end());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    card.text += written[i];
+    written.text += texts[i];
     if (i + 1 == all.size()) break;
     const std::size_t end = all[i].offset + all[i].text.size();
-    const std::size_t newline = text.find('\n', end);
-    card.text += text.substr(end, (itself ? all[i + 1].offset : newline + 1) - end);
+    const std::size_t newline = card.text.find('\n', end);
+    written.text += card.text.substr(end, (itself ? all[i + 1].offset : newline + 1) - end);
   }
-  return card;
+  return written;
 }
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -211,57 +211,54 @@ bool has_range(const Card& card, std::size_t list) {
 
 class Writer : public CardWriter {
  public:
-  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_card(text, offset); }
-  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_card(text, offset); }
+  std::size_t node_end(const CardRef& card) const override { return end_of_card(card.text, card.offset); }
+  std::size_t shell_end(const CardRef& card) const override { return end_of_card(card.text, card.offset); }
 
-  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const Card card = card_at(text, offset);
+  std::optional<Vec3> node_coordinates(const CardRef& card) const override {
+    const Card fields = card_at(card.text, card.offset);
     Vec3 out;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::optional<double> value = card.real(kCoordinates + axis);
+      const std::optional<double> value = fields.real(kCoordinates + axis);
       if (!value) return std::nullopt;
       out[static_cast<Eigen::Index>(axis)] = *value;
     }
     return out;
   }
 
-  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t, const Vec3& from, const Vec3& to) const override {
-    CardEdit edit(text, offset);
-    WrittenCard card;
+  WrittenCard move_node(const CardRef& card, const Vec3& from, const Vec3& to) const override {
+    CardEdit edit(card.text, card.offset);
+    WrittenCard written;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
-      if (from[a] != to[a]) edit.set(kCoordinates + axis, number_for(to[a], edit.width(kCoordinates + axis), card));
+      if (from[a] != to[a]) edit.set(kCoordinates + axis, number_for(to[a], edit.width(kCoordinates + axis), written));
     }
-    card.text = edit.text();
-    return card;
+    written.text = edit.text();
+    return written;
   }
 
-  WrittenCard new_node(std::string_view text, std::size_t offset, std::uint16_t, std::int64_t id, const Vec3& at) const override {
-    return write_node(text, offset, id, at, false);
-  }
+  WrittenCard new_node(const CardRef& card, std::int64_t id, const Vec3& at) const override { return write_node(card, id, at, false); }
 
-  std::string node_constraints(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const Card card = card_at(text, offset);
+  std::string node_constraints(const CardRef& card) const override {
+    const Card fields = card_at(card.text, card.offset);
     std::string out;
     for (std::size_t f = kOutputSystem; f <= kSuperelement; ++f)
-      if (!card.blank(f)) out += "," + std::to_string(f) + "=" + upper(card.text(f));
+      if (!fields.blank(f)) out += "," + std::to_string(f) + "=" + upper(fields.text(f));
     return out;
   }
 
-  Result<WrittenCard> new_constrained_node(std::string_view text, std::size_t offset, std::uint16_t, std::int64_t id,
-                                           const Vec3& at) const override {
-    return write_node(text, offset, id, at, true);
+  Result<WrittenCard> new_constrained_node(const CardRef& card, std::int64_t id, const Vec3& at) const override {
+    return write_node(card, id, at, true);
   }
 
-  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t, const ShellCard& shell) const override {
-    return ShellWriter(text, offset, shell).write();
+  Result<WrittenCard> shell(const CardRef& card, const ShellCard& shell) const override {
+    return ShellWriter(card.text, card.offset, shell).write();
   }
 
-  bool stands_alone(std::string_view text, std::size_t offset, std::uint16_t) const override { return !is_replicated(text, offset); }
+  bool stands_alone(const CardRef& card) const override { return !is_replicated(card.text, card.offset); }
 
   /// A CQUAD4 becomes a CTRIA3 by its name.
-  bool holds_triangles_and_quads(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    return !name_with(card_at(text, offset).name(), 3).empty();
+  bool holds_triangles_and_quads(const CardRef& card) const override {
+    return !name_with(card_at(card.text, card.offset).name(), 3).empty();
   }
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
@@ -369,9 +366,9 @@ class Writer : public CardWriter {
     return std::vector<Replacement>{std::move(replacement)};
   }
 
-  static WrittenCard write_node(std::string_view text, std::size_t offset, std::int64_t id, const Vec3& at, bool constrained) {
-    const Card card = card_at(text, offset);
-    const Manner manner = manner_of(text, offset);
+  static WrittenCard write_node(const CardRef& example, std::int64_t id, const Vec3& at, bool constrained) {
+    const Card card = card_at(example.text, example.offset);
+    const Manner manner = manner_of(example.text, example.offset);
     WrittenCard written;
     std::vector<std::string> fields(8);
     fields[0] = std::to_string(id);

@@ -21,6 +21,8 @@ std::size_t end_of_line(std::string_view text, std::size_t offset) {
 
 std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
 
+std::string_view first_line(const CardRef& card) { return line_at(card.text, card.offset); }
+
 /// Tabs count as one blank each.
 std::string without_tabs(std::string_view line) {
   std::string out(line);
@@ -194,58 +196,58 @@ class IdList {
 
 class Writer : public CardWriter {
  public:
-  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_line(text, offset); }
-  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_line(text, offset); }
+  std::size_t node_end(const CardRef& card) const override { return end_of_line(card.text, card.offset); }
+  std::size_t shell_end(const CardRef& card) const override { return end_of_line(card.text, card.offset); }
 
-  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t style) const override {
-    const std::string line = without_tabs(line_at(text, offset));
+  std::optional<Vec3> node_coordinates(const CardRef& card) const override {
+    const std::string line = without_tabs(first_line(card));
     Vec3 out;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      if (!parse_real(field(line, Style::of(style).width(), 1 + 2 * axis, 2), out[static_cast<Eigen::Index>(axis)])) return std::nullopt;
+      if (!parse_real(field(line, Style::of(card.style).width(), 1 + 2 * axis, 2), out[static_cast<Eigen::Index>(axis)]))
+        return std::nullopt;
     return out;
   }
 
-  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t style, const Vec3& from, const Vec3& to) const override {
-    WrittenCard card;
-    card.text = without_tabs(line_at(text, offset));
+  WrittenCard move_node(const CardRef& card, const Vec3& from, const Vec3& to) const override {
+    WrittenCard written;
+    written.text = without_tabs(first_line(card));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
-      if (from[a] != to[a]) put_coordinate(Style::of(style).width(), axis, to[a], card);
+      if (from[a] != to[a]) put_coordinate(Style::of(card.style).width(), axis, to[a], written);
     }
-    return card;
+    return written;
   }
 
-  WrittenCard new_node(std::string_view, std::size_t, std::uint16_t style, std::int64_t id, const Vec3& at) const override {
-    const std::size_t width = Style::of(style).width();
-    WrittenCard card;
-    put(card.text, 0, width, std::to_string(id));
-    for (std::size_t axis = 0; axis < 3; ++axis) put_coordinate(width, axis, at[static_cast<Eigen::Index>(axis)], card);
-    return card;
+  WrittenCard new_node(const CardRef& example, std::int64_t id, const Vec3& at) const override {
+    const std::size_t width = Style::of(example.style).width();
+    WrittenCard written;
+    put(written.text, 0, width, std::to_string(id));
+    for (std::size_t axis = 0; axis < 3; ++axis) put_coordinate(width, axis, at[static_cast<Eigen::Index>(axis)], written);
+    return written;
   }
 
-  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const override {
-    const Style own = Style::of(style);
-    const std::string line = without_tabs(line_at(text, offset));
+  Result<WrittenCard> shell(const CardRef& card, const ShellCard& shell) const override {
+    const Style own = Style::of(card.style);
+    const std::string line = without_tabs(first_line(card));
     if (is_triangle(shell) != own.triangle)
       return fail("", own.triangle ? "stands in an /SH3N block, which holds triangles only"
                                    : "stands in a /SHELL block, where a triangle's own block is /SH3N");
     return with_corners(line, own, shell);
   }
 
-  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
+  bool holds_triangles_and_quads(const CardRef&) const override { return false; }
 
-  Result<WrittenCard> shell_in_manner(std::string_view text, std::size_t offset, std::uint16_t style, std::string_view, std::size_t,
-                                      std::uint16_t manner_style, const ShellCard& shell) const override {
-    const Style own = Style::of(style);
-    const Style manner = Style::of(manner_style);
-    if (is_triangle(shell) != manner.triangle) return fail("", "has another number of corners than the block it would go to");
-    if (own.old != manner.old) return fail("", "would go to a block with columns of another width");
+  Result<WrittenCard> shell_in_manner(const CardRef& card, const CardRef& example, const ShellCard& shell) const override {
+    const Style own = Style::of(card.style);
+    const Style wanted = Style::of(example.style);
+    if (is_triangle(shell) != wanted.triangle) return fail("", "has another number of corners than the block it would go to");
+    if (own.old != wanted.old) return fail("", "would go to a block with columns of another width");
     // Angle and thickness stand in the same columns in both blocks; what lies between the corners and them goes.
-    std::string line = without_tabs(line_at(text, offset));
+    std::string line = without_tabs(first_line(card));
     const std::size_t width = own.width();
     if (line.size() > 4 * width)
       line.replace(4 * width, std::min(line.size(), 6 * width) - 4 * width, std::string(std::min(line.size(), 6 * width) - 4 * width, ' '));
-    return with_corners(std::move(line), manner, shell);
+    return with_corners(std::move(line), wanted, shell);
   }
 
   /// Groups and histories of quads and of triangles have keywords of their own.
@@ -256,25 +258,24 @@ class Writer : public CardWriter {
   }
 
   /// "/SHELL/7" and "/SH3N/7" hold the shells of one part in the same file.
-  Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t, bool triangles) const override {
-    const BlockFinder::Found found = blocks_.at(text, offset);
-    if (found.has_keyword && text[found.keyword] == '#') return fail("", "stands in a block that an include interrupts");
+  Result<NewBlock> block_of_kind(const CardRef& card, bool triangles) const override {
+    const BlockFinder::Found found = blocks_.at(card.text, card.offset);
+    if (found.has_keyword && card.text[found.keyword] == '#') return fail("", "stands in a block that an include interrupts");
     NewBlock block;
-    block.header = std::string(line_at(text, found.keyword));
+    block.header = std::string(line_at(card.text, found.keyword));
     const std::size_t slash = block.header.find('/', 1);
     if (slash == std::string::npos || !found.has_keyword) return fail("", "has no keyword that could be found");
     block.header.replace(0, slash, triangles ? "/SH3N" : "/SHELL");
     // Behind the block's last card: comments in between belong to it, or to what follows.
     block.offset = found.end;
-    if (is_include(text.substr(block.offset))) return fail("", "stands in a block that goes on in an include");
+    if (is_include(card.text.substr(block.offset))) return fail("", "stands in a block that goes on in an include");
     return block;
   }
 
-  Result<WrittenCard> shell_in_block(std::string_view text, std::size_t offset, std::uint16_t style,
-                                     const ShellCard& shell) const override {
-    Style other = Style::of(style);
+  Result<WrittenCard> shell_in_block(const CardRef& card, const ShellCard& shell) const override {
+    Style other = Style::of(card.style);
     other.triangle = !other.triangle;
-    return shell_in_manner(text, offset, style, text, offset, other.number(), shell);
+    return shell_in_manner(card, {card.text, card.offset, other.number()}, shell);
   }
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
