@@ -40,8 +40,8 @@ class ReferenceReader {
     Columns columns = Columns::standard;
     bool encrypted = false;
   };
-  friend class BlockReader;
   bool extends_last(const Job& job) const;
+  void read_job(const Job& job, std::string_view text, References& out) const;
 
   std::vector<Job> jobs_;
   std::vector<Parameters> parameters_;
