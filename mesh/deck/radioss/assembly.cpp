@@ -47,7 +47,7 @@ Result<void> Collected::sort_blocks() {
     if (const CardForm* form = card_form(keyword.word(0)))
       add_mesh(block, keyword, *form);
     else
-      definitions_.read(block, keyword, around(walk_.files.files));
+      definitions_.read(block, keyword, tables(walk_.files.files));
   }
   return {};
 }
@@ -65,14 +65,14 @@ void Collected::read_unit_system(const Block& block, const Keyword& keyword) {
 
 void Collected::check_submodel_units() {
   for (std::uint32_t c = 1; c < walk_.contexts.size(); ++c)
-    if (!around(walk_.files.files).units(c, 0))
+    if (!tables(walk_.files.files).units(c, 0))
       walk_.warnings.note("undefined-unit", walk_.contexts[c].file, walk_.contexts[c].offset,
                           "a unit system that isn't defined is named; its numbers are taken as they stand");
 }
 
 double Collected::length_unit(const Block& block, std::int64_t system) {
-  const std::optional<Units> own = around(walk_.files.files).units(block.context, system);
-  const std::optional<Units> main = around(walk_.files.files).units(0, 0);
+  const std::optional<Units> own = tables(walk_.files.files).units(block.context, system);
+  const std::optional<Units> main = tables(walk_.files.files).units(0, 0);
   if (!own && system > 0)
     walk_.warnings.note("undefined-unit", block.file, block.offset,
                         "a unit system that isn't defined is named; its numbers are taken as they stand");
@@ -151,11 +151,11 @@ void Collected::complete(Found& found, const std::vector<std::vector<Direction>>
   std::map<std::int64_t, const Block*> groups;
   for (const Block& block : walk_.blocks) {
     const Keyword keyword = keyword_at(found.files[block.file].bytes.text(), block.offset);
-    if (card_form(keyword.word(0)) == nullptr) read_references(block, keyword, around(found.files), found.references);
-    if (keyword.word(0) == "TRANSFORM") transforms.push_back(read_transform(block, keyword, around(found.files)));
+    if (card_form(keyword.word(0)) == nullptr) read_references(block, keyword, tables(found.files), found.references);
+    if (keyword.word(0) == "TRANSFORM") transforms.push_back(read_transform(block, keyword, tables(found.files)));
     if (keyword.word(0) == "GRNOD") groups.try_emplace(keyword.number(0) + walk_.contexts[block.context].added.set, &block);
   }
-  if (!transforms.empty()) Transformer(found, frame_context, around(found.files), groups).run(transforms);
+  if (!transforms.empty()) Transformer(found, frame_context, tables(found.files), groups).run(transforms);
   add_directions(found, directions);
   check_positions(found);
 }

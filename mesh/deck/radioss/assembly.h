@@ -25,7 +25,7 @@ class Collected {
   std::vector<Piece> pieces;
 
  private:
-  Surroundings around(std::span<const SourceFile> files) const { return {files, walk_.contexts, parameters, systems_}; }
+  DeckTables tables(std::span<const SourceFile> files) const { return {files, walk_.contexts, parameters, systems_}; }
   void read_unit_system(const Block& block, const Keyword& keyword);
   void add_directions(Found& found, const std::vector<std::vector<Direction>>& directions);
   static void check_positions(Found& found);

@@ -33,7 +33,7 @@ struct MaterialFields {
 MaterialFields material_fields(std::string_view law);
 
 /// What definitions are read with.
-struct Surroundings {
+struct DeckTables {
   std::span<const SourceFile> files;
   std::span<const Context> contexts;
   const Parameters& parameters;
@@ -47,15 +47,15 @@ struct Surroundings {
 class Definitions {
  public:
   /// Reads the block if its keyword is one of those; false: it isn't.
-  bool read(const Block& block, const Keyword& keyword, const Surroundings& around);
+  bool read(const Block& block, const Keyword& keyword, const DeckTables& tables);
 
   /// Defined parts with property and material put in, ascending by id, in the main file's units.
   std::vector<Part> parts() const;
 
  private:
-  void read_part(const Block& block, const Keyword& keyword, const Surroundings& around);
-  void read_property(const Block& block, const Keyword& keyword, const Surroundings& around);
-  void read_material(const Block& block, const Keyword& keyword, const Surroundings& around);
+  void read_part(const Block& block, const Keyword& keyword, const DeckTables& tables);
+  void read_property(const Block& block, const Keyword& keyword, const DeckTables& tables);
+  void read_material(const Block& block, const Keyword& keyword, const DeckTables& tables);
 
   std::map<std::int64_t, Part> parts_;
   std::map<std::int64_t, double> thickness_;

@@ -32,19 +32,19 @@ Kind kind_of(std::string_view word) {
 /// Reads a transformation's cards.
 class CardReader {
  public:
-  CardReader(const Block& block, const Surroundings& around, double unit, Transform& out)
-      : around_(around),
+  CardReader(const Block& block, const DeckTables& tables, double unit, Transform& out)
+      : tables_(tables),
         block_(block),
         unit_(unit),
-        lines_(around.files, block),
-        width_(around.contexts[block.context].field_width()),
+        lines_(tables.files, block),
+        width_(tables.contexts[block.context].field_width()),
         out_(out) {}
 
   void run() {
     if (!lines_.next(line_) || !next()) return;
-    out_.group = id(0, around_.contexts[block_.context].added.set);
+    out_.group = id(0, tables_.contexts[block_.context].added.set);
     if (out_.kind == Kind::position) return read_position();
-    const std::int64_t node_offset = around_.contexts[block_.context].added.node;
+    const std::int64_t node_offset = tables_.contexts[block_.context].added.node;
     out_.submodel = id(9, 0);
     if (out_.kind == Kind::matrix) return read_matrix();
     out_.nodes[0] = id(7, node_offset);
@@ -63,12 +63,12 @@ class CardReader {
     return there;
   }
   double real(std::size_t first) {
-    const auto value = around_.parameters.real(field(line_.text, width_, first, 2), around_.contexts, block_.context);
+    const auto value = tables_.parameters.real(field(line_.text, width_, first, 2), tables_.contexts, block_.context);
     out_.readable &= value.has_value();
     return value.value_or(0);
   }
   std::int64_t id(std::size_t first, std::int64_t added) {
-    const auto value = around_.parameters.integer(field(line_.text, width_, first), around_.contexts, block_.context);
+    const auto value = tables_.parameters.integer(field(line_.text, width_, first), tables_.contexts, block_.context);
     out_.readable &= value.has_value();
     return value && *value > 0 ? *value + added : 0;
   }
@@ -84,7 +84,7 @@ class CardReader {
 
   /// Six nodes, or six points on cards of their own, each of three numbers.
   void read_position() {
-    for (std::size_t n = 0; n < 6; ++n) out_.nodes[n] = id(1 + n, around_.contexts[block_.context].added.node);
+    for (std::size_t n = 0; n < 6; ++n) out_.nodes[n] = id(1 + n, tables_.contexts[block_.context].added.node);
     for (std::size_t f = 7; f < 10; ++f)
       if (const std::int64_t submodel = id(f, 0); submodel > 0) out_.submodel = submodel;
     if (std::all_of(out_.nodes.begin(), out_.nodes.end(), [](std::int64_t n) { return n > 0; })) return;
@@ -93,7 +93,7 @@ class CardReader {
       std::string_view rest = trim(line_.text);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-        const auto value = around_.parameters.real(rest.substr(0, end), around_.contexts, block_.context);
+        const auto value = tables_.parameters.real(rest.substr(0, end), tables_.contexts, block_.context);
         out_.readable &= value.has_value() && end > 0;
         point[axis] = value.value_or(0) * unit_;
         rest = trim(rest.substr(end));
@@ -102,7 +102,7 @@ class CardReader {
     }
   }
 
-  const Surroundings& around_;
+  const DeckTables& tables_;
   const Block& block_;
   double unit_;
   BlockLines lines_;
@@ -125,16 +125,16 @@ std::optional<Affine3d> finite(const Affine3d& map) { return map.matrix().allFin
 
 }  // namespace
 
-Transform read_transform(const Block& block, const Keyword& keyword, const Surroundings& around) {
+Transform read_transform(const Block& block, const Keyword& keyword, const DeckTables& tables) {
   Transform out;
   out.kind = kind_of(keyword.word(1));
   out.file = block.file;
   out.offset = block.offset;
   out.points.fill(Vector3d::Zero());
-  const std::optional<Units> units = around.units(block.context, keyword.number(1));
-  const std::optional<Units> main = around.units(0, 0);
+  const std::optional<Units> units = tables.units(block.context, keyword.number(1));
+  const std::optional<Units> main = tables.units(0, 0);
   out.readable = units && main && out.kind != Kind::unknown;
-  CardReader(block, around, units && main ? units->length / main->length : 1, out).run();
+  CardReader(block, tables, units && main ? units->length / main->length : 1, out).run();
   return out;
 }
 
@@ -247,8 +247,8 @@ std::optional<Vector3d> Transformer::position(std::int64_t node) const {
 }
 
 bool Transformer::in_submodel(std::uint32_t frame, std::int64_t submodel) const {
-  for (std::uint32_t context = frame_context_[frame]; context != 0; context = around_.contexts[context].parent)
-    if (around_.contexts[context].id == submodel) return true;
+  for (std::uint32_t context = frame_context_[frame]; context != 0; context = tables_.contexts[context].parent)
+    if (tables_.contexts[context].id == submodel) return true;
   return false;
 }
 
@@ -320,20 +320,20 @@ bool Transformer::collect(std::int64_t group, int depth, Members& members) {
   if (at == groups_.end() || depth > kMaxGroupDepth || work_ > kMaxWork) return false;
   const Block& block = *at->second;
   work_ += 100 + block.body.end - block.body.begin;
-  const Keyword keyword = keyword_at(around_.files[block.file].bytes.text(), block.offset);
+  const Keyword keyword = keyword_at(tables_.files[block.file].bytes.text(), block.offset);
   const std::string_view kind = keyword.word(1);
-  const Context& context = around_.contexts[block.context];
+  const Context& context = tables_.contexts[block.context];
   const std::int64_t added = kind == "PART" ? context.added.part : kind == "GRNOD" ? context.added.set : context.added.node;
   if (kind != "NODE" && kind != "NODENS" && kind != "GENE" && kind != "GEN_INCR" && kind != "PART" && kind != "GRNOD") return false;
   std::vector<std::int64_t> numbers;
-  BlockLines lines(around_.files, block);
+  BlockLines lines(tables_.files, block);
   Line line;
   if (!lines.next(line)) return true;
   const std::size_t per = kind == "GENE" ? 2 : kind == "GEN_INCR" ? 3 : 1;
   while (lines.next(line)) {
     std::array<std::int64_t, 10> on_line{};
     for (std::size_t f = 0; f < on_line.size(); ++f) {
-      const auto number = around_.parameters.integer(field(line.text, context.field_width(), f), around_.contexts, block.context);
+      const auto number = tables_.parameters.integer(field(line.text, context.field_width(), f), tables_.contexts, block.context);
       if (!number) return false;
       on_line[f] = *number;
     }

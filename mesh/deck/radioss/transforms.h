@@ -28,7 +28,7 @@ struct Transform {
   std::uint32_t file = 0;
   std::size_t offset = 0;
 };
-Transform read_transform(const Block& block, const Keyword& keyword, const Surroundings& around);
+Transform read_transform(const Block& block, const Keyword& keyword, const DeckTables& tables);
 
 /// The map of a card whose nodes are at `at` (nullopt where one isn't defined). nullopt: it can't be worked out.
 std::optional<Eigen::Affine3d> affine_of(const Transform& transform, const std::array<std::optional<Eigen::Vector3d>, 6>& at);
@@ -38,9 +38,9 @@ std::optional<Eigen::Affine3d> affine_of(const Transform& transform, const std::
 class Transformer {
  public:
   /// `frame_context`: the submodel of each frame. `groups`: /GRNOD blocks by id.
-  Transformer(Found& found, std::vector<std::uint32_t>& frame_context, const Surroundings& around,
+  Transformer(Found& found, std::vector<std::uint32_t>& frame_context, const DeckTables& tables,
               const std::map<std::int64_t, const Block*>& groups)
-      : found_(found), frame_context_(frame_context), around_(around), groups_(groups) {}
+      : found_(found), frame_context_(frame_context), tables_(tables), groups_(groups) {}
   void run(const std::vector<Transform>& transforms);
 
  private:
@@ -69,7 +69,7 @@ class Transformer {
 
   Found& found_;
   std::vector<std::uint32_t>& frame_context_;
-  const Surroundings& around_;
+  const DeckTables& tables_;
   const std::map<std::int64_t, const Block*>& groups_;
   std::vector<Named> named_;
   std::set<std::int64_t> held_;  ///< submodels whose nodes are all held; 0: every node is
