@@ -113,16 +113,17 @@ class TransformCards {
 
 }  // namespace
 
-IncludeContext read_transform(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& parent,
-                              std::uint32_t parent_index, std::string& problem) {
-  IncludeContext context = parent;
-  context.parent = parent_index;
+IncludeTransform read_transform(std::string_view text, const Block& block, const Parameters& parameters,
+                                std::span<const IncludeContext> contexts, std::uint32_t parent) {
+  IncludeTransform out{contexts[parent], {}};
+  IncludeContext& context = out.context;
+  context.parent = parent;
   context.own_length = 1;
   context.transformation = 0;
   Lines lines(text, block.begin, block.end);
   Line line;
   Card card;
-  TransformCards cards(parameters, problem);
+  TransformCards cards(parameters, out.problem);
   bool in_name = true;
   for (int number = 0; lines.next(line);) {
     if (in_name) {
@@ -136,9 +137,9 @@ IncludeContext read_transform(std::string_view text, const Block& block, const P
   for (double* const factor : {&context.mass, &context.time, &context.length})
     if (!(*factor > 1 / kMaxFactor && *factor < kMaxFactor)) {
       *factor = 1;
-      problem = "has a factor of units that can't be used";
+      out.problem = "has a factor of units that can't be used";
     }
-  return context;
+  return out;
 }
 
 void IncludeSearch::add_path(const std::string& path) {

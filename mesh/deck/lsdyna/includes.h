@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,10 +38,15 @@ struct IncludeContext {
   bool same_as(const IncludeContext& other) const;
 };
 
-/// An *INCLUDE_TRANSFORM in a file that is in `parent` (number `parent_index`) itself. `problem` gets what of it can't be used, as the
-/// end of a sentence; it is left out then.
-IncludeContext read_transform(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& parent,
-                              std::uint32_t parent_index, std::string& problem);
+/// What an *INCLUDE_TRANSFORM says, without what of it can't be used.
+struct IncludeTransform {
+  IncludeContext context;
+  std::string problem;  ///< what can't be used, as the end of a sentence; empty: nothing
+};
+
+/// An *INCLUDE_TRANSFORM in a file that is in contexts[parent] itself.
+IncludeTransform read_transform(std::string_view text, const Block& block, const Parameters& parameters,
+                                std::span<const IncludeContext> contexts, std::uint32_t parent);
 
 /// Where includes are looked for: beside the file that names them, beside the main file, then along the paths.
 class IncludeSearch {

@@ -104,21 +104,29 @@ class IdList {
   std::size_t remaining_ = 0;
 };
 
-/// Lines of up to eight fields in the manner of `example`: `word` in the first, or none.
-std::string new_lines(const std::vector<std::string>& values, std::size_t fields, std::string_view word, bool zeros,
-                      const FieldLine& example, Columns columns, std::string_view eol) {
+/// How new lines of a set look.
+struct LineFormat {
+  std::size_t fields = 8;
+  std::string_view word;  ///< in the first field; empty: no word
+  bool zeros = false;     ///< unused fields hold zeros
+  bool free_format = false;
+  Columns columns = Columns::standard;
+  std::string_view eol;
+};
+
+std::string new_lines(std::span<const std::string> values, const LineFormat& format) {
   std::string out;
-  const std::size_t first = word.empty() ? 0 : 1;
-  for (std::size_t at = 0; at < values.size(); at += fields - first) {
-    FieldLine line(example.free_format() ? "," : "", kSetWidths, columns);
-    if (!word.empty()) line.set(0, word);
-    for (std::size_t f = first; f < fields; ++f) {
+  const std::size_t first = format.word.empty() ? 0 : 1;
+  for (std::size_t at = 0; at < values.size(); at += format.fields - first) {
+    FieldLine line(format.free_format ? "," : "", kSetWidths, format.columns);
+    if (!format.word.empty()) line.set(0, format.word);
+    for (std::size_t f = first; f < format.fields; ++f) {
       if (at + f - first < values.size())
         line.set(f, values[at + f - first]);
-      else if (zeros)
+      else if (format.zeros)
         line.set(f, "0");
     }
-    out += line.str() + std::string(eol);
+    out += line.str() + std::string(format.eol);
   }
   return out;
 }
@@ -184,90 +192,153 @@ std::optional<std::size_t> first_corner(const Referrer& set, const FieldLine& li
 
 std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
 
+/// How a set's lines say what it holds.
+enum class ListLayout : std::uint8_t {
+  plain,      ///< ids, eight a line
+  column,     ///< an id a line, with attributes
+  generate,   ///< pairs of first and last, four a line
+  increment,  ///< first, last and step
+  general,    ///< a word, then ids
+};
+
+ListLayout layout_of(std::string_view keyword) {
+  if (has_word(keyword, "GENERAL")) return ListLayout::general;
+  if (has_word(keyword, "COLUMN")) return ListLayout::column;
+  if (has_word(keyword, "INCREMENT")) return ListLayout::increment;
+  return has_word(keyword, "GENERATE") ? ListLayout::generate : ListLayout::plain;
+}
+
+/// A set whose lines change.
+struct ListedSet {
+  std::string_view text;  ///< of its file
+  const Referrer& set;
+  ListLayout layout = ListLayout::plain;
+  Columns columns = Columns::standard;
+  std::vector<Line> members;  ///< its data lines; not empty
+};
+
+Result<ListedSet> find_list(std::string_view text, const Referrer& set) {
+  if (!set.keyword.starts_with("SET_")) return fail("", "lists what it is about in a way that this version can't change");
+  if (has_word(set.keyword, "ADD") || has_word(set.keyword, "INTERSECT")) return fail("", "is made of other sets");
+  Result<std::vector<Line>> members = members_of(text, set);
+  if (!members) return fail(members.error());
+  if (members->empty()) return fail("", "has no line after which another could go");
+  return ListedSet{text, set, layout_of(set.keyword), columns_of(set.style), std::move(*members)};
+}
+
+Result<void> take_out(const ListedSet& of, std::span<const std::int64_t> leaving, bool others_join, std::vector<Replacement>& out) {
+  if (of.layout == ListLayout::column) return fail("", "lists its entries with attributes, from which none can be taken out");
+  IdList list(of.text, of.set, of.members);
+  if (!list.take_out(leaving, out)) return fail("", "names what would go by a parameter, or otherwise than as a plain number");
+  if (list.remaining() == 0 && !others_join) return fail("", "would be left empty");
+  return {};
+}
+
+/// Lines for new entries, each with the attributes that all the others have.
+Result<std::string> column_lines(const ListedSet& of, std::span<const std::int64_t> joining, std::string_view eol) {
+  const std::string_view last = of.members.back().text;
+  const FieldLine fields(last, kSetWidths, of.columns);
+  for (std::size_t f = 1; f < 5; ++f)
+    for (const Line& line : of.members)
+      if (FieldLine(line.text, kSetWidths, of.columns).text(f) != fields.text(f))
+        return fail("", "gives its entries different attributes, and it can't be told which a new one has");
+  std::string out;
+  for (const std::int64_t id : joining) {
+    FieldLine line(last, kSetWidths, of.columns);
+    line.set(0, std::to_string(id));
+    out += line.str() + std::string(eol);
+  }
+  return out;
+}
+
+/// Puts values, `whole` of them together, into the free fields at a line's end. Returns how many fit.
+std::size_t fill_up(FieldLine& fields, std::span<const std::string> values, std::size_t whole) {
+  std::size_t used = 8, filled = 0;
+  while (used > 0 && fields.is_blank_or_zero(used - 1)) --used;
+  used += used % whole;
+  while (used + whole <= 8 && filled + whole <= values.size())
+    for (std::size_t i = 0; i < whole; ++i) fields.set(used++, values[filled++]);
+  return filled;
+}
+
+bool has_zeros(const FieldLine& fields) {
+  for (std::size_t f = 0; f < 8; ++f)
+    if (fields.text(f) == "0") return true;
+  return false;
+}
+
+std::string_view general_word(std::string_view keyword) {
+  if (keyword.starts_with("SET_NODE")) return "NODE";
+  return keyword.starts_with("SET_PART") ? "PART" : "ELEM";
+}
+
+/// What joins a list: more in its last line, and lines behind it.
+struct Joining {
+  std::string last_line;
+  std::string new_lines;
+};
+
+/// `last_line`: the text of the set's last line; empty where it is removed, so that nothing can be put into it.
+Result<Joining> join_lines(const ListedSet& of, std::string last_line, std::span<const std::int64_t> ids, std::string_view eol) {
+  const bool removed = last_line.empty();
+  FieldLine fields(removed ? of.members.back().text : last_line, kSetWidths, of.columns);
+  LineFormat format{8, {}, false, fields.free_format(), of.columns, eol};
+  switch (of.layout) {
+    case ListLayout::general: format.word = general_word(of.set.keyword); return Joining{last_line, new_lines(texts_of(ids), format)};
+    case ListLayout::column: {
+      Result<std::string> lines = column_lines(of, ids, eol);
+      if (!lines) return fail(lines.error());
+      return Joining{last_line, std::move(*lines)};
+    }
+    case ListLayout::increment: format.fields = 3; return Joining{last_line, new_lines(ranges_of(ids, true), format)};
+    case ListLayout::generate:
+    case ListLayout::plain: break;
+  }
+  format.zeros = has_zeros(fields);
+  const bool generate = of.layout == ListLayout::generate;
+  const std::vector<std::string> values = generate ? ranges_of(ids, false) : texts_of(ids);
+  const std::size_t filled = removed ? 0 : fill_up(fields, values, generate ? 2 : 1);
+  if (filled > 0) last_line = fields.str();
+  return Joining{std::move(last_line), new_lines(std::span(values).subspan(filled), format)};
+}
+
+Result<void> put_in(const ListedSet& of, std::span<const std::int64_t> joining, std::vector<Replacement>& out) {
+  const Line& last = of.members.back();
+  const auto rewritten = std::find_if(out.begin(), out.end(), [&](const Replacement& r) { return r.offset == last.offset; });
+  const std::string before = rewritten != out.end() ? rewritten->text : std::string(last.text);
+  const std::string_view eol = eol_of(of.text, last.offset);
+  Result<Joining> joined = join_lines(of, before, joining, eol);
+  if (!joined) return fail(joined.error());
+  if (rewritten != out.end())
+    rewritten->text = std::move(joined->last_line);
+  else if (joined->last_line != last.text)
+    out.push_back({last.offset, last.text.size(), std::move(joined->last_line)});
+  std::string& lines = joined->new_lines;
+  if (lines.empty()) return {};
+  const std::size_t newline = of.text.find('\n', last.offset);
+  if (newline == std::string_view::npos) {
+    lines.resize(lines.size() - eol.size());
+    out.push_back({of.text.size(), 0, std::string(eol) + lines});
+  } else {
+    out.push_back({newline + 1, 0, std::move(lines)});
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<Replacement>> change_set(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
                                             std::span<const std::int64_t> leaving) {
-  if (!set.keyword.starts_with("SET_")) return fail("", "lists what it is about in a way that this version can't change");
-  const bool generate = has_word(set.keyword, "GENERATE"), increment = has_word(set.keyword, "INCREMENT");
-  const bool general = has_word(set.keyword, "GENERAL"), column = has_word(set.keyword, "COLUMN");
-  if (has_word(set.keyword, "ADD") || has_word(set.keyword, "INTERSECT")) return fail("", "is made of other sets");
-  const Columns columns = columns_of(set.style);
-  const Result<std::vector<Line>> members = members_of(text, set);
-  if (!members) return fail(members.error());
-  if (members->empty()) return fail("", "has no line after which another could go");
+  const Result<ListedSet> list = find_list(text, set);
+  if (!list) return fail(list.error());
   for (const std::int64_t id : joining)
-    if (std::to_string(id).size() > static_cast<std::size_t>(field_width(10, columns)))
+    if (std::to_string(id).size() > static_cast<std::size_t>(field_width(10, list->columns)))
       return fail("", "has fields too narrow for the new ids");
-
   std::vector<Replacement> out;
-  if (!leaving.empty()) {
-    IdList list(text, set, *members);
-    const bool found = column ? false : list.take_out(leaving, out);
-    if (!found)
-      return fail("", column ? "lists its entries with attributes, from which none can be taken out"
-                             : "names what would go by a parameter, or otherwise than as a plain number");
-    if (list.remaining() == 0 && joining.empty()) return fail("", "would be left empty");
-  }
-  if (joining.empty()) return out;
-
-  const Line last = members->back();
-  const auto rewritten = std::find_if(out.begin(), out.end(), [&](const Replacement& r) { return r.offset == last.offset; });
-  const bool gone = rewritten != out.end() && rewritten->text.empty();
-  const std::string last_text = rewritten != out.end() && !gone ? rewritten->text : std::string(last.text);
-  FieldLine fields(last_text, kSetWidths, columns);
-  const std::string_view eol = eol_of(text, last.offset);
-  bool zeros = false;
-  for (std::size_t f = 0; f < 8; ++f) zeros |= fields.text(f) == "0";
-
-  std::vector<std::string> values;
-  std::string more;
-  std::string line_text = last_text;
-  if (general) {
-    const std::string_view word = set.keyword.starts_with("SET_NODE") ? "NODE" : set.keyword.starts_with("SET_PART") ? "PART" : "ELEM";
-    more = new_lines(texts_of(joining), 8, word, false, fields, columns, eol);
-  } else if (column) {
-    for (std::size_t f = 1; f < 5; ++f)
-      for (const Line& line : *members)
-        if (FieldLine(line.text, kSetWidths, columns).text(f) != fields.text(f))
-          return fail("", "gives its entries different attributes, and it can't be told which a new one has");
-    for (const std::int64_t id : joining) {
-      FieldLine line(last.text, kSetWidths, columns);
-      line.set(0, std::to_string(id));
-      more += line.str() + std::string(eol);
-    }
-  } else if (increment) {
-    more = new_lines(ranges_of(joining, true), 3, "", false, fields, columns, eol);
-  } else {
-    values = generate ? ranges_of(joining, false) : texts_of(joining);
-    // The last line is filled up first.
-    std::size_t used = 8;
-    while (used > 0 && fields.is_blank_or_zero(used - 1)) --used;
-    if (generate) used += used % 2;
-    std::size_t filled = 0;
-    const std::size_t whole = generate ? 2 : 1;
-    if (!gone)
-      while (used + whole <= 8 && filled + whole <= values.size())
-        for (std::size_t i = 0; i < whole; ++i) fields.set(used++, values[filled++]);
-    if (filled > 0) line_text = fields.str();
-    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(filled));
-    more = new_lines(values, 8, "", zeros, fields, columns, eol);
-  }
-  if (line_text != last.text && !gone) {
-    if (rewritten != out.end())
-      rewritten->text = line_text;
-    else
-      out.push_back({last.offset, last.text.size(), line_text});
-  }
-  if (!more.empty()) {
-    const std::size_t newline = text.find('\n', last.offset);
-    if (newline == std::string_view::npos) {
-      more.resize(more.size() - eol.size());
-      out.push_back({text.size(), 0, std::string(eol) + more});
-    } else {
-      out.push_back({newline + 1, 0, more});
-    }
-  }
+  if (!leaving.empty())
+    if (Result<void> done = take_out(*list, leaving, !joining.empty(), out); !done) return fail(done.error());
+  if (!joining.empty())
+    if (Result<void> done = put_in(*list, joining, out); !done) return fail(done.error());
   return out;
 }
 

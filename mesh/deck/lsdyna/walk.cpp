@@ -168,10 +168,11 @@ void Walk::include(const Visit& from, const Block& block, Columns columns) {
 /// Another place of the same transformation is the same include again, and one that changes nothing is a plain one.
 void Walk::include_transformed(const Visit& from, const Block& block, Columns columns) {
   const std::string_view text = files.files[from.file].bytes.text();
-  std::string problem;
-  IncludeContext context = read_transform(text, block, parameters_, contexts[from.context], from.context, problem);
-  if (!problem.empty())
-    warnings.note_each("bad-include-transform", from.file, block.keyword, "*" + block.name + " " + problem + "; that is left out");
+  IncludeTransform transform = read_transform(text, block, parameters_, contexts, from.context);
+  if (!transform.problem.empty())
+    warnings.note_each("bad-include-transform", from.file, block.keyword,
+                       "*" + block.name + " " + transform.problem + "; that is left out");
+  IncludeContext& context = transform.context;
   context.file = from.file;
   context.offset = block.keyword;
   std::uint32_t index = from.context;
