@@ -30,14 +30,14 @@ std::string_view first_line(const CardRef& card) {
 }
 
 /// A field's place in a card's text: between its commas, blanks included.
-struct Place {
+struct FieldRange {
   std::size_t begin = 0;
   std::size_t length = 0;
 };
 
 /// The fields of a line, those after the last comma only if there is something.
-std::vector<Place> places_of_line(std::string_view line, std::size_t at) {
-  std::vector<Place> out;
+std::vector<FieldRange> places_of_line(std::string_view line, std::size_t at) {
+  std::vector<FieldRange> out;
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t comma = std::min(line.find(',', begin), line.size());
     if (comma == line.size() && trim(line.substr(begin)).empty()) break;
@@ -88,7 +88,7 @@ bool is_keyword(std::string_view text, std::size_t line) {
 }
 
 /// A block's keyword with its parameters, without the end of its last line.
-std::string header_of(std::string_view text, const BlockFinder::Found& block) {
+std::string header_of(std::string_view text, const BlockFinder::BlockRange& block) {
   Keywords keywords(text.substr(block.keyword));
   Keyword keyword;
   if (!keywords.next(keyword)) return {};
@@ -110,8 +110,8 @@ std::string without_parameter(std::string_view header, std::string_view name) {
 }
 
 /// The fields of a line that aren't one of some numbers.
-std::vector<Place> without_ids(std::string_view line, std::vector<Place> places, std::span<const std::int64_t> ids) {
-  std::erase_if(places, [&](const Place& place) {
+std::vector<FieldRange> without_ids(std::string_view line, std::vector<FieldRange> places, std::span<const std::int64_t> ids) {
+  std::erase_if(places, [&](const FieldRange& place) {
     std::int64_t id = 0;
     return parse_integer(trim(line.substr(place.begin, place.length)), id) && std::find(ids.begin(), ids.end(), id) != ids.end();
   });
@@ -119,9 +119,9 @@ std::vector<Place> without_ids(std::string_view line, std::vector<Place> places,
 }
 
 /// A line of some of its fields, begun and ended as it was.
-std::string line_of(std::string_view line, const std::vector<Place>& places) {
+std::string line_of(std::string_view line, const std::vector<FieldRange>& places) {
   std::string out(line.substr(0, line.find_first_not_of(" \t")));
-  for (const Place& place : places) {
+  for (const FieldRange& place : places) {
     const std::string_view field = line.substr(place.begin, place.length);
     out += out.find_first_not_of(" \t") == std::string::npos ? std::string(trim(field)) : "," + std::string(field);
   }
@@ -159,7 +159,7 @@ class Writer : public CardWriter {
   WrittenCard new_node(const CardRef& card, std::int64_t id, const Vec3& at) const override {
     WrittenCard written;
     written.text = std::string(first_line(card));
-    std::vector<Place> places = places_of_line(written.text, 0);
+    std::vector<FieldRange> places = places_of_line(written.text, 0);
     // What follows the coordinates is the old node's normal.
     if (places.size() > 4) written.text.resize(places[3].begin + places[3].length);
     for (std::size_t axis = 3; axis-- > 0;) put_coordinate(written, axis, at[static_cast<Eigen::Index>(axis)]);
@@ -179,7 +179,7 @@ class Writer : public CardWriter {
     if (triangle && corners == 4) return fail("", "is of a type with four corners, so a triangle can't be written like it");
     if (!triangle && corners == 3) return fail("", "is of a type with three corners, so a quad can't be written like it");
     std::size_t end = card.offset;
-    const std::vector<Place> places = cut(card, corners + 1, end);
+    const std::vector<FieldRange> places = cut(card, corners + 1, end);
     if (places.size() < corners + 1) return fail("", "has a card that can't be read");
     WrittenCard written;
     written.text = std::string(card.text.substr(card.offset, end - card.offset));
@@ -201,7 +201,7 @@ class Writer : public CardWriter {
 
   /// The set that the keyword puts its nodes into: "*NODE, NSET=rim".
   std::string node_constraints(const CardRef& card) const override {
-    const BlockFinder::Found block = blocks_.at(card.text, card.offset);
+    const BlockFinder::BlockRange block = blocks_.at(card.text, card.offset);
     Keywords keywords(card.text.substr(block.keyword));
     Keyword keyword;
     if (block.has_keyword && keywords.next(keyword) && keyword.name == "NODE")
@@ -218,7 +218,7 @@ class Writer : public CardWriter {
 
   /// A keyword like the one above the card, but for its NSET.
   std::optional<NewBlock> block_without_constraints(const CardRef& card) const override {
-    const BlockFinder::Found block = blocks_.at(card.text, card.offset);
+    const BlockFinder::BlockRange block = blocks_.at(card.text, card.offset);
     const std::string header = block.has_keyword ? header_of(card.text, block) : "";
     const std::string without = without_parameter(header, "NSET");
     if (header == without) return std::nullopt;
@@ -227,7 +227,7 @@ class Writer : public CardWriter {
 
   /// A keyword like the one above the card, but for its TYPE.
   Result<NewBlock> block_of_kind(const CardRef& card, bool triangles) const override {
-    const BlockFinder::Found found = blocks_.at(card.text, card.offset);
+    const BlockFinder::BlockRange found = blocks_.at(card.text, card.offset);
     if (!found.has_keyword) return fail("", "has no keyword above it in its file");
     NewBlock block{found.end, header_of(card.text, found)};
     std::string upper = block.header;
@@ -252,7 +252,7 @@ class Writer : public CardWriter {
       return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
     const std::size_t corners = nodes_of(card.style), wanted = shell.nodes[3] == shell.nodes[2] ? 3 : 4;
     std::size_t end = card.offset;
-    const std::vector<Place> places = cut(card, corners + 1, end);
+    const std::vector<FieldRange> places = cut(card, corners + 1, end);
     if (places.size() < corners + 1) return fail("", "has a card that can't be read");
     WrittenCard written;
     for (std::size_t f = 0; f <= wanted; ++f) {
@@ -273,8 +273,8 @@ class Writer : public CardWriter {
     DataLines lines(text, tail_of(text, set).first, static_cast<std::size_t>(set.end));
     std::vector<Replacement> shorter;
     for (DataLine line; lines.next(line);) {
-      const std::vector<Place> places = places_of_line(line.text, 0);
-      const std::vector<Place> stay = without_ids(line.text, places, leaving);
+      const std::vector<FieldRange> places = places_of_line(line.text, 0);
+      const std::vector<FieldRange> stay = without_ids(line.text, places, leaving);
       kept += stay.size();
       found += places.size() - stay.size();
       if (stay.size() == places.size()) continue;
@@ -294,7 +294,7 @@ class Writer : public CardWriter {
     if ((set.style & kStyleNamesAndIds) != 0) return fail("", "isn't a set that lists what it has");
     if ((set.style & kStyleOtherIds) != 0) return fail("", "belongs to a part whose numbers are shown changed, or shown several times");
     if (ids.empty()) return std::vector<Replacement>();
-    const Tail tail = tail_of(text, set);
+    const ListTail tail = tail_of(text, set);
     std::string lines;
     std::size_t on_line = 0;
     const bool generate = (set.style & kStyleGenerate) != 0;
@@ -323,7 +323,7 @@ class Writer : public CardWriter {
   mutable BlockFinder blocks_{is_keyword};
 
   /// How a set's lines look, and where the next goes.
-  struct Tail {
+  struct ListTail {
     std::size_t first = 0;  ///< behind the keyword
     std::size_t at = 0;
     std::string before;          ///< blanks at the line's beginning
@@ -331,8 +331,8 @@ class Writer : public CardWriter {
     std::string line_end = "\n";
   };
 
-  static Tail tail_of(std::string_view text, const Referrer& set) {
-    Tail tail;
+  static ListTail tail_of(std::string_view text, const Referrer& set) {
+    ListTail tail;
     Keywords keywords(text.substr(static_cast<std::size_t>(set.offset), static_cast<std::size_t>(set.end - set.offset)));
     Keyword keyword;
     std::size_t data = static_cast<std::size_t>(set.end);
@@ -365,7 +365,7 @@ class Writer : public CardWriter {
   }
 
   static void put_coordinate(WrittenCard& card, std::size_t axis, double value) {
-    std::vector<Place> places = places_of_line(card.text, 0);
+    std::vector<FieldRange> places = places_of_line(card.text, 0);
     if (places.size() < axis + 2) {
       // Fields that lack are zero.
       if (!places.empty() && trim(card.text).back() == ',') card.text.erase(card.text.find_last_of(','));
@@ -374,7 +374,7 @@ class Writer : public CardWriter {
         places.push_back({card.text.size(), 0});
       }
     }
-    const Place place = places[axis + 1];
+    const FieldRange place = places[axis + 1];
     const std::string old = card.text.substr(place.begin, place.length);
     card.by_parameter |= old.find('<') != std::string::npos;
     bool column = false;
@@ -384,12 +384,12 @@ class Writer : public CardWriter {
   }
 
   /// The first `wanted` fields of a card that may go on in further lines; `end` gets where the line of the last of them ends.
-  static std::vector<Place> cut(const CardRef& card, std::size_t wanted, std::size_t& end) {
-    std::vector<Place> out;
+  static std::vector<FieldRange> cut(const CardRef& card, std::size_t wanted, std::size_t& end) {
+    std::vector<FieldRange> out;
     DataLines lines(card.text, card.offset, card.text.size());
     DataLine line;
     while (out.size() < wanted && lines.next(line)) {
-      for (const Place& place : places_of_line(line.text, line.offset))
+      for (const FieldRange& place : places_of_line(line.text, line.offset))
         if (out.size() < wanted) out.push_back(place);
       end = end_of_line(card.text, line.offset);
       if (line.text.back() != ',' && out.size() % kIdsOnALine != 0) break;

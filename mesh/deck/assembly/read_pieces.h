@@ -40,7 +40,7 @@ inline constexpr double kAssembled = 0.75;
 inline constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 
 /// Everything a format's reader has found, to be made into a deck and a model.
-struct Found {
+struct DeckContents {
   Format format = Format::ls_dyna;
   std::vector<SourceFile> files;
   std::vector<Hash128> hashes;  ///< of the files; read_pieces makes them
@@ -57,6 +57,6 @@ struct Found {
 
 /// Hashes all files and reads all pieces, in parallel: fills `hashes` and `cards`. `read(i)` is called once for each piece, from any
 /// thread. The progress goes to about 0.6.
-void read_pieces(Found& found, std::size_t pieces, const std::function<PieceCards(std::size_t)>& read, Watch& watch);
+void read_pieces(DeckContents& found, std::size_t pieces, const std::function<PieceCards(std::size_t)>& read, Watch& watch);
 
 }  // namespace prismesh::mesh::deck

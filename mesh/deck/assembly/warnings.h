@@ -22,7 +22,7 @@ class Warnings {
   std::vector<Warning> finish(std::span<const SourceFile> files) const;
 
  private:
-  struct Entry {
+  struct WarningEntry {
     std::string kind;
     std::uint32_t file;
     std::size_t offset;
@@ -31,7 +31,7 @@ class Warnings {
     std::vector<std::pair<std::uint32_t, std::size_t>> others{};  ///< file and offset of the next
     bool each = false;                                            ///< what is counted all says the same of the same file
   };
-  std::vector<Entry> entries_;
+  std::vector<WarningEntry> entries_;
 };
 
 }  // namespace prismesh::mesh::deck

@@ -13,7 +13,7 @@ namespace prismesh::mesh::deck {
 
 /// Reads a deck whose main file is in `files`. Told to stop, it returns what it has. Errors: a malformed card whose loss would matter (file
 /// and line), cancelled.
-Result<Found> read(Format format, FileSet files, Watch& watch);
+Result<DeckContents> read(Format format, FileSet files, Watch& watch);
 
 std::unique_ptr<const CardWriter> card_writer(Format format);
 

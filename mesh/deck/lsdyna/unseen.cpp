@@ -3,7 +3,7 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-struct Entry {
+struct UnseenKeyword {
   std::string_view start;
   Unseen what;
 };
@@ -14,7 +14,7 @@ constexpr Unseen kMoved = {"moved-at-start", "moves nodes when the solver starts
 constexpr Unseen kMade = {"made-at-start", "makes parts and elements when the solver starts; they aren't shown", true};
 
 /// The first that a keyword starts with counts.
-constexpr Entry kEntries[] = {
+constexpr UnseenKeyword kEntries[] = {
     {"ELEMENT_SEATBELT_", kDevices},
     {"ELEMENT_", kElements},
     {"IGA_", kElements},
@@ -35,7 +35,7 @@ constexpr Entry kEntries[] = {
 }  // namespace
 
 std::optional<Unseen> unseen(std::string_view keyword) {
-  for (const Entry& entry : kEntries)
+  for (const UnseenKeyword& entry : kEntries)
     if (keyword.substr(0, entry.start.size()) == entry.start) return entry.what;
   return std::nullopt;
 }

@@ -31,13 +31,13 @@ void Walk::run() {
 /// Nodes of a file that is used twice, and of what it includes, stand for more than one place.
 void Walk::hold_repeated() {
   std::vector<const FileUse*> uses;
-  for (const State& state : states_) uses.push_back(&state);
+  for (const FileState& state : states_) uses.push_back(&state);
   const std::vector<bool> held = repeated_files(uses);
   for (Piece& piece : pieces) piece.held = held[piece.file];
 }
 
 void Walk::walk_file(const Visit& visit, Columns columns) {
-  State& state = states_[visit.file];
+  FileState& state = states_[visit.file];
   state.walked.insert(visit.context);
   state.open = true;
   ++walks_;

@@ -61,12 +61,12 @@ class Walk {
   Parameters parameters_;
 
   /// By file.
-  struct State : FileUse {
+  struct FileState : FileUse {
     std::set<std::uint32_t> walked;  ///< in which contexts
     bool open = false;               ///< being walked right now
     bool has_mesh = false;
   };
-  std::vector<State> states_;
+  std::vector<FileState> states_;
   struct UnseenLines {
     Unseen what;
     std::size_t offset = 0;  ///< of the first

@@ -184,12 +184,12 @@ enum class Lengthening : std::uint8_t {
 };
 
 Lengthening lengthening_of(std::string_view name) {
-  struct Kind {
+  struct ListCard {
     std::string_view name;
     Lengthening lengthening;
   };
   using enum Lengthening;
-  static constexpr Kind kKinds[] = {
+  static constexpr ListCard kListCards[] = {
       {"SPC1", by_cards},          {"SPCOFF1", by_cards},     {"ASET1", by_cards},       {"BSET1", by_cards},
       {"CSET1", by_cards},         {"OMIT1", by_cards},       {"QSET1", by_cards},       {"USET1", by_cards},
       {"SEBSET1", by_cards},       {"SECSET1", by_cards},     {"SEQSET1", by_cards},     {"QBDY1", by_cards},
@@ -198,8 +198,8 @@ Lengthening lengthening_of(std::string_view name) {
       {"ACCEL1", at_end},          {"SET1", at_plain_end},    {"BSURF", at_plain_end},   {"TEMPP1", at_plain_end},
       {"TEMPRB", at_plain_end},    {"SEBNDRY", at_plain_end}, {"SEEXCLD", at_plain_end}, {"ELIST", at_plain_end},
   };
-  for (const Kind& kind : kKinds)
-    if (kind.name == name) return kind.lengthening;
+  for (const ListCard& card : kListCards)
+    if (card.name == name) return card.lengthening;
   return never;
 }
 

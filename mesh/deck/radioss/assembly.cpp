@@ -135,7 +135,7 @@ void Collected::add_segment(std::uint32_t file, const Segment& segment) {
   }
 }
 
-void Collected::complete(Found& found, const std::vector<std::vector<Direction>>& directions) {
+void Collected::complete(DeckContents& found, const std::vector<std::vector<Direction>>& directions) {
   found.parts = definitions_.parts();
   if (const std::optional<Units> main = walk_.contexts[0].units) found.length_unit = known_length_unit(main->length);
   found.frames.resize(places_.size());
@@ -161,7 +161,7 @@ void Collected::complete(Found& found, const std::vector<std::vector<Direction>>
 }
 
 /// Units and transformations may put a node where no number reaches.
-void Collected::check_positions(Found& found) {
+void Collected::check_positions(DeckContents& found) {
   for (PieceCards& cards : found.cards)
     for (std::size_t r = 0; r < cards.node_runs.size() && !cards.error; ++r) {
       const Frame& frame = found.frames[cards.node_runs[r].frame];
@@ -173,7 +173,7 @@ void Collected::check_positions(Found& found) {
     }
 }
 
-void Collected::add_directions(Found& found, const std::vector<std::vector<Direction>>& directions) {
+void Collected::add_directions(DeckContents& found, const std::vector<std::vector<Direction>>& directions) {
   for (std::size_t p = 0; p < directions.size(); ++p) {
     const CardForm* form = nullptr;
     std::uint32_t referrer = 0;

@@ -19,7 +19,7 @@ class Collected {
   /// Errors: this is no starter deck in block format.
   Result<void> sort_blocks();
   /// Fills parts, frames, offsets and references. `found` has the files and the pieces' cards, `directions` what each piece told.
-  void complete(Found& found, const std::vector<std::vector<Direction>>& directions);
+  void complete(DeckContents& found, const std::vector<std::vector<Direction>>& directions);
 
   Parameters parameters;
   std::vector<Piece> pieces;
@@ -27,8 +27,8 @@ class Collected {
  private:
   DeckTables tables(std::span<const SourceFile> files) const { return {files, walk_.contexts, parameters, systems_}; }
   void read_unit_system(const Block& block, const Keyword& keyword);
-  void add_directions(Found& found, const std::vector<std::vector<Direction>>& directions);
-  static void check_positions(Found& found);
+  void add_directions(DeckContents& found, const std::vector<std::vector<Direction>>& directions);
+  static void check_positions(DeckContents& found);
   void check_submodel_units();
   void add_mesh(const Block& block, const Keyword& keyword, const CardForm& form);
   void add_segment(std::uint32_t file, const Segment& segment);

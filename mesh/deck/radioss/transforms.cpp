@@ -188,7 +188,7 @@ std::optional<Affine3d> affine_of(const Transform& t, const std::array<std::opti
   }
 }
 
-bool Transformer::Members::has(std::int64_t id) const {
+bool Transformer::GroupMembers::has(std::int64_t id) const {
   if (std::binary_search(without.begin(), without.end(), id)) return false;
   if (std::binary_search(ids.begin(), ids.end(), id)) return true;
   return std::any_of(ranges.begin(), ranges.end(),
@@ -202,7 +202,7 @@ void Transformer::run(const std::vector<Transform>& transforms) {
     for (std::size_t n = 0; n < 6; ++n)
       if (transform.nodes[n] > 0) at[n] = position(transform.nodes[n]);
     const std::optional<Affine3d> map = affine_of(transform, at);
-    Members members;
+    GroupMembers members;
     const bool by_group = transform.group > 0 && transform.submodel == 0;
     const bool known = by_group ? collect(transform.group, 0, members) : transform.submodel > 0 && transform.group == 0;
     work_ += by_group ? 1000 + members.ranges.size() : found_.frames.size();
@@ -213,7 +213,7 @@ void Transformer::run(const std::vector<Transform>& transforms) {
     else
       move_submodel(transform, *map);
   }
-  for (const Named& named : named_)
+  for (const NamedNode& named : named_)
     if (named.found) found_.cards[named.piece].holds.emplace_back(named.node, kHeldByFrame);
   for (PieceCards& cards : found_.cards) {
     std::sort(cards.holds.begin(), cards.holds.end());
@@ -225,20 +225,21 @@ void Transformer::find_named(const std::vector<Transform>& transforms) {
   for (const Transform& transform : transforms)
     for (const std::int64_t node : transform.nodes)
       if (node > 0) named_.push_back({node});
-  std::sort(named_.begin(), named_.end(), [](const Named& a, const Named& b) { return a.id < b.id; });
-  named_.erase(std::unique(named_.begin(), named_.end(), [](const Named& a, const Named& b) { return a.id == b.id; }), named_.end());
+  std::sort(named_.begin(), named_.end(), [](const NamedNode& a, const NamedNode& b) { return a.id < b.id; });
+  named_.erase(std::unique(named_.begin(), named_.end(), [](const NamedNode& a, const NamedNode& b) { return a.id == b.id; }),
+               named_.end());
   if (named_.empty()) return;
   for (std::uint32_t p = 0; p < found_.cards.size(); ++p)
     for (std::uint32_t n = 0; n < found_.cards[p].node_id.size(); ++n) {
       const std::int64_t id = found_.cards[p].node_id[n];
-      const auto named = std::lower_bound(named_.begin(), named_.end(), id, [](const Named& a, std::int64_t b) { return a.id < b; });
+      const auto named = std::lower_bound(named_.begin(), named_.end(), id, [](const NamedNode& a, std::int64_t b) { return a.id < b; });
       if (named != named_.end() && named->id == id && !named->found) *named = {id, p, n, true};
     }
 }
 
 /// Where the cards so far have put it.
 std::optional<Vector3d> Transformer::position(std::int64_t node) const {
-  const auto named = std::lower_bound(named_.begin(), named_.end(), node, [](const Named& a, std::int64_t b) { return a.id < b; });
+  const auto named = std::lower_bound(named_.begin(), named_.end(), node, [](const NamedNode& a, std::int64_t b) { return a.id < b; });
   if (named == named_.end() || named->id != node || !named->found) return std::nullopt;
   const PieceCards& cards = found_.cards[named->piece];
   const auto run = std::prev(std::upper_bound(cards.node_runs.begin(), cards.node_runs.end(), named->node,
@@ -265,7 +266,7 @@ void Transformer::move_submodel(const Transform& transform, const Affine3d& map)
 }
 
 /// Runs are cut where membership changes; the members' get frames of their own.
-void Transformer::move_group(const Members& members, const Affine3d& map) {
+void Transformer::move_group(const GroupMembers& members, const Affine3d& map) {
   std::map<std::uint32_t, std::uint32_t> moved;
   const std::uint64_t cost = 1 + members.ranges.size();
   for (PieceCards& cards : found_.cards) {
@@ -296,7 +297,7 @@ void Transformer::move_group(const Members& members, const Affine3d& map) {
 }
 
 /// Nobody knows where these nodes are; `members`: of the group, where that is known.
-void Transformer::hold(const Transform& transform, const Members* members) {
+void Transformer::hold(const Transform& transform, const GroupMembers* members) {
   found_.warnings.note("unread-transform", transform.file, transform.offset,
                        "a transformation can't be worked out; what it moves is shown where its cards put it and can't be moved");
   // Once there have been too many of them, all nodes are held: that costs one pass.
@@ -315,7 +316,7 @@ void Transformer::hold(const Transform& transform, const Members* members) {
 }
 
 /// False: the group isn't there, or is one whose nodes aren't worked out here.
-bool Transformer::collect(std::int64_t group, int depth, Members& members) {
+bool Transformer::collect(std::int64_t group, int depth, GroupMembers& members) {
   const auto at = groups_.find(group);
   if (at == groups_.end() || depth > kMaxGroupDepth || work_ > kMaxWork) return false;
   const Block& block = *at->second;
@@ -361,7 +362,7 @@ bool Transformer::collect(std::int64_t group, int depth, Members& members) {
   return true;
 }
 
-void Transformer::collect_parts(const std::vector<std::int64_t>& parts, Members& members) {
+void Transformer::collect_parts(const std::vector<std::int64_t>& parts, GroupMembers& members) {
   std::vector<std::int64_t> wanted = parts;
   std::sort(wanted.begin(), wanted.end());
   for (const PieceCards& cards : found_.cards) {

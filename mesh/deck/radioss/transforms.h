@@ -38,21 +38,21 @@ std::optional<Eigen::Affine3d> affine_of(const Transform& transform, const std::
 class Transformer {
  public:
   /// `frame_context`: the submodel of each frame. `groups`: /GRNOD blocks by id.
-  Transformer(Found& found, std::vector<std::uint32_t>& frame_context, const DeckTables& tables,
+  Transformer(DeckContents& found, std::vector<std::uint32_t>& frame_context, const DeckTables& tables,
               const std::map<std::int64_t, const Block*>& groups)
       : found_(found), frame_context_(frame_context), tables_(tables), groups_(groups) {}
   void run(const std::vector<Transform>& transforms);
 
  private:
   /// A node that a card names.
-  struct Named {
+  struct NamedNode {
     std::int64_t id = 0;
     std::uint32_t piece = 0;
     std::uint32_t node = 0;
     bool found = false;
   };
-  /// Members of a node group.
-  struct Members {
+  /// GroupMembers of a node group.
+  struct GroupMembers {
     std::vector<std::array<std::int64_t, 3>> ranges;  ///< first, last, step
     std::vector<std::int64_t> ids;                    ///< sorted at the end
     std::vector<std::int64_t> without;                ///< sorted at the end
@@ -61,17 +61,17 @@ class Transformer {
   void find_named(const std::vector<Transform>& transforms);
   std::optional<Eigen::Vector3d> position(std::int64_t node) const;
   void move_submodel(const Transform& transform, const Eigen::Affine3d& map);
-  void move_group(const Members& members, const Eigen::Affine3d& map);
-  void hold(const Transform& transform, const Members* members);
+  void move_group(const GroupMembers& members, const Eigen::Affine3d& map);
+  void hold(const Transform& transform, const GroupMembers* members);
   bool in_submodel(std::uint32_t frame, std::int64_t submodel) const;
-  bool collect(std::int64_t group, int depth, Members& members);
-  void collect_parts(const std::vector<std::int64_t>& parts, Members& members);
+  bool collect(std::int64_t group, int depth, GroupMembers& members);
+  void collect_parts(const std::vector<std::int64_t>& parts, GroupMembers& members);
 
-  Found& found_;
+  DeckContents& found_;
   std::vector<std::uint32_t>& frame_context_;
   const DeckTables& tables_;
   const std::map<std::int64_t, const Block*>& groups_;
-  std::vector<Named> named_;
+  std::vector<NamedNode> named_;
   std::set<std::int64_t> held_;  ///< submodels whose nodes are all held; 0: every node is
   std::size_t work_ = 0;
 };

@@ -44,7 +44,7 @@ void Walk::run() {
     warnings.note("open-submodel", contexts[context_].file, contexts[context_].offset, "the submodel isn't closed by //ENDSUB");
   // What is used twice, and what that includes, stands for more than one place.
   std::vector<const FileUse*> uses;
-  for (const State& state : states_) uses.push_back(&state);
+  for (const FileState& state : states_) uses.push_back(&state);
   held = repeated_files(uses);
 }
 

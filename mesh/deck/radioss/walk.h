@@ -46,10 +46,10 @@ class Walk {
   std::uint32_t context_ = 0;
   std::size_t repeated_bytes_ = 0;
 
-  struct State : FileUse {
+  struct FileState : FileUse {
     bool open = false;
   };
-  std::vector<State> states_;
+  std::vector<FileState> states_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> walked_;  ///< file and context
 };
 

@@ -259,7 +259,7 @@ class Writer : public CardWriter {
 
   /// "/SHELL/7" and "/SH3N/7" hold the shells of one part in the same file.
   Result<NewBlock> block_of_kind(const CardRef& card, bool triangles) const override {
-    const BlockFinder::Found found = blocks_.at(card.text, card.offset);
+    const BlockFinder::BlockRange found = blocks_.at(card.text, card.offset);
     if (found.has_keyword && card.text[found.keyword] == '#') return fail("", "stands in a block that an include interrupts");
     NewBlock block;
     block.header = std::string(line_at(card.text, found.keyword));

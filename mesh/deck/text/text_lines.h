@@ -17,7 +17,7 @@ std::string_view line_end(std::string_view text, std::size_t at);
 /// Finds the blocks that cards stand in. Each is looked for once, however many of its cards are asked for.
 class BlockFinder {
  public:
-  struct Found {
+  struct BlockRange {
     std::size_t keyword = 0;   ///< where its keyword's line begins; 0 where there is none
     std::size_t end = 0;       ///< where the next keyword's line begins, or the text ends
     bool has_keyword = false;  ///< false: the lines stand at the text's beginning without one
@@ -26,11 +26,11 @@ class BlockFinder {
   using IsKeyword = bool (*)(std::string_view text, std::size_t line);
   explicit BlockFinder(IsKeyword is_keyword) : is_keyword_(is_keyword) {}
   /// `text` must stay where it is for as long as this lives; `line` begins a line.
-  Found at(std::string_view text, std::size_t line);
+  BlockRange at(std::string_view text, std::size_t line);
 
  private:
   IsKeyword is_keyword_;
-  std::map<std::tuple<const char*, std::size_t, std::size_t>, Found> known_;  ///< by text, its size and the keyword's place
+  std::map<std::tuple<const char*, std::size_t, std::size_t>, BlockRange> known_;  ///< by text, its size and the keyword's place
 };
 
 }  // namespace prismesh::mesh::deck
