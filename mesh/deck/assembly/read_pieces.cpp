@@ -1,5 +1,7 @@
 #include "mesh/deck/assembly/read_pieces.h"
 
+#include <atomic>
+
 #include "base/parallel_for.h"
 
 namespace prismesh::mesh::deck {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/radioss/references.h"
 #include "mesh/deck/radioss/transforms.h"
 #include "mesh/deck/text/number.h"
@@ -110,14 +111,14 @@ void Collected::add_mesh(const Block& block, const Keyword& keyword, const CardF
   for (const Stretch& stretch : block.more) add(stretch);
 }
 
-/// Pieces are about equally large: long blocks are cut between lines, short ones put together.
+/// Makes pieces of about equal size: cuts long blocks between lines, and joins short ones.
 void Collected::add_segment(std::uint32_t file, const Segment& segment) {
   const std::string_view text = walk_.files.files[file].bytes.text();
   const auto bytes_of = [](const Piece& piece) { return piece.segments.back().end - piece.segments.front().begin; };
   const bool single_lines = !segment.form->id_alone && segment.form->nodes[1] == 0;
   Segment rest = segment;
   while (rest.begin < rest.end) {
-    // Behind an include the text goes on in the file that was there before, further down; a repeated include starts again.
+    // Behind an include the text goes on in the including file, further down; a repeated include starts again at its beginning.
     if (pieces.empty() || pieces.back().file != file || pieces.back().segments.back().end > rest.begin ||
         bytes_of(pieces.back()) >= kPieceBytes)
       pieces.push_back({file, walk_.held[file], {}});
@@ -160,7 +161,7 @@ void Collected::complete(DeckContents& found, const std::vector<std::vector<Dire
   check_positions(found);
 }
 
-/// Units and transformations may put a node where no number reaches.
+/// Units and transformations may give positions that aren't finite.
 void Collected::check_positions(DeckContents& found) {
   for (PieceCards& cards : found.cards)
     for (std::size_t r = 0; r < cards.node_runs.size() && !cards.error; ++r) {

@@ -2,8 +2,9 @@
 #pragma once
 
 #include "base/error.h"
+#include "mesh/deck/assembly/deck_contents.h"
 #include "mesh/deck/assembly/file_set.h"
-#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/assembly/watch.h"
 
 namespace prismesh::mesh::deck::radioss {
 

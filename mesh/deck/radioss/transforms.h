@@ -1,4 +1,4 @@
-// /TRANSFORM: nodes of submodels and node groups that the solver puts elsewhere when it starts. They are shown there, by frames.
+// Reads and applies /TRANSFORM, which moves the nodes of submodels and node groups when the solver starts. Frames show them there.
 // Source: Radioss Reference Guide, "/TRANSFORM/TRA", "ROT", "SYM", "SCA", "MATRIX", "POSITION", "/GRNOD".
 #pragma once
 
@@ -9,13 +9,13 @@
 #include <set>
 #include <vector>
 
-#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/assembly/deck_contents.h"
 #include "mesh/deck/data/frame.h"
 #include "mesh/deck/radioss/definitions.h"
 
 namespace prismesh::mesh::deck::radioss {
 
-/// What a card says; lengths in the main file's unit, ids as the model numbers them.
+/// A card of /TRANSFORM. Lengths are in the main file's unit, ids those of the model.
 struct Transform {
   enum class Kind : std::uint8_t { translation, rotation, symmetry, scaling, matrix, position, unknown };
   Kind kind = Kind::unknown;
@@ -30,11 +30,11 @@ struct Transform {
 };
 Transform read_transform(const Block& block, const Keyword& keyword, const DeckTables& tables);
 
-/// The map of a card whose nodes are at `at` (nullopt where one isn't defined). nullopt: it can't be worked out.
+/// The map of a card whose nodes are at `at` (nullopt: the node isn't defined). nullopt: the map can't be computed.
 std::optional<Eigen::Affine3d> affine_of(const Transform& transform, const std::array<std::optional<Eigen::Vector3d>, 6>& at);
 
-/// Applies cards in their order: changes frames, adds some, gives runs of nodes others, and holds nodes whose place can't be worked out
-/// or that a card's map hangs on.
+/// Applies cards in their order: changes and adds frames, and gives runs of nodes other frames. Holds nodes whose position can't be
+/// computed and nodes that a card's map depends on.
 class Transformer {
  public:
   /// `frame_context`: the submodel of each frame. `groups`: /GRNOD blocks by id.
@@ -44,7 +44,7 @@ class Transformer {
   void run(const std::vector<Transform>& transforms);
 
  private:
-  /// A node that a card names.
+  /// A node that a card names, and where it was read.
   struct NamedNode {
     std::int64_t id = 0;
     std::uint32_t piece = 0;
@@ -72,7 +72,7 @@ class Transformer {
   const DeckTables& tables_;
   const std::map<std::int64_t, const Block*>& groups_;
   std::vector<NamedNode> named_;
-  std::set<std::int64_t> held_;  ///< submodels whose nodes are all held; 0: every node is
+  std::set<std::int64_t> held_;  ///< submodels whose nodes are all held; 0: all nodes are
   std::size_t work_ = 0;
 };
 
