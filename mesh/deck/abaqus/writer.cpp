@@ -29,13 +29,13 @@ std::string_view first_line(const CardRef& card) {
   return card.text.substr(card.offset, end_of_line(card.text, card.offset) - card.offset);
 }
 
-/// A field's place in a card's text: between its commas, blanks included.
+/// A field in a card's text: between its commas, blanks included.
 struct FieldRange {
   std::size_t begin = 0;
   std::size_t length = 0;
 };
 
-/// The fields of a line, those after the last comma only if there is something.
+/// The fields of a line. Blanks behind the last comma are no field.
 std::vector<FieldRange> places_of_line(std::string_view line, std::size_t at) {
   std::vector<FieldRange> out;
   for (std::size_t begin = 0; begin <= line.size();) {
@@ -49,7 +49,7 @@ std::vector<FieldRange> places_of_line(std::string_view line, std::size_t at) {
 
 bool starts_with_blanks(std::string_view field) { return field.size() > 1 && field[0] == ' ' && field[1] == ' '; }
 
-/// In the old one's place, blanks around it kept; in a column it ends where the old one did, as far as it fits.
+/// The new text in the old field, with the blanks around it. In a column it ends where the old text did, if it fits.
 std::string in_place_of(std::string_view old, const std::string& text, bool column) {
   const std::string_view shown = trim(old);
   if (shown.empty()) return (old.empty() ? "" : " ") + text;
@@ -70,7 +70,7 @@ std::string number_text(double value, WrittenCard& card) {
   return text;
 }
 
-/// The type with so many corners that goes with another; empty if there is none.
+/// The element type that corresponds to `type` and has three or four corners; empty: there is none.
 std::string other_type(std::string_view type, bool triangles) {
   constexpr std::pair<std::string_view, std::string_view> kPairs[] = {
       {"S4R", "S3R"},    {"S4", "S3"},     {"S4RS", "S3RS"},  {"M3D4R", "M3D3"}, {"M3D4", "M3D3"}, {"R3D4", "R3D3"},
@@ -109,7 +109,7 @@ std::string without_parameter(std::string_view header, std::string_view name) {
   return out;
 }
 
-/// The fields of a line that aren't one of some numbers.
+/// The fields of a line that hold none of `ids`.
 std::vector<FieldRange> without_ids(std::string_view line, std::vector<FieldRange> places, std::span<const std::int64_t> ids) {
   std::erase_if(places, [&](const FieldRange& place) {
     std::int64_t id = 0;
@@ -118,7 +118,7 @@ std::vector<FieldRange> without_ids(std::string_view line, std::vector<FieldRang
   return places;
 }
 
-/// A line of some of its fields, begun and ended as it was.
+/// The line with some of its fields only; its begin and end stay.
 std::string line_of(std::string_view line, const std::vector<FieldRange>& places) {
   std::string out(line.substr(0, line.find_first_not_of(" \t")));
   for (const FieldRange& place : places) {
@@ -160,7 +160,7 @@ class Writer : public CardWriter {
     WrittenCard written;
     written.text = std::string(first_line(card));
     std::vector<FieldRange> places = places_of_line(written.text, 0);
-    // What follows the coordinates is the old node's normal.
+    // Behind the coordinates stands the old node's normal.
     if (places.size() > 4) written.text.resize(places[3].begin + places[3].length);
     for (std::size_t axis = 3; axis-- > 0;) put_coordinate(written, axis, at[static_cast<Eigen::Index>(axis)]);
     written.by_parameter = false;
@@ -206,7 +206,7 @@ class Writer : public CardWriter {
     Keyword keyword;
     if (block.has_keyword && keywords.next(keyword) && keyword.name == "NODE")
       return label(Parameters(card.text, block.keyword, block.keyword + keyword.end).value("NSET").value_or(""));
-    // The keyword stands in another file, or an include is between: whatever it says is true of all that is here.
+    // The keyword stands in another file, or an include is between. It applies to all cards here.
     return "as others at " + std::to_string(reinterpret_cast<std::uintptr_t>(card.text.data()) + block.keyword);
   }
 
@@ -322,7 +322,7 @@ class Writer : public CardWriter {
  private:
   mutable BlockFinder blocks_{is_keyword};
 
-  /// How a set's lines look, and where the next goes.
+  /// The format of a set's lines, and where the next one goes.
   struct ListTail {
     std::size_t first = 0;  ///< behind the keyword
     std::size_t at = 0;
@@ -367,7 +367,7 @@ class Writer : public CardWriter {
   static void put_coordinate(WrittenCard& card, std::size_t axis, double value) {
     std::vector<FieldRange> places = places_of_line(card.text, 0);
     if (places.size() < axis + 2) {
-      // Fields that lack are zero.
+      // Missing fields are zero.
       if (!places.empty() && trim(card.text).back() == ',') card.text.erase(card.text.find_last_of(','));
       while (places.size() < axis + 2) {
         card.text += ",";
@@ -383,7 +383,7 @@ class Writer : public CardWriter {
     card.text.replace(place.begin, place.length, in_place_of(old, number_text(value, card), column));
   }
 
-  /// The first `wanted` fields of a card that may go on in further lines; `end` gets where the line of the last of them ends.
+  /// The first `wanted` fields of a card, which may have several lines. `end` gets the end of the line of the last one.
   static std::vector<FieldRange> cut(const CardRef& card, std::size_t wanted, std::size_t& end) {
     std::vector<FieldRange> out;
     DataLines lines(card.text, card.offset, card.text.size());

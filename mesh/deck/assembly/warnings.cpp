@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMaxOfAKind = 100;
 constexpr std::size_t kMaxOtherPlaces = 2;
 
-/// The lines of some places, in one pass over each file.
+/// Counts the line numbers of places in one pass over each file.
 class LineNumbers {
  public:
   explicit LineNumbers(std::span<const SourceFile> files) : files_(files) {}

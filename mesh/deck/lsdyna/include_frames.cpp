@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Affine3d;
 
-/// Transformations by nodes of includes that are transformed by nodes themselves: deeper nobody goes on purpose.
+/// Transformations by nodes of includes that are transformed by nodes themselves. Real decks nest them less deeply.
 constexpr int kMaxLookupDepth = 32;
 constexpr double kFarthest = 1e60;
 constexpr double kFarthestNode = 1e200;
@@ -74,7 +74,7 @@ class Resolver {
       }
   }
 
-  /// nullopt: it is asked for while it is being worked out.
+  /// nullopt: it depends on itself, or too many others stand between.
   std::optional<Affine3d> own_map(std::uint32_t c, int depth) {
     IncludeMap& state = maps_[c];
     if (state.progress == Progress::done) return state.own;
@@ -99,20 +99,20 @@ class Resolver {
     return state.own;
   }
 
-  /// Its number is one of the file that includes, or of the whole deck.
+  /// The transformation's number counts in the including file first, then in the whole deck.
   const Transformation* find(const IncludeContext& context) const {
     const Transformation* own = transformations_.find(context.transformation + contexts_[context.parent].offsets.define);
     return own ? own : transformations_.find(context.transformation);
   }
 
-  /// Of a node in the system of the file that includes `c`.
+  /// The position of a node in the system of the file that includes `c`. `so_far`: the steps before the one that names the node.
   std::optional<Eigen::Vector3d> place(std::uint32_t c, std::int64_t id, const Affine3d& so_far, int depth) {
     if (!places_) collect_places();
     const auto at = places_->find(id);
     if (at == places_->end()) return std::nullopt;
     Eigen::Vector3d position = at->second.position;
     std::uint32_t k = at->second.context;
-    // Inner includes first, as far as c itself, whose transformation is known up to here only.
+    // Inner includes first, up to c itself, of whose transformation only `so_far` is known.
     while (k != 0 && k != c) {
       const std::optional<Affine3d> own = own_map(k, depth + 1);
       if (!own || maps_[k].incomplete) return std::nullopt;
@@ -132,7 +132,7 @@ class Resolver {
     return position;
   }
 
-  /// Nodes that a transformation is given by are held: moving one would move all that the transformation places.
+  /// Holds the nodes that transformations are given by: moving one would move everything that the transformation places.
   void collect_places() {
     places_.emplace();
     for (const std::int64_t id : transformations_.nodes()) places_->emplace(id, PlacedNode{});

@@ -58,7 +58,7 @@ bool IncludeContext::same_as(const IncludeContext& other) const {
 
 namespace {
 
-/// Greater offsets fit no field, and their sums must stay numbers.
+/// Larger offsets fit no field, and their sums must not overflow.
 constexpr std::int64_t kMaxOffset = 1'000'000'000'000'000;
 constexpr double kMaxFactor = 1e30;
 constexpr std::size_t kMaxAffixLength = 256;
@@ -133,7 +133,7 @@ IncludeTransform read_transform(std::string_view text, const Block& block, const
     card.cut(line.text, block.columns);
     cards.read(++number, card, context);
   }
-  // Where factors multiply up beyond all units, positions would be no numbers any more.
+  // Products of factors beyond all units would make positions that aren't finite.
   for (double* const factor : {&context.mass, &context.time, &context.length})
     if (!(*factor > 1 / kMaxFactor && *factor < kMaxFactor)) {
       *factor = 1;

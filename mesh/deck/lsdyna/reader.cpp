@@ -10,7 +10,7 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-/// What is read with one walk; nullopt: there is an encrypted block among the mesh, so the walk has to look for them.
+/// Reads the deck with one walk. nullopt: an encrypted part stands in the mesh, so the walk must search for them.
 std::optional<DeckContents> read_once(Walk& walk, Watch& watch) {
   walk.run();
   watch.tell(kWalked);

@@ -42,7 +42,7 @@ class IdList {
   IdList(std::string_view text, const Referrer& set, std::vector<Line> lines)
       : text_(text), columns_(columns_of(set.style)), general_(has_word(set.keyword, "GENERAL")), lines_(std::move(lines)) {}
 
-  /// Takes ids out of their lines; those behind move up. False: one isn't there as a plain number.
+  /// Removes ids from their lines; those behind move up. False: one of them isn't there as a plain number.
   bool take_out(std::span<const std::int64_t> leaving, std::vector<Replacement>& out) {
     std::set<std::int64_t> wanted(leaving.begin(), leaving.end()), found;
     const std::size_t first = general_ ? 1 : 0;
@@ -50,7 +50,7 @@ class IdList {
       FieldLine fields(line.text, kSetWidths, columns_);
       const std::string word = general_ ? upper(fields.text(0)) : std::string();
       if (general_ && !lists_single_ones(word)) {
-        if (!word.starts_with('D')) ++remaining_;  // DNODE, DPART, ... only take away
+        if (!word.starts_with('D')) ++remaining_;  // DNODE, DPART, ... only remove ids
         continue;
       }
       std::vector<std::string> kept;
@@ -81,7 +81,7 @@ class IdList {
  private:
   std::string rewritten(const Line& line, const FieldLine& fields, std::size_t first, const std::vector<std::string>& kept) const {
     FieldLine out(line.text, kSetWidths, columns_);
-    // What is behind the last id: zeros where the line had them, else nothing.
+    // Behind the last id stand zeros where the line had them, else nothing.
     bool zeros = false;
     for (std::size_t f = first; f < 8; ++f) zeros |= fields.text(f) == "0";
     for (std::size_t f = first; f < 8; ++f) {
@@ -151,7 +151,7 @@ std::vector<std::string> ranges_of(std::span<const std::int64_t> ids, bool with_
   return texts;
 }
 
-/// The field of a "follows" card that names the one it is about.
+/// A keyword with Inheritance::follows, and the field that names the single node or shell.
 struct Followed {
   std::string_view keyword;
   std::size_t field;
@@ -164,8 +164,8 @@ constexpr Followed kFollowedShells[] = {{"LOAD_SHELL_ELEMENT", 0}};
 
 bool is_initial_shell(std::string_view keyword) { return keyword == "INITIAL_STRESS_SHELL" || keyword == "INITIAL_STRAIN_SHELL"; }
 
-/// How many lines of values an initial stress or strain has at least: one for each layer at each place in the plane.
-std::int64_t least_lines(const FieldLine& shell) {
+/// The minimum number of lines of values of an initial stress or strain: one for each layer at each integration point in the plane.
+std::int64_t min_lines(const FieldLine& shell) {
   std::int64_t lines = 1;
   for (const std::size_t field : {std::size_t{1}, std::size_t{2}}) {
     std::int64_t count = 0;
@@ -182,7 +182,7 @@ std::optional<std::size_t> followed_field(std::string_view keyword, Referred ref
   return std::nullopt;
 }
 
-/// In which fields a segment's corners stand; nullopt: `keyword` has no segments that can be replaced.
+/// The field of a segment's first corner; nullopt: the line is no segment that can be replaced.
 std::optional<std::size_t> first_corner(const Referrer& set, const FieldLine& line) {
   if (!set.keyword.starts_with("SET_SEGMENT")) return std::nullopt;
   if (!has_word(set.keyword, "GENERAL")) return 0;
@@ -382,12 +382,12 @@ Inheritance inheritance_of(const Referrer& card, Referred referred) {
   const std::string_view keyword = card.keyword;
   if (followed_field(keyword, referred)) return Inheritance::follows;
   if (keyword.starts_with("DATABASE_") || keyword.starts_with("SENSOR_")) return Inheritance::stays;
-  // What holds, drives or heats a node, gives it another place to be stressed from or takes it out of a set, or loads or stresses a
-  // shell, can't be left with a part of where it was.
+  // A card that constrains, drives or heats a node, gives its initial state or removes it from a set, or that loads or stresses a shell,
+  // must not apply to only a part of where it did.
   if (referred != Referred::node) return Inheritance::forbids;
   for (const std::string_view start : {"BOUNDARY_", "INITIAL_", "LOAD_THERMAL_", "AIRBAG_", "SET_"})
     if (keyword.starts_with(start)) return Inheritance::forbids;
-  // Joints, welds, systems of coordinates, forces at a point.
+  // Joints, welds, coordinate systems, point forces.
   return Inheritance::stays;
 }
 
@@ -399,13 +399,13 @@ Result<std::vector<Replacement>> copy_single(std::string_view text, const Referr
   const std::string_view first = line_at(text, single.card);
   std::size_t end = single.card + first.size();
   if (is_initial_shell(card.keyword)) {
-    // As it is read: the values have points, the line of the next element has whole numbers alone.
+    // As in reading: the values have decimal points, the line of the next element has whole numbers only.
     Lines lines(text, single.card, std::min<std::size_t>(card.end, text.size()));
     Line line;
     lines.next(line);
     std::int64_t found = 0;
     for (; lines.next(line) && line.text.find('.') != std::string_view::npos; ++found) end = line.offset + line.text.size();
-    if (found < least_lines(FieldLine(first, kSetWidths, columns)))
+    if (found < min_lines(FieldLine(first, kSetWidths, columns)))
       return fail("", "has values without a point, which can't be told from the next shell's line");
   }
   FieldLine line(first, kSetWidths, columns);

@@ -21,7 +21,7 @@ constexpr std::array<int, 8> kLayerWidths = {10, 10, 10, 10, 10, 10, 10, 10};
 /// The lines of one shell's cards.
 struct ShellLines {
   Line main;
-  std::vector<Line> thickness;  ///< the second one is of the mid-side nodes
+  std::vector<Line> thickness;  ///< at the corners, then at the mid-side nodes
   std::vector<Line> extra;
   std::vector<Line> layers;
 
@@ -31,7 +31,7 @@ struct ShellLines {
   }
 };
 
-/// Where the block ends that a line stands in: at the next line with an asterisk, looked for only as far as cards are read.
+/// The next line of the block, which ends before the next keyword or encrypted part. False: there is none.
 bool next_in_block(Lines& lines, Line& line) {
   return lines.next(line) && (line.text.empty() || line.text.front() != '*') &&
          line.text.substr(0, kEncryptedBegin.size()) != kEncryptedBegin;
@@ -79,7 +79,7 @@ std::string number_for(double value, const FieldLine& line, std::size_t field, W
   return text;
 }
 
-/// An id in its field, left alone where it is the same.
+/// Puts an id into its field, unless it is there already.
 void put_id(FieldLine& line, std::size_t field, std::int64_t id, WrittenCard& card) {
   std::int64_t old = 0;
   if (line.by_parameter(field))
@@ -98,7 +98,7 @@ std::string main_card(const FieldLine& before, const ShellCard& shell, WrittenCa
   return line.str();
 }
 
-/// An angle in its field, turned back by as much as the first edge has turned. A blank stays one.
+/// Turns an angle back by the turn of the first edge. A blank field stays blank.
 void turn_back(FieldLine& line, std::size_t field, double turn, WrittenCard& card) {
   if (turn == 0 || line.text(field).empty()) return;
   double angle = 0;
@@ -164,7 +164,7 @@ Result<std::string> thickness_card(const Line& before, const ExampleShell& examp
   FieldLine line(before.text, kWrittenThicknessWidths, example.columns);
   const CornerThickness thickness = corner_thickness(line, example.triangle ? 3 : 4);
   const bool triangle = shell.nodes[3] == shell.nodes[2];
-  // Alike at all corners, by a parameter or not: it is that everywhere.
+  // Equal at all corners, also where a parameter gives it: the new corner gets the same.
   if (!thickness.differ && example.triangle && !triangle && !thickness.text[0].empty()) line.set(3, thickness.text[0]);
   if (thickness.differ) {
     if (!thickness.readable) {

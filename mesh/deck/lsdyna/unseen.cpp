@@ -13,7 +13,7 @@ constexpr Unseen kDevices = {"unread-elements", "is kept as it is; the device is
 constexpr Unseen kMoved = {"moved-at-start", "moves nodes when the solver starts; they are shown and edited where their cards put them"};
 constexpr Unseen kMade = {"made-at-start", "makes parts and elements when the solver starts; they aren't shown", true};
 
-/// The first that a keyword starts with counts.
+/// The first entry that a keyword starts with counts.
 constexpr UnseenKeyword kEntries[] = {
     {"ELEMENT_SEATBELT_", kDevices},
     {"ELEMENT_", kElements},

@@ -70,7 +70,7 @@ class Writer : public CardWriter {
 
   WrittenCard new_node(const CardRef& card, std::int64_t id, const Vec3& at) const override { return new_card(card, id, at, false); }
 
-  /// TC and RC, where they hold something.
+  /// TC and RC, unless both are blank or zero.
   std::string node_constraints(const CardRef& card) const override {
     const FieldLine line(line_of(card), kWrittenNodeWidths, columns_of(card.style));
     if (line.is_blank_or_zero(4) && line.is_blank_or_zero(5)) return {};
@@ -106,9 +106,9 @@ class Writer : public CardWriter {
   }
 
   std::int64_t largest_node_id(std::uint16_t style) const override {
-    std::int64_t most = 1;
-    for (int digit = 0; digit < std::min(18, field_width(8, columns_of(style))); ++digit) most *= 10;
-    return most - 1;
+    std::int64_t power = 1;
+    for (int digit = 0; digit < std::min(18, field_width(8, columns_of(style))); ++digit) power *= 10;
+    return power - 1;
   }
   std::int64_t largest_shell_id(std::uint16_t style) const override { return largest_node_id(style); }
 
@@ -117,7 +117,7 @@ class Writer : public CardWriter {
     return card.text.substr(card.offset, end_of_line(card.text, card.offset) - card.offset);
   }
 
-  /// In the manner of the card at `offset`: its columns or commas, its length, zeros where it has constraints.
+  /// In the format of `example`: its columns or commas and its length. Unless `constrained`, its constraints become zeros.
   static WrittenCard new_card(const CardRef& card, std::int64_t id, const Vec3& at, bool constrained) {
     WrittenCard written;
     FieldLine line(line_of(card), kWrittenNodeWidths, columns_of(card.style));

@@ -14,7 +14,7 @@ struct Law {
   std::string_view word;
   MaterialFields fields;
 };
-// Fields are counted one wide: Young's modulus in the first number is field 1, Poisson's ratio in the second is field 3.
+// A number takes two fields: Young's modulus in the first number is field 1, Poisson's ratio in the second is field 3.
 constexpr MaterialFields kIsotropic{2, 1, 3, true};
 constexpr MaterialFields kOrthotropic{2, 1, 5, true};
 constexpr MaterialFields kModulusOnly{2, 1, 0, true};
@@ -61,7 +61,7 @@ constexpr std::array<Law, 40> kLaws = {{
     {"LAW109", "", kIsotropic},
 }};
 
-/// Shell properties and where they keep the thickness: the card, and the field counted from 1.
+/// The card and the field, from 1, of the thickness on shell properties.
 struct ThicknessPlace {
   std::string_view type;
   std::string_view word;
@@ -76,7 +76,7 @@ constexpr std::array<ThicknessPlace, 7> kThicknessPlaces = {{{"TYPE0", "VOID", 1
                                                              {"TYPE16", "SH_FABR", 3, 3},
                                                              {"TYPE19", "PLY", 1, 3}}};
 
-/// A block's title and cards by their numbers.
+/// Reads a block's title, then its cards one after the other.
 class Cards {
  public:
   Cards(const Block& block, const DeckTables& tables)
@@ -108,7 +108,7 @@ class Cards {
   Line line_;
 };
 
-/// In other units; those of a deck may be anything.
+/// Converts to other units. nullopt: the result isn't finite; a deck may define any units.
 std::optional<double> converted(std::optional<double> value, double factor) {
   if (value) *value *= factor;
   return value && std::isfinite(*value) ? value : std::nullopt;

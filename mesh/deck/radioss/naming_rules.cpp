@@ -206,8 +206,8 @@ constexpr NamingRule kRules[] = {
     {"VISC"},
 };
 
-/// Whether a block's words begin with those of a rule; the number of words then, else 0.
-std::size_t words_that_fit(const Keyword& keyword, std::string_view rule) {
+/// The number of words of a rule if a block's words begin with them, else 0.
+std::size_t matching_words(const Keyword& keyword, std::string_view rule) {
   std::size_t word = 0;
   for (std::size_t begin = 0; begin <= rule.size(); ++word) {
     const std::size_t end = std::min(rule.find('/', begin), rule.size());
@@ -225,11 +225,11 @@ std::size_t words_that_fit(const Keyword& keyword, std::string_view rule) {
 NamingRule naming_rule(const Keyword& keyword) {
   NamingRule best;
   best.naming = Naming::unknown;
-  std::size_t most = 0;
+  std::size_t max_words = 0;
   for (const NamingRule& rule : kRules) {
-    const std::size_t words = words_that_fit(keyword, rule.keyword);
-    if (words <= most) continue;
-    most = words;
+    const std::size_t words = matching_words(keyword, rule.keyword);
+    if (words <= max_words) continue;
+    max_words = words;
     best = rule;
   }
   return best;

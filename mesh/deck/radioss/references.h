@@ -9,12 +9,12 @@
 
 namespace prismesh::mesh::deck::radioss {
 
-/// Referrer::style of a block: how wide its fields are, and whether ids are added to those it gives.
+/// Referrer::style of a block: `old`: its fields have 8 columns; `added`: what is added to its ids.
 std::uint16_t referrer_style(bool old, const IdOffsets& added);
 bool is_old(std::uint16_t referrer_style);
 bool adds_to_ids(std::uint16_t referrer_style);
 
-/// Adds what the block names, or the block as one nobody understands.
+/// Adds what the block names. A block that no rule covers is added as unread text.
 void read_references(const Block& block, const Keyword& keyword, const DeckTables& tables, References& references);
 
 }  // namespace prismesh::mesh::deck::radioss

@@ -13,11 +13,11 @@ using Eigen::Affine3d;
 using Eigen::Vector3d;
 using Kind = Transform::Kind;
 
-/// Frames and nodes looked at, for all cards together: more is a deck made to waste time.
+/// Limit of the frames and nodes that all cards together visit. No real deck reaches it.
 constexpr std::size_t kMaxWork = std::size_t{1} << 28;
 constexpr int kMaxGroupDepth = 16;
-constexpr double kMinScale = 1e-6;     ///< beyond it, and its inverse, a factor is a mistake
-constexpr double kOrthonormal = 1e-3;  ///< by how much a matrix may miss being a rotation or a reflection
+constexpr double kMinScale = 1e-6;     ///< a smaller factor, or one above its inverse, is a mistake
+constexpr double kOrthonormal = 1e-3;  ///< tolerance for a matrix to be a rotation or a reflection
 
 Kind kind_of(std::string_view word) {
   if (word == "TRA") return Kind::translation;
@@ -111,7 +111,7 @@ class CardReader {
   Line line_;
 };
 
-/// Right-angled axes with the first along a-b and the third normal to the plane of the points. nullopt: they lie on a line.
+/// Orthonormal axes with the first along a-b and the third normal to the plane of the points. nullopt: the points are collinear.
 std::optional<Eigen::Matrix3d> axes_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d x = (b - a).normalized();
   const Vector3d z = x.cross((c - a).normalized());
@@ -237,7 +237,7 @@ void Transformer::find_named(const std::vector<Transform>& transforms) {
     }
 }
 
-/// Where the cards so far have put it.
+/// The node's position after the cards so far.
 std::optional<Vector3d> Transformer::position(std::int64_t node) const {
   const auto named = std::lower_bound(named_.begin(), named_.end(), node, [](const NamedNode& a, std::int64_t b) { return a.id < b; });
   if (named == named_.end() || named->id != node || !named->found) return std::nullopt;
@@ -265,7 +265,7 @@ void Transformer::move_submodel(const Transform& transform, const Affine3d& map)
                          "a transformation names submodel " + std::to_string(transform.submodel) + ", which has no nodes");
 }
 
-/// Runs are cut where membership changes; the members' get frames of their own.
+/// Cuts runs where membership changes. Runs of members get frames of their own.
 void Transformer::move_group(const GroupMembers& members, const Affine3d& map) {
   std::map<std::uint32_t, std::uint32_t> moved;
   const std::uint64_t cost = 1 + members.ranges.size();
@@ -296,11 +296,11 @@ void Transformer::move_group(const GroupMembers& members, const Affine3d& map) {
   }
 }
 
-/// Nobody knows where these nodes are; `members`: of the group, where that is known.
+/// Holds the nodes of a card whose map can't be computed. `members`: of its group; null: it has none, or they aren't known.
 void Transformer::hold(const Transform& transform, const GroupMembers* members) {
   found_.warnings.note("unread-transform", transform.file, transform.offset,
                        "a transformation can't be worked out; what it moves is shown where its cards put it and can't be moved");
-  // Once there have been too many of them, all nodes are held: that costs one pass.
+  // Beyond the limit of work all nodes are held, which costs one pass.
   const std::int64_t submodel = work_ > kMaxWork ? 0 : transform.submodel;
   if (work_ > kMaxWork) members = nullptr;
   if (held_.contains(0) || (!members && !held_.insert(submodel).second)) return;
@@ -315,7 +315,7 @@ void Transformer::hold(const Transform& transform, const GroupMembers* members) 
     }
 }
 
-/// False: the group isn't there, or is one whose nodes aren't worked out here.
+/// Collects the members of a group. False: it isn't defined, or is of a kind whose members aren't computed here.
 bool Transformer::collect(std::int64_t group, int depth, GroupMembers& members) {
   const auto at = groups_.find(group);
   if (at == groups_.end() || depth > kMaxGroupDepth || work_ > kMaxWork) return false;

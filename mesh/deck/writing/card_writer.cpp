@@ -1,4 +1,4 @@
-// What a format's writer does where it knows no better: it refuses.
+// The defaults of a format's writer: it refuses.
 #include "mesh/deck/writing/card_writer.h"
 
 namespace prismesh::mesh::deck {
