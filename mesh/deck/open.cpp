@@ -48,7 +48,7 @@ void find_last_ids(const Ids& ids, const std::vector<CardRun>& runs, Field field
   }
 }
 
-std::optional<Error> first_error(const Found& found) {
+std::optional<Error> first_error(const DeckContents& found) {
   std::size_t entities = 0;
   for (const PieceCards& cards : found.cards) {
     const SourceFile& file = found.files[cards.file];
@@ -60,7 +60,7 @@ std::optional<Error> first_error(const Found& found) {
 }
 
 /// The model and the deck, complete. Errors: the first malformed card (file and line), too many entities, cancelled.
-Result<OpenedDeck> finish(Found found, Watch& watch) {
+Result<OpenedDeck> finish(DeckContents found, Watch& watch) {
   if (watch.stopped()) return fail(cancelled());
   if (std::optional<Error> error = first_error(found)) return fail(std::move(*error));
 
@@ -105,7 +105,7 @@ Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progr
   const Detected detected = detect_format(files->files[0].bytes.text());
   if (!detected.format) return fail(path.string(), "is no deck: it looks like " + detected.looks_like);
   Watch watch(progress);
-  Result<Found> found = read(*detected.format, std::move(*files), watch);
+  Result<DeckContents> found = read(*detected.format, std::move(*files), watch);
   if (!found) return fail(std::move(found.error()));
   return finish(std::move(*found), watch);
 }

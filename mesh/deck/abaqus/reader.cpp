@@ -14,7 +14,7 @@ namespace prismesh::mesh::deck::abaqus {
 namespace {
 
 /// Frames of the deck for those of the walk, seen from each instance.
-void place_frames(const Walk& walk, Found& found) {
+void place_frames(const Walk& walk, DeckContents& found) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
   for (std::size_t p = 0; p < walk.pieces.size(); ++p) {
     const std::uint32_t instance = walk.pieces[p].instance;
@@ -71,7 +71,7 @@ void close_runs(PieceCards& cards) {
 
 /// Ids mean something within their part only. The first instance keeps its own; where another's would be the same, it gets a round number
 /// added to all of them.
-Result<void> shift_instances(Walk& walk, Found& found) {
+Result<void> shift_instances(Walk& walk, DeckContents& found) {
   // What stands outside of instances is one, too, and comes last: it refers to the others.
   std::vector<Extent> extents(walk.instances.size() + 1);
   for (std::size_t p = 0; p < walk.pieces.size(); ++p) {
@@ -110,7 +110,7 @@ Result<void> shift_instances(Walk& walk, Found& found) {
 }
 
 /// Elements that are left out for a reason of this format's own.
-void note_left_out(Found& found) {
+void note_left_out(DeckContents& found) {
   for (PieceCards& cards : found.cards)
     for (const Oddity& oddity : cards.oddities)
       if (oddity.kind == "element-between-instances")
@@ -136,11 +136,11 @@ void note_unread_mesh(const Walk& walk, Warnings& warnings) {
 
 }  // namespace
 
-Result<Found> read(FileSet files, Watch& watch) {
+Result<DeckContents> read(FileSet files, Watch& watch) {
   Walk walk(std::move(files));
   if (Result<void> walked = walk.run(); !walked) return fail(walked.error());
   watch.tell(kWalked);
-  Found found;
+  DeckContents found;
   found.format = Format::abaqus;
   found.warnings = walk.warnings;
   note_unread_mesh(walk, found.warnings);

@@ -24,15 +24,20 @@ std::size_t end_of_line(std::string_view text, std::size_t offset) {
   return end > offset && text[end - 1] == '\r' ? end - 1 : end;
 }
 
-/// A field's place in a card's text: between its commas, blanks included.
-struct Place {
+/// The card's first line, without its end.
+std::string_view first_line(const CardRef& card) {
+  return card.text.substr(card.offset, end_of_line(card.text, card.offset) - card.offset);
+}
+
+/// A field in a card's text: between its commas, blanks included.
+struct FieldRange {
   std::size_t begin = 0;
   std::size_t length = 0;
 };
 
-/// The fields of a line, those after the last comma only if there is something.
-std::vector<Place> places_of_line(std::string_view line, std::size_t at) {
-  std::vector<Place> out;
+/// The fields of a line. Blanks behind the last comma are no field.
+std::vector<FieldRange> places_of_line(std::string_view line, std::size_t at) {
+  std::vector<FieldRange> out;
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t comma = std::min(line.find(',', begin), line.size());
     if (comma == line.size() && trim(line.substr(begin)).empty()) break;
@@ -44,7 +49,7 @@ std::vector<Place> places_of_line(std::string_view line, std::size_t at) {
 
 bool starts_with_blanks(std::string_view field) { return field.size() > 1 && field[0] == ' ' && field[1] == ' '; }
 
-/// In the old one's place, blanks around it kept; in a column it ends where the old one did, as far as it fits.
+/// The new text in the old field, with the blanks around it. In a column it ends where the old text did, if it fits.
 std::string in_place_of(std::string_view old, const std::string& text, bool column) {
   const std::string_view shown = trim(old);
   if (shown.empty()) return (old.empty() ? "" : " ") + text;
@@ -65,7 +70,7 @@ std::string number_text(double value, WrittenCard& card) {
   return text;
 }
 
-/// The type with so many corners that goes with another; empty if there is none.
+/// The element type that corresponds to `type` and has three or four corners; empty: there is none.
 std::string other_type(std::string_view type, bool triangles) {
   constexpr std::pair<std::string_view, std::string_view> kPairs[] = {
       {"S4R", "S3R"},    {"S4", "S3"},     {"S4RS", "S3RS"},  {"M3D4R", "M3D3"}, {"M3D4", "M3D3"}, {"R3D4", "R3D3"},
@@ -83,7 +88,7 @@ bool is_keyword(std::string_view text, std::size_t line) {
 }
 
 /// A block's keyword with its parameters, without the end of its last line.
-std::string header_of(std::string_view text, const BlockFinder::Found& block) {
+std::string header_of(std::string_view text, const BlockFinder::BlockRange& block) {
   Keywords keywords(text.substr(block.keyword));
   Keyword keyword;
   if (!keywords.next(keyword)) return {};
@@ -104,19 +109,19 @@ std::string without_parameter(std::string_view header, std::string_view name) {
   return out;
 }
 
-/// The fields of a line that aren't one of some numbers.
-std::vector<Place> without_ids(std::string_view line, std::vector<Place> places, std::span<const std::int64_t> ids) {
-  std::erase_if(places, [&](const Place& place) {
+/// The fields of a line that hold none of `ids`.
+std::vector<FieldRange> without_ids(std::string_view line, std::vector<FieldRange> places, std::span<const std::int64_t> ids) {
+  std::erase_if(places, [&](const FieldRange& place) {
     std::int64_t id = 0;
     return parse_integer(trim(line.substr(place.begin, place.length)), id) && std::find(ids.begin(), ids.end(), id) != ids.end();
   });
   return places;
 }
 
-/// A line of some of its fields, begun and ended as it was.
-std::string line_of(std::string_view line, const std::vector<Place>& places) {
+/// The line with some of its fields only; its begin and end stay.
+std::string line_of(std::string_view line, const std::vector<FieldRange>& places) {
   std::string out(line.substr(0, line.find_first_not_of(" \t")));
-  for (const Place& place : places) {
+  for (const FieldRange& place : places) {
     const std::string_view field = line.substr(place.begin, place.length);
     out += out.find_first_not_of(" \t") == std::string::npos ? std::string(trim(field)) : "," + std::string(field);
   }
@@ -125,107 +130,106 @@ std::string line_of(std::string_view line, const std::vector<Place>& places) {
 
 class Writer : public CardWriter {
  public:
-  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    return std::max(end_of_line(text, offset), offset);
-  }
+  std::size_t node_end(const CardRef& card) const override { return std::max(end_of_line(card.text, card.offset), card.offset); }
 
-  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t style) const override {
-    std::size_t end = offset;
-    cut(text, offset, nodes_of(style) + 1, end);
+  std::size_t shell_end(const CardRef& card) const override {
+    std::size_t end = card.offset;
+    cut(card, nodes_of(card.style) + 1, end);
     return end;
   }
 
-  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const auto fields = first_fields<4>(text.substr(offset, end_of_line(text, offset) - offset));
+  std::optional<Vec3> node_coordinates(const CardRef& card) const override {
+    const auto fields = first_fields<4>(first_line(card));
     Vec3 out;
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (!parse_real(fields[axis + 1], out[static_cast<Eigen::Index>(axis)])) return std::nullopt;
     return out;
   }
 
-  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t, const Vec3& from, const Vec3& to) const override {
-    WrittenCard card;
-    card.text = std::string(text.substr(offset, end_of_line(text, offset) - offset));
+  WrittenCard move_node(const CardRef& card, const Vec3& from, const Vec3& to) const override {
+    WrittenCard written;
+    written.text = std::string(first_line(card));
     for (std::size_t axis = 3; axis-- > 0;) {
       const auto a = static_cast<Eigen::Index>(axis);
-      if (from[a] != to[a]) put_coordinate(card, axis, to[a]);
+      if (from[a] != to[a]) put_coordinate(written, axis, to[a]);
     }
-    return card;
+    return written;
   }
 
-  WrittenCard new_node(std::string_view text, std::size_t offset, std::uint16_t, std::int64_t id, const Vec3& at) const override {
-    WrittenCard card;
-    card.text = std::string(text.substr(offset, end_of_line(text, offset) - offset));
-    std::vector<Place> places = places_of_line(card.text, 0);
-    // What follows the coordinates is the old node's normal.
-    if (places.size() > 4) card.text.resize(places[3].begin + places[3].length);
-    for (std::size_t axis = 3; axis-- > 0;) put_coordinate(card, axis, at[static_cast<Eigen::Index>(axis)]);
-    card.by_parameter = false;
-    const std::string_view old = std::string_view(card.text).substr(places[0].begin, places[0].length);
+  WrittenCard new_node(const CardRef& card, std::int64_t id, const Vec3& at) const override {
+    WrittenCard written;
+    written.text = std::string(first_line(card));
+    std::vector<FieldRange> places = places_of_line(written.text, 0);
+    // Behind the coordinates stands the old node's normal.
+    if (places.size() > 4) written.text.resize(places[3].begin + places[3].length);
+    for (std::size_t axis = 3; axis-- > 0;) put_coordinate(written, axis, at[static_cast<Eigen::Index>(axis)]);
+    written.by_parameter = false;
+    const std::string_view old = std::string_view(written.text).substr(places[0].begin, places[0].length);
     const std::string put = in_place_of(old, std::to_string(id), starts_with_blanks(old));
-    card.text.replace(places[0].begin, places[0].length, put);
-    return card;
+    written.text.replace(places[0].begin, places[0].length, put);
+    return written;
   }
 
-  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const override {
-    if ((style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
-    if ((style & kStyleShifted) != 0) return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
+  Result<WrittenCard> shell(const CardRef& card, const ShellCard& shell) const override {
+    if ((card.style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
+    if ((card.style & kStyleShifted) != 0)
+      return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
     const bool triangle = shell.nodes[3] == shell.nodes[2];
-    const std::size_t corners = nodes_of(style);
+    const std::size_t corners = nodes_of(card.style);
     if (triangle && corners == 4) return fail("", "is of a type with four corners, so a triangle can't be written like it");
     if (!triangle && corners == 3) return fail("", "is of a type with three corners, so a quad can't be written like it");
-    std::size_t end = offset;
-    const std::vector<Place> places = cut(text, offset, corners + 1, end);
+    std::size_t end = card.offset;
+    const std::vector<FieldRange> places = cut(card, corners + 1, end);
     if (places.size() < corners + 1) return fail("", "has a card that can't be read");
-    WrittenCard card;
-    card.text = std::string(text.substr(offset, end - offset));
+    WrittenCard written;
+    written.text = std::string(card.text.substr(card.offset, end - card.offset));
     for (std::size_t f = corners + 1; f-- > 0;) {
-      const std::string_view old = text.substr(places[f].begin, places[f].length);
+      const std::string_view old = card.text.substr(places[f].begin, places[f].length);
       const std::int64_t id = f == 0 ? shell.id : shell.nodes[f - 1];
       std::int64_t now = 0;
       if (old.find('<') != std::string_view::npos) {
-        card.by_parameter = true;
+        written.by_parameter = true;
       } else if (!parse_integer(trim(old), now) || now != id) {
-        card.text.replace(places[f].begin - offset, places[f].length, in_place_of(old, std::to_string(id), starts_with_blanks(old)));
+        written.text.replace(places[f].begin - card.offset, places[f].length,
+                             in_place_of(old, std::to_string(id), starts_with_blanks(old)));
       }
     }
-    return card;
+    return written;
   }
 
-  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
+  bool holds_triangles_and_quads(const CardRef&) const override { return false; }
 
   /// The set that the keyword puts its nodes into: "*NODE, NSET=rim".
-  std::string node_constraints(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const BlockFinder::Found block = blocks_.at(text, offset);
-    Keywords keywords(text.substr(block.keyword));
+  std::string node_constraints(const CardRef& card) const override {
+    const BlockFinder::BlockRange block = blocks_.at(card.text, card.offset);
+    Keywords keywords(card.text.substr(block.keyword));
     Keyword keyword;
     if (block.has_keyword && keywords.next(keyword) && keyword.name == "NODE")
-      return label(Parameters(text, block.keyword, block.keyword + keyword.end).value("NSET").value_or(""));
-    // The keyword stands in another file, or an include is between: whatever it says is true of all that is here.
-    return "as others at " + std::to_string(reinterpret_cast<std::uintptr_t>(text.data()) + block.keyword);
+      return label(Parameters(card.text, block.keyword, block.keyword + keyword.end).value("NSET").value_or(""));
+    // The keyword stands in another file, or an include is between. It applies to all cards here.
+    return "as others at " + std::to_string(reinterpret_cast<std::uintptr_t>(card.text.data()) + block.keyword);
   }
 
-  Result<WrittenCard> new_constrained_node(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id,
-                                           const Vec3& at) const override {
-    return new_node(text, offset, style, id, at);
+  Result<WrittenCard> new_constrained_node(const CardRef& card, std::int64_t id, const Vec3& at) const override {
+    return new_node(card, id, at);
   }
 
   bool constraints_must_agree() const override { return false; }
 
   /// A keyword like the one above the card, but for its NSET.
-  std::optional<NewBlock> block_without_constraints(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const BlockFinder::Found block = blocks_.at(text, offset);
-    const std::string header = block.has_keyword ? header_of(text, block) : "";
+  std::optional<NewBlock> block_without_constraints(const CardRef& card) const override {
+    const BlockFinder::BlockRange block = blocks_.at(card.text, card.offset);
+    const std::string header = block.has_keyword ? header_of(card.text, block) : "";
     const std::string without = without_parameter(header, "NSET");
     if (header == without) return std::nullopt;
     return NewBlock{block.end, without};
   }
 
   /// A keyword like the one above the card, but for its TYPE.
-  Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t, bool triangles) const override {
-    const BlockFinder::Found found = blocks_.at(text, offset);
+  Result<NewBlock> block_of_kind(const CardRef& card, bool triangles) const override {
+    const BlockFinder::BlockRange found = blocks_.at(card.text, card.offset);
     if (!found.has_keyword) return fail("", "has no keyword above it in its file");
-    NewBlock block{found.end, header_of(text, found)};
+    NewBlock block{found.end, header_of(card.text, found)};
     std::string upper = block.header;
     for (char& c : upper)
       if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
@@ -242,23 +246,23 @@ class Writer : public CardWriter {
     return block;
   }
 
-  Result<WrittenCard> shell_in_block(std::string_view text, std::size_t offset, std::uint16_t style,
-                                     const ShellCard& shell) const override {
-    if ((style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
-    if ((style & kStyleShifted) != 0) return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
-    const std::size_t corners = nodes_of(style), wanted = shell.nodes[3] == shell.nodes[2] ? 3 : 4;
-    std::size_t end = offset;
-    const std::vector<Place> places = cut(text, offset, corners + 1, end);
+  Result<WrittenCard> shell_in_block(const CardRef& card, const ShellCard& shell) const override {
+    if ((card.style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
+    if ((card.style & kStyleShifted) != 0)
+      return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
+    const std::size_t corners = nodes_of(card.style), wanted = shell.nodes[3] == shell.nodes[2] ? 3 : 4;
+    std::size_t end = card.offset;
+    const std::vector<FieldRange> places = cut(card, corners + 1, end);
     if (places.size() < corners + 1) return fail("", "has a card that can't be read");
-    WrittenCard card;
+    WrittenCard written;
     for (std::size_t f = 0; f <= wanted; ++f) {
-      const std::string_view old = f <= corners ? text.substr(places[f].begin, places[f].length) : std::string_view(" ");
-      card.by_parameter |= old.find('<') != std::string_view::npos;
+      const std::string_view old = f <= corners ? card.text.substr(places[f].begin, places[f].length) : std::string_view(" ");
+      written.by_parameter |= old.find('<') != std::string_view::npos;
       const bool one_line = old.find('\n') == std::string_view::npos;
       const std::string id = std::to_string(f == 0 ? shell.id : shell.nodes[f - 1]);
-      card.text += (f > 0 ? "," : "") + (one_line && !trim(old).empty() ? in_place_of(old, id, starts_with_blanks(old)) : " " + id);
+      written.text += (f > 0 ? "," : "") + (one_line && !trim(old).empty() ? in_place_of(old, id, starts_with_blanks(old)) : " " + id);
     }
-    return card;
+    return written;
   }
 
   Result<std::vector<Replacement>> change_list(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
@@ -269,8 +273,8 @@ class Writer : public CardWriter {
     DataLines lines(text, tail_of(text, set).first, static_cast<std::size_t>(set.end));
     std::vector<Replacement> shorter;
     for (DataLine line; lines.next(line);) {
-      const std::vector<Place> places = places_of_line(line.text, 0);
-      const std::vector<Place> stay = without_ids(line.text, places, leaving);
+      const std::vector<FieldRange> places = places_of_line(line.text, 0);
+      const std::vector<FieldRange> stay = without_ids(line.text, places, leaving);
       kept += stay.size();
       found += places.size() - stay.size();
       if (stay.size() == places.size()) continue;
@@ -290,7 +294,7 @@ class Writer : public CardWriter {
     if ((set.style & kStyleNamesAndIds) != 0) return fail("", "isn't a set that lists what it has");
     if ((set.style & kStyleOtherIds) != 0) return fail("", "belongs to a part whose numbers are shown changed, or shown several times");
     if (ids.empty()) return std::vector<Replacement>();
-    const Tail tail = tail_of(text, set);
+    const ListTail tail = tail_of(text, set);
     std::string lines;
     std::size_t on_line = 0;
     const bool generate = (set.style & kStyleGenerate) != 0;
@@ -318,8 +322,8 @@ class Writer : public CardWriter {
  private:
   mutable BlockFinder blocks_{is_keyword};
 
-  /// How a set's lines look, and where the next goes.
-  struct Tail {
+  /// The format of a set's lines, and where the next one goes.
+  struct ListTail {
     std::size_t first = 0;  ///< behind the keyword
     std::size_t at = 0;
     std::string before;          ///< blanks at the line's beginning
@@ -327,8 +331,8 @@ class Writer : public CardWriter {
     std::string line_end = "\n";
   };
 
-  static Tail tail_of(std::string_view text, const Referrer& set) {
-    Tail tail;
+  static ListTail tail_of(std::string_view text, const Referrer& set) {
+    ListTail tail;
     Keywords keywords(text.substr(static_cast<std::size_t>(set.offset), static_cast<std::size_t>(set.end - set.offset)));
     Keyword keyword;
     std::size_t data = static_cast<std::size_t>(set.end);
@@ -361,16 +365,16 @@ class Writer : public CardWriter {
   }
 
   static void put_coordinate(WrittenCard& card, std::size_t axis, double value) {
-    std::vector<Place> places = places_of_line(card.text, 0);
+    std::vector<FieldRange> places = places_of_line(card.text, 0);
     if (places.size() < axis + 2) {
-      // Fields that lack are zero.
+      // Missing fields are zero.
       if (!places.empty() && trim(card.text).back() == ',') card.text.erase(card.text.find_last_of(','));
       while (places.size() < axis + 2) {
         card.text += ",";
         places.push_back({card.text.size(), 0});
       }
     }
-    const Place place = places[axis + 1];
+    const FieldRange place = places[axis + 1];
     const std::string old = card.text.substr(place.begin, place.length);
     card.by_parameter |= old.find('<') != std::string::npos;
     bool column = false;
@@ -379,15 +383,15 @@ class Writer : public CardWriter {
     card.text.replace(place.begin, place.length, in_place_of(old, number_text(value, card), column));
   }
 
-  /// The first `wanted` fields of a card that may go on in further lines; `end` gets where the line of the last of them ends.
-  static std::vector<Place> cut(std::string_view text, std::size_t offset, std::size_t wanted, std::size_t& end) {
-    std::vector<Place> out;
-    DataLines lines(text, offset, text.size());
+  /// The first `wanted` fields of a card, which may have several lines. `end` gets the end of the line of the last one.
+  static std::vector<FieldRange> cut(const CardRef& card, std::size_t wanted, std::size_t& end) {
+    std::vector<FieldRange> out;
+    DataLines lines(card.text, card.offset, card.text.size());
     DataLine line;
     while (out.size() < wanted && lines.next(line)) {
-      for (const Place& place : places_of_line(line.text, line.offset))
+      for (const FieldRange& place : places_of_line(line.text, line.offset))
         if (out.size() < wanted) out.push_back(place);
-      end = end_of_line(text, line.offset);
+      end = end_of_line(card.text, line.offset);
       if (line.text.back() != ',' && out.size() % kIdsOnALine != 0) break;
     }
     return out;

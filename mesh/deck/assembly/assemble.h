@@ -1,4 +1,4 @@
-// From cards by id to the model by index.
+// Makes the model, by index, from cards, by id.
 #pragma once
 
 #include <span>
@@ -9,9 +9,10 @@
 
 namespace prismesh::mesh::deck {
 
-/// Puts the model together, positions in the basic system (the deck's frames must be there), and fills the deck's runs, lines,
-/// element_cards and element_kinds. `cards` are emptied. Of equal ids the first counts; elements with nodes that nobody defines are left
-/// out; both are warned of. The adjacency isn't built.
+/// Puts nodes, parts, shells and other elements together, in this order. `cards`: the pieces in the deck's order; emptied. `parts`: the
+/// defined ones, ascending by id. The deck's frames must be there; its runs, card offsets, counts, held files and left-out elements are
+/// filled. Returns the model in the basic system, without adjacency. Of equal ids the first counts; elements with nodes that nobody
+/// defines are left out. Warns of both.
 Model assemble(std::span<PieceCards> cards, std::vector<Part> parts, Deck& deck, Warnings& warnings);
 
 }  // namespace prismesh::mesh::deck

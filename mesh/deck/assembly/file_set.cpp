@@ -53,7 +53,7 @@ const fs::path& stand_in(const StandIns& stand_ins, const fs::path& file) {
   return at == stand_ins.end() ? file : at->second;
 }
 
-/// What stands in the way where no file of the name is found.
+/// Why no file of the name is found.
 std::string why_not_found(const std::string& name, std::span<const fs::path> folders) {
   if (name.empty()) return "has no name";
   if (name.find('\0') != std::string::npos) return "has a name with a NUL byte in it";
@@ -85,7 +85,7 @@ FileSet::FileSet(fs::path main, FileBytes bytes, StandIns stand_ins)
   files.push_back({std::move(main), std::move(name), std::move(bytes)});
 }
 
-/// Looked for once for each file that names it: names may be many, and looking is slow.
+/// Searches once for each pair of file and name: a deck may have many includes, and a search is slow.
 std::uint32_t FileSet::include(std::uint32_t from, const std::string& name, std::span<const fs::path> folders, std::string& reason) {
   const auto [at, first] = known_.try_emplace({from, name}, kNoFile, "isn't there");
   auto& [file, why] = at->second;
@@ -101,7 +101,7 @@ std::uint32_t FileSet::include(std::uint32_t from, const std::string& name, std:
   return kNoFile;
 }
 
-/// The index of the file, read now if it wasn't before; kNoFile with a reason if it can't be.
+/// Returns the index of the file and reads it if it wasn't read before. kNoFile: it can't be read; `reason` gets why.
 std::uint32_t FileSet::open(const fs::path& found, const std::string& name, std::string& reason) {
   const std::string canonical = canonical_name(found);
   if (const auto at = by_canonical_.find(canonical); at != by_canonical_.end()) return at->second;

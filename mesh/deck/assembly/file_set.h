@@ -1,4 +1,4 @@
-// The files of a deck, each read once, whatever names lead to it.
+// Reads the files of a deck, each once, whatever names lead to it.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,15 @@ class FileSet {
  public:
   static constexpr std::uint32_t kNoFile = 0xffffffffu;
 
-  /// Reads the main file. Where a file has a stand-in (StagedSave), that is read under the file's name. Errors: it can't be read or
-  /// unpacked, cancelled.
+  /// Reads the main file. Where a file has a stand-in (StagedSave), the stand-in is read under the file's name. Errors: the file can't be
+  /// read or unpacked, cancelled.
   static Result<FileSet> begin(std::filesystem::path main, const StandIns& stand_ins, const Progress& progress);
-  /// The same with nothing but the main file, for another walk over it.
+  /// Keeps the main file only, for another walk over the deck.
   static FileSet again(FileSet files);
 
-  /// The file that an include in file `from` names, looked for in the folders in their order (an absolute name: only there), with
-  /// backslashes as slashes where that helps; read now if it wasn't before. kNoFile with a reason ("isn't there") if it can't be had;
-  /// its name is then in `missing`.
+  /// Finds the file that an include in file `from` names: in the folders, in their order, or at its absolute name; with backslashes as
+  /// slashes if it isn't found otherwise. Reads it if it wasn't read before. kNoFile: it can't be found or read; `reason` gets why ("isn't
+  /// there") and `missing` the name.
   std::uint32_t include(std::uint32_t from, const std::string& name, std::span<const std::filesystem::path> folders, std::string& reason);
 
   std::filesystem::path folder_of(std::uint32_t file) const { return files[file].path.parent_path(); }
@@ -46,16 +46,16 @@ class FileSet {
   std::map<std::pair<std::uint32_t, std::string>, std::pair<std::uint32_t, std::string>> known_;  ///< file or reason, by who names it
 };
 
-/// One name for a file, whatever links lead to it: what StandIns go by.
+/// One name for a file, whatever links lead to it. The key of StandIns.
 std::string canonical_name(const std::filesystem::path& path);
 
-/// What is known of how a file is used: how often, and what it includes itself.
+/// How often a file is used, and what it includes itself.
 struct FileUse {
   int uses = 0;
   std::vector<std::uint32_t> includes;
 };
 
-/// Whether each file's content stands for more than one place: it is used more than once, or something that includes it is.
+/// By file: whether its content stands for more than one place. True: it, or a file that includes it, is used more than once.
 std::vector<bool> repeated_files(std::span<const FileUse* const> uses);
 
 }  // namespace prismesh::mesh::deck

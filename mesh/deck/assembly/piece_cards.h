@@ -1,4 +1,4 @@
-// What the cards of a stretch of text say, by id: what every format's fast part fills, any number at a time, and assemble puts together.
+// The nodes and elements of a stretch of text, by id. Every format's fast part fills them, many at a time; `assemble` puts them together.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace prismesh::mesh::deck {
 
-/// As an element's part: it has none.
+/// The part of an element that has none.
 inline constexpr std::int64_t kNoPart = std::numeric_limits<std::int64_t>::min();
 
-/// Something odd at a place, to be told once a kind.
+/// Something odd, reported once for each kind.
 struct Oddity {
   std::string kind;
   std::size_t offset = 0;  ///< of the first
-  std::int64_t id = 0;     ///< 0: none to tell
+  std::int64_t id = 0;     ///< of the first; 0: none
   std::size_t count = 0;
 };
 
@@ -29,8 +29,8 @@ struct Oddity {
 struct PieceRun {
   std::uint32_t first = 0;  ///< within the piece
   std::uint16_t style = 0;  ///< CardRun::style
-  /// Index into the deck's frames (and id_offsets). A format that learns its frames late may put a number of its own here and turn it
-  /// into the index before assembling.
+  /// Index into the deck's frames and id_offsets. A format that knows its frames only later may store another number here and replace it
+  /// by the index before `assemble`.
   std::uint32_t frame = 0;
 };
 
@@ -55,7 +55,7 @@ struct RawElements {
 /// The cards of a piece of one file, in their order.
 struct PieceCards {
   std::uint32_t file = 0;
-  bool held = false;  ///< its nodes must not be moved: they stand for several places
+  bool held = false;  ///< the file stands for several places of the model, so its nodes must not be moved
 
   std::vector<std::int64_t> node_id;
   std::vector<Vec3> position;  ///< as the cards give it, in the run's frame
@@ -69,9 +69,9 @@ struct PieceCards {
   std::vector<std::pair<std::string, std::size_t>> kinds;  ///< element cards by the deck's own keyword
   std::vector<Oddity> oddities;
   std::optional<std::pair<std::size_t, std::string>> error;  ///< offset and sentence
-  bool encrypted = false;                                    ///< ran into an encrypted block
+  bool encrypted = false;                                    ///< an encrypted block stands in the piece
 
-  /// What follows is in this style and frame.
+  /// Begins a run: the nodes or shells that are added from here on have this style and frame.
   void begin_nodes(std::uint16_t style, std::uint32_t frame);
   void begin_shells(std::uint16_t style, std::uint32_t frame = 0);
   void note(std::string_view kind, std::size_t offset, std::int64_t id);

@@ -1,10 +1,12 @@
 #include "mesh/deck/assembly/read_pieces.h"
 
+#include <atomic>
+
 #include "base/parallel_for.h"
 
 namespace prismesh::mesh::deck {
 
-void read_pieces(Found& found, std::size_t pieces, const std::function<PieceCards(std::size_t)>& read, Watch& watch) {
+void read_pieces(DeckContents& found, std::size_t pieces, const std::function<PieceCards(std::size_t)>& read, Watch& watch) {
   found.cards.resize(pieces);
   found.hashes.resize(found.files.size());
   std::atomic<std::size_t> done = 0;

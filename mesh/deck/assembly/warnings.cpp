@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMaxOfAKind = 100;
 constexpr std::size_t kMaxOtherPlaces = 2;
 
-/// The lines of some places, in one pass over each file.
+/// Counts the line numbers of places in one pass over each file.
 class LineNumbers {
  public:
   explicit LineNumbers(std::span<const SourceFile> files) : files_(files) {}
@@ -42,7 +42,7 @@ class LineNumbers {
 }  // namespace
 
 void Warnings::note(std::string_view kind, std::uint32_t file, std::size_t offset, std::string message, std::size_t count) {
-  const auto at = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.kind == kind; });
+  const auto at = std::find_if(entries_.begin(), entries_.end(), [&](const WarningEntry& entry) { return entry.kind == kind; });
   if (at == entries_.end()) {
     entries_.push_back({std::string(kind), file, offset, std::move(message), count});
     return;
@@ -56,8 +56,8 @@ void Warnings::note(std::string_view kind, std::uint32_t file, std::size_t offse
 
 void Warnings::note_each(std::string_view kind, std::uint32_t file, std::size_t offset, std::string message) {
   std::size_t of_kind = 0;
-  Entry* last = nullptr;
-  for (Entry& entry : entries_) {
+  WarningEntry* last = nullptr;
+  for (WarningEntry& entry : entries_) {
     if (entry.kind != kind) continue;
     if (entry.file == file && entry.message == message) {
       ++entry.count;
@@ -76,13 +76,13 @@ void Warnings::note_each(std::string_view kind, std::uint32_t file, std::size_t 
 
 std::vector<Warning> Warnings::finish(std::span<const SourceFile> files) const {
   LineNumbers lines(files);
-  for (const Entry& entry : entries_) {
+  for (const WarningEntry& entry : entries_) {
     lines.want(entry.file, entry.offset);
     for (const auto& [file, offset] : entry.others) lines.want(file, offset);
   }
   lines.count();
   std::vector<Warning> out;
-  for (const Entry& entry : entries_) {
+  for (const WarningEntry& entry : entries_) {
     std::string message = entry.message;
     for (std::size_t i = 0; i < entry.others.size(); ++i) {
       const auto& [file, offset] = entry.others[i];

@@ -1,4 +1,4 @@
-// Collects what is odd about a deck: each kind, or each thing named, once, with its first places and how many more there are.
+// Collects warnings about a deck: each kind, or each thing by name, once, with its first places and a count of the others.
 #pragma once
 
 #include <span>
@@ -13,25 +13,25 @@ namespace prismesh::mesh::deck {
 
 class Warnings {
  public:
-  /// `message` is kept of the first of its kind only; of those that follow the next two lines are told, and how many more there are.
+  /// Keeps the message of the first of a kind, the lines of the next two, and the count of all.
   void note(std::string_view kind, std::uint32_t file, std::size_t offset, std::string message, std::size_t count = 1);
-  /// For what a user must hear of by name, as each file that lacks: only what says the same of the same file is put together.
-  /// After 100 of a kind the others are counted in one.
+  /// For what a user must know by name, such as each missing file: counts only equal messages about the same file together. After 100 of
+  /// a kind the others are counted in one entry.
   void note_each(std::string_view kind, std::uint32_t file, std::size_t offset, std::string message);
-  /// As the deck tells them; line numbers are counted only here.
+  /// The warnings as Deck::warnings has them. Line numbers are counted here, in one pass over each file.
   std::vector<Warning> finish(std::span<const SourceFile> files) const;
 
  private:
-  struct Entry {
+  struct WarningEntry {
     std::string kind;
     std::uint32_t file;
     std::size_t offset;
     std::string message;
     std::size_t count;
     std::vector<std::pair<std::uint32_t, std::size_t>> others{};  ///< file and offset of the next
-    bool each = false;                                            ///< what is counted all says the same of the same file
+    bool each = false;                                            ///< from note_each
   };
-  std::vector<Entry> entries_;
+  std::vector<WarningEntry> entries_;
 };
 
 }  // namespace prismesh::mesh::deck

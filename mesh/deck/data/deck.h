@@ -1,5 +1,5 @@
-// A deck: the text of its files, kept word for word, and where in it the card of each node and shell stands, so that saving rewrites only
-// what changed.
+// A deck: the text of its files, word for word, and where the card of each node and shell stands in it, so that saving rewrites only what
+// changed.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace prismesh::mesh::deck {
 enum class Format : std::uint8_t { ls_dyna, nastran, radioss, abaqus };
 std::string_view name(Format format);  ///< "ls-dyna", ...
 
-/// Something odd that opened all the same. Each kind is reported once, with its first place and how often.
+/// Something odd in a deck that could be opened. Each kind is reported once, with its first place and a count.
 struct Warning {
   std::string file;
   long line = 0;
@@ -32,8 +32,8 @@ struct Warning {
   std::size_t count = 1;
 };
 
-/// Element cards of the deck by kind, those included whose nodes lack and that the model therefore leaves out. A shell
-/// card with fewer than three nodes counts as the four-node form.
+/// Element cards of the deck by kind. Includes cards with missing nodes, which the model leaves out. A shell card with fewer than three
+/// nodes counts as a quad.
 struct ElementCounts {
   std::size_t quad = 0;
   std::size_t tri = 0;
@@ -55,8 +55,8 @@ struct SourceFile {
   FileBytes bytes;
 };
 
-/// What is added to the ids that an include's text gives, to make those of the model: LS-DYNA's *INCLUDE_TRANSFORM, what the includes
-/// around it add counted in.
+/// What is added to the ids in a file's text to get those of the model (LS-DYNA's *INCLUDE_TRANSFORM, Radioss's //SUBMODEL). Includes what
+/// the files around it add.
 struct IdOffsets {
   std::int64_t node = 0;
   std::int64_t element = 0;
@@ -64,21 +64,21 @@ struct IdOffsets {
   std::int64_t material = 0;
   std::int64_t set = 0;
   std::int64_t function = 0;
-  std::int64_t define = 0;  ///< everything under *DEFINE but functions
+  std::int64_t define = 0;  ///< everything under *DEFINE except functions
   std::int64_t other = 0;   ///< sections, hourglass controls, ...
   bool operator==(const IdOffsets&) const = default;
 };
 
-/// Nodes or shells that follow each other in one file in one style and one frame.
+/// Consecutive nodes or shells in one file, of one style and one frame.
 struct CardRun {
   std::uint32_t first = 0;  ///< index of the first node or shell; runs ascend
   std::uint32_t file = 0;   ///< index into files
-  std::uint16_t style = 0;  ///< how their cards are laid out: a number that only the format's own reader and writer know
-  std::uint32_t frame = 0;  ///< index into frames, in which coordinates are given, and into id_offsets
+  std::uint16_t style = 0;  ///< layout of their cards, in a code of the format's own
+  std::uint32_t frame = 0;  ///< index into frames and id_offsets
   bool operator==(const CardRun&) const = default;
 };
 
-/// The greatest ids of a file's nodes and shells, as in the model; 0: it has none.
+/// The largest ids of a file's nodes and shells, as in the model; 0: it has none.
 struct LastIds {
   std::int64_t node = 0;
   std::int64_t shell = 0;
@@ -86,38 +86,38 @@ struct LastIds {
 
 struct OnDisk;  // mesh/deck/data/on_disk.h
 
-/// Everything about the text that editing and saving need.
+/// What editing and saving need to know about the text.
 struct Deck {
   Format format = Format::ls_dyna;
   std::vector<SourceFile> files;       ///< main file first, includes in the order they are read
   std::vector<Frame> frames{Frame()};  ///< [0]: the basic system
-  std::vector<IdOffsets> id_offsets;   ///< of the cards of a frame; none beyond its end
+  std::vector<IdOffsets> id_offsets;   ///< by frame; frames beyond its end have none
   std::vector<CardRun> node_runs;
   std::vector<std::uint64_t> node_line;  ///< byte offset in its file of each node's card
   std::vector<CardRun> shell_runs;
   std::vector<std::uint64_t> shell_line;        ///< byte offset in its file of each shell's card
   Hash128 content;                              ///< of all files' bytes and relative names
   std::vector<LastIds> last_ids;                ///< by file
-  std::vector<std::int64_t> left_out_elements;  ///< ids of element cards that the model lacks, ascending: they are taken all the same
-  std::vector<std::uint32_t> held_files;        ///< ascending: those that stand for several places, whose cards must not change
+  std::vector<std::int64_t> left_out_elements;  ///< ids of element cards that aren't in the model, ascending; new elements can't have them
+  std::vector<std::uint32_t> held_files;        ///< files that stand for several places, ascending; their cards must not change
   ElementCounts element_cards;
   std::map<std::string, std::size_t, std::less<>> element_kinds;  ///< cards by the deck's own word: "CQUAD4", "SHELL_THICKNESS", "S4R"
   std::shared_ptr<const References> references;                   ///< cards that name entities; never null after opening
   TimeStepControl time_step;
-  std::optional<LengthUnit> length_unit;  ///< where the deck itself says so
+  std::optional<LengthUnit> length_unit;  ///< nullopt: the deck doesn't give it
   std::vector<Warning> warnings;
   std::vector<std::string> missing_files;  ///< includes that weren't found, as written
-  std::shared_ptr<OnDisk> on_disk;         ///< what saving in place has left on disk; never null after opening
+  std::shared_ptr<OnDisk> on_disk;         ///< never null after opening
 
   bool is_held(std::uint32_t file) const { return std::binary_search(held_files.begin(), held_files.end(), file); }
   const CardRun& run_of(NodeIndex node) const;
   const CardRun& run_of(ShellIndex shell) const;
   const SourceFile& file_of(NodeIndex node) const { return files[run_of(node).file]; }
-  /// What its cards' ids lack to those of the model.
+  /// What is added to the ids on its cards to get those of the model.
   IdOffsets offsets_of(const CardRun& run) const { return run.frame < id_offsets.size() ? id_offsets[run.frame] : IdOffsets(); }
 };
 
-/// Files that are read in the place of others: by canonical name.
+/// Files that are read in place of others, by the others' canonical_name.
 using StandIns = std::map<std::string, std::filesystem::path>;
 
 }  // namespace prismesh::mesh::deck

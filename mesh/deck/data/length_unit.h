@@ -1,4 +1,4 @@
-// A guess at the unit of a deck's lengths.
+// Guesses the unit of a deck's lengths.
 #pragma once
 
 #include "base/units.h"
@@ -6,7 +6,7 @@
 
 namespace prismesh::mesh::deck {
 
-/// Guesses from densities and the median edge.
+/// Guesses from the parts' densities and the median edge length.
 LengthUnit guess_length_unit(const Model& model);
 
 }  // namespace prismesh::mesh::deck

@@ -1,4 +1,4 @@
-// What is known of a deck's files on disk, kept up to date when they are saved over.
+// The state of a deck's files on disk. Saving in place updates it.
 #pragma once
 
 #include <mutex>
@@ -9,12 +9,12 @@
 
 namespace prismesh::mesh::deck {
 
-/// Shared by all who hold the deck; locked while it is saved.
+/// Shared by all copies of the deck; locked during a save.
 struct OnDisk {
   struct File {
     FileIdentity identity;
     Hash128 content;
-    bool as_read = true;  ///< false: it was saved over, so it isn't what Deck::files holds any more
+    bool as_read = true;  ///< false: it was overwritten by a save, so Deck::files holds older content
   };
   std::mutex mutex;
   std::vector<File> files;  ///< as Deck::files

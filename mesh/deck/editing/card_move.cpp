@@ -16,7 +16,7 @@ std::optional<CardMove> in_card(const Deck& deck, const CardWriter& writer, cons
                                 const Vec3& to) {
   const Frame& frame = deck.frames[run.frame];
   if (frame.is_basic()) return CardMove{from, to};
-  const std::optional<Vec3> before = writer.node_coordinates(deck.files[run.file].bytes.text(), offset, run.style);
+  const std::optional<Vec3> before = writer.node_coordinates({deck.files[run.file].bytes.text(), offset, run.style});
   std::optional<Vec3> after;
   if (before) after = to_card(frame, to, *before);
   if (!after || !after->allFinite()) return std::nullopt;

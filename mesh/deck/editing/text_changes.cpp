@@ -139,7 +139,7 @@ class Differ {
   void note_rounded_node(const WrittenCard& card, const CardRun& run, std::size_t offset, NodeIndex node, const std::string& what) {
     if (card.rounded == 0) return;
     note_rounding(card, run, offset, what);
-    if (const std::optional<Vec3> at = writer_->node_coordinates(card.text, 0, run.style))
+    if (const std::optional<Vec3> at = writer_->node_coordinates({card.text, 0, run.style}))
       out_.rounding.nodes.emplace_back(node, to_basic(deck_.frames[run.frame], *at));
   }
 
@@ -166,9 +166,9 @@ class Differ {
       if (held != 0) return refuse_node(std::string(why_held(held)) + "; it can't be moved");
       const std::optional<CardMove> move = in_card(deck_, *writer_, run, offset, original_.position(node), model_.position(node));
       if (!move) return refuse_node(kFlattened);
-      const std::size_t end = writer_->node_end(text, offset, run.style);
+      const std::size_t end = writer_->node_end({text, offset, run.style});
       const std::string_view old = text.substr(offset, end - offset);
-      WrittenCard card = writer_->move_node(text, offset, run.style, move->from, move->to);
+      WrittenCard card = writer_->move_node({text, offset, run.style}, move->from, move->to);
       if (card.by_parameter) return refuse_node(by_parameter(old) + "; it can't be moved");
       leave_equal_coordinates(card, run, offset, *move);
       note_rounded_node(card, run, offset, node, node_name(node));
@@ -181,13 +181,13 @@ class Differ {
 
   /// Where a coordinate moved by less than its field holds, its old digits stay.
   void leave_equal_coordinates(WrittenCard& card, const CardRun& run, std::size_t offset, const CardMove& move) const {
-    const std::optional<Vec3> was = writer_->node_coordinates(text_of(run), offset, run.style);
-    const std::optional<Vec3> is = writer_->node_coordinates(card.text, 0, run.style);
+    const std::optional<Vec3> was = writer_->node_coordinates({text_of(run), offset, run.style});
+    const std::optional<Vec3> is = writer_->node_coordinates({card.text, 0, run.style});
     if (!was || !is) return;
     Vec3 to = move.to;
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       if ((*was)[axis] == (*is)[axis]) to[axis] = move.from[axis];
-    if (to != move.to) card.text = writer_->move_node(text_of(run), offset, run.style, move.from, to).text;
+    if (to != move.to) card.text = writer_->move_node({text_of(run), offset, run.style}, move.from, to).text;
   }
 
   Result<void> nodes() {
@@ -200,7 +200,7 @@ class Differ {
       const std::size_t offset = deck_.node_line[node.value];
       if (const auto held = static_cast<std::uint8_t>(original_.node_holds[node.value] & ~kHeldByParameter); held != 0)
         return refuse(run, offset, node_name(node) + " " + std::string(why_held(held)) + "; it can't be removed");
-      remove_lines(run, offset, writer_->node_end(text_of(run), offset, run.style));
+      remove_lines(run, offset, writer_->node_end({text_of(run), offset, run.style}));
       ++out_.nodes_removed;
     }
     return {};
@@ -225,23 +225,23 @@ class Differ {
     const Frame& frame = deck_.frames[run.frame];
     Vec3 at = model_.position(node);
     if (!frame.is_basic()) {
-      const std::optional<Vec3> own = to_card(frame, at, writer_->node_coordinates(text, offset, run.style).value_or(Vec3(Vec3::Zero())));
+      const std::optional<Vec3> own = to_card(frame, at, writer_->node_coordinates({text, offset, run.style}).value_or(Vec3(Vec3::Zero())));
       if (!own || !own->allFinite()) return refuse_node(kFlattened);
       at = *own;
     }
     const Result<bool> constrained = takes_constraints(node, home);
     if (!constrained) return fail(constrained.error());
-    Result<WrittenCard> card = *constrained ? writer_->new_constrained_node(text, offset, run.style, id, at)
-                                            : Result<WrittenCard>(writer_->new_node(text, offset, run.style, id, at));
+    Result<WrittenCard> card = *constrained ? writer_->new_constrained_node({text, offset, run.style}, id, at)
+                                            : Result<WrittenCard>(writer_->new_node({text, offset, run.style}, id, at));
     if (!card) return refuse_node(card.error().message);
     if (card->by_parameter) return refuse_node("would have its place given by a parameter");
     note_rounded_node(*card, run, offset, node, "new " + node_name(node));
     ++out_.nodes_added;
-    const auto apart = *constrained ? std::nullopt : writer_->block_without_constraints(text, offset, run.style);
+    const auto apart = *constrained ? std::nullopt : writer_->block_without_constraints({text, offset, run.style});
     if (apart)
       add_to_block(run, offset, *apart, card->text);
     else
-      insert_behind(run, writer_->node_end(text, offset, run.style), std::move(card->text));
+      insert_behind(run, writer_->node_end({text, offset, run.style}), std::move(card->text));
     return {};
   }
 
@@ -249,7 +249,7 @@ class Differ {
   Result<bool> takes_constraints(NodeIndex node, NodeIndex home) const {
     const auto constraints_of = [&](NodeIndex ancestor) {
       const CardRun& run = deck_.run_of(ancestor);
-      return writer_->node_constraints(text_of(run), deck_.node_line[ancestor.value], run.style);
+      return writer_->node_constraints({text_of(run), deck_.node_line[ancestor.value], run.style});
     };
     const std::string wanted = constraints_of(home);
     if (wanted.empty()) return false;
@@ -279,9 +279,9 @@ class Differ {
       const std::size_t offset = deck_.shell_line[shell.value];
       if (deck_.is_held(run.file))
         return refuse(run, offset, shell_name(shell) + " stands in an include that is used twice; it can't be removed");
-      if (!writer_->stands_alone(text_of(run), offset, run.style))
+      if (!writer_->stands_alone({text_of(run), offset, run.style}))
         return refuse(run, offset, shell_name(shell) + " has no card that is its alone; it can't be removed");
-      remove_lines(run, offset, writer_->shell_end(text_of(run), offset, run.style));
+      remove_lines(run, offset, writer_->shell_end({text_of(run), offset, run.style}));
       ++out_.shells_removed;
     }
     return {};
@@ -308,8 +308,8 @@ class Differ {
 
     const bool triangle = model_.shell(shell).is_triangle();
     const bool other_kind =
-        original_.shell(ancestor).is_triangle() != triangle && !writer_->holds_triangles_and_quads(text, offset, run.style);
-    const std::size_t end = writer_->shell_end(text, offset, run.style);
+        original_.shell(ancestor).is_triangle() != triangle && !writer_->holds_triangles_and_quads({text, offset, run.style});
+    const std::size_t end = writer_->shell_end({text, offset, run.style});
     ShellIndex beside = ancestor;
     Result<WrittenCard> card = WrittenCard();
     if (other_kind) {
@@ -318,7 +318,7 @@ class Differ {
       beside = neighbour_of_kind(ancestor, triangle);
       if (beside.valid()) {
         const CardRun& manner = deck_.run_of(beside);
-        card = writer_->shell_in_manner(text, offset, run.style, text_of(manner), deck_.shell_line[beside.value], manner.style, wanted);
+        card = writer_->shell_in_manner({text, offset, run.style}, {text_of(manner), deck_.shell_line[beside.value], manner.style}, wanted);
       }
       if (!beside.valid() || !card) {
         if (const Result<void> written = write_in_new_block(run, offset, wanted, triangle); !written)
@@ -328,7 +328,7 @@ class Differ {
         return {};
       }
     } else {
-      card = writer_->shell(text, offset, run.style, wanted);
+      card = writer_->shell({text, offset, run.style}, wanted);
     }
     if (!card) return refuse_shell(card.error().message);
     if (card->by_parameter) return refuse_shell(by_parameter(text.substr(offset, end - offset)) + "; it can't be changed");
@@ -341,7 +341,7 @@ class Differ {
     }
     if (!added) remove_lines(run, offset, end);
     const CardRun& there = deck_.run_of(beside);
-    insert_behind(there, writer_->shell_end(text_of(there), deck_.shell_line[beside.value], there.style), std::move(card->text));
+    insert_behind(there, writer_->shell_end({text_of(there), deck_.shell_line[beside.value], there.style}), std::move(card->text));
     return {};
   }
 
@@ -360,9 +360,9 @@ class Differ {
   /// The first of its part that has so many corners: in a block of its own, which the others join.
   Result<void> write_in_new_block(const CardRun& run, std::size_t offset, const ShellCard& wanted, bool triangle) {
     const std::string_view text = text_of(run);
-    Result<CardWriter::NewBlock> block = writer_->block_of_kind(text, offset, run.style, triangle);
+    Result<CardWriter::NewBlock> block = writer_->block_of_kind({text, offset, run.style}, triangle);
     if (!block) return fail(block.error());
-    const Result<WrittenCard> card = writer_->shell_in_block(text, offset, run.style, wanted);
+    const Result<WrittenCard> card = writer_->shell_in_block({text, offset, run.style}, wanted);
     if (!card) return fail(card.error());
     if (card->by_parameter) return fail("", "has a field that a parameter gives");
     add_to_block(run, offset, *block, card->text);

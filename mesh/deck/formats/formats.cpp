@@ -13,7 +13,7 @@
 
 namespace prismesh::mesh::deck {
 
-Result<Found> read(Format format, FileSet files, Watch& watch) {
+Result<DeckContents> read(Format format, FileSet files, Watch& watch) {
   switch (format) {
     case Format::abaqus: return abaqus::read(std::move(files), watch);
     case Format::radioss: return radioss::read(std::move(files), watch);

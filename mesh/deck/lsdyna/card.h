@@ -1,4 +1,4 @@
-// A card's fields as numbers.
+// Reads a card's fields as numbers.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace prismesh::mesh::deck::lsdyna {
 
-/// The fields of one line with parameters put in. nullopt: no number, or an unknown parameter.
+/// The fields of one line, with parameters replaced by their values. nullopt: no number, or an unknown parameter.
 class Card : public CardFields {
  public:
   std::optional<double> real(std::size_t field, const Parameters& parameters) const { return parameters.real(text(field)); }

@@ -1,4 +1,4 @@
-// A card cut into fields: fixed columns or commas.
+// Cuts a card into fields: by fixed columns or by commas.
 #pragma once
 
 #include <array>
@@ -16,16 +16,16 @@ namespace prismesh::mesh::deck::lsdyna {
 inline constexpr std::size_t kMaxFields = 24;
 inline constexpr int kWideColumns = 20;
 
-/// The width of a field in a column layout: eight columns become ten with I10, all become twenty when wide.
+/// The width of a field in a layout: with I10 eight columns become ten, in the wide layout all fields have twenty.
 constexpr int field_width(int standard_width, Columns columns) {
   if (columns == Columns::wide) return kWideColumns;
   return columns == Columns::i10 && standard_width == 8 ? 10 : standard_width;
 }
 
-/// The fields of one line. Tabs count as blanks up to the next multiple of eight columns.
+/// The fields of one line. A tab counts as blanks up to the next multiple of eight columns.
 class CardFields {
  public:
-  /// `widths` are the standard ones; with a comma anywhere the line is free format and they don't count.
+  /// `widths`: in the standard layout. A line with a comma is free format and ignores them.
   void cut(std::string_view line, std::span<const int> widths, Columns columns);
   /// Cuts into eight fields of ten columns.
   void cut(std::string_view line, Columns columns);
@@ -40,7 +40,7 @@ class CardFields {
   std::string expanded_;
 };
 
-/// Tabs replaced by the blanks they stand for.
+/// The line with tabs replaced by blanks.
 std::string expand_tabs(std::string_view line);
 
 }  // namespace prismesh::mesh::deck::lsdyna

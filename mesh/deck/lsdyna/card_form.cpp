@@ -1,4 +1,4 @@
-// Which cards follow a keyword of nodes or elements (LS-DYNA keyword manual, volume I, *NODE and *ELEMENT).
+// The cards of keywords with nodes or elements (LS-DYNA keyword manual, volume I, *NODE and *ELEMENT).
 #include <string>
 #include <utility>
 
@@ -7,7 +7,7 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-/// The next word of "THICKNESS_OFFSET", cut off its front.
+/// Removes the first word of "THICKNESS_OFFSET" and returns it.
 std::string_view next_word(std::string_view& options) {
   if (!options.empty() && options.front() == '_') options.remove_prefix(1);
   const std::size_t end = std::min(options.find('_'), options.size());

@@ -11,7 +11,7 @@ namespace {
 
 bool has_option(std::string_view keyword, std::string_view option) { return keyword.find(option) != std::string_view::npos; }
 
-/// Data lines of a block; an encrypted block inside ends it.
+/// The data lines of a block, up to an encrypted part.
 class Cards {
  public:
   Cards(std::string_view text, const Block& block) : lines_(text, block.begin, block.end), columns_(block.columns) {}
@@ -39,12 +39,12 @@ class Cards {
   Columns columns_;
 };
 
-/// `offset`: the include's.
+/// `offset`: of the include's ids.
 std::optional<std::int64_t> id_or_none(std::optional<std::int64_t> id, std::int64_t offset = 0) {
   return id && *id > 0 ? std::optional(*id + offset) : std::nullopt;
 }
 
-/// Cuts one of `options` off the front of the keyword's rest.
+/// Removes one of `options` from the begin of the keyword's rest. False: it begins with none.
 bool cut_option(std::string_view& rest, std::initializer_list<std::string_view> options) {
   for (const std::string_view option : options)
     if (rest.starts_with(option) && (rest.size() == option.size() || rest[option.size()] == '_')) {
@@ -54,7 +54,7 @@ bool cut_option(std::string_view& rest, std::initializer_list<std::string_view> 
   return false;
 }
 
-/// *PART with any of its options; *PART_MOVE, _ANNEAL, _SENSOR and their like are about parts that others define.
+/// Whether it is *PART with any of its options. *PART_MOVE, _ANNEAL, _SENSOR and so on name parts that others define.
 bool defines_parts(std::string_view keyword) {
   if (!keyword.starts_with("PART")) return false;
   keyword.remove_prefix(4);
@@ -62,7 +62,7 @@ bool defines_parts(std::string_view keyword) {
   return keyword.empty();
 }
 
-/// Cards of the options of *PART besides the two that all have; `inertia`: the first of its cards.
+/// The number of cards of a part besides the two that all have. `inertia`: the first card of _INERTIA; null: not read yet.
 int option_cards(std::string_view keyword, const Card* inertia, const Parameters& parameters) {
   int cards = 0;
   if (has_option(keyword, "_INERTIA")) {
@@ -75,7 +75,7 @@ int option_cards(std::string_view keyword, const Card* inertia, const Parameters
   return cards;
 }
 
-/// Cards that hold `values`, eight each; what no solver takes is cut.
+/// The number of cards for `values`, eight each. Limited to what a solver accepts.
 int cards_of_eight(double values) { return static_cast<int>((std::clamp(values, 0.0, 10000.0) + 7) / 8); }
 
 }  // namespace
@@ -128,7 +128,7 @@ void Definitions::read_parts(std::string_view text, const Block& block, const Pa
   }
 }
 
-/// One part a keyword: its layers go on to the end of the block. Those of a thick shell only share out the room between its nodes.
+/// A block has one part; its layers go on to the block's end. Layers of a thick shell give no thickness: its nodes do.
 void Definitions::read_composite_part(std::string_view text, const Block& block, const Parameters& parameters) {
   Cards cards(text, block);
   std::string_view title;
@@ -158,7 +158,7 @@ void Definitions::read_composite_part(std::string_view text, const Block& block,
 void Definitions::read_shell_sections(std::string_view text, const Block& block, const Parameters& parameters) {
   std::string_view options = std::string_view(block.name).substr(std::string_view("SECTION_SHELL").size());
   const bool titled = has_option(options, "_TITLE");
-  // Of each of these options one card follows.
+  // Each of these options adds one card.
   int option_cards = 0;
   while (cut_option(options, {"_EFG", "_THERMAL", "_XFEM", "_MISC"})) ++option_cards;
   cut_option(options, {"_TITLE"});
@@ -180,7 +180,7 @@ void Definitions::read_shell_sections(std::string_view text, const Block& block,
     }
     if (id && sum > 0) section_thickness_.try_emplace(*id, sum / 4 * context_->length);
     if (!repeats || !cards.skip((layered ? cards_of_eight(std::max(points, 1.0)) : 0) + option_cards)) return;
-    // User-defined formulations have a card of counts, then one for each point of integration, then their constants.
+    // User-defined formulations have a card of counts, one card for each integration point, then their constants.
     if (formulation < 101 || formulation > 105) continue;
     if (!cards.next(card)) return;
     const std::int64_t own_points = std::clamp<std::int64_t>(card.integer(0, parameters).value_or(0), 0, 10000);
@@ -222,7 +222,7 @@ void Definitions::read_time_step(std::string_view text, const Block& block, cons
   time_step_.mass_scaled = card.real(4, parameters).value_or(0) * context_->time;
 }
 
-/// The mean over the thickness; nullopt where that of a layer isn't known.
+/// The mean over the thickness; nullopt: the density of a layer isn't known.
 std::optional<double> Definitions::density_of(const std::vector<Layer>& layers) const {
   double mass = 0;
   double thickness = 0;

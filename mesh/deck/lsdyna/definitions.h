@@ -1,4 +1,4 @@
-// Parts, sections, materials and the time step: what a deck says about its elements besides their shape.
+// Reads parts, sections, materials and the time step control (LS-DYNA keyword manual, volumes I and II).
 #pragma once
 
 #include <cstdint>
@@ -21,14 +21,13 @@ struct Material {
   bool limits_time_step = true;
 };
 
-/// Collects definitions block by block; of equal ids the first counts.
+/// Collects definitions block by block. Of equal ids the first counts.
 class Definitions {
  public:
-  /// Reads the block if its keyword is one of those; false: it isn't.
-  /// `context`: of the include it stands in; ids and units are put into those of the model.
+  /// Reads the block if it has definitions; false: it hasn't. `context`: of the include it stands in; ids and units become the model's.
   bool read(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& context);
 
-  /// Defined parts with section and material put in, ascending by id.
+  /// The defined parts, with the values of their sections and materials, ascending by id.
   std::vector<Part> parts() const;
   const TimeStepControl& time_step() const { return time_step_; }
 
@@ -53,8 +52,7 @@ class Definitions {
   TimeStepControl time_step_;
 };
 
-/// Where a material keyword ("MAT_ELASTIC", "MAT_024_TITLE") keeps its constants, as fields of its first card from 1; 0
-/// where it has none.
+/// The fields of a material's constants on its first card, from 1; 0: it has none. By the keyword: "MAT_ELASTIC", "MAT_024_TITLE".
 struct MaterialFields {
   int density = 2;
   int youngs_modulus = 0;

@@ -7,7 +7,7 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-/// In the field's place: leaning left if the old number did, else right.
+/// The number in a field's columns: aligned left if the old number was, else right.
 std::string padded(std::string_view number, std::string_view old, std::size_t width) {
   if (number.size() >= width) return std::string(number);
   const std::size_t first = old.find_first_not_of(' ');
@@ -64,7 +64,7 @@ void FieldLine::set(std::size_t field, std::string_view number) {
     return;
   }
   const std::size_t begin = begin_of(field);
-  // A short line lacks fields that are zero; what follows a number stays where it is.
+  // On a short line the missing fields are zero; text behind the number stays where it is.
   if (line_.size() < begin + width(field)) line_.resize(begin + width(field), ' ');
   const std::string old = line_.substr(begin, width(field));
   line_.replace(begin, width(field), padded(number, old, width(field)));

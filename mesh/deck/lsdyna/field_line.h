@@ -1,4 +1,4 @@
-// A line whose fields are changed in place: columns or commas stay, and so does everything else on it.
+// Changes fields of a line in place. Columns or commas stay, and so does everything else.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace prismesh::mesh::deck::lsdyna {
 
 class FieldLine {
  public:
-  /// `widths` are the standard ones, as Card::cut's. Tabs become blanks.
+  /// `widths`: in the standard layout, as in CardFields::cut. Tabs become blanks.
   FieldLine(std::string_view line, std::span<const int> widths, Columns columns);
 
   bool free_format() const { return commas_; }
@@ -21,7 +21,7 @@ class FieldLine {
   bool is_blank_or_zero(std::size_t field) const;
   bool by_parameter(std::size_t field) const { return text(field).find('&') != std::string_view::npos; }
   std::size_t width(std::size_t field) const;
-  /// Leaning to the side that the old text leant to. A number longer than its columns must not come here.
+  /// Puts a number into a field, aligned as the old text was. In columns it must fit the field.
   void set(std::size_t field, std::string_view number);
   std::string str() const;
 

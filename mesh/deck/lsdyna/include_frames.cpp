@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Affine3d;
 
-/// Transformations by nodes of includes that are transformed by nodes themselves: deeper nobody goes on purpose.
+/// Transformations by nodes of includes that are transformed by nodes themselves. Real decks nest them less deeply.
 constexpr int kMaxLookupDepth = 32;
 constexpr double kFarthest = 1e60;
 constexpr double kFarthestNode = 1e200;
@@ -22,7 +22,7 @@ class Resolver {
  public:
   Resolver(std::span<const IncludeContext> contexts, const Transformations& transformations, std::span<PieceCards> cards,
            Warnings& warnings)
-      : contexts_(contexts), transformations_(transformations), cards_(cards), warnings_(warnings), states_(contexts.size()) {}
+      : contexts_(contexts), transformations_(transformations), cards_(cards), warnings_(warnings), maps_(contexts.size()) {}
 
   std::vector<Frame> run() {
     std::vector<Frame> frames(contexts_.size());
@@ -32,7 +32,7 @@ class Resolver {
       const std::uint32_t parent = contexts_[c].parent;
       Affine3d& map = frames[c].to_basic;
       map = frames[parent].to_basic * own.value_or(Affine3d::Identity());
-      unusable[c] = unusable[parent] || states_[c].incomplete;
+      unusable[c] = unusable[parent] || maps_[c].incomplete;
       if (map.matrix().cwiseAbs().maxCoeff() < kFarthest) continue;
       map = Affine3d::Identity();
       unusable[c] = true;
@@ -49,12 +49,12 @@ class Resolver {
 
  private:
   enum class Progress : std::uint8_t { none, begun, done };
-  struct State {
+  struct IncludeMap {
     Progress progress = Progress::none;
     Affine3d own = Affine3d::Identity();  ///< from the include's system to that of the file that includes it
     bool incomplete = false;
   };
-  struct Place {
+  struct PlacedNode {
     std::uint32_t context;
     Eigen::Vector3d position;
   };
@@ -74,9 +74,9 @@ class Resolver {
       }
   }
 
-  /// nullopt: it is asked for while it is being worked out.
+  /// nullopt: it depends on itself, or too many others stand between.
   std::optional<Affine3d> own_map(std::uint32_t c, int depth) {
-    State& state = states_[c];
+    IncludeMap& state = maps_[c];
     if (state.progress == Progress::done) return state.own;
     if (state.progress == Progress::begun || depth > kMaxLookupDepth) return std::nullopt;
     state.progress = Progress::begun;
@@ -99,23 +99,23 @@ class Resolver {
     return state.own;
   }
 
-  /// Its number is one of the file that includes, or of the whole deck.
+  /// The transformation's number counts in the including file first, then in the whole deck.
   const Transformation* find(const IncludeContext& context) const {
     const Transformation* own = transformations_.find(context.transformation + contexts_[context.parent].offsets.define);
     return own ? own : transformations_.find(context.transformation);
   }
 
-  /// Of a node in the system of the file that includes `c`.
+  /// The position of a node in the system of the file that includes `c`. `so_far`: the steps before the one that names the node.
   std::optional<Eigen::Vector3d> place(std::uint32_t c, std::int64_t id, const Affine3d& so_far, int depth) {
     if (!places_) collect_places();
     const auto at = places_->find(id);
     if (at == places_->end()) return std::nullopt;
     Eigen::Vector3d position = at->second.position;
     std::uint32_t k = at->second.context;
-    // Inner includes first, as far as c itself, whose transformation is known up to here only.
+    // Inner includes first, up to c itself, of whose transformation only `so_far` is known.
     while (k != 0 && k != c) {
       const std::optional<Affine3d> own = own_map(k, depth + 1);
-      if (!own || states_[k].incomplete) return std::nullopt;
+      if (!own || maps_[k].incomplete) return std::nullopt;
       position = *own * position;
       k = contexts_[k].parent;
     }
@@ -132,15 +132,15 @@ class Resolver {
     return position;
   }
 
-  /// Nodes that a transformation is given by are held: moving one would move all that the transformation places.
+  /// Holds the nodes that transformations are given by: moving one would move everything that the transformation places.
   void collect_places() {
     places_.emplace();
-    for (const std::int64_t id : transformations_.nodes()) places_->emplace(id, Place{});
-    std::unordered_map<std::int64_t, Place> found;
+    for (const std::int64_t id : transformations_.nodes()) places_->emplace(id, PlacedNode{});
+    std::unordered_map<std::int64_t, PlacedNode> found;
     for (PieceCards& cards : cards_)
       for (std::size_t n = 0; n < cards.node_id.size(); ++n) {
         if (!places_->contains(cards.node_id[n])) continue;
-        found.emplace(cards.node_id[n], Place{context_of(cards), cards.position[n]});
+        found.emplace(cards.node_id[n], PlacedNode{context_of(cards), cards.position[n]});
         cards.holds.emplace_back(static_cast<std::uint32_t>(n), kHeldByFrame);
       }
     places_ = std::move(found);
@@ -150,8 +150,8 @@ class Resolver {
   const Transformations& transformations_;
   std::span<PieceCards> cards_;
   Warnings& warnings_;
-  std::vector<State> states_;
-  std::optional<std::unordered_map<std::int64_t, Place>> places_;
+  std::vector<IncludeMap> maps_;
+  std::optional<std::unordered_map<std::int64_t, PlacedNode>> places_;
 };
 
 }  // namespace

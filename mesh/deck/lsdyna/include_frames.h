@@ -1,5 +1,5 @@
-// Where the nodes of transformed includes stand: the frames of all includes, worked out when all nodes are read, since transformations may
-// be given by nodes and be defined after the include.
+// Computes the frames of transformed includes. This is possible only when all nodes are read: a transformation may be given by nodes and
+// be defined after the include.
 #pragma once
 
 #include <span>
@@ -13,8 +13,8 @@
 
 namespace prismesh::mesh::deck::lsdyna {
 
-/// One frame a context, in their order. Each piece's nodes are in one frame, whose number is that of the context. Pieces whose frame can't
-/// be worked out are held; where it leads out of the range of numbers they get an error.
+/// One frame for each context, in their order. All nodes of a piece are in one frame; its index is that of the context. Pieces whose frame
+/// can't be computed become held. Pieces that a frame moves too far away get an error.
 std::vector<Frame> include_frames(std::span<const IncludeContext> contexts, const Transformations& transformations,
                                   std::span<PieceCards> cards, Warnings& warnings);
 

@@ -58,7 +58,7 @@ bool IncludeContext::same_as(const IncludeContext& other) const {
 
 namespace {
 
-/// Greater offsets fit no field, and their sums must stay numbers.
+/// Larger offsets fit no field, and their sums must not overflow.
 constexpr std::int64_t kMaxOffset = 1'000'000'000'000'000;
 constexpr double kMaxFactor = 1e30;
 constexpr std::size_t kMaxAffixLength = 256;
@@ -113,16 +113,17 @@ class TransformCards {
 
 }  // namespace
 
-IncludeContext read_transform(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& parent,
-                              std::uint32_t parent_index, std::string& problem) {
-  IncludeContext context = parent;
-  context.parent = parent_index;
+IncludeTransform read_transform(std::string_view text, const Block& block, const Parameters& parameters,
+                                std::span<const IncludeContext> contexts, std::uint32_t parent) {
+  IncludeTransform out{contexts[parent], {}};
+  IncludeContext& context = out.context;
+  context.parent = parent;
   context.own_length = 1;
   context.transformation = 0;
   Lines lines(text, block.begin, block.end);
   Line line;
   Card card;
-  TransformCards cards(parameters, problem);
+  TransformCards cards(parameters, out.problem);
   bool in_name = true;
   for (int number = 0; lines.next(line);) {
     if (in_name) {
@@ -132,13 +133,13 @@ IncludeContext read_transform(std::string_view text, const Block& block, const P
     card.cut(line.text, block.columns);
     cards.read(++number, card, context);
   }
-  // Where factors multiply up beyond all units, positions would be no numbers any more.
+  // Products of factors beyond all units would make positions that aren't finite.
   for (double* const factor : {&context.mass, &context.time, &context.length})
     if (!(*factor > 1 / kMaxFactor && *factor < kMaxFactor)) {
       *factor = 1;
-      problem = "has a factor of units that can't be used";
+      out.problem = "has a factor of units that can't be used";
     }
-  return context;
+  return out;
 }
 
 void IncludeSearch::add_path(const std::string& path) {

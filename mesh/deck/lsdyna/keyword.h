@@ -1,4 +1,4 @@
-// A file cut into keyword blocks. Nothing is interpreted here but where each block starts and how its columns are cut.
+// Cuts a file into keyword blocks. Interprets only where each block starts and how its columns are cut.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace prismesh::mesh::deck::lsdyna {
 
-/// How the columns of a run of cards are cut (a card with commas is free format whatever the layout). CardRun::style of this format.
+/// How the columns of a run of cards are cut. A card with commas is free format in any layout. Part of CardRun::style.
 enum class Columns : std::uint8_t { standard, i10, wide };
 
 /// From a line that starts with '*' to the next one. Offsets are into the file's text.
@@ -25,12 +25,12 @@ struct Block {
 /// Walks over the blocks of a file up to *END.
 class Blocks {
  public:
-  /// `columns` is what holds where no *KEYWORD line says otherwise.
+  /// `columns` apply until a *KEYWORD line gives others.
   Blocks(std::string_view text, Columns columns) : text_(text), columns_(columns) {}
   bool next(Block& block);
-  /// Once next() is false: whether *END was there.
+  /// After next() returned false: whether the file has *END.
   bool ended() const { return ended_; }
-  /// What the *KEYWORD lines so far say.
+  /// As the *KEYWORD lines so far give them.
   Columns columns() const { return columns_; }
 
  private:
@@ -43,13 +43,13 @@ class Blocks {
   bool ended_ = false;
 };
 
-/// A line without its end, and where it starts.
+/// A line without its end, and the offset of its start.
 struct Line {
   std::string_view text;
   std::size_t offset = 0;
 };
 
-/// Walks over the data lines of a range: comments are skipped, line ends (LF or CRLF) cut off. Blank lines are data.
+/// Walks over the data lines of a range. Skips comments and cuts off line ends (LF or CRLF). Blank lines are data.
 class Lines {
  public:
   Lines(std::string_view text, std::size_t begin, std::size_t end) : text_(text.substr(0, end)), at_(begin) {}
@@ -61,10 +61,10 @@ class Lines {
   std::size_t at_;
 };
 
-/// Whether a whole word of `keyword`, between underscores, is `word`.
+/// Whether `keyword` contains `word` as a whole word or words between underscores.
 bool has_word(std::string_view keyword, std::string_view word);
 
-/// What stands before an encrypted block, at the start of a line.
+/// The begin of the lines before and behind an encrypted block.
 inline constexpr std::string_view kEncryptedBegin = "-----BEGIN PGP";
 inline constexpr std::string_view kEncryptedEnd = "-----END PGP";
 

@@ -1,4 +1,4 @@
-// Where common materials keep E, nu and the density (LS-DYNA keyword manual, volume II).
+// Fields of E, nu and the density on the cards of common materials (LS-DYNA keyword manual, volume II).
 #include <algorithm>
 #include <string>
 
@@ -20,7 +20,7 @@ constexpr MaterialFields kModulusOnly = {2, 3, 0, true};
 constexpr MaterialFields kDensityOnly = {2, 0, 0, true};
 constexpr MaterialFields kNoDensity = {0, 0, 0, true};
 
-/// The longest name that a keyword begins with counts before its number; -1: the name alone.
+/// The longest name that a keyword begins with counts, then its number; -1: it has a name only.
 constexpr KnownMaterial kMaterials[] = {
     {"ELASTIC", 1, kIsotropic},
     {"ORTHOTROPIC_ELASTIC", 2, kOrthotropic},
@@ -150,14 +150,14 @@ MaterialFields material_fields(std::string_view keyword) {
   keyword.remove_prefix(std::min<std::size_t>(4, keyword.size()));
   constexpr std::string_view kTitle = "_TITLE";
   if (keyword.size() > kTitle.size() && keyword.substr(keyword.size() - kTitle.size()) == kTitle) keyword.remove_suffix(kTitle.size());
-  // Springs and dampers have a stiffness where the others have a density.
+  // Springs and dampers have a stiffness in the field where others have the density.
   for (const std::string_view other : {"SPRING", "DAMPER", "S0", "S1", "B0", "THERMAL", "T0", "T1"})
     if (keyword.starts_with(other)) return kNoDensity;
   const int number = number_of(keyword.substr(0, keyword.find('_')));
   const KnownMaterial* best = nullptr;
   const KnownMaterial* numbered = nullptr;
   for (const KnownMaterial& known : kMaterials) {
-    // An option may follow the name ("FABRIC_MAP", "PIECEWISE_LINEAR_PLASTICITY_LOG_INTERPOLATION"): the longest name wins.
+    // An option may follow the name ("FABRIC_MAP", "PIECEWISE_LINEAR_PLASTICITY_LOG_INTERPOLATION"): the longest name counts.
     const bool named = keyword.starts_with(known.name) && (keyword.size() == known.name.size() || keyword[known.name.size()] == '_');
     if (named && (!best || best->name.size() < known.name.size())) best = &known;
     if (number >= 0 && number == known.number) numbered = &known;

@@ -32,7 +32,7 @@ class PieceReader {
   }
 
  private:
-  /// Cards of a block are mostly as long as its first. Growing step by step would touch twice the memory.
+  /// Reserves memory, assuming that cards of a block are as long as its first: growing in steps would touch twice the memory.
   void make_room(const Segment& segment) {
     const std::string_view text = text_.substr(segment.begin, segment.end - segment.begin);
     const std::size_t line = std::max(std::min(text.find('\n'), text.size()) + 1, kMinUsualLineLength);
@@ -49,7 +49,7 @@ class PieceReader {
     out_.error = {offset, std::move(message)};
     return false;
   }
-  /// A field that is no number: an unknown parameter only costs its card; anything else is an error.
+  /// For a field that is no number: an unknown parameter leaves its card out; anything else is an error.
   bool refuse(const Line& line, std::string_view field, std::string_view what, std::int64_t id) {
     if (line.text.substr(0, kEncryptedBegin.size()) == kEncryptedBegin) {
       out_.encrypted = true;
@@ -111,8 +111,8 @@ class PieceReader {
     return true;
   }
 
-  /// The integers of an element's card into fields_; those that lack are 0. False: stop (an error is noted) or leave the
-  /// card out (none is).
+  /// Reads the integers of an element's card into fields_; missing ones are 0. False: stop (an error is noted) or leave the card out (none
+  /// is noted).
   bool cut_integers(const Line& line, std::size_t wanted, bool& usable) {
     const auto width = static_cast<std::size_t>(field_width(8, segment_->columns));
     const char* at = line.text.data();
@@ -301,7 +301,7 @@ class PieceReader {
     return true;
   }
 
-  /// Trailing zeros go; a corner left blank means the last one again (the short forms of tetrahedra and wedges).
+  /// Removes trailing zeros. A blank corner repeats the last one (the short forms of tetrahedra and wedges).
   void add_solid(const Line& line, std::int64_t id, std::int64_t part) {
     if (nodes_.size() > 8 && std::all_of(nodes_.begin() + 8, nodes_.end(), [](std::int64_t n) { return n == 0; })) nodes_.resize(8);
     while (nodes_.size() > 10 && nodes_.back() == 0) nodes_.pop_back();
@@ -358,8 +358,7 @@ void shift(std::span<std::int64_t> ids, std::int64_t by) {
     if (id > 0) id += by;
 }
 
-/// Ids as they are in the model, lengths in its unit. What was read stays small enough for the sums: see parse_integer and
-/// read_transform.
+/// Converts ids to those of the model and lengths to its unit. The sums can't overflow: parse_integer and read_transform limit both parts.
 void transform(PieceCards& cards, const IncludeContext& context) {
   const IdOffsets& by = context.offsets;
   shift(cards.node_id, by.node);
@@ -371,14 +370,14 @@ void transform(PieceCards& cards, const IncludeContext& context) {
   for (float& thickness : shells.thickness) thickness = static_cast<float>(thickness * context.length);
   for (std::size_t c = 0; c < cards.elements.size(); ++c) {
     RawElements& elements = cards.elements[c];
-    // A particle is called by its node.
+    // A particle's id is that of its node.
     shift(elements.id, c == static_cast<std::size_t>(ElementClass::sph) ? by.node : by.element);
     shift(elements.part, by.part);
     shift(elements.nodes, by.node);
   }
 }
 
-/// An offset below zero may leave no id.
+/// Finds ids that a negative offset has made 0 or less.
 void refuse_ids_below_one(PieceCards& cards) {
   if (cards.error) return;
   const auto look = [&](const std::vector<std::int64_t>& ids, const std::vector<std::uint64_t>& offsets, const char* what) {

@@ -63,7 +63,7 @@ void Parameters::set(Scope scope, const std::string& key, Value value) {
   if (scope == Scope::local) history_->local_changes.emplace_back(version_, key);
 }
 
-/// "Defined again" is within one scope: a local one hides global ones and those of the files around without a word.
+/// "Defined again" applies within one scope: a local parameter hides global ones and those of the files around without a warning.
 void Parameters::define(const Definition& definition, const std::string& key, Value value) {
   if (key.empty()) return;
   const Value* before = find(history_->tables[static_cast<std::size_t>(definition.scope)], key, version_);
@@ -147,7 +147,7 @@ std::string Parameters::put_into_text(std::string_view text) const {
     std::size_t length = 1;
     if (text.front() == '&') {
       while (length < text.size() && is_name(text[length])) ++length;
-      // The longest name that is known: what follows need not be set apart.
+      // The longest known name counts: the text behind it needs no separator.
       for (std::size_t l = length; l > 1; --l) {
         const Value* value = find_value(text.substr(1, l - 1));
         if (!value || (!value->text && !value->number.whole)) continue;
@@ -242,7 +242,7 @@ void Parameters::read_expressions(std::string_view text, const Block& block, Def
 
 namespace {
 
-/// Recursive descent; `depth` bounds what hostile parentheses can do to the stack.
+/// Recursive descent. `depth` limits the stack that nested parentheses can use.
 class Evaluator {
  public:
   Evaluator(std::string_view text, const Parameters& parameters) : text_(text), parameters_(parameters) {}

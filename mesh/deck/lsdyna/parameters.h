@@ -1,4 +1,4 @@
-// *PARAMETER: names that stand where a number is expected (LS-DYNA keyword manual, volume I).
+// Reads *PARAMETER: names in place of numbers (LS-DYNA keyword manual, volume I).
 #pragma once
 
 #include <array>
@@ -22,45 +22,45 @@ struct ParameterValue {
   bool whole = false;
 };
 
-/// What of a *PARAMETER card can't be used, or isn't.
+/// A definition of a *PARAMETER card that isn't used.
 struct ParameterProblem {
   std::size_t offset = 0;  ///< of the line
   std::string kind;        ///< of the warning: "duplicate-parameter", "bad-parameter"
   std::string message;
 };
 
-/// The parameters known at some place of the deck. A copy stays as it is while the original reads on, and costs no more than
-/// a version number: what was defined when is kept once, for all copies. Only one of them may read on.
+/// The parameters known at some place of the deck. A copy keeps its state while the original reads on. It costs a version number only:
+/// all copies share one history of definitions. Only one of them may read on.
 class Parameters {
  public:
-  /// A field's value: a number, "&name", "-&name" or "<expression>". nullopt: none of them, or an unknown name.
+  /// The value of a field: a number, "&name", "-&name" or "<expression>". nullopt: none of these, or an unknown name.
   std::optional<double> real(std::string_view field) const;
   std::optional<std::int64_t> integer(std::string_view field) const;
-  /// The value of a name, whatever its case; local ones hide global ones.
+  /// The value of a name in any case. Local parameters hide global ones.
   std::optional<ParameterValue> find(std::string_view name) const;
-  /// `name` with "&parameter" replaced where it is a text parameter, or a whole number.
+  /// `text` with each "&name" replaced whose parameter is a text or a whole number.
   std::string put_into_text(std::string_view text) const;
 
-  /// Reads a block named PARAMETER, with any of its options. A name that is defined again keeps its first value, unless that was
-  /// MUTABLE, *PARAMETER_DUPLICATION says otherwise, or a local one hides a global one or one of a file around. What can't be evaluated
-  /// stays undefined.
+  /// Reads a *PARAMETER block with any of its options. A name that is defined again keeps its first value, unless that was MUTABLE,
+  /// *PARAMETER_DUPLICATION says otherwise, or a local one hides a global one or one of a file around. A value that can't be evaluated
+  /// leaves the name undefined.
   void read(std::string_view text, const Block& block, std::vector<ParameterProblem>& problems);
 
-  /// How often a name that isn't defined was asked for, in all copies.
+  /// How often an undefined name was asked for, in all copies.
   std::size_t undefined() const { return history_->undefined; }
 
-  /// Into an included file: what it defines locally goes when it ends.
+  /// Enters an included file. Its local parameters end with it.
   void enter_file() { ++depth_; }
-  /// Back in the including file: its own local parameters count again, the global ones stay as they are.
+  /// Returns to the including file: its local parameters apply again, global ones stay as they are. `before`: from before enter_file.
   void leave_file(const Parameters& before);
 
-  /// Whether it is the same place of the same deck.
+  /// Whether both are the same state of the same deck.
   bool operator==(const Parameters& other) const { return history_ == other.history_ && version_ == other.version_; }
 
  private:
   enum class Scope : std::uint8_t { global, local };
   struct Value {
-    std::uint32_t version = 0;  ///< from which on it holds
+    std::uint32_t version = 0;  ///< the first one it holds in
     bool defined = true;        ///< false: it is undefined again
     bool is_mutable = false;
     int depth = 0;  ///< of the file that defined it
@@ -95,7 +95,7 @@ class Parameters {
 };
 
 /// Evaluates + - * / ** and parentheses over numbers, parameters and the usual functions. A sign binds tighter than **: -3**2 is 9.
-/// nullopt: it can't.
+/// nullopt: the expression can't be evaluated.
 std::optional<ParameterValue> evaluate(std::string_view expression, const Parameters& parameters);
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -10,11 +10,11 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-/// What is read with one walk; nullopt: there is an encrypted block among the mesh, so the walk has to look for them.
-std::optional<Found> read_once(Walk& walk, Watch& watch) {
+/// Reads the deck with one walk. nullopt: an encrypted part stands in the mesh, so the walk must search for them.
+std::optional<DeckContents> read_once(Walk& walk, Watch& watch) {
   walk.run();
   watch.tell(kWalked);
-  Found found;
+  DeckContents found;
   found.format = Format::ls_dyna;
   found.files = std::move(walk.files.files);
   const auto read = [&](std::size_t p) {
@@ -40,10 +40,10 @@ std::optional<Found> read_once(Walk& walk, Watch& watch) {
 
 }  // namespace
 
-Result<Found> read(FileSet files, Watch& watch) {
+Result<DeckContents> read(FileSet files, Watch& watch) {
   const std::filesystem::path path = files.files[0].path;
   Walk walk(std::move(files), false);
-  std::optional<Found> opened = read_once(walk, watch);
+  std::optional<DeckContents> opened = read_once(walk, watch);
   if (opened) return std::move(*opened);
   Walk careful(FileSet::again(std::move(walk.files)), true);
   opened = read_once(careful, watch);

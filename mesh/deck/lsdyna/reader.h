@@ -2,12 +2,13 @@
 #pragma once
 
 #include "base/error.h"
+#include "mesh/deck/assembly/deck_contents.h"
 #include "mesh/deck/assembly/file_set.h"
-#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/assembly/watch.h"
 
 namespace prismesh::mesh::deck::lsdyna {
 
 /// `files` holds the main file. Errors: as read in formats/formats.h.
-Result<Found> read(FileSet files, Watch& watch);
+Result<DeckContents> read(FileSet files, Watch& watch);
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -19,9 +19,9 @@ constexpr std::string_view kInterpolatedBeam = "p p N";
 constexpr std::string_view kWallOptions = "ORTHO++ FINITE+ MOVING+ FORCES+.,G,n4 ID^ TITLE^ DISPLAY";
 constexpr std::string_view kCoupling = "@3:0P1p2G @4:0P1p2G";
 
-/// The longest entry that a keyword begins with, word for word, counts. Written down from the manual's pages.
+/// The longest entry that a keyword begins with, by whole words, counts. Taken from the pages of the manual.
 constexpr ReferenceRule kRules[] = {
-    // Nodes and elements themselves are read elsewhere; here is what else their cards name.
+    // mesh_cards.h reads nodes and elements themselves; these rules cover what else their cards name.
     {"NODE"},
     {"NODE_MERGE_SET", kCards, "N"},
     {"NODE_MERGE_TOLERANCE"},
@@ -437,7 +437,7 @@ const RuleIndex& rule_index() {
   return index;
 }
 
-/// The number at the front of a text, cut off.
+/// Removes the number at the begin of a text and returns it.
 std::uint8_t cut_number(std::string_view& text) {
   unsigned number = 0;
   while (!text.empty() && text.front() >= '0' && text.front() <= '9' && number < 100) {
@@ -447,7 +447,7 @@ std::uint8_t cut_number(std::string_view& text) {
   return static_cast<std::uint8_t>(number);
 }
 
-/// "1.2" from the front of a text, cut off; "2" alone is a field of this card (card 0).
+/// Removes "1.2" from the begin of a text and returns card and field; "2" alone is a field of this card (card 0).
 void cut_place(std::string_view& text, std::uint8_t& card, std::uint8_t& field) {
   card = 0;
   field = cut_number(text);
@@ -479,7 +479,7 @@ void read_condition(std::string_view word, CardRule& card) {
   }
 }
 
-/// Adds what a word says from field `field` on; returns the field after it.
+/// Adds the fields that a word describes, from `field` on. Returns the field behind them.
 std::uint8_t read_field(std::string_view word, std::uint8_t field, CardRule& card) {
   const char first = word.front();
   word.remove_prefix(1);
@@ -528,7 +528,7 @@ CardRule compile_card(std::string_view text, std::string_view separators) {
   return card;
 }
 
-/// Whether `option` begins one of the rule's options; the cards it adds are appended.
+/// Whether `option` is one of the rule's options. Appends the cards that it adds.
 bool add_option(std::string_view known, std::string_view option, std::vector<CardRule>& cards, int& headers) {
   for (std::string_view entry = cut_word(known, " "); !entry.empty(); entry = cut_word(known, " ")) {
     const std::size_t name_end = std::min(entry.find_first_of("^+"), entry.size());
@@ -544,7 +544,7 @@ bool add_option(std::string_view known, std::string_view option, std::vector<Car
   return false;
 }
 
-/// Some options have two words.
+/// Options may have two words.
 bool add_options(std::string_view known, std::string_view options, std::vector<CardRule>& cards, int& headers) {
   if (known == "*") return true;
   while (!options.empty()) {

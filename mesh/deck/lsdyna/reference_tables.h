@@ -1,5 +1,5 @@
-// Which fields of which keyword's cards name something: the tables behind the reverse index, and the language they are written in
-// (LS-DYNA keyword manual, volume I; materials: volume II).
+// The tables of the fields that name nodes, elements, parts and sets, and the language of these tables (LS-DYNA keyword manual, volume I;
+// materials: volume II).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace prismesh::mesh::deck::lsdyna {
 
 enum class RuleKind : std::uint8_t {
   nothing,         ///< names no node, element, part or set
-  cards,           ///< as `cards` says
+  cards,           ///< as `cards` describes
   set,             ///< *SET_NODE, *SET_SHELL, ...
   contact,         ///< *CONTACT with its options in front
   initial,         ///< *INITIAL_STRESS_..., _STRAIN_...: a card with the element, then as many with values as that one says
@@ -22,36 +22,36 @@ enum class RuleKind : std::uint8_t {
 enum class FieldWidths : std::uint8_t { tens, eights, moves };  ///< moves: 8, 16, 16, 16, 8, 8
 
 /// How `cards` is written. Cards are separated by ';', the fields of a card by blanks; a field is
-///   .   names nothing (.5: five of them); what follows the last field named is passed over
-///   n s b h t d m o e p   a node, shell, beam, solid, thick shell, discrete element, mass, other or any element, a part (n8: eight)
-///   N S B H T D P G E     a set of those; G of segments
-///   p-P   a part, or where the number is negative a part set
-///   rn    two fields: from this id to that
-///   #     the card's own id, !   the same, which is a part's
-///   @3:0P1p   what it is tells field 3 of this card: 0 a part set, 1 a part (z: nothing; text: its first letter, T where it has "SET";
+///   .   names nothing (.5: five such fields); fields behind the last one given are skipped
+///   n s b h t d m o e p   names a node, shell, beam, solid, thick shell, discrete element, mass, other or any element, a part (n8: eight)
+///   N S B H T D P G E     names a set of those; G of segments
+///   p-P   names a part, or a part set if the number is negative
+///   rn    two fields: the first and the last id of a range
+///   #     the card's own id; !   the same, of a part
+///   @3:0P1p   field 3 of this card gives the kind: 0 a part set, 1 a part (z: nothing; a text: its first letter, T if it contains "SET";
 ///             @2.3: field 3 of card 2)
 /// A card may begin with
-///   ?1.2=9,10   it is there if field 2 of card 1 has one of these values (?1.2!=0)
-///   %1.2        there are as many as that field says
-///   &1.2        this one and those behind it come as often
-///   *           it goes on to the end of the block
-/// A '^' in front of all cards: a line of title comes first.
+///   ?1.2=9,10   the card exists if field 2 of card 1 has one of these values (?1.2!=0: hasn't)
+///   %1.2        the card is repeated as often as field 2 of card 1 says
+///   &1.2        this card and those behind it, together, are repeated as often
+///   *           the card is repeated to the end of the block
+/// A '^' in front of all cards: a title line comes first.
 struct ReferenceRule {
   std::string_view keyword;
   RuleKind kind = RuleKind::nothing;
   std::string_view cards{};
-  /// What may follow the keyword: "ID^" puts a line before the cards of each entity, "SPC+" a card behind them ("PID+p,p" with fields),
-  /// "COLLECT" changes nothing. "*": anything, and nothing of it matters.
+  /// Options that may follow the keyword: "ID^" adds a line before the cards of each entity, "SPC+" a card behind them ("PID+p,p" with
+  /// fields), "COLLECT" changes nothing. "*": any option, and none changes the cards.
   std::string_view options{};
-  bool once = false;    ///< the keyword has one entity; further cards are of no interest
-  bool partly = false;  ///< what else it says isn't understood
+  bool once = false;    ///< the block has one entity; further cards are skipped
+  bool partly = false;  ///< the block has other cards, which aren't understood
   FieldWidths widths = FieldWidths::tens;
 };
 
-/// The rule of a keyword, options and all; `options` gets what follows the rule's own words. nullptr: nobody understands it.
+/// The rule of a keyword with its options; `options` gets the words behind the rule's own. nullptr: no rule covers it.
 const ReferenceRule* find_reference_rule(std::string_view keyword, std::string_view& options);
 
-/// What a letter of the language means; false: nothing.
+/// What a letter of the language names. False: nothing.
 bool referred_of(char letter, Referred& referred);
 
 /// A field of a card that names something.
@@ -60,7 +60,7 @@ struct FieldRule {
   Kind kind = Kind::id;
   std::uint8_t field = 0;
   Referred referred = Referred::node;
-  Referred negative = Referred::node;  ///< where the number is negative
+  Referred negative = Referred::node;  ///< what a negative number names
   bool has_negative = false;
   std::uint8_t type_card = 0;  ///< from 1; 0: this one
   std::uint8_t type_field = 0;
@@ -73,13 +73,14 @@ struct CardRule {
   Repeat repeat = Repeat::no;
   std::uint8_t count_card = 0;  ///< from 1
   std::uint8_t count_field = 0;
-  std::uint8_t condition_card = 0;  ///< from 1; 0: it is always there
+  std::uint8_t condition_card = 0;  ///< from 1; 0: the card always exists
   std::uint8_t condition_field = 0;
-  bool unless = false;
+  bool unless = false;  ///< the card exists if the field has none of the values
   std::vector<std::int64_t> condition_values;
 };
 
-/// A rule's cards with those of the options; `headers` gets the number of lines before them. False: an option that the rule doesn't know.
+/// Compiles a rule's cards with those of the options. `headers` gets the number of lines before them. False: the rule doesn't know an
+/// option.
 bool compile(const ReferenceRule& rule, std::string_view options, std::vector<CardRule>& cards, int& headers);
 
 }  // namespace prismesh::mesh::deck::lsdyna

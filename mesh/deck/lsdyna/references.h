@@ -1,5 +1,5 @@
-// Every card of a keyword deck that names nodes, elements, parts or sets, besides the elements themselves (LS-DYNA keyword manual,
-// volume I). What a card names is told by tables: see reference_tables.h.
+// Collects what cards name: nodes, elements, parts and sets, except for what elements name themselves (LS-DYNA keyword manual, volume I).
+// Tables tell which field names what (reference_tables.h).
 #pragma once
 
 #include <cstdint>
@@ -16,20 +16,21 @@ namespace prismesh::mesh::deck::lsdyna {
 
 struct ReferenceRule;
 
-/// Notes the blocks while the deck is walked over; reads them afterwards, in parallel.
+/// Notes the blocks during the walk over the deck; reads them afterwards, in parallel.
 class ReferenceReader {
  public:
-  /// Every block of every file, in the order the solver reads them; `parameters` as they stand there, `offsets` of the include it is in.
+  /// Notes a block. To be called for every block of every file, in the solver's order. `parameters`: as known at the block; `offsets`: of
+  /// the include it stands in.
   void read(std::uint32_t file, const Block& block, const Parameters& parameters, const IdOffsets& offsets = {});
-  /// An encrypted block among nodes or elements (those in other blocks are found here).
+  /// Notes an encrypted part [begin, end) of a block of nodes or elements. Those in other blocks are found here.
   void encrypted(std::uint32_t file, const Block& block, std::size_t begin, std::size_t end);
-  /// What the cards name, in the deck's order; not yet finished. Empties this.
+  /// Reads all blocks. Returns what they name, in the deck's order, without References::finish. Empties this.
   References finish(std::span<const SourceFile> files);
 
  private:
-  /// A block to be read; there may be millions.
+  /// A block to read; small, since there may be millions.
   struct Job {
-    const ReferenceRule* rule = nullptr;  ///< null: nobody understands it
+    const ReferenceRule* rule = nullptr;  ///< null: no rule covers it
     std::size_t keyword = 0;              ///< offsets as in Block
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -40,8 +41,8 @@ class ReferenceReader {
     Columns columns = Columns::standard;
     bool encrypted = false;
   };
-  friend class BlockReader;
   bool extends_last(const Job& job) const;
+  void read_job(const Job& job, std::string_view text, References& out) const;
 
   std::vector<Job> jobs_;
   std::vector<Parameters> parameters_;

@@ -42,7 +42,7 @@ class IdList {
   IdList(std::string_view text, const Referrer& set, std::vector<Line> lines)
       : text_(text), columns_(columns_of(set.style)), general_(has_word(set.keyword, "GENERAL")), lines_(std::move(lines)) {}
 
-  /// Takes ids out of their lines; those behind move up. False: one isn't there as a plain number.
+  /// Removes ids from their lines; those behind move up. False: one of them isn't there as a plain number.
   bool take_out(std::span<const std::int64_t> leaving, std::vector<Replacement>& out) {
     std::set<std::int64_t> wanted(leaving.begin(), leaving.end()), found;
     const std::size_t first = general_ ? 1 : 0;
@@ -50,7 +50,7 @@ class IdList {
       FieldLine fields(line.text, kSetWidths, columns_);
       const std::string word = general_ ? upper(fields.text(0)) : std::string();
       if (general_ && !lists_single_ones(word)) {
-        if (!word.starts_with('D')) ++remaining_;  // DNODE, DPART, ... only take away
+        if (!word.starts_with('D')) ++remaining_;  // DNODE, DPART, ... only remove ids
         continue;
       }
       std::vector<std::string> kept;
@@ -81,7 +81,7 @@ class IdList {
  private:
   std::string rewritten(const Line& line, const FieldLine& fields, std::size_t first, const std::vector<std::string>& kept) const {
     FieldLine out(line.text, kSetWidths, columns_);
-    // What is behind the last id: zeros where the line had them, else nothing.
+    // Behind the last id stand zeros where the line had them, else nothing.
     bool zeros = false;
     for (std::size_t f = first; f < 8; ++f) zeros |= fields.text(f) == "0";
     for (std::size_t f = first; f < 8; ++f) {
@@ -104,21 +104,29 @@ class IdList {
   std::size_t remaining_ = 0;
 };
 
-/// Lines of up to eight fields in the manner of `example`: `word` in the first, or none.
-std::string new_lines(const std::vector<std::string>& values, std::size_t fields, std::string_view word, bool zeros,
-                      const FieldLine& example, Columns columns, std::string_view eol) {
+/// How new lines of a set look.
+struct LineFormat {
+  std::size_t fields = 8;
+  std::string_view word;  ///< in the first field; empty: no word
+  bool zeros = false;     ///< unused fields hold zeros
+  bool free_format = false;
+  Columns columns = Columns::standard;
+  std::string_view eol;
+};
+
+std::string new_lines(std::span<const std::string> values, const LineFormat& format) {
   std::string out;
-  const std::size_t first = word.empty() ? 0 : 1;
-  for (std::size_t at = 0; at < values.size(); at += fields - first) {
-    FieldLine line(example.free_format() ? "," : "", kSetWidths, columns);
-    if (!word.empty()) line.set(0, word);
-    for (std::size_t f = first; f < fields; ++f) {
+  const std::size_t first = format.word.empty() ? 0 : 1;
+  for (std::size_t at = 0; at < values.size(); at += format.fields - first) {
+    FieldLine line(format.free_format ? "," : "", kSetWidths, format.columns);
+    if (!format.word.empty()) line.set(0, format.word);
+    for (std::size_t f = first; f < format.fields; ++f) {
       if (at + f - first < values.size())
         line.set(f, values[at + f - first]);
-      else if (zeros)
+      else if (format.zeros)
         line.set(f, "0");
     }
-    out += line.str() + std::string(eol);
+    out += line.str() + std::string(format.eol);
   }
   return out;
 }
@@ -143,7 +151,7 @@ std::vector<std::string> ranges_of(std::span<const std::int64_t> ids, bool with_
   return texts;
 }
 
-/// The field of a "follows" card that names the one it is about.
+/// A keyword with Inheritance::follows, and the field that names the single node or shell.
 struct Followed {
   std::string_view keyword;
   std::size_t field;
@@ -156,8 +164,8 @@ constexpr Followed kFollowedShells[] = {{"LOAD_SHELL_ELEMENT", 0}};
 
 bool is_initial_shell(std::string_view keyword) { return keyword == "INITIAL_STRESS_SHELL" || keyword == "INITIAL_STRAIN_SHELL"; }
 
-/// How many lines of values an initial stress or strain has at least: one for each layer at each place in the plane.
-std::int64_t least_lines(const FieldLine& shell) {
+/// The minimum number of lines of values of an initial stress or strain: one for each layer at each integration point in the plane.
+std::int64_t min_lines(const FieldLine& shell) {
   std::int64_t lines = 1;
   for (const std::size_t field : {std::size_t{1}, std::size_t{2}}) {
     std::int64_t count = 0;
@@ -174,7 +182,7 @@ std::optional<std::size_t> followed_field(std::string_view keyword, Referred ref
   return std::nullopt;
 }
 
-/// In which fields a segment's corners stand; nullopt: `keyword` has no segments that can be replaced.
+/// The field of a segment's first corner; nullopt: the line is no segment that can be replaced.
 std::optional<std::size_t> first_corner(const Referrer& set, const FieldLine& line) {
   if (!set.keyword.starts_with("SET_SEGMENT")) return std::nullopt;
   if (!has_word(set.keyword, "GENERAL")) return 0;
@@ -184,90 +192,153 @@ std::optional<std::size_t> first_corner(const Referrer& set, const FieldLine& li
 
 std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
 
+/// How a set's lines say what it holds.
+enum class ListLayout : std::uint8_t {
+  plain,      ///< ids, eight a line
+  column,     ///< an id a line, with attributes
+  generate,   ///< pairs of first and last, four a line
+  increment,  ///< first, last and step
+  general,    ///< a word, then ids
+};
+
+ListLayout layout_of(std::string_view keyword) {
+  if (has_word(keyword, "GENERAL")) return ListLayout::general;
+  if (has_word(keyword, "COLUMN")) return ListLayout::column;
+  if (has_word(keyword, "INCREMENT")) return ListLayout::increment;
+  return has_word(keyword, "GENERATE") ? ListLayout::generate : ListLayout::plain;
+}
+
+/// A set whose lines change.
+struct ListedSet {
+  std::string_view text;  ///< of its file
+  const Referrer& set;
+  ListLayout layout = ListLayout::plain;
+  Columns columns = Columns::standard;
+  std::vector<Line> members;  ///< its data lines; not empty
+};
+
+Result<ListedSet> find_list(std::string_view text, const Referrer& set) {
+  if (!set.keyword.starts_with("SET_")) return fail("", "lists what it is about in a way that this version can't change");
+  if (has_word(set.keyword, "ADD") || has_word(set.keyword, "INTERSECT")) return fail("", "is made of other sets");
+  Result<std::vector<Line>> members = members_of(text, set);
+  if (!members) return fail(members.error());
+  if (members->empty()) return fail("", "has no line after which another could go");
+  return ListedSet{text, set, layout_of(set.keyword), columns_of(set.style), std::move(*members)};
+}
+
+Result<void> take_out(const ListedSet& of, std::span<const std::int64_t> leaving, bool others_join, std::vector<Replacement>& out) {
+  if (of.layout == ListLayout::column) return fail("", "lists its entries with attributes, from which none can be taken out");
+  IdList list(of.text, of.set, of.members);
+  if (!list.take_out(leaving, out)) return fail("", "names what would go by a parameter, or otherwise than as a plain number");
+  if (list.remaining() == 0 && !others_join) return fail("", "would be left empty");
+  return {};
+}
+
+/// Lines for new entries, each with the attributes that all the others have.
+Result<std::string> column_lines(const ListedSet& of, std::span<const std::int64_t> joining, std::string_view eol) {
+  const std::string_view last = of.members.back().text;
+  const FieldLine fields(last, kSetWidths, of.columns);
+  for (std::size_t f = 1; f < 5; ++f)
+    for (const Line& line : of.members)
+      if (FieldLine(line.text, kSetWidths, of.columns).text(f) != fields.text(f))
+        return fail("", "gives its entries different attributes, and it can't be told which a new one has");
+  std::string out;
+  for (const std::int64_t id : joining) {
+    FieldLine line(last, kSetWidths, of.columns);
+    line.set(0, std::to_string(id));
+    out += line.str() + std::string(eol);
+  }
+  return out;
+}
+
+/// Puts values, `whole` of them together, into the free fields at a line's end. Returns how many fit.
+std::size_t fill_up(FieldLine& fields, std::span<const std::string> values, std::size_t whole) {
+  std::size_t used = 8, filled = 0;
+  while (used > 0 && fields.is_blank_or_zero(used - 1)) --used;
+  used += used % whole;
+  while (used + whole <= 8 && filled + whole <= values.size())
+    for (std::size_t i = 0; i < whole; ++i) fields.set(used++, values[filled++]);
+  return filled;
+}
+
+bool has_zeros(const FieldLine& fields) {
+  for (std::size_t f = 0; f < 8; ++f)
+    if (fields.text(f) == "0") return true;
+  return false;
+}
+
+std::string_view general_word(std::string_view keyword) {
+  if (keyword.starts_with("SET_NODE")) return "NODE";
+  return keyword.starts_with("SET_PART") ? "PART" : "ELEM";
+}
+
+/// What joins a list: more in its last line, and lines behind it.
+struct Joining {
+  std::string last_line;
+  std::string new_lines;
+};
+
+/// `last_line`: the text of the set's last line; empty where it is removed, so that nothing can be put into it.
+Result<Joining> join_lines(const ListedSet& of, std::string last_line, std::span<const std::int64_t> ids, std::string_view eol) {
+  const bool removed = last_line.empty();
+  FieldLine fields(removed ? of.members.back().text : last_line, kSetWidths, of.columns);
+  LineFormat format{8, {}, false, fields.free_format(), of.columns, eol};
+  switch (of.layout) {
+    case ListLayout::general: format.word = general_word(of.set.keyword); return Joining{last_line, new_lines(texts_of(ids), format)};
+    case ListLayout::column: {
+      Result<std::string> lines = column_lines(of, ids, eol);
+      if (!lines) return fail(lines.error());
+      return Joining{last_line, std::move(*lines)};
+    }
+    case ListLayout::increment: format.fields = 3; return Joining{last_line, new_lines(ranges_of(ids, true), format)};
+    case ListLayout::generate:
+    case ListLayout::plain: break;
+  }
+  format.zeros = has_zeros(fields);
+  const bool generate = of.layout == ListLayout::generate;
+  const std::vector<std::string> values = generate ? ranges_of(ids, false) : texts_of(ids);
+  const std::size_t filled = removed ? 0 : fill_up(fields, values, generate ? 2 : 1);
+  if (filled > 0) last_line = fields.str();
+  return Joining{std::move(last_line), new_lines(std::span(values).subspan(filled), format)};
+}
+
+Result<void> put_in(const ListedSet& of, std::span<const std::int64_t> joining, std::vector<Replacement>& out) {
+  const Line& last = of.members.back();
+  const auto rewritten = std::find_if(out.begin(), out.end(), [&](const Replacement& r) { return r.offset == last.offset; });
+  const std::string before = rewritten != out.end() ? rewritten->text : std::string(last.text);
+  const std::string_view eol = eol_of(of.text, last.offset);
+  Result<Joining> joined = join_lines(of, before, joining, eol);
+  if (!joined) return fail(joined.error());
+  if (rewritten != out.end())
+    rewritten->text = std::move(joined->last_line);
+  else if (joined->last_line != last.text)
+    out.push_back({last.offset, last.text.size(), std::move(joined->last_line)});
+  std::string& lines = joined->new_lines;
+  if (lines.empty()) return {};
+  const std::size_t newline = of.text.find('\n', last.offset);
+  if (newline == std::string_view::npos) {
+    lines.resize(lines.size() - eol.size());
+    out.push_back({of.text.size(), 0, std::string(eol) + lines});
+  } else {
+    out.push_back({newline + 1, 0, std::move(lines)});
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<Replacement>> change_set(std::string_view text, const Referrer& set, std::span<const std::int64_t> joining,
                                             std::span<const std::int64_t> leaving) {
-  if (!set.keyword.starts_with("SET_")) return fail("", "lists what it is about in a way that this version can't change");
-  const bool generate = has_word(set.keyword, "GENERATE"), increment = has_word(set.keyword, "INCREMENT");
-  const bool general = has_word(set.keyword, "GENERAL"), column = has_word(set.keyword, "COLUMN");
-  if (has_word(set.keyword, "ADD") || has_word(set.keyword, "INTERSECT")) return fail("", "is made of other sets");
-  const Columns columns = columns_of(set.style);
-  const Result<std::vector<Line>> members = members_of(text, set);
-  if (!members) return fail(members.error());
-  if (members->empty()) return fail("", "has no line after which another could go");
+  const Result<ListedSet> list = find_list(text, set);
+  if (!list) return fail(list.error());
   for (const std::int64_t id : joining)
-    if (std::to_string(id).size() > static_cast<std::size_t>(field_width(10, columns)))
+    if (std::to_string(id).size() > static_cast<std::size_t>(field_width(10, list->columns)))
       return fail("", "has fields too narrow for the new ids");
-
   std::vector<Replacement> out;
-  if (!leaving.empty()) {
-    IdList list(text, set, *members);
-    const bool found = column ? false : list.take_out(leaving, out);
-    if (!found)
-      return fail("", column ? "lists its entries with attributes, from which none can be taken out"
-                             : "names what would go by a parameter, or otherwise than as a plain number");
-    if (list.remaining() == 0 && joining.empty()) return fail("", "would be left empty");
-  }
-  if (joining.empty()) return out;
-
-  const Line last = members->back();
-  const auto rewritten = std::find_if(out.begin(), out.end(), [&](const Replacement& r) { return r.offset == last.offset; });
-  const bool gone = rewritten != out.end() && rewritten->text.empty();
-  const std::string last_text = rewritten != out.end() && !gone ? rewritten->text : std::string(last.text);
-  FieldLine fields(last_text, kSetWidths, columns);
-  const std::string_view eol = eol_of(text, last.offset);
-  bool zeros = false;
-  for (std::size_t f = 0; f < 8; ++f) zeros |= fields.text(f) == "0";
-
-  std::vector<std::string> values;
-  std::string more;
-  std::string line_text = last_text;
-  if (general) {
-    const std::string_view word = set.keyword.starts_with("SET_NODE") ? "NODE" : set.keyword.starts_with("SET_PART") ? "PART" : "ELEM";
-    more = new_lines(texts_of(joining), 8, word, false, fields, columns, eol);
-  } else if (column) {
-    for (std::size_t f = 1; f < 5; ++f)
-      for (const Line& line : *members)
-        if (FieldLine(line.text, kSetWidths, columns).text(f) != fields.text(f))
-          return fail("", "gives its entries different attributes, and it can't be told which a new one has");
-    for (const std::int64_t id : joining) {
-      FieldLine line(last.text, kSetWidths, columns);
-      line.set(0, std::to_string(id));
-      more += line.str() + std::string(eol);
-    }
-  } else if (increment) {
-    more = new_lines(ranges_of(joining, true), 3, "", false, fields, columns, eol);
-  } else {
-    values = generate ? ranges_of(joining, false) : texts_of(joining);
-    // The last line is filled up first.
-    std::size_t used = 8;
-    while (used > 0 && fields.is_blank_or_zero(used - 1)) --used;
-    if (generate) used += used % 2;
-    std::size_t filled = 0;
-    const std::size_t whole = generate ? 2 : 1;
-    if (!gone)
-      while (used + whole <= 8 && filled + whole <= values.size())
-        for (std::size_t i = 0; i < whole; ++i) fields.set(used++, values[filled++]);
-    if (filled > 0) line_text = fields.str();
-    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(filled));
-    more = new_lines(values, 8, "", zeros, fields, columns, eol);
-  }
-  if (line_text != last.text && !gone) {
-    if (rewritten != out.end())
-      rewritten->text = line_text;
-    else
-      out.push_back({last.offset, last.text.size(), line_text});
-  }
-  if (!more.empty()) {
-    const std::size_t newline = text.find('\n', last.offset);
-    if (newline == std::string_view::npos) {
-      more.resize(more.size() - eol.size());
-      out.push_back({text.size(), 0, std::string(eol) + more});
-    } else {
-      out.push_back({newline + 1, 0, more});
-    }
-  }
+  if (!leaving.empty())
+    if (Result<void> done = take_out(*list, leaving, !joining.empty(), out); !done) return fail(done.error());
+  if (!joining.empty())
+    if (Result<void> done = put_in(*list, joining, out); !done) return fail(done.error());
   return out;
 }
 
@@ -311,12 +382,12 @@ Inheritance inheritance_of(const Referrer& card, Referred referred) {
   const std::string_view keyword = card.keyword;
   if (followed_field(keyword, referred)) return Inheritance::follows;
   if (keyword.starts_with("DATABASE_") || keyword.starts_with("SENSOR_")) return Inheritance::stays;
-  // What holds, drives or heats a node, gives it another place to be stressed from or takes it out of a set, or loads or stresses a
-  // shell, can't be left with a part of where it was.
+  // A card that constrains, drives or heats a node, gives its initial state or removes it from a set, or that loads or stresses a shell,
+  // must not apply to only a part of where it did.
   if (referred != Referred::node) return Inheritance::forbids;
   for (const std::string_view start : {"BOUNDARY_", "INITIAL_", "LOAD_THERMAL_", "AIRBAG_", "SET_"})
     if (keyword.starts_with(start)) return Inheritance::forbids;
-  // Joints, welds, systems of coordinates, forces at a point.
+  // Joints, welds, coordinate systems, point forces.
   return Inheritance::stays;
 }
 
@@ -328,13 +399,13 @@ Result<std::vector<Replacement>> copy_single(std::string_view text, const Referr
   const std::string_view first = line_at(text, single.card);
   std::size_t end = single.card + first.size();
   if (is_initial_shell(card.keyword)) {
-    // As it is read: the values have points, the line of the next element has whole numbers alone.
+    // As in reading: the values have decimal points, the line of the next element has whole numbers only.
     Lines lines(text, single.card, std::min<std::size_t>(card.end, text.size()));
     Line line;
     lines.next(line);
     std::int64_t found = 0;
     for (; lines.next(line) && line.text.find('.') != std::string_view::npos; ++found) end = line.offset + line.text.size();
-    if (found < least_lines(FieldLine(first, kSetWidths, columns)))
+    if (found < min_lines(FieldLine(first, kSetWidths, columns)))
       return fail("", "has values without a point, which can't be told from the next shell's line");
   }
   FieldLine line(first, kSetWidths, columns);

@@ -1,4 +1,4 @@
-// Writing the cards of shells: *ELEMENT_SHELL with its options.
+// Writes the cards of shells: *ELEMENT_SHELL with its options.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace prismesh::mesh::deck::lsdyna {
 
-/// As CardWriter::shell_end: with the cards of the options.
-std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t style);
+/// As CardWriter::shell_end; includes the cards of the options.
+std::size_t shell_end(const CardRef& card);
 
-/// As CardWriter::shell. Corner thicknesses are mixed by share where they differ; angles (_BETA, those of layers) turn against the first
-/// edge; coordinate systems, offsets and layers stay. Comments between the cards stay with the shell of the same id.
-Result<WrittenCard> write_shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell);
+/// As CardWriter::shell. Corner thicknesses that differ are mixed by ShellCard::share. Angles (_BETA, those of layers) change against the
+/// turn of the first edge. Coordinate systems, offsets and layers stay. Comments between the cards stay with the shell of the same id.
+Result<WrittenCard> write_shell(const CardRef& card, const ShellCard& shell);
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using Kind = TransformStep::Kind;
 
 constexpr std::size_t kMaxSteps = 1000;  ///< thousands of includes may name one transformation
-/// Farther than this no model reaches, and products of such numbers still are numbers.
+/// No model reaches farther, and products of such numbers stay finite.
 constexpr double kMaxTransformed = 1e60;
 
 Kind kind_of(std::string_view word) {
@@ -32,10 +32,10 @@ Kind kind_of(std::string_view word) {
   return Kind::unknown;
 }
 
-/// An id given as a number; -1: no such id can be.
+/// An id that was read as a real number; -1: it can't be an id.
 std::int64_t id_of(double value) { return std::abs(value) < 1e15 ? static_cast<std::int64_t>(value) : -1; }
 
-/// How many of a step's first fields are ids of nodes.
+/// The number of a step's first fields that are node ids.
 std::size_t node_fields(Kind kind) {
   return kind == Kind::translate_along_nodes ? 2 : kind == Kind::rotate_about_nodes ? 3 : kind == Kind::by_nodes ? 6 : 0;
 }
@@ -50,7 +50,7 @@ bool read_numbers(const Card& card, std::size_t first_field, std::size_t count, 
   return readable;
 }
 
-/// Axes whose first leads from a to b, with c in the plane of the first two. nullopt: the three stand in a line.
+/// Axes with the first along a-b and c in the plane of the first two. nullopt: the three points are collinear.
 std::optional<Matrix3d> axes_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d along = b - a;
   const Vector3d normal = along.cross(c - a);
@@ -63,7 +63,7 @@ std::optional<Matrix3d> axes_of(const Vector3d& a, const Vector3d& b, const Vect
 }
 
 Affine3d rotation(const Vector3d& axis, const Vector3d& through, double degrees) {
-  // Right angles turn exactly: grids stay grids.
+  // Multiples of a right angle are exact, so that grids stay regular.
   const double turns = degrees / 90;
   Matrix3d linear;
   const double quarter = std::remainder(turns, 4.0);
@@ -168,7 +168,7 @@ class Composer {
   std::optional<Affine3d> rotated(const TransformStep& step) {
     const auto& a = step.a;
     if (a[3] == 0 && a[4] == 0 && a[5] == 0 && a[6] == 0) {
-      // Without a point and an angle the first two are POINTs; neither an angle nor POINTs is no rotation at all.
+      // Without a point and an angle the first two fields are POINTs; with neither, nothing is rotated.
       if (a[2] == 0 || (a[0] == 0 && a[1] == 0)) return Affine3d::Identity();
       const std::optional<Vector3d> first = point(step, 0);
       const std::optional<Vector3d> second = first ? point(step, 1) : std::nullopt;

@@ -1,4 +1,4 @@
-// *DEFINE_TRANSFORMATION: steps that move an include's nodes, put together to one affine map (LS-DYNA keyword manual, volume I).
+// Reads *DEFINE_TRANSFORMATION and composes its steps, which move an include's nodes, to one affine map (LS-DYNA keyword manual, volume I).
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct TransformStep {
     unknown
   };
   Kind kind = Kind::unknown;
-  std::array<double, 16> a{};  ///< as the card gives them; a matrix by rows. Ids of nodes are those of the model
+  std::array<double, 16> a{};  ///< the card's numbers; a matrix by rows. Node ids are those of the model
   bool readable = true;        ///< false: a field isn't a number, or an unknown parameter
   std::string word;            ///< as the card spells it
 };
@@ -45,13 +45,13 @@ struct Transformation {
   std::vector<TransformStep> steps;
 };
 
-/// By id; of equal ids the first counts.
+/// Transformations by id. Of equal ids the first counts.
 class Transformations {
  public:
-  /// `offsets` are those of the include it stands in.
+  /// Reads a block. `offsets`: of the include it stands in.
   void read(std::string_view text, std::uint32_t file, const Block& block, const Parameters& parameters, const IdOffsets& offsets);
   const Transformation* find(std::int64_t id) const;
-  /// All nodes that any of them names.
+  /// The ids of all nodes that any of them names.
   const std::vector<std::int64_t>& nodes() const { return nodes_; }
 
  private:
@@ -59,16 +59,16 @@ class Transformations {
   std::vector<std::int64_t> nodes_;
 };
 
-/// A node's place in the system that the transformation leads to, given the steps before the one that names it (which count for nodes of
-/// the include itself).
+/// Returns a node's position in the system that the transformation leads to. `so_far`: the steps before the one that names the node, which
+/// apply to nodes of the include itself.
 using NodePlace = std::function<std::optional<Eigen::Vector3d>(std::int64_t id, const Eigen::Affine3d& so_far)>;
 
 struct ComposedTransformation {
   Eigen::Affine3d map = Eigen::Affine3d::Identity();
-  std::string problem;  ///< what couldn't be worked out, as the end of a sentence about the transformation; empty: nothing
+  std::string problem;  ///< the first step that couldn't be computed, as the end of a sentence about the transformation; empty: none
 };
 
-/// The steps one after the other, the first one first. A POINT is moved by all steps before the one that names it, wherever it is defined.
+/// Composes the steps; the first is applied first. A POINT is moved by all steps before the one that names it, wherever it is defined.
 ComposedTransformation compose(const Transformation& transformation, const NodePlace& place_of);
 
 }  // namespace prismesh::mesh::deck::lsdyna

@@ -3,7 +3,7 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
-struct Entry {
+struct UnseenKeyword {
   std::string_view start;
   Unseen what;
 };
@@ -13,8 +13,8 @@ constexpr Unseen kDevices = {"unread-elements", "is kept as it is; the device is
 constexpr Unseen kMoved = {"moved-at-start", "moves nodes when the solver starts; they are shown and edited where their cards put them"};
 constexpr Unseen kMade = {"made-at-start", "makes parts and elements when the solver starts; they aren't shown", true};
 
-/// The first that a keyword starts with counts.
-constexpr Entry kEntries[] = {
+/// The first entry that a keyword starts with counts.
+constexpr UnseenKeyword kEntries[] = {
     {"ELEMENT_SEATBELT_", kDevices},
     {"ELEMENT_", kElements},
     {"IGA_", kElements},
@@ -35,7 +35,7 @@ constexpr Entry kEntries[] = {
 }  // namespace
 
 std::optional<Unseen> unseen(std::string_view keyword) {
-  for (const Entry& entry : kEntries)
+  for (const UnseenKeyword& entry : kEntries)
     if (keyword.substr(0, entry.start.size()) == entry.start) return entry.what;
   return std::nullopt;
 }

@@ -1,4 +1,4 @@
-// Keywords that make, move or change what is shown in ways that aren't read: each is kept word for word, and told.
+// Finds keywords that aren't read and would change what is shown. Their text is kept word for word, and a warning reports them.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@ namespace prismesh::mesh::deck::lsdyna {
 struct Unseen {
   std::string_view kind;     ///< the warning's
   std::string_view message;  ///< goes on after "*KEYWORD "
-  bool counted = false;      ///< how many lines there are matters to the user
+  bool counted = false;      ///< the warning gives the number of lines
 };
 
-/// Of a block that neither the mesh nor the definitions are read from; `keyword` as in Block::name. nullopt: nothing is lost from view.
+/// For a block without mesh or definitions. `keyword`: as Block::name. nullopt: it changes nothing that is shown.
 std::optional<Unseen> unseen(std::string_view keyword);
 
 }  // namespace prismesh::mesh::deck::lsdyna

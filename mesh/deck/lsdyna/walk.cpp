@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxWalks = 4000;  ///< also of contexts, which are looked through for each include
+constexpr std::size_t kMaxWalks = 4000;  ///< also of contexts, which are searched for each include
 constexpr std::size_t kFreeRepeats = std::size_t{64} << 20;
 constexpr std::size_t kMaxRepeats = 16;  ///< times the size of all files
 
@@ -28,16 +28,16 @@ void Walk::run() {
   hold_repeated();
 }
 
-/// Nodes of a file that is used twice, and of what it includes, stand for more than one place.
+/// Holds the nodes of files that are used twice, and of what these include: they stand for more than one place.
 void Walk::hold_repeated() {
   std::vector<const FileUse*> uses;
-  for (const State& state : states_) uses.push_back(&state);
+  for (const FileState& state : states_) uses.push_back(&state);
   const std::vector<bool> held = repeated_files(uses);
   for (Piece& piece : pieces) piece.held = held[piece.file];
 }
 
 void Walk::walk_file(const Visit& visit, Columns columns) {
-  State& state = states_[visit.file];
+  FileState& state = states_[visit.file];
   state.walked.insert(visit.context);
   state.open = true;
   ++walks_;
@@ -54,7 +54,7 @@ void Walk::walk_file(const Visit& visit, Columns columns) {
       warnings.note("undefined-parameter", visit.file, block.keyword,
                     "*" + block.name + " names a parameter that isn't defined; what depends on it stays unknown");
   }
-  // Fragments without *KEYWORD do without *END; a deck that has the one lacks the other when it was cut off.
+  // Fragments without *KEYWORD need no *END. A file with *KEYWORD and no *END may have been cut off.
   if (has_keyword && !blocks.ended())
     warnings.note_each("no-end", visit.file, files.files[visit.file].bytes.text().size(),
                        "the file has *KEYWORD but no *END: it may have been cut off");
@@ -83,13 +83,13 @@ void Walk::read_block(const Visit& visit, const Block& block, Columns columns) {
   }
 }
 
-/// The lines of what isn't shown are counted over all blocks of a keyword.
+/// Counts the lines over all blocks of a keyword in a file.
 void Walk::note_unseen(const Visit& visit, const Block& block, const Unseen& what) {
   if (!what.counted) {
     warnings.note_each(what.kind, visit.file, block.keyword, "*" + block.name + " " + std::string(what.message));
     return;
   }
-  if (states_[visit.file].walked.size() > 1) return;  // told at the first place it is shown at
+  if (states_[visit.file].walked.size() > 1) return;  // reported at the first place it is shown at
   UnseenLines& unseen_lines = unseen_.try_emplace({visit.file, block.name}, UnseenLines{what, block.keyword}).first->second;
   Lines lines(files.files[visit.file].bytes.text(), block.begin, block.end);
   Line line;
@@ -109,7 +109,7 @@ void Walk::add_mesh(const Visit& visit, const Block& block, const CardForm& form
   if (parameter_tables.empty() || !(parameter_tables.back() == parameters_)) parameter_tables.push_back(parameters_);
   states_[file].has_mesh = true;
   Segment segment{form, block.columns, static_cast<std::uint32_t>(parameter_tables.size() - 1), block.begin, block.end, visit.context, {}};
-  // "ELEMENT_SHELL_THICKNESS" is told as "SHELL_THICKNESS".
+  // "ELEMENT_SHELL_THICKNESS" is reported as "SHELL_THICKNESS".
   constexpr std::string_view kElement = "ELEMENT_";
   if (block.name.starts_with(kElement)) segment.word = *words_.insert(block.name.substr(kElement.size())).first;
   const std::string_view text = files.files[file].bytes.text().substr(0, block.end);
@@ -128,7 +128,7 @@ void Walk::add_mesh(const Visit& visit, const Block& block, const CardForm& form
   add_segment(file, segment);
 }
 
-/// Pieces are about equally large: long blocks are cut between lines, short ones put together.
+/// Makes pieces of about equal size: cuts long blocks between lines, and joins short ones.
 void Walk::add_segment(std::uint32_t file, const Segment& segment) {
   const std::string_view text = files.files[file].bytes.text();
   const auto bytes_of = [](const Piece& piece) { return piece.segments.back().end - piece.segments.front().begin; };
@@ -165,13 +165,14 @@ void Walk::include(const Visit& from, const Block& block, Columns columns) {
   }
 }
 
-/// Another place of the same transformation is the same include again, and one that changes nothing is a plain one.
+/// An equal transformation at another place shares its context. One that changes nothing is a plain include.
 void Walk::include_transformed(const Visit& from, const Block& block, Columns columns) {
   const std::string_view text = files.files[from.file].bytes.text();
-  std::string problem;
-  IncludeContext context = read_transform(text, block, parameters_, contexts[from.context], from.context, problem);
-  if (!problem.empty())
-    warnings.note_each("bad-include-transform", from.file, block.keyword, "*" + block.name + " " + problem + "; that is left out");
+  IncludeTransform transform = read_transform(text, block, parameters_, contexts, from.context);
+  if (!transform.problem.empty())
+    warnings.note_each("bad-include-transform", from.file, block.keyword,
+                       "*" + block.name + " " + transform.problem + "; that is left out");
+  IncludeContext& context = transform.context;
   context.file = from.file;
   context.offset = block.keyword;
   std::uint32_t index = from.context;
@@ -190,11 +191,11 @@ void Walk::include_transformed(const Visit& from, const Block& block, Columns co
   for (const IncludeName& name : include_names(text, block, true)) include_one(from, name, columns, index);
 }
 
-/// Files that are named by keywords which aren't read belong to the deck all the same.
+/// Keeps the files of *INCLUDE keywords that aren't read: they belong to the deck too.
 void Walk::keep_unread(const Visit& from, const Block& block) {
   const std::string_view kind = std::string_view(block.name).substr(std::string_view("INCLUDE").size());
   warnings.note_each("unread-include", from.file, block.keyword, "*" + block.name + " isn't read in this version; it is kept as it is");
-  // Of the others only these begin with a file's name.
+  // Only these begin with a file's name.
   if (kind != "_NASTRAN" && kind != "_BINARY" && kind != "_TRIM" && kind != "_AUTO_OFFSET" && !kind.starts_with("_STAMPED")) return;
   for (const IncludeName& name : include_names(files.files[from.file].bytes.text(), block, true)) {
     std::string reason;
@@ -207,7 +208,7 @@ void Walk::keep_unread(const Visit& from, const Block& block) {
   }
 }
 
-/// Shown at several places a file costs several times its size; a few lines of a deck mustn't make gigabytes of it.
+/// A file that is shown at several places costs its size several times. The limits prevent a short deck from taking gigabytes.
 bool Walk::may_walk_again(std::uint32_t file) {
   std::size_t total = 0;
   for (const SourceFile& each : files.files) total += each.bytes.text().size();

@@ -1,5 +1,5 @@
-// The walk over a deck's files in the order the solver reads them: everything but the mesh is read on the way, the mesh is
-// noted as pieces to be read in parallel.
+// Walks over a deck's files in the solver's order. Reads everything but the mesh on the way, and notes the mesh as pieces to be read in
+// parallel.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ namespace prismesh::mesh::deck::lsdyna {
 
 class Walk {
  public:
-  /// `cut_out_encrypted`: look for encrypted blocks among the mesh (that takes a pass over it, and hardly any deck has them).
+  /// `cut_out_encrypted`: search the mesh for encrypted parts. This takes another pass over it, and hardly any deck has them.
   Walk(FileSet found, bool cut_out_encrypted);
   void run();
 
@@ -61,12 +61,12 @@ class Walk {
   Parameters parameters_;
 
   /// By file.
-  struct State : FileUse {
+  struct FileState : FileUse {
     std::set<std::uint32_t> walked;  ///< in which contexts
     bool open = false;               ///< being walked right now
     bool has_mesh = false;
   };
-  std::vector<State> states_;
+  std::vector<FileState> states_;
   struct UnseenLines {
     Unseen what;
     std::size_t offset = 0;  ///< of the first

@@ -47,50 +47,43 @@ namespace {
 
 class Writer : public CardWriter {
  public:
-  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_line(text, offset); }
+  std::size_t node_end(const CardRef& card) const override { return end_of_line(card.text, card.offset); }
 
-  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t style) const override {
-    return lsdyna::shell_end(text, offset, style);
-  }
+  std::size_t shell_end(const CardRef& card) const override { return lsdyna::shell_end(card); }
 
-  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t style) const override {
-    Card card;
-    card.cut(text.substr(offset, end_of_line(text, offset) - offset), kWrittenNodeWidths, columns_of(style));
+  std::optional<Vec3> node_coordinates(const CardRef& card) const override {
+    Card fields;
+    fields.cut(line_of(card), kWrittenNodeWidths, columns_of(card.style));
     const Parameters none;
     Vec3 out;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::optional<double> value = card.real(axis + 1, none);
+      const std::optional<double> value = fields.real(axis + 1, none);
       if (!value) return std::nullopt;
       out[static_cast<Eigen::Index>(axis)] = *value;
     }
     return out;
   }
 
-  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t style, const Vec3& from, const Vec3& to) const override {
-    return rewrite_node_card(text.substr(offset, end_of_line(text, offset) - offset), columns_of(style), from, to);
+  WrittenCard move_node(const CardRef& card, const Vec3& from, const Vec3& to) const override {
+    return rewrite_node_card(line_of(card), columns_of(card.style), from, to);
   }
 
-  WrittenCard new_node(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id, const Vec3& at) const override {
-    return new_card(text, offset, style, id, at, false);
-  }
+  WrittenCard new_node(const CardRef& card, std::int64_t id, const Vec3& at) const override { return new_card(card, id, at, false); }
 
-  /// TC and RC, where they hold something.
-  std::string node_constraints(std::string_view text, std::size_t offset, std::uint16_t style) const override {
-    const FieldLine line(line_of(text, offset), kWrittenNodeWidths, columns_of(style));
+  /// TC and RC, unless both are blank or zero.
+  std::string node_constraints(const CardRef& card) const override {
+    const FieldLine line(line_of(card), kWrittenNodeWidths, columns_of(card.style));
     if (line.is_blank_or_zero(4) && line.is_blank_or_zero(5)) return {};
     return std::string(line.text(4)) + "," + std::string(line.text(5));
   }
 
-  Result<WrittenCard> new_constrained_node(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id,
-                                           const Vec3& at) const override {
-    return new_card(text, offset, style, id, at, true);
+  Result<WrittenCard> new_constrained_node(const CardRef& card, std::int64_t id, const Vec3& at) const override {
+    return new_card(card, id, at, true);
   }
 
-  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const override {
-    return write_shell(text, offset, style, shell);
-  }
+  Result<WrittenCard> shell(const CardRef& card, const ShellCard& shell) const override { return write_shell(card, shell); }
 
-  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return true; }
+  bool holds_triangles_and_quads(const CardRef&) const override { return true; }
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
     return change_set(text, set, ids, {});
@@ -113,32 +106,31 @@ class Writer : public CardWriter {
   }
 
   std::int64_t largest_node_id(std::uint16_t style) const override {
-    std::int64_t most = 1;
-    for (int digit = 0; digit < std::min(18, field_width(8, columns_of(style))); ++digit) most *= 10;
-    return most - 1;
+    std::int64_t power = 1;
+    for (int digit = 0; digit < std::min(18, field_width(8, columns_of(style))); ++digit) power *= 10;
+    return power - 1;
   }
   std::int64_t largest_shell_id(std::uint16_t style) const override { return largest_node_id(style); }
 
  private:
-  static std::string_view line_of(std::string_view text, std::size_t offset) {
-    return text.substr(offset, end_of_line(text, offset) - offset);
+  static std::string_view line_of(const CardRef& card) {
+    return card.text.substr(card.offset, end_of_line(card.text, card.offset) - card.offset);
   }
 
-  /// In the manner of the card at `offset`: its columns or commas, its length, zeros where it has constraints.
-  static WrittenCard new_card(std::string_view text, std::size_t offset, std::uint16_t style, std::int64_t id, const Vec3& at,
-                              bool constrained) {
-    WrittenCard card;
-    FieldLine line(line_of(text, offset), kWrittenNodeWidths, columns_of(style));
+  /// In the format of `example`: its columns or commas and its length. Unless `constrained`, its constraints become zeros.
+  static WrittenCard new_card(const CardRef& card, std::int64_t id, const Vec3& at, bool constrained) {
+    WrittenCard written;
+    FieldLine line(line_of(card), kWrittenNodeWidths, columns_of(card.style));
     line.set(0, std::to_string(id));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t width = line.width(axis + 1);
-      line.set(axis + 1, number_for(at[static_cast<Eigen::Index>(axis)], width, card));
+      line.set(axis + 1, number_for(at[static_cast<Eigen::Index>(axis)], width, written));
     }
     if (!constrained)
       for (const std::size_t field : {std::size_t{4}, std::size_t{5}})
         if (!line.is_blank_or_zero(field)) line.set(field, "0");
-    card.text = line.str();
-    return card;
+    written.text = line.str();
+    return written;
   }
 };
 

@@ -1,4 +1,4 @@
-// Cards of nodes and shells rewritten, everything else about them kept.
+// Writes the cards of nodes and shells, and keeps everything else on them.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace prismesh::mesh::deck::lsdyna {
 
-/// `line` is a node's card without its line end; see CardWriter::move_node.
+/// As CardWriter::move_node. `line`: the node's card, without its line end.
 WrittenCard rewrite_node_card(std::string_view line, Columns columns, const Vec3& from, const Vec3& to);
 
 std::unique_ptr<const CardWriter> card_writer();

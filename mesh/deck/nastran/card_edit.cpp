@@ -8,7 +8,7 @@
 namespace prismesh::mesh::deck::nastran {
 namespace {
 
-/// In the field's place: leaning left if the old text did, else right.
+/// A value in the field's columns: aligned left if the old text was, else right.
 std::string padded(const std::string& value, std::string_view old, std::size_t width, bool left_if_blank) {
   if (value.size() >= width) return value;
   const std::size_t first = old.find_first_not_of(' ');
@@ -25,7 +25,7 @@ std::string_view field_of(std::string_view line, std::size_t slot, Layout layout
   return begin < line.size() ? line.substr(begin, width) : std::string_view();
 }
 
-/// Whether the numbers of the line lean left, by the first that fills its field only in part.
+/// Whether the line's numbers are aligned left, judged by the first that is narrower than its field.
 bool leans_left(std::string_view line, Layout layout) {
   for (std::size_t slot = 0; slot < fields_on(layout); ++slot) {
     const std::string_view field = field_of(line, slot, layout);
@@ -43,7 +43,7 @@ std::vector<std::string> tokens_of(std::string_view data) {
     const std::string_view token = data.substr(begin, comma - begin);
     const std::string_view inner = trim(token);
     if (!tokens.empty() && inner.find_first_of(" \t") != std::string_view::npos) {
-      // Blanks separate fields as well; commas do it in what is written.
+      // Blanks separate fields as well; the new text has commas instead.
       for (std::string_view rest = inner; !rest.empty();) {
         const std::size_t gap = std::min(rest.find_first_of(" \t"), rest.size());
         tokens.emplace_back(rest.substr(0, gap));
@@ -77,7 +77,7 @@ CardEdit::CardEdit(std::string_view text, std::size_t offset) : line_end_(line_e
     row.comment = !rows_.empty() && kind_of(line.text) == LineKind::comment;
     row.layout = layout_of(line.text);
     if (!row.comment) {
-      // As Card counts them: a large-field entry has eight fields each two lines.
+      // As Card counts them: a large-field entry has eight fields on each two lines.
       if (fields % 8 == 4 && is_large(last) && !is_large(row.layout)) fields += 4;
       row.first_field = fields;
       fields += fields_on(row.layout);
@@ -106,7 +106,7 @@ std::size_t CardEdit::width(std::size_t field) const {
 CardEdit::Row& CardEdit::make_row_of(std::size_t field) {
   for (;;) {
     if (const Row* row = row_of(field)) return rows_[static_cast<std::size_t>(row - rows_.data())];
-    // Behind the last line before the field: of a large-field entry the second line may be left out, and later ones there all the same.
+    // Adds a line behind the last one before the field. A large-field entry may have later lines and no second one.
     const auto last = std::find_if(rows_.rbegin(), rows_.rend(), [&](const Row& row) { return !row.comment && row.first_field <= field; });
     Row row;
     row.layout = last->layout;
@@ -145,7 +145,7 @@ void CardEdit::set_commas(Row& row, std::size_t slot, const std::string& value) 
     token = value;
   else
     token.replace(static_cast<std::size_t>(old.data() - token.data()), old.size(), value);
-  // A field made blank at the end leaves no comma behind.
+  // A field that becomes blank at the end leaves no comma.
   while (value.empty() && tokens.size() > 2 && trim(tokens.back()).empty()) tokens.pop_back();
   row.text.clear();
   for (std::size_t t = 0; t < tokens.size(); ++t) row.text += (t > 0 ? "," : "") + tokens[t];
@@ -187,7 +187,7 @@ std::string write_card(std::string_view name, const std::vector<std::string>& fi
   const bool large = is_large(manner.layout);
   std::string out(name);
   if (large) out += '*';
-  // A large-field entry has its lines in pairs.
+  // A large-field entry has pairs of lines.
   std::size_t lines = std::max<std::size_t>((count + on_line - 1) / on_line, 1);
   if (large && lines % 2 == 1) ++lines;
   for (std::size_t line = 0; line < lines; ++line) {

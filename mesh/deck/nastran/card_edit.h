@@ -1,4 +1,4 @@
-// A card's text with some of its fields changed, everything else as it was; and cards written anew.
+// Changes fields of a card's text and keeps everything else; and writes new cards.
 #pragma once
 
 #include <cstddef>
@@ -10,26 +10,26 @@
 
 namespace prismesh::mesh::deck::nastran {
 
-/// "\n" or "\r\n": as the line at `offset` ends, or the one before it where that is the last.
+/// The line end behind `offset`: "\n" or "\r\n". In a last line without one, that of the line before.
 std::string line_end_at(std::string_view text, std::size_t offset);
 
 class CardEdit {
  public:
-  /// Of the card at `offset` of a file's text.
+  /// Takes the card at `offset` of a file's text.
   CardEdit(std::string_view text, std::size_t offset);
 
-  /// How wide a number may be in that field. In free field eight columns count as well, but what stands there already may be longer.
+  /// The maximum width of a number in a field. In free field format it is eight too, or the length of the text that stands there.
   std::size_t width(std::size_t field) const;
-  /// Puts a text into a data field, leaning to the side that the old one leans to; lines that lack are added.
+  /// Puts a text into a data field, aligned as the old one was. Adds missing lines.
   void set(std::size_t field, const std::string& value);
-  /// The lines that hold none of the fields before `field` go, but for comments.
+  /// Removes the lines without a field before `field`, except for comments.
   void drop_lines_from(std::size_t field);
   std::string text() const;
 
  private:
   struct Row {
     std::string text;
-    std::string end;       ///< its line end; of the last: none
+    std::string end;       ///< its line end; empty: the last row
     bool comment = false;  ///< between two lines of the card
     Layout layout = Layout::small;
     std::size_t first_field = 0;
@@ -43,7 +43,7 @@ class CardEdit {
   std::string line_end_;
 };
 
-/// How a card's numbers stand in their columns.
+/// How a card is laid out.
 struct Manner {
   Layout layout = Layout::small;
   bool leans_left = false;
@@ -51,7 +51,7 @@ struct Manner {
 };
 Manner manner_of(std::string_view text, std::size_t offset);
 
-/// A card of these fields; blanks at the end are left out.
+/// Writes a card of some fields. Blank ones at the end are left out.
 std::string write_card(std::string_view name, const std::vector<std::string>& fields, const Manner& manner);
 
 }  // namespace prismesh::mesh::deck::nastran

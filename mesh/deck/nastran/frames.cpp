@@ -63,25 +63,25 @@ Systems::Systems(std::vector<SystemCard> cards, const std::function<std::optiona
     if (!entries_.empty() && entries_.back().card.id == card.id)
       duplicates_.push_back(card);
     else
-      entries_.push_back({card, State::waiting, {}});
+      entries_.push_back({card, Resolution::waiting, {}});
   }
-  for (Entry& entry : entries_) work_out(entry);
+  for (SystemEntry& entry : entries_) work_out(entry);
 }
 
-Systems::Entry* Systems::entry(std::int64_t id) {
+Systems::SystemEntry* Systems::entry(std::int64_t id) {
   const auto at =
-      std::lower_bound(entries_.begin(), entries_.end(), id, [](const Entry& e, std::int64_t wanted) { return e.card.id < wanted; });
+      std::lower_bound(entries_.begin(), entries_.end(), id, [](const SystemEntry& e, std::int64_t wanted) { return e.card.id < wanted; });
   return at == entries_.end() || at->card.id != id ? nullptr : &*at;
 }
 
 /// Depth first, on a stack of our own: how deep systems stand in each other is for the deck to say.
-void Systems::work_out(Entry& first) {
-  std::vector<Entry*> waiting;
-  if (first.state == State::waiting) waiting.push_back(&first);
+void Systems::work_out(SystemEntry& first) {
+  std::vector<SystemEntry*> waiting;
+  if (first.state == Resolution::waiting) waiting.push_back(&first);
   while (!waiting.empty()) {
-    Entry& top = *waiting.back();
-    if (top.state == State::waiting || top.state == State::open) {
-      top.state = State::open;
+    SystemEntry& top = *waiting.back();
+    if (top.state == Resolution::waiting || top.state == Resolution::open) {
+      top.state = Resolution::open;
       const std::size_t depth = waiting.size();
       settle(top, waiting);
       if (waiting.size() > depth) continue;
@@ -91,29 +91,29 @@ void Systems::work_out(Entry& first) {
 }
 
 /// Whether what the entry stands on is worked out; if not yet, that is put on the stack; if it can't be, `why` says so.
-bool Systems::ready(std::int64_t system, std::vector<Entry*>& waiting, const char*& why) {
+bool Systems::ready(std::int64_t system, std::vector<SystemEntry*>& waiting, const char*& why) {
   if (system == 0) return true;
-  Entry* other = entry(system);
+  SystemEntry* other = entry(system);
   if (!other)
     why = "stands on a coordinate system that isn't defined";
-  else if (other->state == State::open)
+  else if (other->state == Resolution::open)
     why = "stands on itself";
-  else if (other->state == State::bad)
+  else if (other->state == Resolution::bad)
     why = "stands on one that can't be worked out";
-  else if (other->state == State::waiting)
+  else if (other->state == Resolution::waiting)
     waiting.push_back(other);
-  return other && other->state == State::done;
+  return other && other->state == Resolution::done;
 }
 
 std::optional<Vec3> Systems::basic(const Vec3& place, std::int64_t system) const {
   if (system == 0) return place;
-  const Entry* other = entry(system);
-  if (!other || other->state != State::done) return std::nullopt;
+  const SystemEntry* other = entry(system);
+  if (!other || other->state != Resolution::done) return std::nullopt;
   return to_basic(other->frame, place);
 }
 
 /// Works the entry out if it can be; else it is bad, or something is on the stack above it.
-void Systems::settle(Entry& entry, std::vector<Entry*>& waiting) {
+void Systems::settle(SystemEntry& entry, std::vector<SystemEntry*>& waiting) {
   const char* why = nullptr;
   std::array<GridPlace, 3> places;
   for (std::size_t i = 0; i < 3 && !why; ++i) {
@@ -131,18 +131,18 @@ void Systems::settle(Entry& entry, std::vector<Entry*>& waiting) {
     for (std::size_t i = 0; i < 3; ++i) points[i] = *basic(places[i].position, places[i].system);
     if (const std::optional<Frame> frame = frame_through(entry.card.kind, points)) {
       entry.frame = *frame;
-      entry.state = State::done;
+      entry.state = Resolution::done;
       return;
     }
     why = "has its three points on one line";
   }
-  entry.state = State::bad;
+  entry.state = Resolution::bad;
   bad_.push_back({&entry.card, why});
 }
 
 std::optional<Frame> Systems::find(std::int64_t id) const {
-  const Entry* found = entry(id);
-  if (!found || found->state != State::done) return std::nullopt;
+  const SystemEntry* found = entry(id);
+  if (!found || found->state != Resolution::done) return std::nullopt;
   return found->frame;
 }
 

@@ -51,20 +51,20 @@ class Systems {
   const std::vector<SystemCard>& duplicates() const { return duplicates_; }
 
  private:
-  enum class State : std::uint8_t { waiting, open, done, bad };
-  struct Entry {
+  enum class Resolution : std::uint8_t { waiting, open, done, bad };
+  struct SystemEntry {
     SystemCard card;
-    State state = State::waiting;
+    Resolution state = Resolution::waiting;
     Frame frame;
   };
-  Entry* entry(std::int64_t id);
-  const Entry* entry(std::int64_t id) const { return const_cast<Systems*>(this)->entry(id); }
-  void work_out(Entry& first);
-  bool ready(std::int64_t system, std::vector<Entry*>& waiting, const char*& why);
-  void settle(Entry& entry, std::vector<Entry*>& waiting);
+  SystemEntry* entry(std::int64_t id);
+  const SystemEntry* entry(std::int64_t id) const { return const_cast<Systems*>(this)->entry(id); }
+  void work_out(SystemEntry& first);
+  bool ready(std::int64_t system, std::vector<SystemEntry*>& waiting, const char*& why);
+  void settle(SystemEntry& entry, std::vector<SystemEntry*>& waiting);
   std::optional<Vec3> basic(const Vec3& place, std::int64_t system) const;
 
-  std::vector<Entry> entries_;  ///< ascending by id
+  std::vector<SystemEntry> entries_;  ///< ascending by id
   const std::function<std::optional<GridPlace>(std::int64_t)>& grid_;
   std::vector<Bad> bad_;
   std::vector<SystemCard> duplicates_;

@@ -13,7 +13,7 @@ namespace prismesh::mesh::deck::nastran {
 namespace {
 
 /// Elements of the 1970s: what they are made of is no secret, but nobody could check a model of theirs.
-std::optional<Error> refuse_old_elements(const Found& found, std::span<const PieceFacts> facts) {
+std::optional<Error> refuse_old_elements(const DeckContents& found, std::span<const PieceFacts> facts) {
   std::string name;
   std::size_t count = 0, first = 0, kinds = 0;
   std::uint32_t file = 0;
@@ -36,7 +36,7 @@ std::optional<Error> refuse_old_elements(const Found& found, std::span<const Pie
                    "); convert the deck to CQUAD4 and CTRIA3 first"};
 }
 
-void settle_parts(Found& found, std::span<PieceFacts> facts, PartTable& table) {
+void settle_parts(DeckContents& found, std::span<PieceFacts> facts, PartTable& table) {
   for (std::size_t p = 0; p < facts.size(); ++p) {
     for (const Property& property : facts[p].definitions.properties)
       if (table.add(property))
@@ -48,7 +48,7 @@ void settle_parts(Found& found, std::span<PieceFacts> facts, PartTable& table) {
   found.parts = table.parts();
 }
 
-void settle_notices(Found& found, std::span<PieceFacts> facts) {
+void settle_notices(DeckContents& found, std::span<PieceFacts> facts) {
   for (std::size_t p = 0; p < facts.size(); ++p)
     for (Notice& notice : facts[p].notices)
       found.warnings.note(notice.kind, found.cards[p].file, notice.offset, std::move(notice.message), notice.count);
@@ -56,11 +56,11 @@ void settle_notices(Found& found, std::span<PieceFacts> facts) {
 
 }  // namespace
 
-Result<Found> read(FileSet files, Watch& watch) {
+Result<DeckContents> read(FileSet files, Watch& watch) {
   Walk walk(std::move(files));
   walk.run();
   watch.tell(kWalked);
-  Found found;
+  DeckContents found;
   found.format = Format::nastran;
   found.files = std::move(walk.files.files);
   found.missing_files = std::move(walk.files.missing);

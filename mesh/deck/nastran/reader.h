@@ -8,6 +8,6 @@
 namespace prismesh::mesh::deck::nastran {
 
 /// `files` holds the main file. Errors: as read in formats/formats.h.
-Result<Found> read(FileSet files, Watch& watch);
+Result<DeckContents> read(FileSet files, Watch& watch);
 
 }  // namespace prismesh::mesh::deck::nastran

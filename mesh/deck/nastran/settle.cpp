@@ -23,7 +23,7 @@ std::int64_t system_of(const PieceCards& cards, std::uint32_t node, std::int64_t
   return run->frame == kSystemOfGrdset ? grid_default : run->frame;
 }
 
-std::int64_t settle_grid_default(Found& found, std::span<const PieceFacts> facts) {
+std::int64_t settle_grid_default(DeckContents& found, std::span<const PieceFacts> facts) {
   std::int64_t system = 0;
   bool given = false;
   for (std::size_t p = 0; p < facts.size(); ++p)
@@ -38,7 +38,7 @@ std::int64_t settle_grid_default(Found& found, std::span<const PieceFacts> facts
 }
 
 /// Of the grid points that span systems; of equal ids the first counts.
-std::unordered_map<std::int64_t, GridAt> find_spanning(const Found& found, const std::vector<SystemCard>& systems) {
+std::unordered_map<std::int64_t, GridAt> find_spanning(const DeckContents& found, const std::vector<SystemCard>& systems) {
   std::unordered_map<std::int64_t, GridAt> at;
   for (const SystemCard& system : systems)
     if (system.by_grids)
@@ -59,7 +59,7 @@ void hold_run(PieceCards& cards, std::size_t run, std::uint8_t why) {
 
 std::string name_of(const SystemCard& card) { return "coordinate system " + std::to_string(card.id); }
 
-void warn_of_systems(Found& found, const Systems& systems) {
+void warn_of_systems(DeckContents& found, const Systems& systems) {
   for (const Systems::Bad& bad : systems.bad())
     found.warnings.note(
         "bad-coordinate-system", bad.card->file, bad.card->offset,
@@ -72,7 +72,7 @@ void warn_of_systems(Found& found, const Systems& systems) {
 /// Frames by system id, made as runs ask for them.
 class FrameTable {
  public:
-  FrameTable(Found& found, const Systems& systems) : found_(found), systems_(systems) {}
+  FrameTable(DeckContents& found, const Systems& systems) : found_(found), systems_(systems) {}
 
   /// nullopt: the system can't be worked out.
   std::optional<std::uint32_t> index(std::int64_t system) {
@@ -87,14 +87,14 @@ class FrameTable {
   }
 
  private:
-  Found& found_;
+  DeckContents& found_;
   const Systems& systems_;
   std::unordered_map<std::int64_t, std::optional<std::uint32_t>> known_;
 };
 
 }  // namespace
 
-void settle_frames(Found& found, std::span<PieceFacts> facts) {
+void settle_frames(DeckContents& found, std::span<PieceFacts> facts) {
   const std::int64_t grid_default = settle_grid_default(found, facts);
   std::vector<SystemCard> cards;
   for (PieceFacts& some : facts) cards.insert(cards.end(), some.systems.begin(), some.systems.end());
@@ -185,7 +185,7 @@ References without(const ScalarPoints& points, References&& references) {
 
 }  // namespace
 
-void settle_scalar_points(Found& found, std::span<PieceFacts> facts) {
+void settle_scalar_points(DeckContents& found, std::span<PieceFacts> facts) {
   const ScalarPoints points(facts);
   if (points.empty()) return;
   for (PieceFacts& some : facts) some.references = without(points, std::move(some.references));
@@ -204,7 +204,7 @@ void settle_scalar_points(Found& found, std::span<PieceFacts> facts) {
     }
 }
 
-void settle_thickness(Found& found, std::span<const PieceFacts> facts, const PartTable& table) {
+void settle_thickness(DeckContents& found, std::span<const PieceFacts> facts, const PartTable& table) {
   for (std::size_t p = 0; p < facts.size(); ++p)
     for (const ThicknessFields& own : facts[p].thickness) {
       RawShells& shells = found.cards[p].shells;
@@ -224,14 +224,16 @@ void settle_thickness(Found& found, std::span<const PieceFacts> facts, const Par
 namespace {
 
 /// An element that isn't a shell, by where it stands.
-struct Place {
+struct PlacedElement {
   std::size_t piece = 0;
   std::size_t element_class = 0;
   std::size_t element = 0;
   std::size_t offset = 0;
 };
 
-bool before(const Place& a, std::size_t piece, std::size_t offset) { return std::pair(a.piece, a.offset) < std::pair(piece, offset); }
+bool before(const PlacedElement& a, std::size_t piece, std::size_t offset) {
+  return std::pair(a.piece, a.offset) < std::pair(piece, offset);
+}
 
 template <class T>
 void keep_only(std::vector<T>& values, const std::vector<std::uint8_t>& drop) {
@@ -271,23 +273,24 @@ void drop_shells(RawShells& shells, const std::vector<std::uint8_t>& drop) {
 }
 
 /// All elements but shells, in the deck's order within each piece and class.
-std::vector<Place> places_of(const Found& found, std::vector<std::int64_t>& ids) {
-  std::vector<Place> places;
+std::vector<PlacedElement> places_of(const DeckContents& found, std::vector<std::int64_t>& ids) {
+  std::vector<PlacedElement> places;
   for (std::size_t p = 0; p < found.cards.size(); ++p)
     for (std::size_t c = 0; c < found.cards[p].elements.size(); ++c) {
       const RawElements& elements = found.cards[p].elements[c];
       for (std::size_t e = 0; e < elements.id.size(); ++e) places.push_back({p, c, e, elements.offset[e]});
     }
-  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return before(a, b.piece, b.offset); });
-  for (const Place& place : places) ids.push_back(found.cards[place.piece].elements[place.element_class].id[place.element]);
+  std::stable_sort(places.begin(), places.end(),
+                   [](const PlacedElement& a, const PlacedElement& b) { return before(a, b.piece, b.offset); });
+  for (const PlacedElement& place : places) ids.push_back(found.cards[place.piece].elements[place.element_class].id[place.element]);
   return places;
 }
 
 class Drops {
  public:
-  explicit Drops(Found& found) : found_(found), elements_(found.cards.size()), shells_(found.cards.size()) {}
+  explicit Drops(DeckContents& found) : found_(found), elements_(found.cards.size()), shells_(found.cards.size()) {}
 
-  void element(const Place& place) {
+  void element(const PlacedElement& place) {
     const RawElements& elements = found_.cards[place.piece].elements[place.element_class];
     std::vector<std::uint8_t>& drop = elements_[place.piece][place.element_class];
     drop.resize(elements.id.size());
@@ -314,16 +317,16 @@ class Drops {
                          "element " + std::to_string(id) + " is defined again; its first definition counts");
   }
 
-  Found& found_;
+  DeckContents& found_;
   std::vector<std::array<std::vector<std::uint8_t>, kElementClassCount>> elements_;
   std::vector<std::vector<std::uint8_t>> shells_;
 };
 
 }  // namespace
 
-void settle_element_ids(Found& found) {
+void settle_element_ids(DeckContents& found) {
   std::vector<std::int64_t> ids;
-  const std::vector<Place> places = places_of(found, ids);
+  const std::vector<PlacedElement> places = places_of(found, ids);
   if (places.empty()) return;
   const IdIndex index(ids);
   Drops drops(found);
@@ -339,7 +342,7 @@ void settle_element_ids(Found& found) {
   for (std::size_t p = 0; p < shared.size(); ++p)
     for (const std::size_t s : shared[p]) {
       const RawShells& shells = found.cards[p].shells;
-      const Place& other = places[index.find(shells.id[s])];
+      const PlacedElement& other = places[index.find(shells.id[s])];
       if (before(other, p, shells.offset[s]))
         drops.shell(p, s);
       else

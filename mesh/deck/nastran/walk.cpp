@@ -229,7 +229,7 @@ std::size_t Walk::include(std::uint32_t from, const Mark& mark, int depth) {
 /// Nodes of a file that is used twice, and of what it includes, stand for more than one place.
 void Walk::hold_repeated() {
   std::vector<const FileUse*> uses;
-  for (const State& state : states_) uses.push_back(&state);
+  for (const FileState& state : states_) uses.push_back(&state);
   held = repeated_files(uses);
 }
 

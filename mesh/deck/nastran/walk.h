@@ -46,11 +46,11 @@ class Walk {
 
   Section section_ = Section::control;
   /// By file.
-  struct State : FileUse {
+  struct FileState : FileUse {
     bool walked = false;
     bool open = false;
   };
-  std::vector<State> states_;
+  std::vector<FileState> states_;
 };
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -20,7 +20,7 @@ constexpr std::size_t kCoordinates = 2;
 constexpr std::size_t kOutputSystem = 5;
 constexpr std::size_t kSuperelement = 7;
 
-/// Below this an edge counts as not turned (degrees).
+/// An edge that turns by less (degrees) counts as not turned.
 constexpr double kTurned = 1e-9;
 
 Card card_at(std::string_view text, std::size_t offset) {
@@ -41,7 +41,7 @@ std::string number_for(double value, std::size_t width, WrittenCard& card) {
   return text;
 }
 
-/// A card's fields as it has them.
+/// The texts of a card's fields.
 std::vector<std::string> fields_of(const Card& card) {
   std::vector<std::string> fields;
   for (std::size_t f = 0; f < card.size(); ++f) fields.emplace_back(card.text(f));
@@ -50,7 +50,8 @@ std::vector<std::string> fields_of(const Card& card) {
 
 std::int64_t largest_id(std::uint16_t style) { return is_large(static_cast<Layout>(style)) ? 9999999999999999 : 99999999; }
 
-/// Precondition: offset < text.size(). Whether what stands there is a replication, or is replicated: it speaks of more than one card then.
+/// Whether the card at `offset` is a replication or is replicated: its text then makes more than one card. Precondition:
+/// offset < text.size().
 bool is_replicated(std::string_view text, std::size_t offset) {
   if (text[offset] == '=') return true;
   CardLines lines;
@@ -58,7 +59,7 @@ bool is_replicated(std::string_view text, std::size_t offset) {
   return lines.next < text.size() && text[lines.next] == '=';
 }
 
-/// The element with another number of corners that is otherwise the same; empty: there is none.
+/// The element of the same kind with that number of corners; empty: there is none.
 std::string_view name_with(std::string_view name, int corners) {
   if (name == "CQUAD4" || name == "CTRIA3") return corners == 4 ? "CQUAD4" : "CTRIA3";
   if (name == "CQUADR" || name == "CTRIAR") return corners == 4 ? "CQUADR" : "CTRIAR";
@@ -97,7 +98,7 @@ class ShellWriter {
     return false;
   }
 
-  /// An integer names a system, which turns with nothing.
+  /// An integer in the angle's field names a coordinate system, which doesn't follow the edge.
   bool has_angle() const {
     const std::string_view angle = card_.text(from_.angle);
     return from_.angle && (angle.empty() || angle.find('.') != std::string_view::npos);
@@ -147,7 +148,7 @@ class ShellWriter {
     if (turned > 180) turned -= 360;
     if (turned <= -180) turned += 360;
     written.turned = true;
-    // What an angle loses in eight columns is no coordinate's loss: it isn't told with those.
+    // The report of rounding is about coordinates; an angle's isn't part of it.
     WrittenCard rounding;
     std::string text = number_for(turned, width_of(manner.layout), rounding);
     return text;
@@ -174,22 +175,22 @@ class ShellWriter {
   std::string_view name_;
 };
 
-/// How more ids come to a card's list.
+/// How ids are added to a card's list.
 enum class Lengthening : std::uint8_t {
-  never,           ///< what stands behind the last field would mean something else, or the order counts
-  by_cards,        ///< another card of the same set adds to it, on as many lines as it takes
+  never,           ///< they can't be: a field behind the last would mean something else, or the order counts
+  by_cards,        ///< by another card of the same set, with continuations
   by_short_cards,  ///< the same, but the cards have no continuation
-  at_end,          ///< the list goes on over continuations, ranges and all
-  at_plain_end,    ///< the same, but a range takes the whole card
+  at_end,          ///< at the end of the list, over continuations, also behind ranges
+  at_plain_end,    ///< the same, but a card with a range has no other ids
 };
 
 Lengthening lengthening_of(std::string_view name) {
-  struct Kind {
+  struct ListCard {
     std::string_view name;
     Lengthening lengthening;
   };
   using enum Lengthening;
-  static constexpr Kind kKinds[] = {
+  static constexpr ListCard kListCards[] = {
       {"SPC1", by_cards},          {"SPCOFF1", by_cards},     {"ASET1", by_cards},       {"BSET1", by_cards},
       {"CSET1", by_cards},         {"OMIT1", by_cards},       {"QSET1", by_cards},       {"USET1", by_cards},
       {"SEBSET1", by_cards},       {"SECSET1", by_cards},     {"SEQSET1", by_cards},     {"QBDY1", by_cards},
@@ -198,8 +199,8 @@ Lengthening lengthening_of(std::string_view name) {
       {"ACCEL1", at_end},          {"SET1", at_plain_end},    {"BSURF", at_plain_end},   {"TEMPP1", at_plain_end},
       {"TEMPRB", at_plain_end},    {"SEBNDRY", at_plain_end}, {"SEEXCLD", at_plain_end}, {"ELIST", at_plain_end},
   };
-  for (const Kind& kind : kKinds)
-    if (kind.name == name) return kind.lengthening;
+  for (const ListCard& card : kListCards)
+    if (card.name == name) return card.lengthening;
   return never;
 }
 
@@ -211,57 +212,54 @@ bool has_range(const Card& card, std::size_t list) {
 
 class Writer : public CardWriter {
  public:
-  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_card(text, offset); }
-  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_card(text, offset); }
+  std::size_t node_end(const CardRef& card) const override { return end_of_card(card.text, card.offset); }
+  std::size_t shell_end(const CardRef& card) const override { return end_of_card(card.text, card.offset); }
 
-  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const Card card = card_at(text, offset);
+  std::optional<Vec3> node_coordinates(const CardRef& card) const override {
+    const Card fields = card_at(card.text, card.offset);
     Vec3 out;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::optional<double> value = card.real(kCoordinates + axis);
+      const std::optional<double> value = fields.real(kCoordinates + axis);
       if (!value) return std::nullopt;
       out[static_cast<Eigen::Index>(axis)] = *value;
     }
     return out;
   }
 
-  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t, const Vec3& from, const Vec3& to) const override {
-    CardEdit edit(text, offset);
-    WrittenCard card;
+  WrittenCard move_node(const CardRef& card, const Vec3& from, const Vec3& to) const override {
+    CardEdit edit(card.text, card.offset);
+    WrittenCard written;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
-      if (from[a] != to[a]) edit.set(kCoordinates + axis, number_for(to[a], edit.width(kCoordinates + axis), card));
+      if (from[a] != to[a]) edit.set(kCoordinates + axis, number_for(to[a], edit.width(kCoordinates + axis), written));
     }
-    card.text = edit.text();
-    return card;
+    written.text = edit.text();
+    return written;
   }
 
-  WrittenCard new_node(std::string_view text, std::size_t offset, std::uint16_t, std::int64_t id, const Vec3& at) const override {
-    return write_node(text, offset, id, at, false);
-  }
+  WrittenCard new_node(const CardRef& card, std::int64_t id, const Vec3& at) const override { return write_node(card, id, at, false); }
 
-  std::string node_constraints(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    const Card card = card_at(text, offset);
+  std::string node_constraints(const CardRef& card) const override {
+    const Card fields = card_at(card.text, card.offset);
     std::string out;
     for (std::size_t f = kOutputSystem; f <= kSuperelement; ++f)
-      if (!card.blank(f)) out += "," + std::to_string(f) + "=" + upper(card.text(f));
+      if (!fields.blank(f)) out += "," + std::to_string(f) + "=" + upper(fields.text(f));
     return out;
   }
 
-  Result<WrittenCard> new_constrained_node(std::string_view text, std::size_t offset, std::uint16_t, std::int64_t id,
-                                           const Vec3& at) const override {
-    return write_node(text, offset, id, at, true);
+  Result<WrittenCard> new_constrained_node(const CardRef& card, std::int64_t id, const Vec3& at) const override {
+    return write_node(card, id, at, true);
   }
 
-  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t, const ShellCard& shell) const override {
-    return ShellWriter(text, offset, shell).write();
+  Result<WrittenCard> shell(const CardRef& card, const ShellCard& shell) const override {
+    return ShellWriter(card.text, card.offset, shell).write();
   }
 
-  bool stands_alone(std::string_view text, std::size_t offset, std::uint16_t) const override { return !is_replicated(text, offset); }
+  bool stands_alone(const CardRef& card) const override { return !is_replicated(card.text, card.offset); }
 
   /// A CQUAD4 becomes a CTRIA3 by its name.
-  bool holds_triangles_and_quads(std::string_view text, std::size_t offset, std::uint16_t) const override {
-    return !name_with(card_at(text, offset).name(), 3).empty();
+  bool holds_triangles_and_quads(const CardRef& card) const override {
+    return !name_with(card_at(card.text, card.offset).name(), 3).empty();
   }
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
@@ -286,7 +284,7 @@ class Writer : public CardWriter {
                                                std::span<const std::int64_t> leaving) const override {
     if (leaving.empty()) return join(text, set, joining);
     if (is_replicated(text, set.offset)) return fail("", "is made by replication");
-    // The card alone with its line end: first ids are taken out of it, then what is left takes the new ones.
+    // In a copy of the card and its line end: first ids are removed, then the new ones are added.
     const bool of_case = is_case_set(card_at(text, set.offset), set);
     const std::size_t last = of_case ? std::min<std::size_t>(set.end, text.size()) : end_of_card(text, set.offset);
     const std::size_t line_end = std::min(text.find('\n', last), text.size() - 1) + 1;
@@ -369,9 +367,9 @@ class Writer : public CardWriter {
     return std::vector<Replacement>{std::move(replacement)};
   }
 
-  static WrittenCard write_node(std::string_view text, std::size_t offset, std::int64_t id, const Vec3& at, bool constrained) {
-    const Card card = card_at(text, offset);
-    const Manner manner = manner_of(text, offset);
+  static WrittenCard write_node(const CardRef& example, std::int64_t id, const Vec3& at, bool constrained) {
+    const Card card = card_at(example.text, example.offset);
+    const Manner manner = manner_of(example.text, example.offset);
     WrittenCard written;
     std::vector<std::string> fields(8);
     fields[0] = std::to_string(id);
@@ -412,7 +410,7 @@ class Writer : public CardWriter {
     return std::vector<Replacement>{{set.offset, end_of_card(text, set.offset) - set.offset, edit.text()}};
   }
 
-  /// The text of a card without the ids that stand in its list one by one.
+  /// The text of a card without ids that its list names singly.
   static Result<std::string> without_in_card(std::string_view text, const Card& card, std::span<const std::int64_t> leaving) {
     if (lengthening_of(card.name()) == Lengthening::never) return fail("", "has a list that ids can't be taken out of");
     if (card.misplaced() || card.overlong()) return fail("", "has continuations that aren't in order");

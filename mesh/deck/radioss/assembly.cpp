@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/radioss/references.h"
 #include "mesh/deck/radioss/transforms.h"
 #include "mesh/deck/text/number.h"
@@ -47,7 +48,7 @@ Result<void> Collected::sort_blocks() {
     if (const CardForm* form = card_form(keyword.word(0)))
       add_mesh(block, keyword, *form);
     else
-      definitions_.read(block, keyword, around(walk_.files.files));
+      definitions_.read(block, keyword, tables(walk_.files.files));
   }
   return {};
 }
@@ -65,14 +66,14 @@ void Collected::read_unit_system(const Block& block, const Keyword& keyword) {
 
 void Collected::check_submodel_units() {
   for (std::uint32_t c = 1; c < walk_.contexts.size(); ++c)
-    if (!around(walk_.files.files).units(c, 0))
+    if (!tables(walk_.files.files).units(c, 0))
       walk_.warnings.note("undefined-unit", walk_.contexts[c].file, walk_.contexts[c].offset,
                           "a unit system that isn't defined is named; its numbers are taken as they stand");
 }
 
 double Collected::length_unit(const Block& block, std::int64_t system) {
-  const std::optional<Units> own = around(walk_.files.files).units(block.context, system);
-  const std::optional<Units> main = around(walk_.files.files).units(0, 0);
+  const std::optional<Units> own = tables(walk_.files.files).units(block.context, system);
+  const std::optional<Units> main = tables(walk_.files.files).units(0, 0);
   if (!own && system > 0)
     walk_.warnings.note("undefined-unit", block.file, block.offset,
                         "a unit system that isn't defined is named; its numbers are taken as they stand");
@@ -110,14 +111,14 @@ void Collected::add_mesh(const Block& block, const Keyword& keyword, const CardF
   for (const Stretch& stretch : block.more) add(stretch);
 }
 
-/// Pieces are about equally large: long blocks are cut between lines, short ones put together.
+/// Makes pieces of about equal size: cuts long blocks between lines, and joins short ones.
 void Collected::add_segment(std::uint32_t file, const Segment& segment) {
   const std::string_view text = walk_.files.files[file].bytes.text();
   const auto bytes_of = [](const Piece& piece) { return piece.segments.back().end - piece.segments.front().begin; };
   const bool single_lines = !segment.form->id_alone && segment.form->nodes[1] == 0;
   Segment rest = segment;
   while (rest.begin < rest.end) {
-    // Behind an include the text goes on in the file that was there before, further down; a repeated include starts again.
+    // Behind an include the text goes on in the including file, further down; a repeated include starts again at its beginning.
     if (pieces.empty() || pieces.back().file != file || pieces.back().segments.back().end > rest.begin ||
         bytes_of(pieces.back()) >= kPieceBytes)
       pieces.push_back({file, walk_.held[file], {}});
@@ -135,7 +136,7 @@ void Collected::add_segment(std::uint32_t file, const Segment& segment) {
   }
 }
 
-void Collected::complete(Found& found, const std::vector<std::vector<Direction>>& directions) {
+void Collected::complete(DeckContents& found, const std::vector<std::vector<Direction>>& directions) {
   found.parts = definitions_.parts();
   if (const std::optional<Units> main = walk_.contexts[0].units) found.length_unit = known_length_unit(main->length);
   found.frames.resize(places_.size());
@@ -151,17 +152,17 @@ void Collected::complete(Found& found, const std::vector<std::vector<Direction>>
   std::map<std::int64_t, const Block*> groups;
   for (const Block& block : walk_.blocks) {
     const Keyword keyword = keyword_at(found.files[block.file].bytes.text(), block.offset);
-    if (card_form(keyword.word(0)) == nullptr) read_references(block, keyword, around(found.files), found.references);
-    if (keyword.word(0) == "TRANSFORM") transforms.push_back(read_transform(block, keyword, around(found.files)));
+    if (card_form(keyword.word(0)) == nullptr) read_references(block, keyword, tables(found.files), found.references);
+    if (keyword.word(0) == "TRANSFORM") transforms.push_back(read_transform(block, keyword, tables(found.files)));
     if (keyword.word(0) == "GRNOD") groups.try_emplace(keyword.number(0) + walk_.contexts[block.context].added.set, &block);
   }
-  if (!transforms.empty()) Transformer(found, frame_context, around(found.files), groups).run(transforms);
+  if (!transforms.empty()) Transformer(found, frame_context, tables(found.files), groups).run(transforms);
   add_directions(found, directions);
   check_positions(found);
 }
 
-/// Units and transformations may put a node where no number reaches.
-void Collected::check_positions(Found& found) {
+/// Units and transformations may give positions that aren't finite.
+void Collected::check_positions(DeckContents& found) {
   for (PieceCards& cards : found.cards)
     for (std::size_t r = 0; r < cards.node_runs.size() && !cards.error; ++r) {
       const Frame& frame = found.frames[cards.node_runs[r].frame];
@@ -173,7 +174,7 @@ void Collected::check_positions(Found& found) {
     }
 }
 
-void Collected::add_directions(Found& found, const std::vector<std::vector<Direction>>& directions) {
+void Collected::add_directions(DeckContents& found, const std::vector<std::vector<Direction>>& directions) {
   for (std::size_t p = 0; p < directions.size(); ++p) {
     const CardForm* form = nullptr;
     std::uint32_t referrer = 0;

@@ -1,4 +1,4 @@
-// Submodels and unit systems: what the ids and lengths of a text are to those of the model.
+// Submodels and unit systems: how ids and lengths of a text become those of the model.
 // Source: Radioss Reference Guide, "//SUBMODEL", "/BEGIN", "/UNIT".
 #pragma once
 
@@ -23,21 +23,22 @@ struct Units {
   double time = 1;
 };
 
-/// "kg", "mm", "ms", "Mg", "mus", or a number. `base`: the unit's letter, 'g', 'm' or 's'. nullopt: neither.
+/// The factor of "kg", "mm", "ms", "Mg", "mus", or of a number. `base`: the unit's letter, 'g', 'm' or 's'. nullopt: neither a unit nor a
+/// number.
 std::optional<double> unit_factor(std::string_view code, char base);
 
 /// A submodel, or the deck outside of them.
 struct Context {
   std::int64_t id = 0;
-  std::uint32_t parent = 0;  ///< itself: the deck outside
+  std::uint32_t parent = 0;  ///< index; of the deck outside: its own
   std::uint32_t file = 0;
   std::size_t offset = 0;    ///< of its keyword
   std::int64_t version = 0;  ///< 0: that of the context around it
   std::int64_t unit = 0;     ///< of its keyword; 0: none
   std::optional<Units> units;
   bool has_begin = false;
-  int depth = 0;    ///< how many submodels stand around it
-  IdOffsets added;  ///< with those around it
+  int depth = 0;    ///< number of submodels around it
+  IdOffsets added;  ///< includes those of the submodels around it
 
   std::size_t field_width() const { return version > 0 && version < kFirstWideVersion ? kOldField : kField; }
 };

@@ -14,7 +14,7 @@ struct Law {
   std::string_view word;
   MaterialFields fields;
 };
-// Fields are counted one wide: Young's modulus in the first number is field 1, Poisson's ratio in the second is field 3.
+// A number takes two fields: Young's modulus in the first number is field 1, Poisson's ratio in the second is field 3.
 constexpr MaterialFields kIsotropic{2, 1, 3, true};
 constexpr MaterialFields kOrthotropic{2, 1, 5, true};
 constexpr MaterialFields kModulusOnly{2, 1, 0, true};
@@ -61,7 +61,7 @@ constexpr std::array<Law, 40> kLaws = {{
     {"LAW109", "", kIsotropic},
 }};
 
-/// Shell properties and where they keep the thickness: the card, and the field counted from 1.
+/// The card and the field, from 1, of the thickness on shell properties.
 struct ThicknessPlace {
   std::string_view type;
   std::string_view word;
@@ -76,11 +76,11 @@ constexpr std::array<ThicknessPlace, 7> kThicknessPlaces = {{{"TYPE0", "VOID", 1
                                                              {"TYPE16", "SH_FABR", 3, 3},
                                                              {"TYPE19", "PLY", 1, 3}}};
 
-/// A block's title and cards by their numbers.
+/// Reads a block's title, then its cards one after the other.
 class Cards {
  public:
-  Cards(const Block& block, const Surroundings& around)
-      : around_(around), block_(block), lines_(around.files, block), width_(around.contexts[block.context].field_width()) {}
+  Cards(const Block& block, const DeckTables& tables)
+      : tables_(tables), block_(block), lines_(tables.files, block), width_(tables.contexts[block.context].field_width()) {}
 
   std::string title() {
     Line line;
@@ -88,7 +88,7 @@ class Cards {
   }
   bool next() { return lines_.next(line_); }
   std::optional<double> real(int from_one) const {
-    return around_.parameters.real(field(line_.text, width_, static_cast<std::size_t>(from_one - 1), 2), around_.contexts, block_.context);
+    return tables_.parameters.real(field(line_.text, width_, static_cast<std::size_t>(from_one - 1), 2), tables_.contexts, block_.context);
   }
   std::optional<double> positive(int from_one) const {
     const std::optional<double> value = real(from_one);
@@ -96,19 +96,19 @@ class Cards {
   }
   std::optional<std::int64_t> id(int from_one, std::int64_t added) const {
     const std::optional<std::int64_t> value =
-        around_.parameters.integer(field(line_.text, width_, static_cast<std::size_t>(from_one - 1)), around_.contexts, block_.context);
+        tables_.parameters.integer(field(line_.text, width_, static_cast<std::size_t>(from_one - 1)), tables_.contexts, block_.context);
     return value && *value > 0 ? std::optional(*value + added) : std::nullopt;
   }
 
  private:
-  const Surroundings& around_;
+  const DeckTables& tables_;
   const Block& block_;
   BlockLines lines_;
   std::size_t width_;
   Line line_;
 };
 
-/// In other units; those of a deck may be anything.
+/// Converts to other units. nullopt: the result isn't finite; a deck may define any units.
 std::optional<double> converted(std::optional<double> value, double factor) {
   if (value) *value *= factor;
   return value && std::isfinite(*value) ? value : std::nullopt;
@@ -122,7 +122,7 @@ MaterialFields material_fields(std::string_view law) {
   return {0, 0, 0, true};
 }
 
-std::optional<Units> Surroundings::units(std::uint32_t context, std::int64_t system) const {
+std::optional<Units> DeckTables::units(std::uint32_t context, std::int64_t system) const {
   if (system > 0) return systems.find(contexts, context, system);
   for (;;) {
     const Context& at = contexts[context];
@@ -133,22 +133,22 @@ std::optional<Units> Surroundings::units(std::uint32_t context, std::int64_t sys
   }
 }
 
-bool Definitions::read(const Block& block, const Keyword& keyword, const Surroundings& around) {
+bool Definitions::read(const Block& block, const Keyword& keyword, const DeckTables& tables) {
   if (keyword.number(0) <= 0) return false;
   if (keyword.word(0) == "PART")
-    read_part(block, keyword, around);
+    read_part(block, keyword, tables);
   else if (keyword.word(0) == "PROP")
-    read_property(block, keyword, around);
+    read_property(block, keyword, tables);
   else if (keyword.word(0) == "MAT")
-    read_material(block, keyword, around);
+    read_material(block, keyword, tables);
   else
     return false;
   return true;
 }
 
-void Definitions::read_part(const Block& block, const Keyword& keyword, const Surroundings& around) {
-  const IdOffsets& added = around.contexts[block.context].added;
-  Cards cards(block, around);
+void Definitions::read_part(const Block& block, const Keyword& keyword, const DeckTables& tables) {
+  const IdOffsets& added = tables.contexts[block.context].added;
+  Cards cards(block, tables);
   Part part;
   part.id = keyword.number(0) + added.part;
   part.defined = true;
@@ -160,28 +160,28 @@ void Definitions::read_part(const Block& block, const Keyword& keyword, const Su
   parts_.try_emplace(part.id, std::move(part));
 }
 
-void Definitions::read_property(const Block& block, const Keyword& keyword, const Surroundings& around) {
+void Definitions::read_property(const Block& block, const Keyword& keyword, const DeckTables& tables) {
   const auto place = std::find_if(kThicknessPlaces.begin(), kThicknessPlaces.end(), [&](const ThicknessPlace& known) {
     return keyword.word(1) == known.type || keyword.word(1) == known.word;
   });
-  const std::optional<Units> units = around.units(block.context, keyword.number(1));
-  const std::optional<Units> main = around.units(0, 0);
+  const std::optional<Units> units = tables.units(block.context, keyword.number(1));
+  const std::optional<Units> main = tables.units(0, 0);
   if (place == kThicknessPlaces.end() || !units || !main) return;
-  Cards cards(block, around);
+  Cards cards(block, tables);
   cards.title();
   for (int card = 0; card < place->card; ++card)
     if (!cards.next()) return;
   if (const std::optional<double> thickness = converted(cards.positive(place->field), units->length / main->length))
-    thickness_.try_emplace(keyword.number(0) + around.contexts[block.context].added.other, *thickness);
+    thickness_.try_emplace(keyword.number(0) + tables.contexts[block.context].added.other, *thickness);
 }
 
-void Definitions::read_material(const Block& block, const Keyword& keyword, const Surroundings& around) {
+void Definitions::read_material(const Block& block, const Keyword& keyword, const DeckTables& tables) {
   const MaterialFields fields = material_fields(keyword.word(1));
   Material material;
   material.limits_time_step = fields.limits_time_step;
-  const std::optional<Units> units = around.units(block.context, keyword.number(1));
-  const std::optional<Units> main = around.units(0, 0);
-  Cards cards(block, around);
+  const std::optional<Units> units = tables.units(block.context, keyword.number(1));
+  const std::optional<Units> main = tables.units(0, 0);
+  Cards cards(block, tables);
   cards.title();
   if (units && main && cards.next()) {
     const double mass = units->mass / main->mass;
@@ -193,7 +193,7 @@ void Definitions::read_material(const Block& block, const Keyword& keyword, cons
       if (material.youngs_modulus && fields.poissons_ratio > 0) material.poissons_ratio = cards.real(fields.poissons_ratio);
     }
   }
-  materials_.try_emplace(keyword.number(0) + around.contexts[block.context].added.material, material);
+  materials_.try_emplace(keyword.number(0) + tables.contexts[block.context].added.material, material);
 }
 
 std::vector<Part> Definitions::parts() const {

@@ -60,7 +60,7 @@ class PieceReader {
     out_.error = {offset, std::move(message)};
     return false;
   }
-  /// A field that is no number: an unknown parameter only costs its card; anything else is an error.
+  /// For a field that is no number: an unknown parameter leaves its card out; anything else is an error.
   bool refuse(std::size_t offset, std::string_view field, const std::string& what, std::int64_t id) {
     if (field.find('&') != std::string_view::npos) {
       out_.note("undefined-parameter", offset, id);
@@ -69,7 +69,7 @@ class PieceReader {
     return fail_at(offset, "expected " + what + " but found " + quoted(field));
   }
 
-  /// The next line that isn't blank. Tabs count as one blank each.
+  /// Reads the next line that isn't blank. Each tab counts as one blank.
   bool next(std::string_view& line, std::size_t& offset) {
     while (lines_->next(line, offset)) {
       if (line.find('\t') != std::string_view::npos) {
@@ -127,8 +127,8 @@ class PieceReader {
     return context_.parameters->integer(text, context_.contexts, segment_->context);
   }
 
-  /// The first `count` fields of a line into fields_; missing ones are 0. `element`: the line begins with its id. False: stop, an error is
-  /// noted.
+  /// Reads the first `count` fields of a line into fields_; missing ones are 0. `element`: the line begins with its id. False: stop, an
+  /// error is noted.
   bool cut_integers(std::string_view line, std::size_t offset, bool element, std::size_t count, bool& usable) {
     for (std::size_t f = 0; f < count; ++f) {
       const std::string_view text = field(line, width_, f);
@@ -220,7 +220,7 @@ class PieceReader {
 
   void add_element(std::size_t offset, std::int64_t id) {
     const CardForm& form = *segment_->form;
-    // Wedges and pyramids leave corners of the brick out; mid-side nodes may lack.
+    // Wedges and pyramids leave corners of the brick out; mid-side nodes may be missing.
     std::size_t ends = std::min<std::size_t>(form.ends, nodes_.size());
     if (form.element_class == ElementClass::solid && form.ends == 8)
       for (std::size_t i = 4; i < ends; ++i)

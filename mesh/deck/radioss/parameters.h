@@ -1,4 +1,4 @@
-// /PARAMETER: names that stand where a number is expected, as "&name".
+// Reads /PARAMETER: names in place of numbers, as "&name".
 // Source: Radioss Reference Guide, "/PARAMETER".
 #pragma once
 
@@ -17,10 +17,10 @@ namespace prismesh::mesh::deck::radioss {
 
 class Parameters {
  public:
-  /// A block named PARAMETER. False: its value is an expression, which isn't worked out, so the name stays undefined.
+  /// Reads a /PARAMETER block. False: its value is an expression, which isn't evaluated, so the name stays undefined.
   bool read(std::span<const SourceFile> files, const Block& block, const Keyword& keyword);
 
-  /// A field's value: a number, or "&name" as it is known in a context. nullopt: neither.
+  /// The value of a field in a context: a number, or "&name". nullopt: neither, or an unknown name.
   std::optional<double> real(std::string_view field, std::span<const Context> contexts, std::uint32_t context) const;
   std::optional<std::int64_t> integer(std::string_view field, std::span<const Context> contexts, std::uint32_t context) const;
 

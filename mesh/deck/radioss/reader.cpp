@@ -6,13 +6,13 @@
 #include "mesh/deck/radioss/assembly.h"
 
 namespace prismesh::mesh::deck::radioss {
-Result<Found> read(FileSet files, Watch& watch) {
+Result<DeckContents> read(FileSet files, Watch& watch) {
   Walk walk(std::move(files));
   walk.run();
   watch.tell(kWalked);
   Collected collected(walk);
   if (Result<void> sorted = collected.sort_blocks(); !sorted) return fail(sorted.error());
-  Found found;
+  DeckContents found;
   found.format = Format::radioss;
   found.files = std::move(walk.files.files);
   std::vector<std::vector<Direction>> directions(collected.pieces.size());

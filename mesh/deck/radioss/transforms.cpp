@@ -13,11 +13,11 @@ using Eigen::Affine3d;
 using Eigen::Vector3d;
 using Kind = Transform::Kind;
 
-/// Frames and nodes looked at, for all cards together: more is a deck made to waste time.
+/// Limit of the frames and nodes that all cards together visit. No real deck reaches it.
 constexpr std::size_t kMaxWork = std::size_t{1} << 28;
 constexpr int kMaxGroupDepth = 16;
-constexpr double kMinScale = 1e-6;     ///< beyond it, and its inverse, a factor is a mistake
-constexpr double kOrthonormal = 1e-3;  ///< by how much a matrix may miss being a rotation or a reflection
+constexpr double kMinScale = 1e-6;     ///< a smaller factor, or one above its inverse, is a mistake
+constexpr double kOrthonormal = 1e-3;  ///< tolerance for a matrix to be a rotation or a reflection
 
 Kind kind_of(std::string_view word) {
   if (word == "TRA") return Kind::translation;
@@ -32,19 +32,19 @@ Kind kind_of(std::string_view word) {
 /// Reads a transformation's cards.
 class CardReader {
  public:
-  CardReader(const Block& block, const Surroundings& around, double unit, Transform& out)
-      : around_(around),
+  CardReader(const Block& block, const DeckTables& tables, double unit, Transform& out)
+      : tables_(tables),
         block_(block),
         unit_(unit),
-        lines_(around.files, block),
-        width_(around.contexts[block.context].field_width()),
+        lines_(tables.files, block),
+        width_(tables.contexts[block.context].field_width()),
         out_(out) {}
 
   void run() {
     if (!lines_.next(line_) || !next()) return;
-    out_.group = id(0, around_.contexts[block_.context].added.set);
+    out_.group = id(0, tables_.contexts[block_.context].added.set);
     if (out_.kind == Kind::position) return read_position();
-    const std::int64_t node_offset = around_.contexts[block_.context].added.node;
+    const std::int64_t node_offset = tables_.contexts[block_.context].added.node;
     out_.submodel = id(9, 0);
     if (out_.kind == Kind::matrix) return read_matrix();
     out_.nodes[0] = id(7, node_offset);
@@ -63,12 +63,12 @@ class CardReader {
     return there;
   }
   double real(std::size_t first) {
-    const auto value = around_.parameters.real(field(line_.text, width_, first, 2), around_.contexts, block_.context);
+    const auto value = tables_.parameters.real(field(line_.text, width_, first, 2), tables_.contexts, block_.context);
     out_.readable &= value.has_value();
     return value.value_or(0);
   }
   std::int64_t id(std::size_t first, std::int64_t added) {
-    const auto value = around_.parameters.integer(field(line_.text, width_, first), around_.contexts, block_.context);
+    const auto value = tables_.parameters.integer(field(line_.text, width_, first), tables_.contexts, block_.context);
     out_.readable &= value.has_value();
     return value && *value > 0 ? *value + added : 0;
   }
@@ -84,7 +84,7 @@ class CardReader {
 
   /// Six nodes, or six points on cards of their own, each of three numbers.
   void read_position() {
-    for (std::size_t n = 0; n < 6; ++n) out_.nodes[n] = id(1 + n, around_.contexts[block_.context].added.node);
+    for (std::size_t n = 0; n < 6; ++n) out_.nodes[n] = id(1 + n, tables_.contexts[block_.context].added.node);
     for (std::size_t f = 7; f < 10; ++f)
       if (const std::int64_t submodel = id(f, 0); submodel > 0) out_.submodel = submodel;
     if (std::all_of(out_.nodes.begin(), out_.nodes.end(), [](std::int64_t n) { return n > 0; })) return;
@@ -93,7 +93,7 @@ class CardReader {
       std::string_view rest = trim(line_.text);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
-        const auto value = around_.parameters.real(rest.substr(0, end), around_.contexts, block_.context);
+        const auto value = tables_.parameters.real(rest.substr(0, end), tables_.contexts, block_.context);
         out_.readable &= value.has_value() && end > 0;
         point[axis] = value.value_or(0) * unit_;
         rest = trim(rest.substr(end));
@@ -102,7 +102,7 @@ class CardReader {
     }
   }
 
-  const Surroundings& around_;
+  const DeckTables& tables_;
   const Block& block_;
   double unit_;
   BlockLines lines_;
@@ -111,7 +111,7 @@ class CardReader {
   Line line_;
 };
 
-/// Right-angled axes with the first along a-b and the third normal to the plane of the points. nullopt: they lie on a line.
+/// Orthonormal axes with the first along a-b and the third normal to the plane of the points. nullopt: the points are collinear.
 std::optional<Eigen::Matrix3d> axes_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d x = (b - a).normalized();
   const Vector3d z = x.cross((c - a).normalized());
@@ -125,16 +125,16 @@ std::optional<Affine3d> finite(const Affine3d& map) { return map.matrix().allFin
 
 }  // namespace
 
-Transform read_transform(const Block& block, const Keyword& keyword, const Surroundings& around) {
+Transform read_transform(const Block& block, const Keyword& keyword, const DeckTables& tables) {
   Transform out;
   out.kind = kind_of(keyword.word(1));
   out.file = block.file;
   out.offset = block.offset;
   out.points.fill(Vector3d::Zero());
-  const std::optional<Units> units = around.units(block.context, keyword.number(1));
-  const std::optional<Units> main = around.units(0, 0);
+  const std::optional<Units> units = tables.units(block.context, keyword.number(1));
+  const std::optional<Units> main = tables.units(0, 0);
   out.readable = units && main && out.kind != Kind::unknown;
-  CardReader(block, around, units && main ? units->length / main->length : 1, out).run();
+  CardReader(block, tables, units && main ? units->length / main->length : 1, out).run();
   return out;
 }
 
@@ -188,7 +188,7 @@ std::optional<Affine3d> affine_of(const Transform& t, const std::array<std::opti
   }
 }
 
-bool Transformer::Members::has(std::int64_t id) const {
+bool Transformer::GroupMembers::has(std::int64_t id) const {
   if (std::binary_search(without.begin(), without.end(), id)) return false;
   if (std::binary_search(ids.begin(), ids.end(), id)) return true;
   return std::any_of(ranges.begin(), ranges.end(),
@@ -202,7 +202,7 @@ void Transformer::run(const std::vector<Transform>& transforms) {
     for (std::size_t n = 0; n < 6; ++n)
       if (transform.nodes[n] > 0) at[n] = position(transform.nodes[n]);
     const std::optional<Affine3d> map = affine_of(transform, at);
-    Members members;
+    GroupMembers members;
     const bool by_group = transform.group > 0 && transform.submodel == 0;
     const bool known = by_group ? collect(transform.group, 0, members) : transform.submodel > 0 && transform.group == 0;
     work_ += by_group ? 1000 + members.ranges.size() : found_.frames.size();
@@ -213,7 +213,7 @@ void Transformer::run(const std::vector<Transform>& transforms) {
     else
       move_submodel(transform, *map);
   }
-  for (const Named& named : named_)
+  for (const NamedNode& named : named_)
     if (named.found) found_.cards[named.piece].holds.emplace_back(named.node, kHeldByFrame);
   for (PieceCards& cards : found_.cards) {
     std::sort(cards.holds.begin(), cards.holds.end());
@@ -225,20 +225,21 @@ void Transformer::find_named(const std::vector<Transform>& transforms) {
   for (const Transform& transform : transforms)
     for (const std::int64_t node : transform.nodes)
       if (node > 0) named_.push_back({node});
-  std::sort(named_.begin(), named_.end(), [](const Named& a, const Named& b) { return a.id < b.id; });
-  named_.erase(std::unique(named_.begin(), named_.end(), [](const Named& a, const Named& b) { return a.id == b.id; }), named_.end());
+  std::sort(named_.begin(), named_.end(), [](const NamedNode& a, const NamedNode& b) { return a.id < b.id; });
+  named_.erase(std::unique(named_.begin(), named_.end(), [](const NamedNode& a, const NamedNode& b) { return a.id == b.id; }),
+               named_.end());
   if (named_.empty()) return;
   for (std::uint32_t p = 0; p < found_.cards.size(); ++p)
     for (std::uint32_t n = 0; n < found_.cards[p].node_id.size(); ++n) {
       const std::int64_t id = found_.cards[p].node_id[n];
-      const auto named = std::lower_bound(named_.begin(), named_.end(), id, [](const Named& a, std::int64_t b) { return a.id < b; });
+      const auto named = std::lower_bound(named_.begin(), named_.end(), id, [](const NamedNode& a, std::int64_t b) { return a.id < b; });
       if (named != named_.end() && named->id == id && !named->found) *named = {id, p, n, true};
     }
 }
 
-/// Where the cards so far have put it.
+/// The node's position after the cards so far.
 std::optional<Vector3d> Transformer::position(std::int64_t node) const {
-  const auto named = std::lower_bound(named_.begin(), named_.end(), node, [](const Named& a, std::int64_t b) { return a.id < b; });
+  const auto named = std::lower_bound(named_.begin(), named_.end(), node, [](const NamedNode& a, std::int64_t b) { return a.id < b; });
   if (named == named_.end() || named->id != node || !named->found) return std::nullopt;
   const PieceCards& cards = found_.cards[named->piece];
   const auto run = std::prev(std::upper_bound(cards.node_runs.begin(), cards.node_runs.end(), named->node,
@@ -247,8 +248,8 @@ std::optional<Vector3d> Transformer::position(std::int64_t node) const {
 }
 
 bool Transformer::in_submodel(std::uint32_t frame, std::int64_t submodel) const {
-  for (std::uint32_t context = frame_context_[frame]; context != 0; context = around_.contexts[context].parent)
-    if (around_.contexts[context].id == submodel) return true;
+  for (std::uint32_t context = frame_context_[frame]; context != 0; context = tables_.contexts[context].parent)
+    if (tables_.contexts[context].id == submodel) return true;
   return false;
 }
 
@@ -264,8 +265,8 @@ void Transformer::move_submodel(const Transform& transform, const Affine3d& map)
                          "a transformation names submodel " + std::to_string(transform.submodel) + ", which has no nodes");
 }
 
-/// Runs are cut where membership changes; the members' get frames of their own.
-void Transformer::move_group(const Members& members, const Affine3d& map) {
+/// Cuts runs where membership changes. Runs of members get frames of their own.
+void Transformer::move_group(const GroupMembers& members, const Affine3d& map) {
   std::map<std::uint32_t, std::uint32_t> moved;
   const std::uint64_t cost = 1 + members.ranges.size();
   for (PieceCards& cards : found_.cards) {
@@ -295,11 +296,11 @@ void Transformer::move_group(const Members& members, const Affine3d& map) {
   }
 }
 
-/// Nobody knows where these nodes are; `members`: of the group, where that is known.
-void Transformer::hold(const Transform& transform, const Members* members) {
+/// Holds the nodes of a card whose map can't be computed. `members`: of its group; null: it has none, or they aren't known.
+void Transformer::hold(const Transform& transform, const GroupMembers* members) {
   found_.warnings.note("unread-transform", transform.file, transform.offset,
                        "a transformation can't be worked out; what it moves is shown where its cards put it and can't be moved");
-  // Once there have been too many of them, all nodes are held: that costs one pass.
+  // Beyond the limit of work all nodes are held, which costs one pass.
   const std::int64_t submodel = work_ > kMaxWork ? 0 : transform.submodel;
   if (work_ > kMaxWork) members = nullptr;
   if (held_.contains(0) || (!members && !held_.insert(submodel).second)) return;
@@ -314,26 +315,26 @@ void Transformer::hold(const Transform& transform, const Members* members) {
     }
 }
 
-/// False: the group isn't there, or is one whose nodes aren't worked out here.
-bool Transformer::collect(std::int64_t group, int depth, Members& members) {
+/// Collects the members of a group. False: it isn't defined, or is of a kind whose members aren't computed here.
+bool Transformer::collect(std::int64_t group, int depth, GroupMembers& members) {
   const auto at = groups_.find(group);
   if (at == groups_.end() || depth > kMaxGroupDepth || work_ > kMaxWork) return false;
   const Block& block = *at->second;
   work_ += 100 + block.body.end - block.body.begin;
-  const Keyword keyword = keyword_at(around_.files[block.file].bytes.text(), block.offset);
+  const Keyword keyword = keyword_at(tables_.files[block.file].bytes.text(), block.offset);
   const std::string_view kind = keyword.word(1);
-  const Context& context = around_.contexts[block.context];
+  const Context& context = tables_.contexts[block.context];
   const std::int64_t added = kind == "PART" ? context.added.part : kind == "GRNOD" ? context.added.set : context.added.node;
   if (kind != "NODE" && kind != "NODENS" && kind != "GENE" && kind != "GEN_INCR" && kind != "PART" && kind != "GRNOD") return false;
   std::vector<std::int64_t> numbers;
-  BlockLines lines(around_.files, block);
+  BlockLines lines(tables_.files, block);
   Line line;
   if (!lines.next(line)) return true;
   const std::size_t per = kind == "GENE" ? 2 : kind == "GEN_INCR" ? 3 : 1;
   while (lines.next(line)) {
     std::array<std::int64_t, 10> on_line{};
     for (std::size_t f = 0; f < on_line.size(); ++f) {
-      const auto number = around_.parameters.integer(field(line.text, context.field_width(), f), around_.contexts, block.context);
+      const auto number = tables_.parameters.integer(field(line.text, context.field_width(), f), tables_.contexts, block.context);
       if (!number) return false;
       on_line[f] = *number;
     }
@@ -361,7 +362,7 @@ bool Transformer::collect(std::int64_t group, int depth, Members& members) {
   return true;
 }
 
-void Transformer::collect_parts(const std::vector<std::int64_t>& parts, Members& members) {
+void Transformer::collect_parts(const std::vector<std::int64_t>& parts, GroupMembers& members) {
   std::vector<std::int64_t> wanted = parts;
   std::sort(wanted.begin(), wanted.end());
   for (const PieceCards& cards : found_.cards) {

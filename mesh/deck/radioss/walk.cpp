@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Text that submodels may bring in once more each.
+/// Limit of the text that submodels include again.
 constexpr std::size_t kMaxRepeatedBytes = std::size_t{1} << 27;
 constexpr std::size_t kMaxIncludeLength = 4096;
 constexpr std::size_t kMaxContexts = 100000;
@@ -42,9 +42,9 @@ void Walk::run() {
   finish_block();
   if (context_ != 0)
     warnings.note("open-submodel", contexts[context_].file, contexts[context_].offset, "the submodel isn't closed by //ENDSUB");
-  // What is used twice, and what that includes, stands for more than one place.
+  // A file that is used twice, and what it includes, stands for more than one place.
   std::vector<const FileUse*> uses;
-  for (const State& state : states_) uses.push_back(&state);
+  for (const FileState& state : states_) uses.push_back(&state);
   held = repeated_files(uses);
 }
 
@@ -98,7 +98,7 @@ void Walk::keyword(std::uint32_t file, std::size_t offset) {
     return;
   }
   if (word == "END") {
-    // In a deck for both programs the engine's options come first; none of them names anything.
+    // In a deck for both programs the engine's options come first; they name nothing.
     blocks.clear();
     return;
   }
@@ -172,7 +172,7 @@ void Walk::end_submodel(std::uint32_t file, std::size_t offset) {
   context_ = contexts[context_].parent;
 }
 
-/// In an include the card counts only within a submodel.
+/// In an included file the card applies only within a submodel.
 void Walk::read_begin(const Block& block) {
   Context& context = contexts[block.context];
   if (context.has_begin || (block.context == 0 && block.file != 0)) return;
@@ -195,7 +195,7 @@ void Walk::include(std::uint32_t from, std::size_t offset, int depth) {
   const std::string_view text = files.files[from].bytes.text();
   std::string_view line = text.substr(offset, std::min(text.find_first_of("\r\n", offset), text.size()) - offset);
   const std::string name(trim(line.substr(8, kMaxIncludeLength)));
-  // Names are relative to where the solver is started, which is where the main file is; the file's own folder helps where it isn't.
+  // Names are relative to the folder where the solver is started, usually that of the main file. Else the file's own folder is searched.
   const std::vector<fs::path> folders = {main_folder_, files.folder_of(from)};
   std::string reason;
   const std::uint32_t file = files.include(from, name, folders, reason);
@@ -207,7 +207,7 @@ void Walk::include(std::uint32_t from, std::size_t offset, int depth) {
   states_[from].includes.push_back(file);
   ++states_[file].uses;
   const std::size_t bytes = files.files[file].bytes.text().size();
-  // The keyword that the include stands behind may be a submodel's, which must be known before its text comes.
+  // The include may stand behind the keyword of a submodel, which must be known before the included text.
   if (in_block_ && keyword_.word(0) == "SUBMODEL") finish_block();
   if (states_[file].open) {
     warnings.note("circular-include", from, offset, "the include file " + name + " includes itself; it is read once");

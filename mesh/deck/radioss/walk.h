@@ -1,5 +1,4 @@
-// The walk over a deck's files in the order the solver reads them: finds the blocks, follows the includes and submodels. Nothing else is
-// interpreted here.
+// Walks over a deck's files in the solver's order: finds the blocks, follows includes and submodels. Interprets nothing else.
 #pragma once
 
 #include <filesystem>
@@ -21,9 +20,9 @@ class Walk {
   void run();
 
   FileSet files;
-  std::vector<Block> blocks;  ///< up to /END, in their order; without submodels' own keywords
+  std::vector<Block> blocks;  ///< up to /END, in their order, without the keywords of submodels
   std::vector<Context> contexts{Context()};
-  std::vector<bool> held;  ///< by file: what it holds stands for several places of the model
+  std::vector<bool> held;  ///< by file: whether its content stands for several places of the model
   Warnings warnings;
 
  private:
@@ -37,19 +36,19 @@ class Walk {
   void read_begin(const Block& block);
 
   std::filesystem::path main_folder_;
-  bool ended_ = false;  ///< the file being walked has come to its end
+  bool ended_ = false;  ///< the rest of the file being walked isn't read
   bool in_block_ = false;
   Block block_;
   Keyword keyword_;
-  Stretch stretch_;  ///< of the block, as far as it is known
+  Stretch stretch_;  ///< the part of the block being read
   bool first_stretch_ = false;
   std::uint32_t context_ = 0;
   std::size_t repeated_bytes_ = 0;
 
-  struct State : FileUse {
+  struct FileState : FileUse {
     bool open = false;
   };
-  std::vector<State> states_;
+  std::vector<FileState> states_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> walked_;  ///< file and context
 };
 

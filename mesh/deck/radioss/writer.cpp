@@ -21,14 +21,16 @@ std::size_t end_of_line(std::string_view text, std::size_t offset) {
 
 std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
 
-/// Tabs count as one blank each.
+std::string_view first_line(const CardRef& card) { return line_at(card.text, card.offset); }
+
+/// The line with each tab replaced by one blank.
 std::string without_tabs(std::string_view line) {
   std::string out(line);
   std::replace(out.begin(), out.end(), '\t', ' ');
   return out;
 }
 
-/// In the place of fields: leaning left if the old number did, else right.
+/// Puts a number into columns: aligned left if the old number was, else right.
 void put(std::string& line, std::size_t begin, std::size_t width, std::string_view number) {
   if (line.size() < begin + width) line.resize(begin + width, ' ');
   const std::string_view old = std::string_view(line).substr(begin, width);
@@ -56,38 +58,39 @@ void put_coordinate(std::size_t width, std::size_t axis, double value, WrittenCa
 bool is_triangle(const ShellCard& shell) { return shell.nodes[2] == shell.nodes[3]; }
 
 std::int64_t largest_id(std::size_t width) {
-  std::int64_t most = 1;
-  for (std::size_t digit = 0; digit < width; ++digit) most *= 10;
-  return most - 1;
+  std::int64_t power = 1;
+  for (std::size_t digit = 0; digit < width; ++digit) power *= 10;
+  return power - 1;
 }
 
 std::size_t width_of(const Referrer& set) { return is_old(set.style) ? kOldField : kField; }
 bool is_surface(const Referrer& set) { return set.keyword == "SURF/SEG"; }
 
-/// The end of the line whose text ends at `end`: as it is, or that of a last line without one.
+/// The line end at `end`. At the end of the text, where it is missing, the one that the text uses.
 std::string line_end_at(std::string_view text, std::size_t end) {
   if (end < text.size()) return text[end] == '\r' ? "\r\n" : "\n";
   return text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
 }
 
-/// A card of a set, behind its title.
+/// A line of a set.
 struct ListLine {
   std::string_view text;
   std::size_t offset = 0;
 };
+/// The title's line, then the lines that aren't blank.
 std::vector<ListLine> list_lines(std::string_view text, const Referrer& set) {
   std::vector<ListLine> out;
   const std::size_t first = std::min(text.find('\n', set.offset), text.size());
   Lines lines(text, std::min(first + 1, text.size()), std::min<std::size_t>(set.end, text.size()));
   ListLine line;
   if (!lines.next(line.text, line.offset)) return out;
-  out.push_back(line);  // the title, as a place to go on from
+  out.push_back(line);  // new ids go behind it if the list is empty
   while (lines.next(line.text, line.offset))
     if (line.text.find_first_not_of(" \t") != std::string_view::npos) out.push_back(line);
   return out;
 }
 
-/// A set's list of ids, ten a line; or of ranges: first and last (/GENE), or first, last and step (/GEN_INCR).
+/// Changes a set's list of ids, ten a line, or of ranges: first and last (/GENE), or first, last and step (/GEN_INCR).
 class IdList {
  public:
   IdList(std::string_view text, const Referrer& set)
@@ -152,7 +155,7 @@ class IdList {
     out.push_back({lines_[l].offset, (fields.empty() ? next : end) - lines_[l].offset, line_of(fields)});
   }
 
-  /// A line for each range of ids that count up by one, behind the last.
+  /// Adds a line behind the last for each range of consecutive ids.
   std::vector<Replacement> with_ranges(std::size_t last, std::span<const std::int64_t> joining) const {
     const std::size_t end = lines_[last].offset + lines_[last].text.size();
     std::string added;
@@ -165,7 +168,7 @@ class IdList {
     return {{end, 0, std::move(added)}};
   }
 
-  /// Fills up the last line that stays, then adds lines.
+  /// Fills the last line that stays, then adds lines.
   void append(std::size_t last, std::vector<std::string> fields, std::span<const std::int64_t> joining,
               std::vector<Replacement>& out) const {
     std::size_t next = 0;
@@ -194,61 +197,61 @@ class IdList {
 
 class Writer : public CardWriter {
  public:
-  std::size_t node_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_line(text, offset); }
-  std::size_t shell_end(std::string_view text, std::size_t offset, std::uint16_t) const override { return end_of_line(text, offset); }
+  std::size_t node_end(const CardRef& card) const override { return end_of_line(card.text, card.offset); }
+  std::size_t shell_end(const CardRef& card) const override { return end_of_line(card.text, card.offset); }
 
-  std::optional<Vec3> node_coordinates(std::string_view text, std::size_t offset, std::uint16_t style) const override {
-    const std::string line = without_tabs(line_at(text, offset));
+  std::optional<Vec3> node_coordinates(const CardRef& card) const override {
+    const std::string line = without_tabs(first_line(card));
     Vec3 out;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      if (!parse_real(field(line, Style::of(style).width(), 1 + 2 * axis, 2), out[static_cast<Eigen::Index>(axis)])) return std::nullopt;
+      if (!parse_real(field(line, Style::of(card.style).width(), 1 + 2 * axis, 2), out[static_cast<Eigen::Index>(axis)]))
+        return std::nullopt;
     return out;
   }
 
-  WrittenCard move_node(std::string_view text, std::size_t offset, std::uint16_t style, const Vec3& from, const Vec3& to) const override {
-    WrittenCard card;
-    card.text = without_tabs(line_at(text, offset));
+  WrittenCard move_node(const CardRef& card, const Vec3& from, const Vec3& to) const override {
+    WrittenCard written;
+    written.text = without_tabs(first_line(card));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<Eigen::Index>(axis);
-      if (from[a] != to[a]) put_coordinate(Style::of(style).width(), axis, to[a], card);
+      if (from[a] != to[a]) put_coordinate(Style::of(card.style).width(), axis, to[a], written);
     }
-    return card;
+    return written;
   }
 
-  WrittenCard new_node(std::string_view, std::size_t, std::uint16_t style, std::int64_t id, const Vec3& at) const override {
-    const std::size_t width = Style::of(style).width();
-    WrittenCard card;
-    put(card.text, 0, width, std::to_string(id));
-    for (std::size_t axis = 0; axis < 3; ++axis) put_coordinate(width, axis, at[static_cast<Eigen::Index>(axis)], card);
-    return card;
+  WrittenCard new_node(const CardRef& example, std::int64_t id, const Vec3& at) const override {
+    const std::size_t width = Style::of(example.style).width();
+    WrittenCard written;
+    put(written.text, 0, width, std::to_string(id));
+    for (std::size_t axis = 0; axis < 3; ++axis) put_coordinate(width, axis, at[static_cast<Eigen::Index>(axis)], written);
+    return written;
   }
 
-  Result<WrittenCard> shell(std::string_view text, std::size_t offset, std::uint16_t style, const ShellCard& shell) const override {
-    const Style own = Style::of(style);
-    const std::string line = without_tabs(line_at(text, offset));
+  Result<WrittenCard> shell(const CardRef& card, const ShellCard& shell) const override {
+    const Style own = Style::of(card.style);
+    const std::string line = without_tabs(first_line(card));
     if (is_triangle(shell) != own.triangle)
       return fail("", own.triangle ? "stands in an /SH3N block, which holds triangles only"
                                    : "stands in a /SHELL block, where a triangle's own block is /SH3N");
     return with_corners(line, own, shell);
   }
 
-  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
+  bool holds_triangles_and_quads(const CardRef&) const override { return false; }
 
-  Result<WrittenCard> shell_in_manner(std::string_view text, std::size_t offset, std::uint16_t style, std::string_view, std::size_t,
-                                      std::uint16_t manner_style, const ShellCard& shell) const override {
-    const Style own = Style::of(style);
-    const Style manner = Style::of(manner_style);
-    if (is_triangle(shell) != manner.triangle) return fail("", "has another number of corners than the block it would go to");
-    if (own.old != manner.old) return fail("", "would go to a block with columns of another width");
-    // Angle and thickness stand in the same columns in both blocks; what lies between the corners and them goes.
-    std::string line = without_tabs(line_at(text, offset));
+  Result<WrittenCard> shell_in_manner(const CardRef& card, const CardRef& example, const ShellCard& shell) const override {
+    const Style own = Style::of(card.style);
+    const Style wanted = Style::of(example.style);
+    if (is_triangle(shell) != wanted.triangle) return fail("", "has another number of corners than the block it would go to");
+    if (own.old != wanted.old) return fail("", "would go to a block with columns of another width");
+    // Angle and thickness stand in the same columns in both blocks; text between the corners and them is removed.
+    std::string line = without_tabs(first_line(card));
     const std::size_t width = own.width();
     if (line.size() > 4 * width)
       line.replace(4 * width, std::min(line.size(), 6 * width) - 4 * width, std::string(std::min(line.size(), 6 * width) - 4 * width, ' '));
-    return with_corners(std::move(line), manner, shell);
+    return with_corners(std::move(line), wanted, shell);
   }
 
-  /// Groups and histories of quads and of triangles have keywords of their own.
+  /// Quads and triangles have different keywords for groups and histories.
   bool can_name(const Referrer& card, bool triangle) const override {
     const auto begins = [&](std::string_view word) { return card.keyword.compare(0, word.size(), word) == 0; };
     if (begins("GRSHEL") || begins("TH/SHEL")) return !triangle;
@@ -256,25 +259,24 @@ class Writer : public CardWriter {
   }
 
   /// "/SHELL/7" and "/SH3N/7" hold the shells of one part in the same file.
-  Result<NewBlock> block_of_kind(std::string_view text, std::size_t offset, std::uint16_t, bool triangles) const override {
-    const BlockFinder::Found found = blocks_.at(text, offset);
-    if (found.has_keyword && text[found.keyword] == '#') return fail("", "stands in a block that an include interrupts");
+  Result<NewBlock> block_of_kind(const CardRef& card, bool triangles) const override {
+    const BlockFinder::BlockRange found = blocks_.at(card.text, card.offset);
+    if (found.has_keyword && card.text[found.keyword] == '#') return fail("", "stands in a block that an include interrupts");
     NewBlock block;
-    block.header = std::string(line_at(text, found.keyword));
+    block.header = std::string(line_at(card.text, found.keyword));
     const std::size_t slash = block.header.find('/', 1);
     if (slash == std::string::npos || !found.has_keyword) return fail("", "has no keyword that could be found");
     block.header.replace(0, slash, triangles ? "/SH3N" : "/SHELL");
-    // Behind the block's last card: comments in between belong to it, or to what follows.
+    // At the next keyword, behind comments: these may belong to the block's last card.
     block.offset = found.end;
-    if (is_include(text.substr(block.offset))) return fail("", "stands in a block that goes on in an include");
+    if (is_include(card.text.substr(block.offset))) return fail("", "stands in a block that goes on in an include");
     return block;
   }
 
-  Result<WrittenCard> shell_in_block(std::string_view text, std::size_t offset, std::uint16_t style,
-                                     const ShellCard& shell) const override {
-    Style other = Style::of(style);
+  Result<WrittenCard> shell_in_block(const CardRef& card, const ShellCard& shell) const override {
+    Style other = Style::of(card.style);
     other.triangle = !other.triangle;
-    return shell_in_manner(text, offset, style, text, offset, other.number(), shell);
+    return shell_in_manner(card, {card.text, card.offset, other.number()}, shell);
   }
 
   Result<std::vector<Replacement>> join(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids) const override {
@@ -325,10 +327,11 @@ class Writer : public CardWriter {
     return std::vector<Replacement>{{card, removed - card, std::move(out)}};
   }
 
-  /// A submodel may be a part of a file, and in one that adds to ids no such card is changed.
+  /// A submodel may be a part of a file. Cards in a submodel that adds to ids aren't changed.
   bool shifts_whole_files() const override { return false; }
 
-  /// Whatever names one alone goes on meaning that one: main nodes, histories, sections, directions; but who is taken out of a set?
+  /// Cards that name a single one (main nodes, histories, sections, directions) go on naming it. In a group such an id is one that is
+  /// removed from it, and whether its successors are isn't known.
   Inheritance inheritance(const Referrer& card, Referred) const override {
     return card.keyword.substr(0, 2) == "GR" ? Inheritance::forbids : Inheritance::stays;
   }
@@ -337,7 +340,7 @@ class Writer : public CardWriter {
   std::int64_t largest_shell_id(std::uint16_t style) const override { return largest_node_id(style); }
 
  private:
-  /// An include may stand in the middle of a block. Behind "#enddata" nothing is read.
+  /// An include in the middle of a block ends what can be changed in the text. Behind "#enddata" nothing is read.
   static bool ends_block(std::string_view text, std::size_t line) {
     return text[line] == '/' || is_include(text.substr(line)) || text.substr(line).starts_with(kEndOfData);
   }

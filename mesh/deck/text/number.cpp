@@ -39,7 +39,7 @@ bool read_exponent(std::string_view text, std::size_t at, int& exponent) {
   return true;
 }
 
-/// Takes a trimmed, non-empty number apart.
+/// Splits a trimmed, non-empty number into its parts. False: it isn't one.
 bool take_apart(std::string_view text, Decimal& decimal) {
   std::size_t at = 0;
   if (text[0] == '+' || text[0] == '-') decimal.negative = text[at++] == '-';
@@ -62,7 +62,7 @@ bool take_apart(std::string_view text, Decimal& decimal) {
   return at == text.size() || read_exponent(text, at, decimal.exponent);
 }
 
-/// The number written the way from_chars wants it: no leading plus, an 'e' before the exponent.
+/// Reads a number with from_chars, in the form it needs: no leading plus, an 'e' before the exponent.
 bool parse_slowly(std::string_view text, const Decimal& decimal, double& value) {
   char buffer[kMaxNumberLength + 16];
   char* out = buffer;
@@ -85,7 +85,7 @@ bool parse_slowly(std::string_view text, const Decimal& decimal, double& value) 
 }  // namespace
 
 std::string_view trim(std::string_view text) {
-  // Form feeds are left over from printing.
+  // Form feeds come from printer output.
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '\f')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r' || text.back() == '\f')) text.remove_suffix(1);
   return text;
@@ -100,7 +100,7 @@ bool parse_real(std::string_view field, double& value) {
   Decimal decimal;
   if (!take_apart(field, decimal)) return false;
   const int power = decimal.exponent - decimal.after_point;
-  // Both factors are exact, so the one rounding of the product or quotient is the right one (Clinger 1990).
+  // Both factors are exact, so the product or quotient is rounded once and correctly [Clinger 1990].
   if (decimal.digit_count <= 19 && decimal.digits <= kExactIntegers && power >= -22 && power <= 22) {
     const auto digits = static_cast<double>(decimal.digits);
     value = power < 0 ? digits / kPowersOfTen[-power] : digits * kPowersOfTen[power];

@@ -41,13 +41,13 @@ std::string_view line_end(std::string_view text, std::size_t at) {
   return newline != std::string_view::npos && newline > 0 && text[newline - 1] == '\r' ? "\r\n" : "\n";
 }
 
-BlockFinder::Found BlockFinder::at(std::string_view text, std::size_t line) {
+BlockFinder::BlockRange BlockFinder::at(std::string_view text, std::size_t line) {
   const auto after = known_.upper_bound({text.data(), text.size(), line});
   if (after != known_.begin()) {
     const auto& [place, block] = *std::prev(after);
     if (std::get<0>(place) == text.data() && std::get<1>(place) == text.size() && line < block.end) return block;
   }
-  Found block;
+  BlockRange block;
   for (block.keyword = line; block.keyword > 0 && !is_keyword_(text, block.keyword);) {
     const std::size_t newline = block.keyword < 2 ? std::string_view::npos : text.rfind('\n', block.keyword - 2);
     block.keyword = newline == std::string_view::npos ? 0 : newline + 1;

@@ -1,22 +1,21 @@
-// What a format's writer does where it knows no better: it refuses.
+// The defaults of a format's writer: it refuses.
 #include "mesh/deck/writing/card_writer.h"
 
 namespace prismesh::mesh::deck {
 
-Result<WrittenCard> CardWriter::new_constrained_node(std::string_view, std::size_t, std::uint16_t, std::int64_t, const Vec3&) const {
+Result<WrittenCard> CardWriter::new_constrained_node(const CardRef&, std::int64_t, const Vec3&) const {
   return fail("", "has constraints that can't be given to a new node");
 }
 
-Result<WrittenCard> CardWriter::shell_in_manner(std::string_view, std::size_t, std::uint16_t, std::string_view, std::size_t, std::uint16_t,
-                                                const ShellCard&) const {
+Result<WrittenCard> CardWriter::shell_in_manner(const CardRef&, const CardRef&, const ShellCard&) const {
   return fail("", "stands on a card whose kind says how many corners it has");
 }
 
-Result<CardWriter::NewBlock> CardWriter::block_of_kind(std::string_view, std::size_t, std::uint16_t, bool) const {
+Result<CardWriter::NewBlock> CardWriter::block_of_kind(const CardRef&, bool) const {
   return fail("", "stands on a card whose kind says how many corners it has, and its part has none of the other kind");
 }
 
-Result<WrittenCard> CardWriter::shell_in_block(std::string_view, std::size_t, std::uint16_t, const ShellCard&) const {
+Result<WrittenCard> CardWriter::shell_in_block(const CardRef&, const ShellCard&) const {
   return fail("", "stands on a card whose kind says how many corners it has");
 }
 

@@ -152,13 +152,13 @@ TEST(Refusals, of_models_that_cards_cant_say) {
 /// All that a writer has to say for itself: what it doesn't, the base class says.
 class SilentWriter : public CardWriter {
  public:
-  std::size_t node_end(std::string_view, std::size_t, std::uint16_t) const override { return 0; }
-  std::size_t shell_end(std::string_view, std::size_t, std::uint16_t) const override { return 0; }
-  std::optional<Vec3> node_coordinates(std::string_view, std::size_t, std::uint16_t) const override { return {}; }
-  WrittenCard move_node(std::string_view, std::size_t, std::uint16_t, const Vec3&, const Vec3&) const override { return {}; }
-  WrittenCard new_node(std::string_view, std::size_t, std::uint16_t, std::int64_t, const Vec3&) const override { return {}; }
-  Result<WrittenCard> shell(std::string_view, std::size_t, std::uint16_t, const ShellCard&) const override { return WrittenCard(); }
-  bool holds_triangles_and_quads(std::string_view, std::size_t, std::uint16_t) const override { return false; }
+  std::size_t node_end(const CardRef&) const override { return 0; }
+  std::size_t shell_end(const CardRef&) const override { return 0; }
+  std::optional<Vec3> node_coordinates(const CardRef&) const override { return {}; }
+  WrittenCard move_node(const CardRef&, const Vec3&, const Vec3&) const override { return {}; }
+  WrittenCard new_node(const CardRef&, std::int64_t, const Vec3&) const override { return {}; }
+  Result<WrittenCard> shell(const CardRef&, const ShellCard&) const override { return WrittenCard(); }
+  bool holds_triangles_and_quads(const CardRef&) const override { return false; }
   Result<std::vector<Replacement>> join(std::string_view, const Referrer&, std::span<const std::int64_t>) const override {
     return std::vector<Replacement>(1);
   }
@@ -169,11 +169,11 @@ class SilentWriter : public CardWriter {
 TEST(Refusals, a_format_that_says_nothing_of_a_card_refuses_to_change_it) {
   const SilentWriter writer;
   const std::vector<std::int64_t> ids{1}, none;
-  EXPECT_EQ(writer.new_constrained_node("", 0, 0, 1, {}).error().message, "has constraints that can't be given to a new node");
-  EXPECT_EQ(writer.shell_in_manner("", 0, 0, "", 0, 0, {}).error().message, "stands on a card whose kind says how many corners it has");
-  EXPECT_EQ(writer.block_of_kind("", 0, 0, true).error().message,
+  EXPECT_EQ(writer.new_constrained_node({"", 0, 0}, 1, {}).error().message, "has constraints that can't be given to a new node");
+  EXPECT_EQ(writer.shell_in_manner({"", 0, 0}, {"", 0, 0}, {}).error().message, "stands on a card whose kind says how many corners it has");
+  EXPECT_EQ(writer.block_of_kind({"", 0, 0}, true).error().message,
             "stands on a card whose kind says how many corners it has, and its part has none of the other kind");
-  EXPECT_EQ(writer.shell_in_block("", 0, 0, {}).error().message, "stands on a card whose kind says how many corners it has");
+  EXPECT_EQ(writer.shell_in_block({"", 0, 0}, {}).error().message, "stands on a card whose kind says how many corners it has");
   EXPECT_EQ(writer.change_list("", {}, none, ids).error().message, "can't have an entry taken out");
   EXPECT_EQ(writer.change_list("", {}, ids, none)->size(), 1u) << "joining alone is join's";
   EXPECT_EQ(writer.replace_segment("", {}, 0, {}).error().message, "can't have a segment replaced");

@@ -195,6 +195,16 @@ TEST(EncryptedText, among_nodes_and_elements_stands_in_the_way_too) {
   }
 }
 
+TEST(EncryptedText, behind_the_mpp_line_of_a_contact_hides_no_surface) {
+  const DeckFolder folder;
+  const auto opened = folder.open(
+      "*KEYWORD\n*CONTACT_AUTOMATIC_SURFACE_TO_SURFACE_MPP\n0,200\n-----BEGIN PGP MESSAGE-----\nxyz\n-----END PGP MESSAGE-----\n"
+      "3,4,2,3\n*END\n");
+  ASSERT_OPENED(opened);
+  EXPECT_TRUE(opened->deck->references->named(Referred::part_set, 3));
+  EXPECT_TRUE(opened->deck->references->named(Referred::part, 4));
+}
+
 TEST(GeneralSets, say_what_they_are_to_be_without) {
   const DeckFolder folder;
   const auto opened = folder.open("*KEYWORD\n*SET_NODE_GENERAL\n7\nNODE,1\nDNODE,2\nNODE,3\n*END\n");

@@ -65,17 +65,17 @@ TEST(KeywordWriter, writes_new_nodes_in_the_manner_of_their_neighbour) {
     const std::string text = "*NODE\n" + c.example + "\r\n*END\n";
     const std::uint16_t style = style_of(c.columns);
     const Vec3 at(0.5, -1, 0.25);
-    EXPECT_EQ(kKeywordWriter->node_end(text, 6, style), 6 + c.example.size());
-    EXPECT_EQ(kKeywordWriter->new_node(text, 6, style, c.id, at).text, c.free);
-    const Result<WrittenCard> constrained = kKeywordWriter->new_constrained_node(text, 6, style, c.id, at);
+    EXPECT_EQ(kKeywordWriter->node_end({text, 6, style}), 6 + c.example.size());
+    EXPECT_EQ(kKeywordWriter->new_node({text, 6, style}, c.id, at).text, c.free);
+    const Result<WrittenCard> constrained = kKeywordWriter->new_constrained_node({text, 6, style}, c.id, at);
     ASSERT_TRUE(constrained);
     EXPECT_EQ(constrained->text, c.constrained);
-    EXPECT_EQ(kKeywordWriter->node_constraints(text, 6, style), c.constraints);
+    EXPECT_EQ(kKeywordWriter->node_constraints({text, 6, style}), c.constraints);
   }
 }
 
 TEST(KeywordWriter, reads_coordinates_in_each_layout_and_none_that_a_parameter_gives) {
-  const auto at = [](const std::string& card, Columns columns) { return kKeywordWriter->node_coordinates(card, 0, style_of(columns)); };
+  const auto at = [](const std::string& card, Columns columns) { return kKeywordWriter->node_coordinates({card, 0, style_of(columns)}); };
   EXPECT_EQ(at("       1             1.0             2.0             3.0       7", Columns::standard), Vec3(1, 2, 3));
   EXPECT_EQ(at("         1             1.0             2.0             3.0", Columns::i10), Vec3(1, 2, 3));
   EXPECT_EQ(at(fields(20, {"1", "1.0", "2.0", "3.0"}), Columns::wide), Vec3(1, 2, 3));
@@ -85,11 +85,11 @@ TEST(KeywordWriter, reads_coordinates_in_each_layout_and_none_that_a_parameter_g
 
 TEST(KeywordWriter, moves_nodes_between_commas_by_as_many_digits_as_were_there) {
   const std::string card = "1,0.1234567890123456789,2.,&z";
-  const WrittenCard moved = kKeywordWriter->move_node(card, 0, 0, {0.1234567890123456789, 2, 3}, {1.0 / 3, 2, 3});
+  const WrittenCard moved = kKeywordWriter->move_node({card, 0, 0}, {0.1234567890123456789, 2, 3}, {1.0 / 3, 2, 3});
   EXPECT_EQ(moved.text, "1,0.3333333333333333,2.,&z");
   EXPECT_EQ(moved.rounded, 0);
   EXPECT_FALSE(moved.by_parameter);
-  EXPECT_TRUE(kKeywordWriter->move_node(card, 0, 0, {0, 2, 3}, {0, 2, 4}).by_parameter);
+  EXPECT_TRUE(kKeywordWriter->move_node({card, 0, 0}, {0, 2, 3}, {0, 2, 4}).by_parameter);
 }
 
 TEST(KeywordWriter, tells_the_largest_id_of_each_layout) {
@@ -102,7 +102,7 @@ TEST(KeywordWriter, tells_the_largest_id_of_each_layout) {
 }
 
 TEST(KeywordWriter, says_of_a_new_node_what_it_rounds) {
-  const WrittenCard card = kKeywordWriter->new_node("1,0.,0.,0.", 0, 0, 2, Vec3(100.0 / 3, 1e-300 / 3, -2.5));
+  const WrittenCard card = kKeywordWriter->new_node({"1,0.,0.,0.", 0, 0}, 2, Vec3(100.0 / 3, 1e-300 / 3, -2.5));
   EXPECT_EQ(card.text, "2,33.3333333333333,3.333333333E-301,-2.5");
   EXPECT_EQ(card.rounded, 2);
   EXPECT_LT(card.largest_error, 1e-12);
@@ -201,8 +201,8 @@ TEST(KeywordWriter, writes_shells_in_their_layout) {
     SCOPED_TRACE(c.what);
     const std::string text = "*ELEMENT_SHELL\n" + c.before + "\n*END\n";
     const std::uint16_t style = lsdyna::shell_style(c.form, c.columns);
-    EXPECT_EQ(kKeywordWriter->shell_end(text, 15, style), 15 + c.before.size());
-    const Result<WrittenCard> card = kKeywordWriter->shell(text, 15, style, c.shell);
+    EXPECT_EQ(kKeywordWriter->shell_end({text, 15, style}), 15 + c.before.size());
+    const Result<WrittenCard> card = kKeywordWriter->shell({text, 15, style}, c.shell);
     ASSERT_TRUE(card) << card.error().text();
     EXPECT_EQ(card->text, c.after);
     EXPECT_FALSE(card->by_parameter);

@@ -111,81 +111,85 @@ TEST(NastranWriter, moves_within_the_card) {
   };
   for (const Move& move : moves) {
     const std::string text = move.card + "\nGRID,2";
-    ASSERT_EQ(kWriter->node_end(text, 0, 0), move.card.size()) << move.what;
-    EXPECT_EQ(kWriter->move_node(text, 0, 0, move.from, move.to).text, move.wanted) << move.what;
+    ASSERT_EQ(kWriter->node_end({text, 0, 0}), move.card.size()) << move.what;
+    EXPECT_EQ(kWriter->move_node({text, 0, 0}, move.from, move.to).text, move.wanted) << move.what;
   }
 }
 
 TEST(NastranWriter, says_what_it_rounds) {
-  const WrittenCard card = kWriter->move_node("GRID           1             1.0     2.0     3.0", 0, 0, {1, 2, 3}, {1.0 / 3, 2.5, 3});
+  const WrittenCard card = kWriter->move_node({"GRID           1             1.0     2.0     3.0", 0, 0}, {1, 2, 3}, {1.0 / 3, 2.5, 3});
   EXPECT_EQ(card.rounded, 1);
   EXPECT_NEAR(card.largest_error, 3.3e-8, 1e-9);
 }
 
 TEST(NastranWriter, new_nodes_in_the_manner_of_the_old) {
-  EXPECT_EQ(kWriter->new_node("GRID           1       7     1.0     2.0     3.0       4     123", 0, 0, 22, {1, 2.5, 0}).text,
+  EXPECT_EQ(kWriter->new_node({"GRID           1       7     1.0     2.0     3.0       4     123", 0, 0}, 22, {1, 2.5, 0}).text,
             "GRID          22       7     1.0     2.5     0.0");
-  EXPECT_EQ(kWriter->new_node("GRID,1,7,1.,2.,3.,4,123", 0, 0, 22, {1, 2.5, 0}).text, "GRID,22,7,1.0,2.5,0.0");
+  EXPECT_EQ(kWriter->new_node({"GRID,1,7,1.,2.,3.,4,123", 0, 0}, 22, {1, 2.5, 0}).text, "GRID,22,7,1.0,2.5,0.0");
   EXPECT_EQ(kWriter
-                ->new_node("GRID*                  1                             1.0             2.0\r\n*                    3.0", 0, 0, 22,
-                           {1, 2.5, 0})
+                ->new_node({"GRID*                  1                             1.0             2.0\r\n*                    3.0", 0, 0},
+                           22, {1, 2.5, 0})
                 .text,
             "GRID*                 22                             1.0             2.5\r\n*                    0.0");
-  EXPECT_EQ(kWriter->new_constrained_node("GRID,1,7,1.,2.,3.,4,123", 0, 0, 22, {1, 2.5, 0})->text, "GRID,22,7,1.0,2.5,0.0,4,123");
-  EXPECT_EQ(kWriter->node_constraints("GRID,1,7,1.,2.,3.", 0, 0), "");
-  EXPECT_NE(kWriter->node_constraints("GRID,1,7,1.,2.,3.,,123", 0, 0), "");
+  EXPECT_EQ(kWriter->new_constrained_node({"GRID,1,7,1.,2.,3.,4,123", 0, 0}, 22, {1, 2.5, 0})->text, "GRID,22,7,1.0,2.5,0.0,4,123");
+  EXPECT_EQ(kWriter->node_constraints({"GRID,1,7,1.,2.,3.", 0, 0}), "");
+  EXPECT_NE(kWriter->node_constraints({"GRID,1,7,1.,2.,3.,,123", 0, 0}), "");
 }
 
 TEST(NastranWriter, shells_change_in_place) {
   const ShellCard wanted{10, {1, 2, 9, 4}, kSame, 0};
   EXPECT_EQ(
       kWriter
-          ->shell("CQUAD4        10       7       1       2       3       4     45.      .5+A\n+A                     1.      1.      1.   "
-                  "   1.",
-                  0, 0, wanted)
+          ->shell(
+              {"CQUAD4        10       7       1       2       3       4     45.      .5+A\n+A                     1.      1.      1.   "
+               "   1.",
+               0, 0},
+              wanted)
           ->text,
       "CQUAD4        10       7       1       2       9       4     45.      .5+A\n+A                     1.      1.      1.      1.");
-  EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4", 0, 0, wanted)->text, "CQUAD4,10,7,1,2,9,4");
+  EXPECT_EQ(kWriter->shell({"CQUAD4,10,7,1,2,3,4", 0, 0}, wanted)->text, "CQUAD4,10,7,1,2,9,4");
 }
 
 TEST(NastranWriter, new_shells_mix_thickness_and_turn_angles) {
   const std::array<std::array<double, 4>, 4> half{{{1, 0, 0, 0}, {.5, .5, 0, 0}, {0, 0, .5, .5}, {0, 0, 0, 1}}};
-  EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4,45.,.5\n,,,1.,2.,3.,4.", 0, 0, {22, {1, 5, 6, 4}, half, 30})->text,
+  EXPECT_EQ(kWriter->shell({"CQUAD4,10,7,1,2,3,4,45.,.5\n,,,1.,2.,3.,4.", 0, 0}, {22, {1, 5, 6, 4}, half, 30})->text,
             "CQUAD4,22,7,1,5,6,4,15.0,.5\n+,,,1.0,1.5,3.5,4.0");
   EXPECT_EQ(
-      kWriter->shell("CQUAD4        10       7       1       2       3       4       5      .5", 0, 0, {22, {1, 2, 3, 3}, kSame, 30})->text,
+      kWriter->shell({"CQUAD4        10       7       1       2       3       4       5      .5", 0, 0}, {22, {1, 2, 3, 3}, kSame, 30})
+          ->text,
       "CTRIA3        22       7       1       2       3       5      .5");
-  EXPECT_EQ(kWriter->shell("CTRIAR,10,7,1,2,3,1.5", 0, 0, {10, {1, 2, 3, 4}, kSame, 0})->text, "CQUADR,10,7,1,2,3,4,1.5");
+  EXPECT_EQ(kWriter->shell({"CTRIAR,10,7,1,2,3,1.5", 0, 0}, {10, {1, 2, 3, 4}, kSame, 0})->text, "CQUADR,10,7,1,2,3,4,1.5");
   EXPECT_EQ(
       kWriter
-          ->shell("CQUAD4*               10               7               1               2*\n*                      3               4", 0,
-                  0, {22, {1, 2, 3, 4}, kSame, 0})
+          ->shell(
+              {"CQUAD4*               10               7               1               2*\n*                      3               4", 0, 0},
+              {22, {1, 2, 3, 4}, kSame, 0})
           ->text,
       "CQUAD4*               22               7               1               2\n*                      3               4");
 }
 
 TEST(NastranWriter, shells_that_cant_be_carried_over) {
   const ShellCard wanted{22, {1, 2, 3, 4}, kSame, 0};
-  EXPECT_EQ(kWriter->shell("CQUAD8,10,7,1,2,3,4,5,6", 0, 0, wanted).error().message, "has mid-side nodes");
-  EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4\n=,*(1),==", 0, 0, wanted).error().message, "is made by replication or replicated");
-  EXPECT_FALSE(kWriter->shell("CQUAD4,10,7,1,2,3,4\n,,,1.", 0, 0, {22, {1, 2, 3, 3}, kSame, 0}).has_value());
+  EXPECT_EQ(kWriter->shell({"CQUAD8,10,7,1,2,3,4,5,6", 0, 0}, wanted).error().message, "has mid-side nodes");
+  EXPECT_EQ(kWriter->shell({"CQUAD4,10,7,1,2,3,4\n=,*(1),==", 0, 0}, wanted).error().message, "is made by replication or replicated");
+  EXPECT_FALSE(kWriter->shell({"CQUAD4,10,7,1,2,3,4\n,,,1.", 0, 0}, {22, {1, 2, 3, 3}, kSame, 0}).has_value());
   const ShellCard triangle{22, {1, 2, 3, 3}, kSame, 0};
-  EXPECT_EQ(kWriter->shell("CQUADR        10       7       1       2       3       4              .5+A\n+B             1", 0, 0, wanted)
+  EXPECT_EQ(kWriter->shell({"CQUADR        10       7       1       2       3       4              .5+A\n+B             1", 0, 0}, wanted)
                 .error()
                 .message,
             "has continuations that aren't in order");
-  EXPECT_EQ(kWriter->shell("CSHEAR,10,7,1,2,3,4", 0, 0, triangle).error().message, "is a CSHEAR, which has another number of corners");
-  EXPECT_EQ(kWriter->shell("CTRIA6,10,7,1,2,3", 0, 0, wanted).error().message, "is a CTRIA6, which has another number of corners");
-  EXPECT_EQ(kWriter->shell("CSHEAR,10,7,1,2,3,4", 0, 0, wanted)->text, "CSHEAR,22,7,1,2,3,4");
-  EXPECT_EQ(kWriter->shell("CQUAD4,10,7,1,2,3,4,,,\n,,,1.,,1.,1.", 0, 0, wanted).error().message,
+  EXPECT_EQ(kWriter->shell({"CSHEAR,10,7,1,2,3,4", 0, 0}, triangle).error().message, "is a CSHEAR, which has another number of corners");
+  EXPECT_EQ(kWriter->shell({"CTRIA6,10,7,1,2,3", 0, 0}, wanted).error().message, "is a CTRIA6, which has another number of corners");
+  EXPECT_EQ(kWriter->shell({"CSHEAR,10,7,1,2,3,4", 0, 0}, wanted)->text, "CSHEAR,22,7,1,2,3,4");
+  EXPECT_EQ(kWriter->shell({"CQUAD4,10,7,1,2,3,4,,,\n,,,1.,,1.,1.", 0, 0}, wanted).error().message,
             "has a thickness of its own at some of its corners only");
 }
 
 TEST(NastranWriter, new_cards_have_all_that_the_old_one_says) {
-  EXPECT_EQ(kWriter->new_constrained_node("GRID,1,7,1.,2.,3.,4,123,9", 0, 0, 22, {1, 2.5, 0})->text, "GRID,22,7,1.0,2.5,0.0,4,123,9");
-  EXPECT_NE(kWriter->node_constraints("GRID,1,7,1.,2.,3.,,,9", 0, 0), "") << "a superelement";
-  EXPECT_NE(kWriter->node_constraints("GRID,1,7,1.,2.,3.,4", 0, 0), kWriter->node_constraints("GRID,1,7,1.,2.,3.,,4", 0, 0));
-  const auto anew = [](const char* card, double turn) { return kWriter->shell(card, 0, 0, {22, {1, 2, 3, 4}, kSame, turn})->text; };
+  EXPECT_EQ(kWriter->new_constrained_node({"GRID,1,7,1.,2.,3.,4,123,9", 0, 0}, 22, {1, 2.5, 0})->text, "GRID,22,7,1.0,2.5,0.0,4,123,9");
+  EXPECT_NE(kWriter->node_constraints({"GRID,1,7,1.,2.,3.,,,9", 0, 0}), "") << "a superelement";
+  EXPECT_NE(kWriter->node_constraints({"GRID,1,7,1.,2.,3.,4", 0, 0}), kWriter->node_constraints({"GRID,1,7,1.,2.,3.,,4", 0, 0}));
+  const auto anew = [](const char* card, double turn) { return kWriter->shell({card, 0, 0}, {22, {1, 2, 3, 4}, kSame, turn})->text; };
   EXPECT_EQ(anew("CQUAD4,10,,1,2,3,4", 0), "CQUAD4,22,10,1,2,3,4") << "a blank property is the element's id";
   EXPECT_EQ(anew("CQUAD4,10,7,1,2,3,4\n,,1,.5,.5,.5,.5", 0), "CQUAD4,22,7,1,2,3,4,,\n+,,1,0.5,0.5,0.5,0.5") << "shares stay shares";
   EXPECT_EQ(anew("CQUAD4,10,7,1,2,3,4,170.", -30), "CQUAD4,22,7,1,2,3,4,-160.0");
@@ -196,16 +200,17 @@ TEST(NastranWriter, new_cards_have_all_that_the_old_one_says) {
 
 TEST(NastranWriter, writes_ids_of_eight_digits_in_eight_columns_and_longer_ones_in_sixteen_or_between_commas) {
   const ShellCard wanted{10, {1, 12345678, 3, 4}, kSame, 0};
-  EXPECT_EQ(kWriter->shell("CQUAD4        10       7       1       2       3       4", 0, 0, wanted)->text,
+  EXPECT_EQ(kWriter->shell({"CQUAD4        10       7       1       2       3       4", 0, 0}, wanted)->text,
             "CQUAD4        10       7       112345678       3       4");
   const ShellCard longer{123456789, {1, 987654321, 3, 4}, kSame, 0};
   EXPECT_EQ(
       kWriter
-          ->shell("CQUAD4*               10               7               1               2*\n*                      3               4", 0,
-                  0, longer)
+          ->shell(
+              {"CQUAD4*               10               7               1               2*\n*                      3               4", 0, 0},
+              longer)
           ->text,
       "CQUAD4*        123456789               7               1       987654321\n*                      3               4");
-  EXPECT_EQ(kWriter->new_node("GRID    1               1.0     2.0     3.0", 0, 0, 12345678, {1, 2.5, 0}).text,
+  EXPECT_EQ(kWriter->new_node({"GRID    1               1.0     2.0     3.0", 0, 0}, 12345678, {1, 2.5, 0}).text,
             "GRID    12345678        1.0     2.5     0.0");
 }
 

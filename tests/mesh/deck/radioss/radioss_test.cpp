@@ -377,16 +377,16 @@ TEST_F(Radioss, writes_shells_into_the_block_of_their_kind) {
   const auto writer = card_writer(Format::radioss);
   const std::string quad = "         1         1         2         3         4          " + right("30", 20) + right("1.5", 20);
   ShellCard shell{12, {1, 2, 9, 4}, {}, 0};
-  const auto changed = writer->shell(quad, 0, 0, shell);
+  const auto changed = writer->shell({quad, 0, 0}, shell);
   ASSERT_TRUE(changed);
   EXPECT_EQ(changed->text, "        12         1         2         9         4          " + right("30", 20) + right("1.5", 20));
   shell.nodes = {1, 2, 9, 9};
-  EXPECT_FALSE(writer->holds_triangles_and_quads(quad, 0, 0));
-  EXPECT_FALSE(writer->shell(quad, 0, 0, shell));
-  const auto triangle = writer->shell_in_manner(quad, 0, 0, quad, 0, 2, shell);
+  EXPECT_FALSE(writer->holds_triangles_and_quads({quad, 0, 0}));
+  EXPECT_FALSE(writer->shell({quad, 0, 0}, shell));
+  const auto triangle = writer->shell_in_manner({quad, 0, 0}, {quad, 0, 2}, shell);
   ASSERT_TRUE(triangle);
   EXPECT_EQ(triangle->text, "        12         1         2         9                    " + right("30", 20) + right("1.5", 20));
-  EXPECT_EQ(writer->new_node("", 0, 0, 77, Vec3(0.5, -1, 0)).text, node(77, "0.5", "-1.0", "0.0").substr(0, 70));
+  EXPECT_EQ(writer->new_node({"", 0, 0}, 77, Vec3(0.5, -1, 0)).text, node(77, "0.5", "-1.0", "0.0").substr(0, 70));
   EXPECT_EQ(writer->largest_node_id(1), 99999999);
 }
 

@@ -336,17 +336,17 @@ TEST(RadiossWriter, moves_within_the_columns) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.what);
     const std::string text = c.before + "\r\n/END\n";
-    EXPECT_EQ(kStarterWriter->node_end(text, 0, c.style), c.before.size());
-    EXPECT_EQ(kStarterWriter->node_coordinates(text, 0, c.style), c.from);
-    const WrittenCard card = kStarterWriter->move_node(text, 0, c.style, c.from, c.to);
+    EXPECT_EQ(kStarterWriter->node_end({text, 0, c.style}), c.before.size());
+    EXPECT_EQ(kStarterWriter->node_coordinates({text, 0, c.style}), c.from);
+    const WrittenCard card = kStarterWriter->move_node({text, 0, c.style}, c.from, c.to);
     EXPECT_EQ(card.text, c.after);
     EXPECT_FALSE(card.by_parameter);
     EXPECT_EQ(card.rounded, c.style == 1 ? 1 : 0);
   }
   const std::string by_parameter = right("1", 10) + reals({"&x", "2.0", "3.0"});
-  EXPECT_EQ(kStarterWriter->node_coordinates(by_parameter, 0, 0), std::nullopt);
-  EXPECT_TRUE(kStarterWriter->move_node(by_parameter, 0, 0, {1, 2, 3}, {2, 2, 3}).by_parameter);
-  EXPECT_FALSE(kStarterWriter->move_node(by_parameter, 0, 0, {1, 2, 3}, {1, 2, 4}).by_parameter);
+  EXPECT_EQ(kStarterWriter->node_coordinates({by_parameter, 0, 0}), std::nullopt);
+  EXPECT_TRUE(kStarterWriter->move_node({by_parameter, 0, 0}, {1, 2, 3}, {2, 2, 3}).by_parameter);
+  EXPECT_FALSE(kStarterWriter->move_node({by_parameter, 0, 0}, {1, 2, 3}, {1, 2, 4}).by_parameter);
 }
 
 TEST(RadiossWriter, tells_the_largest_id_of_each_layout) {
@@ -358,30 +358,30 @@ TEST(RadiossWriter, tells_the_largest_id_of_each_layout) {
 
 TEST(RadiossWriter, writes_ids_of_ten_and_eight_digits) {
   const ShellCard ten{9876543210, {1234567890, 1234567891, 1234567892, 1234567893}, kOwnCorners, 0};
-  const auto same = kStarterWriter->shell("0000000011         1         2         5         4", 0, 0, {11, {1, 2, 5, 7}, kOwnCorners, 0});
+  const auto same = kStarterWriter->shell({"0000000011         1         2         5         4", 0, 0}, {11, {1, 2, 5, 7}, kOwnCorners, 0});
   ASSERT_TRUE(same);
   EXPECT_EQ(same->text, "0000000011         1         2         5         7") << "an id that stays keeps its digits";
-  const auto quad = kStarterWriter->shell(card({11, 1, 2, 5, 4}), 0, 0, ten);
+  const auto quad = kStarterWriter->shell({card({11, 1, 2, 5, 4}), 0, 0}, ten);
   ASSERT_TRUE(quad);
   EXPECT_EQ(quad->text, "98765432101234567890123456789112345678921234567893");
   const ShellCard eight{98765432, {12345670, 12345671, 12345672, 12345672}, kOwnCorners, 0};
-  const auto triangle = kStarterWriter->shell(card({11, 1, 2, 5}, 8), 0, kOldQuad | kTriangle, eight);
+  const auto triangle = kStarterWriter->shell({card({11, 1, 2, 5}, 8), 0, kOldQuad | kTriangle}, eight);
   ASSERT_TRUE(triangle);
   EXPECT_EQ(triangle->text, "98765432123456701234567112345672");
-  EXPECT_EQ(kStarterWriter->new_node("", 0, 0, 9876543210, Vec3(0, 0, 1)).text, "9876543210" + reals({"0.0", "0.0", "1.0"}));
+  EXPECT_EQ(kStarterWriter->new_node({"", 0, 0}, 9876543210, Vec3(0, 0, 1)).text, "9876543210" + reals({"0.0", "0.0", "1.0"}));
 }
 
 TEST(RadiossWriter, refuses_shells_of_another_kind_or_width) {
   const std::string quads = card({11, 1, 2, 5, 4}), triangles = card({12, 2, 3, 6});
   const ShellCard quad{11, {1, 2, 5, 4}, kOwnCorners, 0}, triangle{11, {1, 2, 5, 5}, kOwnCorners, 0};
   const auto why = [](const Result<WrittenCard>& card) { return card ? std::string() : card.error().message; };
-  EXPECT_EQ(why(kStarterWriter->shell(quads, 0, 0, triangle)), "stands in a /SHELL block, where a triangle's own block is /SH3N");
-  EXPECT_EQ(why(kStarterWriter->shell(triangles, 0, kTriangle, quad)), "stands in an /SH3N block, which holds triangles only");
-  EXPECT_EQ(why(kStarterWriter->shell_in_manner(quads, 0, 0, quads, 0, 0, triangle)),
+  EXPECT_EQ(why(kStarterWriter->shell({quads, 0, 0}, triangle)), "stands in a /SHELL block, where a triangle's own block is /SH3N");
+  EXPECT_EQ(why(kStarterWriter->shell({triangles, 0, kTriangle}, quad)), "stands in an /SH3N block, which holds triangles only");
+  EXPECT_EQ(why(kStarterWriter->shell_in_manner({quads, 0, 0}, {quads, 0, 0}, triangle)),
             "has another number of corners than the block it would go to");
-  EXPECT_EQ(why(kStarterWriter->shell_in_manner(quads, 0, 0, triangles, 0, kTriangle | kOldQuad, triangle)),
+  EXPECT_EQ(why(kStarterWriter->shell_in_manner({quads, 0, 0}, {triangles, 0, kTriangle | kOldQuad}, triangle)),
             "would go to a block with columns of another width");
-  EXPECT_EQ(why(kStarterWriter->shell_in_manner(quads, 0, 0, triangles, 0, kTriangle, triangle)), "");
+  EXPECT_EQ(why(kStarterWriter->shell_in_manner({quads, 0, 0}, {triangles, 0, kTriangle}, triangle)), "");
 }
 
 TEST(RadiossWriter, tells_which_cards_name_one_kind_only) {

@@ -1,0 +1,68 @@
+// What the stages of `assemble` pass on. Private to assembly.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "mesh/deck/data/deck.h"
+
+namespace prismesh::mesh::deck {
+
+/// Nodes by index, and where their cards stand.
+struct AssembledNodes {
+  ChunkedArray<std::int64_t> ids;
+  ChunkedArray<Vec3> positions;       ///< in the basic system
+  ChunkedArray<std::uint8_t> holds;   ///< NodeHold bits
+  std::vector<CardRun> runs;          ///< as Deck::node_runs
+  std::vector<std::uint64_t> offset;  ///< as Deck::node_line
+  std::shared_ptr<const IdIndex> index;
+};
+
+struct AssembledParts {
+  std::shared_ptr<const std::vector<Part>> parts;  ///< ascending by id
+  IdIndex index;
+};
+
+/// From the ids on cards to indices. Invalid: nobody defines it.
+struct IdLookup {
+  const IdIndex& nodes;
+  const IdIndex& parts;
+
+  NodeIndex node(std::int64_t id) const { return NodeIndex(nodes.find(id)); }
+  PartIndex part(std::int64_t id) const {
+    const std::uint32_t index = parts.find(id);
+    return index == IdIndex::kNotFound ? PartIndex() : PartIndex(index);
+  }
+};
+
+/// Elements that aren't in the model because a node of theirs isn't defined.
+struct LeftOutElements {
+  std::vector<std::int64_t> ids;
+  std::vector<NodeIndex> nodes;  ///< those of their nodes that are defined: moved, they would deform an element that nobody sees
+};
+
+/// A node that the card of an element names and nobody defines.
+struct UndefinedNode {
+  std::string_view element_class;
+  std::int64_t element = 0;  ///< ids
+  std::int64_t node = 0;
+  std::uint32_t file = 0;
+  std::size_t offset = 0;  ///< of the element's card
+};
+
+/// Shells by index, and where their cards stand.
+struct AssembledShells {
+  ChunkedArray<std::int64_t> ids;
+  ChunkedArray<ShellNodes> nodes;
+  ChunkedArray<PartIndex> parts;
+  ChunkedArray<float> thickness;
+  std::shared_ptr<const std::vector<MidsideNodes>> midside;
+  std::vector<CardRun> runs;          ///< as Deck::shell_runs
+  std::vector<std::uint64_t> offset;  ///< as Deck::shell_line
+  std::shared_ptr<const IdIndex> index;
+};
+
+}  // namespace prismesh::mesh::deck
