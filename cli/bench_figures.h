@@ -23,7 +23,7 @@ struct BenchPatch {
   std::size_t nodes = 0;
   std::size_t shells = 0;                                      ///< that touch the nodes
   std::shared_ptr<const mesh::document::Generation> selected;  ///< the deck with the nodes selected; null: see `refusal`
-  mesh::document::Lift lift;                                   ///< of the centre; far enough that shells fail, where that is possible
+  mesh::document::Lift lift;                                   ///< of the centre; far enough that shells get worse, where that is possible
   std::string refusal;                                         ///< why no patch of this deck can be lifted; then only `centre` is set
 };
 

@@ -21,9 +21,10 @@ namespace document = mesh::document;
 constexpr std::array<std::size_t, 4> kPatchNodes{2500, 600, 150, 40};  ///< tried in this order, then half of a connected piece
 constexpr std::size_t kMaxPartsTried = 8;
 constexpr int kMaxRings = 400;
-/// How far the centre is lifted, in radii of the patch, and how many shells should fail then. Repairing costs some milliseconds for each.
+/// How far the centre is lifted at most, in radii of the patch, and how many more shells should warn or fail then: enough for a repair to
+/// measure, and few enough to end soon, since each costs some milliseconds or more.
 constexpr double kMaxLift = 2;
-constexpr std::size_t kWantedFailures = 10;
+constexpr std::size_t kWantedDamaged = 20;
 constexpr int kBisections = 12;
 
 struct PartMiddle {
@@ -97,18 +98,19 @@ Result<std::optional<document::Document>> with_patch_selected(const document::Do
   return std::optional(std::move(rings->selected));
 }
 
-/// The smallest lift found by bisection at which the wanted number of shells, or as many as can, fail that didn't before.
-double damaging_distance(document::Drag& drag, double radius, std::size_t failed_before) {
-  const auto fails = [&](double distance) {
+/// The smallest lift found by bisection at which the wanted number of shells, or as many as can, warn or fail that didn't before.
+double damaging_distance(document::Drag& drag, double radius, const mesh::quality::Counts& before) {
+  const auto damaged = [&](double distance) {
     drag.step({mesh::Vec3::Zero(), distance, 0});
-    return drag.counts().fail - std::min(failed_before, drag.counts().fail);
+    const std::size_t good = drag.counts().ok;
+    return before.ok - std::min(before.ok, good);
   };
   double high = kMaxLift * radius, low = 0;
-  const std::size_t wanted = std::min(kWantedFailures, fails(high));
+  const std::size_t wanted = std::min(kWantedDamaged, damaged(high));
   if (wanted == 0) return radius / 2;
   for (int step = 0; step < kBisections; ++step) {
     const double middle = 0.5 * (low + high);
-    (fails(middle) >= wanted ? high : low) = middle;
+    (damaged(middle) >= wanted ? high : low) = middle;
   }
   return high;
 }
@@ -135,7 +137,7 @@ Result<std::optional<BenchPatch>> try_patch(const document::Document& opened, me
   double radius = 0;
   for (const mesh::NodeIndex node : drag->nodes())
     radius = std::max(radius, (generation.model.position(node) - generation.model.position(centre)).norm());
-  patch.lift.distance = damaging_distance(*drag, radius, generation.counts.fail);
+  patch.lift.distance = damaging_distance(*drag, radius, generation.counts);
   if (const auto lifted = document::prepare(selected, patch.lift); !lifted) return fail(lifted.error());
   return std::optional(std::move(patch));
 }

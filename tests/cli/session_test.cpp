@@ -102,7 +102,7 @@ TEST_F(PlayedSession, an_edit_is_done_once_though_the_daemon_ends_in_the_middle)
     const char* said;
   };
   for (const Case& each :
-       {Case{"/a.k", 8, 0, 1, "the edit counts"}, Case{"/a.k", 7, 0, 2, "1 node moved"}, Case{"/a.k", 9, 1, 1, "others were editing too"},
+       {Case{"/a.k", 8, 0, 1, "the edit is done"}, Case{"/a.k", 7, 0, 2, "1 node moved"}, Case{"/a.k", 9, 1, 1, "others were editing too"},
         Case{"/a.k", 6, 1, 1, "others were editing too"}, Case{"/b.k", 8, 1, 1, "restarted with another document"}}) {
     PlayedDaemon daemon(socket(), played_state("/a.k", 7), played_state(each.path_after, each.edits_after));
     const Outcome outcome = session({"edit", R"({"edit": "translate", "by": [0, 0, 0.25], "on": "1313"})"});

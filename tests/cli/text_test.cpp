@@ -88,7 +88,7 @@ TEST_F(Cli, replay_says_what_is_wrong_with_a_journal_and_does_the_rest) {
   damaged[damaged.rfind("translate")] = 'T';
   const Outcome rest = replayed(damaged, deck);
   EXPECT_THAT(rest.err, HasSubstr(journal + ":4: warning: the journal is damaged here"));
-  EXPECT_THAT(rest.err, HasSubstr("; the edits before it are replayed\n"));
+  EXPECT_THAT(rest.err, HasSubstr("; only the edits before it are replayed\n"));
   EXPECT_THAT(rest.out, HasSubstr("1 of 1 edits applied\n"));
   const Outcome other = replayed(whole, write("other.k", plate_with(plate_text(), "$ another\n")));
   EXPECT_THAT(other.err, HasSubstr(journal + ": note: made on another deck, " + deck + "\n"));
@@ -139,7 +139,7 @@ TEST_F(Cli, check_says_defects_structure_and_parts_in_words) {
   const Outcome outcome = prismesh({"check", write("plate.k", plate_with(plate_text(), cards))});
   ASSERT_EQ(outcome.status, kDone) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("1 shell with corners at one place (fail)\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("shells have the corners of another\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("shells duplicate others\n"));
   EXPECT_THAT(outcome.out, HasSubstr("and 2 more parts; all are in the JSON\n"));
   EXPECT_THAT(outcome.out, HasSubstr("target size 5 mm (guessed), criteria default\n"));
   const Outcome plain = prismesh({"check", write("plain.k", plate_text()), "--target-size", "5", "--length-unit", "mm"});
