@@ -1,4 +1,4 @@
-// What the kiosk is asked for when it starts.
+// The options that the kiosk starts with.
 #pragma once
 
 #include <filesystem>
@@ -17,13 +17,13 @@ struct AppOptions {
   display::PixelSize size{1600, 900};
   bool fullscreen = false;
   std::optional<std::string> profile;       ///< a name or a profile file; empty: the settings', or else mono
-  std::optional<mesh::Vec3> fixed_eyes_mm;  ///< the eyes are here, whatever a tracker says
-  int headless_frames = 0;                  ///< > 0: no window; so many pictures are written to `shots`, then the program ends
+  std::optional<mesh::Vec3> fixed_eyes_mm;  ///< between the eyes; goes before what a tracker says
+  int headless_frames = 0;                  ///< > 0: no window; the program writes this number of pictures to `shots` and ends
   double pace_seconds = 0;                  ///< between those pictures
   std::filesystem::path shots;
-  bool calibrate = false;  ///< lead through the display's calibration instead
+  bool calibrate = false;  ///< run the display's calibration instead
   bool follow = false;     ///< move together with other kiosks that follow
-  bool trace = false;      ///< what happens goes to standard output, a line each
+  bool trace = false;      ///< write a line for each event to standard output
 };
 
 }  // namespace prismesh::kiosk

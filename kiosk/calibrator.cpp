@@ -15,9 +15,9 @@ namespace {
 
 using panels::WizardAction;
 
-/// The device daemon is waited for so long before the wizard goes without its motor.
+/// How long the wizard waits for the device daemon before it goes on without the motor.
 constexpr std::int64_t kDevicesPatienceNs = 3'000'000'000;
-/// The mask moves and the head too: pages are drawn anew so often.
+/// Between two drawings of a page, as mask and head move.
 constexpr int kBeatMs = 30;
 
 /// A file's name for a display: letters, digits and dashes.
@@ -196,7 +196,7 @@ Result<void> Calibrator::draw() {
   picture.toward_right = seen.toward_right;
   picture.eye_separation_mm = page.profile.eye_separation_mm.value_or(seen.eye_separation_mm);
   picture.mask_mm = page.weave_mask_mm;
-  picture.panel = station_.editor.panel();
+  picture.panel = station_.editor.context().view.panel;
   picture.overlay = [&](const render::EyeImage& image) {
     painter_->paint(page.pattern, image);
     gui_->draw({image.width, image.height}, image.from_picture);

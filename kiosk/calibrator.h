@@ -1,4 +1,4 @@
-// The calibration on a display: shows the wizard's pages in both eyes, takes keys and buttons, holds the mask, and saves.
+// Runs the calibration on a display: shows the wizard's pages in both eyes, takes keys and buttons, holds the mask, and saves.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@
 
 namespace prismesh::kiosk {
 
-/// Where a finished calibration goes.
+/// Where a finished calibration is written.
 struct SaveTo {
   std::filesystem::path folder;    ///< of profile files
   std::filesystem::path settings;  ///< the settings file that names the station's profile
 };
-/// The user's own folder and settings, or the settings file given. Errors: there is no home to put them in.
+/// The user's own folder and settings, or the settings file given. Errors: no home folder is known.
 Result<SaveTo> usual_place(const std::optional<std::filesystem::path>& settings);
 
 class Calibrator {
  public:
-  /// Needs the window's GL context. Errors: the driver refuses a shader, the font lacks.
+  /// Needs the window's GL context. Errors: the driver refuses a shader; the font is missing.
   static Result<std::unique_ptr<Calibrator>> create(display::Window& window, Station& station, const drivers::display::Profile& start,
                                                     SaveTo save_to);
 
-  /// Until it is saved or left: the profile's file, or nothing. Errors: the display is gone.
+  /// Runs until the calibration is saved or left. Returns the profile's file, or nothing. Errors: the display is gone.
   Result<std::optional<std::filesystem::path>> run();
 
  private:

@@ -1,5 +1,5 @@
-// The kiosk's end of the line to the device daemon: connects and connects again, keeps its state page mapped, and knows its devices in
-// words. Never waits; looking at the page costs no call.
+// The kiosk's connection to the device daemon: connects again when it is lost, keeps the state page mapped, and words the devices. Never
+// waits; reading the page costs no call.
 #pragma once
 
 #include <cstdint>
@@ -11,38 +11,38 @@
 
 #include "ipc/reconnecting_client.h"
 #include "kiosk/stereo/tracked_eyes.h"
-#include "kiosk/trace.h"
+#include "kiosk/tools/trace.h"
 
 namespace prismesh::kiosk {
 
 class DeviceLink {
  public:
-  DeviceLink(const std::filesystem::path& socket, Trace trace);
+  DeviceLink(const std::filesystem::path& socket, tools::Trace trace);
 
-  /// Connects when it is time to, and reads what has come.
+  /// Connects when it is time to, and reads what has arrived.
   void turn();
   /// For poll(2); negative while there is no connection.
   int descriptor() const { return client_ != nullptr ? client_->descriptor() : -1; }
   bool connected() const { return client_ != nullptr; }
 
-  /// What the page says now; empty without a daemon.
+  /// The page as it is now; empty without a daemon.
   stereo::DeviceReading read() const;
-  /// What the kiosk shows from now on. Said to each new daemon as well.
+  /// Tells the daemon what the kiosk shows from now on. Each new daemon is told too.
   void tell_picture(bool mono);
-  /// Try again after a stuck mask or a motor's alarm.
+  /// Asks for another try after a stuck mask or a motor's alarm.
   void rearm();
-  /// Calibration: the mask goes there and stays, until it is released or the connection ends.
+  /// Calibration: moves the mask there and holds it, until it is released or the connection ends.
   void hold_mask(double position_mm);
   void release_mask();
-  /// The daemon reads settings and display profile again.
+  /// Asks the daemon to read settings and display profile again.
   void reload();
-  /// What the daemon has refused since the last call: its words, the newest; empty: nothing.
+  /// The newest refusal since the last call, in the daemon's words; empty: none.
   std::string take_refusal() { return std::exchange(refusal_, {}); }
 
   /// Eye tracker and prism servo, as the daemon words them; empty without a daemon.
   const std::vector<ipc::DeviceInfo>& devices() const { return devices_; }
   const ipc::DeviceInfo* device(std::string_view role) const;
-  /// Counts up with everything that changes those words.
+  /// Counts up with each change of those words.
   std::uint64_t changes() const { return changes_; }
 
  private:
@@ -54,7 +54,7 @@ class DeviceLink {
   void send(const Request& request);
 
   ipc::ReconnectingDeviceClient connection_;
-  Trace trace_;
+  tools::Trace trace_;
   ipc::DeviceClient* client_ = nullptr;  ///< good until the next turn
   std::size_t greeted_ = 0;              ///< connections that were told what is shown
   std::optional<bool> shown_mono_;

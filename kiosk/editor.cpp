@@ -1,176 +1,197 @@
 #include "kiosk/editor.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "kiosk/editor_keys.h"
+#include "kiosk/tool_list.h"
+#include "kiosk/tools/edits.h"
+#include "kiosk/tools/key_table.h"
+#include "kiosk/tools/open_panels.h"
+#include "kiosk/tools/picking.h"
+
 namespace prismesh::kiosk {
-namespace {
 
-using panels::Notice;
+using tools::Cover;
+using tools::Notice;
+using tools::Pixel;
+using tools::Pointer;
+using tools::Tool;
 
-constexpr double kZoomPerStep = 1.15;
-constexpr double kAngleStep = 5;  ///< degrees
-
-}  // namespace
-
-Editor::Editor(const EditorOptions& options, ModelLink& link, render::Renderer& renderer, Clock& clock, Trace trace)
-    : link_(link),
-      renderer_(renderer),
-      clock_(clock),
-      trace_(trace),
-      profile_(options.profile),
-      expressions_(options.expressions),
-      mouse_words_(options.mouse.in_words()),
-      quality_(link),
-      files_(link, trace),
-      notices_(trace),
-      comparing_(link, renderer, trace),
-      before_after_(link, comparing_, notices_, trace),
-      follows_others_(options.follows_others) {
-  view_.rotation = *stereo::named_rotation("iso");
+Editor::Editor(const stereo::Profile& profile, const tools::ToolOptions& options, const EditorServices& services)
+    : notices_(services.trace), context_{services.link, services.renderer, services.clock, services.trace, notices_, tools_, options} {
+  context_.view.profile = profile;
+  context_.view.view.rotation = *stereo::named_rotation("iso");
+  for (std::unique_ptr<Tool>& tool : make_tools(context_)) tools_.add(std::move(tool));
 }
 
 void Editor::set_picture_size(display::PixelSize size) {
-  if (size == size_) return;
-  size_ = size;
-  ++changes_;
+  if (size == context_.view.size) return;
+  context_.view.size = size;
+  ++context_.changes;
 }
 
 void Editor::look_from(const stereo::SeenFrom& seen) {
-  seen_ = seen;
-  const std::int64_t now = clock_.now_ns();
-  share_view();
-  const stereo::View fitted = depth_.fitted(glide_.along(view_, now), seen.between_eyes_mm, now);
-  if (fitted == view_) return;
-  view_ = fitted;
-  ++changes_;
+  context_.view.seen = seen;
+  const std::int64_t now = context_.clock.now_ns();
+  for (const auto& tool : tools_.all()) tool->look(now);
 }
 
-void Editor::set_eyes_facts(std::optional<panels::EyesFacts> facts) {
-  if (facts == eyes_facts_) return;
-  eyes_facts_ = std::move(facts);
-  ++changes_;
+void Editor::set_eyes_facts(std::optional<tools::EyesFacts> facts) {
+  if (facts == context_.view.eyes) return;
+  context_.view.eyes = std::move(facts);
+  ++context_.changes;
 }
 
 void Editor::set_panel(const render::PanelPlace& panel) {
-  if (panel == panel_) return;
-  panel_ = panel;
-  ++changes_;
-}
-
-/// Of the view that things are picked in: the right one of two.
-stereo::Aim Editor::aim() const {
-  render::Picture picture = plain_picture();
-  if (comparing_.two_views())
-    picture.view = stereo::pan(view_, {pane_shift() * stereo::screen_size_mm(profile_, size_.width, size_.height).x(), 0});
-  return render::aim_for(picture, size_.width, size_.height);
+  if (panel == context_.view.panel) return;
+  context_.view.panel = panel;
+  ++context_.changes;
 }
 
 // --- following the model server ---
 
 Result<void> Editor::follow() {
-  if (link_.changes() == link_changes_) return {};
-  link_changes_ = link_.changes();
-  ++changes_;
-  notices_.follow(link_.document_number());
-  files_.follow();
-  if (files_.question()) cover(Cover::none);
-  for (Notice& notice : link_.take_notices()) notices_.take(std::move(notice));
-  take_shared_view();
-  if (Result<void> followed = follow_states(); !followed) return followed;
-  if (link_.snapshot() != shown_) {
-    const auto& next = link_.snapshot();
-    const bool other_document = next && (!shown_ || document_number_ != link_.document_number());
-    document_number_ = link_.document_number();
-    shown_ = next;
-    // What stays within comfortable depth is what is shown now.
-    if (const stereo::Box box = renderer_.bounds(); !box.empty()) view_.bounds = stereo::sphere_around(box);
-    take_model();
-    if (other_document) {
-      axis_.reset();
-      axis_pick_.cancel();
-      leave_error();
-      leave_operation();
-      fit();
-    }
-  }
-  follow_quality();
-  return follow_drag();
+  tools::ModelLink& link = context_.link;
+  if (!std::exchange(context_.follow_soon, false) && link.changes() == link_changes_) return {};
+  link_changes_ = link.changes();
+  ++context_.changes;
+  notices_.follow(link.document_number());
+  for (Notice& notice : link.take_notices()) notices_.take(std::move(notice));
+  for (const auto& tool : tools_.all())
+    if (Result<void> prepared = tool->prepare(); !prepared) return prepared;
+  take_newest();
+  for (auto tool = tools_.all().rbegin(); tool != tools_.all().rend(); ++tool)
+    if (Result<void> followed = (*tool)->follow(); !followed) return followed;
+  return {};
 }
 
-void Editor::take_model() {
-  if (!shown_) {
-    anchor_.reset();
-    last_clicked_.reset();
-    selection_centre_.reset();
-    return;
-  }
-  const std::optional<mesh::Vec3> centre = shown_->info().selected_nodes > 0 ? tools::selection_centre(*renderer_.model()) : std::nullopt;
-  const bool elsewhere = centre != selection_centre_;
-  selection_centre_ = centre;
-  if (elsewhere && depth_.keeps_selection()) bring_selection();
-  anchor_ = shown_->info().selected_nodes > 0 ? tools::anchor_of_selection(*renderer_.model(), last_clicked_) : std::nullopt;
+/// The newest state becomes the one that is shown.
+void Editor::take_newest() {
+  tools::ShownModel& shown = context_.shown;
+  const auto& next = context_.link.snapshot();
+  if (next == shown.snapshot) return;
+  const bool other_document = next && (!shown.snapshot || shown.document_number != context_.link.document_number());
+  shown.document_number = context_.link.document_number();
+  shown.snapshot = next;
+  // What stays within comfortable depth is what is shown now.
+  if (const stereo::Box box = context_.renderer.bounds(); !box.empty()) context_.view.view.bounds = stereo::sphere_around(box);
+  tools::take_model(context_);
+  if (!other_document) return;
+  for (const auto& tool : tools_.all()) tool->document_changed();
 }
 
-/// The selection's middle goes into the plane of the screen, where both eyes see it at the same place.
-void Editor::bring_selection() {
-  if (selection_centre_ && profile_.stereo()) depth_.bring(*selection_centre_, clock_.now_ns());
-}
-
-// --- gestures that move the view ---
+// --- gestures and keys ---
 
 void Editor::gesture(const tools::Gesture& gesture) {
-  ++changes_;
-  const std::optional<tools::Pixel> picks = tools::picks_at(gesture);
-  if (picks && beside(*picks)) return cancel_gesture();
-  if (tools::asks_for_edit(gesture) && leave_older_state()) return;
-  std::visit([this](const auto& what) { handle(what); }, gesture);
+  ++context_.changes;
+  const std::optional<Pixel> picks = tools::picks_at(gesture);
+  if (picks && tools::is_beside(context_.view, *picks)) return cancel_gesture();
+  if (tools::asks_for_edit(gesture) && !tools_.allow_edit()) return;
+  tools_.gesture(gesture);
 }
-
-/// What is pulled stays where it has been pulled to, and the pointer on it.
-void Editor::view_moved() {
-  if (pull_) pull_->hold(aim(), pulled_to_, pulled_);
-}
-
-void Editor::handle(const tools::Orbited& orbit) {
-  if (!pivot_found_ || orbit.from != orbit_from_) {
-    // The model turns about what was under the pointer when the drag began.
-    pivot_found_ = true;
-    orbit_from_ = orbit.from;
-    const std::optional<mesh::NodeIndex> node = shown_ ? node_at(in_picked_view(orbit.from)) : std::nullopt;
-    if (node && node->value < shown_->node_count()) view_ = stereo::with_pivot(view_, shown_->position(node->value));
-  }
-  const double radians_per_pixel = std::numbers::pi / std::max(size_.height, 1);
-  view_ = stereo::orbit(view_, orbit.dx * radians_per_pixel, -orbit.dy * radians_per_pixel);
-  pulled_to_ = orbit.at;
-  view_moved();
-}
-
-void Editor::handle(const tools::Panned& pan) {
-  view_ = stereo::pan(view_, Eigen::Vector2d(pan.dx, -pan.dy) * aim().mm_per_pixel());
-  pulled_to_ = pan.at;
-  view_moved();
-}
-
-void Editor::handle(const tools::Zoomed& zoom) {
-  Eigen::Vector2d place = stereo::mm_of_pixel(aim(), zoom.at);
-  if (comparing_.two_views())
-    place.x() -=
-        (zoom.at.x() > 0.5 * size_.width ? 1 : -1) * pane_shift() * stereo::screen_size_mm(profile_, size_.width, size_.height).x();
-  view_ = stereo::zoom(view_, std::pow(kZoomPerStep, zoom.steps), place);
-  view_moved();
-}
-
-void Editor::handle(const tools::AngleTurned& turned) { change_angle(turned.steps * kAngleStep); }
 
 void Editor::cancel_gesture() {
-  rubber_band_.reset();
-  lasso_way_.clear();
-  cancel_pull();
-  ++changes_;
+  tools_.cancel_gesture();
+  ++context_.changes;
+}
+
+void Editor::command(const tools::Command& command, const Pointer& pointer) {
+  ++context_.changes;
+  if (tools::binding_of(key_bindings(), command).asks_for_edit() && !tools_.allow_edit()) return;
+  if (command.owner == kEditorName)
+    own_command(command.number);
+  else
+    tools_.command(command, pointer);
+}
+
+void Editor::own_command(std::uint8_t number) {
+  switch (static_cast<EditorCommand>(number)) {
+    case EditorCommand::undo: tools::send(context_, mesh::document::Undo{}); break;
+    case EditorCommand::redo: tools::send(context_, mesh::document::Redo{}); break;
+    case EditorCommand::cancel: cancel(); break;
+    case EditorCommand::menu: toggle_cover(Cover::menu); break;
+    case EditorCommand::help: toggle_cover(Cover::help); break;
+    case EditorCommand::deck_warnings:
+      if (context_.shown.snapshot) toggle_cover(Cover::warnings);
+      break;
+    case EditorCommand::fullscreen:
+    case EditorCommand::rearm: break;
+  }
+}
+
+void Editor::toggle_cover(Cover cover) { tools::set_cover(context_, context_.open.cover == cover ? Cover::none : cover); }
+
+/// What lies on top goes first.
+void Editor::cancel() {
+  if (context_.link.can_stop()) return context_.link.stop();
+  if (tools_.dragging()) return cancel_gesture();
+  if (Tool* asking = tools_.asking(); asking != nullptr)
+    asking->reply(tools::Reply::cancel);
+  else if (context_.open.dialog.owner != nullptr)
+    tools::close_dialog(context_);
+  else if (context_.open.cover != Cover::none)
+    tools::set_cover(context_, Cover::none);
+  else if (tools_.leave_mode())
+    return;
+  else if (!notices_.empty())
+    notices_.read();
+  else if (!tools_.take_back())
+    tools_.clear();
+}
+
+void Editor::panel_action(const std::function<void()>& action) {
+  ++context_.changes;
+  action();
+}
+
+void Editor::panel_command(const tools::Command& command) {
+  if (context_.open.cover == Cover::menu) tools::set_cover(context_, Cover::none);
+  this->command(command, std::nullopt);
+}
+
+bool Editor::reply_by_key(display::Key key) {
+  Tool* asking = tools_.asking();
+  if (asking == nullptr) return false;
+  const auto& choices = asking->question()->choices;
+  const auto chosen = std::find_if(choices.begin(), choices.end(), [&](const tools::Question::Choice& each) { return each.key == key; });
+  if (chosen == choices.end() || chosen->reply == tools::Reply::cancel) return false;
+  asking->reply(chosen->reply);
+  ++context_.changes;
+  return true;
+}
+
+bool Editor::takes_numbers(const Pointer& pointer) const {
+  if (dialog_open()) return false;
+  return std::any_of(tools_.all().begin(), tools_.all().end(), [&](const auto& tool) { return tool->takes_numbers(pointer); });
+}
+
+void Editor::begin_number(const std::string& text, const Pointer& pointer) {
+  for (const auto& tool : tools_.all())
+    if (tool->begin_number(text, pointer)) return;
+}
+
+// --- the picture ---
+
+render::Picture Editor::picture() const {
+  render::Picture picture = tools::plain_picture(context_.view);
+  for (const auto& tool : tools_.all()) tool->add_to_picture(picture);
+  return picture;
+}
+
+void Editor::trace_picture() {
+  if (!context_.trace.on()) return;
+  const stereo::Aim now = tools::aim(context_.view);
+  const Eigen::Matrix4d clip = now.clip_from_deck();
+  std::string text = fmt::format("aim {} {}", now.width, now.height);
+  for (int i = 0; i < 16; ++i) text += fmt::format(" {}", clip.data()[i]);
+  if (text != traced_aim_) context_.trace.line(traced_aim_ = text);
+  for (const auto& tool : tools_.all()) tool->trace_picture();
+  text = notices_.empty() ? "notice none" : tools::trace_of(notices_.front());
+  text.replace(0, std::string_view("notice").size(), "reads");
+  if (text != traced_notice_) context_.trace.line(traced_notice_ = text);
 }
 
 }  // namespace prismesh::kiosk

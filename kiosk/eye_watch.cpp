@@ -9,7 +9,7 @@ namespace {
 
 using drivers::prism_servo::MaskPhase;
 using ipc::EyesPhase;
-using panels::EyesFacts;
+using tools::EyesFacts;
 
 /// The tracker in a few words, and what the user can do about it.
 void word_eyes(EyesPhase phase, const ipc::DeviceInfo* tracker, EyesFacts& facts) {
@@ -61,7 +61,7 @@ void word_mask(MaskPhase phase, const ipc::DeviceInfo* servo, EyesFacts& facts) 
 
 }  // namespace
 
-EyeWatch::EyeWatch(const stereo::FollowOptions& options, DeviceLink& link, Clock& clock, Trace trace)
+EyeWatch::EyeWatch(const stereo::FollowOptions& options, DeviceLink& link, Clock& clock, tools::Trace trace)
     : link_(link), clock_(clock), trace_(trace), eyes_(options) {}
 
 void EyeWatch::set_options(const stereo::FollowOptions& options) {

@@ -24,9 +24,9 @@ HeadlessKiosk::HeadlessKiosk(const AppOptions& options, Station& station, const 
   station_.screen.set_size(options.size);
 }
 
-/// What was asked for can be seen, or nothing more is to be expected.
+/// Whether the picture shows what was asked for, or nothing more will come.
 bool HeadlessKiosk::settled() const {
-  const ModelLink& link = station_.link;
+  const tools::ModelLink& link = station_.link;
   if (!link.connected() || !link.state() || !link.busy().empty() || !link.up_to_date()) return false;
   if ((options_.deck || link.state()->open) && link.snapshot() == nullptr) return false;
   // Without a daemon, or with a tracker that sees nobody, a picture in mono is all there is.

@@ -1,4 +1,4 @@
-// A kiosk without a display: pictures of what it would show, into a folder.
+// Runs a kiosk without a display: writes pictures of what it would show into a folder.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ class HeadlessKiosk {
  public:
   HeadlessKiosk(const AppOptions& options, Station& station, const render::Offscreen& target);
 
-  /// Until the pictures are written. Errors: a model too large for the GPU; a picture that can't be written.
+  /// Runs until the pictures are written. Errors: a model too large for the GPU; a picture can't be written.
   Result<void> run();
 
  private:
-  /// A picture that was taken, and is waited for to say from where it would really have been seen.
+  /// A picture that was taken and whose measured eyes haven't been told yet.
   struct Shot {
     std::filesystem::path file;
     std::int64_t lit_ns = 0;
@@ -35,7 +35,7 @@ class HeadlessKiosk {
   bool settled() const;
   Result<void> shoot();
   void remember();
-  /// Says of the oldest shots where eyes and mask were when they would have lit up, as soon as that was measured.
+  /// Tells for the oldest pictures where eyes and mask were when these would have lit up, as soon as that was measured.
   void tell_seen();
 
   const AppOptions& options_;

@@ -1,4 +1,4 @@
-// prismesh-kiosk: the station's picture and hands.
+// prismesh-kiosk: shows the model and edits it by mouse and keyboard.
 #include <charconv>
 #include <cstdio>
 #include <string>

@@ -14,9 +14,9 @@
 #include "ipc/snapshot.h"
 #include "kiosk/display/headless.h"
 #include "kiosk/panels/gui.h"
-#include "kiosk/panels/legend.h"
 #include "kiosk/render/offscreen.h"
 #include "kiosk/render/renderer.h"
+#include "kiosk/tools/comparison/legend.h"
 
 namespace prismesh::kiosk {
 
@@ -36,7 +36,7 @@ struct RenderOptions {
   std::string view = "iso";
   std::string colour = "parts";
   std::optional<int> field;  ///< descriptor of a field's values
-  panels::LegendFacts legend;
+  tools::comparison::LegendFacts legend;
   int samples = 4;
 };
 
@@ -222,7 +222,7 @@ Result<panels::Gui> show_field(const RenderOptions& options, render::Renderer& r
   if (const auto type = gui->set_type(picture.profile.stereo() ? panels::kStereoType : panels::kFlatType); !type) return fail(type.error());
   // Panels that fit their content have their size after the second time.
   for (int round = 0; round < 3; ++round)
-    gui->layout({options.width, options.height}, 0.02, [&] { panels::legend(options.legend, {options.width, options.height}); });
+    gui->layout({options.width, options.height}, 0.02, [&] { tools::comparison::legend(options.legend, {options.width, options.height}); });
   return gui;
 }
 

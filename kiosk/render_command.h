@@ -1,4 +1,4 @@
-// `prismesh-kiosk --render`: a picture of a snapshot into a file, without a screen. What `prismesh render` runs.
+// `prismesh-kiosk --render`: draws a snapshot into a file, without a screen. `prismesh render` runs it.
 #pragma once
 
 #include <span>

@@ -4,8 +4,8 @@
 
 namespace prismesh::kiosk {
 
-Screen::Screen(panels::Gui gui, render::Renderer& renderer, Editor& editor, Clock& clock)
-    : gui_(std::move(gui)), renderer_(renderer), editor_(editor), clock_(clock), laid_out_ns_(clock.now_ns()) {}
+Screen::Screen(panels::Gui gui, std::vector<tools::MouseBinding> mouse, Editor& editor)
+    : gui_(std::move(gui)), mouse_(std::move(mouse)), editor_(editor), laid_out_ns_(editor.context().clock.now_ns()) {}
 
 void Screen::set_size(display::PixelSize size) {
   size_ = size;
@@ -14,14 +14,14 @@ void Screen::set_size(display::PixelSize size) {
 
 Result<void> Screen::lay_out() {
   if (Result<void> type = gui_.set_type(editor_.profile().stereo() ? panels::kStereoType : panels::kFlatType); !type) return type;
-  const std::int64_t now = clock_.now_ns();
-  std::vector<panels::PanelAction> actions;
+  const std::int64_t now = editor_.context().clock.now_ns();
+  tools::PanelLayout layout{size_, [this](const tools::Command& command) { editor_.panel_command(command); }};
   gui_.layout(size_, static_cast<double>(now - std::exchange(laid_out_ns_, now)) * 1e-9, [&] {
-    actions = panels_.build(editor_.panel_data(), size_);
+    panels_.build(editor_.context(), mouse_, layout);
     if (pointer_ && editor_.profile().stereo()) panels::draw_pointer(pointer_->x(), pointer_->y());
   });
   editor_.set_covered_width(panels_.covered_width());
-  for (const panels::PanelAction& action : actions) editor_.panel_action(action);
+  for (const std::function<void()>& action : layout.actions) editor_.panel_action(action);
   return {};
 }
 
@@ -33,7 +33,7 @@ Result<void> Screen::draw(unsigned framebuffer, const std::optional<tools::Pixel
   render::Picture picture = editor_.picture();
   picture.moving = moving;
   picture.overlay = [&](const render::EyeImage& image) { gui_.draw({image.width, image.height}, image.from_picture); };
-  const Result<render::DrawReport> report = renderer_.draw(picture, framebuffer, size_.width, size_.height);
+  const Result<render::DrawReport> report = editor_.context().renderer.draw(picture, framebuffer, size_.width, size_.height);
   if (!report) return fail(report.error());
   editor_.set_report(*report);
   return {};

@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "kiosk/display/link_check.h"
+#include "kiosk/tools/history_file.h"
 
 namespace prismesh::kiosk {
 
@@ -34,8 +35,8 @@ Station::Station(const StationOptions& options, std::unique_ptr<render::Renderer
       devices(ipc::device_socket_path(options.runtime_dir), trace),
       eyes({}, devices, clock, trace),
       renderer(std::move(made)),
-      editor({options.profile, options.mouse, expressions_file(), options.follows_others}, link, *renderer, clock, trace),
-      screen(std::move(gui), *renderer, editor, clock),
+      editor(options.profile, {expressions_file(), options.follows_others}, {link, *renderer, clock, trace}),
+      screen(std::move(gui), options.mouse.in_words(), editor),
       fixed_eyes_(options.fixed_eyes_mm.has_value()),
       resting_mm_(options.fixed_eyes_mm.value_or(kRestingEyesMm)),
       panel_latency_ms_(options.panel_latency_ms) {
@@ -83,7 +84,7 @@ void Station::follow_profile() {
   eyes.set_options(follow_options(*followed_, fixed_eyes_, resting_mm_));
   const display::LinkReport report = display::check_link(*followed_, monitor_);
   eyes.refuse_depth(report.stereo_allowed() ? std::string() : report.refusals.front());
-  // Eyes that are followed, and masks, count from the panel's middle; a picture for nobody in particular is its own screen.
+  // Positions of followed eyes and of masks count from the panel's middle; without them the picture is its own screen.
   render::PanelPlace panel;
   if (monitor_ && (eyes.follows() || followed_->has_mask()))
     panel = {place_.x - monitor_->x, place_.y - monitor_->y, monitor_->shown.width, monitor_->shown.height};

@@ -1,4 +1,4 @@
-// Everything of the kiosk but its display: the lines to the daemons, the picture and who looks at it.
+// The parts of a kiosk without its display: connections to the daemons, editor, panels and eyes.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,10 @@
 #include "kiosk/display/monitor.h"
 #include "kiosk/editor.h"
 #include "kiosk/eye_watch.h"
-#include "kiosk/model_link.h"
 #include "kiosk/screen.h"
+#include "kiosk/tools/model_link.h"
+#include "kiosk/tools/mouse_layout.h"
+#include "kiosk/tools/trace.h"
 
 namespace prismesh::kiosk {
 
@@ -20,21 +22,21 @@ struct StationOptions {
   std::optional<std::filesystem::path> deck;         ///< opened at the start
   stereo::Profile profile;
   tools::MouseLayout mouse = tools::default_mouse_layout();
-  std::optional<mesh::Vec3> fixed_eyes_mm;  ///< the eyes are here, whatever a tracker says
+  std::optional<mesh::Vec3> fixed_eyes_mm;  ///< between the eyes; goes before what a tracker says
   double panel_latency_ms = 10;
   bool trace = false;
   bool follows_others = false;  ///< moves together with other kiosks that do
 };
 
-/// Where the eyes are taken to be while nobody knows: between them, mm from the screen's centre.
+/// Between the eyes while nobody is tracked, mm from the screen's centre.
 inline const mesh::Vec3 kRestingEyesMm(0, 0, 650);
 
 /// Needs a current GL context for all of its life.
 struct Station {
   MonotonicClock clock;
-  Trace trace;
+  tools::Trace trace;
   tools::MouseLayout mouse;
-  ModelLink link;
+  tools::ModelLink link;
   DeviceLink devices;
   EyeWatch eyes;
   std::unique_ptr<render::Renderer> renderer;
@@ -43,11 +45,11 @@ struct Station {
 
   static Result<std::unique_ptr<Station>> create(const StationOptions& options);
 
-  /// Reads what the daemons say, and follows them.
+  /// Reads the daemons' messages, and follows them.
   Result<void> turn();
-  /// A beat of the display has come: looks where the eyes are. True: the picture must be drawn again.
+  /// Reads where the eyes are, once per refresh of the display. True: the picture must be drawn again.
   bool look();
-  /// Where the picture lies: on which monitor, if that is known, and at which place of the desktop.
+  /// Sets where the picture lies: the monitor, if it is known, and the place on the desktop.
   void place(std::optional<display::Monitor> monitor, const display::Window::Place& place);
 
  private:

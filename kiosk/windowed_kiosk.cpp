@@ -9,15 +9,19 @@
 #include <fmt/format.h>
 
 #include "kiosk/display/monitor.h"
+#include "kiosk/editor_keys.h"
+#include "kiosk/tool_list.h"
+#include "kiosk/tools/key_table.h"
 
 namespace prismesh::kiosk {
 
 namespace {
 
-constexpr std::int64_t kCaretBlinkNs = 300'000'000;  ///< a text field's caret is the only thing that moves by itself
-constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< so long after its last step a wheel is taken to stand still
+constexpr std::int64_t kCaretBlinkNs = 300'000'000;  ///< the caret of a text field blinks without any event
+constexpr std::int64_t kWheelRestNs = 250'000'000;   ///< the wheel counts as still this long after its last step
 constexpr std::int64_t kForEverNs = -1;
-constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< an absent device daemon is looked for so often
+constexpr std::size_t kManyShells = 200'000;            ///< a picture of more at rest may be too slow while the hand moves something
+constexpr std::int64_t kDaemonTriesNs = 1'000'000'000;  ///< between two attempts to reach a missing device daemon
 
 std::int64_t shorter(std::int64_t a, std::int64_t b) { return a < 0 ? b : b < 0 ? a : std::min(a, b); }
 
@@ -51,7 +55,7 @@ Result<void> WindowedKiosk::run() {
   return {};
 }
 
-/// Looks and draws where it is time to and something has changed; whether a picture was drawn.
+/// Looks at the eyes and draws, if it is time to and something has changed. Returns whether a picture was drawn.
 Result<bool> WindowedKiosk::beat() {
   if (!stale() && !station_.eyes.watches()) return false;
   if (station_.clock.now_ns() < station_.eyes.next_look_ns()) return false;
@@ -117,13 +121,14 @@ Result<void> WindowedKiosk::take_key(const display::KeyChanged& event) {
   }
   const bool digit = event.key >= display::Key::digit_0 && event.key <= display::Key::digit_9;
   if (digit && !event.modifiers.ctrl && !event.modifiers.alt && station_.editor.takes_numbers(pointer_on_picture())) return {};
-  const std::optional<tools::Command> command = tools::command_for(event.key, event.modifiers);
-  if (!command || (event.repeat && !tools::repeats(*command))) return {};
+  const tools::KeyBinding* binding = tools::binding_for(key_bindings(), event.key, event.modifiers);
+  if (binding == nullptr || (event.repeat && !binding->repeats())) return {};
+  const bool cancels = binding->command == command_of(EditorCommand::cancel);
   // While a path is typed the keyboard is the text field's.
-  if (station_.editor.dialog_open() ? *command != tools::Command::cancel : station_.screen.gui().wants_keys()) return {};
+  if (station_.editor.dialog_open() ? !cancels : station_.screen.gui().wants_keys()) return {};
   gestures_.forget_click();
-  if (*command == tools::Command::cancel) gestures_.cancel();
-  do_command(*command);
+  if (cancels) gestures_.cancel();
+  do_command(binding->command);
   swallow_text_ = station_.editor.dialog_open();
   return give_field_the_keyboard();
 }
@@ -146,10 +151,10 @@ Result<void> WindowedKiosk::take_text(const display::TextTyped& event) {
   return {};
 }
 
-void WindowedKiosk::do_command(tools::Command command) {
-  if (command == tools::Command::fullscreen)
+void WindowedKiosk::do_command(const tools::Command& command) {
+  if (command == command_of(EditorCommand::fullscreen))
     window_.set_fullscreen(fullscreen_ = !fullscreen_);
-  else if (command == tools::Command::rearm)
+  else if (command == command_of(EditorCommand::rearm))
     station_.devices.rearm();
   else
     station_.editor.command(command, pointer_on_picture());
@@ -169,7 +174,8 @@ Result<void> WindowedKiosk::show() {
   shown_changes_ = station_.editor.changes();
   dirty_ = edge_fed_ = false;
   window_.show_pointer(!station_.editor.profile().stereo());
-  shown_moving_ = moving() && station_.editor.large_model();
+  const auto& shown = station_.editor.context().shown.snapshot;
+  shown_moving_ = moving() && shown && shown->shell_count() > kManyShells;
   if (Result<void> drawn = station_.screen.draw(0, gestures_.position(), shown_moving_); !drawn) return drawn;
   if (station_.eyes.watches()) window_.finish();
   station_.eyes.drawn(station_.eyes.watches() ? window_.last_refresh_ns() : std::nullopt);
@@ -185,8 +191,8 @@ void WindowedKiosk::trace_picture() {
   station_.editor.trace_picture();
   if (pictures_ == 0) station_.trace.line(fmt::format("ready {} {}", window_.size().width, window_.size().height));
   ++pictures_;
-  const std::optional<std::uint64_t> generation = station_.editor.shown_generation();
-  station_.trace.line(fmt::format("picture {} generation {}", pictures_, generation ? std::to_string(*generation) : "none"));
+  const auto& shown = station_.editor.context().shown.snapshot;
+  station_.trace.line(fmt::format("picture {} generation {}", pictures_, shown ? std::to_string(shown->info().generation) : "none"));
 }
 
 void WindowedKiosk::trace_rest() {

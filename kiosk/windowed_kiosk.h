@@ -1,5 +1,5 @@
-// The loop of a kiosk in a window: waits for the hand, the daemons and the eyes, and draws when something changed, at most once per refresh
-// of the display.
+// Runs a kiosk in a window: waits for input, daemons and eyes, and draws when something has changed, at most once per refresh of the
+// display.
 #pragma once
 
 #include "kiosk/display/window.h"
@@ -12,7 +12,7 @@ class WindowedKiosk {
  public:
   WindowedKiosk(display::Window& window, Station& station);
 
-  /// Until the window is closed. Errors: the display is gone; a model too large for the GPU.
+  /// Runs until the window is closed. Errors: the display is gone; a model too large for the GPU.
   Result<void> run();
 
  private:
@@ -21,15 +21,15 @@ class WindowedKiosk {
   Result<void> take_key(const display::KeyChanged& event);
   Result<void> take_text(const display::TextTyped& event);
   Result<void> give_field_the_keyboard();
-  void do_command(tools::Command command);
+  void do_command(const tools::Command& command);
   Result<void> settle();
   void find_place() { station_.place(window_.monitor(), window_.place()); }
   /// The view or something in it is about to change again.
   bool moving() const { return gestures_.dragging() || station_.clock.now_ns() < wheel_rest_ns_; }
-  /// Something has changed that must be seen.
-  bool stale() const {
-    return dirty_ || station_.editor.changes() != shown_changes_ || (shown_moving_ && !moving()) || station_.editor.gliding();
-  }
+  /// The view moves to another by itself.
+  bool gliding() const { return station_.editor.context().view.depth.moving() || station_.editor.context().view.glide.moving(); }
+  /// The picture on the display is out of date.
+  bool stale() const { return dirty_ || station_.editor.changes() != shown_changes_ || (shown_moving_ && !moving()) || gliding(); }
   Result<bool> beat();
   Result<void> show();
   void trace_picture();
@@ -44,8 +44,8 @@ class WindowedKiosk {
   display::Window& window_;
   Station& station_;
   tools::Gestures gestures_;
-  bool swallow_text_ = false;  ///< the key that opened a field isn't meant for it
-  bool edge_fed_ = false;      ///< a press or release that the panels haven't seen yet
+  bool swallow_text_ = false;  ///< the text of the key that opened a field is dropped
+  bool edge_fed_ = false;      ///< the panels haven't handled a press or release yet
   bool dirty_ = true;
   bool fullscreen_ = false;
   bool closing_ = false;
@@ -54,7 +54,7 @@ class WindowedKiosk {
   std::uint64_t shown_changes_ = 0;
   std::uint64_t pictures_ = 0;
   std::uint64_t presses_ = 0, releases_ = 0;  ///< of buttons; a step of the wheel is a press
-  bool rest_traced_ = false;                  ///< nothing has come and nothing was drawn since
+  bool rest_traced_ = false;                  ///< no event and no picture since
 };
 
 }  // namespace prismesh::kiosk

@@ -1,4 +1,4 @@
-// The panels' ground: one ImGui context with our type and colours, fed with window events, drawn into each eye's image.
+// Holds the ImGui context of the panels, with our fonts and colours: takes window events, and draws into each eye's image.
 #pragma once
 
 #include <array>
@@ -59,7 +59,7 @@ void draw_pointer(double x, double y);
 ImFont* small_font();
 ImFont* title_font();
 
-/// Colours with a meaning, 0xAABBGGRR as ImGui packs them. They are never a part's.
+/// Colours with a meaning, 0xAABBGGRR as ImGui packs them. No part has them.
 inline constexpr unsigned kInk = 0xffe6e4e2;
 inline constexpr unsigned kFaintInk = 0xffaaa6a2;
 inline constexpr unsigned kWarnColour = 0xff3cc8f0;

@@ -56,4 +56,11 @@ void begin_left(const char* name, display::PixelSize picture) {
   ImGui::Begin(name, nullptr, (kPanelFlags & ~ImGuiWindowFlags_NoScrollbar) | ImGuiWindowFlags_AlwaysAutoResize);
 }
 
+void begin_centred(const char* name, display::PixelSize picture, float width) {
+  ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(picture.width) / 2), std::floor(static_cast<float>(picture.height) / 2)), 0,
+                          ImVec2(0.5f, 0.5f));
+  ImGui::SetNextWindowSize(ImVec2(on_grid(std::min(width, static_cast<float>(picture.width) - 2 * kMargin)), 0));
+  ImGui::Begin(name, nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+}
+
 }  // namespace prismesh::kiosk::panels

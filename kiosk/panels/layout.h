@@ -1,4 +1,4 @@
-// Small pieces that the panels are put together from. For panels*.cpp only: includes ImGui.
+// Small pieces that panels are put together from. For sources that lay panels out: includes ImGui.
 #pragma once
 
 #include <cmath>
@@ -38,5 +38,8 @@ void section(const char* title);
 
 /// The panel at the left, as high as its content but within the picture: then it scrolls.
 void begin_left(const char* name, display::PixelSize picture);
+
+/// A panel in the middle of the picture, as high as its content.
+void begin_centred(const char* name, display::PixelSize picture, float width);
 
 }  // namespace prismesh::kiosk::panels

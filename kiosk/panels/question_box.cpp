@@ -1,11 +1,9 @@
-// A question in the middle: what would happen to which files, and a button for each reply.
-#include <algorithm>
-#include <filesystem>
+#include "kiosk/panels/question_box.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "kiosk/panels/sections.h"
+#include "kiosk/panels/layout.h"
 #include "kiosk/panels/text.h"
 
 namespace prismesh::kiosk::panels {
@@ -25,7 +23,8 @@ void path_list(const tools::Question::List& list) {
 
 }  // namespace
 
-void question_box(const tools::Question& question, display::PixelSize picture, Actions& actions) {
+std::optional<tools::Reply> question_box(const tools::Question& question, display::PixelSize picture) {
+  std::optional<tools::Reply> reply;
   begin_centred("Question", picture, ImGui::GetFontSize() * 40);
   ImGui::PushFont(title_font());
   ImGui::TextWrapped("%s", printable(question.title).c_str());
@@ -39,9 +38,10 @@ void question_box(const tools::Question& question, display::PixelSize picture, A
   for (std::size_t i = 0; i < question.choices.size(); ++i) {
     const tools::Question::Choice& choice = question.choices[i];
     if (i > 0) ImGui::SameLine(0, kGrid);
-    if (ImGui::Button(fmt::format("{}  ({})", choice.label, choice.key_name).c_str())) actions.emplace_back(choice.reply);
+    if (ImGui::Button(fmt::format("{}  ({})", choice.label, choice.key_name).c_str())) reply = choice.reply;
   }
   ImGui::End();
+  return reply;
 }
 
 }  // namespace prismesh::kiosk::panels

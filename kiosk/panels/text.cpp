@@ -53,6 +53,12 @@ std::string grouped(std::uint64_t number) {
   return out;
 }
 
+std::string metric_words(const std::string& name) {
+  std::string words = name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
 std::string length_text(double length, std::string_view unit) { return fmt::format("{}{}{}", readable(length, 4), kNoBreakSpace, unit); }
 
 std::string printable(std::string_view bytes) {

@@ -1,4 +1,4 @@
-// Numbers, names and paths as people read them on a panel.
+// Formats numbers, names and paths for panels.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,9 @@ namespace prismesh::kiosk::panels {
 
 /// "26 048": groups of three, divided by a no-break space.
 std::string grouped(std::uint64_t number);
+
+/// The name of a metric as words: "min angle quad".
+std::string metric_words(const std::string& name);
 
 /// A length with four significant digits at most and its unit: "12.4 mm", "-0.052 mm".
 std::string length_text(double length, std::string_view unit);
@@ -29,7 +32,7 @@ std::string elide_middle(const std::string& text, double available, const std::f
 /// them, however wide they are.
 std::string break_at_spaces(std::string_view text, double available, const std::function<double(std::string_view)>& width);
 
-/// What a path being typed may become: the entries of its folder that begin with its last piece, folders with a closing
+/// The completions of a path that is being typed: the entries of its folder that begin with its last piece, folders with a closing
 /// '/', ascending; hidden entries only when the piece begins with '.'. At most `limit`.
 std::vector<std::string> completions(const std::string& typed, std::size_t limit);
 

@@ -1,10 +1,11 @@
-// All that the deck's reader has to say, a place and a sentence each.
+#include "kiosk/panels/warnings_panel.h"
+
 #include <algorithm>
 #include <filesystem>
 
 #include <imgui.h>
 
-#include "kiosk/panels/sections.h"
+#include "kiosk/panels/layout.h"
 #include "kiosk/panels/text.h"
 
 namespace prismesh::kiosk::panels {
@@ -49,12 +50,10 @@ void warning_row(const ToldWarning& warning, const Columns& columns) {
 
 }  // namespace
 
-void warnings_panel(const PanelData& data, display::PixelSize picture) {
-  if (!data.document) return;
-  const std::vector<ToldWarning>& warnings = *data.warnings;
+void warnings_panel(std::span<const ToldWarning> warnings, const std::string& deck, display::PixelSize picture) {
   begin_centred("Warnings", picture, ImGui::GetFontSize() * 56);
   ImGui::PushFont(title_font());
-  elided_text("Warnings of " + printable(std::filesystem::path(data.document->path).filename().string()), ImGui::GetContentRegionAvail().x);
+  elided_text("Warnings of " + printable(std::filesystem::path(deck).filename().string()), ImGui::GetContentRegionAvail().x);
   ImGui::PopFont();
   ImGui::PushFont(small_font());
   ImGui::TextDisabled("%s. %sCtrl+I or Esc closes.", warnings.empty() ? "Nothing is wrong" : tools::counts_of(warnings).c_str(),

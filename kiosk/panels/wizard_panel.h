@@ -1,5 +1,4 @@
-// The panel of the calibration: what to do, what is being turned, and the buttons for it. Shows plain data and gives back what was asked
-// for.
+// The panel of the calibration: what to do, which value is being adjusted, and the buttons for it.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +13,9 @@ struct WizardFacts {
   int number = 1, count = 1;  ///< of this step, of all
   std::string title;
   std::string task;
-  std::string value;  ///< empty: nothing is turned here
+  std::string value;  ///< empty: this step adjusts nothing
   std::vector<std::string> remarks;
-  std::string trouble;  ///< why the last step on wasn't taken
+  std::string trouble;  ///< why the wizard didn't go on
   std::string next;
   bool first = false;
 };

@@ -1,4 +1,4 @@
-// One-dimensional colour maps for values: even steps for the eye, told apart by lightness alone, so that colour-blind people read them too.
+// Colour maps for values, with steps of equal visual size that differ in lightness, so that colour-blind people can read them.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The images that the eyes' pictures are drawn into before they are woven.
+// Holds the images that the eyes' pictures are drawn into before they are woven.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A field's values and its colour map on the GPU, for one view of the model.
+// Holds a field's values and its colour map on the GPU, for one view of the model.
 #pragma once
 
 #include <cstddef>

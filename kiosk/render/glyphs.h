@@ -1,4 +1,4 @@
-// Which shells get quality glyphs: pure.
+// Chooses the shells that get quality glyphs. Pure.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Which shell each pixel shows, and what follows from it: which nodes can be seen. Pure.
+// Tells which shell each pixel shows, and which nodes are visible. Pure.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What an edit would make of some shells, shown before it is done.
+// The shells that an edit would make, for its preview. Plain data.
 #pragma once
 
 #include <array>

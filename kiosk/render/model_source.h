@@ -1,4 +1,4 @@
-// What the renderer draws: a snapshot's arrays in chunks with versions, whoever holds them.
+// The interface of a model to be drawn: a snapshot's arrays in chunks with versions.
 #pragma once
 
 #include <cstdint>

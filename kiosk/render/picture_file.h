@@ -1,4 +1,4 @@
-// Pictures as files and in memory.
+// Reads pictures from OpenGL and writes them to files.
 #pragma once
 
 #include <cstdint>

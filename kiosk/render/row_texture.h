@@ -1,4 +1,4 @@
-// An array of the model as a texture: one row per chunk, so that a changed chunk is one upload.
+// Holds an array of the model as a texture: one row per chunk, so that a changed chunk is one upload.
 #pragma once
 
 #include <cstddef>

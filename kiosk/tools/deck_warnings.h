@@ -1,4 +1,4 @@
-// A deck's warnings as they are told to the user: what the model lacks because of them goes first.
+// Words a deck's warnings for the user; those that leave something out of the model come first.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace prismesh::kiosk::tools {
 struct ToldWarning {
   bool is_error = false;  ///< something of the deck, or of its edits, isn't in the model
   std::string place;      ///< "FILE:LINE"
-  std::string text;       ///< with how often it is so
+  std::string text;       ///< with the number of times
 };
 
 /// Errors first, otherwise in the deck's order.

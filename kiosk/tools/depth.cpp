@@ -7,7 +7,7 @@ namespace prismesh::kiosk::tools {
 
 namespace {
 
-constexpr double kDistanceStep = 0.08;  ///< of the distance: eyes that moved less leave the box as it is
+constexpr double kDistanceStep = 0.08;  ///< share of the distance: smaller moves of the eyes keep the box as it is
 
 /// 0 .. 1 with a soft start and end.
 double progress(std::int64_t since_ns) {
@@ -42,7 +42,7 @@ stereo::View DepthFit::fitted(const stereo::View& view, const stereo::Vec3& betw
   fitted.comfort = stereo::comfort_box(distance_mm_, degrees());
   fitted.depth_strength = 0.01 * percent_;
   if (!glide_) return fitted;
-  // What is left of the way shrinks by the same share whatever happened to the view meanwhile.
+  // The remaining distance shrinks by the same share even if the view has changed meanwhile.
   const double left_before = 1 - progress(glide_->last_ns - glide_->begun_ns), left = 1 - progress(now_ns - glide_->begun_ns);
   fitted = stereo::toward_screen_plane(fitted, glide_->point, between_eyes_mm, left_before > 0 ? 1 - left / left_before : 1);
   glide_->last_ns = now_ns;

@@ -1,5 +1,4 @@
-// How much depth the picture has, and what lies in the plane of the screen: adjusted by the user, fitted to where the eyes are. Pure, on
-// times that are passed in.
+// Fits the depth of the picture to the eyes, and moves a point into the plane of the screen. Pure; times are passed in.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +23,13 @@ class DepthFit {
   bool keeps_selection() const { return keeps_selection_; }
   void keep_selection(bool keep) { keeps_selection_ = keep; }
 
-  /// The point goes into the plane of the screen within kGlideNs.
+  /// Moves the point into the plane of the screen within kGlideNs.
   void bring(const stereo::Vec3& point, std::int64_t now_ns) { glide_ = Glide{point, now_ns, now_ns}; }
-  /// Something is under way: the view will be another at the next moment.
+  /// The view still moves.
   bool moving() const { return glide_.has_value() || distance_glide_.has_value(); }
 
-  /// The view as it should be now, seen from between these eyes. Follows their distance in steps, so that a head that sways doesn't
-  /// make the model breathe.
+  /// The view for now, seen from between these eyes. Follows their distance in steps, so that a swaying head doesn't change the depth all
+  /// the time.
   stereo::View fitted(const stereo::View& view, const stereo::Vec3& between_eyes_mm, std::int64_t now_ns);
 
  private:
@@ -49,7 +48,7 @@ class DepthFit {
   int tenths_ = 10;
   bool keeps_selection_ = false;
   std::optional<Glide> glide_;
-  double distance_mm_ = 0;  ///< that the comfort box is meant for; 0: none yet
+  double distance_mm_ = 0;  ///< of the eyes, as the comfort box was last set up for; 0: not yet
   double distance_goal_mm_ = 0;
   std::optional<DistanceGlide> distance_glide_;
 };

@@ -1,4 +1,4 @@
-// From mouse events to gestures: what is a click, a double click, a drag, and of what. Knows nothing of models or pictures.
+// Turns mouse events into gestures: clicks, double clicks and drags. Knows no model and no picture.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ struct RegionClicked {
   mesh::document::SelectMode mode = mesh::document::SelectMode::set;
 };
 struct TakeBackClicked {};
-/// An outline while it is drawn: the pointer's way, from where the button went down. What is made of it, a lasso or the rectangle between
-/// its ends, is for those who draw it.
+/// An outline while it is drawn: the pointer's path since the button went down. The tool makes a lasso of it, or the rectangle between its
+/// ends.
 struct OutlineDrawn {
   std::vector<Pixel> way;
   bool other_kind = false;
@@ -51,7 +51,7 @@ struct Panned {
   Pixel at = Pixel::Zero();
 };
 struct Zoomed {
-  Pixel at = Pixel::Zero();  ///< what is seen there stays there
+  Pixel at = Pixel::Zero();  ///< the fixed point of the zoom
   double steps = 0;          ///< positive: nearer
 };
 struct AngleTurned {
@@ -71,35 +71,35 @@ struct HandleReleased {
 using Gesture = std::variant<NodeClicked, RegionClicked, TakeBackClicked, OutlineDrawn, OutlineDone, Orbited, Panned, Zoomed, AngleTurned,
                              HandleTaken, HandleMoved, HandleReleased>;
 
-/// Whether it selects, takes a step back or takes a handle.
+/// Whether the gesture selects, takes a selection back or takes a handle.
 bool asks_for_edit(const Gesture& gesture);
-/// Where something is picked by it: what it clicks on, or where its outline begins.
+/// The pixel that the gesture picks at: of its click, or where its outline begins.
 std::optional<Pixel> picks_at(const Gesture& gesture);
 
-/// How far a pressed pointer may wander and still be a click, in pixels; and how quickly a second click must follow.
+/// How far the pointer may move during a click, in pixels; and how quickly the second click of a double click must follow.
 inline constexpr double kClickRadius = 4;
 inline constexpr std::int64_t kDoubleClickMs = 400;
 
-/// An outline's way has a point every so many pixels, and not more than an edit may have.
+/// Pixels between the points of an outline, and the most points that an edit may have.
 inline constexpr double kOutlineStep = 2;
 inline constexpr std::size_t kMaxOutlinePoints = 100'000;
 
 /// Follows one mouse. A button pressed over a panel belongs to the panel until it is released. While something is drawn or pulled with one
-/// button, another one may move the view: what was begun waits where it is, and goes on when that button is up.
+/// button, another one may move the view: the drag waits meanwhile, and goes on when that button is up.
 class Gestures {
  public:
   explicit Gestures(MouseLayout layout = default_mouse_layout()) : layout_(std::move(layout)) {}
   const MouseLayout& layout() const { return layout_; }
 
   std::vector<Gesture> moved(const display::PointerMoved& event);
-  /// `under` is looked at when the button goes down only.
+  /// `under` counts only when the button goes down.
   std::vector<Gesture> button(const display::ButtonChanged& event, Under under);
   std::vector<Gesture> wheel(const display::WheelTurned& event, Under under);
 
-  /// Gives up what is under way: releasing the button will do nothing. True if an outline or a handle was being dragged.
+  /// Cancels the drag: releasing the button will do nothing. True: an outline or a handle was being dragged.
   bool cancel();
 
-  /// Something else was done: the next click is no second one.
+  /// The next click is no second one, as something else happened.
   void forget_click() { last_click_.reset(); }
 
   std::optional<Pixel> position() const { return position_; }
@@ -125,7 +125,7 @@ class Gestures {
   std::vector<Gesture> navigated(const Pixel& at);
   mesh::document::SelectMode mode() const;
   void lengthen(const Pixel& at);
-  /// The button goes down where and soon after it was clicked.
+  /// The button goes down near the last click and soon after it.
   bool second_click(std::int64_t time_ms) const;
 
   MouseLayout layout_;

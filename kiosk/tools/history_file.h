@@ -1,4 +1,4 @@
-// Lines that were entered before, oldest first, kept in a file over restarts.
+// Keeps lines that were entered in a file, oldest first.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace prismesh::kiosk::tools {
 
-/// The kiosk's folder for what outlives it: $XDG_STATE_HOME/prismesh, else ~/.local/state/prismesh; empty where neither is known.
+/// The kiosk's folder for state that outlives it: $XDG_STATE_HOME/prismesh, else ~/.local/state/prismesh; empty where neither is known.
 std::filesystem::path kiosk_state_folder();
 
 class HistoryFile {
@@ -16,11 +16,11 @@ class HistoryFile {
   static constexpr std::size_t kMaxBytes = 4096;  ///< of an entry; a longer one isn't kept
 
   HistoryFile() = default;
-  /// Reads what is there; a file that isn't, or can't be read, is an empty history. An empty path: nothing is kept over restarts.
+  /// Reads the file; one that is missing or can't be read is an empty history. An empty path: nothing is kept over restarts.
   explicit HistoryFile(std::filesystem::path file);
 
   const std::vector<std::string>& entries() const { return entries_; }
-  /// To the end; an entry that was there before moves there. Written at once, as a whole; that it can't be is no reason to stop anybody.
+  /// Adds an entry at the end, or moves it there. Writes the whole file at once; a failure to write is ignored.
   void add(const std::string& entry);
 
  private:

@@ -1,5 +1,5 @@
-// Which button does what: read from a data file, so that hands keep the habits of other programs. The built-in ones stand in
-// kiosk/tools/mouse/*.toml, which also say what there is to choose from.
+// Reads which mouse button does what from a data file, so that users can keep the layout of other programs. The built-in layouts are
+// kiosk/tools/mouse/*.toml, which also list all choices.
 #pragma once
 
 #include <array>
@@ -24,16 +24,17 @@ struct MouseBinding {
 
 class MouseLayout {
  public:
-  /// `file` stands in errors. Errors: text that isn't TOML, an unknown section, button or deed (with the nearest), no way to draw an
+  /// `file`: its name for errors. Errors: text that isn't TOML, an unknown section, button or deed (with the nearest), no way to draw an
   /// outline, orbit, pan or zoom: each with file and line.
   static Result<MouseLayout> parse(std::string_view text, const std::string& file);
 
-  /// What a button does with these modifiers. Exactly these first; else without Shift and Ctrl, which then say how to select.
+  /// What a button does with these modifiers: the binding for exactly these, or else the one without Shift and Ctrl, which then choose the
+  /// select mode.
   DragDoes drag(display::MouseButton button, const display::Modifiers& modifiers) const;
   ClickDoes click(display::MouseButton button, const display::Modifiers& modifiers) const;
   ClickDoes double_click(display::MouseButton button, const display::Modifiers& modifiers) const;
   WheelDoes wheel(const display::Modifiers& modifiers) const;
-  /// Whether what is done has taken Shift and Ctrl for itself: then they don't say how to select.
+  /// Whether the binding uses Shift and Ctrl itself: then they don't choose the select mode.
   bool takes_modifiers(display::MouseButton button, const display::Modifiers& modifiers) const;
 
   /// What the mouse does, in words, in the order of the file.

@@ -1,4 +1,4 @@
-// What is asked before something of the user's would be lost or replaced. Plain data.
+// A question to answer before unsaved edits or files would be lost. Plain data.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace prismesh::kiosk::tools {
 enum class Reply : std::uint8_t { cancel, save, discard, write };
 
 struct Question {
-  /// What would happen to files or folders.
+  /// Files or folders that something would happen to.
   struct List {
     std::string heading;
     std::vector<std::string> paths;
   };
-  /// A button, and the key that does the same.
+  /// A button and its key.
   struct Choice {
     Reply reply = Reply::cancel;
     std::string label;

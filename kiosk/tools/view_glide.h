@@ -1,5 +1,5 @@
-// The view's way to a point of the model: it comes to the middle of the screen, into its plane, at a scale at which an element can be
-// looked at. Pure, on times that are passed in.
+// Moves the view smoothly to a point of the model: to the middle of the screen, into its plane, at a scale that shows elements well. Pure;
+// times are passed in.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ class ViewGlide {
   /// `mm_per_unit`: the scale to end with.
   void begin(const stereo::Vec3& point, double mm_per_unit, std::int64_t now_ns) { way_ = Way{point, mm_per_unit, now_ns, now_ns}; }
   bool moving() const { return way_.has_value(); }
-  /// The view as it should be now. What is left of the way shrinks by the same share whatever the hand did to the view meanwhile.
+  /// The view for now. The remaining distance shrinks by the same share even if the user has moved the view meanwhile.
   stereo::View along(const stereo::View& view, std::int64_t now_ns);
 
  private:
@@ -29,7 +29,8 @@ class ViewGlide {
   std::optional<Way> way_;
 };
 
-/// The scale at which a length is so many pixels, unless the present one shows it between half and four times as large: then that.
+/// The scale that shows a length with the wanted number of pixels; the present scale if that shows it between half and four times as
+/// large.
 double scale_to_look_at(double length, double now_mm_per_unit, double mm_per_pixel, double wanted_pixels = 48);
 
 }  // namespace prismesh::kiosk::tools

@@ -13,10 +13,10 @@
 #include "ipc/server.h"
 #include "ipc/snapshot_publisher.h"
 #include "ipc/state_page.h"
-#include "kiosk/model_link.h"
+#include "kiosk/tools/model_link.h"
 #include "tests/ipc/small_document.h"
 
-namespace prismesh::kiosk {
+namespace prismesh::kiosk::tools {
 namespace {
 
 using namespace std::chrono_literals;
@@ -186,8 +186,8 @@ TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
   }
   EXPECT_EQ(field_answer, cancelled().message);
   std::vector<std::string> said;
-  for (const panels::Notice& notice : link.take_notices()) {
-    EXPECT_EQ(notice.kind, panels::Notice::Kind::information) << notice.text;
+  for (const Notice& notice : link.take_notices()) {
+    EXPECT_EQ(notice.kind, Notice::Kind::information) << notice.text;
     said.push_back(notice.text);
   }
   EXPECT_EQ(said, (std::vector<std::string>{"Stopped: other.k was not opened.", "Stopped: nothing was saved.",
@@ -195,4 +195,4 @@ TEST(ModelLinkTest, whatever_takes_long_can_be_stopped_and_says_so) {
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk
+}  // namespace prismesh::kiosk::tools

@@ -1,13 +1,12 @@
 // The order in which the user reads what there is to say, and what is left out.
-#include "kiosk/notices.h"
+#include "kiosk/tools/notices.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace prismesh::kiosk {
+namespace prismesh::kiosk::tools {
 namespace {
 
-using panels::Notice;
 using Kind = Notice::Kind;
 
 std::vector<std::string> in_order(Notices notices) {
@@ -47,4 +46,4 @@ TEST(NoticesTest, reading_the_list_reads_the_notice_that_names_it) {
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk
+}  // namespace prismesh::kiosk::tools

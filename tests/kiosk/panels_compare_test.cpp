@@ -1,26 +1,24 @@
-// The panel on which is chosen what is compared, and what all panels at the left share.
+// The panel that chooses what to compare, and what all panels at the left share.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kiosk/panels/panels.h"
+#include "kiosk/panels/document_panel.h"
+#include "kiosk/panels/layout.h"
+#include "kiosk/tools/comparison/compare_panel.h"
+#include "kiosk/tools/selection/select_section.h"
+#include "kiosk/tools/view/view_sections.h"
 #include "tests/kiosk/gui_test.h"
 
-namespace prismesh::kiosk::panels {
+namespace prismesh::kiosk::tools::comparison {
 namespace {
 
-class LeftPanels : public GuiTest {
+class LeftPanels : public panels::GuiTest {
  protected:
-  void SetUp() override {
-    GuiTest::SetUp();
-    if (HasFatalFailure() || IsSkipped()) return;
-    data_.connected = true;
-    data_.document.emplace();
-  }
   /// The wish that was asked for becomes what is shown, as the kiosk has it.
   void lay_out() {
+    PanelLayout layout{picture_};
     gui_->layout(picture_, 0.016, [&] {
-      for (const PanelAction& action : panels_.build(data_, picture_))
-        if (const auto* set = std::get_if<SetCompare>(&action)) data_.compare->wish = set->wish;
+      if (const auto wanted = compare_panel(facts_, entry_, layout)) facts_.wish = *wanted;
     });
   }
   void click(double x, double y) {
@@ -51,26 +49,24 @@ class LeftPanels : public GuiTest {
     bool inside = false;
     for (double y = 60; y < picture_.height - 20; y += 4) {
       if (!gui_->on_panel(60, y)) break;
-      const tools::CompareWish before = data_.compare->wish;
+      const CompareWish before = facts_.wish;
       click(60, y);
       if (gui_->wants_keys() && !inside) found.push_back(y + 6);
       inside = gui_->wants_keys();
       press(display::Key::escape);
       leave_field();
-      data_.compare->wish = before;
+      facts_.wish = before;
     }
     return found;
   }
 
   display::PixelSize picture_{900, 700};
-  PanelData data_;
-  Panels panels_;
+  CompareFacts facts_;
+  CompareEntry entry_;
 };
 
 TEST_F(LeftPanels, both_expressions_of_a_distance_are_taken_however_their_fields_are_left) {
-  data_.compare.emplace();
-  data_.compare->panel_open = true;
-  data_.compare->wish.field = "distance";
+  facts_.wish.field = "distance";
   for (int round = 0; round < 3; ++round) lay_out();
   const std::vector<double> at = fields();
   ASSERT_EQ(at.size(), 2U);
@@ -79,37 +75,43 @@ TEST_F(LeftPanels, both_expressions_of_a_distance_are_taken_however_their_fields
   click(60, at[1]);
   type("part:2");
   leave_field();
-  EXPECT_EQ(data_.compare->wish.from, "part:1");
-  EXPECT_EQ(data_.compare->wish.to, "part:2");
+  EXPECT_EQ(facts_.wish.from, "part:1");
+  EXPECT_EQ(facts_.wish.to, "part:2");
   click(60, at[1]);
   type(",part:3");
   press(display::Key::enter);
-  EXPECT_THAT(data_.compare->wish.to, testing::HasSubstr("part:3"));
+  EXPECT_THAT(facts_.wish.to, testing::HasSubstr("part:3"));
 }
 
 TEST_F(LeftPanels, another_deck_is_named_by_its_path) {
-  data_.compare.emplace();
-  data_.compare->panel_open = true;
-  data_.compare->wish.field = "displacement";
-  data_.compare->wish.against = "";
+  facts_.wish.field = "displacement";
+  facts_.wish.against = "";
   for (int round = 0; round < 3; ++round) lay_out();
   const std::vector<double> at = fields();
   ASSERT_EQ(at.size(), 1U);
   click(60, at[0]);
   type("/decks/before.k");
   press(display::Key::enter);
-  EXPECT_EQ(data_.compare->wish.against, "/decks/before.k");
+  EXPECT_EQ(facts_.wish.against, "/decks/before.k");
 }
 
 TEST_F(LeftPanels, none_runs_off_a_small_picture_in_the_large_type_of_stereo) {
   picture_ = {1280, 720};
-  ASSERT_TRUE(gui_->set_type(kStereoType));
-  data_.profile = "prism-mask";
-  data_.history_cap = 1U << 30;
-  for (int round = 0; round < 3; ++round) lay_out();
+  ASSERT_TRUE(gui_->set_type(panels::kStereoType));
+  PanelLayout layout{picture_};
+  for (int round = 0; round < 3; ++round)
+    gui_->layout(picture_, 0.016, [&] {
+      panels::begin_left("Document", picture_);
+      panels::document_head({});
+      selection::select_section({}, layout);
+      view::picture_section("part", "prism-mask", layout);
+      panels::history_section({0, 1U << 30});
+      panels::document_foot();
+      ImGui::End();
+    });
   EXPECT_TRUE(gui_->on_panel(60, picture_.height - 60.0)) << "the panel has more to say than finds room";
   EXPECT_FALSE(gui_->on_panel(60, picture_.height - 4.0));
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk::panels
+}  // namespace prismesh::kiosk::tools::comparison

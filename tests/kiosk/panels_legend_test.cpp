@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kiosk/panels/legend.h"
+#include "kiosk/tools/comparison/legend.h"
 #include "tests/kiosk/gui_test.h"
 
-namespace prismesh::kiosk::panels {
+namespace prismesh::kiosk::tools::comparison {
 namespace {
 
 using ::testing::ElementsAre;
@@ -42,10 +42,10 @@ TEST(Legend, says_what_the_colours_do_not_show) {
 
 constexpr display::PixelSize kLegendPicture{1000, 640};
 
-class LegendByHand : public GuiTest {
+class LegendByHand : public panels::GuiTest {
  protected:
   void SetUp() override {
-    GuiTest::SetUp();
+    panels::GuiTest::SetUp();
     if (HasFatalFailure() || IsSkipped()) return;
     facts_.pane = 0;
     for (int round = 0; round < 3; ++round) lay_out();
@@ -114,4 +114,4 @@ TEST_F(LegendByHand, a_limit_is_typed_after_a_double_click_and_read_again_as_it_
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk::panels
+}  // namespace prismesh::kiosk::tools::comparison

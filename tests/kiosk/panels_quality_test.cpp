@@ -4,20 +4,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kiosk/panels/panels.h"
+#include "kiosk/panels/message_panels.h"
+#include "kiosk/tools/quality/quality_panel.h"
+#include "kiosk/tools/quality/quality_words.h"
 #include "tests/kiosk/gui_test.h"
 
-namespace prismesh::kiosk::panels {
+namespace prismesh::kiosk::tools::quality {
 namespace {
 
 using mesh::document::SelectMode;
 
 constexpr display::PixelSize kPanelPicture{900, 700};
 
-class QualityPanel : public GuiTest {
+class QualityPanel : public panels::GuiTest {
  protected:
   void SetUp() override {
-    GuiTest::SetUp();
+    panels::GuiTest::SetUp();
     if (HasFatalFailure() || IsSkipped()) return;
     figures_.metrics = {{"warpage", "deg", 12, 3}, {"aspect", "", 0, 2}, {"skew", "deg", 0, 0}};
     figures_.metric = "warpage";
@@ -25,20 +27,18 @@ class QualityPanel : public GuiTest {
     figures_.errors = {{11, "warpage", "deg", 31.5, true, {}}, {12, "warpage", "deg", 20, true, {}}};
     figures_.error_count = 15;
     figures_.parts = {{7, 800, 12, 5, 0.61, -0.4}};
-    data_.connected = true;
-    data_.document.emplace();
-    data_.quality.emplace();
-    data_.quality->figures = &figures_;
-    data_.quality->metric = "warpage";
+    facts_.figures = &figures_;
+    facts_.metric = "warpage";
     lay_out();
     lay_out();
   }
-  std::vector<PanelAction> lay_out() {
-    std::vector<PanelAction> actions;
-    gui_->layout(kPanelPicture, 0.016, [&] { actions = panels_.build(data_, kPanelPicture); });
+  QualityActions lay_out() {
+    QualityActions actions;
+    PanelLayout layout{kPanelPicture};
+    gui_->layout(kPanelPicture, 0.016, [&] { actions = quality_panel(facts_, layout); });
     return actions;
   }
-  std::vector<PanelAction> click(double x, double y, bool shift = false) {
+  QualityActions click(double x, double y, bool shift = false) {
     const display::Modifiers modifiers{shift, false, false};
     gui_->feed(display::PointerMoved{x, y, modifiers});
     lay_out();
@@ -52,14 +52,13 @@ class QualityPanel : public GuiTest {
   std::vector<Action> clicked_down(double x, bool shift = false) {
     std::vector<Action> found;
     for (double y = 20; y < kPanelPicture.height; y += 5)
-      for (const PanelAction& action : click(x, y, shift))
+      for (const QualityAction& action : click(x, y, shift))
         if (const auto* wanted = std::get_if<Action>(&action)) found.push_back(*wanted);
     return found;
   }
 
   ipc::Quality figures_;
-  PanelData data_;
-  Panels panels_;
+  QualityFacts facts_;
 };
 
 TEST_F(QualityPanel, a_row_chooses_its_metric_and_the_chosen_one_lets_go) {
@@ -99,14 +98,16 @@ TEST_F(QualityPanel, an_error_is_gone_to_and_named) {
 }
 
 TEST_F(QualityPanel, panels_keep_the_pointer_from_the_picture_and_words_on_it_do_not) {
-  data_.guidance = "Axis: click the first node, Esc gives up";
-  lay_out();
-  lay_out();
+  PanelLayout layout{kPanelPicture};
+  for (int round = 0; round < 2; ++round)
+    gui_->layout(kPanelPicture, 0.016, [&] {
+      quality_panel(facts_, layout);
+      panels::guidance_panel("Axis: click the first node, Esc gives up", kPanelPicture);
+    });
   EXPECT_TRUE(gui_->on_panel(60, 60)) << "the panel at the left";
-  EXPECT_TRUE(gui_->on_panel(kPanelPicture.width - 60, 60)) << "and at the right";
   EXPECT_FALSE(gui_->on_panel(kPanelPicture.width / 2.0, 20)) << "a line that says what to do next is in nobody's way";
   EXPECT_FALSE(gui_->on_panel(kPanelPicture.width / 2.0, kPanelPicture.height / 2.0));
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk::panels
+}  // namespace prismesh::kiosk::tools::quality

@@ -1,5 +1,5 @@
 // What a click means for an operation by hand, and the view's way to an error.
-#include "kiosk/tools/by_hand.h"
+#include "kiosk/tools/mesh_operations/by_hand.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include "kiosk/tools/view_glide.h"
 #include "tests/kiosk/test_source.h"
 
-namespace prismesh::kiosk::tools {
+namespace prismesh::kiosk::tools::mesh_operations {
 namespace {
 
 using mesh::NodeIndex;
@@ -107,4 +107,4 @@ TEST(ViewGlide, a_scale_at_which_an_element_can_be_seen_stays) {
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk::tools
+}  // namespace prismesh::kiosk::tools::mesh_operations

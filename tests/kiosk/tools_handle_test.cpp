@@ -1,13 +1,13 @@
 // The handle stands on the selection and is pulled by as much as the pointer goes.
-#include "kiosk/tools/handle.h"
+#include "kiosk/tools/shaping/handle.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "kiosk/tools/shaping_options.h"
+#include "kiosk/tools/shaping/shaping_options.h"
 
-namespace prismesh::kiosk::tools {
+namespace prismesh::kiosk::tools::shaping {
 namespace {
 
 using ipc::SnapshotArray;
@@ -158,7 +158,7 @@ TEST(HandleTest, the_ball_of_an_axis_through_the_grab_stands_beside_it) {
 TEST(HandleTest, the_disk_keeps_what_is_under_the_pointer_in_its_plane) {
   const stereo::Aim aim = aim_from("iso");
   const Vec3 at(40, 40, 0), taken(43, 41, 0), to(70, 25, 0);
-  const HandlePull pull(Under::slide_handle, at, Vec3::UnitZ(), std::nullopt, aim, *stereo::pixel_of(aim, taken));
+  const HandlePull pull({Under::slide_handle, at, Vec3::UnitZ(), std::nullopt, *stereo::pixel_of(aim, taken)}, aim);
   const Pull pulled = pull.at(aim, *stereo::pixel_of(aim, to));
   EXPECT_NEAR((pulled.by - (to - taken)).norm(), 0, 1e-6);
 }
@@ -167,7 +167,7 @@ TEST(HandleTest, a_disk_seen_from_its_edge_goes_across_the_screen) {
   const stereo::Aim aim = aim_from("front");
   const Vec3 at(40, 40, 0);
   const Pixel taken = *stereo::pixel_of(aim, at);
-  const HandlePull pull(Under::slide_handle, at, Vec3::UnitZ(), std::nullopt, aim, taken);
+  const HandlePull pull({Under::slide_handle, at, Vec3::UnitZ(), std::nullopt, taken}, aim);
   const Vec3 by = pull.at(aim, taken + Pixel(40, 30)).by;
   EXPECT_GT(by.x(), 5);
   EXPECT_NEAR(by.z(), 0, 1e-9) << "up on the screen leads out of the plane";
@@ -177,7 +177,7 @@ TEST(HandleTest, the_ball_turns_by_the_angle_that_the_pointer_goes_and_more_than
   const stereo::Aim aim = aim_from("top");
   const Vec3 centre(40, 40, 0), at(60, 40, 0);
   const Axis axis{centre, Vec3::UnitZ()};
-  const HandlePull pull(Under::turn_handle, at, Vec3::UnitZ(), axis, aim, *stereo::pixel_of(aim, at));
+  const HandlePull pull({Under::turn_handle, at, Vec3::UnitZ(), axis, *stereo::pixel_of(aim, at)}, aim);
   Pull pulled;
   for (int degrees = 10; degrees <= 400; degrees += 10) {
     const double angle = degrees * std::acos(-1.0) / 180;
@@ -192,7 +192,7 @@ TEST(HandleTest, the_ball_turns_by_the_angle_that_the_pointer_goes_and_more_than
 TEST(HandleTest, a_circle_seen_from_its_edge_turns_by_moving_along_it) {
   const stereo::Aim aim = aim_from("front");  // the axis lies up the screen, the ball before it
   const Vec3 at(40, 20, 0);
-  const HandlePull pull(Under::turn_handle, at, Vec3::UnitZ(), Axis{Vec3(40, 40, 0), Vec3::UnitZ()}, aim, *stereo::pixel_of(aim, at));
+  const HandlePull pull({Under::turn_handle, at, Vec3::UnitZ(), Axis{Vec3(40, 40, 0), Vec3::UnitZ()}, *stereo::pixel_of(aim, at)}, aim);
   const Pixel ball = *stereo::pixel_of(aim, at);
   const double one = (*stereo::pixel_of(aim, pull.foot(Pull{Vec3::Zero(), 0, 1})) - ball).norm();
   EXPECT_NEAR(pull.at(aim, ball + Pixel(25 * one, 0)).degrees, 25, 0.1);
@@ -208,7 +208,7 @@ TEST(HandleTest, what_is_pulled_stays_where_it_is_when_the_view_moves) {
     stereo::Aim after = before;
     after.view = stereo::zoom(stereo::orbit(before.view, 0.5, -0.2), 1.7, Eigen::Vector2d(30, 10));
     const Pixel taken = *stereo::pixel_of(before, at), to = taken + Pixel(35, -28), pointer(900, 300);
-    HandlePull pull(handle, at, up, handle == Under::turn_handle ? std::optional(axis) : std::nullopt, before, taken);
+    HandlePull pull({handle, at, up, handle == Under::turn_handle ? std::optional(axis) : std::nullopt, taken}, before);
     pull.set_axis(before, at, -up);
     const Pull pulled = pull.at(before, to);
     pull.hold(after, pointer, pulled);
@@ -226,7 +226,7 @@ TEST(HandleTest, a_lift_follows_the_pointer_along_the_arrow_from_wherever_it_was
   const stereo::Aim aim = aim_from("iso");
   const Vec3 at(40, 40, 0), up = Vec3::UnitZ();
   const Pixel taken = *stereo::pixel_of(aim, at + 6 * up);
-  const HandlePull pull(Under::lift_handle, at, up, std::nullopt, aim, taken);
+  const HandlePull pull({Under::lift_handle, at, up, std::nullopt, taken}, aim);
   EXPECT_NEAR(pull.at(aim, taken).distance, 0, 1e-9);
   const Pull pulled = pull.at(aim, *stereo::pixel_of(aim, at + 21 * up));
   EXPECT_NEAR(pulled.distance, 15, 1e-6);
@@ -237,7 +237,7 @@ TEST(HandleTest, a_lift_follows_the_pointer_along_the_arrow_from_wherever_it_was
 TEST(HandleTest, a_normal_of_the_other_sense_changes_the_distances_sign_only) {
   const stereo::Aim aim = aim_from("iso");
   const Vec3 at(40, 40, 0), up = Vec3::UnitZ();
-  HandlePull pull(Under::lift_handle, at, up, std::nullopt, aim, *stereo::pixel_of(aim, at));
+  HandlePull pull({Under::lift_handle, at, up, std::nullopt, *stereo::pixel_of(aim, at)}, aim);
   pull.set_axis(aim, at, -up);
   const Pull pulled = pull.at(aim, *stereo::pixel_of(aim, at + 10 * up));
   EXPECT_NEAR(pulled.distance, -10, 1e-6);
@@ -251,7 +251,7 @@ TEST(HandleTest, an_arrow_toward_the_viewer_is_pulled_by_moving_up) {
   for (const double scale : {1.0, 4.0, 0.25}) {
     aim.view.mm_per_unit = scale;
     const Pixel taken = *stereo::pixel_of(aim, at);
-    const HandlePull pull(Under::lift_handle, at, Vec3::UnitZ(), std::nullopt, aim, taken);
+    const HandlePull pull({Under::lift_handle, at, Vec3::UnitZ(), std::nullopt, taken}, aim);
     const double distance = pull.at(aim, taken - Pixel(0, 50)).distance;
     EXPECT_NEAR(distance, 50 * aim.mm_per_pixel() / scale, 1e-9);
     EXPECT_NEAR((*stereo::pixel_of(aim, at + Vec3(0, distance, 0)) - taken).norm(), 50, 1e-6) << "as far as the pointer goes on the screen";
@@ -263,7 +263,7 @@ TEST(HandleTest, the_ring_moves_in_the_screens_plane_under_the_pointer) {
   const stereo::Aim aim = aim_from("front");
   const Vec3 at(40, 40, 0);
   const Pixel foot = *stereo::pixel_of(aim, at), taken = foot + Pixel(3, -2);
-  const HandlePull pull(Under::move_handle, at, Vec3::UnitZ(), std::nullopt, aim, taken);
+  const HandlePull pull({Under::move_handle, at, Vec3::UnitZ(), std::nullopt, taken}, aim);
   EXPECT_NEAR(pull.at(aim, taken).by.norm(), 0, 1e-9);
   const Vec3 by = pull.at(aim, taken + Pixel(40, 25)).by;
   EXPECT_NEAR(by.y(), 0, 1e-9);  // front looks along +y
@@ -271,4 +271,4 @@ TEST(HandleTest, the_ring_moves_in_the_screens_plane_under_the_pointer) {
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk::tools
+}  // namespace prismesh::kiosk::tools::shaping

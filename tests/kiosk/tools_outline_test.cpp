@@ -1,10 +1,10 @@
-#include "kiosk/tools/outline.h"
+#include "kiosk/tools/selection/outline.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace prismesh::kiosk::tools {
+namespace prismesh::kiosk::tools::selection {
 namespace {
 
 double area_of(const std::vector<Pixel>& outline) {
@@ -31,4 +31,4 @@ TEST(Outline, what_lies_beyond_the_line_is_cut_off) {
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk::tools
+}  // namespace prismesh::kiosk::tools::selection

@@ -7,15 +7,16 @@
 
 #include <gtest/gtest.h>
 
-#include "kiosk/tools/axis_pick.h"
-#include "kiosk/tools/file_expression.h"
 #include "kiosk/tools/history_file.h"
-#include "kiosk/tools/shaping_options.h"
-#include "kiosk/tools/typed_number.h"
+#include "kiosk/tools/key_table.h"
+#include "kiosk/tools/parts/file_expression.h"
+#include "kiosk/tools/shaping/axis_pick.h"
+#include "kiosk/tools/shaping/shaping_options.h"
+#include "kiosk/tools/shaping/typed_number.h"
 #include "mesh/document/edit_kinds.h"
 #include "tests/kiosk/test_source.h"
 
-namespace prismesh::kiosk::tools {
+namespace prismesh::kiosk::tools::shaping {
 namespace {
 
 using mesh::Vec3;
@@ -32,7 +33,7 @@ TEST(ShapingOptionsTest, every_option_stands_in_the_edit) {
   options.each_normal = true;
   options.max_move = 4;
   options.symmetry = DeckAxis::x;
-  const document::Edit edit = edit_of(Under::lift_handle, options, 17, Vec3(5, 6, 7), std::nullopt, Pull{Vec3::Zero(), 2.5, 0});
+  const document::Edit edit = edit_of({Under::lift_handle, 17, Vec3(5, 6, 7)}, options, Pull{Vec3::Zero(), 2.5, 0});
   const auto& lift = std::get<document::Lift>(edit);
   EXPECT_EQ(lift.distance, 2.5);
   EXPECT_TRUE(lift.each_normal);
@@ -47,7 +48,7 @@ TEST(ShapingOptionsTest, every_option_stands_in_the_edit) {
   EXPECT_EQ(lift.shaping.symmetry->normal, Vec3(1, 0, 0));
   EXPECT_EQ(lift.shaping.symmetry->point, Vec3(5, 0, 0)) << "through the selection's middle";
   options.symmetry_place = -3;
-  const document::Edit typed = edit_of(Under::move_handle, options, 17, Vec3(5, 6, 7), std::nullopt, Pull{Vec3(1, 2, 3), 0, 0});
+  const document::Edit typed = edit_of({Under::move_handle, 17, Vec3(5, 6, 7)}, options, Pull{Vec3(1, 2, 3), 0, 0});
   EXPECT_EQ(std::get<document::Translate>(typed).shaping.symmetry->point, Vec3(-3, 0, 0));
   EXPECT_EQ(std::get<document::Translate>(typed).by, Vec3(1, 2, 3));
 }
@@ -55,13 +56,13 @@ TEST(ShapingOptionsTest, every_option_stands_in_the_edit) {
 TEST(ShapingOptionsTest, each_part_of_the_handle_has_its_edit) {
   const Axis axis{Vec3(1, 2, 3), Vec3(0, 0, 1)};
   const auto kind = [&](Under handle) {
-    return std::string(document::name(edit_of(handle, {}, 1, Vec3::Zero(), axis, Pull{Vec3(1, 0, 0), 2, 30})));
+    return std::string(document::name(edit_of({handle, 1, Vec3::Zero(), axis}, {}, Pull{Vec3(1, 0, 0), 2, 30})));
   };
   EXPECT_EQ(kind(Under::lift_handle), "lift");
   EXPECT_EQ(kind(Under::slide_handle), "slide");
   EXPECT_EQ(kind(Under::move_handle), "translate");
   EXPECT_EQ(kind(Under::turn_handle), "rotate");
-  const auto turn = std::get<document::Rotate>(edit_of(Under::turn_handle, {}, 1, Vec3::Zero(), axis, Pull{Vec3::Zero(), 0, 30}));
+  const auto turn = std::get<document::Rotate>(edit_of({Under::turn_handle, 1, Vec3::Zero(), axis}, {}, Pull{Vec3::Zero(), 0, 30}));
   EXPECT_EQ(turn.point, axis.point);
   EXPECT_EQ(turn.axis, axis.direction);
   EXPECT_EQ(turn.degrees, 30);
@@ -136,8 +137,8 @@ TEST(AxisPickTest, the_edge_under_the_pointer_is_found_and_named_creases_and_fre
 }
 
 TEST(FileExpressionTest, names_are_quoted_by_what_they_dont_hold) {
-  EXPECT_EQ(file_expression("parts/hood.k"), "file:\"parts/hood.k\"");
-  EXPECT_EQ(file_expression("a\"b.k"), "file:'a\"b.k'");
+  EXPECT_EQ(parts::file_expression("parts/hood.k"), "file:\"parts/hood.k\"");
+  EXPECT_EQ(parts::file_expression("a\"b.k"), "file:'a\"b.k'");
 }
 
 TEST(HistoryFileTest, entries_outlive_the_program_newest_last_each_once) {
@@ -166,4 +167,4 @@ TEST(HistoryFileTest, entries_outlive_the_program_newest_last_each_once) {
 }
 
 }  // namespace
-}  // namespace prismesh::kiosk::tools
+}  // namespace prismesh::kiosk::tools::shaping

@@ -1,0 +1,83 @@
+#include "kiosk/panels/message_panels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "kiosk/panels/text.h"
+
+namespace prismesh::kiosk::panels {
+
+using tools::Notice;
+
+NoticeReply notice_panel(const NoticeFacts& facts, display::PixelSize picture, const NoticePlace& place) {
+  NoticeReply reply = NoticeReply::none;
+  const float side = place.between_panels ? side_width(picture) + 2 * kMargin : kMargin;
+  const float width = static_cast<float>(picture.width) - 2 * side;
+  ImGui::SetNextWindowPos(ImVec2(side, static_cast<float>(place.bottom)), 0, ImVec2(0, 1));
+  ImGui::SetNextWindowSize(ImVec2(width, 0));
+  ImGui::Begin("Notice", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize);
+  const Notice::Kind kind = facts.notice.kind;
+  draw_signal(kind == Notice::Kind::error     ? Signal::fail
+              : kind == Notice::Kind::warning ? Signal::warn
+                                              : Signal::information,
+              ImGui::GetFontSize() * 0.75f);
+  ImGui::SameLine();
+  const std::string read = facts.more > 0 ? fmt::format("next ({})", facts.more) : "close";
+  const char* const list = "list all";
+  const auto width_of = [](const char* label) { return ImGui::CalcTextSize(label).x + 2 * ImGui::GetStyle().FramePadding.x; };
+  const float buttons = facts.notice.lists_warnings ? std::max(width_of(read.c_str()), width_of(list)) : width_of(read.c_str());
+  const float buttons_at = ImGui::GetWindowContentRegionMax().x - buttons, end = buttons_at - 2 * kGrid;
+  ImGui::PushTextWrapPos(end);  // for a path that is wider than the panel; left alone the toolkit would break numbers at their point
+  ImGui::TextUnformatted(break_at_spaces(printable_lines(facts.notice.text), end - ImGui::GetCursorPosX(), [](std::string_view piece) {
+                           return ImGui::CalcTextSize(piece.data(), piece.data() + piece.size()).x;
+                         }).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(buttons_at);
+  ImGui::BeginGroup();
+  if (ImGui::SmallButton(read.c_str())) reply = NoticeReply::read;
+  if (facts.notice.lists_warnings) {
+    if (ImGui::SmallButton(list)) reply = NoticeReply::list_warnings;
+    hint(place.list_warnings);
+  }
+  ImGui::EndGroup();
+  ImGui::End();
+  return reply;
+}
+
+void state_panel(const StateFacts& facts, display::PixelSize picture) {
+  begin_centred("State", picture, ImGui::GetFontSize() * 32);
+  if (!facts.connected) {
+    ImGui::PushFont(title_font());
+    ImGui::TextWrapped("The model server is not running - trying again");
+    ImGui::PopFont();
+    ImGui::TextDisabled("Nothing is lost: acknowledged edits are in its journal.");
+    ImGui::PushFont(small_font());
+    ImGui::TextDisabled("It is expected at");
+    elided_text(printable(facts.socket), ImGui::GetContentRegionAvail().x);
+    ImGui::PopFont();
+  } else if (!facts.busy.empty()) {
+    ImGui::TextUnformatted(printable(facts.busy).c_str());
+    ImGui::ProgressBar(static_cast<float>(facts.busy_fraction), ImVec2(-1, kGrid), "");
+  } else {
+    ImGui::PushFont(title_font());
+    ImGui::TextUnformatted("No deck is open");
+    ImGui::PopFont();
+    ImGui::TextDisabled("Ctrl+O opens one, F1 shows all keys.");
+  }
+  ImGui::End();
+}
+
+void guidance_panel(const std::string& guidance, display::PixelSize picture) {
+  ImGui::SetNextWindowPos(ImVec2(std::floor(static_cast<float>(picture.width) / 2), kMargin), 0, ImVec2(0.5f, 0));
+  ImGui::Begin("Guidance", nullptr, kPanelFlags | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs);
+  draw_signal(Signal::information, ImGui::GetFontSize() * 0.75f);
+  ImGui::SameLine();
+  ImGui::TextUnformatted(printable(guidance).c_str());
+  ImGui::End();
+}
+
+}  // namespace prismesh::kiosk::panels

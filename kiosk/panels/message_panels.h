@@ -1,0 +1,26 @@
+// Panels that tell what happens: a notice at the bottom, the state of the model server in the middle, what to do next at the top.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "kiosk/display/window.h"
+#include "kiosk/panels/panel_facts.h"
+#include "kiosk/panels/widgets.h"
+
+namespace prismesh::kiosk::panels {
+
+struct NoticePlace {
+  bool between_panels = false;             ///< there are panels at the sides
+  double bottom = 0;                       ///< pixels: the lower edge
+  const tools::KeyBinding& list_warnings;  ///< for the hint of its button
+};
+enum class NoticeReply : std::uint8_t { none, read, list_warnings };
+NoticeReply notice_panel(const NoticeFacts& facts, display::PixelSize picture, const NoticePlace& place);
+
+void state_panel(const StateFacts& facts, display::PixelSize picture);
+
+/// At the top, where it is in nobody's way.
+void guidance_panel(const std::string& guidance, display::PixelSize picture);
+
+}  // namespace prismesh::kiosk::panels

@@ -1,0 +1,14 @@
+// A question in the middle: what would happen to which files, and a button for each reply.
+#pragma once
+
+#include <optional>
+
+#include "kiosk/display/window.h"
+#include "kiosk/tools/question.h"
+
+namespace prismesh::kiosk::panels {
+
+/// Lays the box out (inside Gui::layout). Returns the reply that was chosen.
+std::optional<tools::Reply> question_box(const tools::Question& question, display::PixelSize picture);
+
+}  // namespace prismesh::kiosk::panels

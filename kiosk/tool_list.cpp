@@ -1,0 +1,62 @@
+#include "kiosk/tool_list.h"
+
+#include "kiosk/editor_keys.h"
+#include "kiosk/tools/comparison/comparison_tool.h"
+#include "kiosk/tools/files/files_tool.h"
+#include "kiosk/tools/mesh_operations/mesh_operations_tool.h"
+#include "kiosk/tools/parts/parts_tool.h"
+#include "kiosk/tools/quality/quality_tool.h"
+#include "kiosk/tools/selection/selection_tool.h"
+#include "kiosk/tools/shaping/shaping_tool.h"
+#include "kiosk/tools/view/view_tool.h"
+
+namespace prismesh::kiosk {
+namespace {
+
+struct ListedTool {
+  std::span<const tools::KeyBinding> keys;
+  std::unique_ptr<tools::Tool> (*make)(tools::ToolContext&) = nullptr;  ///< null: a table of the editor
+};
+
+template <class Made>
+std::unique_ptr<tools::Tool> make(tools::ToolContext& context) {
+  return std::make_unique<Made>(context);
+}
+
+/// In the order of help and menu.
+const std::vector<ListedTool>& listed_tools() {
+  static const std::vector<ListedTool> kTools{
+      {tools::files::keys(), make<tools::files::FilesTool>},
+      {kDocumentKeys},
+      {tools::comparison::keys(), make<tools::comparison::ComparisonTool>},
+      {kCancelKeys},
+      {tools::selection::keys(), make<tools::selection::SelectionTool>},
+      {tools::shaping::keys(), make<tools::shaping::ShapingTool>},
+      {tools::quality::keys(), make<tools::quality::QualityTool>},
+      {tools::mesh_operations::keys(), make<tools::mesh_operations::MeshOperationsTool>},
+      {tools::parts::keys(), make<tools::parts::PartsTool>},
+      {tools::view::keys(), make<tools::view::ViewTool>},
+      {kWindowKeys},
+  };
+  return kTools;
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<tools::Tool>> make_tools(tools::ToolContext& context) {
+  std::vector<std::unique_ptr<tools::Tool>> made;
+  for (const ListedTool& listed : listed_tools())
+    if (listed.make != nullptr) made.push_back(listed.make(context));
+  return made;
+}
+
+std::span<const tools::KeyBinding> key_bindings() {
+  static const std::vector<tools::KeyBinding> kAll = [] {
+    std::vector<tools::KeyBinding> all;
+    for (const ListedTool& listed : listed_tools()) all.insert(all.end(), listed.keys.begin(), listed.keys.end());
+    return all;
+  }();
+  return kAll;
+}
+
+}  // namespace prismesh::kiosk

@@ -1,0 +1,17 @@
+// The panel on which states and fields to compare are chosen, and the captions of the views.
+#pragma once
+
+#include <optional>
+
+#include "kiosk/tools/comparison/legend_facts.h"
+#include "kiosk/tools/panel_layout.h"
+
+namespace prismesh::kiosk::tools::comparison {
+
+/// Lays the panel out (inside Gui::layout). Returns another wish, if the user chose one.
+std::optional<CompareWish> compare_panel(const CompareFacts& facts, CompareEntry& entry, PanelLayout& layout);
+
+/// Says which state is seen where: a line for each at the top of the picture.
+void view_captions(const CompareFacts& facts, display::PixelSize picture, float top);
+
+}  // namespace prismesh::kiosk::tools::comparison

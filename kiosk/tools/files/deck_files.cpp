@@ -1,0 +1,104 @@
+#include "kiosk/tools/files/deck_files.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace prismesh::kiosk::tools::files {
+namespace {
+
+std::string file_name(const std::filesystem::path& path) { return path.filename().string(); }
+
+Question::Choice choice(Reply reply, std::string label, char key) {
+  return {reply, std::move(label), display::letter(key), std::string(1, key)};
+}
+
+Question::Choice cancel() { return {Reply::cancel, "Cancel", display::Key::escape, "Esc"}; }
+
+/// "the file", "3 files": what a button speaks of.
+std::string counted(std::size_t count, const char* one, const char* several) {
+  return count == 1 ? std::string(one) : fmt::format("{} {}", count, several);
+}
+
+/// What the button does that writes all the same.
+std::string doing(const ipc::SaveWould& would) {
+  const std::string folders = would.make.empty() ? "" : "make " + counted(would.make.size(), "the folder", "folders");
+  const std::string files = would.replace.empty() ? "" : "Replace " + counted(would.replace.size(), "the file", "files");
+  if (files.empty()) return "M" + folders.substr(1);
+  return folders.empty() ? files : files + ", " + folders;
+}
+
+}  // namespace
+
+/// As far as the server has said; empty: none.
+std::string DeckFiles::open_deck() const {
+  if (const auto& snapshot = link_.snapshot()) return snapshot->info().document;
+  return link_.state() ? link_.state()->path : std::string();
+}
+
+void DeckFiles::save(const std::string& remark) { write({}, remark); }
+
+void DeckFiles::save_elsewhere(const std::filesystem::path& path, Elsewhere how, const std::string& remark) {
+  ipc::Save request;
+  std::error_code ignored;
+  request.path = std::filesystem::absolute(path, ignored).lexically_normal().string();
+  request.becomes = how == Elsewhere::becomes;
+  request.stays_unsaved = how == Elsewhere::copy;
+  request.asks = true;
+  write(request, remark);
+}
+
+void DeckFiles::write(const ipc::Save& request, const std::string& remark) {
+  link_.save(request, remark, [this, request, remark](const ipc::Answer& answer) {
+    if (const auto* would = std::get_if<ipc::SaveWould>(&answer)) ask_about_writing(request, remark, *would);
+  });
+}
+
+void DeckFiles::ask_about_writing(const ipc::Save& request, const std::string& remark, const ipc::SaveWould& would) {
+  about_ = open_deck();
+  to_write_ = request;
+  to_write_.asks = false;
+  remark_ = remark;
+  Question& question = question_.emplace();
+  question.title = (request.becomes ? "Save as " : "Save a copy as ") + file_name(*request.path) + "?";
+  if (!would.replace.empty())
+    question.lists.push_back({would.replace.size() == 1 ? "This file is there already:" : "These files are there already:", would.replace});
+  if (!would.make.empty())
+    question.lists.push_back({would.make.size() == 1 ? "This folder isn't there yet:" : "These folders aren't there yet:", would.make});
+  question.choices = {choice(Reply::write, doing(would), would.replace.empty() ? 'M' : 'R'), cancel()};
+  trace_.line(fmt::format("asks write replace {} make {}", would.replace.size(), would.make.size()));
+}
+
+void DeckFiles::ask_about_edits(const std::filesystem::path& deck) {
+  about_ = open_deck();
+  to_open_ = deck;
+  const std::string open = file_name(about_);
+  Question& question = question_.emplace();
+  question.title = fmt::format("Save {} before {} is opened?", open, file_name(deck));
+  question.text = fmt::format("{} has edits that aren't saved. If you discard them, the deck stays on disk as it was last saved.", open);
+  question.choices = {choice(Reply::save, "Save", 'S'), choice(Reply::discard, "Discard", 'D'), cancel()};
+  trace_.line("asks unsaved " + deck.string());
+}
+
+void DeckFiles::reply(Reply reply) {
+  if (!question_) return;
+  question_.reset();
+  trace_.line("asks nothing");
+  switch (reply) {
+    case Reply::cancel: return;
+    case Reply::write: return write(std::exchange(to_write_, {}), remark_);
+    case Reply::discard: return link_.open(to_open_, true);
+    case Reply::save:
+      link_.save(ipc::Save{}, {}, [this, deck = to_open_](const ipc::Answer& answer) {
+        if (std::holds_alternative<ipc::Saved>(answer)) link_.open(deck);
+      });
+  }
+}
+
+void DeckFiles::follow() {
+  if (question_ && about_ != open_deck()) reply(Reply::cancel);
+  if (const std::optional<std::filesystem::path> refused = link_.take_refused()) ask_about_edits(*refused);
+}
+
+}  // namespace prismesh::kiosk::tools::files

@@ -1,0 +1,48 @@
+// Opens and saves decks, and asks before unsaved edits or files would be lost.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "kiosk/tools/model_link.h"
+#include "kiosk/tools/question.h"
+#include "kiosk/tools/trace.h"
+
+namespace prismesh::kiosk::tools::files {
+
+class DeckFiles {
+ public:
+  DeckFiles(ModelLink& link, Trace trace) : link_(link), trace_(trace) {}
+
+  /// How a deck is saved elsewhere: the document goes on as that deck, or that is a copy and the document stays as it is.
+  enum class Elsewhere : std::uint8_t { becomes, copy };
+
+  void open(const std::filesystem::path& deck) { link_.open(deck); }
+  /// `remark`: added to the notice about the saving.
+  void save(const std::string& remark);
+  void save_elsewhere(const std::filesystem::path& path, Elsewhere how, const std::string& remark);
+
+  /// The question that waits for a reply.
+  const std::optional<Question>& question() const { return question_; }
+  void reply(Reply reply);
+  /// Call after the link has turned.
+  void follow();
+
+ private:
+  std::string open_deck() const;
+  void write(const ipc::Save& request, const std::string& remark);
+  void ask_about_edits(const std::filesystem::path& deck);
+  void ask_about_writing(const ipc::Save& request, const std::string& remark, const ipc::SaveWould& would);
+
+  ModelLink& link_;
+  Trace trace_;
+  std::optional<Question> question_;
+  std::string about_;              ///< the deck that was open when the question was asked
+  std::filesystem::path to_open_;  ///< once the unsaved edits are saved or given up
+  ipc::Save to_write_;             ///< if files may be replaced
+  std::string remark_;             ///< for the notice then
+};
+
+}  // namespace prismesh::kiosk::tools::files

@@ -1,0 +1,72 @@
+#include "kiosk/tools/files/files_tool.h"
+
+#include <array>
+
+#include "kiosk/tools/open_panels.h"
+
+namespace prismesh::kiosk::tools::files {
+namespace {
+
+using display::letter;
+
+constexpr std::string_view kName = "files";
+
+enum class FilesCommand : std::uint8_t { open, save, save_as, save_copy };
+
+constexpr Command command_of(FilesCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }
+
+constexpr std::array kKeys = {
+    KeyBinding{letter('O'), true, false, command_of(FilesCommand::open), Menu::file, "Ctrl+O", "open a deck"},
+    KeyBinding{letter('S'), true, false, command_of(FilesCommand::save), Menu::file, "Ctrl+S", "save"},
+    KeyBinding{letter('S'), true, true, command_of(FilesCommand::save_as), Menu::file, "Ctrl+Shift+S",
+               "save as another deck, and go on with that one"},
+    KeyBinding{letter('C'), true, true, command_of(FilesCommand::save_copy), Menu::file, "Ctrl+Shift+C",
+               "save a copy, and go on with this deck"},
+};
+
+}  // namespace
+
+std::span<const KeyBinding> keys() { return kKeys; }
+
+std::string_view FilesTool::name() const { return kName; }
+
+void FilesTool::command(std::uint8_t number, const Pointer&) {
+  const auto dialog = [&](PathDialog kind) { open_dialog(context_, this, static_cast<int>(kind)); };
+  switch (static_cast<FilesCommand>(number)) {
+    case FilesCommand::open: dialog(PathDialog::open); break;
+    case FilesCommand::save: deck_files_.save(save_remark()); break;
+    case FilesCommand::save_as:
+      if (context_.shown.snapshot) dialog(PathDialog::save_as);
+      break;
+    case FilesCommand::save_copy:
+      if (context_.shown.snapshot) dialog(PathDialog::save_copy);
+      break;
+  }
+}
+
+Result<void> FilesTool::prepare() {
+  deck_files_.follow();
+  if (question() != nullptr) set_cover(context_, Cover::none);
+  return {};
+}
+
+std::string FilesTool::save_remark() const {
+  return context_.shown.older ? "It is the newest state that was saved, not the older one that is shown." : "";
+}
+
+void FilesTool::draw_dialog(int kind, bool opened, PanelLayout& layout) {
+  const auto dialog = static_cast<PathDialog>(kind);
+  const std::string deck = context_.shown.snapshot ? context_.shown.snapshot->info().document : std::string();
+  const std::optional<std::string> entered = path_box({dialog, opened, deck}, layout.picture, entry_);
+  if (!entered) return;
+  layout.ask([this, dialog, path = *entered] { enter(dialog, path); });
+  layout.ask([this] { close_dialog(context_); });
+}
+
+void FilesTool::enter(PathDialog dialog, const std::string& path) {
+  if (dialog == PathDialog::open) return deck_files_.open(path);
+  const auto how = dialog == PathDialog::save_copy ? DeckFiles::Elsewhere::copy : DeckFiles::Elsewhere::becomes;
+  deck_files_.save_elsewhere(path, how, save_remark());
+}
+
+}  // namespace prismesh::kiosk::tools::files

@@ -1,0 +1,54 @@
+// Operations on the mesh by hand: split, collapse, merge, swap. A click shows what one would do, a second click does it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "kiosk/tools/mesh_operations/by_hand.h"
+#include "kiosk/tools/mesh_operations/edit_preview.h"
+#include "kiosk/tools/tool.h"
+#include "kiosk/tools/tool_context.h"
+
+namespace prismesh::kiosk::tools::mesh_operations {
+
+std::span<const KeyBinding> keys();
+
+class MeshOperationsTool final : public Tool {
+ public:
+  explicit MeshOperationsTool(ToolContext& context) : context_(context), preview_(context.link) {}
+
+  std::string_view name() const override;
+  void command(std::uint8_t number, const Pointer& pointer) override;
+  bool gesture(const Gesture& gesture) override;
+  bool in_mode() const override { return chosen_.operation.has_value(); }
+  bool leave_mode() override;
+  void leave_preview() override;
+  Result<void> follow() override;
+  void document_changed() override { leave_preview(); }
+  std::string guidance() const override;
+
+ private:
+  /// The operation that is chosen, and what it would be done to.
+  struct Chosen {
+    std::optional<mesh::repair::Operation> operation{};
+    std::optional<HandTarget> target{};
+    std::optional<mesh::document::Restructure> edit{};
+    std::uint64_t generation = 0;
+    std::uint64_t shown = 0;  ///< number of the preview that is in the picture; 0: none
+  };
+  void choose(mesh::repair::Operation operation, const Pointer& pointer);
+  void click(const Pixel& at);
+  void carry_out();
+  void forget();
+  void end_kept_preview();
+  void show_preview(const ipc::EditPreviewed& would);
+
+  ToolContext& context_;
+  EditPreview preview_;
+  Chosen chosen_;
+  std::optional<std::uint64_t> kept_;  ///< generation whose preview stays until its edit is done
+};
+
+}  // namespace prismesh::kiosk::tools::mesh_operations

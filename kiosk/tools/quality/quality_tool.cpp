@@ -1,0 +1,197 @@
+#include "kiosk/tools/quality/quality_tool.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "kiosk/tools/edits.h"
+#include "kiosk/tools/open_panels.h"
+#include "kiosk/tools/picking.h"
+#include "kiosk/tools/quality/counts_section.h"
+#include "kiosk/tools/quality/quality_keys.h"
+#include "kiosk/tools/quality/quality_panel.h"
+#include "kiosk/tools/quality/quality_words.h"
+#include "kiosk/tools/tool_set.h"
+
+namespace prismesh::kiosk::tools::quality {
+
+using mesh::document::Relax;
+using mesh::document::RelaxMode;
+using mesh::document::Repair;
+using mesh::document::Scope;
+
+std::span<const KeyBinding> keys() { return kKeys; }
+
+std::string_view QualityTool::name() const { return kName; }
+
+void QualityTool::command(std::uint8_t number, const Pointer& pointer) {
+  switch (static_cast<QualityCommand>(number)) {
+    case QualityCommand::panel: toggle_left(context_, this); break;
+    case QualityCommand::next_error: step_error(1); break;
+    case QualityCommand::previous_error: step_error(-1); break;
+    case QualityCommand::damaged_only: show_damaged_only(!wish_.damaged); break;
+    case QualityCommand::relax_selection: relax(Scope::selection); break;
+    case QualityCommand::relax_part: relax(Scope::part); break;
+    case QualityCommand::relax_failed: relax(Scope::failed); break;
+    case QualityCommand::relax_from: relax_from(pointer); break;
+    case QualityCommand::repair_damaged: repair(Scope::damaged); break;
+    case QualityCommand::repair_selection: repair(Scope::selection); break;
+    case QualityCommand::repair_all: repair(Scope::all); break;
+  }
+}
+
+// --- edits ---
+
+void QualityTool::relax(Scope scope) {
+  Relax edit;
+  edit.scope = scope;
+  edit.angle = context_.selection.crease_angle;
+  send(context_, edit);
+}
+
+void QualityTool::relax_from(const Pointer& pointer) {
+  const auto node = pointer ? shown_node_at(context_, *pointer) : std::nullopt;
+  if (!node) {
+    context_.notices.say(Notice::Kind::information, "Point at the node from which the mesh shall be relaxed.");
+    return;
+  }
+  Relax edit;
+  edit.mode = RelaxMode::from;
+  edit.at = context_.shown.snapshot->node_id(node->value);
+  edit.scope = Scope::all;
+  edit.angle = context_.selection.crease_angle;
+  send(context_, edit);
+}
+
+void QualityTool::repair(Scope scope) {
+  Repair edit;
+  edit.scope = scope;
+  edit.angle = context_.selection.crease_angle;
+  send(context_, edit);
+}
+
+// --- figures ---
+
+Result<void> QualityTool::follow() {
+  follow_figures();
+  return {};
+}
+
+/// Figures come while the panel is open, for the generation that is shown.
+void QualityTool::follow_figures() {
+  if (!is_open() || !context_.shown.snapshot) return link_.forget();
+  link_.want(wish_, context_.shown.snapshot->info().generation);
+  const ipc::Quality* figures = link_.figures();
+  if (figures == nullptr) return;
+  if (const std::string text = fmt::format("quality generation {} errors {}", figures->generation, figures->error_count); text != traced_)
+    context_.trace.line(traced_ = text);
+  if (!error_) return;
+  // An error that is gone gives way to the one that took its place in the list.
+  const auto same = std::find_if(figures->errors.begin(), figures->errors.end(),
+                                 [&](const ipc::QualityError& error) { return error.shell == error_shell_; });
+  if (same != figures->errors.end()) error_ = static_cast<std::size_t>(same - figures->errors.begin());
+  marked_ = shell_with_id(context_, error_shell_);
+}
+
+void QualityTool::panel_changed() {
+  if (!is_open()) leave_error();
+  follow_figures();
+}
+
+void QualityTool::show_damaged_only(bool damaged_only) {
+  wish_.damaged = damaged_only;
+  leave_error();
+  follow_figures();
+}
+
+void QualityTool::choose_metric(const std::string& metric) {
+  wish_.metric = metric;
+  leave_error();
+  follow_figures();
+}
+
+void QualityTool::select_bar(const BarClicked& bar) {
+  if (!context_.tools.allow_edit()) return;
+  context_.selection.last_region.reset();
+  context_.selection.last_clicked.reset();
+  link_.select(bar.bar, wish_, bar.mode);
+}
+
+// --- errors ---
+
+void QualityTool::leave_error() {
+  error_.reset();
+  marked_.reset();
+}
+
+void QualityTool::step_error(int by) {
+  if (!context_.shown.snapshot) return;
+  if (!is_open()) return show_left(context_, this);
+  const ipc::Quality* figures = link_.figures();
+  if (figures == nullptr || figures->errors.empty()) return;
+  const auto count = static_cast<std::ptrdiff_t>(figures->errors.size());
+  std::ptrdiff_t at = 0;
+  if (error_) {
+    at = static_cast<std::ptrdiff_t>(std::min(*error_, figures->errors.size() - 1));
+    // If the shell was mended, the next one has its place already.
+    const bool still_there = figures->errors[static_cast<std::size_t>(at)].shell == error_shell_;
+    at = by > 0 && !still_there ? at : (at + by + count) % count;
+  } else if (by < 0) {
+    at = count - 1;
+  }
+  go_to_error(static_cast<std::size_t>(at));
+}
+
+void QualityTool::go_to_error(std::size_t error) {
+  const ipc::Quality* figures = link_.figures();
+  if (figures == nullptr || error >= figures->errors.size()) return;
+  const ipc::QualityError& wrong = figures->errors[error];
+  error_ = error;
+  error_shell_ = wrong.shell;
+  marked_ = shell_with_id(context_, wrong.shell);
+  PictureView& view = context_.view;
+  const mesh::Vec3 at(wrong.at[0], wrong.at[1], wrong.at[2]);
+  const double scale = scale_to_look_at(context_.shown.snapshot->info().target_size, view.view.mm_per_unit, aim(view).mm_per_pixel());
+  view.glide.begin(at, scale, context_.clock.now_ns());
+  context_.trace.line(fmt::format("error {} of {} {}", error + 1, figures->error_count, error_words(wrong)));
+}
+
+// --- picture and panels ---
+
+void QualityTool::add_to_picture(render::Picture& picture) const {
+  picture.damaged_only = wish_.damaged;
+  picture.marked = marked_;
+}
+
+std::string QualityTool::signs_left_out() const { return wish_.damaged ? "signs only of what edits made worse" : ""; }
+
+void QualityTool::act(const QualityAction& action) {
+  if (const auto* metric = std::get_if<ChooseMetric>(&action))
+    choose_metric(metric->metric);
+  else if (const auto* bar = std::get_if<BarClicked>(&action))
+    select_bar(*bar);
+  else
+    go_to_error(std::get<ErrorClicked>(action).error);
+}
+
+void QualityTool::draw_left(PanelLayout& layout) {
+  QualityFacts facts;
+  facts.figures = link_.figures();
+  facts.stale = !link_.up_to_date(wish_, context_.shown.snapshot->info().generation);
+  facts.metric = wish_.metric;
+  facts.damaged = wish_.damaged;
+  facts.error = error_;
+  for (const QualityAction& action : quality_panel(facts, layout)) layout.ask([this, action] { act(action); });
+}
+
+void QualityTool::draw_status(PanelLayout&) {
+  CountsFacts facts;
+  facts.counts = context_.shown.snapshot->info().counts;
+  const RemoteDrag* drag = context_.tools.pulling() ? context_.link.drag() : nullptr;
+  if (drag != nullptr && drag->begun() && drag->frame().sequence > 0) facts.pulled = drag->frame().counts;
+  facts.signs = context_.tools.signs_left_out();
+  facts.glyphs_left_out = context_.glyphs_left_out;
+  counts_section(facts);
+}
+
+}  // namespace prismesh::kiosk::tools::quality

@@ -1,0 +1,57 @@
+// Reviews the shells' quality in figures, goes to errors one after the other, and relaxes and repairs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "kiosk/tools/quality/quality_facts.h"
+#include "kiosk/tools/quality/quality_link.h"
+#include "kiosk/tools/tool.h"
+#include "kiosk/tools/tool_context.h"
+
+namespace prismesh::kiosk::tools::quality {
+
+std::span<const KeyBinding> keys();
+
+class QualityTool final : public Tool {
+ public:
+  explicit QualityTool(ToolContext& context) : context_(context), link_(context.link) {}
+
+  std::string_view name() const override;
+  void command(std::uint8_t number, const Pointer& pointer) override;
+  Result<void> follow() override;
+  void document_changed() override { leave_error(); }
+  void add_to_picture(render::Picture& picture) const override;
+  std::string signs_left_out() const override;
+  std::string_view panel_name() const override { return "quality"; }
+  void draw_left(PanelLayout& layout) override;
+  void panel_changed() override;
+  void draw_status(PanelLayout& layout) override;
+
+ private:
+  bool is_open() const { return context_.open.left == this; }
+  void follow_figures();
+  void relax(mesh::document::Scope scope);
+  void relax_from(const Pointer& pointer);
+  void repair(mesh::document::Scope scope);
+  void show_damaged_only(bool damaged_only);
+  void choose_metric(const std::string& metric);
+  void select_bar(const BarClicked& bar);
+  void act(const QualityAction& action);
+  void step_error(int by);
+  void go_to_error(std::size_t error);
+  void leave_error();
+
+  ToolContext& context_;
+  QualityLink link_;
+  QualityLink::Wish wish_;
+  std::optional<std::size_t> error_;  ///< the error that the view went to, by its place in the list
+  std::int64_t error_shell_ = 0;      ///< its shell, by id
+  std::optional<mesh::ShellIndex> marked_;
+  std::string traced_;
+};
+
+}  // namespace prismesh::kiosk::tools::quality

@@ -1,0 +1,14 @@
+// Clips outlines that were drawn on the picture. Pure.
+#pragma once
+
+#include <vector>
+
+#include "kiosk/tools/gestures.h"
+
+namespace prismesh::kiosk::tools::selection {
+
+/// The part of a closed outline at `least_x` and right of it, as an outline; empty if there is none (I. E. Sutherland, G. W. Hodgman,
+/// 1974).
+std::vector<Pixel> kept_right_of(const std::vector<Pixel>& outline, double least_x);
+
+}  // namespace prismesh::kiosk::tools::selection

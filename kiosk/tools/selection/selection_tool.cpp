@@ -1,0 +1,238 @@
+#include "kiosk/tools/selection/selection_tool.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "kiosk/tools/edits.h"
+#include "kiosk/tools/open_panels.h"
+#include "kiosk/tools/picking.h"
+#include "kiosk/tools/selection/outline.h"
+#include "kiosk/tools/selection/selection_keys.h"
+#include "mesh/select/expression.h"
+
+namespace prismesh::kiosk::tools::selection {
+namespace {
+
+using mesh::document::RegionBy;
+using mesh::document::SelectMode;
+
+constexpr std::size_t kMinLassoPoints = 3;
+constexpr double kAngleStep = 5;  ///< degrees
+
+render::PixelRect rectangle_of(const Pixel& a, const Pixel& b) {
+  return {std::min(a.x(), b.x()), std::min(a.y(), b.y()), std::max(a.x(), b.x()), std::max(a.y(), b.y())};
+}
+
+std::vector<Pixel> corners_of(const render::PixelRect& rect) {
+  return {{rect.x0, rect.y0}, {rect.x1, rect.y0}, {rect.x1, rect.y1}, {rect.x0, rect.y1}};
+}
+
+std::vector<std::array<double, 2>> outline_of(const std::vector<Pixel>& pixels, const display::PixelSize& size) {
+  std::vector<std::array<double, 2>> outline;
+  outline.reserve(pixels.size());
+  for (const Pixel& pixel : pixels) outline.push_back({2 * pixel.x() / size.width - 1, 1 - 2 * pixel.y() / size.height});
+  return outline;
+}
+
+}  // namespace
+
+std::span<const KeyBinding> keys() { return kKeys; }
+
+std::string_view SelectionTool::name() const { return kName; }
+
+void SelectionTool::command(std::uint8_t number, const Pointer& pointer) {
+  switch (static_cast<SelectionCommand>(number)) {
+    case SelectionCommand::expression:
+      if (context_.shown.snapshot) open_dialog(context_, this);
+      break;
+    case SelectionCommand::outline_kind: draws_lasso_ = !draws_lasso_; break;
+    case SelectionCommand::toggle_through: through_ = !through_; break;
+    case SelectionCommand::grow: send(context_, mesh::document::Grow{}); break;
+    case SelectionCommand::shrink: send(context_, mesh::document::Shrink{}); break;
+    case SelectionCommand::invert: send(context_, mesh::document::Invert{}); break;
+    case SelectionCommand::region:
+      if (pointer) select_region(*pointer, SelectMode::set);
+      break;
+    case SelectionCommand::region_by: region_by_ = static_cast<RegionBy>((static_cast<int>(region_by_) + 1) % 4); break;
+    case SelectionCommand::wider_angle: change_angle(kAngleStep); break;
+    case SelectionCommand::narrower_angle: change_angle(-kAngleStep); break;
+    case SelectionCommand::region_across_welds: region_across_welds_ = !region_across_welds_; break;
+  }
+}
+
+// --- gestures ---
+
+bool SelectionTool::gesture(const Gesture& gesture) {
+  if (const auto* node = std::get_if<NodeClicked>(&gesture))
+    click(*node);
+  else if (const auto* region = std::get_if<RegionClicked>(&gesture))
+    select_region(region->at, region->mode);
+  else if (std::holds_alternative<TakeBackClicked>(gesture))
+    step_back();
+  else if (const auto* drawn = std::get_if<OutlineDrawn>(&gesture))
+    draw(*drawn);
+  else if (const auto* done = std::get_if<OutlineDone>(&gesture))
+    take(*done);
+  else if (const auto* turned = std::get_if<AngleTurned>(&gesture))
+    change_angle(turned->steps * kAngleStep);
+  else
+    return false;
+  return true;
+}
+
+void SelectionTool::click(const NodeClicked& click) {
+  if (!context_.shown.snapshot) return;
+  const std::optional<mesh::NodeIndex> node = node_at(context_, click.at);
+  if (!node) {
+    if (click.mode == SelectMode::set) clear();
+    return;
+  }
+  if (click.mode != SelectMode::subtract) context_.selection.last_clicked = node;
+  select_node(*node, click.mode);
+}
+
+void SelectionTool::step_back() {
+  context_.selection.last_region.reset();
+  const auto& shown = context_.shown.snapshot;
+  if (shown && shown->info().can_undo && is_selecting(context_.link.made_by())) send(context_, mesh::document::Undo{});
+}
+
+void SelectionTool::draw(const OutlineDrawn& outline) {
+  if (is_rectangle(outline.other_kind))
+    rubber_band_ = rectangle_of(outline.way.front(), outline.way.back());
+  else
+    lasso_ = outline.way;
+}
+
+void SelectionTool::take(const OutlineDone& outline) {
+  rubber_band_.reset();
+  lasso_.clear();
+  if (!context_.shown.snapshot || outline.way.empty()) return;
+  const display::PixelSize size = context_.view.size;
+  std::vector<Pixel> way =
+      is_rectangle(outline.other_kind) ? corners_of(rectangle_of(outline.way.front(), outline.way.back())) : outline.way;
+  if (context_.view.two_views) way = kept_right_of(way, 0.5 * size.width);  // the picture is cut there
+  if (way.size() < kMinLassoPoints) return;
+  if (outline.mode == SelectMode::set) context_.selection.last_clicked.reset();
+  context_.selection.last_region.reset();
+  mesh::document::SelectLasso edit;
+  edit.outline = outline_of(way, size);
+  const Eigen::Matrix4d clip = aim(context_.view).clip_from_deck();
+  std::copy_n(clip.data(), 16, edit.view.begin());  // both are column-major
+  edit.visible = !through_;
+  edit.mode = outline.mode;
+  send(context_, std::move(edit));
+}
+
+void SelectionTool::cancel_gesture() {
+  rubber_band_.reset();
+  lasso_.clear();
+}
+
+// --- what is selected ---
+
+void SelectionTool::clear() {
+  context_.selection.last_clicked.reset();
+  context_.selection.last_region.reset();
+  if (!context_.shown.snapshot || context_.shown.snapshot->info().selected_nodes == 0) return;
+  mesh::document::Select edit;
+  edit.expr = "all";
+  edit.mode = SelectMode::subtract;
+  send(context_, std::move(edit));
+}
+
+void SelectionTool::select_node(mesh::NodeIndex node, SelectMode mode) {
+  context_.selection.last_region.reset();
+  std::vector<std::int64_t> ids;
+  if (node.value < context_.shown.snapshot->node_count()) ids.push_back(context_.shown.snapshot->node_id(node.value));
+  mesh::document::Select edit;
+  edit.expr = mesh::select::to_expression(std::move(ids));
+  edit.mode = mode;
+  send(context_, std::move(edit));
+}
+
+void SelectionTool::select_region(const Pixel& at, SelectMode mode) {
+  const std::optional<mesh::NodeIndex> node = shown_node_at(context_, at);
+  if (!node) return;
+  if (mode != SelectMode::subtract) context_.selection.last_clicked = node;
+  mesh::document::SelectRegion edit;
+  edit.at = context_.shown.snapshot->node_id(node->value);
+  edit.angle = context_.selection.crease_angle;
+  edit.by = region_by_;
+  edit.across_welds = region_across_welds_;
+  edit.mode = mode;
+  context_.selection.last_region = edit;
+  send(context_, edit);
+}
+
+/// The region that was selected last follows the angle.
+void SelectionTool::change_angle(double degrees) {
+  double& angle = context_.selection.crease_angle;
+  angle = std::clamp(angle + degrees, 0.0, 180.0);
+  ++context_.changes;
+  context_.trace.line(fmt::format("angle {}", angle));
+  auto& region = context_.selection.last_region;
+  if (!region || region->mode != SelectMode::set || region->by != RegionBy::features) return;
+  region->angle = angle;
+  send(context_, *region);
+}
+
+void SelectionTool::set_region(const RegionSettings& region) {
+  region_by_ = region.by;
+  region_across_welds_ = region.across_welds;
+  const double angle = context_.selection.crease_angle;
+  if (region.angle != angle) change_angle(region.angle - angle);
+}
+
+void SelectionTool::enter(const ExpressionEntered& entered) {
+  if (entered.text.empty()) return;
+  expressions_.add(entered.text);
+  context_.selection.last_region.reset();
+  context_.selection.last_clicked.reset();
+  mesh::document::Select edit;
+  edit.expr = entered.text;
+  edit.kind = entered.kind;
+  edit.mode = entered.mode;
+  send(context_, std::move(edit));
+}
+
+// --- picture and panels ---
+
+void SelectionTool::add_to_picture(render::Picture& picture) const {
+  picture.rubber_band = rubber_band_;
+  picture.lasso = lasso_;
+}
+
+void SelectionTool::draw_document_section(PanelLayout& layout) {
+  const ipc::SnapshotInfo& info = context_.shown.snapshot->info();
+  SelectFacts facts;
+  facts.nodes = info.selected_nodes;
+  facts.shells = info.selected_shells;
+  facts.lasso = draws_lasso_;
+  facts.through = through_;
+  facts.region = {region_by_, context_.selection.crease_angle, region_across_welds_};
+  if (const std::optional<RegionSettings> wanted = select_section(facts, layout))
+    layout.ask([this, region = *wanted] { set_region(region); });
+}
+
+void SelectionTool::draw_dialog(int, bool opened, PanelLayout& layout) {
+  ExpressionFacts facts;
+  facts.earlier = &expressions_.entries();
+  if (const auto& counted = context_.link.counted()) {
+    facts.counted_for = counted->expr;
+    if (counted->counted) facts.count = ExpressionFacts::Count{counted->counted->nodes, counted->counted->shells, counted->counted->parts};
+    if (counted->failed) facts.problem = Error{counted->failed->file, counted->failed->line, counted->failed->message}.text();
+    if (counted->failed && counted->failed->file == "expression") facts.column = counted->failed->line;
+  }
+  const ExpressionAsked asked = expression_box(facts, layout.picture, opened, entry_);
+  if (asked.typed)
+    layout.ask([this, typed = *asked.typed] {
+      if (!typed.text.empty()) context_.link.count(typed.text, typed.kind);
+    });
+  if (!asked.entered) return;
+  layout.ask([this, entered = *asked.entered] { enter(entered); });
+  layout.ask([this] { close_dialog(context_); });
+}
+
+}  // namespace prismesh::kiosk::tools::selection

@@ -1,0 +1,21 @@
+// The box that a number is typed into.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "kiosk/display/window.h"
+#include "kiosk/panels/entry_box.h"
+
+namespace prismesh::kiosk::tools::shaping {
+
+struct NumberFacts {
+  std::string title, hint;
+  std::string begun;    ///< the field's text when the box opens
+  std::string problem;  ///< a sentence; empty: none
+};
+
+/// Lays the box out (inside Gui::layout). `opened`: it wasn't there the last time. Returns the text that was entered.
+std::optional<std::string> number_box(const NumberFacts& facts, display::PixelSize picture, bool opened, panels::EntryState& entry);
+
+}  // namespace prismesh::kiosk::tools::shaping

@@ -1,0 +1,58 @@
+#include "kiosk/tools/shaping/shaping_options.h"
+
+namespace prismesh::kiosk::tools::shaping {
+
+using mesh::Vec3;
+
+Vec3 unit(DeckAxis axis) {
+  switch (axis) {
+    case DeckAxis::x: return Vec3::UnitX();
+    case DeckAxis::y: return Vec3::UnitY();
+    case DeckAxis::z: return Vec3::UnitZ();
+    case DeckAxis::none: break;
+  }
+  return Vec3::Zero();
+}
+
+DeckAxis next(DeckAxis axis) { return static_cast<DeckAxis>((static_cast<int>(axis) + 1) % 4); }
+
+namespace {
+
+mesh::document::Shaping shaping_of(const ShapingOptions& options, const ShapedHandle& shaped) {
+  mesh::document::Shaping shaping;
+  shaping.grab = shaped.grab;
+  shaping.weights.falloff.profile = options.profile;
+  shaping.weights.falloff.flat = options.flat;
+  if (options.along != DeckAxis::none) shaping.weights.falloff.along = unit(options.along);
+  shaping.weights.free_ends = options.free_ends;
+  shaping.weights.origin = options.origin;
+  shaping.weights.across_welds = options.across_welds;
+  shaping.max_move = options.max_move;
+  if (options.symmetry != DeckAxis::none) {
+    const Vec3 normal = unit(options.symmetry);
+    shaping.symmetry = mesh::document::Symmetry{normal * options.symmetry_place.value_or(shaped.middle.dot(normal)), normal};
+  }
+  return shaping;
+}
+
+}  // namespace
+
+mesh::document::Edit edit_of(const ShapedHandle& shaped, const ShapingOptions& options, const Pull& displacement) {
+  const mesh::document::Shaping shaping = shaping_of(options, shaped);
+  if (shaped.handle == Under::turn_handle && shaped.axis)
+    return mesh::document::Rotate{shaped.axis->point, shaped.axis->direction, displacement.degrees, shaping};
+  if (shaped.handle == Under::slide_handle) return mesh::document::Slide{displacement.by, shaping};
+  if (shaped.handle == Under::move_handle) return mesh::document::Translate{displacement.by, shaping};
+  return mesh::document::Lift{displacement.distance, options.each_normal, shaping};
+}
+
+std::string_view name_of(Under handle) {
+  switch (handle) {
+    case Under::slide_handle: return "Slide";
+    case Under::move_handle: return "Move";
+    case Under::turn_handle: return "Turn";
+    default: return "Lift";
+  }
+}
+
+}  // namespace prismesh::kiosk::tools::shaping

@@ -1,0 +1,51 @@
+// How pulls fade out and what goes with them: what the hand sets beside the pull itself. Plain data, and how it becomes an edit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "kiosk/tools/gestures.h"
+#include "kiosk/tools/shaping/handle.h"
+#include "mesh/document/edit.h"
+
+namespace prismesh::kiosk::tools::shaping {
+
+/// None, or one of the deck's axes.
+enum class DeckAxis : std::uint8_t { none, x, y, z };
+inline constexpr std::array<std::string_view, 4> kDeckAxisNames{"none", "x", "y", "z"};
+mesh::Vec3 unit(DeckAxis axis);  ///< zero for none
+DeckAxis next(DeckAxis axis);
+
+struct ShapingOptions {
+  mesh::shape::Profile profile = mesh::shape::Profile::smooth;
+  double flat = 0;  ///< 0..1
+  DeckAxis along = DeckAxis::none;
+  bool free_ends = true;
+  mesh::shape::Origin origin = mesh::shape::Origin::grab;
+  bool across_welds = false;
+  bool each_normal = false;  ///< of a lift
+  std::optional<double> max_move;
+  DeckAxis symmetry = DeckAxis::none;    ///< the plane's normal
+  std::optional<double> symmetry_place;  ///< where the plane cuts that axis; empty: at the middle of the selection when the edit begins
+  bool operator==(const ShapingOptions&) const = default;
+};
+inline constexpr double kFlatStep = 0.1;
+
+/// A part of the handle, and what it pulls.
+struct ShapedHandle {
+  Under handle = Under::lift_handle;
+  std::int64_t grab = 0;                   ///< id of the handle's node
+  mesh::Vec3 middle = mesh::Vec3::Zero();  ///< of the selection, for a mirror without a place of its own
+  std::optional<Axis> axis{};              ///< of the turning handle
+};
+
+/// The edit that a part of the handle makes at a displacement.
+mesh::document::Edit edit_of(const ShapedHandle& shaped, const ShapingOptions& options, const Pull& displacement);
+
+/// "Lift", "Slide", "Move", "Turn".
+std::string_view name_of(Under handle);
+
+}  // namespace prismesh::kiosk::tools::shaping

@@ -1,0 +1,104 @@
+#include "kiosk/tools/shaping/shaping_panel.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "kiosk/panels/text.h"
+#include "kiosk/panels/widgets.h"
+#include "kiosk/tools/key_table.h"
+#include "kiosk/tools/shaping/shaping_keys.h"
+#include "mesh/shape/weights.h"
+
+namespace prismesh::kiosk::tools::shaping {
+namespace {
+
+using mesh::shape::Profile;
+using panels::check;
+using panels::kGrid;
+using panels::length_text;
+using panels::section;
+
+constexpr int kCurveSteps = 48;
+
+/// The profile as it falls from the grab (left) to the border (right).
+void draw_profile(const ShapingOptions& options) {
+  const float width = ImGui::GetContentRegionAvail().x, height = 7 * kGrid;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, ImVec2(at.x + width, at.y + height), 0x14ffffffu, kGrid / 2);
+  mesh::shape::Falloff falloff;
+  falloff.profile = options.profile;
+  falloff.flat = options.flat;
+  for (int i = 0; i <= kCurveSteps; ++i) {
+    const double share = static_cast<double>(i) / kCurveSteps;
+    const auto weight = static_cast<float>(mesh::shape::evaluate(falloff, 1 - share));
+    list.PathLineTo(ImVec2(at.x + static_cast<float>(share) * width, at.y + kGrid + (1 - weight) * (height - 2 * kGrid)));
+  }
+  list.PathStroke(panels::kInk, 0, 2);
+  ImGui::Dummy(ImVec2(width, height));
+}
+
+void set_by(const char* label, const std::string& value, ShapingCommand command, PanelLayout& layout) {
+  panels::setting(label, value, binding_of(kKeys, command_of(command)), layout);
+}
+
+std::string name_of_axis(DeckAxis axis, const char* none) {
+  return axis == DeckAxis::none ? none : std::string(kDeckAxisNames[static_cast<std::size_t>(axis)]);
+}
+
+/// Returns the options as the user wants them.
+ShapingOptions falloff_section(const ShapingOptions& now, PanelLayout& layout) {
+  ShapingOptions wanted = now;
+  section("Falloff");
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::BeginCombo("##profile", std::string(name(now.profile)).c_str())) {
+    for (int i = 0; i <= static_cast<int>(Profile::gaussian); ++i)
+      if (const auto profile = static_cast<Profile>(i); ImGui::Selectable(std::string(name(profile)).c_str(), profile == now.profile))
+        wanted.profile = profile;
+    ImGui::EndCombo();
+  }
+  draw_profile(now);
+  auto flat = static_cast<float>(now.flat * 100);
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::SliderFloat("##flat", &flat, 0, 100, "flat top %.0f %%")) wanted.flat = std::round(static_cast<double>(flat)) / 100;
+  set_by("falls off along", name_of_axis(now.along, "all ways"), ShapingCommand::along, layout);
+  return wanted;
+}
+
+}  // namespace
+
+std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayout& layout) {
+  const ShapingOptions& now = facts.options;
+  panels::begin_left("Shaping", layout.picture);
+  panels::panel_title("Shaping", "T closes; every pull goes by this");
+  const ShapingOptions wanted = falloff_section(now, layout);
+  section("Ends and origin");
+  check("free edges follow", now.free_ends, command_of(ShapingCommand::free_ends), layout);
+  check("the whole free edge is the grab", now.origin == mesh::shape::Origin::free_edge, command_of(ShapingCommand::origin), layout);
+  check("across welded sheets", now.across_welds, command_of(ShapingCommand::across_welds), layout);
+  check("lift: each along its own normal", now.each_normal, command_of(ShapingCommand::each_normal), layout);
+  set_by("moves at most", now.max_move ? length_text(*now.max_move, facts.length_unit) : "no limit", ShapingCommand::move_limit, layout);
+  section("Mirror");
+  set_by("plane across", name_of_axis(now.symmetry, "off"), ShapingCommand::symmetry, layout);
+  if (now.symmetry != DeckAxis::none)
+    set_by("stands at", now.symmetry_place ? length_text(*now.symmetry_place, facts.length_unit) : "the selection's middle",
+           ShapingCommand::symmetry_place, layout);
+  section("By number");
+  set_by("typed numbers", std::string(name_of(facts.handle)), ShapingCommand::next_handle, layout);
+  set_by("how far", "type it", ShapingCommand::type_number, layout);
+  ImGui::End();
+  return wanted != now ? std::optional(wanted) : std::nullopt;
+}
+
+void pull_section(const PullFacts& facts) {
+  section(facts.what.c_str());
+  if (facts.degrees)
+    panels::fact("angle", fmt::format("{:.2f}\u00b0", *facts.degrees));
+  else
+    panels::fact("distance", length_text(facts.length, facts.length_unit));
+  panels::fact("nodes that move", panels::grouped(facts.nodes));
+}
+
+}  // namespace prismesh::kiosk::tools::shaping

@@ -1,0 +1,30 @@
+// The panel at the left that sets how pulls fade out, and the section that says how far something is pulled.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "kiosk/tools/panel_layout.h"
+#include "kiosk/tools/shaping/shaping_options.h"
+
+namespace prismesh::kiosk::tools::shaping {
+
+struct ShapingFacts {
+  ShapingOptions options;
+  std::string length_unit;
+  Under handle = Under::lift_handle;  ///< which part of the handle a typed number pulls
+};
+/// Lays the panel out (inside Gui::layout). Returns other options, if the user chose some beside commands.
+std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayout& layout);
+
+struct PullFacts {
+  std::string what;  ///< "Lift", "Slide", "Move", "Turn"
+  double length = 0;
+  std::string length_unit;
+  std::optional<double> degrees{};  ///< in place of a length
+  std::uint64_t nodes = 0;          ///< that move
+};
+void pull_section(const PullFacts& facts);
+
+}  // namespace prismesh::kiosk::tools::shaping

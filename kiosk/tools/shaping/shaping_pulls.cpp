@@ -1,0 +1,130 @@
+// The pulls of the shaping tool: from taking the handle, or typing a number, until the server has the edit.
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kiosk/tools/open_panels.h"
+#include "kiosk/tools/picking.h"
+#include "kiosk/tools/shaping/shaping_tool.h"
+#include "kiosk/tools/shaping/typed_number.h"
+#include "kiosk/tools/tool_set.h"
+
+namespace prismesh::kiosk::tools::shaping {
+
+void ShapingTool::begin_pull(Under handle, const Pixel& at) {
+  if (!anchor_ || context_.link.drag() != nullptr || !context_.tools.allow_edit()) return;
+  context_.tools.leave_previews();
+  context_.tools.edit_begins();
+  const stereo::Aim now = aim(context_.view);
+  const bool turning = handle == Under::turn_handle;
+  if (turning && !axis_) return;
+  HandleGrab grab;
+  grab.handle = handle;
+  grab.at = turning ? ball_place(now, *axis_, anchor_->at) : anchor_->at;
+  grab.direction = arrow_direction(now, *anchor_);
+  if (turning) grab.axis = axis_;
+  grab.pixel = at;
+  pull_ = ActivePull{HandlePull(grab, now), at};
+  handle_ = handle;
+  pulled_ = {};
+  const ShapedHandle shaped{handle, anchor_->id, context_.selection.centre.value_or(anchor_->at), axis_};
+  context_.link.begin_drag(edit_of(shaped, options_, {}));
+  if (context_.link.drag() == nullptr) pull_.reset();
+}
+
+void ShapingTool::pull_to(const Pixel& pixel) {
+  pull_->pointer = pixel;
+  pulled_ = pull_->pull.at(aim(context_.view), pixel, pulled_);
+  if (pull_->axis_known) context_.link.pull(pulled_);
+}
+
+/// The edit gets exactly the numbers that were typed.
+void ShapingTool::send_typed() {
+  if (!pull_ || !pull_->typed || !pull_->axis_known) return;
+  pulled_ = *pull_->typed;
+  if (pull_->pull.handle() == Under::lift_handle) pulled_.distance = pull_->pull.lift_of(pull_->typed->distance);
+  context_.link.pull(pulled_);
+  context_.link.commit_drag();
+}
+
+void ShapingTool::cancel_gesture() {
+  if (!pull_) return;
+  pull_.reset();
+  if (is_typing() && typing_.what == Typing::For::pull) close_dialog(context_);
+  context_.link.cancel_drag();
+  ++context_.changes;
+}
+
+/// The pull stays as it is, and the pointer stays on it.
+void ShapingTool::view_moved(const Pointer& pointer) {
+  if (!pull_) return;
+  if (pointer) pull_->pointer = *pointer;
+  pull_->pull.hold(aim(context_.view), pull_->pointer, pulled_);
+}
+
+Result<void> ShapingTool::follow() {
+  const RemoteDrag* drag = context_.link.drag();
+  if (drag == nullptr)
+    pull_.reset();
+  else if (drag->begun() && pull_ && !pull_->axis_known)
+    take_axis(*drag);
+  return preview_.follow();
+}
+
+/// The server has told the grab and the normal: what was pulled or typed meanwhile goes to it.
+void ShapingTool::take_axis(const RemoteDrag& drag) {
+  const ipc::DragBegun& facts = drag.facts();
+  pull_->pull.set_axis(aim(context_.view), mesh::Vec3(facts.grab_position[0], facts.grab_position[1], facts.grab_position[2]),
+                       mesh::Vec3(facts.normal[0], facts.normal[1], facts.normal[2]));
+  pull_->axis_known = true;
+  if (pull_->typed)
+    send_typed();
+  else
+    pull_to(pull_->pointer);
+  if (pull_->released_early) context_.link.commit_drag();
+}
+
+// --- numbers ---
+
+bool ShapingTool::takes_numbers(const Pointer& pointer) const {
+  if (pull_) return true;
+  // A click leaves the pointer on the ring, where digits must still choose views.
+  const Under part = pointer ? under(*pointer) : Under::picture;
+  return part != Under::picture && part != Under::move_handle;
+}
+
+bool ShapingTool::begin_number(const std::string& text, const Pointer& pointer) {
+  if (!anchor_ && !pull_) return false;
+  if (pull_)
+    handle_ = pull_->pull.handle();
+  else if (const Under part = pointer ? under(*pointer) : Under::picture; part != Under::picture)
+    handle_ = part;
+  else if ((handle_ == Under::turn_handle) != axis_.has_value())
+    handle_ = axis_ ? Under::turn_handle : Under::lift_handle;
+  typing_ = {Typing::For::pull, text, {}};
+  open_dialog(context_, this);
+  return true;
+}
+
+void ShapingTool::enter_number(const std::string& text) {
+  if (typing_.what == Typing::For::pull)
+    enter_pull(text);
+  else
+    enter_option(text);
+}
+
+void ShapingTool::enter_pull(const std::string& text) {
+  const Result<Pull> typed = typed_displacement(handle_, text, pulled_);
+  if (!typed) {
+    typing_.problem = typed.error().message;
+    return;
+  }
+  close_dialog(context_);
+  context_.trace.line(fmt::format("typed {} {}", name_of(handle_), text));
+  if (!pull_) begin_pull(handle_, Pixel::Zero());
+  if (!pull_) return;
+  pull_->typed = *typed;
+  send_typed();
+}
+
+}  // namespace prismesh::kiosk::tools::shaping

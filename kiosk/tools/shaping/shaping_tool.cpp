@@ -1,0 +1,171 @@
+#include "kiosk/tools/shaping/shaping_tool.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kiosk/tools/open_panels.h"
+#include "kiosk/tools/picking.h"
+#include "kiosk/tools/shaping/shaping_keys.h"
+#include "kiosk/tools/shaping/shaping_panel.h"
+#include "kiosk/tools/shaping/typed_number.h"
+#include "kiosk/tools/tool_set.h"
+
+namespace prismesh::kiosk::tools::shaping {
+namespace {
+
+using Use = render::Handle::Use;
+
+Use use_of(Under handle) {
+  switch (handle) {
+    case Under::slide_handle: return Use::disk;
+    case Under::move_handle: return Use::ring;
+    case Under::turn_handle: return Use::arc;
+    default: return Use::arrow;
+  }
+}
+
+}  // namespace
+
+std::span<const KeyBinding> keys() { return kKeys; }
+
+std::string_view ShapingTool::name() const { return kName; }
+
+void ShapingTool::command(std::uint8_t number, const Pointer& pointer) {
+  switch (static_cast<ShapingCommand>(number)) {
+    case ShapingCommand::type_number: begin_number({}, std::nullopt); break;
+    case ShapingCommand::next_handle: next_handle(); break;
+    case ShapingCommand::pick_axis: pick_axis(); break;
+    case ShapingCommand::axis_edge: axis_from_edge(pointer); break;
+    case ShapingCommand::axis_x: axis_from_deck(DeckAxis::x); break;
+    case ShapingCommand::axis_y: axis_from_deck(DeckAxis::y); break;
+    case ShapingCommand::axis_z: axis_from_deck(DeckAxis::z); break;
+    case ShapingCommand::no_axis: set_axis(std::nullopt, "none"); break;
+    case ShapingCommand::panel: toggle_left(context_, this); break;
+    default: change_option(static_cast<ShapingCommand>(number)); break;
+  }
+}
+
+bool ShapingTool::gesture(const Gesture& gesture) {
+  if (!in_mode()) return take_handle_gesture(gesture);
+  if (const auto* node = std::get_if<NodeClicked>(&gesture))
+    click_axis(node->at);
+  else if (const auto* region = std::get_if<RegionClicked>(&gesture))
+    click_axis(region->at);
+  else
+    return take_handle_gesture(gesture);
+  return true;
+}
+
+bool ShapingTool::take_handle_gesture(const Gesture& gesture) {
+  if (const auto* taken = std::get_if<HandleTaken>(&gesture)) {
+    begin_pull(taken->handle, taken->at);
+    return true;
+  }
+  const auto* moved = std::get_if<HandleMoved>(&gesture);
+  const auto* released = std::get_if<HandleReleased>(&gesture);
+  if (moved == nullptr && released == nullptr) return false;
+  // While a number is typed the pull waits for it.
+  if (!pull_ || pull_->typed || is_typing()) return true;
+  pull_to(moved != nullptr ? moved->at : released->at);
+  if (released == nullptr) return true;
+  if (pull_->axis_known)
+    context_.link.commit_drag();
+  else
+    pull_->released_early = true;
+  return true;
+}
+
+// --- the handle ---
+
+Under ShapingTool::under(const Pixel& pixel) const {
+  const std::optional<render::Handle> shown = shown_handle();
+  return shown && !pull_ && !context_.tools.in_mode() ? part_of_handle(aim(context_.view), *shown, pixel) : Under::picture;
+}
+
+std::optional<render::Handle> ShapingTool::shown_handle() const {
+  render::Handle handle;
+  if (pull_) {
+    const HandlePull& pull = pull_->pull;
+    handle.at = pull.foot(pulled_);
+    handle.direction = pull.direction();
+    handle.use = use_of(pull.handle());
+    if (pull.axis()) handle.turn = render::Handle::Turn{pull.axis()->point, pull.axis()->direction, pulled_.degrees};
+    return handle;
+  }
+  const ModelLink& link = context_.link;
+  if (!anchor_ || context_.shown.older || !link.connected() || link.drag() != nullptr || context_.tools.in_mode(this)) return std::nullopt;
+  const stereo::Aim now = aim(context_.view);
+  handle.at = anchor_->at;
+  handle.direction = arrow_direction(now, *anchor_);
+  if (axis_) {
+    handle.turn = render::Handle::Turn{axis_->point, axis_->direction, 0};
+    handle.at = ball_place(now, *axis_, anchor_->at);
+  }
+  return handle;
+}
+
+void ShapingTool::model_changed() {
+  const auto& shown = context_.shown.snapshot;
+  const bool selected = shown && shown->info().selected_nodes > 0;
+  anchor_ = selected ? anchor_of_selection(*context_.renderer.model(), context_.selection.last_clicked) : std::nullopt;
+}
+
+void ShapingTool::document_changed() {
+  axis_.reset();
+  axis_pick_.cancel();
+}
+
+// --- picture and panels ---
+
+void ShapingTool::add_to_picture(render::Picture& picture) const { picture.handle = shown_handle(); }
+
+std::string ShapingTool::guidance() const {
+  if (!axis_pick_.active()) return {};
+  return axis_pick_.first() ? "Axis: click the second node, Esc gives up" : "Axis: click the first node, Esc gives up";
+}
+
+void ShapingTool::trace_picture() {
+  const stereo::Aim now = aim(context_.view);
+  std::string text = "handle none";
+  if (const auto shown = shown_handle()) {
+    const auto foot = stereo::pixel_of(now, shown->at), tip = stereo::pixel_of(now, stereo::handle_tip(now, shown->at, shown->direction));
+    if (foot && tip) text = fmt::format("handle {:.1f} {:.1f} {:.1f} {:.1f}", foot->x(), foot->y(), tip->x(), tip->y());
+  }
+  if (text != traced_) context_.trace.line(traced_ = text);
+}
+
+void ShapingTool::draw_left(PanelLayout& layout) {
+  const ShapingFacts facts{options_, context_.shown.snapshot->info().length_unit, handle_};
+  if (const std::optional<ShapingOptions> wanted = shaping_panel(facts, layout))
+    layout.ask([this, options = *wanted] { options_ = options; });
+}
+
+void ShapingTool::draw_document_section(PanelLayout&) {
+  if (!pull_) return;
+  PullFacts facts;
+  facts.what = std::string(name_of(pull_->pull.handle()));
+  facts.length_unit = context_.shown.snapshot->info().length_unit;
+  switch (pull_->pull.handle()) {
+    case Under::lift_handle: facts.length = pull_->pull.along_arrow(pulled_); break;
+    case Under::turn_handle: facts.degrees = pulled_.degrees; break;
+    default: facts.length = pulled_.by.norm(); break;
+  }
+  if (const RemoteDrag* drag = context_.link.drag(); drag != nullptr && drag->begun()) facts.nodes = drag->facts().nodes;
+  pull_section(facts);
+}
+
+void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
+  const bool pull = typing_.what == Typing::For::pull;
+  NumberFacts facts;
+  facts.title = pull                                      ? std::string(name_of(handle_))
+                : typing_.what == Typing::For::move_limit ? "No node moves farther than"
+                                                          : "The mirror stands at";
+  facts.hint = pull ? std::string(typed_hint(handle_)) : "a number; nothing takes it away";
+  facts.begun = typing_.begun;
+  facts.problem = typing_.problem;
+  if (const std::optional<std::string> entered = number_box(facts, layout.picture, opened, entry_))
+    layout.ask([this, text = *entered] { enter_number(text); });
+}
+
+}  // namespace prismesh::kiosk::tools::shaping

@@ -1,0 +1,105 @@
+// Pulls the surface by the selection's handle, turns it about an axis, and takes numbers for both.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "kiosk/tools/shaping/axis_pick.h"
+#include "kiosk/tools/shaping/handle.h"
+#include "kiosk/tools/shaping/number_box.h"
+#include "kiosk/tools/shaping/pull_preview.h"
+#include "kiosk/tools/shaping/shaping_commands.h"
+#include "kiosk/tools/shaping/shaping_options.h"
+#include "kiosk/tools/tool.h"
+#include "kiosk/tools/tool_context.h"
+
+namespace prismesh::kiosk::tools::shaping {
+
+std::span<const KeyBinding> keys();
+
+class ShapingTool final : public Tool {
+ public:
+  explicit ShapingTool(ToolContext& context) : context_(context), preview_(context.link, context.renderer, context.trace) {}
+
+  std::string_view name() const override;
+  void command(std::uint8_t number, const Pointer& pointer) override;
+  Under under(const Pixel& pixel) const override;
+  bool gesture(const Gesture& gesture) override;
+  bool takes_numbers(const Pointer& pointer) const override;
+  bool begin_number(const std::string& text, const Pointer& pointer) override;
+  bool in_mode() const override { return axis_pick_.active(); }
+  bool leave_mode() override;
+  bool take_back() override;
+  bool dragging() const override { return pulling(); }
+  void cancel_gesture() override;
+  bool pulling() const override { return pull_.has_value(); }
+  Result<void> follow() override;
+  void model_changed() override;
+  void document_changed() override;
+  void view_moved(const Pointer& pointer) override;
+  void add_to_picture(render::Picture& picture) const override;
+  std::string guidance() const override;
+  void trace_picture() override;
+  std::string_view panel_name() const override { return "shaping"; }
+  void draw_left(PanelLayout& layout) override;
+  void draw_document_section(PanelLayout& layout) override;
+  void draw_dialog(int kind, bool opened, PanelLayout& layout) override;
+
+ private:
+  /// What the number that is being typed is for.
+  struct Typing {
+    enum class For : std::uint8_t { pull, move_limit, symmetry_place } what = For::pull;
+    std::string begun{};
+    std::string problem{};
+  };
+  /// A pull under way.
+  struct ActivePull {
+    HandlePull pull;
+    Pixel pointer = Pixel::Zero();
+    bool axis_known = false;      ///< the server has told the normal: only then it understands a distance
+    bool released_early = false;  ///< before that
+    std::optional<Pull> typed{};  ///< so far, whatever the pointer says; of a lift: along the arrow
+  };
+
+  std::optional<render::Handle> shown_handle() const;
+  bool is_typing() const { return context_.open.dialog.owner == this; }
+
+  // --- pulls ---
+  void begin_pull(Under handle, const Pixel& at);
+  void pull_to(const Pixel& pixel);
+  void send_typed();
+  void take_axis(const RemoteDrag& drag);
+  bool take_handle_gesture(const Gesture& gesture);
+
+  // --- axes ---
+  void set_axis(const std::optional<Axis>& axis, const std::string& what);
+  void pick_axis();
+  void click_axis(const Pixel& at);
+  void axis_from_edge(const Pointer& pointer);
+  void axis_from_deck(DeckAxis axis);
+
+  // --- numbers and options ---
+  void type_for(Typing::For what, const std::optional<double>& now);
+  void enter_number(const std::string& text);
+  void enter_pull(const std::string& text);
+  void enter_option(const std::string& text);
+  void next_handle();
+  void change_option(ShapingCommand command);
+
+  ToolContext& context_;
+  ShapingOptions options_;
+  Under handle_ = Under::lift_handle;  ///< the part of the handle that numbers are typed for
+  AxisPick axis_pick_;
+  std::optional<Axis> axis_;
+  std::optional<Anchor> anchor_;
+  std::optional<ActivePull> pull_;
+  Pull pulled_;  ///< of the pull under way, or else of the last one
+  PullPreview preview_;
+  Typing typing_;
+  panels::EntryState entry_;
+  std::string traced_;
+};
+
+}  // namespace prismesh::kiosk::tools::shaping

@@ -1,0 +1,57 @@
+#include "kiosk/tools/shaping/typed_number.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace prismesh::kiosk::tools::shaping {
+
+Result<std::vector<double>> parse_numbers(std::string_view text) {
+  constexpr std::string_view kBetween = " ,;\t";
+  std::vector<double> numbers;
+  for (std::size_t at = 0; (at = text.find_first_not_of(kBetween, at)) != std::string_view::npos;) {
+    std::string_view word = text.substr(at, text.find_first_of(kBetween, at) - at);
+    at += word.size();
+    const std::string_view whole = word;
+    if (word.starts_with('+')) word.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(number))
+      return fail("", "\"" + std::string(whole) + "\" is no number; write it like 12.5");
+    numbers.push_back(number);
+  }
+  if (numbers.empty()) return fail("", "type a number");
+  return numbers;
+}
+
+Result<Pull> typed_displacement(Under handle, std::string_view text, const Pull& pulled) {
+  const Result<std::vector<double>> numbers = parse_numbers(text);
+  if (!numbers) return fail(numbers.error());
+  const std::vector<double>& n = *numbers;
+  Pull pull;
+  if (handle == Under::slide_handle || handle == Under::move_handle) {
+    if (n.size() == 3)
+      pull.by = {n[0], n[1], n[2]};
+    else if (n.size() != 1)
+      return fail("", "type three numbers, x y z, or one: how far");
+    else if (!(pulled.by.norm() > 0))
+      return fail("", "one number says how far, not where to: pull a little first, or type x y z");
+    else
+      pull.by = pulled.by.normalized() * n[0];
+    return pull;
+  }
+  if (n.size() != 1)
+    return fail("", handle == Under::turn_handle ? "type one number: the angle in degrees" : "type one number: the distance");
+  (handle == Under::turn_handle ? pull.degrees : pull.distance) = n[0];
+  return pull;
+}
+
+std::string_view typed_hint(Under handle) {
+  switch (handle) {
+    case Under::turn_handle: return "degrees";
+    case Under::slide_handle:
+    case Under::move_handle: return "x y z, or how far";
+    default: return "distance";
+  }
+}
+
+}  // namespace prismesh::kiosk::tools::shaping

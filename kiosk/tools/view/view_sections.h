@@ -1,0 +1,31 @@
+// The sections of the panels that are about the view: colours, display, eyes and depth.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "kiosk/tools/eyes_facts.h"
+#include "kiosk/tools/panel_layout.h"
+
+namespace prismesh::kiosk::tools::view {
+
+/// Lays out what the model is coloured by, in a word, and the display profile (inside Gui::layout).
+void picture_section(const std::string& colours, const std::string& profile, PanelLayout& layout);
+
+/// How much depth the picture has.
+struct DepthFacts {
+  int strength_percent = 100;
+  double comfort_degrees = 1;
+  bool selection_in_plane = false;  ///< the selection is kept in the plane of the screen
+};
+
+/// Whatever of it there is: eyes if they are followed, depth if the picture is in stereo.
+struct StereoFacts {
+  std::optional<EyesFacts> eyes;
+  std::optional<DepthFacts> depth;
+};
+void stereo_sections(const StereoFacts& facts, PanelLayout& layout);
+/// Their height in pixels in a panel of that inner width.
+float stereo_height(const StereoFacts& facts, float width);
+
+}  // namespace prismesh::kiosk::tools::view

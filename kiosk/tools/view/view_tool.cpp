@@ -1,0 +1,168 @@
+#include "kiosk/tools/view/view_tool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kiosk/tools/edits.h"
+#include "kiosk/tools/picking.h"
+#include "kiosk/tools/tool_set.h"
+#include "kiosk/tools/view/view_keys.h"
+
+namespace prismesh::kiosk::tools::view {
+namespace {
+
+constexpr double kZoomPerStep = 1.15;
+
+}  // namespace
+
+std::span<const KeyBinding> keys() { return kKeys; }
+
+std::string_view ViewTool::name() const { return kName; }
+
+void ViewTool::command(std::uint8_t number, const Pointer&) {
+  DepthFit& depth = context_.view.depth;
+  switch (static_cast<ViewCommand>(number)) {
+    case ViewCommand::fit: fit(); break;
+    case ViewCommand::front: look_from("front"); break;
+    case ViewCommand::back: look_from("back"); break;
+    case ViewCommand::left: look_from("left"); break;
+    case ViewCommand::right: look_from("right"); break;
+    case ViewCommand::top: look_from("top"); break;
+    case ViewCommand::bottom: look_from("bottom"); break;
+    case ViewCommand::oblique: look_from("iso"); break;
+    case ViewCommand::colour_mode: next_colours(); break;
+    case ViewCommand::shadows: context_.view.shadows = !context_.view.shadows; break;
+    case ViewCommand::next_profile: next_profile(); break;
+    case ViewCommand::selection_to_plane: bring_selection(context_); break;
+    case ViewCommand::keep_selection_in_plane: keep_selection(!depth.keeps_selection()); break;
+    case ViewCommand::more_depth: depth.change_percent(1); break;
+    case ViewCommand::less_depth: depth.change_percent(-1); break;
+    case ViewCommand::wider_comfort: depth.change_degrees(1); break;
+    case ViewCommand::narrower_comfort: depth.change_degrees(-1); break;
+  }
+}
+
+// --- gestures ---
+
+bool ViewTool::gesture(const Gesture& gesture) {
+  if (const auto* orbited = std::get_if<Orbited>(&gesture))
+    orbit(*orbited);
+  else if (const auto* panned = std::get_if<Panned>(&gesture))
+    pan(*panned);
+  else if (const auto* zoomed = std::get_if<Zoomed>(&gesture))
+    zoom(*zoomed);
+  else
+    return false;
+  return true;
+}
+
+void ViewTool::orbit(const Orbited& orbit) {
+  PictureView& view = context_.view;
+  if (orbit_from_ != orbit.from) {
+    // The model turns about what was under the pointer when the drag began.
+    orbit_from_ = orbit.from;
+    const auto node = shown_node_at(context_, in_picked_view(view, orbit.from));
+    if (node) view.view = stereo::with_pivot(view.view, context_.shown.snapshot->position(node->value));
+  }
+  const double radians_per_pixel = std::numbers::pi / std::max(view.size.height, 1);
+  view.view = stereo::orbit(view.view, orbit.dx * radians_per_pixel, -orbit.dy * radians_per_pixel);
+  context_.tools.view_moved(orbit.at);
+}
+
+void ViewTool::pan(const Panned& pan) {
+  PictureView& view = context_.view;
+  view.view = stereo::pan(view.view, Eigen::Vector2d(pan.dx, -pan.dy) * aim(view).mm_per_pixel());
+  context_.tools.view_moved(pan.at);
+}
+
+void ViewTool::zoom(const Zoomed& zoom) {
+  PictureView& view = context_.view;
+  Eigen::Vector2d place = stereo::mm_of_pixel(aim(view), zoom.at);
+  if (view.two_views) place.x() -= (zoom.at.x() > 0.5 * view.size.width ? 1 : -1) * pane_shift_mm(view);
+  view.view = stereo::zoom(view.view, std::pow(kZoomPerStep, zoom.steps), place);
+  context_.tools.view_moved();
+}
+
+// --- commands ---
+
+void ViewTool::look_from(std::string_view side) {
+  if (const auto rotation = stereo::named_rotation(side)) context_.view.view.rotation = *rotation;
+  fit();
+}
+
+void ViewTool::fit() {
+  if (context_.renderer.bounds().empty()) return;
+  PictureView& view = context_.view;
+  Eigen::Vector2d free = stereo::screen_size_mm(view.profile, view.size.width, view.size.height);
+  free.x() *= std::max(0.2, 1 - view.covered_width / std::max(view.size.width, 1));
+  if (view.two_views) free.x() *= 0.5;
+  view.view = context_.renderer.fitted(view.view, free, view.seen.between_eyes_mm.z());
+  if (view.depth.keeps_selection()) bring_selection(context_);
+  context_.tools.view_moved();
+  ++context_.changes;
+}
+
+void ViewTool::next_colours() {
+  if (context_.tools.leave_colours()) return;  // back to the colours before
+  using render::ColourMode;
+  ColourMode& colour = context_.view.colour;
+  colour = colour == ColourMode::parts ? ColourMode::quality : colour == ColourMode::quality ? ColourMode::part_states : ColourMode::parts;
+}
+
+void ViewTool::next_profile() {
+  stereo::Profile& profile = context_.view.profile;
+  const auto profiles = stereo::built_in_profiles();
+  const auto current = std::find_if(profiles.begin(), profiles.end(), [&](const stereo::Profile& p) { return p.name == profile.name; });
+  profile = current == profiles.end() || current + 1 == profiles.end() ? profiles.front() : *(current + 1);
+  context_.tools.view_moved();
+  context_.trace.line("profile " + profile.name);
+}
+
+void ViewTool::keep_selection(bool keep) {
+  context_.view.depth.keep_selection(keep);
+  if (keep) bring_selection(context_);
+}
+
+// --- following ---
+
+Result<void> ViewTool::prepare() {
+  if (!shared_.take()) return {};
+  context_.tools.view_moved();
+  context_.trace.line("view follows");
+  return {};
+}
+
+void ViewTool::look(std::int64_t now_ns) {
+  shared_.share();
+  PictureView& view = context_.view;
+  const stereo::View fitted = view.depth.fitted(view.glide.along(view.view, now_ns), view.seen.between_eyes_mm, now_ns);
+  if (fitted == view.view) return;
+  view.view = fitted;
+  ++context_.changes;
+}
+
+// --- panels ---
+
+void ViewTool::draw_document_section(PanelLayout& layout) {
+  if (context_.tools.pulling()) return;  // the pull needs the room
+  const std::string others = context_.tools.colours();
+  const char* own = context_.view.colour == render::ColourMode::quality       ? "quality"
+                    : context_.view.colour == render::ColourMode::part_states ? "parts' state"
+                                                                              : "part";
+  picture_section(others.empty() ? own : others, context_.view.profile.name, layout);
+}
+
+StereoFacts ViewTool::stereo_facts() const {
+  const DepthFit& depth = context_.view.depth;
+  StereoFacts facts;
+  facts.eyes = context_.view.eyes;
+  if (context_.view.profile.stereo()) facts.depth = DepthFacts{depth.percent(), depth.degrees(), depth.keeps_selection()};
+  return facts;
+}
+
+void ViewTool::draw_status(PanelLayout& layout) { stereo_sections(stereo_facts(), layout); }
+
+double ViewTool::status_height(double width) const { return static_cast<double>(stereo_height(stereo_facts(), static_cast<float>(width))); }
+
+}  // namespace prismesh::kiosk::tools::view

@@ -1,0 +1,49 @@
+// Turns, moves and fits the view, and sets its colours, display profile and depth.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "kiosk/tools/tool.h"
+#include "kiosk/tools/tool_context.h"
+#include "kiosk/tools/view/shared_view.h"
+#include "kiosk/tools/view/view_sections.h"
+
+namespace prismesh::kiosk::tools::view {
+
+std::span<const KeyBinding> keys();
+
+class ViewTool final : public Tool {
+ public:
+  explicit ViewTool(ToolContext& context) : context_(context), shared_(context) {}
+
+  std::string_view name() const override;
+  void command(std::uint8_t number, const Pointer& pointer) override;
+  bool gesture(const Gesture& gesture) override;
+  Result<void> prepare() override;
+  void document_changed() override { fit(); }
+  void look(std::int64_t now_ns) override;
+  void draw_document_section(PanelLayout& layout) override;
+  void draw_status(PanelLayout& layout) override;
+  double status_height(double width) const override;
+
+ private:
+  void orbit(const Orbited& orbit);
+  void pan(const Panned& pan);
+  void zoom(const Zoomed& zoom);
+  void look_from(std::string_view side);
+  void fit();
+  void next_colours();
+  void next_profile();
+  void keep_selection(bool keep);
+  StereoFacts stereo_facts() const;
+
+  ToolContext& context_;
+  SharedView shared_;
+  std::optional<Pixel> orbit_from_;  ///< where the drag began that turned the view last
+};
+
+}  // namespace prismesh::kiosk::tools::view
