@@ -1,4 +1,4 @@
-// The patterns of the calibration: fields of plain colour for each eye, or stripes on the panel's pixels for both. Plain data.
+// What the calibration shows: fields of plain colour, for each eye its own, or for the panel's pixels whatever eye they go to. Plain data.
 #pragma once
 
 #include <array>

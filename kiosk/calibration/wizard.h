@@ -1,5 +1,5 @@
-// Leads step by step from a new display to a profile that is bound to it. Holds what the viewer has chosen so far; knows no window, no
-// renderer and no device: it tells what to show, in words and as a pattern, and where to hold the mask meanwhile.
+// Step by step from a display out of its box to a profile that is bound to it. Holds what the viewer has chosen so far; knows no window, no
+// renderer and no device: it says what to show, in words and as a pattern, and where the mask should be held meanwhile.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@
 namespace prismesh::kiosk::calibration {
 
 enum class Step : std::uint8_t {
-  link,             ///< whether each pixel arrives as it was sent
-  size,             ///< the size of a pixel
+  link,             ///< does each pixel arrive as it was sent
+  size,             ///< how large is a pixel
   eye_separation,   ///< of this viewer
   pitch,            ///< of the mask, by a band that must lie level
   places,           ///< of the mask, best seen from several places of the head
-  crosstalk_left,   ///< light that leaks to the left eye
-  crosstalk_right,  ///< and to the right eye
+  crosstalk_left,   ///< what shines through to the left eye
+  crosstalk_right,  ///< and to the right one
   check,            ///< a last look, then it is saved
 };
 
@@ -32,17 +32,17 @@ enum class Step : std::uint8_t {
 struct Setup {
   std::optional<display::Monitor> monitor;
   display::PixelSize panel;   ///< what the picture covers
-  bool mask_answers = false;  ///< a servo moves the mask
+  bool mask_answers = false;  ///< a servo takes the mask where it is told
 };
 
-/// The devices' present readings.
+/// What the devices say at the moment.
 struct Now {
   bool eyes_seen = false;
   Eigen::Vector3d between_eyes_mm{0, 0, 650};
   std::optional<double> mask_mm;  ///< measured
 };
 
-/// The page of a step.
+/// What a step shows.
 struct Page {
   int number = 1, count = 1;
   std::string title;
@@ -65,9 +65,9 @@ class Wizard {
   Page page(const Now& now) const;
   /// Changes the value of this step by so many fine steps; `coarse`: eight times as far. Stops at the value's limits.
   void adjust(int steps, bool coarse);
-  /// Accepts the step's value and goes on. Errors: why it can't be accepted yet, as a sentence; the step stays.
+  /// Takes what is set and goes on. Errors: why it can't be taken yet, as a sentence; the step stays.
   Result<void> next(const Now& now);
-  /// Goes one place, or one step, back; a finished wizard goes back to its check.
+  /// One place, or one step, back; a wizard that is finished goes back to its last look.
   void back();
 
   bool finished() const { return finished_; }

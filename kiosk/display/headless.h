@@ -1,4 +1,4 @@
-// Makes an OpenGL ES context without a screen, on EGL's surfaceless platform. Software rendering is enough.
+// An OpenGL ES context without any screen: EGL's surfaceless platform, software rendering is enough.
 #pragma once
 
 #include <memory>

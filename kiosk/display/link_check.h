@@ -1,5 +1,5 @@
-// Checks whether a woven picture reaches the panel's pixels unchanged: one pixel of the picture on one pixel of the panel, each with its
-// own colour. A mode or link that scales, turns or halves colours mixes the eyes' pictures, so it is refused.
+// Whether a woven picture reaches the panel's pixels unchanged: one pixel of the picture on one pixel of the panel, each with its own
+// colour. Anything between that scales, turns or halves colours mixes the eyes, so such a mode or link is refused for it.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@
 namespace prismesh::kiosk::display {
 
 struct LinkReport {
-  /// Why this profile can't be shown in stereo here, each a sentence that says what to change; empty: it can.
+  /// Why this profile can't be shown in stereo here, each a sentence that says what to change; empty: nothing speaks against it.
   std::vector<std::string> refusals;
-  /// Doubts: what couldn't be found out and the user must check.
+  /// What couldn't be found out and has to be looked at.
   std::vector<std::string> doubts;
   bool stereo_allowed() const { return refusals.empty(); }
 };

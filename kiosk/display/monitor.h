@@ -1,4 +1,4 @@
-// A monitor and the mode that pictures reach it in, as the display server tells. Plain data.
+// A monitor and the way pictures reach it, as far as a display server tells.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace prismesh::kiosk::display {
 
-/// The colour format between the graphics card and the panel.
+/// How colours travel from the graphics card to the panel.
 enum class LinkColour : std::uint8_t { unknown, full, halved };  ///< halved: YCbCr 4:2:2 or 4:2:0
 
-/// A monitor and its mode. Unknown values stay empty.
+/// A monitor and the way pictures reach it. What can't be found out stays empty.
 struct Monitor {
   std::string connector;  ///< "DP-1"
   std::optional<drivers::display::Edid> edid;

@@ -1,4 +1,4 @@
-// The interface of a window: shows pictures and gives input events. One implementation for each kind of display: an X11 window
+// Where the finished picture goes and where the hand's input comes from. One implementation a kind of display: an X11 window
 // (x11.h). Coordinates are pixels of the picture, x right, y down, from its upper left corner.
 #pragma once
 
@@ -77,7 +77,7 @@ struct ButtonChanged {
   bool down = false;
   double x = 0, y = 0;
   Modifiers modifiers;
-  std::int64_t time_ms = 0;  ///< of the display's own clock: only differences count
+  std::int64_t time_ms = 0;  ///< of the display's own clock: only differences mean something
 };
 struct WheelTurned {
   double steps = 0;  ///< away from the hand is positive

@@ -1,4 +1,4 @@
-// Colour maps for values, with steps of equal visual size that differ in lightness, so that colour-blind people can read them.
+// One-dimensional colour maps for values: even steps for the eye, told apart by lightness alone, so that colour-blind people read them too.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Composes a picture for its display: which images are drawn, from where, and which part of the scene each of their texels shows; and which
-// image each (sub)pixel of the display takes its colour from. Pure.
+// How a picture is composed for its display: which images are drawn, from where and what part of the scene each of their texels shows,
+// and which image every (sub)pixel of the display takes its colour from. Pure.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace prismesh::kiosk::render {
 
-/// An image and the place that it is drawn from.
+/// One image and where it is drawn from.
 struct ComposedImage {
   std::optional<stereo::Eye> eye;  ///< empty: the picture from between the eyes
   Vec3 eye_mm = Vec3(0, 0, 650);   ///< from the picture's centre
@@ -42,7 +42,7 @@ struct Composition {
   drivers::display::PhaseMap phases;  ///< of interlaced and stencil
 };
 
-/// Composes a picture of width x height pixels. Eyes that aren't finite count as at the design place.
+/// Composes a picture of width x height pixels. Eyes that aren't finite are taken to be at the design place.
 Composition compose(const Picture& picture, int width, int height);
 
 }  // namespace prismesh::kiosk::render

@@ -1,4 +1,4 @@
-// Holds the images that the eyes' pictures are drawn into before they are woven.
+// The images that the eyes' pictures are drawn into before they are woven.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Holds a field's values and its colour map on the GPU, for one view of the model.
+// A field's values and its colour map on the GPU, for one view of the model.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Draws what lies in the screen's plane over the finished scene: rubber band, lasso and the picture's overlay.
+// Draws what lies in the screen's plane, over the finished scene: rubber band, lasso, and whatever else the picture's overlay draws.
 #pragma once
 
 #include "kiosk/render/frame.h"

@@ -1,4 +1,4 @@
-// The eye and the projection of an image, and the uniforms that all its draws share.
+// From where and onto what an image is drawn, and what all the draws of one image share.
 #pragma once
 
 #include "kiosk/render/gl.h"

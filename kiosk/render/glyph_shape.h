@@ -1,4 +1,4 @@
-// Chooses the shape of a quality glyph and its place on the shell. Pure. Drawing: sign_shaders.cpp; pictures: docs/drawing.md.
+// What a quality glyph looks like and where on its shell it stands: pure. Drawing: sign_shaders.cpp; pictures: docs/drawing.md.
 #pragma once
 
 #include <array>

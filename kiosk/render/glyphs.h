@@ -1,4 +1,4 @@
-// Chooses the shells that get quality glyphs. Pure.
+// Which shells get quality glyphs: pure.
 #pragma once
 
 #include <array>

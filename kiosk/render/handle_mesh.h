@@ -1,4 +1,4 @@
-// Makes the handle's triangles in screen millimetres, the same for both eyes. Pure.
+// The handle as triangles in screen millimetres, the same for both eyes: pure.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct HandlePiece {
   float alpha = 1;
 };
 
-/// What the handle's size on the screen depends on.
+/// What its size on the screen depends on.
 struct HandleSpace {
   const stereo::View& view;
   double mm_per_pixel = 0.28;
@@ -29,7 +29,7 @@ struct HandleSpace {
   stereo::Box around;      ///< the model, deck coordinates: how long an axis is drawn
 };
 
-/// The pieces in drawing order. Empty for a handle whose place or direction isn't finite.
+/// In the order to draw them. Empty for a handle that isn't anywhere.
 std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& space);
 
 }  // namespace prismesh::kiosk::render

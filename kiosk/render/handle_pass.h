@@ -1,4 +1,4 @@
-// Draws the handle: solid where it is visible, dimmed where something hides it, so that the user can always take it.
+// Draws the handle: solid where it can be seen, dimmed where something hides it, so that it can always be taken.
 #pragma once
 
 #include "kiosk/render/frame.h"

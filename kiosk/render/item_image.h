@@ -1,4 +1,4 @@
-// Tells which shell each pixel shows, and which nodes are visible. Pure.
+// Which shell each pixel shows, and what follows from it: which nodes can be seen. Pure.
 #pragma once
 
 #include <cstdint>

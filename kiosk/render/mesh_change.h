@@ -1,4 +1,4 @@
-// The shells that an edit would make, for its preview. Plain data.
+// What an edit would make of some shells, shown before it is done.
 #pragma once
 
 #include <array>

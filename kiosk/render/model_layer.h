@@ -1,4 +1,4 @@
-// Holds everything that is drawn of a model, on the GPU and beside it, and updates it from snapshots.
+// Everything that is drawn of a model, on the GPU and beside it, kept in step with the snapshots.
 #pragma once
 
 #include <memory>
@@ -48,7 +48,7 @@ class ModelLayer {
 
   void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
   Result<void> update_preview(const ipc::PreviewFrame& frame);
-  /// Shows the shells that an edit would make, in the place of a preview.
+  /// What an edit would make of some shells, in a preview's place.
   Result<void> show_change(const MeshChange& change);
   void end_preview();
   bool previewing() const { return preview_ && preview_->any_frame(); }
@@ -71,8 +71,8 @@ class ModelLayer {
   /// A glyph about one shell of the model; nothing where it isn't shown.
   const Instances& marked(mesh::ShellIndex shell);
 
-  /// The shells that cast shadows: the shells of the preview, else those with all nodes selected. The latter are found by a pass over the
-  /// model where it has changed. Errors: no graphics memory.
+  /// What throws shadows: the shells of the preview, else those with all nodes selected. The latter are found by a pass over the model
+  /// where it has changed. Errors: no graphics memory.
   struct ShadowCaster {
     const RowTexture* positions = nullptr;
     const RowTexture* connectivity = nullptr;
@@ -107,7 +107,7 @@ class ModelLayer {
   std::optional<PreviewPatch> preview_;
   RowTexture preview_positions_{kPositionTexel};
   LineSet preview_edges_;
-  /// Shells that cast shadows, by their corners.
+  /// Shells that throw shadows, by their corners.
   struct Casting {
     RowTexture connectivity{kFourIndices};
     std::size_t shells = 0;

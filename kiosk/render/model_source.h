@@ -1,4 +1,4 @@
-// The interface of a model to be drawn: a snapshot's arrays in chunks with versions.
+// What the renderer draws: a snapshot's arrays in chunks with versions, whoever holds them.
 #pragma once
 
 #include <cstdint>

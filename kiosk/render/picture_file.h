@@ -1,4 +1,4 @@
-// Reads pictures from OpenGL and writes them to files.
+// Pictures as files and in memory.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Cuts out the part of the model that a drag moves, so that the cost of a frame depends on that part only. Pure.
+// The piece of the model that a drag moves, cut out so that a frame costs the piece: pure.
 #pragma once
 
 #include <span>

@@ -20,7 +20,7 @@ struct RendererOptions {
   std::size_t glyph_cap = 20000;  ///< quality glyphs drawn at most: failures first
 };
 
-/// What a picture had to leave out, for a line of text beside it.
+/// What a picture had to leave out, to be said in words beside it.
 struct DrawReport {
   std::size_t glyphs = 0;
   std::size_t glyphs_left_out = 0;
@@ -42,7 +42,7 @@ class Renderer {
   /// The view that frames them closely, from the side that `view` is seen from. Costs the model.
   stereo::View fitted(const stereo::View& view, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650) const;
 
-  /// Sets the other model of a picture with two views; null: none. Errors: too large for the GPU.
+  /// What stands beside the model in a picture of two views; null: nothing. Errors: too large for the GPU.
   Result<void> set_other(std::shared_ptr<const ModelSource> model);
   const ModelSource* other() const;
   /// Values to colour a view by, for each of its nodes or shells; none: no colours. Uploads what differs from the last ones.
@@ -53,7 +53,7 @@ class Renderer {
   /// A frame: one position per node, one state per shell; other sizes are ignored. Until the first, nothing is drawn. Errors: no graphics
   /// memory.
   Result<void> update_preview(const ipc::PreviewFrame& frame);
-  /// Shows the shells that an edit would make in the place of a preview, until end_preview. Errors: no graphics memory.
+  /// What an edit would make of some shells, in a preview's place, until end_preview. Errors: no graphics memory.
   Result<void> show_change(const MeshChange& change);
   void end_preview();
 

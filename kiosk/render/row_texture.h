@@ -1,4 +1,4 @@
-// Holds an array of the model as a texture: one row per chunk, so that a changed chunk is one upload.
+// An array of the model as a texture: one row per chunk, so that a changed chunk is one upload.
 #pragma once
 
 #include <cstddef>

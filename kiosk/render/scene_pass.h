@@ -1,4 +1,4 @@
-// Draws one eye's image of the scene: model, signs, handle and shadows.
+// Draws one eye's image of the model and what belongs to it.
 #pragma once
 
 #include "kiosk/render/frame.h"
@@ -22,13 +22,14 @@ class ScenePass {
 
   /// Once for all images of a scene, before them: changes framebuffer and viewport. Errors: no graphics memory.
   Result<void> prepare(const Picture& picture, ModelLayer& model);
-  /// Draws the ground only, into the bound framebuffer; its viewport is set.
+  /// Nothing but the ground, into the bound framebuffer; its viewport is set.
   void begin(const EyeView& eye) const;
-  /// Keeps later drawing between two columns of the picture (pixels), until the next call. It hides nothing that was drawn before.
+  /// What is drawn from now on stays between two columns of the picture (pixels), until the next call, and hides nothing of what was drawn
+  /// before.
   void begin_pane(const EyeView& eye, double from, double to) const;
-  /// Draws the model, its signs and its handle.
+  /// The model and what belongs to it.
   void draw(const Picture& picture, const ColouredModel& drawn, const EyeView& eye, std::size_t glyph_cap) const;
-  /// Draws the shells' numbers into a bound R32UI framebuffer.
+  /// Numbers of shells into a bound R32UI framebuffer.
   void draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const;
 
  private:

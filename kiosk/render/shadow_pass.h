@@ -1,4 +1,4 @@
-// Draws soft shadows of the dragged shells, or else of the selected ones, on the planes of shadows.h.
+// Draws the shadows of what is dragged, or else selected, on the planes of shadows.h: soft, darker than the ground.
 #pragma once
 
 #include <array>

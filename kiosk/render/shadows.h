@@ -1,4 +1,4 @@
-// Places the planes that shadows of dragged shells fall on: along the deck's axes, beside the model, on the sides away from the viewer
+// Where the shadows of what is dragged fall: planes along the deck's axes beside the model, on the sides turned away from the viewer
 // (K. P. Herndon et al., "Interactive Shadows", 1992). Pure.
 #pragma once
 

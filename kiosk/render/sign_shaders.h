@@ -1,4 +1,4 @@
-// Sources of the shaders for signs, handles and lines over the picture; shaders.cpp links them.
+// What the shaders of signs, handles and lines over the picture say; shaders.cpp links them.
 #pragma once
 
 namespace prismesh::kiosk::render::sign_shaders {

@@ -1,4 +1,4 @@
-// Weaves the eyes' images into one picture. It is the last step: nothing may change a pixel after it.
+// Makes one picture of the eyes' images: the last step, after which nothing may touch a pixel.
 #pragma once
 
 #include <compare>
@@ -17,7 +17,7 @@ class WeavePass {
   Result<void> draw(const Composition& composition, const EyeImages& images, unsigned framebuffer, int width, int height);
 
  private:
-  /// A program for each way of weaving, as software renderers execute all branches of a shader.
+  /// A program for each way of weaving: software renderers walk through every branch of a shader, taken or not.
   struct Way {
     Join join = Join::alone;
     bool by_rows = false;

@@ -1,5 +1,5 @@
-// Projects the scene for an eye through the screen: generalised perspective projection (R. Kooima, "Generalized Perspective Projection",
-// 2008).
+// What an eye sees through the screen's window: generalised perspective projection (R. Kooima, "Generalized Perspective
+// Projection", 2008); and from where pictures are drawn.
 #pragma once
 
 #include <optional>
@@ -16,16 +16,16 @@ using drivers::display::EyePair;
 using drivers::display::eyes_from;
 using drivers::display::kMeanEyeSeparationMm;
 
-/// The viewer's eyes. Millimetres from the screen's centre.
+/// Who looks at the picture. Millimetres from the screen's centre.
 struct PictureEyes {
   Vec3 between_mm = Vec3(0, 0, 650);
   Vec3 toward_right = Vec3::UnitX();  ///< from the left eye to the right one; any length but zero
   double separation_mm = kMeanEyeSeparationMm;
-  double depth_share = 1;  ///< share of their separation that the pictures are drawn with; 0: both from between the eyes
+  double depth_share = 1;  ///< how much of their separation the pictures are drawn with; 0: both from between them
 
   /// The eyes where they are.
   EyePair eyes() const;
-  /// The place that an eye's picture is drawn from; empty: between the eyes.
+  /// Where an eye's picture is drawn from; empty: the one from between them.
   Vec3 picture_eye(std::optional<Eye> eye) const;
 };
 
@@ -33,7 +33,7 @@ struct DepthRange {
   double near_mm = 50;  ///< from the eye, along the screen's normal; > 0
   double far_mm = 5000;
 };
-/// The tightest range that holds everything the view shows, with room for handles.
+/// The range that holds everything the view shows, with room for handles, as tight as that allows.
 DepthRange depth_range(const View& view, const Vec3& eye_mm);
 
 /// Screen millimetres to clip space for an eye (z > 0) before a screen of w x h mm: the screen's corners land on the corners of

@@ -1,9 +1,9 @@
-// Predicts when a picture that is begun now will light up, for the prediction of head and mask. Pure; times are passed in.
+// When a picture that is begun now will be seen: what a head and a mask are predicted to. Pure, on times that are passed in.
 //
 //   begun ----- drawn and handed over ----- refresh ----- scan-out reaches the middle ----- its pixels turn
 //        draw time (measured)        wait          half a period               panel latency
 //
-// The display may say when it refreshed last (EGL_CHROMIUM_sync_control); otherwise the wait counts as half a period, its mean.
+// The display may say when it refreshed last (EGL_CHROMIUM_sync_control); else the wait is taken to be half a period, its mean.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace prismesh::kiosk::stereo {
 struct LitTime {
   std::int64_t from_ns = 0;   ///< the picture is seen from here ...
   std::int64_t until_ns = 0;  ///< ... until the next one can take its place
-  /// The time that head and mask are predicted to: halfway, so that the picture is ahead of them at first and behind by as much at last.
+  /// What head and mask are predicted to: then a picture that stands still is as much ahead of them at first as it is behind at last.
   std::int64_t middle_ns() const { return from_ns + (until_ns - from_ns) / 2; }
 };
 
@@ -34,16 +34,16 @@ class PictureTiming {
   const DisplayTiming& timing() const { return timing_; }
 
   void begun(std::int64_t now_ns) { begun_ns_ = now_ns; }
-  /// The picture is drawn to the last pixel and about to go to the display.
+  /// Drawn to the last pixel and about to be handed to the display.
   void drawn(std::int64_t now_ns);
-  /// A refresh began then. Ignores times in the future and older than a second.
+  /// A refresh began then; a time in the future or older than a second is no use and is ignored.
   void refreshed(std::int64_t refresh_ns, std::int64_t now_ns);
 
-  /// The prediction for a picture that is begun now.
+  /// Of a picture that is begun now.
   LitTime lit(std::int64_t now_ns) const;
-  /// The time to begin the next picture; earlier ones would only wait behind the one before.
+  /// Pictures begun earlier would only queue up behind the one before.
   std::int64_t next_begin_ns() const { return begun_ns_ + timing_.period_ns; }
-  /// Median draw time of the last pictures.
+  /// Median of the last pictures.
   std::int64_t draw_ns() const;
   std::int64_t longest_draw_ns() const;
 

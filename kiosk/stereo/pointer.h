@@ -1,4 +1,4 @@
-// Maps the pointer's pixel to the scene and back: the ray that an eye aims along, and how far something is dragged. Pure.
+// From the pointer's pixel to the scene and back: the ray an eye aims along, and how far something is dragged. Pure.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ struct Ray {
 Ray ray_through(const Aim& aim, const Eigen::Vector2d& pixel);
 
 /// Distance along the unit vector `direction` from `point` (deck coordinates) at which the axis comes nearest to the pointer
-/// on the screen; empty while the axis points at the eye.
+/// on the screen; empty while the axis points at the eye (nothing sensible can be said).
 std::optional<double> distance_along(const Aim& aim, const Vec3& point, const Vec3& direction, const Eigen::Vector2d& pixel);
 /// The displacement, parallel to the screen, that brings `point` under the pixel (deck coordinates).
 Vec3 displacement_in_screen_plane(const Aim& aim, const Vec3& point, const Eigen::Vector2d& pixel);

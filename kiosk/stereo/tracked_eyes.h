@@ -1,7 +1,7 @@
-// Finds the eyes that a picture is drawn for: predicted to the moment it lights up, still while the head is still, and mono whenever depth
-// can't be trusted. Pure: the device daemon's readings and all times are passed in.
+// The eyes that a picture is drawn for: predicted to the moment it lights up, still while the head is, and mono whenever depth
+// couldn't be trusted. Pure: what the device daemon says, and all times, are passed in.
 //
-// Guarantee: a display whose picture is right only where it was woven for never shows depth later than 250 ms after the last
+// The promise: a display whose picture is right only where it was woven for never shows depth that is older than 250 ms after the last
 // good measurement, whatever has failed (the tracker, its line, the daemon, the link to it). It holds while a picture takes no more than
 // 70 ms to draw.
 #pragma once
@@ -18,13 +18,13 @@
 
 namespace prismesh::kiosk::stereo {
 
-/// The device daemon's page as last read; values that couldn't be read or don't exist are empty.
+/// The device daemon's page as last read; what couldn't be read, or isn't there, is empty.
 struct DeviceReading {
   std::optional<ipc::EyesState> eyes;
   std::optional<ipc::PrismState> prism;
 };
 
-/// How the display follows the eyes, and where they are while none are known.
+/// What kind of display follows the eyes, and where they are while nobody knows.
 struct FollowOptions {
   bool follow = true;             ///< false: the eyes stay at `resting_mm`, in full depth
   bool mono_without_eyes = true;  ///< each eye's picture reaches it only where it is woven for; false: glasses sort the pictures out
@@ -43,13 +43,13 @@ struct FollowLimits {
   std::int64_t lost_soonest_ns = 60'000'000;   ///< ... sooner, down to this, where pictures take long
   std::int64_t fade_ns = 80'000'000;           ///< to mono when the mask stops following, and before it flies back
   std::int64_t rise_ns = 200'000'000;          ///< from mono to full depth
-  std::int64_t mask_old_ns = 100'000'000;      ///< an older mask state is ignored
+  std::int64_t mask_old_ns = 100'000'000;      ///< a mask state that is older says nothing
   std::int64_t rest_after_ns = 1'000'000'000;  ///< without a measurement for so long: slowly back to the resting place
   double place_slack_mm = 30;                  ///< no depth while the picture's eyes are farther than this from the real ones
   double mask_step_mm = 0.005;                 ///< a mask that moved less stands still: 0.02 pixels
 };
 
-/// The eyes and the mask that a picture uses.
+/// What the picture uses.
 struct SeenFrom {
   Eigen::Vector3d between_eyes_mm{0, 0, 650};
   Eigen::Vector3d toward_right = Eigen::Vector3d::UnitX();
@@ -66,20 +66,20 @@ class TrackedEyes {
   void set_options(const FollowOptions& options);
   const FollowOptions& options() const { return options_; }
   const FollowLimits& limits() const { return limits_; }
-  /// Call it about once a refresh, even if no picture is drawn then. Two equal results: the picture may stay.
+  /// To be asked about once a refresh, whether or not a picture is drawn then. Two equal answers: the picture may stay.
   SeenFrom look(const DeviceReading& reading, std::int64_t now_ns, const LitTime& lit);
-  /// The last result in mono: that is shown now, and depth rises from there.
+  /// The last answer, in mono: that is what is shown, and depth rises from there.
   SeenFrom flatten();
   /// The newest good measurement; 0: none yet.
   std::int64_t measured_ns() const { return head_.time_ns; }
 
  private:
-  /// A length in millimetres that follows a target, stands still within a zone, and never jumps when the target changes.
+  /// Something in millimetres that follows a target, stands still within a zone, and never jumps when the target is another.
   class Glide {
    public:
     Glide(double across_mm, double deep_mm) : zone_(Eigen::Vector3d(across_mm, across_mm, deep_mm)) {}
     void begin(const Eigen::Vector3d& at);
-    /// The target changes: the shown value moves to it smoothly.
+    /// The target becomes another: what is shown stays, and goes over to it.
     void retarget() { fresh_target_ = true; }
     Eigen::Vector3d follow(const Eigen::Vector3d& target, double seconds, double time_constant_s);
     double offset_mm() const { return offset_.norm(); }
@@ -102,10 +102,10 @@ class TrackedEyes {
   FollowOptions options_;
   FollowLimits limits_;
   drivers::eye_tracker::HeadState head_;
-  std::int64_t slow_ns_ = 0;  ///< how much older than usual measurements are when they arrive, as with a webcam
+  std::int64_t slow_ns_ = 0;  ///< by so much older than usual are measurements when they come: a webcam's
   double eye_separation_mm_ = drivers::display::kMeanEyeSeparationMm;
   Source source_ = Source::resting;
-  bool found_again_ = false;  ///< measurements are back after they were lost
+  bool found_again_ = false;  ///< measurements have come back after they were lost
   Glide place_;
   Glide half_separation_;                      ///< from between the eyes to the right one
   std::optional<std::int64_t> disallowed_ns_;  ///< until_ns of the first picture since the mask stopped following

@@ -1,4 +1,4 @@
-// Places the model before the screen. Screen space is in millimetres: the origin is the screen's centre, x to the right,
+// Where the model stands before the screen. Screen space is in millimetres: the origin is the screen's centre, x to the right,
 // y up, z toward the viewer. All functions are pure.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace prismesh::kiosk::stereo {
 
 using mesh::Vec3;
 
-/// The comfortable depths: mm before (+) and behind the screen.
+/// The depths in which both eyes rest: mm before (+) and behind the screen.
 struct ComfortBox {
   double before_mm = 99;
   double behind_mm = 143;
@@ -63,7 +63,7 @@ struct View {
   bool operator==(const View&) const = default;
 };
 
-/// Factor on depth alone that keeps `bounds` within the comfort box; never 0, so that the order in depth stays.
+/// Factor on depth alone that keeps `bounds` within the comfort box; never quite 0, so that what lies behind stays behind.
 double depth_scale(const View& view);
 /// Deck coordinates to screen millimetres, depth compressed: affine.
 Eigen::Matrix4d screen_from_deck(const View& view);
@@ -78,7 +78,7 @@ View orbit(const View& view, double right, double up);
 /// Turns about the axis toward the viewer, counterclockwise, in radians.
 View roll(const View& view, double angle);
 View pan(const View& view, const Eigen::Vector2d& by_mm);
-/// Scales by `factor` about `at_mm` on the screen.
+/// Scales by `factor`; what is seen at `at_mm` on the screen stays there.
 View zoom(const View& view, double factor, const Eigen::Vector2d& at_mm);
 /// Turns about another point from now on; nothing moves.
 View with_pivot(const View& view, const Vec3& deck_point);
