@@ -60,21 +60,12 @@ bool columns_swapped(const Picture& picture, const stereo::PictureEyes& eyes) {
   return swapped;
 }
 
-/// The windows that an image has texels for.
-struct WindowRange {
-  int first = 0;  ///< number of the first window
-  int count = 0;
-  bool by_rows = false;  ///< the windows are rows, not columns
-};
-
-/// An image with a texel for each window, and where the picture lies on it: windows' numbers are linear over the picture.
-ImageFrame frame_of_windows(const LinearNumbers& numbers, const WindowRange& windows, const PanelArea& area) {
+/// Windows' numbers as they lie on the picture if they are evenly spaced, and an image that has a texel for each.
+ImageFrame frame_of_windows(const LinearNumbers& numbers, int first, int texels, bool by_rows, int width, int height) {
   // Texel i has its middle where the number is first + i.
-  const double scale = 2.0 / windows.count;
-  ImageFrame frame{windows.by_rows ? area.width : windows.count, windows.by_rows ? windows.count : area.height,
-                   stereo::whole_picture(area.width, area.height)};
-  frame.from_picture.row(windows.by_rows ? 1 : 0) << scale * numbers.by_x, scale * numbers.by_y,
-      scale * (numbers.at_origin - windows.first + 0.5) - 1;
+  const double scale = 2.0 / texels;
+  ImageFrame frame{by_rows ? width : texels, by_rows ? texels : height, stereo::whole_picture(width, height)};
+  frame.from_picture.row(by_rows ? 1 : 0) << scale * numbers.by_x, scale * numbers.by_y, scale * (numbers.at_origin - first + 0.5) - 1;
   return frame;
 }
 
@@ -110,7 +101,7 @@ std::array<ImageFrame, 2> behind_mask(const Picture& picture, const stereo::Pict
   std::array<ImageFrame, 2> frames;
   for (const Eye eye : {Eye::left, Eye::right}) {
     const auto i = static_cast<std::size_t>(eye);
-    frames[i] = frame_of_windows(evenly_spaced(mask, pair.of(eye), area), {composed.phases.first[i], texels, false}, area);
+    frames[i] = frame_of_windows(evenly_spaced(mask, pair.of(eye), area), composed.phases.first[i], texels, false, area.width, area.height);
   }
   return frames;
 }
@@ -147,7 +138,7 @@ std::array<ImageFrame, 2> alternate(const Picture& picture, const stereo::Pictur
     for (auto& node : composed.phases.numbers) node[eye] += static_cast<float>(composed.phases.first[eye] - first);
     composed.phases.first[eye] = first;
     composed.phases.windows[eye] = last - before + 1;
-    frames[eye] = frame_of_windows(numbers[eye], {first, composed.phases.windows[eye], composed.by_rows}, area);
+    frames[eye] = frame_of_windows(numbers[eye], first, composed.phases.windows[eye], composed.by_rows, area.width, area.height);
   }
   return frames;
 }

@@ -54,22 +54,17 @@ struct Outline2 {
   double along, radius;
 };
 
-/// A band of a body of revolution.
-struct Band {
-  Outline2 lower, upper;
-  Eigen::Vector2d slant;  ///< its normal's share out of the axis and along it
-};
-
-/// Adds a band about the axis that begins at `foot`.
-void add_band(std::vector<HandleVertex>& mesh, const Vec3& foot, const Vec3& axis, const Band& band) {
+/// One band of a body of revolution about foot + t * axis; `slant`: its normal's share out of the axis and along it.
+void add_band(std::vector<HandleVertex>& mesh, const Vec3& foot, const Vec3& axis, const Outline2& lower, const Outline2& upper,
+              const Eigen::Vector2d& slant) {
   const Vec3 unit = axis.normalized(), side_a = any_across(axis), side_b = unit.cross(side_a);
   const auto at = [&](const Outline2& point, int side) {
     const double angle = 2 * std::numbers::pi * side / (2 * kSides);
     const Vec3 out = std::cos(angle) * side_a + std::sin(angle) * side_b;
-    return vertex(foot + axis * point.along + out * point.radius, out * band.slant.x() + unit * band.slant.y());
+    return vertex(foot + axis * point.along + out * point.radius, out * slant.x() + unit * slant.y());
   };
   for (int side = 0; side < 2 * kSides; ++side) {
-    const HandleVertex a = at(band.lower, side), b = at(band.lower, side + 1), c = at(band.upper, side + 1), d = at(band.upper, side);
+    const HandleVertex a = at(lower, side), b = at(lower, side + 1), c = at(upper, side + 1), d = at(upper, side);
     mesh.insert(mesh.end(), {a, b, c, a, c, d});
   }
 }
@@ -77,18 +72,18 @@ void add_band(std::vector<HandleVertex>& mesh, const Vec3& foot, const Vec3& axi
 void add_arrow(std::vector<HandleVertex>& mesh, const Vec3& foot, const Vec3& axis, double pixel) {
   const double slope = 0.35;  // of the head's normal along the axis: how it catches light, not its exact geometry
   const double shaft = kShaftRadius * pixel, head = kHeadRadius * pixel;
-  add_band(mesh, foot, axis, {{0, 0}, {0, shaft}, {0, -1}});
-  add_band(mesh, foot, axis, {{0, shaft}, {kHeadStart, shaft}, {1, 0}});
-  add_band(mesh, foot, axis, {{kHeadStart, shaft}, {kHeadStart, head}, {0, -1}});
-  add_band(mesh, foot, axis, {{kHeadStart, head}, {1, 0.01 * pixel}, {std::sqrt(1 - slope * slope), slope}});
+  add_band(mesh, foot, axis, {0, 0}, {0, shaft}, {0, -1});
+  add_band(mesh, foot, axis, {0, shaft}, {kHeadStart, shaft}, {1, 0});
+  add_band(mesh, foot, axis, {kHeadStart, shaft}, {kHeadStart, head}, {0, -1});
+  add_band(mesh, foot, axis, {kHeadStart, head}, {1, 0.01 * pixel}, {std::sqrt(1 - slope * slope), slope});
 }
 
 void add_ring(std::vector<HandleVertex>& mesh, const Vec3& foot, double pixel) {
   const Vec3 from = foot + Vec3(0, 0, kRingBefore * pixel), axis(0, 0, kRingThickness * pixel);
   const double outer = (kHandleRingPixels + kRingHalfWidth) * pixel, inner = (kHandleRingPixels - kRingHalfWidth) * pixel;
-  add_band(mesh, from, axis, {{0, outer}, {1, outer}, {1, 0}});
-  add_band(mesh, from, axis, {{1, outer}, {1, inner}, {0, 1}});
-  add_band(mesh, from, axis, {{1, inner}, {0, inner}, {-1, 0}});
+  add_band(mesh, from, axis, {0, outer}, {1, outer}, {1, 0});
+  add_band(mesh, from, axis, {1, outer}, {1, inner}, {0, 1});
+  add_band(mesh, from, axis, {1, inner}, {0, inner}, {-1, 0});
 }
 
 void add_ball(std::vector<HandleVertex>& mesh, const Vec3& centre, double radius) {

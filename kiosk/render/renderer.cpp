@@ -233,7 +233,7 @@ Result<void> Renderer::State::draw_scene(Images& images, const Picture& picture,
 /// The model over the whole picture, or two views that share it.
 void Renderer::State::draw_views(const Picture& picture, const EyeView& eye, int width) {
   scene.begin(eye);
-  if (!picture.two_views) return scene.draw(picture, {layer, fields[0], picture.field[0]}, eye, options.glyph_cap);
+  if (!picture.two_views) return scene.draw(picture, layer, fields[0], picture.field[0], eye, options.glyph_cap);
   for (const Pane pane : {Pane::model, Pane::other}) {
     const bool right = (pane == Pane::model) == picture.two_views->model_on_right;
     Picture half = picture;
@@ -246,7 +246,7 @@ void Renderer::State::draw_views(const Picture& picture, const EyeView& eye, int
     const double middle = 0.5 * width;
     scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels);
     const auto at = static_cast<std::size_t>(pane);
-    scene.draw(half, {pane == Pane::model ? layer : other_layer, fields[at], picture.field[at]}, eye, options.glyph_cap);
+    scene.draw(half, pane == Pane::model ? layer : other_layer, fields[at], picture.field[at], eye, options.glyph_cap);
   }
   glDisable(GL_STENCIL_TEST);
 }

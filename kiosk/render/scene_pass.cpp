@@ -66,8 +66,8 @@ void ScenePass::begin_pane(const EyeView& eye, double from, double to) const {
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
 }
 
-void ScenePass::draw(const Picture& picture, const ColouredModel& drawn, const EyeView& eye, std::size_t glyph_cap) const {
-  ModelLayer& model = drawn.model;
+void ScenePass::draw(const Picture& picture, ModelLayer& model, FieldColours& field, const FieldLook& look, const EyeView& eye,
+                     std::size_t glyph_cap) const {
   const Frame frame(eye, picture, model);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
@@ -75,7 +75,7 @@ void ScenePass::draw(const Picture& picture, const ColouredModel& drawn, const E
     model.textures().positions().bind(unit::kPositions);
     model.textures().connectivity().bind(unit::kConnectivity);
     model.textures().surface().bind(unit::kSurface);
-    draw_shells(picture, drawn, frame);
+    draw_shells(picture, model, field, look, frame);
     if (picture.shadows) shadows_.draw(model, frame);
     model.textures().positions().bind(unit::kPositions);
     draw_model_lines(picture, model, frame);
@@ -99,10 +99,8 @@ void ScenePass::draw_ground(const EyeView& eye) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void ScenePass::draw_shells(const Picture& picture, const ColouredModel& drawn, const Frame& frame) const {
-  const ModelLayer& model = drawn.model;
-  FieldColours& field = drawn.field;
-  const FieldLook& look = drawn.look;
+void ScenePass::draw_shells(const Picture& picture, const ModelLayer& model, FieldColours& field, const FieldLook& look,
+                            const Frame& frame) const {
   frame.set(shaders_.shells);
   const auto& palette = part_colours();
   for (std::size_t i = 0; i < palette.size(); ++i) shaders_.shells.set(("palette[" + std::to_string(i) + "]").c_str(), palette[i]);
@@ -174,15 +172,16 @@ void ScenePass::draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_
   glDisable(GL_DEPTH_TEST);
 }
 
-void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, const LineLook& look) const {
+void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width,
+                           const Eigen::Vector4f& line_ink, float least_alpha) const {
   if (lines.count == 0) return;
   positions.bind(unit::kPositions);
   lines.texture.bind(unit::kLines);
   frame.set(shaders_.lines);
-  shaders_.lines.set("half_width", look.half_width);
-  shaders_.lines.set("least_alpha", look.min_alpha);
+  shaders_.lines.set("half_width", half_width);
+  shaders_.lines.set("least_alpha", least_alpha);
   shaders_.lines.set("toward_eye_mm", static_cast<float>(kLinesTowardEye * frame.eye.mm_per_pixel));
-  shaders_.lines.set("ink", look.ink.x(), look.ink.y(), look.ink.z(), look.ink.w());
+  shaders_.lines.set("ink", line_ink.x(), line_ink.y(), line_ink.z(), line_ink.w());
   glBindVertexArray(no_attributes_.get());
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(lines.count * 6));
 }
@@ -192,20 +191,20 @@ void ScenePass::draw_model_lines(const Picture& picture, const ModelLayer& model
   glDepthMask(GL_FALSE);
   const RowTexture& positions = model.textures().positions();
   if (picture.outlines) {
-    draw_lines(model.creases(), positions, frame, {kCreaseHalfWidth, ink(kCreaseColour, 0.55F)});
-    draw_lines(model.borders(), positions, frame, {kBorderHalfWidth, ink(kBorderColour, 0.85F)});
+    draw_lines(model.creases(), positions, frame, kCreaseHalfWidth, ink(kCreaseColour, 0.55F));
+    draw_lines(model.borders(), positions, frame, kBorderHalfWidth, ink(kBorderColour, 0.85F));
   }
   glDepthMask(GL_TRUE);
-  draw_lines(model.line_elements(), positions, frame, {kLineElementHalfWidth, ink(kLineElementColour, 1.0F), kCrowdedLineAlpha});
+  draw_lines(model.line_elements(), positions, frame, kLineElementHalfWidth, ink(kLineElementColour, 1.0F), kCrowdedLineAlpha);
 }
 
 void ScenePass::draw_preview(const ModelLayer& model, const Frame& frame) const {
   glEnable(GL_BLEND);
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_GREATER);  // what has been pushed behind the old surface shows through it
-  draw_lines(model.preview_edges(), model.preview_positions(), frame, {kPreviewHalfWidth, ink(kSelectedColour, 0.45F)});
+  draw_lines(model.preview_edges(), model.preview_positions(), frame, kPreviewHalfWidth, ink(kSelectedColour, 0.45F));
   glDepthFunc(GL_LEQUAL);
-  draw_lines(model.preview_edges(), model.preview_positions(), frame, {kPreviewHalfWidth, ink(kSelectedColour, 1.0F)});
+  draw_lines(model.preview_edges(), model.preview_positions(), frame, kPreviewHalfWidth, ink(kSelectedColour, 1.0F));
   glDepthMask(GL_TRUE);
 }
 

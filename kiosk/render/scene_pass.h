@@ -9,13 +9,6 @@
 
 namespace prismesh::kiosk::render {
 
-/// A model to be drawn, and the field that colours it.
-struct ColouredModel {
-  ModelLayer& model;
-  FieldColours& field;
-  const FieldLook& look;
-};
-
 class ScenePass {
  public:
   explicit ScenePass(const Shaders& shaders);
@@ -28,19 +21,16 @@ class ScenePass {
   /// before.
   void begin_pane(const EyeView& eye, double from, double to) const;
   /// The model and what belongs to it.
-  void draw(const Picture& picture, const ColouredModel& drawn, const EyeView& eye, std::size_t glyph_cap) const;
+  void draw(const Picture& picture, ModelLayer& model, FieldColours& field, const FieldLook& look, const EyeView& eye,
+            std::size_t glyph_cap) const;
   /// Numbers of shells into a bound R32UI framebuffer.
   void draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const;
 
  private:
   void draw_ground(const EyeView& eye) const;
-  struct LineLook {
-    float half_width = 1;  ///< display pixels
-    Eigen::Vector4f ink;
-    float min_alpha = 1;  ///< of lines that are a few pixels short
-  };
-  void draw_shells(const Picture& picture, const ColouredModel& drawn, const Frame& frame) const;
-  void draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, const LineLook& look) const;
+  void draw_shells(const Picture& picture, const ModelLayer& model, FieldColours& field, const FieldLook& look, const Frame& frame) const;
+  void draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width, const Eigen::Vector4f& ink,
+                  float least_alpha = 1) const;
   void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_preview(const ModelLayer& model, const Frame& frame) const;
   void draw_glyphs(const Picture& picture, ModelLayer& model, std::size_t cap, const Frame& frame) const;
