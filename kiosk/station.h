@@ -48,7 +48,7 @@ struct Station {
   /// A beat of the display has come: looks where the eyes are. True: the picture must be drawn again.
   bool look();
   /// Where the picture lies: on which monitor, if that is known, and at which place of the desktop.
-  void place(std::optional<display::Monitor> monitor, const display::Window::Place& place);
+  void place(std::optional<display::Monitor> monitor, const display::Window::DesktopPosition& place);
 
  private:
   Station(const StationOptions& options, std::unique_ptr<render::Renderer> made, panels::Gui gui);
@@ -58,7 +58,7 @@ struct Station {
   mesh::Vec3 resting_mm_;
   double panel_latency_ms_;
   std::optional<display::Monitor> monitor_;
-  display::Window::Place place_;
+  display::Window::DesktopPosition place_;
   std::optional<stereo::Profile> followed_;  ///< the profile that eyes, place and link were last set up for
 };
 
