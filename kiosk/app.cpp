@@ -35,7 +35,7 @@ Result<void> run_calibration(const AppOptions& options, const StationOptions& wh
   if (!window) return fail(window.error());
   Result<std::unique_ptr<Station>> station = Station::create(what);
   if (!station) return fail(station.error());
-  (*station)->place((*window)->monitor(), (*window)->place());
+  (*station)->place((*window)->monitor(), (*window)->position());
   auto calibrator = Calibrator::create(**window, **station, what.profile, std::move(*save_to));
   if (!calibrator) return fail(calibrator.error());
   const Result<std::optional<std::filesystem::path>> saved = (*calibrator)->run();

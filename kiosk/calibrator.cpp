@@ -111,7 +111,7 @@ Result<void> Calibrator::take_events() {
     // A press and its release must not fall into one layout.
     if (std::holds_alternative<display::ButtonChanged>(event) && wizard_) lay_out(wizard_->page(now()));
     if (std::holds_alternative<display::Resized>(event) || std::holds_alternative<display::Moved>(event))
-      station_.place(window_.monitor(), window_.place());
+      station_.place(window_.monitor(), window_.position());
   }
   return {};
 }

@@ -256,7 +256,7 @@ Result<void> render_picture(const RenderOptions& options, const stereo::Profile&
   const auto report = (*renderer)->draw(picture, offscreen->framebuffer(), options.width, options.height);
   if (!report) return fail(report.error());
   if (report->glyphs_left_out > 0)
-    std::fprintf(stderr, "%s: note: %zu quality signs found no room and aren't drawn; %zu are\n", options.picture.c_str(),
+    std::fprintf(stderr, "%s: note: %zu quality glyphs found no room and aren't drawn; %zu are\n", options.picture.c_str(),
                  report->glyphs_left_out, report->glyphs);
   return render::write_png(options.picture, offscreen->read());
 }

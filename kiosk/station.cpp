@@ -67,7 +67,7 @@ bool Station::look() {
   return other;
 }
 
-void Station::place(std::optional<display::Monitor> monitor, const display::Window::Place& place) {
+void Station::place(std::optional<display::Monitor> monitor, const display::Window::DesktopPosition& place) {
   monitor_ = std::move(monitor);
   place_ = place;
   stereo::DisplayTiming timing;

@@ -50,7 +50,7 @@ struct Station {
   /// Reads where the eyes are, once per refresh of the display. True: the picture must be drawn again.
   bool look();
   /// Sets where the picture lies: the monitor, if it is known, and the place on the desktop.
-  void place(std::optional<display::Monitor> monitor, const display::Window::Place& place);
+  void place(std::optional<display::Monitor> monitor, const display::Window::DesktopPosition& place);
 
  private:
   Station(const StationOptions& options, std::unique_ptr<render::Renderer> made, panels::Gui gui);
@@ -60,7 +60,7 @@ struct Station {
   mesh::Vec3 resting_mm_;
   double panel_latency_ms_;
   std::optional<display::Monitor> monitor_;
-  display::Window::Place place_;
+  display::Window::DesktopPosition place_;
   std::optional<stereo::Profile> followed_;  ///< the profile that eyes, place and link were last set up for
 };
 

@@ -23,7 +23,7 @@ class WindowedKiosk {
   Result<void> give_field_the_keyboard();
   void do_command(const tools::Command& command);
   Result<void> settle();
-  void find_place() { station_.place(window_.monitor(), window_.place()); }
+  void find_place() { station_.place(window_.monitor(), window_.position()); }
   /// The view or something in it is about to change again.
   bool moving() const { return gestures_.dragging() || station_.clock.now_ns() < wheel_rest_ns_; }
   /// The view moves to another by itself.

@@ -45,10 +45,10 @@ Pattern ruler_bar(int picture_width) {
   return pattern;
 }
 
-Pattern eye_signs() {
+Pattern eye_marks() {
   Pattern pattern;
   pattern.ground = kDim;
-  // A bar standing up on the left for the left eye; one lying on the right for the right eye; a frame for both.
+  // A frame for both eyes, a vertical bar on the left for the left eye, a horizontal bar on the right for the right eye.
   pattern.fields.push_back({0.10, 0.08, 0.90, 0.10, kWhite, kWhite});
   pattern.fields.push_back({0.10, 0.48, 0.90, 0.50, kWhite, kWhite});
   pattern.fields.push_back({0.25, 0.15, 0.30, 0.43, kWhite, kDim});

@@ -7,7 +7,7 @@ namespace {
 
 namespace gl = render::gl;
 
-// A rectangle of the picture, taken into the image by its own map.
+// Maps a rectangle of the picture into the image.
 constexpr const char* kVertex = R"(#version 310 es
 precision highp float;
 uniform vec4 rectangle;
@@ -19,7 +19,7 @@ void main() {
 }
 )";
 
-// Two colours by turns, each so many display pixels wide; 0: the first alone.
+// Two alternating colours, each `stripe` display pixels wide; 0: only the first.
 constexpr const char* kFragment = R"(#version 310 es
 precision highp float;
 uniform vec3 even, odd;
@@ -34,28 +34,28 @@ void main() {
 Eigen::Vector3f vector(const Colour& colour) { return {colour[0], colour[1], colour[2]}; }
 
 /// A rectangle in the picture's pixels.
-struct Place {
+struct PixelRectangle {
   double x0, y0, x1, y1;
 };
 
-void draw(const gl::Program& program, const Place& place, const Colour& even, const Colour& odd = {}, int stripe = 0) {
-  program.set("rectangle", static_cast<float>(place.x0), static_cast<float>(place.y0), static_cast<float>(place.x1),
-              static_cast<float>(place.y1));
+void draw(const gl::Program& program, const PixelRectangle& rectangle, const Colour& even, const Colour& odd = {}, int stripe = 0) {
+  program.set("rectangle", static_cast<float>(rectangle.x0), static_cast<float>(rectangle.y0), static_cast<float>(rectangle.x1),
+              static_cast<float>(rectangle.y1));
   program.set("even", vector(even));
   program.set("odd", vector(odd));
   program.set("stripe", stripe);
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-/// The shares of the picture that a field covers, as pixels.
+/// The pixels that a field (in shares of the picture) covers.
 template <class Shape>
-Place pixels_of(const Shape& shape, const render::EyeImage& image) {
+PixelRectangle pixels_of(const Shape& shape, const render::EyeImage& image) {
   const double w = image.picture_width, h = image.picture_height;
   return {std::round(shape.x0 * w), std::round(shape.y0 * h), std::round(shape.x1 * w), std::round(shape.y1 * h)};
 }
 
-/// In the middle of the upper half; on whole pixels.
-Place place_of(const Bar& bar, const render::EyeImage& image) {
+/// The pixels of a bar: in the middle of the upper half.
+PixelRectangle pixels_of(const Bar& bar, const render::EyeImage& image) {
   const double left = std::floor(0.5 * (image.picture_width - bar.pixels)), top = std::floor(0.25 * image.picture_height);
   return {left, top, left + bar.pixels, top + std::max(8.0, std::floor(0.03 * image.picture_height))};
 }
@@ -80,19 +80,19 @@ void PatternPainter::paint(const Pattern& pattern, const render::EyeImage& image
   program_.set("map_y", Eigen::Vector3f(image.from_picture.row(1).transpose().cast<float>()));
   glBindVertexArray(no_attributes_.get());
   const bool right = image.eye == stereo::Eye::right;
-  // A field that reaches the picture's edge goes on beyond it: an image may show a little more.
-  const auto beyond = [&](Place place) {
+  // A field at the picture's edge is extended beyond it, as an image may show slightly more than the picture.
+  const auto extended = [&](PixelRectangle rectangle) {
     const double w = image.picture_width, h = image.picture_height;
-    if (place.x0 <= 0) place.x0 = -w;
-    if (place.y0 <= 0) place.y0 = -h;
-    if (place.x1 >= w) place.x1 = 2 * w;
-    if (place.y1 >= h) place.y1 = 2 * h;
-    return place;
+    if (rectangle.x0 <= 0) rectangle.x0 = -w;
+    if (rectangle.y0 <= 0) rectangle.y0 = -h;
+    if (rectangle.x1 >= w) rectangle.x1 = 2 * w;
+    if (rectangle.y1 >= h) rectangle.y1 = 2 * h;
+    return rectangle;
   };
-  for (const Field& field : pattern.fields) draw(program_, beyond(pixels_of(field, image)), right ? field.right : field.left);
+  for (const Field& field : pattern.fields) draw(program_, extended(pixels_of(field, image)), right ? field.right : field.left);
   if (image.eye) return;
   for (const Stripes& stripes : pattern.stripes) draw(program_, pixels_of(stripes, image), stripes.even, stripes.odd, stripes.pixels);
-  for (const Bar& bar : pattern.bars) draw(program_, place_of(bar, image), {1, 1, 1});
+  for (const Bar& bar : pattern.bars) draw(program_, pixels_of(bar, image), {1, 1, 1});
 }
 
 }  // namespace prismesh::kiosk::calibration

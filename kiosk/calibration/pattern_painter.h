@@ -1,4 +1,4 @@
-// Draws a calibration pattern into the eyes' images, instead of a model. Needs a current OpenGL ES 3.1 context.
+// Draws a calibration pattern into the eyes' images instead of a model. An OpenGL ES 3.1 context must be current.
 #pragma once
 
 #include "kiosk/calibration/pattern.h"
@@ -9,10 +9,10 @@ namespace prismesh::kiosk::calibration {
 
 class PatternPainter {
  public:
-  /// Errors: a shader that the driver refuses.
+  /// Links the shaders. Errors: a shader that the driver refuses.
   static Result<PatternPainter> create();
-  /// Covers the image that is bound. An image from between the eyes gets the left eye's colours; stripes and bars lie on display pixels
-  /// there, and are left out of images of one eye, whose pixels aren't the display's.
+  /// Covers the bound image with the pattern. An image from between the eyes gets the left eye's colours, and stripes and bars on the
+  /// display's pixels. An image of one eye has no stripes and bars, as its pixels aren't the display's.
   void paint(const Pattern& pattern, const render::EyeImage& image) const;
 
  private:

@@ -13,7 +13,7 @@ namespace {
 using drivers::display::Profile;
 using drivers::display::Weave;
 
-/// Places of the head, mm aside of the middle and nearer or farther than the design distance.
+/// Positions of the head: mm to the right of the middle, and farther than the design distance.
 struct Seat {
   double aside, back;
   const char* words;
@@ -25,12 +25,12 @@ constexpr std::array<Seat, 5> kSeats{{{0, 0, "Sit before the middle of the scree
                                       {0, 110, "Lean back a hand's breadth"}}};
 constexpr double kSeatToleranceMm = 45;
 constexpr int kCoarse = 8;
-constexpr double kSeparationLowMm = 50, kSeparationHighMm = 75;
+constexpr double kMinSeparationMm = 50, kMaxSeparationMm = 75;
 constexpr double kPitchStep = 2e-5, kPitchRange = 0.02;
-constexpr double kCrosstalkStep = 0.0025, kCrosstalkHighest = 0.3;
+constexpr double kCrosstalkStep = 0.0025, kMaxCrosstalk = 0.3;
 constexpr double kBarStepMm = 0.1;
-constexpr int kMaskStepsAPitch = 96;
-constexpr double kFarthestPitches = 0.75;
+constexpr int kMaskStepsPerPitch = 96;
+constexpr double kMaxMaskPitches = 0.75;  ///< of the mask from its middle
 
 bool shares_panel(const Profile& profile) { return profile.has_mask() || profile.weave == Weave::rows; }
 
@@ -47,20 +47,20 @@ std::vector<Step> steps_for(const Profile& profile) {
   return steps;
 }
 
-/// The same display as an ordinary screen: for patterns on the panel's own pixels.
+/// The same display without stereo, for patterns on the panel's own pixels.
 Profile flat(Profile profile) {
   profile.weave = Weave::centre;
   return profile;
 }
 
-/// The place a viewer sits at, as the tracker should see it.
+/// The position between the eyes of a viewer on a seat, mm from the panel's centre.
 Eigen::Vector3d seat_mm(const Profile& profile, const Seat& seat) { return {seat.aside, 0, profile.optics.design_distance_mm + seat.back}; }
 
 double stepped(double value, double by, double low, double high) { return std::clamp(value + by, low, high); }
 
 int bar_pixels(const Setup& setup) { return ruler_bar(setup.panel.width).bars.front().pixels; }
 
-/// To thousandths; zero is +0.000 from either side.
+/// With sign and three decimals; zero is +0.000, never -0.000.
 std::string with_sign(double value) { return fmt::format("{:+.3f}", std::round(value * 1000) == 0 ? 0.0 : value); }
 
 std::string eye_to_close(bool left_eye_looks) {
@@ -86,7 +86,7 @@ void Wizard::enter() {
   mask_mm_ = 0;
 }
 
-/// A mask that stands still is shifted in the picture instead, and the picture follows the head: one place tells all.
+/// A fixed mask is shifted in the picture instead, and the picture follows the head: one position is enough.
 std::size_t Wizard::seats() const { return setup_.mask_answers ? kSeats.size() : 1; }
 
 Page Wizard::page(const Now& now) const {
@@ -148,7 +148,8 @@ void Wizard::pitch_page(const Now& /*now*/, Page& page) const {
               "keeps its colour all the way from left to right.";
   page.value = with_sign(100 * (profile_.optics.pitch_scale - 1)) + " %";
   page.pattern = one_eye_bright(true);
-  // Leaning by one mask pitch over the picture's height lets the phase run through once from top to bottom: where it fits is bright.
+  // A lean of one mask pitch over the picture's height makes the phase run through one period from top to bottom. The picture is bright at
+  // the height where the phase fits.
   page.profile.optics.lean += profile_.optics.mask_pitch_mm() / (setup_.panel.height * profile_.optics.pixel_pitch_mm);
   if (setup_.mask_answers) page.hold_mask_mm = 0;
 }
@@ -185,7 +186,7 @@ void Wizard::check_page(const Now& now, Page& page) const {
     page.remarks.push_back(fmt::format("your choices agree to {:.2f} px", fit_->scatter_px));
     if (!fit_->gap_found) page.remarks.emplace_back("the mask's distance was taken as designed: the head didn't move enough to measure it");
   }
-  page.pattern = eye_signs();
+  page.pattern = eye_marks();
   if (now.mask_mm) page.weave_mask_mm = now.mask_mm;
   page.next = "Save";
 }
@@ -211,22 +212,22 @@ void Wizard::adjust(int steps, bool coarse) {
       break;
     }
     case Step::eye_separation:
-      profile_.eye_separation_mm = stepped(*profile_.eye_separation_mm, by * 0.5, kSeparationLowMm, kSeparationHighMm);
+      profile_.eye_separation_mm = stepped(*profile_.eye_separation_mm, by * 0.5, kMinSeparationMm, kMaxSeparationMm);
       break;
     case Step::pitch:
       profile_.optics.pitch_scale = stepped(profile_.optics.pitch_scale, by * kPitchStep, 1 - kPitchRange, 1 + kPitchRange);
       break;
     case Step::places: {
       const double pitch = profile_.optics.mask_pitch_mm();
-      mask_mm_ += by * pitch / kMaskStepsAPitch;
-      // A whole pitch farther everything looks the same: there is no end to turning, and the mask stays near its middle.
-      if (std::abs(mask_mm_) > kFarthestPitches * pitch) mask_mm_ = std::remainder(mask_mm_, pitch);
+      mask_mm_ += by * pitch / kMaskStepsPerPitch;
+      // The picture repeats after a whole pitch, so turning has no end and the mask stays near its middle.
+      if (std::abs(mask_mm_) > kMaxMaskPitches * pitch) mask_mm_ = std::remainder(mask_mm_, pitch);
       break;
     }
     case Step::crosstalk_left:
     case Step::crosstalk_right: {
       double& share = profile_.crosstalk[step() == Step::crosstalk_left ? 0 : 1];
-      share = stepped(share, by * kCrosstalkStep, 0, kCrosstalkHighest);
+      share = stepped(share, by * kCrosstalkStep, 0, kMaxCrosstalk);
       break;
     }
     case Step::link:
@@ -243,7 +244,7 @@ Result<void> Wizard::choose_place(const Now& now) {
       return fail("calibration", "not chosen yet: go there first");
     choice.between_eyes_mm = now.between_eyes_mm;
   }
-  // As if the mask had been moved by what the picture was shifted.
+  // The shift of the picture counts as a movement of the mask.
   if (!setup_.mask_answers)
     choice.mask_mm += drivers::display::mask_position_mm(profile_.optics, choice.between_eyes_mm) + profile_.optics.zero_mm;
   if (setup_.mask_answers && now.mask_mm) choice.mask_mm = *now.mask_mm;
@@ -259,7 +260,7 @@ Result<void> Wizard::choose_place(const Now& now) {
 
 void Wizard::take_fit() {
   drivers::display::MaskOptics& optics = profile_.optics;
-  // What was seen level is the distance of the windows on the panel, P (D + g') / D: another gap means another pitch.
+  // The level bands fixed the distance of the windows on the panel, P (D + g') / D. With the fitted gap the pitch changes accordingly.
   const double before = pitch_distance_mm_ + optics.air_gap_mm();
   optics.zero_mm = fit_->zero_mm;
   optics.gap_scale = fit_->gap_scale;

@@ -1,5 +1,5 @@
-// Step by step from a display out of its box to a profile that is bound to it. Holds what the viewer has chosen so far; knows no window, no
-// renderer and no device: it says what to show, in words and as a pattern, and where the mask should be held meanwhile.
+// Steps of the calibration, from a new display to a profile that is bound to it. Holds the viewer's choices and gives for each step the
+// text, the pattern and the position at which to hold the mask. It uses no window, renderer or device.
 #pragma once
 
 #include <cstdint>
@@ -18,60 +18,61 @@
 namespace prismesh::kiosk::calibration {
 
 enum class Step : std::uint8_t {
-  link,             ///< does each pixel arrive as it was sent
-  size,             ///< how large is a pixel
+  link,             ///< does each pixel arrive unchanged
+  size,             ///< size of a pixel
   eye_separation,   ///< of this viewer
-  pitch,            ///< of the mask, by a band that must lie level
-  places,           ///< of the mask, best seen from several places of the head
-  crosstalk_left,   ///< what shines through to the left eye
-  crosstalk_right,  ///< and to the right one
-  check,            ///< a last look, then it is saved
+  pitch,            ///< of the mask, by bands that must be level
+  places,           ///< of the mask, chosen from several positions of the head
+  crosstalk_left,   ///< light of the right eye's picture that reaches the left eye
+  crosstalk_right,  ///< the reverse
+  check,            ///< final check before the profile is saved
 };
 
 /// The display's setup: its monitor, its panel and its mask.
 struct Setup {
   std::optional<display::Monitor> monitor;
-  display::PixelSize panel;   ///< what the picture covers
-  bool mask_answers = false;  ///< a servo takes the mask where it is told
+  display::PixelSize panel;   ///< size of the picture
+  bool mask_answers = false;  ///< a servo moves the mask on command
 };
 
-/// What the devices say at the moment.
+/// Current state of the devices.
 struct Now {
   bool eyes_seen = false;
   Eigen::Vector3d between_eyes_mm{0, 0, 650};
   std::optional<double> mask_mm;  ///< measured
 };
 
-/// What a step shows.
+/// Content of a step.
 struct Page {
   int number = 1, count = 1;
   std::string title;
   std::string task;                  ///< what to do, in a few sentences
-  std::string value;                 ///< what is being adjusted, as it stands; empty: nothing is
-  std::vector<std::string> remarks;  ///< what was found out, doubts, where the head is
-  std::string next;                  ///< what the button that goes on says
+  std::string value;                 ///< current value of what is adjusted; empty: nothing to adjust
+  std::vector<std::string> remarks;  ///< results, doubts, and the position of the head
+  std::string next;                  ///< label of the button to the next step
   Pattern pattern;
-  drivers::display::Profile profile;    ///< to show the pattern with
-  std::optional<double> hold_mask_mm;   ///< where the mask is to be held; empty: let it follow
-  std::optional<double> weave_mask_mm;  ///< where the weave takes the mask to stand; empty: where it should for these eyes
+  drivers::display::Profile profile;    ///< profile to show the pattern with
+  std::optional<double> hold_mask_mm;   ///< position to hold the mask at; empty: it follows the head
+  std::optional<double> weave_mask_mm;  ///< position of the mask to weave for; empty: the ideal one for these eyes
 };
 
 class Wizard {
  public:
-  /// `start`: what is known of this kind of display. Steps that don't apply to it are left out.
+  /// Starts at the first step. `start`: the known profile of this kind of display. Steps that don't apply to it are left out.
   Wizard(const drivers::display::Profile& start, const Setup& setup);
 
   Step step() const { return steps_[at_]; }
+  /// Content of the current step.
   Page page(const Now& now) const;
-  /// Changes the value of this step by so many fine steps; `coarse`: eight times as far. Stops at the value's limits.
+  /// Changes the value of this step by `steps` fine steps; `coarse`: eight times as much. Stops at the value's limits.
   void adjust(int steps, bool coarse);
-  /// Takes what is set and goes on. Errors: why it can't be taken yet, as a sentence; the step stays.
+  /// Accepts the value and goes to the next step. Errors: why it can't be accepted yet; the step stays.
   Result<void> next(const Now& now);
-  /// One place, or one step, back; a wizard that is finished goes back to its last look.
+  /// Goes back by one position of the head, or by one step; a finished wizard goes back to its final check.
   void back();
 
   bool finished() const { return finished_; }
-  /// The profile with everything chosen so far, bound to the monitor.
+  /// The profile with all choices so far, bound to the monitor.
   drivers::display::Profile result() const;
   const std::vector<drivers::display::MaskChoice>& choices() const { return choices_; }
 
@@ -95,8 +96,8 @@ class Wizard {
   std::size_t at_ = 0;
   bool finished_ = false;
   double bar_mm_ = 0;
-  double mask_mm_ = 0;            ///< where the viewer turns it to
-  double pitch_distance_mm_ = 0;  ///< of the eyes while the band was levelled
+  double mask_mm_ = 0;            ///< position that the viewer set
+  double pitch_distance_mm_ = 0;  ///< distance of the eyes while the bands were levelled
   std::vector<drivers::display::MaskChoice> choices_;
   std::optional<drivers::display::MaskFit> fit_;
 };

@@ -24,14 +24,14 @@ bool has_word(const char* words, const std::string& word) {
 
 }  // namespace
 
-struct Headless::State {
+struct Headless::Impl {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
 
-  State() = default;
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State() {
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
     if (display == EGL_NO_DISPLAY) return;
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
@@ -39,7 +39,7 @@ struct Headless::State {
   }
 };
 
-Headless::Headless(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Headless::Headless(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Headless::Headless(Headless&&) noexcept = default;
 Headless& Headless::operator=(Headless&&) noexcept = default;
 Headless::~Headless() = default;
@@ -47,21 +47,21 @@ Headless::~Headless() = default;
 Result<Headless> Headless::create() {
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (!has_word(extensions, "EGL_MESA_platform_surfaceless")) return no_egl("this machine's EGL can't draw without a screen");
-  auto state = std::make_unique<State>();
+  auto impl = std::make_unique<Impl>();
   const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
   if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) return no_egl("EGL could not be started");
-  state->display = display;
+  impl->display = display;
   eglBindAPI(EGL_OPENGL_ES_API);
   const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT, EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (eglChooseConfig(display, wanted, &config, 1, &count) == EGL_FALSE || count == 0) return no_egl("EGL offers no OpenGL ES 3");
   const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 1, EGL_NONE};
-  state->context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
-  if (state->context == EGL_NO_CONTEXT) return no_egl("the graphics driver has no OpenGL ES 3.1");
-  if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, state->context) == EGL_FALSE)
+  impl->context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
+  if (impl->context == EGL_NO_CONTEXT) return no_egl("the graphics driver has no OpenGL ES 3.1");
+  if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl->context) == EGL_FALSE)
     return no_egl("the graphics context can't be used without a screen");
-  return Headless(std::move(state));
+  return Headless(std::move(impl));
 }
 
 }  // namespace prismesh::kiosk::display

@@ -1,4 +1,4 @@
-// An OpenGL ES context without any screen: EGL's surfaceless platform, software rendering is enough.
+// Creates an OpenGL ES context without a screen, on EGL's surfaceless platform. Software rendering is enough.
 #pragma once
 
 #include <memory>
@@ -9,16 +9,17 @@ namespace prismesh::kiosk::display {
 
 class Headless {
  public:
-  /// Makes the context current on this thread. Errors: no EGL, no surfaceless platform, no OpenGL ES 3.1 (says which package helps).
+  /// Creates the context and makes it current on this thread. Errors: no EGL, no surfaceless platform, no OpenGL ES 3.1; they name the
+  /// packages to install.
   static Result<Headless> create();
   Headless(Headless&&) noexcept;
   Headless& operator=(Headless&&) noexcept;
   ~Headless();
 
  private:
-  struct State;
-  explicit Headless(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit Headless(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace prismesh::kiosk::display

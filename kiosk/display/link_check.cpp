@@ -7,7 +7,7 @@ namespace {
 
 using drivers::display::Weave;
 
-/// Weaves whose eyes lie on neighbouring pixels.
+/// Whether the weave puts the two eyes on neighbouring pixels.
 bool needs_each_pixel(const drivers::display::Profile& profile) { return profile.has_mask() || profile.weave == Weave::rows; }
 
 std::string text_of(PixelSize size) { return fmt::format("{} x {}", size.width, size.height); }

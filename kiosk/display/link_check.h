@@ -1,5 +1,5 @@
-// Whether a woven picture reaches the panel's pixels unchanged: one pixel of the picture on one pixel of the panel, each with its own
-// colour. Anything between that scales, turns or halves colours mixes the eyes, so such a mode or link is refused for it.
+// Checks whether a woven picture reaches the panel's pixels unchanged: each pixel of the picture on one pixel of the panel, with its own
+// colour. A mode or link that scales, turns, or transmits colours at half width mixes the eyes' pictures, so it is refused.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@
 namespace prismesh::kiosk::display {
 
 struct LinkReport {
-  /// Why this profile can't be shown in stereo here, each a sentence that says what to change; empty: nothing speaks against it.
+  /// Why this profile can't be shown in stereo here. Each is a sentence that says what to change. Empty: stereo is allowed.
   std::vector<std::string> refusals;
-  /// What couldn't be found out and has to be looked at.
+  /// What couldn't be determined and must be checked by eye.
   std::vector<std::string> doubts;
   bool stereo_allowed() const { return refusals.empty(); }
 };
 
-/// `monitor` empty: nothing is known (headless, a display without RandR); that is a doubt, no refusal. A profile that is no weave of
-/// pixels (anaglyph, one eye) has nothing to lose and passes.
+/// Checks a profile on a monitor. `monitor` empty: unknown (headless, a display without RandR), which is a doubt, not a refusal. A profile
+/// that doesn't weave pixels (anaglyph, one eye) always passes.
 LinkReport check_link(const drivers::display::Profile& profile, const std::optional<Monitor>& monitor);
 
 }  // namespace prismesh::kiosk::display

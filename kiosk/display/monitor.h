@@ -1,4 +1,4 @@
-// A monitor and the way pictures reach it, as far as a display server tells.
+// Data of a monitor and of its link to the graphics card, as far as a display server reports them.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,24 @@
 
 namespace prismesh::kiosk::display {
 
-/// How colours travel from the graphics card to the panel.
+/// Colour format between the graphics card and the panel.
 enum class LinkColour : std::uint8_t { unknown, full, halved };  ///< halved: YCbCr 4:2:2 or 4:2:0
 
-/// A monitor and the way pictures reach it. What can't be found out stays empty.
+/// A monitor and its link. What can't be determined is empty or 0.
 struct Monitor {
   std::string connector;  ///< "DP-1"
   std::optional<drivers::display::Edid> edid;
   int x = 0, y = 0;          ///< its upper left corner in the desktop's pixels
-  PixelSize shown;           ///< pixels of the desktop that it shows
-  PixelSize mode;            ///< pixels that are sent to it
-  PixelSize native;          ///< pixels of the panel: its preferred mode
+  PixelSize shown;           ///< size of its part of the desktop
+  PixelSize mode;            ///< size of the picture that is sent to it
+  PixelSize native;          ///< size of the panel: its preferred mode
   double refresh_hz = 0;     ///< 0: unknown
   bool transformed = false;  ///< the graphics card resamples (scale, shear, "underscan")
-  bool turned = false;       ///< rotated or mirrored on the way
+  bool turned = false;       ///< rotated or mirrored by the graphics card
   LinkColour colour = LinkColour::unknown;
 };
 
-/// The colour that a graphics driver's own setting for the connector names ("rgb", "ycbcr444", "YCbCr 4:2:2", ..).
+/// Reads the colour format from a graphics driver's own setting for the connector ("rgb", "ycbcr444", "YCbCr 4:2:2", ...).
 LinkColour link_colour_from(const std::string& setting);
 
 }  // namespace prismesh::kiosk::display

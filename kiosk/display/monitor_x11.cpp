@@ -12,8 +12,8 @@
 namespace prismesh::kiosk::display {
 namespace {
 
-struct Resources {
-  explicit Resources(XRRScreenResources* made) : data(made, XRRFreeScreenResources) {}
+struct ScreenResources {
+  explicit ScreenResources(XRRScreenResources* made) : data(made, XRRFreeScreenResources) {}
   std::unique_ptr<XRRScreenResources, void (*)(XRRScreenResources*)> data;
 
   const XRRModeInfo* mode(RRMode id) const {
@@ -33,7 +33,7 @@ double refresh_of(const XRRModeInfo& mode) {
   return pixels > 0 ? static_cast<double>(mode.dotClock) / pixels : 0;
 }
 
-/// A property's bytes, or those of the atom's name if it holds one.
+/// A property's bytes; if its value is an atom, the bytes of the atom's name.
 std::vector<std::byte> property(Display* display, RROutput output, Atom name) {
   Atom type = 0;
   int format = 0;
@@ -61,7 +61,7 @@ std::vector<std::byte> property(Display* display, RROutput output, Atom name) {
   return bytes;
 }
 
-/// What graphics drivers call the way of colours, where they say it at all.
+/// The colour format, from the names that graphics drivers give this property; not every driver has one.
 LinkColour colour_of(Display* display, RROutput output) {
   for (const char* name : {"color format", "Color Format", "output_csc", "ColorSpace", "Output Color Format"}) {
     const Atom atom = XInternAtom(display, name, True);
@@ -88,7 +88,7 @@ bool is_transformed(Display* display, RRCrtc crtc) {
   return transformed;
 }
 
-Monitor describe(Display* display, const Resources& resources, RRCrtc crtc, const XRRCrtcInfo& shown) {
+Monitor describe(Display* display, const ScreenResources& resources, RRCrtc crtc, const XRRCrtcInfo& shown) {
   Monitor monitor;
   monitor.x = shown.x;
   monitor.y = shown.y;
@@ -128,15 +128,15 @@ std::optional<Monitor> monitor_at(Display* display, ::Window root, int x, int y,
   int first_event = 0, first_error = 0, major = 0, minor = 0;
   if (XRRQueryExtension(display, &first_event, &first_error) == 0 || XRRQueryVersion(display, &major, &minor) == 0) return std::nullopt;
   if (major < 1 || (major == 1 && minor < 3)) return std::nullopt;
-  const Resources resources(XRRGetScreenResourcesCurrent(display, root));
+  const ScreenResources resources(XRRGetScreenResourcesCurrent(display, root));
   if (!resources.data) return std::nullopt;
-  long most = 0;
+  long max_overlap = 0;
   std::optional<Monitor> best;
   for (const RRCrtc crtc : std::span(resources.data->crtcs, static_cast<std::size_t>(resources.data->ncrtc))) {
     const CrtcInfo info(XRRGetCrtcInfo(display, resources.data.get(), crtc), XRRFreeCrtcInfo);
     if (!info || info->mode == 0) continue;
-    if (const long shared = overlap(*info, x, y, size); shared > most) {
-      most = shared;
+    if (const long shared = overlap(*info, x, y, size); shared > max_overlap) {
+      max_overlap = shared;
       best = describe(display, resources, crtc, *info);
     }
   }

@@ -1,4 +1,4 @@
-// The monitor that a place of an X11 desktop lies on, as the RandR extension describes it.
+// Finds the monitor at a position of an X11 desktop through the RandR extension.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace prismesh::kiosk::display {
 
-/// The monitor that shows most of the rectangle (desktop pixels); empty without RandR 1.3 or when no monitor shows any of it. Asks the X
-/// server several times: once when something changed, not for each picture.
+/// The monitor that shows the largest part of the rectangle (desktop pixels); empty without RandR 1.3 or if no monitor shows any of it. It
+/// takes several requests to the X server, so call it after a change, not for each picture.
 std::optional<Monitor> monitor_at(Display* display, ::Window root, int x, int y, PixelSize size);
 
 }  // namespace prismesh::kiosk::display

@@ -1,5 +1,5 @@
-// Where the finished picture goes and where the hand's input comes from. One implementation a kind of display: an X11 window
-// (x11.h). Coordinates are pixels of the picture, x right, y down, from its upper left corner.
+// Interface to a window: shows the finished picture and gives the input of mouse and keyboard. There is one implementation for each kind of
+// display: an X11 window (x11.h). Coordinates are pixels of the picture, x right, y down, from its upper left corner.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct Modifiers {
   bool operator==(const Modifiers&) const = default;
 };
 
-/// A key by what it means on the user's layout: letters and digits are their upper-case ASCII codes.
+/// A key by its meaning on the user's keyboard layout. Letters and digits are their upper-case ASCII codes.
 enum class Key : std::uint16_t {
   none = 0,
   space = ' ',
@@ -70,17 +70,17 @@ constexpr Key letter(char upper_case) { return static_cast<Key>(upper_case); }
 struct PointerMoved {
   double x = 0, y = 0;
   Modifiers modifiers;
-  std::vector<std::array<double, 2>> passed{};  ///< where it was since the last event, oldest first, without where it is now
+  std::vector<std::array<double, 2>> passed{};  ///< positions since the last event, oldest first, without the current one
 };
 struct ButtonChanged {
   MouseButton button = MouseButton::left;
   bool down = false;
   double x = 0, y = 0;
   Modifiers modifiers;
-  std::int64_t time_ms = 0;  ///< of the display's own clock: only differences mean something
+  std::int64_t time_ms = 0;  ///< of the display's own clock: only differences have a meaning
 };
 struct WheelTurned {
-  double steps = 0;  ///< away from the hand is positive
+  double steps = 0;  ///< positive: away from the user
   double x = 0, y = 0;
   Modifiers modifiers;
 };
@@ -98,8 +98,8 @@ struct FocusLost {};  ///< keys and buttons held down count as released
 struct Resized {
   PixelSize size;
 };
-struct Moved {};    ///< another place on the desktop, or another monitor or mode: ask `place` and `monitor` again
-struct Exposed {};  ///< the picture has to be shown again
+struct Moved {};    ///< another position on the desktop, or another monitor or mode: call `position` and `monitor` again
+struct Exposed {};  ///< the picture must be shown again
 struct CloseRequested {};
 
 using WindowEvent = std::variant<PointerMoved, ButtonChanged, WheelTurned, KeyChanged, TextTyped, PointerLeft, FocusLost, Resized, Moved,
@@ -111,26 +111,26 @@ class Window {
  public:
   virtual ~Window() = default;
   virtual PixelSize size() const = 0;
-  /// What happened since the last call, oldest first; moves of the pointer that nothing separates come as one. Errors: the
-  /// display is gone.
+  /// Events since the last call, oldest first. Consecutive moves of the pointer are merged into one. Errors: the display is gone.
   virtual Result<std::vector<WindowEvent>> take_events() = 0;
-  /// For poll(2): readable when there may be events. Negative: there never are any.
+  /// For poll(2): readable if there may be events. Negative: there are never any.
   virtual int descriptor() const = 0;
-  /// The picture's upper left corner in the desktop's pixels.
-  struct Place {
+  struct DesktopPosition {
     int x = 0, y = 0;
-    bool operator==(const Place&) const = default;
+    bool operator==(const DesktopPosition&) const = default;
   };
-  virtual Place place() const = 0;
-  /// The monitor that shows most of the picture; empty: unknown. Asks the display: once when something changed, not for each picture.
+  /// The picture's upper left corner in the desktop's pixels.
+  virtual DesktopPosition position() const = 0;
+  /// The monitor that shows the largest part of the picture; empty: unknown. It takes requests to the display, so call it after a change,
+  /// not for each picture.
   virtual std::optional<Monitor> monitor() = 0;
   /// Waits until the picture in framebuffer 0 is drawn to its last pixel.
   virtual void finish() = 0;
   /// Shows the picture drawn into framebuffer 0 of the window's GL context.
   virtual void present() = 0;
-  /// When the display began its newest refresh, CLOCK_MONOTONIC; empty where it doesn't tell.
+  /// When the display began its newest refresh, CLOCK_MONOTONIC; empty if it doesn't report it.
   virtual std::optional<std::int64_t> last_refresh_ns() = 0;
-  /// Hides or shows the display's own pointer (it lies on the woven picture; stereo pictures carry their own).
+  /// Hides or shows the display's own pointer. It isn't woven, so stereo pictures draw their own.
   virtual void show_pointer(bool shown) = 0;
   virtual void set_fullscreen(bool fullscreen) = 0;
 };

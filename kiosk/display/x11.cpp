@@ -58,10 +58,10 @@ std::optional<MouseButton> button_from(unsigned button) {
 
 bool is_wheel(unsigned button) { return button == Button4 || button == Button5; }
 
-/// EGL_CHROMIUM_sync_control: microseconds of the newest refresh, and how many refreshes and swaps there were.
+/// EGL_CHROMIUM_sync_control: time of the newest refresh in microseconds, number of refreshes, number of swaps.
 using GetSyncValues = EGLBoolean (*)(EGLDisplay, EGLSurface, EGLuint64KHR*, EGLuint64KHR*, EGLuint64KHR*);
 
-/// Set when the connection to the X server breaks; Xlib would otherwise end the program.
+/// Called when the connection to the X server breaks. Without it Xlib ends the program.
 void mark_gone(Display*, void* gone) { *static_cast<bool*>(gone) = true; }
 
 class X11Window final : public Window {
@@ -72,8 +72,8 @@ class X11Window final : public Window {
   PixelSize size() const override { return size_; }
   Result<std::vector<WindowEvent>> take_events() override;
   int descriptor() const override { return ConnectionNumber(display_); }
-  Place place() const override { return place_; }
-  std::optional<Monitor> monitor() override { return gone_ ? std::nullopt : monitor_at(display_, root(), place_.x, place_.y, size_); }
+  DesktopPosition position() const override { return position_; }
+  std::optional<Monitor> monitor() override { return gone_ ? std::nullopt : monitor_at(display_, root(), position_.x, position_.y, size_); }
   void finish() override { eglWaitClient(); }
   void present() override {
     if (!gone_) eglSwapBuffers(egl_, surface_);
@@ -86,8 +86,10 @@ class X11Window final : public Window {
   Result<void> create_window(const X11Options& options);
   Result<void> create_context();
   ::Window root() const { return DefaultRootWindow(display_); }
-  void find_place(std::vector<WindowEvent>& out);
+  void find_position(std::vector<WindowEvent>& out);
   void translate(XEvent& event, std::vector<WindowEvent>& out);
+  void translate_motion(const XMotionEvent& event, std::vector<WindowEvent>& out);
+  void translate_configure(const XConfigureEvent& event, std::vector<WindowEvent>& out);
   void translate_button(const XButtonEvent& event, bool down, std::vector<WindowEvent>& out);
   void translate_key(XKeyEvent& event, bool down, std::vector<WindowEvent>& out);
 
@@ -103,9 +105,9 @@ class X11Window final : public Window {
   EGLSurface surface_ = EGL_NO_SURFACE;
   GetSyncValues sync_values_ = nullptr;
   PixelSize size_;
-  Place place_;
-  int randr_events_ = -1;  ///< first of RandR's event numbers; negative: there is no RandR
-  bool place_doubtful_ = true;
+  DesktopPosition position_;
+  int randr_events_ = -1;  ///< first event number of RandR; negative: no RandR
+  bool position_stale_ = true;
   bool monitor_changed_ = false;
   bool pointer_shown_ = true;
   bool gone_ = false;
@@ -113,7 +115,7 @@ class X11Window final : public Window {
 };
 
 X11Window::~X11Window() {
-  if (display_ == nullptr || gone_) return;  // a broken connection can't be closed tidily
+  if (display_ == nullptr || gone_) return;  // a broken connection can't be closed
   if (egl_ != EGL_NO_DISPLAY) {
     eglMakeCurrent(egl_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (surface_ != EGL_NO_SURFACE) eglDestroySurface(egl_, surface_);
@@ -137,7 +139,7 @@ Result<void> X11Window::open(const X11Options& options) {
     return fail(
         name,
         "no X server answers there: start one, set DISPLAY to one that runs, or use --headless-frames N --shots DIR to draw pictures");
-  XSetIOErrorHandler([](Display*) { return 0; });  // the loop says it in its own words
+  XSetIOErrorHandler([](Display*) { return 0; });  // take_events returns the error
   XSetIOErrorExitHandler(display_, mark_gone, &gone_);
   XkbSetDetectableAutoRepeat(display_, True, nullptr);
 
@@ -151,7 +153,7 @@ Result<void> X11Window::open(const X11Options& options) {
 }
 
 Result<void> X11Window::create_window(const X11Options& options) {
-  // The picture is drawn off screen with depth and anti-aliasing and only composed into the window.
+  // The window needs no depth buffer or multisampling: the scene is drawn off screen and only composed into it.
   const EGLint wanted[] = {
       EGL_SURFACE_TYPE, EGL_WINDOW_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_ES3_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8,
       EGL_NONE};
@@ -219,20 +221,20 @@ Result<std::vector<WindowEvent>> X11Window::take_events() {
     if (XFilterEvent(&event, window_)) continue;
     translate(event, out);
   }
-  if (!gone_) find_place(out);
+  if (!gone_) find_position(out);
   if (gone_) return fail("", "the X server has gone away");
   return out;
 }
 
-/// A window manager puts the window into a frame of its own, so only the server knows where on the desktop it is.
-void X11Window::find_place(std::vector<WindowEvent>& out) {
-  if (!place_doubtful_ && !monitor_changed_) return;
-  int x = place_.x, y = place_.y;
+/// A window manager puts the window into a frame of its own, so only the X server knows its position on the desktop.
+void X11Window::find_position(std::vector<WindowEvent>& out) {
+  if (!position_stale_ && !monitor_changed_) return;
+  int x = position_.x, y = position_.y;
   ::Window child = 0;
   if (window_ != 0) XTranslateCoordinates(display_, window_, root(), 0, 0, &x, &y, &child);
-  if (monitor_changed_ || Place{x, y} != place_) out.emplace_back(Moved{});
-  place_ = {x, y};
-  place_doubtful_ = monitor_changed_ = false;
+  if (monitor_changed_ || DesktopPosition{x, y} != position_) out.emplace_back(Moved{});
+  position_ = {x, y};
+  position_stale_ = monitor_changed_ = false;
 }
 
 std::optional<std::int64_t> X11Window::last_refresh_ns() {
@@ -248,18 +250,7 @@ void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
     return;
   }
   switch (event.type) {
-    case MotionNotify: {
-      PointerMoved moved{
-          static_cast<double>(event.xmotion.x), static_cast<double>(event.xmotion.y), modifiers_from(event.xmotion.state), {}};
-      if (auto* before = out.empty() ? nullptr : std::get_if<PointerMoved>(&out.back())) {
-        moved.passed = std::move(before->passed);
-        moved.passed.push_back({before->x, before->y});
-        out.back() = std::move(moved);
-      } else {
-        out.emplace_back(std::move(moved));
-      }
-      break;
-    }
+    case MotionNotify: translate_motion(event.xmotion, out); break;
     case ButtonPress:
     case ButtonRelease: translate_button(event.xbutton, event.type == ButtonPress, out); break;
     case KeyPress:
@@ -271,16 +262,8 @@ void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
       held_.fill(false);
       out.emplace_back(FocusLost{});
       break;
-    case ReparentNotify: place_doubtful_ = true; break;
-    case ConfigureNotify: {
-      place_doubtful_ = true;
-      const PixelSize now{event.xconfigure.width, event.xconfigure.height};
-      if (now == size_) break;
-      size_ = now;
-      if (!out.empty() && std::holds_alternative<Resized>(out.back())) out.pop_back();
-      out.emplace_back(Resized{now});
-      break;
-    }
+    case ReparentNotify: position_stale_ = true; break;
+    case ConfigureNotify: translate_configure(event.xconfigure, out); break;
     case Expose:
       if (event.xexpose.count == 0) out.emplace_back(Exposed{});
       break;
@@ -288,12 +271,32 @@ void X11Window::translate(XEvent& event, std::vector<WindowEvent>& out) {
     case ClientMessage:
       if (static_cast<Atom>(event.xclient.data.l[0]) == delete_window_) out.emplace_back(CloseRequested{});
       break;
-    case DestroyNotify:  // somebody else took the window away without asking
+    case DestroyNotify:  // another client destroyed the window
       window_ = 0;
       out.emplace_back(CloseRequested{});
       break;
     default: break;
   }
+}
+
+void X11Window::translate_motion(const XMotionEvent& event, std::vector<WindowEvent>& out) {
+  PointerMoved moved{static_cast<double>(event.x), static_cast<double>(event.y), modifiers_from(event.state), {}};
+  if (auto* before = out.empty() ? nullptr : std::get_if<PointerMoved>(&out.back())) {
+    moved.passed = std::move(before->passed);
+    moved.passed.push_back({before->x, before->y});
+    out.back() = std::move(moved);
+  } else {
+    out.emplace_back(std::move(moved));
+  }
+}
+
+void X11Window::translate_configure(const XConfigureEvent& event, std::vector<WindowEvent>& out) {
+  position_stale_ = true;
+  const PixelSize now{event.width, event.height};
+  if (now == size_) return;
+  size_ = now;
+  if (!out.empty() && std::holds_alternative<Resized>(out.back())) out.pop_back();
+  out.emplace_back(Resized{now});
 }
 
 void X11Window::translate_button(const XButtonEvent& event, bool down, std::vector<WindowEvent>& out) {
@@ -315,7 +318,7 @@ void X11Window::translate_key(XKeyEvent& event, bool down, std::vector<WindowEve
     length = Xutf8LookupString(input_context_, &event, text.data(), static_cast<int>(text.size()), &symbol, &status);
     if (status == XBufferOverflow || status == XLookupNone || status == XLookupKeySym) length = 0;
   }
-  // The symbol without Ctrl or Shift says which key it is; Shift+1 stays the digit.
+  // The symbol without modifiers identifies the key: Shift+1 is still the digit.
   KeySym plain = XLookupKeysym(&event, 0);
   if (key_from(plain) == Key::none) plain = symbol;
   const Modifiers modifiers = modifiers_from(event.state);
@@ -353,7 +356,7 @@ void X11Window::set_fullscreen(bool fullscreen) {
   event.xclient.format = 32;
   event.xclient.data.l[0] = fullscreen ? 1 : 0;
   event.xclient.data.l[1] = static_cast<long>(XInternAtom(display_, "_NET_WM_STATE_FULLSCREEN", False));
-  event.xclient.data.l[3] = 1;  // asked by an application
+  event.xclient.data.l[3] = 1;  // source: application
   XSendEvent(display_, DefaultRootWindow(display_), False, SubstructureNotifyMask | SubstructureRedirectMask, &event);
   XFlush(display_);
 }

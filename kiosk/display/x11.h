@@ -1,4 +1,4 @@
-// A window on an X11 display with an OpenGL ES context of its own.
+// Opens a window on an X11 display with its own OpenGL ES context.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@ struct X11Options {
   bool fullscreen = false;
 };
 
-/// Opens the window and makes its context (OpenGL ES 3.1 or later) current on this thread; it stays current until the window
-/// dies. Errors: no display (says what to set), no EGL or no OpenGL ES 3.1 on it.
+/// Opens the window and makes its context (OpenGL ES 3.1 or later) current on this thread, until the window is destroyed. Errors: no
+/// display (says what to set), a display without EGL or OpenGL ES 3.1.
 Result<std::unique_ptr<Window>> open_x11_window(const X11Options& options);
 
 }  // namespace prismesh::kiosk::display

@@ -11,7 +11,7 @@ namespace prismesh::kiosk::render {
 
 namespace {
 
-/// Ottosson's matrices: linear sRGB to cone responses, their cube roots to Lab.
+/// Matrices of [Ottosson 2020]: linear sRGB to cone responses; cube roots of cone responses to OKLab.
 Eigen::Matrix3f cones_of_rgb() {
   Eigen::Matrix3f m;
   m << 0.4122214708F, 0.5363325363F, 0.0514459929F, 0.2119034982F, 0.6806995451F, 0.1073969566F, 0.0883024619F, 0.2817188376F,
@@ -28,19 +28,19 @@ Eigen::Matrix3f lab_of_cones() {
 float linear_of(float value) { return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F); }
 float display_of(float value) { return value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1 / 2.4F) - 0.055F; }
 
-/// Not yet within 0..1.
+/// Not clamped to 0..1.
 Eigen::Vector3f linear_rgb_of(const Eigen::Vector3f& lab) {
   static const Eigen::Matrix3f cones = lab_of_cones().inverse(), rgb = cones_of_rgb().inverse();
   return rgb * (cones * lab).array().cube().matrix();
 }
 
 /// Lightness, chroma and hue in degrees at both ends of a map.
-struct Ends {
+struct MapEnds {
   float lightness[2], chroma[2], hue[2];
 };
 
-/// The colour at a place of the way between the ends, paler where the display can't show it.
-Eigen::Vector3f lab_at(const Ends& ends, float share) {
+/// The colour at `share` of the path between the ends, with less chroma where the display can't show it.
+Eigen::Vector3f lab_at(const MapEnds& ends, float share) {
   const auto between = [share](const float(&values)[2]) { return values[0] + share * (values[1] - values[0]); };
   const float angle = between(ends.hue) * std::numbers::pi_v<float> / 180;
   const auto lab = [&](float chroma) {
@@ -50,28 +50,28 @@ Eigen::Vector3f lab_at(const Ends& ends, float share) {
     const Eigen::Vector3f rgb = linear_rgb_of(lab(chroma));
     return (rgb.array() >= -1e-4F && rgb.array() <= 1.0001F).all();
   };
-  float most = between(ends.chroma);
-  if (shown(most)) return lab(most);
-  float least = 0;
+  float max_chroma = between(ends.chroma);
+  if (shown(max_chroma)) return lab(max_chroma);
+  float min_chroma = 0;
   for (int i = 0; i < 16; ++i) {
-    const float middle = 0.5F * (least + most);
-    (shown(middle) ? least : most) = middle;
+    const float middle = 0.5F * (min_chroma + max_chroma);
+    (shown(middle) ? min_chroma : max_chroma) = middle;
   }
-  return lab(least);
+  return lab(min_chroma);
 }
 
-std::array<Colour, kColourMapSteps> make(const Ends& ends) {
+std::array<Colour, kColourMapSteps> make(const MapEnds& ends) {
   constexpr int kFine = 1024;
-  std::vector<float> way(kFine + 1, 0.0F);
+  std::vector<float> length(kFine + 1, 0.0F);
   for (int i = 1; i <= kFine; ++i)
-    way[static_cast<std::size_t>(i)] =
-        way[static_cast<std::size_t>(i - 1)] +
+    length[static_cast<std::size_t>(i)] =
+        length[static_cast<std::size_t>(i - 1)] +
         (lab_at(ends, static_cast<float>(i) / kFine) - lab_at(ends, static_cast<float>(i - 1) / kFine)).norm();
   std::array<Colour, kColourMapSteps> colours;
   std::size_t at = 0;
   for (std::size_t i = 0; i < kColourMapSteps; ++i) {
-    const float wanted = way.back() * static_cast<float>(i) / (kColourMapSteps - 1);
-    while (at < kFine && way[at] < wanted) ++at;
+    const float wanted = length.back() * static_cast<float>(i) / (kColourMapSteps - 1);
+    while (at < kFine && length[at] < wanted) ++at;
     const Eigen::Vector3f rgb = linear_rgb_of(lab_at(ends, static_cast<float>(at) / kFine));
     for (int c = 0; c < 3; ++c) colours[i][c] = display_of(std::clamp(rgb[c], 0.0F, 1.0F));
   }

@@ -1,4 +1,5 @@
-// One-dimensional colour maps for values: even steps for the eye, told apart by lightness alone, so that colour-blind people read them too.
+// Colour maps for values, with perceptually even steps. Lightness alone distinguishes the values, so that colour-blind people can read
+// them.
 #pragma once
 
 #include <array>
@@ -15,14 +16,14 @@ enum class ColourMap : std::uint8_t {
   blues,    ///< light to dark, one hue
 };
 inline constexpr std::array<std::string_view, 2> kColourMapNames{"crimson", "blues"};
+/// The map of a name in kColourMapNames.
 std::optional<ColourMap> colour_map_from(std::string_view name);
 
 inline constexpr std::size_t kColourMapSteps = 256;
-/// From where a value begins to be shown to the limit. Equal steps are equal distances in OKLab (B. Ottosson, "A perceptual color space
-/// for image processing", 2020), lightness only falls.
+/// The map's colours, from the first limit to the second. Equal steps are equal distances in OKLab [Ottosson 2020]; lightness only falls.
 const std::array<Colour, kColourMapSteps>& colours_of(ColourMap map);
 
-/// Lightness (0..1) and the two hue axes of a display colour.
+/// OKLab coordinates of a display colour: lightness (0..1) and the two hue axes [Ottosson 2020].
 Eigen::Vector3f oklab_of(const Colour& colour);
 
 }  // namespace prismesh::kiosk::render

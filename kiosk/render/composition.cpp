@@ -14,13 +14,14 @@ using stereo::Weave;
 
 namespace {
 
-/// What an eye's image shows, in places of the picture.
+/// Size of an eye's image, and the map from pixels of the picture to it.
 struct ImageFrame {
   int width = 1, height = 1;
   stereo::ImageMap from_picture;
 };
 
-stereo::PictureEyes tame_eyes(const Picture& picture) {
+/// The picture's eyes, with defaults for values that aren't finite.
+stereo::PictureEyes finite_eyes(const Picture& picture) {
   stereo::PictureEyes eyes;
   if (picture.between_eyes_mm.allFinite()) eyes.between_mm = picture.between_eyes_mm;
   if (picture.toward_right.allFinite() && picture.toward_right.norm() > 0) eyes.toward_right = picture.toward_right;
@@ -33,7 +34,7 @@ Vec3 centre_on_panel_mm(const PanelArea& area, double pitch) {
   return {area.u_mm(0.5 * area.width, pitch), area.v_mm(0.5 * area.height, pitch), 0};
 }
 
-/// A mask's optics for this panel, and where it stands.
+/// A mask's optics for this panel, and its position.
 struct PlacedMask {
   MaskOptics optics;
   double mask_mm = 0;
@@ -44,12 +45,12 @@ PlacedMask place_mask(const Picture& picture, const stereo::PictureEyes& eyes, c
   placed.optics.panel_columns = area.panel_columns;
   const double ideal = mask_position_mm(placed.optics, eyes.between_mm);
   if (picture.profile.mask_moves) placed.mask_mm = picture.mask_mm && std::isfinite(*picture.mask_mm) ? *picture.mask_mm : ideal;
-  // Half a period aside the eyes have each other's places.
+  // A mask shifted by half a period exchanges the eyes.
   if (picture.profile.swap_eyes) placed.mask_mm += 0.5 * placed.optics.mask_pitch_mm();
   return placed;
 }
 
-/// Whether alternate columns that never change must be exchanged: the mask may have gone back by an odd number of half periods.
+/// Whether fixed alternate columns must be exchanged: a movable mask may stand an odd number of half periods from its ideal position.
 bool columns_swapped(const Picture& picture, const stereo::PictureEyes& eyes) {
   bool swapped = picture.profile.swap_eyes;
   if (picture.profile.has_mask() && picture.profile.mask_moves && picture.mask_mm && std::isfinite(*picture.mask_mm)) {
@@ -60,16 +61,26 @@ bool columns_swapped(const Picture& picture, const stereo::PictureEyes& eyes) {
   return swapped;
 }
 
-/// Windows' numbers as they lie on the picture if they are evenly spaced, and an image that has a texel for each.
-ImageFrame frame_of_windows(const LinearNumbers& numbers, int first, int texels, bool by_rows, int width, int height) {
-  // Texel i has its middle where the number is first + i.
-  const double scale = 2.0 / texels;
-  ImageFrame frame{by_rows ? width : texels, by_rows ? texels : height, stereo::whole_picture(width, height)};
-  frame.from_picture.row(by_rows ? 1 : 0) << scale * numbers.by_x, scale * numbers.by_y, scale * (numbers.at_origin - first + 0.5) - 1;
+/// Evenly spaced windows of one eye: their numbers as a linear function of the picture's pixels, and the range of numbers.
+struct EvenWindows {
+  LinearNumbers numbers;
+  int first = 0;
+  int count = 0;
+  bool by_rows = false;
+};
+
+/// The frame of an image with one texel for each window. Texel i has its middle where the number is first + i.
+ImageFrame frame_of_windows(const EvenWindows& windows, const PanelArea& area) {
+  const LinearNumbers& numbers = windows.numbers;
+  const double scale = 2.0 / windows.count;
+  ImageFrame frame{area.width, area.height, stereo::whole_picture(area.width, area.height)};
+  (windows.by_rows ? frame.height : frame.width) = windows.count;
+  frame.from_picture.row(windows.by_rows ? 1 : 0) << scale * numbers.by_x, scale * numbers.by_y,
+      scale * (numbers.at_origin - windows.first + 0.5) - 1;
   return frame;
 }
 
-/// How many texels the eyes' images need; the same for most places of a head, so that their memory isn't made anew with every move.
+/// Number of texels across an eye's image. It is the same for most positions of the head, so that moves don't allocate new images.
 int texels_for(const PlacedMask& mask, const PhaseMap& phases, const PanelArea& area) {
   const MaskOptics& optics = mask.optics;
   const double spacing = optics.mask_pitch_mm() * (1 + optics.air_gap_mm() / optics.design_distance_mm);
@@ -101,12 +112,12 @@ std::array<ImageFrame, 2> behind_mask(const Picture& picture, const stereo::Pict
   std::array<ImageFrame, 2> frames;
   for (const Eye eye : {Eye::left, Eye::right}) {
     const auto i = static_cast<std::size_t>(eye);
-    frames[i] = frame_of_windows(evenly_spaced(mask, pair.of(eye), area), composed.phases.first[i], texels, false, area.width, area.height);
+    frames[i] = frame_of_windows({evenly_spaced(mask, pair.of(eye), area), composed.phases.first[i], texels}, area);
   }
   return frames;
 }
 
-/// Alternate columns or rows of the panel, whatever the eyes.
+/// Alternate columns or rows of the panel, independent of the eyes.
 std::array<LinearNumbers, 2> alternating(bool by_rows, bool swapped, const PanelArea& area) {
   std::array<LinearNumbers, 2> numbers;
   for (const std::size_t eye : {0U, 1U}) {
@@ -131,14 +142,14 @@ std::array<ImageFrame, 2> alternate(const Picture& picture, const stereo::Pictur
   }
   composed.join = Join::interlaced;
   const int from = composed.by_rows ? area.y : area.x, pixels = composed.by_rows ? area.height : area.width;
-  const int before = from >> 1, last = (from + pixels - 1) >> 1;  // rounded down for a picture that begins beside the panel, too
+  const int before = from >> 1, last = (from + pixels - 1) >> 1;  // shifts round down also if the picture starts left of or above the panel
   for (const std::size_t eye : {0U, 1U}) {
-    // The map's first number is that of its outermost node; the image begins with the first column or row that is there.
+    // The map's first number is that of its outermost node; the image starts with the first column or row that exists.
     const int first = composed.by_rows ? -last : before;
     for (auto& node : composed.phases.numbers) node[eye] += static_cast<float>(composed.phases.first[eye] - first);
     composed.phases.first[eye] = first;
     composed.phases.windows[eye] = last - before + 1;
-    frames[eye] = frame_of_windows(numbers[eye], first, composed.phases.windows[eye], composed.by_rows, area.width, area.height);
+    frames[eye] = frame_of_windows({numbers[eye], first, composed.phases.windows[eye], composed.by_rows}, area);
   }
   return frames;
 }
@@ -155,7 +166,7 @@ ImageFrame half_height(int width, int height) {
   return frame;
 }
 
-/// How the two eyes' images are framed and joined.
+/// Frames of the two eyes' images. Sets how they are joined in `composed`.
 std::array<ImageFrame, 2> frames_for(const Picture& picture, const stereo::PictureEyes& eyes, const PanelArea& area,
                                      Composition& composed) {
   const ImageFrame whole{area.width, area.height, stereo::whole_picture(area.width, area.height)};
@@ -182,7 +193,7 @@ std::array<ImageFrame, 2> frames_for(const Picture& picture, const stereo::Pictu
 
 Composition compose(const Picture& picture, int width, int height) {
   const PanelArea area = panel_area(picture.panel, width, height);
-  const stereo::PictureEyes eyes = tame_eyes(picture);
+  const stereo::PictureEyes eyes = finite_eyes(picture);
   const Vec3 centre = centre_on_panel_mm(area, picture.profile.optics.pixel_pitch_mm);
   const bool sharing = picture.profile.weave != Weave::anaglyph && picture.profile.stereo();
   Composition composed;
@@ -194,7 +205,7 @@ Composition compose(const Picture& picture, int width, int height) {
   };
   const bool flat = picture.profile.stereo() && eyes.depth_share == 0;
   if (flat && picture.profile.interlaced()) {
-    // Both eyes see the same picture wherever they are: every pixel is its own.
+    // Without depth both eyes see the same picture: one image with a texel for each pixel.
     image(std::nullopt, {width, height, stereo::whole_picture(width, height)});
     return composed;
   }

@@ -6,51 +6,55 @@ namespace prismesh::kiosk::render {
 
 Result<void> EyeImages::resize(int width, int height, int samples) {
   if (width == width_ && height == height_ && samples == samples_) return {};
-  GLint largest = 0;
-  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
-  if (width < 1 || height < 1 || width > largest || height > largest)
+  GLint max_size = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &max_size);
+  if (width < 1 || height < 1 || width > max_size || height > max_size)
     return fail("OpenGL", "an eye's image of " + std::to_string(width) + "x" + std::to_string(height) +
-                              " pixels can't be drawn here; each side may be 1 to " + std::to_string(largest));
+                              " pixels can't be drawn here; each side may be 1 to " + std::to_string(max_size));
   *this = EyeImages();
-  scene_ = gl::Framebuffer::make();
-  scene_colour_ = gl::Renderbuffer::make();
-  depth_ = gl::Renderbuffer::make();
-  const GLsizei multi = samples > 1 ? samples : 0;
-  glBindRenderbuffer(GL_RENDERBUFFER, scene_colour_.get());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_RGBA8, width, height);
-  glBindRenderbuffer(GL_RENDERBUFFER, depth_.get());
-  glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_DEPTH24_STENCIL8, width, height);
-  glBindFramebuffer(GL_FRAMEBUFFER, scene_.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, scene_colour_.get());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth_.get());
-  bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  for (Flat& flat : flat_) {
-    flat.colour = gl::Texture::make();
-    glBindTexture(GL_TEXTURE_2D, flat.colour.get());
-    glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, width, height);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    flat.framebuffer = gl::Framebuffer::make();
-    glBindFramebuffer(GL_FRAMEBUFFER, flat.framebuffer.get());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, flat.colour.get(), 0);
-    complete = complete && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-    flat.kept_colour = gl::Renderbuffer::make();
-    glBindRenderbuffer(GL_RENDERBUFFER, flat.kept_colour.get());
-    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
-    flat.kept = gl::Framebuffer::make();
-    glBindFramebuffer(GL_FRAMEBUFFER, flat.kept.get());
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, flat.kept_colour.get());
-    complete = complete && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  }
-  if (!complete) {
-    *this = EyeImages();
-    return fail("OpenGL",
-                "there is no graphics memory for the eyes' images of " + std::to_string(width) + "x" + std::to_string(height) + " pixels");
-  }
   width_ = width;
   height_ = height;
   samples_ = samples;
-  return {};
+  bool complete = make_scene();
+  for (Flat& flat : flat_) complete = make_flat(flat) && complete;
+  if (complete) return {};
+  *this = EyeImages();
+  return fail("OpenGL",
+              "there is no graphics memory for the eyes' images of " + std::to_string(width) + "x" + std::to_string(height) + " pixels");
+}
+
+bool EyeImages::make_scene() {
+  scene_ = gl::Framebuffer::make();
+  scene_colour_ = gl::Renderbuffer::make();
+  depth_ = gl::Renderbuffer::make();
+  const GLsizei multi = samples_ > 1 ? samples_ : 0;
+  glBindRenderbuffer(GL_RENDERBUFFER, scene_colour_.get());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_RGBA8, width_, height_);
+  glBindRenderbuffer(GL_RENDERBUFFER, depth_.get());
+  glRenderbufferStorageMultisample(GL_RENDERBUFFER, multi, GL_DEPTH24_STENCIL8, width_, height_);
+  glBindFramebuffer(GL_FRAMEBUFFER, scene_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, scene_colour_.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth_.get());
+  return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+bool EyeImages::make_flat(Flat& flat) const {
+  flat.colour = gl::Texture::make();
+  glBindTexture(GL_TEXTURE_2D, flat.colour.get());
+  glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, width_, height_);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  flat.framebuffer = gl::Framebuffer::make();
+  glBindFramebuffer(GL_FRAMEBUFFER, flat.framebuffer.get());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, flat.colour.get(), 0);
+  const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  flat.kept_colour = gl::Renderbuffer::make();
+  glBindRenderbuffer(GL_RENDERBUFFER, flat.kept_colour.get());
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width_, height_);
+  flat.kept = gl::Framebuffer::make();
+  glBindFramebuffer(GL_FRAMEBUFFER, flat.kept.get());
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, flat.kept_colour.get());
+  return complete && glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
 void EyeImages::bind_scene() const {

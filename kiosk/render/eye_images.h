@@ -1,4 +1,4 @@
-// The images that the eyes' pictures are drawn into before they are woven.
+// Framebuffers for the eyes' images, which are drawn before they are woven into the display's picture.
 #pragma once
 
 #include <array>
@@ -9,15 +9,16 @@ namespace prismesh::kiosk::render {
 
 class EyeImages {
  public:
-  /// Images of width x height pixels; nothing happens if they are there already. Errors: too large, no memory.
+  /// Allocates images of width x height pixels; keeps those of the same size. Errors: larger than the GPU allows, no graphics memory.
   Result<void> resize(int width, int height, int samples);
 
-  /// Binds what an eye's scene is drawn into: colour and depth, multisampled if asked for.
+  /// Binds the scene's framebuffer with colour and depth, multisampled if `samples` > 1. Both eyes use it in turn.
   void bind_scene() const;
-  /// The scene is that of `eye` (0 left or only, 1 right) and done: keeps it, resolved.
+  /// Resolves the finished scene and keeps it as the image of `eye` (0 left or only, 1 right).
   void keep_scene(int eye) const;
-  /// Binds the plain image of an eye, a copy of the scene kept for it, for what is drawn flat on top.
+  /// Copies the kept scene of an eye into its flat image and binds that, to draw what lies in the screen's plane.
   void bind_flat(int eye) const;
+  /// Binds the flat image of an eye as a texture.
   void bind_texture(int eye, unsigned unit) const;
   int width() const { return width_; }
   int height() const { return height_; }
@@ -29,12 +30,15 @@ class EyeImages {
     gl::Framebuffer kept;
     gl::Renderbuffer kept_colour;
   };
+  // Allocate for the current size. False: no graphics memory.
+  bool make_scene();
+  bool make_flat(Flat& flat) const;
   void copy(const gl::Framebuffer& from, const gl::Framebuffer& to) const;
 
   int width_ = 0;
   int height_ = 0;
   int samples_ = 0;
-  gl::Framebuffer scene_;  ///< shared by both eyes: one is drawn after the other
+  gl::Framebuffer scene_;  ///< shared by both eyes, which are drawn in turn
   gl::Renderbuffer scene_colour_;
   gl::Renderbuffer depth_;
   std::array<Flat, 2> flat_;

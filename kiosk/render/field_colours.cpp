@@ -49,7 +49,7 @@ int FieldColours::kind_for(const ModelTable& table) const {
 }
 
 void FieldColours::bind(unsigned values_unit, unsigned map_unit, const FieldLook& look) {
-  if (map_is_ != look.map) {
+  if (map_shown_ != look.map) {
     std::vector<std::array<std::uint8_t, 4>> texels;
     for (const Colour& colour : colours_of(look.map)) {
       const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(value * 255)); };
@@ -62,7 +62,7 @@ void FieldColours::bind(unsigned values_unit, unsigned map_unit, const FieldLook
     glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, static_cast<GLsizei>(kColourMapSteps), 1, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     for (const GLenum name : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) glTexParameteri(GL_TEXTURE_2D, name, GL_LINEAR);
     for (const GLenum name : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) glTexParameteri(GL_TEXTURE_2D, name, GL_CLAMP_TO_EDGE);
-    map_is_ = look.map;
+    map_shown_ = look.map;
   }
   values_.bind(values_unit);
   glActiveTexture(GL_TEXTURE0 + map_unit);

@@ -1,4 +1,4 @@
-// A field's values and its colour map on the GPU, for one view of the model.
+// Keeps a field's values and its colour map on the GPU, for one view of the model.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,16 @@
 
 namespace prismesh::kiosk::render {
 
-/// How values become colours. Beyond `clear` they keep the part's own; from `full` on they have the map's last.
+/// How values are coloured. Values up to `clear` keep the part's colour; from there the map runs to its last colour at `full`.
 struct FieldLook {
   bool on = false;
   double clear = 0;
-  double full = 1;  ///< differs from `clear`; smaller where small values are the worse ones
+  double full = 1;  ///< differs from `clear`; smaller than it if small values are worse
   ColourMap map = ColourMap::crimson;
-  int bands = 0;  ///< so many even colours instead of a gradient; 0: a gradient
+  int bands = 0;  ///< number of even colours; 0: a gradient
   bool operator==(const FieldLook&) const = default;
 
-  /// The map's colour of a value; nothing for one that keeps its own.
+  /// The colour of a value; empty if it keeps the part's.
   std::optional<Colour> colour_of(double value) const;
 };
 
@@ -30,21 +30,21 @@ class FieldColours {
  public:
   FieldColours();
 
-  /// By node or by shell; NaN: no value. Uploads the rows that differ from the last ones. Errors: no graphics memory.
+  /// Sets the values, one for each node or shell; NaN: no value. Uploads only the rows that changed. Errors: no graphics memory.
   Result<void> set(std::span<const float> values, bool on_nodes);
   void clear() { shown_ = 0; }
-  /// What the shells' shader is told: 0 nothing, 1 values of nodes, 2 of shells. Values of another model's size aren't shown.
+  /// Uniform `field_kind` of the shell shader: 0 none, 1 values of nodes, 2 of shells. 0 if the number of values doesn't fit the model.
   int kind_for(const ModelTable& table) const;
   void bind(unsigned values_unit, unsigned map_unit, const FieldLook& look);
   std::size_t bytes_uploaded() const { return values_.bytes_uploaded(); }
 
  private:
   RowTexture values_;
-  std::vector<float> known_;  ///< what the texture holds
-  std::size_t shown_ = 0;     ///< values; 0: none
+  std::vector<float> known_;  ///< content of the texture
+  std::size_t shown_ = 0;     ///< number of values; 0: none
   bool on_nodes_ = true;
   gl::Texture map_;
-  std::optional<ColourMap> map_is_;
+  std::optional<ColourMap> map_shown_;
 };
 
 }  // namespace prismesh::kiosk::render

@@ -19,17 +19,17 @@ struct Segment {
   float dashed = 0;
 };
 
-/// The lasso's line, and from its end to its beginning a dashed one: what closes it, and what nobody drew.
+/// The lasso's line, and a dashed segment from its end to its start that closes it.
 std::vector<Segment> segments_of(const std::vector<Eigen::Vector2d>& corners) {
-  std::vector<Eigen::Vector2f> places;
+  std::vector<Eigen::Vector2f> points;
   for (const Eigen::Vector2d& corner : corners)
-    if (const Eigen::Vector2f place = corner.cast<float>(); place.allFinite()) places.push_back(place);
+    if (const Eigen::Vector2f point = corner.cast<float>(); point.allFinite()) points.push_back(point);
   std::vector<Segment> segments;
-  for (std::size_t i = 0; i < places.size() && places.size() > 1; ++i) {
-    const bool closing = i + 1 == places.size();
-    const Eigen::Vector2f& a = places[i];
-    const Eigen::Vector2f& b = places[closing ? 0 : i + 1];
-    if (!closing || places.size() > 2) segments.push_back({{a.x(), a.y(), b.x(), b.y()}, closing ? 1.0F : 0.0F});
+  for (std::size_t i = 0; i < points.size() && points.size() > 1; ++i) {
+    const bool closing = i + 1 == points.size();
+    const Eigen::Vector2f& a = points[i];
+    const Eigen::Vector2f& b = points[closing ? 0 : i + 1];
+    if (!closing || points.size() > 2) segments.push_back({{a.x(), a.y(), b.x(), b.y()}, closing ? 1.0F : 0.0F});
   }
   return segments;
 }
@@ -78,7 +78,7 @@ void FlatPass::draw_lasso(const std::vector<Eigen::Vector2d>& corners, const Eye
   glBindVertexArray(segments_.get());
   glBindBuffer(GL_ARRAY_BUFFER, segment_buffer_.get());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(segments.size() * sizeof(Segment)), segments.data(), GL_STREAM_DRAW);
-  const gl::Program& program = shaders_.pencil;
+  const gl::Program& program = shaders_.screen_lines;
   program.use();
   Eigen::Matrix3d image_from_picture = Eigen::Matrix3d::Identity();
   image_from_picture.topRows<2>() = image.from_picture;

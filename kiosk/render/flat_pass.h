@@ -1,4 +1,4 @@
-// Draws what lies in the screen's plane, over the finished scene: rubber band, lasso, and whatever else the picture's overlay draws.
+// Draws what lies in the screen's plane over the finished scene: rubber band, lasso and the picture's overlay.
 #pragma once
 
 #include "kiosk/render/frame.h"
@@ -10,7 +10,7 @@ class FlatPass {
  public:
   explicit FlatPass(const Shaders& shaders);
 
-  /// Into the bound framebuffer; its viewport is set.
+  /// Draws into the bound framebuffer. The viewport must be set.
   void draw(const Picture& picture, const EyeView& eye) const;
 
  private:

@@ -33,10 +33,11 @@ Frame::Frame(const EyeView& eye_view, const Picture& picture, const ModelLayer& 
   pixels_from_texels = texels.inverse().cast<float>();
 }
 
-float Frame::fitting_radius(float largest, float least, float share, double typical_side) const {
-  if (typical_side <= 0) return largest;
+float Frame::fitting_radius(const RadiusLimits& limits, double typical_side) const {
+  if (typical_side <= 0) return limits.max_pixels;
   const double side_pixels = typical_side * view.mm_per_unit / eye.mm_per_pixel;
-  return std::clamp(share * static_cast<float>(std::min(side_pixels, 1000.0)), least, largest);
+  const float wanted = limits.share_of_side * static_cast<float>(std::min(side_pixels, 1000.0));
+  return std::clamp(wanted, limits.min_pixels, limits.max_pixels);
 }
 
 void Frame::set(const gl::Program& program) const {

@@ -15,7 +15,7 @@ std::string shader_log(GLuint shader) {
   return log.data();
 }
 
-/// Compiles one stage and attaches it; the program keeps it alive.
+/// Compiles one stage and attaches it to the program, which then owns it.
 Result<void> attach(GLuint program, GLenum kind, const std::string& name, std::string_view source) {
   const GLuint shader = glCreateShader(kind);
   const char* text = source.data();

@@ -1,4 +1,4 @@
-// OpenGL ES objects that delete themselves, and shader programs that say what is wrong with them.
+// RAII for OpenGL ES objects, and shader programs with errors as text.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace prismesh::kiosk::render::gl {
 
-/// Owns one name of a kind of object; 0 is none.
+/// Owns the name of one object; 0: none.
 template <void (*Generate)(GLsizei, GLuint*), void (*Delete)(GLsizei, const GLuint*)>
 class Object {
  public:
@@ -58,7 +58,7 @@ using Renderbuffer = Object<detail::gen_renderbuffers, detail::delete_renderbuff
 
 class Program {
  public:
-  /// Errors: the driver's words about the stage that it refuses. `name` stands in them.
+  /// Compiles and links a program. Errors: the driver's message about the stage that it refuses, with `name`.
   static Result<Program> link(const std::string& name, std::string_view vertex, std::string_view fragment);
   Program() = default;
   Program(Program&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
@@ -71,7 +71,7 @@ class Program {
   }
 
   void use() const { glUseProgram(name_); }
-  // Of the program in use. A name the program doesn't have is passed over.
+  // Set a uniform. The program must be current. A name that the program doesn't have is ignored.
   void set(const char* uniform, int value) const { glUniform1i(location(uniform), value); }
   void set(const char* uniform, float value) const { glUniform1f(location(uniform), value); }
   void set(const char* uniform, float x, float y) const { glUniform2f(location(uniform), x, y); }
@@ -87,7 +87,7 @@ class Program {
   GLuint name_ = 0;
 };
 
-/// Whether the current context is OpenGL ES 3.1 or later. Errors say what there is instead.
+/// Checks that the current context is OpenGL ES 3.1 or later. Errors: none, or an older one, with its version.
 Result<void> check_context();
 
 }  // namespace prismesh::kiosk::render::gl

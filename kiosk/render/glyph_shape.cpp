@@ -34,14 +34,14 @@ constexpr std::array<ShapeMetrics, kMaxShapesOfShell> kShapes{
      {GlyphShape::stretched, bits({Metric::aspect})}}};
 constexpr std::uint16_t kAllMetrics = (1U << mesh::quality::kMetricCount) - 1;
 
-/// Angle between the normals of the triangles on either side of the diagonal from corner k to the one across.
+/// Angle between the normals of the triangles on either side of the diagonal from corner k to corner k + 2.
 double bend_about(std::span<const Vec3> p, std::size_t k) {
   const Vec3 along = p[k + 2] - p[k];
   const Vec3 one = (p[k + 1] - p[k]).cross(along), other = along.cross(p[(k + 3) % 4] - p[k]);
   return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
-/// Interior angle at a corner, more than pi where it is turned in.
+/// Interior angle at a corner, radians; above pi at a reflex corner.
 double angle_at(std::span<const Vec3> p, std::size_t k, const Vec3& normal) {
   const Vec3 next = p[(k + 1) % p.size()] - p[k], before = p[(k + p.size() - 1) % p.size()] - p[k];
   const Vec3 across = next.cross(before);
@@ -49,14 +49,14 @@ double angle_at(std::span<const Vec3> p, std::size_t k, const Vec3& normal) {
   return p.size() == 4 && across.dot(normal) < 0 ? 2 * 3.14159265358979 - angle : angle;
 }
 
-/// The k in [0, count) with the largest value; of equal ones the first.
+/// The k in [0, count) with the max value; the first of equal ones.
 template <class Value>
-unsigned largest(std::size_t count, const Value& value) {
+unsigned index_of_max(std::size_t count, const Value& value) {
   unsigned best = 0;
-  double most = value(0);
+  double max = value(0);
   for (std::size_t k = 1; k < count; ++k)
-    if (const double here = value(k); here > most) {
-      most = here;
+    if (const double here = value(k); here > max) {
+      max = here;
       best = static_cast<unsigned>(k);
     }
   return best;
@@ -84,11 +84,11 @@ unsigned glyph_place(GlyphShape shape, std::span<const Vec3> p) {
     case GlyphShape::warped: return count == 4 && bend_about(p, 1) > bend_about(p, 0) ? 1 : 0;
     case GlyphShape::short_edge:
       // A triangle's smallest height falls on its longest edge.
-      return count == 3 ? (largest(count, edge) + 2) % 3 : largest(count, [&](std::size_t k) { return -edge(k); });
+      return count == 3 ? (index_of_max(count, edge) + 2) % 3 : index_of_max(count, [&](std::size_t k) { return -edge(k); });
     case GlyphShape::long_edge:
-    case GlyphShape::stretched: return largest(count, edge);
-    case GlyphShape::small_angle: return largest(count, [&](std::size_t k) { return -angle_at(p, k, normal); });
-    case GlyphShape::large_angle: return largest(count, [&](std::size_t k) { return angle_at(p, k, normal); });
+    case GlyphShape::stretched: return index_of_max(count, edge);
+    case GlyphShape::small_angle: return index_of_max(count, [&](std::size_t k) { return -angle_at(p, k, normal); });
+    case GlyphShape::large_angle: return index_of_max(count, [&](std::size_t k) { return angle_at(p, k, normal); });
     case GlyphShape::cluster:
     case GlyphShape::defect:
     case GlyphShape::other: break;

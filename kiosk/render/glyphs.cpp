@@ -11,11 +11,11 @@ using mesh::quality::ShellState;
 
 namespace {
 
-/// Adds the glyphs of every n-th of these so that about `room` remain.
+/// Adds at most `count` entries of the list, at even steps. Returns the number left out.
 template <class List, class Add>
-std::size_t spread(const List& list, std::size_t room, const Add& add) {
-  if (list.empty() || room == 0) return list.size();
-  const std::size_t drawn = std::min(room, list.size());
+std::size_t spread(const List& list, std::size_t count, const Add& add) {
+  if (list.empty() || count == 0) return list.size();
+  const std::size_t drawn = std::min(count, list.size());
   for (std::size_t i = 0; i < drawn; ++i) add(list[i * list.size() / drawn]);
   return list.size() - drawn;
 }
@@ -52,22 +52,22 @@ void GlyphList::update(const ModelTable& table, bool visibility_changed, bool to
 
 void GlyphList::find_clusters(const ModelTable& table) {
   clusters_.clear();
-  const double most = table.source().most_triangles_at_node();
+  const double max_triangles = table.source().max_triangles_at_node();
   mesh::ShellNodes shell;
   std::vector<std::uint16_t> triangles(table.node_count());
   bool any = false;
   for (std::size_t s = 0; s < table.shell_count(); ++s) {
     if (!table.shell(s, shell) || !shell.is_triangle() || !table.shell_visible(s)) continue;
     for (std::size_t k = 0; k < 3; ++k)
-      if (std::uint16_t& at = triangles[shell.node[k].value]; at < std::numeric_limits<std::uint16_t>::max()) any |= ++at > most;
+      if (std::uint16_t& at = triangles[shell.node[k].value]; at < std::numeric_limits<std::uint16_t>::max()) any |= ++at > max_triangles;
   }
   if (!any) return;
-  std::vector<std::uint8_t> crowded(table.node_count());  // and a quad's corner
+  std::vector<std::uint8_t> crowded(table.node_count());  // too many triangles, and at least one quad
   for (std::size_t s = 0; s < table.shell_count(); ++s) {
     if (!table.shell(s, shell) || shell.is_triangle()) continue;
-    for (const mesh::NodeIndex node : shell.node) crowded[node.value] = triangles[node.value] > most;
+    for (const mesh::NodeIndex node : shell.node) crowded[node.value] = triangles[node.value] > max_triangles;
   }
-  // The sign stands at the first of the triangles.
+  // The first of the node's triangles carries the glyph.
   for (std::size_t s = 0; s < table.shell_count(); ++s) {
     if (!table.shell(s, shell) || !shell.is_triangle() || !table.shell_visible(s)) continue;
     for (std::uint8_t k = 0; k < 3; ++k)
@@ -77,14 +77,14 @@ void GlyphList::find_clusters(const ModelTable& table) {
 }
 
 GlyphList::Chosen GlyphList::choose(const ModelTable& table, std::size_t cap, const std::unordered_set<std::uint32_t>& except) const {
-  std::vector<Bad> failing, warning;
-  const auto sort_in = [&](const Bad& bad) {
+  std::vector<BadShell> failing, warning;
+  const auto sort_in = [&](const BadShell& bad) {
     if (!except.contains(bad.shell)) (bad.failing ? failing : warning).push_back(bad);
   };
   for (const Chunk& chunk : chunks_) std::for_each(chunk.bad.begin(), chunk.bad.end(), sort_in);
   if (!damaged_) std::for_each(clusters_.begin(), clusters_.end(), sort_in);
   Chosen chosen;
-  const auto add = [&](const Bad& bad) {
+  const auto add = [&](const BadShell& bad) {
     mesh::ShellNodes nodes;
     if (!table.shell(bad.shell, nodes)) return;
     std::array<mesh::Vec3, 4> corner;

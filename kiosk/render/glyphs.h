@@ -1,4 +1,4 @@
-// Which shells get quality glyphs: pure.
+// Chooses the shells that get quality glyphs. No OpenGL.
 #pragma once
 
 #include <array>
@@ -11,22 +11,23 @@
 
 namespace prismesh::kiosk::render {
 
-/// Glyphs of shells that aren't ok and of nodes where triangles crowd, kept per chunk so that a change costs what it touches.
+/// Glyphs of shells that warn or fail and of nodes with too many triangles, kept by chunk. An update visits only the chunks that changed.
 class GlyphList {
  public:
-  /// `damaged`: only by what the document's edits made worse. Clusters cost a pass over the shells where these have changed.
+  /// Takes over a model. `damaged`: counts only what the document's edits made worse. A change of shells or visibility costs a pass over
+  /// all shells, which finds the clusters.
   void update(const ModelTable& table, bool visibility_changed, bool topology_changed, bool damaged);
 
   struct Chosen {
     std::vector<Glyph> glyphs;  ///< warnings first, so that failures are drawn over them
     std::size_t left_out = 0;
   };
-  /// At most `cap`, failures before warnings, evenly spread over the list where not all find room. `except`: shells that show
-  /// something newer.
+  /// Chooses at most `cap` glyphs, failures before warnings. If there are more, it takes them at even steps through the list. `except`:
+  /// shells to leave out, as a preview shows them.
   Chosen choose(const ModelTable& table, std::size_t cap, const std::unordered_set<std::uint32_t>& except) const;
 
  private:
-  struct Bad {
+  struct BadShell {
     std::uint32_t shell = 0;
     GlyphShape shape{};
     bool failing = false;
@@ -35,13 +36,13 @@ class GlyphList {
   struct Chunk {
     std::array<std::uint64_t, 2> versions{};  ///< of quality (or damage) and parts
     bool known = false;
-    std::vector<Bad> bad;
+    std::vector<BadShell> bad;
   };
-  /// Nodes with more triangles about them than the source's limit; where no quad meets them it is a mesh of triangles.
+  /// Finds nodes with more triangles than the source's limit and at least one quad. Nodes without a quad are in a mesh of triangles.
   void find_clusters(const ModelTable& table);
 
   std::vector<Chunk> chunks_;
-  std::vector<Bad> clusters_;
+  std::vector<BadShell> clusters_;
   bool damaged_ = false;
 };
 

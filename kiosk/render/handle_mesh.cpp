@@ -15,7 +15,7 @@ namespace {
 // Display pixels.
 constexpr double kShaftRadius = 2.6, kHeadRadius = 8.0, kHeadStart = 0.72;
 constexpr double kRingHalfWidth = 1.5, kRingBefore = 6, kRingThickness = 2;
-constexpr double kDiskRim = 1.5, kDiskLift = 5;  ///< lifted, so that the surface it touches doesn't swallow it
+constexpr double kDiskRim = 1.5, kDiskLift = 5;  ///< lifted off the surface that it touches, which would hide it
 constexpr double kAxisRadius = 1.4, kAxisBeyond = 28, kAxisEnd = 5;
 constexpr double kCircleRadius = 1.1, kArcRadius = 2.4, kTickRadius = 1.1, kSpokeRadius = 0.8;
 constexpr double kTick = 11, kLongTick = 18;
@@ -23,16 +23,16 @@ constexpr float kDiskAlpha = 0.42F, kActiveDiskAlpha = 0.6F, kFaintAlpha = 0.9F;
 constexpr int kSides = 10, kRound = 48;
 constexpr double kFullCircle = 360;
 
-/// Puts things into the screen's space.
-class Workshop {
+/// Maps deck points to screen millimetres and gives the size of a display pixel there.
+class ScreenSpace {
  public:
-  explicit Workshop(const HandleSpace& space) : space_(space) {}
+  explicit ScreenSpace(const HandleSpace& space) : space_(space) {}
 
-  Vec3 place(const Vec3& deck) const { return stereo::to_screen(space_.view, deck); }
-  /// Millimetres that a pixel measures there.
+  Vec3 point(const Vec3& deck) const { return stereo::to_screen(space_.view, deck); }
+  /// Size of a pixel at that depth, mm.
   double pixel(const Vec3& mm) const { return mm_of_pixel_at(space_.mm_per_pixel, space_.viewer_mm, mm.z()); }
-  /// Length of a pixel there in the deck's unit, across the line of sight.
-  double deck_pixel(const Vec3& deck) const { return pixel(place(deck)) / space_.view.mm_per_unit; }
+  /// Size of a pixel at that point in the deck's unit, parallel to the screen.
+  double deck_pixel(const Vec3& deck) const { return pixel(point(deck)) / space_.view.mm_per_unit; }
   const stereo::Box& around() const { return space_.around; }
 
  private:
@@ -49,41 +49,49 @@ Vec3 any_across(const Vec3& along) {
   return helper.cross(along).normalized();
 }
 
-/// A place on the outline of what is turned on a lathe: along the axis, out of it (mm).
-struct Outline2 {
+/// The axis foot + t * axis of a body of revolution, mm.
+struct RevolutionAxis {
+  Vec3 foot, axis;
+};
+/// A point of its profile: t on the axis, distance from it (mm).
+struct ProfilePoint {
   double along, radius;
 };
+/// One band of the body. `normal`: components away from the axis and along it.
+struct Band {
+  ProfilePoint lower, upper;
+  Eigen::Vector2d normal;
+};
 
-/// One band of a body of revolution about foot + t * axis; `slant`: its normal's share out of the axis and along it.
-void add_band(std::vector<HandleVertex>& mesh, const Vec3& foot, const Vec3& axis, const Outline2& lower, const Outline2& upper,
-              const Eigen::Vector2d& slant) {
-  const Vec3 unit = axis.normalized(), side_a = any_across(axis), side_b = unit.cross(side_a);
-  const auto at = [&](const Outline2& point, int side) {
+void add_band(std::vector<HandleVertex>& mesh, const RevolutionAxis& about, const Band& band) {
+  const Vec3 unit = about.axis.normalized(), side_a = any_across(about.axis), side_b = unit.cross(side_a);
+  const auto at = [&](const ProfilePoint& point, int side) {
     const double angle = 2 * std::numbers::pi * side / (2 * kSides);
     const Vec3 out = std::cos(angle) * side_a + std::sin(angle) * side_b;
-    return vertex(foot + axis * point.along + out * point.radius, out * slant.x() + unit * slant.y());
+    return vertex(about.foot + about.axis * point.along + out * point.radius, out * band.normal.x() + unit * band.normal.y());
   };
   for (int side = 0; side < 2 * kSides; ++side) {
-    const HandleVertex a = at(lower, side), b = at(lower, side + 1), c = at(upper, side + 1), d = at(upper, side);
+    const HandleVertex a = at(band.lower, side), b = at(band.lower, side + 1), c = at(band.upper, side + 1), d = at(band.upper, side);
     mesh.insert(mesh.end(), {a, b, c, a, c, d});
   }
 }
 
 void add_arrow(std::vector<HandleVertex>& mesh, const Vec3& foot, const Vec3& axis, double pixel) {
-  const double slope = 0.35;  // of the head's normal along the axis: how it catches light, not its exact geometry
+  const double slope = 0.35;  // component of the head's normal along the axis: chosen for its shading, not exact
   const double shaft = kShaftRadius * pixel, head = kHeadRadius * pixel;
-  add_band(mesh, foot, axis, {0, 0}, {0, shaft}, {0, -1});
-  add_band(mesh, foot, axis, {0, shaft}, {kHeadStart, shaft}, {1, 0});
-  add_band(mesh, foot, axis, {kHeadStart, shaft}, {kHeadStart, head}, {0, -1});
-  add_band(mesh, foot, axis, {kHeadStart, head}, {1, 0.01 * pixel}, {std::sqrt(1 - slope * slope), slope});
+  const RevolutionAxis about{foot, axis};
+  add_band(mesh, about, {{0, 0}, {0, shaft}, {0, -1}});
+  add_band(mesh, about, {{0, shaft}, {kHeadStart, shaft}, {1, 0}});
+  add_band(mesh, about, {{kHeadStart, shaft}, {kHeadStart, head}, {0, -1}});
+  add_band(mesh, about, {{kHeadStart, head}, {1, 0.01 * pixel}, {std::sqrt(1 - slope * slope), slope}});
 }
 
 void add_ring(std::vector<HandleVertex>& mesh, const Vec3& foot, double pixel) {
-  const Vec3 from = foot + Vec3(0, 0, kRingBefore * pixel), axis(0, 0, kRingThickness * pixel);
+  const RevolutionAxis about{foot + Vec3(0, 0, kRingBefore * pixel), Vec3(0, 0, kRingThickness * pixel)};
   const double outer = (kHandleRingPixels + kRingHalfWidth) * pixel, inner = (kHandleRingPixels - kRingHalfWidth) * pixel;
-  add_band(mesh, from, axis, {0, outer}, {1, outer}, {1, 0});
-  add_band(mesh, from, axis, {1, outer}, {1, inner}, {0, 1});
-  add_band(mesh, from, axis, {1, inner}, {0, inner}, {-1, 0});
+  add_band(mesh, about, {{0, outer}, {1, outer}, {1, 0}});
+  add_band(mesh, about, {{1, outer}, {1, inner}, {0, 1}});
+  add_band(mesh, about, {{1, inner}, {0, inner}, {-1, 0}});
 }
 
 void add_ball(std::vector<HandleVertex>& mesh, const Vec3& centre, double radius) {
@@ -99,22 +107,23 @@ void add_ball(std::vector<HandleVertex>& mesh, const Vec3& centre, double radius
     }
 }
 
-/// A tube along places of the screen's space, as thick as `radius` pixels everywhere; its ends are closed by its neighbours.
-void add_tube(std::vector<HandleVertex>& mesh, const Workshop& shop, const std::vector<Vec3>& way, double radius) {
-  if (way.size() < 2) return;
-  Vec3 across = any_across(way[1] - way[0]);
+/// Adds a tube along points of the screen's space (mm), with a radius of `radius` pixels at each depth. Its ends are open: neighbours cover
+/// them.
+void add_tube(std::vector<HandleVertex>& mesh, const ScreenSpace& screen, const std::vector<Vec3>& path, double radius) {
+  if (path.size() < 2) return;
+  Vec3 across = any_across(path[1] - path[0]);
   std::vector<std::array<HandleVertex, kSides>> rings;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    const Vec3 along = (way[std::min(i + 1, way.size() - 1)] - way[i > 0 ? i - 1 : 0]).normalized();
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Vec3 along = (path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0]).normalized();
     if (!finite(along)) return;
-    const Vec3 kept = across - along * across.dot(along);  // carried along the way, so that the tube doesn't twist
+    const Vec3 kept = across - along * across.dot(along);  // parallel transport, so that the tube doesn't twist
     across = kept.norm() > 1e-6 ? Vec3(kept.normalized()) : any_across(along);
     const Vec3 other = along.cross(across);
     std::array<HandleVertex, kSides>& ring = rings.emplace_back();
     for (int side = 0; side < kSides; ++side) {
       const double angle = 2 * std::numbers::pi * side / kSides;
       const Vec3 out = std::cos(angle) * across + std::sin(angle) * other;
-      ring[static_cast<std::size_t>(side)] = vertex(way[i] + out * (radius * shop.pixel(way[i])), out);
+      ring[static_cast<std::size_t>(side)] = vertex(path[i] + out * (radius * screen.pixel(path[i])), out);
     }
   }
   for (std::size_t i = 0; i + 1 < rings.size(); ++i)
@@ -125,7 +134,7 @@ void add_tube(std::vector<HandleVertex>& mesh, const Workshop& shop, const std::
     }
 }
 
-/// Places on a circle in deck space, as the screen shows it.
+/// A circle in deck coordinates.
 struct Circle {
   Vec3 centre = Vec3::Zero();
   Vec3 a = Vec3::UnitX(), b = Vec3::UnitY();  ///< radii, a quarter turn apart
@@ -134,89 +143,90 @@ struct Circle {
     const double angle = degrees * std::numbers::pi / 180;
     return centre + stretch * (std::cos(angle) * a + std::sin(angle) * b);
   }
-  std::vector<Vec3> way(const Workshop& shop, double from, double to) const {
+  /// Points of an arc (degrees), in screen mm.
+  std::vector<Vec3> arc(const ScreenSpace& screen, double from, double to) const {
     const int steps = std::max(2, static_cast<int>(std::ceil(std::abs(to - from) / kFullCircle * 2 * kRound)));
-    std::vector<Vec3> places;
-    for (int i = 0; i <= steps; ++i) places.push_back(shop.place(at(from + (to - from) * i / steps)));
-    return places;
+    std::vector<Vec3> points;
+    for (int i = 0; i <= steps; ++i) points.push_back(screen.point(at(from + (to - from) * i / steps)));
+    return points;
   }
 };
 
-void add_disk(std::vector<HandlePiece>& pieces, const Handle& handle, const Workshop& shop, bool active) {
+void add_disk(std::vector<HandlePiece>& pieces, const Handle& handle, const ScreenSpace& screen, bool active) {
   const Vec3 normal = handle.direction.normalized();
-  const double pixel = shop.deck_pixel(handle.at);
+  const double pixel = screen.deck_pixel(handle.at);
   Circle rim;
   rim.centre = handle.at + normal * (kDiskLift * pixel);
   rim.a = any_across(normal) * (kHandleDiskPixels * pixel);
   rim.b = normal.cross(rim.a);
   HandlePiece face{{}, active, true, active ? kActiveDiskAlpha : kDiskAlpha};
-  const Vec3 centre = shop.place(rim.centre);
-  const std::vector<Vec3> places = rim.way(shop, 0, kFullCircle);
-  const Vec3 outward = (places[kRound / 2] - centre).cross(places[kRound] - centre).normalized();
-  for (std::size_t i = 0; i + 1 < places.size(); ++i)
-    for (const Vec3& at : {centre, places[i], places[i + 1]}) face.triangles.push_back(vertex(at, outward));
+  const Vec3 centre = screen.point(rim.centre);
+  const std::vector<Vec3> points = rim.arc(screen, 0, kFullCircle);
+  const Vec3 outward = (points[kRound / 2] - centre).cross(points[kRound] - centre).normalized();
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+    for (const Vec3& at : {centre, points[i], points[i + 1]}) face.triangles.push_back(vertex(at, outward));
   pieces.push_back(std::move(face));
   HandlePiece edge{{}, active, false, 1};
-  add_tube(edge.triangles, shop, places, kDiskRim);
+  add_tube(edge.triangles, screen, points, kDiskRim);
   pieces.push_back(std::move(edge));
 }
 
-/// The line through the model about which it turns.
-HandlePiece axis_line(const Handle::Turn& turn, const Vec3& at, const Workshop& shop) {
+/// The axis of rotation as a line through the model.
+HandlePiece axis_line(const Handle::Turn& turn, const Vec3& at, const ScreenSpace& screen) {
   const Vec3 axis = turn.axis.normalized();
   double low = (at - turn.point).dot(axis), high = low;
-  if (!shop.around().empty())
+  if (!screen.around().empty())
     for (int corner = 0; corner < 8; ++corner) {
-      const stereo::Box& box = shop.around();
+      const stereo::Box& box = screen.around();
       const Vec3 point((corner & 1 ? box.high : box.low).x(), (corner & 2 ? box.high : box.low).y(), (corner & 4 ? box.high : box.low).z());
       low = std::min(low, (point - turn.point).dot(axis));
       high = std::max(high, (point - turn.point).dot(axis));
     }
-  const double beyond = kAxisBeyond * shop.deck_pixel(turn.point);
-  const Vec3 from = shop.place(turn.point + axis * (low - beyond)), to = shop.place(turn.point + axis * (high + beyond));
+  const double beyond = kAxisBeyond * screen.deck_pixel(turn.point);
+  const Vec3 from = screen.point(turn.point + axis * (low - beyond)), to = screen.point(turn.point + axis * (high + beyond));
   HandlePiece line;
-  add_tube(line.triangles, shop, {from, to}, kAxisRadius);
-  for (const Vec3& end : {from, to}) add_ball(line.triangles, end, kAxisEnd * shop.pixel(end));
+  add_tube(line.triangles, screen, {from, to}, kAxisRadius);
+  for (const Vec3& end : {from, to}) add_ball(line.triangles, end, kAxisEnd * screen.pixel(end));
   return line;
 }
 
-/// Marks on the arc: fine while it is small; longer ones where it began and at quarters of the circle.
-void add_ticks(std::vector<HandleVertex>& mesh, const Circle& circle, double degrees, const Workshop& shop) {
+/// Marks on the arc: every 5 degrees up to 45, else every 15; longer ones at the start and at quarter turns.
+void add_ticks(std::vector<HandleVertex>& mesh, const Circle& circle, double degrees, const ScreenSpace& screen) {
   const int step = std::abs(degrees) > 45 ? 15 : 5;
   for (int tick = 0; tick <= std::abs(degrees); tick += step) {
     const double angle = degrees < 0 ? -tick : tick;
     const Vec3 on = circle.at(angle);
-    const double length = (tick % 90 == 0 ? kLongTick : kTick) * shop.deck_pixel(on) / circle.a.norm();
-    add_tube(mesh, shop, {shop.place(on), shop.place(circle.at(angle, 1 + length))}, kTickRadius);
+    const double length = (tick % 90 == 0 ? kLongTick : kTick) * screen.deck_pixel(on) / circle.a.norm();
+    add_tube(mesh, screen, {screen.point(on), screen.point(circle.at(angle, 1 + length))}, kTickRadius);
   }
 }
 
-std::vector<HandlePiece> turn_pieces(const Handle& handle, const Workshop& shop) {
+std::vector<HandlePiece> turn_pieces(const Handle& handle, const ScreenSpace& screen) {
   const Handle::Turn& turn = *handle.turn;
   if (!finite(turn.point) || !finite(turn.axis) || !(turn.axis.norm() > 0) || !std::isfinite(turn.degrees)) return {};
   const bool active = handle.use == Handle::Use::arc;
-  std::vector<HandlePiece> pieces{axis_line(turn, handle.at, shop)};
+  std::vector<HandlePiece> pieces{axis_line(turn, handle.at, screen)};
   const Vec3 axis = turn.axis.normalized();
-  Circle circle;  // its angles count from where the grab was
+  Circle circle;  // angle 0 is at the grabbed point's first position
   circle.centre = turn.point + axis * (handle.at - turn.point).dot(axis);
   const Vec3 out = handle.at - circle.centre;
-  if (!(out.norm() > kHandleBallPixels * shop.deck_pixel(handle.at))) return pieces;  // on the axis: there is nothing to turn
+  if (!(out.norm() > kHandleBallPixels * screen.deck_pixel(handle.at))) return pieces;  // on the axis: no arc
   const double degrees = std::clamp(turn.degrees, -kFullCircle, kFullCircle);
   circle.a = Eigen::AngleAxisd(-turn.degrees * std::numbers::pi / 180, axis) * out;
   circle.b = axis.cross(circle.a);
   HandlePiece faint{{}, false, false, kFaintAlpha};
-  add_tube(faint.triangles, shop, circle.way(shop, 0, kFullCircle), kCircleRadius);
+  add_tube(faint.triangles, screen, circle.arc(screen, 0, kFullCircle), kCircleRadius);
   if (degrees != 0)
     for (const double angle : {0.0, degrees})
-      add_tube(faint.triangles, shop, {shop.place(circle.centre), shop.place(circle.at(angle))}, kSpokeRadius);
+      add_tube(faint.triangles, screen, {screen.point(circle.centre), screen.point(circle.at(angle))}, kSpokeRadius);
   pieces.push_back(std::move(faint));
   HandlePiece arc{{}, active, false, 1};
   if (degrees != 0) {
-    add_tube(arc.triangles, shop, circle.way(shop, 0, degrees), kArcRadius);
-    add_ticks(arc.triangles, circle, degrees, shop);
+    add_tube(arc.triangles, screen, circle.arc(screen, 0, degrees), kArcRadius);
+    add_ticks(arc.triangles, circle, degrees, screen);
   }
-  const Vec3 ball = shop.place(handle.at);
-  add_ball(arc.triangles, ball, kHandleBallPixels * shop.pixel(ball));
+  const Vec3 ball = screen.point(handle.at);
+  add_ball(arc.triangles, ball, kHandleBallPixels * screen.pixel(ball));
   pieces.push_back(std::move(arc));
   return pieces;
 }
@@ -225,21 +235,21 @@ std::vector<HandlePiece> turn_pieces(const Handle& handle, const Workshop& shop)
 
 std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& space) {
   if (!finite(handle.at)) return {};
-  const Workshop shop(space);
-  if (handle.turn) return turn_pieces(handle, shop);
+  const ScreenSpace screen(space);
+  if (handle.turn) return turn_pieces(handle, screen);
   if (!finite(handle.direction) || !(handle.direction.norm() > 0)) return {};
   using Use = Handle::Use;
   const auto shown = [&](Use part) { return handle.use == Use::idle || handle.use == part; };
-  const Vec3 foot = shop.place(handle.at);
-  const double pixel = shop.pixel(foot);
+  const Vec3 foot = screen.point(handle.at);
+  const double pixel = screen.pixel(foot);
   std::vector<HandlePiece> pieces;
-  if (shown(Use::disk)) add_disk(pieces, handle, shop, handle.use == Use::disk);
+  if (shown(Use::disk)) add_disk(pieces, handle, screen, handle.use == Use::disk);
   if (shown(Use::ring)) {
     pieces.push_back({{}, handle.use == Use::ring, false, 1});
     add_ring(pieces.back().triangles, foot, pixel);
   }
   const double length = stereo::kHandleLengthPixels * pixel / space.view.mm_per_unit;
-  const Vec3 axis = shop.place(handle.at + handle.direction.normalized() * length) - foot;
+  const Vec3 axis = screen.point(handle.at + handle.direction.normalized() * length) - foot;
   if (shown(Use::arrow) && axis.norm() > 0) {
     pieces.push_back({{}, handle.use == Use::arrow, false, 1});
     add_arrow(pieces.back().triangles, foot, axis, pixel);

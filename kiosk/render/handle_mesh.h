@@ -1,4 +1,4 @@
-// The handle as triangles in screen millimetres, the same for both eyes: pure.
+// Builds the handle as triangles in screen millimetres, the same for both eyes. No OpenGL.
 #pragma once
 
 #include <array>
@@ -16,20 +16,20 @@ struct HandleVertex {
 /// One part of a handle, in one colour.
 struct HandlePiece {
   std::vector<HandleVertex> triangles;  ///< counterclockwise seen from outside
-  bool active = false;                  ///< what is in use
-  bool sheet = false;                   ///< seen from both sides and through
+  bool active = false;                  ///< being dragged
+  bool sheet = false;                   ///< a surface seen from both sides, translucent
   float alpha = 1;
 };
 
-/// What its size on the screen depends on.
+/// What the handle's size on the screen depends on.
 struct HandleSpace {
   const stereo::View& view;
   double mm_per_pixel = 0.28;
-  double viewer_mm = 650;  ///< before the screen
-  stereo::Box around;      ///< the model, deck coordinates: how long an axis is drawn
+  double viewer_mm = 650;  ///< distance of the viewer from the screen
+  stereo::Box around;      ///< box around the model, deck coordinates: an axis is drawn through all of it
 };
 
-/// In the order to draw them. Empty for a handle that isn't anywhere.
+/// The handle's pieces in drawing order. Empty if position or direction isn't finite, or the direction is zero.
 std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& space);
 
 }  // namespace prismesh::kiosk::render

@@ -5,7 +5,7 @@
 namespace prismesh::kiosk::render {
 
 namespace {
-constexpr float kHiddenAlpha = 0.35F;  ///< of what is behind a surface
+constexpr float kHiddenAlpha = 0.35F;  ///< of pieces behind a surface
 }
 
 HandlePass::HandlePass(const Shaders& shaders) : shaders_(shaders), array_(gl::VertexArray::make()), buffer_(gl::Buffer::make()) {

@@ -1,4 +1,4 @@
-// Draws the handle: solid where it can be seen, dimmed where something hides it, so that it can always be taken.
+// Draws the handle: solid where it is visible, dimmed where something hides it, so that it can always be picked.
 #pragma once
 
 #include "kiosk/render/frame.h"
@@ -11,7 +11,7 @@ class HandlePass {
  public:
   explicit HandlePass(const Shaders& shaders);
 
-  /// Into the bound framebuffer, after the model. Leaves the depth test on (GL_LEQUAL) and blending off.
+  /// Draws into the bound framebuffer, after the model. Leaves the depth test on (GL_LEQUAL) and blending off.
   void draw(const std::vector<HandlePiece>& pieces, const EyeView& eye) const;
 
  private:

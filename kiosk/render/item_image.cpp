@@ -11,10 +11,11 @@ using mesh::Vec3;
 
 namespace {
 
-// How far in front of a node a shell must lie to hide it: a share of its own size, for curved sheets, and what a pixel can't tell.
+// A shell hides a node if it lies farther in front of it than this share of its size (for curved sheets) plus this many pixels (for the
+// image's resolution).
 constexpr double kShareOfShell = 0.05;
 constexpr double kPixels = 1.5;
-// So much nearer must the end of a line be than a corner of the shell under the pointer.
+// The end of a line element is picked only if it is nearer by this much than the corners of the shell under the pointer.
 constexpr double kLineLagPixels = 4;
 
 bool has_corner(const mesh::ShellNodes& nodes, std::uint32_t node) {
@@ -23,7 +24,7 @@ bool has_corner(const mesh::ShellNodes& nodes, std::uint32_t node) {
 
 }  // namespace
 
-NodeSight::NodeSight(const ModelTable& table, const ItemImage& image, const stereo::Aim& aim)
+NodeFinder::NodeFinder(const ModelTable& table, const ItemImage& image, const stereo::Aim& aim)
     : table_(table),
       image_(image),
       aim_(aim),
@@ -31,13 +32,13 @@ NodeSight::NodeSight(const ModelTable& table, const ItemImage& image, const ster
       eye_(stereo::to_deck(aim.view, aim.eye_mm)),
       pixel_in_deck_(aim.mm_per_pixel() / aim.view.mm_per_unit) {}
 
-std::optional<Eigen::Vector2d> NodeSight::pixel_of(std::uint32_t node) const {
+std::optional<Eigen::Vector2d> NodeFinder::pixel_of(std::uint32_t node) const {
   const Eigen::Vector4d clip = clip_ * table_.position(node).homogeneous();
   if (!(clip.w() > 0)) return std::nullopt;
   return Eigen::Vector2d((0.5 + 0.5 * clip.x() / clip.w()) * aim_.width, (0.5 - 0.5 * clip.y() / clip.w()) * aim_.height);
 }
 
-bool NodeSight::hides(std::uint32_t shell, const Vec3& point) const {
+bool NodeFinder::hides(std::uint32_t shell, const Vec3& point) const {
   mesh::ShellNodes nodes;
   Vec3 centre;
   if (shell >= table_.shell_count() || !table_.shell(shell, nodes) || !table_.shell_centre(shell, centre)) return false;
@@ -52,7 +53,7 @@ bool NodeSight::hides(std::uint32_t shell, const Vec3& point) const {
   return (1 - reached) * sight.norm() > slack;
 }
 
-bool NodeSight::seen(std::uint32_t node, const Eigen::Vector2d& pixel) const {
+bool NodeFinder::seen(std::uint32_t node, const Eigen::Vector2d& pixel) const {
   if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < image_.width && pixel.y() < image_.height)) return false;
   const int x = static_cast<int>(pixel.x()), y = static_cast<int>(pixel.y());
   const std::uint32_t here = image_.shell_at(x, y);
@@ -66,8 +67,8 @@ bool NodeSight::seen(std::uint32_t node, const Eigen::Vector2d& pixel) const {
   return false;
 }
 
-std::optional<mesh::NodeIndex> NodeSight::nearest(const Eigen::Vector2d& pixel, double radius,
-                                                  const std::vector<std::uint32_t>& others) const {
+std::optional<mesh::NodeIndex> NodeFinder::nearest(const Eigen::Vector2d& pixel, double radius,
+                                                   const std::vector<std::uint32_t>& others) const {
   if (!(radius >= 0 && radius < 4096) || !pixel.allFinite() || pixel.cwiseAbs().maxCoeff() > 1e6) return std::nullopt;
   std::vector<std::uint32_t> candidates = others;
   std::uint32_t last = kNoIndex;
@@ -81,7 +82,8 @@ std::optional<mesh::NodeIndex> NodeSight::nearest(const Eigen::Vector2d& pixel, 
       last = shell;
       for (const mesh::NodeIndex node : nodes.node) candidates.push_back(node.value);
     }
-  // Where sheets nearly coincide their nodes are equally near: the hand means those of the shell that it sees.
+  // Where sheets nearly coincide their nodes are at the same pixel. The nodes of the visible shell come first: other shells' corners are
+  // moved away by the whole radius.
   const std::uint32_t under = image_.shell_at(cx, cy);
   mesh::ShellNodes corners;
   const bool on_shell = under < table_.shell_count() && table_.shell(under, corners);
@@ -106,7 +108,7 @@ std::optional<mesh::NodeIndex> NodeSight::nearest(const Eigen::Vector2d& pixel, 
   return best;
 }
 
-mesh::NodeSet NodeSight::inside(const PixelRect& rect, bool through, const std::vector<std::uint8_t>& candidates) const {
+mesh::NodeSet NodeFinder::inside(const PixelRect& rect, bool through, const std::vector<std::uint8_t>& candidates) const {
   constexpr std::size_t kGrain = 16384;
   const double x0 = std::min(rect.x0, rect.x1), x1 = std::max(rect.x0, rect.x1);
   const double y0 = std::min(rect.y0, rect.y1), y1 = std::max(rect.y0, rect.y1);

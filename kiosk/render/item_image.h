@@ -1,4 +1,4 @@
-// Which shell each pixel shows, and what follows from it: which nodes can be seen. Pure.
+// Item image: which shell each pixel shows. Finds from it which nodes are visible. No OpenGL.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +16,28 @@ struct ItemImage {
   int height = 0;
   std::vector<std::uint32_t> items;  ///< rows from the bottom; 0: ground, else ShellIndex + 1
 
-  /// At a pixel counted from the upper left; kNoIndex outside and on the ground.
+  /// The shell at a pixel counted from the upper left; kNoIndex outside the image and on the ground.
   std::uint32_t shell_at(int x, int y) const {
     if (x < 0 || y < 0 || x >= width || y >= height) return kNoIndex;
     return items[static_cast<std::size_t>(height - 1 - y) * width + x] - 1;  // 0 wraps to kNoIndex
   }
 };
 
-/// Looks for nodes in a picture. Keeps nothing; the image must be of the same model and aim.
-class NodeSight {
+/// Finds nodes in a picture. The image must be of the same model and aim; `table` and `image` must outlive this.
+class NodeFinder {
  public:
-  NodeSight(const ModelTable& table, const ItemImage& image, const stereo::Aim& aim);
+  NodeFinder(const ModelTable& table, const ItemImage& image, const stereo::Aim& aim);
 
-  /// Whether a node that projects to `pixel` is seen there: its own shell shows at the pixel or beside it, or nothing that shows there
-  /// lies in front of it.
+  /// Whether a node that projects to `pixel` is visible: one of its shells is at the pixel or beside it, or the shell at the pixel isn't in
+  /// front of the node.
   bool seen(std::uint32_t node, const Eigen::Vector2d& pixel) const;
+  /// Where a node projects to; empty if it is behind the eye.
   std::optional<Eigen::Vector2d> pixel_of(std::uint32_t node) const;
 
-  /// Nearest seen node to a pixel among the corners of the shells around it and `others` (ends of lines). Corners of the shell at the
-  /// pixel go first.
+  /// The visible node nearest to a pixel, at most `radius` pixels away, among the corners of the shells around it and `others` (ends of
+  /// line elements). Corners of the shell at the pixel come first.
   std::optional<mesh::NodeIndex> nearest(const Eigen::Vector2d& pixel, double radius, const std::vector<std::uint32_t>& others) const;
-  /// Nodes marked in `candidates` inside the rectangle, ascending: those seen, or all (`through`).
+  /// Nodes inside the rectangle for which `candidates` is not 0, ascending: the visible ones, or all (`through`).
   mesh::NodeSet inside(const PixelRect& rect, bool through, const std::vector<std::uint8_t>& candidates) const;
 
  private:
@@ -47,7 +48,7 @@ class NodeSight {
   stereo::Aim aim_;
   Eigen::Matrix4d clip_;
   mesh::Vec3 eye_;            ///< deck coordinates
-  double pixel_in_deck_ = 1;  ///< length of a pixel at the pivot
+  double pixel_in_deck_ = 1;  ///< size of a pixel at the screen's depth, deck's unit
 };
 
 }  // namespace prismesh::kiosk::render

@@ -1,4 +1,4 @@
-// What an edit would make of some shells, shown before it is done.
+// The result of an edit for the shells it changes, to show it before it is made.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct MeshChange {
   std::vector<mesh::Vec3> points;                     ///< deck coordinates
   std::vector<std::array<std::uint32_t, 4>> corners;  ///< of each shell, into `points`; a triangle repeats its third
   std::vector<mesh::quality::ShellState> states;      ///< of each shell
-  std::vector<mesh::ShellIndex> replaced;             ///< shells of the model that would be gone or look otherwise
+  std::vector<mesh::ShellIndex> replaced;             ///< shells of the model that the edit would remove or change
 };
 
 }  // namespace prismesh::kiosk::render

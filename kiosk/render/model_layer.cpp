@@ -27,7 +27,7 @@ void upload_instances(Instances& instances, const std::vector<Glyph>& values) {
   instances.bytes_uploaded += bytes;
 }
 
-/// The median length of the first side of some 500 shells, evenly spread.
+/// The median length of the first side of about 500 shells at even steps.
 double measure_typical_side(const ModelTable& table) {
   const std::size_t step = table.shell_count() / 500 + 1;
   std::vector<double> lengths;
@@ -81,7 +81,7 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   forget_visible_nodes();
   chunks_uploaded_ += changes->uploaded;
   typical_side_ = measure_typical_side(*table_);
-  if (changes->topology) end_preview();  // its indices are of another mesh
+  if (changes->topology) end_preview();  // its indices refer to the old mesh
   if (changes->topology || changes->visibility || !changes->moved_chunks.empty()) {
     outline_.update(*table_, changes->topology, changes->visibility, changes->moved_chunks);
     if (const auto done = borders_.upload(outline_.borders(), "free edges"); !done) return done;
@@ -89,9 +89,9 @@ Result<void> ModelLayer::set_model(std::shared_ptr<const ModelSource> source) {
   }
   if (const auto done = update_line_elements(first || changes->topology || changes->visibility); !done) return done;
   glyph_list_.update(*table_, changes->visibility, changes->topology, glyphs_of_damage_);
-  const bool others_seen = !visible_nodes_ && table_->any_hidden();
-  return selected_.update(*table_, textures_.origin(), changes->topology || changes->visibility || others_seen, changes->moved_chunks,
-                          [this]() -> const std::vector<std::uint8_t>& { return visible_nodes(); });
+  const bool visible_nodes_changed = !visible_nodes_ && table_->any_hidden();
+  return selected_.update(*table_, textures_.origin(), changes->topology || changes->visibility || visible_nodes_changed,
+                          changes->moved_chunks, [this]() -> const std::vector<std::uint8_t>& { return visible_nodes(); });
 }
 
 Result<void> ModelLayer::update_line_elements(bool changed) {
@@ -132,7 +132,7 @@ Result<void> ModelLayer::update_preview(const ipc::PreviewFrame& frame) {
   const bool first = !preview_->any_frame();
   if (!preview_->update(frame)) return {};
   preview_glyphs_.stale = true;
-  if (first) model_glyphs_.stale = true;  // the shells that it shows aren't the model's to mark any more
+  if (first) model_glyphs_.stale = true;  // the model's glyphs must leave out the preview's shells
   if (const auto done = upload_preview_positions(); !done) return done;
   return first ? preview_edges_.upload(preview_->edges(), "moving edges") : Result<void>();
 }
@@ -162,7 +162,7 @@ Result<void> ModelLayer::choose_preview_glyphs(std::size_t cap) {
   std::vector<Glyph> live;
   if (previewing()) live = preview_->glyphs(glyphs_of_damage_);
   preview_glyphs_.left_out = live.size() - std::min(live.size(), cap);
-  live.erase(live.begin(), live.begin() + static_cast<std::ptrdiff_t>(preview_glyphs_.left_out));  // failures come last: they stay
+  live.erase(live.begin(), live.begin() + static_cast<std::ptrdiff_t>(preview_glyphs_.left_out));  // failures come last and stay
   upload_instances(preview_glyphs_.instances, live);
   preview_glyphs_.stale = false;
   if (live.empty() || !preview_casting_.stale) return {};
@@ -174,14 +174,14 @@ Result<ModelLayer::Glyphs> ModelLayer::glyphs(std::size_t cap, bool damaged) {
   if (damaged != glyphs_of_damage_ && table_) glyph_list_.update(*table_, false, false, damaged);
   glyph_cap_ = cap;
   glyphs_of_damage_ = damaged;
-  // The preview's share is set aside for all of the drag, so that none of the model's signs come and go with its frames.
-  const std::size_t set_aside = previewing() ? std::min(kMaxShapesOfShell * preview_->shells().size(), cap / 2) : 0;
+  // The preview's share is reserved for the whole drag, so that the model's glyphs don't come and go with its frames.
+  const std::size_t reserved = previewing() ? std::min(kMaxShapesOfShell * preview_->shells().size(), cap / 2) : 0;
   if (preview_glyphs_.stale)
-    if (const auto chosen = choose_preview_glyphs(set_aside); !chosen) return fail(chosen.error());
+    if (const auto chosen = choose_preview_glyphs(reserved); !chosen) return fail(chosen.error());
   if (model_glyphs_.stale) {
     static const std::unordered_set<std::uint32_t> kNone;
     GlyphList::Chosen chosen;
-    if (table_) chosen = glyph_list_.choose(*table_, cap - set_aside, previewing() ? preview_->shells() : kNone);
+    if (table_) chosen = glyph_list_.choose(*table_, cap - reserved, previewing() ? preview_->shells() : kNone);
     upload_instances(model_glyphs_.instances, chosen.glyphs);
     model_glyphs_.left_out = chosen.left_out;
     model_glyphs_.stale = false;
@@ -200,9 +200,9 @@ const Instances& ModelLayer::marked(mesh::ShellIndex shell) {
   if (marked_shell_ == shell) return marked_;
   marked_shell_ = shell;
   mesh::ShellNodes nodes;
-  const bool there =
+  const bool visible =
       table_ && shell.value < table_->shell_count() && table_->shell(shell.value, nodes) && table_->shell_visible(shell.value);
-  upload_instances(marked_, there ? std::vector<Glyph>{{shell.value, kMarkedGlyph}} : std::vector<Glyph>{});
+  upload_instances(marked_, visible ? std::vector<Glyph>{{shell.value, kMarkedGlyph}} : std::vector<Glyph>{});
   return marked_;
 }
 

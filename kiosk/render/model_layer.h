@@ -1,4 +1,4 @@
-// Everything that is drawn of a model, on the GPU and beside it, kept in step with the snapshots.
+// All data of a model that the passes draw, on the GPU and on the processor. Updated from snapshots and previews.
 #pragma once
 
 #include <memory>
@@ -18,6 +18,7 @@ namespace prismesh::kiosk::render {
 struct LineSet {
   RowTexture texture{kTwoIndices};
   std::size_t count = 0;
+  /// Replaces the lines. `what` names them in errors. Errors: too large for the GPU, no graphics memory.
   Result<void> upload(const std::vector<NodePair>& lines, const char* what);
 };
 
@@ -33,11 +34,12 @@ class ModelLayer {
  public:
   ModelLayer();
 
+  /// Takes over a model; null: none. Errors: too large for the GPU, no graphics memory.
   Result<void> set_model(std::shared_ptr<const ModelSource> source);
   bool empty() const { return !table_; }
   const ModelTable& table() const { return *table_; }
   const ModelTextures& textures() const { return textures_; }
-  /// Counts up whenever the shells' picture may have changed in place or shape.
+  /// Increases whenever the position or shape of drawn shells may have changed.
   std::uint64_t shape_version() const { return shape_version_; }
   std::size_t chunks_uploaded() const { return chunks_uploaded_; }
 
@@ -46,33 +48,36 @@ class ModelLayer {
   const LineSet& line_elements() const { return line_elements_; }
   const SelectionRows& selected() const { return selected_; }
 
+  /// Starts a drag's preview: nodes that move and shells they touch. Until the first frame nothing is previewed.
   void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
+  /// Takes over a frame; one of another size is ignored. Errors: no graphics memory.
   Result<void> update_preview(const ipc::PreviewFrame& frame);
-  /// What an edit would make of some shells, in a preview's place.
+  /// Shows the result of an edit as a preview. Errors: no graphics memory.
   Result<void> show_change(const MeshChange& change);
   void end_preview();
   bool previewing() const { return preview_ && preview_->any_frame(); }
   const RowTexture& preview_positions() const { return preview_positions_; }
   const LineSet& preview_edges() const { return preview_edges_; }
 
-  /// The signs to draw now, in this order: the model's, but for the shells that a preview shows, and the preview's. Rebuilt only after a
-  /// change; a preview's frame costs the preview.
+  /// Glyphs in drawing order: first the model's, without the shells that a preview shows, then the preview's. Rebuilt only after a
+  /// change. The cost of a preview's frame depends on the preview alone.
   struct Glyphs {
     const Instances& model;
     const Instances& preview;
     std::size_t left_out = 0;
   };
+  /// At most `cap`. `damaged`: only what the document's edits made worse. Errors: no graphics memory.
   Result<Glyphs> glyphs(std::size_t cap, bool damaged);
-  /// The shells of the preview, by their corners: what its glyphs are pulled from.
+  /// Corners of the preview's shells, which its glyphs refer to.
   const RowTexture& preview_connectivity() const { return preview_casting_.connectivity; }
-  /// Parts by their state; a pass over the shells where these have changed.
+  /// Updates the colours of parts by their state. After a change it costs a pass over the shells. Errors: no graphics memory.
   Result<void> update_part_looks(bool damaged);
   const PartLooks& part_looks() const { return part_looks_; }
-  /// A glyph about one shell of the model; nothing where it isn't shown.
+  /// The frame around one shell of the model; no instance if the shell isn't visible.
   const Instances& marked(mesh::ShellIndex shell);
 
-  /// What throws shadows: the shells of the preview, else those with all nodes selected. The latter are found by a pass over the model
-  /// where it has changed. Errors: no graphics memory.
+  /// The shells that cast shadows: those of the preview, else those with all nodes selected. To find the latter costs a pass over the model
+  /// after a change. Errors: no graphics memory.
   struct ShadowCaster {
     const RowTexture* positions = nullptr;
     const RowTexture* connectivity = nullptr;
@@ -80,14 +85,16 @@ class ModelLayer {
   };
   Result<ShadowCaster> shadow_caster();
 
-  /// Bytes given to OpenGL over the layer's life.
+  /// Bytes uploaded over the layer's life.
   std::size_t bytes_uploaded() const;
 
-  /// Around what is shown, deck coordinates. Costs the chunks and the line elements.
+  /// Box around the visible shells and line elements, deck coordinates. Time is proportional to the number of chunks and line elements.
   stereo::Box shown_box() const;
-  /// Length of a typical shell's side, deck's unit; 0 without shells. What signs on nodes and shells must leave room for.
+  /// Length of a typical shell's side, deck's unit; 0 without shells. Limits the size of marks on nodes and shells.
   double typical_side() const { return typical_side_; }
+  /// By node: 1 if a visible shell or line element uses it.
   const std::vector<std::uint8_t>& visible_nodes();
+  /// Nodes of visible line elements, ascending.
   const std::vector<std::uint32_t>& line_nodes() const { return line_nodes_; }
 
  private:
@@ -107,7 +114,7 @@ class ModelLayer {
   std::optional<PreviewPatch> preview_;
   RowTexture preview_positions_{kPositionTexel};
   LineSet preview_edges_;
-  /// Shells that throw shadows, by their corners.
+  /// Corners of shells that cast shadows.
   struct Casting {
     RowTexture connectivity{kFourIndices};
     std::size_t shells = 0;
@@ -115,7 +122,7 @@ class ModelLayer {
   };
   Result<void> upload_casting(Casting& casting, const std::vector<std::array<std::uint32_t, 4>>& shells) const;
   Casting preview_casting_, selection_casting_;
-  /// Glyphs on the GPU, and whether they are of what is to be shown.
+  /// Glyphs on the GPU, and whether they are out of date.
   struct GlyphBatch {
     Instances instances;
     std::size_t left_out = 0;
@@ -127,9 +134,9 @@ class ModelLayer {
   PartLooks part_looks_;
   bool part_looks_stale_ = true, part_looks_of_damage_ = false;
   Instances marked_;
-  std::optional<mesh::ShellIndex> marked_shell_;  ///< that marked_ is of
+  std::optional<mesh::ShellIndex> marked_shell_;  ///< the shell of marked_
   std::optional<std::vector<std::uint8_t>> visible_nodes_;
-  std::vector<std::uint64_t> visible_versions_;  ///< of the chunks that visible_nodes_ is made of
+  std::vector<std::uint64_t> visible_versions_;  ///< of the chunks that visible_nodes_ depends on
   double typical_side_ = 0;
   std::uint64_t shape_version_ = 0;
   std::size_t chunks_uploaded_ = 0;

@@ -1,4 +1,4 @@
-// What the renderer draws: a snapshot's arrays in chunks with versions, whoever holds them.
+// Interface to the model that the renderer draws: a snapshot's arrays in chunks with versions.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace prismesh::kiosk::render {
 
-/// Arrays as ipc::SnapshotView has them. Nothing in them is trusted: an index may be out of range and is then not drawn.
+/// Arrays as in ipc::SnapshotView. Their content isn't trusted: what has an index out of range isn't drawn.
 class ModelSource {
  public:
   virtual ~ModelSource() = default;
@@ -20,9 +20,9 @@ class ModelSource {
   virtual std::span<const std::byte> chunk_bytes(ipc::SnapshotArray array, std::size_t chunk) const = 0;
   virtual std::size_t part_count() const = 0;
   virtual bool part_hidden(std::size_t part) const = 0;
-  /// More triangles about a node are a cluster.
-  virtual double most_triangles_at_node() const = 0;
-  /// Changes with the document; versions of two documents aren't compared.
+  /// A node with more triangles is a cluster.
+  virtual double max_triangles_at_node() const = 0;
+  /// Differs between documents. Versions of two documents can't be compared.
   virtual std::uint64_t document_key() const = 0;
 
   std::size_t chunk_count(ipc::SnapshotArray array) const { return (size(array) + mesh::kChunkSize - 1) / mesh::kChunkSize; }
@@ -37,7 +37,8 @@ class ModelSource {
   }
 };
 
-/// `hidden`: by part, 1 = hidden, in place of what the snapshot says; parts beyond its end are as the snapshot has them.
+/// Makes a source of a snapshot. `hidden`: by PartIndex, 1 = hidden, instead of the snapshot's flag; parts beyond its end keep the
+/// snapshot's.
 std::shared_ptr<const ModelSource> snapshot_source(std::shared_ptr<const ipc::SnapshotView> view, std::vector<std::uint8_t> hidden = {});
 
 }  // namespace prismesh::kiosk::render

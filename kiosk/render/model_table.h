@@ -1,4 +1,4 @@
-// Fast, checked access to a source's arrays on the CPU: nothing in a snapshot can lead outside it.
+// Fast access to a source's arrays on the processor, with range checks: no content of a snapshot leads to a read outside it.
 #pragma once
 
 #include <cmath>
@@ -26,8 +26,8 @@ class ModelTable {
 
   /// Precondition: node < node_count().
   mesh::Vec3 position(std::size_t node) const { return positions_[node / mesh::kChunkSize][node % mesh::kChunkSize]; }
-  /// A copy of a shell whose nodes are all within range; false where they aren't. It is read once: memory of another process could
-  /// change between a check and a second read. Precondition: shell < shell_count().
+  /// Copies a shell; false if a node is out of range. The shell is read once, as another process could change the memory between a check
+  /// and a second read. Precondition: shell < shell_count().
   bool shell(std::size_t shell, mesh::ShellNodes& nodes) const {
     nodes = shells_[shell / mesh::kChunkSize][shell % mesh::kChunkSize];
     for (const mesh::NodeIndex node : nodes.node)
@@ -38,7 +38,7 @@ class ModelTable {
     const std::size_t chunk = node / mesh::kChunkSize, at = node % mesh::kChunkSize;
     return chunk < node_marks_.size() && at < node_marks_[chunk].size() && (node_marks_[chunk][at] & mesh::document::kSelected) != 0;
   }
-  /// What of a shell's state it had when the deck was opened already.
+  /// The part of a shell's state that it had when the deck was opened.
   mesh::quality::ShellState shell_was(std::size_t shell) const;
   mesh::PartIndex shell_part(std::size_t shell) const { return parts_[shell / mesh::kChunkSize][shell % mesh::kChunkSize]; }
   bool shell_visible(std::size_t shell) const { return !part_hidden(shell_part(shell).value); }
@@ -47,13 +47,13 @@ class ModelTable {
   const std::vector<std::uint8_t>& hidden_parts() const { return hidden_; }
   bool any_hidden() const { return any_hidden_; }
 
-  /// Both ends of a line of a visible part; false where they are out of range, or the part is hidden.
+  /// Both ends of a line element; false if an end is out of range or the part is hidden. Precondition: line < line_count().
   bool line(std::size_t line, std::array<std::uint32_t, 2>& ends) const;
-  /// Mean of a shell's corners; false where the shell isn't whole or stands nowhere.
+  /// Mean of a shell's corners; false if a node is out of range or a coordinate isn't finite.
   bool shell_centre(std::size_t shell, mesh::Vec3& centre) const;
-  /// 1 for each node that a visible shell or line names.
+  /// By node: 1 if a visible shell or line element uses it.
   std::vector<std::uint8_t> visible_nodes() const;
-  /// Around those nodes, in axes turned by `rotation`; finite coordinates only.
+  /// Box around the visible nodes with finite coordinates, in axes turned by `rotation`.
   stereo::Box visible_box(const Eigen::Quaterniond& rotation) const;
 
  private:

@@ -15,7 +15,7 @@ using mesh::kChunkSize;
 using mesh::Vec3;
 using mesh::quality::ShellState;
 
-/// What is uploaded of a chunk of shells.
+/// Texture rows of a chunk of shells.
 struct ModelTextures::ShellRow {
   std::vector<std::array<std::uint32_t, 4>> nodes;
   std::vector<std::array<std::uint32_t, 2>> surface;
@@ -64,7 +64,7 @@ Result<ModelChanges> ModelTextures::update(const ModelTable& table) {
   }
   changes.topology |= node_count_ != table.node_count() || shell_count_ != table.shell_count();
   changes.visibility = hidden_ != table.hidden_parts();
-  if (node_count_ != table.node_count()) shell_versions_.clear();  // what was within range may not be now
+  if (node_count_ != table.node_count()) shell_versions_.clear();  // nodes that were in range may be out of range now
   node_count_ = table.node_count();
   shell_count_ = table.shell_count();
   hidden_ = table.hidden_parts();
@@ -112,8 +112,8 @@ void ModelTextures::update_positions(const ModelTable& table, ModelChanges& chan
     texels.clear();
     for (std::size_t n = begin; n < end; ++n) {
       const Eigen::Vector3f at = (table.position(n) - origin_).cast<float>();
-      const bool somewhere = std::isfinite(at.x()) && std::isfinite(at.y()) && std::isfinite(at.z());
-      texels.push_back(somewhere ? std::array<float, 4>{at.x(), at.y(), at.z(), 1} : std::array<float, 4>{});
+      const bool finite_texel = std::isfinite(at.x()) && std::isfinite(at.y()) && std::isfinite(at.z());
+      texels.push_back(finite_texel ? std::array<float, 4>{at.x(), at.y(), at.z(), 1} : std::array<float, 4>{});
     }
     positions_.upload_row(c, std::as_bytes(std::span(texels)));
     ++changes.uploaded;
@@ -144,7 +144,7 @@ void ModelTextures::update_shells(const ModelTable& table, ModelChanges& changes
     known.look = look;
     stale.push_back(c);
   }
-  // Rows are built on all cores, a batch at a time, and uploaded from this one.
+  // Rows are built on all cores, in batches, and uploaded from this thread.
   constexpr std::size_t kBatch = 64;
   std::vector<ShellRow> rows(std::min(kBatch, stale.size()));
   for (std::size_t first = 0; first < stale.size(); first += kBatch) {

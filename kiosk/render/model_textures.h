@@ -1,4 +1,4 @@
-// The model on the GPU: what changed since the last snapshot is uploaded, nothing else.
+// Keeps the model on the GPU. Uploads only what changed since the last snapshot.
 #pragma once
 
 #include <array>
@@ -9,35 +9,37 @@
 
 namespace prismesh::kiosk::render {
 
-/// What an update found to be different.
+/// What an update changed.
 struct ModelChanges {
-  bool topology = false;    ///< shells, or the number of nodes
-  bool visibility = false;  ///< hidden parts
-  std::vector<std::uint32_t> moved_chunks;
-  std::size_t uploaded = 0;  ///< rows
+  bool topology = false;                    ///< shells, their nodes, or the number of nodes
+  bool visibility = false;                  ///< hidden parts
+  std::vector<std::uint32_t> moved_chunks;  ///< of positions, ascending
+  std::size_t uploaded = 0;                 ///< rows
 };
 
-/// One word per shell for the shaders: colour, grade, marks. And its normal in a second.
+/// The first of two words for each shell in `surface`: colour, grade, marks. The second is the packed normal.
 namespace shell_word {
 inline constexpr std::uint32_t kColourMask = 31;
 inline constexpr std::uint32_t kGradeShift = 5;  ///< two bits
 inline constexpr std::uint32_t kSelected = 1U << 7;
-inline constexpr std::uint32_t kGone = 1U << 8;  ///< of a hidden part, or not whole
-inline constexpr std::uint32_t kPartShift = 9;   ///< the rest: which part, the highest number for none
+inline constexpr std::uint32_t kGone =
+    1U << 8;  ///< not drawn: of a hidden part, or with a node out of range or a coordinate that isn't finite
+inline constexpr std::uint32_t kPartShift = 9;  ///< the remaining bits: PartIndex, or kNoPart
 inline constexpr std::uint32_t kNoPart = (1U << (32 - kPartShift)) - 1;
 }  // namespace shell_word
 
 class ModelTextures {
  public:
-  /// Shells of one chunk: where they are, and whether any is shown.
+  /// Extent of the shells of one chunk, and whether any is shown.
   struct ShellChunk {
     stereo::Box box;  ///< of those shown
     bool shown = false;
   };
 
+  /// Takes over a model. Errors: too large for the GPU, or no graphics memory.
   Result<ModelChanges> update(const ModelTable& table);
 
-  /// Positions are uploaded relative to this, so that far-away models keep their digits.
+  /// Positions are uploaded relative to this point, so that models far from zero keep their precision.
   const mesh::Vec3& origin() const { return origin_; }
   const RowTexture& positions() const { return positions_; }
   const RowTexture& connectivity() const { return connectivity_; }
@@ -48,7 +50,7 @@ class ModelTextures {
  private:
   struct ShellVersions {
     std::uint64_t nodes = 0;
-    std::array<std::uint64_t, 3> look{};  ///< parts, marks, quality
+    std::array<std::uint64_t, 3> look{};  ///< of parts, marks, quality
     bool known = false;
     std::vector<std::uint32_t> depends_on;  ///< chunks of positions
   };
@@ -75,8 +77,7 @@ class ModelTextures {
   RowTexture surface_{kTwoIndices};
 };
 
-/// Two 16-bit halves of a unit normal on an octahedron (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
-/// Vectors", 2014).
+/// Packs a normal of any length into two 16-bit numbers by its projection on an octahedron [Cigolle 2014].
 std::uint32_t pack_normal(const mesh::Vec3& normal);
 
 }  // namespace prismesh::kiosk::render

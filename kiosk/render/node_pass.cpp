@@ -7,16 +7,15 @@ namespace prismesh::kiosk::render {
 namespace {
 
 // Sizes in display pixels.
-constexpr float kNodeRadius = 4.2F, kMinNodeRadius = 1.3F;
-constexpr float kNodeShareOfSide = 0.26F;  ///< they make room where elements are small
-constexpr float kRimmedNodeRadius =
-    2.6F;                              ///< from this size on they are solids with a dark rim: smaller ones couldn't be told from squares
-constexpr float kHiddenLight = 0.80F;  ///< behind a surface: lighter than any part, darker than white
+constexpr RadiusLimits kNodeRadius{4.2F, 1.3F, 0.26F};
+/// From this radius on nodes are octahedra with a dark rim. Smaller ones look like squares and are drawn as squares.
+constexpr float kMinRimmedRadius = 2.6F;
+constexpr float kHiddenLight = 0.80F;  ///< brightness behind a surface: between any part's colour and white
 
 constexpr std::array<std::uint8_t, 24> kOctahedron{0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
 constexpr std::array<std::uint8_t, 6> kSquare{0, 1, 2, 0, 2, 3};
 
-/// Nodes that are drawn in one call: places in the rows.
+/// Nodes that are drawn in one call, by index into the rows.
 struct Run {
   std::size_t first = 0, count = 0;
 };
@@ -42,7 +41,7 @@ std::vector<Run> runs_in_picture(const SelectionRows& rows, const Eigen::Matrix4
 
 template <std::size_t N>
 NodePass::Solid NodePass::make_solid(const gl::Program& program, int corners, const std::array<std::uint8_t, N>& indices) {
-  std::vector<std::uint16_t> all;  // six corners a node: 24,576 at most
+  std::vector<std::uint16_t> all;  // six corners a node: max 24,576, so 16 bits are enough
   all.reserve(mesh::kChunkSize * N);
   for (std::size_t node = 0; node < mesh::kChunkSize; ++node)
     for (const std::uint8_t index : indices) all.push_back(static_cast<std::uint16_t>(node * static_cast<std::size_t>(corners) + index));
@@ -60,9 +59,9 @@ NodePass::NodePass(const Shaders& shaders)
 void NodePass::draw(const ModelLayer& model, const Frame& frame) const {
   const SelectionRows& rows = model.selected();
   if (rows.count() == 0) return;
-  const float room = frame.fitting_radius(kNodeRadius, kMinNodeRadius, kNodeShareOfSide, model.typical_side());
-  const float radius = model.previewing() ? kMinNodeRadius : room;  // the wireframe says where they go
-  const bool rimmed = radius >= kRimmedNodeRadius;
+  const float fitting = frame.fitting_radius(kNodeRadius, model.typical_side());
+  const float radius = model.previewing() ? kNodeRadius.min_pixels : fitting;  // the preview's wireframe shows the moving nodes
+  const bool rimmed = radius >= kMinRimmedRadius;
   const Solid& solid = rimmed ? octahedra_ : squares_;
   rows.texture().bind(unit::kSelection);
   frame.set(solid.program);
@@ -90,7 +89,7 @@ void NodePass::draw(const ModelLayer& model, const Frame& frame) const {
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
   glDepthFunc(GL_LEQUAL);
-  if (rimmed) draw(1.35F, kBorderColour);  // a dark rim tells white nodes from a light part
+  if (rimmed) draw(1.35F, kBorderColour);  // a dark rim separates white nodes from a light part
   glDepthMask(GL_TRUE);
   draw(1.0F, kSelectedColour);
   glDisable(GL_CULL_FACE);

@@ -1,4 +1,4 @@
-// Draws the selected nodes: white octahedra of constant size on the screen; those behind something show through, dimmed.
+// Draws the selected nodes as white octahedra of constant size on the screen. Nodes behind a surface are drawn too, dimmed.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@ class NodePass {
  public:
   explicit NodePass(const Shaders& shaders);
 
-  /// Into the bound framebuffer, after what may hide them; positions are bound. Costs the chunks on the processor. Leaves the depth test
-  /// on (GL_LEQUAL) and depth written.
+  /// Draws into the bound framebuffer, after what may hide the nodes. The model's positions must be bound. Time on the processor is
+  /// proportional to the number of chunks. Leaves the depth test on (GL_LEQUAL) and the depth mask on.
   void draw(const ModelLayer& model, const Frame& frame) const;
 
  private:
-  /// A chunk's worth of one solid as indices: the corners of the nth count from n times their number.
+  /// Indices of one solid for each node of a chunk. Corners of node n start at n * the solid's number of corners.
   struct Solid {
     const gl::Program& program;
     gl::VertexArray array;

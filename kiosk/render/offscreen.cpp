@@ -6,44 +6,44 @@
 
 namespace prismesh::kiosk::render {
 
-struct Offscreen::State {
+struct Offscreen::Impl {
   gl::Framebuffer framebuffer;
   gl::Texture colour;
   int width = 0;
   int height = 0;
 };
 
-Offscreen::Offscreen(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Offscreen::Offscreen(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Offscreen::Offscreen(Offscreen&&) noexcept = default;
 Offscreen& Offscreen::operator=(Offscreen&&) noexcept = default;
 Offscreen::~Offscreen() = default;
 
 Result<Offscreen> Offscreen::create(int width, int height) {
-  GLint largest = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-  if (width < 1 || height < 1 || width > largest || height > largest)
+  GLint max_size = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size);
+  if (width < 1 || height < 1 || width > max_size || height > max_size)
     return fail("OpenGL", "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                              " pixels can't be drawn here; each side may be 1 to " + std::to_string(largest));
-  auto state = std::make_unique<State>();
-  state->width = width;
-  state->height = height;
-  state->colour = gl::Texture::make();
-  glBindTexture(GL_TEXTURE_2D, state->colour.get());
+                              " pixels can't be drawn here; each side may be 1 to " + std::to_string(max_size));
+  auto impl = std::make_unique<Impl>();
+  impl->width = width;
+  impl->height = height;
+  impl->colour = gl::Texture::make();
+  glBindTexture(GL_TEXTURE_2D, impl->colour.get());
   glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, width, height);
-  state->framebuffer = gl::Framebuffer::make();
-  glBindFramebuffer(GL_FRAMEBUFFER, state->framebuffer.get());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, state->colour.get(), 0);
+  impl->framebuffer = gl::Framebuffer::make();
+  glBindFramebuffer(GL_FRAMEBUFFER, impl->framebuffer.get());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, impl->colour.get(), 0);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     return fail("OpenGL",
                 "there is no graphics memory for a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels");
-  return Offscreen(std::move(state));
+  return Offscreen(std::move(impl));
 }
 
-unsigned Offscreen::framebuffer() const { return state_->framebuffer.get(); }
+unsigned Offscreen::framebuffer() const { return impl_->framebuffer.get(); }
 
 Image Offscreen::read() const {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, state_->framebuffer.get());
-  return read_framebuffer(state_->width, state_->height);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, impl_->framebuffer.get());
+  return read_framebuffer(impl_->width, impl_->height);
 }
 
 }  // namespace prismesh::kiosk::render

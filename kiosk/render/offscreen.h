@@ -1,4 +1,4 @@
-// A framebuffer that isn't a window: what `draw` fills when the picture goes to a file or a test.
+// Framebuffer without a window, for pictures that go to a file or a test.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@ namespace prismesh::kiosk::render {
 
 class Offscreen {
  public:
-  /// Errors: larger than the GPU allows (says how large it may be).
+  /// Allocates width x height pixels. Errors: larger than the GPU allows, with the max size; no graphics memory.
   static Result<Offscreen> create(int width, int height);
   Offscreen(Offscreen&&) noexcept;
   Offscreen& operator=(Offscreen&&) noexcept;
@@ -20,9 +20,9 @@ class Offscreen {
   Image read() const;
 
  private:
-  struct State;
-  explicit Offscreen(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit Offscreen(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace prismesh::kiosk::render

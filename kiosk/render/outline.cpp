@@ -13,7 +13,7 @@ using mesh::Vec3;
 
 namespace {
 
-/// Calls `visit(low, high, shell)` for every side of every whole shell.
+/// Calls `visit(low, high, shell)` for every side of every shell whose nodes are in range.
 template <class Visit>
 void for_each_side(const ModelTable& table, const Visit& visit) {
   mesh::ShellNodes nodes;
@@ -27,7 +27,7 @@ void for_each_side(const ModelTable& table, const Visit& visit) {
   }
 }
 
-/// The direction, within a shell and across an edge, that leads from the edge into the shell; zero where there is none.
+/// Unit direction from an edge to the shell's centre, perpendicular to the edge; zero if there is none.
 Vec3 inward(const ModelTable& table, std::uint32_t shell, const Vec3& from, const Vec3& along) {
   Vec3 centre;
   if (!table.shell_centre(shell, centre)) return Vec3::Zero();

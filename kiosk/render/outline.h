@@ -1,4 +1,4 @@
-// The lines that make a model readable: where visible sheets end, meet a third one, or bend. Kept in step with the change, not the model.
+// Finds the free edges, branching edges and creases of the visible shells. An update visits only the chunks that changed.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@ class Outline {
  public:
   static constexpr double kCreaseDegrees = 30;
 
-  /// Takes over a model. `topology_changed`: shells or nodes are others than before; `visibility_changed`: hidden parts are;
+  /// Takes over a model. `topology_changed`: shells or the number of nodes changed; `visibility_changed`: hidden parts changed;
   /// `moved_chunks`: chunks of positions that differ.
   void update(const ModelTable& table, bool topology_changed, bool visibility_changed, std::span<const std::uint32_t> moved_chunks);
 
-  /// Edges of one visible shell, and of three or more.
+  /// Edges with one visible shell, and those with three or more.
   std::vector<NodePair> borders() const { return gather(&Chunk::borders); }
-  /// Edges of two visible shells whose planes differ by more than kCreaseDegrees, whatever sense their normals have.
+  /// Edges with two visible shells that bend by more than kCreaseDegrees, independent of the sense of the normals.
   std::vector<NodePair> creases() const { return gather(&Chunk::creases); }
 
  private:
@@ -30,7 +30,7 @@ class Outline {
     std::uint32_t high = 0;
     std::uint32_t shell = 0;
   };
-  /// The edges whose lower node lies in one chunk of nodes.
+  /// The edges whose lower node is in one chunk of nodes.
   struct Chunk {
     std::vector<std::uint32_t> depends_on;  ///< chunks of positions that its shells use, ascending
     std::vector<NodePair> borders;

@@ -7,7 +7,7 @@ namespace {
 std::array<Colour, kPartColours> make_part_colours() {
   const std::array<Colour, 7> okabe_ito{Colour(230, 159, 0), Colour(86, 180, 233), Colour(0, 158, 115),  Colour(240, 228, 66),
                                         Colour(0, 114, 178), Colour(213, 94, 0),   Colour(204, 121, 167)};
-  // How much of the pure hue is left beside a warm white: less from one round of parts to the next.
+  // Share of the pure hue, the rest is a warm white: one for each round of seven parts.
   const std::array<float, 3> strength{0.50F, 0.30F, 0.66F};
   const Colour white(0.96F, 0.95F, 0.93F);
   std::array<Colour, kPartColours> colours;

@@ -1,4 +1,5 @@
-// The colours: a calm ground, parts that colour-blind people can tell apart, and meanings that no part shares. Display values, 0..1.
+// Colours of the picture: a grey ground, part colours that colour-blind people can distinguish, and colours with a meaning, which no part
+// has. Display values, 0..1.
 #pragma once
 
 #include <array>
@@ -10,15 +11,15 @@ namespace prismesh::kiosk::render {
 
 using Colour = Eigen::Vector3f;
 
-/// Seven hues in Okabe and Ito's order (orange, sky blue, bluish green, yellow, blue, vermilion, purple), lightened, in three
+/// Seven hues in the order of [Okabe 2008] (orange, sky blue, bluish green, yellow, blue, vermilion, purple), lightened, in three
 /// lightnesses; the last entry is for shells without a part.
 inline constexpr std::size_t kPartColours = 22;
 inline constexpr std::size_t kColourOfNoPart = 21;
 const std::array<Colour, kPartColours>& part_colours();
-/// Which of them a part has, by its PartIndex.
+/// Index into part_colours() for a PartIndex.
 inline std::size_t colour_of_part(std::size_t part, std::size_t part_count) { return part < part_count ? part % 21 : kColourOfNoPart; }
 
-/// What a shell's grade looks like in quality mode: ok, warn, fail.
+/// Colours of a shell's grade in quality mode: ok, warn, fail.
 const std::array<Colour, 3>& grade_colours();
 
 inline const Colour kGroundTop{0.475F, 0.48F, 0.49F};

@@ -19,7 +19,7 @@ std::vector<PartState> part_states(const ModelTable& table, bool damaged) {
     const std::size_t begin = c * mesh::kChunkSize;
     for (std::size_t i = 0; i < states.size() && begin + i < table.shell_count(); ++i) {
       const std::size_t part = table.shell_part(begin + i).value;
-      const bool removed = source.at<ShellState>(SnapshotArray::shell_quality, begin + i).is_removed();  // damage says nothing of it
+      const bool removed = source.at<ShellState>(SnapshotArray::shell_quality, begin + i).is_removed();  // not recorded in shell_damage
       if (part >= parts.size() || removed) continue;
       ++parts[part].shells;
       parts[part].warn += states[i].grade() == Grade::warn;
@@ -30,12 +30,12 @@ std::vector<PartState> part_states(const ModelTable& table, bool damaged) {
 }
 
 Colour colour_of_state(const PartState& state) {
-  constexpr float kMin = 0.3F, kFullShare = 0.1F;
+  constexpr float kMinStrength = 0.3F, kFullShare = 0.1F;
   const std::array<Colour, 3>& grades = grade_colours();
   const std::size_t wrong = state.fail > 0 ? state.fail : state.warn;
   if (wrong == 0) return grades[0];
   const float share = static_cast<float>(wrong) / static_cast<float>(state.shells) / kFullShare;
-  const float strength = kMin + (1 - kMin) * std::min(share, 1.0F);
+  const float strength = kMinStrength + (1 - kMinStrength) * std::min(share, 1.0F);
   return (1 - strength) * grades[0] + strength * grades[state.fail > 0 ? 2 : 1];
 }
 

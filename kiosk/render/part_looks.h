@@ -1,4 +1,4 @@
-// A colour for each part by the state of its shells.
+// Colours each part by the grades of its shells.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,15 @@ namespace prismesh::kiosk::render {
 struct PartState {
   std::size_t shells = 0, warn = 0, fail = 0;
 };
-/// By PartIndex. `damaged`: counts only what the document's edits made worse.
+/// Counts the shells of each part by grade; by PartIndex. `damaged`: counts only what the document's edits made worse.
 std::vector<PartState> part_states(const ModelTable& table, bool damaged);
-/// Grey while all is well; yellow where shells warn, red where some fail, the stronger the more of them do: full from a tenth on.
+/// Grey if all shells pass, yellow if shells warn, red if some fail. The colour is stronger the more shells do, full from a tenth of them
+/// on.
 Colour colour_of_state(const PartState& state);
 
 class PartLooks {
  public:
-  /// Costs a pass over the shells. Errors: no graphics memory.
+  /// Computes and uploads the colours. Costs a pass over the shells. Errors: no graphics memory.
   Result<void> update(const ModelTable& table, bool damaged);
   const RowTexture& texture() const { return texture_; }
   std::size_t count() const { return count_; }

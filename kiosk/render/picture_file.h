@@ -1,4 +1,4 @@
-// Pictures as files and in memory.
+// Reads pictures from OpenGL and writes them as PNG files.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace prismesh::kiosk::render {
 
-/// Rows from the top, RGB, 8 bits each.
+/// RGB, 8 bits each; rows from the top.
 struct Image {
   int width = 0;
   int height = 0;
@@ -18,9 +18,9 @@ struct Image {
   const std::uint8_t* at(int x, int y) const { return rgb.data() + (static_cast<std::size_t>(y) * width + x) * 3; }
 };
 
-/// The pixels of the bound GL read framebuffer.
+/// Reads the pixels of the bound read framebuffer.
 Image read_framebuffer(int width, int height);
-/// Replaces the file whole or not at all. Errors: not writable.
+/// Writes a PNG file: replaces it whole or not at all. Errors: not writable, no memory.
 Result<void> write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace prismesh::kiosk::render

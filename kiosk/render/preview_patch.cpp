@@ -103,7 +103,7 @@ std::vector<Glyph> PreviewPatch::glyphs(bool damaged) const {
         at[k] = Vec3(place[0], place[1], place[2]);
         whole = whole && place[3] != 0;
       }
-      if (!whole) continue;  // a corner that stands nowhere
+      if (!whole) continue;  // a corner isn't finite
       for (const GlyphShape shape : shapes_of(state))
         glyphs.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(shape) | (failing ? kFailingGlyph : 0) |
                                                              glyph_place(shape, std::span(at).first(corners)) << kGlyphPlaceShift});

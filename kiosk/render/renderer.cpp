@@ -17,18 +17,18 @@ namespace prismesh::kiosk::render {
 
 namespace {
 
-constexpr double kNearestViewerMm = 20;
-constexpr double kHalfGapPixels = 4;  ///< of ground between two views, to each side
+constexpr double kMinViewerMm = 20;
+constexpr double kHalfGapPixels = 4;  ///< half the width of the ground between two views
 
-/// What the scene in the eyes' images was drawn from.
-struct Drawn {
+/// The input from which the scene in the eyes' images was drawn.
+struct DrawnScene {
   Picture picture;
   std::vector<ComposedImage> images;
   int width = 0, height = 0;
   std::uint64_t scene_version = 0;
 
-  bool same_scene(const Drawn& other) const {
-    const auto facts = [](const Drawn& d) {
+  bool same_scene(const DrawnScene& other) const {
+    const auto facts = [](const DrawnScene& d) {
       const Picture& p = d.picture;
       return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.damaged_only,
                       p.marked, p.selected_nodes, p.handle, p.shadows, p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
@@ -37,7 +37,7 @@ struct Drawn {
   }
 };
 
-/// What the composition of a picture depends on, apart from the scene.
+/// Whether two pictures agree in all that their composition depends on.
 bool same_composition(const Picture& a, const Picture& b) {
   const auto facts = [](const Picture& p) {
     return std::tie(p.profile, p.between_eyes_mm, p.toward_right, p.eye_separation_mm, p.depth_share, p.mask_mm, p.panel);
@@ -52,12 +52,12 @@ EyeView eye_view(const Picture& picture, const ComposedImage& image, int width, 
   view.range = stereo::depth_range(picture.view, view.eye_mm);
   view.clip_from_screen = stereo::clip_onto(image.from_picture, stereo::clip_from_screen(view.eye_mm, screen, view.range), width, height);
   view.mm_per_pixel = screen.x() / width;
-  view.viewer_mm = std::max(picture.between_eyes_mm.z(), kNearestViewerMm);
+  view.viewer_mm = std::max(picture.between_eyes_mm.z(), kMinViewerMm);
   view.image = {image.eye, image.width, image.height, width, height, image.from_picture};
   return view;
 }
 
-/// An overlay may have left anything switched on.
+/// An overlay may have changed any OpenGL state.
 void reset_after_overlay() {
   for (const GLenum capability : {GL_BLEND, GL_DEPTH_TEST, GL_SCISSOR_TEST, GL_CULL_FACE, GL_STENCIL_TEST, GL_DITHER})
     glDisable(capability);
@@ -66,7 +66,7 @@ void reset_after_overlay() {
 
 }  // namespace
 
-struct Renderer::State {
+struct Renderer::Impl {
   RendererOptions options;
   Shaders shaders;
   ScenePass scene;
@@ -78,17 +78,17 @@ struct Renderer::State {
   std::array<FieldColours, 2> fields;
   struct Images {
     EyeImages eyes;
-    std::optional<Drawn> kept;  ///< what they show, but for what is flat
+    std::optional<DrawnScene> kept;  ///< the scene in them
   };
   Images fine;
   Images coarse;                    ///< without multisampling
-  std::uint64_t scene_version = 0;  ///< counts up with the model and the preview
+  std::uint64_t scene_version = 0;  ///< increases with each change of the model or the preview
   WeavePass weave;
-  // How the last picture was composed: kept, since idle pictures differ in nothing that it depends on.
+  // The last composition. Kept, as most pictures differ in nothing that it depends on.
   Composition composition;
-  std::optional<Drawn> composed_for;
+  std::optional<DrawnScene> composed_for;
 
-  // The item picture and what it is of.
+  // The item image, and the projection and the model's version it was drawn with.
   gl::Framebuffer item_framebuffer;
   gl::Texture item_colour;
   gl::Renderbuffer item_depth;
@@ -97,9 +97,9 @@ struct Renderer::State {
   std::uint64_t items_version = 0;
   Figures figures;
 
-  State(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders), flat(shaders) {}
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
+  Impl(const RendererOptions& wanted, Shaders linked) : options(wanted), shaders(std::move(linked)), scene(shaders), flat(shaders) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   Result<void> draw_scene(Images& images, const Picture& picture, int width, int height, int samples);
   void draw_views(const Picture& picture, const EyeView& eye, int width);
@@ -109,93 +109,93 @@ struct Renderer::State {
   const ItemImage& items_for(const stereo::Aim& aim);
 };
 
-Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Renderer::~Renderer() = default;
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions& options) {
   if (const auto context = gl::check_context(); !context) return fail(context.error());
   Result<Shaders> shaders = Shaders::link();
   if (!shaders) return fail(shaders.error());
-  return std::unique_ptr<Renderer>(new Renderer(std::make_unique<State>(options, std::move(*shaders))));
+  return std::unique_ptr<Renderer>(new Renderer(std::make_unique<Impl>(options, std::move(*shaders))));
 }
 
 Result<void> Renderer::set_model(std::shared_ptr<const ModelSource> model) {
-  Result<void> done = state_->layer.set_model(model);
-  state_->model = done ? std::move(model) : nullptr;
-  ++state_->scene_version;
-  state_->figures.chunks_uploaded = state_->layer.chunks_uploaded();
+  Result<void> done = impl_->layer.set_model(model);
+  impl_->model = done ? std::move(model) : nullptr;
+  ++impl_->scene_version;
+  impl_->figures.chunks_uploaded = impl_->layer.chunks_uploaded();
   return done;
 }
 
 Result<void> Renderer::set_other(std::shared_ptr<const ModelSource> model) {
-  ++state_->scene_version;
-  Result<void> done = state_->other_layer.set_model(model);
-  state_->other = done ? std::move(model) : nullptr;
+  ++impl_->scene_version;
+  Result<void> done = impl_->other_layer.set_model(model);
+  impl_->other = done ? std::move(model) : nullptr;
   return done;
 }
 
-const ModelSource* Renderer::other() const { return state_->other.get(); }
+const ModelSource* Renderer::other() const { return impl_->other.get(); }
 
 Result<void> Renderer::set_field(Pane pane, std::span<const float> values, bool on_nodes) {
-  ++state_->scene_version;
-  FieldColours& field = state_->fields[static_cast<std::size_t>(pane)];
+  ++impl_->scene_version;
+  FieldColours& field = impl_->fields[static_cast<std::size_t>(pane)];
   field.clear();
   return values.empty() ? Result<void>() : field.set(values, on_nodes);
 }
 
-const ModelSource* Renderer::model() const { return state_->model.get(); }
+const ModelSource* Renderer::model() const { return impl_->model.get(); }
 
-stereo::Box Renderer::bounds() const { return state_->layer.shown_box(); }
+stereo::Box Renderer::bounds() const { return impl_->layer.shown_box(); }
 
 stereo::View Renderer::fitted(const stereo::View& view, const Eigen::Vector2d& screen_mm, double eye_distance_mm) const {
-  const stereo::Box turned = state_->layer.empty() ? stereo::Box() : state_->layer.table().visible_box(view.rotation);
+  const stereo::Box turned = impl_->layer.empty() ? stereo::Box() : impl_->layer.table().visible_box(view.rotation);
   return stereo::fit_turned(view, turned, screen_mm, eye_distance_mm);
 }
 
 void Renderer::begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells) {
-  ++state_->scene_version;
-  state_->layer.begin_preview(nodes, shells);
+  ++impl_->scene_version;
+  impl_->layer.begin_preview(nodes, shells);
 }
 
 Result<void> Renderer::update_preview(const ipc::PreviewFrame& frame) {
-  ++state_->scene_version;
-  return state_->layer.update_preview(frame);
+  ++impl_->scene_version;
+  return impl_->layer.update_preview(frame);
 }
 
 Result<void> Renderer::show_change(const MeshChange& change) {
-  ++state_->scene_version;
-  return state_->layer.show_change(change);
+  ++impl_->scene_version;
+  return impl_->layer.show_change(change);
 }
 
 void Renderer::end_preview() {
-  ++state_->scene_version;
-  state_->layer.end_preview();
+  ++impl_->scene_version;
+  impl_->layer.end_preview();
 }
 
 Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, int width, int height) {
-  state_->compose_for(picture, width, height);
-  Drawn wanted{picture, state_->composition.images, width, height, state_->scene_version};
+  impl_->compose_for(picture, width, height);
+  DrawnScene wanted{picture, impl_->composition.images, width, height, impl_->scene_version};
   wanted.picture.overlay = nullptr;
-  // Nothing is gained by drawing coarsely what is there in full.
-  const bool fine = !picture.moving || (state_->fine.kept && state_->fine.kept->same_scene(wanted));
-  State::Images& images = fine ? state_->fine : state_->coarse;
+  // A moving picture is drawn coarsely only if the fine images don't show its scene already.
+  const bool fine = !picture.moving || (impl_->fine.kept && impl_->fine.kept->same_scene(wanted));
+  Impl::Images& images = fine ? impl_->fine : impl_->coarse;
   if (!images.kept || !images.kept->same_scene(wanted)) {
-    if (Result<void> drawn = state_->draw_scene(images, picture, width, height, fine ? state_->options.samples : 1); !drawn)
+    if (Result<void> drawn = impl_->draw_scene(images, picture, width, height, fine ? impl_->options.samples : 1); !drawn)
       return fail(drawn.error());
     images.kept = std::move(wanted);
   }
-  const std::vector<ComposedImage>& composed = state_->composition.images;
+  const std::vector<ComposedImage>& composed = impl_->composition.images;
   for (std::size_t i = 0; i < composed.size(); ++i) {
     reset_after_overlay();
     images.eyes.bind_flat(static_cast<int>(i));
-    state_->flat.draw(picture, eye_view(picture, composed[i], width, height));
+    impl_->flat.draw(picture, eye_view(picture, composed[i], width, height));
   }
   reset_after_overlay();
-  if (Result<void> woven = state_->weave.draw(state_->composition, images.eyes, framebuffer, width, height); !woven)
+  if (Result<void> woven = impl_->weave.draw(impl_->composition, images.eyes, framebuffer, width, height); !woven)
     return fail(woven.error());
   DrawReport report;
-  if (picture.quality_glyphs && !state_->layer.empty()) {
-    const Result<ModelLayer::Glyphs> glyphs = state_->layer.glyphs(state_->options.glyph_cap, picture.damaged_only);
+  if (picture.quality_glyphs && !impl_->layer.empty()) {
+    const Result<ModelLayer::Glyphs> glyphs = impl_->layer.glyphs(impl_->options.glyph_cap, picture.damaged_only);
     if (!glyphs) return fail(glyphs.error());
     report.glyphs = glyphs->model.count + glyphs->preview.count;
     report.glyphs_left_out = glyphs->left_out;
@@ -203,15 +203,15 @@ Result<DrawReport> Renderer::draw(const Picture& picture, unsigned framebuffer, 
   return report;
 }
 
-void Renderer::State::compose_for(const Picture& picture, int width, int height) {
+void Renderer::Impl::compose_for(const Picture& picture, int width, int height) {
   if (composed_for && composed_for->width == width && composed_for->height == height && same_composition(composed_for->picture, picture))
     return;
   composition = compose(picture, width, height);
-  composed_for = Drawn{picture, {}, width, height, 0};
+  composed_for = DrawnScene{picture, {}, width, height, 0};
   composed_for->picture.overlay = nullptr;
 }
 
-Result<void> Renderer::State::draw_scene(Images& images, const Picture& picture, int width, int height, int samples) {
+Result<void> Renderer::Impl::draw_scene(Images& images, const Picture& picture, int width, int height, int samples) {
   images.kept.reset();
   const std::vector<ComposedImage>& composed = composition.images;
   if (Result<void> sized = images.eyes.resize(composed.front().width, composed.front().height, samples); !sized) return sized;
@@ -230,10 +230,10 @@ Result<void> Renderer::State::draw_scene(Images& images, const Picture& picture,
   return {};
 }
 
-/// The model over the whole picture, or two views that share it.
-void Renderer::State::draw_views(const Picture& picture, const EyeView& eye, int width) {
+/// Draws the model over the whole picture, or two views side by side.
+void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int width) {
   scene.begin(eye);
-  if (!picture.two_views) return scene.draw(picture, layer, fields[0], picture.field[0], eye, options.glyph_cap);
+  if (!picture.two_views) return scene.draw(picture, {layer, fields[0], picture.field[0]}, eye, options.glyph_cap);
   for (const Pane pane : {Pane::model, Pane::other}) {
     const bool right = (pane == Pane::model) == picture.two_views->model_on_right;
     Picture half = picture;
@@ -246,16 +246,17 @@ void Renderer::State::draw_views(const Picture& picture, const EyeView& eye, int
     const double middle = 0.5 * width;
     scene.begin_pane(eye, right ? middle + kHalfGapPixels : 0, right ? width : middle - kHalfGapPixels);
     const auto at = static_cast<std::size_t>(pane);
-    scene.draw(half, pane == Pane::model ? layer : other_layer, fields[at], picture.field[at], eye, options.glyph_cap);
+    ModelLayer& shown = pane == Pane::model ? layer : other_layer;
+    scene.draw(half, {shown, fields[at], picture.field[at]}, eye, options.glyph_cap);
   }
   glDisable(GL_STENCIL_TEST);
 }
 
-bool Renderer::State::make_item_buffer(int width, int height) {
+bool Renderer::Impl::make_item_buffer(int width, int height) {
   if (item_framebuffer && items.width == width && items.height == height) return true;
-  GLint largest = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-  if (width < 1 || height < 1 || width > largest || height > largest) return false;
+  GLint max_size = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size);
+  if (width < 1 || height < 1 || width > max_size || height > max_size) return false;
   item_colour = gl::Texture::make();
   item_depth = gl::Renderbuffer::make();
   item_framebuffer = gl::Framebuffer::make();
@@ -271,11 +272,11 @@ bool Renderer::State::make_item_buffer(int width, int height) {
   return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
-void Renderer::State::read_items(int width, int height) {
+void Renderer::Impl::read_items(int width, int height) {
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
   items.items.resize(pixels);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  // Every driver can give all four channels; one that offers the only channel there is saves three quarters.
+  // Every driver can read four channels. Reading the one channel of the texture, where the driver offers it, saves three quarters.
   GLint format = 0, type = 0;
   glGetIntegerv(GL_IMPLEMENTATION_COLOR_READ_FORMAT, &format);
   glGetIntegerv(GL_IMPLEMENTATION_COLOR_READ_TYPE, &type);
@@ -288,7 +289,7 @@ void Renderer::State::read_items(int width, int height) {
   for (std::size_t i = 0; i < pixels; ++i) items.items[i] = all[i][0];
 }
 
-const ItemImage& Renderer::State::items_for(const stereo::Aim& aim) {
+const ItemImage& Renderer::Impl::items_for(const stereo::Aim& aim) {
   const Eigen::Matrix4d clip = aim.clip_from_deck();
   if (!make_item_buffer(aim.width, aim.height)) {
     items = {};
@@ -306,28 +307,28 @@ const ItemImage& Renderer::State::items_for(const stereo::Aim& aim) {
 }
 
 std::optional<mesh::ShellIndex> Renderer::shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel) {
-  if (state_->layer.empty() || !(pixel.minCoeff() >= 0 && pixel.maxCoeff() < 1e6)) return std::nullopt;
-  const std::uint32_t shell = state_->items_for(aim).shell_at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
-  if (shell >= state_->layer.table().shell_count()) return std::nullopt;
+  if (impl_->layer.empty() || !(pixel.minCoeff() >= 0 && pixel.maxCoeff() < 1e6)) return std::nullopt;
+  const std::uint32_t shell = impl_->items_for(aim).shell_at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+  if (shell >= impl_->layer.table().shell_count()) return std::nullopt;
   return mesh::ShellIndex(shell);
 }
 
 std::optional<mesh::NodeIndex> Renderer::node_near(const stereo::Aim& aim, const Eigen::Vector2d& pixel, double radius) {
-  if (state_->layer.empty()) return std::nullopt;
-  return NodeSight(state_->layer.table(), state_->items_for(aim), aim).nearest(pixel, radius, state_->layer.line_nodes());
+  if (impl_->layer.empty()) return std::nullopt;
+  return NodeFinder(impl_->layer.table(), impl_->items_for(aim), aim).nearest(pixel, radius, impl_->layer.line_nodes());
 }
 
 mesh::NodeSet Renderer::nodes_in(const stereo::Aim& aim, const PixelRect& rect, bool through) {
-  if (state_->layer.empty()) return {};
+  if (impl_->layer.empty()) return {};
   const ItemImage none;
-  const ItemImage& image = through ? none : state_->items_for(aim);
-  return NodeSight(state_->layer.table(), image, aim).inside(rect, through, state_->layer.visible_nodes());
+  const ItemImage& image = through ? none : impl_->items_for(aim);
+  return NodeFinder(impl_->layer.table(), image, aim).inside(rect, through, impl_->layer.visible_nodes());
 }
 
 Renderer::Figures Renderer::figures() const {
-  Figures figures = state_->figures;
-  figures.bytes_uploaded = state_->layer.bytes_uploaded() + state_->other_layer.bytes_uploaded();
-  for (const FieldColours& field : state_->fields) figures.bytes_uploaded += field.bytes_uploaded();
+  Figures figures = impl_->figures;
+  figures.bytes_uploaded = impl_->layer.bytes_uploaded() + impl_->other_layer.bytes_uploaded();
+  for (const FieldColours& field : impl_->fields) figures.bytes_uploaded += field.bytes_uploaded();
   return figures;
 }
 

@@ -1,4 +1,4 @@
-// Draws the model for both eyes and weaves the display's picture. Needs a current OpenGL ES 3.1 context for all of its life
+// Draws the model for both eyes and weaves the display's picture. An OpenGL ES 3.1 context must be current during the renderer's whole life
 // (display/headless.h, or a window's).
 #pragma once
 
@@ -17,10 +17,10 @@ namespace prismesh::kiosk::render {
 
 struct RendererOptions {
   int samples = 4;                ///< 4 or 1 (no multisampling)
-  std::size_t glyph_cap = 20000;  ///< quality glyphs drawn at most: failures first
+  std::size_t glyph_cap = 20000;  ///< max number of quality glyphs drawn, failures first
 };
 
-/// What a picture had to leave out, to be said in words beside it.
+/// Number of glyphs drawn and left out, for a message beside the picture.
 struct DrawReport {
   std::size_t glyphs = 0;
   std::size_t glyphs_left_out = 0;
@@ -28,59 +28,65 @@ struct DrawReport {
 
 class Renderer {
  public:
-  /// Errors: no context or one below OpenGL ES 3.1 (named), a shader that the driver refuses (its words).
+  /// Errors: no context, one below OpenGL ES 3.1 (with its version), a shader that the driver refuses (with its message).
   static Result<std::unique_ptr<Renderer>> create(const RendererOptions& options);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Shows a model: uploads the chunks whose versions it doesn't have yet. Null: an empty screen. Errors: too large for the GPU.
+  /// Shows a model. Uploads only the chunks whose versions differ. Null: an empty screen. Errors: too large for the GPU, no graphics
+  /// memory.
   Result<void> set_model(std::shared_ptr<const ModelSource> model);
   const ModelSource* model() const;
-  /// Around the nodes of visible shells and lines: what View::bounds should be, anew after each set_model. Costs the chunks only.
+  /// Box around the nodes of visible shells and line elements, deck coordinates, for View::bounds; changes with each set_model. Time is
+  /// proportional to the number of chunks and line elements.
   stereo::Box bounds() const;
-  /// The view that frames them closely, from the side that `view` is seen from. Costs the model.
+  /// The view that fits the screen (mm) to these nodes, from the direction of `view`. Costs a pass over the model.
   stereo::View fitted(const stereo::View& view, const Eigen::Vector2d& screen_mm, double eye_distance_mm = 650) const;
 
-  /// What stands beside the model in a picture of two views; null: nothing. Errors: too large for the GPU.
+  /// Sets the model of the other view in a picture of two views; null: none. Errors: too large for the GPU, no graphics memory.
   Result<void> set_other(std::shared_ptr<const ModelSource> model);
   const ModelSource* other() const;
-  /// Values to colour a view by, for each of its nodes or shells; none: no colours. Uploads what differs from the last ones.
+  /// Sets the values that colour a view, one for each of its nodes or shells; empty: no colours. Uploads only the rows that changed.
+  /// Errors: no graphics memory.
   Result<void> set_field(Pane pane, std::span<const float> values, bool on_nodes);
 
-  /// A drag's preview over the model: nodes that move and shells they touch, as PreviewReader gives them.
+  /// Starts a drag's preview over the model: nodes that move and shells they touch, as in PreviewReader. Nothing is drawn until the first
+  /// frame.
   void begin_preview(std::span<const mesh::NodeIndex> nodes, std::span<const mesh::ShellIndex> shells);
-  /// A frame: one position per node, one state per shell; other sizes are ignored. Until the first, nothing is drawn. Errors: no graphics
+  /// Takes over a frame: one position for each node, one state for each shell; a frame of other sizes is ignored. Errors: no graphics
   /// memory.
   Result<void> update_preview(const ipc::PreviewFrame& frame);
-  /// What an edit would make of some shells, in a preview's place, until end_preview. Errors: no graphics memory.
+  /// Shows the result of an edit as a preview, until end_preview. Errors: no graphics memory.
   Result<void> show_change(const MeshChange& change);
   void end_preview();
 
-  /// Draws into `framebuffer` (0: the window's), width x height pixels. Lower rows are first, as OpenGL counts. A picture that differs
-  /// from the last one in its overlay and rubber band only doesn't cost the model.
+  /// Draws into `framebuffer` (0: the window's), width x height pixels; the lowest row is the first. The scene is drawn again only if it
+  /// changed: a picture that differs from the last one only in its overlay, rubber band or lasso doesn't cost the model. Errors: larger
+  /// than the GPU allows, no graphics memory, a shader that the driver refuses.
   Result<DrawReport> draw(const Picture& picture, unsigned framebuffer, int width, int height);
 
-  /// What lies where on the picture, for `aim`; drawn again only when the aim, the model or the visible parts changed. The pixels of a
-  /// preview are those of the model underneath.
+  /// The shell at a pixel of the picture of `aim`. The item image is drawn again only if the aim, the model or the visible parts changed. A
+  /// preview isn't in it: its pixels give the model's shells.
   std::optional<mesh::ShellIndex> shell_at(const stereo::Aim& aim, const Eigen::Vector2d& pixel);
-  /// The visible node nearest to the pixel, at most `radius` pixels away; corners of the shell at the pixel go first.
+  /// The visible node nearest to the pixel, at most `radius` pixels away; corners of the shell at the pixel come first.
   std::optional<mesh::NodeIndex> node_near(const stereo::Aim& aim, const Eigen::Vector2d& pixel, double radius);
-  /// Nodes of visible parts inside a rectangle, ascending: those that can be seen, or all of them (`through`).
+  /// Nodes of visible parts inside a rectangle, ascending: only those that nothing hides, or all of them (`through`).
   mesh::NodeSet nodes_in(const stereo::Aim& aim, const PixelRect& rect, bool through);
 
+  /// Counters for tests and benchmarks.
   struct Figures {
-    std::size_t chunks_uploaded = 0;  ///< over the renderer's life; for tests and figures
+    std::size_t chunks_uploaded = 0;  ///< over the renderer's life
     std::size_t bytes_uploaded = 0;   ///< of the model and of previews, over the renderer's life
     std::size_t item_buffers_drawn = 0;
-    std::size_t scenes_drawn = 0;  ///< pictures whose model was drawn
+    std::size_t scenes_drawn = 0;  ///< pictures for which the model was drawn
   };
   Figures figures() const;
 
  private:
-  struct State;
-  explicit Renderer(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit Renderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace prismesh::kiosk::render

@@ -8,12 +8,12 @@ namespace prismesh::kiosk::render {
 Result<bool> RowTexture::reserve(std::size_t elements, const char* what) {
   const std::size_t rows = std::max<std::size_t>(1, (elements + kWidth - 1) / kWidth);
   if (texture_ && rows <= rows_) return false;
-  GLint largest = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-  const std::size_t wanted = texture_ ? std::min(std::max(rows, rows_ + rows_ / 4), static_cast<std::size_t>(largest)) : rows;
-  if (static_cast<GLint>(kWidth) > largest || rows > static_cast<std::size_t>(largest))
+  GLint max_size = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size);
+  const std::size_t wanted = texture_ ? std::min(std::max(rows, rows_ + rows_ / 4), static_cast<std::size_t>(max_size)) : rows;
+  if (static_cast<GLint>(kWidth) > max_size || rows > static_cast<std::size_t>(max_size))
     return fail("OpenGL", "the model's " + std::to_string(elements) + " " + what + " don't fit this graphics driver, which holds " +
-                              std::to_string(static_cast<std::size_t>(largest) * kWidth));
+                              std::to_string(static_cast<std::size_t>(max_size) * kWidth));
   while (glGetError() != GL_NO_ERROR) {
   }
   texture_ = gl::Texture::make();

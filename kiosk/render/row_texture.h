@@ -1,4 +1,4 @@
-// An array of the model as a texture: one row per chunk, so that a changed chunk is one upload.
+// Holds an array of the model as a texture with one row for each chunk, so that a changed chunk is one upload.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace prismesh::kiosk::render {
 
-/// How one element is stored.
+/// Format of one element.
 struct TexelFormat {
   GLenum internal;
   GLenum format;
@@ -21,15 +21,15 @@ inline constexpr TexelFormat kFourIndices{GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIG
 inline constexpr TexelFormat kTwoIndices{GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, 8};
 inline constexpr TexelFormat kOneIndex{GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
 
-/// Shaders find element i at (i & 4095, i >> 12).
+/// Element i is the texel (i & 4095, i >> 12).
 class RowTexture {
  public:
   static constexpr std::size_t kWidth = mesh::kChunkSize;
 
   explicit RowTexture(const TexelFormat& format) : format_(format) {}
 
-  /// Makes room for `elements`. True if the texture is a new one, whose content is undefined. Errors: larger than the GPU allows;
-  /// `what` names the array.
+  /// Allocates space for `elements`. True if the texture is new and its content undefined. `what` names the array in errors. Errors: larger
+  /// than the GPU allows, no graphics memory.
   Result<bool> reserve(std::size_t elements, const char* what);
   /// Replaces the first elements of a row.
   void upload_row(std::size_t row, std::span<const std::byte> texels);

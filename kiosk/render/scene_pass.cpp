@@ -13,11 +13,11 @@ namespace {
 constexpr float kBorderHalfWidth = 1.0F;
 constexpr float kCreaseHalfWidth = 0.7F;
 constexpr float kLineElementHalfWidth = 0.9F;
-constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels short
+constexpr float kCrowdedLineAlpha = 0.35F;  ///< of line elements a few pixels long
 constexpr float kPreviewHalfWidth = 0.65F;
-// Signs keep their size on the screen, but make room where elements are small.
-constexpr float kGlyphRadius = 9.0F, kMinGlyphRadius = 5.0F, kGlyphShareOfSide = 0.7F;
-constexpr double kLinesTowardEye = 1.3;  ///< pixels: what lifts lines off the surface they lie on
+/// A shell with a smaller radius on the screen is enlarged to this one for its glyph.
+constexpr RadiusLimits kGlyphRadius{9.0F, 5.0F, 0.7F};
+constexpr double kLinesTowardEye = 1.3;  ///< pixels: depth offset of lines from the surface they lie on
 
 }  // namespace
 
@@ -66,8 +66,8 @@ void ScenePass::begin_pane(const EyeView& eye, double from, double to) const {
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
 }
 
-void ScenePass::draw(const Picture& picture, ModelLayer& model, FieldColours& field, const FieldLook& look, const EyeView& eye,
-                     std::size_t glyph_cap) const {
+void ScenePass::draw(const Picture& picture, const ViewContent& content, const EyeView& eye, std::size_t glyph_cap) const {
+  ModelLayer& model = content.model;
   const Frame frame(eye, picture, model);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
@@ -75,7 +75,7 @@ void ScenePass::draw(const Picture& picture, ModelLayer& model, FieldColours& fi
     model.textures().positions().bind(unit::kPositions);
     model.textures().connectivity().bind(unit::kConnectivity);
     model.textures().surface().bind(unit::kSurface);
-    draw_shells(picture, model, field, look, frame);
+    draw_shells(picture, content, frame);
     if (picture.shadows) shadows_.draw(model, frame);
     model.textures().positions().bind(unit::kPositions);
     draw_model_lines(picture, model, frame);
@@ -99,28 +99,28 @@ void ScenePass::draw_ground(const EyeView& eye) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void ScenePass::draw_shells(const Picture& picture, const ModelLayer& model, FieldColours& field, const FieldLook& look,
-                            const Frame& frame) const {
+void ScenePass::draw_shells(const Picture& picture, const ViewContent& content, const Frame& frame) const {
+  const FieldLook& look = content.look;
   frame.set(shaders_.shells);
   const auto& palette = part_colours();
   for (std::size_t i = 0; i < palette.size(); ++i) shaders_.shells.set(("palette[" + std::to_string(i) + "]").c_str(), palette[i]);
   const auto& grades = grade_colours();
   for (std::size_t i = 0; i < grades.size(); ++i) shaders_.shells.set(("grades[" + std::to_string(i) + "]").c_str(), grades[i]);
   shaders_.shells.set("by_grade", picture.colour == ColourMode::quality ? 1 : picture.colour == ColourMode::part_states ? 2 : 0);
-  const PartLooks& looks = model.part_looks();
+  const PartLooks& looks = content.model.part_looks();
   looks.texture().bind(unit::kPartLooks);
   shaders_.shells.set("part_looks", static_cast<int>(unit::kPartLooks));
   shaders_.shells.set("part_count", static_cast<int>(looks.count()));
   const bool coloured = picture.colour == ColourMode::field && look.on;
-  field.bind(unit::kField, unit::kColourMap, look);
+  content.field.bind(unit::kField, unit::kColourMap, look);
   shaders_.shells.set("field", static_cast<int>(unit::kField));
   shaders_.shells.set("colour_map", static_cast<int>(unit::kColourMap));
-  shaders_.shells.set("field_kind", coloured ? field.kind_for(model.table()) : 0);
+  shaders_.shells.set("field_kind", coloured ? content.field.kind_for(content.model.table()) : 0);
   shaders_.shells.set("limits", Eigen::Vector3f(static_cast<float>(look.clear), static_cast<float>(1 / (look.full - look.clear)),
                                                 static_cast<float>(look.bands)));
   shaders_.shells.set("eye_in_model", frame.eye_in_model);
   shaders_.shells.set("edge_strength", picture.element_edges ? 0.42F : 0.0F);
-  draw_chunks(model, frame.clip_from_deck);
+  draw_chunks(content.model, frame.clip_from_deck);
 }
 
 void ScenePass::draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const {
@@ -128,7 +128,7 @@ void ScenePass::draw_chunks(const ModelLayer& model, const Eigen::Matrix4d& clip
   Eigen::Matrix4d clip_from_model = clip_from_deck;
   clip_from_model.col(3) += clip_from_deck.leftCols<3>() * model.textures().origin();
   const auto& chunks = model.textures().shell_chunks();
-  std::size_t first = 0, last = 0;  // neighbours that are seen go in one call
+  std::size_t first = 0, last = 0;  // visible neighbours are drawn in one call
   const auto flush = [&] {
     const std::size_t end = std::min(last * mesh::kChunkSize, model.textures().shell_count());
     const std::size_t begin = first * mesh::kChunkSize;
@@ -172,16 +172,15 @@ void ScenePass::draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_
   glDisable(GL_DEPTH_TEST);
 }
 
-void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width,
-                           const Eigen::Vector4f& line_ink, float least_alpha) const {
+void ScenePass::draw_lines(const LineSet& lines, const RowTexture& positions, const LineStyle& style, const Frame& frame) const {
   if (lines.count == 0) return;
   positions.bind(unit::kPositions);
   lines.texture.bind(unit::kLines);
   frame.set(shaders_.lines);
-  shaders_.lines.set("half_width", half_width);
-  shaders_.lines.set("least_alpha", least_alpha);
+  shaders_.lines.set("half_width", style.half_width);
+  shaders_.lines.set("min_alpha", style.min_alpha);
   shaders_.lines.set("toward_eye_mm", static_cast<float>(kLinesTowardEye * frame.eye.mm_per_pixel));
-  shaders_.lines.set("ink", line_ink.x(), line_ink.y(), line_ink.z(), line_ink.w());
+  shaders_.lines.set("ink", style.ink.x(), style.ink.y(), style.ink.z(), style.ink.w());
   glBindVertexArray(no_attributes_.get());
   glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(lines.count * 6));
 }
@@ -191,26 +190,26 @@ void ScenePass::draw_model_lines(const Picture& picture, const ModelLayer& model
   glDepthMask(GL_FALSE);
   const RowTexture& positions = model.textures().positions();
   if (picture.outlines) {
-    draw_lines(model.creases(), positions, frame, kCreaseHalfWidth, ink(kCreaseColour, 0.55F));
-    draw_lines(model.borders(), positions, frame, kBorderHalfWidth, ink(kBorderColour, 0.85F));
+    draw_lines(model.creases(), positions, {kCreaseHalfWidth, ink(kCreaseColour, 0.55F)}, frame);
+    draw_lines(model.borders(), positions, {kBorderHalfWidth, ink(kBorderColour, 0.85F)}, frame);
   }
   glDepthMask(GL_TRUE);
-  draw_lines(model.line_elements(), positions, frame, kLineElementHalfWidth, ink(kLineElementColour, 1.0F), kCrowdedLineAlpha);
+  draw_lines(model.line_elements(), positions, {kLineElementHalfWidth, ink(kLineElementColour, 1.0F), kCrowdedLineAlpha}, frame);
 }
 
 void ScenePass::draw_preview(const ModelLayer& model, const Frame& frame) const {
   glEnable(GL_BLEND);
   glDepthMask(GL_FALSE);
-  glDepthFunc(GL_GREATER);  // what has been pushed behind the old surface shows through it
-  draw_lines(model.preview_edges(), model.preview_positions(), frame, kPreviewHalfWidth, ink(kSelectedColour, 0.45F));
+  glDepthFunc(GL_GREATER);  // edges behind the old surface are drawn, fainter
+  draw_lines(model.preview_edges(), model.preview_positions(), {kPreviewHalfWidth, ink(kSelectedColour, 0.45F)}, frame);
   glDepthFunc(GL_LEQUAL);
-  draw_lines(model.preview_edges(), model.preview_positions(), frame, kPreviewHalfWidth, ink(kSelectedColour, 1.0F));
+  draw_lines(model.preview_edges(), model.preview_positions(), {kPreviewHalfWidth, ink(kSelectedColour, 1.0F)}, frame);
   glDepthMask(GL_TRUE);
 }
 
 void ScenePass::draw_glyphs(const Picture& picture, ModelLayer& model, std::size_t cap, const Frame& frame) const {
   const Result<ModelLayer::Glyphs> glyphs = model.glyphs(cap, picture.damaged_only);
-  if (!glyphs) return;  // said when the picture is reported
+  if (!glyphs) return;  // Renderer::draw returns the error
   struct Batch {
     const Instances& instances;
     const RowTexture& positions;
@@ -224,7 +223,7 @@ void ScenePass::draw_glyphs(const Picture& picture, ModelLayer& model, std::size
   }
   if (picture.marked) batches.push_back({model.marked(*picture.marked), textures.positions(), textures.connectivity()});
   frame.set(shaders_.glyphs);
-  shaders_.glyphs.set("least_pixels", frame.fitting_radius(kGlyphRadius, kMinGlyphRadius, kGlyphShareOfSide, model.typical_side()));
+  shaders_.glyphs.set("min_pixels", frame.fitting_radius(kGlyphRadius, model.typical_side()));
   shaders_.glyphs.set("warn_ink", kWarnColour);
   shaders_.glyphs.set("fail_ink", kFailColour);
   shaders_.glyphs.set("mark_ink", kInformationColour);

@@ -1,4 +1,4 @@
-// Draws one eye's image of the model and what belongs to it.
+// Draws one eye's image of the model with its lines, selected nodes, glyphs, shadows and handle.
 #pragma once
 
 #include "kiosk/render/frame.h"
@@ -9,28 +9,38 @@
 
 namespace prismesh::kiosk::render {
 
+/// What one view shows. The renderer holds these.
+struct ViewContent {
+  ModelLayer& model;
+  FieldColours& field;
+  const FieldLook& look;  ///< how `field` is coloured
+};
+
 class ScenePass {
  public:
   explicit ScenePass(const Shaders& shaders);
 
-  /// Once for all images of a scene, before them: changes framebuffer and viewport. Errors: no graphics memory.
+  /// Call once before all images of a scene. Changes framebuffer and viewport. Errors: no graphics memory.
   Result<void> prepare(const Picture& picture, ModelLayer& model);
-  /// Nothing but the ground, into the bound framebuffer; its viewport is set.
+  /// Clears the bound framebuffer and draws the ground. The viewport must be set.
   void begin(const EyeView& eye) const;
-  /// What is drawn from now on stays between two columns of the picture (pixels), until the next call, and hides nothing of what was drawn
-  /// before.
+  /// Limits later draws to the picture's columns from `from` to `to` (pixels), until the next call. Clears the depth there, so that
+  /// earlier draws hide nothing.
   void begin_pane(const EyeView& eye, double from, double to) const;
-  /// The model and what belongs to it.
-  void draw(const Picture& picture, ModelLayer& model, FieldColours& field, const FieldLook& look, const EyeView& eye,
-            std::size_t glyph_cap) const;
-  /// Numbers of shells into a bound R32UI framebuffer.
+  /// Draws a view; at most `glyph_cap` quality glyphs.
+  void draw(const Picture& picture, const ViewContent& content, const EyeView& eye, std::size_t glyph_cap) const;
+  /// Draws shell index + 1 into a bound R32UI framebuffer; 0: no shell.
   void draw_items(const ModelLayer& model, const Eigen::Matrix4d& clip_from_deck) const;
 
  private:
+  struct LineStyle {
+    float half_width = 1;  ///< display pixels
+    Eigen::Vector4f ink;
+    float min_alpha = 1;  ///< of lines a few pixels long; longer ones become opaque
+  };
   void draw_ground(const EyeView& eye) const;
-  void draw_shells(const Picture& picture, const ModelLayer& model, FieldColours& field, const FieldLook& look, const Frame& frame) const;
-  void draw_lines(const LineSet& lines, const RowTexture& positions, const Frame& frame, float half_width, const Eigen::Vector4f& ink,
-                  float least_alpha = 1) const;
+  void draw_shells(const Picture& picture, const ViewContent& content, const Frame& frame) const;
+  void draw_lines(const LineSet& lines, const RowTexture& positions, const LineStyle& style, const Frame& frame) const;
   void draw_model_lines(const Picture& picture, const ModelLayer& model, const Frame& frame) const;
   void draw_preview(const ModelLayer& model, const Frame& frame) const;
   void draw_glyphs(const Picture& picture, ModelLayer& model, std::size_t cap, const Frame& frame) const;

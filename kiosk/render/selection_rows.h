@@ -1,4 +1,5 @@
-// The selected nodes as the GPU draws them: for each chunk of nodes a row of indices, so that a change costs the chunks it touches.
+// Keeps the indices of the selected nodes in a texture, one row for each chunk of nodes. A change uploads only the rows of the chunks that
+// it touches.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +14,16 @@ namespace prismesh::kiosk::render {
 
 class SelectionRows {
  public:
-  /// What is drawn or left out together: neighbours in the row, which mostly are neighbours on the sheet.
+  /// Neighbours in a row that are drawn or left out together. Most of them are also neighbours on the sheet.
   static constexpr std::size_t kBlockSize = 256;
   struct Chunk {
-    std::uint32_t count = 0;          ///< of its row's first indices
-    std::vector<stereo::Box> blocks;  ///< around each kBlockSize of them, from the model's origin
+    std::uint32_t count = 0;          ///< of indices, at the start of its row
+    std::vector<stereo::Box> blocks;  ///< around each kBlockSize nodes, relative to the model's origin
   };
 
-  /// Takes over a model. `all`: visibility or origin may have changed; `moved_chunks`: chunks of positions that differ, ascending;
-  /// `visible`: asked where parts are hidden only, by chunks that changed. Errors: too large for the GPU.
+  /// Takes over a model. `all`: visibility or origin may have changed. `moved_chunks`: chunks of positions that differ, ascending.
+  /// `visible`: gives the visible nodes; called only if parts are hidden and a chunk changed. Errors: too large for the GPU, no graphics
+  /// memory.
   Result<void> update(const ModelTable& table, const mesh::Vec3& origin, bool all, std::span<const std::uint32_t> moved_chunks,
                       const std::function<const std::vector<std::uint8_t>&()>& visible);
 

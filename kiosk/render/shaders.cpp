@@ -2,7 +2,8 @@
 
 #include <string>
 
-#include "kiosk/render/sign_shaders.h"
+#include "kiosk/render/editing_shaders.h"
+#include "kiosk/render/glyph_shaders.h"
 
 namespace prismesh::kiosk::render {
 
@@ -35,7 +36,8 @@ void main() {
 }
 )";
 
-// What pulls the model out of its textures, and moves things toward the eye by so many mm without moving them in the picture.
+// texel() gives the place of entry i in the model's textures. nearer() moves a vertex toward the eye by `mm` in depth only; its place in
+// the picture stays.
 const char* const kPull = R"(
 uniform sampler2D positions;
 uniform mat4 clip_from_model;
@@ -47,13 +49,21 @@ vec4 nearer(vec4 clip, float mm) {
 }
 )";
 
+// The corner (-1 or 1 on each axis) of a square's two triangles for each of six vertices.
+const char* const kSquareCorner = R"(
+vec2 square_corner(int vertex) {
+  int k = vertex % 6;
+  return vec2(k == 1 || k == 2 || k == 4 ? 1.0 : -1.0, k == 2 || k == 4 || k == 5 ? 1.0 : -1.0);
+}
+)";
+
 const char* const kShellPull = R"(
 uniform usampler2D connectivity, surface;
 const int kCorner[6] = int[6](1, 2, 0, 2, 3, 0);
 uint node_of(uvec4 nodes, int corner) { return corner == 0 ? nodes.x : corner == 1 ? nodes.y : corner == 2 ? nodes.z : nodes.w; }
 )";
 
-// Flat values come from the last vertex of a triangle: corner 0 for both halves of a quad.
+// Flat outputs take the value of a triangle's last vertex, which is corner 0 for both halves of a quad.
 const char* const kShellVertex = R"(
 uniform vec3 palette[22];
 uniform vec3 grades[3];
@@ -106,16 +116,15 @@ void main() {
   if (by_grade == 2) base = part < uint(part_count) ? unpackUnorm4x8(texelFetch(part_looks, texel(part), 0).x).rgb : grades[0];
   if ((word.x & 128u) != 0u) base = mix(base, vec3(1.0), 0.55);
   look = base * light;
-  shade = mix(light, 1.0, 0.3);  // a value's colour depends less on where the light is
+  shade = mix(light, 1.0, 0.3);  // shade field colours less, so that values stay readable
   if (field_kind == 1) value = texelFetch(field, texel(node_of(nodes, corner)), 0).xy;
   if (field_kind == 2) value = texelFetch(field, texel(shell), 0).xy;
 }
 )";
 
-// Images may be narrower than the picture, or sheared: `texels_from_pixels` takes steps on the display to steps in the image, and
-// widths are those on the display. Row vectors times it: gradients the other way.
-
-// Distance to the nearest side, in the shell's own square or triangle, over how fast that changes: no diagonal can appear.
+// Draws element edges from the distance to the nearest side in the shell's own unit square or triangle, divided by its gradient. A quad's
+// diagonal can't appear. An eye's image may be narrower than the picture, or sheared: `texels_from_pixels` maps steps on the display to
+// steps in the image, and widths are measured on the display. A gradient times this matrix (as a row vector) is a gradient on the display.
 const char* const kShellFragment = R"(
 in vec2 place;
 in vec2 value;
@@ -125,7 +134,7 @@ flat in float triangle;
 uniform mat2 texels_from_pixels, pixels_from_texels;
 uniform float edge_strength;
 uniform sampler2D colour_map;
-uniform vec3 limits;  // where it begins, one over how far it goes, bands
+uniform vec3 limits;  // start of the value range, 1 / its length, number of bands
 out vec4 colour;
 float cover(float distance, vec2 gradient) {
   gradient = gradient * texels_from_pixels;
@@ -143,8 +152,8 @@ void main() {
     edge = max(edge, cover(1.0 - place.x - place.y, s + t));
   else
     edge = max(edge, max(cover(1.0 - place.x, s), cover(1.0 - place.y, t)));
-  // Where elements are a few pixels small their edges would turn the part into mud.
-  float room = smoothstep(3.0, 14.0, min(extent(s), extent(t)));
+  // Edges fade out where elements are a few pixels large, so that they don't cover the part's colour.
+  float edge_share = smoothstep(3.0, 14.0, min(extent(s), extent(t)));
   vec3 painted = look;
   float share = (value.x - limits.x) * limits.y;
   if (value.y > 0.999 && share > 0.0) {
@@ -152,7 +161,7 @@ void main() {
     if (limits.z > 0.0) share = (floor(min(share, 0.9999) * limits.z) + 0.5) / limits.z;
     painted = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, 0.5)).rgb * shade;
   }
-  colour = vec4(painted * (1.0 - edge_strength * edge * room), 1.0);
+  colour = vec4(painted * (1.0 - edge_strength * edge * edge_share), 1.0);
 }
 )";
 
@@ -193,7 +202,7 @@ uniform usampler2D lines;
 uniform mat2 clip_from_pixels, pixels_from_clip, pixels_from_texels;
 uniform float half_width;
 uniform float toward_eye_mm;
-uniform float least_alpha;
+uniform float min_alpha;
 out float across_pixels;
 flat out float presence;
 flat out float footprint;
@@ -214,7 +223,7 @@ void main() {
   along = length_pixels > 1e-4 ? along / length_pixels : vec2(1.0, 0.0);
   vec2 across = vec2(-along.y, along.x);
   footprint = length(across * pixels_from_texels);
-  presence = mix(least_alpha, 1.0, smoothstep(3.0, 16.0, length_pixels));  // short lines stand close: they step back
+  presence = mix(min_alpha, 1.0, smoothstep(3.0, 16.0, length_pixels));  // short lines are crowded: they fade
   float reach = half_width + 0.5 * footprint + 0.5;
   across_pixels = side * reach;
   vec4 clip = nearer(second ? b : a, toward_eye_mm);
@@ -247,7 +256,6 @@ Result<Shaders> Shaders::link() {
     std::string vertex;
     std::string fragment;
   };
-  using namespace sign_shaders;
   const std::string& head = shader_head();
   const std::string pull = head + kPull, shell = pull + kShellPull, flat = "#define FLAT\n";
   const Entry entries[] = {
@@ -261,7 +269,7 @@ Result<Shaders> Shaders::link() {
       {&Shaders::handle, "handle", head + kHandleVertex, head + kHandleFragment},
       {&Shaders::pane, "pane", head + kPaneVertex, head + kPaneFragment},
       {&Shaders::rectangle, "rectangle", cover_vertex_shader(), head + kRectangleFragment},
-      {&Shaders::pencil, "pencil", head + kSquareCorner + kPencilVertex, head + kPencilFragment},
+      {&Shaders::screen_lines, "screen lines", head + kSquareCorner + kScreenLineVertex, head + kScreenLineFragment},
       {&Shaders::shadow_caster, "shadow caster", head + kShadowCasterVertex, head + kShadowCasterFragment},
       {&Shaders::shadow_plane, "shadow plane", head + kSquareCorner + kShadowPlaneVertex, head + kShadowPlaneFragment}};
   for (const Entry& entry : entries) {

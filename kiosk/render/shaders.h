@@ -1,4 +1,4 @@
-// The shader programs, linked once.
+// Links the shader programs, once for each renderer. Errors: a shader that the driver refuses, with its message.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace prismesh::kiosk::render {
 
-/// Texture units that the programs read from.
+/// Texture units of the programs.
 namespace unit {
 inline constexpr unsigned kPositions = 0;
 inline constexpr unsigned kConnectivity = 1;
 inline constexpr unsigned kSurface = 2;
 inline constexpr unsigned kLines = 3;
-inline constexpr unsigned kSelection = kLines;  ///< never drawn together
+inline constexpr unsigned kSelection = kLines;  ///< no program uses both
 inline constexpr unsigned kLeft = 4;
 inline constexpr unsigned kRight = 5;
 inline constexpr unsigned kPhases = 6;
@@ -22,24 +22,24 @@ inline constexpr unsigned kField = 8;
 inline constexpr unsigned kColourMap = 9;
 }  // namespace unit
 
-/// What every shader begins with.
+/// Version and precision: the start of every shader.
 const std::string& shader_head();
-/// One triangle that covers the image.
+/// Vertex shader of one triangle that covers the image.
 const std::string& cover_vertex_shader();
 
 struct Shaders {
-  gl::Program ground;      ///< one triangle over the whole image
-  gl::Program shells;      ///< six vertices a shell, pulled from textures
-  gl::Program items;       ///< the same shells, their numbers as colours
-  gl::Program lines;       ///< six vertices a line, pulled, as broad as wished
-  gl::Program nodes;       ///< octahedra, six vertices a node, pulled from rows of indices
-  gl::Program flat_nodes;  ///< squares in their place, four vertices
-  gl::Program glyphs;      ///< flat signs, six vertices an instance
+  gl::Program ground;      ///< the background: one triangle over the whole image
+  gl::Program shells;      ///< six vertices a shell, read from textures
+  gl::Program items;       ///< the same shells; the output is shell index + 1
+  gl::Program lines;       ///< six vertices a line, read from textures; any width
+  gl::Program nodes;       ///< octahedra, six vertices a node, read from rows of indices
+  gl::Program flat_nodes;  ///< squares instead of octahedra, four vertices a node
+  gl::Program glyphs;      ///< six vertices an instance
   gl::Program handle;      ///< a mesh in screen millimetres
-  gl::Program pane;        ///< where one of two views lies: six vertices given as corners, no colour
+  gl::Program pane;        ///< the area of one of two views, into the stencil buffer: six vertices from four corners
   gl::Program rectangle;
-  gl::Program pencil;         ///< lines in the plane of the screen
-  gl::Program shadow_caster;  ///< shells on a plane
+  gl::Program screen_lines;   ///< lines in the screen's plane
+  gl::Program shadow_caster;  ///< shells projected onto a plane
   gl::Program shadow_plane;   ///< six vertices: the plane with its shadow
 
   static Result<Shaders> link();

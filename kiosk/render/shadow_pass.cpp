@@ -8,7 +8,7 @@ constexpr int kMaskSize = 384;
 const Colour kShadowColour{0.13F, 0.14F, 0.16F};
 const Colour kPlaneColour{0.62F, 0.63F, 0.65F};
 
-/// The plane's sides as the model's coordinates, from its lower corner.
+/// A plane's lower corner and sides, relative to the model's origin.
 struct Sides {
   Eigen::Vector3f corner, u, v;
 };

@@ -1,4 +1,4 @@
-// Draws the shadows of what is dragged, or else selected, on the planes of shadows.h: soft, darker than the ground.
+// Draws soft shadows of what is dragged, or else selected, on the planes of shadows.h.
 #pragma once
 
 #include <array>
@@ -13,9 +13,10 @@ class ShadowPass {
  public:
   explicit ShadowPass(const Shaders& shaders);
 
-  /// Casts the shadows, once for all images of a scene. Changes framebuffer and viewport. Errors: no graphics memory.
+  /// Draws the shadows into one texture for each plane. Call once before all images of a scene. Changes framebuffer and viewport. Errors:
+  /// no graphics memory.
   Result<void> cast(ModelLayer& model, const stereo::View& view);
-  /// The planes with what was cast on them, into the bound framebuffer, after the shells. Leaves blending on and depth unwritten.
+  /// Draws the planes with their shadows into the bound framebuffer, after the shells. Leaves blending and the depth mask on.
   void draw(const ModelLayer& model, const Frame& frame) const;
 
  private:

@@ -5,15 +5,15 @@
 namespace prismesh::kiosk::render {
 
 namespace {
-constexpr double kOff = 0.04;        ///< of the box's diagonal between it and a plane
-constexpr double kMinFacing = 0.12;  ///< of a plane's normal along the line of sight: under it nothing can be read from it
+constexpr double kPlaneGap = 0.04;   ///< distance between box and plane over the box's diagonal
+constexpr double kMinFacing = 0.12;  ///< cosine between a plane's normal and the line of sight; below it a shadow can't be read
 }  // namespace
 
 std::vector<ShadowPlane> shadow_planes(const stereo::Box& box, const stereo::View& view) {
   std::vector<ShadowPlane> planes;
   if (box.empty()) return planes;
   const Vec3 toward_viewer = view.rotation.conjugate() * Vec3::UnitZ();
-  const double off = kOff * (box.high - box.low).norm();
+  const double off = kPlaneGap * (box.high - box.low).norm();
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(toward_viewer[axis]) < kMinFacing) continue;
     ShadowPlane plane{axis, box.low - Vec3::Constant(off), box.high + Vec3::Constant(off)};
@@ -23,9 +23,9 @@ std::vector<ShadowPlane> shadow_planes(const stereo::Box& box, const stereo::Vie
   return planes;
 }
 
-std::optional<ShadowPlace> shadow_plane_at(const stereo::Aim& aim, const stereo::Box& box, const Eigen::Vector2d& pixel) {
+std::optional<ShadowPoint> shadow_plane_at(const stereo::Aim& aim, const stereo::Box& box, const Eigen::Vector2d& pixel) {
   const stereo::Ray ray = stereo::ray_through(aim, pixel);
-  std::optional<ShadowPlace> nearest;
+  std::optional<ShadowPoint> nearest;
   double nearest_t = 0;
   for (const ShadowPlane& plane : shadow_planes(box, aim.view)) {
     const double t = (plane.low[plane.axis] - ray.origin[plane.axis]) / ray.direction[plane.axis];
@@ -33,7 +33,7 @@ std::optional<ShadowPlace> shadow_plane_at(const stereo::Aim& aim, const stereo:
     Vec3 at = ray.origin + t * ray.direction;
     at[plane.axis] = plane.low[plane.axis];
     if (((at - plane.low).array() < 0).any() || ((plane.high - at).array() < 0).any()) continue;
-    nearest = ShadowPlace{plane, at};
+    nearest = ShadowPoint{plane, at};
     nearest_t = t;
   }
   return nearest;

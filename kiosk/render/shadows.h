@@ -1,5 +1,5 @@
-// Where the shadows of what is dragged fall: planes along the deck's axes beside the model, on the sides turned away from the viewer
-// (K. P. Herndon et al., "Interactive Shadows", 1992). Pure.
+// Places the planes that shadows are drawn on: along the deck's axes beside the model, on the sides turned away from the viewer
+// [Herndon 1992]. No OpenGL.
 #pragma once
 
 #include <optional>
@@ -11,21 +11,21 @@ namespace prismesh::kiosk::render {
 
 using mesh::Vec3;
 
-/// A rectangle across the deck's axis 0..2.
+/// A rectangle perpendicular to the deck's axis 0..2.
 struct ShadowPlane {
   int axis = 0;
-  Vec3 low = Vec3::Zero();  ///< corners, deck coordinates; equal along the axis
+  Vec3 low = Vec3::Zero();  ///< corners, deck coordinates; the same coordinate along `axis`
   Vec3 high = Vec3::Zero();
 };
 
-/// Beside a box, a little way off. A plane seen nearly from its edge is left out; an empty box has none.
+/// Up to three planes at a small distance from a box (deck coordinates). A plane seen nearly edge-on is left out; an empty box has none.
 std::vector<ShadowPlane> shadow_planes(const stereo::Box& box, const stereo::View& view);
 
-struct ShadowPlace {
+struct ShadowPoint {
   ShadowPlane plane;
-  Vec3 at = Vec3::Zero();  ///< on it, deck coordinates
+  Vec3 at = Vec3::Zero();  ///< on the plane, deck coordinates
 };
-/// The nearest plane under a pixel. What of the model is there as well isn't asked.
-std::optional<ShadowPlace> shadow_plane_at(const stereo::Aim& aim, const stereo::Box& box, const Eigen::Vector2d& pixel);
+/// The plane nearest to the eye at a pixel, whether or not the model covers it.
+std::optional<ShadowPoint> shadow_plane_at(const stereo::Aim& aim, const stereo::Box& box, const Eigen::Vector2d& pixel);
 
 }  // namespace prismesh::kiosk::render

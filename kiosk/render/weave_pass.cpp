@@ -8,7 +8,8 @@ namespace prismesh::kiosk::render {
 
 namespace {
 
-// texelFetch only: each (sub)pixel of the display is one texel of one eye's image. See composition.h for what the numbers are.
+// Each (sub)pixel of the display is one texel of one eye's image, so all reads are texelFetch. Numbers are those of the phase map
+// (drivers/display/phase_map.h).
 const char* const kDeclarations = R"(
 uniform sampler2D left_eye, right_eye, phases;
 uniform bool swapped;
@@ -22,8 +23,8 @@ out vec4 colour;
 vec3 fetch(bool left, ivec2 q) { return left ? texelFetch(left_eye, q, 0).rgb : texelFetch(right_eye, q, 0).rgb; }
 )";
 
-// What the display must show of an eye's colour so that with the other eye's light leaking in, this eye sees what it should. Black is
-// lifted by the leak, so that there is always something to subtract from.
+// Compensates crosstalk: the colour to show to an eye so that, with the leak of the other eye's light, it sees its own colour. Black is
+// raised by the leak, so that the difference is never negative.
 const char* const kShown = R"(
 #if LEAKING
 vec3 without_leak(vec3 own, vec3 other, float into_own, float into_other) {
@@ -41,7 +42,7 @@ vec3 shown(bool left, vec3 own, vec3 other) { return own; }
 )";
 
 const char* const kNumbers = R"(
-// Both eyes' numbers at a pixel's middle, and what they change by over a pixel to the right.
+// Both eyes' numbers at a pixel's middle, and their change over one pixel to the right.
 void read_numbers(ivec2 p, out vec2 numbers, out vec2 slope) {
   vec2 at = (vec2(p) + 0.5) * nodes_per_pixel;
   ivec2 node = ivec2(at);
@@ -71,7 +72,7 @@ vec3 interlaced(vec2 numbers, ivec2 p) {
   float own = left ? numbers.x : numbers.y, other = left ? numbers.y : numbers.x;
   vec3 light = fetch(left, texel(floor(own + 0.5), p));
 #if LEAKING
-  // The other eye has no texel at just this place: what lies between its two nearest ones.
+  // The other eye has no texel at this number: interpolate between its two nearest ones.
   float below = floor(other);
   vec3 beside = mix(fetch(!left, texel(below, p)), fetch(!left, texel(below + 1.0, p)), other - below);
   return shown(left, light, beside);
@@ -137,12 +138,13 @@ void main() { colour = vec4(woven(ivec2(gl_FragCoord.xy)), 1.0); }
 
 }  // namespace
 
-std::string WeavePass::fragment_shader(const Way& way) {
+std::string WeavePass::fragment_shader(const Variant& variant) {
   const auto define = [](const char* name, bool value) { return std::string("#define ") + name + (value ? " 1\n" : " 0\n"); };
-  std::string shader = shader_head() + define("BY_ROWS", way.by_rows) + define("SUBPIXELS", way.subpixels) + define("LEAKING", way.leaking);
+  std::string shader =
+      shader_head() + define("BY_ROWS", variant.by_rows) + define("SUBPIXELS", variant.subpixels) + define("LEAKING", variant.leaking);
   shader += kDeclarations;
   shader += kShown;
-  switch (way.join) {
+  switch (variant.join) {
     case Join::alone: shader += kAlone; break;
     case Join::interlaced: (shader += kNumbers) += kInterlaced; break;
     case Join::stencil: (shader += kNumbers) += kStencil; break;
@@ -153,12 +155,12 @@ std::string WeavePass::fragment_shader(const Way& way) {
   return shader + kMain;
 }
 
-Result<const gl::Program*> WeavePass::program_for(const Way& way) {
-  auto known = programs_.find(way);
+Result<const gl::Program*> WeavePass::program_for(const Variant& variant) {
+  auto known = programs_.find(variant);
   if (known == programs_.end()) {
-    Result<gl::Program> program = gl::Program::link("weave", cover_vertex_shader(), fragment_shader(way));
+    Result<gl::Program> program = gl::Program::link("weave", cover_vertex_shader(), fragment_shader(variant));
     if (!program) return fail(program.error());
-    known = programs_.emplace(way, std::move(*program)).first;
+    known = programs_.emplace(variant, std::move(*program)).first;
   }
   return &known->second;
 }

@@ -1,4 +1,4 @@
-// Makes one picture of the eyes' images: the last step, after which nothing may touch a pixel.
+// Weaves the eyes' images into the display's picture. This is the last step: after it no pixel may change.
 #pragma once
 
 #include <compare>
@@ -13,26 +13,26 @@ namespace prismesh::kiosk::render {
 
 class WeavePass {
  public:
-  /// Into a framebuffer of width x height pixels (0: the window's). Errors: the graphics driver refuses the shader.
+  /// Draws into a framebuffer of width x height pixels (0: the window's). Errors: the graphics driver refuses the shader.
   Result<void> draw(const Composition& composition, const EyeImages& images, unsigned framebuffer, int width, int height);
 
  private:
-  /// A program for each way of weaving: software renderers walk through every branch of a shader, taken or not.
-  struct Way {
+  /// Selects the program. There is one for each variant, as software renderers execute every branch of a shader.
+  struct Variant {
     Join join = Join::alone;
     bool by_rows = false;
     bool subpixels = false;
     bool leaking = false;
-    auto operator<=>(const Way&) const = default;  // NOLINT(modernize-use-nullptr): the check mistakes the operator
+    auto operator<=>(const Variant&) const = default;  // NOLINT(modernize-use-nullptr): the check mistakes the operator
   };
-  static std::string fragment_shader(const Way& way);
-  Result<const gl::Program*> program_for(const Way& way);
+  static std::string fragment_shader(const Variant& variant);
+  Result<const gl::Program*> program_for(const Variant& variant);
   void upload(const drivers::display::PhaseMap& phases);
 
-  std::map<Way, gl::Program> programs_;
+  std::map<Variant, gl::Program> programs_;
   gl::VertexArray no_attributes_ = gl::VertexArray::make();
   gl::Texture phases_;
-  int columns_ = 0, rows_ = 0;  ///< of the texture
+  int columns_ = 0, rows_ = 0;  ///< of the texture phases_
 };
 
 }  // namespace prismesh::kiosk::render

@@ -5,9 +5,9 @@
 namespace prismesh::kiosk::stereo {
 
 namespace {
-constexpr double kNearestMm = 10;     ///< no nearer than this to the eye, so that depth keeps its resolution
-constexpr double kRoomMm = 40;        ///< for what stands out of the model: handles, glyphs
-constexpr double kNearestEyeMm = 20;  ///< an eye nearer than this, or behind the screen, is taken to be here
+constexpr double kMinNearMm = 10;  ///< of the near plane from the eye, so that depth keeps its resolution
+constexpr double kMarginMm = 40;   ///< for what extends beyond the model: handles, glyphs
+constexpr double kMinEyeMm = 20;   ///< an eye nearer to the screen, or behind it, is moved to this distance
 }  // namespace
 
 EyePair PictureEyes::eyes() const {
@@ -21,13 +21,13 @@ Vec3 PictureEyes::picture_eye(std::optional<Eye> eye) const {
 
 DepthRange depth_range(const View& view, const Vec3& eye_mm) {
   const auto [behind, before] = depth_extent(view);
-  const double eye = std::max(eye_mm.z(), kNearestEyeMm);
-  const double near_mm = std::max(kNearestMm, eye - before - kRoomMm);
-  return {near_mm, std::max(eye - behind + kRoomMm, near_mm + kRoomMm)};
+  const double eye = std::max(eye_mm.z(), kMinEyeMm);
+  const double near_mm = std::max(kMinNearMm, eye - before - kMarginMm);
+  return {near_mm, std::max(eye - behind + kMarginMm, near_mm + kMarginMm)};
 }
 
 Eigen::Matrix4d clip_from_screen(const Vec3& eye_mm, const Eigen::Vector2d& screen_mm, const DepthRange& range) {
-  const Vec3 eye(eye_mm.x(), eye_mm.y(), std::max(eye_mm.z(), kNearestEyeMm));
+  const Vec3 eye(eye_mm.x(), eye_mm.y(), std::max(eye_mm.z(), kMinEyeMm));
   const double n = range.near_mm, f = range.far_mm, scale = n / eye.z();
   const double left = (-0.5 * screen_mm.x() - eye.x()) * scale, right = (0.5 * screen_mm.x() - eye.x()) * scale;
   const double bottom = (-0.5 * screen_mm.y() - eye.y()) * scale, top = (0.5 * screen_mm.y() - eye.y()) * scale;

@@ -5,7 +5,7 @@
 namespace prismesh::kiosk::stereo {
 
 namespace {
-constexpr std::int64_t kRefreshOldNs = 1'000'000'000;  ///< a phase that is older may have drifted
+constexpr std::int64_t kMaxRefreshAgeNs = 1'000'000'000;  ///< the phase of an older refresh may have drifted
 }
 
 void PictureTiming::drawn(std::int64_t now_ns) {
@@ -14,7 +14,7 @@ void PictureTiming::drawn(std::int64_t now_ns) {
 }
 
 void PictureTiming::refreshed(std::int64_t refresh_ns, std::int64_t now_ns) {
-  if (refresh_ns > 0 && refresh_ns <= now_ns && now_ns - refresh_ns < kRefreshOldNs) refresh_ns_ = refresh_ns;
+  if (refresh_ns > 0 && refresh_ns <= now_ns && now_ns - refresh_ns < kMaxRefreshAgeNs) refresh_ns_ = refresh_ns;
 }
 
 std::int64_t PictureTiming::draw_ns() const {
@@ -25,7 +25,7 @@ std::int64_t PictureTiming::draw_ns() const {
   return sorted[count / 2];
 }
 
-std::int64_t PictureTiming::longest_draw_ns() const {
+std::int64_t PictureTiming::max_draw_ns() const {
   const std::size_t count = std::min(drawn_, kRemembered);
   return count == 0 ? timing_.period_ns : *std::max_element(draws_.begin(), draws_.begin() + static_cast<std::ptrdiff_t>(count));
 }
@@ -33,10 +33,10 @@ std::int64_t PictureTiming::longest_draw_ns() const {
 LitTime PictureTiming::lit(std::int64_t now_ns) const {
   const std::int64_t handed_ns = now_ns + draw_ns(), period = std::max<std::int64_t>(1, timing_.period_ns);
   std::int64_t shown_ns = handed_ns + period / 2;
-  if (refresh_ns_ && now_ns - *refresh_ns_ < kRefreshOldNs)
+  if (refresh_ns_ && now_ns - *refresh_ns_ < kMaxRefreshAgeNs)
     shown_ns = *refresh_ns_ + (handed_ns - *refresh_ns_ + period - 1) / period * period;
   const std::int64_t from_ns = shown_ns + period / 2 + timing_.panel_latency_ns;
-  return {from_ns, from_ns + std::max(period, longest_draw_ns())};
+  return {from_ns, from_ns + std::max(period, max_draw_ns())};
 }
 
 }  // namespace prismesh::kiosk::stereo

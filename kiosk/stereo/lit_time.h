@@ -1,9 +1,9 @@
-// When a picture that is begun now will be seen: what a head and a mask are predicted to. Pure, on times that are passed in.
+// Predicts when a picture that is begun now will be seen, the time that head and mask are predicted to. All times are arguments.
 //
 //   begun ----- drawn and handed over ----- refresh ----- scan-out reaches the middle ----- its pixels turn
 //        draw time (measured)        wait          half a period               panel latency
 //
-// The display may say when it refreshed last (EGL_CHROMIUM_sync_control); else the wait is taken to be half a period, its mean.
+// The display may report its last refresh (EGL_CHROMIUM_sync_control). Otherwise the wait is assumed to be its mean, half a period.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace prismesh::kiosk::stereo {
 struct LitTime {
   std::int64_t from_ns = 0;   ///< the picture is seen from here ...
   std::int64_t until_ns = 0;  ///< ... until the next one can take its place
-  /// What head and mask are predicted to: then a picture that stands still is as much ahead of them at first as it is behind at last.
+  /// The time that head and mask are predicted to. The picture is then ahead of them at first by as much as it is behind at the end.
   std::int64_t middle_ns() const { return from_ns + (until_ns - from_ns) / 2; }
 };
 
@@ -34,18 +34,18 @@ class PictureTiming {
   const DisplayTiming& timing() const { return timing_; }
 
   void begun(std::int64_t now_ns) { begun_ns_ = now_ns; }
-  /// Drawn to the last pixel and about to be handed to the display.
+  /// The picture is drawn to the last pixel and about to be handed to the display.
   void drawn(std::int64_t now_ns);
-  /// A refresh began then; a time in the future or older than a second is no use and is ignored.
+  /// A refresh began at refresh_ns. A time in the future or older than a second is ignored.
   void refreshed(std::int64_t refresh_ns, std::int64_t now_ns);
 
-  /// Of a picture that is begun now.
+  /// When a picture that is begun now is seen.
   LitTime lit(std::int64_t now_ns) const;
-  /// Pictures begun earlier would only queue up behind the one before.
+  /// The earliest time to begin the next picture: an earlier one would only wait for the one before.
   std::int64_t next_begin_ns() const { return begun_ns_ + timing_.period_ns; }
-  /// Median of the last pictures.
+  /// Median and max draw time of the last pictures; one period before the first.
   std::int64_t draw_ns() const;
-  std::int64_t longest_draw_ns() const;
+  std::int64_t max_draw_ns() const;
 
  private:
   static constexpr std::size_t kRemembered = 5;

@@ -7,16 +7,16 @@ namespace prismesh::kiosk::stereo {
 
 namespace {
 
-constexpr double kHandleHalfWidthPixels = 8;  ///< of the arrow's head, its widest place
-constexpr double kMinSlope = 0.06;            ///< of an axis' length on the screen to its true length: under it nothing can be aimed
+constexpr double kHandleHalfWidthPixels = 8;  ///< of the arrow's head
+constexpr double kMinSlope = 0.06;  ///< min ratio of an axis' length on the screen to its true length; below it a distance is undefined
 
-/// Homogeneous pixel coordinates: divide the first two by the third.
+/// Homogeneous pixel coordinates: x and y are divided by z.
 Vec3 pixel_homogeneous(const Aim& aim, const Eigen::Matrix4d& clip, const Eigen::Vector4d& point) {
   const Eigen::Vector4d c = clip * point;
   return {0.5 * (c.x() + c.w()) * aim.width, 0.5 * (c.w() - c.y()) * aim.height, c.w()};
 }
 
-/// The eye's depth over the point's, relative to the screen's plane: how much larger the point's surroundings look.
+/// Magnification of what is at the point's depth, relative to the screen's plane.
 double magnification(const Aim& aim, const Vec3& deck_point) {
   const double depth = std::max(aim.eye_mm.z() - to_screen(aim.view, deck_point).z(), 1.0);
   return aim.eye_mm.z() / depth;
@@ -63,7 +63,7 @@ std::optional<double> distance_along(const Aim& aim, const Vec3& point, const Ve
   const Eigen::Vector2d tangent = (step.head<2>() - at * step.z()) / start.z();  // pixels per deck unit
   const double full_length = aim.view.mm_per_unit / aim.mm_per_pixel();
   if (!(tangent.norm() > kMinSlope * full_length)) return std::nullopt;
-  // A line stays a line in the picture: go to the pixel's foot on it, then solve (start + t step) for that place.
+  // A line stays a line in the picture: project the pixel onto it, then solve (start + t step) for that point.
   const Eigen::Vector2d along = tangent.normalized();
   const double wanted = along.dot(pixel);
   const double slope = along.dot(step.head<2>()) - wanted * step.z();

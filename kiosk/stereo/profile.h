@@ -1,4 +1,4 @@
-// Display profiles by the names that the kiosk uses.
+// Makes the display profiles of drivers/display available in the kiosk's namespace.
 #pragma once
 
 #include "drivers/display/profile.h"

@@ -10,21 +10,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Radii of the zones in which the picture stands still. 2 mm to the side shift an eye's windows by 0.03 pixels.
+/// Radii of the zones in which the picture is constant. 2 mm to the side shift an eye's windows by 0.03 pixels.
 constexpr double kStillAcrossMm = 2, kStillDeepMm = 6, kStillTurnMm = 0.5;
-constexpr double kTakeUpSeconds = 0.06;  ///< time constants of going over to eyes that came back ...
-constexpr double kLetGoSeconds = 0.4;    ///< ... and from lost eyes to the resting place
+constexpr double kTakeUpSeconds = 0.06;  ///< time constants: to eyes that came back ...
+constexpr double kLetGoSeconds = 0.4;    ///< ... and from lost eyes to the resting position
 constexpr double kArrivedMm = 0.05;
-constexpr std::int64_t kLookLateNs = 10'000'000;    ///< between two looks while nothing is drawn
-constexpr std::int64_t kClockSlackNs = 50'000'000;  ///< a measurement that lies further in the future is nonsense
-constexpr std::int64_t kSlowestNs = 500'000'000;    ///< no tracker takes longer
+constexpr std::int64_t kMaxLookDelayNs = 10'000'000;  ///< between two calls of look() while nothing is drawn
+constexpr std::int64_t kClockSlackNs = 50'000'000;    ///< a measurement farther in the future is ignored
+constexpr std::int64_t kMaxSlowNs = 500'000'000;      ///< max additional age of measurements
 
 double seconds_of(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 double part(std::int64_t of_ns, std::int64_t whole_ns) {
   return std::clamp(static_cast<double>(of_ns) / static_cast<double>(std::max<std::int64_t>(1, whole_ns)), 0.0, 1.0);
 }
 
-/// A place that a head before a screen can have; anything else is a fault, whatever the phase says.
+/// Whether the state is possible for a head in front of a screen. Anything else is a fault, even if the tracker reports that it tracks.
 bool believable(const ipc::EyesState& eyes) {
   const Eigen::Map<const Vector3d> place(eyes.between_eyes_mm.data()), velocity(eyes.velocity_mm_s.data()), right(eyes.toward_right.data());
   return place.allFinite() && velocity.allFinite() && right.allFinite() && place.z() > 100 && place.norm() < 5000 &&
@@ -78,11 +78,11 @@ SeenFrom TrackedEyes::look(const DeviceReading& reading, std::int64_t now_ns, co
   take(reading, now_ns);
   move(now_ns, lit);
   if (options_.mono_without_eyes) {
-    double most = share_for_eyes(now_ns, lit);
-    most = std::min(most, 1 - std::min(1.0, place_.offset_mm() / limits_.place_slack_mm));
-    if (options_.movable_mask) most = std::min(most, share_for_mask(reading, now_ns, lit));
+    double max_share = share_for_eyes(now_ns, lit);
+    max_share = std::min(max_share, 1 - std::min(1.0, place_.offset_mm() / limits_.place_slack_mm));
+    if (options_.movable_mask) max_share = std::min(max_share, share_for_mask(reading, now_ns, lit));
     const double risen = seen_.depth_share + (looked_ns_ ? part(lit.from_ns - *looked_ns_, limits_.rise_ns) : 0);
-    seen_.depth_share = std::clamp(most, 0.0, risen);
+    seen_.depth_share = std::clamp(max_share, 0.0, risen);
   }
   looked_ns_ = lit.from_ns;
   return seen_;
@@ -101,7 +101,7 @@ void TrackedEyes::take(const DeviceReading& reading, std::int64_t now_ns) {
   if (eyes.phase != ipc::EyesPhase::tracking || eyes.measured_ns <= head_.time_ns || eyes.measured_ns > now_ns + kClockSlackNs) return;
   if (!believable(eyes)) return;
   found_again_ = found_again_ || eyes.measured_ns - head_.time_ns > limits_.lost_after_ns;
-  slow_ns_ = std::clamp(eyes.lost_after_ns, limits_.lost_after_ns, limits_.lost_after_ns + kSlowestNs) - limits_.lost_after_ns;
+  slow_ns_ = std::clamp(eyes.lost_after_ns, limits_.lost_after_ns, limits_.lost_after_ns + kMaxSlowNs) - limits_.lost_after_ns;
   head_ = eyes.head();
   if (!options_.eye_separation_mm) eye_separation_mm_ = eyes.eye_separation_mm;
 }
@@ -115,7 +115,7 @@ void TrackedEyes::move(std::int64_t now_ns, const LitTime& lit) {
     half_separation_.retarget();
     source_ = source;
   }
-  // What is lost goes on for as long as the filter extrapolates, and stands still from there.
+  // Lost eyes move on as long as the filter extrapolates, and are constant from then on.
   const bool tracked = source == Source::tracked;
   const double seconds = looked_ns_ ? std::max(0.0, seconds_of(lit.from_ns - *looked_ns_)) : 0;
   const double time_constant = tracked ? kTakeUpSeconds : kLetGoSeconds;
@@ -126,13 +126,13 @@ void TrackedEyes::move(std::int64_t now_ns, const LitTime& lit) {
   seen_.eye_separation_mm = 2 * half.norm();
 }
 
-/// Full depth while measurements come; then down to mono, which the last picture before the deadline has reached.
+/// Full depth while measurements come; then a fade to mono, which the last picture before the deadline has reached.
 double TrackedEyes::share_for_eyes(std::int64_t now_ns, const LitTime& lit) const {
   if (head_.time_ns == 0) return 0;
   const std::int64_t deadline = heard_ns() + limits_.mono_after_ns, ahead = lit.until_ns - now_ns;
-  // One picture may just have been begun when the eyes could have been found lost: the next one has to be mono in time.
-  const std::int64_t room = limits_.mono_after_ns - ahead - kLookLateNs;
-  const std::int64_t lost_after = std::clamp(room, limits_.lost_soonest_ns, limits_.lost_after_ns);
+  // A picture may have been begun just before the eyes are found lost: the next one must still be mono in time.
+  const std::int64_t max_lost_after = limits_.mono_after_ns - ahead - kMaxLookDelayNs;
+  const std::int64_t lost_after = std::clamp(max_lost_after, limits_.min_lost_after_ns, limits_.lost_after_ns);
   if (now_ns - heard_ns() <= lost_after) return 1;
   const std::int64_t fade_from = heard_ns() + lost_after + ahead;
   return part(deadline - lit.until_ns, deadline - fade_from);
@@ -145,10 +145,10 @@ double TrackedEyes::share_for_mask(const DeviceReading& reading, std::int64_t no
     const ipc::PrismState& mask = *reading.prism;
     const bool planned = mask.mono_from_ns != 0 || mask.mono_until_ns != 0;
     if (!planned || lit.from_ns >= mask.mono_until_ns) return 1;
-    return part(mask.mono_from_ns - lit.until_ns, limits_.fade_ns);  // 0 from the last picture that would reach into the move
+    return part(mask.mono_from_ns - lit.until_ns, limits_.fade_ns);  // 0 for the last picture that would be seen during the move
   }
   if (!disallowed_ns_) disallowed_ns_ = lit.until_ns;
-  // A move back that was announced needs no fade any more.
+  // Before an announced move back the picture has already faded.
   if (known && lit.until_ns > reading.prism->mono_from_ns && lit.from_ns < reading.prism->mono_until_ns) return 0;
   return std::min(seen_.depth_share, 1 - part(lit.until_ns - *disallowed_ns_, limits_.fade_ns));
 }

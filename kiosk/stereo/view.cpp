@@ -8,10 +8,10 @@ namespace prismesh::kiosk::stereo {
 
 namespace {
 
-constexpr double kFlattest = 0.005;         ///< depth is never scaled to less: one thing has to hide another
-constexpr double kNearestDepthEyeMm = 100;  ///< no eye is taken to be nearer when depth is measured by it
+constexpr double kMinDepthScale = 0.005;  ///< above 0, so that near surfaces still hide far ones
+constexpr double kMinDepthEyeMm = 100;    ///< min distance of the eye when depth is computed from it
 
-/// Where the bounds' centre stands before the screen, and how far they reach from there: mm, before compression.
+/// Distance of the bounds' centre in front of the screen, and their radius: mm, before compression.
 struct Depths {
   double centre = 0;
   double radius = 1;
@@ -21,8 +21,8 @@ Depths depths(const View& view) {
   return {turned.z() + view.before_mm, view.bounds.radius * view.mm_per_unit};
 }
 
-/// Largest factor that keeps both ends of the depths within the limits.
-double largest_scale(const Depths& depths, const ComfortBox& limits) {
+/// Max factor that keeps both ends of the depths within the limits.
+double max_depth_scale(const Depths& depths, const ComfortBox& limits) {
   double scale = 1e9;
   if (depths.centre + depths.radius > 0) scale = std::min(scale, limits.before_mm / (depths.centre + depths.radius));
   if (depths.radius - depths.centre > 0) scale = std::min(scale, limits.behind_mm / (depths.radius - depths.centre));
@@ -53,16 +53,16 @@ Sphere sphere_around(const Box& box) {
 }
 
 ComfortBox comfort_box(double eye_distance_mm, double degrees, double separation_mm) {
-  const double distance = std::max(eye_distance_mm, kNearestDepthEyeMm);
+  const double distance = std::max(eye_distance_mm, kMinDepthEyeMm);
   const double parallax = distance * std::tan(degrees * std::numbers::pi / 180);
-  const double most = 0.5 * distance;
-  const double behind = parallax < separation_mm ? parallax * distance / (separation_mm - parallax) : most;
-  return {std::min(most, parallax * distance / (separation_mm + parallax)), std::min(most, behind)};
+  const double max = 0.5 * distance;
+  const double behind = parallax < separation_mm ? parallax * distance / (separation_mm - parallax) : max;
+  return {std::min(max, parallax * distance / (separation_mm + parallax)), std::min(max, behind)};
 }
 
 double depth_scale(const View& view) {
-  const double full = largest_scale(depths(view), view.comfort);
-  return std::max(kFlattest * std::min(1.0, full), std::min(full, view.depth_strength * std::min(1.0, kComfortMargin * full)));
+  const double full = max_depth_scale(depths(view), view.comfort);
+  return std::max(kMinDepthScale * std::min(1.0, full), std::min(full, view.depth_strength * std::min(1.0, kComfortMargin * full)));
 }
 
 Eigen::Matrix4d screen_from_deck(const View& view) {
@@ -115,7 +115,7 @@ View zoom(const View& view, double factor, const Eigen::Vector2d& at_mm) {
   View scaled = view;
   scaled.mm_per_unit *= factor;
   scaled.pan_mm = at_mm + (view.pan_mm - at_mm) * factor;
-  scaled.before_mm *= factor;  // what lay in the plane of the screen stays there
+  scaled.before_mm *= factor;  // what is in the screen's plane stays there
   return scaled;
 }
 
@@ -133,7 +133,7 @@ View toward_screen_plane(const View& view, const Vec3& deck_point, const Vec3& e
   View moved = view;
   moved.before_mm -= share * before.z() / depth_scale(view);
   const Vec3 after = to_screen(moved, deck_point);
-  const double eye = std::max(eye_mm.z(), kNearestDepthEyeMm);
+  const double eye = std::max(eye_mm.z(), kMinDepthEyeMm);
   const double farther = (eye - after.z()) / std::max(eye - before.z(), 1.0);
   const Eigen::Vector2d wanted = eye_mm.head<2>() + farther * (before.head<2>() - eye_mm.head<2>());
   moved.pan_mm += wanted - after.head<2>();
@@ -149,7 +149,7 @@ View fit(const View& view, const Box& box, const Eigen::Vector2d& screen_mm, dou
 
 View fit_turned(const View& view, const Box& turned, const Eigen::Vector2d& screen_mm, double eye_distance_mm) {
   constexpr double kFilled = 0.86;
-  constexpr int kRounds = 12;  // the eye's distance makes the size depend on the scale a little: converges in a few
+  constexpr int kRounds = 12;  // perspective makes the size on the screen slightly nonlinear in the scale
   View fitted = view;
   const Sphere sphere = sphere_around(turned);
   fitted.pivot = view.rotation.conjugate() * sphere.centre;

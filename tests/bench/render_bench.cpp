@@ -71,10 +71,10 @@ BENCHMARK(turning)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// From a snapshot in which an edit has judged 10,000 shells anew to the picture with their signs, without drawing the shells again from
-/// elsewhere; `taking_s` is the processor time until the renderer has it, the rest is drawing. Arguments: shells that aren't ok, out of a
-/// hundred; whether the edit made and removed shells (1), or moved nodes (0).
-void signs_after_an_edit(benchmark::State& state) {
+/// From a snapshot in which an edit has changed the quality of 10,000 shells to the picture with their glyphs, with the view unchanged.
+/// `taking_s` is the processor time until the renderer has the snapshot, the rest is drawing. Arguments: percentage of shells that warn;
+/// whether the edit made and removed shells (1), or moved nodes (0).
+void glyphs_after_an_edit(benchmark::State& state) {
   Stage stage(0, "mono", 1);
   stage.picture.moving = false;
   const std::shared_ptr<test::TestSource> source = million(0);
@@ -83,9 +83,9 @@ void signs_after_an_edit(benchmark::State& state) {
   warns.warn = 1;
   for (std::size_t s = 0; s < source->shell_nodes.size(); ++s)
     if (s % 100 < bad) source->shell_quality[s] = warns;
-  // One in eight is a triangle: nodes where they crowd are looked for.
+  // One in eight is a triangle, so the renderer searches for nodes with too many triangles.
   for (std::size_t s = 0; s < source->shell_nodes.size(); s += 8) source->shell_nodes[s].node[3] = source->shell_nodes[s].node[2];
-  source->most_triangles = 3;
+  source->max_triangles = 3;
   source->key = 77;
   (void)stage.renderer->set_model(source);
   std::size_t turn = 0, drawn = 0;
@@ -103,10 +103,10 @@ void signs_after_an_edit(benchmark::State& state) {
     glFinish();
     drawn = report ? report->glyphs : 0;
   }
-  state.counters["signs"] = static_cast<double>(drawn);
+  state.counters["glyphs"] = static_cast<double>(drawn);
   state.counters["taking_s"] = benchmark::Counter(taking, benchmark::Counter::kAvgIterations);
 }
-BENCHMARK(signs_after_an_edit)
+BENCHMARK(glyphs_after_an_edit)
     ->ArgNames({"bad", "topology"})
     ->Args({0, 0})
     ->Args({10, 0})

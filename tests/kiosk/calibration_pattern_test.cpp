@@ -21,7 +21,6 @@ class CalibrationPattern : public render::RenderTest {
   }
 };
 
-/// Rows count from below in an image, from above in a pattern.
 Rgb at(const render::Image& image, int x, int y_from_above) {
   const std::uint8_t* pixel = image.at(x, y_from_above);
   return {pixel[0], pixel[1], pixel[2]};
@@ -29,7 +28,7 @@ Rgb at(const render::Image& image, int x, int y_from_above) {
 
 constexpr Rgb kRed{255, 0, 0}, kBlue{0, 0, 255}, kWhite{255, 255, 255}, kBlack{0, 0, 0};
 
-TEST_F(CalibrationPattern, stripes_lie_on_display_pixels) {
+TEST_F(CalibrationPattern, stripes_are_drawn_on_display_pixels) {
   const render::Image image = painted(colour_stripes(), "mono");
   for (int x = 160; x < 320; ++x) EXPECT_EQ(at(image, x, 100), x % 2 == 0 ? kRed : kBlue) << x;
   for (int x = 320; x < 480; ++x) EXPECT_EQ(at(image, x, 100), x / 2 % 2 == 0 ? kRed : kBlue) << x;
@@ -44,7 +43,7 @@ TEST_F(CalibrationPattern, each_eye_has_its_own_fields) {
   }
 }
 
-TEST_F(CalibrationPattern, the_bar_is_as_long_as_it_says) {
+TEST_F(CalibrationPattern, the_bar_has_its_length_in_pixels) {
   const Pattern pattern = ruler_bar(640);
   ASSERT_EQ(pattern.bars.front().pixels, 500);
   const render::Image image = painted(pattern, "mono");
@@ -61,8 +60,8 @@ TEST_F(CalibrationPattern, one_eye_sees_one_grey_and_the_other_black_and_white) 
   EXPECT_EQ(at(image, 501, 100), kWhite);
 }
 
-TEST_F(CalibrationPattern, signs_go_to_their_eyes) {
-  const render::Image left = painted(eye_signs(), "mono-left"), right = painted(eye_signs(), "mono-right");
+TEST_F(CalibrationPattern, each_eye_sees_its_own_mark) {
+  const render::Image left = painted(eye_marks(), "mono-left"), right = painted(eye_marks(), "mono-right");
   const int bar_x = 176, bar_y = 120, lying_x = 450, lying_y = 116;
   EXPECT_EQ(at(left, bar_x, bar_y), kWhite);
   EXPECT_NE(at(right, bar_x, bar_y), kWhite);

@@ -1,4 +1,4 @@
-// Where a finished calibration goes.
+// Folder that a finished calibration is saved to.
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Sets a variable, or unsets it, until it goes out of scope.
+/// Sets or unsets an environment variable until the end of the scope.
 class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {

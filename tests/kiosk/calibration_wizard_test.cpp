@@ -31,7 +31,7 @@ display::Monitor monitor_on_the_desk() {
 
 Profile built_in(const char* name) { return *drivers::display::find_profile(name); }
 
-/// What nobody knows of the display on the desk.
+/// The display's true optics, which the wizard must find.
 MaskOptics hidden(const MaskOptics& known) {
   MaskOptics real = known;
   real.zero_mm = -0.171;
@@ -45,13 +45,13 @@ void go_to(Wizard& wizard, Step step) {
   ASSERT_EQ(wizard.step(), step);
 }
 
-/// Height (in periods of the ramp) at which the left eye sees the band at a place, for optics that are true and those that are shown.
+/// Height (in periods of the ramp) at which the left eye sees the band at a point of the panel, for true optics and those that are shown.
 double band_height(const MaskOptics& real, const MaskOptics& shown, double u_mm) {
   const Eigen::Vector3d eye(-31.5, 0, 650);
   return window_number(real, eye, 0, u_mm, 0) - window_number(shown, eye, 0, u_mm, 0);
 }
 
-/// A viewer who turns until the band lies level.
+/// A viewer who adjusts until the band is level.
 void level_the_band(Wizard& wizard) {
   const auto slope = [&] {
     const MaskOptics shown = wizard.page({}).profile.optics;
@@ -72,7 +72,7 @@ void level_the_band(Wizard& wizard) {
   }
 }
 
-/// A viewer who sits as told and turns the mask to where it really has to be.
+/// A viewer who sits on the given seat and moves the mask to its true position.
 void choose_places(Wizard& wizard, bool tracked, int places = 5) {
   for (int place = 0; place < places; ++place) {
     ASSERT_EQ(wizard.step(), Step::places);
@@ -94,10 +94,10 @@ void choose_places(Wizard& wizard, bool tracked, int places = 5) {
   }
 }
 
-TEST(CalibrationWizard, leads_from_the_box_to_a_profile_of_this_monitor) {
+TEST(CalibrationWizard, makes_a_profile_of_this_monitor_for_a_new_display) {
   Wizard wizard(built_in("prism-mask"), {monitor_on_the_desk(), kPanel, true});
   go_to(wizard, Step::size);
-  for (int i = 0; i < 30; ++i) wizard.adjust(1, false);  // 3 mm more than the monitor says
+  for (int i = 0; i < 30; ++i) wizard.adjust(1, false);  // 3 mm more than the monitor reports
   const double pitch = wizard.result().optics.pixel_pitch_mm;
   EXPECT_NEAR(pitch, 359.0 / 1280 + 3.0 / 1100, 1e-9);
   go_to(wizard, Step::eye_separation);
@@ -123,13 +123,13 @@ TEST(CalibrationWizard, leads_from_the_box_to_a_profile_of_this_monitor) {
   EXPECT_EQ(profile.eye_separation_mm, 62);
   EXPECT_DOUBLE_EQ(profile.crosstalk[0], 0.01);
   EXPECT_DOUBLE_EQ(profile.crosstalk[1], 0.02);
-  // To a hundredth of a pixel's worth of mask travel, which is what the fine step allows.
+  // The fine step allows an accuracy of a hundredth of a pixel, as travel of the mask.
   EXPECT_NEAR(profile.optics.zero_mm, -0.171, 0.004);
   EXPECT_NEAR(profile.optics.gap_scale, 0.972, 0.01);
   EXPECT_NEAR(profile.optics.pitch_scale, 1.0006, 4e-5);
 }
 
-TEST(CalibrationWizard, goes_without_a_tracker) {
+TEST(CalibrationWizard, works_without_a_tracker) {
   Wizard wizard(built_in("prism-mask"), {monitor_on_the_desk(), kPanel, true});
   go_to(wizard, Step::places);
   EXPECT_THAT(wizard.page({}).remarks, Contains(HasSubstr("doesn't see your eyes")));
@@ -137,7 +137,7 @@ TEST(CalibrationWizard, goes_without_a_tracker) {
   EXPECT_NEAR(wizard.result().optics.zero_mm, -0.171, 0.004);
 }
 
-TEST(CalibrationWizard, does_not_take_a_choice_from_a_wrong_seat) {
+TEST(CalibrationWizard, refuses_a_choice_from_a_wrong_seat) {
   Wizard wizard(built_in("prism-mask"), {monitor_on_the_desk(), kPanel, true});
   go_to(wizard, Step::places);
   Now now;
@@ -150,11 +150,11 @@ TEST(CalibrationWizard, does_not_take_a_choice_from_a_wrong_seat) {
   EXPECT_TRUE(wizard.choices().empty());
 }
 
-TEST(CalibrationWizard, takes_no_choice_that_contradicts_the_others) {
+TEST(CalibrationWizard, refuses_a_choice_that_contradicts_the_others) {
   Wizard wizard(built_in("prism-mask"), {monitor_on_the_desk(), kPanel, true});
   go_to(wizard, Step::places);
   choose_places(wizard, false, 4);
-  wizard.adjust(48, false);  // half a pitch: where the other eye's picture would be
+  wizard.adjust(48, false);  // half a pitch: the position for the other eye's picture
   const Result<void> chosen = wizard.next({});
   ASSERT_FALSE(chosen);
   EXPECT_THAT(chosen.error().message, HasSubstr("contradict"));
@@ -162,7 +162,7 @@ TEST(CalibrationWizard, takes_no_choice_that_contradicts_the_others) {
   EXPECT_EQ(wizard.choices().size(), 4u);
 }
 
-TEST(CalibrationWizard, shifts_the_picture_where_the_mask_stands_still) {
+TEST(CalibrationWizard, shifts_the_picture_if_the_mask_is_fixed) {
   Wizard wizard(built_in("lenticular"), {monitor_on_the_desk(), kPanel, false});
   go_to(wizard, Step::places);
   EXPECT_FALSE(wizard.page({}).hold_mask_mm);
@@ -175,7 +175,7 @@ TEST(CalibrationWizard, shifts_the_picture_where_the_mask_stands_still) {
   EXPECT_NEAR(wizard.result().optics.zero_mm, shown, 1e-9);
 }
 
-TEST(CalibrationWizard, leaves_out_what_a_display_does_not_have) {
+TEST(CalibrationWizard, leaves_out_steps_for_what_a_display_does_not_have) {
   const auto steps = [](const char* name) {
     Wizard wizard(built_in(name), {std::nullopt, kPanel, false});
     std::vector<Step> seen;
@@ -191,7 +191,7 @@ TEST(CalibrationWizard, leaves_out_what_a_display_does_not_have) {
   EXPECT_EQ(steps("mono"), (std::vector{Step::link, Step::size, Step::check}));
 }
 
-TEST(CalibrationWizard, goes_back_a_place_or_a_step) {
+TEST(CalibrationWizard, goes_back_by_a_position_or_a_step) {
   Wizard wizard(built_in("prism-mask"), {monitor_on_the_desk(), kPanel, true});
   wizard.back();
   EXPECT_EQ(wizard.step(), Step::link);
@@ -214,12 +214,12 @@ TEST(CalibrationWizard, keeps_values_within_their_limits) {
   go_to(wizard, Step::places);
   const double pitch = wizard.result().optics.mask_pitch_mm();
   wizard.adjust(96 + 24, false);
-  EXPECT_NEAR(*wizard.page({}).hold_mask_mm, 0.25 * pitch, 1e-9) << "a whole pitch farther is the same place";
+  EXPECT_NEAR(*wizard.page({}).hold_mask_mm, 0.25 * pitch, 1e-9) << "a whole pitch farther is the same position";
   wizard.adjust(10000, true);
   EXPECT_LE(std::abs(*wizard.page({}).hold_mask_mm), 0.75 * pitch);
 }
 
-TEST(CalibrationWizard, says_what_is_wrong_with_the_link_on_its_first_page) {
+TEST(CalibrationWizard, reports_faults_of_the_link_on_its_first_page) {
   display::Monitor monitor = monitor_on_the_desk();
   monitor.colour = display::LinkColour::halved;
   Wizard wizard(built_in("prism-mask"), {monitor, kPanel, true});

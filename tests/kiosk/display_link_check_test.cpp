@@ -14,7 +14,7 @@ using testing::IsEmpty;
 
 Profile built_in(const char* name) { return *find_profile(name); }
 
-/// A panel of 1920 x 1200 on an honest cable.
+/// A panel of 1920 x 1200 whose link transmits each pixel unchanged.
 Monitor good_monitor() {
   Monitor monitor;
   monitor.connector = "DP-1";
@@ -26,7 +26,7 @@ Monitor good_monitor() {
   return monitor;
 }
 
-TEST(LinkCheck, lets_a_pixel_exact_link_pass) {
+TEST(LinkCheck, accepts_a_pixel_exact_link) {
   for (const Profile& profile : drivers::display::built_in_profiles()) {
     const LinkReport report = check_link(profile, good_monitor());
     EXPECT_THAT(report.refusals, IsEmpty()) << profile.name;
@@ -62,7 +62,7 @@ TEST(LinkCheck, refuses_halved_colours_and_doubts_unknown_ones) {
   monitor.colour = LinkColour::halved;
   EXPECT_THAT(check_link(built_in("prism-mask"), monitor).refusals, ElementsAre(HasSubstr("4:2:2")));
   monitor.colour = LinkColour::unknown;
-  EXPECT_THAT(check_link(built_in("prism-mask"), monitor).doubts, IsEmpty());  // a monitor that takes full colours only
+  EXPECT_THAT(check_link(built_in("prism-mask"), monitor).doubts, IsEmpty());  // a monitor that only accepts full colours
   monitor.edid->takes_ycbcr_422 = true;
   EXPECT_THAT(check_link(built_in("prism-mask"), monitor).doubts, ElementsAre(HasSubstr("DP-1")));
   EXPECT_TRUE(check_link(built_in("prism-mask"), monitor).stereo_allowed());
@@ -81,7 +81,7 @@ TEST(LinkCheck, refuses_another_monitors_calibration) {
   EXPECT_THAT(check_link(profile, good_monitor()).refusals, ElementsAre(HasSubstr("2560 x 1600")));
 }
 
-TEST(LinkCheck, says_what_it_does_not_know) {
+TEST(LinkCheck, reports_what_it_could_not_determine) {
   EXPECT_THAT(check_link(built_in("prism-mask"), std::nullopt).doubts, ElementsAre(HasSubstr("isn't known")));
   Monitor silent = good_monitor();
   silent.edid.reset();
@@ -92,7 +92,7 @@ TEST(LinkCheck, says_what_it_does_not_know) {
   EXPECT_EQ(report.doubts.size(), 2u);
 }
 
-TEST(LinkCheck, leaves_whole_pictures_alone) {
+TEST(LinkCheck, accepts_every_link_for_profiles_that_do_not_weave_pixels) {
   Monitor monitor = good_monitor();
   monitor.shown = monitor.mode = {1280, 800};
   monitor.colour = LinkColour::halved;
@@ -100,7 +100,7 @@ TEST(LinkCheck, leaves_whole_pictures_alone) {
     EXPECT_TRUE(check_link(built_in(name), monitor).stereo_allowed()) << name;
 }
 
-TEST(LinkCheck, knows_the_names_of_colour_settings) {
+TEST(LinkCheck, reads_the_names_of_colour_settings) {
   EXPECT_EQ(link_colour_from("YCbCr 4:2:2"), LinkColour::halved);
   EXPECT_EQ(link_colour_from("ycbcr420"), LinkColour::halved);
   EXPECT_EQ(link_colour_from("RGB"), LinkColour::full);

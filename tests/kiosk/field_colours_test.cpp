@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kColoursWidth = 480, kColoursHeight = 320;
 
-/// What people without red or without green receptors see of a colour, roughly: their missing cone follows the others (Viénot et al.,
-/// 1999).
+/// Approximates what people without red or without green receptors see of a colour: the missing cone's response follows from the others
+/// [Viénot 1999].
 Colour seen_without(bool red, const Colour& colour) {
   const float l = 0.31399022F * colour.x() + 0.63951294F * colour.y() + 0.04649755F * colour.z();
   const float m = 0.15537241F * colour.x() + 0.75789446F * colour.y() + 0.08670142F * colour.z();
@@ -23,21 +23,21 @@ Colour seen_without(bool red, const Colour& colour) {
           0.02980165F * ll - 0.19318073F * mm + 1.16364789F * s};
 }
 
-TEST(ColourMaps, go_evenly_and_only_darker) {
+TEST(ColourMaps, have_even_steps_and_only_get_darker) {
   for (const ColourMap map : {ColourMap::crimson, ColourMap::blues}) {
     const auto& colours = colours_of(map);
-    float least = 1, most = 0;
+    float min = 1, max = 0;
     for (std::size_t i = 16; i < colours.size(); i += 16) {
       const Eigen::Vector3f from = oklab_of(colours[i - 16]), to = oklab_of(colours[i]);
       EXPECT_LT(to.x(), from.x()) << i;
-      least = std::min(least, (to - from).norm());
-      most = std::max(most, (to - from).norm());
+      min = std::min(min, (to - from).norm());
+      max = std::max(max, (to - from).norm());
     }
-    EXPECT_LT(most, 1.1F * least) << "steps of equal width must look equally far";
+    EXPECT_LT(max, 1.1F * min) << "equal steps must look equal";
   }
 }
 
-TEST(ColourMaps, are_read_by_colour_blind_people) {
+TEST(ColourMaps, can_be_read_by_colour_blind_people) {
   for (const ColourMap map : {ColourMap::crimson, ColourMap::blues})
     for (const bool red : {true, false}) {
       const auto& colours = colours_of(map);
@@ -62,7 +62,7 @@ TEST(FieldLookTest, values_below_the_limit_keep_their_own_colour) {
   EXPECT_FALSE(look.colour_of(std::numeric_limits<double>::quiet_NaN()));
   EXPECT_EQ(*look.colour_of(5), colours_of(ColourMap::crimson).back());
   EXPECT_EQ(*look.colour_of(500), colours_of(ColourMap::crimson).back());
-  look = {true, 0.7, 0.3, ColourMap::crimson, 0};  // small values are the worse ones
+  look = {true, 0.7, 0.3, ColourMap::crimson, 0};  // small values are worse
   EXPECT_FALSE(look.colour_of(0.8));
   EXPECT_EQ(*look.colour_of(0.1), colours_of(ColourMap::crimson).back());
   look = {true, 0, 10, ColourMap::blues, 5};
@@ -88,7 +88,7 @@ class FieldColoursTest : public RenderTest {
     const std::uint8_t* at = image.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
     return Colour(at[0], at[1], at[2]) / 255;
   }
-  /// Hue and chroma alone: light changes how bright a colour is, not which.
+  /// Hue and chroma alone, as light changes only the brightness of a colour.
   static Eigen::Vector2f tint(const Colour& colour) { return {colour.x() / colour.sum(), colour.y() / colour.sum()}; }
   Colour at_place(const Image& image, const Picture& picture, double x, double y) {
     return colour_at(image, *stereo::pixel_of(aim_of(picture, kColoursWidth, kColoursHeight), mesh::Vec3(x, y, 0)));
@@ -96,7 +96,7 @@ class FieldColoursTest : public RenderTest {
   std::vector<float> across_;
 };
 
-TEST_F(FieldColoursTest, values_of_nodes_become_the_maps_colours) {
+TEST_F(FieldColoursTest, values_of_nodes_get_the_maps_colours) {
   Picture picture = plate();
   const Image plain = draw(picture, kColoursWidth, kColoursHeight);
   ASSERT_TRUE(renderer_->set_field(Pane::model, across_, true));
@@ -111,7 +111,7 @@ TEST_F(FieldColoursTest, values_of_nodes_become_the_maps_colours) {
   }
 }
 
-TEST_F(FieldColoursTest, values_of_shells_stay_within_their_shell_and_what_has_none_keeps_its_colour) {
+TEST_F(FieldColoursTest, values_of_shells_colour_whole_shells_and_shells_without_value_keep_their_colour) {
   Picture picture = plate();
   const Image plain = draw(picture, kColoursWidth, kColoursHeight);
   std::vector<float> values(40 * 30, 0.0F);
@@ -147,7 +147,7 @@ TEST_F(FieldColoursTest, new_values_upload_only_the_rows_that_differ) {
   EXPECT_EQ(renderer_->figures().bytes_uploaded - before, mesh::kChunkSize * 8);
 }
 
-TEST_F(FieldColoursTest, two_views_share_the_picture_and_keep_to_their_halves) {
+TEST_F(FieldColoursTest, two_views_stay_in_their_halves_of_the_picture) {
   plate(1);
   Picture picture = plate();
   picture.colour = ColourMode::field;
@@ -157,7 +157,7 @@ TEST_F(FieldColoursTest, two_views_share_the_picture_and_keep_to_their_halves) {
   const Image alone = draw(picture, kColoursWidth, kColoursHeight);
   picture.two_views = TwoViews{true, 0.25};
   const Image both = draw(picture, kColoursWidth, kColoursHeight);
-  // The model stands a quarter to the right as it stood in the middle; in the left half is the other one in its colours.
+  // The model is drawn as in the middle, shifted to the right by a quarter; the left half shows the other one in its colours.
   const auto differ = [](const Colour& a, const Colour& b) { return (a - b).norm() > 0.02F; };
   int same = 0, coloured = 0;
   for (int y = 100; y < 220; y += 8)
@@ -169,7 +169,7 @@ TEST_F(FieldColoursTest, two_views_share_the_picture_and_keep_to_their_halves) {
     }
   EXPECT_GT(same, 40);
   EXPECT_GT(coloured, 40);
-  // However near the models come, none is seen in the other's half.
+  // However near the models are, none is visible in the other's half.
   picture.view = stereo::zoom(picture.view, 40, {0, 0});
   const Image near = draw(picture, kColoursWidth, kColoursHeight);
   const Image ground = [&] {
@@ -180,7 +180,7 @@ TEST_F(FieldColoursTest, two_views_share_the_picture_and_keep_to_their_halves) {
     EXPECT_FALSE(differ(colour_at(near, {kColoursWidth / 2, y}), colour_at(ground, {kColoursWidth / 2, y}))) << y;
 }
 
-/// The woven picture is made of the two eyes' images: each of them must hold both halves, and differ by the parallax of the model alone.
+/// Each of the two eyes' images must contain both halves, and they must differ only by the model's parallax.
 TEST_F(FieldColoursTest, both_eyes_see_both_views) {
   plate(1);
   Picture picture = plate();

@@ -1,4 +1,4 @@
-// What a picture is composed of, without drawing it.
+// Composition of a picture, without drawing.
 #include "kiosk/render/composition.h"
 
 #include <cmath>
@@ -17,13 +17,13 @@ Picture picture_of(const std::string& profile) {
   return picture;
 }
 
-/// Picture column of the middle of an image's texel, at a row.
+/// Column of the picture at the middle of an image's texel, in a row.
 double column_of(const ComposedImage& image, double texel, double row) {
   const double x = 2 * (texel + 0.5) / image.width - 1;
   return (x - image.from_picture(0, 2) - image.from_picture(0, 1) * row) / image.from_picture(0, 0);
 }
 
-TEST(Composition, at_the_design_place_texels_stand_on_their_eyes_columns) {
+TEST(Composition, at_the_design_position_texels_are_on_their_eyes_columns) {
   for (const int width : {1280, 641, 1366, 63}) {
     Picture picture = picture_of("prism-mask");
     picture.profile.optics.refractive_index = 1;
@@ -38,7 +38,7 @@ TEST(Composition, at_the_design_place_texels_stand_on_their_eyes_columns) {
   }
 }
 
-TEST(Composition, texels_stand_where_their_windows_are_seen) {
+TEST(Composition, texels_are_where_their_windows_are_seen) {
   for (const char* name : {"prism-mask", "lenticular"})
     for (const Vec3& head : {Vec3(0, 0, 560), Vec3(150, -60, 500), Vec3(-220, 40, 900)}) {
       Picture picture = picture_of(name);
@@ -53,7 +53,7 @@ TEST(Composition, texels_stand_where_their_windows_are_seen) {
           for (double y = 2; y < 720; y += 55.5)
             worst = std::max(worst, std::abs(column_of(composed.images[eye], numbers_at(composed.phases, 720, x, y)[eye], y) - x));
       }
-      EXPECT_LT(worst, 0.5) << name << ": pixels, since windows are taken to be evenly spaced; head at " << head.transpose();
+      EXPECT_LT(worst, 0.5) << name << ": pixels, as windows are assumed to be evenly spaced; head at " << head.transpose();
     }
 }
 
@@ -68,7 +68,7 @@ TEST(Composition, images_keep_their_size_while_a_head_moves) {
     }
 }
 
-TEST(Composition, pictures_are_drawn_from_where_the_pointer_aims) {
+TEST(Composition, pictures_are_drawn_from_the_pointers_viewpoint) {
   for (const char* name : {"prism-mask", "side-by-side", "anaglyph", "mono", "mono-right"})
     for (const double share : {0.0, 0.4, 1.0}) {
       Picture picture = picture_of(name);
@@ -103,7 +103,7 @@ TEST(Composition, without_depth_there_is_one_picture_for_both_eyes) {
   }
 }
 
-TEST(Composition, fixed_columns_follow_a_mask_that_went_back_by_half_periods) {
+TEST(Composition, fixed_columns_follow_a_mask_that_moved_back_by_half_periods) {
   Picture picture = picture_of("prism-mask-columns");
   const auto left_first = [&] {
     const auto numbers = numbers_at(compose(picture, 64, 64).phases, 64, 0.5, 0.5);
@@ -117,7 +117,7 @@ TEST(Composition, fixed_columns_follow_a_mask_that_went_back_by_half_periods) {
   }
 }
 
-TEST(Composition, nonsense_does_no_harm) {
+TEST(Composition, values_that_are_not_finite_give_a_valid_composition) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), huge = 1e300;
   for (const double bad : {nan, huge, -huge, 0.0})
     for (const auto& profile : stereo::built_in_profiles()) {

@@ -1,4 +1,4 @@
-// Where a glyph stands on its shell, on shapes whose answer is known.
+// Glyphs of shells whose answer is known: shape and position; clusters, damage and part states.
 #include "kiosk/render/glyph_shape.h"
 
 #include <cmath>
@@ -30,7 +30,7 @@ ShellState failing(std::initializer_list<Metric> metrics) {
   return state;
 }
 
-/// The same shell begun at another corner.
+/// The same shell, numbered from another corner.
 Corners turned(const Corners& corners, std::size_t by) {
   Corners made;
   for (std::size_t k = 0; k < corners.size(); ++k) made.push_back(corners[(k + by) % corners.size()]);
@@ -42,7 +42,7 @@ TEST(GlyphShape, the_diagonal_that_bends_more_is_thick) {
   // diagonal, whose middle is 1.5 up, it bends by twice atan(1.5 cos 20.6 / 10), 16.0 degrees.
   const Corners kite{{0, 0, 0}, {10, -4, 0}, {20, 0, 0}, {10, 4, 3}};
   EXPECT_EQ(glyph_place(GlyphShape::warped, kite), 0U);
-  EXPECT_EQ(glyph_place(GlyphShape::warped, turned(kite, 1)), 1U) << "the same diagonal under its other name";
+  EXPECT_EQ(glyph_place(GlyphShape::warped, turned(kite, 1)), 1U) << "the same diagonal with its other index";
   EXPECT_EQ(glyph_place(GlyphShape::warped, turned(kite, 2)), 0U);
   // With its tip 3 up: 16.7 degrees about the short diagonal, twice atan(1.5 cos 8.5 / 4), 40.7 degrees, about the long one.
   const Corners raised_tip{{0, 0, 0}, {10, -4, 0}, {20, 0, 3}, {10, 4, 0}};
@@ -50,7 +50,7 @@ TEST(GlyphShape, the_diagonal_that_bends_more_is_thick) {
   EXPECT_EQ(glyph_place(GlyphShape::warped, turned(raised_tip, 3)), 1U);
 }
 
-TEST(GlyphShape, the_shortest_and_the_longest_edge) {
+TEST(GlyphShape, edge_glyphs_are_on_the_shortest_and_longest_edge) {
   const Corners quad{{0, 0, 0}, {10, 0, 0}, {10, 4, 0}, {0, 9, 0}};  // edges 10, 4, 11.2, 9
   EXPECT_EQ(glyph_place(GlyphShape::short_edge, quad), 1U);
   EXPECT_EQ(glyph_place(GlyphShape::long_edge, quad), 2U);
@@ -58,33 +58,33 @@ TEST(GlyphShape, the_shortest_and_the_longest_edge) {
   EXPECT_EQ(glyph_place(GlyphShape::short_edge, turned(quad, 1)), 0U);
 }
 
-TEST(GlyphShape, a_triangles_smallest_height_falls_from_the_corner_across_its_longest_edge) {
-  const Corners triangle{{0, 0, 0}, {10, 0, 0}, {5, 1, 0}};  // longest: edge 0; across: corner 2
+TEST(GlyphShape, a_triangles_smallest_height_starts_opposite_its_longest_edge) {
+  const Corners triangle{{0, 0, 0}, {10, 0, 0}, {5, 1, 0}};  // longest: edge 0; opposite: corner 2
   EXPECT_EQ(glyph_place(GlyphShape::short_edge, triangle), 2U);
   EXPECT_EQ(glyph_place(GlyphShape::short_edge, turned(triangle, 1)), 1U);
   EXPECT_EQ(glyph_place(GlyphShape::long_edge, triangle), 0U);
 }
 
-TEST(GlyphShape, the_sharpest_and_the_bluntest_corner) {
-  const Corners kite{{0, 0, 0}, {20, -2, 0}, {24, 0, 0}, {20, 2, 0}};  // sharp at 0, blunt at 1, 2 or 3
+TEST(GlyphShape, angle_glyphs_are_at_the_smallest_and_largest_angle) {
+  const Corners kite{{0, 0, 0}, {20, -2, 0}, {24, 0, 0}, {20, 2, 0}};  // smallest angle at 0, largest at 1, 2 or 3
   EXPECT_EQ(glyph_place(GlyphShape::small_angle, kite), 0U);
   EXPECT_EQ(glyph_place(GlyphShape::large_angle, {{{0, 0, 0}, {10, 0, 0}, {5, 1, 0}}}), 2U);
   EXPECT_EQ(glyph_place(GlyphShape::small_angle, {{{0, 0, 0}, {10, 0, 0}, {9, 2, 0}}}), 0U);
 }
 
-TEST(GlyphShape, a_corner_that_is_turned_in_is_the_bluntest) {
+TEST(GlyphShape, a_reflex_corner_has_the_largest_angle) {
   const Corners dart{{0, 0, 0}, {10, 0, 0}, {2, 2, 0}, {0, 10, 0}};
   EXPECT_EQ(glyph_place(GlyphShape::large_angle, dart), 2U) << "more than 180 degrees";
   for (const std::size_t by : {1U, 2U, 3U}) EXPECT_EQ(glyph_place(GlyphShape::large_angle, turned(dart, by)), (6 - by) % 4);
 }
 
-TEST(GlyphShape, numbers_that_are_none_choose_nothing) {
+TEST(GlyphShape, coordinates_that_are_not_finite_choose_position_zero) {
   Corners quad = kSquare;
   quad[2].x() = std::numeric_limits<double>::quiet_NaN();
   for (int shape = 0; shape < kGlyphShapeCount; ++shape) EXPECT_EQ(glyph_place(static_cast<GlyphShape>(shape), quad), 0U);
 }
 
-TEST(GlyphShape, each_metric_has_its_shape_and_the_vague_ones_give_way) {
+TEST(GlyphShape, each_metric_has_its_shape_and_other_gives_way) {
   EXPECT_THAT(shapes_of({}), IsEmpty());
   EXPECT_THAT(shapes_of(failing({Metric::warpage, Metric::aspect})), ElementsAre(GlyphShape::warped, GlyphShape::stretched));
   EXPECT_THAT(shapes_of(failing({Metric::min_length})), ElementsAre(GlyphShape::short_edge));
@@ -95,10 +95,10 @@ TEST(GlyphShape, each_metric_has_its_shape_and_the_vague_ones_give_way) {
   EXPECT_THAT(shapes_of(failing({Metric::taper, Metric::warpage})), ElementsAre(GlyphShape::warped));
   ShellState both = failing({Metric::skew});
   both.warn = static_cast<std::uint16_t>(both.warn | 1U << static_cast<unsigned>(Metric::warpage));
-  EXPECT_THAT(shapes_of(both), ElementsAre(GlyphShape::other)) << "what fails goes before what warns";
+  EXPECT_THAT(shapes_of(both), ElementsAre(GlyphShape::other)) << "failures hide warnings";
   ShellState defect = failing({Metric::aspect});
   defect.fail = static_cast<std::uint16_t>(defect.fail | 1U << static_cast<unsigned>(mesh::quality::Defect::no_area));
-  EXPECT_THAT(shapes_of(defect), ElementsAre(GlyphShape::defect)) << "what is no shell has no angles";
+  EXPECT_THAT(shapes_of(defect), ElementsAre(GlyphShape::defect)) << "a defect hides all other shapes";
   EXPECT_THAT(shapes_of(ShellState::removed()), IsEmpty());
 }
 
@@ -116,20 +116,21 @@ std::shared_ptr<test::TestSource> fan(int triangles) {
   return source;
 }
 
-TEST(Clusters, triangles_that_crowd_at_a_node_of_a_quad_are_marked_there) {
+TEST(Clusters, too_many_triangles_at_a_node_of_a_quad_get_a_glyph_there) {
   struct Case {
     int triangles;
-    double most;
+    double max_triangles;
     std::size_t marks;
   };
-  for (const auto& [triangles, most, marks] : {Case{4, 4, 0}, {5, 4, 1}, {7, 4, 1}, {4, 3, 1}, {3, 3, 0}, {7, 7, 0}, {5, 2.5, 1}}) {
+  for (const auto& [triangles, max_triangles, marks] :
+       {Case{4, 4, 0}, {5, 4, 1}, {7, 4, 1}, {4, 3, 1}, {3, 3, 0}, {7, 7, 0}, {5, 2.5, 1}}) {
     const auto source = fan(triangles);
-    source->most_triangles = most;
+    source->max_triangles = max_triangles;
     const ModelTable table(source);
     GlyphList list;
     list.update(table, true, true, false);
     const auto chosen = list.choose(table, 100, {});
-    ASSERT_EQ(chosen.glyphs.size(), marks) << triangles << " of " << most;
+    ASSERT_EQ(chosen.glyphs.size(), marks) << triangles << " of " << max_triangles;
     if (marks == 0) continue;
     EXPECT_EQ(chosen.glyphs[0].kind & 15U, static_cast<std::uint32_t>(GlyphShape::cluster));
     const std::uint32_t corner = chosen.glyphs[0].kind >> kGlyphPlaceShift & 3U;
@@ -137,7 +138,7 @@ TEST(Clusters, triangles_that_crowd_at_a_node_of_a_quad_are_marked_there) {
   }
 }
 
-TEST(Clusters, a_mesh_of_triangles_has_none) {
+TEST(Clusters, a_mesh_of_triangles_has_no_clusters) {
   auto source = fan(6);
   source->shell_nodes.erase(source->shell_nodes.begin(), source->shell_nodes.begin() + 4);
   source->shell_quality.resize(source->shell_nodes.size());
@@ -147,7 +148,7 @@ TEST(Clusters, a_mesh_of_triangles_has_none) {
   EXPECT_THAT(list.choose(table, 100, {}).glyphs, IsEmpty());
 }
 
-TEST(Damage, only_what_edits_made_worse_gets_glyphs_on_demand) {
+TEST(Damage, with_damaged_only_what_edits_made_worse_gets_glyphs) {
   auto source = std::make_shared<test::TestSource>(test::two_plates());
   source->shell_damage.resize(source->shell_nodes.size());
   source->shell_quality[3] = failing({Metric::warpage});
@@ -164,7 +165,7 @@ TEST(Damage, only_what_edits_made_worse_gets_glyphs_on_demand) {
   EXPECT_EQ(chosen.glyphs[0].kind & 15U, static_cast<std::uint32_t>(GlyphShape::stretched)) << "the warpage was there before";
 }
 
-TEST(PartStates, a_part_is_the_redder_the_more_of_it_fails) {
+TEST(PartStates, a_part_is_redder_if_more_shells_fail) {
   auto source = std::make_shared<test::TestSource>(test::two_plates());
   for (std::size_t s = 0; s < 3; ++s) source->shell_quality[s] = failing({Metric::aspect});
   source->shell_quality[150].warn = 1;
@@ -176,7 +177,7 @@ TEST(PartStates, a_part_is_the_redder_the_more_of_it_fails) {
   source->shell_damage.resize(source->shell_nodes.size());
   source->shell_quality[4] = ShellState::removed();
   EXPECT_EQ(part_states(ModelTable(source), false)[0].shells, 99U);
-  EXPECT_EQ(part_states(ModelTable(source), true)[0].shells, 99U) << "what is removed is no share of what edits damaged";
+  EXPECT_EQ(part_states(ModelTable(source), true)[0].shells, 99U) << "removed shells don't count";
   EXPECT_EQ(colour_of_state({100, 0, 0}), grade_colours()[0]);
   EXPECT_EQ(colour_of_state({100, 0, 10}), grade_colours()[2]);
   EXPECT_EQ(colour_of_state({100, 50, 0}), grade_colours()[1]);

@@ -1,4 +1,4 @@
-// Free edges, junctions and creases of what is visible; and that following a change gives what starting afresh gives.
+// Free edges, junctions and creases of visible shells; updates give the same lines as a new outline. Choice of glyphs; preview patches.
 #include <algorithm>
 #include <memory>
 
@@ -19,7 +19,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::UnorderedElementsAre;
 
-/// Sheets around the edge from node 0 to node 1: each leaves it under its angle, in degrees; `flipped` turns its normal.
+/// Sheets around the edge from node 0 to node 1, each at its angle in degrees; `flipped` turns its normal.
 TestSource fan(std::initializer_list<double> angles, bool flip_second = false) {
   TestSource source;
   source.add_node({0, 0, 0});
@@ -47,7 +47,7 @@ TEST(Outline, a_flat_sheet_has_no_crease) {
   EXPECT_THAT(outline_of(fan({0, 180})).borders(), SizeIs(6));
 }
 
-TEST(Outline, a_bend_is_a_crease_whichever_way_the_normals_point) {
+TEST(Outline, a_bend_is_a_crease_for_either_sense_of_the_normals) {
   for (const bool flipped : {false, true}) {
     EXPECT_THAT(outline_of(fan({0, 149}, flipped)).creases(), ElementsAre(NodePair{0, 1})) << flipped;
     EXPECT_THAT(outline_of(fan({0, 151}, flipped)).creases(), IsEmpty()) << flipped;
@@ -55,18 +55,18 @@ TEST(Outline, a_bend_is_a_crease_whichever_way_the_normals_point) {
   }
 }
 
-TEST(Outline, three_sheets_meet_in_a_border) {
+TEST(Outline, an_edge_of_three_sheets_is_a_border) {
   const Outline outline = outline_of(fan({0, 120, 240}));
   EXPECT_THAT(outline.borders(), testing::Contains(NodePair{0, 1}));
   EXPECT_THAT(outline.creases(), IsEmpty());
 }
 
-TEST(Outline, what_is_hidden_does_not_count) {
+TEST(Outline, hidden_shells_do_not_count) {
   TestSource source = fan({0, 90});
   EXPECT_THAT(outline_of(source).borders(), testing::Not(testing::Contains(NodePair{0, 1})));
   source.hidden[1] = true;
   EXPECT_THAT(outline_of(source).borders(), SizeIs(4));
-  EXPECT_THAT(outline_of(source).borders(), testing::Contains(NodePair{0, 1})) << "the neighbour is gone, so the sheet ends here";
+  EXPECT_THAT(outline_of(source).borders(), testing::Contains(NodePair{0, 1})) << "the neighbour is hidden, so this is a free edge";
 }
 
 TEST(Outline, triangles_and_degenerate_shells_have_their_own_sides) {
@@ -79,7 +79,7 @@ TEST(Outline, triangles_and_degenerate_shells_have_their_own_sides) {
   EXPECT_THAT(outline_of(source).borders(), SizeIs(3));
 }
 
-TEST(Outline, follows_a_move_as_if_started_afresh) {
+TEST(Outline, an_update_after_a_move_equals_a_new_outline) {
   auto source = std::make_shared<TestSource>();
   test::add_grid(*source, 120, 120, 0, [](double u, double v) { return mesh::Vec3(u, v, 0); });
   Outline outline;
@@ -101,7 +101,7 @@ mesh::quality::ShellState state(std::initializer_list<mesh::quality::Metric> war
   return made;
 }
 
-TEST(Glyphs, failures_find_room_first_and_the_rest_is_counted) {
+TEST(Glyphs, failures_come_first_and_the_rest_is_counted) {
   auto source = std::make_shared<TestSource>();
   test::add_grid(*source, 100, 100, 0, [](double u, double v) { return mesh::Vec3(u, v, 0); });
   for (std::size_t s = 0; s < 1000; ++s) source->shell_quality[s] = state({mesh::quality::Metric::aspect}, {});
@@ -145,7 +145,7 @@ TEST(PreviewPatch, takes_only_frames_of_its_drag) {
   ASSERT_THAT(patch.glyphs(), SizeIs(1));
   const std::uint32_t stretched = static_cast<std::uint32_t>(GlyphShape::stretched);
   EXPECT_EQ(patch.glyphs()[0].kind & 31U, stretched + kFailingGlyph);
-  EXPECT_EQ(patch.glyphs()[0].shell, 1U) << "by its place in the patch";
+  EXPECT_EQ(patch.glyphs()[0].shell, 1U) << "by its index in the patch";
   EXPECT_EQ(patch.corners().size(), 2U);
 }
 

@@ -1,4 +1,4 @@
-// What is drawn of a model, what is found under the pointer, and that nothing in a snapshot can break either.
+// Drawing a model, picking under the pointer, and both with hostile snapshots.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +35,7 @@ class Scene : public RenderTest {
   }
 };
 
-TEST_F(Scene, hidden_parts_are_gone) {
+TEST_F(Scene, hidden_parts_are_neither_drawn_nor_picked) {
   TestSource source = two_plates();
   show(source);
   const Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
@@ -47,7 +47,7 @@ TEST_F(Scene, hidden_parts_are_gone) {
   show(source);
   const auto behind = renderer_->shell_at(aim, pixel);
   ASSERT_TRUE(behind);
-  EXPECT_GE(behind->value, 100U) << "the plate behind shows";
+  EXPECT_GE(behind->value, 100U) << "the plate behind is visible";
   const Image one = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_NE(both.rgb, one.rgb);
   source.hidden[1] = true;
@@ -57,10 +57,10 @@ TEST_F(Scene, hidden_parts_are_gone) {
   EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, [&] {
     EXPECT_TRUE(renderer_->set_model(nullptr));
     return draw(picture, kSceneWidth, kSceneHeight).rgb;
-  }()) << "nothing of them is left";
+  }()) << "the picture is empty";
 }
 
-TEST_F(Scene, picking_finds_what_is_seen) {
+TEST_F(Scene, picking_finds_what_is_visible) {
   const TestSource source = two_plates();
   show(source);
   for (const char* profile : {"mono", "prism-mask"}) {
@@ -75,8 +75,8 @@ TEST_F(Scene, picking_finds_what_is_seen) {
   }
 }
 
-TEST_F(Scene, a_pick_on_sheets_that_nearly_coincide_takes_the_sheet_that_is_seen) {
-  // A flange's edge: the sheet beneath goes on beyond it, and has nodes a hundredth under it.
+TEST_F(Scene, a_pick_on_nearly_coincident_sheets_takes_the_visible_one) {
+  // The edge of a flange: the sheet beneath extends beyond it and has nodes 0.01 below it.
   TestSource source;
   test::add_grid(source, 5, 10, 0, [](double u, double v) { return Vec3(u * 50 - 50, v * 60 - 30, 0); });
   const std::uint32_t beneath =
@@ -99,7 +99,7 @@ TEST_F(Scene, a_pick_on_sheets_that_nearly_coincide_takes_the_sheet_that_is_seen
   EXPECT_GT(tried, 10U);
 }
 
-TEST_F(Scene, the_end_of_a_line_before_a_plate_is_picked_where_it_is) {
+TEST_F(Scene, the_end_of_a_line_in_front_of_a_plate_is_picked) {
   TestSource source = two_plates();
   const std::uint32_t from = source.add_node({2, 1, 30}), to = source.add_node({7, 4, 30});
   source.add_line(from, to, 2);
@@ -109,7 +109,7 @@ TEST_F(Scene, the_end_of_a_line_before_a_plate_is_picked_where_it_is) {
             mesh::NodeIndex(to));
 }
 
-TEST_F(Scene, a_rectangle_takes_what_is_seen_or_goes_through) {
+TEST_F(Scene, a_rectangle_takes_visible_nodes_or_all) {
   const TestSource source = two_plates();
   show(source);
   const Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
@@ -122,7 +122,7 @@ TEST_F(Scene, a_rectangle_takes_what_is_seen_or_goes_through) {
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
   const mesh::NodeSet through = renderer_->nodes_in(aim, rect, true);
   EXPECT_GT(through.size(), 81U + 80U);
-  EXPECT_EQ(renderer_->figures().item_buffers_drawn, 1U) << "drawn once for a view";
+  EXPECT_EQ(renderer_->figures().item_buffers_drawn, 1U) << "drawn once for each view";
   renderer_->shell_at(aim, a);
   EXPECT_EQ(renderer_->figures().item_buffers_drawn, 1U);
   show(source);
@@ -130,7 +130,7 @@ TEST_F(Scene, a_rectangle_takes_what_is_seen_or_goes_through) {
   EXPECT_EQ(renderer_->figures().item_buffers_drawn, 2U);
 }
 
-TEST_F(Scene, nodes_of_tiny_elements_are_still_seen) {
+TEST_F(Scene, nodes_of_tiny_elements_count_as_visible) {
   TestSource source;
   test::add_grid(source, 400, 250, 0,
                  [](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, 8 * std::sin(u * 6) * std::cos(v * 4)); });
@@ -176,9 +176,9 @@ TEST_F(Scene, selected_nodes_are_white_and_show_through) {
   EXPECT_EQ(at(hidden_part, pixel_of(picture, source.positions[121 + 37]))[2], plain[2]) << "nodes of hidden parts don't show";
 }
 
-TEST_F(Scene, quality_has_its_colours_and_signs) {
+TEST_F(Scene, quality_has_its_colours_and_glyphs) {
   TestSource source = two_plates();
-  source.shell_quality[44].fail = source.shell_quality[44].warn = 1;  // warpage: its sign's diagonals cross in the middle
+  source.shell_quality[44].fail = source.shell_quality[44].warn = 1;  // warpage: its glyph crosses the middle
   source.shell_quality[46].warn = 2;
   show(source);
   Picture picture = fitted("mono", "top", kSceneWidth, kSceneHeight);
@@ -195,11 +195,11 @@ TEST_F(Scene, quality_has_its_colours_and_signs) {
   picture.quality_glyphs = true;
   image = draw(picture, kSceneWidth, kSceneHeight);
   EXPECT_EQ(report_.glyphs, 2U);
-  const std::uint8_t* sign = at(image, pixel_of(picture, centre(source, 44)));
-  EXPECT_GT(sign[0], 2 * sign[1]) << "a red sign";
+  const std::uint8_t* glyph = at(image, pixel_of(picture, centre(source, 44)));
+  EXPECT_GT(glyph[0], 2 * glyph[1]) << "a red glyph";
 }
 
-TEST_F(Scene, a_preview_is_a_white_wireframe_with_live_signs) {
+TEST_F(Scene, a_preview_is_a_white_wireframe_with_its_own_glyphs) {
   TestSource source = two_plates();
   source.shell_quality[0].warn = 1;
   source.shell_quality[44].warn = 1;
@@ -219,17 +219,17 @@ TEST_F(Scene, a_preview_is_a_white_wireframe_with_live_signs) {
   frame.states[2].fail = frame.states[2].warn = 2;
   ASSERT_TRUE(renderer_->update_preview(frame));
   const Image during = draw(picture, kSceneWidth, kSceneHeight);
-  EXPECT_EQ(report_.glyphs, 3U) << "two live ones, and the untouched shell's";
+  EXPECT_EQ(report_.glyphs, 3U) << "two of the preview, and the untouched shell's";
   const std::uint8_t* tip = at(during, pixel_of(picture, lifted) + Eigen::Vector2d(0, 2));
   EXPECT_GT(std::min({tip[0], tip[1], tip[2]}), 180);
   frame.positions.clear();
-  ASSERT_TRUE(renderer_->update_preview(frame)) << "a frame of another size is passed over";
+  ASSERT_TRUE(renderer_->update_preview(frame)) << "a frame of another size is ignored";
   EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, during.rgb);
   renderer_->end_preview();
   EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, before.rgb);
 }
 
-TEST_F(Scene, a_pull_that_makes_a_shell_wrong_in_every_way_has_room_for_all_its_signs) {
+TEST_F(Scene, a_preview_draws_all_glyphs_of_shells_that_fail_every_metric) {
   const TestSource source = two_plates();
   show(source);
   const std::vector<mesh::NodeIndex> nodes{mesh::NodeIndex(60)};
@@ -262,7 +262,7 @@ TEST_F(Scene, the_active_handle_is_green) {
   draw(picture, kSceneWidth, kSceneHeight);
 }
 
-TEST_F(Scene, the_model_is_drawn_anew_only_for_another_scene) {
+TEST_F(Scene, the_model_is_drawn_again_only_for_another_scene) {
   make_renderer({.samples = 4});
   TestSource source = two_plates();
   show(source);
@@ -272,7 +272,7 @@ TEST_F(Scene, the_model_is_drawn_anew_only_for_another_scene) {
     const Image plain = draw(picture, kSceneWidth, kSceneHeight);
     const std::size_t before = drawn();
     picture.rubber_band = PixelRect{40, 30, 200, 150};
-    // As careless as an overlay may be.
+    // An overlay may leave any state.
     picture.overlay = [](const EyeImage& image) {
       glEnable(GL_SCISSOR_TEST);
       glScissor(0, 0, image.width / 2, image.height / 2);
@@ -282,11 +282,11 @@ TEST_F(Scene, the_model_is_drawn_anew_only_for_another_scene) {
     };
     const Image covered = draw(picture, kSceneWidth, kSceneHeight);
     EXPECT_NE(covered.rgb, plain.rgb);
-    EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, covered.rgb) << profile << ": nothing piles up";
+    EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, covered.rgb) << profile << ": overlays don't accumulate";
     picture.rubber_band.reset();
     picture.overlay = nullptr;
     picture.moving = true;
-    EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, plain.rgb) << profile << ": nothing of what was flat stays";
+    EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, plain.rgb) << profile << ": nothing of the overlay stays";
     EXPECT_EQ(drawn(), before) << profile;
     picture.moving = false;
 
@@ -302,7 +302,7 @@ TEST_F(Scene, the_model_is_drawn_anew_only_for_another_scene) {
   }
 }
 
-TEST_F(Scene, a_moving_picture_is_coarse_and_the_one_at_rest_as_if_it_had_never_moved) {
+TEST_F(Scene, a_moving_picture_is_coarse_and_a_resting_one_unchanged_afterwards) {
   make_renderer({.samples = 4});
   show(two_plates());
   Picture picture = fitted("mono", "iso", kSceneWidth, kSceneHeight);
@@ -333,7 +333,7 @@ TEST_F(Scene, only_what_changed_is_uploaded) {
   EXPECT_LE(moved, 1U + 2 * 2U) << "one row of positions, and the rows of the shells on it";
 }
 
-TEST_F(Scene, the_picture_follows_a_change_as_if_started_afresh) {
+TEST_F(Scene, the_picture_after_a_change_equals_that_of_a_new_renderer) {
   auto source = std::make_shared<TestSource>(test::make_crash_box());
   show(source);
   const Picture picture = fitted("prism-mask", "iso", kSceneWidth, kSceneHeight);
@@ -346,10 +346,10 @@ TEST_F(Scene, the_picture_follows_a_change_as_if_started_afresh) {
   make_renderer({.samples = 1});
   show(source);
   EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, followed.rgb);
-  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, followed.rgb) << "and repeats bit for bit";
+  EXPECT_EQ(draw(picture, kSceneWidth, kSceneHeight).rgb, followed.rgb) << "and again, bit for bit";
 }
 
-TEST_F(Scene, far_from_the_origin_nothing_trembles) {
+TEST_F(Scene, far_from_the_origin_the_picture_keeps_its_precision) {
   TestSource near_source = test::make_crash_box(), far_source = near_source;
   for (Vec3& at : far_source.positions) at += Vec3(4e6, -7e6, 1e6);
   far_source.key = 2;
@@ -362,7 +362,7 @@ TEST_F(Scene, far_from_the_origin_nothing_trembles) {
   EXPECT_LT(differ, near_image.rgb.size() / 200);
 }
 
-TEST_F(Scene, a_hostile_snapshot_breaks_nothing) {
+TEST_F(Scene, a_hostile_snapshot_is_drawn_without_a_crash) {
   TestSource source = test::make_crash_box();
   source.shell_nodes[3].node[1] = mesh::NodeIndex(4000000000U);
   source.shell_nodes[4].node = {};
@@ -386,7 +386,7 @@ TEST_F(Scene, a_hostile_snapshot_breaks_nothing) {
   renderer_->node_near(aim, {100, 100}, 50);
   renderer_->nodes_in(aim, {0, 0, kSceneWidth, kSceneHeight}, false);
   renderer_->begin_preview(std::array{mesh::NodeIndex(9999999)}, std::array{mesh::ShellIndex(9999999), mesh::ShellIndex(3)});
-  source.positions.resize(10);  // the next snapshot has fewer nodes than its shells name
+  source.positions.resize(10);  // shells of the next snapshot use nodes that it doesn't have
   source.touch(SnapshotArray::positions, 0);
   show(source);
   draw(picture, kSceneWidth, kSceneHeight);

@@ -1,4 +1,4 @@
-// Where shadows fall, which is under the pointer, and that they are of what is dragged.
+// Planes of the shadows, the plane under the pointer, and the shadows of what is dragged or selected.
 #include "kiosk/render/shadows.h"
 
 #include <algorithm>
@@ -29,9 +29,9 @@ stereo::View view_from(const std::string& name, const stereo::Box& box) {
   return stereo::fit(view, box, {448, 280});
 }
 
-TEST(ShadowPlanes, stand_on_the_sides_turned_away_from_the_viewer) {
+TEST(ShadowPlanes, are_on_the_sides_turned_away_from_the_viewer) {
   const stereo::Box box = box_of({-50, -30, -20}, {50, 30, 20});
-  const auto planes = shadow_planes(box, view_from("iso", box));  // looks from the right (+x), the front (-y) and above (+z)
+  const auto planes = shadow_planes(box, view_from("iso", box));  // seen from the right (+x), the front (-y) and above (+z)
   ASSERT_EQ(planes.size(), 3U);
   EXPECT_LT(planes[0].low.x(), -50);
   EXPECT_GT(planes[1].low.y(), 30);
@@ -46,7 +46,7 @@ TEST(ShadowPlanes, stand_on_the_sides_turned_away_from_the_viewer) {
   }
 }
 
-TEST(ShadowPlanes, one_seen_from_its_edge_is_left_out) {
+TEST(ShadowPlanes, a_plane_seen_edge_on_is_left_out) {
   const stereo::Box box = box_of({-50, -30, -20}, {50, 30, 20});
   const auto planes = shadow_planes(box, view_from("top", box));
   ASSERT_EQ(planes.size(), 1U);
@@ -54,7 +54,7 @@ TEST(ShadowPlanes, one_seen_from_its_edge_is_left_out) {
   EXPECT_TRUE(shadow_planes(stereo::Box(), view_from("iso", box)).empty());
 }
 
-TEST(ShadowPlanes, the_pointer_finds_the_place_that_it_sees) {
+TEST(ShadowPlanes, the_pointer_finds_the_point_that_it_sees) {
   const stereo::Box box = box_of({-50, -30, -20}, {50, 30, 20});
   stereo::Aim aim;
   aim.view = view_from("iso", box);
@@ -70,12 +70,12 @@ TEST(ShadowPlanes, the_pointer_finds_the_place_that_it_sees) {
       EXPECT_EQ(found->plane.axis, plane.axis);
       EXPECT_LT((found->at - point).norm(), 1e-6);
     }
-  EXPECT_FALSE(shadow_plane_at(aim, box, {2, 2})) << "beside them all";
+  EXPECT_FALSE(shadow_plane_at(aim, box, {2, 2})) << "beside all planes";
 }
 
 class Shadows : public RenderTest {
  protected:
-  /// A plate whose middle stands up, and shadows from in front.
+  /// A plate with a raised middle, and shadows seen from the front.
   void SetUp() override {
     RenderTest::SetUp();
     if (IsSkipped()) return;
@@ -85,7 +85,7 @@ class Shadows : public RenderTest {
     picture_ = fitted("mono", "iso", kShadowsWidth, kShadowsHeight);
     picture_.shadows = true;
   }
-  /// How dark the back plane is beside a place on it, where no model is.
+  /// Brightness of the back plane near a point of it that the model doesn't cover.
   int light_at_back(const Image& image, double x, double z) const {
     for (const ShadowPlane& plane : shadow_planes(renderer_->bounds(), picture_.view))
       if (plane.axis == 1) {
@@ -98,7 +98,7 @@ class Shadows : public RenderTest {
   Picture picture_;
 };
 
-TEST_F(Shadows, fall_on_the_plane_behind_where_things_are_dragged) {
+TEST_F(Shadows, are_on_the_plane_behind_what_is_dragged) {
   const Image none = draw(picture_, kShadowsWidth, kShadowsHeight);
   picture_.shadows = false;
   EXPECT_EQ(draw(picture_, kShadowsWidth, kShadowsHeight).rgb, none.rgb) << "nothing is selected or dragged";
@@ -109,7 +109,7 @@ TEST_F(Shadows, fall_on_the_plane_behind_where_things_are_dragged) {
   for (const std::size_t shell : {44U, 45U})
     for (const mesh::NodeIndex node : source_.shell_nodes[shell].node)
       if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
-  // Set up on edge, 15 to 35 high: a wall that throws a shadow 20 wide.
+  // A vertical strip from 15 to 35 high, which casts a shadow 20 wide.
   for (const mesh::NodeIndex node : nodes) {
     const Vec3& at = source_.positions[node.value];
     frame.positions.push_back(Vec3(at.x(), 0, 15 + (at.y() > -3 ? 20 : 0)));
@@ -127,7 +127,7 @@ TEST_F(Shadows, fall_on_the_plane_behind_where_things_are_dragged) {
   EXPECT_LT(light_at_back(moved, x0 - 25, 30), light_at_back(none, x0 - 25, 30) - 20);
 }
 
-TEST_F(Shadows, fall_of_the_selection_while_nothing_is_dragged) {
+TEST_F(Shadows, are_of_the_selection_while_nothing_is_dragged) {
   const Image none = draw(picture_, kShadowsWidth, kShadowsHeight);
   for (std::size_t n = 121; n < 125; ++n) source_.node_marks[n] = mesh::document::kSelected;
   source_.key = 2;
@@ -139,7 +139,7 @@ TEST_F(Shadows, fall_of_the_selection_while_nothing_is_dragged) {
   picture_.shadows = false;
   const Image plain = draw(picture_, kShadowsWidth, kShadowsHeight);
   picture_.shadows = true;
-  EXPECT_EQ(draw(picture_, kShadowsWidth, kShadowsHeight).rgb, plain.rgb) << "what is hidden throws none";
+  EXPECT_EQ(draw(picture_, kShadowsWidth, kShadowsHeight).rgb, plain.rgb) << "hidden shells cast no shadow";
 }
 
 }  // namespace

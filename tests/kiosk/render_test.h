@@ -1,4 +1,4 @@
-// What tests of pictures share: a context, a camera, and ways to look at pixels.
+// Fixture for tests of pictures: an OpenGL context, a renderer, views and pixels.
 #pragma once
 
 #include <cstdlib>
@@ -38,7 +38,7 @@ class RenderTest : public testing::Test {
     const auto shown = renderer_->set_model(source);
     ASSERT_TRUE(shown) << shown.error().text();
   }
-  /// A copy, as a new snapshot of the same document is another object.
+  /// Shows a copy, as each snapshot of a document is a new object.
   void show(const test::TestSource& source) { show(std::make_shared<test::TestSource>(source)); }
 
   Picture fitted(const std::string& profile, const std::string& view, int width, int height) const {

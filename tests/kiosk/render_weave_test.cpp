@@ -1,4 +1,4 @@
-// The woven picture: every column from its own eye, from the place where it stands, and thin lines whole for each eye.
+// The woven picture: each column shows its own eye and the scene at its position, and thin lines are unbroken for each eye.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,7 +19,7 @@ using stereo::Eye;
 
 class Weave : public RenderTest {
  protected:
-  /// A picture whose overlay floods each eye's image: the left one white, the right one black, the one from between grey.
+  /// A picture whose overlay fills each eye's image: the left one white, the right one black, the one from between grey.
   Picture flooded(const std::string& profile, float left = 1, float right = 0) {
     Picture picture;
     picture.profile = *stereo::find_profile(profile);
@@ -28,7 +28,7 @@ class Weave : public RenderTest {
       const float grey = image.eye == Eye::left ? left : image.eye == Eye::right ? right : 0.5F;
       glClearColor(grey, grey, grey, 1);
       glClear(GL_COLOR_BUFFER_BIT);
-      glEnable(GL_BLEND);  // what an overlay leaves behind doesn't matter
+      glEnable(GL_BLEND);  // the state that an overlay leaves doesn't matter
       glBlendFunc(GL_ZERO, GL_ZERO);
       glEnable(GL_SCISSOR_TEST);
       glScissor(0, 0, 1, 1);
@@ -36,7 +36,7 @@ class Weave : public RenderTest {
     };
     return picture;
   }
-  /// A picture whose images' columns are all different: 1 .. 127 and again for the left eye, 128 more for the right one.
+  /// A picture whose images have numbered columns: 1 to 127, repeated, for the left eye, 128 more for the right one.
   Picture numbered(const std::string& profile) {
     Picture picture = flooded(profile);
     picture.overlay = [this](const EyeImage& image) {
@@ -54,7 +54,7 @@ class Weave : public RenderTest {
   std::vector<EyeImage> images_;
 };
 
-/// Places of a pixel's three colours, in columns from its middle.
+/// Positions of a pixel's three colours, in columns from its middle.
 double colour_offset(const stereo::Profile& profile, int channel) {
   if (profile.subpixels == stereo::Subpixels::none) return 0;
   return (profile.subpixels == stereo::Subpixels::rgb ? channel - 1 : 1 - channel) / 3.0;
@@ -88,7 +88,7 @@ TEST_F(Weave, each_subpixel_shows_the_eye_and_the_window_that_sees_it) {
       const Image image = draw(picture, c.width, kHeight);
       ASSERT_EQ(images_.size(), 2U);
 
-      // The definition, straight from the optics.
+      // Expected: by the definition of the optics.
       drivers::display::MaskOptics optics = picture.profile.optics;
       optics.panel_columns = place.width > 0 ? place.width : c.width;
       const double panel_rows = place.height > 0 ? place.height : kHeight;
@@ -114,7 +114,7 @@ TEST_F(Weave, each_subpixel_shows_the_eye_and_the_window_that_sees_it) {
             const int shown = image.at(x, y)[channel], eye = off[0] < off[1] ? 0 : 1;
             ASSERT_EQ(shown >= 128, eye == 1) << c.profile << " " << x << "," << y << " channel " << channel << " offs " << off[0] << " "
                                               << off[1];
-            // The texel shows the scene at this place, not a window further.
+            // The texel shows the scene at this position, not at the next window.
             const EyeImage& from = images_[eye];
             const Eigen::Vector2d at = from.from_picture * Vec3(column, y + 0.5, 1);
             const double texel = 0.5 * (at.x() + 1) * from.width - 0.5;
@@ -157,7 +157,7 @@ TEST_F(Weave, parts_of_a_panel_continue_its_columns_and_rows) {
   }
 }
 
-TEST_F(Weave, other_displays_get_what_they_need) {
+TEST_F(Weave, other_displays_get_their_layouts) {
   EXPECT_EQ(draw(flooded("mono-left"), 40, 10).at(3, 3)[0], 255);
   EXPECT_EQ(draw(flooded("mono-right"), 40, 10).at(3, 3)[0], 0);
   EXPECT_NEAR(draw(flooded("mono"), 40, 10).at(3, 3)[0], 128, 1);
@@ -190,12 +190,12 @@ test::TestSource half_plane(bool rows) {
   return source;
 }
 
-TEST_F(Weave, every_column_shows_the_scene_where_it_stands) {
+TEST_F(Weave, every_column_shows_the_scene_at_its_position) {
   show(half_plane(false));
   struct Case {
     const char* profile;
     Vec3 head;
-    double slack;  ///< pixels that a column may be beside its window
+    double slack;  ///< max distance in pixels of a column from its window
   };
   for (const Case& c :
        {Case{"prism-mask-columns", {0, 0, 650}, 0}, Case{"prism-mask-stencil", {0, 0, 650}, 0}, Case{"mono", {0, 0, 650}, 0},
@@ -218,7 +218,7 @@ TEST_F(Weave, every_column_shows_the_scene_where_it_stands) {
       }
 }
 
-TEST_F(Weave, every_row_shows_the_scene_where_it_stands) {
+TEST_F(Weave, every_row_shows_the_scene_at_its_position) {
   show(half_plane(true));
   for (const int height : {256, 255}) {
     int wrong = 0;
@@ -234,7 +234,7 @@ TEST_F(Weave, every_row_shows_the_scene_where_it_stands) {
   }
 }
 
-/// Connected pieces (8 neighbours) of what differs from the ground by a quarter of the strongest difference.
+/// Number of connected pieces (8 neighbours) of the pixels that differ from the ground by at least a quarter of the max difference.
 int pieces(const std::vector<int>& image, const std::vector<int>& ground, int width, int height) {
   std::vector<char> ink(image.size());
   int strongest = 0;
@@ -261,7 +261,7 @@ int pieces(const std::vector<int>& image, const std::vector<int>& ground, int wi
   return found;
 }
 
-/// What one eye gets of a woven picture, one value a window: from the subpixels that show it, by the optics.
+/// What one eye sees of a woven picture, one value for each window, from the subpixels that show it by the optics.
 struct EyesShare {
   int width = 0, height = 0;
   std::vector<int> light;
@@ -287,7 +287,7 @@ EyesShare share_of(const Image& image, const Picture& picture, Eye eye) {
   return share;
 }
 
-/// Two sheets that meet in a line through the picture's middle; their other edges are far outside.
+/// Two sheets that meet at a line through the picture's middle; their other edges are far outside.
 test::TestSource seam(double angle, std::uint64_t key) {
   test::TestSource source;
   const mesh::Vec3 along(std::cos(angle) * 400, std::sin(angle) * 400, 0), across(-along.y(), along.x(), 0), middle(0.13, 0.07, 0);
@@ -298,7 +298,7 @@ test::TestSource seam(double angle, std::uint64_t key) {
   return source;
 }
 
-TEST_F(Weave, a_thin_line_is_one_piece_for_each_eye_wherever_it_is) {
+TEST_F(Weave, a_thin_line_is_one_piece_for_each_eye_at_every_position) {
   constexpr int kWidth = 200, kHeight = 120;
   std::uint64_t key = 10;
   for (const char* name : {"prism-mask", "lenticular", "prism-mask-stencil"})
@@ -318,7 +318,7 @@ TEST_F(Weave, a_thin_line_is_one_piece_for_each_eye_wherever_it_is) {
         worst = std::max(worst, pieces(line.light, ground.light, line.width, line.height));
       }
       if (picture.profile.weave == stereo::Weave::stencil)
-        EXPECT_GT(worst, 3) << "what the stencil is shown for";
+        EXPECT_GT(worst, 3) << "the stencil breaks lines";
       else
         EXPECT_EQ(worst, 1) << name << ", head at " << head.transpose();
     }
@@ -355,7 +355,7 @@ TEST_F(Weave, the_rubber_band_has_no_parallax) {
     for (const int x : {90, 91}) {
       EXPECT_GT(brightness(image, x, 20), brightness(ground, x, 20) + 60) << "upper side, column " << x << " " << name;
       EXPECT_GT(brightness(image, x, 90), brightness(ground, x, 90) + 40) << "lower side " << name;
-      EXPECT_GT(brightness(image, x, 50), brightness(ground, x, 50)) << "a little light inside " << name;
+      EXPECT_GT(brightness(image, x, 50), brightness(ground, x, 50)) << "slightly lighter inside " << name;
       EXPECT_EQ(brightness(image, x, 10), brightness(ground, x, 10));
     }
     for (const int x : {40, 150})
@@ -388,7 +388,7 @@ TEST_F(Weave, without_depth_both_eyes_see_the_mono_picture) {
   }
 }
 
-TEST_F(Weave, leakage_added_to_the_corrected_picture_gives_the_wanted_one) {
+TEST_F(Weave, crosstalk_added_to_the_compensated_picture_gives_the_wanted_one) {
   const auto light = [](double value) { return std::pow(value / 255, 2.2); };
   for (const char* name : {"prism-mask", "prism-mask-columns", "prism-mask-stencil", "row-interlaced", "side-by-side"})
     for (const auto& [left, right] :
@@ -400,13 +400,13 @@ TEST_F(Weave, leakage_added_to_the_corrected_picture_gives_the_wanted_one) {
       const double shown_left = light(image.at(beside ? 4 : 30, 10)[1]);
       const double shown_right = light(rows ? image.at(30, 11)[1] : image.at(beside ? 50 : 31, 10)[1]);
       const double seen_left = shown_left + 0.05 * shown_right, seen_right = shown_right + 0.08 * shown_left;
-      // Black can't be darker than the leak: everything is lifted by it. Half a level of 255 is what rounding costs.
+      // Black can't be darker than the leak, which is added to all values. Rounding costs half a level of 255.
       EXPECT_NEAR(seen_left, 0.05 + 0.95 * light(std::round(left * 255)), 0.006) << name << " " << left << " " << right;
       EXPECT_NEAR(seen_right, 0.08 + 0.92 * light(std::round(right * 255)), 0.006) << name << " " << left << " " << right;
     }
 }
 
-TEST_F(Weave, the_correction_takes_the_other_eyes_light_from_the_same_place) {
+TEST_F(Weave, the_compensation_uses_the_other_eyes_light_at_the_same_position) {
   Picture picture = numbered("prism-mask-columns");
   const Image plain = draw(picture, 64, 4);
   picture.profile.crosstalk = {0.1, 0.1};
@@ -415,7 +415,7 @@ TEST_F(Weave, the_correction_takes_the_other_eyes_light_from_the_same_place) {
   const auto wanted = [&](int x, int channel) { return 0.1 + 0.9 * light(plain.at(x, 1)[channel]); };
   for (int x = 1; x < 63; ++x)
     for (int channel = 0; channel < 3; ++channel) {
-      // Halfway between the neighbours' values, as they stand.
+      // Midway between the values of the two neighbours.
       const double other = 0.5 * (plain.at(x - 1, 1)[channel] + plain.at(x + 1, 1)[channel]);
       const double corrected = std::clamp((wanted(x, channel) - 0.1 * (0.1 + 0.9 * light(other))) / (1 - 0.01), 0.0, 1.0);
       EXPECT_NEAR(image.at(x, 1)[channel], 255 * std::pow(corrected, 1 / 2.2), 0.8) << x;

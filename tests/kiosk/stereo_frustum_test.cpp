@@ -1,4 +1,4 @@
-// The screen is a window: its corners stay where they are whatever the eye, and pictures go onto images of any shape.
+// Projection through the screen as a window, viewpoints of pictures, projection onto images of any shape, and the pointer's rays.
 #include <gtest/gtest.h>
 
 #include "kiosk/stereo/frustum.h"
@@ -15,7 +15,7 @@ Eigen::Vector2d project(const Eigen::Matrix4d& clip, const Vec3& mm) {
   return at.head<2>() / at.w();
 }
 
-TEST(Frustum, screen_corners_land_on_the_pictures_corners_for_any_eye) {
+TEST(Frustum, screen_corners_map_to_the_pictures_corners_for_any_eye) {
   for (const Vec3& eye : kEyes) {
     const Eigen::Matrix4d clip = clip_from_screen(eye, {kWidth, kHeight}, {50, 5000});
     for (const double sx : {-1.0, 1.0})
@@ -27,7 +27,7 @@ TEST(Frustum, screen_corners_land_on_the_pictures_corners_for_any_eye) {
   }
 }
 
-TEST(Frustum, parallax_is_that_of_the_eyes) {
+TEST(Frustum, parallax_is_that_of_the_eyes_separation) {
   const EyePair eyes = eyes_from({0, 0, 650}, 63);
   EXPECT_DOUBLE_EQ((eyes.right - eyes.left).x(), 63);
   const Eigen::Matrix4d left = clip_from_screen(eyes.left, {kWidth, kHeight}, {50, 5000});
@@ -38,7 +38,7 @@ TEST(Frustum, parallax_is_that_of_the_eyes) {
   }
 }
 
-TEST(Frustum, near_and_far_hold_what_the_view_shows) {
+TEST(Frustum, near_and_far_contain_the_views_bounds) {
   View view;
   view.bounds = {{100, 0, 0}, 5000};
   for (const Vec3& eye : kEyes) {
@@ -52,12 +52,12 @@ TEST(Frustum, near_and_far_hold_what_the_view_shows) {
   }
 }
 
-TEST(Frustum, an_eye_behind_the_screen_breaks_nothing) {
+TEST(Frustum, an_eye_behind_the_screen_gives_a_finite_projection) {
   for (const double z : {0.0, -50.0})
     EXPECT_TRUE(clip_from_screen({0, 0, z}, {kWidth, kHeight}, depth_range(View(), {0, 0, z})).allFinite());
 }
 
-TEST(Frustum, a_projection_goes_onto_any_affine_image_of_the_picture) {
+TEST(Frustum, a_projection_is_converted_to_any_affine_image_of_the_picture) {
   const Eigen::Matrix4d clip = clip_from_screen(kEyes[1], {kWidth, kHeight}, {50, 5000});
   EXPECT_TRUE(clip_onto(whole_picture(1280, 1024), clip, 1280, 1024).isApprox(clip, 1e-12)) << "the picture itself";
   ImageMap sheared;
@@ -101,7 +101,7 @@ TEST(Pointer, pixels_count_from_the_upper_left) {
   EXPECT_FALSE(pixel_of(aim, Vec3(0, 0, 700))) << "behind the eye";
 }
 
-TEST(Pointer, a_ray_passes_through_what_its_pixel_shows) {
+TEST(Pointer, a_ray_passes_through_the_points_that_project_to_its_pixel) {
   const Aim aim = some_aim();
   const Vec3 point(140, 260, 350);
   const Ray ray = ray_through(aim, *pixel_of(aim, point));
@@ -126,7 +126,7 @@ TEST(Pointer, an_axis_that_points_at_the_eye_gives_no_distance) {
   EXPECT_FALSE(distance_along(aim, point, direction, {500, 300}));
 }
 
-TEST(Pointer, a_displacement_brings_the_point_under_the_pixel) {
+TEST(Pointer, a_displacement_moves_the_point_under_the_pixel) {
   const Aim aim = some_aim();
   const Vec3 point(90, 210, 330);
   const Eigen::Vector2d pixel(620, 111);
@@ -135,7 +135,7 @@ TEST(Pointer, a_displacement_brings_the_point_under_the_pixel) {
   EXPECT_NEAR(to_screen(aim.view, point + by).z(), to_screen(aim.view, point).z(), 1e-9);
 }
 
-TEST(Pointer, the_handle_is_where_it_is_drawn) {
+TEST(Pointer, the_handle_is_picked_where_it_is_drawn) {
   const Aim aim = some_aim();
   const Vec3 point(90, 210, 330);
   const Vec3 sideways = aim.view.rotation.conjugate() * Vec3::UnitX();

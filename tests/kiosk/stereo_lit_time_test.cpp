@@ -1,4 +1,4 @@
-// When a picture lights up: as measured where the display tells, as estimated where it doesn't.
+// Time at which a picture lights up, with and without refresh times from the display.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-/// Draws pictures of these lengths, one after the other.
+/// Draws pictures with these draw times, one after the other.
 void draw(PictureTiming& timing, ManualClock& clock, std::initializer_list<std::int64_t> lengths_ms) {
   for (const std::int64_t length : lengths_ms) {
     timing.begun(clock.now_ns());
@@ -20,7 +20,7 @@ void draw(PictureTiming& timing, ManualClock& clock, std::initializer_list<std::
   }
 }
 
-TEST(LitTime, without_the_displays_word_the_wait_is_half_a_period) {
+TEST(LitTime, without_refresh_times_the_wait_is_half_a_period) {
   ManualClock clock;
   PictureTiming timing({20 * kMs, 7 * kMs});
   draw(timing, clock, {4, 4, 4});
@@ -30,7 +30,7 @@ TEST(LitTime, without_the_displays_word_the_wait_is_half_a_period) {
   EXPECT_EQ(lit.until_ns - lit.from_ns, 20 * kMs) << "a picture stays for a period";
 }
 
-TEST(LitTime, a_refresh_that_the_display_tells_fixes_the_phase) {
+TEST(LitTime, a_reported_refresh_fixes_the_phase) {
   ManualClock clock;
   clock.advance_ns(1000 * kMs);
   PictureTiming timing({20 * kMs, 0});
@@ -42,7 +42,7 @@ TEST(LitTime, a_refresh_that_the_display_tells_fixes_the_phase) {
   EXPECT_EQ(timing.lit(now).from_ns, now - 17 * kMs + 40 * kMs + 10 * kMs) << "too late for the refresh in 3 ms";
 }
 
-TEST(LitTime, nonsense_from_the_display_is_ignored) {
+TEST(LitTime, impossible_refresh_times_are_ignored) {
   ManualClock clock;
   clock.advance_ns(5000 * kMs);
   PictureTiming timing({20 * kMs, 0});
@@ -54,10 +54,10 @@ TEST(LitTime, nonsense_from_the_display_is_ignored) {
     EXPECT_EQ(timing.lit(now).from_ns, estimated) << refresh;
   }
   timing.refreshed(now - 3 * kMs, now);
-  EXPECT_EQ(timing.lit(now + 3000 * kMs).from_ns - 3000 * kMs, estimated) << "a phase of long ago says nothing";
+  EXPECT_EQ(timing.lit(now + 3000 * kMs).from_ns - 3000 * kMs, estimated) << "an old phase is ignored";
 }
 
-TEST(LitTime, one_slow_picture_doesnt_move_the_light_but_the_time_it_stays) {
+TEST(LitTime, one_slow_picture_changes_only_the_time_that_a_picture_stays) {
   ManualClock clock;
   PictureTiming timing({20 * kMs, 0});
   draw(timing, clock, {4, 4, 90, 4, 4});

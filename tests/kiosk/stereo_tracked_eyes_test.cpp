@@ -1,4 +1,4 @@
-// The eyes that pictures are drawn for, in virtual time: predicted, still when the head is, mono in time when anything fails.
+// Eyes that pictures are drawn for, in virtual time: prediction, constant eyes while the head is still, mono in time if anything fails.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -23,17 +23,17 @@ using drivers::eye_tracker::MotionKind;
 using drivers::prism_servo::MaskPhase;
 using Eigen::Vector3d;
 
-constexpr std::int64_t kMillisecondNs = 1'000'000, kPromiseNs = 250 * kMillisecondNs, kStart = 10'000 * kMillisecondNs;
+constexpr std::int64_t kMillisecondNs = 1'000'000, kMaxDepthAgeNs = 250 * kMillisecondNs, kStart = 10'000 * kMillisecondNs;
 
-/// A picture that was on the display, when it really was.
+/// A picture on the display, with the true times at which it was seen.
 struct Shown {
   std::int64_t lit_ns = 0;
   std::int64_t until_ns = 0;
   SeenFrom seen;
 };
 
-/// A tracker at 60 Hz, 20 ms late if not said otherwise and with 1 mm of noise, the daemon's page at 200 Hz, and a kiosk that looks at it
-/// at each refresh.
+/// A tracker at 60 Hz with a default delay of 20 ms and 1 mm of noise, the daemon's page at 200 Hz, and a kiosk that reads it at each
+/// refresh.
 class World {
  public:
   explicit World(const FollowOptions& options, const HeadMotion& motion = HeadMotion(MotionKind::still, 1))
@@ -101,7 +101,8 @@ class World {
     seen = next;
     drawn_ns_ = now() + draw_ms * kMillisecondNs;
   }
-  /// Drawn: seen from the next refresh on (refreshes lie 17 ms apart, their phase unknown to the kiosk), 8 + 10 ms later in the middle.
+  /// A drawn picture is seen from the next refresh on, 8 + 10 ms later in the middle of the panel. Refreshes are 17 ms apart; the kiosk
+  /// doesn't know their phase.
   void light_up() {
     timing_.drawn(now());
     drawn_ns_ = 0;
@@ -126,7 +127,7 @@ void allow_stereo(World& world) {
   world.reading.prism->phase = MaskPhase::following;
 }
 
-/// The latest time at which depth was on the display before it was mono for good.
+/// The last time at which depth was on the display.
 std::int64_t depth_ended_ns(const World& world) {
   std::int64_t ended = 0;
   for (const Shown& shown : world.pictures)
@@ -134,7 +135,7 @@ std::int64_t depth_ended_ns(const World& world) {
   return ended;
 }
 
-TEST(TrackedEyes, depth_comes_smoothly_once_the_head_is_seen_and_the_mask_follows) {
+TEST(TrackedEyes, depth_rises_smoothly_once_the_head_is_seen_and_the_mask_follows) {
   World world(prism_mask());
   world.run_ms(300);
   EXPECT_EQ(world.seen.depth_share, 0) << "the mask isn't ready";
@@ -146,7 +147,7 @@ TEST(TrackedEyes, depth_comes_smoothly_once_the_head_is_seen_and_the_mask_follow
     EXPECT_LT(std::abs(world.pictures[i].seen.depth_share - world.pictures[i - 1].seen.depth_share), 0.15);
 }
 
-TEST(TrackedEyes, the_head_is_predicted_to_the_light) {
+TEST(TrackedEyes, the_head_is_predicted_to_the_time_of_light) {
   const HeadMotion motion(MotionKind::turn, 5);
   World world(prism_mask(), motion);
   allow_stereo(world);
@@ -168,7 +169,7 @@ TEST(TrackedEyes, the_head_is_predicted_to_the_light) {
   EXPECT_LT(with, 0.6 * without);
 }
 
-TEST(TrackedEyes, a_resting_head_lets_the_picture_rest) {
+TEST(TrackedEyes, a_still_head_gives_a_constant_picture) {
   World world(prism_mask());
   allow_stereo(world);
   world.run_until_stereo();
@@ -179,7 +180,7 @@ TEST(TrackedEyes, a_resting_head_lets_the_picture_rest) {
   EXPECT_LE(world.pictures.size() - pictures, 40u) << "pictures in 20 s of sitting still";
 }
 
-TEST(TrackedEyes, eyes_that_are_lost_turn_the_picture_mono_in_time_and_smoothly) {
+TEST(TrackedEyes, lost_eyes_turn_the_picture_mono_in_time_and_smoothly) {
   World world(prism_mask());
   allow_stereo(world);
   world.run_until_stereo();
@@ -187,7 +188,7 @@ TEST(TrackedEyes, eyes_that_are_lost_turn_the_picture_mono_in_time_and_smoothly)
   world.run_ms(1000);
   world.close_pictures();
   EXPECT_EQ(world.seen.depth_share, 0);
-  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs);
+  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kMaxDepthAgeNs);
   std::size_t between = 0;
   for (const Shown& shown : world.pictures)
     between += shown.lit_ns > world.last_measured_ns && shown.seen.depth_share > 0 && shown.seen.depth_share < 1 ? 1u : 0u;
@@ -198,7 +199,7 @@ TEST(TrackedEyes, eyes_that_are_lost_turn_the_picture_mono_in_time_and_smoothly)
   EXPECT_LT(world.now() - back, 1000 * kMillisecondNs);
 }
 
-TEST(TrackedEyes, a_tracker_that_takes_long_gives_depth_too) {
+TEST(TrackedEyes, a_slow_tracker_gives_depth_too) {
   World world(prism_mask());
   allow_stereo(world);
   world.latency_ms = 150;
@@ -211,8 +212,8 @@ TEST(TrackedEyes, a_tracker_that_takes_long_gives_depth_too) {
   world.run_ms(1000);
   world.close_pictures();
   EXPECT_EQ(world.seen.depth_share, 0);
-  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 130 * kMillisecondNs)
-      << "the promise counts from when the head was heard of";
+  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kMaxDepthAgeNs + 130 * kMillisecondNs)
+      << "the limit counts from the arrival of the last measurement";
 }
 
 TEST(TrackedEyes, a_short_gap_is_bridged) {
@@ -229,7 +230,7 @@ TEST(TrackedEyes, a_short_gap_is_bridged) {
 
 TEST(TrackedEyes, every_way_to_lose_the_daemon_ends_in_mono) {
   const std::vector<std::function<void(World&)>> ways{
-      [](World& w) { w.daemon_runs = false; },                                                  // killed: the page stays, and stands still
+      [](World& w) { w.daemon_runs = false; },                                                  // killed: the page stays and doesn't change
       [](World& w) { w.daemon_runs = w.page_is_there = false; },                                // the link is known to be lost
       [](World& w) { w.daemon_runs = false, w.reading.eyes->phase = ipc::EyesPhase::absent; },  // unplugged
       [](World& w) { w.daemon_runs = false, w.reading.eyes->between_eyes_mm[0] = std::nan(""); },                   // a fault
@@ -243,11 +244,11 @@ TEST(TrackedEyes, every_way_to_lose_the_daemon_ends_in_mono) {
     world.run_ms(600);
     world.close_pictures();
     EXPECT_EQ(world.seen.depth_share, 0) << way;
-    EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs) << way;
+    EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kMaxDepthAgeNs) << way;
   }
 }
 
-TEST(TrackedEyes, ten_thousand_losses_at_any_moment_never_leave_depth_behind) {
+TEST(TrackedEyes, ten_thousand_losses_at_any_moment_always_end_in_mono) {
   std::mt19937 random(11);
   std::int64_t worst = 0;
   for (int round = 0; round < 100; ++round) {
@@ -269,11 +270,11 @@ TEST(TrackedEyes, ten_thousand_losses_at_any_moment_never_leave_depth_behind) {
     }
   }
   RecordProperty("worst_ms", std::to_string(static_cast<double>(worst) / kMillisecondNs));
-  EXPECT_LE(worst, kPromiseNs);
-  EXPECT_GT(worst, 100 * kMillisecondNs) << "losses were seen at all";
+  EXPECT_LE(worst, kMaxDepthAgeNs);
+  EXPECT_GT(worst, 100 * kMillisecondNs) << "depth was shown after some losses";
 }
 
-TEST(TrackedEyes, nothing_in_depth_lights_up_while_the_mask_flies_back) {
+TEST(TrackedEyes, no_depth_is_seen_while_the_mask_moves_back) {
   std::mt19937 random(5);
   for (int round = 0; round < 200; ++round) {
     World world(prism_mask());
@@ -292,7 +293,7 @@ TEST(TrackedEyes, nothing_in_depth_lights_up_while_the_mask_flies_back) {
     world.close_pictures();
     for (const Shown& shown : world.pictures)
       if (shown.until_ns > mask.mono_from_ns && shown.lit_ns < mask.mono_until_ns && shown.seen.depth_share > 0) {
-        // The kiosk doesn't know the refreshes' phase: it may be off by half a period at either end.
+        // The kiosk doesn't know the phase of the refreshes: its times may be off by half a period at either end.
         EXPECT_LE(std::min(shown.until_ns - mask.mono_from_ns, mask.mono_until_ns - shown.lit_ns), 9 * kMillisecondNs) << round;
       }
     EXPECT_EQ(world.seen.depth_share, 1) << "back in depth";
@@ -311,7 +312,7 @@ TEST(TrackedEyes, a_mask_that_stops_following_fades_the_picture) {
   EXPECT_LE(depth_ended_ns(world) - stopped, 200 * kMillisecondNs);
 }
 
-TEST(TrackedEyes, a_mask_that_is_not_heard_of_any_more_fades_the_picture_though_the_eyes_are_seen) {
+TEST(TrackedEyes, missing_states_of_the_mask_fade_the_picture_though_the_eyes_are_seen) {
   World world(prism_mask());
   allow_stereo(world);
   world.run_until_stereo();
@@ -327,7 +328,7 @@ TEST(TrackedEyes, a_mask_that_is_not_heard_of_any_more_fades_the_picture_though_
   world.run_until_stereo();
 }
 
-/// Eyes at the resting place that were just measured, in a daemon's reading.
+/// A daemon's reading with eyes at the resting position that were just measured.
 DeviceReading eyes_measured_at(std::int64_t measured_ns) {
   DeviceReading reading;
   reading.eyes.emplace();
@@ -337,7 +338,7 @@ DeviceReading eyes_measured_at(std::int64_t measured_ns) {
   return reading;
 }
 
-/// Whether eyes that come after good ones are taken for a viewer's.
+/// Whether a state of the eyes is accepted after good ones.
 template <class Change>
 bool are_taken(const Change& change) {
   TrackedEyes eyes(prism_mask());
@@ -352,7 +353,7 @@ bool are_taken(const Change& change) {
   return eyes.measured_ns() != kStart;
 }
 
-TEST(TrackedEyes, eyes_that_no_viewer_can_have_are_not_taken) {
+TEST(TrackedEyes, impossible_eye_positions_are_ignored) {
   using ipc::EyesState;
   const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(are_taken([](EyesState&) {}));
@@ -367,7 +368,7 @@ TEST(TrackedEyes, eyes_that_no_viewer_can_have_are_not_taken) {
   EXPECT_TRUE(are_taken([](EyesState& eyes) { eyes.between_eyes_mm[2] = 101; }));
   EXPECT_FALSE(are_taken([](EyesState& eyes) { eyes.between_eyes_mm = {3000, 0, 4001}; })) << "more than 5 m away";
   EXPECT_TRUE(are_taken([](EyesState& eyes) { eyes.between_eyes_mm = {3000, 0, 3999}; }));
-  EXPECT_FALSE(are_taken([](EyesState& eyes) { eyes.velocity_mm_s = {0, -5001, 0}; })) << "no head goes at 5 m/s";
+  EXPECT_FALSE(are_taken([](EyesState& eyes) { eyes.velocity_mm_s = {0, -5001, 0}; })) << "no head moves at 5 m/s";
   EXPECT_TRUE(are_taken([](EyesState& eyes) { eyes.velocity_mm_s = {0, -4999, 0}; }));
   for (const double length : {0.0, 0.98, 1.02}) EXPECT_FALSE(are_taken([&](EyesState& eyes) { eyes.toward_right = {length, 0, 0}; }));
   EXPECT_TRUE(are_taken([](EyesState& eyes) { eyes.toward_right = {0.6, 0, -0.8}; }));
@@ -377,7 +378,7 @@ TEST(TrackedEyes, eyes_that_no_viewer_can_have_are_not_taken) {
     EXPECT_TRUE(are_taken([&](EyesState& eyes) { eyes.eye_separation_mm = separation; })) << separation;
 }
 
-TEST(TrackedEyes, only_new_measurements_of_a_tracked_head_are_taken) {
+TEST(TrackedEyes, only_new_measurements_of_a_tracked_head_are_accepted) {
   using ipc::EyesState;
   for (const ipc::EyesPhase phase : {ipc::EyesPhase::none, ipc::EyesPhase::absent, ipc::EyesPhase::silent, ipc::EyesPhase::searching})
     EXPECT_FALSE(are_taken([&](EyesState& eyes) { eyes.phase = phase; })) << ipc::name(phase);
@@ -386,7 +387,7 @@ TEST(TrackedEyes, only_new_measurements_of_a_tracked_head_are_taken) {
   EXPECT_FALSE(are_taken([](EyesState& eyes) { eyes.measured_ns += 51 * kMillisecondNs; })) << "of the future";
 }
 
-TEST(TrackedEyes, depth_never_comes_faster_than_its_rise_wherever_it_has_faded_to) {
+TEST(TrackedEyes, depth_never_rises_faster_than_its_limit_after_a_partial_fade) {
   World world(prism_mask());
   allow_stereo(world);
   const std::int64_t rise_ns = world.eyes.limits().rise_ns;
@@ -399,13 +400,13 @@ TEST(TrackedEyes, depth_never_comes_faster_than_its_rise_wherever_it_has_faded_t
   world.run_until_stereo();
   for (std::size_t i = 1; i < world.pictures.size(); ++i) {
     const Shown &before = world.pictures[i - 1], &now = world.pictures[i];
-    // The kiosk doesn't know the refreshes' phase: a picture may be lit a period later than it thinks.
-    const double most = static_cast<double>(now.lit_ns - before.lit_ns + 17 * kMillisecondNs) / static_cast<double>(rise_ns);
-    EXPECT_LE(now.seen.depth_share - before.seen.depth_share, most + 1e-9) << i;
+    // The kiosk doesn't know the phase of the refreshes: a picture may light up a period later than predicted.
+    const double max_rise = static_cast<double>(now.lit_ns - before.lit_ns + 17 * kMillisecondNs) / static_cast<double>(rise_ns);
+    EXPECT_LE(now.seen.depth_share - before.seen.depth_share, max_rise + 1e-9) << i;
   }
 }
 
-/// A viewer in the middle and a mask that follows, looked at each 17 ms for pictures of 20 to 37 ms later.
+/// A viewer in the middle and a mask that follows; look() is called every 17 ms for pictures seen 20 to 37 ms later.
 class Looks {
  public:
   explicit Looks(const FollowOptions& options = prism_mask()) : eyes(options) {
@@ -432,7 +433,7 @@ class Looks {
   bool measures = true;
 };
 
-TEST(TrackedEyes, eyes_that_come_back_elsewhere_are_gone_over_to) {
+TEST(TrackedEyes, the_picture_moves_gradually_to_eyes_that_come_back_elsewhere) {
   Looks looks;
   looks.look_for_ms(500);
   EXPECT_EQ(looks.seen.depth_share, 1);
@@ -452,7 +453,7 @@ TEST(TrackedEyes, eyes_that_come_back_elsewhere_are_gone_over_to) {
   EXPECT_NEAR(before, 100, 2.1);
 }
 
-TEST(TrackedEyes, no_tracker_is_so_slow_that_depth_stays_for_longer) {
+TEST(TrackedEyes, a_very_slow_tracker_does_not_extend_depth) {
   World world(prism_mask());
   allow_stereo(world);
   world.reading.eyes->lost_after_ns = 60'000 * kMillisecondNs;
@@ -461,21 +462,21 @@ TEST(TrackedEyes, no_tracker_is_so_slow_that_depth_stays_for_longer) {
   world.run_ms(2'000);
   world.close_pictures();
   EXPECT_EQ(world.seen.depth_share, 0);
-  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kPromiseNs + 500 * kMillisecondNs);
+  EXPECT_LE(depth_ended_ns(world) - world.last_measured_ns, kMaxDepthAgeNs + 500 * kMillisecondNs);
 }
 
-TEST(TrackedEyes, the_separation_that_was_measured_with_the_viewer_counts) {
+TEST(TrackedEyes, a_measured_eye_separation_replaces_the_trackers) {
   for (const bool was_measured : {false, true}) {
     FollowOptions options;
     if (was_measured) options.eye_separation_mm = 58;
     Looks looks(options);
     looks.reading.eyes->eye_separation_mm = 68;
     looks.look_for_ms(500);
-    EXPECT_NEAR(looks.seen.eye_separation_mm, was_measured ? 58 : 68, 1) << "but for the zone in which it stands still";
+    EXPECT_NEAR(looks.seen.eye_separation_mm, was_measured ? 58 : 68, 1) << "within the zone in which it is constant";
   }
 }
 
-TEST(TrackedEyes, each_time_that_the_mask_stops_the_depth_fades) {
+TEST(TrackedEyes, depth_fades_each_time_the_mask_stops) {
   Looks looks;
   for (int round = 0; round < 3; ++round) {
     looks.reading.prism->stereo_allowed = true;
@@ -492,7 +493,7 @@ TEST(TrackedEyes, each_time_that_the_mask_stops_the_depth_fades) {
   }
 }
 
-TEST(TrackedEyes, a_move_back_that_was_announced_is_mono_for_every_picture_that_touches_it_and_for_no_other) {
+TEST(TrackedEyes, exactly_the_pictures_seen_during_an_announced_move_back_are_mono) {
   for (const bool allowed_meanwhile : {true, false}) {
     Looks looks;
     looks.look_for_ms(500);
@@ -515,17 +516,17 @@ TEST(TrackedEyes, a_move_back_that_was_announced_is_mono_for_every_picture_that_
   }
 }
 
-TEST(TrackedEyes, a_move_back_that_nobody_announced_in_time_ends_depth_at_once) {
+TEST(TrackedEyes, a_move_back_announced_too_late_ends_depth_at_once) {
   Looks looks;
   looks.look_for_ms(500);
   ipc::PrismState& mask = *looks.reading.prism;
   mask.stereo_allowed = false;
   mask.mono_from_ns = looks.now;
   mask.mono_until_ns = looks.now + 120 * kMillisecondNs;
-  EXPECT_EQ(looks.look().depth_share, 0) << "no fade while the mask flies";
+  EXPECT_EQ(looks.look().depth_share, 0) << "no fade while the mask moves back";
 }
 
-TEST(TrackedEyes, another_display_begins_in_mono_at_its_resting_place) {
+TEST(TrackedEyes, another_display_begins_in_mono_at_its_resting_position) {
   Looks looks;
   looks.reading.eyes->between_eyes_mm = {200, 0, 650};
   looks.look_for_ms(1000);
@@ -536,17 +537,17 @@ TEST(TrackedEyes, another_display_begins_in_mono_at_its_resting_place) {
   looks.eyes.set_options(other);
   looks.look();
   EXPECT_EQ(looks.seen.depth_share, 0);
-  EXPECT_LT((looks.seen.between_eyes_mm - other.resting_mm).norm(), 1) << "and goes over to the eyes from there";
+  EXPECT_LT((looks.seen.between_eyes_mm - other.resting_mm).norm(), 1) << "and moves to the eyes from there";
   looks.look_for_ms(1000);
   EXPECT_EQ(looks.seen.depth_share, 1);
 }
 
-TEST(TrackedEyes, a_page_that_says_nothing_of_the_mask_gives_no_depth) {
+TEST(TrackedEyes, a_page_without_a_state_of_the_mask_gives_no_depth) {
   Looks looks;
   const std::optional<ipc::PrismState> mask = std::exchange(looks.reading.prism, std::nullopt);
   looks.look_for_ms(1000);
   EXPECT_EQ(looks.seen.depth_share, 0);
-  EXPECT_FALSE(looks.seen.mask_mm) << "where it should be for these eyes";
+  EXPECT_FALSE(looks.seen.mask_mm) << "the ideal position for these eyes";
   looks.reading.prism = mask;
   looks.look_for_ms(500);
   EXPECT_EQ(looks.seen.depth_share, 1);
@@ -560,7 +561,7 @@ TEST(TrackedEyes, a_page_that_says_nothing_of_the_mask_gives_no_depth) {
   EXPECT_LE(between, 6) << "... of 80 ms";
 }
 
-/// Also where pictures take so long that no time is left to fade.
+/// Also if pictures take so long that no time is left for a fade.
 TEST(TrackedEyes, depth_never_rises_while_nothing_is_measured) {
   for (std::int64_t ahead_ms = 20; ahead_ms <= 400; ahead_ms += 20) {
     TrackedEyes eyes(prism_mask());
@@ -580,7 +581,7 @@ TEST(TrackedEyes, depth_never_rises_while_nothing_is_measured) {
       const double next = share(measured);
       EXPECT_LE(next, before) << ahead_ms << " ms ahead, " << (now - measured) / kMillisecondNs << " ms after";
       EXPECT_GE(next, 0);
-      // Until it is known that they are lost, the picture may stay.
+      // The picture may stay until the eyes are known to be lost.
       const bool known = now - measured > eyes.limits().lost_after_ns;
       if (known && now + ahead_ms * kMillisecondNs >= deadline) {
         EXPECT_EQ(next, 0) << ahead_ms << " ms ahead";
@@ -590,7 +591,7 @@ TEST(TrackedEyes, depth_never_rises_while_nothing_is_measured) {
   }
 }
 
-TEST(TrackedEyes, another_display_begins_in_mono_though_the_mask_had_stopped_long_ago) {
+TEST(TrackedEyes, another_display_begins_in_mono_even_if_the_mask_stopped_long_ago) {
   Looks looks;
   looks.look_for_ms(500);
   looks.reading.prism->stereo_allowed = false;
@@ -609,7 +610,7 @@ TEST(TrackedEyes, another_display_begins_in_mono_though_the_mask_had_stopped_lon
   EXPECT_EQ(looks.seen.depth_share, 1);
 }
 
-TEST(TrackedEyes, the_mask_is_where_it_was_measured_or_where_it_should_be) {
+TEST(TrackedEyes, the_mask_is_at_its_measured_or_its_ideal_position) {
   TrackedEyes eyes(prism_mask());
   DeviceReading reading;
   ipc::PrismState& mask = reading.prism.emplace();
@@ -622,11 +623,11 @@ TEST(TrackedEyes, the_mask_is_where_it_was_measured_or_where_it_should_be) {
   EXPECT_FALSE(mask_mm(std::nan("")));
   EXPECT_EQ(mask_mm(0.3), 0.3);
   for (const double wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) EXPECT_EQ(mask_mm(wrong), 0.3);
-  EXPECT_EQ(mask_mm(0.304), 0.3) << "stands still";
+  EXPECT_EQ(mask_mm(0.304), 0.3) << "a smaller movement is ignored";
   EXPECT_EQ(mask_mm(0.306), 0.306);
 }
 
-TEST(TrackedEyes, the_place_never_jumps_and_goes_back_to_rest_when_nobody_is_there) {
+TEST(TrackedEyes, the_position_never_jumps_and_returns_to_rest_without_a_viewer) {
   const HeadMotion motion(MotionKind::still, 2, Vector3d(180, -40, 720));
   World world(prism_mask(), motion);
   allow_stereo(world);
@@ -648,7 +649,7 @@ TEST(TrackedEyes, the_place_never_jumps_and_goes_back_to_rest_when_nobody_is_the
   }
 }
 
-TEST(TrackedEyes, depth_waits_until_the_picture_stands_at_the_eyes) {
+TEST(TrackedEyes, depth_waits_until_the_picture_is_at_the_eyes) {
   World world(prism_mask(), HeadMotion(MotionKind::still, 2, Vector3d(200, 0, 650)));
   allow_stereo(world);
   world.run_ms(1500);
@@ -659,7 +660,7 @@ TEST(TrackedEyes, depth_waits_until_the_picture_stands_at_the_eyes) {
   EXPECT_EQ(world.seen.depth_share, 1);
 }
 
-TEST(TrackedEyes, the_mask_is_predicted_to_the_light) {
+TEST(TrackedEyes, the_mask_is_predicted_to_the_time_of_light) {
   World world(prism_mask());
   allow_stereo(world);
   ipc::PrismState& mask = *world.reading.prism;
@@ -669,7 +670,7 @@ TEST(TrackedEyes, the_mask_is_predicted_to_the_light) {
   mask.goal_velocity_mm_s = 2;
   world.run_ms(100);
   ASSERT_TRUE(world.seen.mask_mm.has_value());
-  EXPECT_GT(*world.seen.mask_mm, 0.15) << "some 40 ms ahead at 2 mm/s";
+  EXPECT_GT(*world.seen.mask_mm, 0.15) << "about 40 ms ahead at 2 mm/s";
   EXPECT_LT(*world.seen.mask_mm, 0.3);
 }
 
@@ -684,10 +685,10 @@ TEST(TrackedEyes, glasses_keep_their_depth_without_eyes) {
   world.tracker_sees = false;
   world.run_ms(6000);
   EXPECT_EQ(world.seen.depth_share, 1);
-  EXPECT_NEAR(world.seen.between_eyes_mm.x(), 0, 0.1) << "not frozen where the head was last";
+  EXPECT_NEAR(world.seen.between_eyes_mm.x(), 0, 0.1) << "not at the last position of the head";
 }
 
-TEST(TrackedEyes, fixed_eyes_stay_in_depth_whatever_the_daemon_says) {
+TEST(TrackedEyes, fixed_eyes_keep_depth_whatever_the_daemon_reports) {
   FollowOptions options;
   options.follow = options.movable_mask = false;
   options.resting_mm = {30, 20, 600};

@@ -1,4 +1,4 @@
-// Where the model stands before the screen, and that it stays where eyes can rest on it.
+// Placement of the model in front of the screen, and its limits in depth.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -26,7 +26,7 @@ Vec3 on_screen(std::string_view name, const Vec3& deck) {
   return to_screen(view, deck);
 }
 
-TEST(View, named_views_look_the_way_they_say) {
+TEST(View, named_views_have_their_direction) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
   EXPECT_TRUE(on_screen("front", z).isApprox(y)) << "up is up";
   EXPECT_TRUE(on_screen("front", y).isApprox(-z)) << "looking along +y";
@@ -43,7 +43,7 @@ TEST(View, named_views_look_the_way_they_say) {
   EXPECT_FALSE(named_rotation("sideways"));
 }
 
-TEST(View, screen_and_back) {
+TEST(View, to_deck_inverts_to_screen) {
   const View view = some_view();
   const Vec3 point(123, 45, -6);
   EXPECT_LT((to_deck(view, to_screen(view, point)) - point).norm(), 1e-9);
@@ -52,7 +52,7 @@ TEST(View, screen_and_back) {
   EXPECT_LT((to_screen(view, view.pivot) - Vec3(12, -7, 0)).norm(), 1e-12) << "the pivot lies in the screen's plane";
 }
 
-TEST(View, everything_stays_in_the_comfort_box_however_it_is_turned_and_zoomed) {
+TEST(View, the_model_stays_in_the_comfort_box_for_every_rotation_and_zoom) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int round = 0; round < 2000; ++round) {
@@ -82,7 +82,7 @@ TEST(View, small_models_keep_their_true_depth) {
   EXPECT_LT(depth_scale(view), 0.1);
 }
 
-TEST(View, orbit_follows_the_hand) {
+TEST(View, orbit_moves_the_near_side_with_the_pointer) {
   View view;
   const Vec3 near_point(0, 0, 5);
   EXPECT_GT(to_screen(orbit(view, 0.1, 0), near_point).x(), 0);
@@ -121,7 +121,7 @@ Eigen::Vector2d seen_on_screen(const View& view, const Vec3& eye, const Vec3& de
   return eye.head<2>() + (mm.head<2>() - eye.head<2>()) * eye.z() / (eye.z() - mm.z());
 }
 
-TEST(View, a_point_comes_into_the_plane_of_the_screen_where_the_eye_sees_it) {
+TEST(View, a_point_moves_into_the_screen_plane_where_the_eye_sees_it) {
   const Vec3 eye(70, -20, 600), point(150, -60, 210);
   View view = some_view();
   const Eigen::Vector2d seen = seen_on_screen(view, eye, point);
@@ -144,15 +144,15 @@ TEST(View, the_comfort_box_is_a_degree_of_parallax) {
     EXPECT_NEAR(63 * at.before_mm / (distance - at.before_mm), distance * std::tan(std::numbers::pi / 180), 1e-9);
     EXPECT_NEAR(63 * at.behind_mm / (distance + at.behind_mm), distance * std::tan(std::numbers::pi / 180), 1e-9);
   }
-  EXPECT_LE(comfort_box(3000, 3).behind_mm, 1500) << "eyes that would have to look outward: cut";
+  EXPECT_LE(comfort_box(3000, 3).behind_mm, 1500) << "limited, as the eyes would have to diverge";
   EXPECT_GT(comfort_box(650, 1.5).before_mm, box.before_mm);
 }
 
-TEST(View, the_comfort_box_reaches_half_the_eyes_distance_at_most) {
-  // 1 degree at 2 m is 35 mm of parallax: with eyes 63 mm apart that lies 2.48 m behind the screen.
+TEST(View, the_comfort_box_reaches_max_half_the_eyes_distance) {
+  // 1 degree at 2 m is 35 mm of parallax: with eyes 63 mm apart that is 2.48 m behind the screen.
   EXPECT_DOUBLE_EQ(comfort_box(2000, 1, 63).behind_mm, 1000);
   EXPECT_LT(comfort_box(2000, 1, 63).before_mm, 1000);
-  // 20 degrees at 650 mm are 237 mm of parallax: 514 mm before the screen.
+  // 20 degrees at 650 mm are 237 mm of parallax: 514 mm in front of the screen.
   EXPECT_DOUBLE_EQ(comfort_box(650, 20, 63).before_mm, 325);
   EXPECT_DOUBLE_EQ(comfort_box(650, 20, 63).behind_mm, 325);
 }
@@ -198,7 +198,7 @@ TEST(View, fit_fills_the_screen_and_keeps_the_rotation) {
   }
 }
 
-TEST(View, fit_of_nothing_is_a_view) {
+TEST(View, fit_of_an_empty_box_is_a_valid_view) {
   const View view = fit(View(), Box(), {500, 300});
   EXPECT_TRUE(std::isfinite(view.mm_per_unit));
   EXPECT_GT(view.mm_per_unit, 0);

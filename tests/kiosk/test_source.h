@@ -1,4 +1,4 @@
-// A model for the renderer's tests, made by hand: arrays with versions, as a snapshot has them.
+// Model source for the renderer's tests: arrays with versions, as in a snapshot.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ class TestSource final : public kiosk::render::ModelSource {
   std::vector<mesh::PartIndex> line_parts;
   std::vector<bool> hidden;
   std::uint64_t key = 1;
-  double most_triangles = 4;
+  double max_triangles = 4;
 
   std::uint32_t add_node(const mesh::Vec3& at) {
     positions.push_back(at);
@@ -46,7 +46,7 @@ class TestSource final : public kiosk::render::ModelSource {
     line_parts.push_back(mesh::PartIndex(part));
     if (part >= hidden.size()) hidden.resize(part + 1);
   }
-  /// Says that a chunk has another content from now on.
+  /// Gives a chunk a new version after its content changed.
   void touch(ipc::SnapshotArray array, std::size_t chunk) {
     auto& versions = versions_[static_cast<std::size_t>(array)];
     if (versions.size() <= chunk) versions.resize(chunk + 1, 1);
@@ -65,7 +65,7 @@ class TestSource final : public kiosk::render::ModelSource {
   }
   std::size_t part_count() const override { return hidden.size(); }
   bool part_hidden(std::size_t part) const override { return hidden[part]; }
-  double most_triangles_at_node() const override { return most_triangles; }
+  double max_triangles_at_node() const override { return max_triangles; }
   std::uint64_t document_key() const override { return key; }
 
  private:
@@ -88,7 +88,7 @@ class TestSource final : public kiosk::render::ModelSource {
   std::uint64_t counter_ = 1;
 };
 
-/// A patch of n x m quads; `place` says where the node (i / n, j / m) stands.
+/// Adds a patch of n x m quads; `place` gives the position of node (i / n, j / m).
 template <class Place>
 inline std::uint32_t add_grid(TestSource& source, std::uint32_t n, std::uint32_t m, std::uint32_t part, const Place& place) {
   const auto first = static_cast<std::uint32_t>(source.positions.size());
@@ -102,7 +102,7 @@ inline std::uint32_t add_grid(TestSource& source, std::uint32_t n, std::uint32_t
   return first;
 }
 
-/// Two plates of 10 x 10 quads, 40 apart: part 0 before (z = 20), part 1 behind.
+/// Two plates of 10 x 10 quads, 40 apart: part 0 in front (z = 20), part 1 behind.
 inline TestSource two_plates() {
   TestSource source;
   for (const std::uint32_t part : {0U, 1U})
@@ -111,7 +111,7 @@ inline TestSource two_plates() {
 }
 
 /// A crash box on a base plate: a hat section with rounded shoulders (part 0), its closing plate (part 1), a curved panel (part 2) and
-/// spot welds as lines (part 3). Lengths in mm; some 1,100 shells.
+/// spot welds as lines (part 3). Lengths in mm; about 1,100 shells.
 inline TestSource make_crash_box() {
   TestSource source;
   const double length = 300;

@@ -1,4 +1,4 @@
-// Pictures kept beside the test, compared with what is drawn today. PRISMESH_UPDATE_PICTURES=1 draws them anew: look at them then.
+// Compares drawn pictures with those kept beside the test. PRISMESH_UPDATE_PICTURES=1 replaces them: check the new ones by eye.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -16,13 +16,13 @@ namespace prismesh::kiosk::render {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 360;
-constexpr const char* kDrawnWith = "Mesa 22.";  ///< another version may round otherwise
+constexpr const char* kDrawnWith = "Mesa 22.";  ///< another version may round differently
 
 class GoldenPicture : public RenderTest {
  protected:
   void SetUp() override {
 #ifndef NDEBUG
-    GTEST_SKIP() << "GOLDEN PICTURES ARE NOT COMPARED: release builds only, software rendering crawls in others";
+    GTEST_SKIP() << "GOLDEN PICTURES ARE NOT COMPARED: release builds only, as others are too slow";
 #endif
     RenderTest::SetUp();
     if (IsSkipped()) return;
@@ -47,7 +47,7 @@ class GoldenPicture : public RenderTest {
     return source;
   }
 
-  /// The selection on its way, 22 mm up.
+  /// The selection during a lift, 22 mm up.
   Picture lifted() {
     const test::TestSource source = model();
     show(source);
@@ -104,7 +104,7 @@ class GoldenPicture : public RenderTest {
   }
 };
 
-/// The middle of the selection, nearer.
+/// A closer view of the selection's middle.
 Picture nearer(Picture picture, const mesh::Vec3& at, double factor) {
   const Eigen::Vector2d seen = stereo::to_screen(picture.view, at).head<2>();
   picture.view = stereo::zoom(stereo::pan(picture.view, -seen), factor, {0, 0});
@@ -130,7 +130,7 @@ TEST_F(GoldenPicture, prism_mask_from_the_side) {
   compare("prism_mask_from_the_side", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, crosstalk_taken_out) {
+TEST_F(GoldenPicture, crosstalk_compensated) {
   show(model());
   Picture picture = fitted("prism-mask", "iso", kWidth, kHeight);
   picture.profile.crosstalk = {0.1, 0.1};
@@ -151,7 +151,7 @@ TEST_F(GoldenPicture, quality) {
   compare("quality", draw(picture, kWidth, kHeight));
 }
 
-/// A shell of each kind that has a sign of its own, failing before, warning behind, in a plate of good ones.
+/// A shell for each shape of glyph: the front row fails, the back row warns.
 test::TestSource bad_shells() {
   using mesh::quality::Metric;
   test::TestSource source;
@@ -189,16 +189,16 @@ test::TestSource bad_shells() {
   return source;
 }
 
-TEST_F(GoldenPicture, signs) {
+TEST_F(GoldenPicture, glyphs) {
   const test::TestSource source = bad_shells();
   show(source);
   Picture picture = fitted("mono", "top", 2 * kWidth, kHeight);
-  compare("signs", draw(picture, 2 * kWidth, kHeight));
+  compare("glyphs", draw(picture, 2 * kWidth, kHeight));
   picture.view = stereo::orbit(picture.view, 0.3, -0.7);
   picture.marked = mesh::ShellIndex(4);
-  compare("signs_aslant", draw(picture, 2 * kWidth, kHeight));
+  compare("glyphs_aslant", draw(picture, 2 * kWidth, kHeight));
   picture.view = stereo::zoom(picture.view, 0.16, {0, 0});
-  compare("signs_far", draw(picture, kWidth, kHeight));
+  compare("glyphs_far", draw(picture, kWidth, kHeight));
 }
 
 TEST_F(GoldenPicture, parts_by_their_state) {
@@ -209,19 +209,19 @@ TEST_F(GoldenPicture, parts_by_their_state) {
   compare("part_states", draw(picture, kWidth, kHeight));
 }
 
-/// Before on the left, after on the right, by how far nodes went.
+/// Before on the left, after on the right, coloured by the displacement of the nodes.
 TEST_F(GoldenPicture, before_and_after_by_displacement) {
   test::TestSource before = model(), after = model();
-  std::vector<float> way(after.positions.size(), 0);
+  std::vector<float> displacement(after.positions.size(), 0);
   for (std::size_t n = 0; n < after.positions.size(); ++n) {
     after.node_marks[n] = before.node_marks[n] = 0;
     const double far = (after.positions[n] - model().positions[23 * 14 + 11]).norm() / 70;
     const double lift = 9 * std::max(0.0, 1 - far * far);
     after.positions[n].z() += lift;
-    way[n] = n % 23 == 13 ? std::nanf("") : static_cast<float>(lift);  // a row that is new has no way
+    displacement[n] = n % 23 == 13 ? std::nanf("") : static_cast<float>(lift);  // a new row has no displacement
   }
   show(after);
-  ASSERT_TRUE(renderer_->set_field(Pane::model, way, true));
+  ASSERT_TRUE(renderer_->set_field(Pane::model, displacement, true));
   Picture picture = fitted("mono", "iso", kWidth, kHeight);
   picture.colour = ColourMode::field;
   picture.quality_glyphs = false;
@@ -237,7 +237,7 @@ TEST_F(GoldenPicture, before_and_after_by_displacement) {
   compare("two_views_prism_mask", draw(picture, kWidth, kHeight));
 }
 
-TEST_F(GoldenPicture, what_a_split_would_do) {
+TEST_F(GoldenPicture, preview_of_a_split) {
   test::TestSource source = model();
   show(source);
   const mesh::ShellNodes quad = source.shell_nodes[22 * 12 + 11];
@@ -269,7 +269,7 @@ TEST_F(GoldenPicture, shadows) {
 TEST_F(GoldenPicture, selected_nodes_behind_something_show_through) {
   test::TestSource source = model();
   for (auto& state : source.shell_quality) state = {};
-  const std::size_t plate = 23 * 31;  // the closing plate lies under the hat
+  const std::size_t plate = 23 * 31;  // the closing plate is below the hat
   for (std::size_t row = 10; row < 20; ++row)
     for (std::size_t n = 4; n < 12; ++n) source.node_marks[plate + 16 * row + n] = mesh::document::kSelected;
   show(source);

@@ -1,4 +1,4 @@
-// What is drawn over the model for the hand: selected nodes, the handle, the lasso; and what a drag's frame costs.
+// Selected nodes, the handle and the lasso in the picture, and the bytes that a frame of a drag uploads.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,11 +19,11 @@ using mesh::Vec3;
 using test::TestSource;
 using test::two_plates;
 
-constexpr int kSignsWidth = 640, kSignsHeight = 400;
+constexpr int kMarksWidth = 640, kMarksHeight = 400;
 
 constexpr std::size_t kFront = 60, kBehind = 121 + 37;
 
-/// Where two pictures differ.
+/// The pixels in which two pictures differ.
 struct Blob {
   std::size_t pixels = 0;
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
@@ -44,35 +44,35 @@ Blob difference(const Image& a, const Image& b, int x0, int x1) {
 }
 Blob difference(const Image& a, const Image& b) { return difference(a, b, 0, a.width); }
 
-class Signs : public RenderTest {
+class EditingMarks : public RenderTest {
  protected:
   Eigen::Vector2d pixel_of(const Picture& picture, const Vec3& point) const {
-    return *stereo::pixel_of(aim_of(picture, kSignsWidth, kSignsHeight), point);
+    return *stereo::pixel_of(aim_of(picture, kMarksWidth, kMarksHeight), point);
   }
   static const std::uint8_t* at(const Image& image, const Eigen::Vector2d& pixel) {
     return image.at(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
   }
   static bool green(const std::uint8_t* pixel) { return pixel[1] > pixel[0] * 4 / 3 && pixel[1] > pixel[2] * 5 / 4; }
-  /// What selecting these nodes alone changes in a picture.
-  Blob marks(TestSource source, const Picture& picture, std::initializer_list<std::size_t> nodes, int x0 = 0, int x1 = kSignsWidth) {
+  /// The pixels that change when only these nodes are selected.
+  Blob marks(TestSource source, const Picture& picture, std::initializer_list<std::size_t> nodes, int x0 = 0, int x1 = kMarksWidth) {
     show(source);
-    const Image without = draw(picture, kSignsWidth, kSignsHeight);
+    const Image without = draw(picture, kMarksWidth, kMarksHeight);
     for (const std::size_t node : nodes) source.node_marks[node] = mesh::document::kSelected;
     source.key = 2;
     show(source);
-    return difference(draw(picture, kSignsWidth, kSignsHeight), without, x0, x1);
+    return difference(draw(picture, kMarksWidth, kMarksHeight), without, x0, x1);
   }
-  /// What a handle changes in a picture.
+  /// The pixels that a handle changes.
   Blob handle(Picture picture, const Handle& shown) {
-    const Image without = draw(picture, kSignsWidth, kSignsHeight);
+    const Image without = draw(picture, kMarksWidth, kMarksHeight);
     picture.handle = shown;
-    return difference(draw(picture, kSignsWidth, kSignsHeight), without);
+    return difference(draw(picture, kMarksWidth, kMarksHeight), without);
   }
 };
 
-TEST_F(Signs, a_selected_node_keeps_its_size_whatever_the_zoom) {
+TEST_F(EditingMarks, a_selected_node_keeps_its_size_whatever_the_zoom) {
   show(two_plates());
-  Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
+  Picture picture = fitted("mono", "iso", kMarksWidth, kMarksHeight);
   picture.element_edges = false;
   const Blob small = marks(two_plates(), picture, {kFront});
   picture.view = stereo::zoom(picture.view, 2.2, {0, 0});
@@ -83,9 +83,9 @@ TEST_F(Signs, a_selected_node_keeps_its_size_whatever_the_zoom) {
   EXPECT_NEAR((large.high - large.low).y(), (small.high - small.low).y(), 1);
 }
 
-TEST_F(Signs, both_eyes_see_a_selected_node_where_they_would_see_the_place_itself) {
+TEST_F(EditingMarks, a_selected_node_has_the_parallax_of_its_position) {
   show(two_plates());
-  Picture picture = fitted("side-by-side", "top", kSignsWidth, kSignsHeight);
+  Picture picture = fitted("side-by-side", "top", kMarksWidth, kMarksHeight);
   picture.element_edges = false;
   picture.view.depth_strength = 1.5;
   const stereo::PictureEyes eyes{picture.between_eyes_mm, picture.toward_right, picture.eye_separation_mm, 1};
@@ -94,22 +94,22 @@ TEST_F(Signs, both_eyes_see_a_selected_node_where_they_would_see_the_place_itsel
     std::array<double, 2> x{};
     for (const stereo::Eye eye : {stereo::Eye::left, stereo::Eye::right}) {
       const bool right = eye == stereo::Eye::right;
-      const Blob blob = marks(two_plates(), picture, {node}, right ? kSignsWidth / 2 : 0, right ? kSignsWidth : kSignsWidth / 2);
+      const Blob blob = marks(two_plates(), picture, {node}, right ? kMarksWidth / 2 : 0, right ? kMarksWidth : kMarksWidth / 2);
       ASSERT_GT(blob.pixels, 5U);
-      stereo::Aim aim = aim_of(picture, kSignsWidth, kSignsHeight);
+      stereo::Aim aim = aim_of(picture, kMarksWidth, kMarksHeight);
       aim.eye_mm = eyes.picture_eye(eye);
       const Eigen::Vector2d expected = *stereo::pixel_of(aim, two_plates().positions[node]);
-      x[right ? 1 : 0] = 2 * (blob.centre.x() - (right ? kSignsWidth / 2 : 0));
+      x[right ? 1 : 0] = 2 * (blob.centre.x() - (right ? kMarksWidth / 2 : 0));
       EXPECT_NEAR(x[right ? 1 : 0], expected.x(), 1.0) << node << (right ? " right" : " left");
       EXPECT_NEAR(blob.centre.y(), expected.y(), 0.7);
     }
     parallax[node == kFront ? 0 : 1] = x[1] - x[0];
   }
-  EXPECT_LT(parallax[0], -3) << "before the screen: the right eye sees it farther left";
+  EXPECT_LT(parallax[0], -3) << "in front of the screen: the right eye sees it farther left";
   EXPECT_GT(parallax[1], 3) << "behind it";
 }
 
-TEST_F(Signs, selecting_costs_the_chunks_that_change) {
+TEST_F(EditingMarks, selecting_uploads_only_the_chunks_that_change) {
   TestSource source;
   test::add_grid(source, 200, 200, 0, [](double u, double v) { return Vec3(u, v, 0); });
   show(source);
@@ -123,18 +123,18 @@ TEST_F(Signs, selecting_costs_the_chunks_that_change) {
   source.node_marks[5 * mesh::kChunkSize + 3] = mesh::document::kSelected;
   source.touch(SnapshotArray::node_marks, 5);
   show(source);
-  EXPECT_EQ(bytes() - before, sizeof(std::uint32_t)) << "the first chunk's row stays as it is";
+  EXPECT_EQ(bytes() - before, sizeof(std::uint32_t)) << "the first chunk's row is not uploaded again";
 }
 
-TEST_F(Signs, crowded_nodes_are_all_there) {
+TEST_F(EditingMarks, crowded_selected_nodes_are_all_drawn) {
   TestSource source;
   test::add_grid(source, 400, 250, 0, [](double u, double v) { return Vec3(u * 100 - 50, v * 60 - 30, 0); });
   show(source);
-  const Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
+  const Picture picture = fitted("mono", "top", kMarksWidth, kMarksHeight);
   for (std::size_t n = 0; n < source.node_marks.size(); ++n) source.node_marks[n] = n % 401 < 200 ? mesh::document::kSelected : 0;
   source.key = 2;
   show(source);
-  const Image image = draw(picture, kSignsWidth, kSignsHeight);
+  const Image image = draw(picture, kMarksWidth, kMarksHeight);
   for (const double y : {-25.0, 0.0, 25.0}) {
     double selected = 0, plain = 0;
     for (int x = -40; x < -10; ++x) {
@@ -145,40 +145,40 @@ TEST_F(Signs, crowded_nodes_are_all_there) {
   }
 }
 
-TEST_F(Signs, nodes_of_hidden_parts_are_not_marked_and_come_back) {
+TEST_F(EditingMarks, selected_nodes_of_hidden_parts_are_not_drawn_and_come_back) {
   show(two_plates());
-  Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
+  Picture picture = fitted("mono", "top", kMarksWidth, kMarksHeight);
   TestSource source = two_plates();
   source.node_marks[kBehind] = mesh::document::kSelected;
   source.key = 2;
   show(source);
-  const Image marked = draw(picture, kSignsWidth, kSignsHeight);
+  const Image marked = draw(picture, kMarksWidth, kMarksHeight);
   source.hidden[1] = true;
   show(source);
-  const Image hidden = draw(picture, kSignsWidth, kSignsHeight);
+  const Image hidden = draw(picture, kMarksWidth, kMarksHeight);
   EXPECT_GT(difference(marked, hidden).pixels, 20U);
-  source.shell_parts[0] = mesh::PartIndex(1);  // and a shell of the front plate goes as well: its corner is one shell's alone
+  source.shell_parts[0] = mesh::PartIndex(1);  // hides a shell of the front plate as well: only this shell uses its corner
   source.touch(SnapshotArray::shell_parts, 0);
   source.node_marks[0] = mesh::document::kSelected;
   source.touch(SnapshotArray::node_marks, 0);
   show(source);
-  const Image corner_gone = draw(picture, kSignsWidth, kSignsHeight);
+  const Image corner_gone = draw(picture, kMarksWidth, kMarksHeight);
   source.node_marks[0] = 0;
   source.touch(SnapshotArray::node_marks, 0);
   show(source);
-  EXPECT_EQ(draw(picture, kSignsWidth, kSignsHeight).rgb, corner_gone.rgb);
+  EXPECT_EQ(draw(picture, kMarksWidth, kMarksHeight).rgb, corner_gone.rgb);
   source.shell_parts[0] = mesh::PartIndex(0);
   source.touch(SnapshotArray::shell_parts, 0);
   source.hidden[1] = false;
   show(source);
-  EXPECT_EQ(draw(picture, kSignsWidth, kSignsHeight).rgb, marked.rgb);
+  EXPECT_EQ(draw(picture, kMarksWidth, kMarksHeight).rgb, marked.rgb);
 }
 
-TEST_F(Signs, the_part_in_use_is_green_and_the_others_go) {
+TEST_F(EditingMarks, the_active_part_is_green_and_the_others_are_hidden) {
   show(two_plates());
-  Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
+  Picture picture = fitted("mono", "iso", kMarksWidth, kMarksHeight);
   const Vec3 foot(0, 0, 20);
-  const stereo::Aim aim = aim_of(picture, kSignsWidth, kSignsHeight);
+  const stereo::Aim aim = aim_of(picture, kMarksWidth, kMarksHeight);
   const double deck_pixel = aim.mm_per_pixel() / aim.view.mm_per_unit;
   const auto on_disk = [&](double x, double y) {
     return pixel_of(picture, foot + Vec3(x, y, 0) * (0.72 * kHandleDiskPixels * deck_pixel));
@@ -188,42 +188,42 @@ TEST_F(Signs, the_part_in_use_is_green_and_the_others_go) {
   const Eigen::Vector2d ring = pixel_of(picture, foot) + Eigen::Vector2d(kHandleRingPixels, 0);
   using Use = Handle::Use;
   const std::array<std::pair<Use, Eigen::Vector2d>, 3> parts{{{Use::arrow, arrow}, {Use::disk, disk}, {Use::ring, ring}}};
-  const Image without = draw(picture, kSignsWidth, kSignsHeight);
+  const Image without = draw(picture, kMarksWidth, kMarksHeight);
   for (const Use use : {Use::idle, Use::arrow, Use::disk, Use::ring}) {
     picture.handle = Handle{foot, Vec3::UnitZ(), use};
-    const Image image = draw(picture, kSignsWidth, kSignsHeight);
+    const Image image = draw(picture, kMarksWidth, kMarksHeight);
     for (const auto& [part, pixel] : parts) {
       const bool there = use == Use::idle || use == part;
-      if (use == Use::disk && part == Use::ring) continue;  // lies over it
+      if (use == Use::disk && part == Use::ring) continue;  // the disk covers the ring
       EXPECT_EQ(green(at(image, pixel)), use == part) << static_cast<int>(use) << " at " << static_cast<int>(part);
       if (there || part != Use::disk) continue;
       EXPECT_TRUE(std::equal(at(image, pixel), at(image, pixel) + 3, at(without, pixel))) << "nothing is left of the disk";
     }
   }
   picture.handle = Handle{foot, Vec3::UnitZ(), Use::disk};
-  const Image image = draw(picture, kSignsWidth, kSignsHeight);
+  const Image image = draw(picture, kMarksWidth, kMarksHeight);
   for (const auto& [x, y] : {std::pair{-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) EXPECT_TRUE(green(at(image, on_disk(x, y)))) << x << y;
 }
 
-TEST_F(Signs, the_handle_keeps_its_size_and_shows_through_the_model) {
+TEST_F(EditingMarks, the_handle_keeps_its_size_and_shows_through_the_model) {
   show(two_plates());
-  Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
+  Picture picture = fitted("mono", "top", kMarksWidth, kMarksHeight);
   const Handle shown{{0, 0, 20}, Vec3::UnitZ(), Handle::Use::disk};
   const double small = static_cast<double>(handle(picture, shown).pixels);
   Handle behind = shown;
   behind.at.z() = -10;
   const Blob dimmed = handle(picture, behind);
   EXPECT_GT(static_cast<double>(dimmed.pixels), 0.3 * small) << "can be grabbed though it is hidden";
-  const Image without = draw(picture, kSignsWidth, kSignsHeight);
+  const Image without = draw(picture, kMarksWidth, kMarksHeight);
   picture.handle = behind;
-  const Image image = draw(picture, kSignsWidth, kSignsHeight);
+  const Image image = draw(picture, kMarksWidth, kMarksHeight);
   picture.handle = shown;
-  const Image before = draw(picture, kSignsWidth, kSignsHeight);
+  const Image before = draw(picture, kMarksWidth, kMarksHeight);
   const auto strength = [&](const Image& with) {
-    int most = 0;
-    for (int y = 0; y < kSignsHeight; ++y)
-      for (int x = 0; x < kSignsWidth; ++x) most = std::max(most, std::abs(brightness(with, x, y) - brightness(without, x, y)));
-    return most;
+    int max = 0;
+    for (int y = 0; y < kMarksHeight; ++y)
+      for (int x = 0; x < kMarksWidth; ++x) max = std::max(max, std::abs(brightness(with, x, y) - brightness(without, x, y)));
+    return max;
   };
   EXPECT_LT(strength(image), 0.6 * strength(before)) << "but dimmed";
   picture.handle.reset();
@@ -231,13 +231,13 @@ TEST_F(Signs, the_handle_keeps_its_size_and_shows_through_the_model) {
   EXPECT_NEAR(static_cast<double>(handle(picture, shown).pixels), small, 0.06 * small);
 }
 
-TEST_F(Signs, an_arc_runs_from_where_the_grab_was_to_where_it_is) {
+TEST_F(EditingMarks, an_arc_runs_from_the_grabbed_position_to_the_current_one) {
   show(two_plates());
-  Picture picture = fitted("mono", "top", kSignsWidth, kSignsHeight);
+  Picture picture = fitted("mono", "top", kMarksWidth, kMarksHeight);
   Handle turned{{0, 25, 20}, Vec3::UnitZ(), Handle::Use::arc};
   turned.turn = Handle::Turn{{0, 0, 0}, Vec3::UnitZ(), 90};
   picture.handle = turned;
-  const Image image = draw(picture, kSignsWidth, kSignsHeight);
+  const Image image = draw(picture, kMarksWidth, kMarksHeight);
   const auto place = [&](double degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     return pixel_of(picture, Vec3(25 * std::cos(angle), 25 * std::sin(angle), 20));
@@ -246,17 +246,17 @@ TEST_F(Signs, an_arc_runs_from_where_the_grab_was_to_where_it_is) {
   for (const double degrees : {-20.0, 130.0, 200.0}) EXPECT_FALSE(green(at(image, place(degrees)))) << degrees;
   EXPECT_TRUE(green(at(image, place(90)))) << "the ball";
   picture.handle->turn->degrees = -90;
-  const Image other = draw(picture, kSignsWidth, kSignsHeight);
+  const Image other = draw(picture, kMarksWidth, kMarksHeight);
   EXPECT_TRUE(green(at(other, place(130)))) << "turned the other way";
   EXPECT_FALSE(green(at(other, place(40))));
   picture.handle->use = Handle::Use::idle;
-  const Image idle = draw(picture, kSignsWidth, kSignsHeight);
+  const Image idle = draw(picture, kMarksWidth, kMarksHeight);
   for (const double degrees : {90.0, 130.0}) EXPECT_FALSE(green(at(idle, place(degrees))));
 }
 
-TEST_F(Signs, the_axis_goes_through_the_model_and_stands_out_of_it) {
+TEST_F(EditingMarks, the_axis_goes_through_the_model_and_extends_beyond_it) {
   show(two_plates());
-  Picture picture = fitted("mono", "front", kSignsWidth, kSignsHeight);
+  Picture picture = fitted("mono", "front", kMarksWidth, kMarksHeight);
   Handle turned{{30, 0, 20}, Vec3::UnitZ(), Handle::Use::idle};
   turned.turn = Handle::Turn{{10, 0, 3}, Vec3::UnitZ(), 0};
   const Blob blob = handle(picture, turned);
@@ -297,7 +297,7 @@ TEST(HandleMesh, faces_look_outward) {
   }
 }
 
-TEST(HandleMesh, what_is_nowhere_is_not_drawn) {
+TEST(HandleMesh, a_handle_without_a_position_is_not_drawn) {
   const stereo::View view;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(handle_pieces({Vec3::Constant(nan), Vec3::UnitZ()}, space_of(view)).empty());
@@ -312,14 +312,14 @@ TEST(HandleMesh, what_is_nowhere_is_not_drawn) {
   EXPECT_EQ(handle_pieces(turned, space_of(view)).size(), 1U) << "a grab on the axis has no arc";
 }
 
-TEST_F(Signs, a_lasso_is_a_line_in_the_plane_of_the_screen_closed_by_dashes) {
+TEST_F(EditingMarks, a_lasso_is_a_line_in_the_screen_plane_closed_by_dashes) {
   show(two_plates());
-  Picture picture = fitted("mono", "iso", kSignsWidth, kSignsHeight);
-  const Image without = draw(picture, kSignsWidth, kSignsHeight);
+  Picture picture = fitted("mono", "iso", kMarksWidth, kMarksHeight);
+  const Image without = draw(picture, kMarksWidth, kMarksHeight);
   const std::size_t scenes = renderer_->figures().scenes_drawn;
   picture.lasso = {{40.5, 40.5}, {300.5, 60.5}, {340.5, 300.5}, {60.5, 340.5}};
-  const Image image = draw(picture, kSignsWidth, kSignsHeight);
-  EXPECT_EQ(renderer_->figures().scenes_drawn, scenes) << "doesn't cost the model";
+  const Image image = draw(picture, kMarksWidth, kMarksHeight);
+  EXPECT_EQ(renderer_->figures().scenes_drawn, scenes) << "the model isn't drawn again";
   const auto white = [](const Image& drawn, std::size_t from, const Picture& of, int x0, double squeeze) {
     const Eigen::Vector2d a = of.lasso[from], b = of.lasso[(from + 1) % of.lasso.size()];
     int found = 0;
@@ -330,9 +330,9 @@ TEST_F(Signs, a_lasso_is_a_line_in_the_plane_of_the_screen_closed_by_dashes) {
     return found / 400.0;
   };
   for (const std::size_t edge : {0U, 1U, 2U}) EXPECT_GT(white(image, edge, picture, 0, 1), 0.97) << edge;
-  // What nobody drew is dashed: pieces of it are white, in between nothing is drawn at all.
+  // The closing segment, which nobody drew, is dashed: parts of it are white, the rest is the bare picture.
   EXPECT_GT(white(image, 3, picture, 0, 1), 0.2);
-  const auto bare = [&](std::size_t from) {
+  const auto bare_share = [&](std::size_t from) {
     const Eigen::Vector2d a = picture.lasso[from], b = picture.lasso[(from + 1) % 4];
     int found = 0;
     for (int i = 0; i < 400; ++i) {
@@ -341,19 +341,19 @@ TEST_F(Signs, a_lasso_is_a_line_in_the_plane_of_the_screen_closed_by_dashes) {
     }
     return found / 400.0;
   };
-  EXPECT_EQ(bare(1), 0);
-  EXPECT_GT(bare(3), 0.1);
-  EXPECT_LT(bare(3), 0.6);
+  EXPECT_EQ(bare_share(1), 0);
+  EXPECT_GT(bare_share(3), 0.1);
+  EXPECT_LT(bare_share(3), 0.6);
   EXPECT_LT(difference(image, without).pixels, 2U * 4 * 340 * 3) << "a line, and nothing else";
-  Picture stereo = fitted("side-by-side", "iso", kSignsWidth, kSignsHeight);
+  Picture stereo = fitted("side-by-side", "iso", kMarksWidth, kMarksHeight);
   stereo.lasso = picture.lasso;
-  const Image both = draw(stereo, kSignsWidth, kSignsHeight);
-  for (const int x0 : {0, kSignsWidth / 2}) EXPECT_GT(white(both, 0, stereo, x0, 0.5), 0.9) << "at the same place for both eyes";
+  const Image both = draw(stereo, kMarksWidth, kMarksHeight);
+  for (const int x0 : {0, kMarksWidth / 2}) EXPECT_GT(white(both, 0, stereo, x0, 0.5), 0.9) << "at the same place for both eyes";
   picture.lasso = {{std::numeric_limits<double>::quiet_NaN(), 3}, {1e300, 4}, {100, 100}};
-  EXPECT_EQ(draw(picture, kSignsWidth, kSignsHeight).rgb, without.rgb) << "one corner is no line";
+  EXPECT_EQ(draw(picture, kMarksWidth, kMarksHeight).rgb, without.rgb) << "one corner is no line";
 }
 
-/// Bytes that each frame of a drag uploads, of the same 100 nodes on a sheet of n x n quads full of bad shells.
+/// Bytes that each frame of a drag of the same 100 nodes uploads, on a sheet of n x n quads with many bad shells.
 std::vector<std::size_t> bytes_of_frames(Renderer& renderer, const std::function<void()>& draw, std::uint32_t n) {
   auto source = std::make_shared<TestSource>();
   test::add_grid(*source, n, n, 0, [n](double u, double v) { return Vec3(u * n, v * n, 0); });
@@ -386,14 +386,14 @@ std::vector<std::size_t> bytes_of_frames(Renderer& renderer, const std::function
   return bytes;
 }
 
-TEST_F(Signs, a_frame_of_a_drag_uploads_what_moves_whatever_the_model) {
+TEST_F(EditingMarks, a_frame_of_a_drag_uploads_only_the_moving_patch) {
   Picture picture;
   picture.profile = *stereo::find_profile("mono");
   const auto draw_it = [&] { draw(picture, 64, 40); };
   const std::vector<std::size_t> small = bytes_of_frames(*renderer_, draw_it, 40);
   const std::vector<std::size_t> large = bytes_of_frames(*renderer_, draw_it, 400);
   for (std::size_t i = 1; i < small.size(); ++i) {
-    EXPECT_EQ(small[i], 12U * 12 * 16 + 7 * 8) << "positions of the shells' corners, and the live signs";
+    EXPECT_EQ(small[i], 12U * 12 * 16 + 7 * 8) << "positions of the shells' corners, and the patch's glyphs";
     EXPECT_EQ(large[i], small[i]);
   }
 }
