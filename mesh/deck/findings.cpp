@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "mesh/deck/editing/naming.h"
+#include "mesh/deck/editing/names.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::deck {

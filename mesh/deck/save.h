@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "mesh/deck/data/deck.h"
-#include "mesh/deck/editing/rounding.h"
 #include "mesh/deck/save_report.h"
 #include "mesh/model/model.h"
 
@@ -24,9 +23,5 @@ Result<void> can_save(const Deck& deck, const Model& original, const Model& mode
 /// of writing, cancelled. `original` is the model as it was opened.
 Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
                         const Progress& progress = {});
-
-/// As save (mesh/deck/save.h), and tells what the fields made of the numbers.
-Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
-                        const Progress& progress, Rounding& rounding);
 
 }  // namespace prismesh::mesh::deck

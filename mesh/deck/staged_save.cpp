@@ -10,6 +10,7 @@
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/data/on_disk.h"
 #include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/editing/text_place.h"
 
 namespace prismesh::mesh::deck {
 namespace {
@@ -163,21 +164,21 @@ Result<std::vector<PendingFile>> pending_files(const Deck& deck, const std::vect
 
 SaveReport report_of(const Deck& deck, const TextChanges& text, const std::vector<Plan>& plans) {
   SaveReport report;
-  report.nodes_written = text.nodes_moved;
-  report.nodes_added = text.nodes_added;
-  report.nodes_removed = text.nodes_removed;
-  report.shells_changed = text.shells_changed;
-  report.shells_added = text.shells_added;
-  report.shells_removed = text.shells_removed;
+  report.nodes_written = text.counts.nodes_moved;
+  report.nodes_added = text.counts.nodes_added;
+  report.nodes_removed = text.counts.nodes_removed;
+  report.shells_changed = text.counts.shells_changed;
+  report.shells_added = text.counts.shells_added;
+  report.shells_removed = text.counts.shells_removed;
   report.set_cards_changed = text.set_cards;
   report.lines_changed = text.lines;
   for (const Plan& plan : plans) report.files_written.push_back(plan.target);
   if (text.rounding.count > 0) report.notes.push_back(rounding_note(text.rounding));
-  if (text.shells_turned > 0)
-    report.notes.push_back("the material angles of " + std::to_string(text.shells_turned) +
-                           (text.shells_turned == 1 ? " shell" : " shells") +
+  if (text.counts.shells_turned > 0)
+    report.notes.push_back("the material angles of " + std::to_string(text.counts.shells_turned) +
+                           (text.counts.shells_turned == 1 ? " shell" : " shells") +
                            " were turned with their first edges, to which they are taken to be relative");
-  if (text.nodes_added + text.shells_added > 0)
+  if (text.counts.nodes_added + text.counts.shells_added > 0)
     if (std::string note = encrypted_note(deck); !note.empty()) report.notes.push_back(std::move(note));
   return report;
 }

@@ -9,7 +9,7 @@
 #include "base/hash.h"
 #include "base/progress.h"
 #include "mesh/deck/data/deck.h"
-#include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/editing/rounding.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/save_report.h"
 

@@ -4,7 +4,7 @@
 #include <unordered_map>
 
 #include "mesh/deck/editing/descent.h"
-#include "mesh/deck/editing/naming.h"
+#include "mesh/deck/editing/edit_checks.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/restructure.h"
 #include "mesh/model/adjacency.h"
