@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/deck/editing/descent.h"
+#include "mesh/deck/editing/ancestors.h"
 #include "mesh/deck/editing/edit_checks.h"
 #include "mesh/deck/editing/names.h"
 #include "mesh/deck/editing/new_ids.h"

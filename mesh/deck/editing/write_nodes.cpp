@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
+#include "mesh/deck/editing/ancestors.h"
 #include "mesh/deck/editing/card_move.h"
 #include "mesh/deck/editing/deck_card.h"
-#include "mesh/deck/editing/descent.h"
 #include "mesh/deck/editing/edit_text.h"
 #include "mesh/deck/editing/names.h"
 #include "mesh/deck/editing/text_place.h"
@@ -65,13 +65,13 @@ Result<void> write_moved_node(const ModelDifference& difference, NodeIndex node,
 }
 
 /// Whether all the nodes that an added node comes from are constrained by their own cards in the same way, so that its card gets these
-/// constraints too. `home`: the one behind whose card it goes. Errors: the constraints differ in a format where they must agree.
-Result<bool> takes_constraints(const ModelDifference& difference, NodeIndex node, NodeIndex home) {
+/// constraints too. `example`: example_node. Errors: the constraints differ in a format where they must agree.
+Result<bool> takes_constraints(const ModelDifference& difference, NodeIndex node, NodeIndex example) {
   const auto constraints_of = [&](NodeIndex ancestor) {
     const DeckCard card = card_of(difference.deck, ancestor);
     return difference.writer.node_constraints(card.text, card.offset, card.run.style);
   };
-  const std::string wanted = constraints_of(home);
+  const std::string wanted = constraints_of(example);
   if (wanted.empty()) return false;
   bool differ = false;
   for (const NodeIndex ancestor : deck_ancestors(difference.model, node)) {
@@ -81,7 +81,7 @@ Result<bool> takes_constraints(const ModelDifference& difference, NodeIndex node
   }
   if (!differ) return true;
   if (!difference.writer.constraints_must_agree()) return false;
-  const DeckCard card = card_of(difference.deck, home);
+  const DeckCard card = card_of(difference.deck, example);
   return fail(
       refusal_at(difference.deck, card.run.file, card.offset,
                  "the new " + node_name(difference.model, node) + " lies between nodes whose cards constrain them in different ways"));
@@ -104,19 +104,19 @@ Result<void> write_added_node(const ModelDifference& difference, NodeIndex node,
   const std::string name = "new " + node_name(difference.model, node);
   if (!model.position(node).allFinite())
     return fail(refusal(deck, node_name(difference.model, node) + " is new and has a place that is no number"));
-  const NodeIndex home = home_of(model, node);
-  if (!home.valid())
+  const NodeIndex example = example_node(model, node);
+  if (!example.valid())
     return fail(
         refusal(deck, node_name(difference.model, node) +
                           " would have to stand in an include that is used twice, or beside nodes that have no cards of their own"));
-  const DeckCard card = card_of(deck, home);
+  const DeckCard card = card_of(deck, example);
   const auto refuse = [&](const std::string& why) { return fail(refusal_at(deck, card.run.file, card.offset, "the " + name + " " + why)); };
   const std::int64_t id = model.node_ids[node.value] - deck.offsets_of(card.run).node;
   if (id < 1 || id > writer.largest_node_id(card.run.style)) return refuse("has an id that doesn't fit the fields of the cards beside it");
   const std::optional<Vec3> at = place_in_card(difference, card, node);
   if (!at) return refuse(kFlattened);
 
-  const Result<bool> constrained = takes_constraints(difference, node, home);
+  const Result<bool> constrained = takes_constraints(difference, node, example);
   if (!constrained) return fail(constrained.error());
   const Result<WrittenCard> written = *constrained ? writer.new_constrained_node(card.text, card.offset, card.run.style, id, *at)
                                                    : Result<WrittenCard>(writer.new_node(card.text, card.offset, card.run.style, id, *at));

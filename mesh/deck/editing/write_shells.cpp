@@ -6,8 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "mesh/deck/editing/ancestors.h"
 #include "mesh/deck/editing/deck_card.h"
-#include "mesh/deck/editing/descent.h"
 #include "mesh/deck/editing/edit_text.h"
 #include "mesh/deck/editing/names.h"
 #include "mesh/deck/editing/text_place.h"
