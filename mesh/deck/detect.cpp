@@ -48,7 +48,7 @@ constexpr Signature kSignatures[] = {
     {std::string_view("-----BEGIN PGP", 14), "a file that is encrypted as a whole"},
 };
 
-/// How much speaks for each format.
+/// Evidence for each format.
 struct Votes {
   int ls_dyna = 0;
   int nastran = 0;
@@ -112,7 +112,7 @@ Votes count_votes(std::string_view text) {
   return votes;
 }
 
-/// Old Macintosh computers and broken transfers leave carriage returns alone; all would be one line.
+/// Whether lines end with carriage returns alone, as of old Macintosh computers and broken transfers: the text would be one line.
 bool has_carriage_returns_alone(std::string_view text) {
   return text.find('\n') == std::string_view::npos && std::count(text.begin(), text.end(), '\r') > 1;
 }

@@ -1,4 +1,4 @@
-// What a file is, from its first part: which deck format, or what else it looks like.
+// Recognises the format of a file from its first part, or what else it looks like.
 #pragma once
 
 #include <optional>

@@ -8,25 +8,26 @@
 #include <tuple>
 #include <vector>
 
-#include "mesh/deck/editing/naming.h"
+#include "mesh/deck/editing/names.h"
 #include "mesh/model/adjacency.h"
 
 namespace prismesh::mesh::deck {
 namespace {
 
-/// A few of many places: the first of the deck.
+/// Where something odd was found.
+struct FindingPlace {
+  std::uint32_t file = 0;
+  std::uint64_t offset = 0;
+  std::int64_t id = 0;
+  std::uint32_t referrer = 0;
+  Referred referred = Referred::node;
+  auto order() const { return std::tuple(file, offset, id); }
+};
+
+/// Keeps the first places in the deck, and counts all.
 class FirstPlaces {
  public:
-  struct Place {
-    std::uint32_t file = 0;
-    std::uint64_t offset = 0;
-    std::int64_t id = 0;
-    std::uint32_t referrer = 0;
-    Referred referred = Referred::node;
-    auto order() const { return std::tuple(file, offset, id); }
-  };
-
-  void add(const Place& place, std::size_t count = 1) {
+  void add(const FindingPlace& place, std::size_t count = 1) {
     count_ += count;
     std::size_t at = kept_;
     while (at > 0 && place.order() < places_[at - 1].order()) --at;
@@ -36,17 +37,17 @@ class FirstPlaces {
     kept_ = std::min(kept_ + 1, places_.size());
   }
 
-  /// `say` makes the message of the first; the others are told by their lines.
-  template <class Say>
-  void note(Warnings& warnings, std::string_view kind, const Say& say) const {
+  /// `message` makes the text of the first; the others are told by their lines.
+  template <class Message>
+  void note(Warnings& warnings, std::string_view kind, const Message& message) const {
     for (std::size_t i = 0; i < kept_; ++i)
-      warnings.note(kind, places_[i].file, places_[i].offset, i == 0 ? say(places_[0]) : std::string(), 1);
-    // What has no place of its own is counted with the last.
+      warnings.note(kind, places_[i].file, places_[i].offset, i == 0 ? message(places_[0]) : std::string(), 1);
+    // Further places are only counted.
     if (kept_ > 0 && count_ > kept_) warnings.note(kind, places_[0].file, places_[0].offset, {}, count_ - kept_);
   }
 
  private:
-  std::array<Place, 3> places_;
+  std::array<FindingPlace, 3> places_;
   std::size_t kept_ = 0;
   std::size_t count_ = 0;
 };
@@ -65,7 +66,7 @@ std::optional<ElementClass> class_of(Referred referred) {
   }
 }
 
-/// What formats call a part.
+/// The format's word for a part.
 std::string_view part_word(Format format) { return format == Format::nastran ? "property" : "part"; }
 
 class Findings {
@@ -76,10 +77,10 @@ class Findings {
   void run() {
     note_unread();
     for (int r = 0; r < kReferredCount; ++r) note_undefined(static_cast<Referred>(r));
-    ranges_.note(warnings_, "empty-range", [&](const FirstPlaces::Place& place) {
+    ranges_.note(warnings_, "empty-range", [&](const FindingPlace& place) {
       return card(place) + " names a range from " + std::to_string(place.id) + " on in which nothing is defined";
     });
-    sets_.note(warnings_, "names-undefined-set", [&](const FirstPlaces::Place& place) {
+    sets_.note(warnings_, "names-undefined-set", [&](const FindingPlace& place) {
       return card(place) + " names " + std::string(name(place.referred)) + " " + std::to_string(place.id) + ", which isn't defined" +
              maybe();
     });
@@ -88,8 +89,8 @@ class Findings {
   }
 
  private:
-  std::string card(const FirstPlaces::Place& place) const { return card_name(deck_.format, references_.referrers()[place.referrer]); }
-  /// Where files lack, things may well be defined in them.
+  std::string card(const FindingPlace& place) const { return card_name(deck_.format, references_.referrers()[place.referrer]); }
+  /// A missing include file may define what is missing.
   std::string maybe() const { return deck_.missing_files.empty() ? "" : "; an include file that isn't there may define it"; }
 
   void note_unread() {
@@ -116,23 +117,23 @@ class Findings {
     });
   }
 
-  // --- what cards name that isn't there ---
+  // --- ids that cards name and nothing defines ---
 
-  /// How many ids from first to last are there; `missing` gets the first that isn't.
+  /// How many ids from first to last there are.
   template <class Ids>
   static std::int64_t count_in(const Ids& ids, std::int64_t first, std::int64_t last) {
     return static_cast<std::int64_t>(ids.lower_bound(last + 1)) - static_cast<std::int64_t>(ids.lower_bound(first));
   }
 
   /// Ids of one class of elements, or of all of them.
-  struct Known {
+  struct KnownIds {
     const IdIndex* index = nullptr;
     IdIndex own;
     bool is_defined(std::int64_t id) const { return index && index->find(id) != IdIndex::kNotFound; }
   };
 
-  Known known_of(Referred referred) const {
-    Known known;
+  KnownIds known_of(Referred referred) const {
+    KnownIds known;
     if (referred == Referred::node) known.index = model_.node_index.get();
     if (referred == Referred::shell) known.index = model_.shell_index.get();
     if (known.index) return known;
@@ -161,12 +162,12 @@ class Findings {
   void note_undefined(Referred referred) {
     const std::span<const Reference> all = references_.all(referred);
     if (all.empty()) return;
-    Known known = known_of(referred);
+    KnownIds known = known_of(referred);
     if (!known.index) known.index = &known.own;
     FirstPlaces undefined;
     for (const Reference& reference : all) {
-      const FirstPlaces::Place at{references_.referrers()[reference.referrer].file, reference.card, reference.first, reference.referrer,
-                                  referred};
+      const FindingPlace at{references_.referrers()[reference.referrer].file, reference.card, reference.first, reference.referrer,
+                            referred};
       if (reference.role == ReferenceRole::range) {
         if (reference.step == 1 && !is_set(referred) && reference.first > 1 && count_in(*known.index, reference.first, reference.last) == 0)
           ranges_.add(at);
@@ -174,19 +175,18 @@ class Findings {
       }
       note_missing(referred, *known.index, reference, at, is_set(referred) ? sets_ : undefined);
     }
-    undefined.note(warnings_, "names-undefined-" + std::string(name(referred)), [&](const FirstPlaces::Place& place) {
+    undefined.note(warnings_, "names-undefined-" + std::string(name(referred)), [&](const FindingPlace& place) {
       const std::string what = referred == Referred::part ? std::string(part_word(deck_.format)) : std::string(name(referred));
       return card(place) + " names " + what + " " + std::to_string(place.id) + ", which isn't defined" + maybe();
     });
   }
 
-  void note_missing(Referred referred, const IdIndex& ids, const Reference& reference, FirstPlaces::Place at,
-                    FirstPlaces& undefined) const {
+  void note_missing(Referred referred, const IdIndex& ids, const Reference& reference, FindingPlace at, FirstPlaces& undefined) const {
     if (reference.first == reference.last) {
       if (ids.find(reference.first) == IdIndex::kNotFound && !defined_elsewhere(referred, reference.first)) undefined.add(at);
       return;
     }
-    // Ids that count up are kept as one: those of a list are as many as its numbers.
+    // Consecutive ids of a list are one reference: none is missing if there are as many ids.
     if (count_in(ids, reference.first, reference.last) == reference.last - reference.first + 1) return;
     std::size_t missing = 0;
     for (std::int64_t id = reference.first; id <= reference.last; id += reference.step) {
@@ -196,7 +196,7 @@ class Findings {
     if (missing > 0) undefined.add(at, missing);
   }
 
-  // --- what nothing uses ---
+  // --- parts and nodes that nothing uses ---
 
   /// Parts by index that elements or cards name.
   std::vector<std::uint8_t> used_parts() const {
@@ -269,7 +269,7 @@ class Findings {
     }
   }
 
-  /// Nodes that cards name, ranges and all; overlapping ranges are gone through once.
+  /// Marks nodes that cards name, alone or in ranges. Overlapping ranges are searched once.
   void mark_named(std::vector<std::uint8_t>& used) const {
     const IdIndex& ids = *model_.node_index;
     std::size_t reach = 0;
@@ -291,7 +291,7 @@ class Findings {
   void note_unused_nodes() {
     bool any_element = model_.shell_count() > 0;
     for (const auto& block : model_.elements) any_element |= block && block->size() > 0;
-    // A file of nodes alone is there to be included.
+    // A file of nodes alone is meant to be included.
     if (!any_element) return;
     std::vector<std::uint8_t> used(model_.node_count());
     const Adjacency& adjacency = *model_.adjacency;
@@ -307,7 +307,7 @@ class Findings {
     FirstPlaces unused;
     for (std::size_t n = 0; n < used.size(); ++n)
       if (!used[n]) unused.add({deck_.run_of(NodeIndex(n)).file, deck_.node_line[n], model_.node_ids[n], 0});
-    unused.note(warnings_, "unused-node", [](const FirstPlaces::Place& place) {
+    unused.note(warnings_, "unused-node", [](const FindingPlace& place) {
       return "node " + std::to_string(place.id) + " belongs to no element, and no card names it";
     });
   }

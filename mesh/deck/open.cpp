@@ -20,7 +20,7 @@ namespace prismesh::mesh::deck {
 
 namespace {
 
-/// How far unpacking brings the progress; the walk over the text goes on from there.
+/// The share of unpacking in the progress.
 constexpr double kUnpacked = 0.1;
 
 /// Entities are numbered with 32 bits.
@@ -38,7 +38,7 @@ Hash128 content_hash(const std::vector<SourceFile>& files, const std::vector<Has
   return hash128(std::as_bytes(std::span(all)));
 }
 
-/// The greatest id of each file's entities: what new ones go on from.
+/// Finds the largest id of each file's entities.
 template <class Ids, class Field>
 void find_last_ids(const Ids& ids, const std::vector<CardRun>& runs, Field field, std::vector<LastIds>& last) {
   for (std::size_t r = 0; r < runs.size(); ++r) {

@@ -16,8 +16,8 @@ struct OpenedDeck {
   Model model;  ///< complete, with adjacency
 };
 
-/// Opens a deck with its includes. Errors: not readable, not a deck (says what it looks like instead), a format that
-/// this build doesn't read (named), a malformed card whose loss would matter (file and line).
+/// Opens a deck with its includes. `stand_ins`: files to read in place of others. Errors: the file can't be read; it is no deck (with what
+/// it looks like); this build doesn't read its format (with its name); a card that matters is malformed (file and line); cancelled.
 Result<OpenedDeck> open(const std::filesystem::path& path, const Progress& progress = {}, const StandIns& stand_ins = {});
 
 }  // namespace prismesh::mesh::deck

@@ -16,7 +16,7 @@ namespace {
 constexpr std::int64_t kIdsPerPart = 5'000'000;
 constexpr std::int64_t kWeldPart = 90;
 
-/// Appends fixed columns; numbers stand right in theirs.
+/// Appends fields of fixed width; numbers are aligned right.
 class Cards {
  public:
   void reserve(std::size_t bytes) { text_.reserve(bytes); }
@@ -32,7 +32,7 @@ class Cards {
     while (used > 0) text_.push_back(digits[--used]);
     return *this;
   }
-  /// A coordinate with six decimals in 16 columns. The value is rounded here, so that no formatting library has a say.
+  /// A coordinate with six decimals in 16 columns. Rounded here, so that the text doesn't depend on a formatting library.
   Cards& coordinate(double value) {
     const auto millionths = static_cast<std::int64_t>(std::floor(std::abs(value) * 1e6 + 0.5));
     const bool negative = value < 0 && millionths != 0;
@@ -49,7 +49,7 @@ class Cards {
     if (negative) text_[--column] = '-';
     return *this;
   }
-  /// A number as it is written, right in its columns.
+  /// A number that is text already, aligned right.
   Cards& number(std::string_view text, std::size_t width = 10) {
     pad(width, text.size());
     text_.append(text);
@@ -78,8 +78,8 @@ std::size_t count_all(const sample::ElementSize& size) {
   return count;
 }
 
-/// The element size whose mesh comes nearest to the wanted number. The count follows size^-2 but jumps where all flanges get a row
-/// more; what is left then is made up along the parts.
+/// The element size whose mesh has nearly the wanted number of shells. The count follows size^-2, but jumps where all flanges get another
+/// row; the edge length along the parts makes up for the rest.
 sample::ElementSize size_for(std::size_t shells) {
   const auto ratio = [&](const sample::ElementSize& size) { return static_cast<double>(count_all(size)) / static_cast<double>(shells); };
   double guess = 16;

@@ -1,4 +1,4 @@
-// A deck of our own making: a sheet-metal assembly to try things on, at any size, the same bytes for the same size.
+// Makes the sample deck: a sheet-metal assembly of any size, the same bytes for the same size on every machine.
 #pragma once
 
 #include <cstddef>

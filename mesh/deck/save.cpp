@@ -15,16 +15,9 @@ Result<void> can_save(const Deck& deck, const Model& original, const Model& mode
 
 Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
                         const Progress& progress) {
-  Rounding rounding;
-  return save(deck, original, model, target, progress, rounding);
-}
-
-Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
-                        const Progress& progress, Rounding& rounding) {
   Result<StagedSave> staged = StagedSave::write(deck, original, model, target, progress);
   if (!staged) return fail(std::move(staged.error()));
   if (Result<void> placed = staged->put_in_place(); !placed) return fail(std::move(placed.error()));
-  rounding = staged->rounding();
   return staged->report();
 }
 

@@ -1,4 +1,4 @@
-// Saves decks of every format: only the cards of what differs are rewritten.
+// Saves decks of every format: rewrites only the cards of what differs.
 #pragma once
 
 #include <filesystem>
@@ -6,27 +6,22 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "mesh/deck/data/deck.h"
-#include "mesh/deck/editing/rounding.h"
 #include "mesh/deck/save_report.h"
 #include "mesh/model/model.h"
 
 namespace prismesh::mesh::deck {
 
-/// Whether `model` can be saved as what `original` has become: an edit asks this before it is applied. Costs what differs. Errors: what
-/// can't be written safely, with the reason (docs/formats/editing.md has the rules). `original` is the model as it was opened.
+/// Checks whether `model` can be saved. Edits check this before they are applied. `original`: the model as it was opened; `model`: as
+/// edited from it. Costs what differs. Errors: what can't be written safely, with the reason (docs/formats/editing.md has the rules).
 Result<void> can_save(const Deck& deck, const Model& original, const Model& model);
 
-/// Writes the deck as `model` has it to `target`. Only cards of nodes and shells that differ are rewritten, in their own columns and
-/// style; new ones stand right behind those they come from; cards that name what came or went follow by the rules of
-/// docs/formats/editing.md. To the deck's own path: changed files only, and refused if a file on disk is no longer the one that was read.
-/// Elsewhere: all files, includes under their relative paths (one outside the main file's folder is refused by name). Atomic (see
-/// replace_files); stopped by its progress, it leaves everything as it was. Errors: those of can_save, before anything is written, those
-/// of writing, cancelled. `original` is the model as it was opened.
+/// Writes the deck to `target`, with what differs between `original` (as opened) and `model` (as edited from it). Cards of nodes and shells
+/// that differ are rewritten in their own columns and style. New cards stand right behind those that they come from. Cards that name added
+/// or removed ones follow the rules of docs/formats/editing.md. To the deck's own path, only changed files are written. To another path,
+/// all files are written, includes under their relative paths. Atomic (replace_files): after an error or a stop all files are as before.
+/// Errors: those of can_save; a file on disk is no longer the one that was read (own path); an include is outside the main file's folder
+/// (other path); a file can't be written; cancelled.
 Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
                         const Progress& progress = {});
-
-/// As save (mesh/deck/save.h), and tells what the fields made of the numbers.
-Result<SaveReport> save(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
-                        const Progress& progress, Rounding& rounding);
 
 }  // namespace prismesh::mesh::deck

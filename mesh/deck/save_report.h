@@ -1,4 +1,4 @@
-// What a save did.
+// Counts of what a save wrote.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ struct SaveReport {
   std::size_t shells_changed = 0;  ///< with other nodes than before
   std::size_t shells_added = 0;
   std::size_t shells_removed = 0;
-  std::size_t set_cards_changed = 0;  ///< sets, segments and other cards that name what came and went
-  std::size_t lines_changed = 0;      ///< lines that come, go or differ
+  std::size_t set_cards_changed = 0;  ///< sets, segments and other cards that name added or removed ones
+  std::size_t lines_changed = 0;      ///< lines that were added, removed or changed
   std::vector<std::filesystem::path> files_written;
   std::vector<std::string> notes;  ///< fields that couldn't hold the full precision, ...
 };

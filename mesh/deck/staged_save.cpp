@@ -10,13 +10,14 @@
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/data/on_disk.h"
 #include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/editing/text_place.h"
 
 namespace prismesh::mesh::deck {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the progress: making new cards takes longer than writing files, and packing many times as long as both.
+/// Shares of the progress: making new cards takes longer than writing files, and packing many times as long as both.
 constexpr double kShareOfCards = 0.8;
 constexpr double kShareOfCardsWithPacking = 0.2;
 constexpr double kShareOfPacking = 0.7;
@@ -35,7 +36,8 @@ std::vector<std::string_view> content_of(const SourceFile& file, const std::vect
   return pieces;
 }
 
-/// What the file gets on disk. A packed one is packed again in its own manner, or stays as it is; `packed` keeps what that makes.
+/// The bytes of a file on disk. A packed file is packed again with its own method; an unchanged one keeps its bytes. `packed` owns the new
+/// bytes.
 Result<std::vector<std::string_view>> stored_content_of(const SourceFile& file, const std::vector<Replacement>& replacements,
                                                         std::deque<std::string>& packed, const Progress& progress) {
   if (!file.bytes.is_packed()) return content_of(file, replacements);
@@ -54,7 +56,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
 }
 
 /// One file that is going to be written.
-struct Plan {
+struct FilePlan {
   std::size_t file = 0;
   fs::path target;
 };
@@ -85,8 +87,8 @@ Result<void> check_unchanged(const SourceFile& file, OnDisk::File& known) {
               "has changed on disk since it was opened; nothing was written. Save into another folder, or close it and open it again");
 }
 
-Result<std::vector<Plan>> plan_in_place(const Deck& deck, const TextChanges& text) {
-  std::vector<Plan> plans;
+Result<std::vector<FilePlan>> plan_in_place(const Deck& deck, const TextChanges& text) {
+  std::vector<FilePlan> plans;
   for (const std::size_t file : writing_order(deck)) {
     OnDisk::File& known = deck.on_disk->files[file];
     if (Result<void> unchanged = check_unchanged(deck.files[file], known); !unchanged) return fail(unchanged.error());
@@ -95,14 +97,14 @@ Result<std::vector<Plan>> plan_in_place(const Deck& deck, const TextChanges& tex
   return plans;
 }
 
-/// Whether an include's name means something else, or still the old file, in another folder.
+/// Whether an include's name, in another folder, would lead to the old file or to a wrong one.
 bool stays_behind(const SourceFile& include) {
   return include.relative.is_absolute() || include.relative.begin() == include.relative.end() || *include.relative.begin() == "..";
 }
 
-Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const TextChanges& text, const fs::path& target) {
+Result<std::vector<FilePlan>> plan_elsewhere(const Deck& deck, const TextChanges& text, const fs::path& target) {
   const bool other_folder = !same_file(folder_of(target), folder_of(deck.files[0].path));
-  std::vector<Plan> plans;
+  std::vector<FilePlan> plans;
   for (const std::size_t file : writing_order(deck)) {
     const SourceFile& source = deck.files[file];
     if (file != 0 && other_folder && stays_behind(source))
@@ -122,7 +124,7 @@ Result<std::vector<Plan>> plan_elsewhere(const Deck& deck, const TextChanges& te
   return plans;
 }
 
-Result<std::vector<Plan>> plan(const Deck& deck, const TextChanges& text, const fs::path& target) {
+Result<std::vector<FilePlan>> plan(const Deck& deck, const TextChanges& text, const fs::path& target) {
   return same_file(target, deck.files[0].path) ? plan_in_place(deck, text) : plan_elsewhere(deck, text, target);
 }
 
@@ -133,7 +135,7 @@ std::string rounding_note(const Rounding& rounding) {
          " rounded to what their fields hold, by " + error + " at most; first at " + rounding.first;
 }
 
-/// Sets that text hides can't be given the new ones.
+/// Warns that sets in encrypted text don't get new nodes and shells.
 std::string encrypted_note(const Deck& deck) {
   for (const UnreadText& unread : deck.references->unread())
     if (unread.encrypted)
@@ -142,16 +144,16 @@ std::string encrypted_note(const Deck& deck) {
   return "";
 }
 
-/// A progress of its own for the part of the work from `begin` to `begin + share`.
+/// The progress of the part of the work from `begin` to `begin + share`.
 Progress part_of(const Progress& progress, double begin, double share) {
   return [&progress, begin, share](double fraction) { return !progress || progress(begin + fraction * share); };
 }
 
-/// Files with their content, ready to be written; `packed` keeps what packing makes.
-Result<std::vector<PendingFile>> pending_files(const Deck& deck, const std::vector<Plan>& plans, const TextChanges& text,
+/// Files with their content, ready to be written. `packed` owns the bytes of packed files.
+Result<std::vector<PendingFile>> pending_files(const Deck& deck, const std::vector<FilePlan>& plans, const TextChanges& text,
                                                std::deque<std::string>& packed, const Progress& progress) {
   std::vector<PendingFile> pending;
-  for (const Plan& plan : plans) {
+  for (const FilePlan& plan : plans) {
     const double part = 1 / static_cast<double>(plans.size());
     const Progress packing = part_of(progress, static_cast<double>(pending.size()) * part, part);
     Result<std::vector<std::string_view>> stored = stored_content_of(deck.files[plan.file], text.by_file[plan.file], packed, packing);
@@ -161,23 +163,23 @@ Result<std::vector<PendingFile>> pending_files(const Deck& deck, const std::vect
   return pending;
 }
 
-SaveReport report_of(const Deck& deck, const TextChanges& text, const std::vector<Plan>& plans) {
+SaveReport report_of(const Deck& deck, const TextChanges& text, const std::vector<FilePlan>& plans) {
   SaveReport report;
-  report.nodes_written = text.nodes_moved;
-  report.nodes_added = text.nodes_added;
-  report.nodes_removed = text.nodes_removed;
-  report.shells_changed = text.shells_changed;
-  report.shells_added = text.shells_added;
-  report.shells_removed = text.shells_removed;
+  report.nodes_written = text.counts.nodes_moved;
+  report.nodes_added = text.counts.nodes_added;
+  report.nodes_removed = text.counts.nodes_removed;
+  report.shells_changed = text.counts.shells_changed;
+  report.shells_added = text.counts.shells_added;
+  report.shells_removed = text.counts.shells_removed;
   report.set_cards_changed = text.set_cards;
   report.lines_changed = text.lines;
-  for (const Plan& plan : plans) report.files_written.push_back(plan.target);
+  for (const FilePlan& plan : plans) report.files_written.push_back(plan.target);
   if (text.rounding.count > 0) report.notes.push_back(rounding_note(text.rounding));
-  if (text.shells_turned > 0)
-    report.notes.push_back("the material angles of " + std::to_string(text.shells_turned) +
-                           (text.shells_turned == 1 ? " shell" : " shells") +
+  if (text.counts.shells_turned > 0)
+    report.notes.push_back("the material angles of " + std::to_string(text.counts.shells_turned) +
+                           (text.counts.shells_turned == 1 ? " shell" : " shells") +
                            " were turned with their first edges, to which they are taken to be relative");
-  if (text.nodes_added + text.shells_added > 0)
+  if (text.counts.nodes_added + text.counts.shells_added > 0)
     if (std::string note = encrypted_note(deck); !note.empty()) report.notes.push_back(std::move(note));
   return report;
 }
@@ -194,7 +196,7 @@ Result<StagedSave> StagedSave::write(const Deck& deck, const Model& original, co
   StagedSave save;
   save.deck_ = &deck;
   save.in_place_ = same_file(target, deck.files[0].path);
-  const Result<std::vector<Plan>> plans = plan(deck, *text, target);
+  const Result<std::vector<FilePlan>> plans = plan(deck, *text, target);
   if (!plans) return fail(plans.error());
 
   std::deque<std::string> packed;
@@ -218,10 +220,10 @@ Result<std::vector<fs::path>> StagedSave::targets(const Deck& deck, const Model&
   const std::lock_guard lock(deck.on_disk->mutex);
   const Result<TextChanges> text = text_changes(deck, original, model);
   if (!text) return fail(text.error());
-  const Result<std::vector<Plan>> plans = plan(deck, *text, target);
+  const Result<std::vector<FilePlan>> plans = plan(deck, *text, target);
   if (!plans) return fail(plans.error());
   std::vector<fs::path> places;
-  for (const Plan& each : *plans) places.push_back(each.target);
+  for (const FilePlan& each : *plans) places.push_back(each.target);
   return places;
 }
 
@@ -239,7 +241,7 @@ Result<void> StagedSave::put_in_place() {
   return placed;
 }
 
-/// What is on disk now, also where only some of the files could be replaced.
+/// Notes the files that were replaced, which may be some of them only.
 void StagedSave::remember_written() {
   for (std::size_t i = 0; i < staged_.in_place(); ++i)
     deck_->on_disk->files[files_[i].index] = {staged_.files()[i].identity, files_[i].after, files_[i].as_read};

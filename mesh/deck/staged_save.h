@@ -1,5 +1,5 @@
-// A save whose files are written and flushed beside their targets, and wait to be put in place: so that what follows from the save can be
-// made and kept before the first file is replaced.
+// A save in two steps: files are written and flushed beside their targets first, and put in place later. In between, the caller can prepare
+// and keep what follows from the save.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include "base/hash.h"
 #include "base/progress.h"
 #include "mesh/deck/data/deck.h"
-#include "mesh/deck/editing/text_changes.h"
+#include "mesh/deck/editing/rounding.h"
 #include "mesh/deck/open.h"
 #include "mesh/deck/save_report.h"
 
@@ -19,16 +19,16 @@ class StagedSave {
  public:
   struct File {
     std::size_t index = 0;  ///< in Deck::files
-    Hash128 before;         ///< what is to be replaced; of a save elsewhere nothing
+    Hash128 before;         ///< content of the file that will be replaced; empty for another path
     Hash128 after;
-    bool as_read = false;  ///< it gets back what it held when it was read
+    bool as_read = false;  ///< the save gives the file the content that was read
   };
 
-  /// As save (mesh/deck/save.h), up to the point where files are replaced. The deck must outlive this. Errors: the same.
+  /// The first step of save (mesh/deck/save.h): everything but replacing files. The deck must outlive this. Errors: those of save.
   static Result<StagedSave> write(const Deck& deck, const Model& original, const Model& model, const std::filesystem::path& target,
                                   const Progress& progress = {});
 
-  /// Where the files of such a save would be put. Errors: the same, but those of writing.
+  /// The paths that such a save would write. Errors: those of save, without those of writing.
   static Result<std::vector<std::filesystem::path>> targets(const Deck& deck, const Model& original, const Model& model,
                                                             const std::filesystem::path& target);
 
@@ -39,15 +39,15 @@ class StagedSave {
   /// The same files, with their places.
   const std::vector<StagedFiles::File>& places() const { return staged_.files(); }
   bool has_begun() const { return staged_.in_place() > 0; }  ///< to replace files
-  /// Leaves on disk what isn't in place yet: whoever finishes the save later needs it.
+  /// Keeps the files that aren't in place yet on disk, so that the save can be finished later.
   void leave() { staged_.leave(); }
 
-  /// Reads the deck as it will be once the files are in place. Of a save in place. Errors: those of opening.
+  /// Opens the deck as it will be once the files are in place. Only for a save to the deck's own path. Errors: those of open.
   Result<OpenedDeck> open(const Progress& progress = {}) const;
-  /// Replaces the files; after an error it may be called again and goes on. Errors: those of StagedFiles::put_in_place.
+  /// Replaces the files. After an error, another call continues. Errors: those of StagedFiles::put_in_place.
   Result<void> put_in_place();
-  /// After an error: gives the files that were replaced what they held before. Of a save in place. Errors: a file can't be written, or
-  /// isn't what this has written.
+  /// After an error of put_in_place: restores the files that were replaced. Only for a save to the deck's own path. Errors: a file can't be
+  /// written, or isn't the one that this save wrote.
   Result<void> take_back();
 
  private:

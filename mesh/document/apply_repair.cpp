@@ -2,7 +2,7 @@
 #include <array>
 
 #include "base/counted.h"
-#include "mesh/deck/editing/naming.h"
+#include "mesh/deck/editing/edit_checks.h"
 #include "mesh/document/apply.h"
 #include "mesh/document/restructure.h"
 #include "mesh/document/scope.h"

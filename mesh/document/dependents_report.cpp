@@ -9,7 +9,7 @@
 
 #include "base/counted.h"
 #include "base/readable_number.h"
-#include "mesh/deck/editing/naming.h"
+#include "mesh/deck/editing/names.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/spatial/closest_point.h"

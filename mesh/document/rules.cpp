@@ -3,8 +3,8 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "mesh/deck/editing/descent.h"
-#include "mesh/deck/editing/naming.h"
+#include "mesh/deck/editing/ancestors.h"
+#include "mesh/deck/editing/edit_checks.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/restructure.h"
 #include "mesh/model/adjacency.h"

@@ -17,7 +17,7 @@ struct ShellFamily {
   std::string_view start;
   bool is_shell_section;
 };
-/// The number of nodes follows. What comes after it (R, R5, RS, T, ...) changes no node.
+/// The number of nodes in a type's name. What follows it (R, R5, RS, T, ...) doesn't change the nodes.
 constexpr ShellFamily kShellFamilies[] = {{"S", true}, {"STRI", true}, {"DS", true}, {"M3D", false}, {"SFM3D", false}, {"R3D", false}};
 
 bool shell(std::string_view type, ElementType& out) {
@@ -74,7 +74,7 @@ bool beam(std::string_view type, ElementType& out) {
 ElementType element_type(std::string_view type) {
   ElementType out;
   if (shell(type, out) || beam(type, out)) return out;
-  // CalculiX: a fluid or gas network; a node that lacks at an end is 0.
+  // CalculiX: a fluid or gas network; a missing node at an end is 0.
   if (type == "D") return {ElementClass::other, 3, 0, true};
   for (const Family& family : kFamilies) {
     if (!type.starts_with(family.start)) continue;

@@ -12,15 +12,15 @@ namespace prismesh::mesh::deck::abaqus {
 
 struct ElementType {
   ElementClass element_class = ElementClass::other;
-  std::uint8_t nodes = 0;        ///< on a card; 0: as many as there are
-  std::uint8_t corners = 0;      ///< of a shell: 3 or 4; the next as many nodes, where there are more, stand mid-side
-  bool is_shell_section = true;  ///< false for shells that are none to the solver: membranes, surfaces, rigid facets
+  std::uint8_t nodes = 0;        ///< on a card; 0: any number
+  std::uint8_t corners = 0;      ///< of a shell: 3 or 4; as many mid-side nodes follow, if there are more nodes
+  bool is_shell_section = true;  ///< false for what is no shell to the solver: membranes, surfaces, rigid facets
   bool operator==(const ElementType&) const = default;
 
   bool has_midside() const { return corners > 0 && nodes > corners; }
 };
 
-/// `type` in capitals. A type that isn't known is of class other, with as many nodes as there are.
+/// `type` in capitals. An unknown type is of class other, with any number of nodes.
 ElementType element_type(std::string_view type);
 
 void count(const ElementType& type, ElementCounts& counts, std::size_t cards);

@@ -17,7 +17,7 @@ std::size_t next_line(std::string_view text, std::size_t at) {
   return end == std::string_view::npos ? text.size() : end + 1;
 }
 
-/// Where a keyword line that begins at `at` ends: it goes on in the next line while it ends with a comma.
+/// Where a keyword line that begins at `at` ends: after a comma it continues in the next line.
 std::size_t keyword_end(std::string_view text, std::size_t at) {
   for (;;) {
     const std::size_t end = next_line(text, at);
@@ -26,7 +26,7 @@ std::size_t keyword_end(std::string_view text, std::size_t at) {
     const std::string_view shown = trim(line);
     const bool comment = shown.substr(0, 2) == "**";
     if (end >= text.size() || (!comment && (line.empty() || line.back() != ','))) return end;
-    // A keyword that follows all the same isn't swallowed.
+    // A keyword after a comma begins a line of its own all the same.
     const std::string_view after = trim(text.substr(end, std::min<std::size_t>(text.size() - end, 256)));
     if (!after.empty() && after[0] == '*' && after.substr(0, 2) != "**") return end;
     at = end;

@@ -12,7 +12,7 @@
 
 namespace prismesh::mesh::deck::abaqus {
 
-/// A keyword line with the lines it goes on in (after a comma at its end): "*ELEMENT, TYPE=S4, ELSET=floor".
+/// A keyword line with its continuation lines (after a comma at its end): "*ELEMENT, TYPE=S4, ELSET=floor".
 struct Keyword {
   std::size_t begin = 0;  ///< of its line
   std::size_t end = 0;    ///< one past the end of its last line
@@ -35,7 +35,7 @@ class Parameters {
  public:
   Parameters(std::string_view text, std::size_t begin, std::size_t end);
   /// The value of a parameter (its name in capitals, without blanks), as written but without quotes; nullopt: it isn't there.
-  /// A copy: the parameters of a keyword are mostly asked once and thrown away.
+  /// Returns a copy, since parameters rarely live longer than one call.
   std::optional<std::string> value(std::string_view name) const;
   bool has(std::string_view name) const { return value(name).has_value(); }
 
@@ -73,7 +73,7 @@ class Fields {
   std::string_view rest_;
 };
 
-/// The first fields of a line that has at least so many; those that lack are empty.
+/// The first fields of a line; missing ones are empty.
 template <std::size_t Count>
 std::array<std::string_view, Count> first_fields(std::string_view line) {
   std::array<std::string_view, Count> out;

@@ -45,15 +45,15 @@ struct Material {
 
 class Reader {
  public:
-  explicit Reader(const Walk& walk) : walk_(walk) {}
+  explicit Reader(const DeckOutline& outline) : outline_(outline) {}
 
   std::vector<Section> run() {
     read_materials();
     std::vector<Section> out;
-    for (const Walk::Kept& kept : walk_.kept) {
-      const std::string& word = walk_.words[kept.word];
+    for (const KeptBlock& kept : outline_.kept) {
+      const std::string& word = outline_.words[kept.word];
       if (!std::binary_search(std::begin(kSections), std::end(kSections), word)) continue;
-      const Parameters given = walk_.parameters(kept.block);
+      const Parameters given = outline_.parameters(kept.block);
       const auto elset = given.value("ELSET");
       if (!elset || elset->empty()) continue;
       out.push_back({kept.block.scope, std::string(*elset), {}});
@@ -67,13 +67,13 @@ class Reader {
   }
 
  private:
-  /// The first data lines, `most` of them.
-  std::vector<std::string_view> lines_of(const Block& block, std::size_t most) const {
+  /// The first data lines, up to `max` of them.
+  std::vector<std::string_view> lines_of(const Block& block, std::size_t max) const {
     std::vector<std::string_view> out;
-    for (std::uint32_t s = 0; s < block.segments && out.size() < most; ++s) {
-      const Segment& where = walk_.segments[block.first_segment + s];
-      DataLines lines(walk_.text(where.file), where.begin, where.end);
-      for (DataLine line; out.size() < most && lines.next(line);) out.push_back(line.text);
+    for (std::uint32_t s = 0; s < block.segments && out.size() < max; ++s) {
+      const Segment& where = outline_.segments[block.first_segment + s];
+      DataLines lines(outline_.text(where.file), where.begin, where.end);
+      for (DataLine line; out.size() < max && lines.next(line);) out.push_back(line.text);
     }
     return out;
   }
@@ -82,22 +82,22 @@ class Reader {
     double value = 0;
     if (field.empty()) return std::nullopt;
     if (field.size() > 2 && field.front() == '<' && field.back() == '>') {
-      const auto at = walk_.values.find(trim(field.substr(1, field.size() - 2)));
-      return at == walk_.values.end() ? std::nullopt : std::optional(at->second);
+      const auto at = outline_.values.find(trim(field.substr(1, field.size() - 2)));
+      return at == outline_.values.end() ? std::nullopt : std::optional(at->second);
     }
     return parse_real(field, value) ? std::optional(value) : std::nullopt;
   }
 
   void read_materials() {
     Material* material = nullptr;
-    for (const Walk::Kept& kept : walk_.kept) {
-      const std::string& word = walk_.words[kept.word];
+    for (const KeptBlock& kept : outline_.kept) {
+      const std::string& word = outline_.words[kept.word];
       if (word == "MATERIAL") {
-        const auto [at, added] = materials_.try_emplace(label(walk_.parameters(kept.block).value("NAME").value_or("")));
+        const auto [at, added] = materials_.try_emplace(label(outline_.parameters(kept.block).value("NAME").value_or("")));
         material = added ? &at->second : nullptr;
         if (added) material->number = static_cast<std::int64_t>(materials_.size());
       } else if (word == "RIGID BODY") {
-        if (const auto elset = walk_.parameters(kept.block).value("ELSET")) rigid_.insert({kept.block.scope, label(*elset)});
+        if (const auto elset = outline_.parameters(kept.block).value("ELSET")) rigid_.insert({kept.block.scope, label(*elset)});
       } else if (material && word == "DENSITY") {
         if (const auto lines = lines_of(kept.block, 1); !lines.empty()) material->density = number(first_fields<1>(lines[0])[0]);
       } else if (material && word == "ELASTIC") {
@@ -109,16 +109,16 @@ class Reader {
   void read_elastic(const Block& block, Material& material) const {
     const auto lines = lines_of(block, 1);
     if (lines.empty()) return;
-    const std::string type = label(walk_.parameters(block).value("TYPE").value_or("ISOTROPIC"));
+    const std::string type = label(outline_.parameters(block).value("TYPE").value_or("ISOTROPIC"));
     const auto fields = first_fields<4>(lines[0]);
     const auto stiffest = [&](std::size_t count) {
-      std::optional<double> most;
+      std::optional<double> max;
       for (std::size_t i = 0; i < count; ++i)
-        if (const auto value = number(fields[i]); value && (!most || *value > *most)) most = value;
-      return most;
+        if (const auto value = number(fields[i]); value && (!max || *value > *max)) max = value;
+      return max;
     };
-    // What can't be taken for one modulus (ORTHOTROPIC, ANISOTROPIC: stiffness terms) stays unknown. Of directions the stiffest counts,
-    // since it limits the time step.
+    // ORTHOTROPIC and ANISOTROPIC give stiffness terms and no modulus: it stays unknown. Of several directions the stiffest counts, since
+    // it limits the time step.
     if (type.substr(0, 3) == "ISO") {
       material.youngs_modulus = number(fields[0]);
       material.poissons_ratio = number(fields[1]);
@@ -145,7 +145,7 @@ class Reader {
   void read_thickness(std::string_view word, const Block& block, const Parameters& given, Part& part) const {
     const bool shell = word == "SHELL SECTION" || word == "SHELL GENERAL SECTION";
     if (!shell && word != "MEMBRANE SECTION") return;
-    // The thickness then comes from nodes or from a distribution.
+    // With these parameters the thickness comes from nodes or from a distribution.
     if (given.has("NODALTHICKNESS") || given.has("SHELLTHICKNESS")) return;
     if (given.has("COMPOSITE")) {
       constexpr std::size_t kMaxLayers = 100000;
@@ -163,7 +163,7 @@ class Reader {
     if (const auto lines = lines_of(block, 1); !lines.empty()) part.thickness = number(first_fields<1>(lines[0])[0]);
   }
 
-  /// Of layers the first one's.
+  /// The material of the first layer.
   void take_layer_material(std::string_view name, Part& part) const {
     const auto at = materials_.find(label(name));
     if (at == materials_.end()) return;
@@ -173,13 +173,13 @@ class Reader {
     part.poissons_ratio = at->second.poissons_ratio;
   }
 
-  const Walk& walk_;
+  const DeckOutline& outline_;
   std::map<std::string, Material, std::less<>> materials_;
   std::set<std::pair<std::uint32_t, std::string>> rigid_;
 };
 
 }  // namespace
 
-std::vector<Section> sections(const Walk& walk) { return Reader(walk).run(); }
+std::vector<Section> sections(const DeckOutline& outline) { return Reader(outline).run(); }
 
 }  // namespace prismesh::mesh::deck::abaqus

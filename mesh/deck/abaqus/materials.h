@@ -1,11 +1,11 @@
-// Sections and materials: what a part's thickness, density and stiffness are.
+// Reads sections and materials: thickness, density and stiffness of parts.
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
 
-#include "mesh/deck/abaqus/walk.h"
+#include "mesh/deck/abaqus/outline.h"
 
 namespace prismesh::mesh::deck::abaqus {
 
@@ -15,7 +15,7 @@ struct Section {
   Part part;          ///< with thickness and material, without id and name
 };
 
-/// All sections, in their order. *MASS, *SPRING and the like that name an element set are such too.
-std::vector<Section> sections(const Walk& walk);
+/// All sections, in their order; with *MASS, *SPRING and others that name an element set.
+std::vector<Section> sections(const DeckOutline& outline);
 
 }  // namespace prismesh::mesh::deck::abaqus

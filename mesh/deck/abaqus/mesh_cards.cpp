@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kFullLine = 16;    // fields of a line that goes on in the next without a comma at its end
 constexpr std::size_t kMaxNodes = 5000;  // of an element without a known number of them
 
-/// Digits; anything else is for the slow way.
+/// Reads digits alone; parse_integer reads everything else.
 inline bool plain_integer(std::string_view field, std::int64_t& value) {
   if (field.empty() || field.size() > 18) return false;
   std::int64_t sum = 0;
@@ -24,7 +24,8 @@ inline bool plain_integer(std::string_view field, std::int64_t& value) {
 
 class PieceReader {
  public:
-  PieceReader(const Walk& walk, const Piece& piece, PieceCards& out) : walk_(walk), text_(walk.text(piece.file)), out_(out) {}
+  PieceReader(const DeckOutline& outline, const Piece& piece, PieceCards& out)
+      : outline_(outline), text_(outline.text(piece.file)), out_(out) {}
 
   bool read(const MeshSegment& segment) {
     DataLines lines(text_, segment.begin, segment.end);
@@ -33,14 +34,14 @@ class PieceReader {
       out_.begin_nodes(0, segment.frame);
       return read_nodes();
     }
-    type_ = &walk_.types[segment.type].type;
+    type_ = &outline_.types[segment.type].type;
     part_ = static_cast<std::int64_t>(segment.group) + 1;
     if (type_->element_class == ElementClass::shell)
       out_.begin_shells(static_cast<std::uint16_t>(type_->corners | (type_->has_midside() ? kStyleMidside : 0)));
     std::size_t cards = 0;
     const bool good = read_elements(cards);
     count(*type_, out_.counts, cards);
-    if (cards > 0) out_.count_kind(walk_.types[segment.type].name, cards);
+    if (cards > 0) out_.count_kind(outline_.types[segment.type].name, cards);
     return good;
   }
 
@@ -54,8 +55,8 @@ class PieceReader {
   bool real(std::string_view field, double& value, bool& by_parameter) const {
     if (field.size() < 2 || field.front() != '<' || field.back() != '>') return parse_real(field, value);
     by_parameter = true;
-    const auto at = walk_.values.find(trim(field.substr(1, field.size() - 2)));
-    if (at == walk_.values.end()) return false;
+    const auto at = outline_.values.find(trim(field.substr(1, field.size() - 2)));
+    if (at == outline_.values.end()) return false;
     value = at->second;
     return true;
   }
@@ -109,7 +110,7 @@ class PieceReader {
       const std::size_t offset = line.offset;
       const std::size_t wanted = type_->nodes > 0 ? type_->nodes + 1u : kMaxNodes + 1;
       if (!read_line(line)) return false;
-      // A card goes on where its line ends with a comma, or is full.
+      // A card continues in the next line if its line ends with a comma or is full.
       while (numbers_.size() < wanted && (line.text.back() == ',' || (type_->nodes > 0 && numbers_.size() % kFullLine == 0)) &&
              lines_->next(line))
         if (!read_line(line)) return false;
@@ -177,23 +178,23 @@ class PieceReader {
     elements.offset.push_back(offset);
   }
 
-  const Walk& walk_;
+  const DeckOutline& outline_;
   std::string_view text_;
   PieceCards& out_;
   DataLines* lines_ = nullptr;
   const ElementType* type_ = nullptr;
   std::int64_t part_ = 0;
-  std::vector<std::int64_t> numbers_;  ///< of the card in hand: its id, then its nodes
-  const char* skip_ = nullptr;         ///< why the card in hand is left out
+  std::vector<std::int64_t> numbers_;  ///< of the current card: its id, then its nodes
+  const char* skip_ = nullptr;         ///< why the current card is left out
 };
 
 }  // namespace
 
-PieceCards read_piece(const Walk& walk, const Piece& piece) {
+PieceCards read_piece(const DeckOutline& outline, const Piece& piece) {
   PieceCards out;
   out.file = piece.file;
   out.held = piece.held;
-  PieceReader reader(walk, piece, out);
+  PieceReader reader(outline, piece, out);
   for (const MeshSegment& segment : piece.segments)
     if (!reader.read(segment)) break;
   return out;

@@ -13,16 +13,16 @@
 namespace prismesh::mesh::deck::abaqus {
 namespace {
 
-/// Frames of the deck for those of the walk, seen from each instance.
-void place_frames(const Walk& walk, DeckContents& found) {
+/// Makes the deck's frames: one for each frame of the outline and each instance that uses it.
+void place_frames(const DeckOutline& outline, DeckContents& found) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
-  for (std::size_t p = 0; p < walk.pieces.size(); ++p) {
-    const std::uint32_t instance = walk.pieces[p].instance;
+  for (std::size_t p = 0; p < outline.pieces.size(); ++p) {
+    const std::uint32_t instance = outline.pieces[p].instance;
     for (PieceRun& run : found.cards[p].node_runs) {
       const auto [at, added] = known.try_emplace({instance, run.frame}, 0);
       if (added) {
-        Frame frame = walk.frames[run.frame];
-        if (instance != kNone) frame.to_basic = walk.instances[instance].to_basic * frame.to_basic;
+        Frame frame = outline.frames[run.frame];
+        if (instance != kNone) frame.to_basic = outline.instances[instance].to_basic * frame.to_basic;
         if (!frame.is_basic()) {
           at->second = static_cast<std::uint32_t>(found.frames.size());
           found.frames.push_back(frame);
@@ -40,9 +40,9 @@ struct Extent {
 
   void add(const std::vector<std::int64_t>& ids) {
     if (ids.empty()) return;
-    const auto [least, most] = std::minmax_element(ids.begin(), ids.end());
-    first = std::min(first, *least);
-    last = std::max(last, *most);
+    const auto [min, max] = std::minmax_element(ids.begin(), ids.end());
+    first = std::min(first, *min);
+    last = std::max(last, *max);
   }
 };
 
@@ -63,53 +63,54 @@ void shift_ids(PieceCards& cards, std::int64_t by) {
   }
 }
 
-/// Nothing may be added to or changed in text whose ids aren't the model's, or that stands for several places.
+/// Marks runs whose text must not be changed: its ids aren't the model's, or it stands for several places.
 void close_runs(PieceCards& cards) {
   for (PieceRun& run : cards.node_runs) run.style |= kStyleShifted;
   for (PieceRun& run : cards.shells.runs) run.style |= kStyleShifted;
 }
 
-/// Ids mean something within their part only. The first instance keeps its own; where another's would be the same, it gets a round number
-/// added to all of them.
-Result<void> shift_instances(Walk& walk, DeckContents& found) {
-  // What stands outside of instances is one, too, and comes last: it refers to the others.
-  std::vector<Extent> extents(walk.instances.size() + 1);
-  for (std::size_t p = 0; p < walk.pieces.size(); ++p) {
+/// Makes the ids of all instances unique: ids are unique within a part only. The first instance keeps its ids; another one whose range of
+/// ids overlaps gets a round number added to all of them.
+Result<void> shift_instances(DeckOutline& outline, DeckContents& found) {
+  // The last one is that of everything outside of instances.
+  std::vector<Extent> extents(outline.instances.size() + 1);
+  for (std::size_t p = 0; p < outline.pieces.size(); ++p) {
     const PieceCards& cards = found.cards[p];
-    Extent& extent = extents[walk.pieces[p].instance == kNone ? walk.instances.size() : walk.pieces[p].instance];
+    Extent& extent = extents[outline.pieces[p].instance == kNone ? outline.instances.size() : outline.pieces[p].instance];
     extent.add(cards.node_id);
     extent.add(cards.shells.id);
     for (const RawElements& elements : cards.elements) extent.add(elements.id);
   }
   constexpr std::int64_t kMax = 900'000'000'000'000'000;
   std::int64_t used = extents.back().last;
-  std::int64_t least = extents.back().first;
-  for (std::size_t i = 0; i < walk.instances.size(); ++i) {
+  std::int64_t lowest = extents.back().first;
+  for (std::size_t i = 0; i < outline.instances.size(); ++i) {
     if (extents[i].last == 0) continue;
-    if (extents[i].first <= used && extents[i].last >= least) {
+    if (extents[i].first <= used && extents[i].last >= lowest) {
       std::int64_t round = 1000;
       while (round < extents[i].last && round < kMax / 10) round *= 10;
       const std::int64_t shift = (used / round + 1) * round;
       if (shift > kMax - extents[i].last)
         return fail(found.files[0].path.string(), "has instances whose numbers are too large to be told apart");
-      walk.instances[i].shift = shift;
-      found.warnings.note("renumbered-instance", walk.scopes[walk.instances[i].scope].file, walk.scopes[walk.instances[i].scope].begin,
-                          "nodes and elements of the instance " + walk.instances[i].name + " are shown with " + std::to_string(shift) +
+      outline.instances[i].shift = shift;
+      found.warnings.note("renumbered-instance", outline.scopes[outline.instances[i].scope].file,
+                          outline.scopes[outline.instances[i].scope].begin,
+                          "nodes and elements of the instance " + outline.instances[i].name + " are shown with " + std::to_string(shift) +
                               " added to their numbers, since other instances have the same; the file keeps its own");
     }
-    used = std::max(used, extents[i].last + walk.instances[i].shift);
-    least = std::min(least, extents[i].first + walk.instances[i].shift);
+    used = std::max(used, extents[i].last + outline.instances[i].shift);
+    lowest = std::min(lowest, extents[i].first + outline.instances[i].shift);
   }
-  for (std::size_t p = 0; p < walk.pieces.size(); ++p) {
-    const std::uint32_t instance = walk.pieces[p].instance;
-    const std::int64_t shift = instance == kNone ? 0 : walk.instances[instance].shift;
+  for (std::size_t p = 0; p < outline.pieces.size(); ++p) {
+    const std::uint32_t instance = outline.pieces[p].instance;
+    const std::int64_t shift = instance == kNone ? 0 : outline.instances[instance].shift;
     if (shift != 0) shift_ids(found.cards[p], shift);
-    if (shift != 0 || walk.pieces[p].held) close_runs(found.cards[p]);
+    if (shift != 0 || outline.pieces[p].held) close_runs(found.cards[p]);
   }
   return {};
 }
 
-/// Elements that are left out for a reason of this format's own.
+/// Warns of elements that are left out because they connect instances.
 void note_left_out(DeckContents& found) {
   for (PieceCards& cards : found.cards)
     for (const Oddity& oddity : cards.oddities)
@@ -122,10 +123,10 @@ void note_left_out(DeckContents& found) {
     std::erase_if(cards.oddities, [](const Oddity& oddity) { return oddity.kind == "element-between-instances"; });
 }
 
-/// Keywords that make or move nodes and elements, which the model then lacks or has elsewhere.
-void note_unread_mesh(const Walk& walk, Warnings& warnings) {
-  for (const Walk::Kept& kept : walk.kept) {
-    const std::string& word = walk.words[kept.word];
+/// Warns of keywords that generate or move nodes and elements: these are missing in the model, or are elsewhere in it.
+void note_unread_mesh(const DeckOutline& outline, Warnings& warnings) {
+  for (const KeptBlock& kept : outline.kept) {
+    const std::string& word = outline.words[kept.word];
     for (const std::string_view makes : {"NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "NMAP", "SUBSTRUCTURE GENERATE", "IMPORT",
                                          "SYMMETRIC MODEL GENERATION", "TRIANGULATE"})
       if (word == makes)
@@ -137,29 +138,28 @@ void note_unread_mesh(const Walk& walk, Warnings& warnings) {
 }  // namespace
 
 Result<DeckContents> read(FileSet files, Watch& watch) {
-  Walk walk(std::move(files));
-  if (Result<void> walked = walk.run(); !walked) return fail(walked.error());
+  Result<DeckOutline> walked = walk(std::move(files));
+  if (!walked) return fail(walked.error());
+  DeckOutline& outline = *walked;
   watch.tell(kWalked);
   DeckContents found;
   found.format = Format::abaqus;
-  found.warnings = walk.warnings;
-  note_unread_mesh(walk, found.warnings);
-  // The walk needs the files until the references are found; read_pieces needs to hash them.
-  found.files = std::move(walk.files.files);
-  walk.keep_texts(found.files);
+  found.warnings = outline.warnings;
+  note_unread_mesh(outline, found.warnings);
+  found.files = std::move(outline.files.files);
   read_pieces(
-      found, walk.pieces.size(), [&](std::size_t p) { return read_piece(walk, walk.pieces[p]); }, watch);
+      found, outline.pieces.size(), [&](std::size_t p) { return read_piece(outline, outline.pieces[p]); }, watch);
   if (watch.stopped()) return fail(cancelled());
-  // After an error pieces are cut short; opening tells of it.
+  // After an error pieces are incomplete; open() reports the error.
   const bool whole = std::none_of(found.cards.begin(), found.cards.end(), [](const PieceCards& cards) { return cards.error.has_value(); });
   if (whole) {
     note_left_out(found);
-    place_frames(walk, found);
-    found.parts = make_parts(walk, found.cards, found.warnings);
-    if (Result<void> shifted = shift_instances(walk, found); !shifted) return fail(shifted.error());
-    found.references = find_references(walk);
+    place_frames(outline, found);
+    found.parts = make_parts(outline, found.cards, found.warnings);
+    if (Result<void> shifted = shift_instances(outline, found); !shifted) return fail(shifted.error());
+    found.references = find_references(outline);
   }
-  found.missing_files = std::move(walk.files.missing);
+  found.missing_files = std::move(outline.files.missing);
   return found;
 }
 

@@ -194,49 +194,49 @@ constexpr std::string_view kInitialOfNodes[] = {"ACOUSTIC",      "CONCENTRATION"
 
 class Finder {
  public:
-  explicit Finder(const Walk& walk) : walk_(walk) { static_assert(ascending()); }
+  explicit Finder(const DeckOutline& outline) : outline_(outline) { static_assert(ascending()); }
 
   References run() {
-    for (const std::string& word : walk_.words) {
+    for (const std::string& word : outline_.words) {
       const auto at = std::lower_bound(std::begin(kRules), std::end(kRules), word,
                                        [](const Rule& rule, const std::string& w) { return rule.word < w; });
       rules_.push_back(at != std::end(kRules) && at->word == word ? &*at : nullptr);
     }
-    for (const Walk::Kept& kept : walk_.kept) read(kept);
+    for (const KeptBlock& kept : outline_.kept) read(kept);
     return std::move(out_);
   }
 
  private:
-  void read(const Walk::Kept& kept) {
+  void read(const KeptBlock& kept) {
     const Rule* rule = rules_[kept.word];
     const Block& block = kept.block;
     if (!rule) {
       for (std::uint32_t s = 0; s < std::max(block.segments, 1u); ++s) {
-        const Segment where = s < block.segments ? walk_.segments[block.first_segment + s] : Segment{block.file, block.end, block.end};
-        out_.add(UnreadText{walk_.words[kept.word], where.file, s == 0 && where.file == block.file ? block.begin : where.begin, where.end,
-                            false});
+        const Segment where = s < block.segments ? outline_.segments[block.first_segment + s] : Segment{block.file, block.end, block.end};
+        out_.add(UnreadText{outline_.words[kept.word], where.file, s == 0 && where.file == block.file ? block.begin : where.begin,
+                            where.end, false});
       }
       return;
     }
-    const Parameters given = walk_.parameters(block);
+    const Parameters given = outline_.parameters(block);
     for (const std::int64_t shift : shifts_of(block, given)) read_for(kept, *rule, given, shift);
   }
 
-  /// What is to be added to the ids on the block's lines: once for each instance they stand for.
+  /// What to add to the ids on the block's lines, for each instance that they stand for.
   std::vector<std::int64_t> shifts_of(const Block& block, const Parameters& given) const {
     if (const auto instance = given.value("INSTANCE"); instance && block.scope == 0) {
-      const auto at = walk_.instance_by_name.find(label(*instance));
-      if (at == walk_.instance_by_name.end()) return {};
-      return {walk_.instances[at->second].shift};
+      const auto at = outline_.instance_by_name.find(label(*instance));
+      if (at == outline_.instance_by_name.end()) return {};
+      return {outline_.instances[at->second].shift};
     }
-    if (block.instance != kNone) return {walk_.instances[block.instance].shift};
-    if (block.scope == 0 || walk_.instances.empty()) return {0};
+    if (block.instance != kNone) return {outline_.instances[block.instance].shift};
+    if (block.scope == 0 || outline_.instances.empty()) return {0};
     std::vector<std::int64_t> out;
-    for (const std::uint32_t instance : walk_.scopes[block.scope].instances) out.push_back(walk_.instances[instance].shift);
+    for (const std::uint32_t instance : outline_.scopes[block.scope].instances) out.push_back(outline_.instances[instance].shift);
     return out;
   }
 
-  void read_for(const Walk::Kept& kept, const Rule& rule, const Parameters& given, std::int64_t shift) {
+  void read_for(const KeptBlock& kept, const Rule& rule, const Parameters& given, std::int64_t shift) {
     block_ = &kept.block;
     word_ = rule.word;
     shift_ = shift;
@@ -248,12 +248,12 @@ class Finder {
       if (const auto value = given.value(name)) add(Referred::any_element, ReferenceRole::single, *value, kept.block.begin);
     if (rule.shape == Shape::nothing) return;
     const bool set = rule.shape == Shape::nset || rule.shape == Shape::elset;
-    // An empty set is one all the same: it may be joined.
+    // An empty set counts: new ids may join it.
     if (set) referrer();
     equation_left_ = 0;
     for (std::uint32_t s = 0; s < kept.block.segments; ++s) {
-      const Segment& where = walk_.segments[kept.block.first_segment + s];
-      DataLines lines(walk_.text(where.file), where.begin, where.end);
+      const Segment& where = outline_.segments[kept.block.first_segment + s];
+      DataLines lines(outline_.text(where.file), where.begin, where.end);
       for (DataLine line; lines.next(line);) read_line(rule.shape, line);
     }
   }
@@ -309,7 +309,7 @@ class Finder {
     add(range, line.offset);
   }
 
-  /// "3" alone, then 3 times "node, degree of freedom, factor", on as many lines as it takes.
+  /// A count of terms on a line, then as many times "node, degree of freedom, factor", on any number of lines.
   void read_equation_line(const DataLine& line) {
     Fields fields(line.text);
     std::string_view field;
@@ -331,10 +331,10 @@ class Finder {
     // A node of an instance, from outside of it: "part-1-1.35".
     const std::size_t point = field.rfind('.');
     std::int64_t shift = shift_;
-    if (point != std::string_view::npos && point > 0 && !walk_.instances.empty() && block_->scope == 0) {
-      const auto at = walk_.instance_by_name.find(label(field.substr(0, point)));
-      if (at != walk_.instance_by_name.end()) {
-        shift = walk_.instances[at->second].shift;
+    if (point != std::string_view::npos && point > 0 && !outline_.instances.empty() && block_->scope == 0) {
+      const auto at = outline_.instance_by_name.find(label(field.substr(0, point)));
+      if (at != outline_.instance_by_name.end()) {
+        shift = outline_.instances[at->second].shift;
         field.remove_prefix(point + 1);
       }
     }
@@ -364,14 +364,14 @@ class Finder {
     card.offset = block_->begin;
     card.end = block_->end;
     if (block_->segments > 0)
-      if (const Segment& first = walk_.segments[block_->first_segment]; first.file == block_->file) card.end = first.end;
-    const bool other_ids = shift_ != 0 || (block_->scope > 0 && walk_.scopes[block_->scope].instances.size() > 1);
+      if (const Segment& first = outline_.segments[block_->first_segment]; first.file == block_->file) card.end = first.end;
+    const bool other_ids = shift_ != 0 || (block_->scope > 0 && outline_.scopes[block_->scope].instances.size() > 1);
     card.style = static_cast<std::uint16_t>((given_->has("GENERATE") ? kStyleGenerate : 0) | (other_ids ? kStyleOtherIds : 0) |
                                             (word_ == "NSET" || word_ == "ELSET" ? 0 : kStyleNamesAndIds));
     return referrer_ = out_.add(std::move(card));
   }
 
-  const Walk& walk_;
+  const DeckOutline& outline_;
   References out_;
   std::vector<const Rule*> rules_;  ///< by word
   const Block* block_ = nullptr;
@@ -379,11 +379,11 @@ class Finder {
   const Parameters* given_ = nullptr;
   std::int64_t shift_ = 0;
   std::uint32_t referrer_ = kNone;
-  std::int64_t equation_left_ = 0;  ///< terms of the equation in hand still to come
+  std::int64_t equation_left_ = 0;  ///< terms of the current equation that follow
 };
 
 }  // namespace
 
-References find_references(const Walk& walk) { return Finder(walk).run(); }
+References find_references(const DeckOutline& outline) { return Finder(outline).run(); }
 
 }  // namespace prismesh::mesh::deck::abaqus

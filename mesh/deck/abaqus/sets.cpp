@@ -17,9 +17,9 @@ struct Range {
 
 /// A named set: blocks of *ELSET, and a group of elements that stand under its name.
 struct ElementSet {
-  std::vector<std::uint32_t> blocks;  ///< index into Walk::kept
+  std::vector<std::uint32_t> blocks;  ///< index into DeckOutline::kept
   std::uint32_t group = kNone;
-  bool taken = false;  ///< a section has it already
+  bool taken = false;  ///< by a section
 };
 
 /// One element's part, wherever it stands.
@@ -30,13 +30,14 @@ struct Member {
 
 class PartMaker {
  public:
-  PartMaker(const Walk& walk, std::span<PieceCards> cards, Warnings& warnings) : walk_(walk), cards_(cards), warnings_(warnings) {}
+  PartMaker(const DeckOutline& outline, std::span<PieceCards> cards, Warnings& warnings)
+      : outline_(outline), cards_(cards), warnings_(warnings) {}
 
   std::vector<Part> run() {
     find_sets();
-    group_part_.assign(walk_.groups.size(), 0);
+    group_part_.assign(outline_.groups.size(), 0);
     std::vector<Part> parts;
-    for (Section& section : sections(walk_)) {
+    for (Section& section : sections(outline_)) {
       section.part.id = static_cast<std::int64_t>(parts.size()) + 1;
       section.part.name = section.elset;
       section.part.defined = true;
@@ -50,16 +51,17 @@ class PartMaker {
 
  private:
   void find_sets() {
-    for (std::uint32_t g = 0; g < walk_.groups.size(); ++g)
-      if (!walk_.groups[g].elset.empty()) sets_[walk_.groups[g]].group = g;
-    for (std::uint32_t k = 0; k < walk_.kept.size(); ++k) {
-      if (walk_.words[walk_.kept[k].word] != "ELSET") continue;
-      const Parameters given = walk_.parameters(walk_.kept[k].block);
-      if (const auto name = given.value("ELSET")) sets_[{walk_.kept[k].block.scope, label(*name)}].blocks.push_back(k);
+    for (std::uint32_t g = 0; g < outline_.groups.size(); ++g)
+      if (!outline_.groups[g].elset.empty()) sets_[outline_.groups[g]].group = g;
+    for (std::uint32_t k = 0; k < outline_.kept.size(); ++k) {
+      if (outline_.words[outline_.kept[k].word] != "ELSET") continue;
+      const Parameters given = outline_.parameters(outline_.kept[k].block);
+      if (const auto name = given.value("ELSET")) sets_[{outline_.kept[k].block.scope, label(*name)}].blocks.push_back(k);
     }
   }
 
-  /// The set and all that it is made of, for a part. Each set is gone through once: an element has one section, and the first counts.
+  /// Gives the elements of a set, and of the sets in it, to a part. Each set is read once: of several sections of an element the first
+  /// counts.
   void take(std::uint32_t scope, std::string name, std::int64_t part) {
     std::vector<std::string> waiting{std::move(name)};
     while (!waiting.empty()) {
@@ -69,16 +71,16 @@ class PartMaker {
       ElementSet& set = at->second;
       set.taken = true;
       if (set.group != kNone) group_part_[set.group] = part;
-      for (const std::uint32_t k : set.blocks) read_set(walk_.kept[k].block, part, waiting);
+      for (const std::uint32_t k : set.blocks) read_set(outline_.kept[k].block, part, waiting);
     }
   }
 
   void read_set(const Block& block, std::int64_t part, std::vector<std::string>& sets) {
-    const bool generate = walk_.parameters(block).has("GENERATE");
+    const bool generate = outline_.parameters(block).has("GENERATE");
     std::vector<std::pair<Range, std::int64_t>>& ranges = ranges_[block.scope];
     for (std::uint32_t s = 0; s < block.segments; ++s) {
-      const Segment& where = walk_.segments[block.first_segment + s];
-      DataLines lines(walk_.text(where.file), where.begin, where.end);
+      const Segment& where = outline_.segments[block.first_segment + s];
+      DataLines lines(outline_.text(where.file), where.begin, where.end);
       for (DataLine line; lines.next(line);) {
         if (generate) {
           const auto fields = first_fields<3>(line.text);
@@ -109,7 +111,7 @@ class PartMaker {
   void assign() {
     std::map<std::uint32_t, std::vector<Member>> left;
     for (std::size_t p = 0; p < cards_.size(); ++p) {
-      std::vector<Member>& of_scope = left[walk_.pieces[p].scope];
+      std::vector<Member>& of_scope = left[outline_.pieces[p].scope];
       const auto collect = [&](std::vector<std::int64_t>& ids, std::vector<std::int64_t>& parts) {
         for (std::size_t i = 0; i < ids.size(); ++i) {
           const auto group = static_cast<std::size_t>(parts[i] - 1);
@@ -131,7 +133,7 @@ class PartMaker {
   void assign_by_number(std::vector<Member>& members, const std::vector<std::pair<Range, std::int64_t>>& ranges) {
     const auto less = [](const Member& a, const Member& b) { return a.id < b.id; };
     if (!std::is_sorted(members.begin(), members.end(), less)) std::stable_sort(members.begin(), members.end(), less);
-    // Where each run of members that still lack a part may begin: what is done is jumped over, so ranges may overlap as they like.
+    // The next member without a part, from each member on: members that have one are skipped, so overlapping ranges cost little.
     std::vector<std::uint32_t> next(members.size() + 1);
     for (std::uint32_t i = 0; i < next.size(); ++i) next[i] = i;
     const auto open_from = [&](std::uint32_t i) {
@@ -140,7 +142,7 @@ class PartMaker {
       while (next[i] != root) i = std::exchange(next[i], root);
       return root;
     };
-    // Ranges with steps can't be jumped over; this bounds what hostile ones cost.
+    // In ranges with steps none can be skipped; this limits the cost of hostile decks.
     std::size_t steps_left = 100'000'000;
     for (const auto& [range, part] : ranges) {
       auto i = static_cast<std::uint32_t>(std::lower_bound(members.begin(), members.end(), Member{range.first, nullptr}, less) -
@@ -158,7 +160,7 @@ class PartMaker {
 
   /// Parts for elements without a section.
   void add_undefined(std::vector<Part>& parts) {
-    std::vector<std::int64_t> part_of(walk_.groups.size());
+    std::vector<std::int64_t> part_of(outline_.groups.size());
     const auto number = [&](std::vector<std::int64_t>& field) {
       for (std::int64_t& part : field) {
         if (part >= 0) continue;
@@ -166,7 +168,7 @@ class PartMaker {
         if (part_of[group] == 0) {
           Part undefined;
           undefined.id = part_of[group] = static_cast<std::int64_t>(parts.size()) + 1;
-          undefined.name = walk_.groups[group].elset;
+          undefined.name = outline_.groups[group].elset;
           parts.push_back(undefined);
         }
         part = part_of[group];
@@ -178,7 +180,7 @@ class PartMaker {
     }
   }
 
-  const Walk& walk_;
+  const DeckOutline& outline_;
   std::span<PieceCards> cards_;
   Warnings& warnings_;
   std::map<Group, ElementSet> sets_;
@@ -188,8 +190,8 @@ class PartMaker {
 
 }  // namespace
 
-std::vector<Part> make_parts(const Walk& walk, std::span<PieceCards> cards, Warnings& warnings) {
-  return PartMaker(walk, cards, warnings).run();
+std::vector<Part> make_parts(const DeckOutline& outline, std::span<PieceCards> cards, Warnings& warnings) {
+  return PartMaker(outline, cards, warnings).run();
 }
 
 }  // namespace prismesh::mesh::deck::abaqus

@@ -1,394 +1,314 @@
 #include "mesh/deck/abaqus/walk.h"
 
 #include <algorithm>
-#include <limits>
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <utility>
 
-#include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/abaqus/pieces.h"
+#include "mesh/deck/abaqus/placement.h"
 #include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::abaqus {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::size_t kMaxWords = 60000;
 constexpr std::string_view kOtherWord = "(another keyword)";
 
-Frame::Kind kind_of(std::string_view system) {
-  const std::string name = label(system);
-  if (name == "C") return Frame::Kind::cylindrical;
-  return name == "S" ? Frame::Kind::spherical : Frame::Kind::rectangular;
-}
-
 bool same_frame(const Frame& a, const Frame& b) { return a.kind == b.kind && a.to_basic.matrix() == b.to_basic.matrix(); }
 
-/// The system of *SYSTEM: its origin, a point on its x axis, a point in its xy plane. nullopt: they don't span one.
-std::optional<Eigen::Affine3d> system_of(const std::vector<double>& p) {
-  Eigen::Affine3d out = Eigen::Affine3d::Identity();
-  if (p.size() >= 3) out.translation() = Eigen::Vector3d(p[0], p[1], p[2]);
-  if (p.size() < 6) return out;
-  const Eigen::Vector3d x = Eigen::Vector3d(p[3], p[4], p[5]) - out.translation();
-  // Without a third point the system is turned about the global z axis.
-  const Eigen::Vector3d in_plane = p.size() >= 9 ? Eigen::Vector3d(Eigen::Vector3d(p[6], p[7], p[8]) - out.translation())
-                                                 : Eigen::Vector3d(Eigen::Vector3d::UnitZ().cross(x));
-  const Eigen::Vector3d z = x.cross(in_plane);
-  if (!(x.norm() > 0) || !(z.norm() > 1e-12 * x.norm() * in_plane.norm())) return std::nullopt;
-  out.linear().col(0) = x.normalized();
-  out.linear().col(2) = z.normalized();
-  out.linear().col(1) = z.normalized().cross(x.normalized());
-  if (!out.matrix().allFinite()) return std::nullopt;
-  return out;
-}
-
-}  // namespace
-
-Walk::Walk(FileSet found) : files(std::move(found)), scopes(1) {}
-
-Result<void> Walk::run() {
-  walk_file(0, 0);
-  finish_block();
-  return place_instances();
-}
-
-void Walk::walk_file(std::uint32_t file, int depth) {
-  open_.resize(files.files.size());
-  open_[file] = true;
-  Keywords keywords(text(file));
-  Keyword keyword;
-  std::size_t data = 0;
-  while (keywords.next(keyword)) {
-    close_segment(file, data, keyword.begin);
-    data = keyword.end;
-    if (keyword.name != "INCLUDE") {
-      begin_block(file, keyword, depth);
-      continue;
-    }
-    const Parameters parameters(text(file), keyword.begin, keyword.end);
-    if (const auto input = parameters.value("INPUT"))
-      include(file, keyword.begin, *input, depth);
-    else
-      warnings.note("missing-include", file, keyword.begin, "*INCLUDE lacks its INPUT=, which names the file");
-  }
-  close_segment(file, data, text(file).size());
-  open_[file] = false;
-}
-
-void Walk::include(std::uint32_t from, std::size_t offset, std::string_view name, int depth) {
-  std::string reason;
-  const std::string shown(name);
-  // Abaqus looks in the folder it was started in, which is the main file's.
-  const fs::path folders[] = {files.folder_of(0), files.folder_of(from)};
-  const std::uint32_t file = files.include(from, shown, folders, reason);
-  open_.resize(files.files.size());
-  uses_.resize(files.files.size());
-  if (file == FileSet::kNoFile)
-    warnings.note_each("missing-include", from, offset, "the include file " + shown + " " + reason);
-  else if (open_[file])
-    warnings.note("circular-include", from, offset, "the include file " + shown + " includes itself; it is read once");
-  else if (depth >= kMaxIncludeDepth)
-    warnings.note("deep-include", from, offset,
-                  "the include file " + shown + " is nested more than " + std::to_string(kMaxIncludeDepth) + " deep; it isn't read");
-  else if (uses_[file]++ > 0)
-    warnings.note("repeated-include", from, offset, "the include file " + shown + " is included again; it is read once");
-  else
-    walk_file(file, depth + 1);
-}
-
-std::uint32_t Walk::word_of(const std::string& name) {
-  const auto at = word_by_name_.find(name);
-  if (at != word_by_name_.end()) return at->second;
-  if (words.size() >= kMaxWords) return word_of(std::string(kOtherWord));
-  words.push_back(name);
-  return word_by_name_[name] = static_cast<std::uint32_t>(words.size() - 1);
-}
-
-void Walk::begin_block(std::uint32_t file, const Keyword& keyword, int depth) {
-  finish_block();
-  if (words.empty()) word_of(std::string(kOtherWord));
-  name_ = keyword.name;
-  block_ = {file, scope_, instance_, keyword.begin, keyword.end, static_cast<std::uint32_t>(segments.size()), 0};
-  doing_ = Doing::kept;
-  if (name_ == "NODE") {
-    begin_nodes(block_);
-  } else if (name_ == "ELEMENT") {
-    begin_elements(block_);
-  } else if (name_ == "SYSTEM") {
-    doing_ = Doing::system;
-  } else if (name_ == "PARAMETER") {
-    doing_ = Doing::values;
-  } else if (name_ == "PART") {
-    begin_part(block_);
-  } else if (name_ == "END PART") {
-    scope_ = 0;
-    system_ = {};
-  } else if (name_ == "INSTANCE") {
-    begin_instance(block_);
-  } else if (name_ == "END INSTANCE") {
-    instance_ = kNone;
-    scope_ = 0;
-  }
-  // Data lines may come from another file.
-  if (doing_ == Doing::nodes || doing_ == Doing::elements || name_ == "NSET" || name_ == "ELSET")
-    if (const auto input = parameters(block_).value("INPUT")) include(file, keyword.begin, *input, depth);
-}
-
-void Walk::close_segment(std::uint32_t file, std::size_t begin, std::size_t end) {
-  if (begin >= end || doing_ == Doing::nothing) return;
-  const Segment where{file, begin, end};
-  if (doing_ == Doing::nodes || doing_ == Doing::elements) {
-    add_mesh(mesh_, where);
-    return;
-  }
-  segments.push_back(where);
-  ++block_.segments;
-}
-
-void Walk::finish_block() {
-  const Doing did = std::exchange(doing_, Doing::nothing);
-  if (did == Doing::system) read_system();
-  if (did == Doing::instance) read_instance_place();
-  if (did == Doing::values) read_values();
-  if (did == Doing::system || did == Doing::instance || did == Doing::values) segments.resize(block_.first_segment);
-  if (did == Doing::kept) kept.push_back({static_cast<std::uint16_t>(word_of(name_)), block_});
-}
-
-void Walk::begin_part(const Block& block) {
-  doing_ = Doing::nothing;
-  scope_ = static_cast<std::uint32_t>(scopes.size());
-  system_ = {};
-  bad_system_ = false;
-  const std::string name = label(parameters(block).value("NAME").value_or(""));
-  if (!scope_by_name_.try_emplace(name, scope_).second)
-    warnings.note("duplicate-part", block.file, block.begin, "the part " + name + " is defined again; its first definition counts");
-  scopes.push_back({name, block.begin, block.file, {}});
-}
-
-void Walk::begin_instance(const Block& block) {
-  doing_ = Doing::instance;
-  const Parameters given = parameters(block);
-  const std::string name = label(given.value("NAME").value_or(""));
-  const auto part = given.value("PART");
-  const auto at = part ? scope_by_name_.find(label(*part)) : scope_by_name_.end();
-  if (at == scope_by_name_.end()) {
-    warnings.note_each("unread-instance", block.file, block.begin,
-                       "the instance " + name + " is of no part of this deck, so it isn't shown; it is kept as it is");
-    // What it holds itself has ids of its own.
-    scope_ = static_cast<std::uint32_t>(scopes.size());
-    scopes.push_back({name, block.begin, block.file, {}});
-  } else {
-    scope_ = at->second;
-  }
-  instance_ = static_cast<std::uint32_t>(instances.size());
-  instances.push_back({name, scope_, Eigen::Affine3d::Identity(), 0});
-  instance_by_name.try_emplace(name, instance_);
-  scopes[scope_].instances.push_back(instance_);
-  block_.instance = instance_;
-}
-
-std::uint32_t Walk::group_of(const std::string& elset) {
-  const auto [at, added] = group_by_name_.try_emplace(Group{scope_, elset}, static_cast<std::uint32_t>(groups.size()));
-  if (added) groups.push_back(at->first);
-  return at->second;
-}
-
-void Walk::begin_nodes(const Block& block) {
-  doing_ = Doing::nodes;
-  mesh_ = {};
-  mesh_.nodes = true;
-  held_ = bad_system_;
-  Frame frame = system_;
-  const Parameters given = parameters(block);
-  if (const auto system = given.value("SYSTEM")) frame.kind = kind_of(*system);
-  if (!same_frame(frames.back(), frame)) frames.push_back(frame.is_basic() ? Frame() : frame);
-  mesh_.frame = frame.is_basic() ? 0 : static_cast<std::uint32_t>(frames.size() - 1);
-}
-
-void Walk::begin_elements(const Block& block) {
-  const Parameters given = parameters(block);
-  const auto named = given.value("TYPE");
-  if (!named || named->empty()) {
-    doing_ = Doing::nothing;
-    warnings.note("unread-elements", block.file, block.begin, "*ELEMENT lacks its TYPE=, so what follows isn't shown; it is kept as it is");
-    return;
-  }
-  doing_ = Doing::elements;
-  mesh_ = {};
-  held_ = false;
-  const std::string type = label(named->substr(0, 80));
-  const auto [at, added] = type_by_name_.try_emplace(type, static_cast<std::uint32_t>(types.size()));
-  if (added) types.push_back({type, element_type(type)});
-  mesh_.type = at->second;
-  mesh_.group = group_of(label(given.value("ELSET").value_or("")));
-  const ElementType& known = types[mesh_.type].type;
-  if (known.element_class == ElementClass::shell && !known.is_shell_section)
-    warnings.note("shown-as-shells", block.file, block.begin,
-                  "elements of type " + type + " (membranes, surfaces or rigid facets) are shown as shells");
-}
-
-namespace {
-
-/// A place to cut after about `wanted`: where a line's end is a card's end for certain. `end` if there is none soon.
-std::size_t card_boundary(std::string_view text, std::size_t wanted, std::size_t end, bool elements) {
-  constexpr int kMaxLines = 1000;
-  constexpr std::ptrdiff_t kCommasOfFullLine = 15;  // commas of a line that is full, so that it may go on without a comma at its end
-  std::size_t begin = text.find('\n', wanted);
-  if (begin == std::string_view::npos || ++begin >= end) return end;
-  if (!elements) return begin;
-  for (int line = 0; line < kMaxLines; ++line) {
-    const std::size_t next = text.find('\n', begin);
-    if (next == std::string_view::npos || next + 1 >= end) return end;
-    const std::string_view shown = trim(text.substr(begin, next - begin));
-    const bool comment = shown.substr(0, 2) == "**" || shown.empty();
-    if (!comment && shown.back() != ',' && std::count(shown.begin(), shown.end(), ',') < kCommasOfFullLine) return next + 1;
-    begin = next + 1;
-  }
-  return end;
-}
-
-}  // namespace
-
-void Walk::add_mesh(const MeshSegment& segment, const Segment& where) {
-  const std::string_view all = text(where.file);
-  MeshSegment rest = segment;
-  rest.begin = where.begin;
-  rest.end = where.end;
-  while (rest.begin < rest.end) {
-    const auto fits = [&](const Piece& piece) {
-      return piece.file == where.file && piece.scope == scope_ && piece.instance == instance_ && piece.held == held_ &&
-             piece.segments.back().end - piece.segments.front().begin < kPieceBytes && piece.segments.back().end <= rest.begin;
-    };
-    if (pieces.empty() || !fits(pieces.back())) pieces.push_back({where.file, scope_, instance_, held_, {}});
-    Piece& piece = pieces.back();
-    const std::size_t begin = piece.segments.empty() ? rest.begin : piece.segments.front().begin;
-    MeshSegment part = rest;
-    if (rest.end - begin > kPieceBytes + kPieceBytes / 2)
-      part.end = card_boundary(all, std::max(begin + kPieceBytes, rest.begin), rest.end, !rest.nodes);
-    piece.segments.push_back(part);
-    rest.begin = part.end;
-  }
-}
-
-/// Numbers of the first data lines, three to a point.
-std::vector<double> Walk::numbers_of_block(std::size_t most) const {
-  std::vector<double> out;
-  for (std::uint32_t s = 0; s < block_.segments; ++s) {
-    const Segment& where = segments[block_.first_segment + s];
-    DataLines lines(text(where.file), where.begin, where.end);
-    DataLine line;
-    while (out.size() < most && lines.next(line)) {
-      Fields fields(line.text);
-      std::string_view field;
-      for (double value = 0; out.size() < most && fields.next(field);) {
-        if (!parse_real(field, value)) value = std::numeric_limits<double>::quiet_NaN();
-        out.push_back(value);
-      }
-      while (out.size() % 3 != 0) out.push_back(0);
-    }
-  }
-  return out;
-}
-
-void Walk::read_system() {
-  const std::optional<Eigen::Affine3d> system = system_of(numbers_of_block(9));
-  bad_system_ = !system || !system->matrix().allFinite();
-  system_ = {};
-  if (!bad_system_)
-    system_.to_basic = *system;
-  else
-    warnings.note("unread-system", block_.file, block_.begin,
-                  "the points of this *SYSTEM span no coordinate system; nodes in it are shown as if it weren't there, and can't be moved");
-}
-
-void Walk::read_instance_place() {
-  Instance& instance = instances[block_.instance];
-  const std::vector<double> p = numbers_of_block(10);
-  Eigen::Affine3d place = Eigen::Affine3d::Identity();
-  if (p.size() >= 3) place.translation() = Eigen::Vector3d(p[0], p[1], p[2]);
-  bool turns_about_nothing = false;
-  if (p.size() >= 10) {
-    const Eigen::Vector3d a(p[3], p[4], p[5]);
-    const Eigen::Vector3d axis = Eigen::Vector3d(p[6], p[7], p[8]) - a;
-    turns_about_nothing = p[9] != 0 && !(axis.squaredNorm() > 0);
-    place = Eigen::Translation3d(a) * Eigen::AngleAxisd(p[9] * M_PI / 180, axis.normalized()) * Eigen::Translation3d(-a) * place;
-  }
-  if (!turns_about_nothing && place.matrix().allFinite())
-    instance.to_basic = place;
-  else
-    warnings.note("unread-instance", block_.file, block_.begin,
-                  "where the instance " + instance.name + " stands can't be made out; it is shown where its part stands");
-}
-
-void Walk::read_values() {
-  for (std::uint32_t s = 0; s < block_.segments; ++s) {
-    const Segment& where = segments[block_.first_segment + s];
-    DataLines lines(text(where.file), where.begin, where.end);
+/// Reads the data lines of a *PARAMETER; a name whose value is no plain number is forgotten.
+void read_values(DeckOutline& outline, const Block& block) {
+  for (std::uint32_t s = 0; s < block.segments; ++s) {
+    const Segment& segment = outline.segments[block.first_segment + s];
+    DataLines lines(outline.text(segment.file), segment.begin, segment.end);
     for (DataLine line; lines.next(line);) {
       const std::size_t equals = line.text.find('=');
       double value = 0;
       if (equals == std::string_view::npos || trim(line.text.substr(equals + 1)).empty()) continue;
       const std::string name(trim(line.text.substr(0, std::min<std::size_t>(equals, 100))));
       if (parse_real(trim(line.text.substr(equals + 1)), value))
-        values[name] = value;
+        outline.values[name] = value;
       else
-        values.erase(name);
+        outline.values.erase(name);
     }
   }
 }
 
-/// A piece for each instance of its part.
-Result<void> Walk::place_instances() {
-  constexpr std::size_t kMaxCopied = std::size_t{256} << 20;
-  std::vector<std::size_t> bytes(scopes.size());
-  for (const Piece& piece : pieces)
-    if (piece.instance == kNone)
-      bytes[piece.scope] += piece.segments.back().end - piece.segments.front().begin + 64 * piece.segments.size();
-  for (const Kept& keep : kept) {
-    bytes[keep.block.scope] += keep.block.end - keep.block.begin + 64;
-    for (std::uint32_t s = 0; s < keep.block.segments; ++s) {
-      const Segment& segment = segments[keep.block.first_segment + s];
-      bytes[keep.block.scope] += segment.end - segment.begin;
-    }
+/// Indices of words, element types and groups in the outline, by name.
+class NameTables {
+ public:
+  explicit NameTables(DeckOutline& outline) : outline_(outline) {}
+
+  /// Beyond kMaxWords all new keywords share one.
+  std::uint16_t word(const std::string& name) {
+    if (outline_.words.empty()) add_word(std::string(kOtherWord));
+    const auto at = words_.find(name);
+    if (at != words_.end()) return at->second;
+    return outline_.words.size() < kMaxWords ? add_word(name) : words_[std::string(kOtherWord)];
   }
-  std::size_t copied = 0;
-  for (std::size_t s = 1; s < scopes.size(); ++s) {
-    Scope& scope = scopes[s];
-    // A file of parts without an assembly shows them where they are.
-    if (instances.empty()) continue;
-    if (scope.instances.empty()) {
-      if (bytes[s] > 0)
-        warnings.note_each("unused-part", scope.file, scope.begin,
-                           "the part " + scope.name + " has no instance, so it isn't shown; it is kept as it is");
-      continue;
-    }
-    if (scope.instances.size() > 1) {
-      warnings.note_each("repeated-part", scope.file, scope.begin,
-                         "the part " + scope.name + " has " + std::to_string(scope.instances.size()) +
-                             " instances: each is shown, and their nodes can't be moved");
-      if (bytes[s] > 0 && scope.instances.size() - 1 > (kMaxCopied - copied) / bytes[s])
-        return fail(files.files[scope.file].path.string(), line_number(text(scope.file), scope.begin),
-                    "the part " + scope.name + " has " + std::to_string(scope.instances.size()) +
-                        " instances; all of them together are more than this version shows");
-      copied += (scope.instances.size() - 1) * bytes[s];
-    }
+  std::uint32_t type(const std::string& name) {
+    const auto [at, added] = types_.try_emplace(name, static_cast<std::uint32_t>(outline_.types.size()));
+    if (added) outline_.types.push_back({name, element_type(name)});
+    return at->second;
   }
-  std::vector<Piece> placed;
-  for (Piece& piece : pieces) {
-    if (piece.instance != kNone || piece.scope == 0 || instances.empty()) {
-      placed.push_back(std::move(piece));
-      continue;
-    }
-    const Scope& scope = scopes[piece.scope];
-    for (const std::uint32_t instance : scope.instances) {
-      Piece copy = piece;
-      copy.instance = instance;
-      copy.held |= scope.instances.size() > 1;
-      placed.push_back(std::move(copy));
-    }
+  std::uint32_t group(const Group& group) {
+    const auto [at, added] = groups_.try_emplace(group, static_cast<std::uint32_t>(outline_.groups.size()));
+    if (added) outline_.groups.push_back(group);
+    return at->second;
   }
-  pieces = std::move(placed);
-  return {};
-}
+
+ private:
+  std::uint16_t add_word(const std::string& name) {
+    outline_.words.push_back(name);
+    return words_[name] = static_cast<std::uint16_t>(outline_.words.size() - 1);
+  }
+
+  DeckOutline& outline_;
+  std::map<std::string, std::uint16_t, std::less<>> words_;
+  std::map<std::string, std::uint32_t, std::less<>> types_;
+  std::map<Group, std::uint32_t> groups_;
+};
+
+/// What is done with the data lines of a keyword.
+enum class DataUse { skip, keep, nodes, elements, system, instance, values };
+
+/// The keyword whose data lines are being read.
+struct OpenBlock {
+  DataUse use = DataUse::skip;
+  std::string name;
+  Block block;
+  MeshSegment mesh;           ///< nodes and elements: what their segments have in common
+  bool mesh_is_held = false;  ///< nodes: in a system that can't be worked out
+};
+
+/// What the keywords so far say about where the next one stands.
+struct Position {
+  std::uint32_t scope = 0;
+  std::uint32_t instance = kNone;
+  Frame system;                ///< of the last *SYSTEM
+  bool system_is_bad = false;  ///< its points span no system
+};
+
+class Walker {
+ public:
+  explicit Walker(FileSet files) : outline_(std::move(files)), names_(outline_) { note_new_files(); }
+
+  Result<DeckOutline> run() {
+    walk_file(0, 0);
+    finish_block();
+    if (Result<void> placed = place_instances(outline_); !placed) return fail(placed.error());
+    return std::move(outline_);
+  }
+
+ private:
+  // --- files ---
+
+  void note_new_files() {
+    const std::vector<SourceFile>& files = outline_.files.files;
+    while (outline_.texts.size() < files.size()) outline_.texts.push_back(files[outline_.texts.size()].bytes.text());
+    open_.resize(files.size());
+    uses_.resize(files.size());
+  }
+
+  void walk_file(std::uint32_t file, int depth) {
+    open_[file] = true;
+    const std::string_view text = outline_.text(file);
+    Keywords keywords(text);
+    Keyword keyword;
+    std::size_t data = 0;
+    while (keywords.next(keyword)) {
+      close_segment({file, data, keyword.begin});
+      data = keyword.end;
+      if (keyword.name != "INCLUDE") {
+        begin_block(file, keyword, depth);
+        continue;
+      }
+      const Parameters parameters(text, keyword.begin, keyword.end);
+      if (const auto input = parameters.value("INPUT"))
+        include(file, keyword.begin, *input, depth);
+      else
+        outline_.warnings.note("missing-include", file, keyword.begin, "*INCLUDE lacks its INPUT=, which names the file");
+    }
+    close_segment({file, data, text.size()});
+    open_[file] = false;
+  }
+
+  void include(std::uint32_t from, std::size_t offset, const std::string& name, int depth) {
+    std::string reason;
+    // Abaqus looks in the folder it was started in, which is the main file's.
+    const std::filesystem::path folders[] = {outline_.files.folder_of(0), outline_.files.folder_of(from)};
+    const std::uint32_t file = outline_.files.include(from, name, folders, reason);
+    note_new_files();
+    Warnings& warnings = outline_.warnings;
+    if (file == FileSet::kNoFile)
+      warnings.note_each("missing-include", from, offset, "the include file " + name + " " + reason);
+    else if (open_[file])
+      warnings.note("circular-include", from, offset, "the include file " + name + " includes itself; it is read once");
+    else if (depth >= kMaxIncludeDepth)
+      warnings.note("deep-include", from, offset,
+                    "the include file " + name + " is nested more than " + std::to_string(kMaxIncludeDepth) + " deep; it isn't read");
+    else if (uses_[file]++ > 0)
+      warnings.note("repeated-include", from, offset, "the include file " + name + " is included again; it is read once");
+    else
+      walk_file(file, depth + 1);
+  }
+
+  // --- keywords with their data lines ---
+
+  void begin_block(std::uint32_t file, const Keyword& keyword, int depth) {
+    finish_block();
+    const auto first_segment = static_cast<std::uint32_t>(outline_.segments.size());
+    open_block_ = {DataUse::keep, keyword.name, {file, at_.scope, at_.instance, keyword.begin, keyword.end, first_segment, 0}, {}, false};
+    const std::string& name = open_block_.name;
+    const Parameters parameters = outline_.parameters(open_block_.block);
+    if (name == "NODE") {
+      begin_nodes(parameters);
+    } else if (name == "ELEMENT") {
+      begin_elements(parameters);
+    } else if (name == "SYSTEM") {
+      open_block_.use = DataUse::system;
+    } else if (name == "PARAMETER") {
+      open_block_.use = DataUse::values;
+    } else if (name == "PART") {
+      begin_part(parameters);
+    } else if (name == "END PART") {
+      at_.scope = 0;
+      at_.system = {};
+    } else if (name == "INSTANCE") {
+      begin_instance(parameters);
+    } else if (name == "END INSTANCE") {
+      at_.instance = kNone;
+      at_.scope = 0;
+    }
+    const bool is_mesh = open_block_.use == DataUse::nodes || open_block_.use == DataUse::elements;
+    if (is_mesh || name == "NSET" || name == "ELSET")
+      if (const auto input = parameters.value("INPUT")) include(file, keyword.begin, *input, depth);
+  }
+
+  void close_segment(const Segment& segment) {
+    if (segment.begin >= segment.end || open_block_.use == DataUse::skip) return;
+    if (open_block_.use == DataUse::nodes || open_block_.use == DataUse::elements) {
+      MeshSegment mesh = open_block_.mesh;
+      mesh.begin = segment.begin;
+      mesh.end = segment.end;
+      add_mesh(outline_.pieces, {segment.file, at_.scope, at_.instance, open_block_.mesh_is_held, {}}, mesh, outline_.text(segment.file));
+      return;
+    }
+    outline_.segments.push_back(segment);
+    ++open_block_.block.segments;
+  }
+
+  void finish_block() {
+    const DataUse use = std::exchange(open_block_.use, DataUse::skip);
+    const Block& block = open_block_.block;
+    if (use == DataUse::keep) outline_.kept.push_back({names_.word(open_block_.name), block});
+    if (use == DataUse::system) read_system(block);
+    if (use == DataUse::instance) read_instance(block);
+    if (use == DataUse::values) read_values(outline_, block);
+    if (use == DataUse::system || use == DataUse::instance || use == DataUse::values) outline_.segments.resize(block.first_segment);
+  }
+
+  void begin_nodes(const Parameters& parameters) {
+    open_block_.use = DataUse::nodes;
+    open_block_.mesh.nodes = true;
+    open_block_.mesh_is_held = at_.system_is_bad;
+    Frame frame = at_.system;
+    if (const auto system = parameters.value("SYSTEM")) frame.kind = frame_kind(*system);
+    std::vector<Frame>& frames = outline_.frames;
+    if (!same_frame(frames.back(), frame)) frames.push_back(frame.is_basic() ? Frame() : frame);
+    open_block_.mesh.frame = frame.is_basic() ? 0 : static_cast<std::uint32_t>(frames.size() - 1);
+  }
+
+  void begin_elements(const Parameters& parameters) {
+    const Block& block = open_block_.block;
+    const auto named = parameters.value("TYPE");
+    if (!named || named->empty()) {
+      open_block_.use = DataUse::skip;
+      outline_.warnings.note("unread-elements", block.file, block.begin,
+                             "*ELEMENT lacks its TYPE=, so what follows isn't shown; it is kept as it is");
+      return;
+    }
+    open_block_.use = DataUse::elements;
+    const std::string type = label(named->substr(0, 80));
+    open_block_.mesh.type = names_.type(type);
+    open_block_.mesh.group = names_.group({at_.scope, label(parameters.value("ELSET").value_or(""))});
+    const ElementType& known = outline_.types[open_block_.mesh.type].type;
+    if (known.element_class == ElementClass::shell && !known.is_shell_section)
+      outline_.warnings.note("shown-as-shells", block.file, block.begin,
+                             "elements of type " + type + " (membranes, surfaces or rigid facets) are shown as shells");
+  }
+
+  void read_system(const Block& block) {
+    const std::optional<Eigen::Affine3d> system = system_of(outline_, block);
+    at_.system_is_bad = !system;
+    at_.system = {};
+    if (system)
+      at_.system.to_basic = *system;
+    else
+      outline_.warnings.note(
+          "unread-system", block.file, block.begin,
+          "the points of this *SYSTEM span no coordinate system; nodes in it are shown as if it weren't there, and can't be moved");
+  }
+
+  // --- parts and instances ---
+
+  std::uint32_t add_scope(const std::string& name) {
+    outline_.scopes.push_back({name, open_block_.block.begin, open_block_.block.file, {}});
+    return static_cast<std::uint32_t>(outline_.scopes.size() - 1);
+  }
+
+  void begin_part(const Parameters& parameters) {
+    open_block_.use = DataUse::skip;
+    const std::string name = label(parameters.value("NAME").value_or(""));
+    at_ = {add_scope(name), at_.instance, {}, false};
+    if (!scope_by_name_.try_emplace(name, at_.scope).second)
+      outline_.warnings.note("duplicate-part", open_block_.block.file, open_block_.block.begin,
+                             "the part " + name + " is defined again; its first definition counts");
+  }
+
+  void begin_instance(const Parameters& parameters) {
+    Block& block = open_block_.block;
+    open_block_.use = DataUse::instance;
+    const std::string name = label(parameters.value("NAME").value_or(""));
+    const auto part = parameters.value("PART");
+    const auto at = part ? scope_by_name_.find(label(*part)) : scope_by_name_.end();
+    if (at == scope_by_name_.end()) {
+      outline_.warnings.note_each("unread-instance", block.file, block.begin,
+                                  "the instance " + name + " is of no part of this deck, so it isn't shown; it is kept as it is");
+      // What it holds itself has ids of its own.
+      at_.scope = add_scope(name);
+    } else {
+      at_.scope = at->second;
+    }
+    at_.instance = static_cast<std::uint32_t>(outline_.instances.size());
+    outline_.instances.push_back({name, at_.scope, Eigen::Affine3d::Identity(), 0});
+    outline_.instance_by_name.try_emplace(name, at_.instance);
+    outline_.scopes[at_.scope].instances.push_back(at_.instance);
+    block.instance = at_.instance;
+  }
+
+  void read_instance(const Block& block) {
+    Instance& instance = outline_.instances[block.instance];
+    if (const std::optional<Eigen::Affine3d> place = instance_place(outline_, block))
+      instance.to_basic = *place;
+    else
+      outline_.warnings.note("unread-instance", block.file, block.begin,
+                             "where the instance " + instance.name + " stands can't be made out; it is shown where its part stands");
+  }
+
+  DeckOutline outline_;
+  NameTables names_;
+  Position at_;
+  OpenBlock open_block_;
+  std::vector<bool> open_;           ///< by file: it is being walked
+  std::vector<std::uint32_t> uses_;  ///< by file
+  std::map<std::string, std::uint32_t, std::less<>> scope_by_name_;
+};
+
+}  // namespace
+
+Result<DeckOutline> walk(FileSet files) { return Walker(std::move(files)).run(); }
 
 }  // namespace prismesh::mesh::deck::abaqus

@@ -1,4 +1,4 @@
-// A node's move as its card has to tell it. Private to mesh/deck.
+// Converts a node's move to the coordinates of its card.
 #pragma once
 
 #include <optional>
@@ -8,14 +8,14 @@
 
 namespace prismesh::mesh::deck {
 
-/// Where a node's card should put it, and where it puts it now, both as the card gives coordinates.
-struct CardMove {
+/// Where a node is and where it goes.
+struct NodeMove {
   Vec3 from, to;
 };
 
-/// The move of the node whose card is at `offset`, given in the basic system. nullopt: its frame can't be inverted, or a parameter gives
-/// its coordinates.
-std::optional<CardMove> in_card(const Deck& deck, const CardWriter& writer, const CardRun& run, std::size_t offset, const Vec3& from,
-                                const Vec3& to);
+/// Converts a move of the node whose card is at `offset` from the basic system to the coordinates that the card gives. Coordinates that
+/// differ by rounding only are made equal. nullopt: the card's frame can't be inverted, or a parameter gives its coordinates.
+std::optional<NodeMove> move_in_card(const Deck& deck, const CardWriter& writer, const CardRun& run, std::size_t offset,
+                                     const NodeMove& move);
 
 }  // namespace prismesh::mesh::deck

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <limits>
 
-#include "mesh/deck/editing/descent.h"
+#include "mesh/deck/editing/ancestors.h"
 #include "mesh/deck/formats/formats.h"
 
 namespace prismesh::mesh::deck {
 namespace {
 
-constexpr std::int64_t kBeyondAll = std::numeric_limits<std::int64_t>::max();
-/// Ids taken and ranges passed over in search of one: more than any deck has blocks of ids.
+constexpr std::int64_t kMaxId = std::numeric_limits<std::int64_t>::max();
+/// Steps of one search over taken ids and ranges: more than any deck has blocks of ids.
 constexpr int kMaxSteps = 200'000;
 
-/// The first id from `id` on that the index lacks: ids that count up by one are passed over in a few steps.
+/// The first id from `id` on that isn't in the index. Searches consecutive ids by bisection.
 std::int64_t beyond_block(const IdIndex& index, std::int64_t id) {
   if (index.find(id) == IdIndex::kNotFound) return id;
   const std::size_t rank = index.lower_bound(id);
@@ -26,13 +26,13 @@ std::int64_t beyond_block(const IdIndex& index, std::int64_t id) {
       high = middle;
   }
   const std::int64_t last = index.at(rank + low).first;
-  return last == kBeyondAll ? kBeyondAll : last + 1;
+  return last == kMaxId ? kMaxId : last + 1;
 }
 
-/// The least id from which on only greater steps lie outside of all that `reference` names, one after `id`.
+/// The next id to try after `id`, which the reference names: past the end of a range without gaps, else the next one.
 std::int64_t beyond(const Reference& reference, std::int64_t id) {
   const std::int64_t last = reference.step == 1 ? reference.last : id;
-  return last == kBeyondAll ? kBeyondAll : last + 1;
+  return last == kMaxId ? kMaxId : last + 1;
 }
 
 void gather_numbers(std::string_view text, std::vector<std::int64_t>& numbers) {
@@ -64,28 +64,28 @@ bool all_named_by(const References& references, Referred referred, std::span<con
 NewIds::NewIds(const Deck& deck, const Model& model) : deck_(deck), model_(model), writer_(card_writer(deck.format)) {
   for (const auto& block : model.elements)
     if (block && block->size() > 0) other_elements_.emplace_back(block->id);
-  largest_in_shells_ = kBeyondAll;
+  largest_in_shells_ = kMaxId;
   for (const CardRun& run : deck.shell_runs)
     largest_in_shells_ =
         std::min(largest_in_shells_, writer_->largest_shell_id(run.style) + std::min<std::int64_t>(0, deck.offsets_of(run).node));
 }
 
 Result<std::int64_t> NewIds::node(const NodeOrigin& origin) {
-  const NodeIndex home = home_of(model_, origin);
-  if (!home.valid())
+  const NodeIndex example = example_node(model_, origin);
+  if (!example.valid())
     return fail(deck_.files[0].path.string(),
                 "a new node would have to stand in an include that is used twice, or beside nodes that have no cards of their own");
-  const CardRun& run = deck_.run_of(home);
-  Search search{Referred::node, {}, run.file, deck_.last_ids[run.file].node, 1, 0};
+  const CardRun& run = deck_.run_of(example);
+  IdSearch search{Referred::node, {}, run.file, deck_.last_ids[run.file].node, 1, 0};
   for (int p = 0; p < origin.count(); ++p)
     for (const NodeIndex ancestor : deck_ancestors(model_, origin.parent[static_cast<std::size_t>(p)]))
       search.parents.push_back(model_.node_ids[ancestor.value]);
   std::sort(search.parents.begin(), search.parents.end());
   search.parents.erase(std::unique(search.parents.begin(), search.parents.end()), search.parents.end());
   const std::int64_t offset = deck_.offsets_of(run).node;
-  search.least = std::max<std::int64_t>(1, offset + 1);
+  search.min = std::max<std::int64_t>(1, offset + 1);
   // Shells have narrower fields for node ids than nodes in some layouts, and in some files.
-  search.largest = std::min(writer_->largest_node_id(run.style) + std::min<std::int64_t>(offset, 0), largest_in_shells_);
+  search.max = std::min(writer_->largest_node_id(run.style) + std::min<std::int64_t>(offset, 0), largest_in_shells_);
   return find(search);
 }
 
@@ -101,8 +101,8 @@ Result<std::int64_t> NewIds::shell(ShellIndex parent) {
                writer_->largest_shell_id(run.style) + std::min<std::int64_t>(offset, 0)});
 }
 
-Result<std::int64_t> NewIds::find(const Search& search) {
-  // Within a range that holds all it comes from: nothing has to be written to make it one of them.
+Result<std::int64_t> NewIds::find(const IdSearch& search) {
+  // The ids within all ranges that hold all parents: nothing has to be written for a new one to belong to these.
   const References& references = *deck_.references;
   std::optional<std::pair<std::int64_t, std::int64_t>> within;
   for (const Reference& range : references.naming(search.referred, search.parents.front()))
@@ -114,16 +114,16 @@ Result<std::int64_t> NewIds::find(const Search& search) {
   std::int64_t& lowest = lowest_.try_emplace(search.referred, 1).first->second;
   std::optional<std::int64_t> id;
   if (within) {
-    const std::int64_t from = std::max(within->first, search.least);
-    const std::int64_t to = std::min(within->second, search.largest);
+    const std::int64_t from = std::max(within->first, search.min);
+    const std::int64_t to = std::min(within->second, search.max);
     if (from <= next) id = first_free(search, next, to);
     if (!id) id = first_free(search, from, to);
   }
-  if (!id) id = first_free(search, std::max(next, search.least), search.largest);
-  if (!id && (id = first_free(search, std::max(lowest, search.least), search.largest))) lowest = *id + 1;
+  if (!id) id = first_free(search, std::max(next, search.min), search.max);
+  if (!id && (id = first_free(search, std::max(lowest, search.min), search.max))) lowest = *id + 1;
   if (!id)
     return fail(deck_.files[search.file].path.string(),
-                "no id is left for a new " + std::string(name(search.referred)) + ": those up to " + std::to_string(search.largest) +
+                "no id is left for a new " + std::string(name(search.referred)) + ": those up to " + std::to_string(search.max) +
                     ", the largest that the file's fields hold, are taken, or lie in ranges of ids that mean something else");
   if (*id == next) ++next;
   std::vector<std::int64_t>& given = given_[search.referred];
@@ -131,7 +131,7 @@ Result<std::int64_t> NewIds::find(const Search& search) {
   return *id;
 }
 
-std::optional<std::int64_t> NewIds::first_free(const Search& search, std::int64_t from, std::int64_t to) {
+std::optional<std::int64_t> NewIds::first_free(const IdSearch& search, std::int64_t from, std::int64_t to) {
   std::int64_t id = from;
   for (int step = 0; step < kMaxSteps && id <= to; ++step) {
     const std::int64_t before = id;
@@ -159,10 +159,10 @@ std::int64_t NewIds::beyond_taken(Referred referred, std::int64_t id) {
   return std::binary_search(given.begin(), given.end(), id) || was_removed(referred, id) ? id + 1 : id;
 }
 
-/// What is gone may still be named by text that nobody reads.
+/// Ids of removed ones aren't given again: unread text may still name them.
 bool NewIds::was_removed(Referred referred, std::int64_t id) {
   if (!model_.topology_change) return false;
-  Removed& removed = removed_[referred];
+  RemovedIds& removed = removed_[referred];
   const TopologyChange& topology_change = *model_.topology_change;
   const std::size_t count = referred == Referred::node ? topology_change.removed_nodes.size() : topology_change.removed_shells.size();
   if (removed.seen != count) {
@@ -177,7 +177,7 @@ bool NewIds::was_removed(Referred referred, std::int64_t id) {
   return std::binary_search(removed.ids.begin(), removed.ids.end(), id);
 }
 
-std::int64_t NewIds::beyond_references(const Search& search, std::int64_t id) const {
+std::int64_t NewIds::beyond_references(const IdSearch& search, std::int64_t id) const {
   for (const Reference& reference : deck_.references->naming(search.referred, id)) {
     if (reference.role == ReferenceRole::range && all_named_by(*deck_.references, search.referred, search.parents, reference.referrer))
       continue;

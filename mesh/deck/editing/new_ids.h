@@ -1,4 +1,4 @@
-// Ids for nodes and shells that an edit adds.
+// Chooses ids for nodes and shells that an edit adds.
 #pragma once
 
 #include <cstdint>
@@ -13,37 +13,37 @@
 
 namespace prismesh::mesh::deck {
 
-/// Whether what comes from `parents` (nodes or shells of the deck) belongs to a set, a range or the like of cards: all of them do, be it by
-/// several cards of one set (Referrer::group). `referred`: node or shell.
+/// Whether a set names all of `parents` in lists or ranges, on one card or on several cards of the set (same_set). `referred`: node or
+/// shell; `parents`: ids of the deck; `referrer`: index of a card of the set.
 bool all_named_by(const References& references, Referred referred, std::span<const std::int64_t> parents, std::uint32_t referrer);
 
-/// Gives out ids one after the other: for the same deck, model and order of questions the same ones. An id is free if nothing of its class
-/// has or had it (shells: no element at all), no card names it, readable or not, and no range of ids (GENERATE, THRU) holds it that
-/// doesn't hold all it comes from. An id within the ranges that hold all it comes from is taken first, else the file's own ids go on, else
-/// the lowest free one is taken. It fits the fields of the file's cards.
+/// Chooses free ids one after the other. The same deck, model and order of calls give the same ids.
+/// An id is free for a new node or shell if no node (for a shell: no element) has or had it, no card names it, read or unread, and every
+/// range of ids (GENERATE, THRU) that holds it also holds all that the new one comes from. It fits the fields of the file's cards.
+/// In this order: an id within the ranges that hold all that the new one comes from; the next id after the file's own; the lowest free id.
 class NewIds {
  public:
-  /// Both must outlive this; what is added to the model meanwhile is seen.
+  /// Both must outlive this. The model may change between calls.
   NewIds(const Deck& deck, const Model& model);
 
-  /// Errors: no id is left (which file, what stands in the way), or there is no card behind which a card for it could go.
+  /// Errors: no id is left (with the file and what holds the others), or no card of the deck can be the new card's example.
   Result<std::int64_t> node(const NodeOrigin& origin);
   Result<std::int64_t> shell(ShellIndex parent);
 
  private:
-  struct Search {
+  struct IdSearch {
     Referred referred = Referred::node;
-    std::vector<std::int64_t> parents;  ///< ids of what it comes from in the deck
+    std::vector<std::int64_t> parents;  ///< ids of the deck's nodes or shells that it comes from
     std::uint32_t file = 0;
     std::int64_t last_in_file = 0;
-    std::int64_t least = 1;
-    std::int64_t largest = 0;
+    std::int64_t min = 1;
+    std::int64_t max = 0;
   };
-  Result<std::int64_t> find(const Search& search);
-  std::optional<std::int64_t> first_free(const Search& search, std::int64_t from, std::int64_t to);
+  Result<std::int64_t> find(const IdSearch& search);
+  std::optional<std::int64_t> first_free(const IdSearch& search, std::int64_t from, std::int64_t to);
   std::int64_t beyond_taken(Referred referred, std::int64_t id);
   bool was_removed(Referred referred, std::int64_t id);
-  std::int64_t beyond_references(const Search& search, std::int64_t id) const;
+  std::int64_t beyond_references(const IdSearch& search, std::int64_t id) const;
   bool named_in_unread(std::int64_t id);
 
   const Deck& deck_;
@@ -52,14 +52,14 @@ class NewIds {
   std::vector<IdIndex> other_elements_;
   std::int64_t largest_in_shells_ = 0;
   std::optional<std::vector<std::int64_t>> unread_numbers_;          ///< ascending; gathered when first asked for
-  std::map<std::pair<Referred, std::uint32_t>, std::int64_t> next_;  ///< by file: where its own ids go on
-  std::map<Referred, std::int64_t> lowest_;                          ///< below none is looked for
+  std::map<std::pair<Referred, std::uint32_t>, std::int64_t> next_;  ///< by file: the next id after its own
+  std::map<Referred, std::int64_t> lowest_;                          ///< ids below are taken
   std::map<Referred, std::vector<std::int64_t>> given_;              ///< ascending
-  struct Removed {
-    std::size_t seen = 0;
+  struct RemovedIds {
+    std::size_t seen = 0;           ///< removals of the model that are among `ids`
     std::vector<std::int64_t> ids;  ///< ascending
   };
-  std::map<Referred, Removed> removed_;
+  std::map<Referred, RemovedIds> removed_;
 };
 
 }  // namespace prismesh::mesh::deck

@@ -1,4 +1,4 @@
-// What the fields of cards made of numbers.
+// Numbers that lost digits when they were written to the fields of cards.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,11 @@
 
 namespace prismesh::mesh::deck {
 
-/// Numbers that their fields can't hold to the last bit.
 struct Rounding {
-  std::size_t count = 0;
-  double largest_error = 0;
-  std::string first;  ///< "deck.k:12 (node 7)"
-  /// Nodes whose coordinates are among them, with the place that a reader of the text finds them at.
+  std::size_t count = 0;     ///< numbers that their fields can't hold exactly
+  double largest_error = 0;  ///< in the unit of the number
+  std::string first;         ///< "deck.k:12 (node 7)"
+  /// Nodes whose coordinates were rounded, with the place that a reader of the written text gets; in the basic system.
   std::vector<std::pair<NodeIndex, Vec3>> nodes;
 };
 

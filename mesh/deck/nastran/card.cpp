@@ -9,9 +9,9 @@
 namespace prismesh::mesh::deck::nastran {
 namespace {
 
-/// A comma within these columns makes a line free field: any further right it would stand in a field of columns.
+/// A comma within these columns makes a line free-field; further right it is part of a field of columns.
 constexpr std::size_t kCommaColumns = 16;
-/// Of a line, however long, no more is looked at: ten free fields are shorter.
+/// Longer lines are read up to here: ten free fields are shorter.
 constexpr std::size_t kLineColumns = 400;
 /// More continuations than any card has.
 constexpr std::size_t kMaxLines = 1000000;
@@ -173,12 +173,12 @@ void Card::cut_columns(std::string_view line, Layout layout, std::string_view& o
 
 void Card::cut_commas(std::string_view line, Layout layout, std::string_view& own, std::string_view& next) {
   line = without_comment(line.substr(0, kLineColumns));
-  const std::size_t most = fields_on(layout);
+  const std::size_t max_fields = fields_on(layout);
   std::size_t count = 0;
   const auto add = [&](std::string_view field) {
-    if (count < most)
+    if (count < max_fields)
       fields_.push_back(field);
-    else if (count == most)
+    else if (count == max_fields)
       next = field;
     else
       overlong_ |= !field.empty();
@@ -195,7 +195,7 @@ void Card::cut_commas(std::string_view line, Layout layout, std::string_view& ow
       add(field.substr(0, gap));
     add(field);
   }
-  for (; count < most; ++count) fields_.emplace_back();
+  for (; count < max_fields; ++count) fields_.emplace_back();
 }
 
 std::optional<std::int64_t> Card::integer(std::size_t field) const {

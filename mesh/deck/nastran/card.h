@@ -12,7 +12,7 @@
 
 namespace prismesh::mesh::deck::nastran {
 
-/// How a line is laid out; of its first line: the CardRun::style of a card.
+/// The layout of a line. That of a card's first line is its CardRun::style.
 enum class Layout : std::uint8_t { small, large, free_small, free_large };
 
 constexpr bool is_free(Layout layout) { return layout == Layout::free_small || layout == Layout::free_large; }
@@ -31,13 +31,13 @@ struct Line {
   std::size_t next = 0;    ///< where the next one begins
 };
 
-/// The line at `at`; `text` ends where reading shall. Precondition: at < text.size().
+/// The line at `at`; reading stops at the end of `text`. Precondition: at < text.size().
 Line line_at(std::string_view text, std::size_t at);
 LineKind kind_of(std::string_view line);
-/// A card may begin here; false also for replications, which need the card before them.
+/// Whether a card begins with this line; false for replications, which need the card before them.
 inline bool starts_card(std::string_view line) { return kind_of(line) == LineKind::card; }
 Layout layout_of(std::string_view line);
-/// With blanks for tabs; of long lines the part that counts.
+/// The line with blanks for tabs, cut off where no more columns count.
 std::string without_tabs(std::string_view line);
 
 /// The lines of the card at `at`: with its continuations and the comments between them.
@@ -57,7 +57,7 @@ std::size_t end_of_card(std::string_view text, std::size_t at);
 class Card {
  public:
   void cut(const CardLines& lines);
-  /// A card made of fields; they are copied.
+  /// Makes the card from fields, which are copied.
   void assign(std::string_view name, const std::vector<std::string>& fields, Layout layout);
 
   std::string_view name() const { return {name_, name_size_}; }  ///< upper case, without an asterisk
@@ -69,10 +69,10 @@ class Card {
   /// Blank is 0; nullopt: it isn't such a number.
   std::optional<std::int64_t> integer(std::size_t field) const;
   std::optional<double> real(std::size_t field) const;
-  /// As above, 0 where it is no such number.
+  /// As integer, with 0 where it is no whole number.
   std::int64_t integer_or_zero(std::size_t field) const { return integer(field).value_or(0); }
 
-  /// Offset of a continuation that carries another name than the line before asks for.
+  /// Offset of a continuation whose name differs from the one that the line before gives.
   const std::optional<std::size_t>& misplaced() const { return misplaced_; }
   /// A free-field line has more fields than a line can have; they aren't read.
   bool overlong() const { return overlong_; }

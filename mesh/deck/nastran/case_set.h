@@ -1,4 +1,4 @@
-// SET commands of case control, whose ids stand one behind the other, unlike those of bulk data. Private to the writer.
+// Changes the ids of SET commands of case control, which are lists without fields. Private to the writer.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace prismesh::mesh::deck::nastran {
 
-/// The text of a command, which begins with "SET", without some of the ids that stand in it one by one. Errors: the reason.
+/// The text of a command, which begins with "SET", without some of its single ids. Errors: the reason.
 Result<std::string> without_in_case_set(std::string text, std::span<const std::int64_t> leaving);
 
-/// More ids for the command at `set`: at its end, on lines of their own. Errors: the reason.
+/// Appends ids to the command at `set`, on lines of their own. Errors: the reason.
 Result<std::vector<Replacement>> join_case_set(std::string_view text, const Referrer& set, std::span<const std::int64_t> ids);
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -7,7 +7,7 @@
 namespace prismesh::mesh::deck::nastran {
 namespace {
 
-/// Entries that properties of elements come from, with as many properties as fit a card: PELAS has two.
+/// Entries that define properties of elements. A card may define several: PELAS two.
 struct PropertyForm {
   std::string_view name;
   std::uint8_t every = 0;     ///< data fields from one property to the next on a card; 0: one a card
@@ -56,7 +56,7 @@ double thickness_of(const std::vector<Ply>& plies) {
   return sum;
 }
 
-/// E, G and nu: of any two the third follows.
+/// Completes E, G and nu: any two give the third.
 void put_in_isotropic(const Card& card, Material& material) {
   const std::optional<double> e = given(card, 1), g = given(card, 2), nu = given(card, 3);
   material.youngs_modulus = e;
@@ -100,7 +100,7 @@ std::string name_in(std::string_view text) {
   return std::string(trim(text.substr(0, 200)));
 }
 
-/// The number at the beginning of `text`, which then begins behind it.
+/// Reads the number at the beginning of `text` and removes it from there.
 std::int64_t take_number(std::string_view& text) {
   text = trim(text);
   const std::size_t end = std::min(text.find_first_not_of("0123456789"), text.size());
@@ -126,7 +126,7 @@ bool Definitions::read(const Card& card, std::size_t offset) {
     if (property.id <= 0) continue;
     if (form->material && card.integer_or_zero(form->material) > 0) property.material = card.integer_or_zero(form->material);
     if (form->thickness) property.thickness = given(card, form->thickness);
-    // Without a membrane a plate may still bend.
+    // A plate without a membrane material may still have one for bending.
     if (name == "PSHELL" && !property.material && card.integer_or_zero(3) > 0) property.material = card.integer_or_zero(3);
     if (name == "PCOMP" || name == "PCOMPG") {
       property.plies = plies_of(card);

@@ -1,4 +1,4 @@
-// Properties and materials: what a deck says about its elements besides their shape.
+// Properties and materials of elements.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct Material {
   std::optional<double> poissons_ratio;
 };
 
-/// What a stretch of text defines, in its order.
+/// What a piece of text defines, in its order.
 struct Definitions {
   std::vector<Property> properties;
   std::vector<Material> materials;
@@ -45,14 +45,14 @@ struct Definitions {
   bool read(const Card& card, std::size_t offset);
   /// Reads a property's name from a comment line, if it is one of HyperMesh, Femap or ANSA.
   void read_comment(std::string_view line);
-  /// Patran names the next property.
+  /// Patran's comments give the name of the next property.
   std::string next_name;
 };
 
 /// All pieces' definitions together.
 class PartTable {
  public:
-  /// Of equal ids the first counts. True: the property is one that was there before.
+  /// Of equal ids the first counts. True: there was a property with this id before.
   bool add(const Property& property);
   void add(const Material& material) { materials_.try_emplace(material.id, material); }
   void add_name(std::int64_t id, const std::string& name) { names_.try_emplace(id, name); }

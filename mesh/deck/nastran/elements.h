@@ -1,4 +1,4 @@
-// Which entries make elements, and where on them their property and nodes stand.
+// The entries that make elements, and the fields of their property and nodes.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace prismesh::mesh::deck::nastran {
 enum class NodeFields : std::uint8_t {
   shell,          ///< corners, then mid-side nodes
   in_a_row,       ///< from `first` on, `corners` of which must be there
-  with_freedoms,  ///< node, freedom, node, freedom: with a blank freedom it is a scalar point, blank is the ground
+  with_freedoms,  ///< node, freedom, node, freedom; a blank freedom: the node is a scalar point; a blank node: the ground
   scalar_points,  ///< no nodes
   pairs,          ///< two elements of two nodes each on a card: PLOTEL
   rbe1,
@@ -39,12 +39,12 @@ struct ElementForm {
 
 /// nullptr: it is no element, or none that is read.
 const ElementForm* element_form(std::string_view name);
-/// An element of the 1970s that newer solvers don't know either.
+/// An element of the 1970s that newer solvers don't read either.
 bool is_old_element(std::string_view name);
 /// An element that is kept but not read.
 bool is_unread_element(std::string_view name);
 
-/// Where a shell card has what it has besides its nodes, as data fields; 0: nowhere.
+/// The data fields of a shell card besides its nodes; 0: it has no such field.
 struct ShellFields {
   std::uint8_t corners = 4;
   std::uint8_t midside = 0;    ///< how many follow the corners
@@ -55,7 +55,7 @@ struct ShellFields {
 };
 ShellFields shell_fields(std::string_view name);
 
-/// An element's nodes by id, in the order of its card; left out are blanks and scalar points. False: a node that it must have lacks.
+/// Reads an element's nodes by id, in the order of its card, without blanks and scalar points. False: a node that it must have is missing.
 bool read_nodes(const Card& card, const ElementForm& form, std::vector<std::int64_t>& nodes);
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -5,7 +5,7 @@
 namespace prismesh::mesh::deck::nastran {
 namespace {
 
-/// Below this share of their lengths' product, two directions count as parallel.
+/// Two directions are parallel if their cross product is below this share of the product of their lengths.
 constexpr double kParallel = 1e-10;
 
 std::optional<Frame> frame_through(Frame::Kind kind, const std::array<Vec3, 3>& points) {
@@ -65,23 +65,23 @@ Systems::Systems(std::vector<SystemCard> cards, const std::function<std::optiona
     else
       entries_.push_back({card, Resolution::waiting, {}});
   }
-  for (SystemEntry& entry : entries_) work_out(entry);
+  for (Entry& entry : entries_) work_out(entry);
 }
 
-Systems::SystemEntry* Systems::entry(std::int64_t id) {
+Systems::Entry* Systems::entry(std::int64_t id) {
   const auto at =
-      std::lower_bound(entries_.begin(), entries_.end(), id, [](const SystemEntry& e, std::int64_t wanted) { return e.card.id < wanted; });
+      std::lower_bound(entries_.begin(), entries_.end(), id, [](const Entry& e, std::int64_t wanted) { return e.card.id < wanted; });
   return at == entries_.end() || at->card.id != id ? nullptr : &*at;
 }
 
-/// Depth first, on a stack of our own: how deep systems stand in each other is for the deck to say.
-void Systems::work_out(SystemEntry& first) {
-  std::vector<SystemEntry*> waiting;
-  if (first.state == Resolution::waiting) waiting.push_back(&first);
+/// Depth first with a stack instead of recursion: nothing limits how deep systems depend on each other.
+void Systems::work_out(Entry& first) {
+  std::vector<Entry*> waiting;
+  if (first.resolution == Resolution::waiting) waiting.push_back(&first);
   while (!waiting.empty()) {
-    SystemEntry& top = *waiting.back();
-    if (top.state == Resolution::waiting || top.state == Resolution::open) {
-      top.state = Resolution::open;
+    Entry& top = *waiting.back();
+    if (top.resolution == Resolution::waiting || top.resolution == Resolution::open) {
+      top.resolution = Resolution::open;
       const std::size_t depth = waiting.size();
       settle(top, waiting);
       if (waiting.size() > depth) continue;
@@ -90,30 +90,30 @@ void Systems::work_out(SystemEntry& first) {
   }
 }
 
-/// Whether what the entry stands on is worked out; if not yet, that is put on the stack; if it can't be, `why` says so.
-bool Systems::ready(std::int64_t system, std::vector<SystemEntry*>& waiting, const char*& why) {
+/// Whether the system that an entry depends on is resolved. If not yet, it is pushed on the stack; if it can't be, `why` says so.
+bool Systems::ready(std::int64_t system, std::vector<Entry*>& waiting, const char*& why) {
   if (system == 0) return true;
-  SystemEntry* other = entry(system);
+  Entry* other = entry(system);
   if (!other)
     why = "stands on a coordinate system that isn't defined";
-  else if (other->state == Resolution::open)
+  else if (other->resolution == Resolution::open)
     why = "stands on itself";
-  else if (other->state == Resolution::bad)
+  else if (other->resolution == Resolution::bad)
     why = "stands on one that can't be worked out";
-  else if (other->state == Resolution::waiting)
+  else if (other->resolution == Resolution::waiting)
     waiting.push_back(other);
-  return other && other->state == Resolution::done;
+  return other && other->resolution == Resolution::done;
 }
 
 std::optional<Vec3> Systems::basic(const Vec3& place, std::int64_t system) const {
   if (system == 0) return place;
-  const SystemEntry* other = entry(system);
-  if (!other || other->state != Resolution::done) return std::nullopt;
+  const Entry* other = entry(system);
+  if (!other || other->resolution != Resolution::done) return std::nullopt;
   return to_basic(other->frame, place);
 }
 
-/// Works the entry out if it can be; else it is bad, or something is on the stack above it.
-void Systems::settle(SystemEntry& entry, std::vector<SystemEntry*>& waiting) {
+/// Resolves the entry, or marks it bad, or pushes a system that it depends on on the stack.
+void Systems::settle(Entry& entry, std::vector<Entry*>& waiting) {
   const char* why = nullptr;
   std::array<GridPlace, 3> places;
   for (std::size_t i = 0; i < 3 && !why; ++i) {
@@ -131,18 +131,18 @@ void Systems::settle(SystemEntry& entry, std::vector<SystemEntry*>& waiting) {
     for (std::size_t i = 0; i < 3; ++i) points[i] = *basic(places[i].position, places[i].system);
     if (const std::optional<Frame> frame = frame_through(entry.card.kind, points)) {
       entry.frame = *frame;
-      entry.state = Resolution::done;
+      entry.resolution = Resolution::done;
       return;
     }
     why = "has its three points on one line";
   }
-  entry.state = Resolution::bad;
+  entry.resolution = Resolution::bad;
   bad_.push_back({&entry.card, why});
 }
 
 std::optional<Frame> Systems::find(std::int64_t id) const {
-  const SystemEntry* found = entry(id);
-  if (!found || found->state != Resolution::done) return std::nullopt;
+  const Entry* found = entry(id);
+  if (!found || found->resolution != Resolution::done) return std::nullopt;
   return found->frame;
 }
 

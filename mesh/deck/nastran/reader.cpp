@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mesh/deck/assembly/read_pieces.h"
+#include "mesh/deck/nastran/piece.h"
 #include "mesh/deck/nastran/settle.h"
 #include "mesh/deck/nastran/walk.h"
 #include "mesh/deck/text/number.h"
@@ -12,7 +13,7 @@
 namespace prismesh::mesh::deck::nastran {
 namespace {
 
-/// Elements of the 1970s: what they are made of is no secret, but nobody could check a model of theirs.
+/// Refuses elements of the 1970s: their format is documented, but nobody could check a model with them.
 std::optional<Error> refuse_old_elements(const DeckContents& found, std::span<const PieceFacts> facts) {
   std::string name;
   std::size_t count = 0, first = 0, kinds = 0;

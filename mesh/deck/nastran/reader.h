@@ -1,4 +1,4 @@
-// Reads Nastran bulk data: walks over its files, reads all cards in parallel, and puts the model together.
+// Reads Nastran bulk data: walks over its files, and reads all cards in parallel.
 #pragma once
 
 #include "base/error.h"

@@ -11,7 +11,7 @@ namespace {
 
 using Role = ReferenceRole;
 
-/// Where the lists of these begin.
+/// Cards with a list of ids, and the data field at which it begins.
 constexpr std::size_t kListOfSet = 8, kListOfSet3 = 2;
 
 /// What each data field of a card is: s the set's id, n a grid point, e an element; N, E, B (either) a list with ranges that goes on to the
@@ -136,14 +136,14 @@ std::int64_t number(std::string_view word) {
   return parse_integer(word, value) ? value : 0;
 }
 
-/// Cards of which several make one set of grid points: what they say before their list tells them apart.
+/// Cards of which several make one set of grid points. The fields before their list tell the sets apart.
 bool is_of_group(std::string_view name) {
   static constexpr std::string_view kNames[] = {"SPC1",  "SPCOFF1", "ASET1",   "BSET1",   "CSET1",   "OMIT1",   "QSET1",
                                                 "USET1", "SESET",   "SEBSET1", "SECSET1", "SEQSET1", "BNDGRID", "RELEASE"};
   return std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
-/// Components count in any order.
+/// The fields before the list, as text that tells groups apart. Digits of components are sorted, since their order doesn't matter.
 std::string group_of(const Card& card, std::size_t list) {
   std::string group;
   for (std::size_t f = 0; f < list; ++f) {
@@ -191,7 +191,7 @@ void ReferenceReader::begin_card(std::string_view keyword, std::int64_t id, bool
 }
 
 void ReferenceReader::add(Referred referred, Role role, std::int64_t first, std::int64_t last, std::int64_t step) {
-  // The referrer being collected is the next one to be put in.
+  // The referrer being collected will be added next.
   references_.add(Reference{referred, role, first, last, step, static_cast<std::uint32_t>(references_.referrers().size()), line_});
 }
 
@@ -281,7 +281,7 @@ void ReferenceReader::read_element(const Card& card, const ElementForm& form, co
   }
 }
 
-/// Cards whose fields depend on each other. False: it is none of them.
+/// Reads cards whose fields depend on each other. False: the card is none of them.
 bool ReferenceReader::read_special(const Card& card, const CardPlace& place) {
   const std::string_view name = card.name();
   const std::int64_t id = card.integer_or_zero(0);
@@ -380,7 +380,7 @@ void ReferenceReader::read_case_command(const std::string& statement, const Card
     if (begins_with(statement, start)) case_uses_[set].insert(Referred::any_element);
 }
 
-/// A set that no command known here uses may name anything.
+/// A set that no known command uses may name anything.
 void ReferenceReader::read_case_set(const std::string& statement, const CardPlace& place) {
   const std::size_t equals = statement.find('=');
   const std::int64_t id = number(trim(std::string_view(statement).substr(4, equals - 4)));

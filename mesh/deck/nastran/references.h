@@ -1,4 +1,4 @@
-// Entries that name grid points, elements or properties, besides the elements themselves.
+// Finds entries that name grid points, elements or properties, besides the elements themselves.
 #pragma once
 
 #include <cstdint>
@@ -24,17 +24,17 @@ struct CardPlace {
 /// The data field at which the list of ids of such a card begins. Precondition: it has one.
 std::size_t list_field(std::string_view name);
 
-/// Collects what the cards of one stretch of text name. Cards of a kind and set that follow each other are one referrer; lists stand
-/// alone, since ids may be added to each.
+/// Collects what the cards of a piece of text name. Consecutive cards with the same name and set are one referrer; each list is one of its
+/// own, since ids may be added to it.
 class ReferenceReader {
  public:
   /// What an element names besides its own nodes, and all nodes of rigid elements.
   void read_element(const Card& card, const ElementForm& form, const std::vector<std::int64_t>& nodes, const CardPlace& place);
-  /// False: nobody knows what the card names.
+  /// False: it isn't known what the card names.
   bool read(const Card& card, const CardPlace& place);
   void read_unread(std::string_view name, const CardPlace& place);
-  /// SET commands of case control, in `text` from `begin` to `end`. Whether they hold grid points or elements, the commands say that use
-  /// them.
+  /// Reads SET commands of case control, in `text` from `begin` to `end`. The commands that use a set tell whether it holds grid points or
+  /// elements.
   void read_case_control(std::string_view text, std::uint32_t file, std::size_t begin, std::size_t end);
   References finish();
 
@@ -57,7 +57,7 @@ class ReferenceReader {
   UnreadText unread_;  ///< being collected; empty keyword: none
   std::size_t line_ = 0;
   std::vector<std::pair<std::string, CardPlace>> case_sets_;
-  std::map<std::int64_t, std::set<Referred>> case_uses_;  ///< what the commands that use a set take it to hold
+  std::map<std::int64_t, std::set<Referred>> case_uses_;  ///< what a set holds, by the commands that use it
 };
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -16,10 +16,10 @@ class Replication {
   bool has_template() const { return has_template_; }
   void clear() { has_template_ = false; }
 
-  /// What a card beginning with an equals sign asks for: copies of the template, each raised once more; 1 unless it begins with =(n).
-  /// 0: it isn't understood.
+  /// Reads a card that begins with an equals sign. Returns the number of copies of the template, each raised once more: 1 unless it begins
+  /// with =(n); 0: it isn't understood.
   std::size_t read(const Card& card);
-  /// The next copy, which becomes the template.
+  /// Makes the next copy, which becomes the template.
   void make(Card& copy);
 
   static constexpr std::size_t kMaxCopies = 100000;
@@ -27,13 +27,13 @@ class Replication {
  private:
   struct Field {
     std::string text;
-    std::string raise;  ///< by how much, each time; empty: it stays
+    std::string raise;  ///< what each copy adds; empty: nothing
   };
   std::string name_;
   Layout layout_ = Layout::small;
   std::vector<Field> fields_;
   bool has_template_ = false;
-  bool raised_ = false;  ///< the fields know by how much
+  bool raised_ = false;  ///< `raise` of the fields is set
 };
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel_for.h"
+#include "mesh/deck/nastran/piece_entities.h"
 #include "mesh/model/id_index.h"
 
 namespace prismesh::mesh::deck::nastran {
@@ -132,7 +133,7 @@ class ScalarPoints {
     for (const PieceFacts& some : facts) ranges_.insert(ranges_.end(), some.scalar_points.begin(), some.scalar_points.end());
     std::erase_if(ranges_, [](const IdRange& range) { return range.last < range.first; });
     std::sort(ranges_.begin(), ranges_.end(), [](const IdRange& a, const IdRange& b) { return a.first < b.first; });
-    // Those that touch become one, so that ids that count up lie in it together.
+    // Ranges that touch become one, so that it holds consecutive ids together.
     std::size_t out = 0;
     for (std::size_t r = 1; r < ranges_.size(); ++r) {
       if (ranges_[r].first - 1 <= ranges_[out].last)
@@ -149,7 +150,7 @@ class ScalarPoints {
         std::upper_bound(ranges_.begin(), ranges_.end(), first, [](std::int64_t value, const IdRange& r) { return value < r.first; });
     return after != ranges_.begin() && last <= std::prev(after)->last;
   }
-  /// Calls `keep(first, last)` for what is left of a range of ids without them.
+  /// Calls `keep(first, last)` for each part of a range of ids without scalar points.
   template <class Keep>
   void leave_out_of(std::int64_t first, std::int64_t last, const Keep& keep) const {
     auto range = std::partition_point(ranges_.begin(), ranges_.end(), [&](const IdRange& r) { return r.last < first; });
@@ -215,7 +216,7 @@ void settle_thickness(DeckContents& found, std::span<const PieceFacts> facts, co
         mean = own.relative ? (own.sum + blank) * *section / own.corners : (own.sum + blank * *section) / own.corners;
       else if (own.relative)
         mean = 0;
-      // Where the fields say 0, and no shell before had a thickness, there is no place for one yet.
+      // The array has no entry yet where the fields say 0 and no shell before had a thickness.
       if (shells.thickness.size() <= own.shell) shells.thickness.resize(shells.id.size());
       shells.thickness[own.shell] = static_cast<float>(mean);
     }
@@ -223,15 +224,15 @@ void settle_thickness(DeckContents& found, std::span<const PieceFacts> facts, co
 
 namespace {
 
-/// An element that isn't a shell, by where it stands.
-struct PlacedElement {
+/// Where an element that isn't a shell is stored.
+struct ElementPlace {
   std::size_t piece = 0;
   std::size_t element_class = 0;
   std::size_t element = 0;
   std::size_t offset = 0;
 };
 
-bool before(const PlacedElement& a, std::size_t piece, std::size_t offset) {
+bool before(const ElementPlace& a, std::size_t piece, std::size_t offset) {
   return std::pair(a.piece, a.offset) < std::pair(piece, offset);
 }
 
@@ -273,24 +274,23 @@ void drop_shells(RawShells& shells, const std::vector<std::uint8_t>& drop) {
 }
 
 /// All elements but shells, in the deck's order within each piece and class.
-std::vector<PlacedElement> places_of(const DeckContents& found, std::vector<std::int64_t>& ids) {
-  std::vector<PlacedElement> places;
+std::vector<ElementPlace> places_of(const DeckContents& found, std::vector<std::int64_t>& ids) {
+  std::vector<ElementPlace> places;
   for (std::size_t p = 0; p < found.cards.size(); ++p)
     for (std::size_t c = 0; c < found.cards[p].elements.size(); ++c) {
       const RawElements& elements = found.cards[p].elements[c];
       for (std::size_t e = 0; e < elements.id.size(); ++e) places.push_back({p, c, e, elements.offset[e]});
     }
-  std::stable_sort(places.begin(), places.end(),
-                   [](const PlacedElement& a, const PlacedElement& b) { return before(a, b.piece, b.offset); });
-  for (const PlacedElement& place : places) ids.push_back(found.cards[place.piece].elements[place.element_class].id[place.element]);
+  std::stable_sort(places.begin(), places.end(), [](const ElementPlace& a, const ElementPlace& b) { return before(a, b.piece, b.offset); });
+  for (const ElementPlace& place : places) ids.push_back(found.cards[place.piece].elements[place.element_class].id[place.element]);
   return places;
 }
 
-class Drops {
+class DroppedElements {
  public:
-  explicit Drops(DeckContents& found) : found_(found), elements_(found.cards.size()), shells_(found.cards.size()) {}
+  explicit DroppedElements(DeckContents& found) : found_(found), elements_(found.cards.size()), shells_(found.cards.size()) {}
 
-  void element(const PlacedElement& place) {
+  void element(const ElementPlace& place) {
     const RawElements& elements = found_.cards[place.piece].elements[place.element_class];
     std::vector<std::uint8_t>& drop = elements_[place.piece][place.element_class];
     drop.resize(elements.id.size());
@@ -326,13 +326,13 @@ class Drops {
 
 void settle_element_ids(DeckContents& found) {
   std::vector<std::int64_t> ids;
-  const std::vector<PlacedElement> places = places_of(found, ids);
+  const std::vector<ElementPlace> places = places_of(found, ids);
   if (places.empty()) return;
   const IdIndex index(ids);
-  Drops drops(found);
+  DroppedElements dropped(found);
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (index.find(ids[i]) != i) drops.element(places[i]);
-  // Shells that share an id with another element; of shells among themselves assembling takes care.
+    if (index.find(ids[i]) != i) dropped.element(places[i]);
+  // Shells that share an id with another element; assemble handles equal ids among shells.
   std::vector<std::vector<std::size_t>> shared(found.cards.size());
   parallel_for(found.cards.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
@@ -342,13 +342,13 @@ void settle_element_ids(DeckContents& found) {
   for (std::size_t p = 0; p < shared.size(); ++p)
     for (const std::size_t s : shared[p]) {
       const RawShells& shells = found.cards[p].shells;
-      const PlacedElement& other = places[index.find(shells.id[s])];
+      const ElementPlace& other = places[index.find(shells.id[s])];
       if (before(other, p, shells.offset[s]))
-        drops.shell(p, s);
+        dropped.shell(p, s);
       else
-        drops.element(other);
+        dropped.element(other);
     }
-  drops.carry_out();
+  dropped.carry_out();
 }
 
 }  // namespace prismesh::mesh::deck::nastran

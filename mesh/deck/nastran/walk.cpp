@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file name may go on over lines; more than that is a quote that nobody closed.
+/// A file name may continue over so many lines; beyond, its quote isn't closed.
 constexpr std::size_t kMaxNameLines = 20;
 constexpr std::size_t kMaxNameLength = 4096;
 
@@ -25,25 +25,25 @@ bool is_end_of_word(std::string_view text, std::size_t at) {
 
 bool is_word(std::string_view text, std::string_view word) { return begins_with(text, word) && is_end_of_word(text, word.size()); }
 
-std::optional<Mark::Kind> mark_of(std::string_view line) {
+std::optional<MarkKind> mark_of(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
   if (first == std::string_view::npos) return std::nullopt;
   line.remove_prefix(first);
   switch (upper(line[0])) {
-    case 'I': return is_word(line, "INCLUDE") ? std::optional(Mark::Kind::include) : std::nullopt;
-    case 'E': return is_word(line, "ENDDATA") ? std::optional(Mark::Kind::end_data) : std::nullopt;
-    case 'C': return is_word(line, "CEND") ? std::optional(Mark::Kind::executive) : std::nullopt;
-    case 'S': return is_word(line, "SOL") ? std::optional(Mark::Kind::executive) : std::nullopt;
+    case 'I': return is_word(line, "INCLUDE") ? std::optional(MarkKind::include) : std::nullopt;
+    case 'E': return is_word(line, "ENDDATA") ? std::optional(MarkKind::end_data) : std::nullopt;
+    case 'C': return is_word(line, "CEND") ? std::optional(MarkKind::executive) : std::nullopt;
+    case 'S': return is_word(line, "SOL") ? std::optional(MarkKind::executive) : std::nullopt;
     case 'B': break;
     default: return std::nullopt;
   }
   if (!is_word(line, "BEGIN")) return std::nullopt;
   std::string_view rest = trim(line.substr(5, line.find('$') - 5));
   if (is_word(rest, "BULK")) rest = trim(rest.substr(4));
-  return rest.empty() ? Mark::Kind::begin_bulk : Mark::Kind::begin_other;
+  return rest.empty() ? MarkKind::begin_bulk : MarkKind::begin_other;
 }
 
-/// Whether the line may be one with a mark: most aren't, and few of those are looked at closely.
+/// Quick test whether the line may be a mark, so that mark_of is called for few lines.
 inline bool may_be_mark(const char* at, const char* end) {
   while (at < end && (*at == ' ' || *at == '\t')) ++at;
   if (at == end) return false;
@@ -53,7 +53,7 @@ inline bool may_be_mark(const char* at, const char* end) {
 }
 
 void find_marks(std::string_view text, std::size_t begin, std::size_t end, std::vector<Mark>& marks) {
-  // A line belongs to the stretch it begins in.
+  // A line belongs to the range of bytes that it begins in.
   if (begin > 0) {
     const std::size_t line_end = text.find('\n', begin - 1);
     begin = line_end == std::string_view::npos ? end : line_end + 1;
@@ -65,7 +65,7 @@ void find_marks(std::string_view text, std::size_t begin, std::size_t end, std::
     const char* line_end = found ? static_cast<const char*>(found) : last;
     const std::size_t next = static_cast<std::size_t>(line_end - text.data()) + (found ? 1 : 0);
     if (may_be_mark(at, line_end))
-      if (const std::optional<Mark::Kind> kind = mark_of({at, static_cast<std::size_t>(line_end - at)}))
+      if (const std::optional<MarkKind> kind = mark_of({at, static_cast<std::size_t>(line_end - at)}))
         marks.push_back({begin, next, *kind});
     begin = next;
   }
@@ -114,37 +114,37 @@ std::vector<Mark> find_marks(std::string_view text) {
 Walk::Walk(FileSet found) : files(std::move(found)) {}
 
 void Walk::run() {
-  states_.resize(1);
-  states_[0].uses = 1;
+  walked_files_.resize(1);
+  walked_files_[0].uses = 1;
   const std::vector<Mark> marks = find_marks(files.files[0].bytes.text());
-  // Without any of these the deck is bulk data from its first line on, as pre-processors write parts of models.
+  // Without any of these marks the deck is bulk data from its first line on: pre-processors write parts of models so.
   const bool has_sections = std::any_of(marks.begin(), marks.end(), [](const Mark& mark) {
-    return mark.kind == Mark::Kind::begin_bulk || mark.kind == Mark::Kind::begin_other || mark.kind == Mark::Kind::executive;
+    return mark.kind == MarkKind::begin_bulk || mark.kind == MarkKind::begin_other || mark.kind == MarkKind::executive;
   });
   if (!has_sections) section_ = Section::bulk;
   walk_file(0, marks, 0);
   if (section_ == Section::control)
     warnings.note("no-bulk-data", 0, 0, "the deck has executive or case control but no BEGIN BULK: there is nothing to show");
-  // Bulk data without executive section does without ENDDATA; a deck that begins it lacks that when it was cut off.
+  // Bulk data without an executive section needs no ENDDATA; a deck with BEGIN BULK and without ENDDATA was cut off.
   if ((section_ == Section::bulk || section_ == Section::other) && has_sections)
     warnings.note_each("no-end", 0, files.files[0].bytes.text().size(), "the deck has BEGIN BULK but no ENDDATA: it may have been cut off");
   hold_repeated();
 }
 
 void Walk::walk_file(std::uint32_t file, const std::vector<Mark>& marks, int depth) {
-  states_[file].walked = states_[file].open = true;
+  walked_files_[file].walked = walked_files_[file].open = true;
   const std::string_view text = files.files[file].bytes.text();
   std::size_t at = begins_with(text, "\xef\xbb\xbf") ? 3 : 0;
   for (const Mark& mark : marks) {
     if (mark.offset < at) continue;
-    if (mark.kind == Mark::Kind::executive) continue;
+    if (mark.kind == MarkKind::executive) continue;
     take(file, at, mark.offset);
     at = mark.next;
-    if (mark.kind == Mark::Kind::include) {
+    if (mark.kind == MarkKind::include) {
       at = include(file, mark, depth);
-    } else if (mark.kind == Mark::Kind::begin_bulk) {
+    } else if (mark.kind == MarkKind::begin_bulk) {
       section_ = Section::bulk;
-    } else if (mark.kind == Mark::Kind::begin_other) {
+    } else if (mark.kind == MarkKind::begin_other) {
       section_ = Section::other;
       warnings.note("unread-section", file, mark.offset,
                     "only the main bulk data is read; what follows " + quoted(trim(line_at(text, mark.offset).text)) +
@@ -160,7 +160,7 @@ void Walk::walk_file(std::uint32_t file, const std::vector<Mark>& marks, int dep
     if (section_ == Section::ended) break;
   }
   if (section_ != Section::ended) take(file, at, text.size());
-  states_[file].open = false;
+  walked_files_[file].open = false;
 }
 
 void Walk::take(std::uint32_t file, std::size_t begin, std::size_t end) {
@@ -174,7 +174,7 @@ void Walk::take(std::uint32_t file, std::size_t begin, std::size_t end) {
     references.read_unread("BEGIN", {file, begin, end});
 }
 
-/// Into pieces of about equal size, each beginning with a card.
+/// Cuts bulk data into pieces of about equal size, each beginning with a card.
 void Walk::cut(std::uint32_t file, std::size_t begin, std::size_t end) {
   const std::string_view text = files.files[file].bytes.text().substr(0, end);
   while (begin < end) {
@@ -205,17 +205,17 @@ std::size_t Walk::include(std::uint32_t from, const Mark& mark, int depth) {
   std::string reason;
   const std::array<fs::path, 2> folders{files.folder_of(from), files.folder_of(0)};
   const std::uint32_t file = name.empty() ? FileSet::kNoFile : files.include(from, name, folders, reason);
-  states_.resize(files.files.size());
+  walked_files_.resize(files.files.size());
   if (file == FileSet::kNoFile) {
     warnings.note_each("missing-include", from, mark.offset,
                        name.empty() ? std::string("INCLUDE names no file") : "the include file " + name + " " + reason);
     return next;
   }
-  ++states_[file].uses;
-  states_[from].includes.push_back(file);
-  if (states_[file].open) {
+  ++walked_files_[file].uses;
+  walked_files_[from].includes.push_back(file);
+  if (walked_files_[file].open) {
     warnings.note("circular-include", from, mark.offset, "the include file " + name + " includes itself; it is read once");
-  } else if (states_[file].walked) {
+  } else if (walked_files_[file].walked) {
     warnings.note("repeated-include", from, mark.offset, "the include file " + name + " is included twice; its nodes can't be moved");
   } else if (depth >= kMaxIncludeDepth) {
     warnings.note("deep-include", from, mark.offset,
@@ -226,10 +226,10 @@ std::size_t Walk::include(std::uint32_t from, const Mark& mark, int depth) {
   return next;
 }
 
-/// Nodes of a file that is used twice, and of what it includes, stand for more than one place.
+/// Holds files that are used twice, and what they include: their nodes stand for more than one place.
 void Walk::hold_repeated() {
   std::vector<const FileUse*> uses;
-  for (const FileState& state : states_) uses.push_back(&state);
+  for (const WalkedFile& file : walked_files_) uses.push_back(&file);
   held = repeated_files(uses);
 }
 

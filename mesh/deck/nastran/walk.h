@@ -1,4 +1,4 @@
-// The walk over a deck's files in the order the solver reads them: finds the bulk data and the includes, and cuts the text into pieces.
+// Walks over a deck's files in the order the solver reads them: finds the bulk data and the includes, and cuts the text into pieces.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,21 @@
 #include "mesh/deck/assembly/file_set.h"
 #include "mesh/deck/assembly/warnings.h"
 #include "mesh/deck/data/deck.h"
-#include "mesh/deck/nastran/piece.h"
+#include "mesh/deck/nastran/piece_facts.h"
 #include "mesh/deck/nastran/references.h"
 
 namespace prismesh::mesh::deck::nastran {
 
-/// A line that gives the text its structure.
+/// Lines that structure a deck: BEGIN BULK, another BEGIN, executive control (SOL, CEND), ENDDATA and INCLUDE.
+enum class MarkKind : std::uint8_t { begin_bulk, begin_other, executive, end_data, include };
+
 struct Mark {
-  enum class Kind : std::uint8_t { begin_bulk, begin_other, executive, end_data, include };
   std::size_t offset = 0;
   std::size_t next = 0;  ///< where the line after begins
-  Kind kind = Kind::include;
+  MarkKind kind = MarkKind::include;
 };
 
-/// All of a text's, ascending. Looks at every line, in parallel.
+/// All marks of a text, ascending. Searches every line, in parallel.
 std::vector<Mark> find_marks(std::string_view text);
 
 class Walk {
@@ -46,11 +47,11 @@ class Walk {
 
   Section section_ = Section::control;
   /// By file.
-  struct FileState : FileUse {
+  struct WalkedFile : FileUse {
     bool walked = false;
     bool open = false;
   };
-  std::vector<FileState> states_;
+  std::vector<WalkedFile> walked_files_;
 };
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -19,7 +19,7 @@ struct Assembly {
   std::vector<SpotWeld> welds;
 };
 
-/// `size` is the edge length the meshes will have: beads are made no narrower than it can show.
+/// `size`: the edge length of the meshes; beads are at least as wide as it can resolve.
 Assembly body_side(double size);
 
 }  // namespace prismesh::mesh::deck::sample

@@ -1,5 +1,5 @@
-// Meshing a part that is swept along a line: strips of quads between stations, triangles where the number of quads across
-// changes, round holes set into blocks of the grid. No transcendental function of the C library: one mesh on every machine.
+// Meshes a part that is swept along a line: strips of quads between stations, triangles where the number of quads across changes, round
+// holes in blocks of the grid. Uses no transcendental function of the C library, so that every machine makes the same mesh.
 #pragma once
 
 #include <array>
@@ -42,12 +42,12 @@ struct SheetMesh {
   std::vector<std::array<std::uint32_t, 4>> shells;  ///< indices into nodes; a triangle repeats its third
 };
 
-/// Shells that `mesh_part` will make; costs the number of stations.
+/// The number of shells that `mesh_part` will make. Costs the number of stations.
 std::size_t count_shells(const Part& part, const ElementSize& size);
 
 SheetMesh mesh_part(const Part& part, const ElementSize& size);
 
-/// 0 before `from`, 1 after `to`, without a kink in slope or curvature.
+/// 0 before `from`, 1 after `to`, with continuous slope and curvature.
 double smooth_step(double from, double to, double x);
 
 }  // namespace prismesh::mesh::deck::sample

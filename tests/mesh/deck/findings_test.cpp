@@ -1,7 +1,7 @@
 // What is told about a deck as a whole: each kind once, with its first places and how many more.
 #include "mesh/deck/findings.h"
 
-#include "mesh/deck/editing/naming.h"
+#include "mesh/deck/editing/unread_numbers.h"
 #include "tests/mesh/deck/deck_files.h"
 
 namespace prismesh::mesh::deck {

@@ -6,7 +6,8 @@
 #include <iostream>
 #include <set>
 
-#include "mesh/deck/editing/naming.h"
+#include "mesh/deck/editing/edit_checks.h"
+#include "mesh/deck/editing/names.h"
 #include "mesh/deck/lsdyna/reference_tables.h"
 #include "tests/mesh/deck/deck_files.h"
 

@@ -1,4 +1,4 @@
-#include "mesh/deck/editing/descent.h"
+#include "mesh/deck/editing/ancestors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,9 @@ namespace {
 
 using Share = std::array<double, 4>;
 
-/// A node's added ancestors and the deck's, each ascending: a parent stands before its child. Without recursion, since nobody bounds the
-/// generations.
+/// Each ascending, so that a parent comes before its child.
 struct Ancestors {
-  std::vector<NodeIndex> added;  ///< itself too, if it was added
+  std::vector<NodeIndex> added;  ///< with the node itself, if it was added
   std::vector<NodeIndex> deck;
 };
 
@@ -25,10 +24,11 @@ void sort_unique(std::vector<NodeIndex>& nodes) {
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
 }
 
+/// Without recursion: the number of generations has no limit.
 Ancestors ancestors_of(const Model& model, std::vector<NodeIndex> waiting) {
   Ancestors out;
   while (!waiting.empty()) {
-    // The latest first: whoever is met again is still waiting, and is passed over then.
+    // The largest index comes first, so that a node that waits twice comes twice in a row.
     std::pop_heap(waiting.begin(), waiting.end());
     const NodeIndex node = waiting.back();
     waiting.pop_back();
@@ -49,13 +49,13 @@ Ancestors ancestors_of(const Model& model, std::vector<NodeIndex> waiting) {
   return out;
 }
 
-NodeIndex home_among(const Model& model, const std::vector<NodeIndex>& deck) {
+NodeIndex example_among(const Model& model, const std::vector<NodeIndex>& deck) {
   for (auto node = deck.rbegin(); node != deck.rend(); ++node)
     if ((model.node_holds[node->value] & (kHeldByInclude | kHeldByMaking)) == 0) return *node;
   return {};
 }
 
-/// The weights of an ancestor's corners at a node that comes from them alone.
+/// The shares of a shell's corners at a node that comes from these corners alone; nullopt: it comes from others too.
 std::optional<Share> share_by_descent(const Model& model, const ShellNodes& corners, NodeIndex node) {
   const Ancestors ancestors = ancestors_of(model, {node});
   std::map<NodeIndex, Share> shares;
@@ -82,7 +82,8 @@ std::optional<Share> share_by_descent(const Model& model, const ShellNodes& corn
 
 Share bilinear(double u, double v) { return {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v}; }
 
-/// The weights at the place of a shell nearest to a point, found step by step in the shell's own coordinates.
+/// The shares of a shell's corners at its place nearest to a point: Gauss-Newton steps in the shell's own coordinates u and v, each kept
+/// within the shell.
 Share share_by_place(const std::array<Vec3, 4>& corners, bool triangle, const Vec3& point) {
   double u = 0.5, v = 0.5;
   for (int step = 0; step < 20; ++step) {
@@ -108,7 +109,7 @@ Share share_by_place(const std::array<Vec3, 4>& corners, bool triangle, const Ve
   return triangle ? Share{1 - u - v, u, v, 0} : bilinear(u, v);
 }
 
-/// The angle from one direction to another about a normal, rounded far below what matters, so that 45 degrees are written as such.
+/// The angle from one direction to another about a normal, in degrees, rounded to nine decimals so that 45 degrees are written as 45.
 double turn_between(const Vec3& from, const Vec3& to, const Vec3& normal) {
   const double size = normal.norm();
   if (!(size > 0)) return 0;
@@ -124,12 +125,12 @@ double turn_between(const Vec3& from, const Vec3& to, const Vec3& normal) {
 
 std::vector<NodeIndex> deck_ancestors(const Model& model, NodeIndex node) { return ancestors_of(model, {node}).deck; }
 
-NodeIndex home_of(const Model& model, NodeIndex added) { return home_among(model, deck_ancestors(model, added)); }
+NodeIndex example_node(const Model& model, NodeIndex added) { return example_among(model, deck_ancestors(model, added)); }
 
-NodeIndex home_of(const Model& model, const NodeOrigin& origin) {
+NodeIndex example_node(const Model& model, const NodeOrigin& origin) {
   std::vector<NodeIndex> parents(origin.parent.begin(), origin.parent.begin() + origin.count());
   std::make_heap(parents.begin(), parents.end());
-  return home_among(model, ancestors_of(model, std::move(parents)).deck);
+  return example_among(model, ancestors_of(model, std::move(parents)).deck);
 }
 
 ShellCard shell_card(const Model& original, const Model& model, ShellIndex shell) {
@@ -139,7 +140,7 @@ ShellCard shell_card(const Model& original, const Model& model, ShellIndex shell
   ShellCard card;
   card.id = model.shell_ids[shell.value];
 
-  // The ancestor as it stands now, so that the turn is that of the shape which is saved; a corner that is gone stands where it stood last.
+  // The ancestor's corners where the saved model has them; a removed corner where it was last.
   std::array<Vec3, 4> corners;
   for (std::size_t k = 0; k < 4; ++k) corners[k] = model.position(ancestor.node[k]);
   std::array<Vec3, 2> ends;
