@@ -25,7 +25,7 @@ struct TimedWork {
 /// When to stop repeating.
 struct RepetitionLimits {
   std::size_t min_runs = 3;
-  std::size_t max_runs = 200;
+  std::size_t max_runs = 100;
   std::int64_t enough_ns = 500'000'000;      ///< of wall or processor time in all runs: no run more than min_runs is begun
   std::int64_t too_much_ns = 3'000'000'000;  ///< of either: no run more is begun, even below min_runs
 };

@@ -11,7 +11,7 @@
 namespace prismesh::drivers::eye_tracker::dynasight {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kMillisecondNs = 1'000'000;
 
 /// A port whose other end is the test.
 class ScriptedPort final : public port::BytePort {
@@ -58,7 +58,7 @@ void expect_dialogue(const std::vector<Line>& lines, const DynasightTracker::Opt
   DynasightTracker tracker(port, options);
   for (const Line& line : lines) {
     for (const RecordBytes& record : line.device) port.arrived.insert(port.arrived.end(), record.begin(), record.end());
-    const EyeTracker::Polled polled = tracker.poll(line.at_ms * kMs);
+    const EyeTracker::Polled polled = tracker.poll(line.at_ms * kMillisecondNs);
     EXPECT_EQ(port.take_said(), line.station) << "at " << line.at_ms << " ms";
     EXPECT_EQ(polled.fresh, line.x_mm.has_value()) << "at " << line.at_ms << " ms";
     if (!polled.fresh || !line.x_mm) continue;
@@ -123,23 +123,23 @@ TEST(DynasightDialogue, restarts_a_device_that_falls_silent_or_sends_noise) {
     ScriptedPort port;
     DynasightTracker tracker(port, {});
     tracker.poll(0);
-    tracker.poll(50 * kMs);
+    tracker.poll(50 * kMillisecondNs);
     port.take_said();
     for (int i = 0; i < 6; ++i) {
       for (const std::byte byte : at(i)) port.arrived.push_back(byte);
-      tracker.poll((60 + 17 * i) * kMs);
+      tracker.poll((60 + 17 * i) * kMillisecondNs);
     }
     ASSERT_TRUE(tracker.synchronised());
     std::int64_t restarted_ms = 0;
     for (std::int64_t ms = 160; ms < 1000 && restarted_ms == 0; ms += 5) {
       if (nonsense) port.arrived.insert(port.arrived.end(), 5, std::byte{'?'});
-      tracker.poll(ms * kMs);
+      tracker.poll(ms * kMillisecondNs);
       if (port.take_said() == "\x03\x03\x03") restarted_ms = ms;
     }
     EXPECT_GE(restarted_ms, 145 + 500);
     EXPECT_LE(restarted_ms, 145 + 510);
     EXPECT_EQ(tracker.counts().restarts, 1u);
-    tracker.poll((restarted_ms + 50) * kMs);
+    tracker.poll((restarted_ms + 50) * kMillisecondNs);
     EXPECT_FALSE(tracker.synchronised());
     EXPECT_EQ(tracker.counts().resyncs, 1u);
   }
@@ -152,7 +152,7 @@ TEST(DynasightDialogue, commands_wait_while_the_line_is_full) {
   EXPECT_EQ(tracker.poll(0).status, port::PortStatus::ok);
   EXPECT_EQ(port.take_said(), "\x03\x03");
   port.room = 100;
-  tracker.poll(5 * kMs);
+  tracker.poll(5 * kMillisecondNs);
   EXPECT_EQ(port.take_said(), "\x03");
 }
 
@@ -161,54 +161,54 @@ TEST(DynasightDialogue, reports_a_port_that_is_gone) {
   DynasightTracker tracker(port, {});
   EXPECT_EQ(tracker.poll(0).status, port::PortStatus::ok);
   port.gone = true;
-  EXPECT_EQ(tracker.poll(kMs).status, port::PortStatus::gone);
+  EXPECT_EQ(tracker.poll(kMillisecondNs).status, port::PortStatus::gone);
 }
 
 TEST(DynasightDialogue, takes_the_newest_record_of_a_read_and_subtracts_the_time_of_the_bytes_after_it) {
   constexpr std::int64_t kByteNs = 520'833;  // at 19200 baud
   ScriptedPort port;
-  DynasightTracker tracker(port, {.latency_ns = 20 * kMs});
+  DynasightTracker tracker(port, {.latency_ns = 20 * kMillisecondNs});
   tracker.poll(0);
-  tracker.poll(50 * kMs);
+  tracker.poll(50 * kMillisecondNs);
   const auto add_record = [&](const RecordBytes& record, std::size_t bytes = kRecordBytes) {
     port.arrived.insert(port.arrived.end(), record.begin(), record.begin() + static_cast<std::ptrdiff_t>(bytes));
   };
   for (int i = 0; i < 6; ++i) add_record(at(i));
-  auto polled = tracker.poll(200 * kMs);
+  auto polled = tracker.poll(200 * kMillisecondNs);
   ASSERT_TRUE(polled.fresh);
-  EXPECT_EQ(polled.sample.measured_ns, 180 * kMs);
+  EXPECT_EQ(polled.sample.measured_ns, 180 * kMillisecondNs);
 
   add_record(at(7));
   add_record(at(8), 3);  // three bytes of the next record: the previous one ended three bytes earlier
-  polled = tracker.poll(220 * kMs);
+  polled = tracker.poll(220 * kMillisecondNs);
   ASSERT_TRUE(polled.fresh);
   EXPECT_NEAR(polled.sample.between_eyes_mm.x(), 7, 0.05);
-  EXPECT_EQ(polled.sample.measured_ns, 200 * kMs - 3 * kByteNs);
+  EXPECT_EQ(polled.sample.measured_ns, 200 * kMillisecondNs - 3 * kByteNs);
 
   const RecordBytes rest = at(8);
   port.arrived.insert(port.arrived.end(), rest.begin() + 3, rest.end());
   add_record(at(0, Status::search));  // a complete record after it: the previous one was sent a 60th of a second earlier
-  polled = tracker.poll(240 * kMs);
+  polled = tracker.poll(240 * kMillisecondNs);
   ASSERT_TRUE(polled.fresh);
   EXPECT_NEAR(polled.sample.between_eyes_mm.x(), 8, 0.05);
-  EXPECT_EQ(polled.sample.measured_ns, 220 * kMs - 16'666'667);
+  EXPECT_EQ(polled.sample.measured_ns, 220 * kMillisecondNs - 16'666'667);
 }
 
 TEST(DynasightDialogue, a_record_read_with_a_part_of_the_next_is_newer_than_the_previous) {
   ScriptedPort port;
-  DynasightTracker tracker(port, {.latency_ns = 20 * kMs});
+  DynasightTracker tracker(port, {.latency_ns = 20 * kMillisecondNs});
   tracker.poll(0);
-  tracker.poll(50 * kMs);
+  tracker.poll(50 * kMillisecondNs);
   for (int i = 0; i < 6; ++i)
     for (const std::byte byte : at(i)) port.arrived.push_back(byte);
-  ASSERT_EQ(tracker.poll(200 * kMs).sample.measured_ns, 180 * kMs);
+  ASSERT_EQ(tracker.poll(200 * kMillisecondNs).sample.measured_ns, 180 * kMillisecondNs);
   for (const std::byte byte : at(7)) port.arrived.push_back(byte);
   const RecordBytes begun = at(8);
   port.arrived.insert(port.arrived.end(), begun.begin(), begun.end() - 1);  // seven bytes: 3.6 ms
-  const EyeTracker::Polled polled = tracker.poll(201 * kMs);
+  const EyeTracker::Polled polled = tracker.poll(201 * kMillisecondNs);
   ASSERT_TRUE(polled.fresh);
   EXPECT_NEAR(polled.sample.between_eyes_mm.x(), 7, 0.05);
-  EXPECT_EQ(polled.sample.measured_ns, 180 * kMs + 1);
+  EXPECT_EQ(polled.sample.measured_ns, 180 * kMillisecondNs + 1);
 }
 
 TEST(DynasightDialogue, ignores_records_from_before_the_dialogue) {
@@ -217,19 +217,19 @@ TEST(DynasightDialogue, ignores_records_from_before_the_dialogue) {
   for (int i = 0; i < 1'000; ++i)
     for (const std::byte byte : at(9)) port.arrived.push_back(byte);
   tracker.poll(0);
-  tracker.poll(50 * kMs);
+  tracker.poll(50 * kMillisecondNs);
   EXPECT_TRUE(port.arrived.empty());
-  for (int i = 1; i < 8; ++i) EXPECT_FALSE(tracker.poll((50 + 5 * i) * kMs).fresh) << "a position of unknown age";
+  for (int i = 1; i < 8; ++i) EXPECT_FALSE(tracker.poll((50 + 5 * i) * kMillisecondNs).fresh) << "a position of unknown age";
 }
 
 TEST(DynasightDialogue, adds_the_offset_and_rejects_positions_out_of_range) {
   ScriptedPort port;
   DynasightTracker tracker(port, {.offset_mm = {10, -200, -580}});
   tracker.poll(0);
-  tracker.poll(50 * kMs);
+  tracker.poll(50 * kMillisecondNs);
   const auto receive_at = [&](const Eigen::Vector3d& place, std::int64_t ms) {
     for (const std::byte byte : encode(record_for(place))) port.arrived.push_back(byte);
-    return tracker.poll(ms * kMs);
+    return tracker.poll(ms * kMillisecondNs);
   };
   for (int i = 0; i < 5; ++i) receive_at({0, 100, 700}, 60 + i);
   const auto inside = receive_at({1, 100, 700}, 80);
