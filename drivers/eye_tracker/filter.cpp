@@ -143,7 +143,7 @@ void HeadFilter::take_outlier(const HeadSample& sample) {
 }
 
 /// Predicts the mixture by `seconds`. Each model starts from a mix of both, weighted by the probability that the head switched between
-/// resting and moving [Blom and Bar-Shalom 1988].
+/// resting and moving [Blom 1988].
 HeadFilter::Mixture HeadFilter::predicted(const Mixture& now, double seconds) {
   const double change = 1 - std::exp(-kSwitchesPerSecond * seconds);
   Mixture next;

@@ -26,7 +26,7 @@ inline constexpr std::int64_t kMaxPredictionNs = 200'000'000;
 Eigen::Vector3d predict(const HeadState& state, std::int64_t time_ns);
 
 /// Estimates the head's motion with two models, one resting and one with random acceleration, weighted by how well each predicted the
-/// newest measurement: interacting multiple models [Blom and Bar-Shalom 1988]; the moving model follows [Singer 1970]. At rest the result
+/// newest measurement: interacting multiple models [Blom 1988]; the moving model follows [Singer 1970]. At rest the result
 /// is steadier than the tracker; in a fast turn it isn't smoothed. docs/prediction.md compares it with other filters.
 class HeadFilter {
  public:

@@ -57,7 +57,7 @@ void add_waves(PointMotion& motion, double seconds, std::uint64_t seed, const Wa
   }
 }
 
-/// The minimum-jerk transition from 0 to 1, as in people's reaching and turning [Flash and Hogan 1985]. At rest at both ends; its max.
+/// The minimum-jerk transition from 0 to 1, as in people's reaching and turning [Flash 1985]. At rest at both ends; its max.
 /// slope is 1.875 / duration.
 struct StepProfile {
   double share = 0;
