@@ -42,7 +42,7 @@ struct SnapshotInfo {
   std::string document;     ///< path
   std::string length_unit;  ///< "mm", ...
   double target_size = 1;
-  double most_triangles_at_node = 0;  ///< more are a cluster (mesh::quality::Criteria::warn_triangles_at_node)
+  double max_triangles_at_node = 0;  ///< more are a cluster (mesh::quality::Criteria::warn_triangles_at_node)
   mesh::quality::Counts counts;
   std::uint64_t nodes = 0;  ///< existing ones; the arrays also hold removed ones
   std::uint64_t selected_nodes = 0;

@@ -267,7 +267,7 @@ struct SnapshotPublisher::Impl {
     info.document = document.path.string();
     info.length_unit = std::string(name(document.settings.length_unit));
     info.target_size = document.settings.target_size;
-    info.most_triangles_at_node = document.settings.criteria.warn_triangles_at_node;
+    info.max_triangles_at_node = document.settings.criteria.warn_triangles_at_node;
     info.counts = generation.counts;
     info.nodes = mesh::live_nodes(generation.model);
     info.selected_nodes = generation.selected_nodes;

@@ -19,7 +19,7 @@ void put_info(ByteWriter& out, const SnapshotInfo& info) {
   out.put(info.document);
   out.put(info.length_unit);
   out.put(info.target_size);
-  out.put(info.most_triangles_at_node);
+  out.put(info.max_triangles_at_node);
   for (const std::size_t number : {info.counts.ok, info.counts.warn, info.counts.fail}) out.put(std::uint64_t{number});
   out.put(info.nodes);
   out.put(info.selected_nodes);
@@ -41,7 +41,7 @@ SnapshotInfo get_info(ByteReader& in) {
   info.document = in.text();
   info.length_unit = in.text();
   info.target_size = in.get<double>();
-  info.most_triangles_at_node = in.get<double>();
+  info.max_triangles_at_node = in.get<double>();
   info.counts.ok = in.get<std::uint64_t>();
   info.counts.warn = in.get<std::uint64_t>();
   info.counts.fail = in.get<std::uint64_t>();

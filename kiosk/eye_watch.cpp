@@ -13,11 +13,11 @@ using tools::EyesFacts;
 
 /// The tracker in a few words, and what the user can do about it.
 void word_eyes(EyesPhase phase, const ipc::DeviceInfo* tracker, EyesFacts& facts) {
-  facts.state = phase == EyesPhase::tracking ? EyesFacts::State::good : EyesFacts::State::trouble;
+  facts.condition = phase == EyesPhase::tracking ? EyesFacts::Condition::good : EyesFacts::Condition::trouble;
   switch (phase) {
     case EyesPhase::tracking: facts.eyes = "following you"; return;
     case EyesPhase::searching:
-      facts.state = EyesFacts::State::waiting;
+      facts.condition = EyesFacts::Condition::waiting;
       facts.eyes = "nobody seen";
       facts.advice = "Sit in front of the screen, an arm's length away.";
       return;
@@ -39,23 +39,24 @@ void word_eyes(EyesPhase phase, const ipc::DeviceInfo* tracker, EyesFacts& facts
 
 /// Only what keeps the picture mono though the eyes are seen.
 void word_mask(MaskPhase phase, const ipc::DeviceInfo* servo, EyesFacts& facts) {
-  const auto say = [&](EyesFacts::State state, const char* mask, const char* advice) {
+  const auto say = [&](EyesFacts::Condition state, const char* mask, const char* advice) {
     facts.mask = mask;
-    if (facts.state != EyesFacts::State::good) return;
-    facts.state = state;
+    if (facts.condition != EyesFacts::Condition::good) return;
+    facts.condition = state;
     facts.advice = servo != nullptr && !servo->trouble.empty() ? servo->trouble : advice;
   };
   switch (phase) {
     case MaskPhase::following:
     case MaskPhase::flying_back: facts.mask = "following"; return;
-    case MaskPhase::homing: return say(EyesFacts::State::waiting, "finding its zero", "");
+    case MaskPhase::homing: return say(EyesFacts::Condition::waiting, "finding its zero", "");
     case MaskPhase::frozen:
     case MaskPhase::parking:
-    case MaskPhase::parked: return say(EyesFacts::State::waiting, "at rest", "");
-    case MaskPhase::held: return say(EyesFacts::State::waiting, "held for calibration", "");
-    case MaskPhase::absent: return say(EyesFacts::State::trouble, "motor doesn't answer", "Check the prism motor's power and cable.");
-    case MaskPhase::stuck: return say(EyesFacts::State::trouble, "stuck", "Free the mask, then press Ctrl+R.");
-    case MaskPhase::alarm: return say(EyesFacts::State::trouble, "motor alarm", "Switch the prism motor off and on, then press Ctrl+R.");
+    case MaskPhase::parked: return say(EyesFacts::Condition::waiting, "at rest", "");
+    case MaskPhase::held: return say(EyesFacts::Condition::waiting, "held for calibration", "");
+    case MaskPhase::absent: return say(EyesFacts::Condition::trouble, "motor doesn't answer", "Check the prism motor's power and cable.");
+    case MaskPhase::stuck: return say(EyesFacts::Condition::trouble, "stuck", "Free the mask, then press Ctrl+R.");
+    case MaskPhase::alarm:
+      return say(EyesFacts::Condition::trouble, "motor alarm", "Switch the prism motor off and on, then press Ctrl+R.");
   }
 }
 
@@ -124,7 +125,7 @@ void EyeWatch::trace_phase(const stereo::DeviceReading& reading, std::int64_t no
 std::optional<EyesFacts> EyeWatch::word(const stereo::DeviceReading& reading) const {
   EyesFacts facts;
   if (!refused_.empty()) {
-    facts.state = EyesFacts::State::trouble;
+    facts.condition = EyesFacts::Condition::trouble;
     facts.eyes = "no depth on this screen";
     facts.advice = refused_;
     return facts;
@@ -132,7 +133,7 @@ std::optional<EyesFacts> EyeWatch::word(const stereo::DeviceReading& reading) co
   if (!follows()) return std::nullopt;
   facts.in_depth = seen_.depth_share > 0;
   if (!link_.connected()) {
-    facts.state = EyesFacts::State::trouble;
+    facts.condition = EyesFacts::Condition::trouble;
     facts.eyes = "no device daemon";
     facts.advice = "Start prismesh-deviced; it is tried again every second.";
     return facts;

@@ -125,28 +125,28 @@ struct Feed {
 
 }  // namespace
 
-struct Gui::State {
+struct Gui::Impl {
   ImGuiContext* context = nullptr;
   std::optional<GuiRenderer> renderer;
   TypeSizes type;
   bool laid_out = false;
 
-  State() : context(ImGui::CreateContext()) { ImGui::SetCurrentContext(context); }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State() {
+  Impl() : context(ImGui::CreateContext()) { ImGui::SetCurrentContext(context); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
     renderer.reset();
     ImGui::DestroyContext(context);
   }
 };
 
-Gui::Gui(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Gui::Gui(std::unique_ptr<Impl> state) : impl_(std::move(state)) {}
 Gui::Gui(Gui&&) noexcept = default;
 Gui& Gui::operator=(Gui&&) noexcept = default;
 Gui::~Gui() = default;
 
 Result<Gui> Gui::create() {
-  Gui gui(std::make_unique<State>());
+  Gui gui(std::make_unique<Impl>());
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
@@ -156,13 +156,13 @@ Result<Gui> Gui::create() {
   if (Result<void> type = gui.set_type(kFlatType); !type) return fail(type.error());
   Result<GuiRenderer> renderer = GuiRenderer::create();
   if (!renderer) return fail(renderer.error());
-  gui.state_->renderer = std::move(*renderer);
+  gui.impl_->renderer = std::move(*renderer);
   return gui;
 }
 
 Result<void> Gui::set_type(const TypeSizes& sizes) {
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-  if (fonts.Fonts.Size > 0 && sizes == state_->type) return {};
+  if (fonts.Fonts.Size > 0 && sizes == impl_->type) return {};
   if (std::error_code error; !std::filesystem::exists(kFontFile, error))
     return fail(kFontFile, "the panels' font is missing: install fonts-dejavu-core");
   fonts.Clear();
@@ -173,17 +173,17 @@ Result<void> Gui::set_type(const TypeSizes& sizes) {
     if (fonts.AddFontFromFileTTF(kFontFile, size, &config, kGlyphs.data()) == nullptr)
       return fail(kFontFile, "not a font that can be read: install fonts-dejavu-core again");
   fonts.Build();
-  state_->type = sizes;
-  if (state_->renderer) state_->renderer->upload_fonts();
+  impl_->type = sizes;
+  if (impl_->renderer) impl_->renderer->upload_fonts();
   return {};
 }
 
-const TypeSizes& Gui::type() const { return state_->type; }
+const TypeSizes& Gui::type() const { return impl_->type; }
 
 void Gui::feed(const display::WindowEvent& event) { std::visit(Feed{}, event); }
 
 bool Gui::on_panel(double x, double y) const {
-  for (const ImGuiWindow* window : state_->context->Windows) {
+  for (const ImGuiWindow* window : impl_->context->Windows) {
     // NoInputs would be wrong: it holds the flags of the keyboard's navigation too, which no panel has.
     if (!window->WasActive || window->Hidden || (window->Flags & ImGuiWindowFlags_NoMouseInputs) != 0) continue;
     if (window->Rect().Contains(ImVec2(static_cast<float>(x), static_cast<float>(y)))) return true;
@@ -200,11 +200,11 @@ void Gui::layout(display::PixelSize picture, double seconds, const std::function
   ImGui::NewFrame();
   build();
   ImGui::Render();
-  state_->laid_out = true;
+  impl_->laid_out = true;
 }
 
 void Gui::draw(display::PixelSize target, const PictureMap& from_picture) const {
-  if (state_->laid_out) state_->renderer->draw(*ImGui::GetDrawData(), target, from_picture);
+  if (impl_->laid_out) impl_->renderer->draw(*ImGui::GetDrawData(), target, from_picture);
 }
 
 void draw_pointer(double x, double y) {

@@ -47,9 +47,9 @@ class Gui {
   void draw(display::PixelSize target, const PictureMap& from_picture) const;
 
  private:
-  struct State;
-  explicit Gui(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit Gui(std::unique_ptr<Impl> state);
+  std::unique_ptr<Impl> impl_;
 };
 
 /// Inside `build`: an arrow whose tip is at the pixel, over everything else.

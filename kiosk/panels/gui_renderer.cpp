@@ -100,7 +100,7 @@ class SavedState {
 
 }  // namespace
 
-struct GuiRenderer::State {
+struct GuiRenderer::Impl {
   GLuint program = 0;
   GLint to_x = -1, to_y = -1, clip = -1;
   GLuint vertex_array = 0;
@@ -108,10 +108,10 @@ struct GuiRenderer::State {
   GLuint indices = 0;
   GLuint atlas = 0;
 
-  State() = default;
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State() {
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
     glDeleteProgram(program);
     glDeleteVertexArrays(1, &vertex_array);
     glDeleteBuffers(1, &vertices);
@@ -120,13 +120,13 @@ struct GuiRenderer::State {
   }
 };
 
-GuiRenderer::GuiRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+GuiRenderer::GuiRenderer(std::unique_ptr<Impl> state) : impl_(std::move(state)) {}
 GuiRenderer::GuiRenderer(GuiRenderer&&) noexcept = default;
 GuiRenderer& GuiRenderer::operator=(GuiRenderer&&) noexcept = default;
 GuiRenderer::~GuiRenderer() = default;
 
 Result<GuiRenderer> GuiRenderer::create() {
-  auto state = std::make_unique<State>();
+  auto state = std::make_unique<Impl>();
   const Result<GLuint> vertex = compile(GL_VERTEX_SHADER, kVertexShader);
   if (!vertex) return fail(vertex.error());
   const Result<GLuint> fragment = compile(GL_FRAGMENT_SHADER, kFragmentShader);
@@ -166,8 +166,8 @@ void GuiRenderer::upload_fonts() {
   ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
   fonts.GetTexDataAsAlpha8(&pixels, &width, &height);
   const SavedState saved;
-  if (state_->atlas == 0) glGenTextures(1, &state_->atlas);
-  glBindTexture(GL_TEXTURE_2D, state_->atlas);
+  if (impl_->atlas == 0) glGenTextures(1, &impl_->atlas);
+  glBindTexture(GL_TEXTURE_2D, impl_->atlas);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, width, height, 0, GL_RED, GL_UNSIGNED_BYTE, pixels);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
@@ -175,7 +175,7 @@ void GuiRenderer::upload_fonts() {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  fonts.TexID = reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(state_->atlas));
+  fonts.TexID = reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(impl_->atlas));
 }
 
 void GuiRenderer::draw(const ImDrawData& data, display::PixelSize target, const PictureMap& from_picture) const {
@@ -189,17 +189,17 @@ void GuiRenderer::draw(const ImDrawData& data, display::PixelSize target, const 
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glViewport(0, 0, target.width, target.height);
-  glUseProgram(state_->program);
+  glUseProgram(impl_->program);
   const Eigen::Vector3d origin(data.DisplayPos.x, data.DisplayPos.y, 0);
   const auto set_row = [&](GLint location, int row) {
     const double offset = from_picture(row, 2) - from_picture.row(row).dot(origin);
     glUniform3f(location, static_cast<float>(from_picture(row, 0)), static_cast<float>(from_picture(row, 1)), static_cast<float>(offset));
   };
-  set_row(state_->to_x, 0);
-  set_row(state_->to_y, 1);
-  glBindVertexArray(state_->vertex_array);
-  glBindBuffer(GL_ARRAY_BUFFER, state_->vertices);
-  glBindTexture(GL_TEXTURE_2D, state_->atlas);
+  set_row(impl_->to_x, 0);
+  set_row(impl_->to_y, 1);
+  glBindVertexArray(impl_->vertex_array);
+  glBindBuffer(GL_ARRAY_BUFFER, impl_->vertices);
+  glBindTexture(GL_TEXTURE_2D, impl_->atlas);
 
   for (int l = 0; l < data.CmdListsCount; ++l) {
     const ImDrawList& list = *data.CmdLists[l];
@@ -208,7 +208,7 @@ void GuiRenderer::draw(const ImDrawData& data, display::PixelSize target, const 
     for (const ImDrawCmd& command : list.CmdBuffer) {
       const ImVec4& clip = command.ClipRect;
       if (!(clip.z > clip.x && clip.w > clip.y) || command.ElemCount == 0) continue;
-      glUniform4f(state_->clip, clip.x, clip.y, clip.z, clip.w);
+      glUniform4f(impl_->clip, clip.x, clip.y, clip.z, clip.w);
       glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT,
                      reinterpret_cast<const void*>(static_cast<std::size_t>(command.IdxOffset) * sizeof(ImDrawIdx)));
     }

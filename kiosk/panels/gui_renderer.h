@@ -31,9 +31,9 @@ class GuiRenderer {
   void draw(const ImDrawData& data, display::PixelSize target, const PictureMap& from_picture) const;
 
  private:
-  struct State;
-  explicit GuiRenderer(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  struct Impl;
+  explicit GuiRenderer(std::unique_ptr<Impl> state);
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace prismesh::kiosk::panels

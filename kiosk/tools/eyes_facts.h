@@ -7,8 +7,8 @@
 namespace prismesh::kiosk::tools {
 
 struct EyesFacts {
-  enum class State : std::uint8_t { good, waiting, trouble };
-  State state = State::waiting;
+  enum class Condition : std::uint8_t { good, waiting, trouble };
+  Condition condition = Condition::waiting;
   std::string eyes = "waiting";  ///< a few words
   std::string mask;              ///< a few words; empty: the display has no mask that moves
   std::string advice;            ///< a sentence: what to do; empty: nothing

@@ -79,8 +79,8 @@ class Tool {
   /// What the tool colours the model by, in a word; empty: nothing. `leave_colours`: takes these colours away; false: there were none.
   virtual std::string colours() const { return {}; }
   virtual bool leave_colours() { return false; }
-  /// Which signs of quality the tool leaves out, in words; empty: none.
-  virtual std::string signs_left_out() const { return {}; }
+  /// Which quality glyphs the tool hides, in words; empty: none.
+  virtual std::string glyphs_hidden() const { return {}; }
   /// What to do next, or what is shown; empty: nothing.
   virtual std::string guidance() const { return {}; }
   /// Writes what a watching program needs of the picture, where it has changed.

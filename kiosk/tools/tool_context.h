@@ -67,7 +67,7 @@ struct ToolContext {
   ShownModel shown{};
   SelectionFocus selection{};
   OpenPanels open{};
-  std::size_t glyphs_left_out = 0;  ///< signs that the last picture had no room for
+  std::size_t glyphs_left_out = 0;  ///< glyphs that the last picture had no room for
   std::uint64_t changes = 0;        ///< counts up with each change of the picture or the panels
   bool follow_soon = false;         ///< follow at the next turn, even if the server says nothing
 };

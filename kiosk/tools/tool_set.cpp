@@ -86,9 +86,9 @@ bool ToolSet::leave_colours() {
   return std::any_of(all_.begin(), all_.end(), [](const auto& tool) { return tool->leave_colours(); });
 }
 
-std::string ToolSet::signs_left_out() const {
+std::string ToolSet::glyphs_hidden() const {
   for (const auto& tool : all_)
-    if (std::string signs = tool->signs_left_out(); !signs.empty()) return signs;
+    if (std::string hidden = tool->glyphs_hidden(); !hidden.empty()) return hidden;
   return {};
 }
 

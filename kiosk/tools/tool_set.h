@@ -39,7 +39,7 @@ class ToolSet {
 
   std::string colours() const;
   bool leave_colours();
-  std::string signs_left_out() const;
+  std::string glyphs_hidden() const;
   /// Of the tools in a mode first.
   std::string guidance() const;
 

@@ -18,11 +18,11 @@ namespace prismesh::mesh::relax {
 
 namespace {
 
-constexpr double kMaxLean = 60;        ///< degrees
-constexpr double kNearFoot = 1e-3;     ///< of the size: tolerance for the foot of the perpendicular
-constexpr int kMaxFeet = 6;            ///< iterations for the foot
-constexpr int kMaxSteps = 256;         ///< of a descent over shells
-constexpr double kFarthestOff = 0.25;  ///< of a shell's longest diagonal: a fitted point farther from the facet is rejected
+constexpr double kMaxLean = 60;             ///< degrees
+constexpr double kNearFoot = 1e-3;          ///< of the size: tolerance for the foot of the perpendicular
+constexpr int kMaxFeet = 6;                 ///< iterations for the foot
+constexpr int kMaxSteps = 256;              ///< of a descent over shells
+constexpr double kMaxDistanceShare = 0.25;  ///< of a shell's longest diagonal: a fitted point farther from the facet is rejected
 
 /// A point in a shell by its corners' shares, which sum to 1.
 struct OnFacet {
@@ -172,7 +172,7 @@ OnSurface ReferenceSurface::Impl::blend(ShellIndex shell, const OnFacet& facet) 
     on.point += facet.share[i] * place.point;
     on.normal += facet.share[i] * (place.normal.dot(side) < 0 ? -1.0 : 1.0) / place.normal.norm() * place.normal;
   }
-  const double farthest = kFarthestOff * longest_diagonal(model, nodes);
+  const double farthest = kMaxDistanceShare * longest_diagonal(model, nodes);
   if (!((on.point - facet.point).squaredNorm() <= farthest * farthest)) on.point = facet.point;
   on.normal = on.normal.squaredNorm() > 0 ? Vec3(on.normal.normalized()) : side;
   return on;

@@ -149,7 +149,7 @@ void add_rows(const RepairContext& context, LocalShell shell, std::vector<Candid
 
 /// Rows from a triangle over quads to another triangle: both triangles become quads.
 void add_rows_between_triangles(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
-  constexpr int kFarthest = 8;
+  constexpr int kMaxForward = 8;
   const Patch& patch = context.patch;
   const Corners corners = patch.shell(shell).corners;
   if (corner_count(corners) != 3) return;
@@ -161,7 +161,7 @@ void add_rows_between_triangles(const RepairContext& context, LocalShell shell, 
       Row row{next};
       for (int i = 0; i < 4; ++i)
         if (const EdgeOf entry = edge_of(theirs, i); std::minmax(entry.a, entry.b) == std::minmax(edge.a, edge.b)) row.edge = i;
-      for (row.forward = 0; row.forward < kFarthest; ++row.forward) {
+      for (row.forward = 0; row.forward < kMaxForward; ++row.forward) {
         const auto ends = ends_of(patch, row);
         if (!ends) break;
         if (ends->forward_corners == 4) continue;

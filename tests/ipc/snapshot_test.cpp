@@ -48,7 +48,7 @@ TEST(Snapshot, holds_what_the_picture_needs) {
   Reader reader(publisher);
   const auto view = reader.map(publisher.publish(document, true).value());
   ASSERT_TRUE(view);
-  EXPECT_EQ(view->info().most_triangles_at_node, 2) << "by the document's own criteria";
+  EXPECT_EQ(view->info().max_triangles_at_node, 2) << "by the document's own criteria";
   EXPECT_EQ(view->node_count(), 101u * 91);
   EXPECT_EQ(view->shell_count(), 9000u);
   EXPECT_EQ(view->position(9000), document.current().model.positions[9000]);

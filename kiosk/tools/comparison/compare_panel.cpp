@@ -45,7 +45,7 @@ std::vector<Choice> choices() {
 
 std::string words_of(const CompareFacts& facts, const std::optional<std::uint64_t>& generation) {
   if (!generation) return "current";
-  for (const CompareFacts::State& state : facts.states)
+  for (const CompareFacts::ComparableState& state : facts.states)
     if (state.number == *generation) return state.words;
   return "state " + std::to_string(*generation) + ", gone";
 }
@@ -90,7 +90,7 @@ void choose_against(const CompareFacts& facts, CompareEntry& entry, CompareWish&
     fixed("the deck as opened", state && wanted.against == "opened", "opened");
     fixed("the surface as last shaped", state && wanted.against == "surface", "surface");
     fixed("another deck", deck, entry.deck);
-    for (const CompareFacts::State& each : facts.states) {
+    for (const CompareFacts::ComparableState& each : facts.states) {
       ImGui::PushID(static_cast<int>(each.number));
       if (ImGui::Selectable(printable(each.words).c_str(), wanted.against_generation == each.number))
         wanted.against_generation = each.number;

@@ -33,7 +33,7 @@ class ComparisonTool final : public Tool {
   void add_to_picture(render::Picture& picture) const override;
   std::string colours() const override { return comparing_.wish().field.empty() ? std::string() : "values"; }
   bool leave_colours() override;
-  std::string signs_left_out() const override { return comparing_.coloured() ? "no signs while values are shown" : ""; }
+  std::string glyphs_hidden() const override { return comparing_.coloured() ? "no glyphs while values are shown" : ""; }
   std::string guidance() const override { return before_after_.words(); }
   std::string_view panel_name() const override { return "comparing"; }
   void draw_left(PanelLayout& layout) override;

@@ -33,12 +33,12 @@ struct SetLimits {
 
 /// The states that can be compared, and what is shown.
 struct CompareFacts {
-  struct State {
+  struct ComparableState {
     std::uint64_t number = 0;
     std::string words;
   };
   CompareWish wish;
-  std::vector<State> states;  ///< oldest first
+  std::vector<ComparableState> states;  ///< oldest first
   /// Which state a view shows.
   struct Caption {
     std::string words;

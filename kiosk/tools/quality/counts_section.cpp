@@ -34,7 +34,7 @@ void counts_section(const CountsFacts& facts) {
   count_line("fail", Signal::fail, facts.counts.fail, failed);
   ImGui::PushFont(panels::small_font());
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-  if (!facts.signs.empty()) ImGui::TextWrapped("%s", facts.signs.c_str());
+  if (!facts.hidden_glyphs.empty()) ImGui::TextWrapped("%s", facts.hidden_glyphs.c_str());
   if (facts.glyphs_left_out > 0) ImGui::TextWrapped("%s more marks than can be drawn", grouped(facts.glyphs_left_out).c_str());
   ImGui::PopStyleColor();
   ImGui::PopFont();

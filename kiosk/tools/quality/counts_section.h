@@ -12,8 +12,8 @@ namespace prismesh::kiosk::tools::quality {
 struct CountsFacts {
   mesh::quality::Counts counts;
   std::optional<mesh::quality::Counts> pulled{};  ///< of the document as the pull would leave it
-  std::string signs{};                            ///< which signs of quality are left out on purpose; empty: none
-  std::size_t glyphs_left_out = 0;                ///< signs beyond the renderer's cap
+  std::string hidden_glyphs{};                    ///< which quality glyphs are hidden on purpose; empty: none
+  std::size_t glyphs_left_out = 0;                ///< glyphs beyond the renderer's cap
 };
 
 /// Lays the section out (inside Gui::layout).

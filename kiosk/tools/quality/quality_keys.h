@@ -14,7 +14,7 @@ inline constexpr std::array kKeys = {
     KeyBinding{display::Key::left, false, false, command_of(QualityCommand::previous_error), Menu::mesh, "Left", "back to the error before",
                kRepeats},
     KeyBinding{display::letter('J'), false, true, command_of(QualityCommand::damaged_only), Menu::mesh, "Shift+J",
-               "signs and errors: all, or only what edits made worse"},
+               "glyphs and errors: all, or only what edits made worse"},
     KeyBinding{display::letter('L'), true, false, command_of(QualityCommand::relax_selection), Menu::mesh, "Ctrl+L",
                "relax the selected nodes", kAsksForEdit},
     KeyBinding{display::letter('L'), true, true, command_of(QualityCommand::relax_part), Menu::mesh, "Ctrl+Shift+L",

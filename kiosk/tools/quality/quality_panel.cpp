@@ -28,7 +28,7 @@ using panels::section;
 using panels::Signal;
 using panels::small_font;
 
-/// Error words for a line behind a sign, which says already whether it fails.
+/// Error words for a line behind a glyph, which says already whether it fails.
 std::string error_row(const ipc::QualityError& error) {
   std::string words = fmt::format("{}  {}", error.shell, metric_words(error.metric));
   if (error.value) words += "  " + value_words(*error.value, error.unit);

@@ -163,7 +163,7 @@ void QualityTool::add_to_picture(render::Picture& picture) const {
   picture.marked = marked_;
 }
 
-std::string QualityTool::signs_left_out() const { return wish_.damaged ? "signs only of what edits made worse" : ""; }
+std::string QualityTool::glyphs_hidden() const { return wish_.damaged ? "glyphs only of what edits made worse" : ""; }
 
 void QualityTool::act(const QualityAction& action) {
   if (const auto* metric = std::get_if<ChooseMetric>(&action))
@@ -189,7 +189,7 @@ void QualityTool::draw_status(PanelLayout&) {
   facts.counts = context_.shown.snapshot->info().counts;
   const RemoteDrag* drag = context_.tools.pulling() ? context_.link.drag() : nullptr;
   if (drag != nullptr && drag->begun() && drag->frame().sequence > 0) facts.pulled = drag->frame().counts;
-  facts.signs = context_.tools.signs_left_out();
+  facts.hidden_glyphs = context_.tools.glyphs_hidden();
   facts.glyphs_left_out = context_.glyphs_left_out;
   counts_section(facts);
 }

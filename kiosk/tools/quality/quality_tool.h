@@ -25,7 +25,7 @@ class QualityTool final : public Tool {
   Result<void> follow() override;
   void document_changed() override { leave_error(); }
   void add_to_picture(render::Picture& picture) const override;
-  std::string signs_left_out() const override;
+  std::string glyphs_hidden() const override;
   std::string_view panel_name() const override { return "quality"; }
   void draw_left(PanelLayout& layout) override;
   void panel_changed() override;

@@ -7,8 +7,8 @@
 
 namespace prismesh::kiosk::tools::selection {
 
-/// The part of a closed outline at `least_x` and right of it, as an outline; empty if there is none (I. E. Sutherland, G. W. Hodgman,
+/// The part of a closed outline at `min_x` and right of it, as an outline; empty if there is none (I. E. Sutherland, G. W. Hodgman,
 /// 1974).
-std::vector<Pixel> kept_right_of(const std::vector<Pixel>& outline, double least_x);
+std::vector<Pixel> kept_right_of(const std::vector<Pixel>& outline, double min_x);
 
 }  // namespace prismesh::kiosk::tools::selection

@@ -22,7 +22,7 @@ using panels::small_font;
 /// How tracked eyes and the mask are: a line when all is well, and what to do about it when it isn't.
 void eyes_section(const EyesFacts& eyes) {
   section("Eyes");
-  const bool good = eyes.state == EyesFacts::State::good, waiting = eyes.state == EyesFacts::State::waiting;
+  const bool good = eyes.condition == EyesFacts::Condition::good, waiting = eyes.condition == EyesFacts::Condition::waiting;
   draw_signal(good ? Signal::ok : waiting ? Signal::information : Signal::warn, ImGui::GetFontSize() * 0.75f);
   ImGui::SameLine();
   fact(eyes.eyes.c_str(), eyes.in_depth ? "in depth" : "flat");

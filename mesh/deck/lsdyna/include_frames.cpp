@@ -13,8 +13,8 @@ using Eigen::Affine3d;
 
 /// Transformations by nodes of includes that are transformed by nodes themselves. Real decks nest them less deeply.
 constexpr int kMaxLookupDepth = 32;
-constexpr double kFarthest = 1e60;
-constexpr double kFarthestNode = 1e200;
+constexpr double kMaxMatrixEntry = 1e60;
+constexpr double kMaxCoordinate = 1e200;
 
 std::uint32_t context_of(const PieceCards& cards) { return cards.node_runs.empty() ? 0 : cards.node_runs.front().frame; }
 
@@ -33,7 +33,7 @@ class Resolver {
       Affine3d& map = frames[c].to_basic;
       map = frames[parent].to_basic * own.value_or(Affine3d::Identity());
       unusable[c] = unusable[parent] || maps_[c].incomplete;
-      if (map.matrix().cwiseAbs().maxCoeff() < kFarthest) continue;
+      if (map.matrix().cwiseAbs().maxCoeff() < kMaxMatrixEntry) continue;
       map = Affine3d::Identity();
       unusable[c] = true;
       warn(c, "moves things out of the range of numbers");
@@ -68,7 +68,7 @@ class Resolver {
   static void refuse_the_far(PieceCards& cards) {
     if (cards.error) return;
     for (std::size_t n = 0; n < cards.position.size(); ++n)
-      if (!(cards.position[n].cwiseAbs().maxCoeff() < kFarthestNode)) {
+      if (!(cards.position[n].cwiseAbs().maxCoeff() < kMaxCoordinate)) {
         cards.error = {cards.node_offset[n], "a node of a transformed include stands too far away"};
         return;
       }
