@@ -33,15 +33,16 @@ void count_lines(const ExpressionFacts& facts, const ExpressionEntry& entry, flo
   }
   if (!facts.count) return;
   std::string text = grouped(facts.count->nodes) + " nodes";
-  if (entry.kind != Kind::node) text += ", " + grouped(facts.count->shells) + " shells";
-  if (entry.kind == Kind::part) text += ", " + grouped(facts.count->parts) + " parts";
+  if (entry.kind != EntityKind::node) text += ", " + grouped(facts.count->shells) + " shells";
+  if (entry.kind == EntityKind::part) text += ", " + grouped(facts.count->parts) + " parts";
   small_line(text, panels::kInk);
 }
 
-void choose_kind(Kind& now) {
-  constexpr std::array<std::pair<Kind, const char*>, 3> kKinds{{{Kind::node, "nodes"}, {Kind::element, "shells"}, {Kind::part, "parts"}}};
+void choose_kind(EntityKind& now) {
+  constexpr std::array<std::pair<EntityKind, const char*>, 3> kKinds{
+      {{EntityKind::node, "nodes"}, {EntityKind::element, "shells"}, {EntityKind::part, "parts"}}};
   for (const auto& [kind, label] : kKinds) {
-    if (kind != Kind::node) ImGui::SameLine();
+    if (kind != EntityKind::node) ImGui::SameLine();
     if (ImGui::RadioButton(label, now == kind)) now = kind;
   }
 }
@@ -61,7 +62,7 @@ ExpressionAsked expression_box(const ExpressionFacts& facts, display::PixelSize 
   const bool entered = panels::entry_field("##expression", *facts.earlier, opened, entry.field);
   const std::string& text = entry.field.text;
   count_lines(facts, entry, field_x);
-  const Kind kind_before = entry.kind;
+  const EntityKind kind_before = entry.kind;
   choose_kind(entry.kind);
   small_line("Enter selects, Shift adds, Ctrl takes away, both keep; Esc closes", panels::kFaintInk);
   ExpressionAsked asked;
