@@ -52,7 +52,7 @@ class StationInTime {
   void kiosk_turn() {
     kiosk_.turn({rig_.reader.eyes(), rig_.reader.prism()}, now());
     const bool mono = kiosk_.seen_mono(now());
-    if (mono != told_mono_) rig_.loop.tell(deviced::SetPictureMono{told_mono_ = mono});
+    if (mono != told_mono_) rig_.loop.send(deviced::SetPictureMono{told_mono_ = mono});
   }
 
   LoopRig rig_;
