@@ -19,7 +19,7 @@ using testing::IsEmpty;
 
 TEST(Cycles, are_names_that_lead_to_each_other) {
   EXPECT_THAT(cycles({}), IsEmpty());
-  EXPECT_THAT(cycles({{"a", {"b", "c"}}, {"b", {"d"}}, {"c", {"d"}}}), IsEmpty()) << "two ways to one place are no cycle";
+  EXPECT_THAT(cycles({{"a", {"b", "c"}}, {"b", {"d"}}, {"c", {"d"}}}), IsEmpty()) << "two paths to one node are no cycle";
   EXPECT_THAT(cycles({{"a", {"b"}}, {"b", {"a"}}}), ElementsAre("a, b"));
   EXPECT_THAT(cycles({{"a", {"b"}}, {"b", {"c"}}, {"c", {"d"}}, {"d", {"b"}}}), ElementsAre("b, c, d")) << "what leads into it isn't in it";
   EXPECT_THAT(cycles({{"a", {"b"}}, {"b", {"a", "x"}}, {"x", {"y"}}, {"y", {"x"}}}), ElementsAre("a, b", "x, y"));

@@ -1,4 +1,4 @@
-// Packed files: what gzip and zstd themselves write is read, and what is written they read. The programs are the judges where they are.
+// Compressed files: reads what gzip and zstd write, and writes what they read. Uses the programs themselves where they are installed.
 #include "base/compression.h"
 
 #include <unistd.h>

@@ -54,7 +54,7 @@ bool is_folder(int fd) {
 
 }  // namespace
 
-// These stand before the C library's of the same name.
+// These replace the C library's functions of the same name.
 extern "C" {
 ssize_t pread(int fd, void* data, size_t size, off_t offset) {
   Disk& disk = the_disk();

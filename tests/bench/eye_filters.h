@@ -101,7 +101,7 @@ class AlphaBetaGamma final : public Moments {
   double alpha_, beta_, gamma_;
 };
 
-/// How a head is thought to move, for the Kalman filters.
+/// Motion model of a head, for the Kalman filters.
 struct HeadModel {
   enum Kind { velocity, acceleration, singer } kind = velocity;
   double disturbance = 0;  ///< spectral density (velocity: mm²/s³, acceleration: mm²/s⁵), or the acceleration's standard deviation
@@ -114,7 +114,7 @@ class Kalman final : public Contender {
   struct Habits {
     double changes_per_second = 2;
     double lead_share = 1;  ///< of the time ahead
-    bool adapts = false;    ///< multiplies the disturbance by how far recent surprises exceed what was expected
+    bool adapts = false;    ///< multiplies the disturbance by the ratio of recent innovations to expected ones
     double noise_mm = 1;
   };
   Kalman(std::vector<HeadModel> models, const Habits& habits)
@@ -168,7 +168,7 @@ class Kalman final : public Contender {
       state.covariance.diagonal() << habits_.noise_mm * habits_.noise_mm, 1e4, 25e4;
     }
   }
-  /// What each model starts from: the others', by the chance that the head has changed its manner.
+  /// What each model starts from: the others', weighted by the probability that the head's motion has changed its model.
   std::vector<State> mixed(double seconds) {
     const std::size_t count = states_.size();
     const double change = count > 1 ? 1 - std::exp(-habits_.changes_per_second * seconds) : 0;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""An independent look at decks of every format: reads them by its own means, so that it can check what the program reads and writes.
+"""Independent check of decks of every format: reads them with its own readers, so that it can check what the program reads and writes.
 
     check_deck.py counts DECK                         what is in a deck, includes followed, as one JSON object
     check_deck.py edit BEFORE AFTER EXPECT.json       which entities and lines differ between two decks, and whether all that differs

@@ -71,7 +71,7 @@ def same_card(a, b, before, after):
 
 
 def wanted_displacements(proof):
-    """{id: displacement} that the edit must have made, or None where it may move what it likes."""
+    """{id: displacement} that the edit must have made, or None where it may move any node."""
     if proof.expected.get("moved_freely"):
         return None
     if "moved_by_node" in proof.expected:

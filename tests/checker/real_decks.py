@@ -23,7 +23,7 @@ import edit_proof  # noqa: E402
 
 # Where counts.json and the decks differ, and why the decks are right. {deck: {what: (counts.json, the deck)}}
 EXCEPTIONS = {
-    # *INCLUDE_PATH_RELATIVE submodels leads to material_props.k; only missing_geometry.k lacks.
+    # *INCLUDE_PATH_RELATIVE submodels leads to material_props.k; only missing_geometry.k is missing.
     "bolt_a_missing_include": {"missing_includes": (["material_props.k", "missing_geometry.k"], ["missing_geometry.k"])},
     # The file has *BEAM SECTION and *FLUID SECTION beside *SHELL SECTION; the counter knows shell sections alone.
     "ccx_furnace": {"parts_defined": (1, 2)},

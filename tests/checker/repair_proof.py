@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Strong edits on real decks, then a repair, judged by means of its own: decks are read by the checker's readers, never by the program's.
+"""Strong edits on real decks, then a repair, checked independently: decks are read by the checker's readers, never by the program's.
 
     repair_proof.py --prismesh PROGRAM [--models FOLDER] [--extreme] [--target-size SIZE] [DECK ..]      a table as in docs/repairing.md; status 1 if anything is wrong
 
@@ -72,7 +72,7 @@ class Mesh:
         return out
 
     def is_bad(self, id):
-        """By angles and edge ratio alone: what anyone would call a bad shell."""
+        """Whether a shell is bad by its angles and edge ratio alone."""
         corners, angles = self.shells[id], self.angles(id)
         p = [self.at[n] for n in corners]
         sides = [length(minus(p[i], p[i - 1])) for i in range(len(p))]

@@ -1,4 +1,4 @@
-// bench: what it measures, its table and its JSON; the times themselves are nobody's business here.
+// bench: what it measures, its table and its JSON; the times themselves aren't tested here.
 #include <cstdlib>
 #include <functional>
 

@@ -15,7 +15,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// Only how long a loaded machine may take before a test gives up.
+/// Max time to wait for output: a loaded machine may be slow.
 constexpr std::chrono::seconds kPatience{90};
 
 /// A program with a terminal of its own; ends with the test.
@@ -41,7 +41,7 @@ class OnTerminal {
     ::close(terminal_);
   }
 
-  /// Reads what the program shows until it has shown `text`; false if it ended or the patience was at its end before.
+  /// Reads what the program shows until it has shown `text`; false if it ended or the wait timed out before.
   bool shows(const std::string& text) {
     while (shown_.find(text) == std::string::npos)
       if (!read_some()) return false;

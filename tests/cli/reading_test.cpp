@@ -1,4 +1,4 @@
-// info, check, diff, distance: the commands that only look.
+// info, check, diff, distance: the commands that only read.
 #include "tests/cli/cli_fixture.h"
 
 namespace prismesh::cli {

@@ -1,4 +1,4 @@
-// `prismesh session` at a daemon that is played: what it asks for, and what it makes of a daemon that ends in the middle of an edit.
+// `prismesh session` with a simulated daemon: its requests, and its behaviour when the daemon ends in the middle of an edit.
 #include <mutex>
 #include <thread>
 #include <utility>

@@ -1,4 +1,4 @@
-// What people read: each figure of the plain text, and what is said of journals and decks that aren't what they should be.
+// Plain-text output: each figure, and the messages for invalid journals and decks.
 #include "mesh/document/edit_json.h"
 #include "tests/cli/cli_fixture.h"
 

@@ -1,5 +1,5 @@
-// The test's own disk: file calls below a folder are recorded, with what they write, and each can be made to fail. The calls stand before
-// the C library's of the same name: linked into a test, or loaded into a whole program (file_calls_preload.cpp).
+// Records file calls below a folder with the data that they write, and makes chosen calls fail. The functions replace the C library's
+// of the same name: linked into a test, or loaded into a whole program (file_calls_preload.cpp).
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,7 @@ void record_file_calls(const std::filesystem::path& folder, const std::filesyste
 void mark_file_calls(std::uint64_t number);
 /// Calls that count, so far.
 std::uint64_t counted_file_calls();
-/// Ends it.
+/// Ends the recording.
 void stop_recording_file_calls();
 
 /// Where PRISMESH_HANG_IN names this call, and the file PRISMESH_HANG_MARK is there, removes that file and never returns.

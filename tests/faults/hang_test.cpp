@@ -1,4 +1,4 @@
-// A daemon that hangs ends itself, and whoever keeps it starts it anew: with all that was acknowledged.
+// A daemon that hangs ends itself; its supervisor restarts it, and all acknowledged edits are still there.
 #include <csignal>
 #include <fstream>
 

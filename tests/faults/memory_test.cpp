@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kLittle = 70'000;  ///< what the sockets' side of the daemon needs is less
+constexpr std::size_t kLittle = 70'000;  ///< the daemon's socket code needs less
 
 TEST(Memory, where_there_is_none_the_client_is_told_and_the_document_is_whole) {
   const test::Folder folder;

@@ -74,7 +74,7 @@ fs::path packed(const fs::path& folder) {
   return folder / "packed.k.gz";
 }
 
-/// With a node pulled out, which repair mends by other shells.
+/// With a node pulled out, which repair corrects with other shells.
 fs::path dented(const fs::path& folder) {
   write(folder / "plate.k", "*KEYWORD\n*INCLUDE\nnodes.k\n" + shells_and_part() + "*END\n");
   write(folder / "nodes.k", nodes_of_rows(0, kSide + 1, 9));

@@ -133,7 +133,7 @@ inline void try_deck(deck::Format format, const char* name, const std::uint8_t* 
   const fs::path path = folder.in() / name;
   const fs::path out = folder.out() / name;
   write_files(folder.in(), name, std::string_view(reinterpret_cast<const char*>(data), size));
-  remove_includes(folder.out());  // else an include that lacks would be found among those saved before
+  remove_includes(folder.out());  // else a missing include would be found among those saved before
   const auto opened = deck::open(path);
   if (!opened) {
     REQUIRE(!opened.error().message.empty() && !opened.error().file.empty());

@@ -1,4 +1,4 @@
-// Three looks at the prism servo's bytes. The parser: whatever it finds can be written and read again, and no byte is lost from its
+// Three targets for the prism servo's bytes. The parser: whatever it finds can be written and read again, and no byte is lost from its
 // account. The simulated servo: any bytes from a host. The driver: a servo's answers with bytes put in, changed and taken out; its goals
 // stay within the travel, its readings are numbers, and a clean line brings it back to work.
 #include <algorithm>

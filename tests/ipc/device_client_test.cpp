@@ -1,4 +1,4 @@
-// A client of deviced against a daemon that behaves, one that hangs, and one that lies.
+// A client of deviced against a correct daemon, one that hangs, and one that sends false data.
 #include <stdlib.h>
 
 #include <atomic>

@@ -75,7 +75,7 @@ TEST(DeviceMessages, errors_name_the_field_and_the_nearest_known_one) {
   EXPECT_EQ(device_refusal(R"({"request": "rearm", "now": true})"), "\"rearm\": has no field \"now\": it has none");
   EXPECT_EQ(device_refusal(R"({"number": 1})"), "field \"request\" is missing");
   EXPECT_EQ(device_refusal(R"({"request": "open", "path": "car.k"})").substr(0, 19), "unknown kind \"open\"")
-      << "modeld's messages are none of deviced's";
+      << "deviced must not accept modeld's messages";
 }
 
 TEST(DeviceMessages, a_newer_daemons_fields_are_passed_over) {

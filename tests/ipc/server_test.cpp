@@ -46,7 +46,7 @@ class Folder {
   fs::path path_;
 };
 
-/// A variable of the process's surroundings, as long as it lives; null: there is none.
+/// Sets an environment variable until the end of the scope; null: unsets it.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {
@@ -227,7 +227,7 @@ TEST(Server, a_client_that_was_idle_has_its_whole_time_to_take_what_comes_next) 
   Running running(folder.path() / "s", limits);
   LineSocket first(connect_to(folder.path() / "s").value(), {}), second(connect_to(folder.path() / "s").value(), {});
   LineSocket idle(connect_to(folder.path() / "s").value(), {});
-  // What comes fills its socket to the brim, and nothing waits for a place there.
+  // The data fills its socket completely, and no more data waits to be sent.
   const std::size_t held = lines_held(1001);
   for (std::size_t i = 0; i < held; ++i) say(idle, "big 1000");
   ASSERT_TRUE(wait_for_bytes(idle, held * 1001));

@@ -1,4 +1,4 @@
-// When pictures are given depth, and what the daemon is told of them: on a clock of the test's own, with the daemon's page in its hand.
+// When pictures are given depth, and what the daemon is told of them: with a simulated clock and a simulated page of the daemon.
 #include "kiosk/eye_watch.h"
 
 #include <string>

@@ -1,4 +1,4 @@
-// The kiosk's end of the line, with a model server that answers when the test lets it.
+// The kiosk's connection to a simulated model server that answers when the test allows it.
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>

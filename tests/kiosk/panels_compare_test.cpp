@@ -14,7 +14,7 @@ namespace {
 
 class LeftPanels : public panels::GuiTest {
  protected:
-  /// The wish that was asked for becomes what is shown, as the kiosk has it.
+  /// Shows the requested comparison, as the kiosk does.
   void lay_out() {
     PanelLayout layout{picture_};
     gui_->layout(picture_, 0.016, [&] {
@@ -109,7 +109,7 @@ TEST_F(LeftPanels, none_runs_off_a_small_picture_in_the_large_type_of_stereo) {
       panels::document_foot();
       ImGui::End();
     });
-  EXPECT_TRUE(gui_->on_panel(60, picture_.height - 60.0)) << "the panel has more to say than finds room";
+  EXPECT_TRUE(gui_->on_panel(60, picture_.height - 60.0)) << "the panel has more rows than fit in its height";
   EXPECT_FALSE(gui_->on_panel(60, picture_.height - 4.0));
 }
 

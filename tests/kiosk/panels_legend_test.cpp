@@ -1,4 +1,4 @@
-// What a legend says besides its colours, and how the hand changes its limits.
+// Texts of a legend, and changing its limits with the mouse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ class LegendByHand : public panels::GuiTest {
     facts_.pane = 0;
     for (int round = 0; round < 3; ++round) lay_out();
   }
-  /// Limits that are wanted become those of the legend, as the kiosk has it.
+  /// Applies the requested limits to the legend, as the kiosk does.
   bool lay_out() {
     std::optional<SetLimits> wanted;
     gui_->layout(kLegendPicture, 0.016, [&] { wanted = legend(facts_, kLegendPicture).wanted; });

@@ -45,7 +45,7 @@ TEST_F(Overlay, the_pointer_is_where_it_points_on_every_display) {
     return changed(draw(picture, kWidth, kHeight), ground);
   };
   const Changed wanted = drawn(*stereo::find_profile("mono"), {0, 0, 650});
-  ASSERT_LT(std::abs(wanted.left - 200), 5) << "the tip, but for what is thin";
+  ASSERT_LT(std::abs(wanted.left - 200), 5) << "the pointer's tip; its thin end may be invisible";
   ASSERT_LT(std::abs(wanted.top - 40), 5);
   for (const auto& profile : stereo::built_in_profiles())
     for (const Vec3& head : {Vec3(0, 0, 650), Vec3(90, -50, 570)}) {

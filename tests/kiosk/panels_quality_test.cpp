@@ -105,7 +105,7 @@ TEST_F(QualityPanel, panels_keep_the_pointer_from_the_picture_and_words_on_it_do
       panels::guidance_panel("Axis: click the first node, Esc gives up", kPanelPicture);
     });
   EXPECT_TRUE(gui_->on_panel(60, 60)) << "the panel at the left";
-  EXPECT_FALSE(gui_->on_panel(kPanelPicture.width / 2.0, 20)) << "a line that says what to do next is in nobody's way";
+  EXPECT_FALSE(gui_->on_panel(kPanelPicture.width / 2.0, 20)) << "a hint must not catch clicks";
   EXPECT_FALSE(gui_->on_panel(kPanelPicture.width / 2.0, kPanelPicture.height / 2.0));
 }
 

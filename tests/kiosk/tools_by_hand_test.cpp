@@ -1,4 +1,4 @@
-// What a click means for an operation by hand, and the view's way to an error.
+// What a click means for an operation by hand, and how the view moves to an error.
 #include "kiosk/tools/mesh_operations/by_hand.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What the mouse means: clicks, double clicks, drags, and whose they are.
+// Gestures of the mouse: clicks, double clicks, drags, and which tool receives them.
 #include "kiosk/tools/gestures.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The handle stands on the selection and is pulled by as much as the pointer goes.
+// Position of the handle on the selection; its displacement follows the pointer's.
 #include "kiosk/tools/shaping/handle.h"
 
 #include <cmath>
@@ -254,7 +254,8 @@ TEST(HandleTest, an_arrow_toward_the_viewer_is_pulled_by_moving_up) {
     const HandlePull pull({Under::lift_handle, at, Vec3::UnitZ(), std::nullopt, taken}, aim);
     const double distance = pull.at(aim, taken - Pixel(0, 50)).distance;
     EXPECT_NEAR(distance, 50 * aim.mm_per_pixel() / scale, 1e-9);
-    EXPECT_NEAR((*stereo::pixel_of(aim, at + Vec3(0, distance, 0)) - taken).norm(), 50, 1e-6) << "as far as the pointer goes on the screen";
+    EXPECT_NEAR((*stereo::pixel_of(aim, at + Vec3(0, distance, 0)) - taken).norm(), 50, 1e-6)
+        << "the handle must move as far as the pointer on the screen";
     EXPECT_NEAR(pull.at(aim, taken + Pixel(300, 0)).distance, 0, 1e-9);
   }
 }

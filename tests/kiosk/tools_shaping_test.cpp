@@ -1,4 +1,4 @@
-// What the hand sets and types becomes the edit that says so; axes; entries that outlive the program.
+// Edits from mouse and keyboard input; axes; entries that stay after a restart.
 #include <array>
 #include <cmath>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-"""What is exchanged for what, and what isn't worth a mutant."""
+"""Replacements that make mutants, and code that gets none."""
 import re
 
 COMPARISONS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "=="}

@@ -1,4 +1,4 @@
-"""The list of what slipped through, and the counts."""
+"""The list of mutants that no test noticed, and the counts."""
 import re
 from collections import Counter
 

@@ -1,4 +1,4 @@
-// The whole thread: a deck in the kiosk's window, a selection, a pull with the pointer, and what is in the file afterwards.
+// From end to end: a deck in the kiosk's window, a selection, a pull with the pointer, and what is in the file afterwards.
 #include <cmath>
 #include <csignal>
 #include <set>

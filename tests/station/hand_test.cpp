@@ -1,4 +1,4 @@
-// The hand on the picture: turning, shifting and zooming the view, rectangles, hiding, the ring, and the display profiles.
+// Mouse and keyboard in the picture: turning, shifting and zooming the view, rectangles, hiding, the ring, and the display profiles.
 #include <cmath>
 #include <cstdlib>
 #include <set>
@@ -149,7 +149,7 @@ TEST_F(HandTest, a_part_that_was_hidden_is_not_picked_until_it_is_shown_again) {
   ASSERT_TRUE(station_->wait_for_selection(0)) << "what is hidden isn't selected";
   EXPECT_EQ(select_all_in_sight(), hat_.plate.size());
   station_->click(node[0], node[1]);
-  ASSERT_TRUE(station_->wait_for_selection(0)) << "where the hat was is nothing but ground";
+  ASSERT_TRUE(station_->wait_for_selection(0)) << "only the background is left where the hat was";
 
   station_->key("s");
   ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
@@ -181,11 +181,11 @@ TEST_F(HandTest, the_ring_moves_the_selection_in_the_plane_of_the_screen) {
     for (std::size_t i = 0; i < 3; ++i) by[i] = after.at(id)[i] - nodes_.at(id)[i];
     const double length = std::hypot(by[0], by[1], by[2]);
     const double steepest = std::hypot(aim.m[3], aim.m[7], aim.m[11]);
-    EXPECT_NEAR(aim.depth_of(by), 0, steepest * (1e-3 * length + 2e-6)) << "node " << id << " came nearer or went away";
+    EXPECT_NEAR(aim.depth_of(by), 0, steepest * (1e-3 * length + 2e-6)) << "node " << id << " changed its depth";
     const Pixel was = aim.pixel_of(nodes_.at(id)), is = aim.pixel_of(after.at(id));
     if (distance(was, is) > farthest) {
       farthest = distance(was, is);
-      EXPECT_NEAR((is[1] - was[1]) * 60, (is[0] - was[0]) * 25, 60 * 2) << "node " << id << " went another way than the pointer";
+      EXPECT_NEAR((is[1] - was[1]) * 60, (is[0] - was[0]) * 25, 60 * 2) << "node " << id << " moved in another direction than the pointer";
     }
   }
   EXPECT_NEAR(farthest, std::hypot(60, 25), 2) << "the grab follows the pointer";
@@ -219,7 +219,7 @@ double contrast(const Station::Pixels& pixels, int step) {
 }
 
 TEST_F(HandTest, p_goes_through_the_display_profiles_and_a_prism_mask_gets_its_columns) {
-  start_with_sheet({"--eye", "0,0,650"});  // nobody is followed here: without eyes a mask's picture is flat
+  start_with_sheet({"--eye", "0,0,650"});  // no tracker here: without eyes a mask's picture is mono
   const auto column_contrast = [&] {
     const Station::Pixels pixels = station_->window_pixels();
     return contrast(pixels, 1) / contrast(pixels, 2);

@@ -1,4 +1,4 @@
-// What the kiosk says of a deck: the worst first, nothing of a deck that is closed, and a list of all.
+// The kiosk's notices on a deck: the worst first, none on a closed deck, and a list of all.
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 class NoticesTest : public StationTestCase {
  protected:
-  /// The sheet, whose last card nobody knows, with an include that isn't there.
+  /// The sheet with an unknown last card and a missing include file.
   std::filesystem::path write_deck_without_its_include(const std::string& name) const {
     std::string text = original_;
     text.insert(text.find("*END"), "*INCLUDE\nlost.k\n");
@@ -44,14 +44,14 @@ TEST_F(NoticesTest, a_missing_include_is_said_first_and_the_list_has_every_warni
 
 TEST_F(NoticesTest, what_was_said_of_a_deck_goes_when_another_is_opened) {
   station_->start_kiosk();
-  ASSERT_FALSE(station_->kiosk().last("reads warning").empty()) << "of the card that nobody knows";
+  ASSERT_FALSE(station_->kiosk().last("reads warning").empty()) << "the warning on the unknown card is missing";
   const std::filesystem::path other = write_deck_without_its_include("other.k");
   station_->kiosk().skip_lines();
   open(other);
   EXPECT_NE(station_->kiosk().wait_for("reads ").find("lost.k"), std::string::npos);
   station_->kiosk().skip_lines();
   station_->key("Escape");
-  EXPECT_EQ(station_->kiosk().wait_for("reads "), "reads none") << "nothing of the first deck waits behind it";
+  EXPECT_EQ(station_->kiosk().wait_for("reads "), "reads none") << "a notice on the first deck is still in the list";
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace prismesh::test {
 
-/// Waits are for events, so this is only how long a loaded machine may take before a test gives up.
+/// Max time to wait for an event: a loaded machine may be slow.
 inline constexpr std::chrono::seconds kPatience{90};
 
 /// A program that ends with the thread that started it, however the test ends.
@@ -25,7 +25,7 @@ class Process {
   ~Process();
 
   /// The first line of standard output after the last one waited for that begins with `beginning`; empty if the program
-  /// ended or the patience was at its end first.
+  /// ended or the wait timed out first.
   std::string wait_for(std::string_view beginning);
   /// As above, for a line that `wanted` accepts.
   std::string wait_until(const std::function<bool(const std::string&)>& wanted);
@@ -34,7 +34,7 @@ class Process {
   /// Passes over all lines so far.
   void skip_lines();
 
-  /// Waits for the end: the exit status, or 128 + the signal; -1 when the patience was at its end.
+  /// Waits for the end: the exit status, or 128 + the signal; -1 if the wait timed out.
   int wait_for_exit();
   void kill(int signal);
   bool running();

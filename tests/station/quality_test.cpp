@@ -1,4 +1,4 @@
-// Checking and mending in the hand: figures, errors gone to one after the other, and an operation by hand with its preview.
+// Checking and repairing in a whole station: figures, going from error to error, and an operation by hand with its preview.
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -35,7 +35,7 @@ class QualityTest : public StationTestCase {
     if (IsSkipped()) return;
     shells_ = shells_of_deck(original_);
   }
-  /// One node pulled out of the sheet: the shells about it fail.
+  /// One node pulled out of the sheet: the shells around it fail.
   void dent(std::int64_t node, const std::string& by) {
     station_->key("e");
     station_->type(std::to_string(node));
@@ -82,7 +82,7 @@ TEST_F(QualityTest, errors_are_gone_to_worst_first_and_named) {
     ASSERT_TRUE(shells_.contains(shell)) << shell;
     seen.insert(shell);
     const auto& corners = shells_.at(shell);
-    EXPECT_NE(std::find(corners.begin(), corners.end(), middle), corners.end()) << "the worst are those about the dent";
+    EXPECT_NE(std::find(corners.begin(), corners.end(), middle), corners.end()) << "the worst shells are those around the dent";
     const auto at = station_->settled_aim().pixel_of(centre(shell, dented));
     EXPECT_NEAR(at[0], 500, 3);
     EXPECT_NEAR(at[1], 320, 3);

@@ -1,4 +1,4 @@
-// Small decks, written and read back by the test itself: an independent witness of what was saved.
+// Small decks, written and read back by the test itself: an independent check of what was saved.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A whole station for tests: an X server of its own, the model server and the kiosk, and a hand that moves the pointer and types.
+// A whole station for tests: an X server of its own, the model server and the kiosk, and simulated pointer and keyboard input.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace prismesh::test {
 
-/// What a station needs and this machine lacks; empty: nothing.
+/// Programs that a station needs and that are missing on this machine; empty: none.
 std::string missing_programs();
 
 /// An X server without a screen, with a window manager that gives windows the keyboard.
@@ -39,7 +39,7 @@ class Station {
   std::filesystem::path deck() const { return folder_ / "sheet.k"; }
 
   void start_model_server();
-  /// As a crash would.
+  /// Kills it, as a crash would.
   void kill_model_server();
   Process& model_server() { return *model_server_; }
   /// With these settings (text of a prismesh.toml).
@@ -57,7 +57,7 @@ class Station {
   Process& kiosk() { return *kiosk_; }
   VirtualDisplay& display() { return *display_; }
 
-  // --- the hand; pixels of the kiosk's picture ---
+  // --- simulated input; in pixels of the kiosk's picture ---
   void move(double x, double y);
   void press(int button = 1);
   void release(int button = 1);
@@ -70,13 +70,13 @@ class Station {
   void destroy_window();  ///< as a client that doesn't ask
   void type(const std::string& text);
 
-  // --- what the kiosk says ---
+  // --- the kiosk's output ---
   /// How a deck point comes to a pixel, as a line beginning with "aim " says it: column-major, deck to clip space.
   struct Aim {
     double width = 0, height = 0;
     std::array<double, 16> m{};
     std::array<double, 2> pixel_of(const Point& point) const;
-    /// What a displacement changes in the distance from the eye along the line of sight: none in the plane of the screen.
+    /// Change of the distance from the eye along the line of sight by a displacement: zero in the plane of the screen.
     double depth_of(const Point& by) const { return m[3] * by[0] + m[7] * by[1] + m[11] * by[2]; }
   };
   static Aim aim_from(const std::string& line);

@@ -11,7 +11,7 @@
 
 namespace prismesh::test {
 
-/// Skipped, and says why, where a station can't be.
+/// Skipped with the reason where no station can run.
 class StationTestCase : public ::testing::Test {
  protected:
   void SetUp() override {

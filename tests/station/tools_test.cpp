@@ -1,4 +1,4 @@
-// The tools in the hand: lasso, expressions, sliding, turning, typed numbers, files; and a view that moves in the middle.
+// The tools in a whole station: lasso, expressions, sliding, turning, typed numbers, files; and a view that moves in the middle.
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -35,7 +35,7 @@ class ToolsTest : public StationTestCase {
     station_->key("Return");
     ASSERT_TRUE(station_->wait_for_selection(nodes));
   }
-  /// Goes with the left button down, and waits until a preview is seen.
+  /// Moves with the left button down, and waits until a preview is seen.
   void pull(const Pixel& from, const std::vector<Pixel>& to) {
     station_->kiosk().skip_lines();
     station_->move(from[0], from[1]);
@@ -45,7 +45,7 @@ class ToolsTest : public StationTestCase {
     ASSERT_FALSE(station_->kiosk().wait_for("drag shown").empty());
   }
   void committed() { ASSERT_FALSE(station_->kiosk().wait_for("drag committed").empty()) << "the drag became no edit"; }
-  /// By how much each node went that did.
+  /// Displacement of each node that moved.
   std::map<std::int64_t, Point> moved(const std::string& saved) const {
     std::map<std::int64_t, Point> by;
     for (const auto& [id, at] : nodes_of_deck(saved))
@@ -150,7 +150,7 @@ TEST_F(ToolsTest, a_turn_about_a_picked_axis_keeps_each_nodes_distance_from_it) 
   const Pixel one = station_->pixel_of(nodes_.at(first));
   station_->click(one[0], one[1]);
   ASSERT_FALSE(station_->kiosk().wait_for("axis first node").empty());
-  station_->drag(one[0], one[1], one[0] + 30, one[1] + 10, 3);  // the pick outlives another view
+  station_->drag(one[0], one[1], one[0] + 30, one[1] + 10, 3);  // the pick stays when the view changes
   const Pixel two = station_->settled_aim().pixel_of(nodes_.at(second));
   station_->click(two[0], two[1]);
   std::stringstream axis(station_->kiosk().wait_for("axis through two nodes"));
@@ -158,7 +158,7 @@ TEST_F(ToolsTest, a_turn_about_a_picked_axis_keeps_each_nodes_distance_from_it) 
   Point from{}, way{};
   axis >> word >> word >> word >> word >> from[0] >> from[1] >> from[2] >> way[0] >> way[1] >> way[2];
   ASSERT_TRUE(axis);
-  EXPECT_LT(length(minus(from, nodes_.at(first))), 1e-9) << "the pick outlived the other view";
+  EXPECT_LT(length(minus(from, nodes_.at(first))), 1e-9) << "the pick must stay when the view changes";
   ASSERT_FALSE(station_->kiosk().wait_for("picture ").empty());
   const auto handle = station_->handle();
   ASSERT_TRUE(handle.has_value());
@@ -204,7 +204,7 @@ TEST_F(ToolsTest, the_file_under_the_pointer_is_locked_and_hidden_whole) {
   station_->key("Escape");
   station_->move(roof[0], roof[1]);
   station_->key("shift+h");
-  EXPECT_TRUE(station_->wait_for_selection(0)) << "what went out of sight isn't selected";
+  EXPECT_TRUE(station_->wait_for_selection(0)) << "hidden nodes must not be selected";
   station_->show_people("files");
 }
 

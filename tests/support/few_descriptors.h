@@ -9,7 +9,7 @@
 
 namespace prismesh::test {
 
-/// While it lives this process can open so many files more, and none beyond.
+/// Limits the process to so many more open files until the end of the scope.
 class FewDescriptors {
  public:
   explicit FewDescriptors(int free) {

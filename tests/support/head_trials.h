@@ -1,5 +1,5 @@
-// A filter of head positions on trial: a known motion, a tracker with noise, and how far the places that the filter foretells are from
-// where the head then is. Shared by the tests and by the benchmark, so that both speak of the same figures.
+// A filter of head positions on trial: a known motion, a tracker with noise, and the distances between predicted and true
+// positions. Shared by the tests and by the benchmark, so that both measure the same figures.
 #pragma once
 
 #include <algorithm>

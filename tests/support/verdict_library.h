@@ -1,5 +1,5 @@
-// The Verdict library, where this machine has it (package python3-vtk9 brings it): loaded at run time, so that nothing needs it to be
-// built.
+// The Verdict library, where this machine has it (package python3-vtk9 brings it): loaded at run time, so that no build
+// needs it.
 #pragma once
 
 #include <array>
