@@ -1,4 +1,4 @@
-// Who may include whom: each module the modules that it uses, no header–source pair itself through others.
+// Rules of includes: a module includes only modules that it uses; no header–source pair includes itself through others.
 #pragma once
 
 #include <string>

@@ -48,7 +48,7 @@ TEST(ModuleTable, is_that_of_the_tree) {
   EXPECT_THAT(table_faults(modules(), {folders.begin(), folders.end()}), IsEmpty());
 }
 
-// --- who may include whom ---
+// --- allowed includes ---
 
 TEST(IncludeRules, programs_use_ipc_and_what_it_uses) {
   for (const char* program : {"cli", "kiosk", "daemon/modeld", "daemon/deviced"})

@@ -1,4 +1,4 @@
-// packages.txt is the one list of packages: sections that are known, names that are names, nothing twice.
+// packages.txt is the one list of packages: known sections, valid names, no duplicates.
 #include <map>
 #include <regex>
 #include <set>

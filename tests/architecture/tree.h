@@ -7,7 +7,7 @@
 
 namespace prismesh::architecture {
 
-/// A C++ file of ours; the path is relative to the project's root.
+/// A C++ file of the project; the path is relative to the project's root.
 struct SourceText {
   std::string path;
   std::string text;

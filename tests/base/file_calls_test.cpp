@@ -1,4 +1,4 @@
-// Files on disks that interrupt, do a part, or fail: every call of reading and writing whole files.
+// Files on disks whose calls are interrupted, partial or failing: every call of reading and writing whole files.
 #include <fcntl.h>
 #include <malloc.h>
 #include <sys/stat.h>

@@ -45,7 +45,7 @@ void corners_of(const Model& model, std::size_t shell, double (&coordinates)[4][
   }
 }
 
-/// Nine metrics each, the same or the nearest that Verdict has, turn and turn about: the ratio of CPU times doesn't depend on who else is
+/// Nine metrics each, the same or the nearest that Verdict has, in turns: the ratio of CPU times doesn't depend on who else is
 /// on the machine. `together`: Verdict works all out in one call, which it offers besides a call each.
 void beside_verdict(benchmark::State& state, bool together) {
   constexpr std::size_t kMetrics = 9;

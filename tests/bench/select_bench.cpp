@@ -79,7 +79,7 @@ const Outline kWholePicture{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
 /// The plate of 5 m fills the picture.
 constexpr double kScale = 1.0 / 2500;
 constexpr std::array<double, 16> kView{kScale, 0, 0, 0, 0, kScale, 0, 0, 0, 0, -kScale / 4, 0, -1, -1, 0, 1};
-/// A tile of the stack does.
+/// A tile of the stack fills the picture.
 constexpr std::array<double, 16> kStackView{5 * kScale, 0, 0, 0, 0, 5 * kScale, 0, 0, 0, 0, -kScale / 4, 0, -1, -1, 0, 1};
 
 void outline_of_256_corners(benchmark::State& state) {

@@ -5,7 +5,7 @@ from deck_text import Deck, DeckError, Element, Node, integer, real
 
 SECTIONS = {"SHELL SECTION", "SOLID SECTION", "BEAM SECTION", "MEMBRANE SECTION", "SHELL GENERAL SECTION", "BEAM GENERAL SECTION",
             "FLUID SECTION", "RIGID BODY"}
-# Nodes of an element type whose data go on over lines.
+# Number of nodes of an element type whose data span lines.
 LONG = {"C3D20": 20, "C3D20R": 20, "C3D27": 27, "C3D15": 15}
 
 

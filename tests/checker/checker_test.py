@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The checker itself: that it reads small decks of every format rightly, and that it says so when an edit did what it mustn't."""
+"""The checker itself: that it reads small decks of every format correctly, and that it reports every forbidden change of an edit."""
 import os
 import sys
 import tempfile

@@ -175,7 +175,7 @@ class Reader:
         self.long, self.i10 = mode
 
     def names(self, rows):
-        """File names may go on in the next line after ' +'."""
+        """File names may continue in the next line after ' +'."""
         name = ""
         for _, line in rows:
             line = line.strip()

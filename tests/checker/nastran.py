@@ -101,7 +101,7 @@ class Reader:
         return number + 1
 
     def case_set(self, file, lines, number):
-        """SET n = 1, 5 THRU 9, ... of the case control: of nodes or elements, which its users decide. Goes on after a comma."""
+        """SET n = 1, 5 THRU 9, ... of the case control: of nodes or elements, which its users decide. Continues in the next line after a comma."""
         found = re.match(r"\s*SET\s+(\d+)\s*=(.*)", lines[number], re.I)
         if not found:
             return None
@@ -150,7 +150,7 @@ class Reader:
         return out
 
     def include(self, file, lines, number):
-        """INCLUDE 'name': the name may go on over lines until its quote closes."""
+        """INCLUDE 'name': the name may span lines until its closing quote."""
         text = tabs(lines[number].rstrip("\r")).strip()[7:].strip()
         number += 1
         if text[:1] in "'\"" and text:
@@ -211,7 +211,7 @@ class Reader:
             entry.members.update(integer(f) for f in e.fields[3:] if f.isdigit())
 
     def place(self, grids, systems):
-        """Grid points in systems that hang on grid points (CORD1x) follow when those are known."""
+        """Grid points in systems that are defined by grid points (CORD1x) are placed once those are known."""
         local = {id: (tuple(real(e.text(i)) for i in (3, 4, 5)), cp) for id, e, cp in grids}
         frames, busy = {0: None}, set()
 

@@ -46,7 +46,7 @@ EXCEPTIONS = {
     # A 1970s deck: PQUAD1 is a property, though one that today's solvers don't know.
     "nastran95_d08012a": {"parts_defined": (0, 1)},
 }
-# Refused, and the words that must say so.
+# Refused decks, and the words that the error must contain.
 REFUSED = {"nastran95_d08012a": "CQUAD1"}
 # No node to move: a fragment, or nothing but parameters.
 WITHOUT_NODES = {"pydyna_expand_include", "pydyna_param_scopes"}

@@ -1,4 +1,4 @@
-// The small parts: line diff, text for people, progress bar.
+// The small parts: line diff, readable text, progress bar.
 #include "cli/line_diff.h"
 #include "cli/progress_bar.h"
 #include "cli/report_text.h"

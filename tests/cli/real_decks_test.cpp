@@ -1,4 +1,4 @@
-// Every public deck there is: its format, its counts, the same bytes back; old cards refused.
+// Each deck of PRISMESH_MODELS: its format, its counts, the same bytes back; old cards refused.
 #include <cstdlib>
 
 #include "tests/cli/cli_fixture.h"

@@ -61,7 +61,8 @@ class FailingCalls : public ::testing::TestWithParam<Session> {
     EXPECT_TRUE(opened) << opened.error().text();
     if (!opened) return calls;
     const std::string found = fingerprint(again);
-    EXPECT_TRUE(acknowledged.empty() || found == acknowledged || found == uncertain) << "not what was acknowledged";
+    EXPECT_TRUE(acknowledged.empty() || found == acknowledged || found == uncertain)
+        << "the recovered document is not the acknowledged one";
     if (went_well_.empty()) went_well_ = documents;
     const Files deck = deck_files(place_);
     EXPECT_TRUE(std::any_of(decks.begin(), decks.end(), [&](const Files& each) { return holds(deck, each, place_); }))

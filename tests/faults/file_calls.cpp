@@ -197,7 +197,7 @@ int synced(int fd, long number) {
   hang_where_told("sync");
   const OpenFile file = open_on(fd);
   return recorded(!file.path.empty(),
-                  [&] { return recorder.on ? 0 : static_cast<int>(::syscall(number, fd)); },  // nobody cuts the power here
+                  [&] { return recorder.on ? 0 : static_cast<int>(::syscall(number, fd)); },  // no test cuts the power here
                   {file.folder ? Kind::sync_folder : Kind::sync, file.inode, 0, file.path, "", ""});
 }
 

@@ -57,7 +57,7 @@ Recorded record(const Session& session, const Root& root, const Place& place) {
 
 constexpr std::size_t kStatesOfASession = 1200;
 
-/// Of sessions by chance, all together.
+/// For all random sessions together.
 std::size_t states_by_chance() {
   const char* more = std::getenv("PRISMESH_POWER_CUTS");
   return more == nullptr ? 500 : std::strtoul(more, nullptr, 10);
@@ -65,7 +65,7 @@ std::size_t states_by_chance() {
 
 class PowerCut : public ::testing::TestWithParam<Session> {};
 
-/// For people: what led to a state that is wrong, and what is there.
+/// For the failure message: the calls that led to a wrong state, and the files there.
 void print_end(const Recorded& recorded, std::size_t count, const Place& place) {
   for (std::size_t i = count < 12 ? 0 : count - 12; i < count; ++i) {
     const FileCall& call = recorded.calls[i];

@@ -1,4 +1,4 @@
-// The small files that steer recovery: whatever byte of them changes, nothing wrong is written or opened; and new folders outlive a power
+// The small files that control recovery: whatever byte of them changes, nothing wrong is written or opened; and new folders outlive a power
 // cut.
 #include <algorithm>
 
@@ -130,7 +130,7 @@ TEST(SmallFiles, a_cut_off_save_is_finished_by_the_next_opening_that_can) {
       EXPECT_EQ(deck_files(place) == saved, !damaged);
       EXPECT_EQ(keeper.state().path, place.deck.string());
       if (!damaged) {
-        EXPECT_FALSE(keeper.changed()) << "what was to be saved is saved";
+        EXPECT_FALSE(keeper.changed()) << "the document must count as saved";
       }
       if (HasFailure()) return;
     }

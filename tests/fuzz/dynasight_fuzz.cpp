@@ -1,5 +1,5 @@
-// A tracker's line with anything on it, cut into reads anyhow: no sample out of range or back in time, the counts balance, and clean
-// records are heard again. The first byte chooses dialect and mode; after it, pairs of a length and a pause go before each read's bytes.
+// A tracker's line with anything on it, cut into reads at any place: no sample out of range or back in time, the counts balance, and clean
+// records are read again. The first byte chooses dialect and mode; after it, pairs of a length and a pause go before each read's bytes.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

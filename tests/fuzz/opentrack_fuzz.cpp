@@ -1,5 +1,5 @@
-// Datagrams from anybody on this machine: no sample out of range, what is accepted can be said again byte for byte. A byte of length goes
-// before each datagram.
+// Datagrams from any process on this machine: no sample out of range, accepted datagrams can be encoded again byte for byte. A byte of
+// length goes before each datagram.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

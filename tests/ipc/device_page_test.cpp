@@ -1,4 +1,4 @@
-// The device page: what was written is read, nobody but its writer can change it, and a writer's death leaves the last whole value.
+// The device page: what was written is read, only its writer can change it, and a writer's death leaves the last whole value.
 #include <array>
 #include <csignal>
 #include <cstring>

@@ -21,7 +21,7 @@
 
 namespace prismesh::kiosk {
 
-/// Welcomes everybody, has the devices it is given, and writes down what it is told about mask and picture.
+/// Welcomes every client, reports the given devices, and writes down what it is told about mask and picture.
 class ListeningDaemon final : public ipc::ServerHandler {
  public:
   explicit ListeningDaemon(const std::filesystem::path& socket)
@@ -64,7 +64,7 @@ class ListeningDaemon final : public ipc::ServerHandler {
     for (const ipc::DeviceInfo& device : std::exchange(changed_, {}))
       server_.send(client, ipc::encode_device_event(ipc::DeviceChanged{device}));
   }
-  /// What it answers from now on.
+  /// Sets its answers from now on.
   void have(std::vector<ipc::DeviceInfo> devices) {
     const std::lock_guard lock(mutex_);
     devices_ = std::move(devices);

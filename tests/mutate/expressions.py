@@ -16,7 +16,7 @@ INTEGERS = {TypeKind.INT, TypeKind.UINT, TypeKind.LONG, TypeKind.ULONG, TypeKind
             TypeKind.CHAR_S, TypeKind.CHAR_U, TypeKind.SCHAR, TypeKind.UCHAR}
 NUMBERS = INTEGERS | {TypeKind.FLOAT, TypeKind.DOUBLE}
 DEPENDENT = {TypeKind.DEPENDENT, TypeKind.UNEXPOSED, TypeKind.INVALID}
-SMALLEST_CONSTANT = 1e-6  # nobody can tell whether a tolerance below is doubled
+SMALLEST_CONSTANT = 1e-6  # no test can tell whether a smaller tolerance is doubled
 LARGE = 50
 
 INTEGER = re.compile(rb"(0[xX][0-9a-fA-F']+|0[bB][01']+|[0-9][0-9']*)([uUlLzZ]*)\Z")
@@ -100,7 +100,7 @@ class Expressions:
         elif kind == Kind.INIT_LIST_EXPR and self.span(cursor) not in self.unordered:
             self.exchanged(children)
         elif kind == Kind.MEMBER_REF_EXPR:
-            # Behind the object stand template arguments.
+            # Template arguments follow the object.
             children = [child for child in children[:1] if child.kind.is_expression()]
         for child in children:
             start, end = self.span(child)
@@ -265,7 +265,7 @@ class Expressions:
             if digits[:1] == b"0" and len(digits) > 1:
                 self.whole(cursor, "constant", b"(" + text + b" + 1)")
             else:
-                # A limit of 1000 that is 1001 nobody would miss.
+                # No test would notice a limit of 1001 instead of 1000.
                 other = int(digits) + 1 if int(digits) < LARGE else 2 * int(digits)
                 self.whole(cursor, "constant", str(other).encode() + found.group(2))
         elif cursor.kind == Kind.FLOATING_LITERAL and FLOATING.match(text):

@@ -72,7 +72,7 @@ class Output:
         self.line(f"[{time.monotonic() - self.began:5.0f} s] {text}")
 
 
-# --- what is broken ---
+# --- choice of mutants ---
 
 
 def changed_lines(base):
@@ -122,11 +122,11 @@ def find_mutants(wanted, copy, jobs):
     return sorted(found.values(), key=lambda m: (m.file, m.parts[0].start, m.parts[0].end, m.kind))
 
 
-# --- who judges ---
+# --- test programs ---
 
 
 def programs_for(files, test_programs):
-    """The programs of the nearest folder of tests, and those that judge afterwards what they didn't notice."""
+    """The programs of the nearest folder of tests, and those that run afterwards on the mutants they didn't notice."""
     own, also = set(), set()
     for file in files:
         folder = os.path.dirname(file)
@@ -162,7 +162,7 @@ def judge(mutants, programs, slow, copy, options, output):
         if problem is not None:
             mutant.state = "caught" if problem else "slipped"
 
-    # By chance, so that what is judged before the time is over stands for all.
+    # In random order, so that the mutants run before the time limit are a sample of all.
     order = random.Random(options.seed).sample(mutants, len(mutants))
     with ThreadPoolExecutor(options.jobs) as pool:
         for done, _ in enumerate(pool.map(one, order), 1):

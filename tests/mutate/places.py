@@ -184,7 +184,7 @@ class Finder(Expressions):
         if cursor.kind == Kind.FOR_STMT:
             head = self.data[self.span(cursor)[0] : self.span(children[-1])[0]]
             for child in children[:-1]:
-                # The step of a loop isn't changed: it would only never end.
+                # The step of a loop isn't changed: the loop would never end.
                 if child.kind == Kind.DECL_STMT:
                     self.statement(child)
                 elif self.is_condition(cursor, child, head):

@@ -8,7 +8,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
-MEMORY_KB = 4 << 20  # a mutant may ask for memory without end
+MEMORY_KB = 4 << 20  # a mutant may allocate memory without end
 FILE_BLOCKS = 4 << 20  # of 512 bytes, and write without end
 BATCH_SECONDS = 0.5
 BATCH_TESTS = 100

@@ -57,8 +57,8 @@ TEST_F(DeckFilesTest, save_as_becomes_the_document_and_later_saves_go_there) {
   station_->key("ctrl+s");
   EXPECT_TRUE(station_->kiosk().wait_for("saved ").ends_with(other.string()));
   EXPECT_NE(whole_file(other), first);
-  EXPECT_EQ(whole_file(station_->deck()), original_) << "what the user wanted to keep";
-  // The history goes on over it: both lifts can be undone.
+  EXPECT_EQ(whole_file(station_->deck()), original_) << "the user's deck must not change";
+  // The history continues after it: both lifts can be undone.
   for (int step = 0; step < 2; ++step) station_->key("ctrl+z");
   EXPECT_EQ(nodes_of_deck(station_->save_copy("undone.k")), nodes_);
 }

@@ -1,6 +1,6 @@
-// The whole station with its eyes: tracker and servo as bytes, deviced, the kiosk in a window. What happens to the picture when a part is
-// killed or unplugged. Deadlines are proven in virtual time (tests/kiosk/stereo_tracked_eyes_test.cpp); here whole processes on a machine
-// that may be busy have to get there, and how long it took is reported.
+// The whole station with eye tracking: simulated bytes of tracker and servo, deviced, the kiosk in a window. What happens to the picture
+// when a part is killed or unplugged. Deadlines are proven in virtual time (tests/kiosk/stereo_tracked_eyes_test.cpp); here whole processes
+// on a machine that may be busy have to get there, and how long it took is reported.
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -25,7 +25,7 @@ using drivers::eye_tracker::configured::SimulatedTrackerThread;
 using drivers::prism_servo::MaskPhase;
 
 constexpr double kMs = 1e-6;
-constexpr double kPatientMs = 5000;  ///< how late a process may be on a machine that does other things
+constexpr double kPatientMs = 5000;  ///< max delay of a process on a busy machine
 
 /// The number after a word of a traced line.
 std::int64_t number_after(const std::string& line, const std::string& word) {

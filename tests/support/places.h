@@ -1,4 +1,4 @@
-// Where a test finds the project's own files and the programs that were built with it. The paths are compiled into one source of their
+// Paths of the project's own files and of the programs that were built with it. The paths are compiled into one source of their
 // own, so that all others compile to the same object in whatever folder the project lies.
 #pragma once
 
