@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ipc/preview.h"
+#include "ipc/snapshot.h"
 #include "ipc/snapshot_table.h"
 
 namespace {
