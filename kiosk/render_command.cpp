@@ -188,7 +188,7 @@ Result<RenderOptions> parse(std::span<const std::string> arguments) {
   for (std::size_t i = 0; i < arguments.size(); i += 2) {
     const auto reader = readers.find(arguments[i]);
     if (reader == readers.end()) return fail("prismesh-kiosk --render", "there is no option " + arguments[i]);
-    if (i + 1 == arguments.size()) return fail("prismesh-kiosk --render", arguments[i] + " lacks its value");
+    if (i + 1 == arguments.size()) return fail("prismesh-kiosk --render", arguments[i] + " needs a value");
     if (const auto read = reader->second(arguments[i + 1]); !read) return fail(read.error());
   }
   if (options.picture.empty()) return fail("prismesh-kiosk --render", "--render needs the name of the picture");

@@ -324,7 +324,7 @@ class Reader:
                 while i < len(rows) and ("." in rows[i][1] or len(rows[i][1].split()) < 3):
                     i += 1
             corners = [n for k, n in enumerate(nodes[:4]) if n and n not in nodes[:k]]
-            if any(nodes[4:]):  # one mid-side node is enough for the form, whatever else lacks
+            if any(nodes[4:]):  # one mid-side node is enough for the form, whatever else is missing
                 kind = "SHELL_TRI_6n" if len(corners) == 3 else "SHELL_QUAD_8n"
             else:
                 kind = "SHELL_TRI" if len(corners) == 3 else "SHELL_QUAD"

@@ -17,7 +17,7 @@ namespace {
 using test::grid_document;
 using test::move_node;
 
-/// What a client does with a published snapshot: maps the segments it lacks, then the table.
+/// What a client does with a published snapshot: maps the segments it does not have yet, then the table.
 class Reader {
  public:
   explicit Reader(SnapshotPublisher& publisher) : publisher_(publisher) {}

@@ -215,11 +215,11 @@ TEST(KeysTest, the_documentation_lists_every_key_and_gesture_as_the_program_has_
   const std::string page = text.str();
   for (const KeyBinding& binding : key_bindings()) {
     const std::string row = "| " + std::string(binding.label) + " | " + std::string(binding.meaning) + " |";
-    EXPECT_NE(page.find(row), std::string::npos) << "docs/kiosk.md lacks the row\n" << row;
+    EXPECT_NE(page.find(row), std::string::npos) << "docs/kiosk.md is missing the row\n" << row;
   }
   for (const tools::MouseBinding& binding : tools::default_mouse_layout().in_words()) {
     const std::string row = "| " + binding.gesture + " | " + std::string(binding.meaning) + " |";
-    EXPECT_NE(page.find(row), std::string::npos) << "docs/kiosk.md lacks the row\n" << row;
+    EXPECT_NE(page.find(row), std::string::npos) << "docs/kiosk.md is missing the row\n" << row;
   }
 }
 

@@ -129,7 +129,8 @@ class Walker {
       if (const auto input = parameters.value("INPUT"))
         include(file, keyword.begin, *input, depth);
       else
-        outline_.warnings.note("missing-include", file, keyword.begin, "*INCLUDE lacks its INPUT=, which names the file");
+        outline_.warnings.note("missing-include", file, keyword.begin,
+                               "*INCLUDE without INPUT=, which names the file: no file is included");
     }
     close_segment({file, data, text.size()});
     open_[file] = false;
@@ -227,7 +228,7 @@ class Walker {
     if (!named || named->empty()) {
       open_block_.use = DataUse::skip;
       outline_.warnings.note("unread-elements", block.file, block.begin,
-                             "*ELEMENT lacks its TYPE=, so what follows isn't shown; it is kept as it is");
+                             "*ELEMENT without TYPE=: the elements that follow aren't shown; their text is kept");
       return;
     }
     open_block_.use = DataUse::elements;

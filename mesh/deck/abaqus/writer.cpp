@@ -171,7 +171,7 @@ class Writer : public CardWriter {
   }
 
   Result<WrittenCard> shell(const CardRef& card, const ShellCard& shell) const override {
-    if ((card.style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
+    if ((card.style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which would be missing from a changed or new one");
     if ((card.style & kStyleShifted) != 0)
       return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
     const bool triangle = shell.nodes[3] == shell.nodes[2];
@@ -247,7 +247,7 @@ class Writer : public CardWriter {
   }
 
   Result<WrittenCard> shell_in_block(const CardRef& card, const ShellCard& shell) const override {
-    if ((card.style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which a changed or new one would lack");
+    if ((card.style & kStyleMidside) != 0) return fail("", "has mid-side nodes, which would be missing from a changed or new one");
     if ((card.style & kStyleShifted) != 0)
       return fail("", "belongs to an instance whose numbers are shown changed, or to a part with several");
     const std::size_t corners = nodes_of(card.style), wanted = shell.nodes[3] == shell.nodes[2] ? 3 : 4;

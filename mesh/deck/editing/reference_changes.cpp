@@ -21,13 +21,19 @@ ShellFamilies families_of(const ModelDifference& difference) {
   return families;
 }
 
+/// A node or shell that is removed, by its id in the model.
+struct RemovedEntity {
+  Referred referred = Referred::node;
+  std::int64_t id = 0;
+};
+
 /// Takes a removed id out of the sets that list it. Errors: another card still names it, or unread text may.
-Result<void> plan_removal(const ModelDifference& difference, Referred referred, std::int64_t id, DeletionCheck& deletion,
-                          const SegmentChanges& segments, ReferencePlan& plan) {
-  const Deck& deck = difference.deck;
+Result<void> plan_removal(const Deck& deck, const RemovedEntity& removed, DeletionCheck& deletion, const SegmentChanges& segments,
+                          ReferencePlan& plan) {
+  const auto [referred, id] = removed;
   for (const Reference& reference : deck.references->naming(referred, id)) {
     const Referrer& card = deck.references->referrers()[reference.referrer];
-    const auto refuse = [&](const std::string& namer) {
+    const auto refuse = [&, referred = referred, id = id](const std::string& namer) {
       return fail(refusal_at(deck, card.file, reference.card,
                              std::string(name(referred)) + " " + std::to_string(id) + " can't be removed: " + namer + " names it"));
     };
@@ -45,10 +51,11 @@ Result<void> plan_removals(const ModelDifference& difference, const SegmentChang
   const Model& original = difference.original;
   DeletionCheck deletion(difference.deck);
   for (const ShellIndex shell : difference.changes.removed_shells)
-    if (Result<void> done = plan_removal(difference, Referred::shell, original.shell_ids[shell.value], deletion, segments, plan); !done)
+    if (Result<void> done = plan_removal(difference.deck, {Referred::shell, original.shell_ids[shell.value]}, deletion, segments, plan);
+        !done)
       return done;
   for (const NodeIndex node : difference.changes.removed_nodes)
-    if (Result<void> done = plan_removal(difference, Referred::node, original.node_ids[node.value], deletion, segments, plan); !done)
+    if (Result<void> done = plan_removal(difference.deck, {Referred::node, original.node_ids[node.value]}, deletion, segments, plan); !done)
       return done;
   return {};
 }

@@ -223,7 +223,7 @@ Result<WrittenCard> write_shell(const CardRef& card, const ShellCard& shell) {
   const ExampleShell example = example_shell(card);
   if (has_midside(example.main)) return fail("", "has mid-side nodes, which can't be divided or changed");
   if (example.form.scalar_nodes) return fail("", "has scalar nodes at its corners (_DOF), which can't be passed on");
-  if (example.form.thickness && example.lines.thickness.empty()) return fail("", "lacks the card of thicknesses that its keyword asks for");
+  if (example.form.thickness && example.lines.thickness.empty()) return fail("", "has no thickness card, which its keyword asks for");
 
   WrittenCard written;
   const Result<std::vector<std::string>> lines = written_lines(example, shell, written);

@@ -279,7 +279,7 @@ TEST(Replay, goes_on_after_a_failure) {
   Document same = small();
   for (const ReplayStep& step : replay(same, *intents)) EXPECT_TRUE(step.applied) << step.message;
   expect_same(same.current(), session.after.back().current());
-  // a variant that lacks node 30: the undo of what failed must not take the first selection back
+  // a variant without node 30: the undo of what failed must not take the first selection back
   Document variant = make_sheet(3, 3);
   const std::vector<ReplayStep> steps = replay(variant, *intents);
   EXPECT_TRUE(steps[0].applied);

@@ -76,7 +76,7 @@ TEST(Abaqus, takes_for_a_keyword_what_begins_a_line_with_a_star) {
   ASSERT_OPENED(opened);
   EXPECT_EQ(opened->model.node_count(), 3u);
   EXPECT_EQ(opened->model.shell_count(), 1u);
-  EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 1u) << "one shell lacks a corner";
+  EXPECT_EQ(warning(*opened->deck, "incomplete-element").count, 1u) << "one shell has a corner too few";
 }
 
 TEST(Abaqus, knows_its_element_types) {

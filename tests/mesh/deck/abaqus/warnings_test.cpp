@@ -27,7 +27,7 @@ TEST(AbaqusWarnings, name_the_line_and_what_is_odd_there) {
       {kPart + "*INSTANCE,NAME=I,PART=P\n5.,0.,0.\n1.,1.,1.,1.,1.,1.,90.\n*END INSTANCE\n", "unread-instance", 10,
        "where the instance I stands can't be made out; it is shown where its part stands"},
       {kThreeNodes + "*ELEMENT,TYPE=,ELSET=E\n1,1,2,3\n", "unread-elements", 5,
-       "*ELEMENT lacks its TYPE=, so what follows isn't shown; it is kept as it is"},
+       "*ELEMENT without TYPE=: the elements that follow aren't shown; their text is kept"},
       {"*HEADING\nx\n*SYSTEM\n0.,0.,0.,0.,0.,0.\n" + kThreeNodes, "unread-system", 3,
        "the points of this *SYSTEM span no coordinate system; nodes in it are shown as if it weren't there, and can't be moved"},
       {"*HEADING\nx\n*SYSTEM\n0.,0.,0.,1.,0.,0.\n2.,0.,0.\n" + kThreeNodes, "unread-system", 3,

@@ -77,7 +77,7 @@ TEST(AbaqusWriter, refuses_what_a_card_or_its_keyword_cant_hold) {
   EXPECT_EQ(kWriter->shell({cut_off, 18, 4}, card).error().message, "has a card that can't be read");
   EXPECT_EQ(kWriter->shell_in_block({cut_off, 18, 4}, card).error().message, "has a card that can't be read");
   EXPECT_EQ(kWriter->shell_in_block({"5,1,2,3,4,5,6,7,8", 0, 4 | abaqus::kStyleMidside}, card).error().message,
-            "has mid-side nodes, which a changed or new one would lack");
+            "has mid-side nodes, which would be missing from a changed or new one");
   EXPECT_EQ(kWriter->shell_in_block({"5,1,2,3,4", 0, 4 | abaqus::kStyleShifted}, card).error().message,
             "belongs to an instance whose numbers are shown changed, or to a part with several");
   const auto block = [](const std::string& text, bool triangles) {

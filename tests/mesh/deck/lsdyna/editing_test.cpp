@@ -273,7 +273,7 @@ TEST_F(Editing, refuses_what_shells_cant_pass_on) {
       {"*ELEMENT_SHELL_DOF\n11,7,1,2,5,4\n1,2,3,4\n", "_DOF", 9},
       {"*ELEMENT_SHELL\n11,7,1,2,5,4,3,6,3,6\n", "mid-side", 9},
       {"*ELEMENT_SHELL\n11,7,1,2,5,4,-3\n", "has mid-side nodes", 9},  // though none that the model has
-      {"*ELEMENT_SHELL_THICKNESS\n11,7,1,2,5,4\n", "lacks the card of thicknesses", 9},
+      {"*ELEMENT_SHELL_THICKNESS\n11,7,1,2,5,4\n", "has no thickness card", 9},
       {"*PARAMETER\nRt,2.0\n*ELEMENT_SHELL_THICKNESS\n11,7,1,2,5,4\n1.0,&t,1.0,1.0\n", "parameter &t", 11},
       {"*PARAMETER\nIn,2\n*ELEMENT_SHELL\n11,7,1,&n,5,4\n", "parameter &n", 11},
   };

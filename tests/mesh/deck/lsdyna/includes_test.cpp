@@ -1,4 +1,4 @@
-// Includes: where they are looked for, what is held, what is said when one lacks; and parameters across them.
+// Includes: where they are searched for, what is held, which warnings a missing one gives; and parameters across includes.
 #include "mesh/deck/lsdyna/parameters.h"
 #include "tests/mesh/deck/deck_files.h"
 

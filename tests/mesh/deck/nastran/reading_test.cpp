@@ -562,7 +562,7 @@ TEST(NastranReading, corner_thicknesses_may_lack_or_be_shares_of_the_propertys) 
   };
   EXPECT_EQ(thickness(""), 0) << "the property's own";
   EXPECT_EQ(thickness(",,,1.,2.,3.,6.\n"), 3);
-  EXPECT_EQ(thickness(",,,1.,,3.,\n"), 2) << "where it lacks the property's counts";
+  EXPECT_EQ(thickness(",,,1.,,3.,\n"), 2) << "a missing thickness is the property's";
   EXPECT_EQ(thickness(",,1,.5,.5,.5,.5\n"), 1) << "shares";
   EXPECT_EQ(thickness(",,1,.5,,.5,\n"), 1.5);
 }

@@ -41,7 +41,7 @@ TEST(NastranWriter, moves_within_the_card) {
        {1, 2, 3},
        {1, 20.5, 3},
        "GRID    1               1.0     20.5    3.0"},
-      {"fields that lack", "GRID    1               1.", {1, 0, 0}, {1, 0, 2}, "GRID    1               1.              2.0"},
+      {"missing fields", "GRID    1               1.", {1, 0, 0}, {1, 0, 2}, "GRID    1               1.              2.0"},
       {"large field",
        "GRID*                  1                             1.0             2.0*A\n*A                   3.0",
        {1, 2, 3},
