@@ -26,9 +26,10 @@ struct Select {
   select::EntityKind kind = select::EntityKind::node;
   SelectMode mode = SelectMode::set;
 };
-/// What bounds a region: feature edges (sharper than `angle`, free edges, junctions); the part at the place; everything connected by
-/// shared edges; or the loop of free edges nearest to the place, whose nodes it selects.
-enum class RegionBy : std::uint8_t { features, part, piece, free_edge };
+/// What bounds a region: features (creases and fillets that bend by more than `angle`, free edges, junctions); the same with single edges
+/// only, without fillets; the part at the place; everything connected by shared edges; or the loop of free edges nearest to the place,
+/// whose nodes it selects.
+enum class RegionBy : std::uint8_t { features, creases, part, piece, free_edge };
 struct SelectRegion {
   NodeReference at;
   double angle = 30;  ///< degrees

@@ -18,6 +18,7 @@ PRISMESH_JSON_NAMES(mesh::document::SelectMode, {{"set", mesh::document::SelectM
                                                  {"subtract", mesh::document::SelectMode::subtract},
                                                  {"intersect", mesh::document::SelectMode::intersect}});
 PRISMESH_JSON_NAMES(mesh::document::RegionBy, {{"features", mesh::document::RegionBy::features},
+                                               {"creases", mesh::document::RegionBy::creases},
                                                {"part", mesh::document::RegionBy::part},
                                                {"piece", mesh::document::RegionBy::piece},
                                                {"free_edge", mesh::document::RegionBy::free_edge}});

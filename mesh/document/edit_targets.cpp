@@ -74,6 +74,7 @@ Result<Selection> region_at(const Generation& generation, const SelectRegion& re
   if (!start) return fail(start.error());
   if (recipe.by == RegionBy::free_edge) return loop_at(generation, recipe, *start, hidden);
   select::RegionOptions options{select::RegionBound::features, recipe.angle, hidden, nullptr};
+  if (recipe.by == RegionBy::creases) options.bound = select::RegionBound::creases;
   if (recipe.by == RegionBy::part) options.bound = select::RegionBound::part;
   if (recipe.by == RegionBy::piece) options.bound = select::RegionBound::piece;
   select::WeldedShells welds;

@@ -1,6 +1,9 @@
 #include "mesh/model/features.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include <Eigen/Geometry>
 
 #include "base/deterministic_math.h"
 #include "base/parallel_for.h"
@@ -39,6 +42,15 @@ bool is_crease(const Model& model, ShellIndex first, ShellIndex second, Edge end
   // a shell without width has no plane
   const double size = std::sqrt(one.squaredNorm() * other.squaredNorm());
   return size > 1e-12 * along.squaredNorm() && -one.dot(other) < cos_limit * size;
+}
+
+Bend bend_between(const Model& model, ShellIndex first, ShellIndex second, Edge ends) {
+  const Vec3& a = model.position(ends.low);
+  const Vec3& b = model.position(ends.high);
+  const Vec3 middle = 0.5 * (a + b);
+  const Vec3 one = away_from_edge(model, first, middle, b - a);
+  const Vec3 other = away_from_edge(model, second, middle, b - a);
+  return {kDegreesPerRadian * deterministic_atan2(one.cross(other).norm(), -one.dot(other)), 2 * std::min(one.norm(), other.norm()), other};
 }
 
 EdgeKind classify_edge(const Model& model, EdgeIndex edge, Edge ends, double angle_degrees) {

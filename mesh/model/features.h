@@ -17,6 +17,14 @@ EdgeKind classify_edge(const Model& model, EdgeIndex edge, Edge ends, double ang
 /// The same for two shells at one edge; `cos_limit` is the cosine of the angle.
 bool is_crease(const Model& model, ShellIndex first, ShellIndex second, Edge ends, double cos_limit);
 
+/// How two shells at one edge bend.
+struct Bend {
+  double degrees = 0;  ///< 0 in a plane sheet, 180 folded back; 0 where a shell has no width
+  double width = 0;    ///< of the narrower shell: twice its centre's distance from the edge's line
+  Vec3 beyond;         ///< from the edge's middle into the second shell, at right angles to the edge
+};
+Bend bend_between(const Model& model, ShellIndex first, ShellIndex second, Edge ends);
+
 /// Classifies every edge.
 std::vector<EdgeKind> classify_edges(const Model& model, double angle_degrees);
 

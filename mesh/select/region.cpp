@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -14,6 +15,9 @@
 #include "base/deterministic_math.h"
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
+#include "mesh/model/features.h"
+#include "mesh/select/crease_lines.h"
+#include "mesh/select/fillets.h"
 #include "mesh/spatial/closest_point.h"
 
 namespace prismesh::mesh::select {
@@ -38,15 +42,6 @@ bool is_thin(const Model& model, ShellIndex shell) {
   return twice_area(model, shell).norm() <= kThin * max_edge2 * (nodes.is_triangle() ? 1 : 2);
 }
 
-/// The direction from an edge into a shell, at right angles to the edge. It depends on the shell's place, not on the order of its nodes.
-Vec3 away_from(const Model& model, ShellIndex shell, const Vec3& middle, const Vec3& along) {
-  const ShellNodes& nodes = model.shell(shell);
-  Vec3 centre = Vec3::Zero();
-  for (int i = 0; i < nodes.corners(); ++i) centre += model.position(nodes.node[static_cast<std::size_t>(i)]);
-  const Vec3 out = centre / nodes.corners() - middle;
-  return out - along * (out.dot(along) / along.squaredNorm());
-}
-
 /// Whether the shell's nodes run from `from` to `to`, not the other way.
 bool runs_along(const ShellNodes& nodes, NodeIndex from, NodeIndex to) {
   const auto corners = static_cast<std::size_t>(nodes.corners());
@@ -64,6 +59,12 @@ class RegionGrowth {
         options_(options),
         cos_limit_(deterministic_cos_degrees(options.angle_degrees)),
         marks_(model.shell_count(), 0) {
+    if (options.bound == RegionBound::features) {
+      // nothing bends by more than 180 degrees but a rolled edge
+      fillets_.emplace(model, options.angle_degrees < 180 ? options.angle_degrees : std::numeric_limits<double>::infinity(),
+                       options.out_of_sight);
+      crease_lines_.emplace(model, options.angle_degrees, options.out_of_sight);
+    }
     if (options.across != nullptr) node_done_.assign(model.node_count(), 0);
   }
 
@@ -114,11 +115,11 @@ class RegionGrowth {
     if (options_.bound == RegionBound::piece || (others > 1 && options_.across != nullptr)) {
       for (const ShellIndex other : shells) reach(other);
     } else if (others == 1 && !is_found(beyond)) {
-      cross_smoothly(shell, beyond, from, to);
+      cross_smoothly(shell, beyond, edge, from, to);
     }
   }
 
-  void cross_smoothly(ShellIndex shell, ShellIndex beyond, NodeIndex from, NodeIndex to) {
+  void cross_smoothly(ShellIndex shell, ShellIndex beyond, EdgeIndex edge, NodeIndex from, NodeIndex to) {
     const bool before_thin = (marks_[shell.value] & kThinShell) != 0, beyond_thin = is_thin(model_, beyond);
     const bool turned = ((marks_[shell.value] & kTurned) != 0) != runs_along(model_.shell(beyond), from, to);
     if (before_thin || beyond_thin) {
@@ -128,7 +129,7 @@ class RegionGrowth {
       } else if (plane.valid() && folded_beyond_thin(plane, beyond, turned)) {
         return;
       }
-    } else if (is_crease(shell, beyond, from, to)) {
+    } else if (is_bound(shell, beyond, edge, from < to ? Edge{from, to} : Edge{to, from})) {
       return;
     }
     take(beyond, kFound | (turned ? kTurned : 0) | (beyond_thin ? kThinShell : 0));
@@ -140,12 +141,13 @@ class RegionGrowth {
     return found == plane_before_.end() ? ShellIndex() : found->second;
   }
 
-  bool is_crease(ShellIndex a, ShellIndex b, NodeIndex from, NodeIndex to) const {
-    const Vec3 along = model_.position(to) - model_.position(from);
-    const Vec3 middle = 0.5 * (model_.position(from) + model_.position(to));
-    if (!(along.squaredNorm() > 0)) return false;
-    const Vec3 out_a = away_from(model_, a, middle, along), out_b = away_from(model_, b, middle, along);
-    return -out_a.dot(out_b) < cos_limit_ * std::sqrt(out_a.squaredNorm() * out_b.squaredNorm());
+  bool is_bound(ShellIndex shell, ShellIndex beyond, EdgeIndex edge, Edge ends) {
+    if (options_.bound == RegionBound::creases) return mesh::is_crease(model_, shell, beyond, ends, cos_limit_);
+    const bool in_fillet = fillets_->directions(shell) != 0;
+    if (in_fillet != (fillets_->directions(beyond) != 0)) return true;
+    // edges inside a fillet may be sharp by themselves
+    if (in_fillet && fillets_->bends_across(shell, ends) && fillets_->bends_across(beyond, ends)) return false;
+    return crease_lines_->is_crease(edge, ends, shell, beyond);
   }
 
   /// Compares the shells before and behind thin ones. The thin shells have no plane, but the order of their nodes carries the orientation.
@@ -183,6 +185,8 @@ class RegionGrowth {
   const Adjacency& adjacency_;
   const RegionOptions& options_;
   double cos_limit_;
+  std::optional<Fillets> fillets_;  ///< for bound features
+  std::optional<CreaseLines> crease_lines_;
   std::vector<std::uint8_t> marks_;
   std::vector<std::uint8_t> node_done_;
   std::unordered_map<std::uint32_t, ShellIndex> plane_before_;  ///< only looked up

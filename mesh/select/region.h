@@ -10,19 +10,21 @@
 
 namespace prismesh::mesh::select {
 
-/// Where a region ends. features: at creases sharper than the angle, free edges and junctions of three or more shells; part: at the end of
-/// its part; piece: where no shared edge connects further shells.
-enum class RegionBound : std::uint8_t { features, part, piece };
+/// Where a region ends. features: at creases and fillets that bend by more than the angle, free edges and junctions of three or more
+/// shells; creases: the same, but each edge counts by itself, so that the region continues over a fillet whose single edges bend less;
+/// part: at the end of its part; piece: where no shared edge connects further shells.
+enum class RegionBound : std::uint8_t { features, creases, part, piece };
 
 struct RegionOptions {
   RegionBound bound = RegionBound::features;
-  double angle_degrees = 30;             ///< for bound features
+  double angle_degrees = 30;             ///< for the bounds features and creases; 180: nothing bends by more
   OutOfSight out_of_sight;               ///< hidden parts
   const WeldedShells* across = nullptr;  ///< continues across these welds, across junctions and shared nodes; null: it doesn't
 };
 
-/// Returns the region that contains the shells `start`. The angle of a crease is measured between the directions of the two shells away
-/// from their edge, so the orientation of normals makes no difference. A shell too thin to have a plane (width less than 1/200 of its
+/// Returns the region that contains the shells `start`. A region that begins in a fillet (mesh/select/fillets.h) is the fillet; creases of
+/// varying angle count as a whole (mesh/select/crease_lines.h). The angle of a crease is measured between the directions of the two shells
+/// away from their edge, so the orientation of normals makes no difference. A shell too thin to have a plane (width less than 1/200 of its
 /// length) is crossed, and the shells beyond it are compared with those before it.
 ShellSet region(const Model& model, const ShellSet& start, const RegionOptions& options);
 

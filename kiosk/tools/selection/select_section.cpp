@@ -31,14 +31,14 @@ std::optional<RegionSettings> select_section(const SelectFacts& facts, PanelLayo
   if (facts.shells > 0) panels::fact("shells", panels::grouped(facts.shells));
   choice("draw", {"lasso", "rectangle"}, facts.lasso, SelectionCommand::outline_kind, layout);
   choice("takes", {"visible", "through"}, !facts.through, SelectionCommand::toggle_through, layout);
-  constexpr std::array<const char*, 4> kBounds{"creases", "part", "piece", "free edge"};
+  constexpr std::array<const char*, kRegionBounds> kBounds{"features", "single creases", "part", "piece", "free edge"};
   panels::setting("region", kBounds[static_cast<std::size_t>(facts.region.by)], binding_of(kKeys, command_of(SelectionCommand::region_by)),
                   layout);
   std::optional<RegionSettings> wanted;
-  if (facts.region.by == mesh::document::RegionBy::features) {
+  if (has_angle(facts.region.by)) {
     auto angle = static_cast<float>(facts.region.angle);
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::SliderFloat("##angle", &angle, 0, 180, "creases over %.0f\u00b0"))
+    if (ImGui::SliderFloat("##angle", &angle, 0, 180, "bends over %.0f\u00b0"))
       wanted = RegionSettings{facts.region.by, std::round(static_cast<double>(angle)), facts.region.across_welds};
   }
   panels::check("regions across welds", facts.region.across_welds, command_of(SelectionCommand::region_across_welds), layout);

@@ -9,6 +9,12 @@
 
 namespace prismesh::kiosk::tools::selection {
 
+inline constexpr int kRegionBounds = 5;  ///< the number of values of RegionBy
+/// Whether the angle counts for this bound.
+inline bool has_angle(mesh::document::RegionBy by) {
+  return by == mesh::document::RegionBy::features || by == mesh::document::RegionBy::creases;
+}
+
 struct RegionSettings {
   mesh::document::RegionBy by = mesh::document::RegionBy::features;
   double angle = 30;  ///< degrees

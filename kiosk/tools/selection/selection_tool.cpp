@@ -54,7 +54,7 @@ void SelectionTool::command(std::uint8_t number, const Pointer& pointer) {
     case SelectionCommand::region:
       if (pointer) select_region(*pointer, SelectMode::set);
       break;
-    case SelectionCommand::region_by: region_by_ = static_cast<RegionBy>((static_cast<int>(region_by_) + 1) % 4); break;
+    case SelectionCommand::region_by: region_by_ = static_cast<RegionBy>((static_cast<int>(region_by_) + 1) % kRegionBounds); break;
     case SelectionCommand::wider_angle: change_angle(kAngleStep); break;
     case SelectionCommand::narrower_angle: change_angle(-kAngleStep); break;
     case SelectionCommand::region_across_welds: region_across_welds_ = !region_across_welds_; break;
@@ -173,7 +173,7 @@ void SelectionTool::change_angle(double degrees) {
   ++context_.changes;
   context_.trace.line(fmt::format("angle {}", angle));
   auto& region = context_.selection.last_region;
-  if (!region || region->mode != SelectMode::set || region->by != RegionBy::features) return;
+  if (!region || region->mode != SelectMode::set || !has_angle(region->by)) return;
   region->angle = angle;
   send(context_, *region);
 }
