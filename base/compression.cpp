@@ -21,20 +21,24 @@ constexpr int kGzip = 16 + MAX_WBITS;
 
 const unsigned char* raw(std::span<const std::byte> bytes) { return reinterpret_cast<const unsigned char*>(bytes.data()); }
 
-/// Text that grows up to a limit.
+/// Text that grows until it reaches a limit, or more than what the packed bytes read so far may hold.
 class GrowingText {
  public:
-  GrowingText(std::size_t first, std::size_t max) : max_(max) { reserve(std::clamp<std::size_t>(first, 1024, max)); }
+  /// `max`: characters. There is space for one more, so that a text which is just as long is seen to end.
+  GrowingText(std::size_t first, std::size_t max) : max_(max) { reserve(std::min(std::max<std::size_t>(first, 1024), max + 1)); }
 
-  /// Space for at least one more byte; empty if there is none: failure() tells why.
+  /// Space for at least one more byte; empty: out of memory. Precondition: refusal() gave no reason.
   std::span<char> room() {
-    if (size_ == capacity_) reserve(capacity_ + std::min(capacity_ / 2 + 1, max_ - capacity_));
+    if (size_ == capacity_) reserve(capacity_ + std::min(capacity_ / 2 + 1, max_ + 1 - capacity_));
     return {data_.get() + size_, size_ < capacity_ ? std::min(capacity_ - size_, kStep) : 0};
   }
   void took(std::size_t count) { size_ += count; }
-  std::string failure() const {
-    return size_ >= max_ ? "unpacks to far more than any deck would (more than " + std::to_string(max_ >> 10) + " KB); it isn't read"
-                         : "is too large for this machine's memory once unpacked";
+  /// Why no more is unpacked after so many packed bytes; empty: there is no reason.
+  std::string refusal(std::size_t packed_bytes) const {
+    if (size_ > max_unpacked(packed_bytes)) return "unpacks to more than 200 times its size, as no deck does; it isn't read";
+    if (size_ > max_)
+      return "unpacks to more than the " + std::to_string(max_ >> 20) + " MB that are left for packed files of a deck; unpack it first";
+    return {};
   }
   std::size_t size() const { return size_; }
   /// The text with a NUL behind it; null: out of memory.
@@ -88,7 +92,7 @@ Result<void> unpack_gzip(std::span<const std::byte> in, GrowingText& out, const 
   std::size_t at = 0;
   for (;;) {
     const std::span<char> room = out.room();
-    if (room.empty()) return fail("", out.failure());
+    if (room.empty()) return fail("", "is too large for this machine's memory once unpacked");
     const std::size_t given = std::min(in.size() - at, kMaxIn);
     z.next_in = const_cast<unsigned char*>(raw(in.subspan(at)));
     z.avail_in = static_cast<uInt>(given);
@@ -97,6 +101,7 @@ Result<void> unpack_gzip(std::span<const std::byte> in, GrowingText& out, const 
     const int result = inflate(&z, Z_NO_FLUSH);
     at += given - z.avail_in;
     out.took(room.size() - z.avail_out);
+    if (std::string why = out.refusal(at); !why.empty()) return fail("", std::move(why));
     if (result == Z_STREAM_END) {
       const std::span<const std::byte> rest = in.subspan(at);
       if (is_zero(rest)) return {};
@@ -126,12 +131,13 @@ Result<void> unpack_zstd(std::span<const std::byte> in, GrowingText& out, const 
   ZSTD_inBuffer from{in.data(), in.size(), 0};
   for (std::size_t left = 1; from.pos < from.size || left != 0;) {
     const std::span<char> room = out.room();
-    if (room.empty()) return fail("", out.failure());
+    if (room.empty()) return fail("", "is too large for this machine's memory once unpacked");
     ZSTD_outBuffer to{room.data(), room.size(), 0};
     const std::size_t before = from.pos;
     // Zero at the end of each frame; the next one begins by itself.
     left = ZSTD_decompressStream(context.get(), &to, &from);
     out.took(to.pos);
+    if (std::string why = out.refusal(from.pos); !why.empty()) return fail("", std::move(why));
     if (ZSTD_isError(left)) return fail("", std::string("is damaged, or is no zstd file all through (") + ZSTD_getErrorName(left) + ")");
     if (left != 0 && from.pos == from.size && from.pos == before && to.pos == 0) return fail("", "is cut off: its zstd data end too early");
     if (progress && !progress(static_cast<double>(from.pos) / static_cast<double>(from.size))) return fail(cancelled());
@@ -157,8 +163,10 @@ std::size_t likely_size(std::span<const std::byte> in, Packing packing) {
 }  // namespace
 
 Packing packing_of(std::span<const std::byte> bytes) {
-  if (bytes.size() < 4) return Packing::none;
   const unsigned char* b = raw(bytes);
+  if (bytes.size() == 2 || bytes.size() == 3)
+    return b[0] == 0x1f && b[1] == 0x8b && (bytes.size() == 2 || b[2] == 8) ? Packing::gzip : Packing::none;
+  if (bytes.size() < 4) return Packing::none;
   // 8: deflate, the only method there is.
   if (b[0] == 0x1f && b[1] == 0x8b && b[2] == 8) return Packing::gzip;
   if (b[0] == 0x28 && b[1] == 0xb5 && b[2] == 0x2f && b[3] == 0xfd) return Packing::zstd;
@@ -167,11 +175,11 @@ Packing packing_of(std::span<const std::byte> bytes) {
   return Packing::none;
 }
 
-Result<FileBytes> unpack(FileBytes file, const std::filesystem::path& path, const Progress& progress) {
+Result<FileBytes> unpack(FileBytes file, const std::filesystem::path& path, const Progress& progress, std::size_t max_bytes) {
   const std::span<const std::byte> in = file.bytes();
   const Packing packing = packing_of(in);
   if (packing == Packing::none) return file;
-  GrowingText out(likely_size(in, packing), max_unpacked(in.size()));
+  GrowingText out(likely_size(in, packing), max_bytes);
   const Result<void> unpacked = packing == Packing::gzip ? unpack_gzip(in, out, progress) : unpack_zstd(in, out, progress);
   if (!unpacked) return is_cancelled(unpacked.error()) ? fail(unpacked.error()) : fail(path.string(), unpacked.error().message);
   const std::size_t size = out.size();

@@ -222,14 +222,17 @@ Result<void> take_permissions(int fd, const StagedFiles::File& staged) {
   return {};
 }
 
-Result<StagedFiles::File> stage(const PendingFile& file, Written& written) {
+Result<StagedFiles::File> stage(const PendingFile& file, Written& written, std::vector<fs::path>& made_folders) {
   Staging staging;
   StagedFiles::File& staged = staging.file;
   staged.shown = file.path;
   Result<fs::path> target = follow_links(file.path);
   if (!target) return fail(target.error());
   staged.target = *target;
-  if (const Result<void> made = make_folders(folder_of(staged.target)); !made)
+  std::error_code missing;
+  if (staged.target != file.path && !fs::is_directory(folder_of(staged.target), missing))
+    return fail(file.path.string(), "is a symbolic link to " + staged.target.string() + ", whose folder isn't there; nothing was written");
+  if (const Result<void> made = make_folders(folder_of(staged.target), &made_folders); !made)
     return fail(file.path.string(), "its folder can't be made: " + made.error().text());
 
   std::string name = (folder_of(staged.target) / ("." + staged.target.filename().string() + ".XXXXXX")).string();
@@ -276,27 +279,39 @@ Result<void> flush_folder(const fs::path& folder, const fs::path& file_in_it) {
   return {};
 }
 
-Result<void> make_folders(const fs::path& folder) {
+Result<void> make_folders(const fs::path& folder, std::vector<fs::path>* made) {
   std::error_code problem;
   if (folder.empty() || fs::is_directory(folder, problem)) return {};
   const fs::path above = folder_of(folder.has_filename() ? folder : folder.parent_path());
-  if (Result<void> made = make_folders(above); !made) return made;
-  if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) return fail(folder.string(), reason(errno));
+  if (Result<void> made_above = make_folders(above, made); !made_above) return made_above;
+  const bool is_made = ::mkdir(folder.c_str(), 0777) == 0;
+  if (!is_made && errno != EEXIST) return fail(folder.string(), reason(errno));
+  if (is_made && made) made->push_back(folder);
   if (!fs::is_directory(folder, problem)) return fail(folder.string(), reason(ENOTDIR));
   return flush_folder(above, folder);
 }
 
 StagedFiles::StagedFiles(StagedFiles&& other) noexcept
-    : files_(std::exchange(other.files_, {})), in_place_(std::exchange(other.in_place_, 0)) {}
+    : files_(std::exchange(other.files_, {})),
+      in_place_(std::exchange(other.in_place_, 0)),
+      made_folders_(std::exchange(other.made_folders_, {})) {}
 
 StagedFiles& StagedFiles::operator=(StagedFiles&& other) noexcept {
   std::swap(files_, other.files_);
   std::swap(in_place_, other.in_place_);
+  std::swap(made_folders_, other.made_folders_);
   return *this;
 }
 
 StagedFiles::~StagedFiles() {
   for (std::size_t i = in_place_; i < files_.size(); ++i) ::unlink(files_[i].temporary.c_str());
+  // Fails where a file is in place, or something else has put one there.
+  for (std::size_t i = made_folders_.size(); i-- > 0;) ::rmdir(made_folders_[i].c_str());
+}
+
+void StagedFiles::leave() {
+  files_.resize(in_place_);
+  made_folders_.clear();
 }
 
 Result<StagedFiles> StagedFiles::write(std::span<const PendingFile> files, const Progress& progress) {
@@ -305,7 +320,7 @@ Result<StagedFiles> StagedFiles::write(std::span<const PendingFile> files, const
   staged.files_.reserve(files.size());
   std::map<fs::path, fs::path> folders;
   for (const PendingFile& file : files) {
-    Result<File> one = stage(file, written);
+    Result<File> one = stage(file, written, staged.made_folders_);
     if (!one) return fail(std::move(one.error()));
     folders[folder_of(one->target)] = one->temporary;
     staged.files_.push_back(std::move(*one));
@@ -331,6 +346,7 @@ Result<void> StagedFiles::put_in_place() {
   for (const File& file : files_) folders[folder_of(file.target)] = file.target;
   for (const auto& [folder, file] : folders)
     if (Result<void> flushed = flush_folder(folder, file); !flushed) return flushed;
+  made_folders_.clear();
   return {};
 }
 

@@ -60,7 +60,7 @@ struct PendingFile {
 };
 
 /// Files that are written and flushed to disk beside their targets, with the folders that name them, and wait to be put in place. The
-/// destructor removes those that aren't in place.
+/// destructor removes those that aren't in place, and the folders that were made for them and hold nothing.
 class StagedFiles {
  public:
   struct File {
@@ -70,8 +70,9 @@ class StagedFiles {
     FileIdentity identity;            ///< of what was written; putting it in place doesn't change it
   };
 
-  /// Keeps an existing target's permissions and makes missing folders. Reports progress at least every 8 MB, and for the last time when
-  /// everything is written. Errors: a file can't be written, cancelled; then no temporary file remains.
+  /// Keeps an existing target's permissions and makes missing folders. A link is followed to a file, or to where one can be made: the
+  /// folder that it leads to must exist. Reports progress at least every 8 MB, and for the last time when everything is written. Errors: a
+  /// file can't be written, cancelled; then no temporary file and no new folder remains.
   static Result<StagedFiles> write(std::span<const PendingFile> files, const Progress& progress = {});
 
   StagedFiles() = default;
@@ -85,11 +86,12 @@ class StagedFiles {
   /// error it may be called again and continues. Errors: a file can't be replaced, a folder can't be flushed; how many are in place.
   Result<void> put_in_place();
   /// Files that aren't in place yet stay on disk beside their targets.
-  void leave() { files_.resize(in_place_); }
+  void leave();
 
  private:
   std::vector<File> files_;
   std::size_t in_place_ = 0;
+  std::vector<std::filesystem::path> made_folders_;  ///< an outer one before those in it
 };
 
 /// Writes files beside their targets and puts them in place. On an error before the first rename nothing has changed and no temporary file
@@ -100,8 +102,9 @@ Result<void> replace_files(std::span<const PendingFile> files, const Progress& p
 /// `file_in_it`. Errors: it can't be flushed.
 Result<void> flush_folder(const std::filesystem::path& folder, const std::filesystem::path& file_in_it = {});
 
-/// Makes a folder and its missing parents, and flushes them, so that they survive a power cut. Errors: one can't be made.
-Result<void> make_folders(const std::filesystem::path& folder);
+/// Makes a folder and its missing parents, and flushes them, so that they survive a power cut. `made` gets those that it made, an outer one
+/// before those in it, also after an error. Errors: one can't be made.
+Result<void> make_folders(const std::filesystem::path& folder, std::vector<std::filesystem::path>* made = nullptr);
 
 /// The folder that a file is in; "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& file);

@@ -25,7 +25,7 @@ struct Signature {
 
 constexpr Signature kSignatures[] = {
     {std::string_view("PK\x03\x04", 4), "a ZIP archive (or an office document); unpack it first"},
-    {std::string_view("\x1f\x8b", 2), "a gzip file; unpack it first"},
+    {std::string_view("\x1f\x8b", 2), "a gzip file that is packed in a way other than gzip's own (deflate); unpack it first"},
     {std::string_view("BZh", 3), "a bzip2 file; unpack it first"},
     {std::string_view("\xfd"
                       "7zXZ",
@@ -54,6 +54,10 @@ struct Votes {
   int nastran = 0;
   int radioss = 0;
   int abaqus = 0;
+  int abaqus_comments = 0;    ///< lines that begin with two asterisks; other texts have such lines as well
+  bool has_keywords = false;  ///< a line that begins with an asterisk and a word
+
+  int max() const { return std::max({ls_dyna, nastran, radioss, abaqus}); }
 };
 
 constexpr int kCertain = 1000;
@@ -65,10 +69,12 @@ bool is_word(std::string_view line, std::string_view word) {
 
 void vote_on_asterisk(std::string_view line, Votes& votes) {
   if (line.starts_with("**")) {
-    ++votes.abaqus;
+    ++votes.abaqus_comments;
     return;
   }
   const std::string_view name = line.substr(1, line.find_first_of(" ,=\t") - 1);
+  // In other texts an asterisk begins an item of a list or emphasised words, and another one ends these.
+  votes.has_keywords |= !name.empty() && name[0] >= 'A' && name[0] <= 'Z' && line.find('*', 1) == std::string_view::npos;
   if (name.starts_with("KEYWORD")) votes.ls_dyna += kCertain;
   for (const std::string_view own : {"HEADING", "STEP", "PREPRINT", "INSTANCE", "ASSEMBLY", "ELSET", "NSET", "SHELL", "MATERIAL", "SOLID"})
     if (name == own) votes.abaqus += 20;
@@ -83,6 +89,9 @@ void vote_on_asterisk(std::string_view line, Votes& votes) {
 void vote_on_slash(std::string_view line, Votes& votes) {
   for (const std::string_view own : {"/BEGIN", "/NODE", "/SHELL/", "/SH3N/", "/PART/", "/PROP/", "/MAT/", "/TITLE", "/BRICK/", "/GRNOD/"})
     if (line.starts_with(own)) votes.radioss += 20;
+  // Input of the Radioss engine, which the reader refuses by name.
+  for (const std::string_view engine : {"/RUN/", "/VERS/", "/TFILE", "/RFILE", "/ANIM/", "/H3D/", "/STOP", "/PRINT/", "/MON/"})
+    if (line.starts_with(engine)) votes.radioss += 20;
 }
 
 void vote_on_word(std::string_view line, Votes& votes) {
@@ -107,8 +116,9 @@ Votes count_votes(std::string_view text) {
       vote_on_slash(line, votes);
     else if (line[0] != '$' && line[0] != '#')
       vote_on_word(line, votes);
-    if (std::max({votes.ls_dyna, votes.nastran, votes.radioss, votes.abaqus}) >= kCertain) break;
+    if (votes.max() >= kCertain) break;
   }
+  if (votes.has_keywords) votes.abaqus += votes.abaqus_comments;
   return votes;
 }
 
@@ -139,7 +149,7 @@ Detected detect_format(std::string_view text) {
   if (has_carriage_returns_alone(text))
     return {{}, "text whose lines end with carriage returns alone; save it with LF or CRLF line ends first"};
   const Votes votes = count_votes(text);
-  const int most = std::max({votes.ls_dyna, votes.nastran, votes.radioss, votes.abaqus});
+  const int most = votes.max();
   if (most == 0 || (most < kCertain && text.find('\0') != std::string_view::npos)) return {{}, describe(text)};
   if (votes.ls_dyna == most) return {Format::ls_dyna, {}};
   if (votes.nastran == most) return {Format::nastran, {}};

@@ -73,6 +73,7 @@ Result<OpenedDeck> finish(DeckContents found, Watch& watch) {
   deck->id_offsets = std::move(found.id_offsets);
   OpenedDeck opened;
   opened.model = assemble(found.cards, std::move(found.parts), *deck, found.warnings);
+  if (std::optional<Error> error = first_error(found)) return fail(std::move(*error));
   deck->files = std::move(found.files);
   std::sort(deck->left_out_elements.begin(), deck->left_out_elements.end());
   deck->last_ids.resize(deck->files.size());

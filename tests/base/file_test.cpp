@@ -125,6 +125,47 @@ TEST_F(FileTest, writes_through_a_symbolic_link) {
   EXPECT_NE(failed.error().message.find("symbolic link"), std::string::npos);
 }
 
+TEST_F(FileTest, a_dangling_link_is_followed_into_a_folder_that_is_there) {
+  fs::create_directory(folder_ / "real");
+  fs::create_symlink("real/a", folder_ / "link");
+  const PendingFile file{folder_ / "link", {"new"}};
+  ASSERT_TRUE(replace_files({&file, 1}));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(content(folder_ / "real/a"), "new");
+
+  fs::create_symlink("gone/deep/a", folder_ / "dangling");
+  const PendingFile dangling{folder_ / "dangling", {"new"}};
+  const Result<void> refused = replace_files({&dangling, 1});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().text(), (folder_ / "dangling").string() + ": is a symbolic link to " + (folder_ / "gone/deep/a").string() +
+                                        ", whose folder isn't there; nothing was written");
+  EXPECT_FALSE(fs::exists(folder_ / "gone"));
+}
+
+TEST_F(FileTest, folders_made_for_files_that_cant_be_written_are_removed) {
+  fs::create_directory(folder_ / "folder");
+  fs::create_directories(folder_ / "there/empty");
+  const PendingFile files[] = {{folder_ / "new/deep/a", {"new"}}, {folder_ / "there/empty/more/b", {"new"}}, {folder_ / "folder", {"new"}}};
+  ASSERT_FALSE(replace_files(files));
+  EXPECT_FALSE(fs::exists(folder_ / "new"));
+  EXPECT_TRUE(fs::is_directory(folder_ / "there/empty")) << "it was there before";
+  EXPECT_FALSE(fs::exists(folder_ / "there/empty/more"));
+
+  // Told to stop, or given up before the files are put in place.
+  ASSERT_FALSE(replace_files(std::span(files).first(2), [](double) { return false; }));
+  EXPECT_FALSE(fs::exists(folder_ / "new"));
+  { const Result<StagedFiles> staged = StagedFiles::write(std::span(files).first(2)); }
+  EXPECT_FALSE(fs::exists(folder_ / "new"));
+
+  // What something else has put there meanwhile stays.
+  {
+    const Result<StagedFiles> staged = StagedFiles::write(std::span(files).first(1));
+    write("new/other", "text");
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "new/deep"));
+  EXPECT_EQ(content(folder_ / "new/other"), "text");
+}
+
 TEST_F(FileTest, nothing_changes_when_one_of_them_cant_be_written) {
   const fs::path first = write("first", "old");
   fs::create_directory(folder_ / "folder");

@@ -87,15 +87,10 @@ ElementType element_type(std::string_view type) {
 }
 
 void count(const ElementType& type, ElementCounts& counts, std::size_t cards) {
-  switch (type.element_class) {
-    case ElementClass::shell:
-      (type.corners == 3 ? (type.has_midside() ? counts.tri6 : counts.tri) : (type.has_midside() ? counts.quad8 : counts.quad)) += cards;
-      break;
-    case ElementClass::beam: counts.beam += cards; break;
-    case ElementClass::solid: counts.solid += cards; break;
-    case ElementClass::tshell: counts.tshell += cards; break;
-    default: counts.other += cards;
-  }
+  if (type.element_class == ElementClass::shell)
+    counts.of_shell(type.corners == 3, type.has_midside()) += cards;
+  else
+    counts.of(type.element_class) += cards;
 }
 
 }  // namespace prismesh::mesh::deck::abaqus

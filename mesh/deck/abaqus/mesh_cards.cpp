@@ -117,7 +117,7 @@ class PieceReader {
       if (numbers_.empty() || (numbers_[0] == 0 && numbers_.size() == 1)) continue;
       ++cards;
       if (skip_)
-        out_.note(skip_, offset, numbers_[0]);
+        leave_out(skip_, offset);
       else if (numbers_[0] <= 0)
         return fail_at(offset, "an element needs a number above 0, but this line has " + quoted(line.text));
       else
@@ -144,6 +144,11 @@ class PieceReader {
     return true;
   }
 
+  void leave_out(const char* why, std::size_t offset) {
+    out_.note(why, offset, numbers_[0]);
+    count(*type_, out_.left_out, 1);
+  }
+
   void add_element(std::size_t offset) {
     const std::size_t nodes = std::min<std::size_t>(numbers_.size() - 1, type_->nodes > 0 ? type_->nodes : kMaxNodes);
     const auto node = [&](std::size_t n) { return numbers_[n + 1]; };
@@ -151,7 +156,7 @@ class PieceReader {
       const std::size_t corners = type_->corners;
       bool whole = nodes >= type_->nodes;
       for (std::size_t n = 0; n < std::min(nodes, corners); ++n) whole &= node(n) > 0;
-      if (!whole) return out_.note("incomplete-element", offset, numbers_[0]);
+      if (!whole) return leave_out("incomplete-element", offset);
       RawShells& shells = out_.shells;
       if (type_->has_midside()) {
         std::array<std::int64_t, 4> midside{};
@@ -170,7 +175,7 @@ class PieceReader {
       if (node(n) > 0) elements.nodes.push_back(node(n));
     if (nodes < type_->nodes || elements.nodes.size() == before) {
       elements.nodes.resize(before);
-      return out_.note("incomplete-element", offset, numbers_[0]);
+      return leave_out("incomplete-element", offset);
     }
     elements.id.push_back(numbers_[0]);
     elements.part.push_back(part_);

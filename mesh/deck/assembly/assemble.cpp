@@ -25,6 +25,7 @@ std::vector<std::uint32_t> held_files(std::span<const PieceCards> cards) {
 void count_cards(std::span<const PieceCards> cards, Deck& deck) {
   for (const PieceCards& piece : cards) {
     deck.element_cards += piece.counts;
+    deck.left_out_cards += piece.left_out;
     for (const auto& [kind, count] : piece.kinds) deck.element_kinds[kind] += count;
   }
 }
@@ -33,9 +34,10 @@ void note_oddities(std::span<const PieceCards> cards, Warnings& warnings) {
   for (const PieceCards& piece : cards)
     for (const Oddity& oddity : piece.oddities) {
       const std::string id = oddity.id > 0 ? " (id " + std::to_string(oddity.id) + ")" : std::string();
-      const std::string message = oddity.kind == "undefined-parameter"
-                                      ? "a card" + id + " names a parameter that isn't defined; it is left out"
-                                      : "an element" + id + " has fewer nodes than its kind needs; it is left out";
+      const std::string message =
+          oddity.kind == "undefined-parameter" ? "a card" + id + " names a parameter that isn't defined; it is left out"
+          : oddity.kind == "unnamed-node" ? std::string("a node has the id 0, by which no card can name it; it is kept and isn't shown")
+                                          : "an element" + id + " has fewer nodes than its kind needs; it is left out";
       warnings.note(oddity.kind, piece.file, oddity.offset, message, oddity.count);
     }
 }
@@ -60,7 +62,21 @@ void put_shells(AssembledShells shells, Model& model, Deck& deck) {
   deck.shell_line = std::move(shells.offset);
 }
 
+/// Marks the first unread node that an element may need as an error, and warns of the others.
+void settle_unread_nodes(std::span<PieceCards> cards, std::vector<std::int64_t> undefined, Warnings& warnings) {
+  std::sort(undefined.begin(), undefined.end());
+  for (PieceCards& piece : cards)
+    for (UnreadNode& node : piece.unread_nodes) {
+      const bool is_needed = node.id == 0 ? !undefined.empty() : std::binary_search(undefined.begin(), undefined.end(), node.id);
+      if (!is_needed)
+        warnings.note("bad-card", piece.file, node.offset, node.message + "; no element needs it, so it is kept as it is");
+      else if (!piece.error)
+        piece.error = {node.offset, std::move(node.message)};
+    }
+}
+
 void put_left_out(LeftOutElements left_out, Model& model, Deck& deck) {
+  deck.left_out_cards += left_out.counts;
   for (const NodeIndex node : left_out.nodes)
     model.node_holds.set(node.value, static_cast<std::uint8_t>(model.node_holds[node.value] | kHeldByMissing));
   deck.left_out_elements = std::move(left_out.ids);
@@ -82,6 +98,7 @@ Model assemble(std::span<PieceCards> cards, std::vector<Part> parts, Deck& deck,
   LeftOutElements left_out;
   put_shells(assemble_shells(cards, lookup, left_out, warnings), model, deck);
   model.elements = assemble_elements(cards, lookup, left_out, warnings);
+  settle_unread_nodes(cards, std::move(left_out.undefined_nodes), warnings);
   put_left_out(std::move(left_out), model, deck);
   return model;
 }

@@ -44,13 +44,21 @@ void keep_shells(RawShells& shells, std::vector<ShellNodes>& corners, const std:
   keep_only(shells.id, keep);
 }
 
-/// For each shell of a piece whether all its nodes are defined; empty: all are. Warns of the others.
+void count_left_out(const RawShells& shells, const std::vector<std::uint8_t>& keep, ElementCounts& counts) {
+  std::vector<std::uint8_t> has_midside(keep.size());
+  for (const auto& [shell, nodes] : shells.midside) has_midside[shell] = 1;
+  for (std::size_t i = 0; i < keep.size(); ++i)
+    if (!keep[i]) ++counts.of_shell(shells.nodes[i][2] == shells.nodes[i][3], has_midside[i] != 0);
+}
+
+/// For each shell of a piece whether all its nodes are defined; empty: all are. Warns of the others and notes their undefined nodes.
 std::vector<std::uint8_t> shells_with_nodes(const PieceCards& cards, const std::vector<ShellNodes>& corners, const IdLookup& lookup,
-                                            Warnings& warnings) {
+                                            LeftOutElements& left_out, Warnings& warnings) {
   const RawShells& shells = cards.shells;
   std::vector<std::uint8_t> keep;
   const auto drop = [&](std::size_t i, std::int64_t node) {
     if (keep.empty()) keep.assign(shells.id.size(), 1);
+    left_out.undefined_nodes.push_back(node);
     if (!keep[i]) return;
     keep[i] = 0;
     note_undefined_node(warnings, {"shell", shells.id[i], node, cards.file, shells.offset[i]});
@@ -67,8 +75,9 @@ std::vector<std::uint8_t> shells_with_nodes(const PieceCards& cards, const std::
 void drop_undefined_shells(PieceCards& cards, std::vector<ShellNodes>& corners, const IdLookup& lookup, LeftOutElements& left_out,
                            Warnings& warnings) {
   RawShells& shells = cards.shells;
-  const std::vector<std::uint8_t> keep = shells_with_nodes(cards, corners, lookup, warnings);
+  const std::vector<std::uint8_t> keep = shells_with_nodes(cards, corners, lookup, left_out, warnings);
   if (keep.empty()) return;
+  count_left_out(shells, keep, left_out.counts);
   const auto leave_node = [&](NodeIndex node) {
     if (node.valid()) left_out.nodes.push_back(node);
   };
@@ -84,7 +93,7 @@ void drop_undefined_shells(PieceCards& cards, std::vector<ShellNodes>& corners, 
 }
 
 void drop_duplicate_shells(PieceCards& cards, const IdIndex& index, std::size_t start, std::vector<ShellNodes>& corners,
-                           Warnings& warnings) {
+                           LeftOutElements& left_out, Warnings& warnings) {
   RawShells& shells = cards.shells;
   std::vector<std::uint8_t> keep(shells.id.size());
   for (std::size_t i = 0; i < keep.size(); ++i) {
@@ -93,6 +102,7 @@ void drop_duplicate_shells(PieceCards& cards, const IdIndex& index, std::size_t 
       warnings.note("duplicate-element", cards.file, shells.offset[i],
                     "shell " + std::to_string(shells.id[i]) + " is defined again; its first definition counts");
   }
+  count_left_out(shells, keep, left_out.counts);
   keep_shells(shells, corners, keep);
 }
 
@@ -129,7 +139,8 @@ AssembledShells assemble_shells(std::span<PieceCards> cards, const IdLookup& loo
   std::vector<std::size_t> starts = shell_starts(cards);
   shells.index = index_of(starts, cards, kShellIds);
   if (!shells.index->duplicates().empty()) {
-    for (std::size_t p = 0; p < cards.size(); ++p) drop_duplicate_shells(cards[p], *shells.index, starts[p], corners[p], warnings);
+    for (std::size_t p = 0; p < cards.size(); ++p)
+      drop_duplicate_shells(cards[p], *shells.index, starts[p], corners[p], left_out, warnings);
     starts = shell_starts(cards);
     shells.index = index_of(starts, cards, kShellIds);
   }

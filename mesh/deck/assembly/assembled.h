@@ -38,10 +38,12 @@ struct IdLookup {
   }
 };
 
-/// Elements that aren't in the model because a node of theirs isn't defined.
+/// Elements that aren't in the model because a node of theirs isn't defined, by id.
 struct LeftOutElements {
   std::vector<std::int64_t> ids;
   std::vector<NodeIndex> nodes;  ///< those of their nodes that are defined: moved, they would deform an element that nobody sees
+  std::vector<std::int64_t> undefined_nodes;  ///< ids; of shells, beams, solids and thick shells
+  ElementCounts counts;                       ///< and of elements whose ids are defined again
 };
 
 /// A node that the card of an element names and nobody defines.

@@ -81,6 +81,7 @@ FileSet FileSet::again(FileSet files) {
 FileSet::FileSet(fs::path main, FileBytes bytes, StandIns stand_ins)
     : stand_ins_(std::move(stand_ins)), main_folder_(normal(main).parent_path()) {
   by_canonical_[canonical_name(main)] = 0;
+  if (bytes.is_packed()) unpacked_bytes_ = bytes.text().size();
   fs::path name = main.filename();
   files.push_back({std::move(main), std::move(name), std::move(bytes)});
 }
@@ -110,11 +111,12 @@ std::uint32_t FileSet::open(const fs::path& found, const std::string& name, std:
     return kNoFile;
   }
   Result<FileBytes> bytes = read_file(stand_in(stand_ins_, found));
-  if (bytes) bytes = unpack(std::move(*bytes), found);
+  if (bytes) bytes = unpack(std::move(*bytes), found, {}, kMaxUnpackedBytes - std::min(unpacked_bytes_, kMaxUnpackedBytes));
   if (!bytes) {
     reason = bytes.error().message;
     return kNoFile;
   }
+  if (bytes->is_packed()) unpacked_bytes_ += bytes->text().size();
   // An absolute name would still mean the old file in a copy of the deck, so it isn't made relative.
   const fs::path relative = fs::path(name).is_absolute() ? fs::path(name) : normal(found).lexically_relative(main_folder_);
   const auto index = static_cast<std::uint32_t>(files.size());

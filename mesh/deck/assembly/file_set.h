@@ -42,6 +42,7 @@ class FileSet {
 
   StandIns stand_ins_;
   std::filesystem::path main_folder_;
+  std::size_t unpacked_bytes_ = 0;  ///< of all packed files
   std::map<std::string, std::uint32_t> by_canonical_;
   std::map<std::pair<std::uint32_t, std::string>, std::pair<std::uint32_t, std::string>> known_;  ///< file or reason, by who names it
 };

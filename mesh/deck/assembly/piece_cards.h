@@ -25,6 +25,13 @@ struct Oddity {
   std::size_t count = 0;
 };
 
+/// The card of a node that can't be read. The deck is refused only if an element may need the node.
+struct UnreadNode {
+  std::int64_t id = 0;  ///< 0: not known
+  std::size_t offset = 0;
+  std::string message;
+};
+
 /// Nodes or shells of a piece from `first` on.
 struct PieceRun {
   std::uint32_t first = 0;  ///< within the piece
@@ -44,12 +51,21 @@ struct RawShells {
   std::vector<std::pair<std::uint32_t, std::array<std::int64_t, 4>>> midside;  ///< shell within the piece; 0: none there
 };
 
+/// A number for a kind of elements that are numbered by themselves. Different words give different numbers, but for rare exceptions.
+constexpr std::uint32_t numbering_of(std::string_view word) {
+  std::uint32_t hash = 2166136261u;  // FNV-1a
+  for (const char c : word) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  return hash;
+}
+
 struct RawElements {
   std::vector<std::int64_t> id;
   std::vector<std::int64_t> part;
   std::vector<std::uint32_t> first_node{0};
   std::vector<std::int64_t> nodes;
   std::vector<std::uint64_t> offset;
+  /// Masses and other elements of different numberings may have the same ids. Empty: all are of one.
+  std::vector<std::uint32_t> numbering;
 };
 
 /// The cards of a piece of one file, in their order.
@@ -66,8 +82,10 @@ struct PieceCards {
   RawShells shells;
   std::array<RawElements, kElementClassCount> elements;  ///< by ElementClass; [shell] stays empty
   ElementCounts counts;
+  ElementCounts left_out;                                  ///< of these, cards that are in no array here
   std::vector<std::pair<std::string, std::size_t>> kinds;  ///< element cards by the deck's own keyword
   std::vector<Oddity> oddities;
+  std::vector<UnreadNode> unread_nodes;
   std::optional<std::pair<std::size_t, std::string>> error;  ///< offset and sentence
   bool encrypted = false;                                    ///< an encrypted block stands in the piece
 

@@ -26,6 +26,26 @@ ElementCounts& ElementCounts::operator+=(const ElementCounts& more) {
   return *this;
 }
 
+std::size_t& ElementCounts::of_shell(bool is_triangle, bool has_midside) {
+  return is_triangle ? (has_midside ? tri6 : tri) : (has_midside ? quad8 : quad);
+}
+
+std::size_t& ElementCounts::of(ElementClass element_class) {
+  switch (element_class) {
+    case ElementClass::shell: return quad;
+    case ElementClass::beam: return beam;
+    case ElementClass::solid: return solid;
+    case ElementClass::tshell: return tshell;
+    default: return other;
+  }
+}
+
+ElementCounts ElementCounts::without(const ElementCounts& fewer) const {
+  const auto left = [](std::size_t all, std::size_t some) { return all - std::min(all, some); };
+  return {left(quad, fewer.quad), left(tri, fewer.tri),     left(quad8, fewer.quad8),   left(tri6, fewer.tri6),
+          left(beam, fewer.beam), left(solid, fewer.solid), left(tshell, fewer.tshell), left(other, fewer.other)};
+}
+
 namespace {
 
 const CardRun& run_of(const std::vector<CardRun>& runs, std::uint32_t index) {

@@ -32,8 +32,7 @@ struct Warning {
   std::size_t count = 1;
 };
 
-/// Element cards of the deck by kind. Includes cards with missing nodes, which the model leaves out. A shell card with fewer than three
-/// nodes counts as a quad.
+/// Element cards by kind. A shell card with fewer than three nodes counts as a quad.
 struct ElementCounts {
   std::size_t quad = 0;
   std::size_t tri = 0;
@@ -45,7 +44,12 @@ struct ElementCounts {
   std::size_t other = 0;  ///< springs, masses, particles, belts, ...
 
   std::size_t shells() const { return quad + tri + quad8 + tri6; }
+  std::size_t all() const { return shells() + beam + solid + tshell + other; }
+  std::size_t& of_shell(bool is_triangle, bool has_midside);
+  std::size_t& of(ElementClass element_class);  ///< shells: quads
   ElementCounts& operator+=(const ElementCounts& more);
+  /// Without those in `fewer`; where there are more of these, 0.
+  ElementCounts without(const ElementCounts& fewer) const;
 };
 
 /// One file of the deck.
@@ -101,6 +105,7 @@ struct Deck {
   std::vector<std::int64_t> left_out_elements;  ///< ids of element cards that aren't in the model, ascending; new elements can't have them
   std::vector<std::uint32_t> held_files;        ///< files that stand for several places, ascending; their cards must not change
   ElementCounts element_cards;
+  ElementCounts left_out_cards;  ///< of these, cards that the model leaves out: undefined or missing nodes, an id that is defined again
   std::map<std::string, std::size_t, std::less<>> element_kinds;  ///< cards by the deck's own word: "CQUAD4", "SHELL_THICKNESS", "S4R"
   std::shared_ptr<const References> references;                   ///< cards that name entities; never null after opening
   TimeStepControl time_step;

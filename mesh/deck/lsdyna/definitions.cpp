@@ -9,6 +9,9 @@
 namespace prismesh::mesh::deck::lsdyna {
 namespace {
 
+/// More of them in one block are only the same mistake again.
+constexpr std::size_t kMaxBadFields = 1000;
+
 bool has_option(std::string_view keyword, std::string_view option) { return keyword.find(option) != std::string_view::npos; }
 
 /// The data lines of a block, up to an encrypted part.
@@ -26,8 +29,10 @@ class Cards {
     Line line;
     if (!lines_.next(line) || line.text.starts_with(kEncryptedBegin)) return false;
     card.cut(line.text, columns_);
+    offset_ = line.offset;
     return true;
   }
+  std::size_t offset() const { return offset_; }  ///< of the last card
   bool skip(int cards) {
     Line line;
     while (cards > 0 && lines_.next(line)) --cards;
@@ -37,6 +42,7 @@ class Cards {
  private:
   Lines lines_;
   Columns columns_;
+  std::size_t offset_ = 0;
 };
 
 /// `offset`: of the include's ids.
@@ -97,6 +103,16 @@ bool Definitions::read(std::string_view text, const Block& block, const Paramete
     return false;
   }
   return true;
+}
+
+/// A number that a part needs. An undefined parameter is reported where it is read.
+std::optional<double> Definitions::number(const Card& card, std::size_t offset, std::size_t field, const char* what,
+                                          const Parameters& parameters) {
+  const std::optional<double> value = card.real(field, parameters);
+  const std::string_view text = card.text(field);
+  if (!value && text.find_first_of("&<") == std::string_view::npos && bad_fields_.size() < kMaxBadFields)
+    bad_fields_.push_back({offset, "expected the " + std::string(what) + " but found " + quoted(text)});
+  return value;
 }
 
 void Definitions::add_part(std::int64_t id, Part part, std::string_view title) {
@@ -173,12 +189,15 @@ void Definitions::read_shell_sections(std::string_view text, const Block& block,
     const bool layered = card.integer(6, parameters).value_or(0) == 1;
     if (!cards.next(card)) return;
     double sum = 0;
-    const double first = card.real(0, parameters).value_or(0);
+    bool is_known = true;
+    std::optional<double> first;
     for (std::size_t corner = 0; corner < 4; ++corner) {
-      const double given = card.real(corner, parameters).value_or(0);
-      sum += given > 0 ? given : first;
+      const std::optional<double> given = number(card, cards.offset(), corner, "thickness of a *SECTION_SHELL", parameters);
+      if (corner == 0) first = given;
+      is_known &= given.has_value();
+      sum += given.value_or(0) > 0 ? *given : first.value_or(0);
     }
-    if (id && sum > 0) section_thickness_.try_emplace(*id, sum / 4 * context_->length);
+    if (id && is_known && sum > 0) section_thickness_.try_emplace(*id, sum / 4 * context_->length);
     if (!repeats || !cards.skip((layered ? cards_of_eight(std::max(points, 1.0)) : 0) + option_cards)) return;
     // User-defined formulations have a card of counts, one card for each integration point, then their constants.
     if (formulation < 101 || formulation > 105) continue;
@@ -198,17 +217,20 @@ void Definitions::read_material(std::string_view text, const Block& block, const
   const std::optional<std::int64_t> id = id_or_none(card.integer(0, parameters), context_->offsets.material);
   if (!id) return;
   const MaterialFields fields = material_fields(block.name);
-  const auto positive = [&](int field) -> std::optional<double> {
+  const auto positive = [&](int field, const char* what) -> std::optional<double> {
     if (field == 0) return std::nullopt;
-    const std::optional<double> value = card.real(static_cast<std::size_t>(field - 1), parameters);
+    const std::optional<double> value = number(card, cards.offset(), static_cast<std::size_t>(field - 1), what, parameters);
     return value && *value > 0 ? value : std::nullopt;
   };
   Material material;
   const IncludeContext& c = *context_;
-  if (const auto density = positive(fields.density)) material.density = *density * c.mass / (c.length * c.length * c.length);
-  if (const auto modulus = positive(fields.youngs_modulus)) material.youngs_modulus = *modulus * c.mass / (c.length * c.time * c.time);
+  if (const auto density = positive(fields.density, "density of a material"))
+    material.density = *density * c.mass / (c.length * c.length * c.length);
+  if (const auto modulus = positive(fields.youngs_modulus, "modulus of a material"))
+    material.youngs_modulus = *modulus * c.mass / (c.length * c.time * c.time);
   if (material.youngs_modulus && fields.poissons_ratio > 0)
-    material.poissons_ratio = card.real(static_cast<std::size_t>(fields.poissons_ratio - 1), parameters);
+    material.poissons_ratio =
+        number(card, cards.offset(), static_cast<std::size_t>(fields.poissons_ratio - 1), "Poisson's ratio of a material", parameters);
   material.limits_time_step = fields.limits_time_step;
   materials_.try_emplace(*id, material);
 }

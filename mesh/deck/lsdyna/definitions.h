@@ -5,14 +5,22 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mesh/deck/data/deck.h"
+#include "mesh/deck/lsdyna/card.h"
 #include "mesh/deck/lsdyna/includes.h"
 #include "mesh/deck/lsdyna/keyword.h"
 #include "mesh/deck/lsdyna/parameters.h"
 
 namespace prismesh::mesh::deck::lsdyna {
+
+/// A field that should be a number and isn't.
+struct BadField {
+  std::size_t offset = 0;  ///< of its line
+  std::string message;
+};
 
 struct Material {
   std::optional<double> density;
@@ -27,6 +35,9 @@ class Definitions {
   /// Reads the block if it has definitions; false: it hasn't. `context`: of the include it stands in; ids and units become the model's.
   bool read(std::string_view text, const Block& block, const Parameters& parameters, const IncludeContext& context);
 
+  /// What the blocks read so far have that isn't read; forgets it.
+  std::vector<BadField> take_bad_fields() { return std::exchange(bad_fields_, {}); }
+
   /// The defined parts, with the values of their sections and materials, ascending by id.
   std::vector<Part> parts() const;
   const TimeStepControl& time_step() const { return time_step_; }
@@ -36,6 +47,7 @@ class Definitions {
     std::int64_t material = 0;  ///< 0: none
     double thickness = 0;       ///< in the units of its include
   };
+  std::optional<double> number(const Card& card, std::size_t offset, std::size_t field, const char* what, const Parameters& parameters);
   std::optional<double> density_of(const std::vector<Layer>& layers) const;
   void add_part(std::int64_t id, Part part, std::string_view title);
   void read_parts(std::string_view text, const Block& block, const Parameters& parameters);
@@ -50,6 +62,7 @@ class Definitions {
   std::map<std::int64_t, double> section_thickness_;
   std::map<std::int64_t, Material> materials_;
   TimeStepControl time_step_;
+  std::vector<BadField> bad_fields_;
 };
 
 /// The fields of a material's constants on its first card, from 1; 0: it has none. By the keyword: "MAT_ELASTIC", "MAT_024_TITLE".

@@ -186,12 +186,10 @@ class PieceReader {
     const std::int64_t n3 = fields_[4];
     const std::int64_t n4 = fields_[5] == 0 ? n3 : fields_[5];
     const bool complete = fields_[2] > 0 && fields_[3] > 0 && n3 > 0 && n4 > 0;
-    ElementCounts& counts = out_.counts;
-    if (complete && n3 == n4)
-      ++(has_midside ? counts.tri6 : counts.tri);
-    else
-      ++(has_midside ? counts.quad8 : counts.quad);
+    const bool is_triangle = complete && n3 == n4;
+    ++out_.counts.of_shell(is_triangle, has_midside);
     if (!complete) {
+      ++out_.left_out.of_shell(is_triangle, has_midside);
       out_.note("incomplete-element", line.offset, fields_[0]);
       return false;
     }
@@ -249,6 +247,7 @@ class PieceReader {
     elements.nodes.insert(elements.nodes.end(), nodes.begin(), nodes.end());
     elements.first_node.push_back(static_cast<std::uint32_t>(elements.nodes.size()));
     elements.offset.push_back(line.offset);
+    elements.numbering.push_back(numbering_of(segment_->word));
   }
 
   bool read_plain(const Line& line) {
@@ -264,13 +263,14 @@ class PieceReader {
                                        : kind == CardKind::tshell   ? ElementClass::tshell
                                        : kind == CardKind::discrete ? ElementClass::discrete
                                                                     : ElementClass::other;
-    ++(kind == CardKind::beam ? out_.counts.beam : kind == CardKind::tshell ? out_.counts.tshell : out_.counts.other);
+    ++out_.counts.of(element_class);
     std::vector<std::int64_t>& list = nodes_;
     list.assign(fields_.begin() + static_cast<std::ptrdiff_t>(first), fields_.begin() + static_cast<std::ptrdiff_t>(first + nodes));
     // A spring's second end may be the ground.
     if (element_class == ElementClass::discrete) std::erase(list, 0);
     if (std::any_of(list.begin(), list.end(), [](std::int64_t n) { return n <= 0; }) || list.empty()) {
       out_.note("incomplete-element", line.offset, fields_[0]);
+      ++out_.left_out.of(element_class);
       return true;
     }
     add_element(element_class, line, fields_[0], plotel ? 0 : fields_[1], list);
@@ -296,8 +296,10 @@ class PieceReader {
       nodes_.insert(nodes_.end(), fields_.begin(), fields_.end());
     }
     ++out_.counts.solid;
-    if (!usable) return true;
-    add_solid(line, id, part);
+    if (usable)
+      add_solid(line, id, part);
+    else
+      ++out_.left_out.solid;
     return true;
   }
 
@@ -309,6 +311,7 @@ class PieceReader {
       if (nodes_[i] == 0) nodes_[i] = nodes_[i - 1];
     if (nodes_.size() < 4 || std::any_of(nodes_.begin(), nodes_.end(), [](std::int64_t n) { return n <= 0; })) {
       out_.note("incomplete-element", line.offset, id);
+      ++out_.left_out.solid;
       return;
     }
     add_element(ElementClass::solid, line, id, part, nodes_);
@@ -350,8 +353,6 @@ class PieceReader {
 }  // namespace
 
 namespace {
-
-std::size_t cards_in(const ElementCounts& counts) { return counts.shells() + counts.beam + counts.solid + counts.tshell + counts.other; }
 
 void shift(std::span<std::int64_t> ids, std::int64_t by) {
   for (std::int64_t& id : ids)
@@ -410,9 +411,9 @@ PieceCards read_piece(std::string_view text, const Piece& piece, const std::vect
   out.held = piece.held;
   PieceReader reader(text, parameters, out);
   for (const Segment& segment : piece.segments) {
-    const std::size_t before = cards_in(out.counts);
+    const std::size_t before = out.counts.all();
     const bool read = reader.read(segment);
-    if (const std::size_t count = cards_in(out.counts) - before; count > 0) out.count_kind(segment.word, count);
+    if (const std::size_t count = out.counts.all() - before; count > 0) out.count_kind(segment.word, count);
     if (!read) break;
   }
   if (piece.segments.empty() || piece.segments.front().frame == 0) return out;

@@ -75,7 +75,8 @@ void Walk::read_block(const Visit& visit, const Block& block, Columns columns) {
     parameters_.read(text, block, problems);
     for (ParameterProblem& problem : problems) warnings.note(problem.kind, visit.file, problem.offset, std::move(problem.message));
   } else if (definitions.read(text, block, parameters_, contexts[visit.context])) {
-    return;
+    for (const BadField& bad : definitions.take_bad_fields())
+      warnings.note("bad-card", visit.file, bad.offset, bad.message + "; the card is kept as it is, without that value");
   } else if (name == "DEFINE_TRANSFORMATION" || name == "DEFINE_TRANSFORMATION_TITLE") {
     transformations.read(text, visit.file, block, parameters_, contexts[visit.context].offsets);
   } else if (const std::optional<Unseen> what = unseen(name)) {

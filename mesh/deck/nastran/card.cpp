@@ -25,8 +25,18 @@ std::string_view bare(std::string_view name) {
   return trim(name);
 }
 
+std::string_view without_first(std::string_view field) { return trim(field.substr(std::min<std::size_t>(1, field.size()))); }
+
+/// One of them blank counts as the same.
 bool same_name(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return upper(x) == upper(y); });
+  return a.empty() || b.empty() ||
+         (a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return upper(x) == upper(y); }));
+}
+
+/// Whether a line that begins with the field `own` continues one whose last field is `next`. The first column of each (1 and 73) isn't part
+/// of the name. Names that don't stand in their columns are compared without their signs.
+bool continues(std::string_view next, std::string_view own) {
+  return same_name(without_first(next), without_first(own)) || same_name(bare(next), bare(own));
 }
 
 std::string_view without_comment(std::string_view line) { return line.substr(0, line.find('$')); }
@@ -153,10 +163,9 @@ void Card::cut_line(const Line& line, bool first) {
     set_name(own);
     layout_ = layout;
   } else {
-    const std::string_view mine = bare(own);
-    if (!misplaced_ && !next_name_.empty() && !mine.empty() && !same_name(next_name_, mine)) misplaced_ = line.offset;
+    if (!misplaced_ && !continues(next_field_, own)) misplaced_ = line.offset;
   }
-  next_name_ = bare(next);
+  next_field_ = next;
   last_layout_ = layout;
 }
 

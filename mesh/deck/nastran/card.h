@@ -87,7 +87,7 @@ class Card {
   std::size_t name_size_ = 0;
   Layout layout_ = Layout::small;
   Layout last_layout_ = Layout::small;
-  std::string_view next_name_;
+  std::string_view next_field_;  ///< of the line before: what its continuation begins with
   std::vector<std::string_view> fields_;
   std::deque<std::string> owned_;
   std::optional<std::size_t> misplaced_;

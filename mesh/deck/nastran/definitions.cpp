@@ -44,7 +44,9 @@ std::vector<Ply> plies_of(const Card& card) {
     const std::size_t f = first + (global ? 1 : 0);
     if (card.blank(f) && card.blank(f + 1) && card.blank(f + 2) && card.blank(f + 3)) continue;
     if (!card.blank(f)) ply.material = card.integer_or_zero(f);
-    if (!card.blank(f + 1)) ply.thickness = card.real(f + 1).value_or(0);
+    const std::optional<double> thickness = card.real(f + 1);
+    if (!thickness || !card.integer(f)) return {};
+    if (!card.blank(f + 1)) ply.thickness = *thickness;
     plies.push_back(ply);
   }
   return plies;
@@ -54,6 +56,38 @@ double thickness_of(const std::vector<Ply>& plies) {
   double sum = 0;
   for (const Ply& ply : plies) sum += ply.thickness;
   return sum;
+}
+
+struct NumberField {
+  std::size_t field = 0;
+  const char* what = "";
+  bool is_whole = false;
+};
+
+/// The fields of a property or material that are read as numbers.
+std::vector<NumberField> number_fields(const Card& card) {
+  const std::string_view name = card.name();
+  std::vector<NumberField> fields{{0, "id", true}};
+  const auto add = [&](std::initializer_list<NumberField> more) { fields.insert(fields.end(), more); };
+  if (name == "MAT1") {
+    add({{1, "modulus", false}, {2, "shear modulus", false}, {3, "Poisson's ratio", false}, {4, "density", false}});
+  } else if (name == "MAT2") {
+    add({{1, "stiffness", false}, {2, "stiffness", false}, {4, "stiffness", false}, {7, "density", false}});
+  } else if (name == "MAT8") {
+    add({{7, "density", false}});
+  } else if (name == "MAT9") {
+    add({{22, "density", false}});
+  } else if (const PropertyForm* form = form_of(name)) {
+    if (form->material) add({{form->material, "material", true}});
+    if (form->thickness) add({{form->thickness, "thickness", false}});
+    const std::size_t id_fields = name == "PCOMPG" ? 1 : 0;
+    if (name == "PCOMP" || name == "PCOMPG")
+      for (std::size_t f = 8; f<card.size(); f += id_fields> 0 ? 8 : 4)
+        add({{f + id_fields, "material of a ply", true}, {f + id_fields + 1, "thickness of a ply", false}});
+  } else {
+    return {};
+  }
+  return fields;
 }
 
 /// Completes E, G and nu: any two give the third.
@@ -111,6 +145,16 @@ std::int64_t take_number(std::string_view& text) {
 }
 
 }  // namespace
+
+std::optional<std::string> unread_number(const Card& card) {
+  const std::string_view name = card.name();
+  if (name.empty() || (name[0] != 'P' && name[0] != 'M')) return std::nullopt;
+  for (const NumberField& field : number_fields(card))
+    if (!(field.is_whole ? card.integer(field.field).has_value() : card.real(field.field).has_value()))
+      return "expected the " + std::string(field.what) + " of " + std::string(name) + " " + std::string(card.text(0)) + " but found " +
+             quoted(card.text(field.field));
+  return std::nullopt;
+}
 
 bool Definitions::read(const Card& card, std::size_t offset) {
   const std::string_view name = card.name();

@@ -35,6 +35,9 @@ struct Material {
   std::optional<double> poissons_ratio;
 };
 
+/// What is wrong with the first field of a property or material that should be a number and isn't. nullopt: nothing, or it is neither.
+std::optional<std::string> unread_number(const Card& card);
+
 /// What a piece of text defines, in its order.
 struct Definitions {
   std::vector<Property> properties;

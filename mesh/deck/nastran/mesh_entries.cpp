@@ -10,24 +10,21 @@
 namespace prismesh::mesh::deck::nastran {
 namespace {
 
+/// Of a piece. A text with more is no deck.
+constexpr std::size_t kMaxUnreadNodes = 1000;
+
 bool is_all_digits(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos; }
 
-/// Fails if the card's continuations are out of order: what an element is made of can't be guessed.
-bool check_order(const EntryCard& card, std::string_view entry, PieceCards& cards) {
-  if (!card.fields.misplaced()) return true;
-  fail_at(cards, *card.fields.misplaced(),
-          "the continuation of this " + std::string(entry) +
-              " has another name than the line before asks for: decks with continuations out of order aren't read; "
-              "have the pre-processor write them in order");
-  return false;
+std::string out_of_order(std::string_view entry) {
+  return "the continuation of this " + std::string(entry) +
+         " has another name than the line before asks for: continuations out of order aren't read (pre-processors can write them in order)";
 }
 
-/// Fails because the card's id isn't read as a number. `needs_id`: the sentence about the field's text, up to that text.
-void fail_without_id(const EntryCard& card, std::string_view entry, const std::string& needs_id, PieceCards& cards) {
+/// Says that the card's id isn't read as a number. `needs_id`: the sentence about the field's text, up to that text.
+std::string without_id(const EntryCard& card, std::string_view entry, const std::string& needs_id) {
   const std::string_view text = card.fields.text(0);
-  fail_at(cards, card.place.offset,
-          is_all_digits(text) ? "the id of a " + std::string(entry) + " may have up to 18 digits, but this one has " + quoted(text)
-                              : needs_id + quoted(text));
+  return is_all_digits(text) ? "the id of a " + std::string(entry) + " may have up to 18 digits, but this one has " + quoted(text)
+                             : needs_id + quoted(text);
 }
 
 /// A property that the card leaves out has the element's id.
@@ -64,19 +61,15 @@ float own_thickness(const Card& card, const ShellFields& fields, std::uint32_t s
   return mean;
 }
 
-void count_shell(ElementCounts& counts, const ShellFields& fields, bool has_midside) {
-  if (fields.corners == 4)
-    ++(has_midside ? counts.quad8 : counts.quad);
-  else
-    ++(has_midside ? counts.tri6 : counts.tri);
-}
-
 void read_shell(const EntryCard& card, const ElementForm& form, std::int64_t id, bool is_complete, PieceTarget& target) {
   const ShellFields fields = shell_fields(form.name);
   const std::array<std::int64_t, 4> midside = midside_nodes(card.fields, form, fields);
   const bool has_midside = std::any_of(midside.begin(), midside.end(), [](std::int64_t node) { return node > 0; });
-  count_shell(target.cards.counts, fields, has_midside);
-  if (!is_complete) return target.cards.note("incomplete-element", card.place.offset, id);
+  ++target.cards.counts.of_shell(fields.corners == 3, has_midside);
+  if (!is_complete) {
+    ++target.cards.left_out.of_shell(fields.corners == 3, has_midside);
+    return target.cards.note("incomplete-element", card.place.offset, id);
+  }
   if (form.name == "CQUAD" && card.fields.integer_or_zero(10) > 0)
     target.facts.note("centre-node", card.place.offset, "the centre nodes of CQUAD elements aren't moved along with them");
   const auto index = static_cast<std::uint32_t>(target.cards.shells.id.size());
@@ -107,14 +100,6 @@ void add_second_of_pair(const EntryCard& card, const ElementForm& form, PieceCar
   if (id > 0 && nodes[0] > 0 && nodes[1] > 0) add_element(card, form, id, nodes, cards);
 }
 
-void count_other(ElementCounts& counts, ElementClass element_class) {
-  switch (element_class) {
-    case ElementClass::beam: ++counts.beam; break;
-    case ElementClass::solid: ++counts.solid; break;
-    default: ++counts.other; break;
-  }
-}
-
 }  // namespace
 
 void fail_at(PieceCards& cards, std::size_t offset, std::string message) {
@@ -126,23 +111,51 @@ void note_too_long(const EntryCard& card, std::string_view entry, PieceFacts& fa
              "the " + std::string(entry) + " card has more fields than a card can have; the last ones aren't read");
 }
 
+namespace {
+
+/// A grid point that can't be read: the deck is refused if an element needs it. `id`: 0 if it isn't known.
+void leave_grid(const EntryCard& card, std::int64_t id, std::size_t offset, std::string message, PieceTarget& target) {
+  if (target.cards.unread_nodes.size() >= kMaxUnreadNodes) return fail_at(target.cards, offset, std::move(message));
+  target.cards.unread_nodes.push_back({id, offset, std::move(message)});
+  target.references.read_unread("GRID", card.place);
+}
+
+/// Whether a card of this class is refused if it can't be read: elements with a shape are the mesh. Others are kept without being shown.
+bool is_mesh(ElementClass element_class) {
+  return element_class == ElementClass::shell || element_class == ElementClass::beam || element_class == ElementClass::solid;
+}
+
+void leave_element(const EntryCard& card, const ElementForm& form, std::size_t offset, std::string message, PieceTarget& target) {
+  if (is_mesh(form.element_class)) return fail_at(target.cards, offset, std::move(message));
+  target.cards.count_kind(form.name);
+  ++target.cards.counts.of(form.element_class);
+  ++target.cards.left_out.of(form.element_class);
+  target.facts.note("bad-card", offset, message + "; it is kept as it is and isn't shown");
+  target.references.read_unread(form.name, card.place);
+}
+
+}  // namespace
+
 void read_grid(const EntryCard& card, PieceTarget& target) {
-  if (!check_order(card, "GRID", target.cards)) return;
   const Card& fields = card.fields;
-  const auto fail_here = [&](const std::string& message) { fail_at(target.cards, card.place.offset, message); };
   constexpr const char* kNeedsId = "a GRID needs an id above 0, but this one has ";
+  const std::size_t offset = card.place.offset;
   const std::optional<std::int64_t> id = fields.integer(0);
-  if (!id) return fail_without_id(card, "GRID", kNeedsId, target.cards);
-  if (*id <= 0) return fail_here(kNeedsId + quoted(fields.text(0)));
+  if (!id) return leave_grid(card, 0, offset, without_id(card, "GRID", kNeedsId), target);
+  if (*id <= 0) return leave_grid(card, 0, offset, kNeedsId + quoted(fields.text(0)), target);
+  if (fields.misplaced()) return leave_grid(card, *id, *fields.misplaced(), out_of_order("GRID"), target);
   const std::optional<std::int64_t> system = fields.integer(1);
   if (!system || *system < 0 || *system > kMaxSystem)
-    return fail_here("expected the coordinate system of GRID " + std::to_string(*id) + " but found " + quoted(fields.text(1)));
-  GridEntry grid{*id, {}, card.place.offset, fields.layout(), fields.blank(1) ? kSystemOfGrdset : static_cast<std::uint32_t>(*system)};
+    return leave_grid(card, *id, offset,
+                      "expected the coordinate system of GRID " + std::to_string(*id) + " but found " + quoted(fields.text(1)), target);
+  GridEntry grid{*id, {}, offset, fields.layout(), fields.blank(1) ? kSystemOfGrdset : static_cast<std::uint32_t>(*system)};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::optional<double> value = fields.real(axis + 2);
     if (!value)
-      return fail_here("expected coordinate " + std::to_string(axis + 1) + " of GRID " + std::to_string(*id) + " but found " +
-                       quoted(fields.text(axis + 2)));
+      return leave_grid(card, *id, offset,
+                        "expected coordinate " + std::to_string(axis + 1) + " of GRID " + std::to_string(*id) + " but found " +
+                            quoted(fields.text(axis + 2)),
+                        target);
     grid.position[static_cast<Eigen::Index>(axis)] = *value;
   }
   if (card.is_replicated) target.cards.holds.emplace_back(static_cast<std::uint32_t>(target.cards.node_id.size()), kHeldByMaking);
@@ -150,18 +163,23 @@ void read_grid(const EntryCard& card, PieceTarget& target) {
 }
 
 void read_element(const EntryCard& card, const ElementForm& form, PieceTarget& target) {
-  if (!check_order(card, form.name, target.cards)) return;
+  if (card.fields.misplaced()) return leave_element(card, form, *card.fields.misplaced(), out_of_order(form.name), target);
   const std::optional<std::int64_t> id = card.fields.integer(0);
-  if (!id) return fail_without_id(card, form.name, "expected the id of a " + std::string(form.name) + " but found ", target.cards);
+  if (!id)
+    return leave_element(card, form, card.place.offset,
+                         without_id(card, form.name, "expected the id of a " + std::string(form.name) + " but found "), target);
   if (card.is_too_long) note_too_long(card, form.name, target.facts);
   target.cards.count_kind(form.name);
   std::vector<std::int64_t>& nodes = target.nodes;
   const bool is_complete = read_nodes(card.fields, form, nodes) && *id > 0;
   if (form.element_class == ElementClass::shell) return read_shell(card, form, *id, is_complete, target);
-  count_other(target.cards.counts, form.element_class);
+  ++target.cards.counts.of(form.element_class);
   if (form.fields == NodeFields::none_shown) return;
   target.references.read_element(card.fields, form, nodes, card.place);
-  if (!is_complete) return target.cards.note("incomplete-element", card.place.offset, *id);
+  if (!is_complete) {
+    ++target.cards.left_out.of(form.element_class);
+    return target.cards.note("incomplete-element", card.place.offset, *id);
+  }
   add_element(card, form, *id, nodes, target.cards);
   if (form.fields == NodeFields::pairs) add_second_of_pair(card, form, target.cards);
 }

@@ -1,5 +1,9 @@
 #include "mesh/deck/nastran/piece.h"
 
+#include <algorithm>
+#include <optional>
+#include <string>
+
 #include "mesh/deck/nastran/fast_lines.h"
 #include "mesh/deck/nastran/mesh_entries.h"
 #include "mesh/deck/nastran/replication.h"
@@ -39,11 +43,20 @@ void count_old_element(std::string_view name, std::size_t offset, PieceFacts& fa
   ++at->second.second;
 }
 
-void read_other(const EntryCard& card, PieceTarget& target) {
+bool has_number(const Card& card) {
+  for (std::size_t f = 0; f < std::min<std::size_t>(card.size(), 8); ++f)
+    if (!card.blank(f) && card.real(f)) return true;
+  return false;
+}
+
+/// False: nothing is known of the entry.
+bool read_other(const EntryCard& card, PieceTarget& target) {
   const std::string_view name = card.fields.name();
   const std::size_t offset = card.place.offset;
   PieceFacts& facts = target.facts;
-  if (facts.definitions.read(card.fields, offset) || read_system_card(card, target)) return;
+  if (const std::optional<std::string> bad = unread_number(card.fields))
+    facts.note("bad-card", offset, *bad + "; the card is kept as it is, without that value");
+  if (facts.definitions.read(card.fields, offset) || read_system_card(card, target)) return true;
   if (name == "GRDSET") {
     const std::int64_t system = card.fields.integer_or_zero(1);
     facts.grid_default.emplace_back(offset, system < 0 || system > kMaxSystem ? 0 : system);
@@ -56,19 +69,28 @@ void read_other(const EntryCard& card, PieceTarget& target) {
     target.references.read_unread(name, card.place);
   } else if (!target.references.read(card.fields, card.place)) {
     target.references.read_unread(name, card.place);
+    return false;
   }
+  return true;
 }
 
-void read_entry(const EntryCard& card, PieceTarget& target) {
+/// False: nothing is known of the entry.
+bool read_entry(const EntryCard& card, PieceTarget& target) {
   const std::string_view name = card.fields.name();
-  if (name == "GRID") return read_grid(card, target);
-  if (const ElementForm* form = element_form(name)) return read_element(card, *form, target);
+  if (name == "GRID") {
+    read_grid(card, target);
+    return true;
+  }
+  if (const ElementForm* form = element_form(name)) {
+    read_element(card, *form, target);
+    return true;
+  }
   if (card.fields.misplaced())
     target.facts.note("continuation-order", *card.fields.misplaced(),
                       "a continuation of the " + std::string(name) +
                           " card has another name than the line before asks for; it is taken to belong there all the same");
   if (card.is_too_long) note_too_long(card, name, target.facts);
-  read_other(card, target);
+  return read_other(card, target);
 }
 
 // --- lines ---
@@ -77,6 +99,9 @@ void read_entry(const EntryCard& card, PieceTarget& target) {
 class FieldReader {
  public:
   FieldReader(std::string_view text, std::uint32_t file, PieceTarget& target) : text_(text), file_(file), target_(target) {}
+
+  /// A card that was read elsewhere: the next may take fields from it.
+  void passed(const Line& line) { before_ = line.offset; }
 
   /// Reads what begins with this line. Returns where the line after it begins.
   std::size_t read(const Line& line) {
@@ -98,15 +123,40 @@ class FieldReader {
     return {card_, {file_, line.offset, lines_.end}, lines_.cut_off || card_.overlong(), is_replicated};
   }
 
+  /// Completes a card that takes fields from the card before. Neither can be moved then.
+  bool fill(const Line& line) {
+    if (before_ == kNoCard) return false;
+    if (source_at_ != before_) {
+      CardLines lines;
+      lines.read(text_, before_);
+      Card source;
+      source.cut(lines);
+      source_.set_template(source);
+    }
+    if (!source_.fill(card_)) return false;
+    source_.set_template(card_);
+    source_at_ = line.offset;
+    PieceCards& cards = target_.cards;
+    if (!cards.node_offset.empty() && cards.node_offset.back() == before_)
+      cards.holds.emplace_back(static_cast<std::uint32_t>(cards.node_id.size() - 1), kHeldByMaking);
+    return true;
+  }
+
   void read_card(const Line& line) {
     EntryCard card = cut(line, false);
+    const bool is_filled = takes_fields(card_) && fill(line);
+    before_ = line.offset;
     // A card that is replicated counts as made: moving it would move its copies.
-    card.is_replicated = lines_.next < text_.size() && text_[lines_.next] == '=';
-    if (card.is_replicated)
+    const bool is_template = lines_.next < text_.size() && text_[lines_.next] == '=';
+    card.is_replicated = is_template || is_filled;
+    if (is_template)
       replication_.set_template(card_);
     else
       replication_.clear();
-    read_entry(card, target_);
+    const bool is_known = read_entry(card, target_);
+    PieceFacts& facts = target_.facts;
+    facts.has_cards = true;
+    if (is_known && !facts.has_known_cards) facts.has_known_cards = has_number(card_);
   }
 
   void read_replication(const Line& line) {
@@ -126,6 +176,8 @@ class FieldReader {
       card.is_too_long = lines_.cut_off || card_.overlong();
       read_entry(card, target_);
     }
+    source_.set_template(card_);
+    before_ = source_at_ = line.offset;
   }
 
   std::string_view text_;
@@ -135,6 +187,10 @@ class FieldReader {
   Card card_;
   Replication replication_;
   std::size_t copies_made_ = 0;
+  static constexpr std::size_t kNoCard = std::string_view::npos;
+  std::size_t before_ = kNoCard;  ///< where the last card begins
+  Replication source_;            ///< the card at `source_at_`, whose fields the next may take
+  std::size_t source_at_ = kNoCard;
 };
 
 }  // namespace
@@ -151,9 +207,11 @@ PieceContent read_piece(std::string_view text, const Piece& piece) {
   for (std::size_t at = piece.begin; at < text.size() && !content.cards.error;) {
     const Line line = line_at(text, at);
     const std::size_t next = read_fast(text, line, entities, fast_shells);
+    if (next != 0) field_reader.passed(line);
     at = next != 0 ? next : field_reader.read(line);
   }
   content.facts.references = references.finish();
+  content.facts.has_known_cards |= !content.cards.node_id.empty() || !content.cards.shells.id.empty();
   content.cards.counts.quad += fast_shells.quads;
   content.cards.counts.tri += fast_shells.trias;
   if (fast_shells.quads > 0) content.cards.count_kind("CQUAD4", fast_shells.quads);

@@ -53,6 +53,8 @@ struct PieceFacts {
   std::vector<std::pair<std::size_t, std::int64_t>> grid_default;                        ///< GRDSET: offset and system
   std::map<std::string, std::pair<std::size_t, std::size_t>, std::less<>> old_elements;  ///< first offset and count, by name
   std::vector<Notice> notices;
+  bool has_cards = false;        ///< there is anything between the comments
+  bool has_known_cards = false;  ///< an entry of bulk data that has a number; lines of other texts may begin with an entry's name
   References references;
 
   /// Adds a notice, or counts it if there is an equal one.

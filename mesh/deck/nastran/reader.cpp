@@ -37,6 +37,13 @@ std::optional<Error> refuse_old_elements(const DeckContents& found, std::span<co
                    "); convert the deck to CQUAD4 and CTRIA3 first"};
 }
 
+/// Whether a line is an entry of bulk data: a sentence may begin with "Include". A deck of nothing but INCLUDE statements is one, too.
+bool has_bulk_data(std::span<const PieceFacts> facts, bool has_other_sections) {
+  const bool has_cards = std::any_of(facts.begin(), facts.end(), [](const PieceFacts& some) { return some.has_cards; });
+  const bool has_known_cards = std::any_of(facts.begin(), facts.end(), [](const PieceFacts& some) { return some.has_known_cards; });
+  return has_known_cards || (!has_cards && !has_other_sections);
+}
+
 void settle_parts(DeckContents& found, std::span<PieceFacts> facts, PartTable& table) {
   for (std::size_t p = 0; p < facts.size(); ++p) {
     for (const Property& property : facts[p].definitions.properties)
@@ -76,6 +83,8 @@ Result<DeckContents> read(FileSet files, Watch& watch) {
   };
   read_pieces(found, walk.pieces.size(), read_one, watch);
   if (watch.stopped()) return fail(cancelled());
+  if (!walk.has_statements && !has_bulk_data(facts, walk.has_other_sections))
+    return fail(found.files[0].path.string(), "is no deck: it looks like text without a single card of a deck");
   if (std::optional<Error> error = refuse_old_elements(found, facts)) return fail(std::move(*error));
 
   settle_notices(found, facts);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "mesh/deck/nastran/elements.h"
 #include "mesh/deck/text/number.h"
 
 namespace prismesh::mesh::deck::nastran {
@@ -30,6 +31,14 @@ std::string raised(const std::string& text, const std::string& by) {
 }
 
 }  // namespace
+
+bool takes_fields(const Card& card) {
+  for (std::size_t f = 0; f < card.size(); ++f) {
+    const std::string_view text = card.text(f);
+    if (text == "=" || text == "==" || text.starts_with("*(")) return card.name() == "GRID" || element_form(card.name());
+  }
+  return false;
+}
 
 void Replication::set_template(const Card& card) {
   name_ = card.name();
@@ -76,6 +85,29 @@ void Replication::make(Card& copy) {
     texts.push_back(field.text);
   }
   copy.assign(name_, texts, layout_);
+}
+
+bool Replication::fill(Card& card) const {
+  if (!has_template_ || card.name() != name_) return false;
+  std::vector<std::string> texts;
+  bool rest = false;
+  for (std::size_t f = 0; f < std::max(card.size(), fields_.size()); ++f) {
+    if (f % 8 == 0) rest = false;
+    if (f % 8 == 0 && f > 0 && f >= card.size()) break;  // a further line is there only if the card has one
+    const std::string_view text = card.text(f);
+    const std::string old = f < fields_.size() ? fields_[f].text : std::string();
+    rest |= text == "==";
+    if (rest || text == "=")
+      texts.push_back(old);
+    else if (text.starts_with("*("))
+      texts.push_back(raised(old, std::string(without_parentheses(text.substr(1)))));
+    else if (text.starts_with('='))
+      return false;
+    else
+      texts.emplace_back(text);
+  }
+  card.assign(name_, texts, card.layout());
+  return true;
 }
 
 }  // namespace prismesh::mesh::deck::nastran

@@ -1,4 +1,5 @@
-// Cards made from the card before: = (the same field), == (all that follow), *(x) (raised by x), =(n) (n more of the same).
+// Cards made from the card before: = (the same field), == (all that follow), *(x) (raised by x), =(n) (n more of the same). A card with a
+// name of its own may take single fields from the card before.
 #pragma once
 
 #include <string>
@@ -8,6 +9,9 @@
 #include "mesh/deck/nastran/card.h"
 
 namespace prismesh::mesh::deck::nastran {
+
+/// Whether the card, a grid point or an element, takes fields from the card before.
+bool takes_fields(const Card& card);
 
 class Replication {
  public:
@@ -21,6 +25,9 @@ class Replication {
   std::size_t read(const Card& card);
   /// Makes the next copy, which becomes the template.
   void make(Card& copy);
+  /// Puts the template's fields into a card that takes some of them. False: the template is another entry, or a field isn't understood; the
+  /// card is as before.
+  bool fill(Card& card) const;
 
   static constexpr std::size_t kMaxCopies = 100000;
 

@@ -295,12 +295,17 @@ class DroppedElements {
     std::vector<std::uint8_t>& drop = elements_[place.piece][place.element_class];
     drop.resize(elements.id.size());
     if (std::exchange(drop[place.element], std::uint8_t{1})) return;
+    ++found_.cards[place.piece].left_out.of(static_cast<ElementClass>(place.element_class));
     warn(place.piece, place.offset, elements.id[place.element]);
   }
   void shell(std::size_t piece, std::size_t shell) {
     const RawShells& shells = found_.cards[piece].shells;
     shells_[piece].resize(shells.id.size());
     shells_[piece][shell] = 1;
+    const auto midside = std::lower_bound(shells.midside.begin(), shells.midside.end(), shell,
+                                          [](const auto& entry, std::size_t wanted) { return entry.first < wanted; });
+    const bool has_midside = midside != shells.midside.end() && midside->first == shell;
+    ++found_.cards[piece].left_out.of_shell(shells.nodes[shell][2] == shells.nodes[shell][3], has_midside);
     warn(piece, shells.offset[shell], shells.id[shell]);
   }
   void carry_out() {

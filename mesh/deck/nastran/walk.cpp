@@ -122,6 +122,12 @@ void Walk::run() {
     return mark.kind == MarkKind::begin_bulk || mark.kind == MarkKind::begin_other || mark.kind == MarkKind::executive;
   });
   if (!has_sections) section_ = Section::bulk;
+  has_other_sections = std::any_of(marks.begin(), marks.end(), [](const Mark& mark) { return mark.kind == MarkKind::begin_other; });
+  has_statements = std::any_of(marks.begin(), marks.end(), [&](const Mark& mark) {
+    return mark.kind == MarkKind::begin_bulk || mark.kind == MarkKind::executive ||
+           (mark.kind == MarkKind::begin_other &&
+            line_at(files.files[0].bytes.text(), mark.offset).text.find('=') != std::string_view::npos);
+  });
   walk_file(0, marks, 0);
   if (section_ == Section::control)
     warnings.note("no-bulk-data", 0, 0, "the deck has executive or case control but no BEGIN BULK: there is nothing to show");
@@ -184,7 +190,8 @@ void Walk::cut(std::uint32_t file, std::size_t begin, std::size_t end) {
       next = line_end == std::string_view::npos ? end : line_end + 1;
       while (next < end) {
         const Line line = line_at(text, next);
-        if (starts_card(line.text)) break;
+        // A card with an equals sign may take fields from the card before.
+        if (starts_card(line.text) && line.text.find('=') == std::string_view::npos) break;
         next = line.next;
       }
     }

@@ -33,8 +33,10 @@ class Walk {
 
   FileSet files;
   std::vector<Piece> pieces;
-  std::vector<bool> held;      ///< by file: it is used more than once
-  ReferenceReader references;  ///< of the text outside the bulk data, and of bulk data that isn't read
+  std::vector<bool> held;           ///< by file: it is used more than once
+  bool has_statements = false;      ///< BEGIN BULK or executive control, which nothing but a deck has
+  bool has_other_sections = false;  ///< or a sentence that begins with "Begin"
+  ReferenceReader references;       ///< of the text outside the bulk data, and of bulk data that isn't read
   Warnings warnings;
 
  private:

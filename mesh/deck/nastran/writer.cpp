@@ -8,6 +8,7 @@
 #include "mesh/deck/nastran/case_set.h"
 #include "mesh/deck/nastran/elements.h"
 #include "mesh/deck/nastran/references.h"
+#include "mesh/deck/nastran/replication.h"
 #include "mesh/deck/text/format_number.h"
 #include "mesh/deck/text/number.h"
 
@@ -50,13 +51,17 @@ std::vector<std::string> fields_of(const Card& card) {
 
 std::int64_t largest_id(std::uint16_t style) { return is_large(static_cast<Layout>(style)) ? 9999999999999999 : 99999999; }
 
-/// Whether the card at `offset` is a replication or is replicated: its text then makes more than one card. Precondition:
-/// offset < text.size().
+/// Whether the card at `offset` is a replication or is replicated: its text then makes more than one card. So does text that takes fields
+/// from the card before. Precondition: offset < text.size().
 bool is_replicated(std::string_view text, std::size_t offset) {
   if (text[offset] == '=') return true;
   CardLines lines;
   lines.read(text, offset);
-  return lines.next < text.size() && text[lines.next] == '=';
+  if (lines.next < text.size() && text[lines.next] == '=') return true;
+  if (takes_fields(card_at(text, offset))) return true;
+  std::size_t next = lines.next;
+  while (next < text.size() && kind_of(line_at(text, next).text) == LineKind::comment) next = line_at(text, next).next;
+  return next < text.size() && starts_card(line_at(text, next).text) && takes_fields(card_at(text, next));
 }
 
 /// The element of the same kind with that number of corners; empty: there is none.

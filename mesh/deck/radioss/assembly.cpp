@@ -11,7 +11,11 @@
 namespace prismesh::mesh::deck::radioss {
 namespace {
 
-bool is_engine_word(std::string_view word) { return word == "RUN" || word == "VERS" || word == "TFILE"; }
+/// Options of the engine that most of its inputs have.
+bool is_engine_word(std::string_view word) {
+  static constexpr std::string_view kWords[] = {"RUN", "VERS", "TFILE", "RFILE", "ANIM", "H3D", "STOP", "PRINT", "MON"};
+  return std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords);
+}
 
 std::optional<LengthUnit> known_length_unit(double metres) {
   if (metres == 1) return LengthUnit::m;
@@ -37,7 +41,8 @@ Result<void> Collected::sort_blocks() {
                           "a parameter's value is an expression, which isn't worked out; cards that use it are left out");
     if (keyword.word(0) == "UNIT") read_unit_system(block, keyword);
   }
-  if (engine && !begins && !starter) return fail(main, "is input of the Radioss engine, not a starter deck; open the _0000.rad file");
+  if (engine && !begins && !starter)
+    return fail(main, "is input of the Radioss engine (as in _0001.rad files), not a starter deck; open the _0000.rad file");
   if (walk_.blocks.empty())
     return fail(main, "has no keyword block: fixed-format Radioss input (D00) isn't read; convert it to block format");
   if (!begins && starter)
@@ -49,6 +54,8 @@ Result<void> Collected::sort_blocks() {
       add_mesh(block, keyword, *form);
     else
       definitions_.read(block, keyword, tables(walk_.files.files));
+    for (const BadField& bad : definitions_.take_bad_fields())
+      walk_.warnings.note("bad-card", bad.file, bad.offset, bad.message + "; the card is kept as it is, without that value");
   }
   return {};
 }

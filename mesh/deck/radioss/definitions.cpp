@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "mesh/deck/text/number.h"
 
@@ -87,8 +89,11 @@ class Cards {
     return lines_.next(line) ? std::string(trim(line.text)) : std::string();
   }
   bool next() { return lines_.next(line_); }
-  std::optional<double> real(int from_one) const {
-    return tables_.parameters.real(field(line_.text, width_, static_cast<std::size_t>(from_one - 1), 2), tables_.contexts, block_.context);
+  std::optional<double> real(int from_one) const { return tables_.parameters.real(text(from_one), tables_.contexts, block_.context); }
+  /// Adds to `bad` if the field is no number. An undefined parameter is reported where it is defined.
+  void check(int from_one, const char* what, std::vector<BadField>& bad) const {
+    if (!real(from_one) && text(from_one).find('&') == std::string_view::npos)
+      bad.push_back({line_.file, line_.offset, "expected the " + std::string(what) + " but found " + quoted(trim(text(from_one)))});
   }
   std::optional<double> positive(int from_one) const {
     const std::optional<double> value = real(from_one);
@@ -101,6 +106,8 @@ class Cards {
   }
 
  private:
+  std::string_view text(int from_one) const { return field(line_.text, width_, static_cast<std::size_t>(from_one - 1), 2); }
+
   const DeckTables& tables_;
   const Block& block_;
   BlockLines lines_;
@@ -171,6 +178,7 @@ void Definitions::read_property(const Block& block, const Keyword& keyword, cons
   cards.title();
   for (int card = 0; card < place->card; ++card)
     if (!cards.next()) return;
+  cards.check(place->field, "thickness of a /PROP", bad_fields_);
   if (const std::optional<double> thickness = converted(cards.positive(place->field), units->length / main->length))
     thickness_.try_emplace(keyword.number(0) + tables.contexts[block.context].added.other, *thickness);
 }
@@ -187,8 +195,11 @@ void Definitions::read_material(const Block& block, const Keyword& keyword, cons
     const double mass = units->mass / main->mass;
     const double length = units->length / main->length;
     const double time = units->time / main->time;
+    cards.check(1, "density of a /MAT", bad_fields_);
     material.density = converted(cards.positive(1), mass / (length * length * length));
     if (fields.youngs_modulus > 0 && (fields.card == 1 || cards.next())) {
+      cards.check(fields.youngs_modulus, "modulus of a /MAT", bad_fields_);
+      if (fields.poissons_ratio > 0) cards.check(fields.poissons_ratio, "Poisson's ratio of a /MAT", bad_fields_);
       material.youngs_modulus = converted(cards.positive(fields.youngs_modulus), mass / (length * time * time));
       if (material.youngs_modulus && fields.poissons_ratio > 0) material.poissons_ratio = cards.real(fields.poissons_ratio);
     }

@@ -6,6 +6,7 @@
 #include <map>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mesh/deck/data/deck.h"
@@ -43,11 +44,21 @@ struct DeckTables {
   std::optional<Units> units(std::uint32_t context, std::int64_t system) const;
 };
 
+/// A field that should be a number and isn't.
+struct BadField {
+  std::uint32_t file = 0;
+  std::size_t offset = 0;  ///< of its line
+  std::string message;
+};
+
 /// Collects definitions block by block. Of equal ids the first counts.
 class Definitions {
  public:
   /// Reads the block if it has a definition; false: it hasn't.
   bool read(const Block& block, const Keyword& keyword, const DeckTables& tables);
+
+  /// What the blocks read so far have that isn't read; forgets it.
+  std::vector<BadField> take_bad_fields() { return std::exchange(bad_fields_, {}); }
 
   /// The defined parts, with the values of their properties and materials, ascending by id, in the main file's units.
   std::vector<Part> parts() const;
@@ -60,6 +71,7 @@ class Definitions {
   std::map<std::int64_t, Part> parts_;
   std::map<std::int64_t, double> thickness_;
   std::map<std::int64_t, Material> materials_;
+  std::vector<BadField> bad_fields_;
 };
 
 }  // namespace prismesh::mesh::deck::radioss

@@ -108,6 +108,11 @@ class PieceReader {
     const std::string_view id_field = field(line, width_, 0);
     const std::optional<std::int64_t> id = integer(id_field);
     if (!id) return refuse(offset, id_field, "a node id", 0);
+    if (*id == 0 && !trim(id_field).empty()) {
+      // The starter takes it, but in every card that could name it 0 means that there is no node.
+      out_.note("unnamed-node", offset, 0);
+      return true;
+    }
     if (*id <= 0) return fail_at(offset, "a node needs an id above 0, but this card has " + quoted(id_field));
     Vec3 position;
     bool by_parameter = false;
@@ -168,8 +173,10 @@ class PieceReader {
     const std::int64_t n3 = fields_[3];
     const std::int64_t n4 = triangle || fields_[4] == 0 ? n3 : fields_[4];
     const bool complete = usable && fields_[1] > 0 && fields_[2] > 0 && n3 > 0 && n4 > 0;
-    ++(triangle || (complete && n3 == n4) ? out_.counts.tri : out_.counts.quad);
+    const bool is_triangle = triangle || (complete && n3 == n4);
+    ++out_.counts.of_shell(is_triangle, false);
     if (!complete) {
+      ++out_.left_out.of_shell(is_triangle, false);
       if (usable) out_.note("incomplete-element", offset, fields_[0]);
       return true;
     }
@@ -193,15 +200,6 @@ class PieceReader {
     return true;
   }
 
-  std::size_t& counter(ElementClass element_class) {
-    switch (element_class) {
-      case ElementClass::beam: return out_.counts.beam;
-      case ElementClass::solid: return out_.counts.solid;
-      case ElementClass::tshell: return out_.counts.tshell;
-      default: return out_.counts.other;
-    }
-  }
-
   bool read_element(std::size_t offset, bool usable) {
     const CardForm& form = *segment_->form;
     const std::int64_t id = fields_[0];
@@ -213,8 +211,11 @@ class PieceReader {
       if (!cut_integers(line, line_offset, false, form.nodes[l], usable)) return false;
       nodes_.insert(nodes_.end(), fields_.begin(), fields_.begin() + form.nodes[l]);
     }
-    ++counter(form.element_class);
-    if (usable) add_element(offset, id);
+    ++out_.counts.of(form.element_class);
+    if (usable)
+      add_element(offset, id);
+    else
+      ++out_.left_out.of(form.element_class);
     return true;
   }
 
@@ -236,6 +237,7 @@ class PieceReader {
     const auto end = nodes_.begin() + static_cast<std::ptrdiff_t>(ends);
     if (std::any_of(nodes_.begin(), end, [](std::int64_t n) { return n <= 0; }) || (form.ends > 0 && ends == 0)) {
       out_.note("incomplete-element", offset, id);
+      ++out_.left_out.of(form.element_class);
       return;
     }
     for (std::int64_t& node : nodes_)
@@ -251,6 +253,7 @@ class PieceReader {
       elements.nodes.insert(elements.nodes.end(), nodes_.begin(), end);
     elements.first_node.push_back(static_cast<std::uint32_t>(elements.nodes.size()));
     elements.offset.push_back(offset);
+    elements.numbering.push_back(numbering_of(segment_->form->word));
   }
 
   std::string_view text_;

@@ -167,7 +167,7 @@ TEST(BadInput, of_every_format_is_named_by_file_and_line_in_bounded_time) {
       {"d.bdf", bulk + std::string(4 << 20, '1') + "\nENDDATA\n", ""},
       {"d.bdf", bulk + "INCLUDE '" + repeated("x\n", 100000) + "'\nENDDATA\n", "d.bdf:6: the quote before the include file's name"},
       {"d.bdf", bulk + "INCLUDE 'd.bdf'\nINCLUDE 'sub'\nENDDATA\n", "d.bdf:7: the include file sub is a folder"},
-      {"d.bdf", "BEGIN BULK\nGRID,1,,abc,0.,0.\n", "d.bdf:2: expected coordinate 1 of GRID 1 but found \"abc\""},
+      {"d.bdf", bulk + "CROD,2,1,1,9\nGRID,9,,abc,0.,0.\n", "d.bdf:7: expected coordinate 1 of GRID 9 but found \"abc\""},
       {"d.bdf", bulk + "CQUAD1,9,1,1,2,3,3\n", "d.bdf:6: CQUAD1"},
       {"d_0000.rad", rad + "#include d_0000.rad\n#include sub\n/END\n", "d_0000.rad:6: the include file sub is a folder"},
       {"d_0000.rad", rad + repeated("//SUBMODEL/1\nx\n", 50000) + "/END\n", "submodels stand in each other more than 64 deep"},

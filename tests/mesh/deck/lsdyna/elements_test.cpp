@@ -395,6 +395,20 @@ TEST(Elements, of_equal_ids_the_first_counts) {
   EXPECT_EQ(duplicate.line, 35);
 }
 
+TEST(Elements, masses_of_nodes_and_of_parts_are_numbered_apart) {
+  const auto opened = open(
+      "*ELEMENT_MASS\n       1       1             0.5\n       2       2             0.5\n       1       3             0.7\n"
+      "*ELEMENT_MASS_PART\n       1             0.5\n*ELEMENT_PLOTEL\n       1       1       2\n       1       2       3\n");
+  ASSERT_OPENED(opened);
+  EXPECT_EQ(block_of(opened->model, ElementClass::mass).size(), 3u);
+  EXPECT_EQ(nodes_of_element(opened->model, ElementClass::mass, 0), (Ids{1}));
+  EXPECT_EQ(block_of(opened->model, ElementClass::other).size(), 1u);
+  const Warning duplicate = warning(*opened->deck, "duplicate-element");
+  EXPECT_EQ(duplicate.count, 2u);
+  EXPECT_EQ(duplicate.message.substr(0, 54), "mass 1 is defined again; its first definition counts; ") << duplicate.message;
+  EXPECT_EQ(opened->deck->left_out_cards.other, 2u);
+}
+
 TEST(Elements, duplicates_of_any_class_are_told_where_they_stand) {
   const auto opened =
       open("*ELEMENT_BEAM\n       1       6       1       2\n       2       6       3       4\n       1       6       3       4\n");

@@ -125,6 +125,29 @@ TEST(NastranLayout, continuations_out_of_order_are_refused) {
   EXPECT_NE(opened.error().message.find("continuations out of order"), std::string::npos) << opened.error().message;
 }
 
+TEST(NastranLayout, the_first_column_of_a_continuations_name_is_not_compared) {
+  const DeckFolder folder;
+  const std::string grids = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\n";
+  const std::string quad = "CQUAD4         1       7       1       2       3       4                ";
+  // Columns 73 to 80, and 1 to 8 of the next line: columns 74 to 80 name it.
+  for (const auto& [next, own] : {std::pair("XABC    ", "+ABC    "),
+                                  {" ABC    ", "+ABC    "},
+                                  {"*ABC    ", "+ABC    "},
+                                  {"+abc    ", "+ABC    "},
+                                  {"X       ", "+       "},
+                                  {"XABC    ", "        "},
+                                  {"ABC     ", "+ABC    "},
+                                  {"    +ABC", "+ABC    "}}) {
+    const auto opened = folder.open(grids + quad + next + "\n" + own + "                      1.      1.      1.      1.\n");
+    ASSERT_OPENED(opened);
+    ASSERT_EQ(opened->model.shell_count(), 1u);
+    EXPECT_EQ(opened->model.shell_thickness[0], 1.0f) << next << own;
+  }
+  const auto other = folder.open(grids + quad + "XABD    \n+ABC                          1.      1.      1.      1.\n");
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().line, 6);
+}
+
 TEST(NastranLayout, fields_are_counted_over_lines) {
   nastran::CardLines lines;
   nastran::Card card;
@@ -289,8 +312,8 @@ TEST(NastranIds, may_have_eighteen_digits) {
   const DeckFolder folder;
   EXPECT_TRUE(folder.open("GRID,123456789012345678"));
   for (const char* entry : {"GRID", "CQUAD4"}) {
-    const auto refused = folder.open(std::string("GRID,1\n") + entry + ",1234567890123456789,1,1,1,1,1\n");
-    ASSERT_FALSE(refused);
+    const auto refused = folder.open(std::string("GRID,1\n") + entry + ",1234567890123456789,1,1,1,1,1\nCROD,2,1,1,9\n");
+    ASSERT_FALSE(refused) << "the rod may need that grid point";
     EXPECT_EQ(refused.error().message,
               std::string("the id of a ") + entry + " may have up to 18 digits, but this one has \"1234567890123456789\"");
     EXPECT_EQ(refused.error().line, 2);
@@ -464,6 +487,52 @@ TEST(NastranReplication, makes_cards_that_cant_be_moved_singly) {
   EXPECT_EQ(moved.error().line, 2);
 }
 
+TEST(NastranReplication, a_card_may_take_fields_from_the_one_before) {
+  const DeckFolder folder;
+  const std::string text =
+      "GRID           1              1.      2.      3.\nGRID           2      ==\nGRID,3,=,4.,==\nGRID,4,,*(.5),=,7.\n"
+      "$ a comment between\nGRID,5,==\nGRID,9,,0.,0.,0.\nCTRIA3,1,7,1,2,3\nCTRIA3,2,=,*(1),*(1),4\nCTRIA3,3,7,1,2,5\n";
+  const auto opened = folder.open(text);
+  ASSERT_OPENED(opened);
+  const Model& model = opened->model;
+  EXPECT_EQ(position_of(model, 2), Vec3(1, 2, 3));
+  EXPECT_EQ(position_of(model, 3), Vec3(4, 2, 3));
+  EXPECT_EQ(position_of(model, 4), Vec3(4.5, 2, 7));
+  EXPECT_EQ(position_of(model, 5), Vec3(4.5, 2, 7));
+  // One that is moved alone would move those that copy it.
+  for (const int node : {1, 2, 3, 4, 5}) EXPECT_EQ(hold_of(model, node), kHeldByMaking) << node;
+  EXPECT_EQ(hold_of(model, 9), 0);
+  EXPECT_EQ(corners_of(model, 2), (std::array<std::int64_t, 4>{2, 3, 4, 4}));
+  ASSERT_TRUE(save(*opened->deck, model, with_node_at(model, 9, {0, 0, 1}), folder / "out.k"));
+  EXPECT_EQ(content(folder / "out.k"), std::string(text).replace(text.find("GRID,9,,0.,0.,0."), 16, "GRID,9,,0.,0.,1.0"));
+  EXPECT_TRUE(opened->deck->warnings.size() <= 2u) << opened->deck->warnings[2].message;
+}
+
+TEST(NastranReplication, of_single_fields_goes_on_from_a_copy_and_over_a_million_bytes) {
+  const DeckFolder folder;
+  const auto copies = folder.open("GRID,1,,0.,1.,2.\n=,*1,=,*1.,==\n=(2)\nGRID,9,==\n");
+  ASSERT_OPENED(copies);
+  EXPECT_EQ(position_of(copies->model, 9), Vec3(3, 1, 2));
+  std::string text = "GRID,1,,1.,2.,3.\n";
+  for (int i = 2; text.size() < std::size_t{3} << 20; ++i) text += "GRID," + std::to_string(i) + ",==$" + std::string(70, '-') + "\n";
+  const auto many = folder.open(text);
+  ASSERT_OPENED(many);
+  EXPECT_GT(many->model.node_count(), 30000u);
+  EXPECT_EQ(many->model.positions[many->model.node_count() - 1], Vec3(1, 2, 3));
+}
+
+TEST(NastranReplication, of_single_fields_needs_a_card_of_the_same_name) {
+  const DeckFolder folder;
+  const std::string triangle = "GRID,1,,1.,2.,3.\nGRID,2,,1.,0.,3.\n";
+  for (const auto& [cards, line] :
+       {std::pair<std::string, long>("CTRIA3,1,7,1,2,3\nGRID,3,==\n", 4), {"GRID,3,,=7\nCTRIA3,1,7,1,2,3\n", 3}}) {
+    const auto opened = folder.open(triangle + cards);
+    ASSERT_FALSE(opened) << cards;
+    EXPECT_EQ(opened.error().line, line);
+    EXPECT_NE(opened.error().message.find("GRID 3 but found \"="), std::string::npos) << opened.error().message;
+  }
+}
+
 TEST(NastranReplication, asks_for_too_much_or_makes_no_sense) {
   const DeckFolder folder;
   const auto many = folder.open("GRID,1,,0.,1.,2.\n=,*(1),==\n=(999999999)\n");
@@ -524,9 +593,9 @@ TEST(NastranPieces, keep_their_order) {
 TEST(NastranBadInput, is_told_with_its_line) {
   const DeckFolder folder;
   for (const auto& [text, line, words] :
-       {std::tuple("GRID,1\nGRID,x\n", 2, "id above 0"),
-        std::tuple("GRID,1\nGRID           2             1.x\n", 2, "coordinate 1 of GRID 2"),
-        std::tuple("GRID,1\nGRID,2,-3\n", 2, "coordinate system"), std::tuple("GRID,1\nCQUAD4,a\n", 2, "id of a CQUAD4")}) {
+       {std::tuple("GRID,1\nGRID,x\nCROD,1,1,1,2\n", 2, "id above 0"),
+        std::tuple("GRID,1\nGRID           2             1.x\nCROD,1,1,1,2\n", 2, "coordinate 1 of GRID 2"),
+        std::tuple("GRID,1\nGRID,2,-3\nCROD,1,1,1,2\n", 2, "coordinate system"), std::tuple("GRID,1\nCQUAD4,a\n", 2, "id of a CQUAD4")}) {
     const auto opened = folder.open(text);
     ASSERT_FALSE(opened) << text;
     EXPECT_EQ(opened.error().line, line);

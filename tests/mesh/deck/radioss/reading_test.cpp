@@ -31,7 +31,6 @@ TEST_F(Radioss, names_each_card_that_cant_be_read) {
     long line;
   };
   const Case cases[] = {
-      {"/NODE\n" + node(0, "0", "0", "0"), "a node needs an id above 0, but this card has \"         0\"", 8},
       {"/NODE\n" + node(1, "0", "0", "0") + node(-3, "0", "0", "0"), "a node needs an id above 0, but this card has \"        -3\"", 9},
       {"/NODE\n" + kBlankId + reals({"1", "2", "3"}) + "\n", "a node needs an id above 0, but this card has \"          \"", 8},
       {"/NODE\n" + node(1, "0", "0", "1.2.3"), "expected the z coordinate of node 1 but found \"               1.2.3\"", 8},
@@ -50,6 +49,19 @@ TEST_F(Radioss, names_each_card_that_cant_be_read) {
     EXPECT_EQ(opened.error().line, c.line) << c.message;
     EXPECT_NE(opened.error().file.find("deck_0000.rad"), std::string::npos);
   }
+}
+
+TEST_F(Radioss, keeps_a_node_of_id_0_that_no_card_can_name) {
+  const std::string text = std::string(kHead) + kSquare + "/NODE\n" + node(0, "5", "5", "5") + node(0, "6", "5", "5") + "/SHELL/1\n" +
+                           card({1, 1, 2, 3, 4}) + card({2, 1, 2, 3, 0}) + "/END\n";
+  const auto opened = open(text);
+  ASSERT_OPENED(opened);
+  EXPECT_FALSE(opened->model.find_node(0).valid());
+  EXPECT_EQ(opened->model.shell_count(), 2u);
+  EXPECT_EQ(opened->deck->element_cards.tri, 1u) << "0 as a fourth node makes a triangle";
+  const Warning said = warning(*opened->deck, "unnamed-node");
+  EXPECT_EQ(said.count, 2u);
+  EXPECT_NE(said.message.find("a node has the id 0"), std::string::npos) << said.message;
 }
 
 TEST_F(Radioss, leaves_out_what_an_undefined_parameter_gives) {
