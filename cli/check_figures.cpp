@@ -73,7 +73,7 @@ CheckFigures check_figures(const mesh::document::Document& document, const mesh:
   figures.report = quality::report(model, {criteria, size}, control, shells);
   figures.parts = quality::report_by_part(model, {criteria, size}, control, shells);
   quality::StructureOptions options;
-  options.triangles_at_node = static_cast<std::size_t>(criteria.warn_triangles_at_node);
+  options.triangles_at_node = criteria.warn_triangles_at_node;
   figures.structure = quality::check_structure(model, options, shells);
   if (chordal) figures.chordal = chordal_figures(model, shells);
   figures.triangles = grade_of_triangles(figures.report.triangles_percent, criteria);

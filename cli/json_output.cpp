@@ -35,6 +35,8 @@ Json edit_object(const document::EditReport& report) {
               {"elements_removed", report.elements_removed},
               {"before", bad_shells(report.before)},
               {"after", bad_shells(report.after)},
+              {"clusters_before", report.clusters_before},
+              {"clusters_after", report.clusters_after},
               {"inverted", report.inverted},
               {"notes", std::move(notes)},
               {"ms", std::round(report.milliseconds * 1000) / 1000}};

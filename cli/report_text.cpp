@@ -97,7 +97,10 @@ bool output_is_good(const Context& context) {
 
 void print_edit(std::ostream& out, const mesh::document::EditReport& report) {
   out << report.edit << ": " << counted(report.nodes_moved, "node") << " moved; warn " << report.before.warn << " -> " << report.after.warn
-      << ", fail " << report.before.fail << " -> " << report.after.fail << '\n';
+      << ", fail " << report.before.fail << " -> " << report.after.fail;
+  if (report.clusters_before + report.clusters_after > 0)
+    out << ", clusters of triangles " << report.clusters_before << " -> " << report.clusters_after;
+  out << '\n';
   for (const std::string& note : report.notes) out << "  " << printable(note) << '\n';
 }
 

@@ -169,8 +169,8 @@ struct Counted {
   std::uint64_t nodes = 0, shells = 0, parts = 0;
 };
 struct QualityMetric {
-  std::string name;                  ///< a metric's, or a defect's: "not_finite", "repeated_node", "no_area"
-  std::string unit;                  ///< "deg", the deck's length unit, or nothing
+  std::string name;  ///< a metric's, or a defect's: "not_finite", "repeated_node", "no_area"; "triangle_clusters", which counts nodes
+  std::string unit;  ///< "deg", the deck's length unit, or nothing
   std::uint64_t warn = 0, fail = 0;  ///< a shell counts in one of them, or neither
 };
 struct QualityBar {
@@ -178,14 +178,15 @@ struct QualityBar {
   bool open_below = false, open_above = false;  ///< also counts all values beyond
   std::uint64_t ok = 0, warn = 0, fail = 0;     ///< shells, judged by the metric alone
 };
-/// A shell that warns or fails, and its worst metric.
+/// A shell that warns or fails, and its worst metric; or a node with too many triangles about it.
 struct QualityError {
-  std::int64_t shell = 0;
+  std::int64_t shell = 0;  ///< of a node: one of the triangles
   std::string metric;
   std::string unit;
   std::optional<double> value;  ///< absent for a defect
   bool fail = false;
-  std::array<double, 3> at{};  ///< its centre
+  std::array<double, 3> at{};  ///< the shell's centre, or the node
+  std::int64_t node = 0;       ///< 0: it is a shell
 };
 struct QualityPart {
   std::int64_t part = 0;
@@ -211,6 +212,7 @@ struct PreviewedShell {
   std::int64_t shell = 0;
   std::vector<std::uint32_t> corners;  ///< four, into `points`; a triangle repeats its third
   std::uint32_t warn = 0, fail = 0;    ///< mesh::quality::ShellState
+  std::uint32_t clusters = 0;          ///< bit k: at corner k are too many triangles, and this is the first of them here
 };
 struct EditPreviewed {
   std::uint64_t generation = 0;  ///< that the edit would be applied to

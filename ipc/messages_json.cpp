@@ -57,13 +57,14 @@ PRISMESH_JSON_OBJECT(ipc::QualityMetric, f("name", m.name), f("unit", m.unit), f
 PRISMESH_JSON_OBJECT(ipc::QualityBar, f("from", m.from), f("to", m.to), f("open_below", m.open_below), f("open_above", m.open_above),
                      f("ok", m.ok), f("warn", m.warn), f("fail", m.fail));
 PRISMESH_JSON_OBJECT(ipc::QualityError, f("shell", m.shell), f("metric", m.metric), f("unit", m.unit), f("value", m.value),
-                     f("fail", m.fail), f("at", m.at));
+                     f("fail", m.fail), f("at", m.at), f("node", m.node));
 PRISMESH_JSON_OBJECT(ipc::QualityPart, f("part", m.part), f("shells", m.shells), f("warn", m.warn), f("fail", m.fail),
                      f("composite", m.composite), f("least_composite", m.least_composite));
 PRISMESH_MESSAGE(ipc::ShellsFound, "shells_found", f("shells", m.shells), f("expr", m.expr));
 PRISMESH_MESSAGE(ipc::EditPreviewed, "edit_previewed", f("generation", m.generation), f("report", m.report), f("points", m.points),
                  f("shells", m.shells), f("shell_count", m.shell_count), f("replaced", m.replaced));
-PRISMESH_JSON_OBJECT(ipc::PreviewedShell, f("shell", m.shell), f("corners", m.corners), f("warn", m.warn), f("fail", m.fail));
+PRISMESH_JSON_OBJECT(ipc::PreviewedShell, f("shell", m.shell), f("corners", m.corners), f("warn", m.warn), f("fail", m.fail),
+                     f("clusters", m.clusters));
 PRISMESH_MESSAGE(ipc::DragBegun, "drag_begun", f("drag", m.drag), f("base_generation", m.base_generation), f("nodes", m.nodes),
                  f("grab", m.grab), f("grab_position", m.grab_position), f("normal", m.normal));
 PRISMESH_MESSAGE(ipc::Snapshot, "snapshot", f("lease", m.lease), f("generation", m.generation), f("segments", m.segments),
@@ -78,7 +79,8 @@ PRISMESH_JSON_OBJECT(mesh::quality::Counts, f("ok", m.ok), f("warn", m.warn), f(
 PRISMESH_JSON_OBJECT(mesh::deck::Warning, f("file", m.file), f("line", m.line), f("kind", m.kind), f("message", m.message),
                      f("count", m.count));
 PRISMESH_JSON_OBJECT(mesh::document::EditReport, f("edit", m.edit), f("nodes_moved", m.nodes_moved), f("elements_added", m.elements_added),
-                     f("elements_removed", m.elements_removed), f("before", m.before), f("after", m.after), f("inverted", m.inverted),
+                     f("elements_removed", m.elements_removed), f("before", m.before), f("after", m.after),
+                     f("clusters_before", m.clusters_before), f("clusters_after", m.clusters_after), f("inverted", m.inverted),
                      f("lost_connections", m.lost_connections), f("lost", m.lost), f("mass_before", m.mass_before),
                      f("mass_after", m.mass_after), f("cog_before", m.centre_before), f("cog_after", m.centre_after), f("notes", m.notes),
                      f("ms", m.milliseconds));

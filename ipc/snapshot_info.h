@@ -22,9 +22,19 @@ enum class SnapshotArray : std::uint8_t {
   shell_quality,
   shell_damage,  ///< ShellState: the metrics by which the document's edits made the shell worse (mesh/document/damage.h)
   line_nodes,
-  line_parts
+  line_parts,
+  clusters,  ///< SnapshotCluster
 };
-inline constexpr int kSnapshotArrayCount = 11;
+inline constexpr int kSnapshotArrayCount = 12;
+
+/// A node with too many triangles about it (mesh/quality/triangle_clusters.h).
+struct SnapshotCluster {
+  mesh::ShellIndex shell;  ///< one of them
+  std::uint16_t triangles = 0;
+  std::uint8_t corner = 0;  ///< of that shell, at the node
+  std::uint8_t worse = 0;   ///< 1: the document's edits added triangles there
+  bool operator==(const SnapshotCluster&) const = default;
+};
 
 /// Bytes of one element of an array.
 std::size_t element_size(SnapshotArray array);
@@ -42,7 +52,6 @@ struct SnapshotInfo {
   std::string document;     ///< path
   std::string length_unit;  ///< "mm", ...
   double target_size = 1;
-  double max_triangles_at_node = 0;  ///< more are a cluster (mesh::quality::Criteria::warn_triangles_at_node)
   mesh::quality::Counts counts;
   std::uint64_t nodes = 0;  ///< existing ones; the arrays also hold removed ones
   std::uint64_t selected_nodes = 0;

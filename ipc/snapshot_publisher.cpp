@@ -9,6 +9,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "ipc/cluster_signs.h"
 #include "ipc/outlines.h"
 #include "ipc/shell_damage.h"
 #include "ipc/snapshot_table.h"
@@ -116,6 +117,7 @@ struct SnapshotPublisher::Impl {
   std::map<std::uint64_t, std::shared_ptr<Published>> leases;
   PerModel per_model;
   ShellDamage damage;
+  ClusterSigns clusters;
 
   void look_at(const mesh::Model& model) {
     if (per_model.elements != model.elements) {
@@ -257,6 +259,7 @@ struct SnapshotPublisher::Impl {
     next(SnapshotArray::shell_damage, damage.of(document.opened, generation));
     next(SnapshotArray::line_nodes, per_model.lines.nodes);
     next(SnapshotArray::line_parts, per_model.lines.parts);
+    next(SnapshotArray::clusters, clusters.of(document.opened, generation));
     return done;
   }
 
@@ -267,7 +270,6 @@ struct SnapshotPublisher::Impl {
     info.document = document.path.string();
     info.length_unit = std::string(name(document.settings.length_unit));
     info.target_size = document.settings.target_size;
-    info.max_triangles_at_node = document.settings.criteria.warn_triangles_at_node;
     info.counts = generation.counts;
     info.nodes = mesh::live_nodes(generation.model);
     info.selected_nodes = generation.selected_nodes;
@@ -347,6 +349,7 @@ void SnapshotPublisher::forget() {
   impl_->drop(impl_->current);
   impl_->per_model = {};
   impl_->damage = {};
+  impl_->clusters = {};
   impl_->shrink();
 }
 

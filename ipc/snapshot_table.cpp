@@ -8,7 +8,7 @@ namespace prismesh::ipc {
 
 namespace {
 
-constexpr std::uint64_t kSnapshotMagic = 0x3354'534d'5350'5250;  // "PRPSMST3"
+constexpr std::uint64_t kSnapshotMagic = 0x3454'534d'5350'5250;  // "PRPSMST4"
 // Indices into the arrays are 32 bits wide, and the last value means none.
 constexpr std::uint64_t kMaxElements = 2 * std::uint64_t{0xffff'fffe};
 
@@ -19,7 +19,6 @@ void put_info(ByteWriter& out, const SnapshotInfo& info) {
   out.put(info.document);
   out.put(info.length_unit);
   out.put(info.target_size);
-  out.put(info.max_triangles_at_node);
   for (const std::size_t number : {info.counts.ok, info.counts.warn, info.counts.fail}) out.put(std::uint64_t{number});
   out.put(info.nodes);
   out.put(info.selected_nodes);
@@ -41,7 +40,6 @@ SnapshotInfo get_info(ByteReader& in) {
   info.document = in.text();
   info.length_unit = in.text();
   info.target_size = in.get<double>();
-  info.max_triangles_at_node = in.get<double>();
   info.counts.ok = in.get<std::uint64_t>();
   info.counts.warn = in.get<std::uint64_t>();
   info.counts.fail = in.get<std::uint64_t>();
@@ -110,6 +108,7 @@ std::size_t element_size(SnapshotArray array) {
     case SnapshotArray::shell_quality:
     case SnapshotArray::shell_damage: return sizeof(mesh::quality::ShellState);
     case SnapshotArray::line_nodes: return sizeof(mesh::NodeIndex);
+    case SnapshotArray::clusters: return sizeof(SnapshotCluster);
   }
   return 1;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "mesh/document/prepare.h"
 #include "mesh/model/node_set.h"
@@ -49,6 +50,17 @@ void add_shell(const mesh::document::Generation& next, ShellIndex shell, std::un
   preview.shells.push_back(std::move(shown));
 }
 
+/// Marks the clusters of `next` at the corners of the previewed triangles, each once. `known`: nodes to their index in `preview.points`.
+void add_clusters(const mesh::document::Generation& next, const std::unordered_map<std::uint32_t, std::uint32_t>& known,
+                  ipc::EditPreviewed& preview) {
+  std::unordered_set<std::uint32_t> crowded;
+  for (const mesh::quality::TriangleCluster& cluster : *next.clusters)
+    if (const auto place = known.find(cluster.node.value); place != known.end()) crowded.insert(place->second);
+  for (ipc::PreviewedShell& shell : preview.shells)
+    for (std::uint32_t k = 0; k < 3 && shell.corners[3] == shell.corners[2]; ++k)
+      if (crowded.erase(shell.corners[k]) > 0) shell.clusters |= 1U << k;
+}
+
 }  // namespace
 
 Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document, const mesh::document::Edit& edit, Clock* clock) {
@@ -72,6 +84,7 @@ Result<ipc::EditPreviewed> preview_edit(const mesh::document::Document& document
     if (preview.shells.size() == ipc::kMaxPreviewedShells) break;
     add_shell(next, shell, known, preview);
   }
+  add_clusters(next, known, preview);
   for (const ShellIndex shell : before) {
     if (preview.replaced.size() == ipc::kMaxPreviewedShells) break;
     preview.replaced.push_back(now.model.shell_ids[shell.value]);

@@ -8,6 +8,7 @@
 
 #include "base/nearest_name.h"
 #include "base/parallel_for.h"
+#include "mesh/document/clusters.h"
 #include "mesh/document/damage.h"
 #include "mesh/model/topology_change.h"
 #include "mesh/quality/composite.h"
@@ -34,6 +35,13 @@ constexpr std::size_t kGrain = mesh::kChunkSize;
 constexpr std::size_t kBars = 24;
 constexpr int kStateBits = 16;
 constexpr double kTail = 0.002;  ///< share of the shells at either end that doesn't widen the histogram's range
+
+constexpr int kCluster = kStateBits;  ///< instead of a metric or a defect's bit
+constexpr const char* kClusterName = "triangle_clusters";
+
+std::array<double, 3> place_of(const mesh::Vec3& at) {
+  return at.allFinite() ? std::array<double, 3>{at.x(), at.y(), at.z()} : std::array<double, 3>{};
+}
 
 bool has(std::uint16_t bits, int bit) { return (bits >> bit & 1) != 0; }
 
@@ -87,15 +95,16 @@ double severity(double value, const Threshold& limit) {
 
 struct Wrong {
   std::size_t shell = 0;
-  int metric = -1;  ///< a metric, or a defect's bit
+  int metric = -1;  ///< a metric, a defect's bit, or kCluster
   float value = 0;
   double severity = 0;
   bool fails = false;
+  mesh::NodeIndex node;  ///< of a cluster of triangles
 };
 bool worse(const Wrong& a, const Wrong& b) {
   if (a.fails != b.fails) return a.fails;
   if (a.severity != b.severity) return a.severity > b.severity;
-  return a.shell < b.shell;
+  return a.shell != b.shell ? a.shell < b.shell : a.node < b.node;
 }
 
 /// A degenerate shell fails by its defects only; its metrics have no meaning.
@@ -151,7 +160,11 @@ struct Figures {
 class Gathering {
  public:
   Gathering(const Document& document, const ipc::GetQuality& request, int metric)
-      : document_(document), generation_(document.current()), shells_(document, request.damaged), metric_(metric) {
+      : document_(document),
+        generation_(document.current()),
+        shells_(document, request.damaged),
+        metric_(metric),
+        damaged_(request.damaged) {
     if (metric_ >= 0) values_.resize(shells_.size());
   }
 
@@ -161,6 +174,7 @@ class Gathering {
                  [&](std::size_t begin, std::size_t end) { ranges[begin / kGrain] = figures_of_range(begin, end); });
     Figures all;
     for (Figures& range : ranges) all.add(std::move(range));
+    add_clusters(all);
     ipc::Quality quality;
     quality.generation = generation_.number;
     add_metrics(all, quality);
@@ -213,12 +227,29 @@ class Gathering {
     return worst;
   }
 
+  /// Clusters aren't judged by a metric: they count when all are asked for.
+  void add_clusters(Figures& all) {
+    if (metric_ >= 0) return;
+    const double allowed = document_.settings.criteria.warn_triangles_at_node;
+    const std::vector<std::uint8_t> made =
+        damaged_ ? mesh::document::made_worse(*document_.opened, generation_) : std::vector<std::uint8_t>();
+    for (std::size_t i = 0; i < generation_.clusters->size(); ++i) {
+      if (damaged_ && made[i] == 0) continue;
+      const mesh::quality::TriangleCluster& cluster = (*generation_.clusters)[i];
+      const auto triangles = static_cast<double>(cluster.triangles);
+      all.wrong.push_back({cluster.shell.value, kCluster, static_cast<float>(triangles), (triangles - allowed) / std::max(allowed, 1.0),
+                           false, cluster.node});
+      ++clusters_;
+    }
+  }
+
   void add_metrics(const Figures& all, ipc::Quality& quality) const {
     for (int m = 0; m < kMetricCount; ++m)
       quality.metrics.push_back({std::string(mesh::quality::name(static_cast<Metric>(m))), unit(m), all.warn[static_cast<std::size_t>(m)],
                                  all.fail[static_cast<std::size_t>(m)]});
     for (const Defect defect : mesh::quality::kDefects)
       quality.metrics.push_back({std::string(name(defect)), "", 0, all.fail[static_cast<std::size_t>(defect)]});
+    quality.metrics.push_back({kClusterName, "", clusters_, 0});
   }
 
   void add_errors(Figures& all, ipc::Quality& quality) const {
@@ -230,6 +261,14 @@ class Gathering {
       ipc::QualityError error;
       error.shell = generation_.model.shell_ids[wrong.shell];
       error.fail = wrong.fails;
+      if (wrong.node.valid()) {
+        error.metric = kClusterName;
+        error.value = wrong.value;
+        error.node = generation_.model.node_ids[wrong.node.value];
+        error.at = place_of(generation_.model.position(wrong.node));
+        quality.errors.push_back(std::move(error));
+        continue;
+      }
       if (wrong.metric < kMetricCount) {
         error.metric = mesh::quality::name(static_cast<Metric>(wrong.metric));
         error.unit = unit(wrong.metric);
@@ -305,13 +344,15 @@ class Gathering {
     mesh::Vec3 sum = mesh::Vec3::Zero();
     for (int corner = 0; corner < nodes.corners(); ++corner)
       sum += generation_.model.position(nodes.node[static_cast<std::size_t>(corner)]) / nodes.corners();
-    return sum.allFinite() ? std::array<double, 3>{sum.x(), sum.y(), sum.z()} : std::array<double, 3>{};
+    return place_of(sum);
   }
 
   const Document& document_;
   const Generation& generation_;
   Shells shells_;
   int metric_ = -1;
+  bool damaged_ = false;
+  std::uint64_t clusters_ = 0;
   std::vector<float> values_;
 };
 

@@ -19,7 +19,7 @@ enum class GlyphShape : std::uint8_t {
   small_angle,  ///< the corner's sector, filled
   large_angle,  ///< an arc at the corner
   stretched,    ///< a slender box along the longest edge's direction
-  cluster,      ///< a ring with three spokes, at a node with too many triangles
+  cluster,      ///< a ring with three spokes, at a node with too many triangles; no state of a shell
   defect,       ///< a cross
   other,        ///< a ring: skew, Jacobian, taper
 };
@@ -33,7 +33,8 @@ inline constexpr std::uint32_t kMarkedGlyph = 15;  ///< instead of a shape: a fr
 /// The shapes of the failing metrics if any fails, else of those that warn. `other` only if no other shape applies; a defect has only its
 /// own. Empty for a shell that passes.
 std::vector<GlyphShape> shapes_of(const mesh::quality::ShellState& state);
-inline constexpr std::size_t kMaxShapesOfShell = 6;  ///< that shapes_of returns
+inline constexpr std::size_t kMaxShapesOfShell = 6;                      ///< that shapes_of returns
+inline constexpr std::size_t kMaxGlyphsOfShell = kMaxShapesOfShell + 3;  ///< with a cluster at each corner of a triangle
 
 /// Finds the diagonal (0: from corner 0 to 2, 1: from 1 to 3), edge (k: from corner k to the next) or corner k that the shape marks.
 /// `corners`: positions of the 3 or 4 corners. For a triangle's short_edge the corner at which the smallest height starts. 0 if the shape

@@ -1,7 +1,6 @@
 #include "kiosk/render/glyphs.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace prismesh::kiosk::render {
@@ -47,33 +46,14 @@ void GlyphList::update(const ModelTable& table, bool visibility_changed, bool to
         chunk.bad.push_back({static_cast<std::uint32_t>(begin + i), shape, states[i].fail != 0, 0});
     }
   }
-  if (visibility_changed || topology_changed) find_clusters(table);
+  find_clusters(table, damaged);
 }
 
-void GlyphList::find_clusters(const ModelTable& table) {
+void GlyphList::find_clusters(const ModelTable& table, bool damaged) {
   clusters_.clear();
-  const double max_triangles = table.source().max_triangles_at_node();
-  mesh::ShellNodes shell;
-  std::vector<std::uint16_t> triangles(table.node_count());
-  bool any = false;
-  for (std::size_t s = 0; s < table.shell_count(); ++s) {
-    if (!table.shell(s, shell) || !shell.is_triangle() || !table.shell_visible(s)) continue;
-    for (std::size_t k = 0; k < 3; ++k)
-      if (std::uint16_t& at = triangles[shell.node[k].value]; at < std::numeric_limits<std::uint16_t>::max()) any |= ++at > max_triangles;
-  }
-  if (!any) return;
-  std::vector<std::uint8_t> crowded(table.node_count());  // too many triangles, and at least one quad
-  for (std::size_t s = 0; s < table.shell_count(); ++s) {
-    if (!table.shell(s, shell) || shell.is_triangle()) continue;
-    for (const mesh::NodeIndex node : shell.node) crowded[node.value] = triangles[node.value] > max_triangles;
-  }
-  // The first of the node's triangles carries the glyph.
-  for (std::size_t s = 0; s < table.shell_count(); ++s) {
-    if (!table.shell(s, shell) || !shell.is_triangle() || !table.shell_visible(s)) continue;
-    for (std::uint8_t k = 0; k < 3; ++k)
-      if (std::exchange(crowded[shell.node[k].value], std::uint8_t{0}) != 0)
-        clusters_.push_back({static_cast<std::uint32_t>(s), GlyphShape::cluster, false, k});
-  }
+  for (const ipc::SnapshotCluster& cluster : table.clusters())
+    if (table.shell_visible(cluster.shell.value) && (!damaged || cluster.worse != 0))
+      clusters_.push_back({cluster.shell.value, GlyphShape::cluster, false, cluster.corner});
 }
 
 GlyphList::Chosen GlyphList::choose(const ModelTable& table, std::size_t cap, const std::unordered_set<std::uint32_t>& except) const {
@@ -82,7 +62,7 @@ GlyphList::Chosen GlyphList::choose(const ModelTable& table, std::size_t cap, co
     if (!except.contains(bad.shell)) (bad.failing ? failing : warning).push_back(bad);
   };
   for (const Chunk& chunk : chunks_) std::for_each(chunk.bad.begin(), chunk.bad.end(), sort_in);
-  if (!damaged_) std::for_each(clusters_.begin(), clusters_.end(), sort_in);
+  std::for_each(clusters_.begin(), clusters_.end(), sort_in);
   Chosen chosen;
   const auto add = [&](const BadShell& bad) {
     mesh::ShellNodes nodes;

@@ -14,8 +14,7 @@ namespace prismesh::kiosk::render {
 /// Glyphs of shells that warn or fail and of nodes with too many triangles, kept by chunk. An update visits only the chunks that changed.
 class GlyphList {
  public:
-  /// Takes over a model. `damaged`: counts only what the document's edits made worse. A change of shells or visibility costs a pass over
-  /// all shells, which finds the clusters.
+  /// Takes over a model. `damaged`: counts only what the document's edits made worse.
   void update(const ModelTable& table, bool visibility_changed, bool topology_changed, bool damaged);
 
   struct Chosen {
@@ -38,8 +37,7 @@ class GlyphList {
     bool known = false;
     std::vector<BadShell> bad;
   };
-  /// Finds nodes with more triangles than the source's limit and at least one quad. Nodes without a quad are in a mesh of triangles.
-  void find_clusters(const ModelTable& table);
+  void find_clusters(const ModelTable& table, bool damaged);
 
   std::vector<Chunk> chunks_;
   std::vector<BadShell> clusters_;

@@ -15,6 +15,7 @@ struct MeshChange {
   std::vector<mesh::Vec3> points;                     ///< deck coordinates
   std::vector<std::array<std::uint32_t, 4>> corners;  ///< of each shell, into `points`; a triangle repeats its third
   std::vector<mesh::quality::ShellState> states;      ///< of each shell
+  std::vector<std::uint8_t> clusters;                 ///< of each shell: bit k: corner k carries the sign of a cluster
   std::vector<mesh::ShellIndex> replaced;             ///< shells of the model that the edit would remove or change
 };
 

@@ -175,7 +175,7 @@ Result<ModelLayer::Glyphs> ModelLayer::glyphs(std::size_t cap, bool damaged) {
   glyph_cap_ = cap;
   glyphs_of_damage_ = damaged;
   // The preview's share is reserved for the whole drag, so that the model's glyphs don't come and go with its frames.
-  const std::size_t reserved = previewing() ? std::min(kMaxShapesOfShell * preview_->shells().size(), cap / 2) : 0;
+  const std::size_t reserved = previewing() ? std::min(kMaxGlyphsOfShell * preview_->shells().size(), cap / 2) : 0;
   if (preview_glyphs_.stale)
     if (const auto chosen = choose_preview_glyphs(reserved); !chosen) return fail(chosen.error());
   if (model_glyphs_.stale) {

@@ -22,7 +22,6 @@ class SnapshotSource final : public ModelSource {
   bool part_hidden(std::size_t part) const override {
     return part < hidden_.size() ? hidden_[part] != 0 : view_->info().parts[part].hidden;
   }
-  double max_triangles_at_node() const override { return view_->info().max_triangles_at_node; }
   std::uint64_t document_key() const override { return document_; }
 
  private:

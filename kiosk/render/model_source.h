@@ -20,8 +20,6 @@ class ModelSource {
   virtual std::span<const std::byte> chunk_bytes(ipc::SnapshotArray array, std::size_t chunk) const = 0;
   virtual std::size_t part_count() const = 0;
   virtual bool part_hidden(std::size_t part) const = 0;
-  /// A node with more triangles is a cluster.
-  virtual double max_triangles_at_node() const = 0;
   /// Differs between documents. Versions of two documents can't be compared.
   virtual std::uint64_t document_key() const = 0;
 

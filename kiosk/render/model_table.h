@@ -46,6 +46,8 @@ class ModelTable {
   /// By PartIndex, 1 = hidden.
   const std::vector<std::uint8_t>& hidden_parts() const { return hidden_; }
   bool any_hidden() const { return any_hidden_; }
+  /// The source's clusters of triangles whose shell and corner exist.
+  const std::vector<ipc::SnapshotCluster>& clusters() const { return clusters_; }
 
   /// Both ends of a line element; false if an end is out of range or the part is hidden. Precondition: line < line_count().
   bool line(std::size_t line, std::array<std::uint32_t, 2>& ends) const;
@@ -69,6 +71,7 @@ class ModelTable {
   std::vector<std::span<const std::uint8_t>> node_marks_;
   std::vector<std::uint8_t> hidden_;
   bool any_hidden_ = false;
+  std::vector<ipc::SnapshotCluster> clusters_;
 };
 
 inline bool finite(const mesh::Vec3& point) { return std::isfinite(point.x()) && std::isfinite(point.y()) && std::isfinite(point.z()); }

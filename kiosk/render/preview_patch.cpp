@@ -1,6 +1,7 @@
 #include "kiosk/render/preview_patch.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace prismesh::kiosk::render {
 
@@ -44,7 +45,21 @@ PreviewPatch::PreviewPatch(const ModelTable& table, const Vec3& origin, std::spa
     for (std::size_t k = 0; k < 4; ++k) shell.corner[k] = local(corners.node[k].value);
     shells_.push_back(shell);
   }
+  add_clusters(table, shells);
   add_edges();
+}
+
+void PreviewPatch::add_clusters(const ModelTable& table, std::span<const mesh::ShellIndex> shells) {
+  if (table.clusters().empty()) return;
+  std::unordered_map<std::uint32_t, Shell*> of_model;
+  for (Shell& shell : shells_) of_model.emplace(shells[shell.state].value, &shell);
+  for (const ipc::SnapshotCluster& cluster : table.clusters()) {
+    const auto carrier = of_model.find(cluster.shell.value);
+    if (carrier == of_model.end()) continue;
+    const auto bit = static_cast<std::uint8_t>(1U << cluster.corner);
+    carrier->second->clusters |= bit;
+    if (cluster.worse != 0) carrier->second->worse_clusters |= bit;
+  }
 }
 
 PreviewPatch::PreviewPatch(const Vec3& origin, const MeshChange& change) : origin_(origin), states_(change.states), any_frame_(true) {
@@ -52,7 +67,9 @@ PreviewPatch::PreviewPatch(const Vec3& origin, const MeshChange& change) : origi
   states_.resize(change.corners.size());
   for (std::size_t s = 0; s < change.corners.size(); ++s) {
     const std::array<std::uint32_t, 4>& corner = change.corners[s];
-    if (*std::max_element(corner.begin(), corner.end()) < positions_.size()) shells_.push_back({corner, static_cast<std::uint32_t>(s), {}});
+    if (*std::max_element(corner.begin(), corner.end()) >= positions_.size()) continue;
+    const std::uint8_t clusters = s < change.clusters.size() ? change.clusters[s] : std::uint8_t{0};
+    shells_.push_back({corner, static_cast<std::uint32_t>(s), {}, clusters, clusters});
   }
   for (const mesh::ShellIndex shell : change.replaced) touched_.insert(shell.value);
   add_edges();
@@ -94,7 +111,9 @@ std::vector<Glyph> PreviewPatch::glyphs(bool damaged) const {
         state.warn = static_cast<std::uint16_t>(state.warn & ~shell.was.warn);
         state.fail = static_cast<std::uint16_t>(state.fail & ~shell.was.fail);
       }
-      if ((state.warn | state.fail) == 0 || (state.fail != 0) != failing) continue;
+      const unsigned clusters = failing ? 0U : damaged ? shell.worse_clusters : shell.clusters;
+      const bool is_bad = (state.warn | state.fail) != 0 && (state.fail != 0) == failing;
+      if (!is_bad && clusters == 0) continue;
       const std::size_t corners = shell.corner[3] == shell.corner[2] ? 3 : 4;
       std::array<Vec3, 4> at;
       bool whole = true;
@@ -104,6 +123,10 @@ std::vector<Glyph> PreviewPatch::glyphs(bool damaged) const {
         whole = whole && place[3] != 0;
       }
       if (!whole) continue;  // a corner isn't finite
+      for (std::uint32_t corner = 0; corner < corners; ++corner)
+        if ((clusters >> corner & 1U) != 0)
+          glyphs.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(GlyphShape::cluster) | corner << kGlyphPlaceShift});
+      if (!is_bad) continue;
       for (const GlyphShape shape : shapes_of(state))
         glyphs.push_back({static_cast<std::uint32_t>(s), static_cast<std::uint32_t>(shape) | (failing ? kFailingGlyph : 0) |
                                                              glyph_place(shape, std::span(at).first(corners)) << kGlyphPlaceShift});

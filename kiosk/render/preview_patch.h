@@ -39,7 +39,10 @@ class PreviewPatch {
     std::array<std::uint32_t, 4> corner{};  ///< into positions_
     std::uint32_t state = 0;                ///< index into the frame's states
     mesh::quality::ShellState was;          ///< the part of its state that it had when the deck was opened
+    std::uint8_t clusters = 0;              ///< bit k: corner k carries the sign of a cluster, which the patch doesn't change
+    std::uint8_t worse_clusters = 0;        ///< those that the document's edits made worse
   };
+  void add_clusters(const ModelTable& table, std::span<const mesh::ShellIndex> shells);
   void add_edges();
 
   mesh::Vec3 origin_;

@@ -474,6 +474,8 @@ void ModelLink::say_report(const mesh::document::EditReport& report) {
   if (is_mending(report.edit))
     text = fmt::format("{}: warn {} \u2192 {}, fail {} \u2192 {}", report.edit, report.before.warn, report.after.warn, report.before.fail,
                        report.after.fail);
+  if (report.clusters_before != report.clusters_after)
+    text += fmt::format("{}clusters of triangles {} \u2192 {}", text.empty() ? "" : ", ", report.clusters_before, report.clusters_after);
   for (const std::string& note : report.notes) text += (text.empty() ? "" : "\n") + note;
   if (report.mass_before && report.mass_after) {
     text += fmt::format("{}mass {} \u2192 {}", text.empty() ? "" : "\n", readable(*report.mass_before, kDigits),

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "base/counted.h"
 #include "mesh/deck/editing/edit_checks.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/clusters.h"
 #include "mesh/document/restructure.h"
 #include "mesh/document/scope.h"
 #include "mesh/document/unwritable.h"
@@ -30,6 +32,8 @@ quality::SizedCriteria criteria_of(const Document& document) { return {document.
 
 std::string shell_name(const Model& model, ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 
+std::string crowded(std::size_t nodes) { return counted(nodes, "node") + " with too many triangles"; }
+
 void note_operations(const repair::Repaired& repaired, EditReport& report) {
   std::string said;
   constexpr std::array<std::string_view, repair::kOperationCount> kDone{"split", "collapsed", "merged", "swapped", "moved"};
@@ -37,7 +41,8 @@ void note_operations(const repair::Repaired& repaired, EditReport& report) {
     if (repaired.done[i] > 0) said += (said.empty() ? "" : ", ") + std::to_string(repaired.done[i]) + " " + std::string(kDone[i]);
   if (repaired.relaxed > 0) said += (said.empty() ? "" : ", ") + counted(repaired.relaxed, "node") + " relaxed";
   if (said.empty()) said = "nothing changed";
-  report.notes.push_back("of " + counted(repaired.bad_before, "element") + " that failed or warned in the scope: " + said);
+  const std::string clusters = repaired.clusters_before > 0 ? " and " + crowded(repaired.clusters_before) : "";
+  report.notes.push_back("of " + counted(repaired.bad_before, "element") + " that failed or warned" + clusters + " in the scope: " + said);
 }
 
 void note_unrepaired(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
@@ -51,25 +56,36 @@ void note_unrepaired(const repair::Repaired& repaired, const Frozen& frozen, con
   }
 }
 
+void note_clusters_left(const repair::Repaired& repaired, const Model& model, EditReport& report) {
+  const std::vector<repair::ClusterLeft>& left = repaired.clusters_left;
+  if (left.empty()) return;
+  report.notes.push_back(crowded(left.size()) + (left.size() == 1 ? " stays" : " stay"));
+  for (std::size_t i = 0; i < std::min(left.size(), kMaxNamedInRepair); ++i)
+    report.notes.push_back((left[i].node.valid() ? "node:" + std::to_string(model.node_ids[left[i].node.value]) : "a new node") + ": " +
+                           std::to_string(left[i].triangles) + " triangles; " + left[i].why);
+}
+
 /// What a repair works on and fills in.
 struct RepairTask {
   const Document& document;
   repair::Options options;
   Generation& next;
   EditReport& report;
-  Frozen frozen;  ///< shells that must stay as they are, since the deck can't be written otherwise
+  NodeSet clusters;  ///< to repair
+  Frozen frozen;     ///< shells that must stay as they are, since the deck can't be written otherwise
 };
 
 /// Repairs the scope, and repeats without the changes that can't be written. Errors: cancelled; no set of changes can be written.
 Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope, const Progress& progress) {
-  auto& [document, options, next, report, frozen] = task;
+  auto& [document, options, next, report, clusters, frozen] = task;
   const Generation& current = document.current();
   const relax::ReferenceSurface surface = surface_about(current, scope, options.relax.feature_angle);
   const repair::Rules rules = with_frozen(rules_for(document, current), frozen);
   double furthest = 0;  // the progress doesn't go back when another attempt begins
   const Progress forward = [&](double fraction) { return !progress || progress(furthest = std::max(furthest, fraction)); };
   for (int attempt = 1;; ++attempt) {
-    Result<repair::Repaired> repaired = repair::repair({current.model, surface, rules, criteria_of(document), options}, scope, forward);
+    Result<repair::Repaired> repaired =
+        repair::repair({current.model, surface, rules, criteria_of(document), options, clusters}, scope, forward);
     if (!repaired || repaired->change.empty()) return repaired;
     Generation trial = current;
     const Result<void> done = restructure(document, repaired->change, trial, report);
@@ -89,18 +105,22 @@ Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope
 Result<void> apply_edit(const Document& document, const Repair& edit, Generation& next, EditReport& report, const Progress& progress) {
   const Result<ShellSet> scope = shells_in(document, edit.scope, "repair");
   if (!scope) return fail(scope.error());
-  if (std::all_of(scope->begin(), scope->end(),
-                  [&](ShellIndex shell) { return next.quality[shell.value].grade() == quality::Grade::ok; })) {
+  const ClustersInScope clusters = clusters_in(document, edit.scope, *scope);
+  if (clusters.nodes.empty() && std::all_of(scope->begin(), scope->end(),
+                                            [&](ShellIndex shell) { return next.quality[shell.value].grade() == quality::Grade::ok; })) {
     report.notes.push_back(edit.scope == Scope::damaged ? "nothing to repair: no edit made an element fail or warn"
                                                         : "nothing to repair: every element in the scope is fine");
     return {};
   }
-  RepairTask task{document, options_of(edit.angle, edit.max_move), next, report, {}};
-  const Result<repair::Repaired> repaired = repair_writable(task, *scope, progress);
+  RepairTask task{document, options_of(edit.angle, edit.max_move), next, report, clusters.nodes, {}};
+  ShellSet shells;
+  std::set_union(scope->begin(), scope->end(), clusters.shells.begin(), clusters.shells.end(), std::back_inserter(shells));
+  const Result<repair::Repaired> repaired = repair_writable(task, shells, progress);
   if (!repaired) return fail(repaired.error());
   const Frozen& frozen = task.frozen;
   note_operations(*repaired, report);
   note_unrepaired(*repaired, frozen, next.model, report);
+  note_clusters_left(*repaired, next.model, report);
   if (!frozen.shells.empty())
     report.notes.push_back(counted(frozen.shells.size(), "element") +
                            " left as they are, since the deck can't be written otherwise: " + frozen.shells.begin()->second);

@@ -18,6 +18,8 @@ struct EditReport {
   std::size_t elements_removed = 0;
   quality::Counts before;
   quality::Counts after;
+  std::size_t clusters_before = 0;  ///< nodes with too many triangles about them (docs/quality/structure.md)
+  std::size_t clusters_after = 0;
   // of edits that move nodes:
   std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)
   std::size_t lost_connections = 0;   ///< nodes that lay on a sheet and no longer do (docs/connections.md)

@@ -11,6 +11,7 @@
 #include "mesh/model/model.h"
 #include "mesh/quality/mass.h"
 #include "mesh/quality/report.h"
+#include "mesh/quality/triangle_clusters.h"
 #include "mesh/select/expression.h"
 
 namespace prismesh::mesh::document {
@@ -43,7 +44,9 @@ struct Generation {
   std::shared_ptr<const Model> surface;
   std::shared_ptr<const DeckRelations> relations;  ///< never null once opened
   ChunkedArray<quality::ShellState> quality;
-  quality::Counts counts;          ///< all shells
+  quality::Counts counts;  ///< all shells
+  /// Of the model, by the document's criteria. Never null.
+  std::shared_ptr<const quality::TriangleClusters> clusters = std::make_shared<const quality::TriangleClusters>();
   quality::MassProperties weight;  ///< of all shells; updated with each edit, so its last digits depend on the edits before
   std::uint64_t number = 0;        ///< counts up over the document's life, never reused
   std::string made_by;             ///< the edit's name; "open" for the first

@@ -3,6 +3,7 @@
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/data/length_unit.h"
 #include "mesh/deck/open.h"
+#include "mesh/document/clusters.h"
 #include "mesh/document/find_deck_relations.h"
 #include "mesh/quality/mass.h"
 #include "mesh/quality/report.h"
@@ -40,6 +41,7 @@ std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const d
   first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
   first->quality = quality::judge_model(model, {settings.criteria, settings.target_size});
   first->counts = quality::count(first->quality);
+  first->clusters = clusters_of(settings, model);
   first->weight = quality::mass_properties(model);
   first->surface = std::make_shared<const Model>(model);
   first->model = std::move(model);

@@ -84,6 +84,8 @@ Result<Prepared> prepare(const Document& document, const Edit& edit, const Progr
     say_weights(document.current().weight, prepared->next->weight, prepared->report);
   prepared->report.before = document.current().counts;
   prepared->report.after = prepared->next->counts;
+  prepared->report.clusters_before = document.current().clusters->size();
+  prepared->report.clusters_after = prepared->next->clusters->size();
   if (clock != nullptr) prepared->report.milliseconds = static_cast<double>(clock->now_ns() - start_ns) * 1e-6;
   return prepared;
 }

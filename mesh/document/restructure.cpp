@@ -6,6 +6,7 @@
 #include "mesh/deck/editing/new_ids.h"
 #include "mesh/deck/editing/text_changes.h"
 #include "mesh/document/apply.h"
+#include "mesh/document/clusters.h"
 #include "mesh/document/deck_relations.h"
 #include "mesh/document/part_marks.h"
 #include "mesh/document/selection.h"
@@ -134,6 +135,7 @@ void settle_growth(const DocumentSettings& settings, const Generation& before, c
   next.shell_marks.resize(next.model.shell_count());
   const ShellSet touched = touched_shells(next.model, changes, moved);
   judge_again(settings, changes, touched, next);
+  if (!changes.empty()) next.clusters = clusters_of(settings, next.model);
   weigh_again(before, changes, touched, next);
 }
 

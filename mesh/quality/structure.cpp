@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
+#include "mesh/quality/triangle_clusters.h"
 
 namespace prismesh::mesh::quality {
 
@@ -295,7 +296,8 @@ void find_free_inside(const Model& model, const std::vector<NodeIndex>& low, con
   }
 }
 
-void find_clusters(const Model& model, const Scope& scope, std::size_t allowed, Structure& found) {
+/// Max number of triangles at a node, those of meshes of triangles included.
+void find_max_triangles(const Model& model, const Scope& scope, Structure& found) {
   std::vector<std::uint32_t> triangles(model.node_count());
   for (std::size_t s = 0; s < model.shell_count(); ++s) {
     const ShellNodes& shell = model.shell_nodes[s];
@@ -304,7 +306,6 @@ void find_clusters(const Model& model, const Scope& scope, std::size_t allowed, 
       if (corner.valid()) ++triangles[corner.value];
   }
   for (std::size_t n = 0; n < triangles.size(); ++n) {
-    if (triangles[n] > allowed) found.clusters.emplace_back(n);
     if (triangles[n] <= found.max_triangles) continue;
     found.max_triangles = triangles[n];
     found.max_triangles_at = NodeIndex(n);
@@ -324,7 +325,9 @@ Structure check_structure(const Model& model, const StructureOptions& options, c
   found.multiple = all_of<EdgeIndex>(adjacency.edge_count(),
                                      [&](EdgeIndex e) { return adjacency.shells_of(e).size() > 2 && scope.any(adjacency.shells_of(e)); });
   find_free_inside(model, low, scope, options.tolerance, found);
-  find_clusters(model, scope, options.triangles_at_node, found);
+  for (const TriangleCluster& cluster : find_triangle_clusters(model, options.triangles_at_node, shells))
+    found.clusters.push_back(cluster.node);
+  find_max_triangles(model, scope, found);
   return found;
 }
 

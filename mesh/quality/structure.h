@@ -16,14 +16,14 @@ struct Structure {
   std::vector<EdgeIndex> multiple;     ///< of three shells or more
   std::vector<EdgeIndex> unjoined;     ///< free, with another free edge of the part at the same place
   std::vector<EdgeIndex> free_inside;  ///< on a small loop of free edges inside a part, as around a missing shell; without unjoined ones
-  NodeSet clusters;                    ///< nodes with more triangles than allowed
+  NodeSet clusters;                    ///< nodes with more triangles than allowed (mesh/quality/triangle_clusters.h)
   std::size_t max_triangles = 0;       ///< max number of triangles at a node
   NodeIndex max_triangles_at;          ///< the first node with so many; invalid without triangles
 };
 
 struct StructureOptions {
-  std::size_t triangles_at_node = 3;  ///< max triangles at a node; more are a cluster
-  double tolerance = 0.01;            ///< max distance of free edges at the same place, as a fraction of their length
+  double triangles_at_node = 3;  ///< max triangles at a node; more are a cluster
+  double tolerance = 0.01;       ///< max distance of free edges at the same place, as a fraction of their length
 };
 
 /// Checks how the given shells (nullptr: all) are joined to any shell. Precondition: the model has its adjacency. Deterministic, whatever

@@ -10,6 +10,7 @@
 #include "mesh/repair/acceptance.h"
 #include "mesh/repair/candidates.h"
 #include "mesh/repair/change_history.h"
+#include "mesh/repair/clusters.h"
 #include "mesh/repair/strips.h"
 #include "mesh/repair/trial.h"
 
@@ -89,6 +90,10 @@ bool divide_strips(const RepairContext& context, RepairState& state) {
   int pass = 0;
   for (; pass < kMaxStripPasses && divide_strips_once(context, state); ++pass) relax_neighbourhood(context, state);
   return pass > 0;
+}
+
+bool repair_clusters(const RepairContext& context, RepairState& state) {
+  return thin_clusters(context, state, [&] { return goes_on(state.progress, 0); });
 }
 
 bool cure_shells(const RepairContext& context, RepairState& state, quality::Grade min_grade, double done) {

@@ -14,6 +14,9 @@ inline constexpr double kStripShare = 0.2, kSweepShare = 0.4;
 /// whether one did.
 bool divide_strips(const RepairContext& context, RepairState& state);
 
+/// Takes triangles away from nodes with too many about them (mesh/repair/clusters.h). Returns whether a change was kept.
+bool repair_clusters(const RepairContext& context, RepairState& state);
+
 /// Tries all candidates for each shell whose grade is `min_grade` or worse, worst first. `done`: share of the round done before. Returns
 /// whether a shell got better.
 bool cure_shells(const RepairContext& context, RepairState& state, quality::Grade min_grade, double done);

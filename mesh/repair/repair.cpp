@@ -6,6 +6,7 @@
 
 #include "mesh/repair/acceptance.h"
 #include "mesh/repair/change_history.h"
+#include "mesh/repair/clusters.h"
 #include "mesh/repair/passes.h"
 
 namespace prismesh::mesh::repair {
@@ -64,6 +65,7 @@ bool run_round(const RepairContext& context, RepairState& state) {
   bool better = false;
   // A node that moved along a line hinders the next strip, which would divide the line evenly: so lines keep their nodes in a first pass.
   state.along_lines = false;
+  better = repair_clusters(context, state) || better;
   better = divide_strips(context, state) || better;
   if (state.effort.along_lines) {
     state.along_lines = true;
@@ -116,7 +118,9 @@ Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const P
   const RepairContext exact{patch, input.surface, input.criteria, input.options, quality::limits_for(input.criteria)};
   const RepairContext strict{patch, input.surface, input.criteria, input.options, with_margin(exact.limits)};
   RepairState state{history_of(patch, input.model, scope, input.options.max_triangles_percent), {}, {progress}};
+  state.clusters = cluster_state_of(input);
   Repaired repaired;
+  repaired.clusters_before = input.clusters.size();
   judge_all(exact);
   repaired.bad_before = bad_shells(patch, state.history, quality::Grade::warn).size();
   judge_all(strict);
@@ -127,6 +131,7 @@ Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const P
   repaired.change = patch.result(&index_of);
   repaired.relaxed = repaired.change.moved.size();
   repaired.done = state.record.accepted;
+  repaired.clusters_left = clusters_left(exact, state);
   repaired.unrepaired = unrepaired_shells(patch, state, index_of);
   return repaired;
 }

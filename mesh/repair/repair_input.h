@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/model/model.h"
+#include "mesh/model/node_set.h"
 #include "mesh/quality/criteria.h"
 #include "mesh/relax/reference_surface.h"
 #include "mesh/repair/options.h"
@@ -15,6 +16,7 @@ struct RepairInput {
   const Rules& rules;
   const quality::SizedCriteria& criteria;
   const Options& options;
+  NodeSet clusters{};  ///< nodes with too many triangles about them, to be repaired too; ascending
 };
 
 }  // namespace prismesh::mesh::repair

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "mesh/repair/cluster_state.h"
 #include "mesh/repair/operation.h"
 #include "mesh/repair/patch.h"
 
@@ -53,6 +54,7 @@ struct RepairState {
   ChangeHistory history;
   TrialRecord record;
   RoundProgress progress;
+  ClusterState clusters{};
   Effort effort = kQuickEffort;
   bool along_lines = false;  ///< node smoothing also moves nodes on feature lines
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/model/model.h"
+#include "mesh/repair/cluster_state.h"
 #include "mesh/repair/operation.h"
 #include "mesh/repair/restructuring.h"
 
@@ -22,6 +23,8 @@ struct Repaired {
   std::array<std::size_t, kOperationCount> done{};  ///< accepted operations, by Operation
   std::size_t relaxed = 0;                          ///< nodes that moved
   std::size_t bad_before = 0;                       ///< shells of the scope that failed or warned
+  std::size_t clusters_before = 0;                  ///< nodes of the scope with too many triangles about them
+  std::vector<ClusterLeft> clusters_left;           ///< those that are left, and those that the repair made
   std::vector<Unrepaired> unrepaired;               ///< still failing, ascending by shell
   int rounds = 0;
 };

@@ -83,9 +83,6 @@ void glyphs_after_an_edit(benchmark::State& state) {
   warns.warn = 1;
   for (std::size_t s = 0; s < source->shell_nodes.size(); ++s)
     if (s % 100 < bad) source->shell_quality[s] = warns;
-  // One in eight is a triangle, so the renderer searches for nodes with too many triangles.
-  for (std::size_t s = 0; s < source->shell_nodes.size(); s += 8) source->shell_nodes[s].node[3] = source->shell_nodes[s].node[2];
-  source->max_triangles = 3;
   source->key = 77;
   (void)stage.renderer->set_model(source);
   std::size_t turn = 0, drawn = 0;

@@ -8,7 +8,9 @@
 
 #include "ipc/snapshot_publisher.h"
 #include "ipc/snapshot_table.h"
+#include "mesh/model/adjacency.h"
 #include "mesh/model/topology_change.h"
+#include "mesh/quality/triangle_clusters.h"
 #include "tests/ipc/small_document.h"
 
 namespace prismesh::ipc {
@@ -43,12 +45,10 @@ class Reader {
 
 TEST(Snapshot, holds_what_the_picture_needs) {
   mesh::document::Document document = grid_document(100, 90);
-  document.settings.criteria.warn_triangles_at_node = 2;
   SnapshotPublisher publisher;
   Reader reader(publisher);
   const auto view = reader.map(publisher.publish(document, true).value());
   ASSERT_TRUE(view);
-  EXPECT_EQ(view->info().max_triangles_at_node, 2) << "by the document's own criteria";
   EXPECT_EQ(view->node_count(), 101u * 91);
   EXPECT_EQ(view->shell_count(), 9000u);
   EXPECT_EQ(view->position(9000), document.current().model.positions[9000]);
@@ -204,6 +204,37 @@ TEST(Snapshot, says_of_each_shell_by_what_edits_made_it_worse_and_copies_only_th
   document.cursor = 0;
   const auto undone = reader.map(publisher.publish(document, false).value());
   EXPECT_EQ(undone->shell_damage(60000), ShellState{});
+}
+
+TEST(Snapshot, has_the_clusters_of_triangles_and_which_of_them_edits_made_worse) {
+  using mesh::ShellIndex;
+  mesh::document::Document document = grid_document(4, 4);
+  const auto with = [](mesh::document::Generation generation, std::size_t first_quad, std::size_t quads) {
+    for (std::size_t s = first_quad; s < first_quad + quads; ++s) {
+      mesh::ShellNodes nodes = generation.model.shell_nodes[s];
+      nodes.node[3] = nodes.node[2];
+      generation.model.shell_nodes.set(s, nodes);
+    }
+    generation.model.adjacency = std::make_shared<const mesh::Adjacency>(mesh::build_adjacency(generation.model));
+    generation.clusters =
+        std::make_shared<const mesh::quality::TriangleClusters>(mesh::quality::find_triangle_clusters(generation.model, 1.0));
+    return std::make_shared<const mesh::document::Generation>(std::move(generation));
+  };
+  document.opened = with(document.current(), 0, 2);  // they share node 1
+  document.generations = {document.opened, with(*document.opened, 2, 1)};
+  SnapshotPublisher publisher;
+  Reader reader(publisher);
+  const auto clusters_at = [&](std::size_t cursor) {
+    document.cursor = cursor;
+    const auto view = reader.map(publisher.publish(document, false).value());
+    std::vector<SnapshotCluster> clusters;
+    for (std::size_t i = 0; i < view->size(SnapshotArray::clusters); ++i)
+      clusters.push_back(view->at<SnapshotCluster>(SnapshotArray::clusters, i));
+    return clusters;
+  };
+  EXPECT_EQ(clusters_at(0), (std::vector<SnapshotCluster>{{ShellIndex(0), 2, 1, 0}})) << "node 1: corner 1 of shell 0, corner 0 of shell 1";
+  EXPECT_EQ(clusters_at(1), (std::vector<SnapshotCluster>{{ShellIndex(0), 2, 1, 0}, {ShellIndex(1), 2, 1, 1}}));
+  EXPECT_EQ(clusters_at(0).size(), 1u);
 }
 
 TEST(Snapshot, a_chunk_of_which_more_is_used_is_copied_again) {

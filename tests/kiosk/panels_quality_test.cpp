@@ -95,6 +95,12 @@ TEST_F(QualityPanel, an_error_is_gone_to_and_named) {
   EXPECT_EQ(errors, (std::set<std::size_t>{0, 1}));
   EXPECT_EQ(error_words(figures_.errors[0]), "shell 11: warpage 31.5\u00b0 fails");
   EXPECT_EQ(error_words({12, "no_area", "", std::nullopt, true, {}}), "shell 12: no area");
+  const ipc::QualityError crowded{12, "triangle_clusters", "", 6, false, {}, 45};
+  EXPECT_EQ(error_words(crowded), "node 45: many triangles together, 6 about it");
+  EXPECT_EQ(error_row_words(crowded), "node 45  6 triangles together");
+  EXPECT_EQ(error_row_words(figures_.errors[0]), "11  warpage  31.5\u00b0");
+  EXPECT_EQ(kind_words("triangle_clusters"), "many triangles together");
+  EXPECT_EQ(kind_words("min_length"), "min length");
 }
 
 TEST_F(QualityPanel, panels_keep_the_pointer_from_the_picture_and_words_on_it_do_not) {

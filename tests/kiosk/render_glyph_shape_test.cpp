@@ -9,6 +9,7 @@
 
 #include "kiosk/render/glyphs.h"
 #include "kiosk/render/part_looks.h"
+#include "kiosk/render/preview_patch.h"
 #include "tests/kiosk/test_source.h"
 
 namespace prismesh::kiosk::render {
@@ -102,50 +103,87 @@ TEST(GlyphShape, each_metric_has_its_shape_and_other_gives_way) {
   EXPECT_THAT(shapes_of(ShellState::removed()), IsEmpty());
 }
 
-/// A fan of triangles about a node in a grid of quads.
-std::shared_ptr<test::TestSource> fan(int triangles) {
-  auto source = std::make_shared<test::TestSource>();
-  test::add_grid(*source, 2, 2, 0, [](double u, double v) { return Vec3(u * 20, v * 20 - 20, 0); });
-  const std::uint32_t centre = 7;  // in the middle of the grid's upper side
-  std::vector<std::uint32_t> rim;
-  for (int i = 0; i <= triangles; ++i) {
-    const double angle = 3.14159 * i / triangles;
-    rim.push_back(source->add_node(source->positions[centre] + Vec3(10 * std::cos(angle), 10 * std::sin(angle), 0)));
+/// Two plates, the first shell of each a triangle; at its corner k is a cluster of which edits made only the second plate's.
+std::shared_ptr<test::TestSource> plates_with_clusters(std::uint8_t k) {
+  auto source = std::make_shared<test::TestSource>(test::two_plates());
+  for (const std::size_t shell : {0U, 100U}) {
+    source->shell_nodes[shell].node[3] = source->shell_nodes[shell].node[2];
+    source->clusters.push_back({mesh::ShellIndex(shell), 5, k, static_cast<std::uint8_t>(shell > 0)});
   }
-  for (int i = 0; i < triangles; ++i) source->add_shell(centre, rim[i], rim[i + 1], rim[i + 1], 0);
+  source->shell_damage.resize(source->shell_nodes.size());
   return source;
 }
 
-TEST(Clusters, too_many_triangles_at_a_node_of_a_quad_get_a_glyph_there) {
-  struct Case {
-    int triangles;
-    double max_triangles;
-    std::size_t marks;
-  };
-  for (const auto& [triangles, max_triangles, marks] :
-       {Case{4, 4, 0}, {5, 4, 1}, {7, 4, 1}, {4, 3, 1}, {3, 3, 0}, {7, 7, 0}, {5, 2.5, 1}}) {
-    const auto source = fan(triangles);
-    source->max_triangles = max_triangles;
-    const ModelTable table(source);
+TEST(Clusters, get_a_glyph_at_their_node) {
+  for (const std::uint8_t k : {std::uint8_t{0}, std::uint8_t{1}, std::uint8_t{2}}) {
+    const ModelTable table(plates_with_clusters(k));
     GlyphList list;
     list.update(table, true, true, false);
     const auto chosen = list.choose(table, 100, {});
-    ASSERT_EQ(chosen.glyphs.size(), marks) << triangles << " of " << max_triangles;
-    if (marks == 0) continue;
-    EXPECT_EQ(chosen.glyphs[0].kind & 15U, static_cast<std::uint32_t>(GlyphShape::cluster));
-    const std::uint32_t corner = chosen.glyphs[0].kind >> kGlyphPlaceShift & 3U;
-    EXPECT_EQ(source->shell_nodes[chosen.glyphs[0].shell].node[corner].value, 7U) << "at the node itself";
+    ASSERT_EQ(chosen.glyphs.size(), 2U);
+    EXPECT_EQ(chosen.glyphs[1].shell, 100U);
+    EXPECT_EQ(chosen.glyphs[1].kind, static_cast<std::uint32_t>(GlyphShape::cluster) | std::uint32_t{k} << kGlyphPlaceShift);
+    EXPECT_EQ(list.choose(table, 100, {100U}).glyphs.size(), 1U) << "a preview shows the other";
   }
 }
 
-TEST(Clusters, a_mesh_of_triangles_has_no_clusters) {
-  auto source = fan(6);
-  source->shell_nodes.erase(source->shell_nodes.begin(), source->shell_nodes.begin() + 4);
-  source->shell_quality.resize(source->shell_nodes.size());
-  const ModelTable table(source);
+TEST(Clusters, of_hidden_parts_and_those_that_were_there_before_have_no_glyph_where_none_is_wanted) {
+  const auto source = plates_with_clusters(1);
+  source->hidden[0] = true;
   GlyphList list;
-  list.update(table, true, true, false);
-  EXPECT_THAT(list.choose(table, 100, {}).glyphs, IsEmpty());
+  list.update(ModelTable(source), true, false, false);
+  EXPECT_EQ(list.choose(ModelTable(source), 100, {}).glyphs.size(), 1U);
+  source->hidden[0] = false;
+  source->hidden[1] = true;
+  list.update(ModelTable(source), true, false, true);
+  EXPECT_THAT(list.choose(ModelTable(source), 100, {}).glyphs, IsEmpty()) << "edits made that of the hidden plate only";
+  source->hidden[1] = false;
+  list.update(ModelTable(source), true, false, true);
+  const auto chosen = list.choose(ModelTable(source), 100, {});
+  ASSERT_EQ(chosen.glyphs.size(), 1U);
+  EXPECT_EQ(chosen.glyphs[0].shell, 100U);
+}
+
+TEST(Clusters, that_name_no_shell_or_no_corner_are_left_out) {
+  const auto source = plates_with_clusters(0);
+  source->clusters.push_back({mesh::ShellIndex(9999), 5, 0, 0});
+  source->clusters.push_back({mesh::ShellIndex(0), 5, 3, 0});
+  EXPECT_EQ(ModelTable(source).clusters().size(), 2U);
+}
+
+TEST(Clusters, are_shown_while_their_nodes_are_dragged) {
+  const auto source = plates_with_clusters(2);
+  const ModelTable table(source);
+  const std::vector<mesh::NodeIndex> nodes = {source->shell_nodes[100].node[2]};
+  const std::vector<mesh::ShellIndex> shells = {mesh::ShellIndex(100), mesh::ShellIndex(101)};
+  PreviewPatch patch(table, Vec3::Zero(), nodes, shells);
+  ipc::PreviewFrame frame;
+  frame.positions = {Vec3(1, 2, 3)};
+  frame.states.resize(2);
+  ASSERT_TRUE(patch.update(frame));
+  for (const bool damaged : {false, true}) {
+    const std::vector<Glyph> glyphs = patch.glyphs(damaged);
+    ASSERT_EQ(glyphs.size(), 1U);
+    EXPECT_EQ(glyphs[0].kind, static_cast<std::uint32_t>(GlyphShape::cluster) | 2U << kGlyphPlaceShift);
+    const std::uint32_t at = patch.corners()[glyphs[0].shell][2];
+    EXPECT_EQ(patch.positions()[at], (std::array<float, 4>{1, 2, 3, 1})) << "it follows the node";
+  }
+  source->clusters[1].worse = 0;
+  PreviewPatch before(ModelTable(source), Vec3::Zero(), nodes, shells);
+  ASSERT_TRUE(before.update(frame));
+  EXPECT_EQ(before.glyphs(false).size(), 1U);
+  EXPECT_THAT(before.glyphs(true), IsEmpty());
+}
+
+TEST(Clusters, of_an_operation_that_is_only_shown_have_glyphs) {
+  MeshChange change;
+  change.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  change.corners = {{0, 1, 2, 2}};
+  change.states.resize(1);
+  change.clusters = {2};
+  const std::vector<Glyph> glyphs = PreviewPatch(Vec3::Zero(), change).glyphs();
+  ASSERT_EQ(glyphs.size(), 1U);
+  EXPECT_EQ(glyphs[0].kind, static_cast<std::uint32_t>(GlyphShape::cluster) | 1U << kGlyphPlaceShift);
 }
 
 TEST(Damage, with_damaged_only_what_edits_made_worse_gets_glyphs) {

@@ -24,7 +24,7 @@ class TestSource final : public kiosk::render::ModelSource {
   std::vector<mesh::PartIndex> line_parts;
   std::vector<bool> hidden;
   std::uint64_t key = 1;
-  double max_triangles = 4;
+  std::vector<ipc::SnapshotCluster> clusters;
 
   std::uint32_t add_node(const mesh::Vec3& at) {
     positions.push_back(at);
@@ -65,7 +65,6 @@ class TestSource final : public kiosk::render::ModelSource {
   }
   std::size_t part_count() const override { return hidden.size(); }
   bool part_hidden(std::size_t part) const override { return hidden[part]; }
-  double max_triangles_at_node() const override { return max_triangles; }
   std::uint64_t document_key() const override { return key; }
 
  private:
@@ -81,6 +80,7 @@ class TestSource final : public kiosk::render::ModelSource {
       case SnapshotArray::shell_damage: return std::as_bytes(std::span(shell_damage));
       case SnapshotArray::line_nodes: return std::as_bytes(std::span(line_nodes));
       case SnapshotArray::line_parts: return std::as_bytes(std::span(line_parts));
+      case SnapshotArray::clusters: return std::as_bytes(std::span(clusters));
       default: return {};
     }
   }

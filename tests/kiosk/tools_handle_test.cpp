@@ -55,7 +55,6 @@ class Sheet final : public render::ModelSource {
   }
   std::size_t part_count() const override { return 1; }
   bool part_hidden(std::size_t) const override { return false; }
-  double max_triangles_at_node() const override { return 3; }
   std::uint64_t document_key() const override { return 1; }
 
  private:

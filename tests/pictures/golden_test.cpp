@@ -184,7 +184,10 @@ test::TestSource bad_shells() {
   const std::uint32_t centre = source.add_node({222, 10, 0});
   std::vector<std::uint32_t> rim;
   for (int n = 0; n <= 6; ++n) rim.push_back(source.add_node({222 + 11 * std::cos(0.6 * n), 10 + 11 * std::sin(0.6 * n), 0}));
-  for (std::size_t n = 0; n < 6; ++n) source.add_shell(centre, rim[n], rim[n + 1], rim[n + 1], 1);
+  for (std::size_t n = 0; n < 6; ++n) {
+    const std::uint32_t shell = source.add_shell(centre, rim[n], rim[n + 1], rim[n + 1], 1);
+    if (n == 0) source.clusters.push_back({mesh::ShellIndex(shell), 6, 0, 0});
+  }
   source.add_shell(centre, rim[6], source.add_node({222 + 4, -4, 0}), rim[0], 1);
   return source;
 }

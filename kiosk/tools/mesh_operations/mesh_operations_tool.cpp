@@ -148,6 +148,7 @@ void MeshOperationsTool::show_preview(const ipc::EditPreviewed& would) {
     if (shell.corners.size() != 4) continue;
     change.corners.push_back({shell.corners[0], shell.corners[1], shell.corners[2], shell.corners[3]});
     change.states.push_back({static_cast<std::uint16_t>(shell.warn), static_cast<std::uint16_t>(shell.fail)});
+    change.clusters.push_back(static_cast<std::uint8_t>(shell.clusters));
   }
   for (const std::int64_t id : would.replaced)
     if (const auto shell = shell_with_id(context_, id)) change.replaced.push_back(*shell);
@@ -167,8 +168,11 @@ std::string MeshOperationsTool::guidance() const {
   if (!previewed) return what + at + " ..";
   if (!previewed->would) return what + at + ": " + previewed->problem + "   (another click, or Esc)";
   const mesh::document::EditReport& report = previewed->would->report;
-  return fmt::format("{}{}: warn {} \u2192 {}, fail {} \u2192 {}   Enter or a click does it, Esc not", what, at, report.before.warn,
-                     report.after.warn, report.before.fail, report.after.fail);
+  const std::string clusters = report.clusters_before == report.clusters_after
+                                   ? std::string()
+                                   : fmt::format(", clusters {} \u2192 {}", report.clusters_before, report.clusters_after);
+  return fmt::format("{}{}: warn {} \u2192 {}, fail {} \u2192 {}{}   Enter or a click does it, Esc not", what, at, report.before.warn,
+                     report.after.warn, report.before.fail, report.after.fail, clusters);
 }
 
 }  // namespace prismesh::kiosk::tools::mesh_operations

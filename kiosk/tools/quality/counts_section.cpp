@@ -32,6 +32,7 @@ void counts_section(const CountsFacts& facts) {
   count_line("ok", Signal::ok, facts.counts.ok, ok);
   count_line("warn", Signal::warn, facts.counts.warn, warn);
   count_line("fail", Signal::fail, facts.counts.fail, failed);
+  if (facts.clusters > 0) count_line("nodes of many triangles", Signal::warn, facts.clusters, std::nullopt);
   ImGui::PushFont(panels::small_font());
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
   if (!facts.hidden_glyphs.empty()) ImGui::TextWrapped("%s", facts.hidden_glyphs.c_str());

@@ -23,17 +23,9 @@ using panels::elided_text;
 using panels::fact;
 using panels::grouped;
 using panels::kGrid;
-using panels::metric_words;
 using panels::section;
 using panels::Signal;
 using panels::small_font;
-
-/// Error words for a line behind a glyph, which says already whether it fails.
-std::string error_row(const ipc::QualityError& error) {
-  std::string words = fmt::format("{}  {}", error.shell, metric_words(error.metric));
-  if (error.value) words += "  " + value_words(*error.value, error.unit);
-  return words;
-}
 
 constexpr unsigned kOkBar = 0xffb4b0acu;
 constexpr std::size_t kMaxPartRows = 6;
@@ -70,7 +62,7 @@ void metrics_section(const QualityFacts& facts, QualityActions& actions) {
     if (metric.warn + metric.fail == 0 && metric.name != facts.metric) continue;
     wrong += metric.warn + metric.fail;
     const bool is_metric = &metric - facts.figures->metrics.data() < mesh::quality::kMetricCount;
-    if (count_row(metric_words(metric.name), metric.warn, metric.fail, metric.name == facts.metric) && is_metric)
+    if (count_row(kind_words(metric.name), metric.warn, metric.fail, metric.name == facts.metric) && is_metric)
       actions.emplace_back(ChooseMetric{metric.name == facts.metric ? std::string() : metric.name});
   }
   if (wrong == 0) ImGui::TextDisabled("%s", facts.damaged ? "nothing was made worse" : "no shell warns or fails");
@@ -176,7 +168,7 @@ void errors_section(const QualityFacts& facts, PanelLayout& layout, QualityActio
     ImGui::SetCursorPosX(left);
     draw_signal(error.fail ? Signal::fail : Signal::warn, ImGui::GetFontSize() * 0.65f);
     ImGui::SameLine();
-    elided_text(error_row(error), ImGui::GetWindowContentRegionMax().x - ImGui::GetCursorPosX());
+    elided_text(error_row_words(error), ImGui::GetWindowContentRegionMax().x - ImGui::GetCursorPosX());
   }
 }
 

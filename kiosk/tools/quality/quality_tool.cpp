@@ -87,8 +87,8 @@ void QualityTool::follow_figures() {
     context_.trace.line(traced_ = text);
   if (!error_) return;
   // An error that is gone gives way to the one that took its place in the list.
-  const auto same = std::find_if(figures->errors.begin(), figures->errors.end(),
-                                 [&](const ipc::QualityError& error) { return error.shell == error_shell_; });
+  const auto same =
+      std::find_if(figures->errors.begin(), figures->errors.end(), [&](const ipc::QualityError& error) { return is_the_error(error); });
   if (same != figures->errors.end()) error_ = static_cast<std::size_t>(same - figures->errors.begin());
   marked_ = shell_with_id(context_, error_shell_);
 }
@@ -134,7 +134,7 @@ void QualityTool::step_error(int by) {
   if (error_) {
     at = static_cast<std::ptrdiff_t>(std::min(*error_, figures->errors.size() - 1));
     // If the shell was mended, the next one has its place already.
-    const bool still_there = figures->errors[static_cast<std::size_t>(at)].shell == error_shell_;
+    const bool still_there = is_the_error(figures->errors[static_cast<std::size_t>(at)]);
     at = by > 0 && !still_there ? at : (at + by + count) % count;
   } else if (by < 0) {
     at = count - 1;
@@ -148,6 +148,7 @@ void QualityTool::go_to_error(std::size_t error) {
   const ipc::QualityError& wrong = figures->errors[error];
   error_ = error;
   error_shell_ = wrong.shell;
+  error_node_ = wrong.node;
   marked_ = shell_with_id(context_, wrong.shell);
   PictureView& view = context_.view;
   const mesh::Vec3 at(wrong.at[0], wrong.at[1], wrong.at[2]);
@@ -187,6 +188,7 @@ void QualityTool::draw_left(PanelLayout& layout) {
 void QualityTool::draw_status(PanelLayout&) {
   CountsFacts facts;
   facts.counts = context_.shown.snapshot->info().counts;
+  facts.clusters = context_.shown.snapshot->size(ipc::SnapshotArray::clusters);
   const RemoteDrag* drag = context_.tools.pulling() ? context_.link.drag() : nullptr;
   if (drag != nullptr && drag->begun() && drag->frame().sequence > 0) facts.pulled = drag->frame().counts;
   facts.hidden_glyphs = context_.tools.glyphs_hidden();

@@ -32,6 +32,7 @@ class QualityTool final : public Tool {
   void draw_status(PanelLayout& layout) override;
 
  private:
+  bool is_the_error(const ipc::QualityError& error) const { return error.shell == error_shell_ && error.node == error_node_; }
   bool is_open() const { return context_.open.left == this; }
   void follow_figures();
   void relax(mesh::document::Scope scope);
@@ -50,6 +51,7 @@ class QualityTool final : public Tool {
   QualityLink::Wish wish_;
   std::optional<std::size_t> error_;  ///< the error that the view went to, by its place in the list
   std::int64_t error_shell_ = 0;      ///< its shell, by id
+  std::int64_t error_node_ = 0;       ///< its node, by id; 0: it is of a shell
   std::optional<mesh::ShellIndex> marked_;
   std::string traced_;
 };

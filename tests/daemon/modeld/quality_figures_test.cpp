@@ -13,6 +13,8 @@
 #include "daemon/modeld/edit_preview.h"
 #include "mesh/document/edit_json.h"
 #include "mesh/document/open.h"
+#include "mesh/document/prepare.h"
+#include "mesh/model/adjacency.h"
 #include "mesh/model/node_set.h"
 #include "mesh/quality/limits.h"
 #include "tests/daemon/modeld/folder.h"
@@ -233,6 +235,52 @@ TEST_F(Figures, damage_is_what_the_edits_did) {
   for (const ipc::QualityError& error : quality.errors) EXPECT_TRUE(touched.contains(error.shell)) << error.shell;
   ASSERT_TRUE(apply(document_, Undo{}));
   EXPECT_EQ(figures("", true).error_count, 0u);
+}
+
+/// Two by two quads about the middle become eight triangles or six at a node.
+TEST_F(Figures, a_node_with_too_many_triangles_is_an_error_of_its_own) {
+  const mesh::Model& model = document_.current().model;
+  const mesh::NodeIndex middle = model.find_node(kMiddle);
+  std::vector<std::string> about;
+  for (const mesh::ShellIndex shell : model.adjacency->shells_of(middle))
+    about.push_back("shell:" + std::to_string(model.shell_ids[shell.value]));
+  ASSERT_EQ(about.size(), 4u);
+  for (const std::string& shell : about) {
+    mesh::document::Restructure split;
+    split.operation = mesh::repair::Operation::split;
+    split.at = {shell};
+    const Result<ipc::EditPreviewed> would = preview_edit(document_, split);
+    ASSERT_TRUE(would) << would.error().text();
+    std::vector<std::array<double, 3>> shown;
+    for (const ipc::PreviewedShell& each : would->shells)
+      for (std::size_t k = 0; k < 3; ++k)
+        if ((each.clusters >> k & 1U) != 0) shown.push_back(would->points[each.corners[k]]);
+    ASSERT_TRUE(apply(document_, split));
+    std::vector<std::array<double, 3>> made;
+    for (const auto& cluster : *document_.current().clusters) {
+      const mesh::Vec3& at = document_.current().model.position(cluster.node);
+      made.push_back({at.x(), at.y(), at.z()});
+    }
+    EXPECT_EQ(shown, made) << "the preview shows what the edit makes";
+  }
+  const auto& clusters = *document_.current().clusters;
+  ASSERT_EQ(clusters.size(), 1u);
+  for (const bool damaged : {false, true}) {
+    const ipc::Quality quality = figures("", damaged);
+    EXPECT_EQ(quality.metrics.back().name, "triangle_clusters");
+    EXPECT_EQ(quality.metrics.back().warn, 1u);
+    ASSERT_EQ(quality.error_count, 1u) << "the triangles themselves pass";
+    const ipc::QualityError& error = quality.errors[0];
+    EXPECT_EQ(error.metric, "triangle_clusters");
+    EXPECT_EQ(error.node, kMiddle);
+    EXPECT_FALSE(error.fail);
+    EXPECT_EQ(error.value, static_cast<double>(clusters[0].triangles));
+    EXPECT_GT(*error.value, 3);
+    const mesh::Vec3& at = document_.current().model.position(middle);
+    EXPECT_EQ(error.at, (std::array<double, 3>{at.x(), at.y(), at.z()}));
+    EXPECT_TRUE(document_.current().model.shell(document_.current().model.find_shell(error.shell)).is_triangle());
+  }
+  EXPECT_EQ(figures("warpage").error_count, 0u) << "it is of no metric";
 }
 
 TEST_F(Figures, an_unknown_metric_is_refused_with_the_nearest) {

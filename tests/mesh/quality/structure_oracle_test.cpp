@@ -131,7 +131,7 @@ TEST(StructureOracle, finds_what_a_look_at_all_pairs_finds) {
     NodeSet clusters;
     std::size_t most = 0;
     for (const auto& [node, count] : expected.triangles) {
-      if (count > StructureOptions().triangles_at_node) clusters.emplace_back(std::size_t{node});
+      if (static_cast<double>(count) > StructureOptions().triangles_at_node) clusters.emplace_back(std::size_t{node});
       most = std::max(most, count);
     }
     EXPECT_EQ(found.clusters, clusters) << seed;

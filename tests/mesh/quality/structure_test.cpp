@@ -1,5 +1,7 @@
 #include "mesh/quality/structure.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "mesh/model/topology_change.h"
@@ -141,29 +143,45 @@ TEST(Structure, shells_that_run_along_an_edge_twice_are_not_opposed_there) {
   EXPECT_TRUE(check_structure(model).opposed.empty());
 }
 
-TEST(Structure, triangles_about_a_node) {
+/// Six triangles about node 0 in two rings of six quads: a third of the shells are triangles.
+Model fan_in_quads() {
   std::vector<Vec3> points = {{0, 0, 0}};
   std::vector<std::array<int, 4>> shells;
-  for (int i = 0; i < 6; ++i) points.emplace_back(std::cos(i * 1.0471975511965976), std::sin(i * 1.0471975511965976), 0);
+  for (int ring = 1; ring <= 3; ++ring)
+    for (int i = 0; i < 6; ++i) points.emplace_back(ring * std::cos(i * 1.0471975511965976), ring * std::sin(i * 1.0471975511965976), 0);
   for (int i = 0; i < 6; ++i) shells.push_back({0, 1 + i, 1 + (i + 1) % 6, 1 + (i + 1) % 6});
-  const Structure found = check_structure(test::make_shells(points, shells));
+  for (int ring = 0; ring < 2; ++ring)
+    for (int i = 0; i < 6; ++i)
+      shells.push_back({1 + 6 * ring + i, 7 + 6 * ring + i, 7 + 6 * ring + (i + 1) % 6, 1 + 6 * ring + (i + 1) % 6});
+  return test::make_shells(points, shells);
+}
+
+TEST(Structure, triangles_about_a_node) {
+  const Model model = fan_in_quads();
+  const Structure found = check_structure(model);
   EXPECT_EQ(found.max_triangles, 6u);
   EXPECT_EQ(found.max_triangles_at, NodeIndex(std::size_t{0}));
   EXPECT_EQ(found.clusters, NodeSet{NodeIndex(std::size_t{0})});
   StructureOptions strict;
   strict.triangles_at_node = 1;
   const ShellSet three = {shell(0), shell(1), shell(2)};
-  EXPECT_EQ(check_structure(test::make_shells(points, shells), {}, &three).max_triangles, 3u) << "others don't count";
-  EXPECT_EQ(check_structure(test::make_shells(points, shells), strict).clusters.size(), 7u);
+  EXPECT_EQ(check_structure(model, {}, &three).max_triangles, 3u) << "others don't count";
+  EXPECT_EQ(check_structure(model, strict).clusters.size(), 7u);
+}
+
+TEST(Structure, of_a_mesh_of_triangles_counts_them_and_finds_no_cluster) {
+  const Model model = test::make_shells({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
+                                        {{0, 1, 2, 2}, {0, 2, 3, 3}, {0, 3, 4, 4}, {0, 4, 1, 1}});
+  EXPECT_EQ(check_structure(model).max_triangles, 4u);
+  EXPECT_TRUE(check_structure(model).clusters.empty());
 }
 
 TEST(Structure, as_many_triangles_as_are_allowed_are_no_cluster) {
-  const Model model = test::make_shells({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
-                                        {{0, 1, 2, 2}, {0, 2, 3, 3}, {0, 3, 4, 4}, {0, 4, 1, 1}});
+  const Model model = fan_in_quads();
   StructureOptions options;
-  options.triangles_at_node = 4;
+  options.triangles_at_node = 6;
   EXPECT_TRUE(check_structure(model, options).clusters.empty());
-  options.triangles_at_node = 3;
+  options.triangles_at_node = 5;
   EXPECT_EQ(check_structure(model, options).clusters, NodeSet{NodeIndex(0)});
 }
 
