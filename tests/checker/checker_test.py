@@ -167,6 +167,29 @@ class Proving(Decks):
         tip = "       3       1       7       2       5       5\n       4       1       2       8       9       9\n"
         self.assertTrue(grown([middle, (8, 8.0, -3.0), (9, 6.0, -3.0)], tip), "near, but at a node only")
 
+    def test_groups_of_quads_and_of_triangles(self):
+        def ints(*ids):
+            return "".join(f"{id:10d}" for id in ids)
+
+        def deck(quads, triangles, groups):
+            nodes = "".join(f"{id:10d}{x:20}{y:20}{0.0:20}\n" for id, x, y in ((1, 0.0, 0.0), (2, 1.0, 0.0), (3, 1.0, 1.0), (4, 0.0, 1.0), (5, 2.0, 0.0), (6, 2.0, 1.0)))
+            return ("#RADIOSS STARTER\n/NODE\n" + nodes + "/SHELL/4\n" + quads + triangles + "/PART/4\nroof\n         1\n/SECT/1\ncut\n"
+                    + ints(1, 2, 3, 0) + "\n\n" + groups + "/END\n")
+
+        two, one = ints(9, 1, 2, 3, 4) + "\n" + ints(8, 2, 5, 6, 3) + "\n", ints(8, 2, 5, 6, 3) + "\n"
+        cut = "/SH3N/4\n" + ints(9, 1, 2, 3) + "\n" + ints(10, 1, 3, 4) + "\n"
+        group = "/GRSHEL/SHEL/27\ncut\n"
+        before = deck(two, "", ints(0, 0, 27, 0, 0, 0, 0) + "\n" + group + ints(8, 9) + "\n")
+
+        def after(section, members):
+            text = deck(one, cut, section + "\n" + group + ints(8) + "\n/GRSH3N/SH3N/27\ncut\n" + ints(*members) + "\n")
+            return self.wrong(before, text, {"elements_added": "any", "elements_removed": "any", "elements_changed": "any"}, "deck.rad")
+        self.assertEqual(after(ints(0, 0, 27, 0, 0, 0, 27), (9, 10)), [])
+        self.assertTrue(after(ints(0, 0, 27, 0, 0, 0, 0), (9, 10)), "the section doesn't use the triangles")
+        self.assertTrue(after(ints(0, 0, 27, 0, 0, 0, 27), (9,)), "a piece is in no group")
+        self.assertTrue(after(ints(1, 0, 27, 0, 0, 0, 27), (9, 10)), "another field of the section differs")
+        self.assertTrue(after(ints(0, 0, 28, 0, 0, 0, 27), (9, 10)), "the section lost its quads")
+
     def test_nastran_fields(self):
         before = ("GRID           1             1.0     2.0     3.0       7\nGRID*                  2                             1.0             2.0\n"
                   "*                    3.0\n")

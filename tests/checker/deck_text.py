@@ -38,11 +38,19 @@ class Element:
 
 
 class Set:
-    """members: what the set lists; ranges: (first, last) of what it generates. Both may stand in one set."""
+    """members: what the set lists; ranges: (first, last) of what it generates. Both may stand in one set. title: its line, where it has one of
+    its own."""
 
     def __init__(self, kind, id, file):
         self.kind, self.id, self.file = kind, id, file
-        self.members, self.ranges, self.lines = set(), [], []
+        self.members, self.ranges, self.lines, self.title = set(), [], [], None
+
+
+class SetPair:
+    """A card that uses a set of each kind: sets is {kind: (id, (begin, end) in its line)}, 0 for none."""
+
+    def __init__(self, name, file, line, sets):
+        self.name, self.file, self.line, self.sets = name, file, line, sets
 
 
 class Deck:
@@ -53,6 +61,7 @@ class Deck:
         self.nodes, self.elements = {}, []
         self.duplicate_nodes = 0
         self.parts, self.sets, self.words = set(), {}, {}
+        self.pairs = []  # of sets that one card uses: SetPair
         self.unread = []  # (file, line) of cards that carry meaning for the mesh and that the checker doesn't understand
 
     def add_file(self, path):

@@ -286,12 +286,15 @@ def compare_file(proof, i, a, b, mine, theirs, grown):
     others = [(n, l) for n, l in enumerate(b.lines) if n not in theirs]
     twins = Twins(proof, a)
     sets_before, sets_after = set_lines(proof.before, i), set_lines(proof.after, i)
+    sets_after |= {s.title for key, s in proof.after.sets.items() if s.file == i and key not in proof.before.sets}
     x = y = 0
     changed = len(mine) + len(theirs)
     while y < len(others) or x < len(rest):
         old, new = rest[x] if x < len(rest) else None, others[y] if y < len(others) else None
         if old and new and old[1] == new[1]:
             x, y = x + 1, y + 1
+        elif old and new and gained_pair(proof, old, new):
+            x, y, changed = x + 1, y + 1, changed + 2
         elif new and new[0] in sets_after:
             y, changed = y + 1, changed + 1
         elif old and old[0] in sets_before:
@@ -447,6 +450,38 @@ def membership(deck, kind, id):
     return {s.id for s in deck.sets.values() if s.kind == kind and (id in s.members or any(a <= id <= b for a, b in s.ranges))}
 
 
+def pair_users(deck, kind, id):
+    return {p.name for p in deck.pairs if p.sets[kind][0] == id}
+
+
+def expected_sets(proof, old, e):
+    """The sets in which e, which comes from old, belongs: those of old, or, where these can't name e, the ones that go with them."""
+    before, after = proof.before, proof.after
+    if old.cls == e.cls or {old.cls, e.cls} != {"shell", "sh3n"}:
+        return membership(before, e.cls, old.id)
+    wanted = membership(before, e.cls, old.id)
+    for id in membership(before, old.cls, old.id):
+        users = pair_users(before, old.cls, id)
+        new = {s.id for s in after.sets.values() if s.kind == e.cls and pair_users(after, e.cls, s.id) == users and (users or s.id == id)}
+        if pair_users(after, old.cls, id) != users or len(new) != 1:
+            proof.say(f"{old.kind} set {id} has no {e.kind} set that the same cards use")
+        wanted |= new
+    return wanted
+
+
+def gained_pair(proof, old, new):
+    """Whether a line of a card that used a set of one kind only now uses one of each kind and says the same otherwise."""
+    for a in proof.before.pairs:
+        for b in proof.after.pairs:
+            if (a.file, a.line, b.line, a.name) != (b.file, old[0], new[0], b.name):
+                continue
+            filled = [kind for kind in a.sets if a.sets[kind][0] == 0 and b.sets[kind][0] != 0]
+            if len(filled) == 1 and all(a.sets[k][0] == b.sets[k][0] != 0 for k in a.sets if k not in filled):
+                begin, end = a.sets[filled[0]][1]
+                return old[1][:begin].ljust(begin) + old[1][end:] == new[1][:begin] + new[1][end:]
+    return False
+
+
 def check_memberships(proof, nodes, elements):
     """A node on an edge is in the sets that both ends are in; a new element in those of the one it came from."""
     before, after = proof.before, proof.after
@@ -472,7 +507,7 @@ def check_memberships(proof, nodes, elements):
         came_from = proof.ancestry.parents(e)
         if not came_from:
             proof.say(f"the new {e.kind} {e.id} of part {e.part} comes from no element of its part")
-        elif not any(membership(before, e.cls, old.id) == membership(after, e.cls, e.id) for old in came_from):
+        elif not any(expected_sets(proof, old, e) == membership(after, e.cls, e.id) for old in came_from):
             proof.say(f"the new {e.kind} {e.id} is in the sets {sorted(membership(after, e.cls, e.id))}, unlike any it came from")
 
 

@@ -3,10 +3,12 @@
 import os
 import re
 
-from deck_text import Affine, Deck, DeckError, Element, Node, integer, real
+from deck_text import Affine, Deck, DeckError, Element, Node, SetPair, integer, real
 
 NODES_OF = {"SHELL": 4, "SH3N": 3, "BRICK": 8, "TETRA4": 4, "TETRA10": 10, "BEAM": 3, "TRUSS": 2, "SPRING": 3, "PENTA6": 6, "QUAD": 4,
             "TRIA": 3, "BRIC20": 20, "SHEL16": 16, "SPHCEL": 1, "SHELL4N": 4}
+# Cards that use a group of four-node shells and one of three-node shells: {word: (card from 1, the title's, {kind: field from 0})}.
+PAIRS = {"SECT": (4, {"shell": 2, "sh3n": 6}), "ACTIV": (2, {"shell": 3, "sh3n": 7})}
 GROUPS = {"GRNOD/NODE": "node", "GRNOD/NODENS": "node", "GRSHEL/SHEL": "shell", "GRSH3N/SH3N": "sh3n", "GRBRIC/BRIC": "brick"}
 COORDINATES = ((10, 30), (30, 50), (50, 70))
 
@@ -38,7 +40,7 @@ class Reader:
                 if self.keyword(line.rstrip(), number):
                     break
                 continue
-            if self.block and line.strip():
+            if self.block and (line.strip() or self.block[0] in PAIRS):  # a section's file name may be blank
                 self.data(file, number, line)
         self.stack.pop()
 
@@ -76,13 +78,21 @@ class Reader:
             self.deck.add_node(Node(id, p, None, file, (number,), COORDINATES))
         elif word in NODES_OF:
             self.element(file, number, line, word)
-        elif len(self.block) > 2 and "/".join(self.block[:2]) in GROUPS and self.card > 1:
+        elif len(self.block) > 2 and "/".join(self.block[:2]) in GROUPS:
             entry = self.deck.set_named(GROUPS["/".join(self.block[:2])], integer(self.block[2]), file)
+            if self.card == 1:
+                entry.title = number
+                return
             entry.lines.append(number)
             for i in range(0, 100, 10):
                 field = line[i:i + 10].strip()
                 if field:
                     entry.members.add(integer(field))
+
+        elif word in PAIRS and self.card == PAIRS[word][0]:
+            places = {kind: (10 * field, 10 * field + 10) for kind, field in PAIRS[word][1].items()}
+            sets = {kind: (integer(line[a:b]) if line[a:b].strip() else 0, (a, b)) for kind, (a, b) in places.items()}
+            self.deck.pairs.append(SetPair("/".join(self.block), file, number, sets))
 
     def element(self, file, number, line, word):
         part = integer(self.block[1]) if len(self.block) > 1 else 0

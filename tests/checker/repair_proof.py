@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Strong edits on real decks, then a repair, checked independently: decks are read by the checker's readers, never by the program's.
 
-    repair_proof.py --prismesh PROGRAM [--models FOLDER] [--extreme] [--target-size SIZE] [DECK ..]      a table as in docs/repairing.md; status 1 if anything is wrong
+    repair_proof.py --prismesh PROGRAM [--models FOLDER] [--extreme] [--target-size SIZE] [--only TEXT] [DECK ..]      a table as in docs/repairing.md; status 1 if anything is wrong
 
-For each deck: half of its largest part (by shells) is lifted, and stretched (edits_of). The deck is written shaped, and written shaped and repaired. Then
+For each deck: half of its largest part (by shells) is lifted, and stretched (edits_of); of some decks a free end is pulled away (pulls_of). The deck is written shaped, and written shaped and repaired. Then
 - the text: every line that no edit had to touch is the same, sets and ids are right (edit_proof.py);
 - the mesh: every edge has as many shells as before or is divided as a whole, no shell names a node twice, none is folded;
 - the damage: elements that fail or warn after the lift and didn't before, as the program says, and the shells whose corner angles or edge ratio are
@@ -26,6 +26,8 @@ from deck_text import cross, dot, minus, unit  # noqa: E402
 
 DECKS = ["bumper_beam_rad", "seat_adyrel_rad", "simplecar_nas", "hatprofile", "wheel_k", "joint_screw"]
 MOST_WRONG = 5
+# Parts whose free end is pulled along x: {deck: (parts, length that stretches, amounts)}.
+PULLS = {"bumper_beam_rad": ({"4", "5"}, 87, (20, 40, 60, 80))}
 
 
 def main_file(folder):
@@ -82,12 +84,51 @@ class Mesh:
     def triangle_pairs(self):
         return {e for e, shells in self.edges().items() if len([s for s in shells if len(self.shells[s]) == 3]) > 1}
 
+    def normal(self, id):
+        c = self.shells[id]
+        p = [self.at[n] for n in c]
+        return cross(minus(p[1 if len(p) == 3 else 2], p[0]), minus(p[2 if len(p) == 3 else 3], p[0 if len(p) == 3 else 1]))
+
+    def between_creases(self, min_length, smallest_angle=46, crease=30):
+        """Quads with a side shorter than `min_length` across a row between two creases: how many, and how many of them lie where the row is
+        so narrow that no quad between the creases can be longer: its side would lean by more than its smallest angle allows."""
+        edges = self.edges()
+
+        def is_crease(a, b):
+            shells = edges[frozenset((a, b))]
+            if len(shells) != 2:
+                return True
+            one, other = (self.normal(s) for s in shells)
+            size = length(one) * length(other)
+            # Shells on both sides of an edge that pass it the same way have opposite normals.
+            same_way = [(a, b) in list(zip(self.shells[s][-1:] + self.shells[s][:-1], self.shells[s])) for s in shells]
+            cos = dot(one, other) / size * (-1 if same_way[0] == same_way[1] else 1) if size else 1
+            return cos < math.cos(math.radians(crease))
+        short = narrow = 0
+        for id, c in self.shells.items():
+            if len(c) != 4:
+                continue
+            for k in (0, 1):
+                a, b, d, e = c[k:] + c[:k]  # a-b and d-e across, b-d and e-a along
+                p = [self.at[n] for n in (a, b, d, e)]
+                if min(length(minus(p[1], p[0])), length(minus(p[2], p[3]))) >= min_length or not (is_crease(b, d) and is_crease(e, a)):
+                    continue
+                short += 1
+                widths = [point_to_line(p[0], p[1], p[2]), point_to_line(p[3], p[1], p[2]), point_to_line(p[1], p[0], p[3]), point_to_line(p[2], p[0], p[3])]
+                narrow += min(widths) < min_length * math.sin(math.radians(smallest_angle))
+        return short, narrow
+
     def facets(self):
         for id, c in self.shells.items():
             p = [self.at[n] for n in c]
             yield p[0], p[1], p[2]
             if len(p) == 4:
                 yield p[0], p[2], p[3]
+
+
+def point_to_line(p, a, b):
+    along = minus(b, a)
+    return length(cross(along, minus(p, a))) / length(along) if length(along) else length(minus(p, a))
 
 
 def point_to_triangle(p, a, b, c):
@@ -195,6 +236,20 @@ def edits_of(mesh, extreme):
                         "falloff": {"profile": "smooth", "along": along(1.0)}}}
 
 
+def pulls_of(mesh, name):
+    """{name: edit} that pull the free end of some parts away; what is within the given length of the end stretches, evenly or smoothly."""
+    if name not in PULLS:
+        return {}
+    parts, over, amounts = PULLS[name]
+    nodes = {n for id, corners in mesh.shells.items() if str(mesh.parts[id]) in parts for n in corners}
+    end = max(mesh.at[n][0] for n in nodes)
+    on = sorted(n for n in nodes if mesh.at[n][0] >= end - over)
+    grab = max(on, key=lambda n: mesh.at[n][0])
+    return {f"pull {amount} {profile}": {"edit": "translate", "by": [amount, 0, 0], "grab": grab, "on": ",".join(map(str, on)), "across_welds": True,
+                                         "falloff": {"profile": profile, "along": [1, 0, 0]}}
+            for profile in ("linear", "smooth") for amount in amounts}
+
+
 def check_mesh(before, after, wrong):
     if after.broken > before.broken:
         wrong.append(f"{after.broken - before.broken} shells name a node twice")
@@ -271,9 +326,10 @@ def prove(prismesh, main, name, kind, edit, original, before, target_size, folde
     triangles = [100 * sum(len(c) == 3 for c in m.shells.values()) / len(m.shells) for m in (before, repaired)]
     pairs = len(repaired.triangle_pairs()) - len(before.triangle_pairs())
     damage = [told["before"][k] - shaping["before"][k] for k in ("fail", "warn")], [told["after"][k] - shaping["before"][k] for k in ("fail", "warn")]
+    short, narrow = repaired.between_creases(0.4 * target_size)
     print(f"| {name} | {kind} | {damage[0][0]} / {damage[0][1]} | {damage[1][0]} / {damage[1][1]} | "
           f"{bad['shaped'] - bad['before']} → {bad['after'] - bad['before']} | {triangles[0]:.1f} → {triangles[1]:.1f} | {pairs} | "
-          f"{100 * off / target_size:.1f} | {told['ms'] / 1000:.1f} | {'yes' if not wrong else 'NO'} |", flush=True)
+          f"{100 * off / target_size:.1f} | {short} / {narrow} | {told['ms'] / 1000:.1f} | {'yes' if not wrong else 'NO'} |", flush=True)
     return wrong
 
 
@@ -283,20 +339,23 @@ def main():
     parser.add_argument("--models", default=os.environ.get("PRISMESH_MODELS", ""))
     parser.add_argument("--extreme", action="store_true", help="stronger than anything sensible")
     parser.add_argument("--target-size", type=float, help="in place of the median edge of the part that is shaped")
+    parser.add_argument("--only", default="", help="only edits whose names hold this")
     parser.add_argument("decks", nargs="*", default=DECKS)
     options = parser.parse_args()
     if not os.path.isdir(options.models):
         print("no folder of real decks: give --models or set PRISMESH_MODELS", file=sys.stderr)
         return 77
     print("| deck | edit | damage: fail / warn more than before | after repair | bad by angles and edge ratio | triangles % | new triangle pairs | "
-          "off the shaped surface, % of element size | s | proved |\n|---|---|---|---|---|---|---|---|---|---|")
+          "off the shaped surface, % of element size | short between creases / row too narrow | s | proved |\n|---|---|---|---|---|---|---|---|---|---|---|")
     failed = 0
     for name in options.decks:
         path = main_file(os.path.join(options.models, name))
         deck = check_deck.read(path)
         before = Mesh(deck)
         size = options.target_size or target_size_of(before)
-        for kind, edit in edits_of(before, options.extreme).items():
+        for kind, edit in (edits_of(before, options.extreme) | ({} if options.extreme else pulls_of(before, name))).items():
+            if options.only not in kind:
+                continue
             with tempfile.TemporaryDirectory(prefix="prismesh-repair-") as folder:
                 try:
                     if not options.extreme:
