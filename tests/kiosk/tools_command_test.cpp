@@ -133,6 +133,9 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
                                              "Ctrl+E",
                                              "Ctrl+Shift+E",
                                              "Ctrl+Shift+J",
+                                             "Ctrl+T",
+                                             "Ctrl+Shift+T",
+                                             "Ctrl+H",
                                              "Ctrl+D",
                                              "Ctrl+B",
                                              "Ctrl+M",
@@ -172,7 +175,7 @@ TEST(KeysTest, rows_keep_the_order_of_help_and_menu) {
 }
 
 TEST(KeysTest, what_edits_is_told_from_what_only_looks) {
-  const std::set<std::string_view> looks{"J", "Right", "Left", "Shift+J"};
+  const std::set<std::string_view> looks{"J", "Right", "Left", "Shift+J", "Ctrl+T", "Ctrl+Shift+T", "Ctrl+H"};
   for (const KeyBinding& binding : key_bindings()) {
     const bool part_or_mesh = binding.menu == Menu::parts || binding.menu == Menu::mesh;
     if (part_or_mesh) {

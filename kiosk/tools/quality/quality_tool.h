@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 
+#include "kiosk/panels/entry_box.h"
+#include "kiosk/tools/quality/mend_limits.h"
 #include "kiosk/tools/quality/quality_facts.h"
 #include "kiosk/tools/quality/quality_link.h"
 #include "kiosk/tools/tool.h"
@@ -30,6 +32,7 @@ class QualityTool final : public Tool {
   void draw_left(PanelLayout& layout) override;
   void panel_changed() override;
   void draw_status(PanelLayout& layout) override;
+  void draw_dialog(int kind, bool opened, PanelLayout& layout) override;
 
  private:
   bool is_open() const { return context_.open.left == this; }
@@ -37,6 +40,8 @@ class QualityTool final : public Tool {
   void relax(mesh::document::Scope scope);
   void relax_from(const Pointer& pointer);
   void repair(mesh::document::Scope scope);
+  void type_limit(MendLimit which);
+  void enter_limit(MendLimit which, const std::string& text);
   void show_damaged_only(bool damaged_only);
   void choose_metric(const std::string& metric);
   void select_bar(const BarClicked& bar);
@@ -51,6 +56,9 @@ class QualityTool final : public Tool {
   std::optional<std::size_t> error_;  ///< the error that the view went to, by its place in the list
   std::int64_t error_shell_ = 0;      ///< its shell, by id
   std::optional<mesh::ShellIndex> marked_;
+  MendLimits limits_;
+  std::string limit_problem_;  ///< what is wrong with the number that is being typed
+  panels::EntryState entry_;
   std::string traced_;
 };
 
