@@ -6,7 +6,7 @@ import subprocess
 import targets
 from programs import Refused, Stop, edit, figures, program, session, shown, tell, tool
 
-MEND_LIMIT_S = 60  # of a repair: a deck whose mesh is bad everywhere may take far longer
+MEND_LIMIT_S = 120  # of a repair: a deck whose mesh is bad everywhere may take far longer
 MAX_MENDED = 10  # of the shells that failed in the sample as it was made
 
 
