@@ -18,9 +18,11 @@ namespace {
 using mesh::deck::OpenedDeck;
 using mesh::deck::SourceFile;
 
-/// Compares two id indices: calls `both(index in a, index in b)` for ids in both. Returns how many ids were added and removed.
-template <class Both>
-std::pair<std::size_t, std::size_t> compare_ids(const mesh::IdIndex& a, const mesh::IdIndex& b, const Both& both) {
+/// Compares two id indices, ascending: calls `both(index in a, index in b)` for ids in both and `only_in_b(id)`. Returns how many ids were
+/// added and removed.
+template <class Both, class OnlyInB>
+std::pair<std::size_t, std::size_t> compare_ids(const mesh::IdIndex& a, const mesh::IdIndex& b, const Both& both,
+                                                const OnlyInB& only_in_b) {
   std::size_t added = 0, removed = 0;
   for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
     if (j == b.size() || (i < a.size() && a.at(i).first < b.at(j).first)) {
@@ -28,7 +30,7 @@ std::pair<std::size_t, std::size_t> compare_ids(const mesh::IdIndex& a, const me
       ++i;
     } else if (i == a.size() || b.at(j).first < a.at(i).first) {
       ++added;
-      ++j;
+      only_in_b(b.at(j++).first);
     } else {
       both(a.at(i++).second, b.at(j++).second);
     }
@@ -36,19 +38,31 @@ std::pair<std::size_t, std::size_t> compare_ids(const mesh::IdIndex& a, const me
   return {added, removed};
 }
 
+void compare_nodes(const mesh::Model& a, const mesh::Model& b, Difference& difference) {
+  const auto both = [&](std::uint32_t in_a, std::uint32_t in_b) {
+    if (a.positions[in_a] == b.positions[in_b]) return;
+    ++difference.nodes_moved;
+    difference.moved.push_back(b.node_ids[in_b]);
+  };
+  std::tie(difference.nodes_added, difference.nodes_removed) =
+      compare_ids(*a.node_index, *b.node_index, both, [&](std::int64_t id) { difference.added.push_back(id); });
+}
+
 void compare_elements(const mesh::Model& a, const mesh::Model& b, Difference& difference) {
   const auto add = [&](const mesh::IdIndex& from, const mesh::IdIndex& to) {
-    const auto [added, removed] = compare_ids(from, to, [](std::uint32_t, std::uint32_t) {});
+    const auto [added, removed] = compare_ids(
+        from, to, [](std::uint32_t, std::uint32_t) {}, [](std::int64_t) {});
     difference.elements_added += added;
     difference.elements_removed += removed;
   };
-  const auto [added, removed] = compare_ids(*a.shell_index, *b.shell_index, [&](std::uint32_t in_a, std::uint32_t in_b) {
+  const auto both = [&](std::uint32_t in_a, std::uint32_t in_b) {
     const mesh::ShellNodes& from = a.shell_nodes[in_a];
     const mesh::ShellNodes& to = b.shell_nodes[in_b];
     bool same = true;
     for (std::size_t c = 0; c < 4; ++c) same = same && a.node_ids[from.node[c].value] == b.node_ids[to.node[c].value];
     if (!same) ++difference.elements_changed;
-  });
+  };
+  const auto [added, removed] = compare_ids(*a.shell_index, *b.shell_index, both, [](std::int64_t) {});
   difference.elements_added += added;
   difference.elements_removed += removed;
   for (std::size_t c = 0; c < a.elements.size(); ++c)
@@ -72,13 +86,7 @@ std::size_t compare_lines(const mesh::deck::Deck& a, const mesh::deck::Deck& b) 
 
 Difference compare(const OpenedDeck& a, const OpenedDeck& b) {
   Difference difference;
-  std::tie(difference.nodes_added, difference.nodes_removed) =
-      compare_ids(*a.model.node_index, *b.model.node_index, [&](std::uint32_t in_a, std::uint32_t in_b) {
-        const mesh::Vec3& from = a.model.positions[in_a];
-        const mesh::Vec3& to = b.model.positions[in_b];
-        if (from == to) return;
-        ++difference.nodes_moved;
-      });
+  compare_nodes(a.model, b.model, difference);
   // the fields that also colour views; absent without common nodes or shells
   if (const auto field = mesh::document::displacement_field(a.model, b.model, LengthUnit::mm))
     difference.displacement = figures_of(*field, b.model);

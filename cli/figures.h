@@ -18,6 +18,10 @@ struct PartFigures {
   std::size_t quads = 0;
   std::size_t tris = 0;
   std::optional<double> thickness;
+  struct Box {
+    mesh::Vec3 min = mesh::Vec3::Zero(), max = mesh::Vec3::Zero();
+  };
+  std::optional<Box> box;  ///< around the shells' corners; absent without shells
 };
 
 /// Counts the shells of each part; ascending by id.
@@ -40,6 +44,7 @@ struct Difference {
   std::size_t elements_removed = 0;
   std::size_t elements_changed = 0;  ///< shells in both with other corners
   std::size_t lines_changed = 0;
+  std::vector<std::int64_t> moved, added;        ///< ids of nodes, ascending
   std::optional<FieldFigures> displacement;      ///< of nodes in both; absent if there are none
   std::optional<FieldFigures> surface_distance;  ///< of the second deck's shell corners from the first deck's shells
 };

@@ -1,3 +1,4 @@
+#include <optional>
 #include <ostream>
 
 #include "base/counted.h"
@@ -9,14 +10,28 @@
 
 namespace prismesh::cli {
 
+namespace {
+
+/// Makes the box hold the point, unless a coordinate isn't finite.
+void grow(std::optional<PartFigures::Box>& box, const mesh::Vec3& point) {
+  if (!point.allFinite()) return;
+  if (!box) box = PartFigures::Box{point, point};
+  box->min = box->min.cwiseMin(point);
+  box->max = box->max.cwiseMax(point);
+}
+
+}  // namespace
+
 std::vector<PartFigures> part_figures(const mesh::Model& model) {
   std::vector<PartFigures> figures;
-  for (const mesh::Part& part : *model.parts) figures.push_back({part.id, part.name, 0, 0, part.thickness});
+  for (const mesh::Part& part : *model.parts) figures.push_back({part.id, part.name, 0, 0, part.thickness, std::nullopt});
   for (std::size_t shell = 0; shell < model.shell_count(); ++shell) {
     const mesh::PartIndex part = model.shell_parts[shell];
     if (!part.valid()) continue;
     PartFigures& of_part = figures[part.value];
-    ++(model.shell_nodes[shell].is_triangle() ? of_part.tris : of_part.quads);
+    const mesh::ShellNodes& nodes = model.shell_nodes[shell];
+    ++(nodes.is_triangle() ? of_part.tris : of_part.quads);
+    for (const mesh::NodeIndex node : nodes.node) grow(of_part.box, model.positions[node.value]);
   }
   return figures;
 }

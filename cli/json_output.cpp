@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/id_list.h"
 #include "cli/json_values.h"
 #include "cli/report_text.h"
 
@@ -62,7 +63,8 @@ std::string info_json(const document::Document& document, const std::vector<Part
                       {"name", printable(part.name)},
                       {"quads", part.quads},
                       {"tris", part.tris},
-                      {"thickness", or_null(part.thickness)}});
+                      {"thickness", or_null(part.thickness)},
+                      {"box", part.box ? Json::array({point(part.box->min), point(part.box->max)}) : Json(nullptr)}});
   Json warnings = Json::array();
   for (const deck::Warning& w : deck.warnings)
     warnings.push_back(
@@ -122,6 +124,8 @@ std::string diff_json(const Difference& d) {
               {"elements_removed", d.elements_removed},
               {"elements_changed", d.elements_changed},
               {"lines_changed", d.lines_changed},
+              {"moved", id_list(d.moved)},
+              {"added", id_list(d.added)},
               {"displacement", field_json(d.displacement)},
               {"surface_distance", field_json(d.surface_distance)}}
       .dump();

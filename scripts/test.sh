@@ -199,10 +199,14 @@ run_soak() {
   done
   say "States of the disk after a power cut"
   status=0
-  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- faults_test; then
+  if step "build: release" configure_and_build release -DPRISMESH_TESTS=ON -- faults_test prismesh prismesh-modeld; then
     PRISMESH_SEED=$seed PRISMESH_POWER_CUTS=$((seconds * 28)) build/bin/faults_test --gtest_brief=1 </dev/null || status=$?
     count_one "faults_test with PRISMESH_SEED=$seed" "$status"
   fi
+  say "The demo on every real deck with shells"
+  status=0
+  tests/checker/demo_decks.py || status=$?
+  if [ "$status" -eq 77 ]; then skipped=$((skipped + 1)); else count_one "demo_decks.py" "$status"; fi
   targets=$(find build/asan/bin -name '*_fuzz' | wc -l)
   run_fuzzers $((seconds * $(nproc) / 2 / targets + 1))
   closing_line

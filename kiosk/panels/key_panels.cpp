@@ -68,8 +68,8 @@ void menu_panel(std::span<const KeyBinding> all, tools::PanelLayout& layout) {
   for (std::size_t m = 0; m < tools::kMenuNames.size(); ++m) {
     const auto entries = static_cast<std::size_t>(
         std::count_if(all.begin(), all.end(), [&](const KeyBinding& binding) { return static_cast<std::size_t>(binding.menu) == m; }));
-    // A menu stays whole: where more than half of it would hang over, it goes into the next column.
-    if (column + 1 < kColumns && (line + entries / 2) * kColumns > lines * (column + 1)) {
+    // A menu stays whole: where half of it or more would hang over, it goes into the next column.
+    if (column + 1 < kColumns && (line + (entries + 1) / 2) * kColumns > lines * (column + 1)) {
       ImGui::NextColumn();
       ++column;
     }

@@ -18,7 +18,10 @@ TEST_F(Cli, info_has_every_field) {
   EXPECT_EQ(info["nodes"], 35);
   EXPECT_EQ(info["elements"],
             (json{{"quad", 24}, {"tri", 0}, {"quad8", 0}, {"tri6", 0}, {"beam", 0}, {"solid", 0}, {"tshell", 0}, {"other", 0}}));
-  EXPECT_EQ(info["parts"], json::array({{{"id", 7}, {"name", "plate"}, {"quads", 24}, {"tris", 0}, {"thickness", 1.2}}}));
+  EXPECT_EQ(
+      info["parts"],
+      json::array(
+          {{{"id", 7}, {"name", "plate"}, {"quads", 24}, {"tris", 0}, {"thickness", 1.2}, {"box", {{0.0, 0.0, 0.0}, {30.0, 20.0, 0.0}}}}}));
   EXPECT_EQ(info["warnings"], json::array());
   EXPECT_EQ(outcome.err, "");
   const Outcome text = prismesh({"info", deck});
@@ -207,6 +210,9 @@ TEST_F(Cli, diff_counts_by_id_and_by_line) {
                                          {"elements_removed", 1},
                                          {"lines_changed", 4}}));
   EXPECT_EQ(difference["elements_changed"], 0);
+  EXPECT_EQ(difference["moved"], "109");
+  EXPECT_EQ(difference["added"], "500,501");
+  EXPECT_EQ(same["moved"], "");
   EXPECT_EQ(difference["displacement"]["max"], 5.0);
   EXPECT_EQ(difference["displacement"]["max_at"], "node:109");
   EXPECT_EQ(difference["surface_distance"]["max"], 0.0) << "it moved in the plate's plane";

@@ -11,8 +11,10 @@
 #include "kiosk/tools/key_table.h"
 #include "kiosk/tools/parts/file_expression.h"
 #include "kiosk/tools/shaping/axis_pick.h"
+#include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_options.h"
 #include "kiosk/tools/shaping/typed_number.h"
+#include "kiosk/tools/typed_numbers.h"
 #include "mesh/document/edit_kinds.h"
 #include "tests/kiosk/test_source.h"
 
@@ -26,7 +28,7 @@ TEST(ShapingOptionsTest, every_option_stands_in_the_edit) {
   ShapingOptions options;
   options.profile = mesh::shape::Profile::gaussian;
   options.flat = 0.3;
-  options.along = DeckAxis::y;
+  options.along = falloff_along(DeckAxis::y);
   options.free_ends = false;
   options.origin = mesh::shape::Origin::free_edge;
   options.across_welds = true;
@@ -66,6 +68,41 @@ TEST(ShapingOptionsTest, each_part_of_the_handle_has_its_edit) {
   EXPECT_EQ(turn.point, axis.point);
   EXPECT_EQ(turn.axis, axis.direction);
   EXPECT_EQ(turn.degrees, 30);
+}
+
+TEST(FalloffDirectionTest, the_key_goes_through_the_axes_and_from_any_other_direction_to_all) {
+  FalloffDirection now;
+  std::string seen;
+  for (int i = 0; i < 5; ++i) {
+    seen += now.what + ", ";
+    now = next_falloff(now);
+  }
+  EXPECT_EQ(seen, "all ways, x, y, z, all ways, ");
+  EXPECT_TRUE(next_falloff(picked_falloff("crease", Vec3(0, 1, 0))).in_all()) << "along y, but picked";
+}
+
+TEST(FalloffDirectionTest, the_views_directions_are_the_screens_in_the_decks_axes) {
+  const auto top = *stereo::named_rotation("top");
+  FalloffDirection now = falloff_along(DeckAxis::z);
+  for (const Vec3& on_screen : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, -1), Vec3(1, 0, 0)}) {
+    now = next_falloff_of_view(now, top);
+    EXPECT_NEAR((top * now.direction - on_screen).norm(), 0, 1e-12) << now.what;
+  }
+  EXPECT_EQ(now.what, "view's right");
+  for (const double component : now.direction)
+    EXPECT_TRUE(component == 0 || std::abs(component) == 1) << "seen from above the directions are the deck's own, without rests";
+  now = next_falloff_of_view(now, *stereo::named_rotation("iso"));
+  EXPECT_EQ(now.what, "view's up");
+  EXPECT_NEAR(now.direction.norm(), 1, 1e-12);
+}
+
+TEST(FalloffDirectionTest, a_picked_direction_reaches_the_edit) {
+  ShapingOptions options;
+  options.along = picked_falloff("two nodes", Vec3(3, 0, 4));
+  const document::Edit edit = edit_of({Under::lift_handle, 1, Vec3::Zero()}, options, Pull{Vec3::Zero(), 1, 0});
+  EXPECT_NEAR((*std::get<document::Lift>(edit).shaping.weights.falloff.along - Vec3(0.6, 0, 0.8)).norm(), 0, 1e-12);
+  EXPECT_EQ(components_text(options.along.direction), "0.6 0 0.8");
+  EXPECT_EQ(components_text(Vec3(-0.0, 1.0 / 3, -1)), "0 0.333 -1");
 }
 
 TEST(TypedNumberTest, numbers_are_read_as_people_write_them) {

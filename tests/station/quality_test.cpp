@@ -1,4 +1,5 @@
 // Checking and repairing in a whole station: figures, going from error to error, and an operation by hand with its preview.
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -92,6 +93,46 @@ TEST_F(QualityTest, errors_are_gone_to_worst_first_and_named) {
   station_->kiosk().skip_lines();
   station_->key("Left");
   EXPECT_NE(station_->kiosk().wait_for("error ").find("error 2 of"), std::string::npos);
+}
+
+TEST_F(QualityTest, limits_that_are_typed_hold_for_relaxing) {
+  const std::int64_t middle = kFirstNode + (kSheetSide / 2) * kSheetSide + kSheetSide / 2;
+  station_->start_kiosk();
+  station_->key("shift+n");  // numbers slide
+  dent(middle, "0 2.5 0");
+  const auto dented = nodes_of_deck(station_->save_copy("dented.k"));
+  const auto type_limit = [&](const std::string& key, const std::string& number, const std::string& told) {
+    station_->kiosk().skip_lines();
+    station_->key(key);
+    station_->type(number);
+    station_->key("Return");
+    EXPECT_EQ(station_->kiosk().wait_for("limits "), told);
+  };
+  type_limit("ctrl+t", "0.5", "limits sheet 0.5 line none threshold none");
+  type_limit("ctrl+shift+t", "0", "limits sheet 0.5 line 0 threshold none");
+  type_limit("ctrl+h", "100", "limits sheet 0.5 line 0 threshold 100");
+  station_->key("j");
+  ASSERT_FALSE(station_->kiosk().wait_for("quality generation").empty());
+  station_->show_people("limits");
+  const auto at = station_->pixel_of(dented.at(middle));
+  station_->move(at[0], at[1]);
+  station_->kiosk().skip_lines();
+  station_->key("shift+l");
+  ASSERT_FALSE(station_->kiosk().wait_for("generation ").empty());
+  std::size_t moved = 0;
+  for (const auto& [id, node] : nodes_of_deck(station_->save_copy("relaxed.k"))) {
+    const Point& before = dented.at(id);
+    const double by = std::hypot(node[0] - before[0], node[1] - before[1], node[2] - before[2]);
+    if (by == 0) continue;
+    ++moved;
+    EXPECT_LT(by, 0.5 + 1e-4) << id;
+    if (id == middle) {
+      EXPECT_GT(by, 0.45) << "without the limit it goes most of the way back";
+    }
+    const std::int64_t row = (id - kFirstNode) / kSheetSide, column = (id - kFirstNode) % kSheetSide;
+    EXPECT_LE(std::max(std::abs(row - kSheetSide / 2), std::abs(column - kSheetSide / 2)), 1) << id << " joined without need";
+  }
+  EXPECT_GT(moved, 0u);
 }
 
 TEST_F(QualityTest, an_operation_by_hand_is_shown_before_it_is_done) {

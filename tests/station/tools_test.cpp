@@ -1,4 +1,5 @@
 // The tools in a whole station: lasso, expressions, sliding, turning, typed numbers, files; and a view that moves in the middle.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -181,6 +182,58 @@ TEST_F(ToolsTest, a_turn_about_a_picked_axis_keeps_each_nodes_distance_from_it) 
     most = std::max(most, length(d));
   }
   EXPECT_GT(most, 1);
+}
+
+TEST_F(ToolsTest, a_pull_falls_off_along_a_picked_direction_only) {
+  station_->start_kiosk();
+  station_->select_middle();
+  station_->kiosk().skip_lines();
+  const std::int64_t first = kFirstNode + 2 * kSheetSide + 6, second = kFirstNode + 7 * kSheetSide + 9;
+  station_->key("ctrl+g");
+  for (const std::int64_t node : {first, second}) {
+    const Pixel at = station_->pixel_of(nodes_.at(node));
+    station_->click(at[0], at[1]);
+    if (node == first) {
+      ASSERT_FALSE(station_->kiosk().wait_for("falloff first node").empty());
+    }
+  }
+  ASSERT_FALSE(station_->kiosk().wait_for("falloff along two nodes ").empty());
+  station_->key("t");
+  ASSERT_FALSE(station_->kiosk().wait_for("panel shaping").empty());
+  station_->show_people("falloff direction");
+  station_->key("t");
+  station_->key("n");
+  station_->type("6");
+  station_->key("Return");
+  committed();
+  const auto by = moved(station_->save_copy("along.k"));
+  ASSERT_GT(by.size(), 20u);
+  // Across the direction all nodes move alike: along it the displacement only rises, then only falls.
+  const Point way = minus(nodes_.at(second), nodes_.at(first));
+  std::vector<std::pair<double, double>> along;
+  for (const auto& [id, d] : by) {
+    const Point& at = nodes_.at(id);
+    along.emplace_back((at[0] * way[0] + at[1] * way[1] + at[2] * way[2]) / length(way), length(d));
+  }
+  std::sort(along.begin(), along.end());
+  const auto top = std::max_element(along.begin(), along.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  EXPECT_NEAR(top->second, 6, 1e-3);
+  for (auto each = along.begin(); each + 1 != along.end(); ++each) {
+    const double rise = (each + 1)->second - each->second;
+    EXPECT_GT(each < top ? rise : -rise, -1e-4) << "at " << each->first;
+  }
+  // The other sources of a direction.
+  station_->kiosk().skip_lines();
+  for (const char* which : {"right ", "up ", "depth "}) {
+    station_->key("shift+v");
+    EXPECT_FALSE(station_->kiosk().wait_for(std::string("falloff along view's ") + which).empty());
+  }
+  const Pixel on_sheet = station_->pixel_of(nodes_.at(kFirstNode + 2 * kSheetSide + 2));
+  station_->move(on_sheet[0], on_sheet[1]);
+  station_->key("ctrl+shift+g");
+  EXPECT_FALSE(station_->kiosk().wait_for("falloff along element edge ").empty());
+  station_->key("shift+g");
+  EXPECT_FALSE(station_->kiosk().wait_for("falloff all ways").empty());
 }
 
 TEST_F(ToolsTest, the_file_under_the_pointer_is_locked_and_hidden_whole) {

@@ -22,6 +22,9 @@ enum class QualityCommand : std::uint8_t {
   repair_damaged,
   repair_selection,
   repair_all,
+  sheet_limit,
+  line_limit,
+  relax_threshold,
 };
 
 constexpr Command command_of(QualityCommand command) { return {kName, static_cast<std::uint8_t>(command)}; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ipc/messages.h"
+#include "kiosk/tools/quality/mend_limits.h"
 #include "mesh/document/edit.h"
 
 namespace prismesh::kiosk::tools::quality {
@@ -18,6 +19,8 @@ struct QualityFacts {
   std::string metric;                     ///< the chosen metric; empty: all
   bool damaged = false;
   std::optional<std::size_t> error;  ///< the error that the view went to
+  MendLimits limits{};
+  std::string length_unit;
 };
 
 struct ChooseMetric {

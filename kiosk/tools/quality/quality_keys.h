@@ -29,6 +29,12 @@ inline constexpr std::array kKeys = {
                "repair the shells at the selected nodes", kAsksForEdit},
     KeyBinding{display::letter('J'), true, true, command_of(QualityCommand::repair_all), Menu::mesh, "Ctrl+Shift+J",
                "repair all that warns or fails", kAsksForEdit},
+    KeyBinding{display::letter('T'), true, false, command_of(QualityCommand::sheet_limit), Menu::mesh, "Ctrl+T",
+               "type how far relaxing and repairing may move nodes within sheets"},
+    KeyBinding{display::letter('T'), true, true, command_of(QualityCommand::line_limit), Menu::mesh, "Ctrl+Shift+T",
+               "type how far they may move nodes on feature lines"},
+    KeyBinding{display::letter('H'), true, false, command_of(QualityCommand::relax_threshold), Menu::mesh, "Ctrl+H",
+               "type beyond which movement neighbours join in relaxing from a node"},
 };
 
 }  // namespace prismesh::kiosk::tools::quality

@@ -191,7 +191,17 @@ void parts_section(const QualityFacts& facts) {
   if (parts.size() > shown) ImGui::TextDisabled("%s better ones", grouped(parts.size() - shown).c_str());
 }
 
-void commands_section(PanelLayout& layout) {
+void limits_rows(const QualityFacts& facts, PanelLayout& layout) {
+  const auto row = [&](const char* label, const std::optional<double>& limit, const std::string& without, QualityCommand command) {
+    panels::setting(label, limit ? panels::length_text(*limit, facts.length_unit) : without, binding_of(kKeys, command_of(command)),
+                    layout);
+  };
+  row("nodes move at most", facts.limits.max_move.free, "no limit", QualityCommand::sheet_limit);
+  row("on feature lines", facts.limits.max_move.line, "no limit", QualityCommand::line_limit);
+  row("neighbours join beyond", facts.limits.threshold, "default", QualityCommand::relax_threshold);
+}
+
+void commands_section(const QualityFacts& facts, PanelLayout& layout) {
   const auto row = [&](const char* label, std::initializer_list<std::pair<const char*, QualityCommand>> entries) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", label);
@@ -208,6 +218,7 @@ void commands_section(PanelLayout& layout) {
       {{"selection", QualityCommand::relax_selection}, {"parts", QualityCommand::relax_part}, {"failed", QualityCommand::relax_failed}});
   row("repair",
       {{"damage", QualityCommand::repair_damaged}, {"selection", QualityCommand::repair_selection}, {"all", QualityCommand::repair_all}});
+  limits_rows(facts, layout);
 }
 
 }  // namespace
@@ -223,7 +234,7 @@ QualityActions quality_panel(const QualityFacts& facts, PanelLayout& layout) {
     errors_section(facts, layout, actions);
     parts_section(facts);
   }
-  commands_section(layout);
+  commands_section(facts, layout);
   ImGui::End();
   return actions;
 }

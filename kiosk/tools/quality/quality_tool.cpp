@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "kiosk/panels/number_box.h"
 #include "kiosk/tools/edits.h"
 #include "kiosk/tools/open_panels.h"
 #include "kiosk/tools/picking.h"
@@ -11,6 +12,7 @@
 #include "kiosk/tools/quality/quality_keys.h"
 #include "kiosk/tools/quality/quality_panel.h"
 #include "kiosk/tools/quality/quality_words.h"
+#include "kiosk/tools/quality/set_limit.h"
 #include "kiosk/tools/tool_set.h"
 
 namespace prismesh::kiosk::tools::quality {
@@ -37,6 +39,9 @@ void QualityTool::command(std::uint8_t number, const Pointer& pointer) {
     case QualityCommand::repair_damaged: repair(Scope::damaged); break;
     case QualityCommand::repair_selection: repair(Scope::selection); break;
     case QualityCommand::repair_all: repair(Scope::all); break;
+    case QualityCommand::sheet_limit: type_limit(MendLimit::sheet); break;
+    case QualityCommand::line_limit: type_limit(MendLimit::line); break;
+    case QualityCommand::relax_threshold: type_limit(MendLimit::threshold); break;
   }
 }
 
@@ -45,6 +50,7 @@ void QualityTool::command(std::uint8_t number, const Pointer& pointer) {
 void QualityTool::relax(Scope scope) {
   Relax edit;
   edit.scope = scope;
+  edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
   send(context_, edit);
 }
@@ -59,6 +65,8 @@ void QualityTool::relax_from(const Pointer& pointer) {
   edit.mode = RelaxMode::from;
   edit.at = context_.shown.snapshot->node_id(node->value);
   edit.scope = Scope::all;
+  edit.threshold = limits_.threshold;
+  edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
   send(context_, edit);
 }
@@ -66,8 +74,32 @@ void QualityTool::relax_from(const Pointer& pointer) {
 void QualityTool::repair(Scope scope) {
   Repair edit;
   edit.scope = scope;
+  edit.max_move = limits_.max_move;
   edit.angle = context_.selection.crease_angle;
   send(context_, edit);
+}
+
+// --- limits ---
+
+void QualityTool::type_limit(MendLimit which) {
+  limit_problem_.clear();
+  open_dialog(context_, this, static_cast<int>(which));
+}
+
+void QualityTool::enter_limit(MendLimit which, const std::string& text) {
+  const Result<MendLimits> wanted = with_limit(limits_, which, text);
+  if (!wanted) {
+    limit_problem_ = wanted.error().message;
+    return;
+  }
+  limits_ = *wanted;
+  close_dialog(context_);
+  const auto told = [&](MendLimit each) {
+    const std::string typed = typed_limit(limits_, each);
+    return typed.empty() ? std::string("none") : typed;
+  };
+  context_.trace.line(
+      fmt::format("limits sheet {} line {} threshold {}", told(MendLimit::sheet), told(MendLimit::line), told(MendLimit::threshold)));
 }
 
 // --- figures ---
@@ -182,6 +214,8 @@ void QualityTool::draw_left(PanelLayout& layout) {
   facts.metric = wish_.metric;
   facts.damaged = wish_.damaged;
   facts.error = error_;
+  facts.limits = limits_;
+  facts.length_unit = context_.shown.snapshot->info().length_unit;
   for (const QualityAction& action : quality_panel(facts, layout)) layout.ask([this, action] { act(action); });
 }
 
@@ -194,6 +228,13 @@ void QualityTool::draw_status(PanelLayout&) {
   facts.hidden_glyphs = context_.tools.glyphs_hidden();
   facts.glyphs_left_out = context_.glyphs_left_out;
   counts_section(facts);
+}
+
+void QualityTool::draw_dialog(int kind, bool opened, PanelLayout& layout) {
+  const auto which = static_cast<MendLimit>(kind);
+  const panels::NumberFacts facts{title_of(which), hint_of(which), typed_limit(limits_, which), limit_problem_};
+  if (const std::optional<std::string> entered = panels::number_box(facts, layout.picture, opened, entry_))
+    layout.ask([this, which, text = *entered] { enter_limit(which, text); });
 }
 
 }  // namespace prismesh::kiosk::tools::quality

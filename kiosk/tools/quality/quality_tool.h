@@ -7,6 +7,8 @@
 #include <span>
 #include <string>
 
+#include "kiosk/panels/entry_box.h"
+#include "kiosk/tools/quality/mend_limits.h"
 #include "kiosk/tools/quality/quality_facts.h"
 #include "kiosk/tools/quality/quality_link.h"
 #include "kiosk/tools/tool.h"
@@ -30,6 +32,7 @@ class QualityTool final : public Tool {
   void draw_left(PanelLayout& layout) override;
   void panel_changed() override;
   void draw_status(PanelLayout& layout) override;
+  void draw_dialog(int kind, bool opened, PanelLayout& layout) override;
 
  private:
   bool is_the_error(const ipc::QualityError& error) const { return error.shell == error_shell_ && error.node == error_node_; }
@@ -38,6 +41,8 @@ class QualityTool final : public Tool {
   void relax(mesh::document::Scope scope);
   void relax_from(const Pointer& pointer);
   void repair(mesh::document::Scope scope);
+  void type_limit(MendLimit which);
+  void enter_limit(MendLimit which, const std::string& text);
   void show_damaged_only(bool damaged_only);
   void choose_metric(const std::string& metric);
   void select_bar(const BarClicked& bar);
@@ -53,6 +58,9 @@ class QualityTool final : public Tool {
   std::int64_t error_shell_ = 0;      ///< its shell, by id
   std::int64_t error_node_ = 0;       ///< its node, by id; 0: it is of a shell
   std::optional<mesh::ShellIndex> marked_;
+  MendLimits limits_;
+  std::string limit_problem_;  ///< what is wrong with the number that is being typed
+  panels::EntryState entry_;
   std::string traced_;
 };
 

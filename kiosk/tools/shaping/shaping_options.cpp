@@ -23,7 +23,7 @@ mesh::document::Shaping shaping_of(const ShapingOptions& options, const ShapedHa
   shaping.grab = shaped.grab;
   shaping.weights.falloff.profile = options.profile;
   shaping.weights.falloff.flat = options.flat;
-  if (options.along != DeckAxis::none) shaping.weights.falloff.along = unit(options.along);
+  if (!options.along.in_all()) shaping.weights.falloff.along = options.along.direction;
   shaping.weights.free_ends = options.free_ends;
   shaping.weights.origin = options.origin;
   shaping.weights.across_welds = options.across_welds;

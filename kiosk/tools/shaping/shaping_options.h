@@ -19,10 +19,18 @@ inline constexpr std::array<std::string_view, 4> kDeckAxisNames{"none", "x", "y"
 mesh::Vec3 unit(DeckAxis axis);  ///< zero for none
 DeckAxis next(DeckAxis axis);
 
+/// The direction along which alone a pull falls off.
+struct FalloffDirection {
+  std::string what = "all ways";              ///< for a person: "x", "two nodes", "view's right"
+  mesh::Vec3 direction = mesh::Vec3::Zero();  ///< a unit vector in the deck's axes; zero: in all directions
+  bool in_all() const { return direction.isZero(); }
+  bool operator==(const FalloffDirection&) const = default;
+};
+
 struct ShapingOptions {
   mesh::shape::Profile profile = mesh::shape::Profile::smooth;
   double flat = 0;  ///< 0..1
-  DeckAxis along = DeckAxis::none;
+  FalloffDirection along;
   bool free_ends = true;
   mesh::shape::Origin origin = mesh::shape::Origin::grab;
   bool across_welds = false;

@@ -1,6 +1,7 @@
 #include "kiosk/tools/shaping/shaping_panel.h"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -8,6 +9,7 @@
 #include "kiosk/panels/text.h"
 #include "kiosk/panels/widgets.h"
 #include "kiosk/tools/key_table.h"
+#include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_keys.h"
 #include "mesh/shape/weights.h"
 
@@ -48,6 +50,20 @@ std::string name_of_axis(DeckAxis axis, const char* none) {
   return axis == DeckAxis::none ? none : std::string(kDeckAxisNames[static_cast<std::size_t>(axis)]);
 }
 
+void direction_rows(const FalloffDirection& now, PanelLayout& layout) {
+  set_by("falls off along", now.what, ShapingCommand::along, layout);
+  if (!now.in_all()) panels::fact("direction", components_text(now.direction));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("take it from");
+  const std::pair<const char*, ShapingCommand> sources[] = {
+      {"nodes", ShapingCommand::along_nodes}, {"edge", ShapingCommand::along_edge}, {"view", ShapingCommand::along_view}};
+  for (const auto& [label, command] : sources) {
+    ImGui::SameLine();
+    if (ImGui::SmallButton(label)) layout.ask(command_of(command));
+    panels::hint(binding_of(kKeys, command_of(command)));
+  }
+}
+
 /// Returns the options as the user wants them.
 ShapingOptions falloff_section(const ShapingOptions& now, PanelLayout& layout) {
   ShapingOptions wanted = now;
@@ -63,7 +79,7 @@ ShapingOptions falloff_section(const ShapingOptions& now, PanelLayout& layout) {
   auto flat = static_cast<float>(now.flat * 100);
   ImGui::SetNextItemWidth(-1);
   if (ImGui::SliderFloat("##flat", &flat, 0, 100, "flat top %.0f %%")) wanted.flat = std::round(static_cast<double>(flat)) / 100;
-  set_by("falls off along", name_of_axis(now.along, "all ways"), ShapingCommand::along, layout);
+  direction_rows(now.along, layout);
   return wanted;
 }
 

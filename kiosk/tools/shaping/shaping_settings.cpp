@@ -7,9 +7,9 @@
 
 #include "kiosk/tools/open_panels.h"
 #include "kiosk/tools/picking.h"
-#include "kiosk/tools/shaping/shaping_keys.h"
+#include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_tool.h"
-#include "kiosk/tools/shaping/typed_number.h"
+#include "kiosk/tools/typed_numbers.h"
 
 namespace prismesh::kiosk::tools::shaping {
 
@@ -26,25 +26,33 @@ void ShapingTool::set_axis(const std::optional<Axis>& axis, const std::string& w
   context_.trace.line(text);
 }
 
-void ShapingTool::pick_axis() {
+void ShapingTool::pick_two_nodes(TwoNodes purpose) {
   if (pull_ || !context_.shown.snapshot) return;
+  picks_ = purpose;
   axis_pick_.begin();
-  context_.trace.line("axis picking");
+  context_.trace.line(purpose == TwoNodes::axis ? "axis picking" : "falloff picking");
 }
 
-void ShapingTool::click_axis(const Pixel& at) {
+void ShapingTool::click_node(const Pixel& at) {
   const std::optional<mesh::NodeIndex> node = shown_node_at(context_, at);
   if (!node) return;
-  if (const std::optional<Axis> axis = axis_pick_.clicked(context_.shown.snapshot->position(node->value)))
+  const std::optional<Axis> axis = axis_pick_.clicked(context_.shown.snapshot->position(node->value));
+  const bool for_axis = picks_ == TwoNodes::axis;
+  if (!axis)
+    context_.trace.line(for_axis ? "axis first node" : "falloff first node");
+  else if (for_axis)
     set_axis(axis, "through two nodes");
   else
-    context_.trace.line("axis first node");
+    set_falloff(picked_falloff("two nodes", axis->direction));
+}
+
+std::optional<EdgeAxis> ShapingTool::edge_under(const Pointer& pointer) const {
+  const auto shell = shell_at(context_, pointer);
+  return shell ? edge_at(*context_.renderer.model(), aim(context_.view), *shell, *pointer, context_.selection.crease_angle) : std::nullopt;
 }
 
 void ShapingTool::axis_from_edge(const Pointer& pointer) {
-  const auto shell = shell_at(context_, pointer);
-  const auto edge =
-      shell ? edge_at(*context_.renderer.model(), aim(context_.view), *shell, *pointer, context_.selection.crease_angle) : std::nullopt;
+  const auto edge = edge_under(pointer);
   if (edge) return set_axis(edge->axis, edge->what);
   context_.notices.say(Notice::Kind::information, "Point at a shell: the axis is the edge nearest to the pointer.");
 }
@@ -65,6 +73,22 @@ bool ShapingTool::take_back() {
   return true;
 }
 
+// --- the direction of the falloff ---
+
+void ShapingTool::set_falloff(const FalloffDirection& along) {
+  if (picks_ == TwoNodes::falloff) axis_pick_.cancel();
+  options_.along = along;
+  const mesh::Vec3& way = along.direction;
+  context_.trace.line(along.in_all() ? "falloff all ways"
+                                     : fmt::format("falloff along {} {} {} {}", along.what, way.x(), way.y(), way.z()));
+}
+
+void ShapingTool::falloff_from_edge(const Pointer& pointer) {
+  const auto edge = edge_under(pointer);
+  if (edge) return set_falloff(picked_falloff(edge->what, edge->axis.direction));
+  context_.notices.say(Notice::Kind::information, "Point at a shell: the falloff goes along the edge nearest to the pointer.");
+}
+
 // --- options ---
 
 void ShapingTool::next_handle() {
@@ -81,7 +105,6 @@ void ShapingTool::change_option(ShapingCommand command) {
       break;
     case ShapingCommand::flatter: options_.flat = std::min(1.0, std::round((options_.flat + kFlatStep) * 100) / 100); break;
     case ShapingCommand::less_flat: options_.flat = std::max(0.0, std::round((options_.flat - kFlatStep) * 100) / 100); break;
-    case ShapingCommand::along: options_.along = next(options_.along); break;
     case ShapingCommand::free_ends: options_.free_ends = !options_.free_ends; break;
     case ShapingCommand::origin: options_.origin = options_.origin == Origin::grab ? Origin::free_edge : Origin::grab; break;
     case ShapingCommand::each_normal: options_.each_normal = !options_.each_normal; break;
@@ -101,7 +124,7 @@ void ShapingTool::type_for(Typing::For what, const std::optional<double>& now) {
 /// Takes a number for an option; nothing takes the number away.
 void ShapingTool::enter_option(const std::string& text) {
   const Result<std::vector<double>> numbers = parse_numbers(text);
-  const bool limit = typing_.what == Typing::For::move_limit, off = text.find_first_not_of(' ') == std::string::npos;
+  const bool limit = typing_.what == Typing::For::move_limit, off = is_blank(text);
   if (!off && (!numbers || numbers->size() != 1 || (limit && !(numbers->front() > 0)))) {
     typing_.problem = !numbers ? numbers.error().message
                       : limit  ? "type one number greater than 0, or nothing"

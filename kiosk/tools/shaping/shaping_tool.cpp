@@ -6,6 +6,7 @@
 
 #include "kiosk/tools/open_panels.h"
 #include "kiosk/tools/picking.h"
+#include "kiosk/tools/shaping/falloff_direction.h"
 #include "kiosk/tools/shaping/shaping_keys.h"
 #include "kiosk/tools/shaping/shaping_panel.h"
 #include "kiosk/tools/shaping/typed_number.h"
@@ -35,12 +36,16 @@ void ShapingTool::command(std::uint8_t number, const Pointer& pointer) {
   switch (static_cast<ShapingCommand>(number)) {
     case ShapingCommand::type_number: begin_number({}, std::nullopt); break;
     case ShapingCommand::next_handle: next_handle(); break;
-    case ShapingCommand::pick_axis: pick_axis(); break;
+    case ShapingCommand::pick_axis: pick_two_nodes(TwoNodes::axis); break;
     case ShapingCommand::axis_edge: axis_from_edge(pointer); break;
     case ShapingCommand::axis_x: axis_from_deck(DeckAxis::x); break;
     case ShapingCommand::axis_y: axis_from_deck(DeckAxis::y); break;
     case ShapingCommand::axis_z: axis_from_deck(DeckAxis::z); break;
     case ShapingCommand::no_axis: set_axis(std::nullopt, "none"); break;
+    case ShapingCommand::along: set_falloff(next_falloff(options_.along)); break;
+    case ShapingCommand::along_nodes: pick_two_nodes(TwoNodes::falloff); break;
+    case ShapingCommand::along_edge: falloff_from_edge(pointer); break;
+    case ShapingCommand::along_view: set_falloff(next_falloff_of_view(options_.along, aim(context_.view).view.rotation)); break;
     case ShapingCommand::panel: toggle_left(context_, this); break;
     default: change_option(static_cast<ShapingCommand>(number)); break;
   }
@@ -49,9 +54,9 @@ void ShapingTool::command(std::uint8_t number, const Pointer& pointer) {
 bool ShapingTool::gesture(const Gesture& gesture) {
   if (!in_mode()) return take_handle_gesture(gesture);
   if (const auto* node = std::get_if<NodeClicked>(&gesture))
-    click_axis(node->at);
+    click_node(node->at);
   else if (const auto* region = std::get_if<RegionClicked>(&gesture))
-    click_axis(region->at);
+    click_node(region->at);
   else
     return take_handle_gesture(gesture);
   return true;
@@ -122,7 +127,8 @@ void ShapingTool::add_to_picture(render::Picture& picture) const { picture.handl
 
 std::string ShapingTool::guidance() const {
   if (!axis_pick_.active()) return {};
-  return axis_pick_.first() ? "Axis: click the second node, Esc gives up" : "Axis: click the first node, Esc gives up";
+  return fmt::format("{}: click the {} node, Esc gives up", picks_ == TwoNodes::axis ? "Axis" : "Direction of the falloff",
+                     axis_pick_.first() ? "second" : "first");
 }
 
 void ShapingTool::trace_picture() {
@@ -157,14 +163,14 @@ void ShapingTool::draw_document_section(PanelLayout&) {
 
 void ShapingTool::draw_dialog(int, bool opened, PanelLayout& layout) {
   const bool pull = typing_.what == Typing::For::pull;
-  NumberFacts facts;
+  panels::NumberFacts facts;
   facts.title = pull                                      ? std::string(name_of(handle_))
                 : typing_.what == Typing::For::move_limit ? "No node moves farther than"
                                                           : "The mirror stands at";
   facts.hint = pull ? std::string(typed_hint(handle_)) : "a number; nothing takes it away";
   facts.begun = typing_.begun;
   facts.problem = typing_.problem;
-  if (const std::optional<std::string> entered = number_box(facts, layout.picture, opened, entry_))
+  if (const std::optional<std::string> entered = panels::number_box(facts, layout.picture, opened, entry_))
     layout.ask([this, text = *entered] { enter_number(text); });
 }
 

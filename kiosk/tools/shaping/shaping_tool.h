@@ -6,9 +6,9 @@
 #include <span>
 #include <string>
 
+#include "kiosk/panels/number_box.h"
 #include "kiosk/tools/shaping/axis_pick.h"
 #include "kiosk/tools/shaping/handle.h"
-#include "kiosk/tools/shaping/number_box.h"
 #include "kiosk/tools/shaping/pull_preview.h"
 #include "kiosk/tools/shaping/shaping_commands.h"
 #include "kiosk/tools/shaping/shaping_options.h"
@@ -54,6 +54,8 @@ class ShapingTool final : public Tool {
     std::string begun{};
     std::string problem{};
   };
+  /// What two nodes are picked for.
+  enum class TwoNodes : std::uint8_t { axis, falloff };
   /// A pull under way.
   struct ActivePull {
     HandlePull pull;
@@ -75,10 +77,15 @@ class ShapingTool final : public Tool {
 
   // --- axes ---
   void set_axis(const std::optional<Axis>& axis, const std::string& what);
-  void pick_axis();
-  void click_axis(const Pixel& at);
+  void pick_two_nodes(TwoNodes purpose);
+  void click_node(const Pixel& at);
+  std::optional<EdgeAxis> edge_under(const Pointer& pointer) const;
   void axis_from_edge(const Pointer& pointer);
   void axis_from_deck(DeckAxis axis);
+
+  // --- the direction of the falloff ---
+  void set_falloff(const FalloffDirection& along);
+  void falloff_from_edge(const Pointer& pointer);
 
   // --- numbers and options ---
   void type_for(Typing::For what, const std::optional<double>& now);
@@ -92,6 +99,7 @@ class ShapingTool final : public Tool {
   ShapingOptions options_;
   Under handle_ = Under::lift_handle;  ///< the part of the handle that numbers are typed for
   AxisPick axis_pick_;
+  TwoNodes picks_ = TwoNodes::axis;
   std::optional<Axis> axis_;
   std::optional<Anchor> anchor_;
   std::optional<ActivePull> pull_;

@@ -1,18 +1,12 @@
 // Numbers that are typed for a tool: what may be typed, and what it means.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "base/error.h"
 #include "kiosk/tools/shaping/shaping_options.h"
 
 namespace prismesh::kiosk::tools::shaping {
-
-/// One or more numbers, with spaces, commas or semicolons between them. Errors: a sentence for what is none (file and line empty).
-Result<std::vector<double>> parse_numbers(std::string_view text);
 
 /// What a tool makes of the text: a lift one number (along the arrow), a turn one (degrees); a slide and a move three (x y z in the deck's
 /// axes), or one: so far the way that `pulled` goes. Errors: a sentence.

@@ -1,4 +1,4 @@
-// The box that a number is typed into.
+// The box that numbers are typed into.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 #include "kiosk/display/window.h"
 #include "kiosk/panels/entry_box.h"
 
-namespace prismesh::kiosk::tools::shaping {
+namespace prismesh::kiosk::panels {
 
 struct NumberFacts {
   std::string title, hint;
@@ -16,6 +16,6 @@ struct NumberFacts {
 };
 
 /// Lays the box out (inside Gui::layout). `opened`: it wasn't there the last time. Returns the text that was entered.
-std::optional<std::string> number_box(const NumberFacts& facts, display::PixelSize picture, bool opened, panels::EntryState& entry);
+std::optional<std::string> number_box(const NumberFacts& facts, display::PixelSize picture, bool opened, EntryState& entry);
 
-}  // namespace prismesh::kiosk::tools::shaping
+}  // namespace prismesh::kiosk::panels
