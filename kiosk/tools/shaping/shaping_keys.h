@@ -33,7 +33,7 @@ inline constexpr std::array kKeys = {
     KeyBinding{display::letter('G'), false, true, command_of(ShapingCommand::along), Menu::shape, "Shift+G",
                "fall off in all directions, or along x, y or z only"},
     KeyBinding{display::letter('F'), false, true, command_of(ShapingCommand::free_ends), Menu::shape, "Shift+F",
-               "free edges follow the pull, or hold"},
+               "free edges follow the pull whole, follow by distance, or hold"},
     KeyBinding{display::letter('E'), false, true, command_of(ShapingCommand::origin), Menu::shape, "Shift+E",
                "the grab is one node, or its whole free edge"},
     KeyBinding{display::letter('I'), false, true, command_of(ShapingCommand::each_normal), Menu::shape, "Shift+I",

@@ -19,11 +19,15 @@ inline constexpr std::array<std::string_view, 4> kDeckAxisNames{"none", "x", "y"
 mesh::Vec3 unit(DeckAxis axis);  ///< zero for none
 DeckAxis next(DeckAxis axis);
 
+/// What free edges do, in words: "follow whole", "follow by distance", "hold".
+std::string_view name_of(mesh::shape::FreeEnds ends);
+mesh::shape::FreeEnds next(mesh::shape::FreeEnds ends);
+
 struct ShapingOptions {
   mesh::shape::Profile profile = mesh::shape::Profile::smooth;
   double flat = 0;  ///< 0..1
   DeckAxis along = DeckAxis::none;
-  bool free_ends = true;
+  mesh::shape::FreeEnds free_ends = mesh::shape::FreeEnds::rigid;
   mesh::shape::Origin origin = mesh::shape::Origin::grab;
   bool across_welds = false;
   bool each_normal = false;  ///< of a lift
