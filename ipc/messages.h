@@ -75,6 +75,9 @@ struct FindShells {
 struct PreviewEdit {  ///< asks what an edit would do, without applying it
   mesh::document::Edit edit;
 };
+struct FindFollowedEdges {    ///< asks which free edges would follow an edit, without applying it
+  mesh::document::Edit edit;  ///< translate, lift, slide or rotate; the displacement is ignored
+};
 /// Asks for a field (mesh/document/field.h).
 struct GetField {
   std::string field = "displacement";               ///< a name for mesh::document::field_wish
@@ -106,7 +109,7 @@ struct ReturnSnapshot {  ///< no answer
 };
 
 using Request = std::variant<Hello, Open, Save, Close, ApplyEdit, BeginDrag, DragStep, CommitDrag, CancelDrag, Cancel, Count, GetQuality,
-                             FindShells, PreviewEdit, GetField, ShareCamera, GetState, GetSnapshot, ReturnSnapshot>;
+                             FindShells, PreviewEdit, FindFollowedEdges, GetField, ShareCamera, GetState, GetSnapshot, ReturnSnapshot>;
 
 // --- answers ---
 struct Failed {
@@ -223,6 +226,12 @@ struct EditPreviewed {
   std::vector<std::int64_t> replaced;  ///< ids of shells that would be removed or changed
 };
 inline constexpr std::size_t kMaxPreviewedShells = 2000;
+struct FollowedEdges {
+  std::uint64_t generation = 0;      ///< that the edit would be applied to
+  std::vector<std::uint32_t> nodes;  ///< two for each edge, as indices into the generation's nodes; max kMaxFollowedEdges edges
+  std::uint64_t edge_count = 0;      ///< without that limit
+};
+inline constexpr std::size_t kMaxFollowedEdges = 5000;
 struct FieldMade {          ///< descriptor: the values (ipc/field_page.h)
   std::uint64_t field = 0;  ///< its number, unique
   std::string title, unit;
@@ -252,7 +261,7 @@ struct Snapshot {  ///< descriptors: the table, then the segments listed in new_
   std::vector<std::uint64_t> new_segments;  ///< those sent with this message, in this order
 };
 using Answer = std::variant<Failed, Done, Welcome, DocumentState, Saved, SaveWould, Edited, Counted, Quality, ShellsFound, EditPreviewed,
-                            DragBegun, Snapshot, FieldMade>;
+                            FollowedEdges, DragBegun, Snapshot, FieldMade>;
 
 // --- events; sent to every client ---
 struct GenerationPublished {

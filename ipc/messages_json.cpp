@@ -23,6 +23,7 @@ PRISMESH_MESSAGE(ipc::Count, "count", f("expr", m.expr), f("kind", m.kind));
 PRISMESH_MESSAGE(ipc::GetQuality, "get_quality", f("metric", m.metric), f("damaged", m.damaged));
 PRISMESH_MESSAGE(ipc::FindShells, "find_shells", f("metric", m.metric), f("from", m.from), f("to", m.to), f("damaged", m.damaged));
 PRISMESH_MESSAGE(ipc::PreviewEdit, "preview_edit", f("edit", m.edit));
+PRISMESH_MESSAGE(ipc::FindFollowedEdges, "find_followed_edges", f("edit", m.edit));
 PRISMESH_MESSAGE(ipc::GetState, "get_state", );
 PRISMESH_MESSAGE(ipc::GetField, "get_field", f("field", m.field), f("generation", m.generation), f("against", m.against),
                  f("against_generation", m.against_generation), f("from", m.from), f("to", m.to));
@@ -63,6 +64,7 @@ PRISMESH_JSON_OBJECT(ipc::QualityPart, f("part", m.part), f("shells", m.shells),
 PRISMESH_MESSAGE(ipc::ShellsFound, "shells_found", f("shells", m.shells), f("expr", m.expr));
 PRISMESH_MESSAGE(ipc::EditPreviewed, "edit_previewed", f("generation", m.generation), f("report", m.report), f("points", m.points),
                  f("shells", m.shells), f("shell_count", m.shell_count), f("replaced", m.replaced));
+PRISMESH_MESSAGE(ipc::FollowedEdges, "followed_edges", f("generation", m.generation), f("nodes", m.nodes), f("edge_count", m.edge_count));
 PRISMESH_JSON_OBJECT(ipc::PreviewedShell, f("shell", m.shell), f("corners", m.corners), f("warn", m.warn), f("fail", m.fail),
                      f("clusters", m.clusters));
 PRISMESH_MESSAGE(ipc::DragBegun, "drag_begun", f("drag", m.drag), f("base_generation", m.base_generation), f("nodes", m.nodes),

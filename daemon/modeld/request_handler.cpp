@@ -1,11 +1,14 @@
 #include "daemon/modeld/request_handler.h"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "daemon/modeld/edit_preview.h"
 #include "daemon/modeld/quality_figures.h"
 #include "ipc/failure.h"
 #include "mesh/document/deck_relations.h"
+#include "mesh/document/followed_edges.h"
 
 namespace prismesh::modeld {
 
@@ -85,6 +88,19 @@ Outcome RequestHandler::find(const ipc::FindShells& request) const {
 Outcome RequestHandler::preview(const ipc::PreviewEdit& request) const {
   if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
   return told(preview_edit(keeper_.document(), request.edit, &clock_));
+}
+
+Outcome RequestHandler::followed_edges(const ipc::FindFollowedEdges& request) const {
+  if (!keeper_.is_open()) return {ipc::failed_from({"", 0, "no document is open"}), {}, {}, {}};
+  const mesh::document::Generation& current = keeper_.document().current();
+  const auto edges = mesh::document::find_followed_edges(current, request.edit);
+  if (!edges) return {ipc::failed_from(edges.error()), {}, {}, {}};
+  ipc::FollowedEdges found;
+  found.generation = current.number;
+  found.edge_count = edges->size();
+  for (const auto& edge : std::span(*edges).first(std::min(edges->size(), ipc::kMaxFollowedEdges)))
+    found.nodes.insert(found.nodes.end(), {edge[0].value, edge[1].value});
+  return {std::move(found), {}, {}, {}};
 }
 
 Outcome RequestHandler::field(const ipc::GetField& request, const Progress& progress) {

@@ -43,6 +43,7 @@ class RequestHandler {
   Outcome quality(const ipc::GetQuality& request) const;
   Outcome find(const ipc::FindShells& request) const;
   Outcome preview(const ipc::PreviewEdit& request) const;
+  Outcome followed_edges(const ipc::FindFollowedEdges& request) const;
   /// Makes a field that views colour by. A deck to compare with is read here and kept for the next request.
   Outcome field(const ipc::GetField& request, const Progress& progress);
   /// A cancel before the first file is replaced leaves all files as they were; a later one is ignored.

@@ -249,6 +249,8 @@ void RequestScheduler::begin(Waiting next) {
     run([this, request = std::move(*find)] { return handler_.find(request); }, answer);
   else if (auto* preview = std::get_if<ipc::PreviewEdit>(&next.request))
     run([this, request = std::move(*preview)] { return handler_.preview(request); }, answer);
+  else if (auto* edges = std::get_if<ipc::FindFollowedEdges>(&next.request))
+    run([this, request = std::move(*edges)] { return handler_.followed_edges(request); }, answer);
   else if (auto* field = std::get_if<ipc::GetField>(&next.request))
     run_long(next, "Comparing", OnDeath::stops,
              [this, request = std::move(*field)](const Progress& progress) { return handler_.field(request, progress); });

@@ -19,6 +19,7 @@ constexpr double kDiskRim = 1.5, kDiskLift = 5;  ///< lifted off the surface tha
 constexpr double kAxisRadius = 1.4, kAxisBeyond = 28, kAxisEnd = 5;
 constexpr double kCircleRadius = 1.1, kArcRadius = 2.4, kTickRadius = 1.1, kSpokeRadius = 0.8;
 constexpr double kTick = 11, kLongTick = 18;
+constexpr double kFollowedRadius = 2.2;
 constexpr float kDiskAlpha = 0.42F, kActiveDiskAlpha = 0.6F, kFaintAlpha = 0.9F;
 constexpr int kSides = 10, kRound = 48;
 constexpr double kFullCircle = 360;
@@ -255,6 +256,15 @@ std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& 
     add_arrow(pieces.back().triangles, foot, axis, pixel);
   }
   return pieces;
+}
+
+HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space) {
+  const ScreenSpace screen(space);
+  HandlePiece piece{{}, true, false, 1};
+  for (const auto& [from, to] : edges)
+    if (finite(from) && finite(to) && from != to)
+      add_tube(piece.triangles, screen, {screen.point(from), screen.point(to)}, kFollowedRadius);
+  return piece;
 }
 
 }  // namespace prismesh::kiosk::render

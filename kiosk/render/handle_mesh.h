@@ -32,4 +32,7 @@ struct HandleSpace {
 /// The handle's pieces in drawing order. Empty if position or direction isn't finite, or the direction is zero.
 std::vector<HandlePiece> handle_pieces(const Handle& handle, const HandleSpace& space);
 
+/// Tubes along edges, of the active colour. Edges that aren't finite are left out.
+HandlePiece followed_edges_piece(const std::vector<std::array<Vec3, 2>>& edges, const HandleSpace& space);
+
 }  // namespace prismesh::kiosk::render

@@ -110,6 +110,7 @@ struct Picture {
   bool selected_nodes = true;
   bool moving = false;  ///< the view turns or something is dragged: drawn without multisampling, which is faster for large models
   std::optional<Handle> handle;
+  std::vector<std::array<Vec3, 2>> followed_edges;  ///< free edges that move as far as the handle, deck coordinates: drawn green
   std::optional<PixelRect> rubber_band;
   std::vector<Eigen::Vector2d> lasso;  ///< display pixels; drawn closed
   bool shadows = false;                ///< of the dragged or selected shells, on planes beside the model

@@ -31,7 +31,8 @@ struct DrawnScene {
     const auto facts = [](const DrawnScene& d) {
       const Picture& p = d.picture;
       return std::tie(p.view, p.profile.optics.pixel_pitch_mm, p.colour, p.element_edges, p.outlines, p.quality_glyphs, p.damaged_only,
-                      p.marked, p.selected_nodes, p.handle, p.shadows, p.field, p.two_views, d.images, d.width, d.height, d.scene_version);
+                      p.marked, p.selected_nodes, p.handle, p.followed_edges, p.shadows, p.field, p.two_views, d.images, d.width, d.height,
+                      d.scene_version);
     };
     return facts(*this) == facts(other);
   }
@@ -240,6 +241,7 @@ void Renderer::Impl::draw_views(const Picture& picture, const EyeView& eye, int 
     half.view = stereo::pan(picture.view, {picture.two_views->shift_mm(right, eye.mm_per_pixel * width), 0});
     if (pane == Pane::other) {
       half.handle.reset();
+      half.followed_edges.clear();
       half.marked.reset();
       half.shadows = false;
     }

@@ -84,7 +84,9 @@ void ScenePass::draw(const Picture& picture, const ViewContent& content, const E
     if (picture.selected_nodes) nodes_.draw(model, frame);
     if (picture.quality_glyphs || picture.marked) draw_glyphs(picture, model, glyph_cap, frame);
   }
-  if (picture.handle) handle_.draw(handle_pieces(*picture.handle, {picture.view, eye.mm_per_pixel, eye.viewer_mm, model.shown_box()}), eye);
+  const HandleSpace space{picture.view, eye.mm_per_pixel, eye.viewer_mm, model.shown_box()};
+  if (!picture.followed_edges.empty()) handle_.draw({followed_edges_piece(picture.followed_edges, space)}, eye);
+  if (picture.handle) handle_.draw(handle_pieces(*picture.handle, space), eye);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
 }

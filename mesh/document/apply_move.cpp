@@ -55,6 +55,21 @@ void report_inverted(const Model& model, const ShellSet& inverted, EditReport& r
   report.notes.push_back(note + (inverted.size() > 5 ? ", ..." : ""));
 }
 
+/// Notes what "free_ends": "weighted" would do otherwise: scripts of earlier versions rely on it.
+void note_free_endings(const Model& model, const Motion& motion, EditReport& report) {
+  const auto id = [&](NodeIndex node) { return "node:" + std::to_string(model.node_ids[node.value]); };
+  if (motion.free_ending > 0)
+    report.notes.push_back(counted(motion.free_ending, "node") +
+                           " of a free ending move by the whole displacement; \"free_ends\": \"weighted\" weights them by distance");
+  if (!motion.other_edge.valid()) return;
+  if (motion.edge.valid())
+    report.notes.push_back("the origin is the free edge at " + id(motion.edge) + ", not the nearest one, at " + id(motion.other_edge) +
+                           "; \"origin_at\" chooses another");
+  else
+    report.notes.push_back("the origin is only what lies beyond the grab: the free edge at " + id(motion.other_edge) +
+                           " begins at the rim; \"origin\": \"free_edge\" takes all of it");
+}
+
 Result<void> move(const Document& document, const Edit& edit, Generation& next, EditReport& report) {
   const Result<Motion> motion = plan_motion(document.current(), edit, document.deck.get());
   if (!motion) return fail(motion.error());
@@ -70,6 +85,7 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
   update_weight(document.current(), touched, next);
   if (motion->unreached > 0)
     report.notes.push_back(counted(motion->unreached, "node") + " can't be reached from the grab along what is moved; left in place");
+  note_free_endings(next.model, *motion, report);
   if (motion->without_image > 0)
     report.notes.push_back(counted(motion->without_image, "node") + " without an image on the other side of the plane of symmetry");
   if (held_back > 0) report.notes.push_back(counted(held_back, "node") + " held back by max_move");

@@ -75,6 +75,7 @@ struct Shaping {
   std::optional<NodeReference> grab;  ///< coordinates: the nearest node of those acted on; absent: the node farthest from the border
   std::optional<std::array<double, 3>> grab_at;  ///< where the node `grab` was: used where no such node is acted on (a variant)
   shape::WeightOptions weights;
+  std::optional<NodeReference> origin_at;  ///< origin free_edge: on this edge, or the edge nearest to it
   std::optional<Symmetry> symmetry;
   std::optional<double> max_move;  ///< of each node; deck's length unit
 };

@@ -29,6 +29,12 @@ PRISMESH_JSON_NAMES(mesh::document::Scope, {{"selection", mesh::document::Scope:
                                             {"failed", mesh::document::Scope::failed}});
 PRISMESH_JSON_NAMES(mesh::document::RelaxMode, {{"full", mesh::document::RelaxMode::full}, {"from", mesh::document::RelaxMode::from}});
 PRISMESH_JSON_NAMES(mesh::shape::Origin, {{"grab", mesh::shape::Origin::grab}, {"free_edge", mesh::shape::Origin::free_edge}});
+/// true (rigid), false (held) or "weighted".
+template <>
+struct Definition<mesh::shape::FreeEnds> {
+  static void write(Json& json, const mesh::shape::FreeEnds& value);
+  static Problem read(const Json& json, mesh::shape::FreeEnds& value, Author author);
+};
 template <>
 struct Definition<mesh::shape::Profile> {
   static const Names<mesh::shape::Profile>& names();
@@ -100,8 +106,8 @@ struct Definition<mesh::document::MoveLimits> {
   }
 };
 PRISMESH_JSON_OBJECT(mesh::document::Shaping, f("on", m.on), f("grab", m.grab), f("grab_at", m.grab_at), f("falloff", m.weights.falloff),
-                     f("free_ends", m.weights.free_ends), f("origin", m.weights.origin), f("across_welds", m.weights.across_welds),
-                     f("symmetry", m.symmetry), f("max_move", m.max_move, kPositive));
+                     f("free_ends", m.weights.free_ends), f("origin", m.weights.origin), f("origin_at", m.origin_at),
+                     f("across_welds", m.weights.across_welds), f("symmetry", m.symmetry), f("max_move", m.max_move, kPositive));
 
 // --- edits; the field "edit" tells which it is ---
 

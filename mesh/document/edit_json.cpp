@@ -90,6 +90,27 @@ const Names<mesh::shape::Profile>& Definition<mesh::shape::Profile>::names() {
   return table;
 }
 
+void Definition<mesh::shape::FreeEnds>::write(Json& json, const mesh::shape::FreeEnds& value) {
+  using mesh::shape::FreeEnds;
+  if (value == FreeEnds::weighted)
+    json = "weighted";
+  else
+    json = value == FreeEnds::rigid;
+}
+
+Problem Definition<mesh::shape::FreeEnds>::read(const Json& json, mesh::shape::FreeEnds& value, Author author) {
+  using mesh::shape::FreeEnds;
+  if (json == true || json == "rigid")
+    value = FreeEnds::rigid;
+  else if (json == false || json == "held")
+    value = FreeEnds::held;
+  else if (json == "weighted")
+    value = FreeEnds::weighted;
+  else
+    return must_be("true or false, or \"weighted\"", json, author);
+  return std::nullopt;
+}
+
 void Definition<mesh::Vec3>::write(Json& json, const mesh::Vec3& value) { json = Json::array({value.x(), value.y(), value.z()}); }
 
 Problem Definition<mesh::Vec3>::read(const Json& json, mesh::Vec3& value, Author author) {

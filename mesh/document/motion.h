@@ -44,7 +44,10 @@ struct Motion {
   NodeIndex grab;
   Vec3 normal = Vec3::Zero();  ///< unit normal at the grab; zero where no shell is
   std::vector<Follower> followers;
-  std::size_t unreached = 0;  ///< nodes acted on with no way from the grab
+  std::size_t unreached = 0;    ///< nodes acted on with no way from the grab
+  std::size_t free_ending = 0;  ///< nodes of free endings (shape::Weights)
+  NodeIndex edge;               ///< on the free edge that is the origin; invalid: none
+  NodeIndex other_edge;         ///< on the one that it would be with weighted free ends, if that differs
   std::optional<double> max_move;
 
   /// Position of a node in `nodes`, or Follower::kStays. Costs a binary search.

@@ -16,6 +16,7 @@
 #include "mesh/document/symmetry.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/shape/normals.h"
+#include "mesh/shape/rotate.h"
 
 namespace prismesh::mesh::document {
 
@@ -51,6 +52,29 @@ Result<std::optional<NodeIndex>> find_grab(const Model& model, const NodeSet& no
   return std::optional<NodeIndex>();
 }
 
+/// The node that origin_at names among the nodes acted on; empty without one.
+Result<std::optional<NodeIndex>> find_origin_node(const Model& model, const NodeSet& nodes, const Shaping& shaping) {
+  if (!shaping.origin_at) return std::optional<NodeIndex>();
+  if (const auto* point = std::get_if<std::array<double, 3>>(&*shaping.origin_at))
+    return nearest_of(model, nodes, Vec3((*point)[0], (*point)[1], (*point)[2]));
+  const Result<NodeIndex> found = find_referenced_node(model, *shaping.origin_at);
+  if (!found) return fail("", "origin_at: " + found.error().message);
+  if (!std::binary_search(nodes.begin(), nodes.end(), *found))
+    return fail("", "origin_at: the node " + std::to_string(model.node_ids[found->value]) + " isn't among the nodes to be moved");
+  return std::optional(*found);
+}
+
+/// What the weights of an edit depend on beside its options.
+Result<shape::WeightPlaces> find_places(const Model& model, const NodeSet& nodes, const Edit& edit, const Shaping& shaping) {
+  const Result<std::optional<NodeIndex>> edge = find_origin_node(model, nodes, shaping);
+  if (!edge) return fail(edge.error());
+  shape::WeightPlaces places;
+  places.edge = *edge;
+  if (const auto* rotate = std::get_if<Rotate>(&edit))
+    if (const std::optional<Vec3> direction = shape::unit_of(rotate->axis)) places.axis = shape::Axis{rotate->point, *direction};
+  return places;
+}
+
 ShapingKind motion_kind(const Edit& edit) {
   if (std::holds_alternative<Lift>(edit)) return ShapingKind::lift;
   if (std::holds_alternative<Slide>(edit)) return ShapingKind::slide;
@@ -67,9 +91,15 @@ Result<void> refuse_unsound(const Edit& edit, const Shaping& shaping) {
     return fail("", what + ": the axis's point must be of finite numbers");
   if (shaping.max_move && !(*shaping.max_move > 0)) return fail("", what + ": max_move must be greater than 0");
   const auto finite = [](const std::array<double, 3>& point) { return Vec3(point[0], point[1], point[2]).allFinite(); };
-  const auto* place = shaping.grab ? std::get_if<std::array<double, 3>>(&*shaping.grab) : nullptr;
-  if ((place != nullptr && !finite(*place)) || (shaping.grab_at && !finite(*shaping.grab_at)))
+  const auto finite_place = [&](const std::optional<NodeReference>& reference) {
+    const auto* place = reference ? std::get_if<std::array<double, 3>>(&*reference) : nullptr;
+    return place == nullptr || finite(*place);
+  };
+  if (!finite_place(shaping.grab) || (shaping.grab_at && !finite(*shaping.grab_at)))
     return fail("", what + ": the grab's place must be of finite numbers");
+  if (!finite_place(shaping.origin_at)) return fail("", what + ": origin_at must be of finite numbers");
+  if (shaping.origin_at && shaping.weights.origin != shape::Origin::free_edge)
+    return fail("", what + ": origin_at names a free edge: it needs \"origin\": \"free_edge\"");
   return {};
 }
 
@@ -127,7 +157,9 @@ Result<shape::Weights> find_weights(const Generation& generation, const Edit& ed
   if (!nodes) return fail(nodes.error());
   const Result<std::optional<NodeIndex>> grab = find_grab(generation.model, *nodes, shaping);
   if (!grab) return fail(grab.error());
-  Result<shape::Weights> weights = shape::compute_weights(generation.model, *nodes, *grab, shaping.weights);
+  const Result<shape::WeightPlaces> places = find_places(generation.model, *nodes, edit, shaping);
+  if (!places) return fail(places.error());
+  Result<shape::Weights> weights = shape::compute_weights(generation.model, *nodes, *grab, shaping.weights, *places);
   // A constant falloff needs no path along the surface: separate pieces move too.
   if (weights && shaping.weights.falloff.profile == shape::Profile::constant) weights->unreached = 0;
   return weights;
@@ -194,6 +226,9 @@ Result<Motion> plan_motion(const Generation& generation, const Edit& edit, const
   motion.grab = weights->grab;
   motion.max_move = shaping->max_move;
   motion.unreached = count_unreached(*weights, weighted, welds);
+  motion.free_ending = weights->free_ending;
+  motion.edge = weights->edge;
+  motion.other_edge = weights->other_edge;
   put_nodes(model, *weights, weighted.nodes, followers, motion);
   if (*mirroring) link_images(**mirroring, motion);
   if (const Result<void> free = refuse_held(generation, motion.nodes, named_by); !free) return fail(free.error());

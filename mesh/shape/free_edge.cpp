@@ -81,8 +81,8 @@ bool FreeEdges::is_corner(std::uint32_t node) const {
   return is_boundary_corner(model_, selection_[node]);
 }
 
-std::vector<std::uint32_t> FreeEdges::walk(std::uint32_t from, std::uint32_t to, std::span<const std::uint8_t> border) const {
-  std::vector<std::uint32_t> nodes{from, to};
+FreeEdges::Line FreeEdges::walk(std::uint32_t from, std::uint32_t to, std::span<const std::uint8_t> border) const {
+  Line nodes{from, to};
   while (nodes.back() != from && border[nodes.back()] == 0 && !is_corner(nodes.back())) {
     const auto both = neighbours(nodes.back());
     nodes.push_back(both[0] == nodes[nodes.size() - 2] ? both[1] : both[0]);
@@ -90,16 +90,50 @@ std::vector<std::uint32_t> FreeEdges::walk(std::uint32_t from, std::uint32_t to,
   return nodes;
 }
 
-std::vector<std::uint32_t> FreeEdges::through(std::uint32_t node, std::span<const std::uint8_t> border) const {
-  std::vector<std::vector<std::uint32_t>> lines;
+std::vector<FreeEdges::Line> FreeEdges::lines_through(std::uint32_t node, std::span<const std::uint8_t> border) const {
+  std::vector<Line> lines;
   for (const std::uint32_t next : neighbours(node)) lines.push_back(walk(node, next, border));
   const auto reaches_border = [&](const auto& line) { return border[line.back()] != 0; };
   if (is_corner(node) && !std::all_of(lines.begin(), lines.end(), reaches_border)) std::erase_if(lines, reaches_border);
+  return lines;
+}
+
+std::vector<std::uint32_t> FreeEdges::through(std::uint32_t node, std::span<const std::uint8_t> border) const {
   std::vector<std::uint32_t> nodes{node};
-  for (const auto& line : lines) nodes.insert(nodes.end(), line.begin(), line.end());
+  for (const Line& line : lines_through(node, border)) nodes.insert(nodes.end(), line.begin(), line.end());
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
+}
+
+std::size_t FreeEdges::count_held_lines(std::uint32_t node, std::span<const std::uint8_t> border) const {
+  const std::vector<Line> lines = lines_through(node, border);
+  return static_cast<std::size_t>(std::count_if(lines.begin(), lines.end(), [&](const Line& line) { return border[line.back()] != 0; }));
+}
+
+std::vector<std::uint8_t> FreeEdges::on_holes(std::span<const std::uint8_t> border) const {
+  constexpr double kHalfTurn = 180 / kDegreesPerRadian;
+  std::vector<std::uint8_t> holes(first_.size() - 1, 0);
+  std::vector<std::uint8_t> seen(holes.size(), 0);
+  for (std::uint32_t first = 0; first < seen.size(); ++first) {
+    if (seen[first] != 0 || !touches(first)) continue;
+    Line line{first};
+    seen[first] = 1;
+    bool closed = true;
+    double turn = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      closed = closed && neighbours(line[i]).size() == 2 && border[line[i]] == 0;
+      turn += kHalfTurn - surrounding_angle(model_, selection_[line[i]]);
+      for (const std::uint32_t next : neighbours(line[i])) {
+        if (seen[next] != 0) continue;
+        seen[next] = 1;
+        line.push_back(next);
+      }
+    }
+    if (closed && turn < -kHalfTurn)
+      for (const std::uint32_t node : line) holes[node] = 1;
+  }
+  return holes;
 }
 
 }  // namespace prismesh::mesh::shape

@@ -11,6 +11,7 @@
 #include "base/parallel_for.h"
 #include "mesh/model/adjacency.h"
 #include "mesh/shape/free_edge.h"
+#include "mesh/shape/free_ending.h"
 #include "mesh/shape/weights_carried.h"
 #include "mesh/spatial/cut_patch.h"
 #include "mesh/spatial/geodesic.h"
@@ -31,31 +32,35 @@ std::vector<std::uint32_t> marked(const std::vector<std::uint8_t>& marks) {
   return nodes;
 }
 
+constexpr double kAsFar = 0.98;  ///< share of a distance that counts as the same: above the error of distances
+
 /// Computes the weights of one selection. Nodes are positions in the selection.
 class Weighing {
  public:
-  Weighing(const Model& model, const NodeSet& selection, const WeightOptions& options)
+  Weighing(const Model& model, const NodeSet& selection, const WeightOptions& options, const WeightPlaces& places)
       : model_(model),
         selection_(selection),
         options_(options),
+        places_(places),
         patch_(spatial::cut_patch_between(model, selection)),
         free_(model, selection) {
     border_ = patch_.rim;
-    if (!options.free_ends)
+    if (options.free_ends == FreeEnds::held)
       for (std::uint32_t i = 0; i < border_.size(); ++i)
         if (free_.touches(i)) border_[i] = 1;
   }
 
   Result<Weights> run(std::optional<NodeIndex> grab) {
-    if (grab)
-      grab_ = static_cast<std::uint32_t>(std::lower_bound(selection_.begin(), selection_.end(), *grab) - selection_.begin());
-    else
-      grab_ = farthest_from_border();
-    if (const auto found = find_origin(); !found) return fail(found.error());
-    find_distances();
+    grab_ = grab ? place_of(*grab) : farthest_from_border();
+    whole_.assign(selection_.size(), 0);
     Weights weights;
+    if (const auto found = find_origin(weights); !found) return fail(found.error());
+    if (options_.free_ends == FreeEnds::rigid && options_.falloff.profile != Profile::constant) find_free_endings();
+    find_distances();
     weights.nodes = selection_;
     weights.grab = selection_[grab_];
+    for (std::uint32_t i = 0; i < whole_.size(); ++i)
+      if (whole_[i] != 0 && !std::binary_search(origin_.begin(), origin_.end(), i)) ++weights.free_ending;
     std::vector<std::uint8_t> reached(from_origin_.size());
     for (std::size_t i = 0; i < reached.size(); ++i) reached[i] = from_origin_[i] < kUnreached ? 1 : 0;
     const std::vector<double> share = options_.falloff.along ? shares_along(options_.falloff.along->normalized()) : shares_on_surface();
@@ -81,7 +86,7 @@ class Weighing {
     parallel_for(border_too ? 2 : 1, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (i == 0)
-          from_origin_ = spatial::geodesic_distance(patch_, origin_);
+          from_origin_ = distances_from_origin();
         else
           from_border_ = spatial::geodesic_distance(patch_, marked(border_));
       }
@@ -106,27 +111,29 @@ class Weighing {
     return 0;
   }
 
-  /// Finds origin_ and removes it from the border.
-  Result<void> find_origin() {
-    std::uint32_t on_edge = grab_;
-    bool whole_edge = options_.free_ends && free_.touches(grab_);
+  std::uint32_t place_of(NodeIndex node) const {
+    return static_cast<std::uint32_t>(std::lower_bound(selection_.begin(), selection_.end(), node) - selection_.begin());
+  }
+
+  /// Finds origin_ and removes it from the border. Tells in `told` on which free edge it is.
+  Result<void> find_origin(Weights& told) {
+    std::optional<std::uint32_t> edge, weighted_edge;  // a node on it, with these free ends and with weighted ones
     if (options_.origin == Origin::free_edge) {
-      whole_edge = true;
-      if (!free_.touches(grab_)) {
-        const auto nearest = nearest_on_free_edge();
-        if (!nearest)
-          return refuse("the origin is to be a free edge, but the selection reaches none; select the free edge too or use origin grab");
-        on_edge = *nearest;
-      }
+      const std::uint32_t asked = places_.edge ? place_of(*places_.edge) : grab_;
+      edge = weighted_edge = free_.touches(asked) ? asked : nearest_on_free_edge(asked);
+      if (!edge)
+        return refuse("the origin is to be a free edge, but the selection reaches none; select the free edge too or use origin grab");
+      if (options_.free_ends == FreeEnds::rigid && !places_.edge && !free_.touches(grab_)) edge = free_edge_beyond_grab().value_or(*edge);
+    } else if (options_.free_ends != FreeEnds::held && free_.touches(grab_)) {
+      weighted_edge = grab_;
+      if (options_.free_ends == FreeEnds::weighted || !is_side(grab_)) edge = grab_;
     }
-    origin_ = {grab_};
-    if (whole_edge) {
-      // without free ends the whole boundary is border, but only the rim ends the free edge
-      const bool grab_held = patch_.rim[on_edge] != 0;
-      const std::vector<std::uint8_t> nothing(selection_.size(), 0);
-      origin_ = free_.through(on_edge, grab_held ? nothing : patch_.rim);
-      std::erase_if(origin_, [&](std::uint32_t i) { return !grab_held && patch_.rim[i] != 0; });
-    }
+    if (edge)
+      origin_ = edge_through(*edge);
+    else
+      origin_ = weighted_edge ? side_beyond_grab() : std::vector<std::uint32_t>{grab_};
+    if (edge) told.edge = selection_[*edge];
+    if (weighted_edge && edge_through(*weighted_edge) != origin_) told.other_edge = selection_[*weighted_edge];
     for (const std::uint32_t i : origin_)
       if (border_[i] != 0) {
         border_[i] = 0;
@@ -135,12 +142,117 @@ class Weighing {
     return {};
   }
 
-  std::optional<std::uint32_t> nearest_on_free_edge() const {
-    const std::vector<double> distance = spatial::geodesic_distance(patch_, std::vector<std::uint32_t>{grab_});
+  /// The nodes of the free edge through a node, without those on the border.
+  std::vector<std::uint32_t> edge_through(std::uint32_t node) const {
+    // with free ends held the whole boundary is border, but only the rim ends the free edge
+    const bool node_held = patch_.rim[node] != 0;
+    const std::vector<std::uint8_t> nothing(selection_.size(), 0);
+    std::vector<std::uint32_t> edge = free_.through(node, node_held ? nothing : patch_.rim);
+    std::erase_if(edge, [&](std::uint32_t i) { return !node_held && patch_.rim[i] != 0; });
+    return edge;
+  }
+
+  /// Whether one end of the free edge at a node is on the rim: the side of a strip, not its end and not the edge of a recess.
+  bool is_side(std::uint32_t node) const { return patch_.rim[node] == 0 && free_.count_held_lines(node, patch_.rim) == 1; }
+
+  /// The nodes of the side through the grab that are as far from the border as the grab.
+  std::vector<std::uint32_t> side_beyond_grab() {
+    const double distance = from_border()[grab_];
+    std::vector<std::uint32_t> side = edge_through(grab_);
+    std::erase_if(side, [&](std::uint32_t i) { return i != grab_ && !(from_border()[i] >= kAsFar * distance); });
+    beyond_from_ = grab_;
+    return side;
+  }
+
+  std::optional<std::uint32_t> nearest_on_free_edge(std::uint32_t from) const {
+    const std::vector<double> distance = spatial::geodesic_distance(patch_, std::vector<std::uint32_t>{from});
     std::optional<std::uint32_t> nearest;
     for (std::uint32_t i = 0; i < distance.size(); ++i)
       if (free_.touches(i) && distance[i] < kUnreached && (!nearest || distance[i] < distance[*nearest])) nearest = i;
     return nearest;
+  }
+
+  /// The node nearest to the grab on a free edge that is the end of something: on one that lies beyond the grab as a whole; without such an
+  /// edge on one that is no hole and doesn't end on the rim.
+  std::optional<std::uint32_t> free_edge_beyond_grab() {
+    const std::vector<double> distance = spatial::geodesic_distance(patch_, std::vector<std::uint32_t>{grab_});
+    const std::vector<std::uint8_t> holes = free_.on_holes(patch_.rim);
+    std::vector<std::uint32_t> candidates;
+    for (std::uint32_t i = 0; i < distance.size(); ++i)
+      if (free_.touches(i) && distance[i] < kUnreached && holes[i] == 0 && patch_.rim[i] == 0) candidates.push_back(i);
+    std::stable_sort(candidates.begin(), candidates.end(), [&](std::uint32_t a, std::uint32_t b) { return distance[a] < distance[b]; });
+    origin_ = {grab_};
+    const std::vector<std::uint8_t> beyond = beyond_origin();
+    std::vector<std::uint8_t> seen(distance.size(), 0);
+    std::optional<std::uint32_t> nearest;
+    for (const std::uint32_t node : candidates) {
+      if (seen[node] != 0) continue;
+      const std::vector<std::uint32_t> edge = edge_through(node);
+      if (std::all_of(edge.begin(), edge.end(), [&](std::uint32_t i) { return beyond[i] != 0; })) return node;
+      if (!nearest && free_.count_held_lines(node, patch_.rim) == 0) nearest = node;
+      // a corner is on another edge too
+      for (const std::uint32_t i : edge)
+        if (!is_boundary_corner(model_, selection_[i])) seen[i] = 1;
+    }
+    return nearest;
+  }
+
+  /// Marks in whole_ the nodes of free endings, and finds the distances of the nodes before them.
+  void find_free_endings() {
+    if (!free_.any() || !(from_border()[grab_] < kUnreached)) return;
+    bool grab_before_axis = true;
+    if (places_.axis) {
+      const std::vector<std::uint8_t> connected = connected_to(patch_, grab_);
+      if (const std::optional<CutLine> line = cut_at_axis(patch_, from_border(), connected, *places_.axis)) {
+        whole_ = shape::find_free_endings(patch_, free_, connected, border_, *line);
+        before_ = distances_before(patch_, *line, whole_);
+        grab_before_axis = line->before(grab_) || std::count(whole_.begin(), whole_.end(), 0) == std::ssize(whole_);
+      }
+    }
+    // in one direction only, weights end where no border faces it
+    if (grab_before_axis && !options_.falloff.along) add_beyond_origin();
+  }
+
+  void add_beyond_origin() {
+    const std::vector<std::uint8_t> beyond = beyond_origin(&before_);
+    for (std::size_t i = 0; i < beyond.size(); ++i) whole_[i] = whole_[i] | beyond[i];
+  }
+
+  /// Marks the free endings beyond the line at the origin's distance from the border; adds the distances of the nodes before it.
+  std::vector<std::uint8_t> beyond_origin(std::vector<std::pair<std::uint32_t, double>>* before = nullptr) {
+    const std::vector<double>& distance = from_border();
+    const std::vector<std::uint8_t> none(distance.size(), 0);
+    if (patch_.rim[grab_] != 0) return none;
+    const auto nearer = [&](std::uint32_t a, std::uint32_t b) { return distance[a] < distance[b]; };
+    const auto [nearest, farthest] = std::minmax_element(origin_.begin(), origin_.end(), nearer);
+    // beyond a hole begins at its near side, beyond another edge where it ends
+    const std::uint32_t of_edge = free_.on_holes(patch_.rim)[origin_.front()] != 0 ? *nearest : *farthest;
+    const double at = distance[beyond_from_.value_or(of_edge)];
+    if (!(at > 0 && at < kUnreached)) return none;
+    const CutLine line = cut_at_distance(patch_, distance, at, origin_);
+    std::vector<std::uint8_t> beyond = shape::find_free_endings(patch_, free_, connected_to(patch_, grab_), border_, line);
+    if (before != nullptr) {
+      const auto found = distances_before(patch_, line, beyond);
+      before->insert(before->end(), found.begin(), found.end());
+    }
+    return beyond;
+  }
+
+  /// From the origin and the free endings. The nodes just before these have their own distances: the cut runs between the nodes.
+  std::vector<double> distances_from_origin() const {
+    std::vector<std::uint32_t> sources = origin_;
+    for (std::uint32_t i = 0; i < whole_.size(); ++i)
+      if (whole_[i] != 0 && !std::binary_search(origin_.begin(), origin_.end(), i)) sources.push_back(i);
+    std::vector<double> start(sources.size(), 0);
+    std::vector<std::pair<std::uint32_t, double>> before = before_;
+    std::sort(before.begin(), before.end());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const std::uint32_t node = before[i].first;
+      if ((i > 0 && before[i - 1].first == node) || whole_[node] != 0 || std::binary_search(origin_.begin(), origin_.end(), node)) continue;
+      sources.push_back(node);
+      start.push_back(before[i].second);
+    }
+    return spatial::geodesic_distance_from(patch_, sources, start);
   }
 
   /// d_border / (d_origin + d_border) along the surface.
@@ -153,8 +265,14 @@ class Weighing {
       else if (from_border[i] > 0)
         share[i] = from_border[i] / (from_origin_[i] + from_border[i]);
     }
-    for (const std::uint32_t i : origin_) share[i] = 1;
+    put_whole(share);
     return share;
+  }
+
+  void put_whole(std::vector<double>& share) const {
+    for (const std::uint32_t i : origin_) share[i] = 1;
+    for (std::size_t i = 0; i < whole_.size(); ++i)
+      if (whole_[i] != 0) share[i] = 1;
   }
 
   /// The same with distances along one direction, from the origin's extent to the border that faces this direction.
@@ -163,7 +281,8 @@ class Weighing {
     const auto place = [&](std::uint32_t i) { return direction.dot(patch_.positions[i]); };
     double origin_low = kInfinity;
     double origin_high = -kInfinity;
-    for (const std::uint32_t i : origin_) {
+    for (std::uint32_t i = 0; i < whole_.size(); ++i) {
+      if (whole_[i] == 0 && !std::binary_search(origin_.begin(), origin_.end(), i)) continue;
       origin_low = std::min(origin_low, place(i));
       origin_high = std::max(origin_high, place(i));
     }
@@ -181,6 +300,7 @@ class Weighing {
       if (at > origin_high && border_high > origin_high) share[i] = fraction(border_high - at, at - origin_high);
       if (at < origin_low && border_low < origin_low) share[i] = fraction(at - border_low, origin_low - at);
     }
+    put_whole(share);
     return share;
   }
 
@@ -205,18 +325,23 @@ class Weighing {
   const Model& model_;
   const NodeSet& selection_;
   const WeightOptions& options_;
+  const WeightPlaces& places_;
   Patch patch_;
   FreeEdges free_;
   std::vector<std::uint8_t> border_;
   std::uint32_t grab_ = 0;
-  std::vector<std::uint32_t> origin_;
+  std::vector<std::uint32_t> origin_;                     ///< ascending
+  std::optional<std::uint32_t> beyond_from_;              ///< the node at whose distance beyond the origin begins; without: see there
+  std::vector<std::uint8_t> whole_;                       ///< of each node: 1 in a free ending
+  std::vector<std::pair<std::uint32_t, double>> before_;  ///< nodes just before a free ending, and their distances from it
   std::vector<double> from_border_;
   std::vector<double> from_origin_;
 };
 
 }  // namespace
 
-Result<Weights> compute_weights(const Model& model, const NodeSet& selection, std::optional<NodeIndex> grab, const WeightOptions& options) {
+Result<Weights> compute_weights(const Model& model, const NodeSet& selection, std::optional<NodeIndex> grab, const WeightOptions& options,
+                                const WeightPlaces& places) {
   if (selection.empty()) return refuse("nothing is selected");
   if (grab && !std::binary_search(selection.begin(), selection.end(), *grab)) {
     if (grab->value >= model.node_count()) return refuse("the grabbed node doesn't exist");
@@ -228,7 +353,9 @@ Result<Weights> compute_weights(const Model& model, const NodeSet& selection, st
     const double length = falloff.along->norm();
     if (!(length > 0 && std::isfinite(length))) return refuse("the falloff's direction \"along\" has no length");
   }
-  return Weighing(model, selection, options).run(grab);
+  if (places.edge && !std::binary_search(selection.begin(), selection.end(), *places.edge))
+    return refuse("the node of the free edge isn't selected");
+  return Weighing(model, selection, options, places).run(grab);
 }
 
 }  // namespace prismesh::mesh::shape

@@ -79,13 +79,15 @@ class March {
         requeues_(patch.nodes.size(), 0),
         queue_(distance_) {}
 
-  std::vector<double> run(std::span<const std::uint32_t> sources, double radius) {
-    for (const std::uint32_t source : sources)
-      if (source < distance_.size() && centre_[source] == kNowhere) {
-        distance_[source] = 0;
-        centre_[source] = source_[source] = source;
-        queue_.raise(source);
-      }
+  /// `start`: the distance of each source; empty: 0.
+  std::vector<double> run(std::span<const std::uint32_t> sources, std::span<const double> start, double radius) {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      const std::uint32_t source = sources[i];
+      if (source >= distance_.size() || centre_[source] != kNowhere) continue;
+      distance_[source] = start.empty() ? 0 : start[i];
+      centre_[source] = source_[source] = source;
+      queue_.raise(source);
+    }
     while (!queue_.empty()) {
       const std::uint32_t node = queue_.pop();
       if (distance_[node] > radius) break;
@@ -266,7 +268,11 @@ class March {
 }  // namespace
 
 std::vector<double> geodesic_distance(const Patch& patch, std::span<const std::uint32_t> sources, double radius) {
-  return March(patch).run(sources, radius);
+  return March(patch).run(sources, {}, radius);
+}
+
+std::vector<double> geodesic_distance_from(const Patch& patch, std::span<const std::uint32_t> sources, std::span<const double> start) {
+  return March(patch).run(sources, start, kUnreached);
 }
 
 }  // namespace prismesh::mesh::spatial

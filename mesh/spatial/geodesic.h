@@ -20,4 +20,7 @@ inline constexpr double kUnreached = std::numeric_limits<double>::infinity();
 /// front counts as straight. Where two waves of one source meet behind a turn, both are continued.
 std::vector<double> geodesic_distance(const Patch& patch, std::span<const std::uint32_t> sources, double radius = kUnreached);
 
+/// The same from sources that have a distance of their own already: the sum of both counts. `start` has one entry for each source.
+std::vector<double> geodesic_distance_from(const Patch& patch, std::span<const std::uint32_t> sources, std::span<const double> start);
+
 }  // namespace prismesh::mesh::spatial

@@ -65,6 +65,10 @@ TEST(Messages, answers_and_events_survive_a_round_trip) {
   EXPECT_EQ(back.files[0].name, "parts/hood.k");
   EXPECT_EQ(back.files[0].parts, (std::vector<std::int64_t>{3, 7}));
 
+  const Result<FromDaemon> edges = decode_from_daemon(encode_answer(9, FollowedEdges{7, {3, 4, 4, 5}, 2}, 0));
+  ASSERT_TRUE(edges) << edges.error().text();
+  EXPECT_EQ(std::get<FollowedEdges>(std::get<Answer>(edges->message)).nodes, (std::vector<std::uint32_t>{3, 4, 4, 5}));
+
   const Result<FromDaemon> event = decode_from_daemon(encode_event(DragEnded{4, true, "why"}));
   ASSERT_TRUE(event) << event.error().text();
   EXPECT_EQ(std::get<DragEnded>(std::get<Event>(event->message)).drag, 4u);

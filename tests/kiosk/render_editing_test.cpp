@@ -312,6 +312,25 @@ TEST(HandleMesh, a_handle_without_a_position_is_not_drawn) {
   EXPECT_EQ(handle_pieces(turned, space_of(view)).size(), 1U) << "a grab on the axis has no arc";
 }
 
+TEST_F(EditingMarks, edges_that_follow_the_handle_are_green_and_show_through_the_model) {
+  show(two_plates());
+  Picture picture = fitted("mono", "top", kMarksWidth, kMarksHeight);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double z : {20.0, -10.0}) {  // before and behind a plate
+    picture.followed_edges.clear();
+    const Image without = draw(picture, kMarksWidth, kMarksHeight);
+    picture.followed_edges = {{Vec3(-5, 3, z), Vec3(0, 3, z)}, {Vec3(0, 3, z), Vec3(5, 3, z)}, {Vec3(0, nan, z), Vec3(5, 3, z)}};
+    const Image image = draw(picture, kMarksWidth, kMarksHeight);
+    for (const double x : {-4.0, 0.0, 4.0}) {
+      const std::uint8_t* pixel = at(image, pixel_of(picture, Vec3(x, 3, z)));
+      EXPECT_TRUE(z < 0 || green(pixel)) << x;
+      EXPECT_FALSE(std::equal(pixel, pixel + 3, at(without, pixel_of(picture, Vec3(x, 3, z))))) << x << " behind the plate: dimmed";
+    }
+    const Blob blob = difference(image, without);
+    EXPECT_LE(blob.high.y() - blob.low.y(), 8) << "as thin as a line";
+  }
+}
+
 TEST_F(EditingMarks, a_lasso_is_a_line_in_the_screen_plane_closed_by_dashes) {
   show(two_plates());
   Picture picture = fitted("mono", "iso", kMarksWidth, kMarksHeight);

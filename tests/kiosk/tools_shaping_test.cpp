@@ -29,7 +29,7 @@ TEST(ShapingOptionsTest, every_option_stands_in_the_edit) {
   options.profile = mesh::shape::Profile::gaussian;
   options.flat = 0.3;
   options.along = falloff_along(DeckAxis::y);
-  options.free_ends = false;
+  options.free_ends = mesh::shape::FreeEnds::held;
   options.origin = mesh::shape::Origin::free_edge;
   options.across_welds = true;
   options.each_normal = true;
@@ -43,7 +43,7 @@ TEST(ShapingOptionsTest, every_option_stands_in_the_edit) {
   EXPECT_EQ(lift.shaping.weights.falloff.profile, mesh::shape::Profile::gaussian);
   EXPECT_EQ(lift.shaping.weights.falloff.flat, 0.3);
   EXPECT_EQ(*lift.shaping.weights.falloff.along, Vec3(0, 1, 0));
-  EXPECT_FALSE(lift.shaping.weights.free_ends);
+  EXPECT_EQ(lift.shaping.weights.free_ends, mesh::shape::FreeEnds::held);
   EXPECT_EQ(lift.shaping.weights.origin, mesh::shape::Origin::free_edge);
   EXPECT_TRUE(lift.shaping.weights.across_welds);
   EXPECT_EQ(*lift.shaping.max_move, 4);

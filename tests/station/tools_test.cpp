@@ -115,6 +115,17 @@ TEST_F(ToolsTest, a_typed_number_is_the_edit_to_the_last_digit) {
   EXPECT_NEAR(most, 2.5, 2e-4);
 }
 
+TEST_F(ToolsTest, the_free_edges_that_follow_are_shown_before_the_pull) {
+  station_->start_kiosk();
+  select_by_expression("all", nodes_.size());
+  EXPECT_FALSE(station_->kiosk().wait_for("followed edges 96").empty()) << "nothing holds: all four sides of 24 follow";
+  station_->key("shift+f");  // by distance: where nothing holds, all follow
+  station_->key("shift+f");
+  EXPECT_FALSE(station_->kiosk().wait_for("followed edges 0").empty()) << "they hold now";
+  station_->key("Escape");
+  EXPECT_TRUE(station_->wait_for_selection(0));
+}
+
 TEST_F(ToolsTest, the_disk_slides_on_the_sheet_and_goes_on_after_the_view_was_turned) {
   station_->start_kiosk();
   station_->select_middle();

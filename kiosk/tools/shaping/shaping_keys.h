@@ -39,7 +39,7 @@ inline constexpr std::array kKeys = {
     KeyBinding{display::letter('V'), false, true, command_of(ShapingCommand::along_view), Menu::shape, "Shift+V",
                "the falloff goes along the view's right, up or depth"},
     KeyBinding{display::letter('F'), false, true, command_of(ShapingCommand::free_ends), Menu::shape, "Shift+F",
-               "free edges follow the pull, or hold"},
+               "free edges follow the pull whole, follow by distance, or hold"},
     KeyBinding{display::letter('E'), false, true, command_of(ShapingCommand::origin), Menu::shape, "Shift+E",
                "the grab is one node, or its whole free edge"},
     KeyBinding{display::letter('I'), false, true, command_of(ShapingCommand::each_normal), Menu::shape, "Shift+I",

@@ -16,6 +16,17 @@ Vec3 unit(DeckAxis axis) {
 
 DeckAxis next(DeckAxis axis) { return static_cast<DeckAxis>((static_cast<int>(axis) + 1) % 4); }
 
+std::string_view name_of(mesh::shape::FreeEnds ends) {
+  switch (ends) {
+    case mesh::shape::FreeEnds::rigid: return "follow whole";
+    case mesh::shape::FreeEnds::weighted: return "follow by distance";
+    case mesh::shape::FreeEnds::held: break;
+  }
+  return "hold";
+}
+
+mesh::shape::FreeEnds next(mesh::shape::FreeEnds ends) { return static_cast<mesh::shape::FreeEnds>((static_cast<int>(ends) + 2) % 3); }
+
 namespace {
 
 mesh::document::Shaping shaping_of(const ShapingOptions& options, const ShapedHandle& shaped) {

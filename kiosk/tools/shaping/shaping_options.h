@@ -27,11 +27,15 @@ struct FalloffDirection {
   bool operator==(const FalloffDirection&) const = default;
 };
 
+/// What free edges do, in words: "follow whole", "follow by distance", "hold".
+std::string_view name_of(mesh::shape::FreeEnds ends);
+mesh::shape::FreeEnds next(mesh::shape::FreeEnds ends);
+
 struct ShapingOptions {
   mesh::shape::Profile profile = mesh::shape::Profile::smooth;
   double flat = 0;  ///< 0..1
   FalloffDirection along;
-  bool free_ends = true;
+  mesh::shape::FreeEnds free_ends = mesh::shape::FreeEnds::rigid;
   mesh::shape::Origin origin = mesh::shape::Origin::grab;
   bool across_welds = false;
   bool each_normal = false;  ///< of a lift

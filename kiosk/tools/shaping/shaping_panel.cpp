@@ -91,7 +91,7 @@ std::optional<ShapingOptions> shaping_panel(const ShapingFacts& facts, PanelLayo
   panels::panel_title("Shaping", "T closes; every pull goes by this");
   const ShapingOptions wanted = falloff_section(now, layout);
   section("Ends and origin");
-  check("free edges follow", now.free_ends, command_of(ShapingCommand::free_ends), layout);
+  set_by("free edges", std::string(name_of(now.free_ends)), ShapingCommand::free_ends, layout);
   check("the whole free edge is the grab", now.origin == mesh::shape::Origin::free_edge, command_of(ShapingCommand::origin), layout);
   check("across welded sheets", now.across_welds, command_of(ShapingCommand::across_welds), layout);
   check("lift: each along its own normal", now.each_normal, command_of(ShapingCommand::each_normal), layout);

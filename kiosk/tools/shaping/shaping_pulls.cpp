@@ -68,7 +68,20 @@ Result<void> ShapingTool::follow() {
     pull_.reset();
   else if (drag->begun() && pull_ && !pull_->axis_known)
     take_axis(*drag);
+  ask_followed_edges();
   return preview_.follow();
+}
+
+/// During a pull the last answer stays: it was of the same edit.
+void ShapingTool::ask_followed_edges() {
+  const ModelLink& link = context_.link;
+  if (pull_ || link.drag() != nullptr || !link.connected() || !link.up_to_date() || context_.shown.older || !context_.shown.snapshot)
+    return;
+  const ipc::SnapshotInfo& info = context_.shown.snapshot->info();
+  std::optional<mesh::document::Edit> edit;
+  if (anchor_ && info.selected_nodes <= kMaxSelectionToAsk)
+    edit = edit_of({axis_ ? Under::turn_handle : Under::move_handle, anchor_->id, anchor_->at, axis_}, options_, {});
+  followed_.ask(edit, info.generation);
 }
 
 /// The server has told the grab and the normal: what was pulled or typed meanwhile goes to it.

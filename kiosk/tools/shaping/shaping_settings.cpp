@@ -24,6 +24,7 @@ void ShapingTool::set_axis(const std::optional<Axis>& axis, const std::string& w
   if (axis)
     for (const mesh::Vec3& each : {axis->point, axis->direction}) text += fmt::format(" {} {} {}", each.x(), each.y(), each.z());
   context_.trace.line(text);
+  context_.follow_soon = true;
 }
 
 void ShapingTool::pick_two_nodes(TwoNodes purpose) {
@@ -105,7 +106,7 @@ void ShapingTool::change_option(ShapingCommand command) {
       break;
     case ShapingCommand::flatter: options_.flat = std::min(1.0, std::round((options_.flat + kFlatStep) * 100) / 100); break;
     case ShapingCommand::less_flat: options_.flat = std::max(0.0, std::round((options_.flat - kFlatStep) * 100) / 100); break;
-    case ShapingCommand::free_ends: options_.free_ends = !options_.free_ends; break;
+    case ShapingCommand::free_ends: options_.free_ends = next(options_.free_ends); break;
     case ShapingCommand::origin: options_.origin = options_.origin == Origin::grab ? Origin::free_edge : Origin::grab; break;
     case ShapingCommand::each_normal: options_.each_normal = !options_.each_normal; break;
     case ShapingCommand::symmetry: options_.symmetry = next(options_.symmetry); break;
@@ -114,6 +115,7 @@ void ShapingTool::change_option(ShapingCommand command) {
     case ShapingCommand::symmetry_place: type_for(Typing::For::symmetry_place, options_.symmetry_place); break;
     default: break;
   }
+  context_.follow_soon = true;
 }
 
 void ShapingTool::type_for(Typing::For what, const std::optional<double>& now) {

@@ -114,6 +114,7 @@ void ShapingTool::model_changed() {
   const auto& shown = context_.shown.snapshot;
   const bool selected = shown && shown->info().selected_nodes > 0;
   anchor_ = selected ? anchor_of_selection(*context_.renderer.model(), context_.selection.last_clicked) : std::nullopt;
+  context_.follow_soon = true;
 }
 
 void ShapingTool::document_changed() {
@@ -123,7 +124,12 @@ void ShapingTool::document_changed() {
 
 // --- picture and panels ---
 
-void ShapingTool::add_to_picture(render::Picture& picture) const { picture.handle = shown_handle(); }
+void ShapingTool::add_to_picture(render::Picture& picture) const {
+  picture.handle = shown_handle();
+  const auto& shown = context_.shown.snapshot;
+  if (const ipc::FollowedEdges* edges = picture.handle && shown ? followed_.known(shown->info().generation) : nullptr)
+    picture.followed_edges = lines_of(*edges, *shown, context_.link.drag());
+}
 
 std::string ShapingTool::guidance() const {
   if (!axis_pick_.active()) return {};
@@ -139,12 +145,19 @@ void ShapingTool::trace_picture() {
     if (foot && tip) text = fmt::format("handle {:.1f} {:.1f} {:.1f} {:.1f}", foot->x(), foot->y(), tip->x(), tip->y());
   }
   if (text != traced_) context_.trace.line(traced_ = text);
+  const auto& shown = context_.shown.snapshot;
+  const ipc::FollowedEdges* edges = shown ? followed_.known(shown->info().generation) : nullptr;
+  const std::uint64_t followed = edges != nullptr ? edges->edge_count : 0;
+  if (followed != traced_followed_) context_.trace.line(fmt::format("followed edges {}", traced_followed_ = followed));
 }
 
 void ShapingTool::draw_left(PanelLayout& layout) {
   const ShapingFacts facts{options_, context_.shown.snapshot->info().length_unit, handle_};
   if (const std::optional<ShapingOptions> wanted = shaping_panel(facts, layout))
-    layout.ask([this, options = *wanted] { options_ = options; });
+    layout.ask([this, options = *wanted] {
+      options_ = options;
+      context_.follow_soon = true;
+    });
 }
 
 void ShapingTool::draw_document_section(PanelLayout&) {

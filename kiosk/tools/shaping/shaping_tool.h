@@ -8,6 +8,7 @@
 
 #include "kiosk/panels/number_box.h"
 #include "kiosk/tools/shaping/axis_pick.h"
+#include "kiosk/tools/shaping/followed_edges.h"
 #include "kiosk/tools/shaping/handle.h"
 #include "kiosk/tools/shaping/pull_preview.h"
 #include "kiosk/tools/shaping/shaping_commands.h"
@@ -21,7 +22,8 @@ std::span<const KeyBinding> keys();
 
 class ShapingTool final : public Tool {
  public:
-  explicit ShapingTool(ToolContext& context) : context_(context), preview_(context.link, context.renderer, context.trace) {}
+  explicit ShapingTool(ToolContext& context)
+      : context_(context), preview_(context.link, context.renderer, context.trace), followed_(context.link) {}
 
   std::string_view name() const override;
   void command(std::uint8_t number, const Pointer& pointer) override;
@@ -73,6 +75,7 @@ class ShapingTool final : public Tool {
   void pull_to(const Pixel& pixel);
   void send_typed();
   void take_axis(const RemoteDrag& drag);
+  void ask_followed_edges();
   bool take_handle_gesture(const Gesture& gesture);
 
   // --- axes ---
@@ -105,9 +108,11 @@ class ShapingTool final : public Tool {
   std::optional<ActivePull> pull_;
   Pull pulled_;  ///< of the pull under way, or else of the last one
   PullPreview preview_;
+  FollowedEdges followed_;
   Typing typing_;
   panels::EntryState entry_;
   std::string traced_;
+  std::uint64_t traced_followed_ = 0;
 };
 
 }  // namespace prismesh::kiosk::tools::shaping

@@ -235,9 +235,9 @@ TEST_F(Serving, refusals_are_sentences) {
   EXPECT_EQ(one.snapshot().error().message, "no document is open");
   EXPECT_EQ(one.call(ipc::BeginDrag{patch()}, kServingPatience).error().message, "no document is open");
   EXPECT_EQ(one.call(ipc::CommitDrag{7}, kServingPatience).error().message, "you hold no drag 7");
-  for (const ipc::Request& request :
-       {ipc::Request(ipc::Save{}), ipc::Request(ipc::Count{"1", {}}), ipc::Request(ipc::GetQuality{}), ipc::Request(ipc::FindShells{}),
-        ipc::Request(ipc::PreviewEdit{move_node(1, 0.25)}), ipc::Request(ipc::GetField{})}) {
+  for (const ipc::Request& request : {ipc::Request(ipc::Save{}), ipc::Request(ipc::Count{"1", {}}), ipc::Request(ipc::GetQuality{}),
+                                      ipc::Request(ipc::FindShells{}), ipc::Request(ipc::PreviewEdit{move_node(1, 0.25)}),
+                                      ipc::Request(ipc::FindFollowedEdges{move_node(1, 0.25)}), ipc::Request(ipc::GetField{})}) {
     const auto refused = one.call(request, kServingPatience);
     ASSERT_FALSE(refused) << request.index();
     EXPECT_EQ(refused.error().message, "no document is open") << request.index();
@@ -253,6 +253,24 @@ TEST_F(Serving, refusals_are_sentences) {
   EXPECT_FALSE(one.call(ipc::Close{false}, kServingPatience)) << "unsaved edits";
   EXPECT_TRUE(one.call(ipc::Close{true}, kServingPatience));
   EXPECT_TRUE(next<ipc::DocumentClosed>(one));
+}
+
+TEST_F(Serving, tells_which_free_edges_would_follow) {
+  Client one = client();
+  open(one, folder_.sheet());
+  mesh::document::Translate all;
+  all.shaping.on = "all";
+  all.shaping.weights.falloff.profile = mesh::shape::Profile::constant;
+  const auto answer = one.call(ipc::FindFollowedEdges{all}, kServingPatience);
+  ASSERT_TRUE(answer) << answer.error().text();
+  const auto* found = std::get_if<ipc::FollowedEdges>(&*answer);
+  ASSERT_NE(found, nullptr);
+  EXPECT_GT(found->edge_count, 3u);
+  EXPECT_EQ(found->nodes.size(), 2 * found->edge_count);
+  EXPECT_FALSE(one.call(ipc::FindFollowedEdges{mesh::document::Undo{}}, kServingPatience));
+  const auto state = one.call(ipc::GetState{}, kServingPatience);
+  ASSERT_TRUE(state) << state.error().text();
+  EXPECT_EQ(std::get<ipc::DocumentState>(*state).generation, found->generation) << "nothing was done";
 }
 
 TEST_F(Serving, every_client_learns_which_deck_a_save_continues_as) {

@@ -37,6 +37,7 @@ TEST(EditJson, every_edit_reads_its_example) {
           R"({"edit":"translate","by":[0,0,1],"on":"1-100","grab":7,"falloff":{"profile":"gaussian","flat":0.5,"along":[1,0,0]},"free_ends":false,"origin":"free_edge","max_move":2})",
           R"({"edit":"lift","distance":-2.5,"normals":"each","grab":[1,2,3],"on":{"edit":"select_region","at":[0,0,0],"angle":20}})",
           R"({"edit":"slide","by":[3,0,0],"grab":7,"max_move":2,"across_welds":true})",
+          R"({"edit":"translate","by":[0,0,1],"free_ends":"weighted","origin":"free_edge","origin_at":[1,2,3]})",
           R"({"edit":"rotate","point":[0,0,1],"axis":[0,2,0],"degrees":-30,"on":"1-9","free_ends":true})",
           R"({"edit":"translate","by":[0,0,1],"symmetry":{"point":[0,1,0],"normal":[0,1,0]}})",
           R"({"edit":"undo"})",
@@ -62,7 +63,7 @@ TEST(EditJson, defaults_are_those_of_the_contract) {
   const auto translate = std::get<Translate>(parse_edit(R"({"edit":"translate","by":[1,2,3]})").value());
   EXPECT_EQ(translate.by, Vec3(1, 2, 3));
   EXPECT_EQ(translate.shaping.weights.falloff.profile, shape::Profile::smooth);
-  EXPECT_TRUE(translate.shaping.weights.free_ends);
+  EXPECT_EQ(translate.shaping.weights.free_ends, shape::FreeEnds::rigid);
   EXPECT_EQ(translate.shaping.weights.origin, shape::Origin::grab);
   EXPECT_FALSE(translate.shaping.on);
   EXPECT_FALSE(translate.shaping.grab);
@@ -88,7 +89,7 @@ TEST(EditJson, names_the_nearest_known) {
   EXPECT_EQ(
       why_not(R"({"edit":"lift","distence":1})"),
       "lift has no field \"distence\"; the nearest is \"distance\" (known: edit, distance, normals, on, grab, grab_at, falloff, free_ends, "
-      "origin, across_welds, symmetry, max_move)");
+      "origin, origin_at, across_welds, symmetry, max_move)");
   EXPECT_THAT(why_not(R"({"edit":"tranlsate","by":[0,0,1]})"), HasSubstr("there is no edit \"tranlsate\"; the nearest is \"translate\""));
   EXPECT_THAT(why_not(R"({"edit":"lift","distance":1,"falloff":{"profil":"smooth"}})"),
               HasSubstr("lift: \"falloff\" has no field \"profil\"; the nearest is \"profile\""));

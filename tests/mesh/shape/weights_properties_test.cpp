@@ -105,7 +105,7 @@ TEST(WeightsProperties, stay_finite_where_coordinates_are_no_numbers) {
           for (const Origin origin : {Origin::grab, Origin::free_edge}) {
             WeightOptions options = across();
             options.origin = origin;
-            options.free_ends = which % 2 == 0;
+            options.free_ends = std::array{FreeEnds::held, FreeEnds::weighted, FreeEnds::rigid}[which % 3];
             if (along) options.falloff.along = Vec3(1, 0.5, 0.1);
             for (const std::optional<NodeIndex> grab : {std::optional<NodeIndex>(), std::optional(selection[which])}) {
               const Result<Weights> result = compute_weights(broken, selection, grab, options);

@@ -119,7 +119,7 @@ TEST(Weights, fall_off_to_the_own_boundary_without_free_ends) {
   const Model model = flat_grid(8, 20);
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.y() >= 5; });
   WeightOptions options = linear();
-  options.free_ends = false;
+  options.free_ends = FreeEnds::held;
   const Weighed w(model, selection, grid_node(8, 4, 12), options);
   for (int i = 0; i <= 8; ++i) EXPECT_EQ(w(grid_node(8, i, 20)), 0);
   for (int j = 5; j <= 20; ++j) EXPECT_EQ(w(grid_node(8, 0, j)), 0);
@@ -135,10 +135,12 @@ TEST(Weights, fall_off_to_the_own_boundary_without_free_ends) {
   EXPECT_EQ(edge(grid_node(8, 0, 10)), 0);
 }
 
-TEST(Weights, keep_the_pure_formula_for_a_grab_inside) {
+TEST(Weights, keep_the_pure_formula_for_weighted_free_ends) {
   const Model model = flat_grid(8, 20);
   const NodeSet selection = nodes_where(model, [](const Vec3& p) { return p.y() >= 5; });
-  const Weighed w(model, selection, grid_node(8, 4, 15), linear());
+  WeightOptions options = linear();
+  options.free_ends = FreeEnds::weighted;
+  const Weighed w(model, selection, grid_node(8, 4, 15), options);
   EXPECT_NEAR(w(grid_node(8, 4, 20)), 15.0 / 20, 1e-12);
   EXPECT_NEAR(w(grid_node(8, 4, 10)), 0.5, 1e-12);
 }
@@ -238,7 +240,7 @@ TEST(Weights, along_a_direction_do_not_fall_off_towards_a_free_end) {
   const Weighed w(model, selection, grid_node(20, 10, 10), options);
   for (int j = 10; j <= 20; ++j) EXPECT_EQ(w(grid_node(20, 6, j)), 1);
   EXPECT_NEAR(w(grid_node(20, 6, 7)), 0.5, 1e-12);
-  options.free_ends = false;
+  options.free_ends = FreeEnds::held;
   const Weighed held(model, selection, grid_node(20, 10, 10), options);
   EXPECT_NEAR(held(grid_node(20, 6, 15)), 0.5, 1e-12);
 }
