@@ -26,8 +26,6 @@ repair::Options options_of(double angle, const MoveLimits& limits) {
   return options;
 }
 
-quality::SizedCriteria criteria_of(const Document& document) { return {document.settings.criteria, document.settings.target_size}; }
-
 std::string shell_name(const Model& model, ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 
 void note_operations(const repair::Repaired& repaired, EditReport& report) {
@@ -69,7 +67,7 @@ Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope
   double furthest = 0;  // the progress doesn't go back when another attempt begins
   const Progress forward = [&](double fraction) { return !progress || progress(furthest = std::max(furthest, fraction)); };
   for (int attempt = 1;; ++attempt) {
-    Result<repair::Repaired> repaired = repair::repair({current.model, surface, rules, criteria_of(document), options}, scope, forward);
+    Result<repair::Repaired> repaired = repair::repair({current.model, surface, rules, judged_by(document), options}, scope, forward);
     if (!repaired || repaired->change.empty()) return repaired;
     Generation trial = current;
     const Result<void> done = restructure(document, repaired->change, trial, report);
@@ -158,7 +156,7 @@ Result<void> apply_edit(const Document& document, const Restructure& edit, Gener
   about.insert(about.end(), targets->shells.begin(), targets->shells.end());
   const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
   const Result<repair::Restructuring> change =
-      repair::apply_manual_operation({current.model, surface, rules_for(document, current), criteria_of(document), options},
+      repair::apply_manual_operation({current.model, surface, rules_for(document, current), judged_by(document), options},
                                      {edit.operation, targets->shells, targets->nodes});
   if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
   return restructure(document, *change, next, report);
