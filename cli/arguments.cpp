@@ -2,8 +2,9 @@
 #include "cli/arguments.h"
 
 #include <array>
-#include <cmath>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,8 @@
 #include "base/nearest_name.h"
 #include "cli/commands.h"
 #include "mesh/deck/sample.h"
+#include "mesh/document/judging_rules.h"
+#include "mesh/quality/criteria.h"
 
 namespace prismesh::cli {
 
@@ -46,6 +49,43 @@ CLI::Option* add_optional(CLI::App* app, const std::string& name, std::optional<
       name, [&target](const std::string& text) { target = T(text); }, what);
 }
 
+/// SIZE or SIZE@PARTS, cut at the first @.
+std::pair<std::string, std::optional<std::string>> cut_at_parts(const std::string& text, std::size_t at) {
+  if (at == std::string::npos) return {text, std::nullopt};
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+std::string wrong_size(const std::string& text) {
+  const std::string size = cut_at_parts(text, text.find('@')).first;
+  if (mesh::document::parse_target_size(size)) return "";
+  return "must be a number greater than 0, \"part\" or \"deck\", not \"" + size + "\"";
+}
+
+/// Precondition: the size isn't wrong.
+mesh::document::JudgingRule size_rule(const std::string& text) {
+  const auto [size, parts] = cut_at_parts(text, text.find('@'));
+  mesh::document::JudgingRule rule;
+  rule.on = parts;
+  if (const Result<mesh::document::TargetSize> known = mesh::document::parse_target_size(size)) rule.target_size = *known;
+  return rule;
+}
+
+/// Cut at the first @ that has the name of criteria or of a file before it: a file's name may have an @ too.
+mesh::document::JudgingRule criteria_rule(const std::string& text) {
+  mesh::document::JudgingRule rule;
+  rule.criteria = text;
+  std::error_code failed;
+  if (std::filesystem::exists(text, failed)) return rule;
+  for (std::size_t at = text.find('@'); at != std::string::npos; at = text.find('@', at + 1)) {
+    const std::filesystem::path name = text.substr(0, at);
+    if (!mesh::quality::is_built_in_criteria(name) && !std::filesystem::exists(name, failed)) continue;
+    rule.criteria = name.string();
+    rule.on = text.substr(at + 1);
+    break;
+  }
+  return rule;
+}
+
 void add_common(Parser& parser) {
   CLI::App& app = parser.app;
   Common& common = parser.common;
@@ -53,27 +93,35 @@ void add_common(Parser& parser) {
          "--length-unit", [&common](const std::string& text) { common.length_unit = length_unit_from(text); },
          "the deck's length unit: mm, m or in (default: guessed; a note says so)")
       ->check(CLI::IsMember({"mm", "m", "in"}));
-  app.add_option_function<double>(
-         "--target-size", [&common](double size) { common.target_size = size; },
-         "the target element size, in the deck's length unit (default: guessed; a note says so)")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            double size = 0;
-            const bool good = CLI::detail::lexical_cast(text, size) && std::isfinite(size) && size > 0;
-            return good ? std::string() : "must be a number greater than 0, not \"" + text + "\"";
-          },
-          "SIZE > 0"));
-  add_optional(&app, "--criteria", common.criteria, "a file of quality criteria (TOML), or a built-in one: default, strict");
+  const auto add = [&common](const std::vector<std::string>& texts, const auto& rule_of) {
+    for (const std::string& text : texts) common.rules.push_back(rule_of(text));
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--target-size", [add](const std::vector<std::string>& texts) { add(texts, size_rule); },
+         "the target element size: a length in the deck's length unit, \"part\" (default: each part's median edge; a note says so) or "
+         "\"deck\" (the deck's median edge, one for all); SIZE@PARTS sets that of some parts, like 5@3,7; may be repeated")
+      ->check(CLI::Validator([](const std::string& text) { return wrong_size(text); }, "SIZE[@PARTS]"))
+      ->take_all()
+      ->allow_extra_args(false);
+  app.add_option_function<std::vector<std::string>>(
+         "--criteria", [add](const std::vector<std::string>& texts) { add(texts, criteria_rule); },
+         "a file of quality criteria (TOML), or a built-in one: default, strict; CRITERIA@PARTS sets those of some parts; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
   app.add_flag("--json", common.json, "print only JSON");
 }
 
 void add_reading_commands(Parser& parser) {
   const auto [info_app, info_options] = add_command<InfoOptions>(parser, "info", "print what a deck contains", info);
   info_app->add_option("DECK", info_options->deck, "the deck's main file")->required();
+  info_app->add_flag("--save-settings", info_options->save_settings,
+                     "also keep the target sizes and criteria in the settings file beside the deck, DECK.prismesh.toml");
 
   const auto [check_app, check_options] = add_command<CheckOptions>(parser, "check", "measure the quality of a deck's shells", check);
   check_app->add_option("DECK", check_options->deck, "the deck's main file")->required();
   add_optional(check_app, "--select", check_options->select, "only these shells, e.g. part:3,shell:100-200");
+  check_app->add_flag("--save-settings", check_options->save_settings,
+                      "also keep the target sizes and criteria in the settings file beside the deck, DECK.prismesh.toml");
   check_app->add_flag("--chordal", check_options->chordal, "also the distance of edges from the smooth surface through the mesh");
 
   const auto [diff_app, diff_options] = add_command<DiffOptions>(parser, "diff", "compare two decks by ids and by lines", diff);

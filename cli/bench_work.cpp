@@ -156,7 +156,7 @@ Result<Timing> measure_relax(Bench& bench, BenchFigure& figure) {
 }
 
 Result<Timing> measure_repair(Bench& bench, BenchFigure& figure) {
-  figure.size = document::damaged_shells(*bench.lifted.opened, bench.lifted.current()).size();
+  figure.size = document::damaged_shells(bench.lifted).size();
   if (figure.size == 0) return fail("", "the lift damages no shell, so there is nothing to repair");
   document::EditReport report;
   Result<Timing> timing = measure_on_copy(bench, bench.lifted, document::Repair{}, report);

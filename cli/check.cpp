@@ -60,15 +60,18 @@ void print_structure(std::ostream& out, const mesh::Model& model, const quality:
     out << "max triangles around a node " << found.max_triangles << " at node:" << model.node_ids[found.max_triangles_at.value] << '\n';
 }
 
-void print_parts(std::ostream& out, const mesh::Model& model, const std::vector<quality::PartReport>& parts) {
+void print_parts(std::ostream& out, const mesh::document::Document& document, const std::vector<quality::PartReport>& parts) {
+  const mesh::Model& model = document.current().model;
+  const mesh::document::Judging& judging = *document.current().judging;
   if (parts.empty()) return;
-  out << "part          shells    warn    fail  tri %    composite min    mean  name\n";
+  out << "part          shells    warn    fail  tri %    composite min    mean    size  name\n";
   for (std::size_t i = 0; i < std::min(parts.size(), kPartsShown); ++i) {
     const quality::Report& report = parts[i].report;
     const mesh::Part& part = (*model.parts)[parts[i].part.value];
     out << std::left << std::setw(10) << part.id << std::right << std::setw(10) << report.elements << std::setw(8) << report.counts.warn
         << std::setw(8) << report.counts.fail << std::setw(7) << std::setprecision(3) << report.triangles_percent << std::setw(17)
-        << report.min_composite << std::setw(8) << report.mean_composite << std::setprecision(6) << "  " << printable(part.name) << '\n';
+        << report.min_composite << std::setw(8) << report.mean_composite << std::setprecision(6) << std::setw(8)
+        << judging.by_part.of(parts[i].part).target_size << "  " << printable(part.name) << '\n';
   }
   if (parts.size() > kPartsShown) out << "and " << parts.size() - kPartsShown << " more parts; all are in the JSON\n";
 }
@@ -79,8 +82,9 @@ void print_text(std::ostream& out, const mesh::document::Document& document, con
   const quality::Report& report = figures.report;
   out << report.elements << " shells: " << report.counts.ok << " ok, " << report.counts.warn << " warn, " << report.counts.fail
       << " fail\n";
-  out << "target size " << shortest(settings.target_size) << ' ' << name(settings.length_unit)
-      << (settings.target_size_guessed ? " (guessed), criteria " : ", criteria ") << printable(settings.criteria.name) << '\n';
+  out << "target size " << target_sizes(document) << ' ' << name(settings.length_unit)
+      << (is_guessed(document.current().judging->target_size) ? " (guessed), criteria " : ", criteria ") << criteria_names(document)
+      << '\n';
   out << "triangles " << report.triangles_percent << " %" << in_brackets(figures.triangles) << '\n';
   print_defects(out, report);
   if (report.elements > 0) {
@@ -91,7 +95,7 @@ void print_text(std::ostream& out, const mesh::document::Document& document, con
   if (figures.chordal && figures.chordal->worst)
     out << "chordal deviation: mean " << figures.chordal->mean << ", max " << figures.chordal->max
         << " at shell:" << model.shell_ids[figures.chordal->worst->value] << '\n';
-  print_parts(out, model, figures.parts);
+  print_parts(out, document, figures.parts);
   if (report.mass) out << "mass " << *report.mass << '\n';
   if (const auto& at = report.centre_of_gravity) out << "centre of gravity " << readable({at->x(), at->y(), at->z()}, 6) << '\n';
   if (report.time_step)
@@ -123,7 +127,7 @@ int check(const CheckOptions& options, const Common& common, const Context& cont
     context.out << check_json(*document, figures) << '\n';
   else
     print_text(context.out, *document, figures);
-  return kDone;
+  return options.save_settings && !save_settings(*document, context) ? kFailed : kDone;
 }
 
 }  // namespace prismesh::cli

@@ -67,11 +67,11 @@ quality::Grade grade_of_triangles(double percent, const quality::Criteria& crite
 CheckFigures check_figures(const mesh::document::Document& document, const mesh::ShellSet* shells, bool chordal) {
   const mesh::Model& model = document.current().model;
   const quality::Criteria& criteria = document.settings.criteria;
-  const double size = document.settings.target_size;
+  const quality::SizedCriteria sized = mesh::document::judged_by(document);
   const mesh::TimeStepControl& control = document.deck->time_step;
   CheckFigures figures;
-  figures.report = quality::report(model, {criteria, size}, control, shells);
-  figures.parts = quality::report_by_part(model, {criteria, size}, control, shells);
+  figures.report = quality::report(model, sized, control, shells);
+  figures.parts = quality::report_by_part(model, sized, control, shells);
   quality::StructureOptions options;
   options.triangles_at_node = criteria.warn_triangles_at_node;
   figures.structure = quality::check_structure(model, options, shells);

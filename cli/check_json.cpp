@@ -81,17 +81,22 @@ Json structure(const mesh::Model& model, const quality::Structure& found) {
           {"most_triangles_at", found.max_triangles > 0 ? node(found.max_triangles_at) : Json(nullptr)}};
 }
 
-Json part(const mesh::Model& model, const quality::PartReport& each, const quality::Criteria& criteria) {
+Json part(const document::Document& document, const quality::PartReport& each) {
+  const mesh::Model& model = document.current().model;
+  const quality::SizedCriteria judged = judged_by(document).of(each.part);
   const mesh::Part& its = (*model.parts)[each.part.value];
   const quality::Report& report = each.report;
   return {{"id", its.id},
           {"name", printable(its.name)},
+          {"target_size", judged.target_size},
+          {"target_size_from", name(document.current().judging->by_part.of(each.part).size_from)},
+          {"criteria", printable(judged.criteria.name)},
           {"elements", report.elements},
           {"ok", report.counts.ok},
           {"warn", report.counts.warn},
           {"fail", report.counts.fail},
           {"triangles_percent", report.triangles_percent},
-          {"triangles", text_of(grade_of_triangles(report.triangles_percent, criteria))},
+          {"triangles", text_of(grade_of_triangles(report.triangles_percent, judged.criteria))},
           {"composite", composite(report)},
           {"defects", defects(report)},
           {"mass", or_null(report.mass)},
@@ -108,7 +113,7 @@ std::string check_json(const document::Document& document, const CheckFigures& f
   for (int m = 0; m < quality::kMetricCount; ++m)
     metrics[std::string(name(static_cast<quality::Metric>(m)))] = summary(model, report.metrics[m]);
   Json parts = Json::array();
-  for (const quality::PartReport& each : figures.parts) parts.push_back(part(model, each, document.settings.criteria));
+  for (const quality::PartReport& each : figures.parts) parts.push_back(part(document, each));
   Json unknown = Json::array();
   for (const std::string& sentence : figures.unknown) unknown.push_back(sentence);
   Json json = {{"elements", report.elements},
@@ -128,8 +133,8 @@ std::string check_json(const document::Document& document, const CheckFigures& f
                {"parts", std::move(parts)},
                {"unknown", std::move(unknown)},
                {"length_unit", name(document.settings.length_unit)},
-               {"target_size", document.settings.target_size},
-               {"target_size_guessed", document.settings.target_size_guessed},
+               {"target_size", document.current().judging->deck_size},
+               {"target_size_guessed", is_guessed(document.current().judging->target_size)},
                {"criteria", printable(document.settings.criteria.name)}};
   if (const auto& chordal = figures.chordal) {
     const auto figure = [&](double value) { return chordal->measured > 0 ? Json(value) : Json(nullptr); };

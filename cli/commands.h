@@ -13,19 +13,20 @@
 
 #include "base/units.h"
 #include "cli/context.h"
+#include "mesh/document/judging_rules.h"
 
 namespace prismesh::cli {
 
 /// Options that every command takes.
 struct Common {
   std::optional<LengthUnit> length_unit;
-  std::optional<double> target_size;
-  std::optional<std::filesystem::path> criteria;
+  std::vector<mesh::document::JudgingRule> rules;  ///< --target-size and --criteria, in order
   bool json = false;
 };
 
 struct InfoOptions {
   std::filesystem::path deck;
+  bool save_settings = false;  ///< keeps target sizes and criteria beside the deck
 };
 int info(const InfoOptions& options, const Common& common, const Context& context);
 
@@ -33,6 +34,7 @@ struct CheckOptions {
   std::filesystem::path deck;
   std::optional<std::string> select;  ///< an expression: check only the shells it names
   bool chordal = false;               ///< also the distance of edges from the smooth surface
+  bool save_settings = false;         ///< keeps target sizes and criteria beside the deck
 };
 int check(const CheckOptions& options, const Common& common, const Context& context);
 

@@ -38,6 +38,11 @@ std::vector<PartFigures> part_figures(const mesh::Model& model) {
 
 namespace {
 
+/// What stands behind a part's target size.
+const char* size_source(mesh::quality::SizeFrom from) {
+  return from == mesh::quality::SizeFrom::given ? "" : from == mesh::quality::SizeFrom::part ? " (guessed)" : " (guessed, the deck's)";
+}
+
 void print_text(std::ostream& out, const mesh::document::Document& document) {
   const mesh::deck::Deck& deck = *document.deck;
   const mesh::deck::ElementCounts& n = deck.element_cards;
@@ -47,7 +52,8 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
   out << printable(document.path.string()) << ": " << name(deck.format) << ", " << counted(deck.files.size(), "file") << '\n';
   for (const mesh::deck::SourceFile& file : deck.files) out << "  " << printable(file.path.string()) << '\n';
   out << "length unit  " << unit << guessed(settings.length_unit_guessed) << '\n';
-  out << "target size  " << shortest(settings.target_size) << ' ' << unit << guessed(settings.target_size_guessed) << '\n';
+  const mesh::document::Judging& judging = *document.current().judging;
+  out << "target size  " << target_sizes(document) << ' ' << unit << guessed(is_guessed(judging.target_size)) << '\n';
   out << "nodes        " << document.current().model.node_index->size() << '\n';
   out << "shells       " << n.quad << " quads, " << n.tri << " triangles, " << n.quad8 << " 8-node quads, " << n.tri6
       << " 6-node triangles\n";
@@ -59,9 +65,13 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
   }
   const std::vector<PartFigures> parts = part_figures(document.current().model);
   out << "parts        " << parts.size() << '\n';
-  for (const PartFigures& part : parts) {
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const PartFigures& part = parts[p];
     out << "  part:" << part.id << "  " << printable(part.name) << "  " << part.quads << " quads, " << part.tris << " triangles";
     if (part.thickness) out << ", " << shortest(*part.thickness) << ' ' << unit << " thick";
+    const mesh::quality::PartCriteria& judged = judging.by_part.of(mesh::PartIndex(p));
+    if (part.quads + part.tris > 0) out << ", target size " << shortest(judged.target_size) << ' ' << unit << size_source(judged.size_from);
+    if (judged.criteria) out << ", criteria " << printable(judged.criteria->name);
     out << '\n';
   }
   out << "warnings     " << deck.warnings.size() << '\n';
@@ -84,7 +94,7 @@ int info(const InfoOptions& options, const Common& common, const Context& contex
     context.out << info_json(*document, part_figures(document->current().model)) << '\n';
   else
     print_text(context.out, *document);
-  return kDone;
+  return options.save_settings && !save_settings(*document, context) ? kFailed : kDone;
 }
 
 }  // namespace prismesh::cli

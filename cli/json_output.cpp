@@ -58,13 +58,19 @@ std::string info_json(const document::Document& document, const std::vector<Part
   Json files = Json::array();
   for (const deck::SourceFile& file : deck.files) files.push_back(printable(file.path.string()));
   Json listed = Json::array();
-  for (const PartFigures& part : parts)
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const PartFigures& part = parts[p];
+    const mesh::quality::SizedCriteria judged = judged_by(document).of(mesh::PartIndex(p));
     listed.push_back({{"id", part.id},
                       {"name", printable(part.name)},
                       {"quads", part.quads},
                       {"tris", part.tris},
                       {"thickness", or_null(part.thickness)},
-                      {"box", part.box ? Json::array({point(part.box->min), point(part.box->max)}) : Json(nullptr)}});
+                      {"box", part.box ? Json::array({point(part.box->min), point(part.box->max)}) : Json(nullptr)},
+                      {"target_size", judged.target_size},
+                      {"target_size_from", name(document.current().judging->by_part.of(mesh::PartIndex(p)).size_from)},
+                      {"criteria", printable(judged.criteria.name)}});
+  }
   Json warnings = Json::array();
   for (const deck::Warning& w : deck.warnings)
     warnings.push_back(
@@ -72,12 +78,13 @@ std::string info_json(const document::Document& document, const std::vector<Part
   Json cards = Json::object();
   for (const auto& [kind, count] : deck.element_kinds) cards[printable(kind)] = count;
   const document::DocumentSettings& settings = document.settings;
+  const document::Judging& judging = *document.current().judging;
   const Json json = {{"format", name(deck.format)},
                      {"files", std::move(files)},
                      {"length_unit", name(settings.length_unit)},
                      {"length_unit_guessed", settings.length_unit_guessed},
-                     {"target_size", settings.target_size},
-                     {"target_size_guessed", settings.target_size_guessed},
+                     {"target_size", judging.deck_size},
+                     {"target_size_guessed", is_guessed(judging.target_size)},
                      {"nodes", document.current().model.node_index->size()},
                      {"elements", counts_of_elements(deck.element_cards)},
                      {"element_cards", std::move(cards)},

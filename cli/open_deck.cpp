@@ -1,7 +1,9 @@
 #include "cli/open_deck.h"
 
 #include "cli/progress_bar.h"
+#include "cli/report_text.h"
 #include "mesh/deck/save.h"
+#include "mesh/document/deck_settings.h"
 #include "mesh/document/save.h"
 
 namespace prismesh::cli {
@@ -9,8 +11,7 @@ namespace prismesh::cli {
 mesh::document::OpenOptions open_options(const Common& common) {
   mesh::document::OpenOptions options;
   options.length_unit = common.length_unit;
-  options.target_size = common.target_size;
-  options.criteria = common.criteria;
+  options.rules = common.rules;
   return options;
 }
 
@@ -31,6 +32,16 @@ Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& documen
   Result<mesh::deck::SaveReport> saved = mesh::document::save(document, target, bar.progress());
   if (!saved && saved.error().file.empty()) saved.error().file = target.string();
   return saved;
+}
+
+bool save_settings(const mesh::document::Document& document, const Context& context) {
+  const std::filesystem::path file = mesh::document::deck_settings_path(document.path);
+  const Result<void> written = mesh::document::write_deck_settings(document.current(), document.settings, document.path);
+  if (!written)
+    say(context, written.error());
+  else
+    say(context, Error{file.string(), 0, "note: keeps the target sizes and criteria of this deck"});
+  return written.has_value();
 }
 
 }  // namespace prismesh::cli

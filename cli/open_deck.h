@@ -18,4 +18,8 @@ Result<mesh::document::Document> open_deck(const std::filesystem::path& deck, co
 Result<mesh::deck::SaveReport> save_deck(const mesh::document::Document& document, const std::filesystem::path& target,
                                          const Context& context);
 
+/// Keeps the document's target sizes and criteria in the settings file beside its deck, and says so. False: it can't be written; the reason
+/// was printed.
+bool save_settings(const mesh::document::Document& document, const Context& context);
+
 }  // namespace prismesh::cli

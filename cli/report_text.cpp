@@ -2,9 +2,12 @@
 #include "base/counted.h"
 #include "base/readable_number.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <ostream>
+#include <vector>
 
 namespace prismesh::cli {
 
@@ -51,6 +54,33 @@ std::string shortest(double value) {
   return std::string(text, end);
 }
 
+std::string target_sizes(const mesh::document::Document& document) {
+  const mesh::Model& model = document.current().model;
+  const mesh::document::Judging& judging = *document.current().judging;
+  std::vector<bool> has_shells(model.parts->size(), false);
+  for (std::size_t s = 0; s < model.shell_count(); ++s)
+    if (const mesh::PartIndex part = model.shell_parts[s]; part.valid()) has_shells[part.value] = true;
+  double min = std::numeric_limits<double>::infinity(), max = 0;
+  for (std::size_t p = 0; p < has_shells.size(); ++p) {
+    if (!has_shells[p]) continue;
+    const double size = judging.by_part.of(mesh::PartIndex(p)).target_size;
+    min = std::min(min, size);
+    max = std::max(max, size);
+  }
+  if (!(min <= max)) return shortest(judging.deck_size);
+  if (min == max) return shortest(min);
+  return shortest(min) + " to " + shortest(max);
+}
+
+std::string criteria_names(const mesh::document::Document& document) {
+  std::vector<std::string> names = {document.settings.criteria.name};
+  for (const mesh::quality::PartCriteria& each : document.current().judging->by_part.distinct)
+    if (each.criteria && std::find(names.begin(), names.end(), each.criteria->name) == names.end()) names.push_back(each.criteria->name);
+  std::string all = printable(names.front());
+  for (std::size_t i = 1; i < names.size(); ++i) all += ", " + printable(names[i]);
+  return names.size() == 1 ? all : all + " by part";
+}
+
 std::string rounded(double value) { return readable(value, 6); }
 
 double as_written(float value) {
@@ -84,7 +114,8 @@ void say_guesses(const Context& context, const mesh::document::Document& documen
     options += option;
   };
   add(settings.length_unit_guessed, "length unit " + std::string(name(settings.length_unit)), "--length-unit");
-  add(settings.target_size_guessed, "target size " + shortest(settings.target_size) + " from the median edge", "--target-size");
+  const bool guessed = is_guessed(document.current().judging->target_size);
+  add(guessed, "target size " + target_sizes(document) + " from the median edge", "--target-size");
   if (!guesses.empty()) say(context, Error{document.path.string(), 0, "note: guessed " + guesses + "; set with " + options});
 }
 

@@ -18,6 +18,12 @@ std::string printable(std::string_view text);
 
 /// A number with the fewest digits that read back as the same double.
 std::string shortest(double value);
+
+/// The target size, or the range of those of the parts with shells: "5", "0.5 to 130".
+std::string target_sizes(const mesh::document::Document& document);
+/// The names of the criteria, those of the document first: "default", or "default, strict by part".
+std::string criteria_names(const mesh::document::Document& document);
+
 /// A number with at most six digits: for measured lengths.
 std::string rounded(double value);
 /// The double that has a float's shortest digits: 8.07f as 8.07, not 8.06999969482422.

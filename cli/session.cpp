@@ -164,9 +164,9 @@ ipc::Open open_request(const SessionOptions& options, const Common& common) {
   ipc::Open open;
   open.path = whole_path(options.deck);
   if (common.length_unit) open.length_unit = std::string(name(*common.length_unit));
-  open.target_size = common.target_size;
-  if (common.criteria)
-    open.criteria = mesh::quality::is_built_in_criteria(*common.criteria) ? common.criteria->string() : whole_path(*common.criteria);
+  open.rules = common.rules;
+  for (document::JudgingRule& rule : open.rules)
+    if (rule.criteria && !mesh::quality::is_built_in_criteria(*rule.criteria)) rule.criteria = whole_path(*rule.criteria);
   return open;
 }
 

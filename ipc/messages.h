@@ -12,6 +12,7 @@
 #include "mesh/deck/data/deck.h"
 #include "mesh/document/edit.h"
 #include "mesh/document/edit_report.h"
+#include "mesh/document/judging_rules.h"
 
 namespace prismesh::ipc {
 
@@ -27,6 +28,7 @@ struct Open {
   std::optional<std::string> length_unit;
   std::optional<double> target_size;
   std::optional<std::string> criteria;
+  std::vector<mesh::document::JudgingRule> rules;  ///< what parts are judged by, after the settings beside the deck and the two above
   bool discard = false;  ///< discards unsaved edits of the open document once the other deck is read; false: refused with unsaved edits
 };
 struct Save {
@@ -195,6 +197,8 @@ struct QualityPart {
   std::int64_t part = 0;
   std::uint64_t shells = 0, warn = 0, fail = 0;
   double composite = 1, least_composite = 1;  ///< mean and least over its shells: docs/quality/README.md
+  double target_size = 0;                     ///< that they are judged by
+  mesh::quality::SizeFrom size_from = mesh::quality::SizeFrom::part;
 };
 struct Quality {
   std::uint64_t generation = 0;

@@ -8,8 +8,9 @@
 namespace prismesh::json {
 
 PRISMESH_MESSAGE(ipc::Hello, "hello", f("protocol", m.protocol), f("program", m.program));
+PRISMESH_JSON_OBJECT(mesh::document::JudgingRule, f("on", m.on), f("target_size", m.target_size), f("criteria", m.criteria));
 PRISMESH_MESSAGE(ipc::Open, "open", f("path", m.path), f("length_unit", m.length_unit), f("target_size", m.target_size),
-                 f("criteria", m.criteria), f("discard", m.discard));
+                 f("criteria", m.criteria), f("rules", m.rules), f("discard", m.discard));
 PRISMESH_MESSAGE(ipc::Save, "save", f("path", m.path), f("becomes", m.becomes), f("asks", m.asks), f("stays_unsaved", m.stays_unsaved));
 PRISMESH_MESSAGE(ipc::Close, "close", f("discard", m.discard));
 PRISMESH_MESSAGE(ipc::ApplyEdit, "apply_edit", f("edit", m.edit));
@@ -60,7 +61,8 @@ PRISMESH_JSON_OBJECT(ipc::QualityBar, f("from", m.from), f("to", m.to), f("open_
 PRISMESH_JSON_OBJECT(ipc::QualityError, f("shell", m.shell), f("metric", m.metric), f("unit", m.unit), f("value", m.value),
                      f("fail", m.fail), f("at", m.at), f("node", m.node));
 PRISMESH_JSON_OBJECT(ipc::QualityPart, f("part", m.part), f("shells", m.shells), f("warn", m.warn), f("fail", m.fail),
-                     f("composite", m.composite), f("least_composite", m.least_composite));
+                     f("composite", m.composite), f("least_composite", m.least_composite), f("target_size", m.target_size),
+                     f("size_from", m.size_from));
 PRISMESH_MESSAGE(ipc::ShellsFound, "shells_found", f("shells", m.shells), f("expr", m.expr));
 PRISMESH_MESSAGE(ipc::EditPreviewed, "edit_previewed", f("generation", m.generation), f("report", m.report), f("points", m.points),
                  f("shells", m.shells), f("shell_count", m.shell_count), f("replaced", m.replaced));

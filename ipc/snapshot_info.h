@@ -45,6 +45,8 @@ struct SnapshotPart {
   bool hidden = false;
   bool locked = false;
   std::uint32_t shells = 0;
+  double target_size = 1;
+  mesh::quality::SizeFrom size_from = mesh::quality::SizeFrom::part;
 };
 
 struct SnapshotInfo {

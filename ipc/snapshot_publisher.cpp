@@ -13,6 +13,7 @@
 #include "ipc/outlines.h"
 #include "ipc/shell_damage.h"
 #include "ipc/snapshot_table.h"
+#include "mesh/document/damage.h"
 #include "mesh/model/topology_change.h"
 
 namespace prismesh::ipc {
@@ -118,6 +119,7 @@ struct SnapshotPublisher::Impl {
   PerModel per_model;
   ShellDamage damage;
   ClusterSigns clusters;
+  std::shared_ptr<const Generation> opened_judged, opened_judged_from;  ///< see opened_as_judged()
 
   void look_at(const mesh::Model& model) {
     if (per_model.elements != model.elements) {
@@ -242,6 +244,16 @@ struct SnapshotPublisher::Impl {
     return {};
   }
 
+  /// What damage is measured from; made anew only when target sizes were set.
+  std::shared_ptr<const Generation> opened_as_judged(const Document& document) {
+    const std::shared_ptr<const mesh::document::Judging>& judging = document.current().judging;
+    if (!opened_judged || opened_judged_from != document.opened || opened_judged->judging != judging) {
+      opened_judged = mesh::document::opened_as_judged(document, document.current());
+      opened_judged_from = document.opened;
+    }
+    return opened_judged;
+  }
+
   Result<void> add_arrays(const Document& document, Published& published, SnapshotTable& table) {
     const Generation& generation = document.current();
     const mesh::Model& model = generation.model;
@@ -256,7 +268,7 @@ struct SnapshotPublisher::Impl {
     next(SnapshotArray::shell_parts, model.shell_parts);
     next(SnapshotArray::shell_marks, generation.shell_marks);
     next(SnapshotArray::shell_quality, generation.quality);
-    next(SnapshotArray::shell_damage, damage.of(document.opened, generation));
+    next(SnapshotArray::shell_damage, damage.of(opened_as_judged(document), generation));
     next(SnapshotArray::line_nodes, per_model.lines.nodes);
     next(SnapshotArray::line_parts, per_model.lines.parts);
     next(SnapshotArray::clusters, clusters.of(document.opened, generation));
@@ -269,7 +281,7 @@ struct SnapshotPublisher::Impl {
     info.generation = generation.number;
     info.document = document.path.string();
     info.length_unit = std::string(name(document.settings.length_unit));
-    info.target_size = document.settings.target_size;
+    info.target_size = generation.judging ? generation.judging->deck_size : document.settings.target_size;
     info.counts = generation.counts;
     info.nodes = mesh::live_nodes(generation.model);
     info.selected_nodes = generation.selected_nodes;
@@ -282,7 +294,13 @@ struct SnapshotPublisher::Impl {
     for (std::size_t p = 0; p < parts.size(); ++p) {
       const bool has_state = generation.parts && p < generation.parts->size();
       const mesh::document::PartState state = has_state ? (*generation.parts)[p] : mesh::document::PartState{};
-      info.parts.push_back({parts[p].id, parts[p].name, state.hidden, state.locked, per_model.shells_of_part[p]});
+      ipc::SnapshotPart part{parts[p].id, parts[p].name, state.hidden, state.locked, per_model.shells_of_part[p], info.target_size, {}};
+      if (generation.judging && p < generation.judging->parts.size()) {
+        const mesh::quality::PartCriteria& judged = generation.judging->by_part.of(mesh::PartIndex(p));
+        part.target_size = judged.target_size;
+        part.size_from = judged.size_from;
+      }
+      info.parts.push_back(std::move(part));
     }
     return info;
   }

@@ -1,5 +1,6 @@
 #include "ipc/snapshot_table.h"
 
+#include <algorithm>
 #include <string>
 
 #include "ipc/byte_stream.h"
@@ -31,6 +32,8 @@ void put_info(ByteWriter& out, const SnapshotInfo& info) {
     out.put(static_cast<std::uint8_t>(part.hidden));
     out.put(static_cast<std::uint8_t>(part.locked));
     out.put(part.shells);
+    out.put(part.target_size);
+    out.put(static_cast<std::uint8_t>(part.size_from));
   }
 }
 
@@ -49,15 +52,17 @@ SnapshotInfo get_info(ByteReader& in) {
   info.can_undo = in.get<std::uint8_t>() != 0;
   info.can_redo = in.get<std::uint8_t>() != 0;
   info.changed = in.get<std::uint8_t>() != 0;
-  // A part takes 22 bytes at least: id, length of the name, two flags, number of shells.
+  // A part takes 31 bytes at least: id, length of the name, two flags, number of shells, target size and where it comes from.
   const auto parts = in.get<std::uint64_t>();
-  for (std::uint64_t i = 0; in.holds(parts - i, 22) && i < parts; ++i) {
+  for (std::uint64_t i = 0; in.holds(parts - i, 31) && i < parts; ++i) {
     SnapshotPart part;
     part.id = in.get<std::int64_t>();
     part.name = in.text();
     part.hidden = in.get<std::uint8_t>() != 0;
     part.locked = in.get<std::uint8_t>() != 0;
     part.shells = in.get<std::uint32_t>();
+    part.target_size = in.get<double>();
+    part.size_from = static_cast<mesh::quality::SizeFrom>(std::min<std::uint8_t>(in.get<std::uint8_t>(), 2));
     info.parts.push_back(std::move(part));
   }
   return info;

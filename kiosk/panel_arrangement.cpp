@@ -34,7 +34,14 @@ panels::DocumentFacts document_facts(const ToolContext& context) {
   facts.parts = info.parts.size();
   facts.generation = info.generation;
   facts.length_unit = info.length_unit;
-  facts.target_size = info.target_size;
+  facts.target_size = facts.largest_target_size = info.target_size;
+  bool first = true;
+  for (const ipc::SnapshotPart& part : info.parts) {
+    if (part.shells == 0) continue;
+    facts.target_size = first ? part.target_size : std::min(facts.target_size, part.target_size);
+    facts.largest_target_size = first ? part.target_size : std::max(facts.largest_target_size, part.target_size);
+    first = false;
+  }
   if (const auto& state = context.link.state()) {
     facts.length_unit_guessed = state->length_unit_guessed;
     facts.target_size_guessed = state->target_size_guessed;

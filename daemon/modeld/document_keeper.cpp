@@ -8,6 +8,7 @@
 #include "daemon/modeld/paths.h"
 #include "mesh/deck/data/deck.h"
 #include "mesh/deck/open.h"
+#include "mesh/document/deck_settings.h"
 #include "mesh/document/edit_kinds.h"
 #include "mesh/document/history.h"
 #include "mesh/model/topology_change.h"
@@ -30,7 +31,8 @@ Result<OpenOptions> options_of(const ipc::Open& request) {
     options.length_unit = length_unit_from(*request.length_unit);
     if (!options.length_unit) return fail("", "unknown length unit \"" + *request.length_unit + "\": mm, m or in");
   }
-  options.target_size = request.target_size;
+  if (request.target_size) options.target_size = *request.target_size;
+  options.rules = request.rules;
   if (request.criteria) options.criteria = *request.criteria;
   return options;
 }
@@ -200,8 +202,17 @@ Result<EditReport> DocumentKeeper::edit(const Edit& edit, const Progress& progre
   open.document.generations.reserve(open.document.generations.size() + 1);
   if (Result<void> appended = open.journal.append(open.recorded, edit, recorded); !appended) return fail(std::move(appended.error()));
   commit(open.recorded, std::move(recorded));
+  const std::shared_ptr<const Judging> judging = open.document.current().judging;
   commit(open.document, std::move(*prepared));
+  if (open.document.current().judging != judging) keep_sizes(report);
   return report;
+}
+
+/// Writes the target sizes beside the deck. They aren't part of the deck, so they don't wait until it is saved.
+void DocumentKeeper::keep_sizes(EditReport& report) const {
+  const Document& document = open_->document;
+  if (const Result<void> kept = write_deck_settings(document.current(), document.settings, document.path); !kept)
+    report.notes.push_back("the target sizes are not kept beside the deck: " + kept.error().text());
 }
 
 Result<void> DocumentKeeper::close(bool discard) {
@@ -239,8 +250,8 @@ ipc::DocumentState DocumentKeeper::state() const {
   state.path = document.path.string();
   state.length_unit = std::string(name(document.settings.length_unit));
   state.length_unit_guessed = document.settings.length_unit_guessed;
-  state.target_size = document.settings.target_size;
-  state.target_size_guessed = document.settings.target_size_guessed;
+  state.target_size = current.judging->deck_size;
+  state.target_size_guessed = is_guessed(current.judging->target_size);
   state.generation = current.number;
   state.nodes = mesh::live_nodes(current.model);
   state.shells = mesh::live_shells(current.model);

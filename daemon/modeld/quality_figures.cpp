@@ -60,7 +60,7 @@ class Shells {
   Shells(const Document& document, bool damaged) : model_(document.current().model) {
     if (damaged) {
       listed_ = true;
-      list_ = mesh::document::damaged_shells(*document.opened, document.current());
+      list_ = mesh::document::damaged_shells(document);
     } else if (model_.topology_change) {
       listed_ = true;
       for (std::size_t s = 0; s < model_.shell_count(); ++s)
@@ -189,7 +189,7 @@ class Gathering {
     const mesh::ShellSet shells = shells_.range(begin, end);
     std::vector<Values> values(shells.size());
     std::vector<float> composites(shells.size());
-    mesh::quality::composites(generation_.model, shells, {document_.settings.criteria, document_.settings.target_size}, composites, values);
+    mesh::quality::composites(generation_.model, shells, judged_by(document_), composites, values);
     Figures figures;
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t shell = shells[i - begin].value;
@@ -216,11 +216,10 @@ class Gathering {
     for (const Defect defect : mesh::quality::kDefects)
       if (metric_ < 0 && state.has(defect)) worst = {shell, static_cast<int>(defect), 0, std::numeric_limits<double>::infinity(), true};
     const bool triangle = generation_.model.shell_nodes[shell].is_triangle();
+    const ShellProperties sheet = mesh::quality::properties_of(generation_.model, ShellIndex(shell));
     for (int m = 0; m < kMetricCount; ++m) {
       if (!has(state.warn, m) || (metric_ >= 0 && m != metric_)) continue;
       const auto at = static_cast<std::size_t>(m);
-      const ShellProperties sheet =
-          m == int(Metric::min_length) ? mesh::quality::properties_of(generation_.model, ShellIndex(shell)) : ShellProperties();
       const Wrong candidate{shell, m, values[at], severity(values[at], threshold_of(m, triangle, sheet)), has(state.fail, m)};
       if (worst.metric < 0 || worse(candidate, worst)) worst = candidate;
     }
@@ -284,8 +283,9 @@ class Gathering {
   void add_parts(const Figures& all, ipc::Quality& quality) const {
     for (const auto& [index, sum] : all.parts) {
       if (!mesh::PartIndex(index).valid()) continue;
-      quality.parts.push_back(
-          {(*generation_.model.parts)[index].id, sum.shells, sum.warn, sum.fail, sum.sum / static_cast<double>(sum.shells), sum.least});
+      const mesh::quality::PartCriteria& judged = generation_.judging->by_part.of(mesh::PartIndex(index));
+      quality.parts.push_back({(*generation_.model.parts)[index].id, sum.shells, sum.warn, sum.fail,
+                               sum.sum / static_cast<double>(sum.shells), sum.least, judged.target_size, judged.size_from});
     }
   }
 
@@ -331,8 +331,7 @@ class Gathering {
 
   /// Limits for this target size; without a sheet, thickness and material count as unknown.
   Threshold threshold_of(int metric, bool triangle, const ShellProperties& sheet = {}) const {
-    return mesh::quality::threshold_of({document_.settings.criteria, document_.settings.target_size}, static_cast<Metric>(metric), triangle,
-                                       sheet);
+    return mesh::quality::threshold_of(judged_by(document_), static_cast<Metric>(metric), triangle, sheet);
   }
 
   std::string unit(int metric) const {

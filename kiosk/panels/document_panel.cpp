@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "base/readable_number.h"
 #include "kiosk/panels/layout.h"
 #include "kiosk/panels/text.h"
 
@@ -35,7 +36,10 @@ void document_head(const DocumentFacts& document) {
   fact("nodes", grouped(document.nodes));
   fact("parts", grouped(document.parts));
   fact("length unit", guessed(document.length_unit, document.length_unit_guessed));
-  fact("target size", guessed(length_text(document.target_size, document.length_unit), document.target_size_guessed));
+  const std::string largest = length_text(document.largest_target_size, document.length_unit);
+  fact("target size",
+       guessed(document.target_size < document.largest_target_size ? readable(document.target_size, 3) + " to " + largest : largest,
+               document.target_size_guessed));
   fact("generation", grouped(document.generation));
 }
 

@@ -16,7 +16,7 @@ struct DocumentFacts {
   std::uint64_t generation = 0;
   std::string length_unit;
   bool length_unit_guessed = false;
-  double target_size = 0;
+  double target_size = 0, largest_target_size = 0;  ///< the range over the parts with shells
   bool target_size_guessed = false;
   bool changed = false;
 };

@@ -81,7 +81,7 @@ Result<void> move(const Document& document, const Edit& edit, Generation& next, 
   report.nodes_moved = moved.size();
   next.surface = std::make_shared<const Model>(next.model);
   const ShellSet touched = shells_touching(next.model, moved);
-  quality::rejudge(next.model, {document.settings.criteria, document.settings.target_size}, touched, next.quality, next.counts);
+  quality::rejudge(next.model, judged_by(document), touched, next.quality, next.counts);
   update_weight(document.current(), touched, next);
   if (motion->unreached > 0)
     report.notes.push_back(counted(motion->unreached, "node") + " can't be reached from the grab along what is moved; left in place");

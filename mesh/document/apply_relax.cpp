@@ -122,6 +122,16 @@ NodeSet movable_of(const Generation& generation, const NodeSet& nodes, EditRepor
   return movable;
 }
 
+/// The min target size of the parts that meet at a node.
+double target_size_at(const Document& document, NodeIndex node) {
+  const quality::SizedCriteria criteria = judged_by(document);
+  const Model& model = document.current().model;
+  double size = std::numeric_limits<double>::infinity();
+  for (const ShellIndex shell : model.adjacency->shells_of(node))
+    size = std::min(size, criteria.of(model.shell_parts[shell.value]).target_size);
+  return std::isfinite(size) ? size : criteria.target_size;
+}
+
 void say_how(const relax::Relaxed& relaxed, EditReport& report) {
   if (relaxed.nodes.empty())
     report.notes.push_back("nothing to relax: every node is where it is best");
@@ -153,7 +163,7 @@ void put_positions(const Document& document, const relax::Relaxed& relaxed, Gene
   std::set_union(relaxed.nodes.begin(), relaxed.nodes.end(), followed.begin(), followed.end(), std::back_inserter(moved));
   report.nodes_moved = moved.size();
   const ShellSet touched = shells_touching(next.model, relaxed.nodes);
-  quality::rejudge(next.model, {document.settings.criteria, document.settings.target_size}, touched, next.quality, next.counts);
+  quality::rejudge(next.model, judged_by(document), touched, next.quality, next.counts);
   update_weight(document.current(), touched, next);
   report_dependents(document.current(), next, moved, report);
 }
@@ -182,9 +192,9 @@ Result<void> apply_edit(const Document& document, const Relax& edit, Generation&
   options.feature_angle = edit.angle;
   options.max_move_on_surface = edit.max_move.free;
   options.max_move_on_line = edit.max_move.line;
-  const quality::SizedCriteria criteria{document.settings.criteria, document.settings.target_size};
+  const quality::SizedCriteria criteria = judged_by(document);
   const relax::ReferenceSurface surface = surface_about(current, reach->shells, edit.angle);
-  const double threshold = edit.threshold.value_or(kThreshold * document.settings.target_size);
+  const double threshold = edit.threshold ? *edit.threshold : at.valid() ? kThreshold * target_size_at(document, at) : 0;
   const relax::RelaxInput input{current.model, surface, criteria, options};
   const Result<relax::Relaxed> relaxed =
       edit.mode == RelaxMode::from ? relax::relax_from(input, {at, threshold}, movable, progress) : relax::relax(input, movable, progress);

@@ -28,8 +28,6 @@ repair::Options options_of(double angle, const MoveLimits& limits) {
   return options;
 }
 
-quality::SizedCriteria criteria_of(const Document& document) { return {document.settings.criteria, document.settings.target_size}; }
-
 std::string shell_name(const Model& model, ShellIndex shell) { return "shell:" + std::to_string(model.shell_ids[shell.value]); }
 
 std::string crowded(std::size_t nodes) { return counted(nodes, "node") + " with too many triangles"; }
@@ -85,7 +83,7 @@ Result<repair::Repaired> repair_writable(RepairTask& task, const ShellSet& scope
   const Progress forward = [&](double fraction) { return !progress || progress(furthest = std::max(furthest, fraction)); };
   for (int attempt = 1;; ++attempt) {
     Result<repair::Repaired> repaired =
-        repair::repair({current.model, surface, rules, criteria_of(document), options, clusters}, scope, forward);
+        repair::repair({current.model, surface, rules, judged_by(document), options, clusters}, scope, forward);
     if (!repaired || repaired->change.empty()) return repaired;
     Generation trial = current;
     const Result<void> done = restructure(document, repaired->change, trial, report);
@@ -178,7 +176,7 @@ Result<void> apply_edit(const Document& document, const Restructure& edit, Gener
   about.insert(about.end(), targets->shells.begin(), targets->shells.end());
   const relax::ReferenceSurface surface = surface_about(current, about, options.relax.feature_angle);
   const Result<repair::Restructuring> change =
-      repair::apply_manual_operation({current.model, surface, rules_for(document, current), criteria_of(document), options},
+      repair::apply_manual_operation({current.model, surface, rules_for(document, current), judged_by(document), options},
                                      {edit.operation, targets->shells, targets->nodes});
   if (!change) return fail("", std::string(repair::name(edit.operation)) + ": " + change.error().message);
   return restructure(document, *change, next, report);

@@ -1,10 +1,22 @@
 #include "mesh/document/damage.h"
 
+#include "mesh/document/judge_parts.h"
 #include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
 
-ShellSet damaged_shells(const Generation& opened, const Generation& now) {
+std::shared_ptr<const Generation> opened_as_judged(const Document& document, const Generation& generation) {
+  const Generation& opened = *document.opened;
+  if (opened.judging == generation.judging || !opened.judging || !generation.judging) return document.opened;
+  auto judged = std::make_shared<Generation>(opened);
+  rejudge_parts(judged->model, document.settings.criteria, *opened.judging, *generation.judging, judged->quality, judged->counts);
+  judged->judging = generation.judging;
+  return judged;
+}
+
+ShellSet damaged_shells(const Document& document) {
+  const std::shared_ptr<const Generation> as_opened = opened_as_judged(document, document.current());
+  const Generation &opened = *as_opened, &now = document.current();
   ShellSet damaged;
   const std::size_t of_deck = opened.quality.size();
   for (std::size_t c = 0; c < now.quality.chunk_count(); ++c) {

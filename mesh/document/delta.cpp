@@ -2,7 +2,9 @@
 
 #include <bit>
 #include <cstring>
+#include <optional>
 
+#include "mesh/document/judging_rules.h"
 #include "mesh/model/topology_change.h"
 
 namespace prismesh::mesh::document {
@@ -10,6 +12,7 @@ namespace prismesh::mesh::document {
 namespace {
 
 constexpr std::uint8_t kVersion = 2;
+constexpr std::uint8_t kVersionWithSizes = 3;      ///< as 2, followed by target sizes; written where an edit set any
 constexpr std::uint8_t kVersionWithoutGrowth = 1;  ///< of journals that were written before edits could change the structure
 
 // --- writing ---
@@ -139,6 +142,25 @@ void write_parts(const Generation& before, const Generation& after, DeltaWriter&
     out.number(p);
     out.byte(packed((*after.parts)[p]));
   }
+}
+
+/// 0: none of its own, 1: guessed from the part, 2: guessed from the deck, 3: a length follows.
+void write_size(const std::optional<TargetSize>& size, DeltaWriter& out) {
+  if (!size) return out.byte(0);
+  if (const double* given = std::get_if<double>(&*size)) {
+    out.byte(3);
+    out.bits(*given);
+    return;
+  }
+  out.byte(std::get<SizeGuess>(*size) == SizeGuess::part ? 1 : 2);
+}
+
+void write_sizes(const Judging& before, const Judging& after, DeltaWriter& out) {
+  write_size(after.target_size, out);
+  std::vector<PartIndex> changed;
+  for (std::size_t p = 0; p < after.parts.size(); ++p)
+    if (before.parts[p].target_size != after.parts[p].target_size) changed.emplace_back(p);
+  write_indices(changed, out, [&](PartIndex part) { write_size(after.parts[part.value].target_size, out); });
 }
 
 // --- reading ---
@@ -330,27 +352,54 @@ void read_parts(DeltaReader& in, Generation& generation) {
   generation.parts = std::move(parts);
 }
 
+std::optional<TargetSize> read_size(DeltaReader& in) {
+  switch (in.byte()) {
+    case 0: return std::nullopt;
+    case 1: return SizeGuess::part;
+    case 2: return SizeGuess::deck;
+    case 3: break;
+    default: in.refuse(); return std::nullopt;
+  }
+  const TargetSize size(in.bits());
+  if (!in.ok() || !check_target_size(size)) in.refuse();
+  return size;
+}
+
+void read_sizes(DeltaReader& in, Generation& generation) {
+  auto judging = std::make_shared<Judging>(*generation.judging);
+  const std::optional<TargetSize> of_all = read_size(in);
+  if (!of_all) return in.refuse();
+  judging->target_size = *of_all;
+  read_indices<PartIndex>(in, 2, judging->parts.size(), [&](PartIndex part) { judging->parts[part.value].target_size = read_size(in); });
+  if (!in.ok()) return;
+  settle(*judging);
+  generation.judging = std::move(judging);
+}
+
 std::size_t grown(std::size_t size, std::int64_t by) { return static_cast<std::size_t>(static_cast<std::int64_t>(size) + by); }
 
 }  // namespace
 
 std::vector<std::byte> encode_delta(const Generation& before, const Generation& after) {
   DeltaWriter out;
-  out.byte(kVersion);
+  const bool has_sizes = before.judging != after.judging && before.judging && after.judging;
+  out.byte(has_sizes ? kVersionWithSizes : kVersion);
   write_growth(before.model, after.model, out);
   write_moved(before, after, out);
   write_runs(changed_runs(before.node_marks, after.node_marks), out);
   write_runs(changed_runs(before.shell_marks, after.shell_marks), out);
   out.byte(static_cast<std::uint8_t>(after.selection_kind));
   write_parts(before, after, out);
+  if (has_sizes) write_sizes(*before.judging, *after.judging, out);
   return out.take();
 }
 
 Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& generation) {
   DeltaReader in(delta);
   const std::uint8_t version = in.byte();
-  if (version != kVersion && version != kVersionWithoutGrowth) return fail("", "its delta is of another version");
-  if (version == kVersion) read_growth(in, generation.model);
+  if (version != kVersion && version != kVersionWithSizes && version != kVersionWithoutGrowth)
+    return fail("", "its delta is of another version");
+  if (version != kVersionWithoutGrowth) read_growth(in, generation.model);
   generation.node_marks.resize(generation.model.node_count());
   generation.shell_marks.resize(generation.model.shell_count());
   NodeSet moved = read_moved(in, generation.model);
@@ -360,6 +409,10 @@ Result<NodeSet> apply_delta(std::span<const std::byte> delta, Generation& genera
   if (kind > static_cast<std::uint8_t>(select::EntityKind::part)) in.refuse();
   generation.selection_kind = static_cast<select::EntityKind>(kind);
   read_parts(in, generation);
+  if (version == kVersionWithSizes) {
+    if (!generation.judging) return fail("", "its delta doesn't fit the model");
+    read_sizes(in, generation);
+  }
   if (!in.at_end()) return fail("", "its delta doesn't fit the model");
   return moved;
 }

@@ -28,4 +28,7 @@ struct Document {
   bool can_redo() const { return cursor + 1 < generations.size(); }
 };
 
+/// What the shells of the current generation are judged by. The document must outlive the result and not change.
+inline quality::SizedCriteria judged_by(const Document& document) { return sized(document.settings.criteria, *document.current().judging); }
+
 }  // namespace prismesh::mesh::document

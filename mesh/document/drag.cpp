@@ -99,11 +99,12 @@ void Drag::step(const Displacement& displacement) {
   if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& position) { return position.allFinite(); })) return;
   displacement_ = displacement;
   positions_ = std::move(positions);
+  const quality::LimitsByPart limits = quality::limits_for(sized(settings_.criteria, *base_->judging));
   std::vector<quality::Counts> counts((corners_.size() + kDragGrain - 1) / kDragGrain);
   parallel_for(corners_.size(), kDragGrain, [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     quality::judge_points({positions_, fixed_, std::span(corners_).subspan(begin, count), std::span(properties_).subspan(begin, count)},
-                          {settings_.criteria, settings_.target_size}, std::span(states_).subspan(begin, count));
+                          limits, std::span(states_).subspan(begin, count));
     quality::Counts sum;
     for (std::size_t s = begin; s < end; ++s) add(sum, states_[s], 1);
     counts[begin / kDragGrain] = sum;

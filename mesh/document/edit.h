@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "mesh/document/judging.h"
 #include "mesh/model/model.h"
 #include "mesh/repair/operation.h"
 #include "mesh/select/expression.h"
@@ -56,6 +57,13 @@ enum class VisibilityAction : std::uint8_t { hide, show, only, reverse, lock, un
 /// selected act on all parts. `reverse` shows hidden parts and hides visible ones, among those named or all.
 struct SetParts {
   VisibilityAction action = VisibilityAction::hide;
+  std::optional<std::string> on;
+};
+
+/// Sets the target size that shells are judged by, of the parts named by `on` (an expression of kind part), without it of the parts of the
+/// selection, with nothing selected of all.
+struct SetTargetSize {
+  TargetSize size = SizeGuess::part;
   std::optional<std::string> on;
 };
 
@@ -145,8 +153,8 @@ struct Restructure {
 struct Undo {};
 struct Redo {};
 
-using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, Translate, Lift, Slide, Rotate, Relax, Repair,
-                          Restructure, Undo, Redo>;
+using Edit = std::variant<Select, SelectRegion, SelectLasso, Grow, Shrink, Invert, SetParts, SetTargetSize, Translate, Lift, Slide, Rotate,
+                          Relax, Repair, Restructure, Undo, Redo>;
 
 /// The Shaping of a shaping edit; null for the others.
 const Shaping* shaping_of(const Edit& edit);

@@ -5,6 +5,7 @@
 #include "base/json/read.h"
 #include "base/json/write.h"
 #include "mesh/document/edit.h"
+#include "mesh/document/judging.h"
 
 namespace prismesh::json {
 
@@ -28,6 +29,9 @@ PRISMESH_JSON_NAMES(mesh::document::Scope, {{"selection", mesh::document::Scope:
                                             {"damaged", mesh::document::Scope::damaged},
                                             {"failed", mesh::document::Scope::failed}});
 PRISMESH_JSON_NAMES(mesh::document::RelaxMode, {{"full", mesh::document::RelaxMode::full}, {"from", mesh::document::RelaxMode::from}});
+PRISMESH_JSON_NAMES(mesh::quality::SizeFrom, {{name(mesh::quality::SizeFrom::part), mesh::quality::SizeFrom::part},
+                                              {name(mesh::quality::SizeFrom::deck), mesh::quality::SizeFrom::deck},
+                                              {name(mesh::quality::SizeFrom::given), mesh::quality::SizeFrom::given}});
 PRISMESH_JSON_NAMES(mesh::shape::Origin, {{"grab", mesh::shape::Origin::grab}, {"free_edge", mesh::shape::Origin::free_edge}});
 /// true (rigid), false (held) or "weighted".
 template <>
@@ -60,6 +64,11 @@ template <>
 struct Definition<mesh::document::TargetNodes> {
   static void write(Json& json, const mesh::document::TargetNodes& value);
   static Problem read(const Json& json, mesh::document::TargetNodes& value, Author author);
+};
+template <>
+struct Definition<mesh::document::TargetSize> {
+  static void write(Json& json, const mesh::document::TargetSize& value);
+  static Problem read(const Json& json, mesh::document::TargetSize& value, Author author);
 };
 /// An edit within another object. edit_from_json reads one that stands by itself.
 template <>
@@ -120,6 +129,7 @@ PRISMESH_JSON_OBJECT(mesh::document::Grow, f("rings", m.rings, kRings));
 PRISMESH_JSON_OBJECT(mesh::document::Shrink, f("rings", m.rings, kRings));
 PRISMESH_JSON_OBJECT(mesh::document::Invert, );
 PRISMESH_JSON_OBJECT(mesh::document::SetParts, f("on", m.on));
+PRISMESH_JSON_OBJECT(mesh::document::SetTargetSize, f.required("size", m.size), f("on", m.on));
 PRISMESH_JSON_OBJECT(mesh::document::Translate, f.required("by", m.by), Definition<mesh::document::Shaping>::fields(m.shaping, f));
 PRISMESH_JSON_OBJECT(mesh::document::Lift, f.required("distance", m.distance), f("normals", m.each_normal, kNormals),
                      Definition<mesh::document::Shaping>::fields(m.shaping, f));

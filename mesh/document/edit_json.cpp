@@ -133,6 +133,25 @@ Problem Definition<document::NodeReference>::read(const Json& json, document::No
   return must_be("a node's id or its coordinates [x, y, z]", json, author);
 }
 
+void Definition<document::TargetSize>::write(Json& json, const document::TargetSize& value) {
+  if (const double* length = std::get_if<double>(&value))
+    json = *length;
+  else
+    json = std::get<document::SizeGuess>(value) == document::SizeGuess::part ? "part" : "deck";
+}
+
+Problem Definition<document::TargetSize>::read(const Json& json, document::TargetSize& value, Author author) {
+  const std::string kExpected = "a length above 0, \"part\" (each part's median edge) or \"deck\" (the deck's)";
+  if (json == "part" || json == "deck") {
+    value = json == "part" ? document::SizeGuess::part : document::SizeGuess::deck;
+    return std::nullopt;
+  }
+  double length = 0;
+  if (json::read(json, length, author) || !(length > 0 && length <= kMaxNumber)) return must_be(kExpected, json, author);
+  value = length;
+  return std::nullopt;
+}
+
 void Definition<document::TargetNodes>::write(Json& json, const document::TargetNodes& value) {
   std::visit(
       [&]<class Each>(const Each& each) {

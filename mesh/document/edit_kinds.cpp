@@ -25,6 +25,7 @@ std::span<const EditKind> edit_kinds() {
         {"reverse", parts, SetParts{VisibilityAction::reverse, {}}},
         {"lock", parts, SetParts{VisibilityAction::lock, {}}},
         {"unlock", parts, SetParts{VisibilityAction::unlock, {}}},
+        {"set_target_size", parts, SetTargetSize{}},
         {"translate", shaping, Translate{}},
         {"lift", shaping, Lift{}},
         {"slide", shaping, Slide{}},

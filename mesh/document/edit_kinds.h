@@ -11,7 +11,7 @@ namespace prismesh::mesh::document {
 
 enum class EditGroup : std::uint8_t {
   selection,  ///< changes the selection alone
-  parts,      ///< changes the parts' states
+  parts,      ///< changes the parts' states, or what they are judged by
   shaping,    ///< changes the shape, which relaxing and repairing then keep; has a Shaping and a Displacement, can be dragged
   mending,    ///< relaxes nodes or changes the structure, and keeps the shape
   step,       ///< goes to another generation of the history

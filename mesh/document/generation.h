@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/document/judging.h"
 #include "mesh/model/chunked_array.h"
 #include "mesh/model/model.h"
 #include "mesh/quality/mass.h"
@@ -43,6 +44,7 @@ struct Generation {
   /// The surface that relaxing and repairing hold nodes on: the model as it was opened or last shaped. Never null once opened.
   std::shared_ptr<const Model> surface;
   std::shared_ptr<const DeckRelations> relations;  ///< never null once opened
+  std::shared_ptr<const Judging> judging;          ///< what the parts' shells are judged by; never null once opened
   ChunkedArray<quality::ShellState> quality;
   quality::Counts counts;  ///< all shells
   /// Of the model, by the document's criteria. Never null.

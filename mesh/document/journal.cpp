@@ -1,5 +1,8 @@
 #include "mesh/document/journal.h"
 
+#include <map>
+#include <tuple>
+
 #include "base/base64.h"
 #include "base/json/read.h"
 #include "base/json/write.h"
@@ -9,7 +12,10 @@
 #include "mesh/document/history.h"
 #include "mesh/document/journal_file.h"
 #include "mesh/document/journal_records.h"
+#include "mesh/document/judge_parts.h"
+#include "mesh/document/judging_rules.h"
 #include "mesh/document/restructure.h"
+#include "mesh/select/expression.h"
 
 namespace prismesh::mesh::document {
 
@@ -28,12 +34,25 @@ std::string intent_text(const Edit& edit) { return json::to_line(edit_to_json(ed
 
 bool is_fresh(const Document& document) { return document.generations.size() == 1 && document.generations.front() == document.opened; }
 
+/// The parts' sizes, those that are alike together.
+std::vector<JournalHeader::PartSizes> part_sizes(const Model& model, const Judging& judging) {
+  std::map<std::tuple<double, quality::SizeFrom, std::optional<TargetSize>>, std::vector<std::int64_t>> alike;
+  for (std::size_t p = 0; p < judging.parts.size(); ++p)
+    alike[{judging.guessed[p].target_size, judging.guessed[p].size_from, judging.parts[p].target_size}].push_back((*model.parts)[p].id);
+  std::vector<JournalHeader::PartSizes> sizes;
+  for (auto& [key, ids] : alike)
+    sizes.push_back({select::to_expression(std::move(ids)), std::get<0>(key), std::get<1>(key), std::get<2>(key)});
+  return sizes;
+}
+
 JournalHeader header_of(const Document& document) {
   const Model& model = document.opened->model;
   const DocumentSettings& settings = document.settings;
+  const Judging& judging = *document.opened->judging;
   return {PRISMESH_VERSION,
           {document.path.string(), document.deck->content.hex(), model.node_count(), model.shell_count(), model.parts->size()},
-          {settings.length_unit, settings.target_size, settings.criteria.name}};
+          {settings.length_unit, judging.deck_size, settings.criteria.name, judging.target_size, judging.guessed_size,
+           part_sizes(model, judging)}};
 }
 
 Result<void> check_deck(const JournalHeader& header, const Document& document, const std::string& file) {
@@ -48,17 +67,41 @@ Result<void> check_deck(const JournalHeader& header, const Document& document, c
   return {};
 }
 
+/// The target sizes as the journal's header has them: the guesses that its edits were made with, and what was chosen.
+Result<Judging> judging_in(const JournalHeader& header, const Document& document, const std::string& file) {
+  Judging judging = *document.opened->judging;  // with its criteria
+  judging.guessed_size = header.settings.guessed_size.value_or(header.settings.target_size);
+  judging.target_size = header.settings.size_of_all;
+  for (std::size_t p = 0; p < judging.parts.size(); ++p) {
+    judging.parts[p].target_size.reset();
+    judging.guessed[p] = {judging.guessed_size, nullptr, quality::SizeFrom::deck};
+  }
+  for (const JournalHeader::PartSizes& sizes : header.settings.parts) {
+    const Result<std::vector<PartIndex>> parts = parts_named_by(sizes.on, document.opened->model, {});
+    if (!parts || !(sizes.guessed > 0 && sizes.guessed < 1e300)) return fail(file, 1, "its target sizes of parts don't fit the deck");
+    for (const PartIndex part : *parts) {
+      judging.guessed[part.value] = {sizes.guessed, nullptr, sizes.from};
+      judging.parts[part.value].target_size = sizes.own;
+    }
+  }
+  settle(judging);
+  return judging;
+}
+
 /// Takes settings that were only guessed from the journal; settings that the user gave stay.
-void take_settings(const JournalHeader& header, Document& document) {
+Result<void> take_settings(const JournalHeader& header, Document& document, const std::string& file) {
   DocumentSettings& settings = document.settings;
   if (settings.length_unit_guessed) settings.length_unit = header.settings.length_unit;
-  if (!settings.target_size_guessed || settings.target_size == header.settings.target_size || !(header.settings.target_size > 0)) return;
-  settings.target_size = header.settings.target_size;
+  if (!settings.target_size_guessed || settings.part_sizes_given || !(header.settings.target_size > 0)) return {};
+  Result<Judging> judging = judging_in(header, document, file);
+  if (!judging) return fail(std::move(judging.error()));
   auto judged = std::make_shared<Generation>(*document.opened);
-  judged->quality = quality::judge_model(judged->model, {settings.criteria, settings.target_size});
-  judged->counts = quality::count(judged->quality);
+  rejudge_parts(judged->model, settings.criteria, *judged->judging, *judging, judged->quality, judged->counts);
+  settings.target_size = judging->deck_size;
+  judged->judging = std::make_shared<const Judging>(std::move(*judging));
   document.opened = judged;
   document.generations = {document.opened};
+  return {};
 }
 
 std::string edit_name(std::string_view intent) {
@@ -86,6 +129,8 @@ Result<std::shared_ptr<const Generation>> rebuilt(const Document& document, cons
   const Result<NodeSet> moved = apply_delta(*delta, *next);
   if (!moved) return fail(moved.error());
   settle_growth(document.settings, document.current(), *moved, *next);
+  if (next->judging != document.current().judging)
+    rejudge_parts(next->model, document.settings.criteria, *document.current().judging, *next->judging, next->quality, next->counts);
   if (reshapes(record.intent)) next->surface = std::make_shared<const Model>(next->model);
   next->number = document.next_number;
   next->made_by = edit_name(record.intent);
@@ -141,8 +186,7 @@ Result<Journal> Journal::recover(const std::filesystem::path& path, Document& do
   Document rebuilt_document = document;
   const auto on_header = [&](const JournalHeader& header) -> Result<void> {
     if (const Result<void> same = check_deck(header, rebuilt_document, name); !same) return same;
-    take_settings(header, rebuilt_document);
-    return {};
+    return take_settings(header, rebuilt_document, name);
   };
   const auto on_record = [&](const JournalRecord& record) { return take_record(record, rebuilt_document, name); };
   const Result<JournalEnd> end = read_journal(text, name, on_header, on_record);

@@ -6,6 +6,7 @@
 #include "base/hash.h"
 #include "base/json/read.h"
 #include "base/json/write.h"
+#include "mesh/document/edit_fields.h"
 
 namespace prismesh::mesh::document {
 
@@ -112,7 +113,10 @@ PRISMESH_JSON_OBJECT(mesh::document::JournalHeader, f.required("program", m.prog
 PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::Deck, f.required("path", m.path), f.required("hash", m.hash),
                      f.required("nodes", m.nodes), f.required("shells", m.shells), f.required("parts", m.parts));
 PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::Settings, f.required("length_unit", m.length_unit),
-                     f.required("target_size", m.target_size), f.required("criteria", m.criteria));
+                     f.required("target_size", m.target_size), f.required("criteria", m.criteria), f("size_of_all", m.size_of_all),
+                     f("guessed_size", m.guessed_size), f("parts", m.parts));
+PRISMESH_JSON_OBJECT(mesh::document::JournalHeader::PartSizes, f.required("on", m.on), f.required("guessed", m.guessed),
+                     f.required("from", m.from), f("own", m.own));
 PRISMESH_JSON_NAMES(mesh::document::Prepared::Step,
                     {{mesh::document::step_name(mesh::document::Prepared::Step::push), mesh::document::Prepared::Step::push},
                      {mesh::document::step_name(mesh::document::Prepared::Step::undo), mesh::document::Prepared::Step::undo},

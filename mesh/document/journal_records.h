@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "mesh/document/prepare.h"
 
@@ -18,10 +19,20 @@ struct JournalHeader {
     std::string hash;
     std::size_t nodes = 0, shells = 0, parts = 0;
   };
+  /// Parts that have the same target size, for the same reasons.
+  struct PartSizes {
+    std::string on;      ///< as an expression
+    double guessed = 1;  ///< from their edges, or from the deck's
+    quality::SizeFrom from = quality::SizeFrom::part;
+    std::optional<TargetSize> own;  ///< that the user chose for them
+  };
   struct Settings {
     LengthUnit length_unit = LengthUnit::mm;
     double target_size = 1;
     std::string criteria;
+    TargetSize size_of_all = SizeGuess::deck;  ///< of the parts without a size of their own; older journals: one size for all
+    std::optional<double> guessed_size;        ///< the deck's; absent: target_size
+    std::vector<PartSizes> parts;              ///< empty in older journals
   };
   std::string program;  ///< version that wrote it
   Deck deck;

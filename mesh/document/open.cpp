@@ -4,44 +4,79 @@
 #include "mesh/deck/data/length_unit.h"
 #include "mesh/deck/open.h"
 #include "mesh/document/clusters.h"
+#include "mesh/document/deck_relations.h"
+#include "mesh/document/deck_settings.h"
 #include "mesh/document/find_deck_relations.h"
 #include "mesh/quality/mass.h"
 #include "mesh/quality/report.h"
+#include "mesh/quality/target_size.h"
 
 namespace prismesh::mesh::document {
 
 namespace {
 
-Result<DocumentSettings> find_settings(const deck::Deck& deck, const Model& model, const OpenOptions& options) {
+/// What was guessed for the parts, before anything is chosen.
+Judging guesses_for(const Model& model) {
+  Judging judging;
+  judging.guessed_size = quality::guess_target_size(model);
+  judging.guessed = quality::guess_part_sizes(model, judging.guessed_size);
+  judging.parts.resize(model.parts->size());
+  return judging;
+}
+
+/// The rules of the settings file, then those of the options.
+Result<std::vector<JudgingRule>> rules_of(const std::filesystem::path& deck, const OpenOptions& options) {
+  std::vector<JudgingRule> rules;
+  if (options.read_settings_file) {
+    Result<std::vector<JudgingRule>> beside = read_deck_settings(deck_settings_path(deck));
+    if (!beside) return fail(std::move(beside.error()));
+    rules = std::move(*beside);
+  }
+  if (options.target_size) rules.push_back({std::nullopt, options.target_size, std::nullopt, "", 0});
+  if (options.criteria) rules.push_back({std::nullopt, std::nullopt, options.criteria->string(), "", 0});
+  rules.insert(rules.end(), options.rules.begin(), options.rules.end());
+  return rules;
+}
+
+struct Settled {
   DocumentSettings settings;
+  std::shared_ptr<const Judging> judging;
+};
+
+Result<Settled> find_settings(const std::filesystem::path& path, const deck::Deck& deck, const Model& model, const select::Names& names,
+                              const OpenOptions& options) {
+  DocumentSettings settings = options.settings.value_or(DocumentSettings{});
   const std::optional<LengthUnit> known = options.length_unit ? options.length_unit : deck.length_unit;
   settings.length_unit_guessed = !known;
   settings.length_unit = known ? *known : deck::guess_length_unit(model);
-  settings.target_size_guessed = !options.target_size;
-  settings.target_size = options.target_size ? *options.target_size : quality::guess_target_size(model);
-  if (!(settings.target_size > 0 && settings.target_size < 1e300)) return fail("", "the target size must be greater than 0");
-  settings.criteria = quality::default_criteria();
-  if (options.judged_by) {
-    settings.criteria = *options.judged_by;
-  } else if (options.criteria) {
-    Result<quality::Criteria> criteria = quality::load_criteria(*options.criteria);
-    if (!criteria) return fail(criteria.error());
-    settings.criteria = std::move(*criteria);
-  }
+  if (!options.settings) settings.criteria = quality::default_criteria();
   settings.criteria.time_step_scale = deck.time_step.scale;
-  return settings;
+  if (options.judged_by && options.judged_by->parts.size() == model.parts->size()) return Settled{settings, options.judged_by};
+
+  Judging judging = guesses_for(model);
+  std::error_code failed;
+  settings.has_file = options.read_settings_file && std::filesystem::exists(deck_settings_path(path), failed);
+  const Result<std::vector<JudgingRule>> rules = rules_of(path, options);
+  if (!rules) return fail(rules.error());
+  if (Result<void> applied = apply_rules(*rules, model, names, settings, judging); !applied) return fail(std::move(applied.error()));
+  settle(judging);
+  settings.target_size = judging.deck_size;
+  settings.part_sizes_given =
+      std::any_of(options.rules.begin(), options.rules.end(), [](const JudgingRule& rule) { return rule.on && rule.target_size; });
+  settings.target_size_guessed = !std::holds_alternative<double>(judging.target_size);
+  return Settled{std::move(settings), std::make_shared<const Judging>(std::move(judging))};
 }
 
-std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const deck::Deck>& deck, Model model,
-                                                   const DocumentSettings& settings) {
+std::shared_ptr<const Generation> first_generation(std::shared_ptr<const DeckRelations> relations, Model model, const Settled& settled) {
   auto first = std::make_shared<Generation>();
-  first->relations = find_deck_relations(deck, model);
+  first->relations = std::move(relations);
   first->node_marks = ChunkedArray<std::uint8_t>::filled(model.node_count());
   first->shell_marks = ChunkedArray<std::uint8_t>::filled(model.shell_count());
   first->parts = std::make_shared<const std::vector<PartState>>(model.parts->size());
-  first->quality = quality::judge_model(model, {settings.criteria, settings.target_size});
+  first->judging = settled.judging;
+  first->quality = quality::judge_model(model, sized(settled.settings.criteria, *settled.judging));
   first->counts = quality::count(first->quality);
-  first->clusters = clusters_of(settings, model);
+  first->clusters = clusters_of(settled.settings, model);
   first->weight = quality::mass_properties(model);
   first->surface = std::make_shared<const Model>(model);
   first->model = std::move(model);
@@ -52,14 +87,15 @@ std::shared_ptr<const Generation> first_generation(const std::shared_ptr<const d
 }  // namespace
 
 Result<Document> open(const std::filesystem::path& path, deck::OpenedDeck opened, const OpenOptions& options) {
-  Result<DocumentSettings> settings = find_settings(*opened.deck, opened.model, options);
-  if (!settings) return fail(settings.error());
+  const std::shared_ptr<const DeckRelations> relations = find_deck_relations(opened.deck, opened.model);
+  Result<Settled> settled = find_settings(path, *opened.deck, opened.model, relations->names, options);
+  if (!settled) return fail(std::move(settled.error()));
   Document document;
   document.path = path;
   document.deck = std::move(opened.deck);
-  document.settings = std::move(*settings);
+  document.settings = settled->settings;
   document.history_bytes = options.history_bytes;
-  document.opened = first_generation(document.deck, std::move(opened.model), document.settings);
+  document.opened = first_generation(relations, std::move(opened.model), *settled);
   document.generations = {document.opened};
   return document;
 }

@@ -25,10 +25,34 @@ std::string title_of(Metric metric) {
   return title;
 }
 
+quality::SizedCriteria field_criteria(const DocumentSettings& settings, const Judging* judging) {
+  return judging != nullptr ? sized(settings.criteria, *judging) : quality::SizedCriteria{settings.criteria, settings.target_size};
+}
+
+bool have_same_limits(const quality::Threshold& a, const quality::Threshold& b) {
+  return a.warn_low == b.warn_low && a.warn_high == b.warn_high && a.fail_low == b.fail_low && a.fail_high == b.fail_high;
+}
+
+/// Whether all parts have the same limits of a metric, as far as they don't depend on thickness and material; `limits` are these.
+bool limited_alike(const quality::SizedCriteria& criteria, Metric metric, quality::Threshold& limits) {
+  const bool of_triangles = quality::is_of_triangles(metric);
+  limits = quality::threshold_of({criteria.criteria, criteria.target_size}, metric, of_triangles);
+  if (criteria.by_part == nullptr || criteria.by_part->distinct.empty()) return true;
+  bool is_first = true, alike = true;
+  for (const quality::PartCriteria& each : criteria.by_part->distinct) {
+    const quality::Threshold its =
+        quality::threshold_of({each.criteria ? *each.criteria : criteria.criteria, each.target_size}, metric, of_triangles);
+    alike = alike && (is_first || have_same_limits(its, limits));
+    limits = its;
+    is_first = false;
+  }
+  return alike;
+}
+
 /// From warning to failing if the criteria have both on one side; otherwise from the better end of the values to the worse one.
-FieldLimits colours_of(Metric metric, const DocumentSettings& settings, const FieldFigures& figures) {
-  const quality::Threshold limits =
-      quality::threshold_of({settings.criteria, settings.target_size}, metric, quality::is_of_triangles(metric));
+FieldLimits colours_of(Metric metric, const quality::SizedCriteria& criteria, const FieldFigures& figures) {
+  quality::Threshold limits;
+  if (!limited_alike(criteria, metric, limits)) return apart(figures.min, figures.max);
   if (std::isfinite(limits.warn_high) && std::isfinite(limits.fail_high)) return apart(limits.warn_high, limits.fail_high);
   if (std::isfinite(limits.warn_low) && std::isfinite(limits.fail_low)) return apart(limits.warn_low, limits.fail_low);
   return apart(figures.min, figures.max);
@@ -49,7 +73,8 @@ Result<Field> unless_empty(Field field, const char* why) {
 
 }  // namespace
 
-Result<Field> metric_field(const Model& model, Metric metric, const DocumentSettings& settings) {
+Result<Field> metric_field(const Model& model, Metric metric, const DocumentSettings& settings, const Judging* judging) {
+  const quality::SizedCriteria criteria = field_criteria(settings, judging);
   Field field{title_of(metric), std::string(quality::unit_of(metric, name(settings.length_unit))), false, {}, {}, {}};
   fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
@@ -57,19 +82,20 @@ Result<Field> metric_field(const Model& model, Metric metric, const DocumentSett
     quality::measure_shells(model, shells, values);
     for (std::size_t i = 0; i < shells.size(); ++i)
       // A defective shell has no value; its defect is reported instead.
-      if (!quality::judge(values[i], {settings.criteria, settings.target_size}).has_defect())
+      if (!quality::judge(values[i], {criteria.criteria, criteria.target_size}).has_defect())
         out[shells[i].value - begin] = values[i][static_cast<std::size_t>(metric)];
   });
-  field.limits = colours_of(metric, settings, field.figures);
+  field.limits = colours_of(metric, criteria, field.figures);
   return unless_empty(std::move(field), "there is no shell that it applies to");
 }
 
-Result<Field> composite_field(const Model& model, const DocumentSettings& settings) {
+Result<Field> composite_field(const Model& model, const DocumentSettings& settings, const Judging* judging) {
+  const quality::SizedCriteria criteria = field_criteria(settings, judging);
   Field field{"composite quality", {}, false, {}, {}, {kClearComposite, kFailingComposite}};
   fill(field, model.shell_count(), [&](std::size_t begin, std::size_t end, double* out) {
     const std::vector<ShellIndex> shells = live_shells_in(model, begin, end);
     std::vector<float> values(shells.size());
-    quality::composites(model, shells, {settings.criteria, settings.target_size}, values);
+    quality::composites(model, shells, criteria, values);
     for (std::size_t i = 0; i < shells.size(); ++i) out[shells[i].value - begin] = values[i];
   });
   return unless_empty(std::move(field), "there are no shells");

@@ -76,7 +76,7 @@ void judge_again(const DocumentSettings& settings, const Changes& changes, const
     --count_of(next.counts, next.quality[shell.value].grade());
     next.quality.set(shell.value, {});
   }
-  quality::rejudge(next.model, {settings.criteria, settings.target_size}, touched, next.quality, next.counts);
+  quality::rejudge(next.model, sized(settings.criteria, *next.judging), touched, next.quality, next.counts);
 }
 
 /// Existing shells of `after` whose corners or positions differ.

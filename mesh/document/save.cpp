@@ -5,6 +5,7 @@
 #include "base/counted.h"
 #include "mesh/deck/editing/text_changes.h"
 #include "mesh/deck/save.h"
+#include "mesh/document/deck_settings.h"
 #include "mesh/model/node_set.h"
 
 namespace prismesh::mesh::document {
@@ -24,7 +25,7 @@ std::string rounding_note(const Document& document, const deck::Rounding& roundi
   std::sort(nodes.begin(), nodes.end());
   ChunkedArray<quality::ShellState> states = current.quality;
   quality::Counts counts = current.counts;
-  quality::rejudge(as_read, {document.settings.criteria, document.settings.target_size}, shells_touching(as_read, nodes), states, counts);
+  quality::rejudge(as_read, judged_by(document), shells_touching(as_read, nodes), states, counts);
   if (counts == current.counts) return "";
   const auto said = [](const quality::Counts& c) { return counted(c.warn, "element") + " warn and " + std::to_string(c.fail) + " fail"; };
   return "with the rounded numbers, as the deck is read again, " + said(counts) + "; before, " + said(current.counts);
@@ -36,7 +37,10 @@ Result<deck::SaveReport> save(const Document& document, const std::filesystem::p
   Result<deck::StagedSave> staged = stage_save(document, target, progress);
   if (!staged) return fail(std::move(staged.error()));
   if (Result<void> placed = staged->put_in_place(); !placed) return fail(std::move(placed.error()));
-  return staged->report();
+  deck::SaveReport report = staged->report();
+  if (const Result<void> kept = keep_deck_settings(document, target); !kept)
+    report.notes.push_back("the target sizes are not kept beside the deck: " + kept.error().text());
+  return report;
 }
 
 Result<deck::StagedSave> stage_save(const Document& document, const std::filesystem::path& target, const Progress& progress) {

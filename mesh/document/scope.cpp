@@ -52,7 +52,7 @@ ShellIndex ancestor_in(const Model& earlier, const Model& model, ShellIndex shel
 Result<ShellSet> shells_in(const Document& document, Scope scope, std::string_view edit) {
   const Generation& current = document.current();
   switch (scope) {
-    case Scope::damaged: return damaged_shells(*document.opened, current);
+    case Scope::damaged: return damaged_shells(document);
     case Scope::failed: return failing(current);
     case Scope::all: {
       ShellSet shells;

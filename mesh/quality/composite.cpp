@@ -10,15 +10,15 @@ namespace prismesh::mesh::quality {
 
 float composite(const Values& values, const SizedCriteria& criteria, const ShellProperties& properties) {
   const BatchValues batch = batch_of(values);
-  const Limits limits = limits_for(criteria);
+  const Limits limits = limits_without_part(criteria.of(properties.part));
   float rated = 0;
-  rate_lanes(batch, 1, limits, limits.need_properties() ? &properties : nullptr, &rated);
+  rate_lanes(batch, 1, limits, limits.need_material() ? &properties : nullptr, &rated);
   return rated;
 }
 
 void composites(const Model& model, std::span<const ShellIndex> shells, const SizedCriteria& criteria, std::span<float> out,
                 std::span<Values> values) {
-  const Limits limits = limits_for(criteria);
+  const LimitsByPart limits = limits_for(criteria);
   const auto shell_of = [&](std::size_t i) { return shells[i].value; };
   std::fill(out.begin(), out.end(), 1.0F);
   for (Values& none : values) none.fill(std::numeric_limits<float>::quiet_NaN());

@@ -21,6 +21,8 @@ bool is_built_in_criteria(const std::filesystem::path& name) {
                      [&](const BuiltInCriteria& ours) { return name.native() == ours.name; });
 }
 
+std::string_view name(SizeFrom from) { return from == SizeFrom::part ? "part" : from == SizeFrom::deck ? "deck" : "given"; }
+
 const Criteria& default_criteria() {
   static const Criteria kCriteria = [] {
     const Result<Criteria> parsed = parse_criteria(kBuiltInCriteria[0].text, "mesh/quality/criteria/default.toml");

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/error.h"
+#include "mesh/model/index.h"
 #include "mesh/quality/metrics.h"
 
 namespace prismesh::mesh::quality {
@@ -38,10 +42,41 @@ struct Criteria {
   double warn_triangles_at_node = 4;  ///< max triangles about a node; more are a cluster (mesh/quality/structure.h)
 };
 
+/// Where a part's target size comes from.
+enum class SizeFrom : std::uint8_t {
+  part,   ///< the median edge of the part
+  deck,   ///< the median edge of the deck
+  given,  ///< the user
+};
+std::string_view name(SizeFrom from);  ///< "part", "deck", "given"
+
+/// What the shells of a part are judged by.
+struct PartCriteria {
+  double target_size = 1;                    ///< deck's length unit
+  std::shared_ptr<const Criteria> criteria;  ///< null: the deck's
+  SizeFrom size_from = SizeFrom::part;
+};
+
+/// What the shells of each part are judged by. Parts that are judged alike share an entry.
+struct CriteriaByPart {
+  std::vector<PartCriteria> distinct;
+  std::vector<std::uint32_t> of_part;  ///< by PartIndex: index into `distinct`
+
+  const PartCriteria& of(PartIndex part) const { return distinct[of_part[part.value]]; }
+};
+
 /// Criteria with the target size that their lengths are fractions of.
 struct SizedCriteria {
   const Criteria& criteria;
-  double target_size = 1;  ///< deck's length unit
+  double target_size = 1;                   ///< deck's length unit
+  const CriteriaByPart* by_part = nullptr;  ///< what parts are judged by; null: all shells by the two above
+
+  /// What the shells of a part are judged by, without `by_part`. An invalid part: of shells that belong to none.
+  SizedCriteria of(PartIndex part) const {
+    if (by_part == nullptr || part.value >= by_part->of_part.size()) return {criteria, target_size};
+    const PartCriteria& its = by_part->of(part);
+    return {its.criteria ? *its.criteria : criteria, its.target_size};
+  }
 };
 
 /// Reads a TOML criteria file, or takes the built-in criteria of that name ("default", "strict"; a file of such a name is ./strict).

@@ -7,14 +7,17 @@ namespace prismesh::mesh::quality {
 
 ShellState judge(const Values& values, const SizedCriteria& criteria, const ShellProperties& properties) {
   const BatchValues batch = batch_of(values);
-  const Limits limits = limits_for(criteria);
+  const Limits limits = limits_without_part(criteria.of(properties.part));
   ShellState state;
-  judge_lanes(batch, 1, limits, limits.need_properties() ? &properties : nullptr, &state);
+  judge_lanes(batch, 1, limits, limits.need_material() ? &properties : nullptr, &state);
   return state;
 }
 
 void judge_points(const PointShells& shells, const SizedCriteria& criteria, std::span<ShellState> out, std::span<float> composites) {
-  const Limits limits = limits_for(criteria);
+  judge_points(shells, limits_for(criteria), out, composites);
+}
+
+void judge_points(const PointShells& shells, const LimitsByPart& limits, std::span<ShellState> out, std::span<float> composites) {
   const bool by_properties = limits.need_properties() && !shells.properties.empty();
   measure_in_batches(
       shells.corners.size(),

@@ -39,7 +39,62 @@ void mark_defects(const BatchValues& values, std::size_t lanes, std::uint16_t* b
   }
 }
 
+/// Whether all lanes are judged by the same limits; then `common` are these.
+bool judged_alike(const LimitsByPart& limits, const ShellProperties* properties, std::size_t count, const Limits*& common) {
+  common = &limits.distinct.front();
+  if (!limits.need_part() || properties == nullptr || count == 0) return true;
+  const std::uint32_t first = limits.index_of(properties[0].part);
+  common = &limits.distinct[first];
+  for (std::size_t lane = 1; lane < count; ++lane)
+    if (properties[lane].part != properties[lane - 1].part && limits.index_of(properties[lane].part) != first) return false;
+  return true;
+}
+
+/// Calls `judge(values, count, limits, properties, out)` for lanes that are judged alike, brought together, and spreads what it puts out.
+template <class Out, class Judge>
+void judge_in_groups(const BatchValues& values, std::size_t count, const LimitsByPart& limits, const ShellProperties* properties, Out* out,
+                     const Judge& judge) {
+  const auto material = [](const Limits& of, const ShellProperties* known) { return of.need_material() ? known : nullptr; };
+  const Limits* common = nullptr;
+  if (judged_alike(limits, properties, count, common)) return judge(values, count, *common, material(*common, properties), out);
+  std::uint32_t index[kLanes];
+  for (std::size_t lane = 0; lane < count; ++lane) index[lane] = limits.index_of(properties[lane].part);
+  bool is_done[kLanes] = {};
+  BatchValues group;
+  group.of_triangles = values.of_triangles;
+  for (std::size_t first = 0; first < count; ++first) {
+    if (is_done[first]) continue;
+    std::size_t lanes[kLanes], size = 0;
+    ShellProperties of_group[kLanes];
+    for (std::size_t lane = first; lane < count; ++lane) {
+      if (index[lane] != index[first]) continue;
+      is_done[lane] = true;
+      for (int m = 0; m < kMetricCount; ++m) group.value[m][size] = values.value[m][lane];
+      of_group[size] = properties[lane];
+      lanes[size++] = lane;
+    }
+    Out judged[kLanes];
+    judge(group, size, limits.distinct[index[first]], material(limits.distinct[index[first]], of_group), judged);
+    for (std::size_t i = 0; i < size; ++i) out[lanes[i]] = judged[i];
+  }
+}
+
 }  // namespace
+
+void judge_lanes(const BatchValues& values, std::size_t count, const LimitsByPart& limits, const ShellProperties* properties,
+                 ShellState* out) {
+  judge_in_groups(values, count, limits, properties, out,
+                  [](const BatchValues& group, std::size_t size, const Limits& by, const ShellProperties* known, ShellState* judged) {
+                    judge_lanes(group, size, by, known, judged);
+                  });
+}
+
+void rate_lanes(const BatchValues& values, std::size_t count, const LimitsByPart& limits, const ShellProperties* properties, float* out) {
+  judge_in_groups(values, count, limits, properties, out,
+                  [](const BatchValues& group, std::size_t size, const Limits& by, const ShellProperties* known, float* rated) {
+                    rate_lanes(group, size, by, known, rated);
+                  });
+}
 
 void judge_lanes(const BatchValues& values, std::size_t count, const Limits& limits, const ShellProperties* properties, ShellState* out) {
   std::uint16_t warn[kLanes] = {}, failed[kLanes] = {};

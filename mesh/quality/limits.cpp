@@ -61,8 +61,9 @@ float length_of_step(double time_step, const Criteria& criteria) { return static
 
 }  // namespace
 
-Limits limits_for(const SizedCriteria& sized) {
-  const auto& [criteria, target_size] = sized;
+Limits limits_without_part(const SizedCriteria& sized) {
+  const Criteria& criteria = sized.criteria;
+  const double target_size = sized.target_size;
   Limits limits;
   limits.quad = shape_limits(criteria.quad, false, target_size);
   limits.triangle = shape_limits(criteria.triangle, true, target_size);
@@ -73,8 +74,22 @@ Limits limits_for(const SizedCriteria& sized) {
   return limits;
 }
 
-Threshold threshold_of(const SizedCriteria& sized, Metric metric, bool of_triangle, const ShellProperties& properties) {
-  const auto& [criteria, target_size] = sized;
+LimitsByPart limits_for(const SizedCriteria& sized) {
+  LimitsByPart limits;
+  limits.distinct.push_back(limits_without_part(sized));
+  if (sized.by_part != nullptr) {
+    for (const PartCriteria& each : sized.by_part->distinct)
+      limits.distinct.push_back(limits_without_part({each.criteria ? *each.criteria : sized.criteria, each.target_size}));
+    limits.part_limits = sized.by_part->of_part;
+  }
+  for (const Limits& each : limits.distinct) limits.needs_material = limits.needs_material || each.need_material();
+  return limits;
+}
+
+Threshold threshold_of(const SizedCriteria& by_part, Metric metric, bool of_triangle, const ShellProperties& properties) {
+  const SizedCriteria sized = by_part.of(properties.part);
+  const Criteria& criteria = sized.criteria;
+  const double target_size = sized.target_size;
   const int m = int(metric);
   const Threshold& given = (of_triangle ? criteria.triangle : criteria.quad)[static_cast<std::size_t>(m)];
   if (!is_length(m)) return given;

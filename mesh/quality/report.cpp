@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "base/parallel_for.h"
-#include "mesh/model/adjacency.h"
 #include "mesh/quality/judge_lanes.h"
 #include "mesh/quality/shell_batch.h"
 #include "mesh/quality/time_step.h"
@@ -40,7 +37,7 @@ void add_state(Counts& counts, ShellState state, std::ptrdiff_t by) {
 
 /// Measures and judges shells `shell_of(i)`, i in [0, count), without removed ones; `sink(batch, values, states, properties)`.
 template <class ShellOf, class Sink>
-void judge_batches(const Model& model, const Limits& limits, std::size_t count, const ShellOf& shell_of, const Sink& sink) {
+void judge_batches(const Model& model, const LimitsByPart& limits, std::size_t count, const ShellOf& shell_of, const Sink& sink) {
   measure_in_batches(
       count, [&](std::size_t i, const Vec3*(&corner)[4]) { return corners_of(model, shell_of(i), corner); },
       [&](const ShellBatch& batch, const BatchValues& values) {
@@ -54,7 +51,7 @@ void judge_batches(const Model& model, const Limits& limits, std::size_t count, 
 
 /// Only the states, into out[i].
 template <class ShellOf>
-void judge_shells(const Model& model, const Limits& limits, std::size_t count, const ShellOf& shell_of, std::span<ShellState> out) {
+void judge_shells(const Model& model, const LimitsByPart& limits, std::size_t count, const ShellOf& shell_of, std::span<ShellState> out) {
   judge_batches(model, limits, count, shell_of,
                 [&](const ShellBatch& batch, const BatchValues&, const ShellState* states, const ShellProperties*) {
                   for (std::size_t lane = 0; lane < batch.count; ++lane) out[batch.slot[lane]] = states[lane];
@@ -159,7 +156,7 @@ struct ShellFigures {
 /// What the figures of a range depend on.
 struct RangeInput {
   const Model& model;
-  const Limits& limits;
+  const LimitsByPart& limits;
   const TimeStepControl& control;
   const std::vector<PartFactors>& parts;
 };
@@ -224,19 +221,11 @@ std::size_t resize_states(ChunkedArray<ShellState>& states, std::size_t shells, 
   return known;
 }
 
-/// A value with two significant digits.
-double rounded_to_two_digits(double value) {
-  // through text: powers of ten are exact there
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1e", value);
-  return std::strtod(text, nullptr);
-}
-
 }  // namespace
 
 ChunkedArray<ShellState> judge_model(const Model& model, const SizedCriteria& criteria) {
   ChunkedArray<ShellState> states(model.shell_count(), ShellState::removed());
-  const Limits limits = limits_for(criteria);
+  const LimitsByPart limits = limits_for(criteria);
   parallel_for(model.shell_count(), kReportGrain, [&](std::size_t begin, std::size_t end) {
     const std::span<ShellState> out = states.own_chunk(begin / kReportGrain);
     judge_shells(
@@ -250,7 +239,7 @@ void rejudge(const Model& model, const SizedCriteria& criteria, const ShellSet& 
   ShellSet dirty(shells.begin(), std::lower_bound(shells.begin(), shells.end(), ShellIndex(known)));
   for (std::size_t s = known; s < model.shell_count(); ++s) dirty.emplace_back(s);
 
-  const Limits limits = limits_for(criteria);
+  const LimitsByPart limits = limits_for(criteria);
   std::vector<ShellState> fresh(dirty.size(), ShellState::removed());
   parallel_for(dirty.size(), kReportGrain, [&](std::size_t begin, std::size_t end) {
     judge_shells(
@@ -273,7 +262,7 @@ Counts count(const ChunkedArray<ShellState>& states) {
 }
 
 Report report(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control, const ShellSet* shells) {
-  const Limits limits = limits_for(criteria);
+  const LimitsByPart limits = limits_for(criteria);
   const std::size_t elements = shells != nullptr ? shells->size() : model.shell_count();
   const std::vector<PartFactors> parts = factors_of(model, control.shell_option);
   std::vector<RangeFigures> partials((elements + kReportGrain - 1) / kReportGrain);
@@ -309,21 +298,6 @@ std::vector<PartReport> report_by_part(const Model& model, const SizedCriteria& 
   for (std::size_t p = 0; p < of_part.size(); ++p)
     if (!of_part[p].empty()) reports.push_back({PartIndex(p), report(model, criteria, control, &of_part[p])});
   return reports;
-}
-
-double guess_target_size(const Model& model) {
-  const Adjacency& adjacency = *model.adjacency;
-  std::vector<float> lengths(adjacency.edge_count());
-  parallel_for(model.node_count(), 65536, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t low = begin; low < end; ++low)
-      for (std::size_t e = adjacency.edge_first[low]; e < adjacency.edge_first[low + 1]; ++e)
-        lengths[e] = static_cast<float>((model.position(adjacency.edge_high[e]) - model.positions[low]).norm());
-  });
-  std::erase_if(lengths, [](float length) { return !std::isfinite(length); });
-  if (lengths.empty()) return 1.0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle > 0 ? rounded_to_two_digits(*middle) : 1.0;
 }
 
 }  // namespace prismesh::mesh::quality

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/model/model.h"
 #include "mesh/model/node_set.h"
 #include "mesh/quality/criteria.h"
 #include "mesh/quality/shell_state.h"
@@ -58,9 +59,5 @@ struct PartReport {
 /// The same by part, ascending, for parts with at least one of the shells.
 std::vector<PartReport> report_by_part(const Model& model, const SizedCriteria& criteria, const TimeStepControl& control,
                                        const ShellSet* shells = nullptr);
-
-/// A target size for a model that states none: the median edge length, rounded to two digits; 1 for a model without shells. Precondition:
-/// the model has its adjacency.
-double guess_target_size(const Model& model);
 
 }  // namespace prismesh::mesh::quality

@@ -1,4 +1,4 @@
-// Thickness and wave speed of a shell, which criteria may depend on.
+// Thickness, wave speed and part of a shell, which criteria may depend on.
 #pragma once
 
 #include "mesh/model/model.h"
@@ -9,6 +9,7 @@ namespace prismesh::mesh::quality {
 struct ShellProperties {
   float thickness = 0;   ///< deck's length unit
   float wave_speed = 0;  ///< of the material, deck's units; 0 also where it doesn't limit the time step
+  PartIndex part;        ///< tells by which target size and criteria the shell is judged; invalid: by those of shells without a part
 
   ShellProperties() = default;
   ShellProperties(double its_thickness, double its_wave_speed = 0)

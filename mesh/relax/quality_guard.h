@@ -55,7 +55,7 @@ class QualityGuard {
   std::vector<std::uint32_t> moved_shells(const std::vector<Vec3>& good, const std::vector<Vec3>& positions) const;
 
   const SpringNet& net_;
-  quality::Limits limits_;
+  quality::LimitsByPart limits_;
   std::vector<quality::ShellProperties> properties_;  ///< empty if not needed
   std::vector<quality::ShellState> state_;            ///< at the start
   std::vector<float> min_composite_;                  ///< that each shell must keep

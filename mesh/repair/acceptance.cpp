@@ -6,6 +6,7 @@
 
 #include "mesh/quality/judge_lanes.h"
 #include "mesh/quality/shell_batch.h"
+#include "mesh/repair/local_size.h"
 #include "mesh/repair/patch_geometry.h"
 
 namespace prismesh::mesh::repair {
@@ -102,10 +103,11 @@ bool edge_conforms(const Patch& patch, LocalNode a, LocalNode b) {
 }
 
 /// Max distance of shells from the surface, at the points that divide edges inside sheets, and quads in both directions, into `parts`.
+/// `size`: the max distance looked at.
 template <class PositionOf>
-double max_distance_to_surface(const RepairContext& context, const std::vector<Corners>& list, int parts, const PositionOf& at) {
+double max_distance_to_surface(const RepairContext& context, const std::vector<Corners>& list, int parts, double size,
+                               const PositionOf& at) {
   double farthest = 0;
-  const double size = 2 * context.criteria.target_size;
   const auto look = [&](const Vec3& point, const Vec3& normal) {
     const auto place = context.surface.project(point, size, normal);
     farthest = std::max(farthest, place ? place->distance : size);
@@ -202,13 +204,16 @@ bool adds_failures(const Patch& patch) {
 bool stays_on_surface(const RepairContext& context) {
   const Patch& patch = context.patch;
   std::vector<Corners> now, before;
-  for (const LocalShell shell : patch.changed_shells()) now.push_back(patch.shell(shell).corners);
-  const double allowed = context.options.max_off_surface * context.criteria.target_size;
-  const double off = max_distance_to_surface(context, now, 2, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
+  const std::vector<LocalShell> changed = patch.changed_shells();
+  for (const LocalShell shell : changed) now.push_back(patch.shell(shell).corners);
+  const SizeRange sizes = target_sizes_of(context, changed);
+  const double allowed = context.options.max_off_surface * sizes.min, reach = 2 * sizes.max;
+  const double off = max_distance_to_surface(context, now, 2, reach, [&](LocalNode n) -> const Vec3& { return patch.position(n); });
   if (off <= allowed) return true;
   for (const auto& [shell, was] : patch.old_shells()) before.push_back(was.corners);
   // The shells before are sampled at quarters: the middles of their halves lie there.
-  return off <= 1.0001 * max_distance_to_surface(context, before, 4, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
+  return off <=
+         1.0001 * max_distance_to_surface(context, before, 4, reach, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
 }
 
 }  // namespace prismesh::mesh::repair

@@ -8,6 +8,7 @@
 
 #include "mesh/repair/collapse.h"
 #include "mesh/repair/divide.h"
+#include "mesh/repair/local_size.h"
 #include "mesh/repair/node_moves.h"
 #include "mesh/repair/redivide.h"
 #include "mesh/repair/strips.h"
@@ -71,7 +72,7 @@ void add_collapses(const RepairContext& context, LocalShell shell, std::vector<C
   for (int e = 0; e < count; ++e) {
     const EdgeOf edge = edge_of(corners, e);
     // Only short edges: collapsing others makes long shells nearby.
-    if (length_of(context.patch, edge) <= std::max(1.5 * shortest, 0.5 * context.criteria.target_size))
+    if (length_of(context.patch, edge) <= std::max(1.5 * shortest, 0.5 * target_size_of(context, shell)))
       add_collapse(context, edge.a, edge.b, found);
   }
   if (count != 4) return;
@@ -129,12 +130,13 @@ void add_rows(const RepairContext& context, LocalShell shell, std::vector<Candid
   const Patch& patch = context.patch;
   const Corners& corners = patch.shell(shell).corners;
   if (corner_count(corners) != 4) return;
+  const double size = target_size_of(context, shell);
   for (int direction = 0; direction < 2; ++direction) {
     const double across = width_of(patch, corners, direction);
     // Halves of a short shell would be too short.
-    if (across < 0.6 * context.criteria.target_size) continue;
+    if (across < 0.6 * size) continue;
     Row row{shell, direction};
-    const double long_edge = std::max(kLong * context.criteria.target_size, 0.8 * across);
+    const double long_edge = std::max(kLong * size, 0.8 * across);
     const int forward = run_of(patch, row, true, long_edge), back = run_of(patch, row, false, long_edge);
     std::vector<std::pair<int, int>> lengths_tried = {
         {forward, back}, {forward + 1, back + 1}, {forward + 1, back}, {forward, back + 1}, {0, 0}};
@@ -190,7 +192,7 @@ std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell s
     if (patch.node(node).lines.empty()) found.push_back({Operation::split, [&context, node] { return divide_about(context, node); }});
   }
   if (count == 4) {
-    const double max_off = context.options.max_off_surface * context.criteria.target_size;
+    const double max_off = context.options.max_off_surface * target_size_of(context, shell);
     const auto warped = 1U << static_cast<unsigned>(quality::Metric::warpage);
     if ((patch.shell(shell).state.warn & warped) != 0)
       for (std::size_t c = 0; c < 4; ++c)
@@ -206,7 +208,7 @@ std::vector<Candidate> strips_for(const RepairContext& context, LocalShell shell
   std::vector<Candidate> found;
   const Corners& corners = context.patch.shell(shell).corners;
   if (corner_count(corners) != 4) return found;
-  const double width = width_of(context.patch, corners, edge), size = context.criteria.target_size;
+  const double width = width_of(context.patch, corners, edge), size = target_size_of(context, shell);
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   std::vector<StripPath> courses;
   // Different length limits may give the same strip: each is tried once.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/repair/local_size.h"
 #include "mesh/repair/patch_geometry.h"
 #include "mesh/repair/placement.h"
 
@@ -29,7 +30,7 @@ Refusal refuse_collapse(const RepairContext& context, const Collapse& pair, Loca
   if (one.is_rim || two.is_rim || one.shells != two.shells) return "that would bend an edge of the part";
   other_end = one.node == pair.kept ? two.node : one.node;
   const double off = distance_to_segment(gone.position, patch.position(pair.kept), patch.position(other_end));
-  if (off > context.options.max_off_surface * context.criteria.target_size) return "that would bend an edge of the part";
+  if (off > context.options.max_off_surface * target_size_at(context, pair.removed)) return "that would bend an edge of the part";
   return std::nullopt;
 }
 
@@ -103,7 +104,7 @@ Refusal collapse_nodes(const RepairContext& context, const std::vector<Collapse>
         const Vec3 own = area_normal(patch, patch.shell(shell).corners);
         normal += normal.dot(own) < 0 ? Vec3(-own) : own;
       }
-      const auto place = on_surface(context, middle, normal, context.criteria.target_size);
+      const auto place = on_surface(context, middle, normal, target_size_at(context, collapses[i].kept));
       if (place && within_limit(context, collapses[i].kept, *place)) patch.move(collapses[i].kept, *place);
     }
     patch.remove_node(collapses[i].removed);

@@ -13,7 +13,7 @@ struct RepairContext {
   const relax::ReferenceSurface& surface;
   const quality::SizedCriteria& criteria;
   const Options& options;
-  quality::Limits limits;  ///< that shells are judged by: the criteria's, or stricter ones
+  quality::LimitsByPart limits;  ///< that shells are judged by: the criteria's, or stricter ones
 };
 
 }  // namespace prismesh::mesh::repair

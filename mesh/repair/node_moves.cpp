@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/repair/local_size.h"
 #include "mesh/repair/patch_geometry.h"
 #include "mesh/repair/placement.h"
 
@@ -29,7 +30,7 @@ Refusal lift_node(const RepairContext& context, LocalNode node, double distance)
   }
   const double length = normal.norm();
   if (!(length > 0)) return "the node can't be moved";
-  const auto place = context.surface.project(n.position, context.criteria.target_size, Vec3(normal / length));
+  const auto place = context.surface.project(n.position, target_size_at(context, node), Vec3(normal / length));
   if (!place) return "the node isn't near the surface";
   const Vec3 lifted = place->point + distance * (normal / length);
   if (!within_limit(context, node, lifted)) return "a node would go farther than it may";

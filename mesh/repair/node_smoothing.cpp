@@ -7,6 +7,7 @@
 
 #include "mesh/quality/judge_lanes.h"
 #include "mesh/quality/shell_batch.h"
+#include "mesh/repair/local_size.h"
 #include "mesh/repair/patch_geometry.h"
 #include "mesh/repair/placement.h"
 
@@ -88,7 +89,7 @@ NodeNeighbourhood around(const Patch& patch, LocalNode node) {
 /// Whether a line's two edges at a node would follow the line with the node at `place`: within the options' limit, or as closely as now.
 bool follows_line(const RepairContext& context, LocalNode node, const Vec3& place) {
   const Patch& patch = context.patch;
-  const double allowed = context.options.max_off_surface * context.criteria.target_size;
+  const double allowed = context.options.max_off_surface * target_size_at(context, node);
   const auto off = [&](const Vec3& at, const Vec3& end) {
     const Vec3 middle = 0.5 * (at + end);
     const auto on_line = context.surface.project_on_line(middle, 0.5 * (at - end).norm());

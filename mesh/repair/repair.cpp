@@ -38,6 +38,11 @@ quality::Limits with_margin(quality::Limits limits) {
   return limits;
 }
 
+quality::LimitsByPart with_margin(quality::LimitsByPart limits) {
+  for (quality::Limits& each : limits.distinct) each = with_margin(each);
+  return limits;
+}
+
 ChangeHistory history_of(const Patch& patch, const Model& model, const ShellSet& scope, double max_triangles_percent) {
   ChangeHistory history;
   history.in_scope.assign(patch.shell_count(), 0);

@@ -14,6 +14,7 @@
 #include "mesh/quality/metrics.h"
 #include "mesh/quality/report.h"
 #include "mesh/quality/structure.h"
+#include "mesh/quality/target_size.h"
 #include "tests/bench/million_quads.h"
 #include "tests/support/verdict_library.h"
 
@@ -96,6 +97,14 @@ void judge_a_million(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(judge_model(model, {default_criteria(), 5.0}));
 }
 BENCHMARK(judge_a_million)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// Each shell by the target size of its part.
+void judge_a_million_by_part(benchmark::State& state) {
+  const Model& model = bench::million_quads();
+  const CriteriaByPart by_part = share_entries(std::vector<PartCriteria>(model.parts->size(), PartCriteria{5.0, nullptr, SizeFrom::part}));
+  for (auto _ : state) benchmark::DoNotOptimize(judge_model(model, {default_criteria(), 99.0, &by_part}));
+}
+BENCHMARK(judge_a_million_by_part)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 void report_of_a_million(benchmark::State& state) {
   const Model& model = bench::million_quads();

@@ -125,7 +125,7 @@ TEST_F(Cli, info_says_parts_files_and_warnings_in_words) {
   EXPECT_THAT(outcome.out, HasSubstr("target size  5 mm (guessed)\n"));
   EXPECT_THAT(outcome.out, HasSubstr("nodes        35\n"));
   EXPECT_THAT(outcome.out, HasSubstr("shells       24 quads, 1 triangles, 0 8-node quads, 0 6-node triangles\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("parts        1\n  part:7  plate  24 quads, 1 triangles, 1.2 mm thick\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("parts        1\n  part:7  plate  24 quads, 1 triangles, 1.2 mm thick, target size 5 mm (guessed)\n"));
   EXPECT_THAT(outcome.out, HasSubstr("warnings     1\n"));
   EXPECT_THAT(outcome.out, HasSubstr("gone.k"));
   EXPECT_THAT(prismesh({"info", deck, "--target-size", "4", "--length-unit", "m"}).out, HasSubstr("length unit  m\ntarget size  4 m\n"));

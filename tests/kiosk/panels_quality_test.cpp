@@ -89,6 +89,15 @@ TEST_F(QualityPanel, a_bar_clicked_with_shift_adds_its_shells) {
   for (const BarClicked& each : clicked_down<BarClicked>(60)) EXPECT_EQ(each.mode, SelectMode::set) << "Shift was let go";
 }
 
+TEST_F(QualityPanel, target_sizes_are_shown_and_guessed_again_by_a_click) {
+  EXPECT_TRUE(clicked_down<SizeChosen>(60).empty()) << "without parts there is no size";
+  facts_.sizes = SizeFacts{5, 130, "mm", true};
+  std::set<mesh::document::TargetSize> chosen;
+  for (double x = 20; x < 300; x += 16)
+    for (const SizeChosen& choice : clicked_down<SizeChosen>(x)) chosen.insert(choice.size);
+  EXPECT_EQ(chosen, (std::set<mesh::document::TargetSize>{mesh::document::SizeGuess::part, mesh::document::SizeGuess::deck}));
+}
+
 TEST_F(QualityPanel, an_error_is_gone_to_and_named) {
   std::set<std::size_t> errors;
   for (const ErrorClicked& clicked : clicked_down<ErrorClicked>(60)) errors.insert(clicked.error);

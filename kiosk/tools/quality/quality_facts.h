@@ -13,6 +13,13 @@
 
 namespace prismesh::kiosk::tools::quality {
 
+/// The target sizes of the parts with shells.
+struct SizeFacts {
+  double min = 0, max = 0;
+  std::string unit;
+  bool of_selection = false;  ///< something is selected: a new size applies to the selection's parts, else to all
+};
+
 struct QualityFacts {
   const ipc::Quality* figures = nullptr;  ///< null: not here yet
   bool stale = false;                     ///< of an older generation; newer figures are requested
@@ -21,6 +28,7 @@ struct QualityFacts {
   std::optional<std::size_t> error;  ///< the error that the view went to
   MendLimits limits{};
   std::string length_unit;
+  std::optional<SizeFacts> sizes;
 };
 
 struct ChooseMetric {
@@ -34,7 +42,11 @@ struct ErrorClicked {
   std::size_t error = 0;
 };
 
-using QualityAction = std::variant<ChooseMetric, BarClicked, ErrorClicked>;
+struct SizeChosen {
+  mesh::document::TargetSize size;
+};
+
+using QualityAction = std::variant<ChooseMetric, BarClicked, ErrorClicked, SizeChosen>;
 using QualityActions = std::vector<QualityAction>;
 
 }  // namespace prismesh::kiosk::tools::quality

@@ -172,6 +172,15 @@ void errors_section(const QualityFacts& facts, PanelLayout& layout, QualityActio
   }
 }
 
+const char* size_source_words(mesh::quality::SizeFrom from) {
+  switch (from) {
+    case mesh::quality::SizeFrom::part: return ", its median edge";
+    case mesh::quality::SizeFrom::deck: return ", the deck's median edge";
+    case mesh::quality::SizeFrom::given: break;
+  }
+  return ", as set";
+}
+
 /// The parts with the worst mean; the list of all may have hundreds.
 void parts_section(const QualityFacts& facts) {
   std::vector<ipc::QualityPart> parts = facts.figures->parts;
@@ -185,8 +194,9 @@ void parts_section(const QualityFacts& facts) {
   for (std::size_t i = 0; i < shown; ++i) {
     fact(fmt::format("part {}", parts[i].part).c_str(), fmt::format("{:.2f}, least {:.2f}", parts[i].composite, parts[i].least_composite));
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s shells, %s warn, %s fail\n1 is ideal, 0 at the fail limit, below 0 it fails", grouped(parts[i].shells).c_str(),
-                        grouped(parts[i].warn).c_str(), grouped(parts[i].fail).c_str());
+      ImGui::SetTooltip("%s shells, %s warn, %s fail\n1 is ideal, 0 at the fail limit, below 0 it fails\ntarget size %s%s",
+                        grouped(parts[i].shells).c_str(), grouped(parts[i].warn).c_str(), grouped(parts[i].fail).c_str(),
+                        readable(parts[i].target_size, 4).c_str(), size_source_words(parts[i].size_from));
   }
   if (parts.size() > shown) ImGui::TextDisabled("%s better ones", grouped(parts.size() - shown).c_str());
 }
@@ -199,6 +209,32 @@ void limits_rows(const QualityFacts& facts, PanelLayout& layout) {
   row("nodes move at most", facts.limits.max_move.free, "no limit", QualityCommand::sheet_limit);
   row("on feature lines", facts.limits.max_move.line, "no limit", QualityCommand::line_limit);
   row("neighbours join beyond", facts.limits.threshold, "default", QualityCommand::relax_threshold);
+}
+
+std::string sizes_words(const SizeFacts& sizes) {
+  if (sizes.min == sizes.max) return panels::length_text(sizes.min, sizes.unit);
+  return readable(sizes.min, 4) + " to " + panels::length_text(sizes.max, sizes.unit);
+}
+
+/// What lengths are judged by, and a way to set it for the selection's parts or all.
+void sizes_section(const SizeFacts& sizes, QualityActions& actions) {
+  section("Target size");
+  fact(sizes.min == sizes.max ? "of all parts" : "by part", sizes_words(sizes));
+  double wanted = sizes.min;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", sizes.of_selection ? "selection's parts" : "all parts");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 4);
+  if (ImGui::InputDouble("##target size", &wanted, 0, 0, "%.4g", ImGuiInputTextFlags_EnterReturnsTrue) && wanted > 0 &&
+      std::isfinite(wanted))
+    actions.emplace_back(SizeChosen{wanted});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("type a length and press Enter");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("own edges")) actions.emplace_back(SizeChosen{mesh::document::SizeGuess::part});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("each part's median edge");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("deck's")) actions.emplace_back(SizeChosen{mesh::document::SizeGuess::deck});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("the deck's median edge, one for all");
 }
 
 void commands_section(const QualityFacts& facts, PanelLayout& layout) {
@@ -234,6 +270,7 @@ QualityActions quality_panel(const QualityFacts& facts, PanelLayout& layout) {
     errors_section(facts, layout, actions);
     parts_section(facts);
   }
+  if (facts.sizes) sizes_section(*facts.sizes, actions);
   commands_section(facts, layout);
   ImGui::End();
   return actions;

@@ -174,6 +174,14 @@ void QualityTool::step_error(int by) {
   go_to_error(static_cast<std::size_t>(at));
 }
 
+/// The target size of a shell's part; the deck's without a shell.
+double QualityTool::target_size_at(const std::optional<mesh::ShellIndex>& shell) const {
+  const auto& shown = context_.shown.snapshot;
+  if (!shell || shell->value >= shown->shell_count()) return shown->info().target_size;
+  const mesh::PartIndex part = shown->shell_part(shell->value);
+  return part.value < shown->info().parts.size() ? shown->info().parts[part.value].target_size : shown->info().target_size;
+}
+
 void QualityTool::go_to_error(std::size_t error) {
   const ipc::Quality* figures = link_.figures();
   if (figures == nullptr || error >= figures->errors.size()) return;
@@ -184,7 +192,7 @@ void QualityTool::go_to_error(std::size_t error) {
   marked_ = shell_with_id(context_, wrong.shell);
   PictureView& view = context_.view;
   const mesh::Vec3 at(wrong.at[0], wrong.at[1], wrong.at[2]);
-  const double scale = scale_to_look_at(context_.shown.snapshot->info().target_size, view.view.mm_per_unit, aim(view).mm_per_pixel());
+  const double scale = scale_to_look_at(target_size_at(marked_), view.view.mm_per_unit, aim(view).mm_per_pixel());
   view.glide.begin(at, scale, context_.clock.now_ns());
   context_.trace.line(fmt::format("error {} of {} {}", error + 1, figures->error_count, error_words(wrong)));
 }
@@ -203,8 +211,24 @@ void QualityTool::act(const QualityAction& action) {
     choose_metric(metric->metric);
   else if (const auto* bar = std::get_if<BarClicked>(&action))
     select_bar(*bar);
+  else if (const auto* size = std::get_if<SizeChosen>(&action))
+    send(context_, mesh::document::SetTargetSize{size->size, std::nullopt});
   else
     go_to_error(std::get<ErrorClicked>(action).error);
+}
+
+std::optional<SizeFacts> QualityTool::size_facts(const ipc::SnapshotInfo& info) const {
+  SizeFacts sizes;
+  for (const ipc::SnapshotPart& part : info.parts) {
+    if (part.shells == 0) continue;
+    const bool first = sizes.max == 0;
+    sizes.min = first ? part.target_size : std::min(sizes.min, part.target_size);
+    sizes.max = std::max(sizes.max, part.target_size);
+  }
+  if (sizes.max == 0) return std::nullopt;
+  sizes.unit = info.length_unit;
+  sizes.of_selection = info.selected_nodes + info.selected_shells > 0;
+  return sizes;
 }
 
 void QualityTool::draw_left(PanelLayout& layout) {
@@ -216,6 +240,7 @@ void QualityTool::draw_left(PanelLayout& layout) {
   facts.error = error_;
   facts.limits = limits_;
   facts.length_unit = context_.shown.snapshot->info().length_unit;
+  facts.sizes = size_facts(context_.shown.snapshot->info());
   for (const QualityAction& action : quality_panel(facts, layout)) layout.ask([this, action] { act(action); });
 }
 

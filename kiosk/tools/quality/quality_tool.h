@@ -47,6 +47,8 @@ class QualityTool final : public Tool {
   void choose_metric(const std::string& metric);
   void select_bar(const BarClicked& bar);
   void act(const QualityAction& action);
+  std::optional<SizeFacts> size_facts(const ipc::SnapshotInfo& info) const;
+  double target_size_at(const std::optional<mesh::ShellIndex>& shell) const;
   void step_error(int by);
   void go_to_error(std::size_t error);
   void leave_error();

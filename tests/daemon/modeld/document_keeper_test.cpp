@@ -219,7 +219,7 @@ TEST_P(CarriedAlone, survives_a_save_and_a_restart) {
     const auto facts = [](const DocumentKeeper& keeper) {
       const Generation& now = keeper.document().current();
       return std::tuple(now.parts->at(0).locked, now.parts->at(0).hidden, now.selected_nodes, now.selected_shells,
-                        mesh::live_shells(now.model));
+                        mesh::live_shells(now.model), now.judging->by_part.of(mesh::PartIndex(0)).target_size);
     };
     auto killed = std::make_unique<DocumentKeeper>(StateFolder(folder_.state()));
     ASSERT_TRUE(killed->open(request, {}));
@@ -240,15 +240,53 @@ TEST_P(CarriedAlone, survives_a_save_and_a_restart) {
 }
 
 const char* name_of_carried(const ::testing::TestParamInfo<const char*>& info) {
-  constexpr std::array kNames{"Locks", "HiddenParts", "Nodes", "Shells"};
+  constexpr std::array kNames{"Locks", "HiddenParts", "Nodes", "Shells", "TargetSize"};
   return kNames.at(info.index);
 }
 
 INSTANTIATE_TEST_SUITE_P(Keeping, CarriedAlone,
                          ::testing::Values(R"({"edit":"lock","on":"7"})", R"({"edit":"hide","on":"7"})",
-                                           R"({"edit":"select","expr":"1001-1010"})",
-                                           R"({"edit":"select","expr":"1-10","kind":"element"})"),
+                                           R"({"edit":"select","expr":"1001-1010"})", R"({"edit":"select","expr":"1-10","kind":"element"})",
+                                           R"({"edit":"set_target_size","size":0.125})"),
                          name_of_carried);
+
+TEST_F(Keeping, target_sizes_are_kept_beside_the_deck_at_once) {
+  const fs::path deck = folder_.sheet(), file = deck.string() + ".prismesh.toml";
+  const auto size = [](const DocumentKeeper& of) { return of.document().current().judging->by_part.of(mesh::PartIndex(0)).target_size; };
+  DocumentKeeper first = keeper();
+  ASSERT_TRUE(first.open(request(deck), {}));
+  const double guessed = size(first);
+  ASSERT_TRUE(first.edit(move_edit(1313, 0.25)));
+  EXPECT_FALSE(fs::exists(file)) << "nothing was chosen";
+  const Edit set = mesh::document::parse_edit(R"({"edit":"set_target_size","size":0.125,"on":"7"})").value();
+  ASSERT_TRUE(first.edit(set));
+  EXPECT_TRUE(fs::exists(file));
+  ASSERT_TRUE(first.close(true));
+  DocumentKeeper second = keeper();
+  ASSERT_TRUE(second.open(request(deck), {}));
+  EXPECT_EQ(size(second), 0.125) << "the size outlives the edits that were given up";
+  EXPECT_FALSE(second.changed());
+  const Edit back = mesh::document::parse_edit(R"({"edit":"set_target_size","size":"part"})").value();
+  ASSERT_TRUE(second.edit(back));
+  EXPECT_EQ(size(second), guessed);
+  ASSERT_TRUE(second.edit(Undo{}));
+  ASSERT_TRUE(second.close(true));
+  DocumentKeeper third = keeper();
+  ASSERT_TRUE(third.open(request(deck), {}));
+  EXPECT_EQ(size(third), 0.125) << "an undo is kept too";
+}
+
+TEST_F(Keeping, rules_of_the_request_count_more_than_the_file) {
+  const fs::path deck = folder_.sheet();
+  std::ofstream(deck.string() + ".prismesh.toml") << "target_size = 3\n";
+  ipc::Open asked = request(deck);
+  asked.rules = {{"7", TargetSize(2.0), "strict", "", 0}};
+  DocumentKeeper told = keeper();
+  ASSERT_TRUE(told.open(asked, {}));
+  EXPECT_EQ(judged_by(told.document()).of(mesh::PartIndex(0)).target_size, 2);
+  EXPECT_EQ(judged_by(told.document()).of(mesh::PartIndex(0)).criteria.name, "strict");
+  EXPECT_EQ(told.state().target_size, 3);
+}
 
 TEST_F(Keeping, the_users_unit_and_criteria_are_those_of_the_document) {
   ipc::Open asked = request(folder_.sheet());

@@ -80,7 +80,7 @@ class HangingTest : public ::testing::Test {
   Document open_text(const DeckText& deck) {
     put_content(folder_ / "main.k", deck.text());
     OpenOptions options;
-    options.target_size = 10;
+    options.target_size = 10.0;
     Result<Document> document = open(folder_ / "main.k", options);
     if (!document) ADD_FAILURE() << document.error().text();
     return std::move(*document);
@@ -207,7 +207,7 @@ TEST_F(HangingTest, undo_and_saving_bring_welds_along) {
   must_apply(document, R"({"edit":"translate","by":[0,0,4],"on":"part:1","falloff":{"profile":"constant"}})");
   ASSERT_TRUE(save(document, folder_ / "out.k"));
   OpenOptions options;
-  options.target_size = 10;
+  options.target_size = 10.0;
   const Result<Document> again = open(folder_ / "out.k", options);
   ASSERT_TRUE(again);
   EXPECT_NEAR(at(*again, 901).z(), 4.1, 1e-9);

@@ -31,7 +31,7 @@ inline Document make_document(Model model, std::size_t history_bytes = std::size
   auto deck = std::make_shared<deck::Deck>();
   deck->content = {content, 0};
   OpenOptions options;
-  options.target_size = 5.0;
+  options.target_size = 5.0;  // of all parts
   options.length_unit = LengthUnit::mm;
   options.history_bytes = history_bytes;
   return open("model.k", {deck, std::move(model)}, options).value();

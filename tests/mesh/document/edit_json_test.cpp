@@ -34,6 +34,8 @@ TEST(EditJson, every_edit_reads_its_example) {
           R"({"edit":"only","on":"1-3"})",
           R"({"edit":"lock","on":"3"})",
           R"({"edit":"unlock"})",
+          R"({"edit":"set_target_size","size":5.5,"on":"3"})",
+          R"({"edit":"set_target_size","size":"deck"})",
           R"({"edit":"translate","by":[0,0,1],"on":"1-100","grab":7,"falloff":{"profile":"gaussian","flat":0.5,"along":[1,0,0]},"free_ends":false,"origin":"free_edge","max_move":2})",
           R"({"edit":"lift","distance":-2.5,"normals":"each","grab":[1,2,3],"on":{"edit":"select_region","at":[0,0,0],"angle":20}})",
           R"({"edit":"slide","by":[3,0,0],"grab":7,"max_move":2,"across_welds":true})",

@@ -205,7 +205,7 @@ TEST(Journal, is_pinned_to_its_deck) {
 TEST(Journal, takes_over_guessed_settings_only) {
   const Session session;
   OpenOptions too_large;
-  too_large.target_size = 77;
+  too_large.target_size = 77.0;
   Document guessed = open("model.k", {small().deck, small().opened->model}, too_large).value();
   guessed.settings.target_size_guessed = true;
   ASSERT_NE(guessed.current().counts, small().current().counts);

@@ -40,7 +40,7 @@ class NamesTest : public ::testing::Test {
     put_content(folder_ / "bumper.k", kBumper);
     put_content(folder_ / "welds.k", kWelds);
     OpenOptions options;
-    options.target_size = 10;
+    options.target_size = 10.0;
     document_ = open(folder_ / "main.k", options).value();
   }
   std::vector<std::int64_t> selected(const std::string& expression) {

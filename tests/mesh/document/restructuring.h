@@ -47,7 +47,7 @@ inline Document open_text(const std::filesystem::path& path, const std::string& 
   put_content(path, text);
   OpenOptions options;
   options.length_unit = LengthUnit::mm;
-  options.target_size = 5.0;
+  options.target_size = 5.0;  // of all parts
   options.history_bytes = history_bytes;
   return open(path, options).value();
 }

@@ -10,6 +10,7 @@
 #include "mesh/quality/mass.h"
 #include "mesh/quality/measure.h"
 #include "mesh/quality/report.h"
+#include "mesh/quality/target_size.h"
 #include "tests/support/make_model.h"
 
 namespace prismesh::mesh::quality {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/quality/mass.h"
+#include "mesh/quality/target_size.h"
 #include "mesh/quality/time_step.h"
 #include "tests/support/make_model.h"
 

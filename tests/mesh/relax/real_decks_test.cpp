@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 
+#include "mesh/quality/target_size.h"
 #include "tests/mesh/relax/relaxing.h"
 #include "tests/support/real_deck.h"
 
@@ -37,7 +38,7 @@ TEST(relax_real_decks, makes_nothing_worse_and_slid_meshes_better) {
   for (const char* name : kDecks) {
     SCOPED_TRACE(name);
     const Model original = open_real(*decks, name);
-    const double size = quality::guess_target_size(original);
+    const double size = quality::guess_target_size(original);  // one for all parts
     const relax::ReferenceSurface surface(original, all_shells(original), 30);
     for (const bool by_sliding : {false, true}) {
       const Model before = by_sliding ? slid(original, surface) : original;
@@ -63,7 +64,7 @@ TEST(relax_real_decks, keeps_corners_and_lines_however_often) {
   const auto decks = real_decks();
   if (!decks) GTEST_SKIP() << "PRISMESH_MODELS names no folder of decks";
   const Model original = open_real(*decks, "seat_adyrel_rad");
-  const double size = quality::guess_target_size(original);
+  const double size = quality::guess_target_size(original);  // one for all parts
   const relax::ReferenceSurface surface(original, all_shells(original), 30);
   const std::vector<relax::Freedom> freedoms = relax::node_freedoms(original, all_nodes(original), 30);
   Model model = original;

@@ -11,6 +11,7 @@
 #include "mesh/deck/assembly/read_pieces.h"
 #include "mesh/deck/open.h"
 #include "mesh/quality/report.h"
+#include "mesh/quality/target_size.h"
 #include "mesh/relax/freedom.h"
 #include "tests/mesh/repair/sheets.h"
 #include "tests/mesh/repair/validator.h"
@@ -132,7 +133,7 @@ TEST_P(RealDecks, are_repaired_where_a_bump_damaged_them) {
   ASSERT_TRUE(opened.has_value());
   Model model = opened->model;
   if (!model.adjacency) model.adjacency = std::make_shared<const Adjacency>(build_adjacency(model));
-  const double size = quality::guess_target_size(model);
+  const double size = quality::guess_target_size(model);  // one for all parts
   const auto was = quality::judge_model(model, {quality::default_criteria(), size});
   const NodeIndex centre = smoothest_place(model);
   const Model bad = bumped(model, centre, GetParam().radius * size, GetParam().height * GetParam().radius * size);
