@@ -75,7 +75,8 @@ std::string info_json(const document::Document& document, const std::vector<Part
                      {"target_size", settings.target_size},
                      {"target_size_guessed", settings.target_size_guessed},
                      {"nodes", document.current().model.node_index->size()},
-                     {"elements", counts_of_elements(deck.element_cards)},
+                     {"elements", counts_of_elements(deck.element_cards.without(deck.left_out_cards))},
+                     {"elements_left_out", counts_of_elements(deck.left_out_cards)},
                      {"element_cards", std::move(cards)},
                      {"parts", std::move(listed)},
                      {"warnings", std::move(warnings)}};
