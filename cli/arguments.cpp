@@ -7,6 +7,7 @@
 #include <optional>
 #include <ostream>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,11 +43,18 @@ std::pair<CLI::App*, Options*> add_command(Parser& parser, const std::string& na
   return {app, options.get()};
 }
 
+/// An empty argument (a shell's unset variable) names no file.
+CLI::Option* names_file(CLI::Option* option) {
+  return option->check(CLI::Validator([](const std::string& text) { return text.empty() ? "names no file" : std::string(); }, ""));
+}
+
 /// Makes a CLI11 transform that stores an std::optional path, text or number.
 template <class T>
 CLI::Option* add_optional(CLI::App* app, const std::string& name, std::optional<T>& target, const std::string& what) {
-  return app->add_option_function<std::string>(
+  CLI::Option* option = app->add_option_function<std::string>(
       name, [&target](const std::string& text) { target = T(text); }, what);
+  if constexpr (std::is_same_v<T, std::filesystem::path>) names_file(option);
+  return option;
 }
 
 /// SIZE or SIZE@PARTS, cut at the first @.
@@ -113,24 +121,24 @@ void add_common(Parser& parser) {
 
 void add_reading_commands(Parser& parser) {
   const auto [info_app, info_options] = add_command<InfoOptions>(parser, "info", "print what a deck contains", info);
-  info_app->add_option("DECK", info_options->deck, "the deck's main file")->required();
+  names_file(info_app->add_option("DECK", info_options->deck, "the deck's main file"))->required();
   info_app->add_flag("--save-settings", info_options->save_settings,
                      "also keep the target sizes and criteria in the settings file beside the deck, DECK.prismesh.toml");
 
   const auto [check_app, check_options] = add_command<CheckOptions>(parser, "check", "measure the quality of a deck's shells", check);
-  check_app->add_option("DECK", check_options->deck, "the deck's main file")->required();
+  names_file(check_app->add_option("DECK", check_options->deck, "the deck's main file"))->required();
   add_optional(check_app, "--select", check_options->select, "only these shells, e.g. part:3,shell:100-200");
   check_app->add_flag("--save-settings", check_options->save_settings,
                       "also keep the target sizes and criteria in the settings file beside the deck, DECK.prismesh.toml");
   check_app->add_flag("--chordal", check_options->chordal, "also the distance of edges from the smooth surface through the mesh");
 
   const auto [diff_app, diff_options] = add_command<DiffOptions>(parser, "diff", "compare two decks by ids and by lines", diff);
-  diff_app->add_option("A", diff_options->a, "a deck")->required();
-  diff_app->add_option("B", diff_options->b, "another deck")->required();
+  names_file(diff_app->add_option("A", diff_options->a, "a deck"))->required();
+  names_file(diff_app->add_option("B", diff_options->b, "another deck"))->required();
 
   const auto [distance_app, distance_options] =
       add_command<DistanceOptions>(parser, "distance", "measure the shortest distance between two sets of nodes or shells", distance);
-  distance_app->add_option("DECK", distance_options->deck, "the deck's main file")->required();
+  names_file(distance_app->add_option("DECK", distance_options->deck, "the deck's main file"))->required();
   distance_app->add_option("--from", distance_options->from, "an expression: node ids, shell:ID, part:ID")->required();
   distance_app->add_option("--to", distance_options->to, "another expression")->required();
 }
@@ -146,21 +154,21 @@ void add_elements(CLI::App* app, std::optional<std::size_t>& elements, const std
 
 void add_writing_commands(Parser& parser) {
   const auto [edit_app, edit_options] = add_command<EditOptions>(parser, "edit", "edit a deck and write the result", edit);
-  edit_app->add_option("DECK", edit_options->deck, "the deck's main file")->required();
+  names_file(edit_app->add_option("DECK", edit_options->deck, "the deck's main file"))->required();
   edit_app->add_option("--edit", edit_options->edits, "an edit as JSON; may be repeated")->take_all()->allow_extra_args(false);
   add_optional(edit_app, "--script", edit_options->script, "a file of edits, one JSON object per line; they follow those of --edit");
-  edit_app->add_option("-o,--output", edit_options->output, "the main file to write")->required();
+  names_file(edit_app->add_option("-o,--output", edit_options->output, "the main file to write"))->required();
   add_optional(edit_app, "--journal", edit_options->journal, "also write a journal of the edits to this file");
 
   const auto [replay_app, replay_options] = add_command<ReplayOptions>(parser, "replay", "apply a journal's edits to a deck again", replay);
-  replay_app->add_option("JOURNAL", replay_options->journal, "a journal, or a file of edits")->required();
-  replay_app->add_option("DECK", replay_options->deck, "the deck that the journal was made on, or a variant of it")->required();
-  replay_app->add_option("-o,--output", replay_options->output, "the main file to write")->required();
+  names_file(replay_app->add_option("JOURNAL", replay_options->journal, "a journal, or a file of edits"))->required();
+  names_file(replay_app->add_option("DECK", replay_options->deck, "the deck that the journal was made on, or a variant of it"))->required();
+  names_file(replay_app->add_option("-o,--output", replay_options->output, "the main file to write"))->required();
 
   const auto [sample_app, sample_options] =
       add_command<SampleOptions>(parser, "sample", "write a generated sheet-metal assembly as an example deck", sample);
   add_elements(sample_app, sample_options->elements, "about how many shells", mesh::deck::kSampleShellsDefault);
-  sample_app->add_option("-o,--output", sample_options->output, "the deck to write")->required();
+  names_file(sample_app->add_option("-o,--output", sample_options->output, "the deck to write"))->required();
 }
 
 void add_bench(Parser& parser) {
@@ -173,8 +181,8 @@ void add_bench(Parser& parser) {
 
 void add_render(Parser& parser) {
   const auto [app, options] = add_command<RenderOptions>(parser, "render", "draw a deck into a picture, without a screen", render);
-  app->add_option("DECK", options->deck, "the deck's main file")->required();
-  app->add_option("-o,--output", options->output, "the PNG to write")->required();
+  names_file(app->add_option("DECK", options->deck, "the deck's main file"))->required();
+  names_file(app->add_option("-o,--output", options->output, "the PNG to write"))->required();
   add_optional(app, "--select", options->select, "show these nodes as selected, e.g. 1-100,part:3");
   // the kiosk checks the values of these
   const auto pass_on = [app = app, o = options](const std::string& name, const std::string& what) {
@@ -216,7 +224,7 @@ void add_session(Parser& parser) {
     command->parse_complete_callback([o, action] { o->action = action; });
     return command;
   };
-  add("open", Action::open, "open a deck")->add_option("DECK", options->deck, "the deck's main file")->required();
+  names_file(add("open", Action::open, "open a deck")->add_option("DECK", options->deck, "the deck's main file"))->required();
   CLI::App* edit_app = add("edit", Action::edit, "edit the open document");
   edit_app->add_option("EDIT", options->edits, "an edit as JSON; may be repeated");
   add_optional(edit_app, "--script", options->script, "a file of edits, one JSON object per line; they follow the others");

@@ -45,7 +45,8 @@ const char* size_source(mesh::quality::SizeFrom from) {
 
 void print_text(std::ostream& out, const mesh::document::Document& document) {
   const mesh::deck::Deck& deck = *document.deck;
-  const mesh::deck::ElementCounts& n = deck.element_cards;
+  const mesh::deck::ElementCounts n = deck.element_cards.without(deck.left_out_cards);
+  const mesh::deck::ElementCounts& left_out = deck.left_out_cards;
   const mesh::document::DocumentSettings& settings = document.settings;
   const std::string unit(name(settings.length_unit));
   const auto guessed = [](bool is) { return is ? " (guessed)" : ""; };
@@ -58,6 +59,9 @@ void print_text(std::ostream& out, const mesh::document::Document& document) {
   out << "shells       " << n.quad << " quads, " << n.tri << " triangles, " << n.quad8 << " 8-node quads, " << n.tri6
       << " 6-node triangles\n";
   out << "others       " << n.beam << " beams, " << n.solid << " solids, " << n.tshell << " thick shells, " << n.other << " more\n";
+  if (left_out.all() > 0)
+    out << "left out     " << counted(left_out.shells(), "shell") << ", " << left_out.beam << " beams, " << left_out.solid << " solids, "
+        << left_out.tshell << " thick shells, " << left_out.other << " more: see the warnings\n";
   if (!deck.element_kinds.empty()) {
     out << "by card     ";
     for (const auto& [kind, count] : deck.element_kinds) out << ' ' << printable(kind) << ' ' << count;

@@ -86,7 +86,8 @@ std::string info_json(const document::Document& document, const std::vector<Part
                      {"target_size", judging.deck_size},
                      {"target_size_guessed", is_guessed(judging.target_size)},
                      {"nodes", document.current().model.node_index->size()},
-                     {"elements", counts_of_elements(deck.element_cards)},
+                     {"elements", counts_of_elements(deck.element_cards.without(deck.left_out_cards))},
+                     {"elements_left_out", counts_of_elements(deck.left_out_cards)},
                      {"element_cards", std::move(cards)},
                      {"parts", std::move(listed)},
                      {"warnings", std::move(warnings)}};

@@ -125,6 +125,8 @@ Result<std::vector<FilePlan>> plan_elsewhere(const Deck& deck, const TextChanges
 }
 
 Result<std::vector<FilePlan>> plan(const Deck& deck, const TextChanges& text, const fs::path& target) {
+  if (!target.has_filename())
+    return fail(target.string(), target.empty() ? "the name of the file to write is empty" : "names a folder; give a file's name");
   return same_file(target, deck.files[0].path) ? plan_in_place(deck, text) : plan_elsewhere(deck, text, target);
 }
 

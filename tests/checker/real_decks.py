@@ -86,7 +86,8 @@ def check_counts(told, deck, counter, name, failures):
     for word, count in counter["elements"].items():
         failures.expect(mine["elements"].get(word, 0) == count, f"the checker counts {mine['elements'].get(word, 0)} {word}, not {count}")
     failures.expect(told["nodes"] == mine["nodes"], f"info says {told['nodes']} nodes, the checker {mine['nodes']}")
-    check_classes(told["elements"], deck, failures)
+    check_classes({k: told["elements"][k] + told["elements_left_out"][k] for k in told["elements"]}, deck, failures)
+    check_left_out(told, deck, failures)
     ids = {p["id"] for p in told["parts"]}
     wanted = {p for p in deck.parts | {e.part for e in deck.elements if e.cls in SHELLS and e.part} if isinstance(p, int)}
     failures.expect(wanted <= ids, f"info doesn't tell of parts {sorted(wanted - ids)[:5]}")
@@ -110,6 +111,18 @@ def check_classes(told, deck, failures):
     for cls, words in CLASSES.items():
         mine = sum(deck.words.get(w, 0) for w in words)
         failures.expect(told[cls] == mine, f"info says {told[cls]} {cls}, the checker {mine}")
+
+
+def check_left_out(told, deck, failures):
+    """Shells that name a node which nobody defines, or that have too few, aren't in the model; nor is a second one of the same id."""
+    kinds = {word for cls in ("quad", "tri", "quad8", "tri6") for word in CLASSES[cls]}
+    whole, ids = 0, set()
+    for e in deck.elements:
+        if e.kind in kinds and len([n for n in e.nodes if n]) >= 3 and all(n in deck.nodes for n in e.nodes if n) and e.id not in ids:
+            whole += 1
+            ids.add(e.id)
+    shown = sum(told["elements"][k] for k in ("quad", "tri", "quad8", "tri6"))
+    failures.expect(shown == whole, f"info counts {shown} shells that are not left out, the checker {whole}")
 
 
 def same_files(deck, folder, failures):

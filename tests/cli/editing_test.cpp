@@ -16,6 +16,19 @@ std::vector<json> lines(const std::string& text) {
   return all;
 }
 
+TEST_F(Cli, a_save_that_fails_leaves_no_folders) {
+  const std::string deck = write("plate.k", plate_text());
+  std::filesystem::create_symlink("gone/deep/out.k", folder / "link.k");
+  const std::vector<std::string> before = names();
+  for (const std::string& out : {path("plate.k/sub/out.k"), path("new/deep/"), path("link.k")}) {
+    const Outcome outcome = prismesh({"edit", deck, "-o", out});
+    EXPECT_EQ(outcome.status, kFailed) << out;
+    EXPECT_EQ(names(), before) << out;
+  }
+  EXPECT_THAT(prismesh({"edit", deck, "-o", path("link.k")}).err, HasSubstr("whose folder isn't there"));
+  EXPECT_THAT(prismesh({"edit", deck, "-o", path("new/")}).err, HasSubstr("names a folder; give a file's name"));
+}
+
 TEST_F(Cli, no_edits_write_the_same_bytes) {
   std::string text = plate_text();
   text.insert(text.find("*PART"), "*MAT_UNKNOWN_STRANGE\r\n\tanything \xff at all\n*INCLUDE\nsub/more.k\n");

@@ -5,6 +5,7 @@ namespace prismesh::cli {
 namespace {
 
 using nlohmann::json;
+using ::testing::Not;
 
 TEST_F(Cli, info_has_every_field) {
   const std::string deck = write("plate.k", plate_text());
@@ -18,13 +19,21 @@ TEST_F(Cli, info_has_every_field) {
   EXPECT_EQ(info["nodes"], 35);
   EXPECT_EQ(info["elements"],
             (json{{"quad", 24}, {"tri", 0}, {"quad8", 0}, {"tri6", 0}, {"beam", 0}, {"solid", 0}, {"tshell", 0}, {"other", 0}}));
-  EXPECT_EQ(
-      info["parts"],
-      json::array(
-          {{{"id", 7}, {"name", "plate"}, {"quads", 24}, {"tris", 0}, {"thickness", 1.2}, {"box", {{0.0, 0.0, 0.0}, {30.0, 20.0, 0.0}}}}}));
+  EXPECT_EQ(info["elements_left_out"],
+            (json{{"quad", 0}, {"tri", 0}, {"quad8", 0}, {"tri6", 0}, {"beam", 0}, {"solid", 0}, {"tshell", 0}, {"other", 0}}));
+  EXPECT_EQ(info["parts"], json::array({{{"id", 7},
+                                         {"name", "plate"},
+                                         {"quads", 24},
+                                         {"tris", 0},
+                                         {"thickness", 1.2},
+                                         {"box", {{0.0, 0.0, 0.0}, {30.0, 20.0, 0.0}}},
+                                         {"target_size", 5.0},
+                                         {"target_size_from", "part"},
+                                         {"criteria", "default"}}}));
   EXPECT_EQ(info["warnings"], json::array());
   EXPECT_EQ(outcome.err, "");
   const Outcome text = prismesh({"info", deck});
+  EXPECT_THAT(text.out, Not(HasSubstr("left out")));
   EXPECT_THAT(text.out, HasSubstr("target size  5 mm (guessed)"));
   EXPECT_THAT(text.out, HasSubstr("part:7  plate  24 quads, 0 triangles, 1.2 mm thick"));
 }
@@ -37,6 +46,10 @@ TEST_F(Cli, what_is_missing_is_a_warning_with_its_place) {
   ASSERT_EQ(outcome.status, kDone) << outcome.err;
   const json warnings = outcome.json()["warnings"];
   ASSERT_EQ(warnings.size(), 2u) << warnings;
+  EXPECT_EQ(outcome.json()["elements"]["quad"], 24);
+  EXPECT_EQ(outcome.json()["elements_left_out"]["quad"], 1);
+  EXPECT_EQ(prismesh({"check", deck, "--json"}).json()["elements"], 24);
+  EXPECT_THAT(prismesh({"info", deck}).out, HasSubstr("left out     1 shell, 0 beams, 0 solids, 0 thick shells, 0 more: see the warnings"));
   std::vector<std::string> kinds;
   for (const json& warning : warnings) {
     EXPECT_EQ(warning["file"], deck);

@@ -41,6 +41,13 @@ TEST_F(Cli, wrong_usage_is_status_2_and_a_sentence) {
       {{"sample"}, "--output is required"},
       {{"distance", "a.k", "--from", "1"}, "--to is required"},
       {{"diff", "a.k"}, "B is required"},
+      {{"edit", "a.k", "-o", ""}, "output: names no file"},
+      {{"replay", "a.journal", "a.k", "-o", ""}, "output: names no file"},
+      {{"sample", "-o", ""}, "output: names no file"},
+      {{"info", ""}, "DECK: names no file"},
+      {{"diff", "a.k", ""}, "B: names no file"},
+      {{"edit", "a.k", "-o", "b.k", "--script", ""}, "--script: names no file"},
+      {{"edit", "a.k", "-o", "b.k", "--journal", ""}, "--journal: names no file"},
   };
   for (const Wrong& wrong : all) {
     const Outcome outcome = prismesh(wrong.args);
