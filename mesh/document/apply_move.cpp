@@ -60,7 +60,7 @@ void note_free_endings(const Model& model, const Motion& motion, EditReport& rep
   const auto id = [&](NodeIndex node) { return "node:" + std::to_string(model.node_ids[node.value]); };
   if (motion.free_ending > 0)
     report.notes.push_back(counted(motion.free_ending, "node") +
-                           " of a free ending move by the whole displacement; \"free_ends\": \"weighted\" weights them by distance");
+                           " of a free ending moved by the whole displacement; \"free_ends\": \"weighted\" weights them by distance");
   if (!motion.other_edge.valid()) return;
   if (motion.edge.valid())
     report.notes.push_back("the origin is the free edge at " + id(motion.edge) + ", not the nearest one, at " + id(motion.other_edge) +

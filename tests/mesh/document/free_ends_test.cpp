@@ -44,7 +44,7 @@ TEST(FreeEnds, follow_a_lift_whole_and_the_report_tells) {
     EXPECT_EQ(height(document, 50, y), 0);
   }
   EXPECT_THAT(report.notes,
-              Contains("98 nodes of a free ending move by the whole displacement; \"free_ends\": \"weighted\" weights them by "
+              Contains("98 nodes of a free ending moved by the whole displacement; \"free_ends\": \"weighted\" weights them by "
                        "distance"));
   Document weighted = make_strip();
   const EditReport before = must_apply(weighted, lift_by_10(kMiddle, R"(,"free_ends":"weighted")"));
@@ -114,6 +114,15 @@ TEST(FreeEnds, as_origin_are_those_beyond_the_grab_or_those_asked_for) {
   const Result<EditReport> refused = try_apply(document, broken);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message, "lift: origin_at must be of finite numbers");
+}
+
+TEST(FreeEnds, follow_on_both_sides_of_a_plane_of_symmetry) {
+  Document document = make_strip();
+  must_apply(document, lift_by_10(1 + 12 + 21 * 2, R"(,"symmetry":{"point":[0,50,0],"normal":[0,1,0]})"));
+  for (int y = 0; y <= 100; y += 10) {
+    for (int x = 120; x <= 200; x += 10) EXPECT_NEAR(height(document, x, y), 10, 1e-12);
+    EXPECT_EQ(height(document, 90, y), height(document, 90, 100 - y));
+  }
 }
 
 TEST(FreeEnds, leave_a_grabbed_side_and_tell) {
