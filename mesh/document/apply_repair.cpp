@@ -50,7 +50,7 @@ void note_unrepaired(const repair::Repaired& repaired, const Frozen& frozen, con
     const repair::Unrepaired& left = repaired.unrepaired[i];
     const auto known = frozen.shells.find(left.shell);
     report.notes.push_back(shell_name(model, left.shell) + ": " +
-                           (known == frozen.shells.end() ? left.why : "can't be changed: " + known->second));
+                           (known == frozen.shells.end() ? left.why : "can't be changed: " + known->second.why));
   }
 }
 
@@ -119,9 +119,7 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
   note_operations(*repaired, report);
   note_unrepaired(*repaired, frozen, next.model, report);
   note_clusters_left(*repaired, next.model, report);
-  if (!frozen.shells.empty())
-    report.notes.push_back(counted(frozen.shells.size(), "element") +
-                           " left as they are, since the deck can't be written otherwise: " + frozen.shells.begin()->second);
+  for (std::string& note : notes_of(frozen)) report.notes.push_back(std::move(note));
   return {};
 }
 

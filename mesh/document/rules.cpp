@@ -21,7 +21,11 @@ constexpr std::uint8_t kAllShellRules = repair::kKeepsNodes | repair::kIndivisib
 class Rulebook {
  public:
   Rulebook(const Document& document, const Generation& generation)
-      : deck_(*document.deck), generation_(generation), deletion_(*document.deck), division_(*document.deck) {
+      : deck_(*document.deck),
+        generation_(generation),
+        deletion_(*document.deck),
+        division_(*document.deck),
+        kind_(*document.deck, document.opened->model) {
     for (const NodeOnSheet& each : generation.relations->dependents.on_sheets)
       (each.tied ? tied_shells_ : welded_shells_).push_back(each.shell);
     sort_unique(welded_shells_);
@@ -88,6 +92,9 @@ class Rulebook {
   bool may_be_divided(ShellIndex shell) {
     return !deck_.references || division_.may_be_divided(model().shell_ids[deck_ancestor(model(), shell).value]).has_value();
   }
+  bool may_change_kind(ShellIndex shell) {
+    return !deck_.references || deck_.shell_runs.empty() || kind_.may_change_kind(deck_ancestor(model(), shell)).has_value();
+  }
   bool is_middled(ShellIndex shell) const { return contains(middled_shells_, shell); }
 
   std::uint8_t find_node(NodeIndex node) {
@@ -107,13 +114,15 @@ class Rulebook {
     if (is_middled(shell) || contains(welded_shells_, shell)) return kAllShellRules;
     if (!deck_.shell_runs.empty() && deck_.is_held(deck_.run_of(deck_ancestor(model(), shell)).file)) return kAllShellRules;
     const bool lasts = contains(tied_shells_, shell) || !may_be_deleted(Referred::shell, model().shell_ids[shell.value]);
-    return static_cast<std::uint8_t>((lasts ? repair::kLasting : 0) | (may_be_divided(shell) ? 0 : repair::kIndivisible));
+    return static_cast<std::uint8_t>((lasts ? repair::kLasting : 0) | (may_be_divided(shell) ? 0 : repair::kIndivisible) |
+                                     (may_change_kind(shell) ? 0 : repair::kNoTriangle));
   }
 
   const deck::Deck& deck_;
   const Generation& generation_;
   deck::DeletionCheck deletion_;
   deck::DivisionCheck division_;
+  deck::KindCheck kind_;
   ShellSet welded_shells_;   ///< a weld lies on them and follows their corners
   ShellSet tied_shells_;     ///< a tied node lies on them
   ShellSet middled_shells_;  ///< with mid-side nodes

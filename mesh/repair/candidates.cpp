@@ -11,6 +11,7 @@
 #include "mesh/repair/local_size.h"
 #include "mesh/repair/node_moves.h"
 #include "mesh/repair/redivide.h"
+#include "mesh/repair/row_slide.h"
 #include "mesh/repair/strips.h"
 
 namespace prismesh::mesh::repair {
@@ -186,6 +187,8 @@ std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell s
   add_redivisions(context, shell, found);
   add_rows(context, shell, found);
   add_rows_between_triangles(context, shell, found);
+  for (const RowSlide& slide : row_slides(context, shell))
+    found.push_back({Operation::move, [&context, slide] { return slide_row(context, slide); }});
   found.push_back({std::nullopt, [&context, shell] { return mark_neighbourhood_changed(context, shell); }});
   for (int e = 0; e < count; ++e) {
     const LocalNode node = corners[static_cast<std::size_t>(e)];

@@ -52,7 +52,7 @@ Refusal end_row(const RepairContext& context, const EdgeAt& at, LocalNode middle
     return std::nullopt;
   }
   if (const Refusal refusal = refuse_dividing(patch, at.shell, count)) return refusal;
-  if ((patch.shell(at.shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
+  if (count == 4 && (patch.shell(at.shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into triangles";
   if (count == 3) {
     patch.set_corners(at.shell, corners_along(patch, {a, middle, d}, direction));
     patch.add_shell(corners_along(patch, {middle, b, d}, direction), at.shell);

@@ -131,6 +131,7 @@ Refusal divide_about(const RepairContext& context, LocalNode node) {
     if (const Refusal refusal = refuse_dividing(patch, shell, static_cast<std::size_t>(corner_count(patch.shell(shell).corners))))
       return refusal;
     const Corners c = patch.shell(shell).corners;
+    if (corner_count(c) == 3 && (patch.shell(shell).rules & kNoTriangle) != 0) return "a shell there can't be divided into quads";
     const auto count = static_cast<std::size_t>(corner_count(c));
     const auto at = static_cast<std::size_t>(std::find(c.begin(), c.end(), node) - c.begin());
     const LocalNode next = c[(at + 1) % count], last = c[(at + count - 1) % count];

@@ -94,6 +94,9 @@ Refusal redivide(const RepairContext& context, LocalShell first, LocalShell seco
             pieces.size() > 2 ? refuse_dividing(patch, shell, piece.size()) : refuse_reshaping(patch, shell, piece.size()))
       return refusal;
   }
+  for (std::size_t i = 2; i < pieces.size(); ++i)
+    if ((f.rules & kNoTriangle) != 0 && static_cast<int>(pieces[i].size()) != corner_count(f.corners))
+      return "a shell there can't be divided into triangles";
   const Vec3 f_edge = first_edge(patch, first), g_edge = first_edge(patch, second);
   if (pieces.size() == 1) {
     patch.remove_shell(goes);

@@ -79,8 +79,10 @@ class StripPlan {
   bool goes_on(LocalShell shell, std::size_t out) const {
     const auto [a, b] = nodes_of(shell, out);
     const double length = (patch_.position(a) - patch_.position(b)).norm();
-    if (length < strip_.min_length || length > strip_.max_length || !patch_.may_divide(a, b) || refuse_dividing(patch_, shell, 4))
-      return false;
+    // A strip that ends in a quad leaves a triangle there. Where none may be, it goes on whatever its edges' lengths.
+    const bool may_end = (patch_.shell(shell).rules & kNoTriangle) == 0;
+    if (may_end && (length < strip_.min_length || length > strip_.max_length)) return false;
+    if (!patch_.may_divide(a, b) || refuse_dividing(patch_, shell, 4)) return false;
     // The shells beyond must be divided as well, or be reshaped as the strip's end.
     const std::vector<LocalShell> shells = patch_.shells_at(a, b);
     return std::none_of(shells.begin(), shells.end(), [&](LocalShell other) {

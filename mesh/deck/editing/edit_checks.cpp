@@ -2,7 +2,10 @@
 
 #include <utility>
 
+#include "mesh/deck/editing/ancestors.h"
+#include "mesh/deck/editing/deck_card.h"
 #include "mesh/deck/editing/names.h"
+#include "mesh/deck/editing/other_kind.h"
 #include "mesh/deck/editing/text_place.h"
 #include "mesh/deck/formats/formats.h"
 #include "mesh/deck/writing/card_writer.h"
@@ -75,6 +78,28 @@ Result<void> DivisionCheck::may_be_between(std::span<const std::int64_t> nodes) 
   return fail(error_at(deck_, unread->file, unread->begin,
                        "no node can come between the nodes " + named + ": " + keyword_name(deck_.format, unread->keyword) +
                            " isn't read in this version, and may say of them what would hold of it too"));
+}
+
+KindCheck::KindCheck(const Deck& deck, const Model& original)
+    : deck_(deck),
+      original_(original),
+      writer_(card_writer(deck.format)),
+      other_kind_(std::make_unique<OtherKind>(deck, original, *writer_)) {}
+KindCheck::~KindCheck() = default;
+
+Result<void> KindCheck::may_change_kind(ShellIndex shell) {
+  const DeckCard card = card_of(deck_, shell);
+  if (writer_->holds_triangles_and_quads(card.ref())) return {};
+  const bool to_triangle = !original_.shell(shell).is_triangle();
+  const std::string what = shell_name(original_, shell) + " can't become a " + (to_triangle ? "triangle" : "quad") + ": ";
+  if (const std::string why = other_kind_->card_that_forbids(shell, to_triangle); !why.empty())
+    return fail(error_at(deck_, card.run.file, card.offset, what + why));
+  // Its card with the other number of corners: which nodes these are doesn't matter.
+  ShellCard wanted = shell_card(original_, original_, shell);
+  wanted.nodes[3] = wanted.nodes[to_triangle ? 2 : 0];
+  const Result<OtherKind::Place> place = other_kind_->place(shell, wanted);
+  if (!place) return fail(error_at(deck_, card.run.file, card.offset, what + "it " + place.error().message));
+  return {};
 }
 
 Result<void> may_be_deleted(const Deck& deck, Referred referred, std::int64_t id) {

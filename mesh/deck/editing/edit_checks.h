@@ -14,6 +14,7 @@
 namespace prismesh::mesh::deck {
 
 class CardWriter;
+class OtherKind;
 
 /// Checks what may be removed.
 class DeletionCheck {
@@ -52,6 +53,23 @@ class DivisionCheck {
   const Deck& deck_;
   std::unique_ptr<const CardWriter> writer_;
   UnreadNumbers unread_;
+};
+
+/// Checks which quads may become triangles and which triangles quads, as wholes or in pieces. Much depends on the format: where a keyword
+/// or a set holds one kind only, the other kind needs another place.
+class KindCheck {
+ public:
+  /// Both must outlive this. `original`: the model as it was opened from the deck.
+  KindCheck(const Deck& deck, const Model& original);
+  ~KindCheck();
+  /// `shell`: of the deck. Errors: a card names it that can't name the other kind; the format has no place for the other kind's card.
+  Result<void> may_change_kind(ShellIndex shell);
+
+ private:
+  const Deck& deck_;
+  const Model& original_;
+  std::unique_ptr<const CardWriter> writer_;
+  std::unique_ptr<OtherKind> other_kind_;
 };
 
 /// DeletionCheck::may_be_deleted for a single id; for several ids a DeletionCheck is faster.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -23,6 +24,7 @@ struct NewEntity {
   Referred referred = Referred::node;
   std::int64_t id = 0;
   std::vector<std::int64_t> parents;  ///< ids; a shell has one
+  bool triangle = false;              ///< a shell with three corners
 };
 
 using Singles = std::vector<Reference>;  ///< with the role single
@@ -54,6 +56,26 @@ std::vector<std::uint32_t> sets_of_all_parents(const References& references, con
   return sets;
 }
 
+/// A shell joins a set, or the set's companion if the set can't name shells of its kind.
+Result<void> join_set(const ModelDifference& difference, std::uint32_t set, const NewEntity& entity, ReferencePlan& plan) {
+  const Deck& deck = difference.deck;
+  const Referrer& card = deck.references->referrers()[set];
+  if (entity.referred == Referred::node || difference.writer.can_name(card, entity.triangle)) {
+    plan.sets[{set, entity.referred == Referred::node}].joining.push_back(entity.id);
+    return {};
+  }
+  const Result<std::optional<std::uint32_t>> companion = difference.writer.companion(deck, set);
+  if (!companion)
+    return fail(refusal_at(deck, card.file, card.offset,
+                           card_name(deck.format, card) + " can't name the " + (entity.triangle ? "triangle " : "quad ") +
+                               std::to_string(entity.id) + (companion.error().message.empty() ? "" : ", " + companion.error().message)));
+  if (*companion)
+    plan.sets[{**companion, false}].joining.push_back(entity.id);
+  else
+    plan.companions[set].push_back(entity.id);
+  return {};
+}
+
 /// Errors: a range of ids that doesn't hold all parents holds the new id.
 Result<void> join_sets(const ModelDifference& difference, const NewEntity& entity, ReferencePlan& plan) {
   const References& references = *difference.deck.references;
@@ -72,7 +94,8 @@ Result<void> join_sets(const ModelDifference& difference, const NewEntity& entit
                                ", to which what it comes from doesn't belong; it needs another id"));
   }
   for (const std::uint32_t set : sets)
-    if (!joined_by_range.contains(set)) plan.sets[{set, entity.referred == Referred::node}].joining.push_back(entity.id);
+    if (!joined_by_range.contains(set))
+      if (Result<void> joined = join_set(difference, set, entity, plan); !joined) return joined;
   return {};
 }
 
@@ -155,13 +178,29 @@ Result<void> plan_divided_shell(const ModelDifference& difference, ShellIndex an
   const std::int64_t parent = difference.original.shell_ids[ancestor.value];
   if (Result<void> may = as_refusal(division.may_be_divided(parent)); !may) return may;
   for (const ShellIndex child : children)
-    if (Result<void> joined = join_sets(difference, {Referred::shell, difference.model.shell_ids[child.value], {parent}}, plan); !joined)
+    if (Result<void> joined = join_sets(
+            difference, {Referred::shell, difference.model.shell_ids[child.value], {parent}, difference.model.shell(child).is_triangle()},
+            plan);
+        !joined)
       return joined;
   for (const Reference& reference : difference.deck.references->naming(Referred::shell, parent)) {
     if (reference.role != ReferenceRole::single) continue;
     if (difference.writer.inheritance(referrer_of(difference, reference), Referred::shell) == Inheritance::stays) continue;
     for (const ShellIndex child : children)
       plan.copies[{reference.referrer, reference.card}][difference.model.shell_ids[child.value]] = {reference, Referred::shell};
+  }
+  return {};
+}
+
+/// A quad that became a triangle, or the reverse, goes over to the companions of sets that can't name it any more.
+Result<void> plan_changed_kind(const ModelDifference& difference, ShellIndex shell, ReferencePlan& plan) {
+  const bool triangle = difference.model.shell(shell).is_triangle();
+  if (difference.original.shell(shell).is_triangle() == triangle) return {};
+  const std::int64_t id = difference.original.shell_ids[shell.value];
+  for (const Reference& reference : difference.deck.references->naming(Referred::shell, id)) {
+    if (reference.role != ReferenceRole::list || difference.writer.can_name(referrer_of(difference, reference), triangle)) continue;
+    plan.sets[{reference.referrer, false}].leaving.push_back(id);
+    if (Result<void> joined = join_set(difference, reference.referrer, {Referred::shell, id, {}, triangle}, plan); !joined) return joined;
   }
   return {};
 }
@@ -174,6 +213,8 @@ Result<void> plan_inheritance(const ModelDifference& difference, const ShellFami
     if (Result<void> done = plan_added_node(difference, node, division, plan); !done) return done;
   for (const auto& [ancestor, children] : families)
     if (Result<void> done = plan_divided_shell(difference, ancestor, children, division, plan); !done) return done;
+  for (const ShellIndex shell : difference.changes.reshaped_shells)
+    if (Result<void> done = plan_changed_kind(difference, shell, plan); !done) return done;
   return {};
 }
 

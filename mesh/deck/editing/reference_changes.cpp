@@ -104,6 +104,18 @@ Result<void> write_sets(const ModelDifference& difference, const ReferencePlan& 
   return {};
 }
 
+Result<void> write_companions(const ModelDifference& difference, const ReferencePlan& plan, ReferenceChanges& changes) {
+  for (const auto& [set, joining] : plan.companions) {
+    const Referrer& card = difference.deck.references->referrers()[set];
+    if (Result<void> may = check_changeable(difference, card, card.offset, "another set would have to stand behind it"); !may) return may;
+    const std::vector<std::int64_t> ids = ids_for_text(difference, Referred::shell, joining, card);
+    std::vector<FileReplacement> made = difference.writer.new_companion(difference.deck, set, ids);
+    changes.cards += made.size();
+    for (FileReplacement& each : made) changes.replacements.push_back(std::move(each));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<ReferenceChanges> reference_changes(const ModelDifference& difference) {
@@ -117,6 +129,7 @@ Result<ReferenceChanges> reference_changes(const ModelDifference& difference) {
   ReferenceChanges changes{std::move(segments->replacements), segments->lines.size()};
   if (Result<void> done = write_copies(difference, plan, changes); !done) return fail(done.error());
   if (Result<void> done = write_sets(difference, plan, changes); !done) return fail(done.error());
+  if (Result<void> done = write_companions(difference, plan, changes); !done) return fail(done.error());
   return changes;
 }
 

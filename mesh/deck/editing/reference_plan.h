@@ -38,6 +38,7 @@ struct CopiedCard {
 
 struct ReferencePlan {
   std::map<ChangedSet, SetChange> sets;
+  std::map<std::uint32_t, std::vector<std::int64_t>> companions;  ///< sets to make: ids by the set that they belong to, as a referrer
   std::map<CardLine, std::map<std::int64_t, CopiedCard>> copies;  ///< by the copied line, then by the new id
 };
 

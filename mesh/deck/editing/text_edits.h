@@ -13,11 +13,6 @@
 
 namespace prismesh::mesh::deck {
 
-struct FileReplacement {
-  std::uint32_t file = 0;  ///< index into Deck::files
-  Replacement replacement;
-};
-
 /// Where a new block of cards is inserted, and the keyword line it begins with.
 struct NewBlockPlace {
   std::uint32_t file = 0;

@@ -1,5 +1,6 @@
 #include "mesh/deck/editing/text_place.h"
 
+#include <string_view>
 #include <utility>
 
 #include "mesh/deck/text/number.h"
@@ -7,7 +8,7 @@
 namespace prismesh::mesh::deck {
 namespace {
 
-constexpr const char* kNothingWritten = "; nothing was written";
+constexpr std::string_view kNothingWritten = "; nothing was written";
 
 }  // namespace
 
@@ -21,10 +22,18 @@ Error error_at(const Deck& deck, std::uint32_t file, std::size_t offset, std::st
 }
 
 Error refusal_at(const Deck& deck, std::uint32_t file, std::size_t offset, const std::string& message) {
-  return error_at(deck, file, offset, message + kNothingWritten);
+  return error_at(deck, file, offset, message + std::string(kNothingWritten));
 }
 
-Error refusal(const Deck& deck, const std::string& message) { return Error{deck.files[0].path.string(), 0, message + kNothingWritten}; }
+Error refusal(const Deck& deck, const std::string& message) {
+  return Error{deck.files[0].path.string(), 0, message + std::string(kNothingWritten)};
+}
+
+std::string reason_of(const Error& refusal) {
+  std::string reason = refusal.text();
+  if (reason.ends_with(kNothingWritten)) reason.resize(reason.size() - kNothingWritten.size());
+  return reason;
+}
 
 Result<void> as_refusal(Result<void> checked) {
   if (!checked) checked.error().message += kNothingWritten;

@@ -22,6 +22,9 @@ Error refusal_at(const Deck& deck, std::uint32_t file, std::size_t offset, const
 /// The same for the deck as a whole: at its main file, without a line.
 Error refusal(const Deck& deck, const std::string& message);
 
+/// What a refusal to save says, without "; nothing was written": for edits that were done otherwise.
+std::string reason_of(const Error& refusal);
+
 /// The result of a check; its error becomes a refusal to save.
 Result<void> as_refusal(Result<void> checked);
 

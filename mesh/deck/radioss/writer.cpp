@@ -7,6 +7,8 @@
 #include "mesh/deck/radioss/block.h"
 #include "mesh/deck/radioss/mesh_cards.h"
 #include "mesh/deck/radioss/references.h"
+#include "mesh/deck/radioss/shell_groups.h"
+#include "mesh/deck/radioss/text_columns.h"
 #include "mesh/deck/text/format_number.h"
 #include "mesh/deck/text/number.h"
 #include "mesh/deck/text/text_lines.h"
@@ -14,33 +16,7 @@
 namespace prismesh::mesh::deck::radioss {
 namespace {
 
-std::size_t end_of_line(std::string_view text, std::size_t offset) {
-  const std::size_t end = std::min(text.find('\n', offset), text.size());
-  return end > offset && text[end - 1] == '\r' ? end - 1 : end;
-}
-
-std::string_view line_at(std::string_view text, std::size_t offset) { return text.substr(offset, end_of_line(text, offset) - offset); }
-
 std::string_view first_line(const CardRef& card) { return line_at(card.text, card.offset); }
-
-/// The line with each tab replaced by one blank.
-std::string without_tabs(std::string_view line) {
-  std::string out(line);
-  std::replace(out.begin(), out.end(), '\t', ' ');
-  return out;
-}
-
-/// Puts a number into columns: aligned left if the old number was, else right.
-void put(std::string& line, std::size_t begin, std::size_t width, std::string_view number) {
-  if (line.size() < begin + width) line.resize(begin + width, ' ');
-  const std::string_view old = std::string_view(line).substr(begin, width);
-  const std::size_t first = old.find_first_not_of(' ');
-  const bool leans_left = first <= 1 && old.back() == ' ' && first + number.size() < width;
-  std::string out(width, ' ');
-  std::copy(number.begin(), number.end(),
-            out.begin() + static_cast<std::ptrdiff_t>(leans_left ? first : width - std::min(width, number.size())));
-  line.replace(begin, width, out);
-}
 
 void put_coordinate(std::size_t width, std::size_t axis, double value, WrittenCard& card) {
   const std::string number = format_coordinate(value, 2 * width);
@@ -63,32 +39,7 @@ std::int64_t largest_id(std::size_t width) {
   return power - 1;
 }
 
-std::size_t width_of(const Referrer& set) { return is_old(set.style) ? kOldField : kField; }
 bool is_surface(const Referrer& set) { return set.keyword == "SURF/SEG"; }
-
-/// The line end at `end`. At the end of the text, where it is missing, the one that the text uses.
-std::string line_end_at(std::string_view text, std::size_t end) {
-  if (end < text.size()) return text[end] == '\r' ? "\r\n" : "\n";
-  return text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
-}
-
-/// A line of a set.
-struct ListLine {
-  std::string_view text;
-  std::size_t offset = 0;
-};
-/// The title's line, then the lines that aren't blank.
-std::vector<ListLine> list_lines(std::string_view text, const Referrer& set) {
-  std::vector<ListLine> out;
-  const std::size_t first = std::min(text.find('\n', set.offset), text.size());
-  Lines lines(text, std::min(first + 1, text.size()), std::min<std::size_t>(set.end, text.size()));
-  ListLine line;
-  if (!lines.next(line.text, line.offset)) return out;
-  out.push_back(line);  // new ids go behind it if the list is empty
-  while (lines.next(line.text, line.offset))
-    if (line.text.find_first_not_of(" \t") != std::string_view::npos) out.push_back(line);
-  return out;
-}
 
 /// Changes a set's list of ids, ten a line, or of ranges: first and last (/GENE), or first, last and step (/GEN_INCR).
 class IdList {
@@ -131,12 +82,10 @@ class IdList {
   }
 
  private:
-  static constexpr std::size_t kPerLine = 10;
-
   std::vector<std::string> fields_of(std::string_view line) const {
     const std::string plain = without_tabs(line);
     std::vector<std::string> out;
-    for (std::size_t f = 0; f < kPerLine && f * width_ < plain.size(); ++f) {
+    for (std::size_t f = 0; f < kIdsPerLine && f * width_ < plain.size(); ++f) {
       const std::string_view one = trim(field(plain, width_, f));
       if (!one.empty()) out.emplace_back(one);
     }
@@ -176,11 +125,11 @@ class IdList {
     const std::size_t end = line.offset + line.text.size();
     std::string added;
     if (last > 0)
-      while (fields.size() < kPerLine && next < joining.size()) fields.push_back(std::to_string(joining[next++]));
+      while (fields.size() < kIdsPerLine && next < joining.size()) fields.push_back(std::to_string(joining[next++]));
     std::string first = last > 0 ? line_of(fields) : std::string(line.text);
     while (next < joining.size()) {
       std::vector<std::string> more;
-      while (more.size() < kPerLine && next < joining.size()) more.push_back(std::to_string(joining[next++]));
+      while (more.size() < kIdsPerLine && next < joining.size()) more.push_back(std::to_string(joining[next++]));
       added += line_end_at(text_, end) + line_of(more);
     }
     std::erase_if(out, [&](const Replacement& replacement) { return replacement.offset == line.offset; });
@@ -256,6 +205,13 @@ class Writer : public CardWriter {
     const auto begins = [&](std::string_view word) { return card.keyword.compare(0, word.size(), word) == 0; };
     if (begins("GRSHEL") || begins("TH/SHEL")) return !triangle;
     return !begins("GRSH3N") && !begins("TH/SH3N") ? true : triangle;
+  }
+
+  Result<std::optional<std::uint32_t>> companion(const Deck& deck, std::uint32_t set) const override {
+    return groups_of(deck).companion(set);
+  }
+  std::vector<FileReplacement> new_companion(const Deck& deck, std::uint32_t set, std::span<const std::int64_t> ids) const override {
+    return groups_of(deck).new_companion(set, ids);
   }
 
   /// "/SHELL/7" and "/SH3N/7" hold the shells of one part in the same file.
@@ -345,6 +301,14 @@ class Writer : public CardWriter {
     return text[line] == '/' || is_include(text.substr(line)) || text.substr(line).starts_with(kEndOfData);
   }
   mutable BlockFinder blocks_{ends_block};
+
+  const ShellGroups& groups_of(const Deck& deck) const {
+    if (groups_deck_ != &deck) groups_.emplace(deck);
+    groups_deck_ = &deck;
+    return *groups_;
+  }
+  mutable std::optional<ShellGroups> groups_;
+  mutable const Deck* groups_deck_ = nullptr;
 
   static Result<WrittenCard> with_corners(std::string line, const Style& style, const ShellCard& shell) {
     WrittenCard card;

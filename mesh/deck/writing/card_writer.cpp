@@ -11,6 +11,10 @@ Result<WrittenCard> CardWriter::shell_in_manner(const CardRef&, const CardRef&, 
   return fail("", "stands on a card whose kind says how many corners it has");
 }
 
+Result<std::optional<std::uint32_t>> CardWriter::companion(const Deck&, std::uint32_t) const { return fail("", ""); }
+
+std::vector<FileReplacement> CardWriter::new_companion(const Deck&, std::uint32_t, std::span<const std::int64_t>) const { return {}; }
+
 Result<CardWriter::NewBlock> CardWriter::block_of_kind(const CardRef&, bool) const {
   return fail("", "stands on a card whose kind says how many corners it has, and its part has none of the other kind");
 }

@@ -70,6 +70,13 @@ class CardWriter {
   /// Whether a card that names shells can name a triangle (true) or a quad (false). False: it names only the other kind.
   virtual bool can_name(const Referrer&, bool) const { return true; }
 
+  /// The set for those members of a set that become triangles or quads, where can_name is false for these: whatever uses the one must use
+  /// the other as well. `set`: index into References::referrers. nullopt: such a set isn't there, and new_companion makes it. Errors: there
+  /// can't be one; the reason as the end of a sentence about the set, empty where the format has no such sets.
+  virtual Result<std::optional<std::uint32_t>> companion(const Deck& deck, std::uint32_t set) const;
+  /// A set of `ids`, which aren't empty, behind `set`, and the changes of the cards that use `set`, so that they use both.
+  virtual std::vector<FileReplacement> new_companion(const Deck& deck, std::uint32_t set, std::span<const std::int64_t> ids) const;
+
   /// A block for triangles or for quads, beside the block of `card`, for a part that has no card of that kind yet.
   virtual Result<NewBlock> block_of_kind(const CardRef& card, bool triangles) const;
   /// As shell, for a card in such a block.

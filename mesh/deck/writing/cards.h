@@ -48,5 +48,9 @@ struct Replacement {
   std::size_t length = 0;
   std::string text;
 };
+struct FileReplacement {
+  std::uint32_t file = 0;  ///< index into Deck::files
+  Replacement replacement;
+};
 
 }  // namespace prismesh::mesh::deck

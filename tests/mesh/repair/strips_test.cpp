@@ -41,6 +41,27 @@ TEST(Strips, are_divided_into_as_many_as_asked_evenly) {
   }
 }
 
+TEST(Strips, end_before_or_behind_shells_that_may_not_become_triangles) {
+  // Columns that become narrower with y: an edge along x is 2 - 0.2 y long.
+  const Grid grid{5, 8, [](double x, double y) { return Vec3((x - 2.5) * (2 - 0.2 * y), y, 0); }, {}};
+  const auto triangle_rows = [&](const Rules& rules) {
+    PatchFixture fixture(model_of(grid.positions(), grid.shells()), rules);
+    EXPECT_FALSE(fixture.divide({fixture.shell(grid.shell(2, 0)), 0, 1.25, 1e9}));
+    const Model after = fixture.after();
+    EXPECT_EQ(what_is_wrong(after), "");
+    std::vector<double> rows;
+    for (const ShellIndex shell : all_shells(after))
+      if (after.shell(shell).is_triangle()) rows.push_back(std::floor(after.position(after.shell(shell).node[0]).y()));
+    return rows;
+  };
+  EXPECT_EQ(triangle_rows({}), std::vector<double>{3}) << "where the edges are shorter than 1.25";
+  Rules rules;
+  rules.shell = [](ShellIndex shell) { return static_cast<std::uint8_t>(shell.value / 5 == 3 || shell.value / 5 == 4 ? kNoTriangle : 0); };
+  EXPECT_EQ(triangle_rows(rules), std::vector<double>{5});
+  rules.shell = [](ShellIndex shell) { return static_cast<std::uint8_t>(shell.value / 5 >= 3 ? kNoTriangle : 0); };
+  EXPECT_EQ(triangle_rows(rules), std::vector<double>{}) << "through the whole sheet";
+}
+
 TEST(Strips, close_around_a_tube) {
   constexpr std::size_t kAround = 12, kLong = 4;
   std::vector<Vec3> positions;

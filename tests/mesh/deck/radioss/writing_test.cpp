@@ -3,6 +3,7 @@
 #include "mesh/deck/radioss/writer.h"
 #include "mesh/deck/save.h"
 
+#include "mesh/deck/editing/edit_checks.h"
 #include "mesh/deck/formats/formats.h"
 #include "tests/mesh/deck/growing.h"
 #include "tests/mesh/deck/radioss/starter_deck.h"
@@ -62,6 +63,11 @@ class RadiossWriting : public Radioss {
     EXPECT_FALSE(save(*opened_.deck, opened_.model, edit_->model, folder_ / "out/deck_0000.rad"));
     EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out"));
     return may ? Error{} : may.error();
+  }
+  /// What the check before an edit says; empty: the shell may change between quad and triangle.
+  std::string why_no_other_kind(std::int64_t shell) const {
+    const auto may = KindCheck(*opened_.deck, opened_.model).may_change_kind(opened_.model.find_shell(shell));
+    return may ? "" : may.error().message;
   }
   void divide_11() { edit_->split_in_four(edit_->shell(edit_->shell(11).valid() ? 11 : 211)); }
   /// A quad becomes two triangles.
@@ -239,6 +245,85 @@ TEST_F(RadiossWriting, triangles_and_quads_go_to_the_block_of_their_kind) {
   }
 }
 
+/// The cards of both shells after `cut(11)`, and of what stands behind them.
+std::string cut_shells(const std::string& behind) {
+  return std::string(kHead) + six_nodes() + "/SHELL/1\n" + card({12, 2, 3, 6, 5}) + "/SH3N/1\n" + was_quad({11, 1, 2, 5}) +
+         was_quad({13, 1, 5, 4}) + behind + "/END\n";
+}
+/// A section that uses a group of quads and one of triangles.
+std::string section(std::int64_t id, std::int64_t quads, std::int64_t triangles, const std::string& eighth = right("0", 10)) {
+  const std::string groups = card({0, 0, quads, 0, 0, 0, triangles});
+  return "/SECT/" + std::to_string(id) + "\ncut\n# nodes\n" + card({1, 2, 3, 0}) + "\n# groups\n" + groups.substr(0, 70) + eighth + "\n";
+}
+
+TEST_F(RadiossWriting, a_triangle_goes_to_the_group_that_the_same_cards_use) {
+  const std::string quads = "/GRSHEL/SHEL/27\n# title\nnear the cut\n" + card({11, 12}) + "# behind\n";
+  const std::string kept = "/GRSHEL/SHEL/27\n# title\nnear the cut\n" + card({12});
+  const std::string made = "near the cut\n" + card({11, 13}) + "# behind\n";
+  const GroupCase cases[] = {
+      {"no card uses it", quads, kept + "/GRSH3N/SH3N/27\n" + made},
+      {"a section", section(1, 27, 0) + quads, section(1, 27, 27) + kept + "/GRSH3N/SH3N/27\n" + made},
+      {"two sections", section(1, 27, 0) + quads + section(2, 27, 0),
+       section(1, 27, 27) + kept + "/GRSH3N/SH3N/27\n" + made + section(2, 27, 27)},
+      {"a section of others", section(1, 28, 0) + quads, section(1, 28, 0) + kept + "/GRSH3N/SH3N/27\n" + made},
+      {"further fields of the section stay", section(1, 27, 0, "         3           4") + quads,
+       section(1, 27, 27, "         3           4") + kept + "/GRSH3N/SH3N/27\n" + made},
+      {"an activation", "/ACTIV/1\nlate\n" + card({0, 0, 0, 27, 0, 0, 0, 0}) + quads,
+       "/ACTIV/1\nlate\n" + card({0, 0, 0, 27, 0, 0, 0, 27}) + kept + "/GRSH3N/SH3N/27\n" + made},
+      {"its number is taken", section(1, 27, 0) + "/GRSH3N/PART/27\nother\n" + card({9}) + "/GRSH3N/SH3N/31\nother\n" + card({99}) + quads,
+       section(1, 27, 28) + "/GRSH3N/PART/27\nother\n" + card({9}) + "/GRSH3N/SH3N/31\nother\n" + card({99}) + kept + "/GRSH3N/SH3N/28\n" +
+           made},
+      {"a group of triangles is there", section(1, 27, 5) + quads + "/GRSH3N/SH3N/5\nthree\n" + card({99}),
+       section(1, 27, 5) + kept + "# behind\n/GRSH3N/SH3N/5\nthree\n" + card({99, 11, 13})},
+      {"a surface of other groups", "/SURF/GRSHEL/1\nsurface\n" + card({26}) + "/SURF/GRSH3N/2\nsurface\n" + card({27}) + quads,
+       "/SURF/GRSHEL/1\nsurface\n" + card({26}) + "/SURF/GRSH3N/2\nsurface\n" + card({27}) + kept + "/GRSH3N/SH3N/28\n" + made},
+  };
+  for (const GroupCase& c : cases)
+    for (const bool crlf : {false, true}) {
+      SCOPED_TRACE(c.what);
+      const auto ended = [&](const std::string& text) { return crlf ? with_crlf(text) : text; };
+      edit(ended(std::string(kHead) + six_nodes() + two_quads() + c.before + "/END\n"));
+      EXPECT_EQ(why_no_other_kind(11), "");
+      cut(11);
+      EXPECT_EQ(written(), ended(cut_shells(c.after)));
+    }
+}
+
+TEST_F(RadiossWriting, where_the_cards_that_use_a_group_cant_use_one_of_triangles_it_is_refused) {
+  const std::string quads = "/GRSHEL/SHEL/27\nnear the cut\n" + card({11, 12});
+  struct Case {
+    std::string cards, why;
+  };
+  const Case cases[] = {
+      {quads + "/SURF/GRSHEL/1\nsurface\n" + card({26, 27}),
+       ", and SURF/GRSHEL 1 uses it, which can't use a group of the other kind as well"},
+      {quads + "/GRNOD/GRSHEL/1\nnodes\n" + card({27}), ", and GRNOD/GRSHEL 1 uses it, which can't use a group of the other kind as well"},
+      {quads + section(1, 27, 0) + section(2, 27, 5), ", and is used with different groups of the other kind"},
+      {quads + section(1, 27, 5) + section(2, 28, 5) + "/GRSH3N/SH3N/5\nthree\n" + card({99}),
+       ", and the group that is used with it, GRSH3N 5, is used elsewhere or isn't a list"},
+      {quads + section(1, 27, 5) + "/GRSH3N/PART/5\nthree\n" + card({1}),
+       ", and the group that is used with it, GRSH3N 5, is used elsewhere or isn't a list"},
+      {quads + quads, ", and another group has its number"},
+      {quads + "/SECT/3\ncut\n" + card({1, 2, 3}), ", and SECT 3, which may use it, isn't complete in its file"},
+      {quads + "/SECT/1\ncut\n" + card({1, 2, 3, 0}) + "\n" + right("0", 20) + right("&n", 10) + card({0, 0, 0, 0}),
+       ", and SECT 1 names its groups by parameters"},
+      {"/GRSHEL/GENE/27\nrange\n" + card({11, 12}), ""},
+      {"/TH/SHEL/27\nhistory\nDEF\n" + card({11}), ""},
+      {quads + "/UNKNOWN/1\n" + card({27}), ", and UNKNOWN isn't read in this version, and may name it"},
+      {quads + "#include gone.inc\n", ", and goes on in an include"},
+      {quads + "/TITLE\n#include gone.inc\n", ", and the include file gone.inc isn't there, and may use it"},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.cards);
+    edit(std::string(kHead) + six_nodes() + two_quads() + c.cards + "/END\n");
+    cut(11);
+    const std::string namer = c.cards.substr(1, c.cards.find("/27") - 1);
+    EXPECT_EQ(why_no_other_kind(11), "shell 11 can't become a triangle: " + namer + " 27 names it, which can't name one" + c.why);
+    EXPECT_EQ(refused().message,
+              "shell 11 becomes a triangle, but " + namer + " 27 names it, which can't name one" + c.why + "; nothing was written");
+  }
+}
+
 TEST_F(RadiossWriting, a_new_block_stands_where_it_is_read) {
   folder_.write("shells.inc", two_quads() + "#enddata\nwhat isn't read\n/SHELL/1\n");
   edit(std::string(kHead) + six_nodes() + "#include shells.inc\n" + kPart + "/END\n");
@@ -274,6 +359,7 @@ TEST_F(RadiossWriting, where_no_block_of_the_other_kind_can_stand_it_is_refused)
     cut(11);
     const Error error = refused();
     EXPECT_EQ(error.message, "shell 11 becomes a triangle and " + c.why + "; nothing was written");
+    EXPECT_EQ(why_no_other_kind(11), "shell 11 can't become a triangle: it " + c.why);
     EXPECT_EQ(std::filesystem::path(error.file).filename(), c.file);
     EXPECT_EQ(error.line, c.line);
   }
