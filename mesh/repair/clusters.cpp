@@ -309,6 +309,14 @@ bool thin_node(const RepairContext& context, RepairState& state, LocalNode node,
   return carry_out_best(context, state, collapses, price, why);
 }
 
+std::string_view reason_at(const Patch& patch, const ClusterState& clusters, LocalNode node) {
+  const std::vector<LocalShell> triangles = triangles_of(patch, clusters, node);
+  const auto has_to_stay = [&](LocalShell shell) { return (patch.shell(shell).rules & (kKeepsNodes | kLasting)) != 0; };
+  if (std::all_of(triangles.begin(), triangles.end(), has_to_stay)) return "its triangles have to stay as they are";
+  const auto reason = clusters.reason.find(node);
+  return reason == clusters.reason.end() ? kNoReason : reason->second;
+}
+
 }  // namespace
 
 ClusterState cluster_state_of(const RepairInput& input) {
@@ -340,10 +348,8 @@ bool thin_clusters(const RepairContext& context, RepairState& state, const std::
 std::vector<ClusterLeft> clusters_left(const RepairContext& context, const RepairState& state) {
   std::vector<ClusterLeft> left;
   for (const LocalNode node : crowded_nodes(context.patch, state.clusters)) {
-    const auto reason = state.clusters.reason.find(node);
-    const std::string_view why = reason == state.clusters.reason.end() ? kNoReason : reason->second;
-    left.push_back(
-        {context.patch.node(node).model, static_cast<std::size_t>(triangles_about(context.patch, state.clusters, node)), std::string(why)});
+    left.push_back({context.patch.node(node).model, static_cast<std::size_t>(triangles_about(context.patch, state.clusters, node)),
+                    std::string(reason_at(context.patch, state.clusters, node))});
   }
   std::sort(left.begin(), left.end(), [](const ClusterLeft& a, const ClusterLeft& b) { return a.node < b.node; });
   return left;

@@ -131,7 +131,8 @@ TEST(Clusters, of_what_is_locked_stay_and_are_named) {
   EXPECT_EQ(report.clusters_after, 1u);
   EXPECT_EQ(report.elements_removed, 0u);
   EXPECT_THAT(report.notes, Contains("1 node with too many triangles stays"));
-  EXPECT_THAT(report.notes, Contains(HasSubstr("node:" + std::to_string(node_at(4, 4)) + ": 6 triangles; a shell there")));
+  EXPECT_THAT(report.notes,
+              Contains(HasSubstr("node:" + std::to_string(node_at(4, 4)) + ": 6 triangles; its triangles have to stay as they are")));
 }
 
 TEST(Clusters, of_a_mesh_of_triangles_are_left_alone) {
