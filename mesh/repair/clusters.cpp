@@ -165,8 +165,8 @@ std::optional<double> preview_thinning(const RepairContext& context, const Repai
 }
 
 /// Carries out a candidate and keeps it if it is acceptable; else `why` says why not.
-bool carry_out(const RepairContext& context, RepairState& state, const Candidate& candidate, Price price, int sweeps,
-               std::string_view& why) {
+bool keep_if_acceptable(const RepairContext& context, RepairState& state, const Candidate& candidate, Price price, int sweeps,
+                        std::string_view& why) {
   context.patch.begin();
   const Thinning outcome = try_thinning(context, state, candidate, price, sweeps);
   if (outcome.gain <= 0) {
@@ -201,7 +201,7 @@ bool carry_out_best(const RepairContext& context, RepairState& state, const std:
     }
   }
   if (best == nullptr) return false;
-  return carry_out(context, state, *best, price, state.effort.sweeps, why);
+  return keep_if_acceptable(context, state, *best, price, state.effort.sweeps, why);
 }
 
 /// The triangles about a node that count.
@@ -273,7 +273,8 @@ bool join_best_pairs(const RepairContext& context, RepairState& state, Price pri
     if (!goes_on()) break;
     if (!is_live_triangle(context.patch, pair.first) || !is_live_triangle(context.patch, pair.second)) continue;
     const Candidate join = join_of(context, pair);
-    better = carry_out(context, state, join, price, 0, why) || carry_out(context, state, join, price, state.effort.sweeps, why) || better;
+    better = keep_if_acceptable(context, state, join, price, 0, why) ||
+             keep_if_acceptable(context, state, join, price, state.effort.sweeps, why) || better;
   }
   return better;
 }
