@@ -165,8 +165,8 @@ std::optional<double> preview_thinning(const RepairContext& context, const Repai
 }
 
 /// Carries out a candidate and keeps it if it is acceptable; else `why` says why not.
-bool carry_out(const RepairContext& context, RepairState& state, const Candidate& candidate, Price price, int sweeps,
-               std::string_view& why) {
+bool keep_if_acceptable(const RepairContext& context, RepairState& state, const Candidate& candidate, Price price, int sweeps,
+                        std::string_view& why) {
   context.patch.begin();
   const Thinning outcome = try_thinning(context, state, candidate, price, sweeps);
   if (outcome.gain <= 0) {
@@ -201,7 +201,7 @@ bool carry_out_best(const RepairContext& context, RepairState& state, const std:
     }
   }
   if (best == nullptr) return false;
-  return carry_out(context, state, *best, price, state.effort.sweeps, why);
+  return keep_if_acceptable(context, state, *best, price, state.effort.sweeps, why);
 }
 
 /// The triangles about a node that count.
@@ -273,7 +273,8 @@ bool join_best_pairs(const RepairContext& context, RepairState& state, Price pri
     if (!goes_on()) break;
     if (!is_live_triangle(context.patch, pair.first) || !is_live_triangle(context.patch, pair.second)) continue;
     const Candidate join = join_of(context, pair);
-    better = carry_out(context, state, join, price, 0, why) || carry_out(context, state, join, price, state.effort.sweeps, why) || better;
+    better = keep_if_acceptable(context, state, join, price, 0, why) ||
+             keep_if_acceptable(context, state, join, price, state.effort.sweeps, why) || better;
   }
   return better;
 }
@@ -309,6 +310,14 @@ bool thin_node(const RepairContext& context, RepairState& state, LocalNode node,
   return carry_out_best(context, state, collapses, price, why);
 }
 
+std::string_view reason_at(const Patch& patch, const ClusterState& clusters, LocalNode node) {
+  const std::vector<LocalShell> triangles = triangles_of(patch, clusters, node);
+  const auto has_to_stay = [&](LocalShell shell) { return (patch.shell(shell).rules & (kKeepsNodes | kLasting)) != 0; };
+  if (std::all_of(triangles.begin(), triangles.end(), has_to_stay)) return "its triangles have to stay as they are";
+  const auto reason = clusters.reason.find(node);
+  return reason == clusters.reason.end() ? kNoReason : reason->second;
+}
+
 }  // namespace
 
 ClusterState cluster_state_of(const RepairInput& input) {
@@ -340,10 +349,8 @@ bool thin_clusters(const RepairContext& context, RepairState& state, const std::
 std::vector<ClusterLeft> clusters_left(const RepairContext& context, const RepairState& state) {
   std::vector<ClusterLeft> left;
   for (const LocalNode node : crowded_nodes(context.patch, state.clusters)) {
-    const auto reason = state.clusters.reason.find(node);
-    const std::string_view why = reason == state.clusters.reason.end() ? kNoReason : reason->second;
-    left.push_back(
-        {context.patch.node(node).model, static_cast<std::size_t>(triangles_about(context.patch, state.clusters, node)), std::string(why)});
+    left.push_back({context.patch.node(node).model, static_cast<std::size_t>(triangles_about(context.patch, state.clusters, node)),
+                    std::string(reason_at(context.patch, state.clusters, node))});
   }
   std::sort(left.begin(), left.end(), [](const ClusterLeft& a, const ClusterLeft& b) { return a.node < b.node; });
   return left;

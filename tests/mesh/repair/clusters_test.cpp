@@ -141,7 +141,7 @@ TEST(Clusters, what_cards_keep_stays_and_is_told_with_the_reason) {
   ASSERT_EQ(thinned.repaired.clusters_left.size(), 1u);
   EXPECT_EQ(thinned.repaired.clusters_left[0].node, at(grid.node(4, 4)));
   EXPECT_EQ(thinned.repaired.clusters_left[0].triangles, 8u);
-  EXPECT_FALSE(thinned.repaired.clusters_left[0].why.empty());
+  EXPECT_EQ(thinned.repaired.clusters_left[0].why, "its triangles have to stay as they are");
   EXPECT_EQ(triangles(thinned.model), 8u);
 }
 
