@@ -23,6 +23,7 @@ struct Repaired {
   std::size_t relaxed = 0;                          ///< nodes that moved
   std::size_t bad_before = 0;                       ///< shells of the scope that failed or warned
   std::vector<Unrepaired> unrepaired;               ///< still failing, ascending by shell
+  std::size_t triangle_pairs = 0;                   ///< edges between two triangles that the repair had to make, so that shells pass
   int rounds = 0;
 };
 
