@@ -35,6 +35,7 @@ Json edit_object(const document::EditReport& report) {
               {"elements_removed", report.elements_removed},
               {"before", bad_shells(report.before)},
               {"after", bad_shells(report.after)},
+              {"triangle_pairs", report.triangle_pairs},
               {"inverted", report.inverted},
               {"notes", std::move(notes)},
               {"ms", std::round(report.milliseconds * 1000) / 1000}};
