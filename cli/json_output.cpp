@@ -38,6 +38,7 @@ Json edit_object(const document::EditReport& report) {
               {"after", bad_shells(report.after)},
               {"clusters_before", report.clusters_before},
               {"clusters_after", report.clusters_after},
+              {"triangle_pairs", report.triangle_pairs},
               {"inverted", report.inverted},
               {"notes", std::move(notes)},
               {"ms", std::round(report.milliseconds * 1000) / 1000}};

@@ -43,6 +43,13 @@ void note_operations(const repair::Repaired& repaired, EditReport& report) {
   report.notes.push_back("of " + counted(repaired.bad_before, "element") + " that failed or warned" + clusters + " in the scope: " + said);
 }
 
+void note_triangle_pairs(const repair::Repaired& repaired, EditReport& report) {
+  report.triangle_pairs = repaired.triangle_pairs;
+  if (repaired.triangle_pairs > 0)
+    report.notes.push_back(counted(repaired.triangle_pairs, "pair") + " of adjacent triangles " +
+                           (repaired.triangle_pairs == 1 ? "stays" : "stay") + ": without them elements would fail");
+}
+
 void note_unrepaired(const repair::Repaired& repaired, const Frozen& frozen, const Model& model, EditReport& report) {
   if (repaired.unrepaired.empty()) return;
   report.notes.push_back(counted(repaired.unrepaired.size(), "element") + " still " + (repaired.unrepaired.size() == 1 ? "fails" : "fail"));
@@ -117,6 +124,7 @@ Result<void> apply_edit(const Document& document, const Repair& edit, Generation
   if (!repaired) return fail(repaired.error());
   const Frozen& frozen = task.frozen;
   note_operations(*repaired, report);
+  note_triangle_pairs(*repaired, report);
   note_unrepaired(*repaired, frozen, next.model, report);
   note_clusters_left(*repaired, next.model, report);
   for (std::string& note : notes_of(frozen)) report.notes.push_back(std::move(note));

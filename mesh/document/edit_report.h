@@ -20,6 +20,7 @@ struct EditReport {
   quality::Counts after;
   std::size_t clusters_before = 0;  ///< nodes with too many triangles about them (docs/quality/structure.md)
   std::size_t clusters_after = 0;
+  std::size_t triangle_pairs = 0;  ///< of `repair`: edges between two triangles that it made and that stay (docs/repairing.md)
   // of edits that move nodes:
   std::size_t inverted = 0;           ///< shells that it turned over or folded (docs/shaping.md)
   std::size_t lost_connections = 0;   ///< nodes that lay on a sheet and no longer do (docs/connections.md)

@@ -129,6 +129,32 @@ double max_distance_to_surface(const RepairContext& context, const std::vector<C
   return farthest;
 }
 
+double distance_to_line(const Vec3& point, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double length2 = along.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((point - a).dot(along) / length2, 0.0, 1.0) : 0.0;
+  return (point - a - t * along).norm();
+}
+
+double distance_to_triangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 normal = (b - a).cross(c - a);
+  const double area2 = normal.squaredNorm();
+  const bool is_over = area2 > 0 && (b - a).cross(point - a).dot(normal) >= 0 && (c - b).cross(point - b).dot(normal) >= 0 &&
+                       (a - c).cross(point - c).dot(normal) >= 0;
+  if (is_over) return std::abs((point - a).dot(normal)) / std::sqrt(area2);
+  return std::min({distance_to_line(point, a, b), distance_to_line(point, b, c), distance_to_line(point, c, a)});
+}
+
+/// A quad counts as the triangles at both of its diagonals.
+double distance_to_shell(const Patch& patch, LocalShell shell, const Vec3& point) {
+  const Corners& corners = patch.shell(shell).corners;
+  const auto distance = [&](std::size_t i, std::size_t j, std::size_t k) {
+    return distance_to_triangle(point, patch.position(corners[i]), patch.position(corners[j]), patch.position(corners[k]));
+  };
+  if (corner_count(corners) == 3) return distance(0, 1, 2);
+  return std::min({distance(0, 1, 2), distance(0, 2, 3), distance(0, 1, 3), distance(1, 2, 3)});
+}
+
 }  // namespace
 
 void judge_shells(const RepairContext& context, std::span<const LocalShell> shells) {
@@ -214,6 +240,38 @@ bool stays_on_surface(const RepairContext& context) {
   // The shells before are sampled at quarters: the middles of their halves lie there.
   return off <=
          1.0001 * max_distance_to_surface(context, before, 4, reach, [&](LocalNode n) -> const Vec3& { return patch.old_position(n); });
+}
+
+bool keeps_peaks(const RepairContext& context) {
+  constexpr double kMaxCut = 0.05;  // of the target size
+  const Patch& patch = context.patch;
+  const std::vector<LocalShell> shells = patch.changed_shells();
+  const auto is_covered = [&](const Vec3& place) {
+    return std::any_of(shells.begin(), shells.end(),
+                       [&](LocalShell shell) { return distance_to_shell(patch, shell, place) <= kMaxCut * context.criteria.target_size; });
+  };
+  for (const LocalNode node : patch.changed_nodes()) {
+    const Vec3& was = patch.old_position(node);
+    if (was != patch.position(node) && !is_covered(was)) return false;
+  }
+  return true;
+}
+
+std::vector<std::pair<LocalNode, LocalNode>> pair_edges(const Patch& patch) {
+  std::vector<std::pair<LocalNode, LocalNode>> edges;
+  for (std::size_t s = 0; s < patch.shell_count(); ++s) {
+    const PatchShell& shell = patch.shell(LocalShell(s));
+    if (!shell.is_alive || corner_count(shell.corners) != 3) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(shell.corners[i], shell.corners[(i + 1) % 3]);
+      const std::vector<LocalShell> shells = patch.shells_at(low, high);
+      if (shells.size() != 2) continue;
+      const LocalShell other = shells[0] == LocalShell(s) ? shells[1] : shells[0];
+      if (other.value > s && corner_count(patch.shell(other).corners) == 3) edges.emplace_back(low, high);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
 }
 
 }  // namespace prismesh::mesh::repair

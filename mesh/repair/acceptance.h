@@ -2,6 +2,8 @@
 #pragma once
 
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "mesh/repair/context.h"
 
@@ -32,5 +34,12 @@ bool adds_failures(const Patch& patch);
 /// Whether the changed shells stay on the surface: no point of their edges and centres is farther off than the options allow, or than the
 /// shells before.
 bool stays_on_surface(const RepairContext& context);
+
+/// Whether the places that nodes left are still near the changed shells: within a twentieth of the target size. A node that slides off a
+/// peak stays on the surface, but cuts the peak off.
+bool keeps_peaks(const RepairContext& context);
+
+/// The edges inside sheets between two triangles, ascending; each with its lower node first.
+std::vector<std::pair<LocalNode, LocalNode>> pair_edges(const Patch& patch);
 
 }  // namespace prismesh::mesh::repair

@@ -10,6 +10,7 @@
 #include "mesh/repair/divide.h"
 #include "mesh/repair/local_size.h"
 #include "mesh/repair/node_moves.h"
+#include "mesh/repair/patch_geometry.h"
 #include "mesh/repair/redivide.h"
 #include "mesh/repair/row_slide.h"
 #include "mesh/repair/strips.h"
@@ -27,6 +28,8 @@ EdgeOf edge_of(const Corners& corners, int edge) {
   return {corners[static_cast<std::size_t>(edge % count)], corners[static_cast<std::size_t>((edge + 1) % count)]};
 }
 
+// Difference of cosines of two bends that counts as none.
+constexpr double kBendNoise = 1e-9;
 // Target sizes: a longer edge is worth dividing.
 constexpr double kLong = 1.25;
 // Target sizes: a narrower strip may be removed.
@@ -201,9 +204,25 @@ std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell s
       for (std::size_t c = 0; c < 4; ++c)
         for (const double distance : {max_off, -max_off})
           found.push_back({Operation::move, [&context, node = corners[c], distance] { return lift_node(context, node, distance); }});
-    for (int first = 0; first < 2; ++first)
-      found.push_back({Operation::split, [&context, shell, first] { return split_quad(context, shell, first); }});
+    for (Candidate& split : splits_of(context, shell)) found.push_back(std::move(split));
   }
+  return found;
+}
+
+std::vector<Candidate> splits_of(const RepairContext& context, LocalShell shell) {
+  std::vector<Candidate> found;
+  const Corners corners = context.patch.shell(shell).corners;
+  if (corner_count(corners) != 4) return found;
+  // The cosine of the angle between the halves' normals.
+  const auto halves_agree = [&](std::size_t first) {
+    const Vec3 one = area_normal(context.patch, triangle(corners[first], corners[first + 1], corners[first + 2]));
+    const Vec3 other = area_normal(context.patch, triangle(corners[first], corners[first + 2], corners[(first + 3) % 4]));
+    const double size = std::sqrt(one.squaredNorm() * other.squaredNorm());
+    return size > 0 ? one.dot(other) / size : 1.0;
+  };
+  const int thicker = halves_agree(1) < halves_agree(0) - kBendNoise ? 1 : 0;
+  for (const int first : {thicker, 1 - thicker})
+    found.push_back({Operation::split, [&context, shell, first] { return split_quad(context, shell, first); }});
   return found;
 }
 

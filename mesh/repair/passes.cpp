@@ -113,6 +113,22 @@ bool cure_shells(const RepairContext& context, RepairState& state, quality::Grad
   return better;
 }
 
+bool split_failing_quads(const RepairContext& context, RepairState& state) {
+  const Patch& patch = context.patch;
+  bool better = false;
+  for (const LocalShell shell : bad_shells(patch, state.history, quality::Grade::fail)) {
+    if (!goes_on(state.progress, 1)) break;
+    if (!patch.shell(shell).is_alive || patch.shell(shell).state.fail == 0) continue;
+    for (const Candidate& split : splits_of(context, shell)) {
+      if (!improve(context, state, {split}, shell, TrialGoal::split)) continue;
+      better = true;
+      break;
+    }
+  }
+  if (better) tidy_triangles(context, state, 1);
+  return better;
+}
+
 void tidy_triangles(const RepairContext& context, RepairState& state, double done) {
   const Patch& patch = context.patch;
   for (std::size_t s = 0; s < patch.shell_count(); ++s) {

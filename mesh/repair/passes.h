@@ -21,6 +21,10 @@ bool repair_clusters(const RepairContext& context, RepairState& state);
 /// whether a shell got better.
 bool cure_shells(const RepairContext& context, RepairState& state, quality::Grade min_grade, double done);
 
+/// Splits each failing quad whose halves pass, worst first, along the diagonal across which it is bent more, even if the halves are next to
+/// other triangles. Then joins or separates these. For quads that nothing else helps. Returns whether one was split.
+bool split_failing_quads(const RepairContext& context, RepairState& state);
+
 /// Joins or separates triangles that the repair made, where nothing gets worse. `done`: share of the round done before.
 void tidy_triangles(const RepairContext& context, RepairState& state, double done);
 

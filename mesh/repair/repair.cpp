@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "mesh/repair/acceptance.h"
 #include "mesh/repair/change_history.h"
@@ -14,6 +15,7 @@ namespace prismesh::mesh::repair {
 namespace {
 
 constexpr int kRingsOfPatch = 4;
+constexpr long kTriangleFactorOfSplits = 2;  ///< times the max number of triangles, where only halves of a failing quad pass
 
 std::size_t triangles_in(const Model& model) {
   std::size_t triangles = 0;
@@ -51,6 +53,7 @@ ChangeHistory history_of(const Patch& patch, const Model& model, const ShellSet&
   history.triangles = static_cast<long>(triangles_in(model));
   const auto allowed = static_cast<long>(max_triangles_percent / 100 * static_cast<double>(live_shells(model)));
   history.max_triangles = std::max(allowed, history.triangles);
+  history.max_triangles_by_split = std::max(kTriangleFactorOfSplits * allowed, history.triangles);
   return history;
 }
 
@@ -83,16 +86,18 @@ bool run_round(const RepairContext& context, RepairState& state) {
   return better;
 }
 
-/// Rounds until a thorough one makes nothing better, the options' limit, or the repair is cancelled. Returns how many.
+/// Rounds until a thorough one makes nothing better and no failing quad has halves that pass, the options' limit, or the
+/// repair is cancelled. Returns how many.
 int run_rounds(const RepairContext& context, RepairState& state) {
   int rounds = 0;
   relax_neighbourhood(context, state);
   for (int& round = state.progress.round; round < context.options.max_rounds && !state.progress.stopped; ++round) {
     rounds = round + 1;
     const bool better = run_round(context, state);
-    if (!better && state.effort.along_lines) break;
+    const bool is_thorough = state.effort.along_lines;
+    if (!better && is_thorough && !split_failing_quads(context, state)) break;
     // A round that made nothing better is followed by a thorough one, which tries every shell again.
-    state.effort = better ? kQuickEffort : kThoroughEffort;
+    state.effort = better || is_thorough ? kQuickEffort : kThoroughEffort;
     if (!better) state.record.refused_at.clear();
     relax_neighbourhood(context, state);
   }
@@ -116,6 +121,13 @@ std::vector<Unrepaired> unrepaired_shells(const Patch& patch, const RepairState&
   return unrepaired;
 }
 
+/// The number of edges between two triangles that aren't among `before`.
+std::size_t added_pairs(const Patch& patch, const std::vector<std::pair<LocalNode, LocalNode>>& before) {
+  const auto now = pair_edges(patch);
+  return static_cast<std::size_t>(
+      std::count_if(now.begin(), now.end(), [&](const auto& edge) { return !std::binary_search(before.begin(), before.end(), edge); }));
+}
+
 }  // namespace
 
 Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const Progress& progress) {
@@ -129,6 +141,7 @@ Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const P
   judge_all(exact);
   repaired.bad_before = bad_shells(patch, state.history, quality::Grade::warn).size();
   judge_all(strict);
+  const auto pairs_before = pair_edges(patch);
   repaired.rounds = run_rounds(strict, state);
   if (state.progress.stopped) return fail(*state.progress.stopped);
   judge_all(exact);
@@ -137,6 +150,7 @@ Result<Repaired> repair(const RepairInput& input, const ShellSet& scope, const P
   repaired.relaxed = repaired.change.moved.size();
   repaired.done = state.record.accepted;
   repaired.clusters_left = clusters_left(exact, state);
+  repaired.triangle_pairs = added_pairs(patch, pairs_before);
   repaired.unrepaired = unrepaired_shells(patch, state, index_of);
   return repaired;
 }

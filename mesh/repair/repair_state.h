@@ -33,7 +33,8 @@ struct ChangeHistory {
   std::uint32_t changes = 0;
   long triangles = 0;  ///< of the whole model
   long max_triangles = 0;
-  int added_triangle_pairs = 0;  ///< edges between two triangles, now less those at the start
+  long max_triangles_by_split = 0;  ///< where only halves of a failing quad pass
+  int added_triangle_pairs = 0;     ///< edges between two triangles, now less those at the start
 };
 
 /// What the trials so far have shown.

@@ -26,6 +26,7 @@ struct Repaired {
   std::size_t clusters_before = 0;                  ///< nodes of the scope with too many triangles about them
   std::vector<ClusterLeft> clusters_left;           ///< those that are left, and those that the repair made
   std::vector<Unrepaired> unrepaired;               ///< still failing, ascending by shell
+  std::size_t triangle_pairs = 0;                   ///< edges between two triangles that the repair had to make, so that shells pass
   int rounds = 0;
 };
 

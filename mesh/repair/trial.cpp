@@ -16,6 +16,9 @@ namespace {
 constexpr double kMinGain = 0.05;
 constexpr int kPreviewSweeps = 1;
 constexpr double kMinPreviewGain = -2;  ///< candidates that gain less in the preview get no full trial
+constexpr double kPassing = 10;         ///< gain of each shell that passes with TrialGoal::split: more than triangles and pairs cost
+
+constexpr int kTrianglesRank = 5;  ///< of the reasons that count triangles: above all others
 
 struct Outcome {
   double gain = 0;  ///< in cost; 0: not acceptable
@@ -42,6 +45,7 @@ std::optional<double> preview(const RepairContext& context, const RepairState& s
 /// Whether the shells that changed got better in the way that the goal asks for.
 bool reaches(TrialGoal goal, const Cost& before, const Cost& now) {
   if (goal == TrialGoal::tidy) return now.failing <= before.failing && now.warning <= before.warning;
+  if (goal == TrialGoal::split) return now.failing < before.failing;
   const bool cures = now.failing + now.warning < before.failing + before.warning;
   return now.failing < before.failing || now.worst >= before.worst + (cures ? -1e-4F : 1e-3F);
 }
@@ -51,19 +55,26 @@ Outcome try_out(const RepairContext& context, const RepairState& state, const Ca
   const Patch& patch = context.patch;
   const ChangeHistory& history = state.history;
   if (const Refusal refusal = candidate.apply()) return {0, *refusal, 0};
-  smooth_nodes(context, state.effort.sweeps, state.along_lines);
+  if (goal != TrialGoal::split) smooth_nodes(context, state.effort.sweeps, state.along_lines);
   judge_shells(context, patch.changed_shells());
   const Cost before = cost_before(patch), now = cost_now(patch);
-  const double gain = before.total - now.total;
+  double gain = before.total - now.total;
+  if (goal == TrialGoal::split) gain += kPassing * (before.failing - now.failing);
   if (gain < kMinGain) return {0, "no operation makes it better", 4};
   if (!reaches(goal, before, now)) return goal == TrialGoal::tidy ? Outcome{} : Outcome{0, "no operation makes it better", 4};
   if (adds_failures(patch)) return {0, "every operation makes a neighbour fail", 2};
   if (!conforms(patch)) return {0, "every operation would tear or fold the mesh", 1};
-  if (now.triangles > before.triangles && history.triangles + now.triangles - before.triangles > history.max_triangles)
-    return {0, "there would be too many triangles", 5};
-  if (now.triangle_pairs > before.triangle_pairs && history.added_triangle_pairs + now.triangle_pairs - before.triangle_pairs > 0)
-    return {0, "there would be two triangles side by side", 5};
-  if (!stays_on_surface(context)) return {0, "every operation leaves the surface", 3};
+  const long max_triangles = goal == TrialGoal::split ? history.max_triangles_by_split : history.max_triangles;
+  if (now.triangles > before.triangles && history.triangles + now.triangles - before.triangles > max_triangles)
+    return {0, "there would be too many triangles", kTrianglesRank};
+  if (goal != TrialGoal::split && now.triangle_pairs > before.triangle_pairs &&
+      history.added_triangle_pairs + now.triangle_pairs - before.triangle_pairs > 0)
+    return {0, "there would be two triangles side by side", kTrianglesRank};
+  // The halves of a warped quad are as near to the surface as the quad: it fills the space between its diagonals.
+  if (goal != TrialGoal::split && !stays_on_surface(context)) return {0, "every operation leaves the surface", 3};
+  // Where quads were split, the shells before are far from the smooth surface, so that the check above allows much.
+  if (goal != TrialGoal::split && history.added_triangle_pairs > 0 && !keeps_peaks(context))
+    return {0, "every operation leaves the surface", 3};
   return {gain, {}, 0};
 }
 
@@ -106,7 +117,7 @@ bool improve(const RepairContext& context, RepairState& state, const std::vector
   const std::vector<const Candidate*> promising = promising_of(context, state, candidates, reason);
   const Candidate* best = best_candidate(context, state, promising, goal, reason);
   if (best == nullptr) {
-    if (goal == TrialGoal::cure) state.record.reason[shell] = reason.why;
+    if (goal == TrialGoal::cure || (goal == TrialGoal::split && reason.rank == kTrianglesRank)) state.record.reason[shell] = reason.why;
     return false;
   }
   context.patch.begin();

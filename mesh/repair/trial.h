@@ -10,8 +10,9 @@
 namespace prismesh::mesh::repair {
 
 enum class TrialGoal : std::uint8_t {
-  cure,  ///< a shell that fails or warns
-  tidy,  ///< triangles, where nothing fails or warns more than before
+  cure,   ///< a shell that fails or warns
+  split,  ///< a quad that fails and that nothing else helps: in two, whose nodes stay and which may be adjacent to other triangles
+  tidy,   ///< triangles, where nothing fails or warns more than before
 };
 
 /// Tries the candidates in two stages: all of them with little smoothing, then the most promising in full. Applies the best acceptable one

@@ -8,7 +8,8 @@ For each deck: half of its largest part (by shells) is lifted, and stretched (ed
 - the mesh: every edge has as many shells as before or is divided as a whole, no shell names a node twice, none is folded;
 - the damage: elements that fail or warn after the lift and didn't before, as the program says, and the shells whose corner angles or edge ratio are
   bad by this file's own count, before and after;
-- triangles, pairs of triangles with an edge in common where there were none, and how far nodes are off the shaped surface.
+- triangles, pairs of triangles with an edge in common where there were none, and how far nodes are off the shaped surface. A new pair may only be where
+  the quad of its two triangles would fail (fails_as_quad), and the edit has to tell of all new pairs.
 """
 import argparse
 import json
@@ -118,6 +119,21 @@ class Mesh:
                 narrow += min(widths) < min_length * math.sin(math.radians(smallest_angle))
         return short, narrow
 
+    def needs_pair(self, edge, shells, size):
+        """Whether the quad of two triangles with a common edge fails."""
+        a, b = edge
+        first, second = (self.shells[s] for s in shells)
+        tip = [next(n for n in c if n not in edge) for c in (first, second)]
+        p = [self.at[n] for n in (a, tip[0], b, tip[1])]
+        if len(set((a, b, *tip))) < 4:
+            return True
+        corner = [(minus(p[i - 1], p[i]), minus(p[(i + 1) % 4], p[i])) for i in range(4)]
+        normal = cross(minus(p[2], p[0]), minus(p[3], p[1]))
+        if any(dot(cross(out, back), normal) <= 0 for back, out in corner):
+            return True  # a corner points inwards
+        angles = [math.degrees(math.acos(max(-1.0, min(1.0, dot(u, v) / (length(u) * length(v)))))) for u, v in corner]
+        return fails_as_quad(p, angles, size)
+
     def facets(self):
         for id, c in self.shells.items():
             p = [self.at[n] for n in c]
@@ -159,6 +175,42 @@ def point_to_triangle(p, a, b, c):
         return along(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)))
     n = cross(ab, ac)
     return abs(dot(unit(n), ap)) if length(n) > 0 else length(ap)
+
+
+def bend(p, i):
+    """The angle between the halves of a quad that corners i and i + 2 part."""
+    a, b, c, d = (p[(i + k) % 4] for k in range(4))
+    one, other = cross(minus(b, a), minus(c, a)), cross(minus(c, a), minus(d, a))
+    scale = length(one) * length(other)
+    return math.degrees(math.acos(max(-1.0, min(1.0, dot(one, other) / scale)))) if scale else 180.0
+
+
+def jacobian_ratio(p):
+    """Smallest by largest determinant at the 2 x 2 Gauss points."""
+    g = 1 / math.sqrt(3)
+    middle = unit(cross(minus(p[2], p[0]), minus(p[3], p[1])))
+    values = []
+    for s, t in ((-g, -g), (g, -g), (g, g), (-g, g)):
+        by_s = [((1 - t) * (p[1][k] - p[0][k]) + (1 + t) * (p[2][k] - p[3][k])) / 4 for k in range(3)]
+        by_t = [((1 - s) * (p[3][k] - p[0][k]) + (1 + s) * (p[2][k] - p[1][k])) / 4 for k in range(3)]
+        values.append(dot(cross(by_s, by_t), middle))
+    return min(values) / max(values) if max(values) > 0 else -1.0
+
+
+def fails_as_quad(p, angles, size):
+    """Whether a quad fails by the built-in criteria, as this file computes them; those that are near to failing count too, since a repair keeps away from
+    the limits by a thousandth."""
+    sides = [length(minus(p[i], p[i - 1])) for i in range(4)]
+    middles = [tuple((p[i][k] + p[i - 1][k]) / 2 for k in range(3)) for i in range(4)]
+    one, other = minus(middles[0], middles[2]), minus(middles[1], middles[3])
+    scale = length(one) * length(other)
+    skew = 90 - math.degrees(math.acos(min(1.0, abs(dot(one, other)) / scale))) if scale else 90.0
+    corners = [length(cross(minus(p[i - 1], p[i]), minus(p[(i + 1) % 4], p[i]))) / 2 for i in range(4)]
+    area = length(cross(minus(p[2], p[0]), minus(p[3], p[1]))) / 2
+    taper = 1 - min(corners) / (area / 2) if area else 1.0
+    k = 0.999
+    return (max(bend(p, 0), bend(p, 1)) > 15 * k or min(angles) < 40 / k or max(angles) > 140 * k or min(sides) < 0.2 * size / k
+            or max(sides) > 2 * size * k or max(sides) > 5 * k * min(sides) or skew > 40 * k or taper > 0.6 * k or jacobian_ratio(p) < 0.6 / k)
 
 
 class Grid:
@@ -319,6 +371,13 @@ def prove(prismesh, main, name, kind, edit, original, before, target_size, folde
     again = counts(prismesh, repaired_path, target_size)
     if again != told["after"]:
         wrong.append(f"reopened it has {again}, the edit said {told['after']}")
+    edges, pairs_before = repaired.edges(), shaped.triangle_pairs()
+    new_pairs = [e for e in repaired.triangle_pairs() if e not in pairs_before]
+    for e in new_pairs:
+        if len(edges[e]) == 2 and not repaired.needs_pair(e, edges[e], target_size):
+            wrong.append(f"the triangles {edges[e][0][1]} and {edges[e][1][1]} would be a good quad")
+    if len(new_pairs) != told["triangle_pairs"]:
+        wrong.append(f"there are {len(new_pairs)} new pairs of triangles, the edit said {told['triangle_pairs']}")
     grid = Grid(shaped, 2 * target_size)
     touched = [n for n, at in repaired.at.items() if shaped.at.get(n) != at]
     off = max((grid.distance(repaired.at[n]) for n in touched), default=0.0)
