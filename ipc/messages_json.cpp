@@ -85,9 +85,9 @@ PRISMESH_JSON_OBJECT(mesh::deck::Warning, f("file", m.file), f("line", m.line), 
 PRISMESH_JSON_OBJECT(mesh::document::EditReport, f("edit", m.edit), f("nodes_moved", m.nodes_moved), f("elements_added", m.elements_added),
                      f("elements_removed", m.elements_removed), f("before", m.before), f("after", m.after),
                      f("clusters_before", m.clusters_before), f("clusters_after", m.clusters_after), f("triangle_pairs", m.triangle_pairs),
-                     f("inverted", m.inverted), f("lost_connections", m.lost_connections), f("lost", m.lost), f("mass_before", m.mass_before),
-                     f("mass_after", m.mass_after), f("cog_before", m.centre_before), f("cog_after", m.centre_after), f("notes", m.notes),
-                     f("ms", m.milliseconds));
+                     f("inverted", m.inverted), f("lost_connections", m.lost_connections), f("lost", m.lost),
+                     f("mass_before", m.mass_before), f("mass_after", m.mass_after), f("cog_before", m.centre_before),
+                     f("cog_after", m.centre_after), f("notes", m.notes), f("ms", m.milliseconds));
 
 }  // namespace prismesh::json
 

@@ -246,9 +246,9 @@ bool keeps_peaks(const RepairContext& context) {
   constexpr double kMaxCut = 0.05;  // of the target size
   const Patch& patch = context.patch;
   const std::vector<LocalShell> shells = patch.changed_shells();
+  const double max_cut = kMaxCut * target_sizes_of(context, shells).min;
   const auto is_covered = [&](const Vec3& place) {
-    return std::any_of(shells.begin(), shells.end(),
-                       [&](LocalShell shell) { return distance_to_shell(patch, shell, place) <= kMaxCut * context.criteria.target_size; });
+    return std::any_of(shells.begin(), shells.end(), [&](LocalShell shell) { return distance_to_shell(patch, shell, place) <= max_cut; });
   };
   for (const LocalNode node : patch.changed_nodes()) {
     const Vec3& was = patch.old_position(node);

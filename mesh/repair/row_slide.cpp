@@ -20,9 +20,9 @@ struct Rung {
   LocalNode first, second;
 };
 
-double shortest_allowed(const RepairContext& context) {
+double shortest_allowed(const RepairContext& context, LocalShell shell) {
   const auto metric = static_cast<std::size_t>(quality::Metric::min_length);
-  return static_cast<double>(context.limits.quad.threshold[metric].warn_low);
+  return static_cast<double>(context.limits.of(context.patch.shell(shell).part).quad.threshold[metric].warn_low);
 }
 
 double rung_length(const Patch& patch, const Rung& rung) { return (patch.position(rung.first) - patch.position(rung.second)).norm(); }
@@ -126,7 +126,7 @@ void slide_node(const RepairContext& context, LocalNode node, const Vec3& way, d
 std::vector<RowSlide> row_slides(const RepairContext& context, LocalShell shell) {
   std::vector<RowSlide> found;
   const Corners& corners = context.patch.shell(shell).corners;
-  const double shortest = shortest_allowed(context);
+  const double shortest = shortest_allowed(context, shell);
   if (corner_count(corners) != 4 || !std::isfinite(shortest)) return found;
   for (int edge = 0; edge < 2; ++edge) {
     const double length =
@@ -140,7 +140,7 @@ std::vector<RowSlide> row_slides(const RepairContext& context, LocalShell shell)
 
 Refusal slide_row(const RepairContext& context, const RowSlide& slide) {
   const Patch& patch = context.patch;
-  const double wanted = kLongEnough * shortest_allowed(context);
+  const double wanted = kLongEnough * shortest_allowed(context, slide.start);
   const std::vector<Rung> rungs = short_rungs(patch, slide, wanted);
   const Corners corners = patch.shell(slide.start).corners;
   const Rung out = rung_of(corners, slide.edge), back = rung_of(corners, slide.edge + 2);

@@ -122,8 +122,6 @@ TEST_F(ToolsTest, the_free_edges_that_follow_are_shown_before_the_pull) {
   station_->key("shift+f");  // by distance: where nothing holds, all follow
   station_->key("shift+f");
   EXPECT_FALSE(station_->kiosk().wait_for("followed edges 0").empty()) << "they hold now";
-  station_->key("Escape");
-  EXPECT_TRUE(station_->wait_for_selection(0));
 }
 
 TEST_F(ToolsTest, the_disk_slides_on_the_sheet_and_goes_on_after_the_view_was_turned) {

@@ -229,11 +229,12 @@ void sizes_section(const SizeFacts& sizes, QualityActions& actions) {
       std::isfinite(wanted))
     actions.emplace_back(SizeChosen{wanted});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("type a length and press Enter");
+  ImGui::TextDisabled("guessed from");
   ImGui::SameLine();
   if (ImGui::SmallButton("own edges")) actions.emplace_back(SizeChosen{mesh::document::SizeGuess::part});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("each part's median edge");
   ImGui::SameLine();
-  if (ImGui::SmallButton("deck's")) actions.emplace_back(SizeChosen{mesh::document::SizeGuess::deck});
+  if (ImGui::SmallButton("deck's edges")) actions.emplace_back(SizeChosen{mesh::document::SizeGuess::deck});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the deck's median edge, one for all");
 }
 
