@@ -198,7 +198,7 @@ void parts_section(const QualityFacts& facts) {
                         grouped(parts[i].shells).c_str(), grouped(parts[i].warn).c_str(), grouped(parts[i].fail).c_str(),
                         readable(parts[i].target_size, 4).c_str(), size_source_words(parts[i].size_from));
   }
-  if (parts.size() > shown) ImGui::TextDisabled("%s better ones", grouped(parts.size() - shown).c_str());
+  if (parts.size() > shown) ImGui::TextDisabled("and %s better", grouped(parts.size() - shown).c_str());
 }
 
 void limits_rows(const QualityFacts& facts, PanelLayout& layout) {
@@ -229,12 +229,12 @@ void sizes_section(const SizeFacts& sizes, QualityActions& actions) {
       std::isfinite(wanted))
     actions.emplace_back(SizeChosen{wanted});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("type a length and press Enter");
-  ImGui::TextDisabled("guessed from");
+  ImGui::TextDisabled("guess by");
   ImGui::SameLine();
   if (ImGui::SmallButton("own edges")) actions.emplace_back(SizeChosen{mesh::document::SizeGuess::part});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("each part's median edge");
   ImGui::SameLine();
-  if (ImGui::SmallButton("deck's edges")) actions.emplace_back(SizeChosen{mesh::document::SizeGuess::deck});
+  if (ImGui::SmallButton("deck's")) actions.emplace_back(SizeChosen{mesh::document::SizeGuess::deck});
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the deck's median edge, one for all");
 }
 
