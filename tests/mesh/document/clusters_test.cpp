@@ -98,7 +98,7 @@ TEST(Clusters, of_the_deck_are_damage_where_edits_touched_them) {
   const Folder folder;
   Document document = open_text(folder / "a.k", plate_deck(7));
   must_apply(document, R"({"edit":"translate","by":[0.1,0,0],"on":")" + std::to_string(plate_node(5, 5)) + "\"}");
-  EXPECT_THAT(damaged_shells(*document.opened, document.current()), IsEmpty());
+  EXPECT_THAT(damaged_shells(document), IsEmpty());
   for (const std::uint8_t worse : made_worse(*document.opened, document.current())) EXPECT_EQ(worse, 0) << "the deck had them";
   const ClustersInScope found = clusters_in(document, Scope::damaged, {});
   EXPECT_EQ(found.nodes.size(), 7u) << "the moved node, and those at its six triangles";
