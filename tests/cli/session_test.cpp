@@ -116,12 +116,16 @@ TEST_F(PlayedSession, files_are_named_from_the_folder_that_the_command_is_in) {
   const std::filesystem::path here = std::filesystem::current_path();
   const auto open = std::get<ipc::Open>(asked_by({"open", "sub/deck.k", "--criteria", "own.toml"}));
   EXPECT_EQ(open.path, here / "sub/deck.k");
-  EXPECT_EQ(open.criteria, here / "own.toml");
+  ASSERT_EQ(open.rules.size(), 1u);
+  EXPECT_EQ(open.rules[0].criteria, here / "own.toml");
   const auto whole = std::get<ipc::Open>(asked_by({"open", "/decks/deck.k", "--criteria", "/criteria/own.toml"}));
   EXPECT_EQ(whole.path, "/decks/deck.k");
-  EXPECT_EQ(whole.criteria, "/criteria/own.toml");
-  EXPECT_EQ(std::get<ipc::Open>(asked_by({"open", "deck.k"})).criteria, std::nullopt);
-  EXPECT_EQ(std::get<ipc::Open>(asked_by({"open", "deck.k", "--criteria", "strict"})).criteria, "strict") << "criteria of ours";
+  ASSERT_EQ(whole.rules.size(), 1u);
+  EXPECT_EQ(whole.rules[0].criteria, "/criteria/own.toml");
+  EXPECT_TRUE(std::get<ipc::Open>(asked_by({"open", "deck.k"})).rules.empty());
+  const auto ours = std::get<ipc::Open>(asked_by({"open", "deck.k", "--criteria", "strict"}));
+  ASSERT_EQ(ours.rules.size(), 1u);
+  EXPECT_EQ(ours.rules[0].criteria, "strict") << "criteria of ours";
   EXPECT_EQ(std::get<ipc::Save>(asked_by({"save", "copy.k"})).path, here / "copy.k");
   EXPECT_EQ(std::get<ipc::Save>(asked_by({"save"})).path, std::nullopt) << "in place";
 }
