@@ -179,6 +179,27 @@ void add_rows_between_triangles(const RepairContext& context, LocalShell shell, 
   }
 }
 
+/// Divides long edges between the shell and one with another number of corners, and both shells there. The triangle becomes a quad, or two
+/// triangles; the quad a quad and a triangle.
+void add_edges_between_triangle_and_quad(const RepairContext& context, LocalShell shell, std::vector<Candidate>& found) {
+  const Patch& patch = context.patch;
+  const Corners& corners = patch.shell(shell).corners;
+  const double size = target_size_of(context, shell);
+  for (int e = 0; e < corner_count(corners); ++e) {
+    const EdgeOf edge = edge_of(corners, e);
+    const std::vector<LocalShell> shells = patch.shells_at(edge.a, edge.b);
+    if (shells.size() != 2 || length_of(patch, edge) < kLong * size) continue;
+    const bool starts_with_triangle = corner_count(patch.shell(shells[0]).corners) == 3;
+    if (starts_with_triangle == (corner_count(patch.shell(shells[1]).corners) == 3)) continue;
+    for (const RowEnd triangle : {RowEnd::absorb, RowEnd::two_triangles})
+      for (const RowEnd quad : {RowEnd::low_triangle, RowEnd::high_triangle}) {
+        const RowEnd first = starts_with_triangle ? triangle : quad, second = starts_with_triangle ? quad : triangle;
+        found.push_back(
+            {Operation::split, [&context, edge, first, second] { return divide_edge(context, edge.a, edge.b, first, second); }});
+      }
+  }
+}
+
 }  // namespace
 
 std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell shell) {
@@ -190,6 +211,7 @@ std::vector<Candidate> candidates_for(const RepairContext& context, LocalShell s
   add_redivisions(context, shell, found);
   add_rows(context, shell, found);
   add_rows_between_triangles(context, shell, found);
+  add_edges_between_triangle_and_quad(context, shell, found);
   for (const RowSlide& slide : row_slides(context, shell))
     found.push_back({Operation::move, [&context, slide] { return slide_row(context, slide); }});
   found.push_back({std::nullopt, [&context, shell] { return mark_neighbourhood_changed(context, shell); }});

@@ -100,24 +100,6 @@ std::vector<LocalNode> nodes_to_thin(const Patch& patch, const ClusterState& clu
   return nodes;
 }
 
-/// By how much the patch's change lowers the excess of triangles, over all nodes that it touches.
-double thinned_by(const Patch& patch, const ClusterState& clusters) {
-  std::map<LocalNode, long> more;  // by node: triangles now, less those before
-  const auto add = [&](const PatchShell& shell, long by) {
-    if (!counts_in_clusters(clusters, shell)) return;
-    for (std::size_t c = 0; c < 3; ++c) more[shell.corners[c]] += by;
-  };
-  for (const LocalShell shell : patch.changed_shells()) add(patch.shell(shell), 1);
-  for (const auto& [shell, was] : patch.old_shells()) add(was, -1);
-  double thinned = 0;
-  for (const auto& [node, by] : more) {
-    if (by == 0) continue;
-    const long now = triangles_about(patch, clusters, node);
-    thinned += excess_of(now - by, clusters.allowed) - excess_of(now, clusters.allowed);
-  }
-  return thinned;
-}
-
 /// What a change that thins may do to other shells.
 enum class Price : std::uint8_t { no_worse, may_warn };
 
@@ -326,6 +308,23 @@ ClusterState cluster_state_of(const RepairInput& input) {
   clusters.meant = quality::meshes_of_triangles(input.model);
   clusters.in_scope = input.clusters;
   return clusters;
+}
+
+double thinned_by(const Patch& patch, const ClusterState& clusters) {
+  std::map<LocalNode, long> more;  // by node: triangles now, less those before
+  const auto add = [&](const PatchShell& shell, long by) {
+    if (!counts_in_clusters(clusters, shell)) return;
+    for (std::size_t c = 0; c < 3; ++c) more[shell.corners[c]] += by;
+  };
+  for (const LocalShell shell : patch.changed_shells()) add(patch.shell(shell), 1);
+  for (const auto& [shell, was] : patch.old_shells()) add(was, -1);
+  double thinned = 0;
+  for (const auto& [node, by] : more) {
+    if (by == 0) continue;
+    const long now = triangles_about(patch, clusters, node);
+    thinned += excess_of(now - by, clusters.allowed) - excess_of(now, clusters.allowed);
+  }
+  return thinned;
 }
 
 bool thin_clusters(const RepairContext& context, RepairState& state, const std::function<bool()>& goes_on) {

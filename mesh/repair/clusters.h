@@ -13,6 +13,9 @@ namespace prismesh::mesh::repair {
 
 ClusterState cluster_state_of(const RepairInput& input);
 
+/// By how much the patch's current change lowers the number of triangles above the max, over all nodes that it touches.
+double thinned_by(const Patch& patch, const ClusterState& clusters);
+
 /// One pass over the clusters of the scope and those that the repair made. Keeps a change if it takes triangles away from crowded nodes and
 /// no shell that passed fails; changes without new warnings come first. Then joins what triangles are left there, where nothing gets worse.
 /// `goes_on`: false cancels. Returns whether a change was kept.

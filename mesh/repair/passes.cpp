@@ -119,11 +119,7 @@ bool split_failing_quads(const RepairContext& context, RepairState& state) {
   for (const LocalShell shell : bad_shells(patch, state.history, quality::Grade::fail)) {
     if (!goes_on(state.progress, 1)) break;
     if (!patch.shell(shell).is_alive || patch.shell(shell).state.fail == 0) continue;
-    for (const Candidate& split : splits_of(context, shell)) {
-      if (!improve(context, state, {split}, shell, TrialGoal::split)) continue;
-      better = true;
-      break;
-    }
+    better = improve(context, state, splits_of(context, shell), shell, TrialGoal::split) || better;
   }
   if (better) tidy_triangles(context, state, 1);
   return better;

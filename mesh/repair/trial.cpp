@@ -7,7 +7,9 @@
 
 #include "mesh/repair/acceptance.h"
 #include "mesh/repair/change_history.h"
+#include "mesh/repair/clusters.h"
 #include "mesh/repair/node_smoothing.h"
+#include "mesh/repair/smoothness.h"
 
 namespace prismesh::mesh::repair {
 
@@ -16,7 +18,14 @@ namespace {
 constexpr double kMinGain = 0.05;
 constexpr int kPreviewSweeps = 1;
 constexpr double kMinPreviewGain = -2;  ///< candidates that gain less in the preview get no full trial
-constexpr double kPassing = 10;         ///< gain of each shell that passes with TrialGoal::split: more than triangles and pairs cost
+
+// Gains with TrialGoal::split: of each shell that passes and that doesn't warn any more, and cost of a triangle above the max at a node.
+// What else the halves are like doesn't count, so that of two equal splits the first is taken.
+constexpr double kPassing = 10, kNotWarning = 1, kCrowded = 1;
+
+// Of changes that leave nothing failing or warning the smoother one is preferred: the gain grows by this share for each degree of facets
+// less, by this share at most.
+constexpr double kSmoother = 0.01, kMaxSmoother = 0.3;
 
 constexpr int kTrianglesRank = 5;  ///< of the reasons that count triangles: above all others
 
@@ -50,6 +59,17 @@ bool reaches(TrialGoal goal, const Cost& before, const Cost& now) {
   return now.failing < before.failing || now.worst >= before.worst + (cures ? -1e-4F : 1e-3F);
 }
 
+double gain_of_split(const Patch& patch, const RepairState& state, const Cost& before, const Cost& now) {
+  return kPassing * (before.failing - now.failing) + kNotWarning * (before.warning - now.warning) +
+         kCrowded * thinned_by(patch, state.clusters);
+}
+
+/// The gain of an acceptable change after which all shells pass: more if it makes the mesh smoother, less if more faceted.
+double with_preference(const RepairContext& context, double gain) {
+  const double smoother = kSmoother * (facets_before(context) - facets_now(context));
+  return gain * (1 + std::clamp(smoother, -kMaxSmoother, kMaxSmoother));
+}
+
 /// Applies a candidate to the patch in full, and tells whether the change is acceptable.
 Outcome try_out(const RepairContext& context, const RepairState& state, const Candidate& candidate, TrialGoal goal) {
   const Patch& patch = context.patch;
@@ -58,8 +78,7 @@ Outcome try_out(const RepairContext& context, const RepairState& state, const Ca
   if (goal != TrialGoal::split) smooth_nodes(context, state.effort.sweeps, state.along_lines);
   judge_shells(context, patch.changed_shells());
   const Cost before = cost_before(patch), now = cost_now(patch);
-  double gain = before.total - now.total;
-  if (goal == TrialGoal::split) gain += kPassing * (before.failing - now.failing);
+  const double gain = goal == TrialGoal::split ? gain_of_split(patch, state, before, now) : before.total - now.total;
   if (gain < kMinGain) return {0, "no operation makes it better", 4};
   if (!reaches(goal, before, now)) return goal == TrialGoal::tidy ? Outcome{} : Outcome{0, "no operation makes it better", 4};
   if (adds_failures(patch)) return {0, "every operation makes a neighbour fail", 2};
@@ -75,18 +94,23 @@ Outcome try_out(const RepairContext& context, const RepairState& state, const Ca
   // Where quads were split, the shells before are far from the smooth surface, so that the check above allows much.
   if (goal != TrialGoal::split && history.added_triangle_pairs > 0 && !keeps_peaks(context))
     return {0, "every operation leaves the surface", 3};
-  return {gain, {}, 0};
+  const bool is_valid = now.failing == 0 && now.warning == 0;
+  return {goal == TrialGoal::split || !is_valid ? gain : with_preference(context, gain), {}, 0};
 }
 
-/// Candidates worth a full trial, by descending gain in the preview.
+/// Candidates worth a full trial, by descending gain in the preview. Splits, whose nodes stay, are all tried, in their order.
 std::vector<const Candidate*> promising_of(const RepairContext& context, const RepairState& state, const std::vector<Candidate>& candidates,
-                                           Outcome& reason) {
+                                           TrialGoal goal, Outcome& reason) {
+  std::vector<const Candidate*> promising;
+  if (goal == TrialGoal::split) {
+    for (const Candidate& candidate : candidates) promising.push_back(&candidate);
+    return promising;
+  }
   std::vector<std::pair<double, const Candidate*>> rated;
   for (const Candidate& candidate : candidates)
     if (const auto gain = preview(context, state, candidate, reason); gain && *gain > kMinPreviewGain)
       rated.emplace_back(*gain, &candidate);
   std::stable_sort(rated.begin(), rated.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<const Candidate*> promising;
   for (const auto& [gain, candidate] : rated) promising.push_back(candidate);
   return promising;
 }
@@ -114,7 +138,7 @@ const Candidate* best_candidate(const RepairContext& context, const RepairState&
 
 bool improve(const RepairContext& context, RepairState& state, const std::vector<Candidate>& candidates, LocalShell shell, TrialGoal goal) {
   Outcome reason{0, "no operation is possible", -1};
-  const std::vector<const Candidate*> promising = promising_of(context, state, candidates, reason);
+  const std::vector<const Candidate*> promising = promising_of(context, state, candidates, goal, reason);
   const Candidate* best = best_candidate(context, state, promising, goal, reason);
   if (best == nullptr) {
     if (goal == TrialGoal::cure || (goal == TrialGoal::split && reason.rank == kTrianglesRank)) state.record.reason[shell] = reason.why;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/quality/report.h"
 #include "mesh/repair/candidates.h"
 #include "mesh/repair/collapse.h"
 #include "mesh/repair/divide.h"
@@ -220,6 +221,61 @@ TEST(Candidates, lift_each_corner_of_a_warped_quad_to_either_side) {
   }
   EXPECT_EQ(up, 1);
   EXPECT_EQ(down, 1);
+}
+
+/// Twelve elements wide; eleven quads in a row below y = 5, ten above, and between them a triangle beside a quad, with an edge twice as
+/// long as others in common.
+struct Taper {
+  static constexpr std::size_t kRows = 5, kLower = 11, kUpper = 10, kGap = 5;  ///< columns; the triangle is on the gap's edge
+  std::vector<Vec3> positions;
+  std::vector<std::array<std::size_t, 4>> shells;
+  std::size_t first = 0;  ///< node at the left end of the edge; the next is at its right end
+
+  Taper() {
+    for (std::size_t j = 0; j <= 2 * kRows; ++j) {
+      const std::size_t columns = j <= kRows ? kLower : kUpper;
+      // From row to row the columns get as wide as the gap asks for.
+      const double wide = j <= kRows ? 1 + 1.1 * static_cast<double>(j) / kRows : 1.0;
+      double x = 0;
+      for (std::size_t i = 0; i <= columns; ++i) {
+        positions.emplace_back(x, static_cast<double>(j), 0);
+        x += j <= kRows ? (i == kGap ? wide : (12 - wide) / (kLower - 1.0)) : 12.0 / kUpper;
+      }
+    }
+    const auto node = [](std::size_t i, std::size_t j) {
+      return j <= kRows ? i + j * (kLower + 1) : i + (kRows + 1) * (kLower + 1) + (j - kRows - 1) * (kUpper + 1);
+    };
+    for (std::size_t j = 0; j < 2 * kRows; ++j) {
+      const std::size_t columns = j < kRows ? kLower : kUpper;
+      for (std::size_t i = 0; i < columns; ++i) {
+        const std::size_t below = j == kRows && i >= kGap ? i + 1 : i;  // beyond the triangle
+        shells.push_back({node(below, j), node(below + 1, j), node(i + 1, j + 1), node(i, j + 1)});
+      }
+    }
+    first = node(kGap, kRows);
+    shells.push_back({first, first + 1, node(kGap, kRows + 1), node(kGap, kRows + 1)});
+  }
+};
+
+TEST(DivideEdge, between_a_triangle_and_a_quad_is_taken_where_nothing_else_helps) {
+  const Taper taper;
+  const Model bad = model_of(taper.positions, taper.shells);
+  const quality::SizedCriteria criteria{quality::default_criteria(), 1};
+  const auto counts = [&](const Model& model) { return quality::count(quality::judge_model(model, criteria)); };
+  ASSERT_GE(counts(bad).fail, 2u) << "the edge is more than twice as long as it should be";
+  const std::size_t quad = (Taper::kRows - 1) * Taper::kLower + Taper::kGap, tip = taper.shells.size() - 1;
+  Rules rules;  // nothing but the two can be divided, and their edge keeps its length
+  rules.shell = [=](ShellIndex s) { return std::uint8_t{s == shell_at(quad) || s == shell_at(tip) ? 0 : kIndivisible}; };
+  rules.node = [&](NodeIndex n) { return std::uint8_t{n == at(taper.first) || n == at(taper.first + 1) ? kStays : 0}; };
+  const relax::ReferenceSurface surface(bad, all_shells(bad), 30);
+  const auto repaired = repair({bad, surface, rules, criteria, {}}, all_shells(bad));
+  ASSERT_TRUE(repaired.has_value());
+  const Model after = carried_out(bad, repaired->change);
+  EXPECT_EQ(what_is_wrong(after), "");
+  EXPECT_EQ(counts(after).fail, 0u);
+  EXPECT_EQ(triangles(after), 1u) << "the triangle became a quad, and the quad a quad and a triangle";
+  EXPECT_EQ(repaired->change.new_nodes.size(), 1u);
+  EXPECT_EQ(repaired->done[static_cast<std::size_t>(Operation::split)], 1u);
 }
 
 TEST(Patch, works_on_no_node_whose_shells_it_has_not_all) {
