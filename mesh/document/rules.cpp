@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <tuple>
 #include <unordered_map>
+#include <vector>
 
 #include "mesh/deck/editing/ancestors.h"
 #include "mesh/deck/editing/edit_checks.h"
@@ -60,10 +63,32 @@ class Rulebook {
                          [&](const ElementUse& other) { return use.element_class == other.element_class && use.element == other.element; });
     });
   }
+  bool may_exchange(ShellIndex a, ShellIndex b) { return !deck_.references || sets_of(a) == sets_of(b); }
 
  private:
-  template <class IndexType>
-  static void sort_unique(std::vector<IndexType>& set) {
+  /// A set by its id, else by its name, else as a card by itself. Groups of quads and of triangles that have one id are one set.
+  using SetKey = std::tuple<std::int64_t, std::string, std::uint32_t>;
+  const std::vector<SetKey>& sets_of(ShellIndex shell) {
+    const std::scoped_lock lock(mutex_);
+    const auto [known, is_new] = sets_.try_emplace(shell);
+    if (is_new) known->second = find_sets(shell);
+    return known->second;
+  }
+  std::vector<SetKey> find_sets(ShellIndex shell) const {
+    std::vector<SetKey> sets;
+    const std::int64_t id = model().shell_ids[deck_ancestor(model(), shell).value];
+    for (const Reference& reference : deck_.references->naming(Referred::shell, id)) {
+      if (reference.takes_away || (reference.role != ReferenceRole::list && reference.role != ReferenceRole::range)) continue;
+      const Referrer& card = deck_.references->referrers()[reference.referrer];
+      const bool is_alone = card.id == 0 && card.group.empty();
+      sets.emplace_back(card.id, card.group, is_alone ? reference.referrer : 0U);
+    }
+    sort_unique(sets);
+    return sets;
+  }
+
+  template <class Value>
+  static void sort_unique(std::vector<Value>& set) {
     std::sort(set.begin(), set.end());
     set.erase(std::unique(set.begin(), set.end()), set.end());
   }
@@ -130,6 +155,7 @@ class Rulebook {
   std::mutex mutex_;
   std::unordered_map<NodeIndex, std::uint8_t> nodes_;
   std::unordered_map<ShellIndex, std::uint8_t> shells_;
+  std::unordered_map<ShellIndex, std::vector<SetKey>> sets_;
 };
 
 }  // namespace
@@ -139,6 +165,7 @@ repair::Rules rules_for(const Document& document, const Generation& generation) 
   repair::Rules rules;
   rules.node = [book](NodeIndex node) { return book->node(node); };
   rules.shell = [book](ShellIndex shell) { return book->shell(shell); };
+  rules.may_exchange = [book](ShellIndex a, ShellIndex b) { return book->may_exchange(a, b); };
   rules.may_divide = [book](NodeIndex a, NodeIndex b) { return book->may_divide(a, b); };
   return rules;
 }

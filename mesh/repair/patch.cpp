@@ -168,6 +168,11 @@ bool Patch::may_divide(LocalNode a, LocalNode b) const {
   return rules_->may_divide(node(a).model, node(b).model);
 }
 
+bool Patch::may_exchange(LocalShell a, LocalShell b) const {
+  const ShellIndex of_a = shell(a).parent, of_b = shell(b).parent;
+  return of_a == of_b || !rules_->may_exchange || rules_->may_exchange(of_a, of_b);
+}
+
 PatchNode& Patch::own(LocalNode node) {
   if (node.value < nodes_at_begin_ && node_saved_[node.value] != change_) {
     node_saved_[node.value] = change_;

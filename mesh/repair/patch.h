@@ -77,6 +77,8 @@ class Patch {
   const LineEnd* line(LocalNode a, LocalNode b) const;
   /// The live shells with an edge between two nodes, ascending.
   std::vector<LocalShell> shells_at(LocalNode a, LocalNode b) const;
+  /// Whether two shells may be divided anew together.
+  bool may_exchange(LocalShell a, LocalShell b) const;
   /// Whether a new node may be put between two nodes.
   bool may_divide(LocalNode a, LocalNode b) const;
 

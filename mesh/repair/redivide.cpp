@@ -81,6 +81,7 @@ Refusal redivide(const RepairContext& context, LocalShell first, LocalShell seco
   if (patch.line(u, v) != nullptr) return "the edge between them has to stay";
   const PatchShell f = patch.shell(first), g = patch.shell(second);
   if (f.part != g.part || f.properties.thickness != g.properties.thickness) return "they differ in part or thickness";
+  if (!patch.may_exchange(first, second)) return "they are in different sets";
   const bool same_sense = passes(g.corners, v, u);
   // When two shells become one, the first stays, unless the second must not be removed.
   const bool swaps = (g.rules & kLasting) != 0;

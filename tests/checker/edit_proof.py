@@ -446,6 +446,16 @@ def neighbours(proof, id):
     return {n for e in proof.after.elements if id in e.nodes for n in e.nodes if n in proof.before.nodes}
 
 
+def edge_neighbours(proof, id):
+    found = set()
+    for e in proof.after.elements:
+        if id in e.nodes:
+            corners = [n for i, n in enumerate(e.nodes[:4]) if n and n not in e.nodes[:i]]
+            i = corners.index(id) if id in corners else None
+            found |= {corners[i - 1], corners[(i + 1) % len(corners)]} if i is not None else set()
+    return found
+
+
 def membership(deck, kind, id):
     return {s.id for s in deck.sets.values() if s.kind == kind and (id in s.members or any(a <= id <= b for a, b in s.ranges))}
 
@@ -495,7 +505,10 @@ def check_memberships(proof, nodes, elements):
         p = after.nodes[id].basic()
         # Where other nodes moved too, old places say nothing of an edge that a new node divides.
         places = after if proof.expected.get("moved_freely") else before
-        ends = [(detour(places, a, b, p), a, b) for i, a in enumerate(around) for b in around[i + 1:] if frozenset((a, b)) in edges]
+        # Two edges away, the shell may have been divided along another line: at least one end has an edge to the node.
+        beside = edge_neighbours(proof, id)
+        ends = [(detour(places, a, b, p), a, b) for i, a in enumerate(around) for b in around[i + 1:]
+                if frozenset((a, b)) in edges and (a in beside or b in beside)]
         for way, a, b in sorted(ends)[:1]:
             if way > 0.2:
                 continue

@@ -127,6 +127,18 @@ TEST(KeptQuads, a_section_uses_a_group_of_triangles_as_well) {
   EXPECT_GT(in_quads, static_cast<std::size_t>(kFanColumns * (kLastNamed - kFirstNamed + 1)));
 }
 
+TEST(KeptQuads, a_shell_of_the_group_exchanges_area_with_others_of_it_only) {
+  const Folder folder;
+  const Document document = open_fan(folder / "fan_0000.rad", kSection);
+  const Model& model = document.current().model;
+  const repair::Rules rules = rules_for(document, document.current());
+  const auto shell = [&](int row) { return model.find_shell(1 + row * kFanColumns); };
+  EXPECT_TRUE(rules.may_exchange(shell(kFirstNamed), shell(kLastNamed)));
+  EXPECT_TRUE(rules.may_exchange(shell(kFirstNamed - 1), shell(kLastNamed + 1))) << "no group has either";
+  EXPECT_FALSE(rules.may_exchange(shell(kFirstNamed), shell(kFirstNamed - 1)));
+  EXPECT_FALSE(rules.may_exchange(shell(kLastNamed + 1), shell(kLastNamed)));
+}
+
 TEST(KeptQuads, the_rules_say_it_before_the_search) {
   const Folder folder;
   for (const auto& [user, kept] : {std::pair(kSurface, true), std::pair(kSection, false)}) {

@@ -197,6 +197,24 @@ TEST(Redivide, keeps_shells_of_different_thickness_apart) {
   }
 }
 
+TEST(Redivide, keeps_shells_of_different_sets_apart) {
+  const Grid grid = flat(4, 4);
+  Rules rules;
+  const std::size_t first = grid.shell(1, 1), second = grid.shell(2, 1), other = grid.shell(1, 2);
+  rules.may_exchange = [&](ShellIndex a, ShellIndex b) { return (a == shell_at(second)) == (b == shell_at(second)); };
+  GridFixture fixture(grid, rules);
+  const auto outcome = [&](std::size_t a, std::size_t b) {
+    const Loop loop = loop_of(fixture.patch, fixture.shell(a), fixture.shell(b));
+    const std::string said = fixture.refusal(redivide(fixture.context, fixture.shell(a), fixture.shell(b), divisions(loop, 0).front()));
+    fixture.patch.take_back();
+    fixture.patch.begin();
+    return said;
+  };
+  EXPECT_EQ(outcome(first, second), "they are in different sets");
+  EXPECT_EQ(outcome(second, first), "they are in different sets");
+  EXPECT_EQ(outcome(first, other), "done");
+}
+
 TEST(Candidates, lift_each_corner_of_a_warped_quad_to_either_side) {
   Grid grid = flat(5, 5);
   grid.place = [](double x, double y) { return Vec3(x, y, x == 2 && y == 2 ? 0.2 : 0); };
