@@ -47,7 +47,7 @@ struct SnapshotPart {
   std::uint32_t shells = 0;
   double target_size = 1;
   mesh::quality::SizeFrom size_from = mesh::quality::SizeFrom::part;
-  std::string criteria;  ///< its own: a built-in name or a file; empty: the deck's
+  std::string criteria{};  ///< its own: a built-in name or a file; empty: the deck's
 };
 
 struct SnapshotInfo {

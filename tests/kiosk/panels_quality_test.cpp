@@ -104,7 +104,7 @@ TEST_F(QualityPanel, criteria_are_chosen_from_the_list_and_given_up_for_the_deck
   bool listed = false;
   // A click opens the list, a second one chooses from it or closes it.
   for (double y = 20; y < kPanelPicture.height; y += 8)
-    for (const double down : {0.0, 28.0, 46.0, 64.0, 82.0})
+    for (const double down : {0.0, 28.0, 46.0, 64.0, 82.0, 100.0})
       for (int clicks = 0; clicks < (down > 0 ? 2 : 1); ++clicks)
         for (const QualityAction& action : click(200, clicks == 0 ? y : std::min(y + down, kPanelPicture.height - 1.0))) {
           listed = listed || std::holds_alternative<CriteriaListed>(action);

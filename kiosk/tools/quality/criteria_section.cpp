@@ -29,6 +29,8 @@ void choice_row(const CriteriaFacts& facts, QualityActions& actions) {
   ImGui::SetNextItemWidth(-1);
   if (ImGui::BeginCombo("##criteria", "choose ..")) {
     if (ImGui::IsWindowAppearing()) actions.emplace_back(CriteriaListed{});
+    if (!facts.own.empty() && ImGui::Selectable("the deck's"))
+      actions.emplace_back(CriteriaChosen{std::string(mesh::document::kDeckCriteria)});
     for (const std::string& criteria : facts.known) {
       ImGui::PushID(criteria.c_str());
       if (ImGui::Selectable(printable(short_criteria(criteria)).c_str())) actions.emplace_back(CriteriaChosen{criteria});
@@ -39,18 +41,14 @@ void choice_row(const CriteriaFacts& facts, QualityActions& actions) {
   }
 }
 
-/// The parts with criteria of their own, and a way back to the deck's.
-void own_rows(const CriteriaFacts& facts, QualityActions& actions) {
+/// The parts with criteria of their own.
+void own_rows(const CriteriaFacts& facts) {
   for (std::size_t i = 0; i < std::min(facts.own.size(), kMaxOwnRows); ++i) {
     const auto& [criteria, parts] = facts.own[i];
     panels::fact(("part " + parts).c_str(), printable(short_criteria(criteria)));
     whole_path_hint(criteria);
   }
   if (facts.own.size() > kMaxOwnRows) ImGui::TextDisabled("and %zu more", facts.own.size() - kMaxOwnRows);
-  ImGui::TextDisabled("%s", facts.of_selection ? "selection's parts" : "all parts");
-  ImGui::SameLine();
-  if (ImGui::SmallButton("back to the deck's")) actions.emplace_back(CriteriaChosen{std::string(mesh::document::kDeckCriteria)});
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("the parts have no criteria of their own any more");
 }
 
 }  // namespace
@@ -59,7 +57,7 @@ void criteria_section(const CriteriaFacts& facts, QualityActions& actions) {
   panels::section("Criteria");
   panels::fact(facts.own.empty() ? "of all parts" : "the deck's", printable(short_criteria(facts.of_deck)));
   whole_path_hint(facts.of_deck);
-  if (!facts.own.empty()) own_rows(facts, actions);
+  if (!facts.own.empty()) own_rows(facts);
   choice_row(facts, actions);
 }
 

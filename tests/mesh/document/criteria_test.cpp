@@ -146,15 +146,16 @@ TEST_F(SetCriteriaTest, makes_no_shell_worse_and_drags_judge_by_it) {
 
 TEST_F(SetCriteriaTest, repair_mends_what_fails_by_it) {
   put_content(folder_ / "square.toml", "name = \"square\"\n[metrics.aspect]\nwarn_above = 1.15\nfail_above = 1.2\n");
-  Document document = plates_here();
-  must_apply(document, R"({"edit": "translate", "by": [1, 0, 0], "on": "117", "falloff": {"profile": "constant"}})");
-  ASSERT_EQ(document.current().counts, (quality::Counts{61, 0, 0}));
-  const Vec3 moved = place_of(document, 117);
+  put_content(folder_ / "plates.k", plate_and_larger_one());
+  Document document = open(folder_ / "plates.k", OpenOptions{}).value();
+  must_apply(document, R"({"edit": "translate", "by": [1, 0, 0], "on": "1048", "falloff": {"profile": "constant"}})");
+  ASSERT_EQ(document.current().counts.warn + document.current().counts.fail, 0u);
+  const Vec3 moved = place_of(document, 1048);
   must_apply(document, R"({"edit": "repair", "scope": "all"})");
-  EXPECT_EQ(place_of(document, 117), moved) << "by the default criteria nothing is wrong";
+  EXPECT_EQ(place_of(document, 1048), moved) << "by the default criteria nothing is wrong";
   must_apply(document, R"({"edit": "set_criteria", "criteria": "square.toml", "on": "2"})");
   must_apply(document, R"({"edit": "repair", "scope": "all"})");
-  EXPECT_EQ(place_of(document, 117), moved) << "another part's";
+  EXPECT_EQ(place_of(document, 1048), moved) << "another part's";
   must_apply(document, R"({"edit": "set_criteria", "criteria": "square.toml", "on": "1"})");
   const std::size_t fail = document.current().counts.fail;
   ASSERT_GT(fail, 0u);
@@ -219,7 +220,7 @@ TEST_F(SetCriteriaTest, a_recovery_takes_the_criteria_that_the_journal_was_begun
   expect_judged(usual);
   Document told = plates_here({rule("1", std::nullopt, "default")});
   ASSERT_TRUE(Journal::recover(path, told));
-  EXPECT_THAT(criteria_of(told), ElementsAre("default", "skew_and_thickness", "skew_and_thickness")) << "what the user says now counts";
+  EXPECT_THAT(criteria_of(told), ElementsAre("default", "skew and thickness", "skew and thickness")) << "what the user says now counts";
 }
 
 TEST_F(SetCriteriaTest, a_document_opens_without_a_file_if_its_journal_has_it) {

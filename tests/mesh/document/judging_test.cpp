@@ -2,7 +2,6 @@
 #include "mesh/document/judging.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -182,25 +181,6 @@ TEST(SetTargetSize, a_recovery_takes_the_sizes_that_the_journal_was_begun_with) 
   Document told = plates({rule("1", 9.0)});
   ASSERT_TRUE(Journal::recover(path, told));
   EXPECT_THAT(sizes_of(told), ElementsAre(9, 60, 5)) << "what the user says now counts";
-}
-
-/// An LS-DYNA deck of two plates of 10 x 8 quads, parts 1 and 2; the second is the first, 16 times as large. Multiplying by 16 is exact.
-std::string plate_and_larger_one() {
-  std::string nodes = "*KEYWORD\n*NODE\n", shells = "*ELEMENT_SHELL\n";
-  char line[96];
-  for (int part = 1; part <= 2; ++part) {
-    const int by = part == 1 ? 1 : 16;
-    for (int n = 0; n < 99; ++n) {
-      std::snprintf(line, sizeof line, "%8d%16d%16d%16d\n", 1000 * part + n, by * 5 * (n % 11), by * 5 * (n / 11), by * 100);
-      nodes += line;
-    }
-    for (int s = 0; s < 80; ++s) {
-      const int corner = 1000 * part + s % 10 + 11 * (s / 10);
-      std::snprintf(line, sizeof line, "%8d%8d%8d%8d%8d%8d\n", 1000 * part + s, part, corner, corner + 1, corner + 12, corner + 11);
-      shells += line;
-    }
-  }
-  return nodes + shells + "*END\n";
 }
 
 /// What the parts look like after the same edits: a part's shells by corners, in the smaller one's coordinates.

@@ -1,6 +1,7 @@
 // Documents of two plates of different size, and what their parts are judged by.
 #pragma once
 
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,6 +70,25 @@ inline void expect_judged(const Document& document) {
   const auto fresh = quality::judge_model(now.model, judged_by(document));
   EXPECT_TRUE(same_bytes(now.quality, fresh));
   EXPECT_EQ(now.counts, quality::count(fresh));
+}
+
+/// An LS-DYNA deck of two plates of 10 x 8 quads, parts 1 and 2; the second is the first, 16 times as large. Multiplying by 16 is exact.
+inline std::string plate_and_larger_one() {
+  std::string nodes = "*KEYWORD\n*NODE\n", shells = "*ELEMENT_SHELL\n";
+  char line[96];
+  for (int part = 1; part <= 2; ++part) {
+    const int by = part == 1 ? 1 : 16;
+    for (int n = 0; n < 99; ++n) {
+      std::snprintf(line, sizeof line, "%8d%16d%16d%16d\n", 1000 * part + n, by * 5 * (n % 11), by * 5 * (n / 11), by * 100);
+      nodes += line;
+    }
+    for (int s = 0; s < 80; ++s) {
+      const int corner = 1000 * part + s % 10 + 11 * (s / 10);
+      std::snprintf(line, sizeof line, "%8d%8d%8d%8d%8d%8d\n", 1000 * part + s, part, corner, corner + 1, corner + 12, corner + 11);
+      shells += line;
+    }
+  }
+  return nodes + shells + "*END\n";
 }
 
 }  // namespace prismesh::mesh::document
