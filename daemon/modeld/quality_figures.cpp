@@ -99,7 +99,7 @@ struct Wrong {
   float value = 0;
   double severity = 0;
   bool fails = false;
-  mesh::NodeIndex node;  ///< of a cluster of triangles
+  mesh::NodeIndex node{};  ///< of a cluster of triangles
 };
 bool worse(const Wrong& a, const Wrong& b) {
   if (a.fails != b.fails) return a.fails;
